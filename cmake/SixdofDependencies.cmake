@@ -1,0 +1,25 @@
+# Every third-party library, found in one place. README.md says why each is here; cmake/setup installs them.
+
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB 2021 REQUIRED)
+find_package(fmt 9 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(assimp 5 REQUIRED)
+find_package(HDF5 1.10 REQUIRED COMPONENTS C CXX)
+
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
+
+if(SIXDOF_WITH_FCL)
+  find_package(fcl 0.7 REQUIRED)
+endif()
+if(SIXDOF_BUILD_BENCH)
+  find_package(benchmark 1.7 REQUIRED)
+  find_package(CLI11 2.1 REQUIRED)
+endif()
+if(SIXDOF_BUILD_TESTS)
+  find_package(GTest 1.12 REQUIRED)
+endif()

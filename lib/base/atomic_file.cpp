@@ -1,0 +1,73 @@
+#include <sixdof/base/atomic_file.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof {
+namespace {
+
+std::filesystem::path directory_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+/// Flushes a file or directory to the disk; returns errno, 0 on success.
+int flush_to_disk(const std::filesystem::path& path, int flags) {
+  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  const int failure = ::fsync(descriptor) == 0 ? 0 : errno;
+  ::close(descriptor);
+  return failure;
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)) {
+  static std::atomic<unsigned> counter{0};
+  const auto directory = directory_of(target_);
+  if (!std::filesystem::is_directory(directory)) {
+    throw BadFile(target_.string(), "cannot be written: " + directory.string() + " is not a directory");
+  }
+  if (::access(directory.c_str(), W_OK) != 0) {
+    throw BadFile(target_.string(), "cannot be written: " + std::string(std::strerror(errno)));
+  }
+  temporary_ = directory / ("." + target_.filename().string() + "." + std::to_string(::getpid()) + "." +
+                            std::to_string(counter++) + ".partial");
+}
+
+AtomicFile::~AtomicFile() {
+  if (committed_) return;
+  std::error_code ignored;
+  std::filesystem::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+  if (const int failure = flush_to_disk(temporary_, O_RDONLY)) {
+    throw BadFile(target_.string(), "cannot be written: " + std::string(std::strerror(failure)));
+  }
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    throw BadFile(target_.string(), "cannot be written: " + std::string(std::strerror(errno)));
+  }
+  committed_ = true;
+  // The rename is durable once the directory is; a file system that cannot flush a directory still has the whole file.
+  flush_to_disk(directory_of(target_), O_RDONLY | O_DIRECTORY);
+}
+
+void write_file_atomically(const std::filesystem::path& target, std::string_view content) {
+  AtomicFile file(target);
+  {
+    std::ofstream out(file.temporary_path(), std::ios::binary);
+    out.write(content.data(), static_cast<std::streamsize>(content.size()));
+    out.close();
+    if (!out) throw BadFile(target.string(), "cannot be written (disk full?)");
+  }
+  file.commit();
+}
+
+}  // namespace sixdof
