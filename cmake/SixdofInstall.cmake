@@ -1,0 +1,32 @@
+# Installation and export: find_package(sixdof) gives sixdof::sixdof and the backends that were built.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(sixdof_install_targets sixdof)
+if(TARGET sixdof_fcl)
+  list(APPEND sixdof_install_targets sixdof_fcl)
+endif()
+install(TARGETS ${sixdof_install_targets} EXPORT sixdof
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT sixdof NAMESPACE sixdof:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof FILE sixdof-targets.cmake)
+
+foreach(room IN ITEMS base geometry oracle configuration algorithm scenario measure study report)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sixdof
+    FILES_MATCHING PATTERN "*.h")
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sixdof
+  FILES_MATCHING PATTERN "*.h" PATTERN "cache" EXCLUDE)
+
+foreach(program IN ITEMS sixdof_program sixdof-bench)
+  if(TARGET ${program})
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  endif()
+endforeach()
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sixdof-config.cmake.in
+  ${PROJECT_BINARY_DIR}/sixdof-config.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/sixdof-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/sixdof-config.cmake ${PROJECT_BINARY_DIR}/sixdof-config-version.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof)
