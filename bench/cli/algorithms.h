@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+namespace sixdof::cli {
+
+/// `sixdof algorithms [--json]`: what every algorithm of this build answers, its law, version and knobs.
+void add_algorithms_command(CLI::App& app);
+
+}  // namespace sixdof::cli
