@@ -1,0 +1,249 @@
+#include <sixdof/algorithm/fcl/fcl.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Both sides compute the same few products of numbers of size 1 in another order; a hundred roundings are generous.
+constexpr double k_rounding = 100 * std::numeric_limits<double>::epsilon();
+
+Pose generic_pose(std::mt19937_64& random, double reach) {
+  std::normal_distribution<double> normal;
+  const Eigen::Quaterniond q =
+      Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random)).normalized();
+  return {q.toRotationMatrix(), reach * Vector3d(normal(random), normal(random), normal(random)).normalized()};
+}
+
+/// A closed star-shaped body: a globe of rings x sectors whose radius varies, so that closest features are of all
+/// kinds.
+Mesh lumpy_globe(int rings, int sectors, double lump, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> radius(1.0 - lump, 1.0);
+  std::vector<Vector3d> vertices = {{0, 0, radius(random)}, {0, 0, -radius(random)}};
+  for (int i = 1; i < rings; ++i) {
+    for (int j = 0; j < sectors; ++j) {
+      const double theta = std::numbers::pi * i / rings;
+      const double phi = 2 * std::numbers::pi * j / sectors;
+      vertices.push_back(radius(random) *
+                         Vector3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)));
+    }
+  }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(2 + (i - 1) * sectors + j % sectors); };
+  std::vector<Triangle> triangles;
+  for (int j = 0; j < sectors; ++j) {
+    triangles.push_back({0, at(1, j), at(1, j + 1)});
+    triangles.push_back({1, at(rings - 1, j + 1), at(rings - 1, j)});
+    for (int i = 1; i + 1 < rings; ++i) {
+      triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return Mesh::build(std::move(vertices), std::move(triangles), "lumpy-globe");
+}
+
+// Brute force, written from the definition and without FCL: two triangles are nearest in a vertex of one and a point of
+// the other, or in two points of edges, unless an edge of one pierces the other.
+
+double point_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  const double s = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (p - a - s * (b - a)).norm();
+}
+
+double segment_segment(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
+  double best =
+      std::min({point_segment(a, c, d), point_segment(b, c, d), point_segment(c, a, b), point_segment(d, a, b)});
+  const Vector3d n = (b - a).cross(d - c);
+  if (n.squaredNorm() > 0.0) {
+    const double s = (c - a).cross(d - c).dot(n) / n.squaredNorm();
+    const double t = (c - a).cross(b - a).dot(n) / n.squaredNorm();
+    if (s > 0 && s < 1 && t > 0 && t < 1) best = std::min(best, std::abs((c - a).dot(n.normalized())));
+  }
+  return best;
+}
+
+using Corners = std::array<Vector3d, 3>;
+
+/// Does the line of the plane's normal through p meet the triangle?
+bool over(const Vector3d& p, const Corners& t) {
+  const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
+  for (int i = 0; i < 3; ++i) {
+    if ((t[(i + 1) % 3] - t[i]).cross(p - t[i]).dot(n) < 0) return false;
+  }
+  return true;
+}
+
+double triangle_triangle(const Corners& s, const Corners& t) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const auto& [u, v] : {std::pair(s, t), std::pair(t, s)}) {
+    const Vector3d n = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
+    for (int i = 0; i < 3; ++i) {
+      if (over(u[i], v)) best = std::min(best, std::abs((u[i] - v[0]).dot(n)));
+      const Vector3d p = u[i], q = u[(i + 1) % 3];
+      const double h = (p - v[0]).dot(n), k = (q - v[0]).dot(n);
+      if (h * k < 0 && over(p + h / (h - k) * (q - p), v)) return 0.0;
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) best = std::min(best, segment_segment(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
+  }
+  return best;
+}
+
+double brute_force_distance(const Mesh& a, const Mesh& b, const Pose& X_AB) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Triangle& s : a.triangles()) {
+    for (const Triangle& t : b.triangles()) {
+      best = std::min(
+          best, triangle_triangle({a.vertices()[s[0]], a.vertices()[s[1]], a.vertices()[s[2]]},
+                                  {X_AB * b.vertices()[t[0]], X_AB * b.vertices()[t[1]], X_AB * b.vertices()[t[2]]}));
+    }
+  }
+  return best;
+}
+
+double surface_distance(const Vector3d& p, const Mesh& mesh) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : mesh.triangles()) {
+    const Corners c = {mesh.vertices()[t[0]], mesh.vertices()[t[1]], mesh.vertices()[t[2]]};
+    const Vector3d n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+    if (over(p, c)) best = std::min(best, std::abs((p - c[0]).dot(n)));
+    for (int i = 0; i < 3; ++i) best = std::min(best, point_segment(p, c[i], c[(i + 1) % 3]));
+  }
+  return best;
+}
+
+std::vector<std::unique_ptr<Algorithm>> both() {
+  std::vector<std::unique_ptr<Algorithm>> list;
+  list.push_back(make_fcl_obbrss_algorithm());
+  list.push_back(make_fcl_rss_algorithm());
+  return list;
+}
+
+struct BruteForce : ::testing::Test {
+  const Mesh a = lumpy_globe(5, 7, 0.4, 11);
+  const Mesh b = lumpy_globe(4, 6, 0.3, 12);
+};
+
+TEST_F(BruteForce, AgreesOnDistanceYesNoAndWitnesses) {
+  std::mt19937_64 random(2026);
+  std::uniform_real_distribution<double> reach(1.2, 2.6);
+  int touching = 0;
+  const int poses = 60;
+  for (const auto& algorithm : both()) {
+    const auto ab = algorithm->prepare(a, b, algorithm->settings());
+    const auto ba = algorithm->prepare(b, a, algorithm->settings());
+    for (int i = 0; i < poses; ++i) {
+      const Pose X_AB = generic_pose(random, reach(random));
+      const double truth = brute_force_distance(a, b, X_AB);
+      touching += truth == 0.0;
+      const auto forth = ab->distance(X_AB);
+      const auto back = ba->distance(X_AB.inverse());
+      ASSERT_TRUE(forth.ok() && back.ok());
+      EXPECT_NEAR(forth.value.distance, truth, k_rounding);
+      EXPECT_NEAR(back.value.distance, truth, k_rounding);
+      EXPECT_EQ(forth.value.has_witnesses, truth > 0.0);
+      if (truth > 0.0) {
+        EXPECT_NEAR((forth.value.witness_a - forth.value.witness_b).norm(), truth, k_rounding);
+        EXPECT_NEAR(surface_distance(forth.value.witness_a, a), 0.0, k_rounding);
+        EXPECT_NEAR(surface_distance(X_AB.inverse() * forth.value.witness_b, b), 0.0, k_rounding);
+      }
+      const auto yes = ab->collide(X_AB);
+      const auto yes_back = ba->collide(X_AB.inverse());
+      if (algorithm->traits().answers.collide) {
+        ASSERT_TRUE(yes.ok() && yes_back.ok());
+        EXPECT_EQ(yes.value, truth == 0.0);
+        EXPECT_EQ(yes_back.value, truth == 0.0);
+      } else {
+        EXPECT_EQ(yes.status, Status::unsupported);
+      }
+    }
+  }
+  // Both answers occur often, or the test says little.
+  EXPECT_GT(touching, poses / 3);
+  EXPECT_LT(touching, 2 * poses - poses / 3);
+}
+
+TEST_F(BruteForce, BoundsTheApproximateDistance) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> reach(2.1, 3.0);
+  for (const auto& algorithm : both()) {
+    Settings settings = algorithm->settings();
+    settings.set("relative_error", "0.25");
+    const auto query = algorithm->prepare(a, b, settings);
+    int inexact = 0;
+    for (int i = 0; i < 60; ++i) {
+      const Pose X_AB = generic_pose(random, reach(random));
+      const double truth = brute_force_distance(a, b, X_AB);
+      const auto answer = query->distance(X_AB);
+      ASSERT_TRUE(answer.ok());
+      EXPECT_GE(answer.value.distance, truth - k_rounding);
+      EXPECT_LE(answer.value.distance, 1.25 * truth + k_rounding);
+      inexact += answer.value.distance > truth + k_rounding;
+    }
+    // The knob must do something.
+    EXPECT_GT(inexact, 0) << algorithm->traits().name;
+  }
+}
+
+TEST(Fcl, KnowsSurfacesOnly) {
+  const Mesh outer = lumpy_globe(5, 7, 0.1, 3);
+  std::vector<Vector3d> small = outer.vertices();
+  for (Vector3d& v : small) v *= 0.23;
+  const Mesh inner = Mesh::build(small, outer.triangles());
+  std::mt19937_64 random(4);
+  const Pose X_AB = generic_pose(random, 0.17);
+  const auto algorithm = make_fcl_obbrss_algorithm();
+  const auto query = algorithm->prepare(outer, inner, algorithm->settings());
+  EXPECT_FALSE(query->collide(X_AB).value);
+  EXPECT_NEAR(query->distance(X_AB).value.distance, brute_force_distance(outer, inner, X_AB), k_rounding);
+}
+
+TEST(Fcl, CountsSharedTreesOnce) {
+  const Mesh a = lumpy_globe(9, 10, 0.2, 5);
+  const Mesh same = Mesh::build(a.vertices(), a.triangles(), "another name");
+  const Mesh other = lumpy_globe(9, 10, 0.2, 6);
+  for (const auto& algorithm : both()) {
+    const Footprint shared = algorithm->prepare(a, same, algorithm->settings())->footprint();
+    const Footprint apart = algorithm->prepare(a, other, algorithm->settings())->footprint();
+    EXPECT_EQ(apart.bytes, 2 * shared.bytes);
+    const auto n = static_cast<double>(a.triangles().size());
+    // A binary tree with one triangle in each leaf.
+    EXPECT_THAT(shared.counts, ::testing::ElementsAre(std::pair("nodes", 2 * n - 1), std::pair("triangles", n)));
+    EXPECT_GT(shared.bytes, a.triangles().size() * 2 * sizeof(double) * 15);
+  }
+}
+
+TEST(Fcl, RefusesAPoseThatIsNotFinite) {
+  const Mesh a = lumpy_globe(4, 5, 0.2, 5);
+  for (const auto& algorithm : both()) {
+    const auto query = algorithm->prepare(a, a, algorithm->settings());
+    std::mt19937_64 random(8);
+    Pose bad = generic_pose(random, 2.3);
+    bad.t.y() = std::nan("");
+    EXPECT_EQ(query->distance(bad).status, Status::failed);
+    EXPECT_THAT(query->diagnosis(), ::testing::HasSubstr("not finite"));
+    const Status expected = algorithm->traits().answers.collide ? Status::failed : Status::unsupported;
+    EXPECT_EQ(query->collide(bad).status, expected);
+  }
+}
+
+TEST(Fcl, RegistersBothWithTheLibrarysVersion) {
+  Registry registry;
+  register_fcl_algorithms(registry);
+  EXPECT_THAT(registry.find("fcl-obbrss").traits().version, ::testing::StartsWith("0."));
+  EXPECT_FALSE(registry.find("fcl-rss").traits().answers.collide);
+}
+
+}  // namespace
+}  // namespace sixdof
