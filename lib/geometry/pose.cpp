@@ -16,7 +16,17 @@ Pose Pose::from_quaternion(double w, double x, double y, double z, const Eigen::
   if (std::abs(norm - 1.0) > k_unit_norm_tolerance) {
     throw BadArgument(fmt::format("pose: quaternion ({}, {}, {}, {}) has norm {}, not 1", w, x, y, z, norm));
   }
-  return {Eigen::Quaterniond(w / norm, x / norm, y / norm, z / norm).toRotationMatrix(), t};
+  // Every entry is a ratio of two sums of the same products, so rotations that only permute and flip axes, whose
+  // quaternions need sqrt(1/2), have entries of exactly 0 and 1: parallel faces of technical models stay parallel.
+  const double ww = w * w, xx = x * x, yy = y * y, zz = z * z;
+  const double square = (ww + zz) + (xx + yy);
+  Pose pose;
+  pose.R << (ww + xx) - (yy + zz), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),  //
+      2.0 * (x * y + w * z), (ww + yy) - (xx + zz), 2.0 * (y * z - w * x),        //
+      2.0 * (x * z - w * y), 2.0 * (y * z + w * x), (ww + zz) - (xx + yy);
+  pose.R /= square;
+  pose.t = t;
+  return pose;
 }
 
 Eigen::Vector4d Pose::quaternion() const {

@@ -13,7 +13,8 @@ struct Pose {
   /// How far a quaternion's norm may be from 1 to count as rounding: seven printed digits per component.
   static constexpr double k_unit_norm_tolerance = 1e-6;
 
-  /// From a unit quaternion (w, x, y, z) and a translation; the quaternion is normalised to the last bit.
+  /// From a unit quaternion (w, x, y, z) and a translation; the quaternion is normalised to the last bit. Rotations by
+  /// multiples of 90 degrees about the axes have entries of exactly 0, 1 and -1.
   /// @throws BadArgument if a value is not finite or the norm differs from 1 by more than k_unit_norm_tolerance.
   static Pose from_quaternion(double w, double x, double y, double z, const Eigen::Vector3d& t);
 
