@@ -1,0 +1,48 @@
+#include <sixdof/measure/magnitude.h>
+
+#include <cmath>
+
+namespace sixdof {
+namespace {
+
+double square(double x) { return x * x; }
+
+}  // namespace
+
+std::optional<double> sigma(Vectors ideal, Vectors measured) {
+  check_same_length(ideal, measured);
+  const double ideal_peak = peak(ideal);
+  const double measured_peak = peak(measured);
+  if (ideal_peak == 0.0) return std::nullopt;
+  const double measured_scale = measured_peak > 0.0 ? 1.0 / measured_peak : 0.0;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < ideal.size(); ++k) {
+    sum += square(ideal[k].norm() / ideal_peak - measured[k].norm() * measured_scale);
+  }
+  return std::sqrt(sum / static_cast<double>(ideal.size()));
+}
+
+std::optional<double> sigma_paper(Vectors ideal, Vectors measured) {
+  const std::optional<double> root_mean_square = sigma(ideal, measured);
+  if (!root_mean_square) return std::nullopt;
+  return *root_mean_square / std::sqrt(static_cast<double>(ideal.size()));
+}
+
+std::optional<GainFit> fit_gain(Vectors ideal, Vectors measured) {
+  check_same_length(ideal, measured);
+  double products = 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < ideal.size(); ++k) {
+    products += ideal[k].norm() * measured[k].norm();
+    squares += ideal[k].squaredNorm();
+  }
+  if (squares == 0.0 || products == 0.0) return std::nullopt;
+  GainFit fit;
+  fit.gain = products / squares;
+  double rest = 0.0;
+  for (std::size_t k = 0; k < ideal.size(); ++k) rest += square(measured[k].norm() - fit.gain * ideal[k].norm());
+  fit.sigma = std::sqrt(rest / static_cast<double>(ideal.size())) / (fit.gain * peak(ideal));
+  return fit;
+}
+
+}  // namespace sixdof

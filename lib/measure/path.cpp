@@ -1,0 +1,128 @@
+#include <sixdof/measure/path.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof {
+namespace {
+
+double sum_of_squares(Vectors vectors) {
+  double sum = 0.0;
+  for (const Eigen::Vector3d& v : vectors) sum += v.squaredNorm();
+  return sum;
+}
+
+/// Normalised correlation of the ideal, delayed by `shift` stamps, with the measured series, over the common part.
+double correlation(Vectors ideal, Vectors measured, std::ptrdiff_t shift) {
+  const auto count = static_cast<std::ptrdiff_t>(ideal.size());
+  const std::ptrdiff_t from = std::max<std::ptrdiff_t>(0, shift);
+  const std::ptrdiff_t to = std::min(count, count + shift);
+  double product = 0.0;
+  double ideal_squares = 0.0;
+  double measured_squares = 0.0;
+  for (std::ptrdiff_t k = from; k < to; ++k) {
+    const Eigen::Vector3d& i = ideal[static_cast<std::size_t>(k - shift)];
+    const Eigen::Vector3d& m = measured[static_cast<std::size_t>(k)];
+    product += i.dot(m);
+    ideal_squares += i.squaredNorm();
+    measured_squares += m.squaredNorm();
+  }
+  const double norm = std::sqrt(ideal_squares * measured_squares);
+  return norm > 0.0 ? product / norm : 0.0;
+}
+
+}  // namespace
+
+std::optional<double> leakage(Vectors unwanted, Vectors wanted, double scale) {
+  check_same_length(wanted, unwanted);
+  const double reference = sum_of_squares(wanted);
+  if (reference == 0.0) return std::nullopt;
+  return std::sqrt(sum_of_squares(unwanted) / reference) * scale;
+}
+
+std::optional<double> lag(Vectors ideal, Vectors measured, std::size_t reach) {
+  check_same_length(ideal, measured);
+  const auto limit = static_cast<std::ptrdiff_t>(reach);
+  if (ideal.size() <= 2 * reach || peak(ideal) == 0.0 || peak(measured) == 0.0) return std::nullopt;
+  const double contrast = 1.0 - std::min(correlation(ideal, ideal, limit), correlation(ideal, ideal, -limit));
+  if (contrast < k_lag_contrast) return std::nullopt;
+  std::ptrdiff_t best = -limit;
+  double best_value = correlation(ideal, measured, best);
+  for (std::ptrdiff_t shift = -limit + 1; shift <= limit; ++shift) {
+    const double value = correlation(ideal, measured, shift);
+    if (value > best_value) {
+      best = shift;
+      best_value = value;
+    }
+  }
+  const double before = correlation(ideal, measured, best - 1);
+  const double after = correlation(ideal, measured, best + 1);
+  const double curvature = before - 2.0 * best_value + after;
+  const double offset = curvature < 0.0 ? 0.5 * (before - after) / curvature : 0.0;
+  return static_cast<double>(best) + std::clamp(offset, -0.5, 0.5);
+}
+
+Jump largest_jump(std::span<const double> progress, Vectors values, const std::function<Eigen::Vector3d(double)>& f,
+                  std::size_t candidates, std::size_t halvings) {
+  if (progress.size() != values.size()) throw BadArgument("largest_jump: one value per stamp is needed");
+  Jump jump;
+  if (values.size() < 2) return jump;
+  const auto difference = [&](std::size_t k) { return (values[k + 1] - values[k]).norm(); };
+  std::vector<std::size_t> order(values.size() - 1);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto take = static_cast<std::ptrdiff_t>(std::min(candidates, order.size()));
+  std::partial_sort(order.begin(), order.begin() + take, order.end(),
+                    [&](std::size_t a, std::size_t b) { return difference(a) > difference(b); });
+  jump.coarse = difference(order.front());
+  jump.where = 0.5 * (progress[order.front()] + progress[order.front() + 1]);
+  for (std::ptrdiff_t c = 0; c < take; ++c) {
+    const std::size_t k = order[static_cast<std::size_t>(c)];
+    double from = progress[k];
+    double to = progress[k + 1];
+    Eigen::Vector3d f_from = values[k];
+    Eigen::Vector3d f_to = values[k + 1];
+    for (std::size_t step = 0; step < halvings; ++step) {
+      const double middle = 0.5 * (from + to);
+      const Eigen::Vector3d f_middle = f(middle);
+      if ((f_middle - f_from).norm() >= (f_to - f_middle).norm()) {
+        to = middle;
+        f_to = f_middle;
+      } else {
+        from = middle;
+        f_from = f_middle;
+      }
+    }
+    const double left = (f_to - f_from).norm();
+    if (left > jump.refined) {
+      jump.refined = left;
+      jump.where = 0.5 * (from + to);
+    }
+  }
+  return jump;
+}
+
+std::optional<double> loop_work(Vectors forces, Vectors torques, std::span<const Pose> poses,
+                                const Eigen::Vector3d& reference_b) {
+  check_same_length(forces, torques);
+  if (forces.size() != poses.size()) throw BadArgument("loop_work: one pose per stamp is needed");
+  double work = 0.0;
+  double length = 0.0;
+  double angle = 0.0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const std::size_t next = (k + 1) % poses.size();
+    const Eigen::Vector3d step = poses[next] * reference_b - poses[k] * reference_b;
+    const Eigen::AngleAxisd turn(Eigen::Matrix3d(poses[next].R * poses[k].R.transpose()));
+    work += 0.5 * (forces[k] + forces[next]).dot(step);
+    work += 0.5 * (torques[k] + torques[next]).dot(turn.angle() * turn.axis());
+    length += step.norm();
+    angle += turn.angle();
+  }
+  const double scale = peak(forces) * length + peak(torques) * angle;
+  if (scale == 0.0) return std::nullopt;
+  return std::abs(work) / scale;
+}
+
+}  // namespace sixdof

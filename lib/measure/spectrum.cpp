@@ -1,0 +1,156 @@
+#include <sixdof/measure/spectrum.h>
+
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <numbers>
+
+#include <fftw3.h>
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof {
+namespace {
+
+/// FFTW's planner keeps global state; only executing a plan is safe in several threads.
+std::mutex& planner_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+/// Real-to-complex transform of a fixed length, with its own buffers.
+class Transform {
+ public:
+  explicit Transform(std::size_t length)
+      : length_(length), in_(fftw_alloc_real(length)), out_(fftw_alloc_complex(length / 2 + 1)) {
+    const std::lock_guard lock(planner_mutex());
+    // FFTW_ESTIMATE: no timing, so the same plan and the same bits in every run.
+    plan_ = fftw_plan_dft_r2c_1d(static_cast<int>(length), in_.get(), out_.get(), FFTW_ESTIMATE);
+  }
+  ~Transform() {
+    const std::lock_guard lock(planner_mutex());
+    fftw_destroy_plan(plan_);
+  }
+  Transform(const Transform&) = delete;
+  Transform& operator=(const Transform&) = delete;
+
+  std::span<double> input() { return {in_.get(), length_}; }
+
+  /// Adds the one-sided energy spectrum of input() to `sum` (length / 2 + 1 entries).
+  void add_energy(std::span<double> sum) {
+    fftw_execute(plan_);
+    const double n = static_cast<double>(length_);
+    for (std::size_t j = 0; j < sum.size(); ++j) {
+      const bool its_own_mirror = j == 0 || 2 * j == length_;
+      const auto& x = out_.get()[j];
+      sum[j] += (its_own_mirror ? 1.0 : 2.0) * (x[0] * x[0] + x[1] * x[1]) / n;
+    }
+  }
+
+ private:
+  struct Free {
+    void operator()(void* p) const { fftw_free(p); }
+  };
+  std::size_t length_;
+  std::unique_ptr<double, Free> in_;
+  std::unique_ptr<fftw_complex, Free> out_;
+  fftw_plan plan_;
+};
+
+/// Periodic Hann window.
+std::vector<double> hann(std::size_t length) {
+  std::vector<double> window(length);
+  for (std::size_t k = 0; k < length; ++k) {
+    window[k] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length));
+  }
+  return window;
+}
+
+}  // namespace
+
+std::vector<double> energy_spectrum(std::span<const double> signal) {
+  if (signal.empty()) return {};
+  Transform transform(signal.size());
+  std::copy(signal.begin(), signal.end(), transform.input().begin());
+  std::vector<double> energy(signal.size() / 2 + 1, 0.0);
+  transform.add_energy(energy);
+  return energy;
+}
+
+std::optional<double> nu(Vectors ideal, Vectors measured) {
+  check_same_length(ideal, measured);
+  const auto energy = [](Vectors vectors) {
+    const double scale = peak(vectors);
+    if (scale == 0.0) return 0.0;
+    std::vector<double> normalised = magnitudes(vectors);
+    for (double& value : normalised) value /= scale;
+    double sum = 0.0;
+    for (const double e : energy_spectrum(normalised)) sum += e;
+    return sum;
+  };
+  const double ideal_energy = energy(ideal);
+  if (ideal_energy == 0.0) return std::nullopt;
+  return energy(measured) / ideal_energy;
+}
+
+std::optional<double> residual_noise(Vectors ideal, Vectors measured, double sample_rate, double cutoff) {
+  check_same_length(ideal, measured);
+  if (!(cutoff >= 0.0 && cutoff < 0.5 * sample_rate)) {
+    throw BadArgument(
+        fmt::format("cut-off {} Hz is not between 0 and half of the sample rate {} Hz", cutoff, sample_rate));
+  }
+  double products = 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < ideal.size(); ++k) {
+    products += ideal[k].dot(measured[k]);
+    squares += ideal[k].squaredNorm();
+  }
+  if (squares == 0.0 || peak(measured) == 0.0) return std::nullopt;
+  const double gain = std::max(0.0, products / squares);
+
+  const std::vector<double> window = hann(ideal.size());
+  Transform transform(ideal.size());
+  std::vector<double> residual_energy(ideal.size() / 2 + 1, 0.0);
+  double reference_energy = 0.0;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const std::span<double> x = transform.input();
+    for (std::size_t k = 0; k < ideal.size(); ++k) {
+      x[k] = window[k] * (measured[k][axis] - gain * ideal[k][axis]);
+      const double reference = gain > 0.0 ? gain * ideal[k][axis] : measured[k][axis];
+      reference_energy += window[k] * window[k] * reference * reference;
+    }
+    transform.add_energy(residual_energy);
+  }
+  if (reference_energy == 0.0) return std::nullopt;
+  double above = 0.0;
+  for (std::size_t j = 0; j < residual_energy.size(); ++j) {
+    const double frequency = static_cast<double>(j) * sample_rate / static_cast<double>(ideal.size());
+    if (frequency > cutoff) above += residual_energy[j];
+  }
+  return above / reference_energy;
+}
+
+Spectrogram short_time_spectrum(std::span<const double> signal, double sample_rate, std::size_t window,
+                                std::size_t hop) {
+  if (window == 0 || hop == 0 || signal.size() < window) {
+    throw BadArgument(
+        fmt::format("window of {} samples every {} samples does not fit a signal of {}", window, hop, signal.size()));
+  }
+  Transform transform(window);
+  const std::vector<double> weight = hann(window);
+  const std::size_t bins = window / 2 + 1;
+  Spectrogram result;
+  for (std::size_t j = 0; j < bins; ++j) {
+    result.frequencies.push_back(static_cast<double>(j) * sample_rate / static_cast<double>(window));
+  }
+  for (std::size_t start = 0; start + window <= signal.size(); start += hop) {
+    result.times.push_back((static_cast<double>(start) + 0.5 * static_cast<double>(window)) / sample_rate);
+    for (std::size_t k = 0; k < window; ++k) transform.input()[k] = weight[k] * signal[start + k];
+    result.intensity.resize(result.intensity.size() + bins, 0.0);
+    transform.add_energy(std::span(result.intensity).last(bins));
+  }
+  return result;
+}
+
+}  // namespace sixdof

@@ -1,0 +1,70 @@
+#include <sixdof/measure/magnitude.h>
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof {
+namespace {
+
+constexpr double k_rounding = 8 * std::numeric_limits<double>::epsilon();
+
+// Magnitudes 5, 3, 0 in three different directions; normalised 1, 0.6, 0.
+const std::vector<Eigen::Vector3d> k_ideal{{3, 4, 0}, {0, -1.8, 2.4}, {0, 0, 0}};
+// Magnitudes 2, 4, 3; normalised 0.5, 1, 0.75. Differences 0.5, -0.4, -0.75.
+const std::vector<Eigen::Vector3d> k_measured{{0, 0, -2}, {4, 0, 0}, {1, 2, 2}};
+
+TEST(Magnitude, SigmaIsTheRootMeanSquareOfNormalisedDifferences) {
+  const double mean_square = (0.25 + 0.16 + 0.5625) / 3.0;
+  EXPECT_NEAR(*sigma(k_ideal, k_measured), std::sqrt(mean_square), k_rounding);
+}
+
+TEST(Magnitude, PrintedFormulaDependsOnTheSampling) {
+  EXPECT_NEAR(*sigma_paper(k_ideal, k_measured), std::sqrt(0.25 + 0.16 + 0.5625) / 3.0, k_rounding);
+  std::vector<Eigen::Vector3d> ideal_twice;
+  std::vector<Eigen::Vector3d> measured_twice;
+  for (std::size_t k = 0; k < k_ideal.size(); ++k) {
+    ideal_twice.insert(ideal_twice.end(), 2, k_ideal[k]);
+    measured_twice.insert(measured_twice.end(), 2, k_measured[k]);
+  }
+  EXPECT_NEAR(*sigma(ideal_twice, measured_twice), *sigma(k_ideal, k_measured), k_rounding);
+  EXPECT_NEAR(*sigma_paper(ideal_twice, measured_twice) * std::sqrt(2.0), *sigma_paper(k_ideal, k_measured),
+              k_rounding);
+}
+
+TEST(Magnitude, SigmaDoesNotSeeAGainButTheFitDoes) {
+  std::vector<Eigen::Vector3d> louder = k_ideal;
+  for (Eigen::Vector3d& v : louder) v *= -1.7;
+  EXPECT_NEAR(*sigma(k_ideal, louder), 0.0, k_rounding);
+  EXPECT_NEAR(fit_gain(k_ideal, louder)->gain, 1.7, 2 * k_rounding);
+  EXPECT_NEAR(fit_gain(k_ideal, louder)->sigma, 0.0, k_rounding);
+}
+
+TEST(Magnitude, FitLeavesTheRestOfLeastSquares) {
+  // Ideal magnitudes (5, 3, 0), measured (2, 4, 3): gain (10 + 12) / 34, rest 2 - 5g, 4 - 3g, 3.
+  const double gain = 22.0 / 34.0;
+  const double rest = std::pow(2 - 5 * gain, 2) + std::pow(4 - 3 * gain, 2) + 9.0;
+  EXPECT_NEAR(fit_gain(k_ideal, k_measured)->gain, gain, k_rounding);
+  EXPECT_NEAR(fit_gain(k_ideal, k_measured)->sigma, std::sqrt(rest / 3.0) / (5.0 * gain), k_rounding);
+}
+
+TEST(Magnitude, ZeroSeriesHaveNoCurve) {
+  const std::vector<Eigen::Vector3d> zero(3, Eigen::Vector3d::Zero());
+  EXPECT_FALSE(sigma(zero, k_measured));
+  EXPECT_FALSE(fit_gain(zero, k_measured));
+  EXPECT_FALSE(fit_gain(k_ideal, zero));
+  EXPECT_NEAR(*sigma(k_ideal, zero), std::sqrt((1.0 + 0.36) / 3.0), k_rounding);
+  EXPECT_FALSE(sigma({}, {}));
+}
+
+TEST(Magnitude, RefusesUnequalLengths) {
+  EXPECT_THROW(sigma(k_ideal, Vectors(k_measured).first(2)), BadArgument);
+  EXPECT_THROW(sigma_paper(k_ideal, Vectors(k_measured).first(2)), BadArgument);
+  EXPECT_THROW(fit_gain(k_ideal, Vectors(k_measured).first(2)), BadArgument);
+}
+
+}  // namespace
+}  // namespace sixdof

@@ -1,0 +1,117 @@
+#include <sixdof/measure/spectrum.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof {
+namespace {
+
+constexpr double k_rounding = 1e-12;  // of sums of some hundred terms of order one
+constexpr double k_turn = 2.0 * std::numbers::pi;
+
+std::vector<double> tone(std::size_t count, double cycles, double amplitude, double offset = 0.0) {
+  std::vector<double> signal;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double phase = k_turn * cycles * static_cast<double>(k) / static_cast<double>(count);
+    signal.push_back(offset + amplitude * std::cos(phase + 0.4));
+  }
+  return signal;
+}
+
+TEST(EnergySpectrum, ObeysParsevalForEvenAndOddLengths) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  for (const std::size_t count : {1u, 2u, 127u, 200u}) {
+    std::vector<double> signal(count);
+    for (double& x : signal) x = normal(random);
+    const std::vector<double> energy = energy_spectrum(signal);
+    EXPECT_EQ(energy.size(), count / 2 + 1);
+    EXPECT_NEAR(std::accumulate(energy.begin(), energy.end(), 0.0),
+                std::inner_product(signal.begin(), signal.end(), signal.begin(), 0.0), k_rounding * 100);
+  }
+  EXPECT_TRUE(energy_spectrum({}).empty());
+}
+
+TEST(EnergySpectrum, PutsAToneInItsPlace) {
+  const std::vector<double> energy = energy_spectrum(tone(240, 17.0, 3.0, 0.5));
+  EXPECT_NEAR(energy[0], 240 * 0.25, k_rounding * 240);
+  EXPECT_NEAR(energy[17], 240 * 9.0 / 2.0, k_rounding * 1000);
+  EXPECT_NEAR(energy[16] + energy[18], 0.0, k_rounding);
+}
+
+TEST(Nu, IsTheRatioOfEnergiesOfNormalisedMagnitudes) {
+  // Normalised magnitudes: ideal (1, 0.5, 1), measured (0.25, 1, 0.5).
+  const std::vector<Eigen::Vector3d> ideal{{0, 2, 0}, {0, 0, -1}, {2, 0, 0}};
+  const std::vector<Eigen::Vector3d> measured{{0.5, 0, 0}, {0, 2, 0}, {0, 0, 1}};
+  EXPECT_NEAR(*nu(ideal, measured), (0.0625 + 1.0 + 0.25) / 2.25, k_rounding);
+  EXPECT_NEAR(*nu(measured, ideal), 2.25 / (0.0625 + 1.0 + 0.25), k_rounding);
+  EXPECT_FALSE(nu(std::vector<Eigen::Vector3d>(3, Eigen::Vector3d::Zero()), measured));
+}
+
+std::vector<Eigen::Vector3d> along_x(const std::vector<double>& x) {
+  std::vector<Eigen::Vector3d> vectors;
+  for (const double value : x) vectors.emplace_back(value, 0.0, 0.0);
+  return vectors;
+}
+
+TEST(ResidualNoise, SeesOnlyWhatIsAboveTheCutoff) {
+  // A gain of 2.5, plus a tone of amplitude 0.2 at 120 Hz across the force. Through the same Hann window the ratio of
+  // the energies is that of the mean squares: 0.02 over (2.5 * 4)^2.
+  const std::size_t count = 1000;
+  std::vector<Eigen::Vector3d> ideal(count, Eigen::Vector3d(4.0, 0.0, 0.0));
+  std::vector<Eigen::Vector3d> measured = ideal;
+  const std::vector<double> noise = tone(count, 120.0, 0.2);
+  for (std::size_t k = 0; k < count; ++k) measured[k] = 2.5 * ideal[k] + Eigen::Vector3d(0.0, noise[k], 0.0);
+  EXPECT_NEAR(*residual_noise(ideal, measured, 1000.0, 50.0), 0.02 / 100.0, k_rounding);
+  EXPECT_NEAR(*residual_noise(ideal, measured, 1000.0, 130.0), 0.0, k_rounding);
+  // The same stamps at half the rate: the tone is at 60 Hz.
+  EXPECT_NEAR(*residual_noise(ideal, measured, 500.0, 70.0), 0.0, k_rounding);
+}
+
+TEST(ResidualNoise, ASlowErrorIsNoNoise) {
+  const std::vector<Eigen::Vector3d> ideal = along_x(std::vector<double>(1000, 1.0));
+  std::vector<double> ramp(1000);
+  for (std::size_t k = 0; k < ramp.size(); ++k) ramp[k] = 0.8 + 0.0004 * static_cast<double>(k);
+  constexpr double k_window_leak = 1e-9;  // what the Hann window lets through of a ramp at 50 bins from the mean
+  EXPECT_LT(*residual_noise(ideal, along_x(ramp), 1000.0, 50.0), k_window_leak);
+}
+
+TEST(ResidualNoise, AnOppositeForceIsJudgedByItself) {
+  const std::vector<Eigen::Vector3d> ideal = along_x(std::vector<double>(500, 1.0));
+  EXPECT_NEAR(*residual_noise(ideal, along_x(std::vector<double>(500, -3.0)), 1000.0, 50.0), 0.0, k_rounding);
+  EXPECT_FALSE(residual_noise(ideal, along_x(std::vector<double>(500, 0.0)), 1000.0, 50.0));
+  EXPECT_THROW(residual_noise(ideal, ideal, 1000.0, 500.0), BadArgument);
+  EXPECT_THROW(residual_noise(ideal, ideal, 1000.0, -1.0), BadArgument);
+}
+
+TEST(ShortTimeSpectrum, ShowsWhenAToneStarts) {
+  // Silence, then 125 Hz at 1 kHz.
+  std::vector<double> signal(512, 0.0);
+  const std::vector<double> late = tone(512, 64.0, 1.0);
+  signal.insert(signal.end(), late.begin(), late.end());
+  const Spectrogram diagram = short_time_spectrum(signal, 1000.0, 128, 64);
+  EXPECT_EQ(diagram.times.size(), (1024u - 128u) / 64u + 1u);
+  EXPECT_EQ(diagram.frequencies.size(), 65u);
+  EXPECT_EQ(diagram.intensity.size(), diagram.times.size() * diagram.frequencies.size());
+  EXPECT_NEAR(diagram.times.front(), 0.064, k_rounding);
+  EXPECT_NEAR(diagram.frequencies[16], 125.0, k_rounding);
+  const auto at = [&](std::size_t time, std::size_t bin) {
+    return diagram.intensity[time * diagram.frequencies.size() + bin];
+  };
+  EXPECT_EQ(at(0, 16), 0.0);
+  // Hann halves the amplitude: |X| = 128 / 4 at the tone's bin, twice squared over 128.
+  EXPECT_NEAR(at(diagram.times.size() - 1, 16), 2.0 * 32.0 * 32.0 / 128.0, k_rounding * 100);
+  EXPECT_NEAR(at(diagram.times.size() - 1, 30), 0.0, k_rounding);
+  EXPECT_THROW(short_time_spectrum(signal, 1000.0, 2048, 64), BadArgument);
+  EXPECT_THROW(short_time_spectrum(signal, 1000.0, 64, 0), BadArgument);
+}
+
+}  // namespace
+}  // namespace sixdof
