@@ -1,0 +1,164 @@
+#include <sixdof/geometry/tree.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <sixdof/base/error.h>
+
+#include "shapes.h"
+
+namespace sixdof {
+namespace {
+
+/// Walks the tree and checks everything its doc comment promises.
+void check_tree(const Mesh& mesh, const Tree& tree) {
+  const std::size_t n = mesh.triangles().size();
+  ASSERT_EQ(tree.mesh_triangle().size(), n);
+  std::vector<int> seen(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t original = tree.mesh_triangle()[i];
+    ASSERT_LT(original, n);
+    ++seen[original];
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_EQ(tree.corners()[i][k], mesh.vertices()[mesh.triangles()[original][k]]);
+    }
+  }
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(n));
+
+  double radius = 0.0;
+  for (const Eigen::Vector3d& v : mesh.vertices()) radius = std::max(radius, (v - tree.center()).norm());
+  EXPECT_GE(tree.radius(), radius);
+  EXPECT_LE(tree.radius(), radius * (1.0 + 1e-14));  // a square root and its margin: a few units in the last place
+
+  std::vector<int> covered(n, 0);
+  std::uint32_t index = 0;
+  for (const Tree::Node& node : tree.nodes()) {
+    ASSERT_GE(node.child_count, 1u);
+    ASSERT_LE(node.child_count, Tree::k_width);
+    std::uint32_t first = node.first_triangle;
+    for (std::size_t i = 0; i < Tree::k_width; ++i) {
+      if (i >= node.child_count) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          EXPECT_EQ(node.lower[k][i], Tree::k_empty);
+          EXPECT_EQ(node.upper[k][i], -Tree::k_empty);
+        }
+        continue;
+      }
+      std::uint32_t count = 0;
+      if (node.child[i].is_leaf()) {
+        ASSERT_EQ(node.child[i].first(), first);
+        count = node.child[i].count();
+        for (std::uint32_t t = first; t < first + count; ++t) ++covered[t];
+      } else {
+        ASSERT_GT(node.child[i].node(), index);
+        ASSERT_LT(node.child[i].node(), tree.nodes().size());
+        const Tree::Node& child = tree.nodes()[node.child[i].node()];
+        ASSERT_EQ(child.first_triangle, first);
+        ASSERT_EQ(child.parent, index);
+        count = child.triangle_count;
+      }
+      const Eigen::Vector3d normal(node.normal[0][i], node.normal[1][i], node.normal[2][i]);
+      EXPECT_LE(normal.norm(), 1.0);
+      EXPECT_GE(normal.norm(), 1.0 - 1e-6);
+      for (std::uint32_t t = first; t < first + count; ++t) {
+        for (const Eigen::Vector3d& corner : tree.corners()[t]) {
+          const Eigen::Vector3d p = corner - tree.center();
+          for (std::size_t k = 0; k < 3; ++k) {
+            ASSERT_LE(node.lower[k][i], p[static_cast<Eigen::Index>(k)]);
+            ASSERT_GE(node.upper[k][i], p[static_cast<Eigen::Index>(k)]);
+          }
+          ASSERT_LE(node.slab_lower[i], normal.dot(p));
+          ASSERT_GE(node.slab_upper[i], normal.dot(p));
+        }
+      }
+      first += count;
+    }
+    EXPECT_EQ(first, node.first_triangle + node.triangle_count);
+    ++index;
+  }
+  EXPECT_EQ(std::count(covered.begin(), covered.end(), 1), static_cast<std::ptrdiff_t>(n));
+  EXPECT_EQ(tree.nodes()[0].triangle_count, n);
+}
+
+TEST(Tree, KeepsItsPromisesOnASmoothSurface) {
+  const Mesh mesh = shapes::bumpy_sphere(4, 0.2, 0.7, {0.3, -0.2, 0.9});
+  check_tree(mesh, Tree(mesh));
+}
+
+TEST(Tree, KeepsItsPromisesOnASoup) {
+  shapes::Generator generator(11);
+  const Mesh mesh = shapes::soup(generator, 777, 3.0, 0.4);
+  check_tree(mesh, Tree(mesh));
+}
+
+TEST(Tree, KeepsItsPromisesFarFromTheOriginAndAtEveryScale) {
+  for (const double scale : {1e-9, 1e-6, 1.0, 1e6, 1e9}) {
+    const Mesh mesh = shapes::bumpy_sphere(2, 0.3, scale, scale * 1e6 * Eigen::Vector3d(0.7, -0.9, 0.4));
+    check_tree(mesh, Tree(mesh));
+  }
+}
+
+TEST(Tree, HoldsMeshesOfEverySmallSize) {
+  shapes::Generator generator(12);
+  for (std::size_t n = 1; n <= 70; ++n) {
+    const Mesh mesh = shapes::soup(generator, n, 1.0, 0.2);
+    check_tree(mesh, Tree(mesh));
+  }
+}
+
+TEST(Tree, HoldsTrianglesWithOneCentreAndDuplicates) {
+  shapes::Generator generator(13);
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Triangle> triangles;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const Eigen::Vector3d u = shapes::unit_vector(generator);
+    vertices.insert(vertices.end(), {u, -u, Eigen::Vector3d(0.3 * u.y(), u.x(), 0.1)});
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const Mesh mesh = Mesh::build(vertices, triangles);
+  check_tree(mesh, Tree(mesh));
+}
+
+TEST(Tree, IsTheSameBitsForEveryThreadCount) {
+  const Mesh mesh = shapes::bumpy_sphere(6, 0.2);  // 81,920 triangles: subtrees become tasks
+  const auto build = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return Tree(mesh);
+  };
+  const Tree one = build(1);
+  const Tree four = build(4);
+  ASSERT_EQ(one.nodes().size(), four.nodes().size());
+  EXPECT_EQ(std::memcmp(one.nodes().data(), four.nodes().data(), one.nodes().size_bytes()), 0);
+  EXPECT_TRUE(std::equal(one.mesh_triangle().begin(), one.mesh_triangle().end(), four.mesh_triangle().begin()));
+}
+
+TEST(Tree, IsFilledWell) {
+  // Fill decides memory and speed. Typical: 3.9 triangles per leaf, 5.5 children per node.
+  constexpr double k_triangles_per_leaf = 3.5;
+  constexpr double k_children_per_node = 5.0;
+  const Mesh mesh = shapes::bumpy_sphere(5, 0.2);
+  const Tree tree(mesh);
+  double children = 0.0;
+  double leaves = 0.0;
+  for (const Tree::Node& node : tree.nodes()) {
+    children += node.child_count;
+    for (std::size_t i = 0; i < node.child_count; ++i) leaves += node.child[i].is_leaf() ? 1.0 : 0.0;
+  }
+  EXPECT_GE(static_cast<double>(mesh.triangles().size()) / leaves, k_triangles_per_leaf);
+  EXPECT_GE(children / static_cast<double>(tree.nodes().size()), k_children_per_node);
+  RecordProperty("triangles_per_leaf", std::to_string(static_cast<double>(mesh.triangles().size()) / leaves));
+  RecordProperty("children_per_node", std::to_string(children / static_cast<double>(tree.nodes().size())));
+}
+
+TEST(Tree, RefusesSizesWithoutRoomForFloats) {
+  EXPECT_THROW(Tree(shapes::box({1e16, 1.0, 1.0})), BadMesh);
+  EXPECT_THROW(Tree(shapes::box({1e-17, 1e-17, 1e-17})), BadMesh);
+}
+
+}  // namespace
+}  // namespace sixdof
