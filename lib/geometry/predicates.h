@@ -1,0 +1,109 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Core>
+
+/// Exact signs of geometric determinants of double coordinates, and the one rule that breaks their ties.
+///
+/// **Exact.** A floating-point filter answers almost always; where its error bound does not decide, expansion
+/// arithmetic (expansion.h) gives the exact value. Answers are exact, and the same bits everywhere, if every coordinate
+/// is zero or lies in magnitude between k_smallest_exact_coordinate and k_largest_exact_coordinate. Below, products of
+/// three differences would underflow; above, they would overflow.
+///
+/// **Ties.** Two bodies A and B meet in general position except by accident or by design (equal faces, shared
+/// vertices). All ties between A and B are broken by one rule: B is thought of as translated by e = (eps, eps^2, eps^3)
+/// with an infinitesimal eps > 0. Each determinant that mixes points of A and B is linear in e, so its sign at a tie is
+/// the sign of the first non-zero component of its gradient. Because e is a real translation, answers given by the
+/// functions on "moved" points are those of one real placement of B: they can never contradict each other. What remains
+/// zero is harmless: a triangle with collinear vertices (nothing pierces it), and an edge of A parallel to an edge of B
+/// (then neither edge crosses the plane of a triangle beside the other).
+namespace sixdof {
+
+inline constexpr double k_smallest_exact_coordinate = 0x1p-300;
+inline constexpr double k_largest_exact_coordinate = 0x1p+300;
+
+/// Sign of det(b - a, c - a) in the plane: +1 if a, b, c turn counter-clockwise, 0 if they are collinear.
+int orient2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
+
+/// Six times the signed volume of the tetrahedron, det(b - a, c - a, d - a): positive if d lies on the side to which
+/// the normal of the counter-clockwise triangle a, b, c points (length^3). Its sign is exact and its relative error at
+/// most k_orient3d_relative_error.
+double orient3d_value(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                      const Eigen::Vector3d& d);
+inline constexpr double k_orient3d_relative_error = 0x1p-30;
+
+namespace detail {
+
+/// Sign of det(b - a, c - a, d - a) by expansions alone.
+int orient3d_exact(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                   const Eigen::Vector3d& d);
+
+/// Sign of the first non-zero component of (b - a) x (d - c); 0 if all are zero.
+int lexicographic_cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                        const Eigen::Vector3d& d);
+
+/// Shewchuk's bound for the first stage: |error| <= (7 + 56 u) u * permanent, u = 2^-53.
+inline constexpr double k_unit_roundoff = 0x1p-53;
+inline constexpr double k_orient3d_bound = (7.0 + 56.0 * k_unit_roundoff) * k_unit_roundoff;
+/// Covers what gradual underflow adds to the bound: fewer than 32 roundings of at most 2^-1074, each multiplied by at
+/// most two differences (below 2^301); smaller determinants go the exact way.
+inline constexpr double k_underflow_bound = 0x1p-460;
+
+struct Filtered {
+  double value;  ///< The determinant in plain floating point.
+  double bound;  ///< Largest possible |error| of value.
+};
+
+inline Filtered orient3d_filter(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                                const Eigen::Vector3d& d) {
+  const double bx = b.x() - a.x(), by = b.y() - a.y(), bz = b.z() - a.z();
+  const double cx = c.x() - a.x(), cy = c.y() - a.y(), cz = c.z() - a.z();
+  const double dx = d.x() - a.x(), dy = d.y() - a.y(), dz = d.z() - a.z();
+  const double bxcy = bx * cy, cxby = cx * by;
+  const double cxdy = cx * dy, dxcy = dx * cy;
+  const double dxby = dx * by, bxdy = bx * dy;
+  const double value = dz * (bxcy - cxby) + bz * (cxdy - dxcy) + cz * (dxby - bxdy);
+  const double permanent = std::abs(dz) * (std::abs(bxcy) + std::abs(cxby)) +
+                           std::abs(bz) * (std::abs(cxdy) + std::abs(dxcy)) +
+                           std::abs(cz) * (std::abs(dxby) + std::abs(bxdy));
+  return {value, k_orient3d_bound * permanent + k_underflow_bound};
+}
+
+}  // namespace detail
+
+/// Exact sign of det(b - a, c - a, d - a); see orient3d_value().
+inline int orient3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                    const Eigen::Vector3d& d) {
+  const detail::Filtered f = detail::orient3d_filter(a, b, c, d);
+  if (f.value > f.bound) return 1;
+  if (f.value < -f.bound) return -1;
+  return detail::orient3d_exact(a, b, c, d);
+}
+
+/// Side of the plane of triangle (a, b, c) of A on which the moved vertex `d` of B lies: +1 where the normal points.
+/// 0 only if a, b, c are collinear.
+inline int side_of_moved_point(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                               const Eigen::Vector3d& d) {
+  const int sign = orient3d(a, b, c, d);
+  return sign != 0 ? sign : detail::lexicographic_cross(a, b, a, c);
+}
+
+/// Side of the plane of the moved triangle (a, b, c) of B on which vertex `d` of A lies: +1 where the normal points.
+/// 0 only if a, b, c are collinear.
+inline int side_of_moved_plane(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                               const Eigen::Vector3d& d) {
+  const int sign = orient3d(a, b, c, d);
+  return sign != 0 ? sign : -detail::lexicographic_cross(a, b, a, c);
+}
+
+/// Sign of det(q - p, r - p, s - p) for an edge p, q of A and a moved edge r, s of B: how the lines pass each other.
+/// 0 only if they are parallel.
+inline int passing_of_moved_edge(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
+                                 const Eigen::Vector3d& s) {
+  const int sign = orient3d(p, q, r, s);
+  return sign != 0 ? sign : detail::lexicographic_cross(r, s, p, q);
+}
+
+}  // namespace sixdof
