@@ -1,0 +1,99 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// A thin layer over HDF5's C interface for this project's own sources: handles that close themselves, errors in words.
+
+namespace sixdof::hdf5 {
+
+/// Everything that calls HDF5 lives inside one of these: Debian's library is not thread-safe, so there is one at a time
+/// in the process, and HDF5's habit of printing its error stack is off meanwhile (and back on as it was afterwards).
+class Session {
+ public:
+  Session();
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+  H5E_auto2_t old_handler_ = nullptr;
+  void* old_data_ = nullptr;
+};
+
+/// The innermost entry of HDF5's error stack, e.g. "data error detected by Fletcher32 checksum"; clears the stack.
+std::string last_error();
+
+/// An identifier with the function that closes it.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  hid_t id() const { return id_; }
+  bool valid() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// An open file that knows its name for messages. Objects are named by their path inside the file, "/" for the root.
+/// Every method throws BadFile "FILE: OBJECT: CAUSE" for what it cannot do.
+///
+/// Written files are a function of what is written: no time stamps, and only structures that HDF5 guards by checksums
+/// (format of HDF5 1.10, strings of fixed length), so that a damaged byte is found instead of believed.
+class File {
+ public:
+  static File open(const std::filesystem::path& path);  ///< For reading.
+  /// For writing; replaces what is at `path`. Messages call the file `shown_as`.
+  static File create(const std::filesystem::path& path, const std::filesystem::path& shown_as);
+
+  /// Flushes and closes; finds out whether everything could be written (full disk).
+  void close();
+
+  bool exists(const std::string& object) const;
+  void make_group(const std::string& object);
+
+  void write_attribute(const std::string& object, const char* name, const std::string& value);
+  void write_attribute(const std::string& object, const char* name, double value);
+  void write_attribute(const std::string& object, const char* name, std::uint64_t value);
+  std::string read_string(const std::string& object, const char* name) const;
+  double read_number(const std::string& object, const char* name) const;
+  std::uint64_t read_count(const std::string& object, const char* name) const;
+
+  /// A float64 matrix, row-major. `chunk_rows` = 0 stores it in one piece without filters; otherwise in chunks of that
+  /// many rows with shuffle, deflate and a Fletcher-32 checksum.
+  void write_matrix(const std::string& object, const double* values, std::size_t rows, std::size_t columns,
+                    std::size_t chunk_rows);
+
+  /// Rows x columns of a two-dimensional float64 dataset, without reading its values.
+  std::pair<std::size_t, std::size_t> matrix_size(const std::string& object) const;
+  std::vector<double> read_matrix(const std::string& object) const;
+
+ private:
+  File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+  [[noreturn]] void refuse(const std::string& object, const std::string& cause) const;
+  /// Throws with HDF5's own reason if `result` is negative.
+  void check(herr_t result, const std::string& object, const std::string& what) const;
+  void write_attribute(const std::string& object, const char* name, hid_t type, const void* value);
+  Handle open_attribute(const std::string& object, const char* name) const;
+  void read_attribute(const std::string& object, const char* name, H5T_class_t type_class, hid_t memory_type,
+                      void* value) const;
+  Handle open_matrix(const std::string& object) const;
+
+  Handle file_;
+  std::string name_;
+};
+
+}  // namespace sixdof::hdf5

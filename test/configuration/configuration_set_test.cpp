@@ -1,0 +1,344 @@
+#include <sixdof/configuration/configuration_set.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/base/hdf5.h>
+
+namespace sixdof {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr BucketKey k_near{BucketKind::distance, 5};
+constexpr BucketKey k_far{BucketKind::distance, 20};
+constexpr BucketKey k_deep{BucketKind::volume, 3};
+
+Mesh tetrahedron(double height) {
+  return Mesh::build({{0, 0, 0}, {1.0, 0.1, 0.0}, {-0.2, 1.3, 0.3}, {0.1, -0.3, height}},
+                     {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, "tetrahedron");
+}
+
+const Mesh k_a = tetrahedron(1.7);
+const Mesh k_b = tetrahedron(0.9);
+
+std::vector<double> some_travel(const Grid& grid, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> travel(0.0, 4.0);
+  std::vector<double> values(grid.configurations());
+  for (double& s : values) s = random() % 5 == 0 ? std::numeric_limits<double>::quiet_NaN() : travel(random);
+  return values;
+}
+
+BucketSummary some_summary(BucketKey key) {
+  return {.key = key,
+          .target = 0.1,
+          .aim = 0.1 + 1e-11,
+          .tolerance = 1e-9,
+          .largest_residual = 3e-13,
+          .oracle = "exact",
+          .oracle_version = "1.2.3"};
+}
+
+bool same_bits(const std::vector<double>& left, const std::vector<double>& right) {
+  return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size() * sizeof(double)) == 0;
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void put_bytes(const std::filesystem::path& path, std::string_view bytes) {
+  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+class ConfigurationSetTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("sixdof_set_") + info->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  SetDescription description() const {
+    return {.generator_version = "0.1.0", .a = MeshStamp::of(k_a), .b = MeshStamp::of(k_b), .grid = grid_};
+  }
+
+  std::filesystem::path write(const std::string& name) const {
+    ConfigurationSetWriter writer(folder_ / name, description());
+    writer.write(some_summary(k_far), far_);
+    writer.write(some_summary(k_near), near_);
+    writer.write(some_summary(k_deep), deep_);
+    writer.commit();
+    return folder_ / name;
+  }
+
+  const Grid grid_ = make_grid("60");
+  const std::vector<double> near_ = some_travel(grid_, 1);
+  const std::vector<double> far_ = some_travel(grid_, 2);
+  const std::vector<double> deep_ = some_travel(grid_, 3);
+  std::filesystem::path folder_;
+};
+
+TEST_F(ConfigurationSetTest, ComesBackBitForBit) {
+  const ConfigurationSet set(write("set.h5"));
+  EXPECT_TRUE(same_bits(set.read(k_near), near_));
+  EXPECT_TRUE(same_bits(set.read(k_far), far_));
+  EXPECT_TRUE(same_bits(set.read(k_deep), deep_));
+
+  EXPECT_EQ(set.grid().directions, grid_.directions);
+  EXPECT_EQ(set.grid().rotations, grid_.rotations);
+  EXPECT_EQ(set.grid().spec, "60");
+  EXPECT_EQ(set.grid().sampler, grid_.sampler);
+  EXPECT_EQ(set.grid().rotation_step_degrees, 60.0);
+  EXPECT_EQ(set.description().generator_version, "0.1.0");
+  EXPECT_EQ(set.description().a.name, "tetrahedron");
+  EXPECT_EQ(set.description().a.hash, k_a.hash());
+  EXPECT_EQ(set.description().b.hash, k_b.hash());
+  EXPECT_EQ(set.description().b.triangles, 4u);
+  EXPECT_EQ(set.description().b.volume, k_b.volume());
+  EXPECT_EQ(set.description().a.box_min, k_a.box().min());
+  EXPECT_EQ(set.description().a.diagonal(), k_a.diagonal());
+
+  ASSERT_EQ(set.buckets().size(), 3u);
+  EXPECT_EQ(set.buckets()[0].key, k_near);
+  EXPECT_EQ(set.buckets()[1].key, k_far);
+  EXPECT_EQ(set.buckets()[2].key, k_deep);
+  const BucketSummary& bucket = set.summary(k_near);
+  EXPECT_EQ(bucket.target, 0.1);
+  EXPECT_EQ(bucket.aim, 0.1 + 1e-11);
+  EXPECT_EQ(bucket.tolerance, 1e-9);
+  EXPECT_EQ(bucket.largest_residual, 3e-13);
+  EXPECT_EQ(bucket.oracle, "exact");
+  EXPECT_EQ(bucket.oracle_version, "1.2.3");
+  EXPECT_EQ(bucket.reachable,
+            static_cast<std::uint64_t>(std::ranges::count_if(near_, [](double s) { return !std::isnan(s); })));
+}
+
+TEST_F(ConfigurationSetTest, ReadsOnlyTheBucketItIsAskedFor) {
+  const auto path = write("set.h5");
+  const ConfigurationSet set(path);
+  EXPECT_EQ(set.buckets_read(), 0u);
+  set.read(k_far);
+  EXPECT_EQ(set.buckets_read(), 1u);
+
+  // With one bucket's data damaged the set opens and the others are read as ever. Where its data lies is found by
+  // comparing with a set that differs in this bucket only.
+  std::string bytes = bytes_of(path);
+  {
+    ConfigurationSetWriter writer(folder_ / "other.h5", description());
+    writer.write(some_summary(k_far), far_);
+    writer.write(some_summary(k_near), far_);
+    writer.write(some_summary(k_deep), deep_);
+    writer.commit();
+  }
+  const std::string other = bytes_of(folder_ / "other.h5");
+  std::size_t first = 0;
+  std::size_t run = 0;
+  for (std::size_t i = 0; i < std::min(bytes.size(), other.size()); ++i) {
+    run = bytes[i] != other[i] ? run + 1 : 0;
+    if (run == 64) {
+      first = i;
+      break;
+    }
+  }
+  ASSERT_NE(first, 0u);
+  bytes[first] = static_cast<char>(~bytes[first]);
+  put_bytes(path, bytes);
+  const ConfigurationSet damaged(path);
+  EXPECT_TRUE(same_bits(damaged.read(k_far), far_));
+  EXPECT_TRUE(same_bits(damaged.read(k_deep), deep_));
+  EXPECT_EQ(damaged.buckets_read(), 2u);
+  EXPECT_THAT(
+      [&] { damaged.read(k_near); },
+      ThrowsMessage<BadFile>(AllOf(HasSubstr(path.string()), HasSubstr("distance/05"), HasSubstr("Fletcher32"))));
+}
+
+TEST_F(ConfigurationSetTest, TheSameInputGivesTheSameBytes) {
+  EXPECT_EQ(bytes_of(write("first.h5")), bytes_of(write("second.h5")));
+  EXPECT_EQ(ConfigurationSet(folder_ / "first.h5").hash(), ConfigurationSet(folder_ / "second.h5").hash());
+}
+
+TEST_F(ConfigurationSetTest, TheHashDependsOnValuesAndDescription) {
+  const std::string hash = ConfigurationSet(write("set.h5")).hash();
+  SetDescription other = description();
+  std::swap(other.a, other.b);
+  std::vector<double> moved = deep_;
+  moved.back() = std::isnan(moved.back()) ? 1.0 : std::nextafter(moved.back(), 9.0);
+  const auto hash_with = [&](const SetDescription& set, const std::vector<double>& deep) {
+    ConfigurationSetWriter writer(folder_ / "other.h5", set);
+    writer.write(some_summary(k_near), near_);
+    writer.write(some_summary(k_far), far_);
+    writer.write(some_summary(k_deep), deep);
+    writer.commit();
+    return ConfigurationSet(folder_ / "other.h5").hash();
+  };
+  EXPECT_EQ(hash_with(description(), deep_), hash);  // the order of writing plays no part
+  EXPECT_NE(hash_with(description(), moved), hash);
+  EXPECT_NE(hash_with(other, deep_), hash);
+}
+
+TEST_F(ConfigurationSetTest, AppearsWholeOrNotAtAll) {
+  {
+    ConfigurationSetWriter writer(folder_ / "set.h5", description());
+    writer.write(some_summary(k_near), near_);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+  EXPECT_THROW(ConfigurationSetWriter(folder_ / "absent" / "set.h5", description()), BadFile);
+}
+
+TEST_F(ConfigurationSetTest, RefusesWhatCannotBeWritten) {
+  ConfigurationSetWriter writer(folder_ / "set.h5", description());
+  std::vector<double> travel = near_;
+  travel.pop_back();
+  EXPECT_THROW(writer.write(some_summary(k_near), travel), BadArgument);
+  travel.push_back(-0.1);
+  EXPECT_THROW(writer.write(some_summary(k_near), travel), BadArgument);
+  travel.back() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(writer.write(some_summary(k_near), travel), BadArgument);
+  writer.write(some_summary(k_near), near_);
+  EXPECT_THROW(writer.write(some_summary(k_near), near_), BadArgument);
+  EXPECT_THROW(writer.write(some_summary({BucketKind::volume, 101}), near_), BadArgument);
+  EXPECT_THROW(ConfigurationSetWriter(folder_ / "empty.h5", SetDescription{}), BadArgument);
+}
+
+TEST_F(ConfigurationSetTest, RefusesForeignFiles) {
+  const auto path = folder_ / "foreign.h5";
+  EXPECT_THAT([&] { ConfigurationSet set(path); }, ThrowsMessage<BadFile>(HasSubstr("no such file")));
+  EXPECT_THAT([&] { ConfigurationSet set(folder_); }, ThrowsMessage<BadFile>(HasSubstr("not a regular file")));
+  for (const std::string_view content : {"", "solid hull\nendsolid\n", "\x89HDF\r\n\x1a\n"}) {
+    put_bytes(path, content);
+    EXPECT_THAT([&] { ConfigurationSet set(path); },
+                ThrowsMessage<BadFile>(AllOf(HasSubstr(path.string()), HasSubstr("HDF5"))));
+  }
+  {
+    const hdf5::Session session;
+    auto file = hdf5::File::create(path, path);
+    file.make_group("distance");
+    file.close();
+  }
+  EXPECT_THAT([&] { ConfigurationSet set(path); }, ThrowsMessage<BadFile>(HasSubstr("attribute format")));
+  {
+    const hdf5::Session session;
+    auto file = hdf5::File::create(path, path);
+    file.write_attribute("/", "format", std::string("weather"));
+    file.close();
+  }
+  EXPECT_THAT([&] { ConfigurationSet set(path); }, ThrowsMessage<BadFile>(HasSubstr("not a sixdof configuration set")));
+  {
+    const hdf5::Session session;
+    auto file = hdf5::File::create(path, path);
+    file.write_attribute("/", "format", std::string("sixdof-configuration-set"));
+    file.write_attribute("/", "format_version", std::uint64_t{7});
+    file.close();
+  }
+  EXPECT_THAT([&] { ConfigurationSet set(path); }, ThrowsMessage<BadFile>(HasSubstr("format version 7")));
+}
+
+TEST_F(ConfigurationSetTest, RefusesEveryTruncation) {
+  const std::string bytes = bytes_of(write("set.h5"));
+  const auto path = folder_ / "short.h5";
+  std::mt19937_64 random(11);
+  for (int repeat = 0; repeat < 60; ++repeat) {
+    put_bytes(path, std::string_view(bytes).substr(0, random() % bytes.size()));
+    EXPECT_THROW(ConfigurationSet set(path), BadFile);
+  }
+  put_bytes(path, std::string_view(bytes).substr(0, bytes.size() - 1));
+  EXPECT_THROW(ConfigurationSet set(path), BadFile);
+}
+
+TEST_F(ConfigurationSetTest, FindsEveryFlippedByteThatMatters) {
+  const std::string bytes = bytes_of(write("set.h5"));
+  const auto path = folder_ / "flipped.h5";
+  std::mt19937_64 random(12);
+  int found = 0;
+  constexpr int k_flips = 600;
+  for (int repeat = 0; repeat < k_flips; ++repeat) {
+    // The structures lie in the first half, one flip in two goes there.
+    const std::size_t where = random() % (repeat % 2 == 0 ? bytes.size() : std::min<std::size_t>(bytes.size(), 4096));
+    std::string damaged = bytes;
+    damaged[where] = static_cast<char>(damaged[where] ^ (1 << (random() % 8)));
+    put_bytes(path, damaged);
+    try {
+      const ConfigurationSet set(path);
+      const bool same = same_bits(set.read(k_near), near_) && same_bits(set.read(k_far), far_) &&
+                        same_bits(set.read(k_deep), deep_) && set.buckets().size() == 3 &&
+                        set.grid().rotations == grid_.rotations && set.description().a.hash == k_a.hash();
+      EXPECT_TRUE(same) << "byte " << where << " was believed";
+    } catch (const BadFile& e) {
+      EXPECT_THAT(e.what(), HasSubstr(path.string()));
+      ++found;
+    }
+  }
+  // What is not found lies in the gaps that HDF5 leaves between its structures.
+  EXPECT_GT(found, k_flips / 2);
+}
+
+TEST_F(ConfigurationSetTest, FindsEditsThatHdf5HasNoReasonToDoubt) {
+  const auto path = write("set.h5");
+  {
+    const hdf5::Session session;
+    const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    const hdf5::Handle data(H5Dopen2(file.id(), "/distance/05", H5P_DEFAULT), H5Dclose);
+    std::vector<double> edited = near_;
+    edited[3] = 0.25;
+    ASSERT_GE(H5Dwrite(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, edited.data()), 0);
+  }
+  const ConfigurationSet set(path);
+  EXPECT_TRUE(same_bits(set.read(k_far), far_));
+  EXPECT_THAT([&] { set.read(k_near); }, ThrowsMessage<BadFile>(AllOf(HasSubstr("distance/05"), HasSubstr("hash"))));
+  {
+    const hdf5::Session session;
+    const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    ASSERT_GE(H5Ldelete(file.id(), "/distance/05", H5P_DEFAULT), 0);
+  }
+  EXPECT_THAT([&] { ConfigurationSet edited(path); }, ThrowsMessage<BadFile>(HasSubstr("hash")));
+}
+
+TEST_F(ConfigurationSetTest, RefusesOtherMeshesAndBuckets) {
+  const ConfigurationSet set(write("set.h5"));
+  EXPECT_NO_THROW(set.check_meshes(k_a, k_b));
+  EXPECT_THAT([&] { set.check_meshes(k_b, k_b); },
+              ThrowsMessage<BadArgument>(AllOf(HasSubstr("another mesh A"), HasSubstr(k_b.hash()))));
+  EXPECT_THAT([&] { set.check_meshes(k_a, k_a); }, ThrowsMessage<BadArgument>(HasSubstr("another mesh B")));
+  EXPECT_FALSE(set.has({BucketKind::volume, 5}));
+  EXPECT_TRUE(set.has(k_deep));
+  EXPECT_THAT(
+      [&] {
+        set.read({BucketKind::volume, 5});
+      },
+      ThrowsMessage<BadArgument>(AllOf(HasSubstr("no bucket volume/05"), HasSubstr("distance/20"))));
+}
+
+TEST_F(ConfigurationSetTest, TellsASetFromOtherFilesByItsFirstBytes) {
+  EXPECT_TRUE(looks_like_configuration_set(write("set.h5")));
+  put_bytes(folder_ / "mesh.off", "OFF\n3 1 0\n");
+  EXPECT_FALSE(looks_like_configuration_set(folder_ / "mesh.off"));
+  EXPECT_FALSE(looks_like_configuration_set(folder_ / "absent"));
+}
+
+TEST(BucketKey, NamesComeBack) {
+  for (const BucketKey key : {BucketKey{BucketKind::distance, 0}, k_near, k_deep, BucketKey{BucketKind::volume, 100}}) {
+    EXPECT_EQ(BucketKey::parse(key.name()), key);
+  }
+  EXPECT_EQ(k_near.name(), "distance/05");
+  for (const char* name : {"", "distance", "distance/", "distance/x", "distance/-1", "distance/101", "depth/05"}) {
+    EXPECT_THROW(BucketKey::parse(name), BadArgument) << name;
+  }
+}
+
+}  // namespace
+}  // namespace sixdof
