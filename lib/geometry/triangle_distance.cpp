@@ -1,0 +1,303 @@
+#include <sixdof/geometry/triangle_distance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include <sixdof/geometry/predicates.h>
+
+// Every function works on differences to one corner, so that the figures' offset from the origin plays no part.
+//
+// The minimum of a convex quadratic over a product of simplices is attained in the interior of a pair of faces of the
+// two figures: vertex-vertex, vertex-edge, edge-edge, vertex-face. Vertex-edge (clamped: with vertex-vertex) is well
+// conditioned. The other two ask for the point where w = w0 + s u - t v is normal to u and v. With n = u x v that is
+//   s = -(w0 x v) . n / n^2,  t = -(w0 x u) . n / n^2,
+// which loses digits as u and v become parallel. Applying the same formula again to the w that was reached (iterative
+// refinement) brings w back to the accuracy of its own rounding, whatever the angle: each step multiplies the error by
+// about (unit roundoff / angle). Below an angle of a few roundings the interior is no closer than the border by more
+// than a rounding of the length.
+
+namespace sixdof {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double k_roundoff = 0x1p-53;
+/// Below this sine of the angle between two edges they count as parallel: the error is the sine times the edge.
+constexpr double k_parallel_sine = 2.0 * k_roundoff;
+/// At the smallest angles a step gains little, but there little is to be gained; at 1e-12 a step gains four digits.
+constexpr int k_refinements = 3;
+/// A gap of the projections on the line through the closest points that is larger than this times the size cannot come
+/// from rounding: a dot product of differences rounds by less than 8 units.
+constexpr double k_safe_gap = 16.0 * k_roundoff;
+
+/// Closest so far. `difference` is on_a - on_b, computed without going through rounded points.
+struct Best {
+  double squared = std::numeric_limits<double>::infinity();
+  Vector3d difference = Vector3d::Zero();
+  Vector3d on_a = Vector3d::Zero();
+  Vector3d on_b = Vector3d::Zero();
+
+  void offer(const Vector3d& w, const Vector3d& a, const Vector3d& b) {
+    const double d = w.squaredNorm();
+    if (d < squared) {
+      squared = d;
+      difference = w;
+      on_a = a;
+      on_b = b;
+    }
+  }
+};
+
+struct Edge {
+  Vector3d from;
+  Vector3d to;
+  Vector3d along;
+  double squared;
+  Edge(const Vector3d& p, const Vector3d& q) : from(p), to(q), along(q - p), squared(along.squaredNorm()) {}
+};
+
+/// Closest point of a segment; `sign` tells which of the two sets the point is: +1 for a.
+template <int sign>
+void offer_point_edge(const Vector3d& p, const Edge& edge, Best& best) {
+  const Vector3d from = p - edge.from;
+  const double along = from.dot(edge.along);
+  Vector3d w = from;
+  Vector3d q = edge.from;
+  if (along >= edge.squared) {
+    w = p - edge.to;
+    q = edge.to;
+  } else if (along > 0.0) {
+    const double t = along / edge.squared;
+    w = from - t * edge.along;
+    q = edge.from + t * edge.along;
+  }
+  if constexpr (sign > 0) {
+    best.offer(w, p, q);
+  } else {
+    best.offer(-w, q, p);
+  }
+}
+
+struct Solution {
+  double s = 0.0;
+  double t = 0.0;
+  Vector3d w;
+  bool found = false;
+};
+
+/// s, t that make w = w0 + s u - t v normal to u and v.
+Solution solve_normal(const Vector3d& w0, const Vector3d& u, double uu, const Vector3d& v, double vv) {
+  Solution x;
+  const Vector3d n = u.cross(v);
+  const double nn = n.squaredNorm();
+  if (!(nn > k_parallel_sine * k_parallel_sine * uu * vv)) return x;
+  x.w = w0;
+  for (int i = 0; i <= k_refinements; ++i) {
+    x.s -= x.w.cross(v).dot(n) / nn;
+    x.t -= x.w.cross(u).dot(n) / nn;
+    x.w = (w0 + x.s * u) - x.t * v;
+  }
+  x.found = true;
+  return x;
+}
+
+void offer_edge_edge(const Edge& a, const Edge& b, Best& best) {
+  const Solution x = solve_normal(a.from - b.from, a.along, a.squared, b.along, b.squared);
+  if (!x.found || !(x.s > 0.0 && x.s < 1.0 && x.t > 0.0 && x.t < 1.0)) return;
+  best.offer(x.w, a.from + x.s * a.along, b.from + x.t * b.along);
+}
+
+/// Point against the inside of a triangle given by two edges from one corner.
+template <int sign>
+void offer_point_face(const Vector3d& p, const Edge& first, const Edge& second, Best& best) {
+  const Vector3d from = p - first.from;
+  // w = from - s first + t (-second): `second` enters with the opposite sign to that of solve_normal().
+  const Vector3d u = -first.along;
+  const Solution x = solve_normal(from, u, first.squared, second.along, second.squared);
+  if (!x.found || !(x.s > 0.0 && x.t > 0.0 && x.s + x.t < 1.0)) return;
+  const Vector3d q = first.from + x.s * first.along + x.t * second.along;
+  if constexpr (sign > 0) {
+    best.offer(x.w, p, q);
+  } else {
+    best.offer(-x.w, q, p);
+  }
+}
+
+struct Edges {
+  std::array<Edge, 3> edge;  // from corner i to corner i + 1
+  Edge second;               // from corner 0 to corner 2: with edge[0] it spans the triangle
+  explicit Edges(const TriangleCorners& t)
+      : edge{Edge(t[0], t[1]), Edge(t[1], t[2]), Edge(t[2], t[0])}, second(t[0], t[2]) {}
+};
+
+template <int sign>
+void offer_point_triangle(const Vector3d& p, const Edges& t, Best& best) {
+  for (const Edge& edge : t.edge) offer_point_edge<sign>(p, edge, best);
+  offer_point_face<sign>(p, t.edge[0], t.second, best);
+}
+
+ClosestPoints finish(const Best& best, const Vector3d& origin) {
+  return {std::sqrt(best.squared), origin + best.on_a, origin + best.on_b};
+}
+
+TriangleCorners relative(const TriangleCorners& t, const Vector3d& origin) {
+  return {t[0] - origin, t[1] - origin, t[2] - origin};
+}
+
+Eigen::Vector2d drop(const Vector3d& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
+
+int orient(const Vector3d& a, const Vector3d& b, const Vector3d& c, int axis) {
+  return orient2d(drop(a, axis), drop(b, axis), drop(c, axis));
+}
+
+/// Whether x lies in the axis-aligned box of p and q: for collinear points, on the segment.
+bool between(const Vector3d& p, const Vector3d& q, const Vector3d& x) {
+  for (int k = 0; k < 3; ++k) {
+    if (x[k] < std::min(p[k], q[k]) || x[k] > std::max(p[k], q[k])) return false;
+  }
+  return true;
+}
+
+bool collinear(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return orient(a, b, c, 0) == 0 && orient(a, b, c, 1) == 0 && orient(a, b, c, 2) == 0;
+}
+
+bool on_segment(const Vector3d& p, const Vector3d& q, const Vector3d& x) {
+  return between(p, q, x) && collinear(p, q, x);
+}
+
+/// Whether two closed segments meet. Either may be a point.
+bool segments_intersect(const Vector3d& p, const Vector3d& q, const Vector3d& r, const Vector3d& s) {
+  if (on_segment(p, q, r) || on_segment(p, q, s) || on_segment(r, s, p) || on_segment(r, s, q)) return true;
+  if (orient3d(p, q, r, s) != 0) return false;
+  // In one plane and no end on the other segment: they cross properly, or not at all. If p, q, r are collinear they
+  // cannot cross properly.
+  for (int axis = 0; axis < 3; ++axis) {
+    if (orient(p, q, r, axis) == 0) continue;
+    return orient(p, q, r, axis) * orient(p, q, s, axis) < 0 && orient(r, s, p, axis) * orient(r, s, q, axis) < 0;
+  }
+  return false;
+}
+
+/// Point in the plane of a triangle that is not degenerate in the projection along `axis`.
+bool inside_projected(const TriangleCorners& t, const Vector3d& p, int axis) {
+  const int o0 = orient(t[0], t[1], p, axis);
+  const int o1 = orient(t[1], t[2], p, axis);
+  const int o2 = orient(t[2], t[0], p, axis);
+  return (o0 >= 0 && o1 >= 0 && o2 >= 0) || (o0 <= 0 && o1 <= 0 && o2 <= 0);
+}
+
+/// Whether closed segment p q and closed triangle t meet; `op`, `oq`: sides of t's plane on which p and q lie.
+bool edge_meets_triangle(const Vector3d& p, const Vector3d& q, int op, int oq, const TriangleCorners& t) {
+  if (op * oq > 0) return false;
+  if (op != 0 || oq != 0) {  // the line meets t's plane in one point
+    const int o0 = orient3d(p, q, t[0], t[1]);
+    const int o1 = orient3d(p, q, t[1], t[2]);
+    if (o0 * o1 < 0) return false;
+    const int o2 = orient3d(p, q, t[2], t[0]);
+    return (o0 >= 0 && o1 >= 0 && o2 >= 0) || (o0 <= 0 && o1 <= 0 && o2 <= 0);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (segments_intersect(p, q, t[i], t[(i + 1) % 3])) return true;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (orient(t[0], t[1], t[2], axis) == 0) continue;
+    return inside_projected(t, p, axis);  // else it would cross the border
+  }
+  return false;  // t is a segment or a point
+}
+
+/// Which edge pierces which triangle.
+struct Meeting {
+  bool found = false;
+  bool edge_of_a = false;
+  std::size_t edge = 0;
+};
+
+Meeting find_meeting(const TriangleCorners& a, const TriangleCorners& b) {
+  std::array<int, 3> side_a{};
+  std::array<int, 3> side_b{};
+  for (std::size_t i = 0; i < 3; ++i) side_a[i] = orient3d(b[0], b[1], b[2], a[i]);
+  if (side_a[0] == side_a[1] && side_a[1] == side_a[2] && side_a[0] != 0) return {};
+  for (std::size_t i = 0; i < 3; ++i) side_b[i] = orient3d(a[0], a[1], a[2], b[i]);
+  if (side_b[0] == side_b[1] && side_b[1] == side_b[2] && side_b[0] != 0) return {};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    if (edge_meets_triangle(a[i], a[j], side_a[i], side_a[j], b)) return {true, true, i};
+    if (edge_meets_triangle(b[i], b[j], side_b[i], side_b[j], a)) return {true, false, i};
+  }
+  return {};
+}
+
+/// A common point: where the edge crosses the other's plane. Where it lies in that plane, the closest features already
+/// meet there up to rounding.
+Vector3d common_point(const Meeting& meeting, const TriangleCorners& a, const TriangleCorners& b,
+                      const Vector3d& otherwise) {
+  const TriangleCorners& from = meeting.edge_of_a ? a : b;
+  const TriangleCorners& t = meeting.edge_of_a ? b : a;
+  const Vector3d& p = from[meeting.edge];
+  const Vector3d& q = from[(meeting.edge + 1) % 3];
+  const double above = orient3d_value(t[0], t[1], t[2], p);
+  const double below = orient3d_value(t[0], t[1], t[2], q);
+  if (above == below) return otherwise;
+  return p + above / (above - below) * (q - p);
+}
+
+}  // namespace
+
+ClosestPoints point_triangle_distance(const Vector3d& p, const TriangleCorners& t) {
+  Best best;
+  offer_point_triangle<1>(p - t[0], Edges(relative(t, t[0])), best);
+  return finish(best, t[0]);
+}
+
+ClosestPoints segment_segment_distance(const Vector3d& p0, const Vector3d& p1, const Vector3d& q0, const Vector3d& q1) {
+  Best best;
+  const Edge a(Vector3d::Zero(), p1 - p0);
+  const Edge b(q0 - p0, q1 - p0);
+  offer_point_edge<1>(a.from, b, best);
+  offer_point_edge<1>(a.to, b, best);
+  offer_point_edge<-1>(b.from, a, best);
+  offer_point_edge<-1>(b.to, a, best);
+  offer_edge_edge(a, b, best);
+  return finish(best, p0);
+}
+
+ClosestPoints triangle_triangle_distance(const TriangleCorners& a, const TriangleCorners& b) {
+  const TriangleCorners local_a = relative(a, a[0]);
+  const TriangleCorners local_b = relative(b, a[0]);
+  const Edges edges_a(local_a);
+  const Edges edges_b(local_b);
+  Best best;
+  for (const Vector3d& p : local_a) offer_point_triangle<1>(p, edges_b, best);
+  for (const Vector3d& p : local_b) offer_point_triangle<-1>(p, edges_a, best);
+  for (const Edge& edge_a : edges_a.edge) {
+    for (const Edge& edge_b : edges_b.edge) offer_edge_edge(edge_a, edge_b, best);
+  }
+
+  // Apart for certain if the projections on the line through the closest points are.
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  double size = 0.0;
+  for (const Vector3d& p : local_a) low = std::min(low, best.difference.dot(p));
+  for (const Vector3d& p : local_b) high = std::max(high, best.difference.dot(p));
+  for (const Vector3d& p : local_a) size = std::max(size, p.cwiseAbs().sum());
+  for (const Vector3d& p : local_b) size = std::max(size, p.cwiseAbs().sum());
+  if (low - high > k_safe_gap * size * best.difference.cwiseAbs().maxCoeff()) return finish(best, a[0]);
+
+  const Meeting meeting = find_meeting(a, b);
+  if (!meeting.found) {
+    ClosestPoints apart = finish(best, a[0]);
+    apart.distance = std::max(apart.distance, k_least_distance);
+    return apart;
+  }
+  const Vector3d point = common_point(meeting, a, b, a[0] + best.on_a);
+  return {0.0, point, point};
+}
+
+bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) { return find_meeting(a, b).found; }
+
+}  // namespace sixdof
