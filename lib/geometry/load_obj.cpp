@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include <sixdof/geometry/load_formats.h>
+#include <sixdof/geometry/text_lines.h>
+#include <sixdof/geometry/triangulate.h>
+
+namespace sixdof::loading {
+namespace {
+
+// Points, lines, normals, texture coordinates, groups, materials and display attributes hold no surface. Free-form
+// curves and surfaces do, and are not among these.
+constexpr std::array<std::string_view, 19> k_ignored{
+    "vn",     "vt",     "p",     "l",   "g",        "o",        "s",          "mg",        "mtllib", "usemtl",
+    "maplib", "usemap", "bevel", "lod", "c_interp", "d_interp", "shadow_obj", "trace_obj", "vp"};
+
+/// The vertex of a corner written as v, v/vt, v//vn or v/vt/vn; numbers start at 1, negative ones count from the end.
+std::uint32_t read_corner(const TextLines& lines, std::string_view word, std::size_t vertex_count) {
+  const std::size_t slash = word.find('/');
+  const std::int64_t number = lines.integer(word.substr(0, slash));
+  const auto count = static_cast<std::int64_t>(vertex_count);
+  if (number == 0 || number > count || number < -count) {
+    lines.fail(fmt::format("vertex {} of the {} read so far (they count from 1)", number, count));
+  }
+  if (slash != std::string_view::npos) {
+    const std::string_view rest = word.substr(slash + 1);
+    const std::size_t second = rest.find('/');
+    const std::string_view texture = rest.substr(0, second);
+    if (second != std::string_view::npos) {
+      lines.integer(rest.substr(second + 1));
+      if (!texture.empty()) lines.integer(texture);
+    } else {
+      lines.integer(texture);
+    }
+  }
+  return static_cast<std::uint32_t>(number > 0 ? number - 1 : count + number);
+}
+
+}  // namespace
+
+Surface read_obj(const Source& source) {
+  TextLines lines(source, {.comment = '#', .continuation = true});
+  Surface surface;
+  std::vector<std::uint32_t> corners;
+  while (lines.next()) {
+    const std::string_view keyword = lines.words()[0];
+    if (keyword == "v") {
+      // x y z, then perhaps a weight, a colour, or both.
+      if (lines.size() < 4 || lines.size() > 8) {
+        lines.fail(fmt::format("a vertex of {} values, not 3", lines.size() - 1));
+      }
+      for (std::size_t i = 4; i < lines.size(); ++i) lines.number(i);
+      surface.vertices.push_back(lines.point(1));
+    } else if (keyword == "f") {
+      if (lines.size() < 4) lines.fail(fmt::format("a face of {} corners", lines.size() - 1));
+      corners.clear();
+      for (std::size_t i = 1; i < lines.size(); ++i) {
+        corners.push_back(read_corner(lines, lines.words()[i], surface.vertices.size()));
+      }
+      const std::string cause = triangulate(corners, surface.vertices, surface.triangles);
+      if (!cause.empty()) lines.fail("the face is " + cause);
+    } else if (std::find(k_ignored.begin(), k_ignored.end(), keyword) == k_ignored.end()) {
+      lines.fail(fmt::format("'{:.20}' is not supported", keyword));
+    }
+  }
+  return surface;
+}
+
+}  // namespace sixdof::loading
