@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -50,6 +51,11 @@ class Mesh {
   static Mesh build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> triangles, std::string name = {});
 
   const std::string& name() const { return name_; }
+  /// The same mesh under another name: `std::move(mesh).renamed("b")`.
+  Mesh renamed(std::string name) && {
+    name_ = std::move(name);
+    return std::move(*this);
+  }
   const std::vector<Eigen::Vector3d>& vertices() const { return vertices_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
   const MeshTopology& topology() const { return topology_; }

@@ -1,0 +1,54 @@
+#include <sixdof/models/recipe.h>
+
+#include <algorithm>
+#include <array>
+
+#include <sixdof/models/boxes.h>
+#include <sixdof/models/revolved.h>
+#include <sixdof/models/round.h>
+#include <sixdof/models/tube.h>
+
+namespace sixdof {
+namespace {
+
+Mesh sphere(std::size_t n) { return make_sphere({}, n); }
+Mesh bumpy_sphere(std::size_t n) { return make_bumpy_sphere({}, n); }
+Mesh box(std::size_t n) { return make_box({}, n); }
+Mesh circular_box(std::size_t n) { return make_circular_box({}, n); }
+Mesh cylinder(std::size_t n) { return make_cylinder({}, n); }
+Mesh cone(std::size_t n) { return make_cone({}, n); }
+Mesh torus(std::size_t n) { return make_torus({}, n); }
+Mesh torus_knot(std::size_t n) { return make_torus_knot({}, n); }
+
+constexpr unsigned k_circular_box_sectors = CircularBoxShape{}.sectors;
+
+constexpr std::array k_recipes{
+    Recipe{"sphere", "ball of radius 1 about the origin", k_minimum_sphere, 0, sphere},
+    Recipe{"bumpy-sphere", "ball of radius 1 about the origin with smooth bumps of 12 %", k_minimum_sphere, 0,
+           bumpy_sphere},
+    Recipe{"box", "block of 2 x 1.6 x 1.2 along x, y, z, centred at the origin", k_minimum_box, 0, box},
+    Recipe{"cylinder", "radius 1, height 2, axis z, centred at the origin", k_minimum_cylinder, 0, cylinder},
+    Recipe{"cone", "base disc of radius 1 in the plane z = 0 about the origin, apex at (0, 0, 2)", k_minimum_cone, 0,
+           cone},
+    Recipe{"torus", "radii 1 and 0.4, axis z, centred at the origin", k_minimum_torus, 1, torus},
+    Recipe{"torus-knot",
+           "trefoil about the z axis, centred at the origin: core on a torus of radii 1 and 0.5, tube of "
+           "radius 0.25",
+           k_minimum_torus_knot, 1, torus_knot},
+    Recipe{"circular-box",
+           "ring of 12 hollow box cells about the z axis, centred at the origin: outer radius 1, inner "
+           "radius 0.5, height 0.5, beams 0.1; flat walls, sharp edges, open windows",
+           80 * k_circular_box_sectors, 4 * k_circular_box_sectors + 1, circular_box},
+};
+
+}  // namespace
+
+std::span<const Recipe> recipes() { return k_recipes; }
+
+const Recipe* find_recipe(std::string_view name) {
+  const auto* const found =
+      std::find_if(k_recipes.begin(), k_recipes.end(), [&](const Recipe& r) { return r.name == name; });
+  return found == k_recipes.end() ? nullptr : found;
+}
+
+}  // namespace sixdof

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+
+#include <sixdof/geometry/mesh.h>
+
+namespace sixdof {
+
+/// Solid cylinder about the z axis, centred at the origin.
+struct CylinderShape {
+  double radius = 1.0;
+  double height = 2.0;
+};
+
+/// Solid cone about the z axis: base disc in the plane z = 0 with its centre at the origin, apex at (0, 0, height).
+struct ConeShape {
+  double radius = 1.0;
+  double height = 2.0;
+};
+
+/// Coarsest form of cylinder and cone: rings of six vertices.
+constexpr std::size_t k_minimum_cylinder = 24;
+constexpr std::size_t k_minimum_cone = 12;
+
+/// Inscribed in the ideal solid: every vertex lies on it, rims included. Exactly `triangles` triangles, or one more if
+/// that is odd. Edges are about equally long everywhere. @throws BadArgument if a length is not positive and finite or
+/// the count is out of range (triangle_budget).
+Mesh make_cylinder(const CylinderShape& shape, std::size_t triangles);
+Mesh make_cone(const ConeShape& shape, std::size_t triangles);
+
+}  // namespace sixdof

@@ -1,0 +1,126 @@
+#include <sixdof/models/round.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <sixdof/models/fixed_order.h>
+#include <sixdof/models/lengths.h>
+#include <sixdof/models/refine.h>
+#include <sixdof/models/turn.h>
+
+namespace sixdof {
+namespace {
+
+/// Icosahedron with corners (0, +-1, +-g) and cyclic, g the golden ratio; not normalised.
+Surface icosahedron() {
+  const double g = 0.5 * (1.0 + std::sqrt(5.0));
+  return {{{-1, g, 0},
+           {1, g, 0},
+           {-1, -g, 0},
+           {1, -g, 0},
+           {0, -1, g},
+           {0, 1, g},
+           {0, -1, -g},
+           {0, 1, -g},
+           {g, 0, -1},
+           {g, 0, 1},
+           {-g, 0, -1},
+           {-g, 0, 1}},
+          {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+           {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+           {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
+}
+
+/// Cuts every triangle into n^2 alike ones. Points of a shared edge are made once, from its lower to its higher corner.
+Surface cut_faces(const Surface& coarse, std::uint32_t n) {
+  Surface fine{coarse.vertices, {}};
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first_on_edge;
+  const auto between = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, std::uint32_t k, std::uint32_t parts) {
+    const double s = static_cast<double>(k) / static_cast<double>(parts);
+    return Eigen::Vector3d((1.0 - s) * a + s * b);
+  };
+  const auto on_edge = [&](std::uint32_t a, std::uint32_t b, std::uint32_t k) {
+    if (k == 0) return a;
+    if (k == n) return b;
+    const auto [low, high] = std::minmax(a, b);
+    const auto [entry, fresh] =
+        first_on_edge.try_emplace({low, high}, static_cast<std::uint32_t>(fine.vertices.size()));
+    if (fresh) {
+      for (std::uint32_t i = 1; i < n; ++i) {
+        fine.vertices.push_back(between(coarse.vertices[low], coarse.vertices[high], i, n));
+      }
+    }
+    return entry->second + (a == low ? k : n - k) - 1;
+  };
+  std::vector<std::uint32_t> row, above;
+  for (const Triangle& t : coarse.triangles) {
+    // Row r runs from a point of edge t0-t1 to one of edge t0-t2, r steps away from t0.
+    above.assign(1, t[0]);
+    for (std::uint32_t r = 1; r <= n; ++r) {
+      row.clear();
+      const std::uint32_t left = on_edge(t[0], t[1], r);
+      const std::uint32_t right = on_edge(t[0], t[2], r);
+      for (std::uint32_t k = 0; k <= r; ++k) {
+        if (r == n) {
+          row.push_back(on_edge(t[1], t[2], k));
+        } else if (k == 0 || k == r) {
+          row.push_back(k == 0 ? left : right);
+        } else {
+          row.push_back(static_cast<std::uint32_t>(fine.vertices.size()));
+          const Eigen::Vector3d inside = between(fine.vertices[left], fine.vertices[right], k, r);
+          fine.vertices.push_back(inside);
+        }
+      }
+      for (std::uint32_t k = 0; k < r; ++k) {
+        fine.triangles.push_back({above[k], row[k], row[k + 1]});
+        if (k + 1 < r) fine.triangles.push_back({above[k], row[k + 1], above[k + 1]});
+      }
+      above.swap(row);
+    }
+  }
+  return fine;
+}
+
+/// @param place maps any point but the origin to the surface along its ray
+template <class Place>
+Mesh make_geodesic(const char* name, std::size_t triangles, Place place) {
+  const std::size_t budget = triangle_budget(name, triangles, k_minimum_sphere);
+  std::uint32_t n = 1;
+  while (20ULL * (n + 1) * (n + 1) <= budget) ++n;
+  Surface surface = cut_faces(icosahedron(), n);
+  for (Eigen::Vector3d& p : surface.vertices) p = place(p);
+  refine_to(surface, budget,
+            [&](const Surface& s, std::uint32_t a, std::uint32_t b) { return place(midpoint_of_edge(s, a, b)); });
+  return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), name);
+}
+
+Eigen::Vector3d direction_of(const Eigen::Vector3d& p) { return p / norm_in_order(p); }
+
+}  // namespace
+
+double bumpy_radius(const BumpySphereShape& shape, const Eigen::Vector3d& direction) {
+  const double wave = unit_at(shape.waves * direction.x()).x() * unit_at(shape.waves * direction.y()).x() *
+                      unit_at(shape.waves * direction.z()).x();
+  return shape.radius * (1.0 + shape.amplitude * wave);
+}
+
+Mesh make_sphere(const SphereShape& shape, std::size_t triangles) {
+  check_length("sphere", "radius", shape.radius);
+  return make_geodesic("sphere", triangles,
+                       [&](const Eigen::Vector3d& p) { return Eigen::Vector3d(shape.radius * direction_of(p)); });
+}
+
+Mesh make_bumpy_sphere(const BumpySphereShape& shape, std::size_t triangles) {
+  check_length("bumpy-sphere", "radius", shape.radius);
+  check_shape(shape.amplitude >= 0.0 && shape.amplitude <= 0.5, "bumpy-sphere", "amplitude must be from 0 to 0.5");
+  check_shape(shape.waves >= 0.0 && shape.waves <= 20.0, "bumpy-sphere", "waves must be from 0 to 20");
+  return make_geodesic("bumpy-sphere", triangles, [&](const Eigen::Vector3d& p) {
+    const Eigen::Vector3d direction = direction_of(p);
+    return Eigen::Vector3d(bumpy_radius(shape, direction) * direction);
+  });
+}
+
+}  // namespace sixdof
