@@ -35,6 +35,19 @@ Handle object_properties(hid_t property_class) {
   return list;
 }
 
+/// Stored and native type of a number.
+template <class T>
+std::pair<hid_t, hid_t> number_types() {
+  if constexpr (std::is_same_v<T, std::int32_t>) return {H5T_STD_I32LE, H5T_NATIVE_INT32};
+  if constexpr (std::is_same_v<T, std::uint32_t>) return {H5T_STD_U32LE, H5T_NATIVE_UINT32};
+  if constexpr (std::is_same_v<T, std::uint64_t>) return {H5T_STD_U64LE, H5T_NATIVE_UINT64};
+  if constexpr (std::is_same_v<T, float>) return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT};
+  if constexpr (std::is_same_v<T, double>) return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE};
+}
+
+/// A forged size would otherwise ask for all memory there is; no honest file comes near.
+constexpr std::size_t k_most_values = std::size_t{1} << 36;
+
 }  // namespace
 
 Session::Session() : lock_(library_mutex()) {
@@ -212,8 +225,6 @@ std::pair<std::size_t, std::size_t> File::matrix_size(const std::string& object)
 
 std::vector<double> File::read_matrix(const std::string& object) const {
   const auto [rows, columns] = matrix_size(object);
-  // A forged size would otherwise ask for all memory there is; no honest set comes near.
-  constexpr std::size_t k_most_values = std::size_t{1} << 36;
   if (columns != 0 && rows > k_most_values / columns) refuse(object, fmt::format("{} x {} values?", rows, columns));
   const Handle dataset = open_matrix(object);
   std::vector<double> values(rows * columns);
@@ -221,5 +232,45 @@ std::vector<double> File::read_matrix(const std::string& object) const {
         "cannot be read");
   return values;
 }
+
+template <class T>
+void File::write_values(const std::string& object, std::span<const T> values) {
+  const auto [stored, native] = number_types<T>();
+  const hsize_t size = values.size();
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  const Handle creation = object_properties(H5P_DATASET_CREATE);
+  const Handle dataset(
+      H5Dcreate2(file_.id(), object.c_str(), stored, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
+  check(dataset.valid() ? 0 : -1, object, "cannot be written");
+  check(H5Dwrite(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), object, "cannot be written");
+}
+
+template <class T>
+std::vector<T> File::read_values(const std::string& object) const {
+  const auto [stored, native] = number_types<T>();
+  const Handle dataset(H5Dopen2(file_.id(), object.c_str(), H5P_DEFAULT), H5Dclose);
+  check(dataset.valid() ? 0 : -1, object, "cannot be opened");
+  const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  if (H5Tequal(type.id(), stored) <= 0) refuse(object, "is not of the expected type");
+  const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+  if (H5Sget_simple_extent_ndims(space.id()) != 1) refuse(object, "does not have one dimension");
+  hsize_t size = 0;
+  check(H5Sget_simple_extent_dims(space.id(), &size, nullptr), object, "has no size");
+  if (size > k_most_values) refuse(object, fmt::format("{} values?", size));
+  std::vector<T> values(size);
+  check(H5Dread(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), object, "cannot be read");
+  return values;
+}
+
+template void File::write_values(const std::string&, std::span<const std::int32_t>);
+template void File::write_values(const std::string&, std::span<const std::uint32_t>);
+template void File::write_values(const std::string&, std::span<const std::uint64_t>);
+template void File::write_values(const std::string&, std::span<const float>);
+template void File::write_values(const std::string&, std::span<const double>);
+template std::vector<std::int32_t> File::read_values(const std::string&) const;
+template std::vector<std::uint32_t> File::read_values(const std::string&) const;
+template std::vector<std::uint64_t> File::read_values(const std::string&) const;
+template std::vector<float> File::read_values(const std::string&) const;
+template std::vector<double> File::read_values(const std::string&) const;
 
 }  // namespace sixdof::hdf5

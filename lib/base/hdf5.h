@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,6 +81,13 @@ class File {
   /// Rows x columns of a two-dimensional float64 dataset, without reading its values.
   std::pair<std::size_t, std::size_t> matrix_size(const std::string& object) const;
   std::vector<double> read_matrix(const std::string& object) const;
+
+  /// A one-dimensional dataset in one piece, without filters. T: std::int32_t, std::uint32_t, std::uint64_t, float or
+  /// double, stored little-endian; read_values() refuses any other type than the stored one.
+  template <class T>
+  void write_values(const std::string& object, std::span<const T> values);
+  template <class T>
+  std::vector<T> read_values(const std::string& object) const;
 
  private:
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
