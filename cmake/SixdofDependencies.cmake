@@ -8,6 +8,8 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(assimp 5 REQUIRED)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C CXX)
 
+find_package(Boost 1.74 REQUIRED)
+
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)

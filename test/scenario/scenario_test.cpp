@@ -1,0 +1,250 @@
+#include <sixdof/scenario/scenario.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof {
+namespace {
+
+constexpr double k_pi = std::numbers::pi;
+constexpr double k_rounding = 1e-12;
+
+TEST(Scenario, EveryOneIsComplete) {
+  ASSERT_EQ(scenario_names().size(), 5u);
+  for (const std::string& name : scenario_names()) {
+    const auto scenario = make_scenario(name);
+    EXPECT_EQ(scenario->name(), name);
+    EXPECT_FALSE(scenario->purpose().empty());
+    EXPECT_FALSE(scenario->rules().empty());
+    EXPECT_TRUE(scenario->a().solid());
+    EXPECT_TRUE(scenario->b().solid());
+    EXPECT_TRUE(scenario->a().topology().manifold);
+    EXPECT_TRUE(scenario->b().topology().manifold);
+    for (const IdealLaw law : all_ideal_laws()) {
+      const bool there = scenario->ideal(law, 0.37).has_value();
+      EXPECT_EQ(there, !(name == "Ib" && law == IdealLaw::paper_volume)) << name << ' ' << to_string(law);
+      for (const double s : {0.0, 0.011, 0.37, 0.5, 0.93, 1.0}) {
+        const auto ideal = scenario->ideal(law, s);
+        ASSERT_EQ(ideal.has_value(), there);
+        if (!ideal) continue;
+        EXPECT_TRUE(std::isfinite(ideal->penalty) && ideal->force.allFinite() && ideal->torque.allFinite());
+      }
+    }
+    for (const double s : {0.0, 0.37, 1.0}) {
+      const Pose pose = scenario->pose(s);
+      EXPECT_TRUE((pose.R * pose.R.transpose()).isIdentity(k_rounding));
+      EXPECT_NEAR(pose.R.determinant(), 1.0, k_rounding);
+    }
+  }
+}
+
+TEST(Scenario, StampsCoverThePath) {
+  const auto open = make_scenario("Ia");
+  EXPECT_EQ(open->stamps(5), (std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0}));
+  const auto closed = make_scenario("II");
+  EXPECT_EQ(closed->stamps(4), (std::vector<double>{0.125, 0.375, 0.625, 0.875}));
+  EXPECT_THROW(open->stamps(1), BadArgument);
+  for (const std::string& name : scenario_names()) {
+    const auto scenario = make_scenario(name);
+    const double gap = (scenario->pose(0.0).t - scenario->pose(1.0).t).norm();
+    EXPECT_EQ(gap < k_rounding, scenario->closed()) << name;
+  }
+}
+
+TEST(Scenario, LawsHaveWords) {
+  for (const IdealLaw law : all_ideal_laws()) EXPECT_EQ(parse_ideal_law(to_string(law), ResponseLaw::none), law);
+  EXPECT_EQ(parse_ideal_law("own", ResponseLaw::depth), IdealLaw::depth);
+  EXPECT_EQ(parse_ideal_law("own", ResponseLaw::volume), IdealLaw::volume);
+  EXPECT_EQ(parse_ideal_law("paper", ResponseLaw::depth), IdealLaw::paper_depth);
+  EXPECT_EQ(parse_ideal_law("paper", ResponseLaw::volume), IdealLaw::paper_volume);
+  EXPECT_THROW(parse_ideal_law("paper", ResponseLaw::none), BadArgument);
+  EXPECT_THROW(parse_ideal_law("own", ResponseLaw::none), BadArgument);
+  EXPECT_THROW(parse_ideal_law("areas", ResponseLaw::depth), BadArgument);
+}
+
+TEST(Scenario, RefusesContradictions) {
+  EXPECT_THROW(make_scenario("V"), BadArgument);
+  EXPECT_THROW(scenario_settings("i"), BadArgument);
+  const auto refuses = [](const char* name, const char* assignment) {
+    Settings settings = scenario_settings(name);
+    settings.set_all({assignment});
+    EXPECT_THROW(make_scenario(name, settings), BadArgument) << name << ' ' << assignment;
+  };
+  refuses("Ia", "depth=60");
+  refuses("Ia", "overshoot=9");
+  refuses("Ib", "block_length=19");
+  refuses("Ia", "block_width=40");
+  refuses("II", "orbit_radius=60");
+  refuses("II", "orbit_radius=29");
+  refuses("II", "cylinder_length=40");
+  refuses("III", "square_side=29");
+  refuses("III", "round_radius=20");
+  refuses("III", "turn_degrees=45");
+  refuses("IV", "orbit_radius=11");
+}
+
+TEST(Scenario, ConeHasTheClosedFormWhereItsTipIsOverTheBlock) {
+  const auto thick = make_scenario("Ia");
+  for (const double s : {0.05, 0.31, 0.5, 0.9}) {
+    ASSERT_TRUE(thick->in_window(s));
+    EXPECT_NEAR(thick->ideal(IdealLaw::volume, s)->penalty, k_pi * 8000.0 / 12.0, 1e-9);
+    // dV / d delta = pi delta^2 / 4, straight up, no torque.
+    const auto gradient = thick->ideal(IdealLaw::gradient, s);
+    EXPECT_TRUE(gradient->force.isApprox(Eigen::Vector3d(0.0, k_pi * 100.0, 0.0), k_rounding));
+    EXPECT_LT(gradient->torque.norm(), 1e-9);
+    EXPECT_EQ(thick->ideal(IdealLaw::depth, s)->force, Eigen::Vector3d(0, 20, 0));
+    const auto energy = thick->ideal(IdealLaw::energy, s);
+    EXPECT_TRUE(energy->force.isApprox(gradient->force * gradient->penalty, k_rounding));
+  }
+  EXPECT_FALSE(thick->in_window(0.04));
+  EXPECT_FALSE(thick->in_window(0.96));
+
+  const auto thin = make_scenario("Ib");
+  EXPECT_NEAR(thin->ideal(IdealLaw::volume, 0.5)->penalty, k_pi / 12.0 * (8000.0 - std::pow(19.8, 3)), 1e-9);
+  EXPECT_NEAR(thin->ideal(IdealLaw::gradient, 0.5)->force.y(), k_pi / 4.0 * (400.0 - 19.8 * 19.8), 1e-9);
+  EXPECT_EQ(thin->ideal(IdealLaw::depth, 0.5)->penalty, 20.0);
+}
+
+TEST(Scenario, ConeLeavesTheBlockOnBothSidesAlike) {
+  for (const char* name : {"Ia", "Ib"}) {
+    const auto scenario = make_scenario(name);
+    for (const IdealLaw law : all_ideal_laws()) {
+      if (!scenario->ideal(law, 0.0)) continue;
+      for (const double s : {0.0, 0.0213, 0.026, 0.03, 0.035, 0.041, 0.044, 0.05}) {
+        const auto front = scenario->ideal(law, s);
+        const auto back = scenario->ideal(law, 1.0 - s);
+        const double scale = scenario->ideal(law, 0.5)->force.norm();
+        EXPECT_NEAR(front->force.y(), back->force.y(), 1e-9 * scale) << name << ' ' << to_string(law) << ' ' << s;
+        EXPECT_NEAR(front->force.x(), -back->force.x(), 1e-9 * scale) << name << ' ' << to_string(law) << ' ' << s;
+        EXPECT_NEAR(front->torque.z(), -back->torque.z(), 1e-7 * scale) << name << ' ' << to_string(law) << ' ' << s;
+      }
+      EXPECT_EQ(scenario->ideal(law, 0.0)->force.norm(), 0.0);
+    }
+  }
+}
+
+/// The force along the path is minus the slope of V, whatever formula gives it.
+TEST(Scenario, GradientIsTheSlopeOfTheVolumeAlongThePath) {
+  for (const char* name : {"Ia", "Ib", "IV"}) {
+    const auto scenario = make_scenario(name);
+    const double step = 1e-6;
+    for (const double s : {0.0213, 0.026, 0.033, 0.041, 0.1, 0.17, 0.62, 0.9646, 0.975}) {
+      const double slope = (scenario->ideal(IdealLaw::volume, s + step)->penalty -
+                            scenario->ideal(IdealLaw::volume, s - step)->penalty) /
+                           (2.0 * step);
+      const Eigen::Vector3d speed = (scenario->pose(s + step).t - scenario->pose(s - step).t) / (2.0 * step);
+      const double power = scenario->ideal(IdealLaw::gradient, s)->force.dot(speed);
+      const double scale = scenario->ideal(IdealLaw::gradient, s)->force.norm() * speed.norm();
+      EXPECT_NEAR(power, -slope, 1e-6 * scale + 1e-6) << name << ' ' << s;
+    }
+  }
+}
+
+/// Another depth of the same cone gives the vertical part, another orbit the radial one.
+TEST(Scenario, GradientIsTheSlopeOfTheVolumeAcrossThePath) {
+  const auto slope = [](const char* name, const char* length, double at, double s) {
+    const double step = 1e-3;
+    const auto volume = [&](double value) {
+      Settings settings = scenario_settings(name);
+      settings.set(length, std::to_string(value));
+      return make_scenario(name, settings)->ideal(IdealLaw::volume, s)->penalty;
+    };
+    return (volume(at + step) - volume(at - step)) / (2.0 * step);
+  };
+  for (const double s : {0.026, 0.033, 0.041, 0.4}) {
+    EXPECT_NEAR(make_scenario("Ia")->ideal(IdealLaw::gradient, s)->force.y(), slope("Ia", "depth", 20.0, s), 1e-4);
+    EXPECT_NEAR(make_scenario("Ib")->ideal(IdealLaw::gradient, s)->force.y(), slope("Ib", "depth", 20.0, s), 1e-4);
+  }
+  EXPECT_NEAR(make_scenario("II")->ideal(IdealLaw::gradient, 0.3)->force.norm(),
+              -slope("II", "orbit_radius", 50.0, 0.3), 1e-4);
+}
+
+TEST(Scenario, SphereHasTheKnownVolume) {
+  // For radii 1 and orbit 5/3, by quadrature elsewhere: 0.22778; here 30 times as large.
+  const auto scenario = make_scenario("II");
+  EXPECT_NEAR(scenario->ideal(IdealLaw::volume, 0.1)->penalty / 27000.0, 0.22778, 5e-6);
+  EXPECT_EQ(scenario->ideal(IdealLaw::depth, 0.1)->penalty, 10.0);
+  EXPECT_EQ(scenario->ideal(IdealLaw::paper_depth, 0.1)->penalty, 50.0);
+  const Eigen::Vector3d outwards(std::cos(0.2 * k_pi), std::sin(0.2 * k_pi), 0.0);
+  for (const IdealLaw law : all_ideal_laws()) {
+    const auto ideal = scenario->ideal(law, 0.1);
+    EXPECT_TRUE(ideal->force.normalized().isApprox(outwards, k_rounding)) << to_string(law);
+    EXPECT_EQ(ideal->torque, Eigen::Vector3d::Zero());
+  }
+}
+
+/// Traction of smooth bodies by adding up a fine grid of surface elements: shares only the definition.
+TEST(Scenario, TractionIsTheSumOverTheSurface) {
+  const auto scenario = make_scenario("II");
+  const int count = 800;
+  double pins = 0.0;
+  double walls = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const double z = 30.0 * (2.0 * (i + 0.5) / count - 1.0);
+    for (int j = 0; j < 2 * count; ++j) {
+      const double angle = k_pi * (j + 0.5) / count;
+      const double q = std::sqrt(900.0 - z * z);
+      const double x = 50.0 + q * std::cos(angle);
+      const double d = 30.0 - std::hypot(x, q * std::sin(angle));
+      if (d <= 0.0) continue;
+      const double element = 30.0 * (60.0 / count) * (k_pi / count);
+      pins += d * element * -q * std::cos(angle) / 30.0;
+      walls += d * element * x / std::hypot(x, q * std::sin(angle));
+    }
+  }
+  constexpr double k_grid = 1e-4;
+  EXPECT_NEAR(scenario->ideal(IdealLaw::traction, 0.0)->force.x() / pins, 1.0, k_grid);
+  EXPECT_NEAR(scenario->ideal(IdealLaw::wall_traction, 0.0)->force.x() / walls, 1.0, k_grid);
+}
+
+TEST(Scenario, ConeTractionIsTheSumOverTheSurface) {
+  const int count = 700;
+  for (const char* name : {"Ia", "Ib"}) {
+    const auto scenario = make_scenario(name);
+    const double thickness = -scenario->a().box().min().y();
+    for (const double s : {0.022, 0.033, 0.047, 0.5, 0.963}) {
+      const double apex = scenario->pose(s).t.x();
+      const double bottom = std::max(0.0, 20.0 - thickness);
+      const double flank = std::sqrt(1.25);
+      Eigen::Vector3d along_cone = Eigen::Vector3d::Zero();
+      Eigen::Vector3d along_wall = Eigen::Vector3d::Zero();
+      double cone_torque = 0.0;
+      for (int i = 0; i < count; ++i) {
+        const double up = bottom + (20.0 - bottom) * (i + 0.5) / count;
+        for (int j = 0; j < count; ++j) {
+          const double angle = 2.0 * k_pi * (j + 0.5) / count;
+          const double x = apex + 0.5 * up * std::cos(angle);
+          const double y = up - 20.0;
+          const double d = std::min({-y, thickness + y, x, 900.0 - x});
+          if (d <= 0.0) continue;
+          const double element = (20.0 - bottom) / count * flank * 0.5 * up * 2.0 * k_pi / count;
+          const Eigen::Vector3d inward(-std::cos(angle) / flank, 0.5 / flank, -std::sin(angle) / flank);
+          const Eigen::Vector3d wall(d == x           ? -1.0
+                                     : d == 900.0 - x ? 1.0
+                                                      : 0.0,
+                                     d == x || d == 900.0 - x ? 0.0 : (d == -y ? 1.0 : -1.0), 0.0);
+          along_cone += d * element * inward;
+          along_wall += d * element * wall;
+          cone_torque += d * element * ((x - apex) * inward.y() - (up - 30.0) * inward.x());
+        }
+      }
+      const auto cone = scenario->ideal(IdealLaw::traction, s);
+      const auto wall = scenario->ideal(IdealLaw::wall_traction, s);
+      const double scale = scenario->ideal(IdealLaw::traction, 0.5)->force.norm();
+      constexpr double k_grid = 2e-3;  // elements cut by an edge or by the change of the nearest face
+      EXPECT_NEAR(cone->force.x(), along_cone.x(), k_grid * scale) << name << ' ' << s;
+      EXPECT_NEAR(cone->force.y(), along_cone.y(), k_grid * scale) << name << ' ' << s;
+      EXPECT_NEAR(cone->torque.z(), cone_torque, k_grid * scale * 30.0) << name << ' ' << s;
+      const double wall_scale = std::max(scale, along_wall.norm());
+      EXPECT_NEAR(wall->force.x(), along_wall.x(), k_grid * wall_scale) << name << ' ' << s;
+      EXPECT_NEAR(wall->force.y(), along_wall.y(), 2.0 * k_grid * wall_scale) << name << ' ' << s;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sixdof
