@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <sixdof/geometry/mesh.h>
+#include <sixdof/geometry/tree.h>
+
+namespace sixdof {
+
+/// A closed mesh prepared for overlap queries: potentials by which the part of the surface inside a closed curve is
+/// integrated from the curve alone.
+///
+/// **Idea.** By the divergence theorem a volume is a flux through its surface. On a closed surface a flux has a
+/// potential except for its total: give every directed edge h a number alpha(h) = -alpha(twin of h) such that the three
+/// numbers around every triangle sum to its flux, except at one triangle per connected piece, the pole, whose sum lacks
+/// the piece's total flux. Then (Stokes) the flux through any region of triangles is the sum of alpha along its border,
+/// plus the piece's total if the pole lies inside. No triangle of the interior is touched, so a query's cost depends on
+/// the length of the curve in which two surfaces meet, not on how much surface lies inside.
+///
+/// **Numbers.** alpha is the flux through the subtree beyond the edge in a spanning tree of the triangles. It may be as
+/// large as the whole flux where the answer is tiny, so potentials are 128-bit integers (fixed point): sums of them are
+/// exact in any order. Four fluxes are kept: of (p - m) / 3, which gives the volume, and the three components of
+/// |p - m|^2 n / 2, which give the first moment; m is the tree's centre.
+///
+/// **What a query needs.** A curve that enters a triangle through one side and leaves it through another is deformed to
+/// run through vertices: each crossing of a side slides to the side's vertex of lowest index. Sides that meet the
+/// triangle's lowest vertex need no more; for a crossing of the opposite side the deformed curve runs along the
+/// triangle's side from the lowest to the middle index. So one potential per triangle, that of its rising side, is all
+/// that is stored. Corners of highest index are never passed, which is where the pole sits: its winding number is that
+/// of a vertex.
+class Solid {
+ public:
+  using Integer = __int128;
+
+  /// Fluxes through a piece of surface, about some origin: volume and first moment of what the piece spans.
+  struct Moments {
+    double volume = 0.0;                              ///< Integral of p . n / 3 (length^3).
+    Eigen::Vector3d first = Eigen::Vector3d::Zero();  ///< Integral of |p|^2 n / 2 (length^4).
+  };
+
+  struct Potential {
+    Integer volume = 0;
+    std::array<Integer, 3> first{};
+  };
+
+  /// Connected piece of the surface (through edges).
+  struct Piece {
+    Eigen::Vector3d pole = Eigen::Vector3d::Zero();  ///< A vertex, in the mesh's frame.
+    Moments total;                                   ///< About Tree::center().
+  };
+
+  /// How a triangle's corners are ordered by vertex index.
+  struct Order {
+    std::uint8_t lowest;  ///< Corner of lowest index.
+    bool rises;           ///< The corner after it has a lower index than the one after that.
+  };
+
+  /// @param mesh the tree's mesh; both outlive this object.
+  /// @throws BadMesh with Mesh::why_not_solid() if the mesh is open or not consistently oriented, and if a coordinate
+  /// lies outside the range of the exact predicates.
+  Solid(const Mesh& mesh, const Tree& tree);
+
+  const Mesh& mesh() const { return *mesh_; }
+  const Tree& tree() const { return *tree_; }
+  std::span<const Piece> pieces() const { return pieces_; }
+
+  /// Potential of the side from lowest to middle index, per triangle in tree order.
+  const Potential& potential(std::uint32_t triangle) const { return potentials_[triangle]; }
+  Order order(std::uint32_t triangle) const { return orders_[triangle]; }
+
+  /// A sum of potentials as fluxes about Tree::center().
+  Moments to_moments(const Potential& sum) const;
+
+  std::size_t bytes() const;
+
+ private:
+  const Mesh* mesh_;
+  const Tree* tree_;
+  std::vector<Potential> potentials_;
+  std::vector<Order> orders_;
+  std::vector<Piece> pieces_;
+  int volume_exponent_ = 0;  ///< Fixed point: integer = flux * 2^exponent.
+  int first_exponent_ = 0;
+};
+
+/// Fluxes through the plane triangle a, b, c (corners relative to the origin of the moments), positive where the
+/// origin is behind it.
+inline Solid::Moments triangle_moments(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d area = 0.5 * (b - a).cross(c - a);
+  const Eigen::Vector3d sum = a + b + c;
+  // Mean of |p|^2 over a triangle: (|a|^2 + |b|^2 + |c|^2 + |a + b + c|^2) / 12.
+  const double mean = (a.squaredNorm() + b.squaredNorm() + c.squaredNorm() + sum.squaredNorm()) / 12.0;
+  return {a.dot(area) / 3.0, 0.5 * mean * area};
+}
+
+}  // namespace sixdof

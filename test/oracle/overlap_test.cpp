@@ -1,0 +1,269 @@
+#include <sixdof/oracle/overlap.h>
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/oracle/overlap_global.h>
+
+#include "bodies.h"
+#include "convex.h"
+
+namespace sixdof {
+namespace {
+
+using bodies::Body;
+using Eigen::Vector3d;
+
+/// Rounding of integrals over bodies of size 1: some dozens of terms of 1e-16 each, relative to the bodies, not to
+/// their overlap.
+constexpr double k_rounding = 1e-14;
+/// The same for thousands of terms.
+constexpr double k_rounding_of_many = 2e-14;
+
+Mesh tetrahedron(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> u(-0.6, 0.6);
+  std::vector<Vector3d> p;
+  for (int i = 0; i < 4; ++i) p.emplace_back(u(random), u(random), u(random));
+  if ((p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) > 0.0) std::swap(p[1], p[2]);
+  return Mesh::build(p, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}, "tetrahedron");
+}
+
+void expect_closed_form(const Body& a, const Body& b, const Pose& X_AB) {
+  const Overlap o = bodies::overlap(a, b, X_AB);
+  const convex::Common truth = convex::intersect(a.mesh, b.mesh, X_AB);
+  EXPECT_NEAR(o.volume, truth.volume, k_rounding);
+  EXPECT_LT((o.area - truth.area).norm(), k_rounding);
+  EXPECT_LT((o.moment - (truth.moment - o.reference.cross(truth.area))).norm(), k_rounding);
+  if (truth.volume > 0.0) {
+    EXPECT_LT((o.centroid * o.volume - truth.first).norm(), k_rounding);
+  }
+}
+
+TEST(overlap, boxes_equal_clipping_in_closed_form) {
+  std::mt19937_64 random(20261121);
+  const Body a(bodies::box({-0.51, -0.32, -0.43}, {0.37, 0.61, 0.29}));
+  const Body b(bodies::box({-0.33, -0.42, -0.23}, {0.47, 0.31, 0.39}, true));
+  for (int i = 0; i < 500; ++i) {
+    const Pose X_AB = bodies::random_pose(random, 0.6);
+    expect_closed_form(a, b, X_AB);
+    expect_closed_form(b, a, X_AB);
+  }
+}
+
+TEST(overlap, tetrahedra_equal_clipping_in_closed_form) {
+  std::mt19937_64 random(4);
+  int met = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Body a(tetrahedron(random)), b(tetrahedron(random));
+    const Pose X_AB = bodies::random_pose(random, 0.3);
+    expect_closed_form(a, b, X_AB);
+    met += bodies::overlap(a, b, X_AB).volume > 0.0;
+  }
+  EXPECT_GT(met, 100);
+}
+
+class pairs_of_meshes : public testing::Test {
+ protected:
+  Body sphere{bodies::bumpy_sphere(4)};
+  Body torus{bodies::bumpy_torus(48, 20)};
+  std::mt19937_64 random{99};
+};
+
+TEST_F(pairs_of_meshes, volume_equals_the_method_of_columns) {
+  for (int i = 0; i < 12; ++i) {
+    const Pose X_AB = bodies::random_pose(random, 0.5);
+    EXPECT_NEAR(bodies::overlap(sphere, torus, X_AB).volume, overlap_volume_by_columns(sphere.mesh, torus.mesh, X_AB),
+                k_rounding_of_many);
+    EXPECT_NEAR(bodies::overlap(torus, torus, X_AB).volume, overlap_volume_by_columns(torus.mesh, torus.mesh, X_AB),
+                k_rounding_of_many);
+  }
+}
+
+TEST_F(pairs_of_meshes, exchange_of_the_bodies) {
+  for (int i = 0; i < 50; ++i) {
+    const Pose X_AB = bodies::random_pose(random, 0.5);
+    const Pose X_BA = X_AB.inverse();
+    const Overlap ab = bodies::overlap(sphere, torus, X_AB);
+    const Overlap ba = bodies::overlap(torus, sphere, X_BA);
+    EXPECT_NEAR(ab.volume, ba.volume, k_rounding_of_many);
+    // The surface of the intersection is closed: what is B's faces in one order is minus A's faces in the other.
+    EXPECT_LT((ab.area + X_AB.R * ba.area).norm(), k_rounding_of_many);
+    const Vector3d moment_about_origin = ab.moment + ab.reference.cross(ab.area);
+    const Vector3d other = X_AB.R * ba.moment + (X_AB * ba.reference).cross(X_AB.R * ba.area);
+    EXPECT_LT((moment_about_origin + other).norm(), k_rounding_of_many);
+    if (ab.volume > 1e-3) {
+      EXPECT_LT((ab.centroid - X_AB * ba.centroid).norm(), 1e3 * k_rounding_of_many);
+    }
+  }
+}
+
+TEST_F(pairs_of_meshes, a_body_of_two_parts_overlaps_as_its_parts_do) {
+  // Split along a plane into two boxes that share a face, and two pieces of one mesh far apart.
+  const Body left(bodies::box({-0.41, -0.23, -0.31}, {0.07, 0.37, 0.29}));
+  const Body right(bodies::box({0.07, -0.23, -0.31}, {0.53, 0.37, 0.29}, true));
+  const Body whole(bodies::box({-0.41, -0.23, -0.31}, {0.53, 0.37, 0.29}));
+  const Body far(bodies::moved(sphere.mesh, {Eigen::Matrix3d::Identity(), {0.9, 0.1, 0.2}}, 0.5));
+  const Body near(bodies::moved(torus.mesh, {Eigen::Matrix3d::Identity(), {-0.3, 0.0, 0.1}}, 0.6));
+  const Body both(bodies::together(far.mesh, near.mesh));
+  const auto sum_is = [&](const Body& one, const Body& other, const Body& all, const Pose& X_AB) {
+    const Overlap x = bodies::overlap(torus, one, X_AB), y = bodies::overlap(torus, other, X_AB);
+    const Overlap z = bodies::overlap(torus, all, X_AB);
+    EXPECT_NEAR(x.volume + y.volume, z.volume, k_rounding_of_many);
+    EXPECT_LT((x.area + y.area - z.area).norm(), k_rounding_of_many);
+    const auto about_origin = [](const Overlap& o) -> Vector3d { return o.moment + o.reference.cross(o.area); };
+    EXPECT_LT((about_origin(x) + about_origin(y) - about_origin(z)).norm(), k_rounding_of_many);
+  };
+  for (int i = 0; i < 30; ++i) {
+    const Pose X_AB = bodies::random_pose(random, 0.5);
+    sum_is(left, right, whole, X_AB);
+    sum_is(far, near, both, X_AB);
+    // The body that is split may be the fixed one as well.
+    EXPECT_NEAR(bodies::overlap(left, torus, X_AB).volume + bodies::overlap(right, torus, X_AB).volume,
+                bodies::overlap(whole, torus, X_AB).volume, k_rounding_of_many);
+  }
+}
+
+TEST_F(pairs_of_meshes, answers_do_not_depend_on_the_vertex_order_but_in_rounding) {
+  std::vector<Vector3d> vertices = torus.mesh.vertices();
+  std::vector<Triangle> triangles = torus.mesh.triangles();
+  std::vector<std::uint32_t> new_place(vertices.size());
+  for (std::uint32_t i = 0; i < new_place.size(); ++i) new_place[i] = i;
+  std::shuffle(new_place.begin(), new_place.end(), random);
+  for (std::uint32_t i = 0; i < new_place.size(); ++i) vertices[new_place[i]] = torus.mesh.vertices()[i];
+  for (Triangle& t : triangles) t = {new_place[t[1]], new_place[t[2]], new_place[t[0]]};
+  std::shuffle(triangles.begin(), triangles.end(), random);
+  const Body shuffled(Mesh::build(vertices, triangles, "shuffled torus"));
+  for (int i = 0; i < 30; ++i) {
+    const Pose X_AB = bodies::random_pose(random, 0.5);
+    const Overlap x = bodies::overlap(sphere, torus, X_AB), y = bodies::overlap(sphere, shuffled, X_AB);
+    EXPECT_NEAR(x.volume, y.volume, k_rounding_of_many);
+    EXPECT_LT((x.moment - y.moment).norm(), k_rounding_of_many);
+    EXPECT_EQ(x.crossings, y.crossings);
+  }
+}
+
+/// Error of the central difference of V along a motion of B, against the derivative `exact`.
+template <class Move>
+double difference_error(OverlapQuery& query, const Move& move, double step, double exact) {
+  const double slope = (query.evaluate(move(step)).volume - query.evaluate(move(-step)).volume) / (2.0 * step);
+  return std::abs(slope - exact);
+}
+
+struct Errors {
+  std::vector<double> coarse_to_fine, finest;
+};
+
+void expect_second_order(Errors errors) {
+  std::sort(errors.coarse_to_fine.begin(), errors.coarse_to_fine.end());
+  std::sort(errors.finest.begin(), errors.finest.end());
+  // Halving the step quarters the error of a second-order formula; at some poses a vertex passes a face in between.
+  const double median = errors.coarse_to_fine[errors.coarse_to_fine.size() / 2];
+  EXPECT_GT(median, 3.5);
+  EXPECT_LT(median, 4.5);
+  // Third derivatives of some tens times step^2.
+  EXPECT_LT(errors.finest[errors.finest.size() / 2], 1e-6);
+}
+
+void expect_gradient(const Body& a, const Body& b, unsigned seed) {
+  constexpr double k_step = 0x1p-10;
+  std::mt19937_64 random(seed);
+  OverlapQuery query(a.solid, b.solid);
+  Errors of_area, of_moment;
+  while (of_area.finest.size() < 31) {
+    const Pose X_AB = bodies::random_pose(random, 0.4);
+    const Vector3d u = bodies::random_pose(random, 1.0).R.col(0);
+    const Vector3d about(0.3, -0.2, 0.7);
+    const Overlap o = query.evaluate(X_AB, about);
+    if (o.crossings == 0) continue;
+    const auto translate = [&](double s) { return Pose{X_AB.R, X_AB.t + s * u}; };
+    const auto rotate = [&](double s) {
+      const Eigen::Matrix3d R = Eigen::AngleAxisd(s, u).toRotationMatrix();
+      return Pose{R * X_AB.R, about + R * (X_AB.t - about)};
+    };
+    const auto record = [&](Errors& errors, const auto& move, double exact) {
+      const double coarse = difference_error(query, move, 4.0 * k_step, exact);
+      const double fine = difference_error(query, move, 2.0 * k_step, exact);
+      errors.coarse_to_fine.push_back(coarse / fine);
+      errors.finest.push_back(difference_error(query, move, k_step, exact));
+    };
+    record(of_area, translate, o.area.dot(u));
+    record(of_moment, rotate, o.moment.dot(u));
+  }
+  expect_second_order(of_area);
+  expect_second_order(of_moment);
+}
+
+TEST(overlap, area_and_moment_are_the_gradient_of_volume) {
+  const Body a(bodies::box({-0.51, -0.32, -0.43}, {0.37, 0.61, 0.29}));
+  const Body b(bodies::box({-0.33, -0.42, -0.23}, {0.47, 0.31, 0.39}, true));
+  expect_gradient(a, b, 11);
+}
+
+TEST(overlap, a_part_inside_pushes_only_where_the_surfaces_meet) {
+  // A cavity: a small sphere inside out within a big one. A body that floats in the cavity touches nothing; one that
+  // fills it has the material outside the cavity in common.
+  const Mesh inner = bodies::bumpy_sphere(2, 0.1, 0.3);
+  std::vector<Triangle> reversed = inner.triangles();
+  for (Triangle& t : reversed) std::swap(t[0], t[1]);
+  const Mesh outer = bodies::bumpy_sphere(3, 0.05, 1.0);
+  std::vector<Vector3d> p = outer.vertices();
+  p.insert(p.end(), inner.vertices().begin(), inner.vertices().end());
+  std::vector<Triangle> t = outer.triangles();
+  for (const Triangle& f : reversed) {
+    const auto n = static_cast<std::uint32_t>(outer.vertices().size());
+    t.push_back({f[0] + n, f[1] + n, f[2] + n});
+  }
+  const Body shell(Mesh::build(p, t, "shell"));
+  const Body mote(bodies::bumpy_sphere(2, 0.1, 0.1));
+  const Body filler(bodies::bumpy_sphere(3, 0.1, 0.6));
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 20; ++i) {
+    const Pose X_AB = bodies::random_pose(random, 0.05);
+    for (const bool shell_is_a : {true, false}) {
+      const auto both = [&](const Body& other) {
+        return shell_is_a ? bodies::overlap(shell, other, X_AB) : bodies::overlap(other, shell, X_AB);
+      };
+      const Overlap floating = both(mote);
+      EXPECT_NEAR(floating.volume, 0.0, k_rounding);
+      EXPECT_EQ(floating.crossings, 0u);
+      const Overlap filling = both(filler);
+      EXPECT_NEAR(filling.volume, filler.mesh.volume() - inner.volume(), k_rounding);
+      EXPECT_EQ(filling.area, Vector3d::Zero());
+      EXPECT_EQ(filling.moment, Vector3d::Zero());
+    }
+  }
+}
+
+TEST(overlap, meshes_that_bound_no_body_are_refused) {
+  Mesh open = bodies::bumpy_sphere(2);
+  std::vector<Triangle> t = open.triangles();
+  t.pop_back();
+  const Mesh with_hole = Mesh::build(open.vertices(), t, "hole");
+  const Tree tree(with_hole);
+  try {
+    const Solid solid(with_hole, tree);
+    FAIL() << "an open mesh was taken";
+  } catch (const BadMesh& e) {
+    EXPECT_EQ(std::string(e.what()), "hole: " + with_hole.why_not_solid());
+  }
+  t = open.triangles();
+  std::swap(t[5][0], t[5][1]);
+  const Mesh turned = Mesh::build(open.vertices(), t, "turned");
+  const Tree turned_tree(turned);
+  EXPECT_THROW(Solid(turned, turned_tree), BadMesh);
+}
+
+TEST(overlap, poses_that_are_not_finite_are_refused) {
+  const Body a(bodies::bumpy_sphere(1));
+  OverlapQuery query(a.solid, a.solid);
+  Pose X_AB;
+  X_AB.t.x() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(query.evaluate(X_AB), BadArgument);
+  X_AB.t.x() = 1e300;  // finite, however far: apart
+  EXPECT_EQ(query.evaluate(X_AB).volume, 0.0);
+}
+
+}  // namespace
+}  // namespace sixdof
