@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sixdof/algorithm/exact.h>
 #include <sixdof/algorithm/null.h>
 #include <sixdof/base/error.h>
 
@@ -44,6 +45,9 @@ const Algorithm& Registry::find(std::string_view name) const {
   throw BadArgument(fmt::format("algorithm {}: no such algorithm; there are {}", name, fmt::join(names, ", ")));
 }
 
-void register_core_algorithms(Registry& registry) { registry.add(make_null_algorithm()); }
+void register_core_algorithms(Registry& registry) {
+  registry.add(make_null_algorithm());
+  registry.add(make_exact_algorithm());
+}
 
 }  // namespace sixdof

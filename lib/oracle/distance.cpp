@@ -1,0 +1,229 @@
+#include <sixdof/oracle/distance.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <sixdof/geometry/predicates.h>
+
+namespace sixdof {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<DistanceOracle::Piece> find_pieces(const Mesh& mesh) {
+  if (!mesh.solid()) return {};
+  // Pieces are joined through vertices: where surfaces do not meet, all of a piece lies on one side.
+  std::vector<std::uint32_t> root(mesh.vertices().size());
+  std::iota(root.begin(), root.end(), 0u);
+  const auto find = [&root](std::uint32_t v) {
+    while (root[v] != v) v = root[v] = root[root[v]];
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles()) {
+    for (const std::uint32_t v : {t[1], t[2]}) {
+      const std::uint32_t x = find(t[0]);
+      const std::uint32_t y = find(v);
+      root[std::max(x, y)] = std::min(x, y);
+    }
+  }
+  std::vector<DistanceOracle::Piece> pieces;
+  std::vector<std::uint32_t> index(root.size());
+  for (std::uint32_t v = 0; v < root.size(); ++v) {
+    const Vector3d& p = mesh.vertices()[v];
+    const std::uint32_t first = find(v);  // the lowest vertex of the piece: met before the others
+    if (first == v) {
+      index[v] = static_cast<std::uint32_t>(pieces.size());
+      pieces.push_back({p, {}});
+    }
+    pieces[index[first]].box.extend(p);
+  }
+  return pieces;
+}
+
+std::shared_ptr<const Tree> second_tree(const Mesh& a, const std::shared_ptr<const Tree>& tree_a, const Mesh& b) {
+  return &a == &b ? tree_a : std::make_shared<const Tree>(b);
+}
+
+/// Directions of rays, tried in turn: unrelated to each other and to the axes.
+constexpr std::array<std::array<double, 3>, 8> k_rays{{{0.8217, 0.3391, 0.4583},
+                                                       {-0.2861, 0.7127, 0.6405},
+                                                       {0.1379, -0.5623, 0.8153},
+                                                       {-0.6427, -0.4919, 0.5871},
+                                                       {0.4339, 0.2671, -0.8605},
+                                                       {-0.7193, 0.5281, -0.4513},
+                                                       {0.3067, -0.8837, -0.3533},
+                                                       {-0.4801, -0.3169, -0.8179}}};
+
+/// Adds up how segment p -> q passes through triangle t: +1 leaving (along the normal), -1 entering, 0 missing.
+/// Returns false if it touches the border or an end: the sum says nothing then.
+bool add_crossing(const Vector3d& p, const Vector3d& q, const TriangleCorners& t, int& sum) {
+  const int o0 = orient3d(p, q, t[0], t[1]);
+  const int o1 = orient3d(p, q, t[1], t[2]);
+  if (o0 * o1 < 0) return true;
+  const int o2 = orient3d(p, q, t[2], t[0]);
+  if (o0 * o2 < 0 || o1 * o2 < 0) return true;
+  const int side_p = orient3d(t[0], t[1], t[2], p);
+  const int side_q = orient3d(t[0], t[1], t[2], q);
+  if (side_p * side_q > 0) return true;
+  if (o0 == 0 || o1 == 0 || o2 == 0 || side_p == 0 || side_q == 0) return false;
+  sum += side_q;
+  return true;
+}
+
+/// Winding number of the surface of `tree`, moved by `pose`, around p.
+int winding(const Tree& tree, const Pose* pose, const Vector3d& p, std::vector<std::uint32_t>& open) {
+  const Vector3d local_p = (pose ? pose->inverse() * p : p) - tree.center();
+  // Longer than any way out of the mesh, from a point that lies inside its sphere.
+  if (local_p.norm() > 1.01 * tree.radius()) return 0;
+  const double length = 4.0 * tree.radius();
+  const double offset = tree.center().norm() + (pose ? pose->t.norm() : 0.0) + p.norm();
+  const double slack = 1e-6 * tree.radius() + 1e-14 * offset;  // of the way to the tree's frame, far above rounding
+  for (const std::array<double, 3>& ray : k_rays) {
+    const Vector3d direction = Vector3d(ray[0], ray[1], ray[2]).normalized();
+    const Vector3d q = p + length * direction;
+    const Vector3d local_direction = pose ? Vector3d(pose->R.transpose() * direction) : direction;
+    int sum = 0;
+    bool clear = true;
+    open.assign(1, 0);
+    while (!open.empty() && clear) {
+      const Tree::Node& node = tree.nodes()[open.back()];
+      open.pop_back();
+      for (std::uint32_t i = 0; i < node.child_count && clear; ++i) {
+        double enter = 0.0;
+        double leave = length;
+        for (int k = 0; k < 3; ++k) {  // no component of a direction is zero in A; in B it may be
+          const double lower = static_cast<double>(node.lower[k][i]) - slack - local_p[k];
+          const double upper = static_cast<double>(node.upper[k][i]) + slack - local_p[k];
+          const double d = local_direction[k];
+          if (std::abs(d) < 1e-9) {  // drifts less than the slack over the whole length
+            if (lower > 0.0 || upper < 0.0) leave = -1.0;
+            continue;
+          }
+          enter = std::max(enter, std::min(lower / d, upper / d));
+          leave = std::min(leave, std::max(lower / d, upper / d));
+        }
+        if (enter > leave) continue;
+        const Tree::Child child = node.child[i];
+        if (!child.is_leaf()) {
+          open.push_back(child.node());
+          continue;
+        }
+        for (std::uint32_t t = child.first(); t < child.first() + child.count() && clear; ++t) {
+          TriangleCorners corners = tree.corners()[t];
+          if (pose) {
+            for (Vector3d& corner : corners) corner = *pose * corner;
+          }
+          clear = add_crossing(p, q, corners, sum);
+        }
+      }
+    }
+    if (clear) return sum;
+  }
+  return 0;  // p lies on the surface, up to rounding
+}
+
+}  // namespace
+
+DistanceOracle::DistanceOracle(const Mesh& a, std::shared_ptr<const Tree> tree_a, const Mesh& b,
+                               std::shared_ptr<const Tree> tree_b)
+    : tree_a_(std::move(tree_a)),
+      tree_b_(std::move(tree_b)),
+      solid_a_(a.solid()),
+      solid_b_(b.solid()),
+      pieces_a_(find_pieces(a)),
+      pieces_b_(&a == &b ? pieces_a_ : find_pieces(b)) {}
+
+DistanceOracle::DistanceOracle(const Mesh& a, const Mesh& b)
+    : tree_a_(std::make_shared<const Tree>(a)),
+      tree_b_(second_tree(a, tree_a_, b)),
+      solid_a_(a.solid()),
+      solid_b_(b.solid()),
+      pieces_a_(find_pieces(a)),
+      pieces_b_(&a == &b ? pieces_a_ : find_pieces(b)) {}
+
+std::size_t DistanceOracle::bytes() const {
+  return tree_a_->bytes() + (tree_b_ == tree_a_ ? 0 : tree_b_->bytes()) +
+         (pieces_a_.capacity() + pieces_b_.capacity()) * sizeof(Piece);
+}
+
+DistanceQuery::DistanceQuery(const DistanceOracle& oracle) : oracle_(oracle) {
+  traversal_.a = oracle.tree_a().get();
+  traversal_.b = oracle.tree_b().get();
+}
+
+void DistanceQuery::prepare(const Pose& X_AB, bool warm_start) {
+  traversal_.X_AB = X_AB;
+  traversal_.found = false;
+  traversal_.counts = {};
+  if (!warm_start) {
+    closest_pair_.reset();
+    intersecting_pair_.reset();
+    traversal_.direction.setZero();
+  }
+}
+
+namespace {
+
+TriangleCorners moved(const Pose& X_AB, const TriangleCorners& t) { return {X_AB * t[0], X_AB * t[1], X_AB * t[2]}; }
+
+}  // namespace
+
+SurfaceDistance DistanceQuery::distance(const Pose& X_AB, const DistanceOptions& options) {
+  prepare(X_AB, options.warm_start);
+  detail::Traversal& t = traversal_;
+  t.best = options.upper_bound;
+  if (closest_pair_) {
+    const detail::TrianglePair pair = *closest_pair_;
+    if (detail::offer_pair(t, pair, t.a->corners()[pair.a], moved(X_AB, t.b->corners()[pair.b]))) {
+      t.direction = t.closest.on_b - t.closest.on_a;
+    }
+  }
+  if (!(t.found && t.best == 0.0)) detail::find_closest(t);
+  SurfaceDistance result;
+  result.within_bound = t.found;
+  if (!t.found) return result;
+  closest_pair_ = t.pair;
+  result.distance = t.closest.distance;
+  result.on_a = t.closest.on_a;
+  result.on_b = t.closest.on_b;
+  result.triangle_a = t.a->mesh_triangle()[t.pair.a];
+  result.triangle_b = t.b->mesh_triangle()[t.pair.b];
+  return result;
+}
+
+bool DistanceQuery::surfaces_intersect(const Pose& X_AB, bool warm_start) {
+  prepare(X_AB, warm_start);
+  detail::Traversal& t = traversal_;
+  if (intersecting_pair_) {
+    const detail::TrianglePair pair = *intersecting_pair_;
+    if (triangles_intersect(t.a->corners()[pair.a], moved(X_AB, t.b->corners()[pair.b]))) return true;
+  }
+  detail::find_intersection(t);
+  if (t.found) intersecting_pair_ = t.pair;
+  return t.found;
+}
+
+bool DistanceQuery::collide(const Pose& X_AB, bool warm_start) {
+  if (surfaces_intersect(X_AB, warm_start)) return true;
+  if (oracle_.solid_a()) {
+    for (const DistanceOracle::Piece& piece : oracle_.pieces_b()) {
+      if (winding_a(X_AB * piece.vertex) > 0) return true;
+    }
+  }
+  if (oracle_.solid_b()) {
+    for (const DistanceOracle::Piece& piece : oracle_.pieces_a()) {
+      if (winding_b(X_AB, piece.vertex) > 0) return true;
+    }
+  }
+  return false;
+}
+
+int DistanceQuery::winding_a(const Vector3d& p) const { return winding(*oracle_.tree_a(), nullptr, p, open_); }
+
+int DistanceQuery::winding_b(const Pose& X_AB, const Vector3d& p) const {
+  return winding(*oracle_.tree_b(), &X_AB, p, open_);
+}
+
+}  // namespace sixdof

@@ -1,0 +1,445 @@
+#include <sixdof/oracle/distance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include "../geometry/shapes.h"
+
+namespace sixdof {
+namespace {
+
+using Eigen::Vector3d;
+using shapes::Generator;
+using shapes::uniform;
+
+/// Corners of B are rounded once when they are moved, and the closed forms below round a few times.
+constexpr double k_pose_rounding = 1e-14;
+/// The bound of the task: against brute force.
+constexpr double k_brute_force = 1e-13;
+
+TriangleCorners corners_of(const Mesh& mesh, std::size_t i, const Pose& pose) {
+  TriangleCorners t;
+  for (std::size_t k = 0; k < 3; ++k) t[k] = pose * mesh.vertices()[mesh.triangles()[i][k]];
+  return t;
+}
+
+TriangleCorners corners_of(const Mesh& mesh, std::size_t i) {
+  TriangleCorners t;
+  for (std::size_t k = 0; k < 3; ++k) t[k] = mesh.vertices()[mesh.triangles()[i][k]];
+  return t;
+}
+
+/// All pairs, in the order of the documented tie rule.
+SurfaceDistance brute_force(const Mesh& a, const Mesh& b, const Pose& X_AB) {
+  SurfaceDistance best;
+  best.distance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < a.triangles().size(); ++i) {
+    for (std::size_t j = 0; j < b.triangles().size(); ++j) {
+      const ClosestPoints c = triangle_triangle_distance(corners_of(a, i), corners_of(b, j, X_AB));
+      if (c.distance < best.distance) {
+        best = {true, c.distance, c.on_a, c.on_b, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)};
+      }
+    }
+  }
+  return best;
+}
+
+/// Moves B along u from far until its distance is `target`: advancing by the difference never jumps over it.
+Pose approach(const Mesh& a, const Mesh& b, Pose pose, const Vector3d& u, double target) {
+  const DistanceOracle oracle(a, b);
+  DistanceQuery query(oracle);
+  const double far = 1.1 * (a.diagonal() + b.diagonal()) + target;
+  const Vector3d start = a.center() - pose.R * b.center();
+  double travel = far;
+  for (int i = 0; i < 300; ++i) {
+    pose.t = start + travel * u;
+    const double excess = query.distance(pose).distance - target;
+    if (excess < 1e-9 * far) break;
+    travel -= excess;
+  }
+  return pose;
+}
+
+void check_witnesses(const Mesh& a, const Mesh& b, const Pose& X_AB, const SurfaceDistance& d) {
+  const double offset = a.center().norm() + X_AB.t.norm() + b.center().norm();
+  const double tolerance = 8.0 * k_triangle_distance_error * (a.diagonal() + b.diagonal() + d.distance + offset);
+  EXPECT_LE(point_triangle_distance(d.on_a, corners_of(a, d.triangle_a)).distance, tolerance);
+  EXPECT_LE(point_triangle_distance(d.on_b, corners_of(b, d.triangle_b, X_AB)).distance, tolerance);
+  EXPECT_NEAR((d.on_a - d.on_b).norm(), d.distance, tolerance);
+}
+
+TEST(DistanceOracle, EqualsBruteForce) {
+  Generator generator(1);
+  std::vector<Mesh> meshes{shapes::bumpy_sphere(1, 0.3, 1.0, {0.2, 0.1, -0.3}), shapes::bumpy_sphere(1, 0.3, 0.6),
+                           shapes::box({0.4, 0.9, 0.5}), shapes::soup(generator, 90, 1.0, 0.3)};
+  int apart = 0;
+  int meeting = 0;
+  for (const Mesh& a : meshes) {
+    for (const Mesh& b : meshes) {
+      const DistanceOracle oracle(a, b);
+      DistanceQuery query(oracle);
+      for (int i = 0; i < 6; ++i) {
+        const Pose pose = shapes::random_pose(generator, 0.4 + 0.6 * i);
+        const SurfaceDistance truth = brute_force(a, b, pose);
+        const SurfaceDistance d = query.distance(pose);
+        ASSERT_TRUE(d.within_bound);
+        ASSERT_NEAR(d.distance, truth.distance, k_brute_force * truth.distance);
+        EXPECT_EQ(d.distance, truth.distance);
+        if (truth.distance > 0.0) {
+          ++apart;
+          EXPECT_EQ(d.triangle_a, truth.triangle_a);
+          EXPECT_EQ(d.triangle_b, truth.triangle_b);
+          EXPECT_EQ(d.on_a, truth.on_a);
+          EXPECT_EQ(d.on_b, truth.on_b);
+        } else {
+          ++meeting;
+        }
+        check_witnesses(a, b, pose, d);
+        EXPECT_EQ(query.surfaces_intersect(pose), truth.distance == 0.0);
+      }
+    }
+  }
+  EXPECT_GT(apart, 20);
+  EXPECT_GT(meeting, 20);
+}
+
+TEST(DistanceOracle, IsSymmetric) {
+  Generator generator(2);
+  const Mesh a = shapes::bumpy_sphere(4, 0.2);
+  const Mesh b = shapes::bumpy_sphere(3, 0.4, 0.5, {0.4, -0.2, 0.1});
+  const DistanceOracle forth(a, b);
+  const DistanceOracle back(b, a);
+  DistanceQuery query_forth(forth);
+  DistanceQuery query_back(back);
+  for (int i = 0; i < 30; ++i) {
+    const Pose pose = shapes::random_pose(generator, 2.5);
+    const SurfaceDistance x = query_forth.distance(pose);
+    const SurfaceDistance y = query_back.distance(pose.inverse());
+    EXPECT_NEAR(x.distance, y.distance, k_pose_rounding * (a.diagonal() + pose.t.norm()));
+    EXPECT_EQ(query_forth.collide(pose), query_back.collide(pose.inverse()));
+  }
+}
+
+TEST(DistanceOracle, SpheresByTheirVertices) {
+  // Polyhedra inscribed in spheres, a vertex of each on the line of the centres: the distance is that of the spheres.
+  Generator generator(3);
+  const double r = 0.8;
+  const Mesh a = shapes::bumpy_sphere(4, 0.0, 1.0);
+  const Mesh b = shapes::bumpy_sphere(3, 0.0, r);
+  const DistanceOracle oracle(a, b);
+  DistanceQuery query(oracle);
+  for (int i = 0; i < 40; ++i) {
+    const Vector3d va = a.vertices()[generator() % a.vertices().size()].normalized();
+    const Vector3d vb = b.vertices()[generator() % b.vertices().size()].normalized();
+    const Eigen::AngleAxisd spin(uniform(generator, 0.0, 6.0), va);
+    Pose pose;
+    pose.R = (spin * Eigen::Quaterniond::FromTwoVectors(vb, -va)).toRotationMatrix();
+    const double gap = std::pow(10.0, uniform(generator, -12.0, 1.0));
+    pose.t = (1.0 + r + gap) * va;
+    EXPECT_NEAR(query.distance(pose).distance, gap, k_pose_rounding * (2.0 + gap));
+    EXPECT_FALSE(query.collide(pose));
+  }
+}
+
+TEST(DistanceOracle, BoxesAtAnyRotation) {
+  Generator generator(4);
+  const Vector3d half_a(1.3, 0.9, 0.7);
+  const Vector3d half_b(0.3, 0.5, 0.2);
+  const Mesh a = shapes::box(half_a);
+  const Mesh b = shapes::box(half_b);
+  const DistanceOracle oracle(a, b);
+  DistanceQuery query(oracle);
+  for (int i = 0; i < 60; ++i) {
+    const double gap = std::pow(10.0, uniform(generator, -12.0, 1.0));
+    // Corner over face: B's lowest corner above the middle of A's top.
+    Pose pose = shapes::random_pose(generator, 0.2);
+    const double lowest = -(pose.R.row(2).cwiseAbs() * half_b).value();
+    pose.t.z() = half_a.z() + gap - lowest;
+    EXPECT_NEAR(query.distance(pose).distance, gap, k_pose_rounding * (2.0 + gap));
+    EXPECT_FALSE(query.collide(pose));
+
+    // Edge over edge: A's edge along x (y = +, z = +), B's edge along its own x turned by a small or large angle.
+    const double angle = std::pow(10.0, uniform(generator, -15.0, 0.0));
+    const Eigen::AngleAxisd lean(0.785 + uniform(generator, -0.2, 0.2), Vector3d::UnitX());
+    const Vector3d up = Vector3d(0.0, 1.0, 1.0).normalized();
+    const Eigen::AngleAxisd turn(angle, up);
+    const Eigen::Matrix3d R = (turn * lean).toRotationMatrix();
+    // B's edge that is lowest along `up`, through its middle; placed over a point of A's edge.
+    Vector3d low = Vector3d::Zero();
+    double lowest_along = 0.0;
+    for (const double y : {-half_b.y(), half_b.y()}) {
+      for (const double z : {-half_b.z(), half_b.z()}) {
+        const Vector3d middle = R * Vector3d(0.0, y, z);
+        if (middle.dot(up) < lowest_along) {
+          lowest_along = middle.dot(up);
+          low = middle;
+        }
+      }
+    }
+    Pose over{R, Vector3d(uniform(generator, -0.5, 0.5), half_a.y(), half_a.z()) + gap * up - low};
+    EXPECT_NEAR(query.distance(over).distance, gap, k_pose_rounding * (2.0 + gap)) << "angle " << angle;
+  }
+}
+
+TEST(DistanceOracle, ErrorGrowsWithTheOffsetOnlyAsCoordinatesRound) {
+  // The same configuration at scale s, both meshes and the pose shifted by offset * s: a moved corner rounds by a few
+  // units in the last place of the offset.
+  constexpr double k_offset_rounding = 2e-15;
+  Generator generator(5);
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    for (const double offset : {0.0, 1e3, 1e6}) {
+      const Vector3d at_a = offset * scale * Vector3d(0.6, -0.5, 0.7);
+      const Vector3d at_b = offset * scale * Vector3d(-0.4, 0.8, 0.3);
+      const Mesh a = shapes::bumpy_sphere(1, 0.2, scale, at_a);
+      const Mesh b = shapes::bumpy_sphere(1, 0.3, 0.7 * scale, at_b);
+      const DistanceOracle oracle(a, b);
+      DistanceQuery query(oracle);
+      for (int i = 0; i < 4; ++i) {
+        Pose pose = shapes::random_pose(generator, 0.0);
+        pose.t = at_a - pose.R * at_b + scale * (i == 3 ? 40.0 : 1.9) * shapes::unit_vector(generator);
+        // Truth without the offset: subtract it from the vertices first, where the mesh's rounding is the same.
+        const Mesh a0 = shapes::moved(a, {Eigen::Matrix3d::Identity(), -at_a});
+        const Mesh b0 = shapes::moved(b, {Eigen::Matrix3d::Identity(), -at_b});
+        const Pose pose0{pose.R, pose.t - at_a + pose.R * at_b};
+        const SurfaceDistance truth = brute_force(a0, b0, pose0);
+        const SurfaceDistance d = query.distance(pose);
+        EXPECT_NEAR(d.distance, truth.distance, k_offset_rounding * scale * (10.0 + offset + pose0.t.norm() / scale));
+        check_witnesses(a, b, pose, d);
+      }
+    }
+  }
+}
+
+TEST(DistanceOracle, FarApartItStillPrunes) {
+  const Mesh a = shapes::bumpy_sphere(4, 0.2);
+  const DistanceOracle oracle(a, a);
+  DistanceQuery query(oracle);
+  Generator generator(6);
+  for (const double far : {1e2, 1e4, 1e6}) {
+    Pose pose = shapes::random_pose(generator, 0.0);
+    pose.t = far * shapes::unit_vector(generator);
+    const SurfaceDistance d = query.distance(pose);
+    EXPECT_NEAR(d.distance, far, 3.0);
+    // Of 26 million pairs. Leaves are compared in floats, which lets more through as the distance grows.
+    EXPECT_LT(query.counts().triangles, 30000u) << "far " << far;
+    EXPECT_LT(query.counts().nodes, 30000u) << "far " << far;
+  }
+}
+
+TEST(DistanceOracle, WarmAndColdAndThreadsAgreeInEveryBit) {
+  const Mesh a = shapes::bumpy_sphere(4, 0.25);
+  const Mesh b = shapes::bumpy_sphere(3, 0.25, 0.4);
+  const DistanceOracle oracle(a, b);
+  Generator generator(7);
+  std::vector<Pose> path;
+  Pose pose = shapes::random_pose(generator, 0.0);
+  for (int i = 0; i < 120; ++i) {
+    pose.R = Eigen::AngleAxisd(0.05, shapes::unit_vector(generator)).toRotationMatrix() * pose.R;
+    pose.t = (1.9 + 0.5 * std::sin(0.1 * i)) * Vector3d(std::cos(0.05 * i), std::sin(0.05 * i), 0.3).normalized();
+    path.push_back(pose);
+  }
+  const auto run = [&](bool warm) {
+    DistanceQuery query(oracle);
+    std::vector<SurfaceDistance> all;
+    for (const Pose& p : path) all.push_back(query.distance(p, {.warm_start = warm}));
+    return all;
+  };
+  const std::vector<SurfaceDistance> cold = run(false);
+  std::vector<SurfaceDistance> warm;
+  std::vector<SurfaceDistance> other;
+  std::thread first([&] { warm = run(true); });
+  std::thread second([&] { other = run(true); });
+  first.join();
+  second.join();
+  for (const std::vector<SurfaceDistance>* answers : {&warm, &other}) {
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const SurfaceDistance& x = (*answers)[i];
+      EXPECT_EQ(x.distance, cold[i].distance);
+      if (x.distance == 0.0) continue;
+      EXPECT_EQ(x.on_a, cold[i].on_a);
+      EXPECT_EQ(x.on_b, cold[i].on_b);
+      EXPECT_EQ(x.triangle_a, cold[i].triangle_a);
+      EXPECT_EQ(x.triangle_b, cold[i].triangle_b);
+    }
+  }
+}
+
+TEST(DistanceOracle, IsTheSameBitsOnEveryInstructionSet) {
+  const Mesh a = shapes::bumpy_sphere(4, 0.25);
+  const Mesh b = shapes::bumpy_sphere(3, 0.3, 0.5);
+  const DistanceOracle oracle(a, b);
+  const auto run = [&] {
+    Generator generator(8);
+    DistanceQuery query(oracle);
+    std::vector<SurfaceDistance> all;
+    for (int i = 0; i < 40; ++i) {
+      all.push_back(query.distance(shapes::random_pose(generator, 2.0), {.warm_start = false}));
+    }
+    return all;
+  };
+  const std::vector<SurfaceDistance> standard = run();
+  int tried = 0;
+  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+    hwy::SetSupportedTargetsForTest(targets & -targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    const std::vector<SurfaceDistance> here = run();
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      EXPECT_EQ(here[i].distance, standard[i].distance) << hwy::TargetName(targets & -targets);
+      if (here[i].distance == 0.0) continue;
+      EXPECT_EQ(here[i].on_a, standard[i].on_a);
+      EXPECT_EQ(here[i].triangle_b, standard[i].triangle_b);
+    }
+    ++tried;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  EXPECT_GE(tried, 2);  // at least a SIMD and a scalar path
+}
+
+TEST(DistanceOracle, UpperBoundCutsAndKeeps) {
+  const Mesh a = shapes::bumpy_sphere(4, 0.25);
+  const DistanceOracle oracle(a, a);
+  DistanceQuery query(oracle);
+  Generator generator(9);
+  for (int i = 0; i < 20; ++i) {
+    Pose pose = shapes::random_pose(generator, 0.0);
+    pose.t = uniform(generator, 2.6, 4.0) * shapes::unit_vector(generator);
+    const SurfaceDistance d = query.distance(pose, {.warm_start = false});
+    for (const double factor : {1.0, 1.0 + 1e-15, 1.5}) {
+      const SurfaceDistance x = query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = false});
+      EXPECT_TRUE(x.within_bound);
+      EXPECT_EQ(x.distance, d.distance);
+      EXPECT_EQ(x.on_b, d.on_b);
+    }
+    for (const double factor : {0.0, 0.5, 1.0 - 1e-15}) {
+      EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = false}).within_bound);
+      EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = true}).within_bound);
+    }
+  }
+}
+
+TEST(DistanceOracle, CloseApproachesAreSeenOnBothSides) {
+  // B at a hair's breadth, then moved on along the witnesses' line by a little more and a little less than the gap.
+  const Mesh a = shapes::bumpy_sphere(4, 0.2);
+  const Mesh b = shapes::bumpy_sphere(3, 0.2, 0.5);
+  const DistanceOracle oracle(a, b);
+  DistanceQuery query(oracle);
+  Generator generator(10);
+  for (int i = 0; i < 10; ++i) {
+    const Pose pose = approach(a, b, shapes::random_pose(generator, 0.0), shapes::unit_vector(generator), 1e-4);
+    const SurfaceDistance d = query.distance(pose);
+    ASSERT_GT(d.distance, 0.0);
+    const Vector3d line = (d.on_a - d.on_b) / d.distance;
+    Pose short_of = pose;
+    short_of.t += d.distance * (1.0 - 1e-9) * line;
+    EXPECT_NEAR(query.distance(short_of).distance, 1e-9 * d.distance, k_pose_rounding);
+    EXPECT_FALSE(query.collide(short_of));
+    Pose beyond = pose;
+    beyond.t += d.distance * (1.0 + 1e-9) * line;
+    EXPECT_EQ(query.distance(beyond).distance, 0.0);
+    EXPECT_TRUE(query.collide(beyond));
+  }
+}
+
+TEST(DistanceOracle, TouchingIsMeeting) {
+  const Mesh a = shapes::box({1.0, 1.0, 1.0});
+  const DistanceOracle oracle(a, a);
+  DistanceQuery query(oracle);
+  // Exact in doubles: face on face, edge on edge, corner on corner, shifted faces; then one unit in the last place off.
+  for (const Vector3d& t : {Vector3d(2.0, 0.0, 0.0), Vector3d(2.0, 2.0, 0.25), Vector3d(2.0, 2.0, 2.0),
+                            Vector3d(0.375, -0.125, 2.0), Vector3d(0.0, 0.0, 0.0)}) {
+    Pose pose;
+    pose.t = t;
+    EXPECT_TRUE(query.collide(pose));
+    EXPECT_TRUE(query.surfaces_intersect(pose, false));
+    EXPECT_EQ(query.distance(pose).distance, 0.0);
+    if (t.norm() == 0.0) continue;
+    Eigen::Index axis = 0;
+    t.maxCoeff(&axis);
+    pose.t[axis] = std::nextafter(2.0, 3.0);
+    EXPECT_FALSE(query.surfaces_intersect(pose, false));
+    EXPECT_FALSE(query.collide(pose));
+    EXPECT_GT(query.distance(pose).distance, 0.0);
+  }
+}
+
+Mesh turned_inside_out(const Mesh& mesh) {
+  std::vector<Triangle> t = mesh.triangles();
+  for (Triangle& x : t) std::swap(x[1], x[2]);
+  return Mesh::build(mesh.vertices(), t);
+}
+
+Mesh joined(const Mesh& x, const Mesh& y) {
+  std::vector<Vector3d> v = x.vertices();
+  std::vector<Triangle> t = x.triangles();
+  const auto shift = static_cast<std::uint32_t>(v.size());
+  v.insert(v.end(), y.vertices().begin(), y.vertices().end());
+  for (const Triangle& s : y.triangles()) t.push_back({s[0] + shift, s[1] + shift, s[2] + shift});
+  return Mesh::build(v, t);
+}
+
+TEST(DistanceOracle, ContainmentIsCollision) {
+  Generator generator(11);
+  const Mesh big = shapes::bumpy_sphere(3, 0.2, 1.0, {0.5, 0.2, -0.1});
+  const Mesh small = shapes::bumpy_sphere(2, 0.2, 0.2, {-3.0, 0.4, 1.0});
+  const Mesh open = Mesh::build(big.vertices(), {big.triangles().begin() + 1, big.triangles().end()});
+  const Mesh hollow = joined(big, turned_inside_out(shapes::bumpy_sphere(3, 0.2, 0.6, {0.5, 0.2, -0.1})));
+  const Mesh two = joined(small, shapes::moved(small, {Eigen::Matrix3d::Identity(), Vector3d(5.0, 0.0, 0.0)}));
+  ASSERT_TRUE(hollow.solid());
+  ASSERT_FALSE(open.solid());
+  for (int i = 0; i < 20; ++i) {
+    Pose inside = shapes::random_pose(generator, 0.0);
+    inside.t = big.center() - inside.R * small.center() + shapes::uniform_vector(generator, 0.1);
+    const auto collide = [&](const Mesh& a, const Mesh& b, const Pose& pose) {
+      const DistanceOracle oracle(a, b);
+      DistanceQuery query(oracle);
+      EXPECT_FALSE(query.surfaces_intersect(pose));
+      EXPECT_GT(query.distance(pose).distance, 0.0);
+      return query.collide(pose);
+    };
+    EXPECT_TRUE(collide(big, small, inside));
+    EXPECT_TRUE(collide(small, big, inside.inverse()));
+    EXPECT_FALSE(collide(open, small, inside));
+    EXPECT_FALSE(collide(hollow, small, inside));
+    EXPECT_FALSE(collide(small, hollow, inside.inverse()));
+    EXPECT_TRUE(collide(big, two, inside));  // the first piece inside, the second far away
+    EXPECT_TRUE(collide(two, big, inside.inverse()));
+    Pose outside = inside;
+    outside.t += 4.0 * shapes::unit_vector(generator);
+    EXPECT_FALSE(collide(big, small, outside));
+  }
+}
+
+TEST(DistanceOracle, WindingTellsSidesApart) {
+  Generator generator(12);
+  const Mesh mesh = shapes::bumpy_sphere(3, 0.2, 1.0, {10.0, 20.0, -5.0});
+  const DistanceOracle oracle(mesh, mesh);
+  DistanceQuery query(oracle);
+  const Pose pose = shapes::random_pose(generator, 3.0);
+  int inside = 0;
+  for (int i = 0; i < 500; ++i) {
+    // Star-shaped about its centre: inside up to the surface's radius, which is between 0.78 and 1.2 minus the
+    // flatness of the triangles; both surely met.
+    const double r = uniform(generator, 0.0, 1.5);
+    const Vector3d p = Vector3d(10.0, 20.0, -5.0) + r * shapes::unit_vector(generator);
+    const int winding = query.winding_a(p);
+    EXPECT_EQ(query.winding_b(pose, pose * p), winding);
+    EXPECT_TRUE(winding == 0 || winding == 1);
+    if (r < 0.75) {
+      EXPECT_EQ(winding, 1);
+    }
+    if (r > 1.21) {
+      EXPECT_EQ(winding, 0);
+    }
+    inside += winding;
+  }
+  EXPECT_GT(inside, 200);
+}
+
+}  // namespace
+}  // namespace sixdof
