@@ -7,8 +7,11 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/geometry/load.h>
+#include <sixdof/models/manifest.h>
 #include <sixdof/models/near_names.h>
 #include <sixdof/models/recipe.h>
+#include <sixdof/models/refine.h>
 #include <sixdof/models/surface.h>
 
 namespace sixdof {
@@ -47,19 +50,33 @@ ModelName parse_model_name(std::string_view name) {
   return {std::string(name), std::nullopt};
 }
 
-Mesh load_model(const std::string& name) {
-  const ModelName parts = parse_model_name(name);
-  const Recipe* const recipe = find_recipe(parts.base);
-  if (recipe == nullptr) throw_unknown(parts.base);
-  if (!parts.triangles) {
-    throw BadArgument(fmt::format("{} is made to measure: say how many triangles, as in {}-10k", name, name));
+bool is_file_name(std::string_view name_or_file) { return name_or_file.find_first_of("./") != std::string_view::npos; }
+
+Mesh load_model(const std::string& name_or_file) {
+  if (is_file_name(name_or_file)) return load_mesh(name_or_file);
+  const ModelName parts = parse_model_name(name_or_file);
+  if (const Recipe* const recipe = find_recipe(parts.base)) {
+    if (!parts.triangles) {
+      throw BadArgument(fmt::format("{0} is made to measure: say how many triangles, as in {0}-10k", parts.base));
+    }
+    return recipe->make(*parts.triangles).renamed(name_or_file);
   }
-  return recipe->make(*parts.triangles).renamed(name);
+  const FetchedModel* const fetched = find_fetched_model(parts.base);
+  if (fetched == nullptr) throw_unknown(parts.base);
+  const std::size_t triangles = parts.triangles.value_or(fetched->triangles);
+  if (triangles < fetched->triangles) {
+    throw BadArgument(fmt::format("{} has {} triangles and can be cut finer, not coarser; {} were asked for",
+                                  parts.base, fetched->triangles, triangles));
+  }
+  Mesh mesh = load_fetched_model(*fetched);
+  if (triangles == fetched->triangles) return std::move(mesh).renamed(name_or_file);
+  return subdivide(mesh, triangles, name_or_file);
 }
 
 std::vector<std::string> model_names() {
   std::vector<std::string> names;
   for (const Recipe& recipe : recipes()) names.emplace_back(recipe.name);
+  for (const FetchedModel& model : fetched_models()) names.push_back(model.name);
   return names;
 }
 

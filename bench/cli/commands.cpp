@@ -11,6 +11,8 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/bench/cli/algorithms.h>
+#include <sixdof/bench/cli/info.h>
+#include <sixdof/bench/cli/models.h>
 
 namespace sixdof::cli {
 namespace {
@@ -22,7 +24,11 @@ int report(const char* program, const char* message, int exit_code) {
 
 }  // namespace
 
-void add_commands(CLI::App& app) { add_algorithms_command(app); }
+void add_commands(CLI::App& app) {
+  add_algorithms_command(app);
+  add_info_command(app);
+  add_models_command(app);
+}
 
 int run_guarded(const char* program, const std::function<void()>& work) {
   try {

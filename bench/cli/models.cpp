@@ -1,0 +1,112 @@
+#include <sixdof/bench/cli/models.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include <sixdof/geometry/save.h>
+#include <sixdof/models/manifest.h>
+#include <sixdof/models/recipe.h>
+#include <sixdof/models/surface.h>
+#include <sixdof/models/zoo.h>
+
+namespace sixdof::cli {
+namespace {
+
+bool is_here(const FetchedModel& model) { return std::filesystem::exists(model_cache() / model.file); }
+
+void list_as_json() {
+  nlohmann::ordered_json json;
+  json["recipes"] = nlohmann::ordered_json::array();
+  for (const Recipe& recipe : recipes()) {
+    json["recipes"].push_back({{"name", recipe.name},
+                               {"summary", recipe.summary},
+                               {"minimum_triangles", recipe.minimum},
+                               {"maximum_triangles", k_maximum_triangles},
+                               {"genus", recipe.genus}});
+  }
+  json["cache"] = model_cache().string();
+  json["fetched"] = nlohmann::ordered_json::array();
+  for (const FetchedModel& model : fetched_models()) {
+    json["fetched"].push_back({{"name", model.name},
+                               {"summary", model.summary},
+                               {"here", is_here(model)},
+                               {"file", model.file},
+                               {"triangles", model.triangles},
+                               {"size", {model.size.x(), model.size.y(), model.size.z()}},
+                               {"genus", model.genus},
+                               {"package", model.package},
+                               {"licence", model.licence},
+                               {"hash", model.hash}});
+  }
+  fmt::print("{}\n", json.dump(2));
+}
+
+void list_as_text() {
+  fmt::print("Recipes, at any even number of triangles up to {}: NAME-COUNT, as in torus-100k\n", k_maximum_triangles);
+  fmt::print("{:<14} {:>8} {:>6}  {}\n", "name", "at least", "genus", "what it is");
+  for (const Recipe& recipe : recipes()) {
+    fmt::print("{:<14} {:>8} {:>6}  {}\n", recipe.name, recipe.minimum, recipe.genus, recipe.summary);
+  }
+  fmt::print("\nReal objects, got by models/fetch, kept in {}; NAME-COUNT cuts one finer, as in elephant-1m\n",
+             model_cache().string());
+  fmt::print("{:<14} {:>8} {:>6}  {:<8} {:<28} {}\n", "name", "count", "genus", "state", "size", "what it is");
+  for (const FetchedModel& model : fetched_models()) {
+    const std::string size = fmt::format("{:.4g} x {:.4g} x {:.4g}", model.size.x(), model.size.y(), model.size.z());
+    fmt::print("{:<14} {:>8} {:>6}  {:<8} {:<28} {}\n", model.name, model.triangles, model.genus,
+               is_here(model) ? "here" : "missing", size, model.summary);
+  }
+}
+
+void add_list(CLI::App& models) {
+  auto* const command = models.add_subcommand("list", "Every model, its size and frame");
+  const auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "As JSON");
+  command->callback([json] { *json ? list_as_json() : list_as_text(); });
+}
+
+struct MakeOptions {
+  std::string name;
+  std::optional<std::size_t> triangles;
+  std::string output;
+};
+
+void make(const MakeOptions& options) {
+  std::string name = options.name;
+  if (options.triangles) {
+    if (parse_model_name(name).triangles) {
+      throw BadArgument(fmt::format("{} says how many triangles already; leave out --triangles", name));
+    }
+    name += fmt::format("-{}", *options.triangles);
+  }
+  const Mesh mesh = load_model(name);
+  save_mesh(mesh, options.output);
+  fmt::print("{}: {} triangles, {} vertices, hash {}\n", options.output, mesh.triangles().size(),
+             mesh.vertices().size(), mesh.hash());
+}
+
+void add_make(CLI::App& models) {
+  auto* const command = models.add_subcommand("make", "Write a model to a mesh file");
+  const auto options = std::make_shared<MakeOptions>();
+  command->add_option("name", options->name, "Model, with or without its count: torus, torus-100k, elephant")
+      ->required();
+  command->add_option("-n,--triangles", options->triangles, "Number of triangles (odd ones are rounded up)");
+  command->add_option("-o,--output", options->output, "File to write: .ply, .off, .obj or .stl")->required();
+  command->callback([options] { make(*options); });
+}
+
+}  // namespace
+
+void add_models_command(CLI::App& app) {
+  auto* const command = app.add_subcommand("models", "List and make models");
+  command->require_subcommand(1);
+  add_list(*command);
+  add_make(*command);
+}
+
+}  // namespace sixdof::cli

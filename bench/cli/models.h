@@ -1,0 +1,11 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+namespace sixdof::cli {
+
+/// `sixdof models list [--json]`: every model, its size and frame, and whether a fetched one is here.
+/// `sixdof models make NAME --triangles N -o FILE`: writes a model as a mesh file, whole or not at all.
+void add_models_command(CLI::App& app);
+
+}  // namespace sixdof::cli

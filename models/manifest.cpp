@@ -1,0 +1,96 @@
+#include <sixdof/models/manifest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include <sixdof/geometry/load.h>
+#include <sixdof/models/manifest_text.h>
+
+namespace sixdof {
+namespace {
+
+std::vector<FetchedModel> parse_manifest() {
+  const auto json = nlohmann::json::parse(manifest_text());
+  std::vector<FetchedModel> models;
+  for (const auto& entry : json.at("models")) {
+    FetchedModel model;
+    model.name = entry.at("name");
+    model.summary = entry.at("summary");
+    model.package = entry.at("package");
+    model.licence = json.at("packages").at(model.package).at("licence");
+    model.file = entry.at("file");
+    model.triangles = entry.at("triangles");
+    for (std::size_t k = 0; k < 3; ++k) model.size[static_cast<Eigen::Index>(k)] = entry.at("size").at(k);
+    model.genus = entry.at("genus");
+    model.closed = entry.at("closed");
+    model.manifold = entry.at("manifold");
+    model.hash = entry.at("hash");
+    models.push_back(std::move(model));
+  }
+  return models;
+}
+
+/// The folder models/ of the source tree around `start`, empty if there is none.
+std::filesystem::path models_folder_above(std::filesystem::path start) {
+  std::error_code ignored;
+  while (!start.empty()) {
+    if (std::filesystem::exists(start / "models" / "models.json", ignored)) return start / "models";
+    if (start == start.parent_path()) break;
+    start = start.parent_path();
+  }
+  return {};
+}
+
+}  // namespace
+
+std::span<const FetchedModel> fetched_models() {
+  static const std::vector<FetchedModel> models = parse_manifest();
+  return models;
+}
+
+const FetchedModel* find_fetched_model(std::string_view name) {
+  const auto models = fetched_models();
+  const auto found = std::find_if(models.begin(), models.end(), [&](const FetchedModel& m) { return m.name == name; });
+  return found == models.end() ? nullptr : &*found;
+}
+
+std::filesystem::path model_cache() {
+  const char* const chosen = std::getenv("SIXDOF_MODELS");
+  if (chosen != nullptr && *chosen != '\0') return chosen;
+  std::error_code ignored;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  const std::filesystem::path here = std::filesystem::current_path(ignored);
+  for (const std::filesystem::path& start : {program.parent_path(), here}) {
+    const std::filesystem::path folder = models_folder_above(start);
+    if (!folder.empty()) return folder / "cache";
+  }
+  return std::filesystem::path("models") / "cache";
+}
+
+Mesh load_fetched_model(const FetchedModel& model) {
+  const std::filesystem::path file = model_cache() / model.file;
+  const std::string remedy = fmt::format("run models/fetch {}", model.name);
+  if (!std::filesystem::exists(file)) {
+    throw BadFile(file.string(), fmt::format("the model {} is not here yet: {}", model.name, remedy));
+  }
+  const auto load = [&] {
+    try {
+      return load_mesh(file);
+    } catch (const Error& e) {
+      throw BadFile(e.what(), remedy);
+    }
+  };
+  Mesh mesh = load();
+  if (mesh.hash() != model.hash) {
+    throw BadFile(file.string(), fmt::format("is not the model {}: its content hash is {}, not {}; {}", model.name,
+                                             mesh.hash(), model.hash, remedy));
+  }
+  return mesh;
+}
+
+}  // namespace sixdof

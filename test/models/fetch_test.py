@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""Tests models/fetch without a network, on packages made for the purpose. Usage: fetch_test.py PATH-OF-FETCH"""
+
+import gzip
+import hashlib
+import io
+import json
+import pathlib
+import subprocess
+import sys
+import tarfile
+import tempfile
+import unittest
+
+FETCH = pathlib.Path(sys.argv.pop()).resolve()
+PLAIN = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"
+PACKED = PLAIN.replace(b"1", b"2")
+MEMBER = PLAIN.replace(b"1", b"3")
+
+
+def sha256(content):
+    return hashlib.sha256(content).hexdigest()
+
+
+class Fetch(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory(prefix="sixdof-fetch-")
+        self.root = pathlib.Path(self.temporary.name)
+        self.cache = self.root / "cache"
+        self.packages = self.root / "packages"
+        self.packages.mkdir()
+        self.make_package()
+        self.manifest = self.root / "models.json"
+        self.write_manifest(sha256(PLAIN))
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def make_package(self):
+        tree = self.root / "tree"
+        (tree / "DEBIAN").mkdir(parents=True)
+        (tree / "DEBIAN" / "control").write_text(
+            "Package: test-shapes\nVersion: 1\nArchitecture: all\nMaintainer: nobody <nobody@invalid>\nDescription: shapes\n")
+        data = tree / "usr" / "share"
+        data.mkdir(parents=True)
+        (data / "plain.off").write_bytes(PLAIN)
+        (data / "packed.off.gz").write_bytes(gzip.compress(PACKED))
+        with tarfile.open(data / "many.tar.gz", "w:gz") as archive:
+            entry = tarfile.TarInfo("meshes/member.off")
+            entry.size = len(MEMBER)
+            archive.addfile(entry, io.BytesIO(MEMBER))
+        subprocess.run(["dpkg-deb", "--root-owner-group", "-b", str(tree), str(self.packages / "test-shapes_1_all.deb")],
+                       check=True, capture_output=True)
+
+    def write_manifest(self, plain_digest):
+        entry = {"package": "test-shapes"}
+        self.manifest.write_text(json.dumps({"models": [
+            {**entry, "name": "plain", "path": "usr/share/plain.off", "file": "plain.off", "sha256": plain_digest},
+            {**entry, "name": "packed", "path": "usr/share/packed.off.gz", "file": "packed.off", "sha256": sha256(PACKED)},
+            {**entry, "name": "member", "path": "usr/share/many.tar.gz", "member": "meshes/member.off",
+             "file": "member.off", "sha256": sha256(MEMBER)}]}))
+
+    def fetch(self, *arguments, packages=True):
+        command = [str(FETCH), "--manifest", str(self.manifest), "--cache", str(self.cache), *arguments]
+        if packages:
+            command += ["--packages", str(self.packages)]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    def files(self):
+        return sorted(path.name for path in self.cache.iterdir() if path.name != ".lock")
+
+    def test_takes_files_out_of_packages_whatever_their_wrapping(self):
+        result = self.fetch()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.files(), ["member.off", "packed.off", "plain.off"])
+        self.assertEqual((self.cache / "plain.off").read_bytes(), PLAIN)
+        self.assertEqual((self.cache / "packed.off").read_bytes(), PACKED)
+        self.assertEqual((self.cache / "member.off").read_bytes(), MEMBER)
+
+    def test_fetches_only_what_is_named(self):
+        self.assertEqual(self.fetch("packed").returncode, 0)
+        self.assertEqual(self.files(), ["packed.off"])
+
+    def test_leaves_alone_what_is_there_and_needs_no_package_then(self):
+        self.assertEqual(self.fetch().returncode, 0)
+        before = (self.cache / "plain.off").stat()
+        (self.packages / "test-shapes_1_all.deb").unlink()
+        result = self.fetch()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout.count("here already"), 3)
+        after = (self.cache / "plain.off").stat()
+        self.assertEqual((before.st_mtime_ns, before.st_ino), (after.st_mtime_ns, after.st_ino))
+
+    def test_replaces_a_damaged_file_and_says_so(self):
+        self.assertEqual(self.fetch().returncode, 0)
+        (self.cache / "plain.off").write_bytes(PLAIN[:-7])
+        self.assertIn("damaged", self.fetch("--list").stdout)
+        result = self.fetch()
+        self.assertEqual(result.returncode, 0)
+        self.assertIn(f"{self.cache / 'plain.off'} is damaged", result.stdout)
+        self.assertEqual((self.cache / "plain.off").read_bytes(), PLAIN)
+
+    def test_stores_nothing_of_another_version_but_the_rest(self):
+        self.write_manifest("0" * 64)
+        result = self.fetch()
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("plain: test-shapes_1_all.deb holds another version", result.stderr)
+        self.assertIn("1 of 3 models could not be fetched", result.stderr)
+        self.assertEqual(self.files(), ["member.off", "packed.off"])
+
+    def test_a_damaged_package_is_an_error_and_leaves_nothing(self):
+        deb = self.packages / "test-shapes_1_all.deb"
+        deb.write_bytes(deb.read_bytes()[:-200])
+        result = self.fetch()
+        self.assertEqual(result.returncode, 1)
+        self.assertNotIn("Traceback", result.stderr)
+        self.assertEqual(self.files(), [])
+
+    def test_a_package_that_cannot_be_downloaded_is_named(self):
+        result = self.fetch("plain", packages=False)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("test-shapes: apt-get could not download it", result.stderr)
+        self.assertEqual(self.files(), [])
+
+    def test_an_unknown_name_fetches_nothing(self):
+        result = self.fetch("plain", "plane")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("no model is called plane; known: plain, packed, member", result.stderr)
+        self.assertFalse(self.cache.exists())
+
+    def test_two_at_once_do_not_disturb_each_other(self):
+        command = [str(FETCH), "--manifest", str(self.manifest), "--cache", str(self.cache),
+                   "--packages", str(self.packages)]
+        running = [subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(4)]
+        outputs = [process.communicate() for process in running]
+        self.assertEqual([process.returncode for process in running], [0] * 4, outputs)
+        self.assertEqual(sum(out.count(": fetched ") for out, _ in outputs), 3)
+        self.assertEqual(self.files(), ["member.off", "packed.off", "plain.off"])
+
+    def test_a_cache_that_cannot_be_made_is_named(self):
+        self.cache.write_text("in the way")
+        result = self.fetch()
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(str(self.cache), result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,107 @@
+#include <sixdof/models/manifest.h>
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/geometry/save.h>
+#include <sixdof/models/recipe.h>
+#include <sixdof/models/tube.h>
+#include <sixdof/models/zoo.h>
+
+namespace sixdof {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// An empty cache for one test.
+class Cache : public ::testing::Test {
+ protected:
+  Cache() : folder_(std::filesystem::temp_directory_path() / ("sixdof-models-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(folder_);
+    ::setenv("SIXDOF_MODELS", folder_.c_str(), 1);
+  }
+  ~Cache() override {
+    ::unsetenv("SIXDOF_MODELS");
+    std::filesystem::remove_all(folder_);
+  }
+
+  static std::string message_for(const std::string& name) {
+    try {
+      load_model(name);
+    } catch (const BadFile& e) {
+      return e.what();
+    }
+    return "loaded";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST(Manifest, EntriesAreWholeAndNamesUnique) {
+  EXPECT_GE(fetched_models().size(), 12U);
+  for (const FetchedModel& model : fetched_models()) {
+    EXPECT_EQ(find_fetched_model(model.name), &model);
+    EXPECT_EQ(find_recipe(model.name), nullptr) << model.name;
+    EXPECT_FALSE(parse_model_name(model.name).triangles) << model.name;
+    EXPECT_TRUE(model.closed && model.manifold) << model.name;
+    EXPECT_GT(model.triangles, 1000U);
+    EXPECT_GT(model.size.minCoeff(), 0.0);
+    EXPECT_EQ(model.hash.size(), 32U);
+    EXPECT_FALSE(model.licence.empty() || model.package.empty() || model.summary.empty()) << model.name;
+  }
+}
+
+TEST_F(Cache, AModelThatIsNotThereSaysHowToGetIt) {
+  EXPECT_THAT(message_for("bear"), AllOf(HasSubstr((folder_ / "bear.off").string()), HasSubstr("models/fetch bear")));
+}
+
+TEST_F(Cache, ADamagedFileIsRefusedByName) {
+  std::ofstream(folder_ / "bear.off") << "OFF\n3 1 0\n0 0 0\n1 0";
+  EXPECT_THAT(message_for("bear"), AllOf(HasSubstr("bear.off"), HasSubstr("models/fetch bear")));
+}
+
+TEST_F(Cache, AnotherMeshUnderTheNameIsRefused) {
+  const Mesh torus = make_torus({}, 27648);  // as many triangles as the bear
+  save_mesh(torus, folder_ / "bear.off");
+  EXPECT_THAT(message_for("bear"),
+              AllOf(HasSubstr("bear.off"), HasSubstr(torus.hash()), HasSubstr("models/fetch bear")));
+  EXPECT_EQ(load_model((folder_ / "bear.off").string()).hash(), torus.hash()) << "as a file it is what it is";
+}
+
+TEST_F(Cache, RealObjectsAreOnlyCutFiner) {
+  try {
+    load_model("bear-1k");
+    FAIL() << "a bear of 1,000 triangles was made";
+  } catch (const BadArgument& e) {
+    EXPECT_THAT(e.what(), HasSubstr("bear has 27648 triangles"));
+  }
+}
+
+TEST(FetchedModels, ThatAreHereAreThoseOfTheManifest) {
+  std::size_t seen = 0;
+  for (const FetchedModel& model : fetched_models()) {
+    if (!std::filesystem::exists(model_cache() / model.file)) continue;
+    const Mesh mesh = load_model(model.name);
+    EXPECT_EQ(mesh.name(), model.name);
+    EXPECT_EQ(mesh.triangles().size(), model.triangles);
+    EXPECT_TRUE(mesh.solid()) << model.name << ": " << mesh.why_not_solid();
+    EXPECT_EQ(mesh.topology().manifold, model.manifold);
+    const auto handles =
+        static_cast<std::int64_t>(mesh.topology().components) - mesh.topology().euler_characteristic / 2;
+    EXPECT_EQ(handles, static_cast<std::int64_t>(model.genus)) << model.name;
+    EXPECT_LT((mesh.box().sizes() - model.size).norm(), 1e-3 * model.size.norm());  // four digits
+    ++seen;
+  }
+  if (seen == 0) GTEST_SKIP() << "no fetched model is here; run models/fetch";
+}
+
+}  // namespace
+}  // namespace sixdof
