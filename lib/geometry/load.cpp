@@ -45,10 +45,8 @@ struct Format {
 };
 
 constexpr Format k_formats[] = {
-    {".ply", read_ply},
-    {".off", read_off},
-    {".obj", read_obj},
-    {".stl", read_stl},
+    {".ply", read_ply},   {".off", read_off},  {".obj", read_obj}, {".stl", read_stl},
+    {".gltf", read_gltf}, {".glb", read_gltf}, {".3ds", read_3ds},
 };
 
 Reader reader_for(const std::filesystem::path& file) {

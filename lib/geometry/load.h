@@ -14,6 +14,8 @@ namespace sixdof {
 /// | .off         | double                   | OFF, and COFF, NOFF, STOFF (colours, normals ignored); ascii       |
 /// | .obj         | double                   | points, lines, groups and materials hold no surface and are ignored|
 /// | .stl         | ascii double, binary float | normals are ignored: the order of the corners says what is outside |
+/// | .gltf, .glb  | float                    | version 2.0; the default scene, node transforms applied            |
+/// | .3ds         | float                    | world coordinates as stored; the key framer is ignored             |
 ///
 /// Coordinates are untouched (the file's unit and frame). Faces with more than three corners are triangulated as
 /// triangulate.h says. Nothing is mended in silence: a count, index or number that is wrong, a text whose last line is

@@ -37,4 +37,8 @@ Surface read_off(const Source& source);
 Surface read_ply(const Source& source);
 Surface read_stl(const Source& source);
 
+// These formats hold single precision anyway. Assimp decodes them from a file that is checked and written anew first.
+Surface read_3ds(const Source& source);
+Surface read_gltf(const Source& source);
+
 }  // namespace sixdof::loading

@@ -4,46 +4,45 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/geometry/predicates.h>
+
 namespace sixdof {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Twice the signed area of (a, b, c), positive counter-clockwise.
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
 /// The polygon seen against its Newell normal, along the coordinate axis nearest to it; empty if it has no area.
 Points project(std::span<const std::uint32_t> corners, const std::vector<Eigen::Vector3d>& vertices) {
   const std::size_t n = corners.size();
-  const Eigen::Vector3d origin = vertices[corners[0]];
-  double size = 0.0;
-  for (const std::uint32_t c : corners) size = std::max(size, (vertices[c] - origin).cwiseAbs().maxCoeff());
-  if (!(size > 0.0) || !std::isfinite(size)) return {};
-  // Scaled to size 1, or products of tiny lengths would vanish.
-  std::vector<Eigen::Vector3d> local(n);
-  for (std::size_t i = 0; i < n; ++i) local[i] = (vertices[corners[i]] - origin) / size;
+  double largest = 0.0;
+  for (const std::uint32_t c : corners) largest = std::max(largest, vertices[c].cwiseAbs().maxCoeff());
+  if (largest == 0.0) return {};
+  // Scaled by a power of two, which is exact, or products of tiny lengths would vanish and of huge ones overflow.
+  const int exponent = -std::ilogb(largest);
+  std::vector<Eigen::Vector3d> scaled(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    scaled[i] = vertices[corners[i]].unaryExpr([exponent](double x) { return std::ldexp(x, exponent); });
+  }
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  for (std::size_t i = 1; i + 1 < n; ++i) normal += local[i].cross(local[i + 1]);
+  for (std::size_t i = 1; i + 1 < n; ++i) normal += (scaled[i] - scaled[0]).cross(scaled[i + 1] - scaled[0]);
   Eigen::Index axis = 0;
   if (normal.cwiseAbs().maxCoeff(&axis) == 0.0) return {};
   const bool towards = normal[axis] > 0.0;
   const Eigen::Index u = (axis + (towards ? 1 : 2)) % 3;
   const Eigen::Index v = (axis + (towards ? 2 : 1)) % 3;
   Points points(n);
-  for (std::size_t i = 0; i < n; ++i) points[i] = {local[i][u], local[i][v]};
+  for (std::size_t i = 0; i < n; ++i) points[i] = {scaled[i][u], scaled[i][v]};
   return points;
 }
 
 bool strictly_convex(const Points& p) {
   const std::size_t n = p.size();
   for (std::size_t i = 0; i < n; ++i) {
-    if (!(turn(p[i], p[(i + 1) % n], p[(i + 2) % n]) > 0.0)) return false;
+    if (!(orient2d(p[i], p[(i + 1) % n], p[(i + 2) % n]) > 0)) return false;
   }
   // A star turns left everywhere as well, but its fan folds.
   for (std::size_t i = 1; i + 1 < n; ++i) {
-    if (!(turn(p[0], p[i], p[i + 1]) > 0.0)) return false;
+    if (!(orient2d(p[0], p[i], p[i + 1]) > 0)) return false;
   }
   return true;
 }
@@ -82,7 +81,7 @@ class EarCutter {
       ear_[following] = is_ear(following);
       at = following;
     }
-    if (turn(p_[before_[at]], p_[at], p_[after_[at]]) < 0.0) return false;
+    if (orient2d(p_[before_[at]], p_[at], p_[after_[at]]) < 0) return false;
     triangles.push_back({before_[at], at, after_[at]});
     return true;
   }
@@ -102,7 +101,7 @@ class EarCutter {
   /// What is left may be corners on a line, or a corner that repeats its neighbour: triangles without area.
   bool next_flat(std::size_t& at) const {
     for (std::size_t i = 0; i < left_; ++i, at = after_[at]) {
-      if (turn(p_[before_[at]], p_[at], p_[after_[at]]) == 0.0) return true;
+      if (orient2d(p_[before_[at]], p_[at], p_[after_[at]]) == 0) return true;
     }
     return false;
   }
@@ -111,11 +110,11 @@ class EarCutter {
     const auto& a = p_[before_[at]];
     const auto& b = p_[at];
     const auto& c = p_[after_[at]];
-    if (!(turn(a, b, c) > 0.0)) return false;
+    if (!(orient2d(a, b, c) > 0)) return false;
     for (std::size_t i = after_[after_[at]]; i != before_[at]; i = after_[i]) {
       const auto& q = p_[i];
       if (q == a || q == b || q == c) continue;
-      if (turn(a, b, q) >= 0.0 && turn(b, c, q) >= 0.0 && turn(c, a, q) >= 0.0) return false;
+      if (orient2d(a, b, q) >= 0 && orient2d(b, c, q) >= 0 && orient2d(c, a, q) >= 0) return false;
     }
     return true;
   }
