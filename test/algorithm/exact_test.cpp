@@ -1,0 +1,90 @@
+#include <sixdof/algorithm/exact.h>
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "../oracle/bodies.h"
+
+namespace sixdof {
+namespace {
+
+using Eigen::Vector3d;
+
+Pose turned_about(const Pose& X, const Vector3d& point, const Vector3d& rotation) {
+  const Eigen::Matrix3d R = rotation.norm() > 0.0
+                                ? Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix()
+                                : Eigen::Matrix3d::Identity();
+  return {R * X.R, point + R * (X.t - point)};
+}
+
+TEST(exact, response_is_minus_the_gradient_of_the_volume) {
+  const Mesh a = bodies::bumpy_sphere(4), b = bodies::bumpy_torus(40, 16);
+  const auto algorithm = make_exact_algorithm();
+  EXPECT_EQ(algorithm->traits().law, ResponseLaw::volume);
+  const auto query = algorithm->prepare(a, b, algorithm->settings());
+  const auto response = [&](const Pose& X) { return query->respond(X).value; };
+  std::mt19937_64 random(31);
+  // Second order in the step; third derivatives of the volume are some tens.
+  constexpr double k_step = 1e-4;
+  constexpr double k_tolerance = 1e-5;
+  for (int i = 0; i < 10; ++i) {
+    const Pose X_AB = bodies::random_pose(random, 0.3);
+    const Outcome<Response> r = query->respond(X_AB);
+    ASSERT_TRUE(r.ok());
+    EXPECT_EQ(r.value.penalty, r.value.volume);
+    EXPECT_EQ(r.value.reference, X_AB * b.center());
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d u = k_step * Vector3d::Unit(k);
+      const double slope = (response({X_AB.R, X_AB.t + u}).penalty - response({X_AB.R, X_AB.t - u}).penalty);
+      EXPECT_NEAR(r.value.force[k], -slope / (2.0 * k_step), k_tolerance);
+      const Vector3d& about = r.value.reference;
+      const double turn =
+          response(turned_about(X_AB, about, u)).penalty - response(turned_about(X_AB, about, -u)).penalty;
+      EXPECT_NEAR(r.value.torque[k], -turn / (2.0 * k_step), k_tolerance);
+    }
+  }
+}
+
+TEST(exact, force_pushes_b_out_of_a) {
+  const Mesh a = bodies::box({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}), b = bodies::box({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2});
+  const auto algorithm = make_exact_algorithm();
+  const auto query = algorithm->prepare(a, b, algorithm->settings());
+  const Outcome<Response> r = query->respond({Eigen::Matrix3d::Identity(), {0.1, 0.05, 0.4}});
+  ASSERT_TRUE(r.ok());
+  // B dips 0.1 into A's upper face with an area of 0.16.
+  EXPECT_NEAR(r.value.volume, 0.016, 1e-15);
+  EXPECT_LT((r.value.force - Vector3d(0.0, 0.0, 0.16)).norm(), 1e-15);
+  EXPECT_LT(r.value.torque.norm(), 1e-15);
+}
+
+TEST(exact, one_mesh_may_be_both_bodies) {
+  const Mesh a = bodies::bumpy_torus(24, 12);
+  const Mesh copy = bodies::moved(a, Pose{});
+  const auto algorithm = make_exact_algorithm();
+  const auto shared = algorithm->prepare(a, a, algorithm->settings());
+  const auto two = algorithm->prepare(a, copy, algorithm->settings());
+  std::mt19937_64 random(32);
+  for (int i = 0; i < 5; ++i) {
+    const Pose X_AB = bodies::random_pose(random, 0.5);
+    EXPECT_EQ(shared->respond(X_AB).value.penalty, two->respond(X_AB).value.penalty);
+  }
+  EXPECT_LT(shared->footprint().bytes, two->footprint().bytes);
+}
+
+TEST(exact, what_is_no_solid_gets_no_response_but_a_reason) {
+  const Mesh solid = bodies::bumpy_sphere(2);
+  std::vector<Triangle> t = solid.triangles();
+  t.pop_back();
+  const Mesh open = Mesh::build(solid.vertices(), t, "open");
+  const auto algorithm = make_exact_algorithm();
+  for (const auto& [a, b] : {std::pair(&solid, &open), std::pair(&open, &solid)}) {
+    const auto query = algorithm->prepare(*a, *b, algorithm->settings());
+    EXPECT_EQ(query->respond(Pose{}).status, Status::failed);
+    EXPECT_EQ(query->diagnosis(), "open: " + open.why_not_solid());
+    EXPECT_TRUE(query->distance(Pose{}).ok());
+  }
+}
+
+}  // namespace
+}  // namespace sixdof
