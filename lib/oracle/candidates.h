@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -30,8 +30,8 @@ struct CandidatePair {
   std::uint32_t a, b;
 };
 
-/// Finds all pairs of triangles of A and placed B whose closed boxes meet, up to rounding: never misses one, may report
-/// more. The order depends on the trees and the pose only.
+/// Finds all pairs of triangles of A and placed B that may meet: never misses a pair that meets in the sense of
+/// crossing.h, reports few that do not. Which of those depends on the instruction set; the order of the pairs does not.
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<CandidatePair>& pairs);
 
 /// Finds all triangles of the tree whose boxes meet `box` (in the mesh's frame), up to rounding outwards.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <sixdof/base/error.h>
 #include <sixdof/oracle/overlap_global.h>
@@ -234,6 +235,29 @@ TEST(overlap, a_part_inside_pushes_only_where_the_surfaces_meet) {
       EXPECT_EQ(filling.moment, Vector3d::Zero());
     }
   }
+}
+
+TEST_F(pairs_of_meshes, answers_are_the_same_bits_on_every_instruction_set_and_in_every_order) {
+  std::vector<Pose> poses;
+  for (int i = 0; i < 20; ++i) poses.push_back(bodies::random_pose(random, 0.5));
+  OverlapQuery query(sphere.solid, torus.solid);
+  std::vector<Overlap> truth;
+  for (const Pose& X_AB : poses) truth.push_back(query.evaluate(X_AB));
+  int sets = 0;
+  const std::int64_t supported = hwy::SupportedTargets();
+  for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
+    hwy::SetSupportedTargetsForTest(rest & -rest);
+    ++sets;
+    for (std::size_t i = poses.size(); i-- > 0;) {
+      const Overlap o = query.evaluate(poses[i]);
+      EXPECT_EQ(o.volume, truth[i].volume);
+      EXPECT_EQ(o.area, truth[i].area);
+      EXPECT_EQ(o.moment, truth[i].moment);
+      EXPECT_EQ(o.crossings, truth[i].crossings);
+    }
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  EXPECT_GE(sets, 1);
 }
 
 TEST(overlap, meshes_that_bound_no_body_are_refused) {

@@ -1,0 +1,47 @@
+#include "cgal_overlap.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
+#include <CGAL/Polygon_mesh_processing/measure.h>
+#include <CGAL/Surface_mesh.h>
+
+namespace sixdof::reference {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
+using Vertex = Surface::Vertex_index;
+
+Surface convert(const CgalMesh& mesh) {
+  Surface surface;
+  std::vector<Vertex> vertices;
+  vertices.reserve(mesh.vertices.size());
+  for (const auto& p : mesh.vertices) vertices.push_back(surface.add_vertex({p[0], p[1], p[2]}));
+  for (const auto& t : mesh.triangles) surface.add_face(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+  return surface;
+}
+
+}  // namespace
+
+struct CgalOverlap::Meshes {
+  Surface a, b;
+};
+
+CgalOverlap::CgalOverlap(const CgalMesh& a, const CgalMesh& b)
+    : meshes_(std::make_unique<Meshes>(Meshes{convert(a), convert(b)})) {}
+CgalOverlap::~CgalOverlap() = default;
+
+double CgalOverlap::volume(const std::vector<std::array<double, 3>>& placed_b) const {
+  Surface a = meshes_->a;
+  Surface b = meshes_->b;
+  std::size_t i = 0;
+  for (const Vertex v : b.vertices()) {
+    b.point(v) = {placed_b[i][0], placed_b[i][1], placed_b[i][2]};
+    ++i;
+  }
+  Surface common;
+  if (!CGAL::Polygon_mesh_processing::corefine_and_compute_intersection(a, b, common)) return -1.0;
+  return common.number_of_faces() == 0 ? 0.0 : CGAL::Polygon_mesh_processing::volume(common);
+}
+
+}  // namespace sixdof::reference
