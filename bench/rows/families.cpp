@@ -1,0 +1,10 @@
+#include <sixdof/bench/rows/families.h>
+
+namespace sixdof::bench {
+
+void add_all_rows(Suite& suite) {
+  add_prepare_rows(suite);
+  add_query_rows(suite);
+}
+
+}  // namespace sixdof::bench

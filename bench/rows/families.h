@@ -1,0 +1,17 @@
+#pragma once
+
+#include <sixdof/bench/harness/suite.h>
+
+namespace sixdof::bench {
+
+/// Registers the rows of every family. A new family is a file rows/NAME.cpp with one function, named here.
+void add_all_rows(Suite& suite);
+
+/// `prepare/algorithm:A/pair:P`: build time, bytes and the counts that explain them.
+void add_prepare_rows(Suite& suite);
+
+/// `collide/algorithm:A/pair:P/distance:05`, `distance/...`: queries on the buckets of the configuration sets, in
+/// random order, and in the grid's own order as `.../order:path`.
+void add_query_rows(Suite& suite);
+
+}  // namespace sixdof::bench

@@ -1,0 +1,79 @@
+#include <sixdof/bench/harness/check.h>
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace sixdof::bench {
+namespace {
+
+BucketSample bucket(BucketKind kind, int percent, double aim) {
+  return {.key = {kind, percent}, .aim = aim, .tolerance = 1e-3, .diagonal = 10.0};
+}
+
+Check judged(const BucketSample& sample, auto answer) {
+  Check check;
+  judge(sample, answer, check);
+  return check;
+}
+
+Separation at(double distance) { return {.distance = distance}; }
+
+TEST(Judge, YesAndNoByKindOfBucket) {
+  EXPECT_EQ(judged(bucket(BucketKind::distance, 5, 0.5), true).mismatch, 1u);
+  EXPECT_EQ(judged(bucket(BucketKind::distance, 5, 0.5), false).mismatch, 0u);
+  EXPECT_EQ(judged(bucket(BucketKind::volume, 3, 0.5), true).mismatch, 0u);
+  EXPECT_EQ(judged(bucket(BucketKind::volume, 3, 0.5), false).mismatch, 1u);
+}
+
+TEST(Judge, TouchingMayBeCalledEitherWay) {
+  for (const bool answer : {false, true}) {
+    EXPECT_EQ(judged(bucket(BucketKind::distance, 0, 1e-9), answer).judged, 0u);
+  }
+}
+
+TEST(Judge, DistancesWithinTheSetsToleranceAndTheSlack) {
+  const BucketSample sample = bucket(BucketKind::distance, 5, 0.5);
+  // Tolerance 1e-3 and slack 1e-9 of a diagonal of 10.
+  for (const double right : {0.5, 0.501, 0.499, 0.501 + 0.9e-8}) EXPECT_EQ(judged(sample, at(right)).mismatch, 0u);
+  for (const double wrong : {0.501 + 1.1e-8, 0.4989, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(judged(sample, at(wrong)).mismatch, 1u) << wrong;
+  }
+  EXPECT_EQ(judged(bucket(BucketKind::distance, 0, 1e-9), at(0.0)).judged, 1u);
+  EXPECT_EQ(judged(bucket(BucketKind::volume, 3, 0.5), at(0.5)).mismatch, 1u);
+}
+
+TEST(Judge, ErrorsAreInDiagonals) {
+  Check check;
+  const BucketSample sample = bucket(BucketKind::distance, 5, 0.5);
+  judge(sample, at(0.9), check);
+  judge(sample, at(0.2), check);
+  EXPECT_DOUBLE_EQ(check.largest_error, 0.04);
+  EXPECT_DOUBLE_EQ(check.rms_error(), std::sqrt((0.04 * 0.04 + 0.03 * 0.03) / 2));
+}
+
+class Moody final : public Query {
+ public:
+  Outcome<bool> collide(const Pose& pose) override {
+    return pose.t.x() < 2 ? Outcome<bool>(fail(Status::failed, "gave up")) : Outcome<bool>(true);
+  }
+};
+
+TEST(CheckAnswers, CountsFailuresAndStopsAtTheEndOfARun) {
+  BucketSample sample = bucket(BucketKind::distance, 5, 0.5);
+  for (int i = 0; i < 100; ++i) {
+    sample.poses.emplace_back();
+    sample.poses.back().t.x() = i;
+  }
+  Moody query;
+  const auto ask = [&](const Pose& pose) { return query.collide(pose); };
+  const Check all = check_answers(sample, ask, query, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(all.asked, 100u);
+  EXPECT_EQ(all.failed, 2u);
+  EXPECT_EQ(all.mismatch, 98u);
+  EXPECT_EQ(all.diagnosis, "gave up");
+  EXPECT_EQ(check_answers(sample, ask, query, 0.0).asked, BucketSample::k_run);
+}
+
+}  // namespace
+}  // namespace sixdof::bench

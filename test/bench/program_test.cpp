@@ -1,0 +1,238 @@
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/bench/cli/commands.h>
+
+#include "../cli/run_program.h"
+#include "small_suite.h"
+
+namespace sixdof {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The least that gives a row: one round over the bucket.
+constexpr const char* k_quick = " --benchmark_min_time=0.000001";
+
+struct BenchProgram : ::testing::Test {
+  /// A folder of the test's own, so that it may spoil what is in it.
+  const std::unique_ptr<test::SuiteCopy> suite = std::make_unique<test::SuiteCopy>(SIXDOF_SMALL_SUITE);
+  const std::filesystem::path out = suite->directory() / "out.json";
+
+  std::string command(const std::string& arguments, const char* program = SIXDOF_BENCH_PROGRAM) const {
+    return std::string(program) + " --manifest " + suite->manifest().string() + k_quick + " " + arguments;
+  }
+  test::ProgramResult bench(const std::string& arguments) const { return test::run_program(command(arguments)); }
+  json result(const std::string& arguments, int exit_code = 0) const {
+    const auto run = bench(arguments + " --benchmark_out=" + out.string());
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    std::ifstream file(out);
+    return json::parse(file);
+  }
+  bool any_partial_file() const {
+    for (const auto& entry : std::filesystem::directory_iterator(suite->directory())) {
+      if (entry.path().extension() == ".partial") return true;
+    }
+    return false;
+  }
+};
+
+json row(const json& document, const std::string& name) {
+  for (const json& entry : document.at("benchmarks")) {
+    if (entry.at("name") == name) return entry;
+  }
+  ADD_FAILURE() << name << " is missing";
+  return {};
+}
+
+TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
+  const json document = result("--seed 5 --sample 32");
+  const auto& rows = document.at("benchmarks");
+  std::set<std::string> families;
+  std::size_t judged = 0;
+  for (const json& entry : rows) {
+    const std::string name = entry.at("name");
+    families.insert(name.substr(0, name.find('/')));
+    EXPECT_FALSE(entry.contains("error_occurred")) << entry;
+    if (name.starts_with("prepare/")) continue;
+    EXPECT_EQ(entry.at("failed"), 0) << name;
+    EXPECT_GE(entry.at("max_ns"), entry.at("p999_ns")) << name;
+    EXPECT_GE(entry.at("p99_ns"), entry.at("p50_ns")) << name;
+    EXPECT_GT(entry.at("p50_ns"), 0) << name;
+    EXPECT_EQ(entry.at("iterations").get<std::size_t>() % entry.at("configurations").get<std::size_t>(), 0u)
+        << name << ": only whole rounds";
+    EXPECT_GE(entry.at("configurations"), 32) << name;
+    EXPECT_GT(entry.at("reachable"), test::SmallSuite::k_configurations / 2) << name;
+    if (name.find("algorithm:fcl") == std::string::npos) continue;
+    EXPECT_EQ(entry.at("mismatch"), 0) << name;
+    judged += entry.at("judged").get<std::size_t>();
+  }
+  EXPECT_EQ(families, (std::set<std::string>{"prepare", "collide", "distance"}));
+  EXPECT_GT(judged, test::SmallSuite::k_configurations);
+  EXPECT_EQ(document.at("context").at("seed"), "5");
+}
+
+TEST_F(BenchProgram, SeesThatNullIsWrong) {
+  const json document = result("--benchmark_filter=algorithm:null/pair:torus-1k/");
+  const json distance = row(document, "distance/algorithm:null/pair:torus-1k/distance:05");
+  EXPECT_EQ(distance.at("mismatch"), distance.at("judged"));
+  EXPECT_NEAR(distance.at("error_rms").get<double>(), 0.05, 1e-9);
+  const json overlap = row(document, "collide/algorithm:null/pair:torus-1k/volume:03");
+  EXPECT_EQ(overlap.at("mismatch"), overlap.at("configurations"));
+  EXPECT_EQ(row(document, "collide/algorithm:null/pair:torus-1k/distance:05").at("mismatch"), 0);
+  EXPECT_EQ(row(document, "collide/algorithm:null/pair:torus-1k/distance:00").at("judged"), 0);
+}
+
+TEST_F(BenchProgram, OpensOnlyWhatOneRowNeeds) {
+  const auto one =
+      bench("--sample 32 --stats --benchmark_filter=^collide/algorithm:fcl-obbrss/pair:torus-1k/distance:05$");
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_THAT(one.err, HasSubstr("stats: sets_opened=1 buckets_read=1 meshes_loaded=1 structures_prepared=1\n"));
+  const auto other =
+      bench("--sample 32 --stats --benchmark_filter=^distance/algorithm:fcl-rss/pair:torus-1k-cone-1k/distance:0");
+  EXPECT_THAT(other.err, HasSubstr("stats: sets_opened=1 buckets_read=2 meshes_loaded=2 structures_prepared=1\n"));
+  const auto prepare = bench("--sample 32 --stats --benchmark_filter=^prepare/algorithm:fcl-rss/pair:torus-1k$");
+  EXPECT_THAT(prepare.err, HasSubstr("stats: sets_opened=0 buckets_read=0 meshes_loaded=1 structures_prepared="));
+}
+
+TEST_F(BenchProgram, ListsWithoutTouchingASet) {
+  const auto moved = suite->directory() / "moved.h5";
+  const auto set = suite->directory() / "torus-1k.h5";
+  std::filesystem::rename(set, moved);
+  const auto list = bench("--benchmark_list_tests");
+  std::filesystem::rename(moved, set);
+  EXPECT_EQ(list.exit_code, 0) << list.err;
+  std::istringstream lines(list.out);
+  std::set<std::string> names;
+  for (std::string name; std::getline(lines, name);) {
+    EXPECT_TRUE(names.insert(name).second) << name << " twice";
+    EXPECT_TRUE(std::regex_match(name, std::regex("[a-z0-9_/:-]+"))) << name;
+  }
+  EXPECT_TRUE(names.contains("distance/algorithm:fcl-rss/pair:torus-1k-cone-1k/distance:05/order:path"));
+  EXPECT_FALSE(names.contains("collide/algorithm:fcl-rss/pair:torus-1k/distance:05"));
+}
+
+TEST_F(BenchProgram, SaysWhatItMeasuredWith) {
+  const json context =
+      result("--sample 32 --benchmark_filter=^collide/algorithm:fcl-obbrss/pair:torus-1k/").at("context");
+  for (const char* key : {"commit", "commit_dirty", "compiler", "flags", "cpu_model", "algorithm:fcl-obbrss",
+                          "settings:fcl-obbrss", "version:eigen", "clock_overhead_ns", "num_cpus"}) {
+    EXPECT_TRUE(context.contains(key)) << key;
+  }
+  EXPECT_EQ(context.at("mesh:torus-1k").get<std::string>().size(), 32u);
+  EXPECT_EQ(context.at("set:torus-1k").get<std::string>().size(), 32u);
+  EXPECT_FALSE(context.contains("set:torus-1k-cone-1k"));
+  EXPECT_EQ(context.at("interrupted"), "false");
+}
+
+TEST_F(BenchProgram, FailsIfNothingMatchesOrIsUnderstood) {
+  for (const char* bad : {"--benchmark_filter=no-such-row", "--benchmark_filter='('", "--settings fcl-obbrss:speed=9",
+                          "--settings speed=9", "--manifest no-such-file", "--benchmark_out=/no-such-folder/x.json"}) {
+    const auto run = bench(std::string("--benchmark_out=") + out.string() + " " + bad);
+    EXPECT_NE(run.exit_code, 0) << bad;
+    EXPECT_NE(run.err, "") << bad;
+    EXPECT_FALSE(std::filesystem::exists(out)) << bad;
+  }
+  for (const char* bad : {"--no-such-flag", "--sample=-1", "--benchmark_out_format=csv", "stray"}) {
+    EXPECT_EQ(bench(bad).exit_code, cli::k_exit_usage) << bad;
+  }
+}
+
+TEST_F(BenchProgram, ReportsRowsThatCannotRunAndFails) {
+  const auto set = suite->directory() / "torus-1k.h5";
+  const auto kept = suite->directory() / "kept.h5";
+  std::filesystem::rename(set, kept);
+  const json document = result("--benchmark_filter='^collide/algorithm:fcl-obbrss/.*distance:05$'", cli::k_exit_error);
+  std::filesystem::rename(kept, set);
+  const json failed = row(document, "collide/algorithm:fcl-obbrss/pair:torus-1k/distance:05");
+  EXPECT_EQ(failed.at("error_occurred"), true);
+  EXPECT_THAT(failed.at("error_message").get<std::string>(), HasSubstr("torus-1k.h5"));
+  EXPECT_EQ(row(document, "collide/algorithm:fcl-obbrss/pair:torus-1k-cone-1k/distance:05").at("mismatch"), 0);
+}
+
+TEST_F(BenchProgram, DrawsSamplesByNumberAndByTime) {
+  const std::string filter = " --benchmark_filter=^distance/algorithm:fcl-rss/pair:torus-1k/distance:05$";
+  const json whole = result(filter).at("benchmarks")[0];
+  EXPECT_EQ(whole.at("configurations"), whole.at("reachable"));
+  const json some = result("--sample 50" + filter).at("benchmarks")[0];
+  EXPECT_GE(some.at("configurations"), 50);
+  EXPECT_LT(some.at("configurations"), whole.at("configurations"));
+  const json hurried = result("--budget 0.000001" + filter).at("benchmarks")[0];
+  EXPECT_LT(hurried.at("configurations"), some.at("configurations"));
+  EXPECT_GT(hurried.at("configurations"), 0);
+}
+
+TEST_F(BenchProgram, TakesSettingsAndShowsThem) {
+  const json document = result(
+      "--sample 32 --settings fcl-rss:relative_error=0.5 "
+      "--benchmark_filter='^distance/algorithm:fcl.*pair:torus-1k/distance:05$'");
+  const json loose = row(document, "distance/algorithm:fcl-rss/pair:torus-1k/distance:05");
+  EXPECT_GT(loose.at("mismatch"), 0);
+  EXPECT_GT(loose.at("error_max"), 0.001);
+  EXPECT_THAT(loose.at("label").get<std::string>(), HasSubstr("relative_error=0.5"));
+  const json exact = row(document, "distance/algorithm:fcl-obbrss/pair:torus-1k/distance:05");
+  EXPECT_EQ(exact.at("mismatch"), 0);
+  EXPECT_EQ(exact.at("label"), "relative_error=0");
+}
+
+TEST_F(BenchProgram, TakesAUsersSet) {
+  const auto list =
+      test::run_program(std::string(SIXDOF_BENCH_PROGRAM) + " --no-manifest --benchmark_list_tests --set " +
+                        (suite->directory() / "torus-1k-cone-1k.h5").string());
+  EXPECT_EQ(list.exit_code, 0) << list.err;
+  EXPECT_THAT(list.out, HasSubstr("collide/algorithm:fcl-obbrss/pair:torus-1k-cone-1k/volume:03\n"));
+  EXPECT_THAT(list.out, Not(HasSubstr("pair:torus-1k/")));
+}
+
+TEST_F(BenchProgram, LeavesAWholeFileOnCtrlC) {
+  // Far more repetitions than can be over before the signal comes.
+  const std::string endless = command(
+      "--benchmark_repetitions=1000000 --benchmark_filter=fcl --benchmark_out=" + out.string() + " > /dev/null");
+  const auto run = test::run_program(endless + " & sleep 1; kill -INT $!; wait $!");
+  EXPECT_EQ(run.exit_code, cli::k_exit_interrupted) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("interrupted"));
+  std::ifstream file(out);
+  EXPECT_EQ(json::parse(file).at("context").at("interrupted"), "true");
+  EXPECT_FALSE(any_partial_file());
+}
+
+TEST_F(BenchProgram, PrintsJsonToStandardOutputWhole) {
+  const auto run = bench("--benchmark_format=json --benchmark_filter=^prepare/algorithm:fcl-rss/");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(json::parse(run.out).at("benchmarks").size(), 2u);
+}
+
+TEST_F(BenchProgram, HasNoNumberThatJsonLacksWithRepetitions) {
+  const json document =
+      result("--sample 32 --benchmark_repetitions=3 --benchmark_filter=^collide/algorithm:fcl-obbrss/pair:torus-1k/");
+  std::size_t aggregates = 0;
+  for (const json& entry : document.at("benchmarks")) aggregates += entry.at("run_type") == "aggregate";
+  EXPECT_GT(aggregates, 0u);
+  // A coefficient of variation of zeros would be NaN, which nlohmann's parser refuses.
+}
+
+TEST_F(BenchProgram, GivesAStrangersAlgorithmTheWholeSuite) {
+  const auto run = test::run_program(
+      command("--sample 64 --benchmark_filter=algorithm:ball/ --benchmark_out=" + out.string(), STRANGER_PROGRAM));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  std::ifstream file(out);
+  const json document = json::parse(file);
+  EXPECT_EQ(document.at("context").at("algorithm:ball"), "1");
+  EXPECT_EQ(row(document, "prepare/algorithm:ball/pair:torus-1k").at("spheres"), 2);
+  const json distance = row(document, "distance/algorithm:ball/pair:torus-1k/distance:05/order:path");
+  EXPECT_GT(distance.at("mismatch"), 0);
+  EXPECT_EQ(distance.at("failed"), 0);
+}
+
+}  // namespace
+}  // namespace sixdof
