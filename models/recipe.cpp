@@ -4,6 +4,7 @@
 #include <array>
 
 #include <sixdof/models/boxes.h>
+#include <sixdof/models/gyroid.h>
 #include <sixdof/models/revolved.h>
 #include <sixdof/models/round.h>
 #include <sixdof/models/tube.h>
@@ -19,6 +20,8 @@ Mesh cylinder(std::size_t n) { return make_cylinder({}, n); }
 Mesh cone(std::size_t n) { return make_cone({}, n); }
 Mesh torus(std::size_t n) { return make_torus({}, n); }
 Mesh torus_knot(std::size_t n) { return make_torus_knot({}, n); }
+
+Mesh gyroid_ball(std::size_t n) { return make_gyroid_ball({}, n); }
 
 constexpr unsigned k_circular_box_sectors = CircularBoxShape{}.sectors;
 
@@ -39,6 +42,9 @@ constexpr std::array k_recipes{
            "ring of 12 hollow box cells about the z axis, centred at the origin: outer radius 1, inner "
            "radius 0.5, height 0.5, beams 0.1; flat walls, sharp edges, open windows",
            80 * k_circular_box_sectors, 4 * k_circular_box_sectors + 1, circular_box},
+    Recipe{"gyroid-ball",
+           "one labyrinth of a gyroid of period 1 in the ball of radius 1 about the origin, edges rounded",
+           k_minimum_gyroid_ball, 13, gyroid_ball},
 };
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace sixdof {
 
-/// A model that is made, not read: closed, manifold, facing outwards, never meeting itself, at any triangle count in
+/// A model that is made, not read: closed, manifold, facing outwards, at any triangle count in
 /// its range, and the same bits on every machine.
 struct Recipe {
   std::string_view name;     ///< Letters a to z and '-'.

@@ -40,6 +40,7 @@ const std::map<std::string_view, Known>& known() {
       {"cone", {24, "1eb256ae23c667b0c1061c199a76786d", "64f3e92474b1730d030b918f8a8ff6d5"}},
       {"torus", {28, "f042ec844d0b8fa071308f7e18f0fd3c", "eee92414f04ac4edf76ed00334fda292"}},
       {"torus-knot", {29, "ffc79b81a9d044cd3239b0714d121cf7", "5fd2d9080cb5539947f0f455ad56b1d6"}},
+      {"gyroid-ball", {4, "4617ff0cc25d27dd7080cd5589477e99", "4e90027f0b7e5560c4ae9c33873a9d29"}},
       {"circular-box", {12, "2e5bf90abc11e47bcaed4273088269bd", "54e9472b4f31c0708c42ed84eedadf0b"}},
   };
   return table;

@@ -1,0 +1,172 @@
+#include <sixdof/models/contour.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+namespace sixdof {
+namespace {
+
+constexpr std::uint32_t k_block = 8;  // cells along an edge of a block that is skipped or visited as a whole
+
+struct Node {
+  std::array<std::uint32_t, 3> at;
+  double value;
+};
+
+/// The six tetrahedra of a cell run from its first to its last corner, one axis after another; axes in this order, and
+/// whether that makes the corners right-handed.
+struct Path {
+  std::array<std::size_t, 3> axes;
+  bool right_handed;
+};
+constexpr std::array<Path, 6> k_paths{{{{0, 1, 2}, true},
+                                       {{1, 2, 0}, true},
+                                       {{2, 0, 1}, true},
+                                       {{0, 2, 1}, false},
+                                       {{1, 0, 2}, false},
+                                       {{2, 1, 0}, false}}};
+
+class Marcher {
+ public:
+  explicit Marcher(const GridField& field) : field_(field) {}
+
+  Surface run() {
+    const std::uint32_t blocks = field_.cells / k_block;
+    for (std::uint32_t i = 0; i < blocks; ++i) {
+      for (std::uint32_t j = 0; j < blocks; ++j) {
+        for (std::uint32_t k = 0; k < blocks; ++k) visit_block({i * k_block, j * k_block, k * k_block});
+      }
+    }
+    return std::move(surface_);
+  }
+
+ private:
+  void visit_block(const std::array<std::uint32_t, 3>& first) {
+    constexpr std::uint32_t k_half = k_block / 2;
+    const double middle = field_.value(first[0] + k_half, first[1] + k_half, first[2] + k_half);
+    const double reach = std::sqrt(3.0) * k_half * field_.step;
+    if (std::abs(middle) > field_.steepest * reach) return;
+    for (std::uint32_t i = 0; i <= k_block; ++i) {
+      for (std::uint32_t j = 0; j <= k_block; ++j) {
+        for (std::uint32_t k = 0; k <= k_block; ++k) {
+          values_[i][j][k] = field_.value(first[0] + i, first[1] + j, first[2] + k);
+        }
+      }
+    }
+    for (std::uint32_t i = 0; i < k_block; ++i) {
+      for (std::uint32_t j = 0; j < k_block; ++j) {
+        for (std::uint32_t k = 0; k < k_block; ++k) visit_cell(first, {i, j, k});
+      }
+    }
+  }
+
+  void visit_cell(const std::array<std::uint32_t, 3>& first, const std::array<std::uint32_t, 3>& cell) {
+    for (const Path& path : k_paths) {
+      std::array<std::uint32_t, 3> local = cell;
+      std::array<Node, 4> corners;
+      for (std::size_t c = 0; c < 4; ++c) {
+        if (c > 0) ++local[path.axes[c - 1]];
+        corners[c] = {{first[0] + local[0], first[1] + local[1], first[2] + local[2]},
+                      values_[local[0]][local[1]][local[2]]};
+      }
+      visit_tetrahedron(corners, path.right_handed);
+    }
+  }
+
+  void visit_tetrahedron(std::array<Node, 4> corners, bool right_handed) {
+    // Corners inside go first; every exchange of two corners changes the hand.
+    std::size_t inside = 0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (corners[c].value >= 0.0) continue;
+      if (c != inside) {
+        std::swap(corners[c], corners[inside]);
+        right_handed = !right_handed;
+      }
+      ++inside;
+    }
+    const auto [a, b, c, d] = corners;
+    if (inside == 1) {
+      add(right_handed, cut(a, b), cut(a, c), cut(a, d));
+    } else if (inside == 2) {
+      const std::uint32_t ac = cut(a, c);
+      const std::uint32_t bd = cut(b, d);
+      add(right_handed, ac, cut(a, d), bd);
+      add(right_handed, ac, bd, cut(b, c));
+    } else if (inside == 3) {
+      // Seen from d, the only corner outside, the other three have the opposite hand to that in the case of one inside.
+      add(right_handed, cut(a, d), cut(b, d), cut(c, d));
+    }
+  }
+
+  void add(bool right_handed, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    surface_.triangles.push_back(right_handed ? Triangle{x, y, z} : Triangle{x, z, y});
+  }
+
+  /// The vertex on the edge between two nodes, made when first asked for.
+  std::uint32_t cut(const Node& p, const Node& q) {
+    const bool in_order = p.at <= q.at;  // the path only goes up, so that the order by coordinates is one by axes, too
+    const Node& low = in_order ? p : q;
+    const Node& high = in_order ? q : p;
+    const std::uint64_t width = field_.cells + 1ULL;
+    std::uint64_t key = (low.at[0] * width + low.at[1]) * width + low.at[2];
+    for (std::size_t axis = 0; axis < 3; ++axis) key = 2 * key + (high.at[axis] - low.at[axis]);
+    const auto [entry, fresh] = numbers_.try_emplace(key, static_cast<std::uint32_t>(surface_.vertices.size()));
+    if (fresh) {
+      constexpr double k_clear = 0.05;
+      const double share = std::clamp(low.value / (low.value - high.value), k_clear, 1.0 - k_clear);
+      Eigen::Vector3d position;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double steps = low.at[axis] + share * (high.at[axis] - low.at[axis]);
+        position[static_cast<Eigen::Index>(axis)] = field_.low + field_.step * steps;
+      }
+      surface_.vertices.push_back(position);
+    }
+    return entry->second;
+  }
+
+  const GridField& field_;
+  std::array<std::array<std::array<double, k_block + 1>, k_block + 1>, k_block + 1> values_{};
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
+  Surface surface_;
+};
+
+}  // namespace
+
+Surface contour(const GridField& field) { return Marcher(field).run(); }
+
+void keep_largest_component(Surface& surface) {
+  std::vector<std::uint32_t> parent(surface.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : surface.triangles) {
+    parent[root(t[1])] = root(t[0]);
+    parent[root(t[2])] = root(t[0]);
+  }
+  std::vector<std::size_t> size(surface.vertices.size(), 0);
+  for (const Triangle& t : surface.triangles) ++size[root(t[0])];
+  const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+  Surface kept;
+  constexpr std::uint32_t k_none = ~0U;
+  std::vector<std::uint32_t> number(surface.vertices.size(), k_none);
+  for (const Triangle& t : surface.triangles) {
+    if (root(t[0]) != largest) continue;
+    Triangle renumbered{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (number[t[c]] == k_none) {
+        number[t[c]] = static_cast<std::uint32_t>(kept.vertices.size());
+        kept.vertices.push_back(surface.vertices[t[c]]);
+      }
+      renumbered[c] = number[t[c]];
+    }
+    kept.triangles.push_back(renumbered);
+  }
+  surface = std::move(kept);
+}
+
+}  // namespace sixdof
