@@ -13,6 +13,7 @@
 #include <sixdof/bench/cli/algorithms.h>
 #include <sixdof/bench/cli/info.h>
 #include <sixdof/bench/cli/models.h>
+#include <sixdof/bench/cli/table.h>
 
 namespace sixdof::cli {
 namespace {
@@ -28,6 +29,7 @@ void add_commands(CLI::App& app) {
   add_algorithms_command(app);
   add_info_command(app);
   add_models_command(app);
+  add_table_command(app);
 }
 
 int run_guarded(const char* program, const std::function<void()>& work) {
