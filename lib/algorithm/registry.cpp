@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/algorithm/exact.h>
+#include <sixdof/algorithm/ist/ist.h>
 #include <sixdof/algorithm/null.h>
 #include <sixdof/base/error.h>
 
@@ -48,6 +49,7 @@ const Algorithm& Registry::find(std::string_view name) const {
 void register_core_algorithms(Registry& registry) {
   registry.add(make_null_algorithm());
   registry.add(make_exact_algorithm());
+  registry.add(make_ist_algorithm());
 }
 
 }  // namespace sixdof

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <sixdof/algorithm/ist/sphere.h>
+
+namespace sixdof::ist {
+
+/// Disjoint spheres in space, for the question: which sphere's surface is closest? Spheres are filed by size class
+/// (powers of two) in a hashed grid per class whose cells are four radii wide, so that large and small ones are both
+/// found in few cells. Reading from several threads is safe while nobody inserts.
+class SphereIndex {
+ public:
+  /// @param largest upper bound on the radii to come.
+  explicit SphereIndex(double largest);
+
+  void insert(const Sphere& sphere);
+  std::span<const Sphere> spheres() const { return spheres_; }
+
+  struct Nearest {
+    double clearance;          ///< Distance from the point to the sphere's surface, negative inside it.
+    std::int32_t sphere = -1;  ///< Index into spheres(); -1 if none is nearer than asked for.
+  };
+  /// The sphere whose surface is nearest to `p` among those with a clearance below `within`; ties by lower index.
+  Nearest nearest(const Eigen::Vector3d& p, double within) const;
+
+ private:
+  struct Cell {
+    std::uint64_t key = 0;    // 0: free
+    std::int32_t first = -1;  // head of the chain of spheres
+  };
+  std::uint64_t key(std::size_t size_class, std::int64_t x, std::int64_t y, std::int64_t z) const;
+  std::size_t slot(std::uint64_t key) const;
+  void grow();
+
+  double largest_;
+  std::vector<Sphere> spheres_;
+  std::vector<std::int32_t> next_;                        // chain of spheres in one cell
+  std::vector<std::vector<std::int32_t>> class_members_;  // spheres of each size class
+  std::vector<Cell> cells_;                               // open addressing, power-of-two size
+  std::size_t used_ = 0;
+};
+
+}  // namespace sixdof::ist

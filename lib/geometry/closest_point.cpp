@@ -1,0 +1,131 @@
+#include <sixdof/geometry/closest_point.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sixdof/geometry/closest_point.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sixdof {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Squared distances of a point (relative to the tree's centre) to the node's eight boxes; huge for empty lanes.
+HWY_ATTR void box_distances(const Tree::Node& node, const std::array<float, 3>& p, float* squared) {
+  const hn::CappedTag<float, Tree::k_width> d;
+  for (std::size_t l = 0; l < Tree::k_width; l += hn::Lanes(d)) {
+    auto sum = hn::Zero(d);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto x = hn::Set(d, p[k]);
+      const auto below = hn::Sub(hn::Load(d, node.lower[k] + l), x);
+      const auto above = hn::Sub(x, hn::Load(d, node.upper[k] + l));
+      const auto out = hn::Max(hn::Max(below, above), hn::Zero(d));
+      sum = hn::Add(sum, hn::Mul(out, out));
+    }
+    hn::Store(sum, d, squared + l);
+  }
+}
+
+/// Ericson, Real-Time Collision Detection (2005), section 5.1.5: by the Voronoi region that p lies in. Some five times
+/// faster than point_triangle_distance(), without its care for needles and flat triangles.
+Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p, const Tree::Corners& corner) {
+  const auto& [a, b, c] = corner;
+  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return a;
+  const Eigen::Vector3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0.0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + ab * (d1 / (d1 - d3));
+  const Eigen::Vector3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0.0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  const double sum = va + vb + vc;
+  if (!(sum > 0.0)) return a;  // collinear corners: the three edges were looked at above
+  return a + ab * (vb / sum) + ac * (vc / sum);
+}
+
+/// Bound on the rounding of a squared box distance in single precision, relative to (|p| + radius)^2: the point's own
+/// rounding and some ten operations.
+constexpr double k_float_slack = 4e-7;
+
+struct Candidate {
+  double squared;
+  Tree::Child child;
+};
+
+HWY_ATTR bool FindClosest(const Tree& tree, const Eigen::Vector3d& p, double within, SurfacePoint& best) {
+  const Eigen::Vector3d local = p - tree.center();
+  const std::array<float, 3> q{static_cast<float>(local.x()), static_cast<float>(local.y()),
+                               static_cast<float>(local.z())};
+  // |p - q|_float costs up to slack in length; a box nearer than best + slack has to be opened.
+  const double slack = k_float_slack * (local.norm() + tree.radius());
+  double best_squared = within * within;
+  bool found = false;
+  std::uint32_t best_position = 0;
+
+  constexpr std::size_t k_depth = 64 * Tree::k_width;
+  std::array<Candidate, k_depth> stack;
+  std::size_t size = 0;
+  stack[size++] = {0.0, Tree::Child::node(0)};
+  while (size > 0) {
+    const Candidate next = stack[--size];
+    const double reach = std::sqrt(best_squared) + slack;
+    if (next.squared > reach * reach) continue;
+    if (next.child.is_leaf()) {
+      for (std::uint32_t i = next.child.first(); i < next.child.first() + next.child.count(); ++i) {
+        const Eigen::Vector3d on = closest_on_triangle(p, tree.corners()[i]);
+        const double squared = (on - p).squaredNorm();
+        if (squared < best_squared || (found && squared == best_squared && i < best_position)) {
+          best_squared = squared;
+          best.point = on;
+          best_position = i;
+          found = true;
+        }
+      }
+      continue;
+    }
+    const Tree::Node& node = tree.nodes()[next.child.node()];
+    alignas(64) float squared[Tree::k_width];
+    box_distances(node, q, squared);
+    // Insertion sort, farthest first, so that the nearest is on top of the stack.
+    const std::size_t begin = size;
+    for (std::size_t i = 0; i < node.child_count; ++i) {
+      if (squared[i] > reach * reach) continue;
+      std::size_t at = size++;
+      for (; at > begin && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
+      stack[at] = {squared[i], node.child[i]};
+    }
+  }
+  if (!found) return false;
+  best.distance = std::sqrt(best_squared);
+  best.triangle = tree.mesh_triangle()[best_position];
+  return true;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sixdof
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sixdof {
+
+HWY_EXPORT(FindClosest);
+
+std::optional<SurfacePoint> closest_point(const Tree& tree, const Eigen::Vector3d& p, double within) {
+  SurfacePoint best;
+  if (!HWY_DYNAMIC_DISPATCH(FindClosest)(tree, p, within, best)) return std::nullopt;
+  return best;
+}
+
+}  // namespace sixdof
+#endif

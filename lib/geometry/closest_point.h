@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include <sixdof/geometry/tree.h>
+
+namespace sixdof {
+
+/// A point of a mesh's surface, in the mesh's frame.
+struct SurfacePoint {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double distance = std::numeric_limits<double>::infinity();  ///< From the point asked for; unsigned.
+  std::uint32_t triangle = 0;                                 ///< Index into Mesh::triangles().
+};
+
+/// The point of the mesh's surface closest to `p` (mesh frame) among those nearer than `within`; none if all are
+/// farther. Of several equally near, the one on the triangle that comes first in tree order. The same bits on every
+/// instruction set.
+std::optional<SurfacePoint> closest_point(const Tree& tree, const Eigen::Vector3d& p,
+                                          double within = std::numeric_limits<double>::infinity());
+
+}  // namespace sixdof

@@ -1,0 +1,78 @@
+#include <sixdof/algorithm/ist/hierarchy.h>
+
+#include <tbb/global_control.h>
+
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+
+#include "random_spheres.h"
+
+namespace sixdof::ist {
+namespace {
+
+constexpr double k_rounding = 1e-12;
+
+/// Checks that every leaf below `node` lies in `bound`, counts leaves and returns the volume below.
+double check_subtree(const SphereTree& tree, std::size_t node, const Sphere& bound, std::vector<int>& seen,
+                     std::vector<Sphere> ancestors) {
+  ancestors.push_back(bound);
+  double volume = 0.0;
+  for (std::size_t slot = 0; slot < 4; ++slot) {
+    const SphereNode& n = tree.nodes[node];
+    if (n.child[slot] == SphereNode::k_empty) {
+      EXPECT_LT(n.r[slot], 0.0);
+      continue;
+    }
+    double below = 0.0;
+    if (n.child[slot] < 0) {
+      const auto leaf = static_cast<std::size_t>(~n.child[slot]);
+      ++seen[leaf];
+      below = tree.leaves[leaf].volume();
+      for (const Sphere& ancestor : ancestors) {
+        const double reach = (tree.leaves[leaf].center - ancestor.center).norm() + tree.leaves[leaf].radius;
+        EXPECT_LE(reach, ancestor.radius * (1.0 + k_rounding));
+      }
+    } else {
+      below = check_subtree(tree, static_cast<std::size_t>(n.child[slot]), n.sphere(slot), seen, ancestors);
+    }
+    EXPECT_NEAR(n.volume[slot], below, k_rounding * below);
+    volume += below;
+  }
+  return volume;
+}
+
+TEST(SphereTree, EveryLeafOnceAndInsideAllItsAncestors) {
+  for (const std::size_t count : {1u, 2u, 4u, 5u, 17u, 3000u}) {
+    const SphereTree tree = build_sphere_tree(random_spheres(count, 5));
+    std::vector<int> seen(tree.leaves.size(), 0);
+    const double volume = check_subtree(tree, 0, tree.bound, seen, {});
+    EXPECT_EQ(seen, std::vector<int>(count, 1));
+    EXPECT_NEAR(volume, tree.volume, k_rounding * tree.volume);
+  }
+}
+
+TEST(SphereTree, ConcentricSpheresStillSplit) {
+  std::vector<Sphere> same(100, Sphere{{0.3, 0.4, 0.5}, 0.1});
+  const SphereTree tree = build_sphere_tree(same);
+  std::vector<int> seen(100, 0);
+  check_subtree(tree, 0, tree.bound, seen, {});
+  EXPECT_EQ(seen, std::vector<int>(100, 1));
+}
+
+TEST(SphereTree, SameBitsForAnyNumberOfThreads) {
+  const auto build_with = [](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return build_sphere_tree(random_spheres(9000, 6));
+  };
+  const SphereTree one = build_with(1), two = build_with(2);
+  ASSERT_EQ(one.nodes.size(), two.nodes.size());
+  EXPECT_EQ(std::memcmp(one.nodes.data(), two.nodes.data(), one.nodes.size() * sizeof(SphereNode)), 0);
+}
+
+TEST(SphereTree, RefusesNothing) { EXPECT_THROW(build_sphere_tree({}), BadArgument); }
+
+}  // namespace
+}  // namespace sixdof::ist

@@ -1,0 +1,133 @@
+#include <sixdof/algorithm/ist/ist.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/models/boxes.h>
+#include <sixdof/models/zoo.h>
+
+#include "random_spheres.h"
+
+namespace sixdof {
+namespace {
+
+class IstTest : public ::testing::Test {
+ protected:
+  void SetUp() override { ::setenv("SIXDOF_CACHE", "off", 1); }
+
+  std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const std::vector<std::string>& knobs) const {
+    Settings settings = algorithm_->settings();
+    settings.set_all(knobs);
+    return algorithm_->prepare(a, b, settings);
+  }
+
+  std::unique_ptr<Algorithm> algorithm_ = make_ist_algorithm();
+};
+
+/// Two blocks without rotation: overlap volume and its gradient are a box and its face.
+TEST_F(IstTest, VolumeAndForceApproachTheBlocksAsSpheresGrowInNumber) {
+  const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 100);
+  const Eigen::Vector3d shift(0.4, 0.15, 1.0);  // overlap 1.6 x 1.45 x 0.2: the way out is along z
+  const Pose X{Eigen::Matrix3d::Identity(), shift};
+  const double volume = (2.0 - 0.4) * (1.6 - 0.15) * (1.2 - 1.0);
+  const Eigen::Vector3d push =
+      Eigen::Vector3d(1.45 * 0.2, 1.6 * 0.2, 1.6 * 1.45).normalized();  // -grad V: areas of the faces
+  double last_volume_error = 1.0, last_angle = 180.0;
+  for (const char* spheres : {"spheres=100", "spheres=500", "spheres=2500"}) {
+    const auto response = prepare(block, block, {spheres, "force=gradient", "correct_fill=on"})->respond(X);
+    ASSERT_TRUE(response.ok());
+    const double volume_error = std::abs(response.value.volume / volume - 1.0);
+    const double angle = std::acos(response.value.force.normalized().dot(push)) * 180.0 / std::numbers::pi;
+    EXPECT_LT(volume_error, last_volume_error) << spheres;
+    EXPECT_LT(angle, last_angle) << spheres;
+    last_volume_error = volume_error;
+    last_angle = angle;
+    // Without the correction the volume is biased low.
+    EXPECT_LT(prepare(block, block, {spheres})->respond(X).value.volume, volume);
+  }
+  EXPECT_LT(last_volume_error, 0.3);
+  EXPECT_LT(last_angle, 10.0);
+}
+
+TEST_F(IstTest, ReactionIsOppositeToAction) {
+  const Mesh a = load_model("torus-knot-1k"), b = load_model("bumpy-sphere-1k");
+  const auto forward = prepare(a, b, {"spheres=300"}), backward = prepare(b, a, {"spheres=300"});
+  std::mt19937_64 random(41);
+  int touching = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Pose X_AB = ist::random_pose(random, 0.5);
+    const Response on_b = forward->respond(X_AB).value;
+    const Response on_a_in_b = backward->respond(X_AB.inverse()).value;
+    touching += on_b.volume > 0.0 ? 1 : 0;
+    EXPECT_NEAR(on_b.volume, on_a_in_b.volume, 1e-12);
+    EXPECT_LE((on_b.force + X_AB.R * on_a_in_b.force).norm(), 1e-12);
+    const Response about_origin = on_b.about(Eigen::Vector3d::Zero());
+    const Response reaction = on_a_in_b.about(X_AB.inverse() * Eigen::Vector3d::Zero());
+    EXPECT_LE((about_origin.torque + X_AB.R * reaction.torque).norm(), 1e-12);
+  }
+  EXPECT_GT(touching, 5);
+}
+
+/// The gradient force derives from the summed volume: pushing along a closed loop costs nothing.
+TEST_F(IstTest, IsConservativeOnAClosedLoop) {
+  const Mesh a = load_model("torus-knot-1k"), b = load_model("bumpy-sphere-1k");
+  for (const char* law : {"force=gradient", "force=volume"}) {
+    const auto query = prepare(a, b, {"spheres=200", law});
+    const auto relative_work = [&](int steps) {
+      // Midpoint rule: its error falls with the square of the step.
+      double work = 0.0, peak = 0.0, length = 0.0;
+      const auto place = [](double angle) {
+        return Eigen::Vector3d(0.3 + 0.4 * std::cos(angle), 0.1 + 0.5 * std::sin(angle), 0.2 * std::sin(2.0 * angle));
+      };
+      for (int i = 0; i < steps; ++i) {
+        const double from = 2.0 * std::numbers::pi * i / steps, to = 2.0 * std::numbers::pi * (i + 1) / steps;
+        Pose X = Pose::from_quaternion(0.8, 0.36, 0.0, 0.48, place(0.5 * (from + to)));
+        const Eigen::Vector3d force = query->respond(X).value.force;
+        const Eigen::Vector3d step = place(to) - place(from);
+        work += force.dot(step);
+        peak = std::max(peak, force.norm());
+        length += step.norm();
+      }
+      EXPECT_GT(peak, 0.0);
+      return std::abs(work) / (peak * length);
+    };
+    const double fine = relative_work(800);
+    EXPECT_LT(fine, 1e-4) << law;
+    EXPECT_LT(fine, 0.2 * relative_work(50)) << law;
+  }
+}
+
+TEST_F(IstTest, DistanceIsFromAboveAndWitnessesRealiseIt) {
+  const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 100);
+  const auto query = prepare(block, block, {"spheres=3000"});
+  const Pose X{Eigen::Matrix3d::Identity(), {0.1, 0.2, 1.5}};  // true gap 0.3
+  const auto gap = query->distance(X);
+  ASSERT_TRUE(gap.ok());
+  EXPECT_GT(gap.value.distance, 0.3);
+  EXPECT_LT(gap.value.distance, 0.4);
+  EXPECT_NEAR((gap.value.witness_a - gap.value.witness_b).norm(), gap.value.distance, 1e-12);
+  EXPECT_FALSE(query->collide(X).value);
+  EXPECT_TRUE(query->collide({Eigen::Matrix3d::Identity(), {0.1, 0.2, 1.0}}).value);
+}
+
+TEST_F(IstTest, KeptPackingGivesTheSameAnswer) {
+  const std::string cache = ::testing::TempDir() + "/sixdof_ist_cache";
+  std::filesystem::remove_all(cache);
+  ::setenv("SIXDOF_CACHE", cache.c_str(), 1);
+  const Mesh mesh = load_model("torus-knot-1k");
+  const Pose X = Pose::from_quaternion(0.8, 0.36, 0.0, 0.48, {0.3, 0.4, 0.2});
+  const Response made = prepare(mesh, mesh, {"spheres=150"})->respond(X).value;
+  ASSERT_FALSE(std::filesystem::is_empty(cache));
+  const Response kept = prepare(mesh, mesh, {"spheres=150"})->respond(X).value;
+  EXPECT_EQ(made.volume, kept.volume);
+  EXPECT_EQ(made.force, kept.force);
+  EXPECT_EQ(made.torque, kept.torque);
+  EXPECT_GT(made.volume, 0.0);
+  EXPECT_EQ(prepare(mesh, mesh, {"spheres=151"})->footprint().counts.front().second, 151.0);  // another key
+  std::filesystem::remove_all(cache);
+}
+
+}  // namespace
+}  // namespace sixdof

@@ -1,0 +1,115 @@
+#include <sixdof/algorithm/ist/packing.h>
+
+#include <tbb/global_control.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/geometry/closest_point.h>
+#include <sixdof/models/zoo.h>
+
+namespace sixdof::ist {
+namespace {
+
+PackingGoal goal(std::size_t spheres) { return {.spheres = spheres}; }
+
+/// Solid angle of the surface seen from p, over 4 pi: 1 inside, 0 outside (van Oosterom and Strackee 1983).
+double winding_number(const Mesh& mesh, const Eigen::Vector3d& p) {
+  double sum = 0.0;
+  for (const Triangle& t : mesh.triangles()) {
+    const Eigen::Vector3d a = mesh.vertices()[t[0]] - p, b = mesh.vertices()[t[1]] - p, c = mesh.vertices()[t[2]] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    sum += std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum / (2.0 * std::numbers::pi);
+}
+
+TEST(Packing, SpheresAreInsideAndDisjoint) {
+  for (const char* name : {"torus-knot-2k", "circular-box-2k", "bumpy-sphere-1k"}) {
+    const Mesh mesh = load_model(name);
+    const Tree tree(mesh);
+    const Packing packing = pack_spheres(mesh, tree, goal(400));
+    ASSERT_EQ(packing.spheres.size(), 400u) << name;
+    double worst_surface = 1.0, worst_pair = 1.0;
+    for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+      const Sphere& s = packing.spheres[i];
+      worst_surface = std::min(worst_surface, closest_point(tree, s.center)->distance / s.radius - 1.0);
+      for (std::size_t j = 0; j < i; ++j) {
+        const Sphere& o = packing.spheres[j];
+        worst_pair = std::min(worst_pair, ((s.center - o.center).norm() - s.radius - o.radius) / s.radius);
+      }
+      if (i % 20 == 0) {
+        EXPECT_NEAR(winding_number(mesh, s.center), 1.0, 1e-9) << name << ' ' << i;
+      }
+    }
+    EXPECT_GT(worst_surface, 0.0) << name;
+    EXPECT_GT(worst_pair, 0.0) << name;
+  }
+}
+
+TEST(Packing, FindsTheLargestSphereAndFillsWell) {
+  const Mesh ball = load_model("sphere-2k");
+  const Packing one = pack_spheres(ball, Tree(ball), goal(1));
+  EXPECT_GT(one.spheres.front().radius, 0.97);  // the tessellated ball's inscribed radius is just below 1
+  EXPECT_LT(one.spheres.front().radius, 1.0);
+
+  // The largest spheres come first, up to what one round inserts together and what the climbs miss.
+  const Mesh knot = load_model("torus-knot-2k");
+  const Packing many = pack_spheres(knot, Tree(knot), goal(2000));
+  double smallest = many.spheres.front().radius;
+  for (std::size_t i = 1; i < many.spheres.size(); ++i) {
+    EXPECT_LT(many.spheres[i].radius, 1.5 * smallest) << i;
+    smallest = std::min(smallest, many.spheres[i].radius);
+  }
+  EXPECT_GT(many.fill, 0.7);
+  EXPECT_LT(many.fill, 1.0);
+  EXPECT_GT(many.fill, pack_spheres(knot, Tree(knot), goal(200)).fill + 0.05);
+}
+
+TEST(Packing, StopsAtTheFillRateAndTheSmallestRadius) {
+  const Mesh mesh = load_model("box-1k");
+  PackingGoal until = goal(5000);
+  until.fill = 0.6;
+  const Packing filled = pack_spheres(mesh, Tree(mesh), until);
+  EXPECT_GE(filled.fill, 0.6);
+  EXPECT_LT(filled.fill, 0.7);
+  until = goal(5000);
+  until.smallest_radius = 0.04;
+  const Packing coarse = pack_spheres(mesh, Tree(mesh), until);
+  EXPECT_LT(coarse.spheres.size(), 5000u);
+  for (const Sphere& s : coarse.spheres) EXPECT_GE(s.radius, 0.04 * mesh.diagonal() * (1.0 - 1e-8));
+}
+
+TEST(Packing, SameBitsForAnyNumberOfThreads) {
+  const Mesh mesh = load_model("torus-knot-1k");
+  const Tree tree(mesh);
+  const auto pack_with = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return pack_spheres(mesh, tree, goal(300)).spheres;
+  };
+  const auto one = pack_with(1), two = pack_with(2);
+  ASSERT_EQ(one.size(), two.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].center, two[i].center);
+    EXPECT_EQ(one[i].radius, two[i].radius);
+  }
+}
+
+TEST(Packing, RefusesWhatHasNoInside) {
+  const Mesh open =
+      Mesh::build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}}, "open");
+  EXPECT_THROW(pack_spheres(open, Tree(open), goal(10)), BadMesh);
+  // A plate a thousand times thinner than the smallest sphere.
+  const Mesh plate = Mesh::build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 1e-7}},
+                                 {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, "plate");
+  try {
+    pack_spheres(plate, Tree(plate), goal(10));
+    FAIL();
+  } catch (const BadMesh& e) {
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("too thin"));
+  }
+}
+
+}  // namespace
+}  // namespace sixdof::ist

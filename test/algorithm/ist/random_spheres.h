@@ -1,0 +1,31 @@
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include <sixdof/algorithm/ist/sphere.h>
+#include <sixdof/geometry/pose.h>
+
+namespace sixdof::ist {
+
+/// Spheres scattered in a box of edge 2, not disjoint: traversals must not care.
+inline std::vector<Sphere> random_spheres(std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> place(-1.0, 1.0), size(-4.0, -1.2);
+  std::vector<Sphere> spheres;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = place(random), y = place(random), z = place(random);
+    spheres.push_back({{x, y, z}, std::exp(size(random))});
+  }
+  return spheres;
+}
+
+inline Pose random_pose(std::mt19937_64& random, double reach) {
+  std::normal_distribution<double> normal;
+  Eigen::Quaterniond q(normal(random), normal(random), normal(random), normal(random));
+  q.normalize();
+  const double x = normal(random), y = normal(random), z = normal(random);
+  return {q.toRotationMatrix(), reach * Eigen::Vector3d(x, y, z)};
+}
+
+}  // namespace sixdof::ist

@@ -1,0 +1,135 @@
+#include <sixdof/algorithm/ist/traversal.h>
+
+#include <hwy/highway.h>
+
+#include <gtest/gtest.h>
+
+#include "random_spheres.h"
+
+namespace sixdof::ist {
+namespace {
+
+constexpr double k_rounding = 1e-12;  // sums of some 1e4 terms in another order
+
+/// All pairs, no tree.
+PenetrationSum brute_force(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
+                           const Eigen::Vector3d& about) {
+  PenetrationSum sum;
+  for (const Sphere& s : a.leaves) {
+    for (const Sphere& t : b.leaves) {
+      const Eigen::Vector3d center = X_AB * t.center;
+      const double d = (center - s.center).norm();
+      const double volume = overlap_volume(s.radius, t.radius, d);
+      if (volume == 0.0) continue;
+      sum.volume += volume;
+      const double size = law == PairForce::volume ? volume : overlap_disc_area(s.radius, t.radius, d);
+      const Eigen::Vector3d force = size * (center - s.center).normalized();
+      sum.force += force;
+      // The arm may end anywhere on the line of centres: here on A's sphere.
+      sum.moment += (s.center - about).cross(force);
+      ++sum.count.leaf_pairs;
+    }
+  }
+  return sum;
+}
+
+double brute_force_gap(const SphereTree& a, const SphereTree& b, const Pose& X_AB) {
+  double gap = std::numeric_limits<double>::infinity();
+  for (const Sphere& s : a.leaves) {
+    for (const Sphere& t : b.leaves) gap = std::min(gap, (X_AB * t.center - s.center).norm() - s.radius - t.radius);
+  }
+  return gap;
+}
+
+class TraversalTest : public ::testing::Test {
+ protected:
+  const SphereTree a_ = build_sphere_tree(random_spheres(400, 21));
+  const SphereTree b_ = build_sphere_tree(random_spheres(250, 22));
+  const Eigen::Vector3d about_{0.4, -1.3, 0.8};
+  TraversalScratch scratch_;
+};
+
+TEST_F(TraversalTest, SumsEqualThoseOverAllPairs) {
+  std::mt19937_64 random(31);
+  int touching = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Pose X = random_pose(random, 1.0);
+    for (const auto& [a, b] : {std::pair{&a_, &b_}, std::pair{&b_, &a_}}) {
+      for (const PairForce law : {PairForce::volume, PairForce::gradient}) {
+        const PenetrationSum truth = brute_force(*a, *b, X, law, about_);
+        const PenetrationSum sum = penetration(*a, *b, X, law, about_, scratch_);
+        EXPECT_EQ(sum.count.leaf_pairs, truth.count.leaf_pairs);
+        EXPECT_NEAR(sum.volume, truth.volume, k_rounding);
+        EXPECT_LE((sum.force - truth.force).norm(), k_rounding);
+        EXPECT_LE((sum.moment - truth.moment).norm(), k_rounding);
+        EXPECT_EQ(overlaps(*a, *b, X, scratch_), truth.count.leaf_pairs > 0);
+      }
+    }
+    touching += brute_force(a_, b_, X, PairForce::volume, about_).count.leaf_pairs > 0 ? 1 : 0;
+  }
+  EXPECT_GT(touching, 5);
+  EXPECT_LT(touching, 40);
+}
+
+TEST_F(TraversalTest, SeparationEqualsTheSmallestGap) {
+  std::mt19937_64 random(32);
+  for (int i = 0; i < 30; ++i) {
+    Pose X = random_pose(random, 0.4);
+    X.t += X.t.normalized() * 4.0;
+    const double gap = brute_force_gap(a_, b_, X);
+    ASSERT_GT(gap, 0.0);
+    EXPECT_NEAR(separation(a_, b_, X).distance, gap, k_rounding);
+    EXPECT_NEAR(separation(b_, a_, X.inverse()).distance, gap, k_rounding);
+  }
+}
+
+TEST_F(TraversalTest, ABudgetGivesAnEstimateThatConverges) {
+  std::mt19937_64 random(33);
+  double error_small = 0.0, error_large = 0.0;
+  int counted = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Pose X = random_pose(random, 0.5);
+    const PenetrationSum full = penetration(a_, b_, X, PairForce::volume, about_, scratch_);
+    if (full.volume == 0.0) continue;
+    const PenetrationSum unlimited = penetration_within(a_, b_, X, PairForce::volume, about_, 1'000'000);
+    EXPECT_TRUE(unlimited.complete);
+    EXPECT_NEAR(unlimited.volume, full.volume, k_rounding);
+    EXPECT_LE((unlimited.force - full.force).norm(), k_rounding);
+
+    const std::uint64_t half = full.count.sphere_tests / 2, most = full.count.sphere_tests * 9 / 10;
+    const PenetrationSum rough = penetration_within(a_, b_, X, PairForce::volume, about_, half);
+    const PenetrationSum fine = penetration_within(a_, b_, X, PairForce::volume, about_, most);
+    EXPECT_LE(rough.count.sphere_tests, half + 16);  // one opened pair of nodes past the mark
+    EXPECT_FALSE(rough.complete);
+    error_small += std::abs(rough.volume - full.volume) / full.volume;
+    error_large += std::abs(fine.volume - full.volume) / full.volume;
+    ++counted;
+  }
+  ASSERT_GT(counted, 10);
+  EXPECT_LT(error_large, error_small);
+  EXPECT_LT(error_large / counted, 0.1);
+}
+
+TEST_F(TraversalTest, EveryInstructionSetGivesTheSameBits) {
+  std::mt19937_64 random(34);
+  std::vector<Pose> poses;
+  for (int i = 0; i < 10; ++i) poses.push_back(random_pose(random, 0.6));
+  std::vector<PenetrationSum> reference;
+  for (const Pose& X : poses) reference.push_back(penetration(a_, b_, X, PairForce::volume, about_, scratch_));
+  int targets = 0;
+  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
+    hwy::SetSupportedTargetsForTest(left & -left);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const PenetrationSum sum = penetration(a_, b_, poses[i], PairForce::volume, about_, scratch_);
+      EXPECT_EQ(sum.volume, reference[i].volume);
+      EXPECT_EQ(sum.force, reference[i].force);
+      EXPECT_EQ(sum.moment, reference[i].moment);
+    }
+    ++targets;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  EXPECT_GE(targets, 2);
+}
+
+}  // namespace
+}  // namespace sixdof::ist
