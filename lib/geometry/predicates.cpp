@@ -56,10 +56,15 @@ double orient3d_value(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const 
                       const Eigen::Vector3d& d) {
   const detail::Filtered f = detail::orient3d_filter(a, b, c, d);
   if (std::abs(f.value) * k_orient3d_relative_error > f.bound) return f.value;
-  return coincident(a, b, c, d) ? 0.0 : determinant(a, b, c, d).estimate();
+  return detail::orient3d_exact_value(a, b, c, d);
 }
 
 namespace detail {
+
+double orient3d_exact_value(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                            const Eigen::Vector3d& d) {
+  return coincident(a, b, c, d) ? 0.0 : determinant(a, b, c, d).estimate();
+}
 
 int orient3d_exact(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                    const Eigen::Vector3d& d) {

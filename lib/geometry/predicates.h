@@ -32,13 +32,17 @@ int orient2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Ve
 /// most k_orient3d_relative_error.
 double orient3d_value(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                       const Eigen::Vector3d& d);
-inline constexpr double k_orient3d_relative_error = 0x1p-30;
+inline constexpr double k_orient3d_relative_error = 0x1p-40;
 
 namespace detail {
 
 /// Sign of det(b - a, c - a, d - a) by expansions alone.
 int orient3d_exact(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                    const Eigen::Vector3d& d);
+
+/// The determinant by expansions alone, rounded; its sign is exact.
+double orient3d_exact_value(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                            const Eigen::Vector3d& d);
 
 /// Sign of the first non-zero component of (b - a) x (d - c); 0 if all are zero.
 int lexicographic_cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
@@ -72,6 +76,41 @@ inline Filtered orient3d_filter(const Eigen::Vector3d& a, const Eigen::Vector3d&
 }
 
 }  // namespace detail
+
+/// Plane of the triangle a, b, c against which several points are compared: orient3d with the triangle's part of the
+/// filter computed once. Refers to its corners.
+class ComparedPlane {
+ public:
+  ComparedPlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) : a_(a), b_(b), c_(c) {
+    const Eigen::Vector3d u = b - a, v = c - a;
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3, m = (k + 2) % 3;
+      const double left = u[l] * v[m], right = u[m] * v[l];
+      minor_[k] = left - right;
+      magnitude_[k] = std::abs(left) + std::abs(right);
+    }
+  }
+
+  struct Height {
+    int sign;      ///< Of det(b - a, c - a, d - a), exact.
+    double value;  ///< The determinant, as accurate as orient3d_value().
+  };
+
+  Height height(const Eigen::Vector3d& d) const {
+    const double x = d.x() - a_.x(), y = d.y() - a_.y(), z = d.z() - a_.z();
+    const double value = x * minor_[0] + y * minor_[1] + z * minor_[2];
+    const double permanent = std::abs(x) * magnitude_[0] + std::abs(y) * magnitude_[1] + std::abs(z) * magnitude_[2];
+    // The same sums of products as in orient3d_filter, expanded along another row: the same bound.
+    const double bound = detail::k_orient3d_bound * permanent + detail::k_underflow_bound;
+    if (std::abs(value) * k_orient3d_relative_error > bound) return {value > 0.0 ? 1 : -1, value};
+    const double exact = detail::orient3d_exact_value(a_, b_, c_, d);
+    return {exact > 0.0 ? 1 : exact < 0.0 ? -1 : 0, exact};
+  }
+
+ private:
+  const Eigen::Vector3d &a_, &b_, &c_;
+  double minor_[3], magnitude_[3];
+};
 
 /// Exact sign of det(b - a, c - a, d - a); see orient3d_value().
 inline int orient3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,

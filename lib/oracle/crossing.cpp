@@ -31,57 +31,71 @@ int passing(const OrderedTriangle& a, int i, const OrderedTriangle& b, int j) {
   return passing_of_moved_edge(at(a, i), at(a, i + 1), at(b, j), at(b, j + 1));
 }
 
+/// Both triangles, with the heights of each one's corners above the other's plane.
+struct Heights {
+  const OrderedTriangle& a;
+  const OrderedTriangle& b;
+  std::array<double, 3> of_a, of_b;
+
+  /// Where a side pierces the other triangle's plane; sides 3, 4, 5 are those of b.
+  Eigen::Vector3d point(int side) const {
+    const OrderedTriangle& edge = side < 3 ? a : b;
+    const std::array<double, 3>& height = side < 3 ? of_a : of_b;
+    const auto low = static_cast<std::size_t>(edge.low(side % 3));
+    const auto high = static_cast<std::size_t>(edge.high(side % 3));
+    const Eigen::Vector3d& p = edge.corner[low];
+    const Eigen::Vector3d& q = edge.corner[high];
+    const double at_p = height[low], at_q = height[high];
+    // From the nearer end, so that an end on the plane is met exactly.
+    if (std::abs(at_p) <= std::abs(at_q)) return p + (at_p / (at_p - at_q)) * (q - p);
+    return q + (at_q / (at_q - at_p)) * (p - q);
+  }
+
+  Segment segment(int start_side, int end_side) const {
+    return {point(start_side), point(end_side), start_side, end_side};
+  }
+};
+
 /// One of the triangles is degenerate (collinear corners): only the other can be pierced, by two sides at one point.
-std::optional<Segment> cross_degenerate(const OrderedTriangle& a, const PlaneCrossing& in_a, const OrderedTriangle& b,
-                                        const PlaneCrossing& in_b) {
+std::optional<Segment> cross_degenerate(const Heights& heights, const PlaneCrossing& in_a, const PlaneCrossing& in_b) {
   if (in_a.none() == in_b.none()) return std::nullopt;
-  if (in_b.none()) {
-    for (int j = 0; j < 3; ++j) {
-      if (passing(a, in_a.down, b, j) != -1) return std::nullopt;
-    }
-    return Segment{piercing_point(a, in_a.up, b), piercing_point(a, in_a.down, b), in_a.up, in_a.down};
+  for (int k = 0; k < 3; ++k) {
+    const int pass =
+        in_b.none() ? passing(heights.a, in_a.down, heights.b, k) : passing(heights.a, k, heights.b, in_b.down);
+    if (pass != -1) return std::nullopt;
   }
-  for (int i = 0; i < 3; ++i) {
-    if (passing(a, i, b, in_b.down) != -1) return std::nullopt;
-  }
-  return Segment{piercing_point(b, in_b.down, a), piercing_point(b, in_b.up, a), 3 + in_b.down, 3 + in_b.up};
+  return in_b.none() ? heights.segment(in_a.up, in_a.down) : heights.segment(3 + in_b.down, 3 + in_b.up);
 }
 
 }  // namespace
 
-Eigen::Vector3d piercing_point(const OrderedTriangle& edge, int side, const OrderedTriangle& plane) {
-  const Eigen::Vector3d& p = edge.corner[static_cast<std::size_t>(edge.low(side))];
-  const Eigen::Vector3d& q = edge.corner[static_cast<std::size_t>(edge.high(side))];
-  const double at_p = orient3d_value(plane.corner[0], plane.corner[1], plane.corner[2], p);
-  const double at_q = orient3d_value(plane.corner[0], plane.corner[1], plane.corner[2], q);
-  // From the nearer end, so that an end on the plane is met exactly.
-  if (std::abs(at_p) <= std::abs(at_q)) return p + (at_p / (at_p - at_q)) * (q - p);
-  return q + (at_q / (at_q - at_p)) * (p - q);
-}
-
 std::optional<Segment> cross(const OrderedTriangle& a, const OrderedTriangle& b) {
+  Heights heights{a, b, {}, {}};
   std::array<int, 3> side_of_a, side_of_b;
-  for (std::size_t i = 0; i < 3; ++i)
-    side_of_a[i] = side_of_moved_plane(b.corner[0], b.corner[1], b.corner[2], a.corner[i]);
+  const ComparedPlane plane_b(b.corner[0], b.corner[1], b.corner[2]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ComparedPlane::Height h = plane_b.height(a.corner[i]);
+    side_of_a[i] = h.sign != 0 ? h.sign : side_of_moved_plane(b.corner[0], b.corner[1], b.corner[2], a.corner[i]);
+    heights.of_a[i] = h.value;
+  }
   if (side_of_a[0] != 0 && same(side_of_a)) return std::nullopt;
-  for (std::size_t i = 0; i < 3; ++i)
-    side_of_b[i] = side_of_moved_point(a.corner[0], a.corner[1], a.corner[2], b.corner[i]);
+  const ComparedPlane plane_a(a.corner[0], a.corner[1], a.corner[2]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ComparedPlane::Height h = plane_a.height(b.corner[i]);
+    side_of_b[i] = h.sign != 0 ? h.sign : side_of_moved_point(a.corner[0], a.corner[1], a.corner[2], b.corner[i]);
+    heights.of_b[i] = h.value;
+  }
   if (side_of_b[0] != 0 && same(side_of_b)) return std::nullopt;
   const PlaneCrossing in_a(side_of_a);
   const PlaneCrossing in_b(side_of_b);
-  if (in_a.none() || in_b.none()) return cross_degenerate(a, in_a, b, in_b);
+  if (in_a.none() || in_b.none()) return cross_degenerate(heights, in_a, in_b);
 
   // Both triangles meet the line of intersection of their planes, in intervals [a.up, a.down] and [b.down, b.up] along
   // (normal of a) x (normal of b). How two sides pass each other says which of their points comes first.
   if (passing(a, in_a.up, b, in_b.up) < 0 || passing(a, in_a.down, b, in_b.down) > 0) return std::nullopt;
   const bool starts_on_a = passing(a, in_a.up, b, in_b.down) > 0;
   const bool ends_on_a = passing(a, in_a.down, b, in_b.up) < 0;
-  Segment s;
-  s.start_side = starts_on_a ? in_a.up : 3 + in_b.down;
-  s.end_side = ends_on_a ? in_a.down : 3 + in_b.up;
-  s.start = starts_on_a ? piercing_point(a, in_a.up, b) : piercing_point(b, in_b.down, a);
-  s.end = ends_on_a ? piercing_point(a, in_a.down, b) : piercing_point(b, in_b.up, a);
-  return s;
+  return heights.segment(starts_on_a ? in_a.up : 3 + in_b.down, ends_on_a ? in_a.down : 3 + in_b.up);
 }
 
 int pierce_moved_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& q,

@@ -30,10 +30,6 @@ struct Segment {
   int start_side = 0, end_side = 0;
 };
 
-/// Point in which the side of `edge` pierces the plane of `plane`. Depends on nothing but the side's two corners, in
-/// the order of their indices, and the plane: both triangles that share the side get the same bits.
-Eigen::Vector3d piercing_point(const OrderedTriangle& edge, int side, const OrderedTriangle& plane);
-
 /// Decides exactly, for B translated by the infinitesimal e of predicates.h, whether and how the triangles meet.
 /// Corners of `b` are in A's frame.
 std::optional<Segment> cross(const OrderedTriangle& a, const OrderedTriangle& b);
