@@ -11,9 +11,11 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/bench/cli/algorithms.h>
+#include <sixdof/bench/cli/generate.h>
 #include <sixdof/bench/cli/info.h>
 #include <sixdof/bench/cli/models.h>
 #include <sixdof/bench/cli/table.h>
+#include <sixdof/bench/cli/verify.h>
 
 namespace sixdof::cli {
 namespace {
@@ -30,6 +32,8 @@ void add_commands(CLI::App& app) {
   add_info_command(app);
   add_models_command(app);
   add_table_command(app);
+  add_generate_command(app);
+  add_verify_command(app);
 }
 
 int run_guarded(const char* program, const std::function<void()>& work) {

@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include <sixdof/bench/cli/info_mesh.h>
+#include <sixdof/bench/cli/set_info.h>
+#include <sixdof/configuration/configuration_set.h>
 
 namespace sixdof::cli {
 namespace {
@@ -19,6 +21,7 @@ struct Reader {
 
 /// Asked in this order; the last claims everything.
 constexpr std::array k_readers{
+    Reader{[](std::string_view file) { return looks_like_configuration_set(file); }, print_set_info},
     Reader{[](std::string_view) { return true; }, print_mesh_info},
 };
 

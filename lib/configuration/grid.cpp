@@ -262,11 +262,16 @@ std::vector<std::uint32_t> representatives(std::span<const Eigen::Vector4d> rota
   return result;
 }
 
+ConfigurationRay::ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation)
+    : R(Pose::from_quaternion(rotation[0], rotation[1], rotation[2], rotation[3], Eigen::Vector3d::Zero()).R),
+      center_a(a.center()),
+      turned_center_b(R * b.center()) {}
+
 Pose configuration_pose(const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction, const Eigen::Vector4d& rotation,
                         double s) {
-  Pose X_AB = Pose::from_quaternion(rotation[0], rotation[1], rotation[2], rotation[3], Eigen::Vector3d::Zero());
-  X_AB.t = a.center() + s * direction - X_AB.R * b.center();
-  return X_AB;
+  ConfigurationRay ray(a, b, rotation);
+  ray.direction = direction;
+  return ray.pose(s);
 }
 
 }  // namespace sixdof

@@ -66,9 +66,24 @@ std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count);
 /// for representatives and copied to the others.
 std::vector<std::uint32_t> representatives(std::span<const Eigen::Vector4d> rotations);
 
-/// The sphere method's pose of a configuration: B is rotated by `rotation` (w, x, y, z), and the centre of B's box (in
-/// B's frame, turned with B) stands at distance s from the centre of A's box in direction u:
-/// t = c_A + s u - R c_B. `s` in the meshes' length unit, u in A's frame.
+/// The sphere method's poses of one rotation. B is rotated by R, and the centre of B's box (in B's frame, turned with
+/// B) stands at distance s from the centre of A's box in direction u: t = (c_A + s u) - R c_B. Whoever makes a pose
+/// makes it here, so that it is the same bits everywhere.
+struct ConfigurationRay {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();            ///< R_AB
+  Eigen::Vector3d center_a = Eigen::Vector3d::Zero();         ///< c_A in A's frame.
+  Eigen::Vector3d turned_center_b = Eigen::Vector3d::Zero();  ///< R c_B, in A's axes.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();        ///< u, unit vector in A's frame.
+
+  ConfigurationRay() = default;
+  /// @param rotation (w, x, y, z)
+  ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation);
+
+  /// @param s travel, in the meshes' length unit
+  Pose pose(double s) const { return {R, (center_a + s * direction) - turned_center_b}; }
+};
+
+/// The pose of one configuration.
 Pose configuration_pose(const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction, const Eigen::Vector4d& rotation,
                         double s);
 

@@ -13,6 +13,8 @@
 #include <sixdof/base/error.h>
 #include <sixdof/base/hdf5.h>
 
+#include "shapes.h"
+
 namespace sixdof {
 namespace {
 
@@ -24,13 +26,8 @@ constexpr BucketKey k_near{BucketKind::distance, 5};
 constexpr BucketKey k_far{BucketKind::distance, 20};
 constexpr BucketKey k_deep{BucketKind::volume, 3};
 
-Mesh tetrahedron(double height) {
-  return Mesh::build({{0, 0, 0}, {1.0, 0.1, 0.0}, {-0.2, 1.3, 0.3}, {0.1, -0.3, height}},
-                     {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, "tetrahedron");
-}
-
-const Mesh k_a = tetrahedron(1.7);
-const Mesh k_b = tetrahedron(0.9);
+const Mesh k_a = test::tetrahedron_mesh({0, 0, 0}, 1.7);
+const Mesh k_b = test::tetrahedron_mesh({0, 0, 0}, 0.9);
 
 std::vector<double> some_travel(const Grid& grid, std::uint64_t seed) {
   std::mt19937_64 random(seed);

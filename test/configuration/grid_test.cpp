@@ -13,6 +13,8 @@
 
 #include <sixdof/base/error.h>
 
+#include "shapes.h"
+
 namespace sixdof {
 namespace {
 
@@ -26,12 +28,6 @@ std::size_t distinct(const std::vector<Eigen::Vector4d>& rotations) {
 
 Eigen::Matrix3d matrix(const Eigen::Vector4d& q) {
   return Pose::from_quaternion(q[0], q[1], q[2], q[3], Eigen::Vector3d::Zero()).R;
-}
-
-Mesh tetrahedron(const Eigen::Vector3d& offset) {
-  return Mesh::build({offset, offset + Eigen::Vector3d(1.0, 0.1, 0.0), offset + Eigen::Vector3d(-0.2, 1.3, 0.3),
-                      offset + Eigen::Vector3d(0.1, -0.3, 1.7)},
-                     {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, "tetrahedron");
 }
 
 TEST(Grid, HasThePapersCounts) {
@@ -230,8 +226,8 @@ TEST(Grid, UniformDirectionsMatchTheRotationsSpacing) {
 }
 
 TEST(ConfigurationPose, PutsTheCentreOfBsBoxAtDistanceSInDirectionU) {
-  const Mesh first = tetrahedron({3.0, -1.0, 0.4});
-  const Mesh second = tetrahedron({-0.7, 5.0, 2.2});
+  const Mesh first = test::tetrahedron_mesh({3.0, -1.0, 0.4}, 1.7);
+  const Mesh second = test::tetrahedron_mesh({-0.7, 5.0, 2.2}, 0.9);
   const Grid grid = make_grid("30");
   std::mt19937_64 random(21);
   std::uniform_real_distribution<double> travel(0.0, 9.0);

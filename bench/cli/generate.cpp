@@ -1,0 +1,133 @@
+#include <sixdof/bench/cli/generate.h>
+
+#include <charconv>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/bench/algorithms.h>
+#include <sixdof/bench/cli/distance_source_argument.h>
+#include <sixdof/bench/cli/interrupt.h>
+#include <sixdof/bench/cli/progress_line.h>
+#include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/distance_generator.h>
+#include <sixdof/configuration/sphere_method.h>
+#include <sixdof/models/zoo.h>
+
+namespace sixdof::cli {
+namespace {
+
+struct Arguments {
+  std::string a, b, grid, output;
+  std::string distances = "0:30";
+  std::string oracle = "fcl-rss";
+  unsigned threads = 0;
+  bool plan = false;
+};
+
+int parse_percent(std::string_view list, std::string_view text) {
+  int value = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > BucketKey::k_max_percent) {
+    throw BadArgument(
+        fmt::format("percentages '{}': '{}' is not a whole number from 0 to {}", list, text, BucketKey::k_max_percent));
+  }
+  return value;
+}
+
+void print_plan(const Grid& grid, const std::vector<int>& percents) {
+  const auto map = representatives(grid.rotations);
+  const std::size_t distinct = std::set(map.begin(), map.end()).size();
+  const std::size_t per_bucket = grid.configurations();
+  const std::size_t all = per_bucket * percents.size();
+  fmt::print("grid                       {} ({})\n", grid.spec, grid.sampler);
+  fmt::print("directions                 {}\n", grid.directions.size());
+  fmt::print("rotations                  {}, of which {} distinct\n", grid.rotations.size(), distinct);
+  fmt::print("configurations per bucket  {}\n", per_bucket);
+  fmt::print("buckets                    {}\n", percents.size());
+  fmt::print("configurations             {}\n", all);
+  fmt::print("of which computed          {}\n", distinct * grid.directions.size() * percents.size());
+  fmt::print("bytes before compression   {}\n", all * sizeof(double));
+}
+
+void generate(const Arguments& arguments) {
+  if (arguments.grid.empty()) throw BadArgument("--grid is needed");
+  const Grid grid = make_grid(arguments.grid);
+  const std::vector<int> percents = parse_percents(arguments.distances);
+  if (arguments.plan) return print_plan(grid, percents);
+  if (arguments.a.empty() || arguments.output.empty()) throw BadArgument("--a and -o are needed (or --plan)");
+
+  Registry registry;
+  register_all_algorithms(registry);
+  const auto generator = make_sphere_method(distance_source_argument(registry, arguments.oracle));
+  const Mesh a = load_model(arguments.a);
+  const Mesh b = arguments.b.empty() || arguments.b == arguments.a ? a : load_model(arguments.b);
+
+  const InterruptGuard interruptible;
+  // Opened before the work, so that a folder that is missing or full is known before hours have passed.
+  ConfigurationSetWriter writer(
+      arguments.output,
+      {.generator_version = SIXDOF_VERSION, .a = MeshStamp::of(a), .b = MeshStamp::of(b), .grid = grid});
+  GenerateOptions options;
+  options.threads = arguments.threads;
+  options.cancelled = [] { return InterruptGuard::requested(); };
+  const auto start = std::chrono::steady_clock::now();
+  Generated result;
+  {
+    ProgressLine line("configurations");
+    options.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); };
+    result = generate_distances(*generator, a, b, grid, percents, options);
+  }
+  for (const GeneratedBucket& bucket : result.buckets) {
+    InterruptGuard::check();
+    writer.write(bucket.summary, bucket.travel);
+  }
+  writer.commit();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fmt::print("{}: {} configurations of {} with {} in {} ({} measurements of the distance by {} {})\n", arguments.output,
+             grid.configurations() * percents.size(), a.name(), b.name(), as_clock(seconds), result.measurements,
+             generator->oracle_name(), generator->oracle_version());
+}
+
+}  // namespace
+
+std::vector<int> parse_percents(std::string_view text) {
+  std::vector<int> percents;
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view item = rest.substr(0, comma);
+    const std::size_t colon = item.find(':');
+    const int first = parse_percent(text, item.substr(0, colon));
+    const int last = colon == std::string_view::npos ? first : parse_percent(text, item.substr(colon + 1));
+    if (last < first) throw BadArgument(fmt::format("percentages '{}': {} runs backwards", text, item));
+    for (int percent = first; percent <= last; ++percent) percents.push_back(percent);
+    if (comma == std::string_view::npos) return percents;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
+void add_generate_command(CLI::App& app) {
+  auto* const command = app.add_subcommand("generate", "Make a configuration set of two meshes");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("--a", arguments->a, "Fixed mesh A: a model's name or a file");
+  command->add_option("--b", arguments->b, "Moving mesh B; A if left out");
+  command->add_option("--grid", arguments->grid,
+                      "paper | paper-volume | STEP | STEP/STEP (degrees: directions/rotations) | so3:N | so3:N:M");
+  command->add_option("--distances", arguments->distances, "Percent of A's box diagonal, e.g. 0,1,5:10")
+      ->capture_default_str();
+  command
+      ->add_option("--oracle", arguments->oracle,
+                   "What defines the distances: brute-force, or an algorithm with exact ones")
+      ->capture_default_str();
+  command->add_option("--threads", arguments->threads, "0: as many as the machine has")->capture_default_str();
+  command->add_option("-o,--output", arguments->output, "The set (HDF5); replaced if it exists");
+  command->add_flag("--plan", arguments->plan, "Only print what would be made");
+  command->callback([arguments] { generate(*arguments); });
+}
+
+}  // namespace sixdof::cli

@@ -1,0 +1,83 @@
+#include <sixdof/bench/cli/verify.h>
+
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/bench/algorithms.h>
+#include <sixdof/bench/cli/distance_source_argument.h>
+#include <sixdof/bench/cli/interrupt.h>
+#include <sixdof/bench/cli/progress_line.h>
+#include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/verification.h>
+#include <sixdof/models/zoo.h>
+
+namespace sixdof::cli {
+namespace {
+
+struct Arguments {
+  std::string file, a, b;
+  std::string oracle = "fcl-obbrss";
+  std::size_t sample = 50;
+  std::uint64_t seed = 1;
+};
+
+void print_table(const Verdict& verdict, double diagonal) {
+  fmt::print("{:<13} {:>8} {:>10} {:>13} {:>10} {:>8} {:>8} {:>8}\n", "bucket", "sampled", "reachable", "residual/diag",
+             "allowed", "wrong", "earlier", "nan");
+  for (const BucketVerdict& bucket : verdict.buckets) {
+    const std::string name = bucket.summary.key.name();
+    if (!bucket.measured) {
+      fmt::print("{:<13} read, its hash is right; not measured: the oracle knows no volumes\n", name);
+      continue;
+    }
+    fmt::print("{:<13} {:>8} {:>10} {:>13.2e} {:>10.0e} {:>8} {:>8} {:>8}\n", name, bucket.sampled, bucket.reachable,
+               bucket.largest_residual / diagonal, bucket.summary.tolerance / diagonal, bucket.wrong_distance,
+               bucket.earlier_hit, bucket.false_nan);
+  }
+}
+
+void verify(const Arguments& arguments) {
+  const ConfigurationSet set(arguments.file);
+  Registry registry;
+  register_all_algorithms(registry);
+  const auto oracle = distance_source_argument(registry, arguments.oracle);
+  const std::string& a_name = arguments.a.empty() ? set.description().a.name : arguments.a;
+  const std::string& b_name = arguments.b.empty() ? set.description().b.name : arguments.b;
+  const Mesh a = load_model(a_name);
+  const Mesh b = b_name == a_name ? a : load_model(b_name);
+  const InterruptGuard interruptible;
+  Verdict verdict;
+  {
+    ProgressLine line("verified");
+    verdict = verify_set(set, a, b, *oracle,
+                         {.sample = arguments.sample,
+                          .seed = arguments.seed,
+                          .progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
+                          .cancelled = [] { return InterruptGuard::requested(); }});
+  }
+  fmt::print("{}: {} with {}, grid {}, measured by {} {}, seed {}\n", arguments.file, set.description().a.name,
+             set.description().b.name, set.grid().spec, oracle->name(), oracle->version(), arguments.seed);
+  print_table(verdict, a.diagonal());
+  for (const std::string& problem : verdict.problems) fmt::print("{}\n", problem);
+  if (!verdict.ok()) throw Error(fmt::format("{}: verification failed", arguments.file));
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app) {
+  auto* const command = app.add_subcommand("verify", "Re-measure a sample of a configuration set");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("file", arguments->file, "The set")->required();
+  command->add_option("--a", arguments->a, "Mesh A, if the set's own name for it is no model here");
+  command->add_option("--b", arguments->b, "Mesh B, likewise");
+  command->add_option("--sample", arguments->sample, "Configurations per bucket")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Of the sample")->capture_default_str();
+  command->add_option("--oracle", arguments->oracle, "brute-force, or an algorithm with exact distances")
+      ->capture_default_str();
+  command->callback([arguments] { verify(*arguments); });
+}
+
+}  // namespace sixdof::cli

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/grid.h>
+#include <sixdof/geometry/mesh.h>
+
+namespace sixdof {
+
+/// Finds the travel at which targets are met, for one pair. One thread at a time. Results may use what was learnt since
+/// set_rotation(), in the order of directions, but nothing from before: so work splits by rotation without changing a
+/// bit.
+class RaySolver {
+ public:
+  virtual ~RaySolver() = default;
+
+  /// B's rotation (w, x, y, z) for the rays that follow.
+  virtual void set_rotation(const Eigen::Vector4d& rotation) = 0;
+
+  /// B's box centre travels along the ray from A's box centre in direction u (A's frame), inwards from far outside.
+  /// @param aims distances in the meshes' unit, positive and descending
+  /// @param travel one per aim: the largest s >= 0 at which the surfaces are that far apart; NaN if they nowhere are
+  /// @param residuals one per aim: |measured - aim| at that s, 0 where there is none
+  /// @throws Error if an aim is met neither exactly enough nor certainly not
+  virtual void solve(const Eigen::Vector3d& direction, std::span<const double> aims, std::span<double> travel,
+                     std::span<double> residuals) = 0;
+
+  /// Distance measurements so far: what the work consists of.
+  virtual std::uint64_t measurements() const = 0;
+};
+
+/// A way to find the configurations of the distance buckets.
+class DistanceGenerator {
+ public:
+  virtual ~DistanceGenerator() = default;
+  /// What defines the distances, for the set's attributes.
+  virtual const std::string& oracle_name() const = 0;
+  virtual const std::string& oracle_version() const = 0;
+  /// May be called from several threads. Both meshes outlive the solver. @throws BadMesh
+  virtual std::unique_ptr<RaySolver> prepare(const Mesh& a, const Mesh& b) const = 0;
+};
+
+/// |distance - aim| allowed in a set, in units of A's box diagonal: what the suite promises.
+constexpr double k_distance_tolerance = 1e-9;
+
+/// Bucket 0 is aimed this far outside contact, in units of A's box diagonal: far above the rounding of a distance
+/// (1e-16) and far below the tolerance, so that the surfaces are at the verge of touching and do not intersect.
+constexpr double k_contact_aim = 1e-11;
+
+/// The distance bucket of a percentage of A's box diagonal: key, target, aim and tolerance filled.
+BucketSummary distance_bucket(const Mesh& a, int percent);
+
+struct GenerateOptions {
+  unsigned threads = 0;  ///< 0: as many as the machine has.
+  /// Called now and then, one call at a time, with the configurations found so far and in all.
+  std::function<void(std::uint64_t done, std::uint64_t total)> progress;
+  /// Asked before every ray, from every thread: true ends the work with Interrupted.
+  std::function<bool()> cancelled;
+  std::size_t first_rotation = 0;                                       ///< A shard's part of the rotations:
+  std::size_t last_rotation = std::numeric_limits<std::size_t>::max();  ///< [first, last), cut to what there is.
+};
+
+struct GeneratedBucket {
+  BucketSummary summary;
+  std::vector<double> travel;  ///< [rotation - first][direction], as ConfigurationSetWriter::write() takes it.
+};
+
+struct Generated {
+  std::vector<GeneratedBucket> buckets;  ///< In the order of `percents`.
+  std::uint64_t measurements = 0;
+};
+
+/// Finds all configurations of distance buckets. Every rotation is solved once, however often the grid repeats it. The
+/// result is the same bits for every number of threads and every split into shards.
+/// @param percents of A's box diagonal, each once, 0 to BucketKey::k_max_percent
+/// @throws BadArgument, Interrupted, and Error from the solver naming the configuration
+Generated generate_distances(const DistanceGenerator& generator, const Mesh& a, const Mesh& b, const Grid& grid,
+                             std::span<const int> percents, const GenerateOptions& options = {});
+
+}  // namespace sixdof

@@ -1,0 +1,140 @@
+#include <sixdof/configuration/verification.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/configuration/brute_force_source.h>
+#include <sixdof/configuration/distance_generator.h>
+#include <sixdof/configuration/sphere_method.h>
+
+#include "shapes.h"
+
+namespace sixdof {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// Two walls and a box: the aim is met from outside at the outer wall, and again between the walls; past the walls'
+// edges the ray is free.
+const Mesh k_a = test::boxes_mesh({{{1.1, 0.3, 0}, {0.05, 0.3, 0.3}}, {{-0.9, 0.3, 0}, {0.05, 0.3, 0.3}}}, "walls");
+const Mesh k_b = test::boxes_mesh({{{5.0, 1.0, 2.0}, {0.1, 0.12, 0.14}}}, "box");
+const Grid k_grid = make_grid("90");
+const std::vector<int> k_percents{0, 2, 10};
+
+using Edit = std::function<void(std::vector<GeneratedBucket>&)>;
+
+/// Generates, edits, writes and verifies.
+Verdict verify_after(const Edit& edit, std::size_t sample = 200) {
+  static const Generated honest =
+      generate_distances(*make_sphere_method(make_brute_force_source()), k_a, k_b, k_grid, k_percents);
+  std::vector<GeneratedBucket> buckets = honest.buckets;
+  edit(buckets);
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_verify.h5");
+  ConfigurationSetWriter writer(
+      path, {.generator_version = "0", .a = MeshStamp::of(k_a), .b = MeshStamp::of(k_b), .grid = k_grid});
+  for (const GeneratedBucket& bucket : buckets) writer.write(bucket.summary, bucket.travel);
+  writer.commit();
+  const ConfigurationSet set(path);
+  const Verdict verdict = verify_set(set, k_a, k_b, *make_brute_force_source(), {.sample = sample, .seed = 5});
+  std::filesystem::remove(path);
+  return verdict;
+}
+
+/// Applies to every row alike, so that repeated rotations stay equal.
+void for_all(GeneratedBucket& bucket, const std::function<double(double)>& f) {
+  for (double& s : bucket.travel) s = f(s);
+}
+
+TEST(Verification, FindsNothingWrongWithAnHonestSet) {
+  const Verdict verdict = verify_after([](auto&) {});
+  EXPECT_THAT(verdict.problems, IsEmpty());
+  ASSERT_EQ(verdict.buckets.size(), 3u);
+  bool some_unreachable = false;
+  for (const BucketVerdict& bucket : verdict.buckets) {
+    EXPECT_TRUE(bucket.measured);
+    EXPECT_EQ(bucket.sampled, 200u);
+    EXPECT_EQ(bucket.failures(), 0u);
+    EXPECT_GT(bucket.reachable, 50u);
+    some_unreachable |= bucket.reachable < bucket.sampled;
+    EXPECT_LE(bucket.largest_residual, k_distance_tolerance * k_a.diagonal());
+  }
+  EXPECT_TRUE(some_unreachable);
+}
+
+TEST(Verification, FindsDistancesThatAreOff) {
+  // Twice the tolerance, where the wall is met face to face.
+  const Verdict verdict = verify_after([](auto& buckets) {
+    for_all(buckets[1], [](double s) { return s + 2.0 * k_distance_tolerance * k_a.diagonal(); });
+  });
+  EXPECT_GT(verdict.buckets[1].wrong_distance, 0u);
+  EXPECT_EQ(verdict.buckets[0].failures(), 0u);
+  EXPECT_EQ(verdict.buckets[2].failures(), 0u);
+  EXPECT_THAT(verdict.problems, Contains(HasSubstr("distance/02")));
+}
+
+TEST(Verification, FindsAHitThatIsNotTheFirst) {
+  // The inner side of the near wall: the right distance, the wrong hit.
+  const double wall = 1.0, half_wall = 0.05;
+  const Verdict verdict = verify_after(
+      [&](auto& buckets) {
+        const std::size_t n = k_grid.directions.size();
+        const double aim = buckets[1].summary.aim;
+        for (std::size_t i = 0; i < buckets[1].travel.size(); ++i) {
+          if (k_grid.directions[i % n].x() != 1.0) continue;
+          double& s = buckets[1].travel[i];
+          const double half_b = s - aim - wall - half_wall;
+          s = wall - half_wall - half_b - aim;
+        }
+      },
+      400);
+  EXPECT_GT(verdict.buckets[1].earlier_hit, 0u);
+  EXPECT_EQ(verdict.buckets[1].wrong_distance, 0u);
+}
+
+TEST(Verification, FindsFalseNaN) {
+  const Verdict verdict = verify_after(
+      [](auto& buckets) { for_all(buckets[2], [](double) { return std::numeric_limits<double>::quiet_NaN(); }); });
+  EXPECT_GT(verdict.buckets[2].false_nan, 0u);
+  EXPECT_THAT(verdict.problems, Contains(HasSubstr("unreachable")));
+  // Where the nearer bucket is reachable, so is the farther one.
+  EXPECT_THAT(verdict.problems, Contains(HasSubstr("is met at")));
+}
+
+TEST(Verification, FindsSummariesAndCopiesThatDoNotFit) {
+  EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.aim *= 10.0; }, 0).problems,
+              Contains(HasSubstr("distance/00: target")));
+  EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.tolerance *= 2.0; }, 0).problems,
+              Contains(HasSubstr("distance/00: tolerance")));
+  EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.largest_residual = 1.0; }, 0).problems,
+              Contains(HasSubstr("largest residual")));
+  const auto map = representatives(k_grid.rotations);
+  std::size_t copy = 0;
+  while (map[copy] == copy) ++copy;
+  const std::size_t n = k_grid.directions.size();
+  EXPECT_THAT(verify_after([&](auto& buckets) { buckets[2].travel[copy * n] = 2.125; }, 0).problems,
+              Contains(HasSubstr("are equal, their travels are not")));
+}
+
+TEST(Verification, StopsWhenAsked) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "sixdof_verify_stop.h5";
+  ConfigurationSetWriter writer(
+      path, {.generator_version = "0", .a = MeshStamp::of(k_a), .b = MeshStamp::of(k_b), .grid = k_grid});
+  writer.write(distance_bucket(k_a, 5), std::vector<double>(k_grid.configurations(), 1.0));
+  writer.commit();
+  const ConfigurationSet set(path);
+  EXPECT_THROW(verify_set(set, k_a, k_b, *make_brute_force_source(), {.cancelled = [] { return true; }}), Interrupted);
+  EXPECT_THROW(verify_set(set, k_b, k_b, *make_brute_force_source()), BadArgument);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace sixdof
