@@ -1,0 +1,58 @@
+"""The verdict of bench/compare on synthetic times: it must see a slowdown and must not see one in noise."""
+
+import importlib.machinery
+import importlib.util
+import pathlib
+import random
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench" / "compare"
+loader = importlib.machinery.SourceFileLoader("compare", str(SCRIPT))
+compare = importlib.util.module_from_spec(importlib.util.spec_from_loader("compare", loader))
+loader.exec_module(compare)
+
+
+def document(times):
+    return {"benchmarks": [{"name": name, "cpu_time": t} for name, series in times.items() for t in series]}
+
+
+def dump(p_values):
+    return [{"name": name, "utest": {"cpu_pvalue": p}} for name, p in p_values.items()] + [{"name": "x", "utest": {}}]
+
+
+def verdict(base, contender, p_values, percent=10):
+    rows, tested = compare.slower_rows(document(base), document(contender), dump(p_values), percent)
+    return [row[0] for row in rows], tested
+
+
+class Verdict(unittest.TestCase):
+    def setUp(self):
+        noise = random.Random(5)
+        self.base = [100 * (1 + 0.3 * noise.random()) for _ in range(9)]
+        self.twice = [2 * t for t in self.base]
+
+    def test_sees_a_slowdown(self):
+        self.assertEqual(verdict({"a": self.base}, {"a": self.twice}, {"a": 4e-4}), (["a"], 1))
+
+    def test_needs_significance_after_correction(self):
+        self.assertEqual(verdict({"a": self.base}, {"a": self.twice}, {"a": 0.06}), ([], 1))
+        # 0.01 is certain for one row but not for the best of ten.
+        names = [f"r{i}" for i in range(10)]
+        p_values = {name: 0.01 for name in names}
+        self.assertEqual(verdict(dict.fromkeys(names, self.base), dict.fromkeys(names, self.twice), p_values)[0], [])
+
+    def test_needs_size(self):
+        slightly = [1.05 * t for t in self.base]
+        self.assertEqual(verdict({"a": self.base}, {"a": slightly}, {"a": 1e-4})[0], [])
+
+    def test_is_not_taken_in_by_a_busy_machine(self):
+        # Slower in most runs, but as fast as ever in one.
+        busy = self.twice[:8] + [min(self.base)]
+        self.assertEqual(verdict({"a": self.base}, {"a": busy}, {"a": 1e-4})[0], [])
+
+    def test_does_not_call_faster_slower(self):
+        self.assertEqual(verdict({"a": self.twice}, {"a": self.base}, {"a": 1e-4})[0], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
