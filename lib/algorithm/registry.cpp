@@ -6,6 +6,7 @@
 #include <sixdof/algorithm/exact.h>
 #include <sixdof/algorithm/ist/ist.h>
 #include <sixdof/algorithm/null.h>
+#include <sixdof/algorithm/vps/vps.h>
 #include <sixdof/base/error.h>
 
 namespace sixdof {
@@ -50,6 +51,8 @@ void register_core_algorithms(Registry& registry) {
   registry.add(make_null_algorithm());
   registry.add(make_exact_algorithm());
   registry.add(make_ist_algorithm());
+  registry.add(make_vps_algorithm());
+  registry.add(make_vps_field_algorithm());
 }
 
 }  // namespace sixdof

@@ -1,0 +1,468 @@
+// The inner loops over points, compiled once per instruction set and chosen at run time. Products and sums are separate
+// operations (no fused multiply-add), so all sets round alike.
+// Vectors are kept in structures here, which sets of unknown vector length (SVE, RVV) do not allow; NEON serves them.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sixdof/algorithm/vps/contact.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+
+#include <hwy/highway.h>
+
+#include <sixdof/algorithm/vps/contact.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sixdof::vps {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, PointTree::k_block>;
+using Ints = hn::RebindToSigned<Floats>;
+using Words = hn::RebindToUnsigned<Floats>;
+using F = hn::Vec<Floats>;
+using I = hn::Vec<Ints>;
+
+constexpr Floats k_floats;
+constexpr Ints k_ints;
+constexpr Words k_words;
+
+struct Vec3 {
+  F x, y, z;
+};
+
+HWY_INLINE F splat(float value) { return hn::Set(k_floats, value); }
+HWY_INLINE I splat_int(std::int32_t value) { return hn::Set(k_ints, value); }
+
+HWY_INLINE F dot(const Vec3& a, const Vec3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+HWY_INLINE Vec3 scale(F s, const Vec3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
+HWY_INLINE Vec3 minus(const Vec3& a, const Vec3& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+
+HWY_INLINE Vec3 plus(const Vec3& a, const Vec3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
+
+struct Matrix {
+  Vec3 row[3];
+  explicit HWY_INLINE Matrix(const Eigen::Matrix3f& m)
+      : row{{splat(m(0, 0)), splat(m(0, 1)), splat(m(0, 2))},
+            {splat(m(1, 0)), splat(m(1, 1)), splat(m(1, 2))},
+            {splat(m(2, 0)), splat(m(2, 1)), splat(m(2, 2))}} {}
+  HWY_INLINE Vec3 operator*(const Vec3& v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
+};
+
+/// Rows of a block, from the given lane on.
+struct PointLanes {
+  const float* at;
+  HWY_INLINE F row(std::size_t r) const { return hn::LoadU(k_floats, at + r * PointTree::k_block); }
+  HWY_INLINE Vec3 position() const { return {row(0), row(1), row(2)}; }
+  HWY_INLINE F weight() const { return row(3); }
+  HWY_INLINE Vec3 normal() const { return {row(4), row(5), row(6)}; }
+};
+
+/// The voxels that points stand in, moved into the grid: its outermost voxels are as far outside as all beyond.
+struct Cell {
+  Vec3 low;   ///< Least corner, in voxel coordinates.
+  I brick;    ///< Index into the table of bricks.
+  I x, y, z;  ///< Place inside the brick, 0 .. 7.
+};
+
+class GridLookup {
+ public:
+  explicit HWY_INLINE GridLookup(const VoxelGrid& grid)
+      : last_{splat(static_cast<float>(grid.voxels().x() - 1)), splat(static_cast<float>(grid.voxels().y() - 1)),
+              splat(static_cast<float>(grid.voxels().z() - 1))},
+        row_(splat_int(grid.bricks.x())),
+        slice_(splat_int(grid.bricks.x() * grid.bricks.y())) {}
+
+  HWY_INLINE Cell cell(const Vec3& q) const {
+    Cell c;
+    const F zero = hn::Zero(k_floats);
+    c.low = {hn::Min(hn::Max(hn::Floor(q.x), zero), last_.x), hn::Min(hn::Max(hn::Floor(q.y), zero), last_.y),
+             hn::Min(hn::Max(hn::Floor(q.z), zero), last_.z)};
+    const I x = hn::ConvertTo(k_ints, c.low.x), y = hn::ConvertTo(k_ints, c.low.y), z = hn::ConvertTo(k_ints, c.low.z);
+    c.brick = hn::Add(hn::Add(hn::ShiftRight<3>(x), hn::Mul(hn::ShiftRight<3>(y), row_)),
+                      hn::Mul(hn::ShiftRight<3>(z), slice_));
+    const I seven = splat_int(VoxelGrid::k_edge - 1);
+    c.x = hn::And(x, seven);
+    c.y = hn::And(y, seven);
+    c.z = hn::And(z, seven);
+    return c;
+  }
+
+ private:
+  Vec3 last_;
+  I row_, slice_;
+};
+
+HWY_INLINE Vec3 transform(const Matrix& m, const Vec3& offset, const Vec3& p) {
+  const Vec3 v = m * p;
+  return {hn::Add(v.x, offset.x), hn::Add(v.y, offset.y), hn::Add(v.z, offset.z)};
+}
+
+/// Sums of some lanes over a leaf, in registers.
+struct LaneSums {
+  Vec3 force, torque;
+  F contacts, depth;
+
+  HWY_INLINE void add(const Vec3& f, const Vec3& t, F contact, F d) {
+    force = plus(force, f);
+    torque = plus(torque, t);
+    contacts = hn::Add(contacts, contact);
+    depth = hn::Max(depth, d);
+  }
+};
+
+/// Eight lanes of sums of single precision, moved to double precision after every batch of leaves.
+class Accumulator {
+ public:
+  static constexpr std::size_t k_sums = 7;  ///< force, torque, contacts
+  static constexpr std::size_t k_block = PointTree::k_block;
+
+  /// Sums so far of the lanes from `lane` on.
+  HWY_INLINE LaneSums load(std::size_t lane) const {
+    const float* const at = batch_ + lane;
+    const auto sum = [&](std::size_t i) HWY_ATTR { return hn::Load(k_floats, at + i * k_block); };
+    return {{sum(0), sum(1), sum(2)}, {sum(3), sum(4), sum(5)}, sum(6), hn::Load(k_floats, depth_ + lane)};
+  }
+  HWY_INLINE void store(std::size_t lane, const LaneSums& sums) {
+    float* const at = batch_ + lane;
+    hn::Store(sums.force.x, k_floats, at);
+    hn::Store(sums.force.y, k_floats, at + k_block);
+    hn::Store(sums.force.z, k_floats, at + 2 * k_block);
+    hn::Store(sums.torque.x, k_floats, at + 3 * k_block);
+    hn::Store(sums.torque.y, k_floats, at + 4 * k_block);
+    hn::Store(sums.torque.z, k_floats, at + 5 * k_block);
+    hn::Store(sums.contacts, k_floats, at + 6 * k_block);
+    hn::Store(sums.depth, k_floats, depth_ + lane);
+  }
+  HWY_INLINE void begin(std::uint32_t leaf) {
+    if (leaf / k_batch_leaves == current_) return;
+    flush();
+    current_ = leaf / k_batch_leaves;
+  }
+
+  ContactSums finish() {
+    flush();
+    double sum[k_sums] = {};
+    ContactSums result;
+    for (std::size_t s = 0; s < k_sums; ++s) {
+      for (std::size_t lane = 0; lane < k_block; ++lane) sum[s] += total_[s * k_block + lane];
+    }
+    for (const float depth : depth_) result.depth = depth > result.depth ? static_cast<double>(depth) : result.depth;
+    result.force = {sum[0], sum[1], sum[2]};
+    result.torque = {sum[3], sum[4], sum[5]};
+    result.contacts = sum[6];
+    return result;
+  }
+
+ private:
+  void flush() {
+    for (std::size_t i = 0; i < k_sums * k_block; ++i) {
+      total_[i] += static_cast<double>(batch_[i]);
+      batch_[i] = 0.0f;
+    }
+  }
+
+  alignas(64) float batch_[k_sums * k_block] = {};
+  alignas(64) float depth_[k_block] = {};
+  alignas(64) double total_[k_sums * k_block] = {};
+  std::uint32_t current_ = 0;
+};
+
+class LayerLoop {
+ public:
+  LayerLoop(const VoxelMap& map, const PointTree& tree, const Placement& placement)
+      : lookup_(map.grid),
+        scaled_(placement.scaled),
+        rotation_(placement.rotation),
+        offset_{splat(placement.center.x()), splat(placement.center.y()), splat(placement.center.z())},
+        blocks_(tree.blocks()),
+        table_(map.table.data()),
+        words_(reinterpret_cast<const std::int32_t*>(map.words.data())),
+        layer_bits_(map.layer_bits) {}
+
+  /// Layers of the voxels, one per lane.
+  HWY_INLINE I layers(const Cell& cell) const {
+    const I entry = hn::Max(hn::GatherIndex(k_ints, table_, cell.brick), hn::Zero(k_ints));
+    const I place = hn::Or(hn::Or(cell.x, hn::ShiftLeft<3>(cell.y)), hn::ShiftLeft<6>(cell.z));
+    const I index = hn::Or(hn::ShiftLeft<9>(entry), place);
+    if (layer_bits_ == 8) {
+      const I word = hn::GatherIndex(k_ints, words_, hn::ShiftRight<2>(index));
+      const I up = hn::Sub(splat_int(24), hn::ShiftLeft<3>(hn::And(index, splat_int(3))));
+      return hn::ShiftRight<24>(hn::Shl(word, up));
+    }
+    const I word = hn::GatherIndex(k_ints, words_, hn::ShiftRight<1>(index));
+    const I up = hn::Sub(splat_int(16), hn::ShiftLeft<4>(hn::And(index, splat_int(1))));
+    return hn::ShiftRight<16>(hn::Shl(word, up));
+  }
+
+  template <bool k_local>
+  HWY_INLINE void add(const PointLanes& points, LaneSums& sums) const {
+    const Vec3 p = points.position();
+    const Vec3 q = transform(scaled_, offset_, p);
+    const Cell cell = lookup_.cell(q);
+    const I layer = layers(cell);
+    const auto hit_int = hn::Gt(layer, splat_int(-1));
+    if (hn::AllFalse(k_ints, hit_int)) return;
+    const F w = points.weight();
+    const F zero = hn::Zero(k_floats);
+    const auto hit = hn::And(hn::RebindMask(k_floats, hit_int), hn::Gt(w, zero));
+    const Vec3 n = points.normal();
+    F depth = hn::ConvertTo(k_floats, layer);
+    if constexpr (k_local) {
+      const F half = splat(0.5f);
+      const Vec3 center{hn::Add(cell.low.x, half), hn::Add(cell.low.y, half), hn::Add(cell.low.z, half)};
+      depth = hn::Max(hn::Add(depth, dot(rotation_ * n, minus(center, q))), zero);
+    }
+    depth = hn::IfThenElseZero(hit, depth);
+    const F push = hn::Mul(w, depth);
+    sums.add(scale(push, n), scale(push, cross(p, n)), hn::IfThenElseZero(hit, splat(1.0f)), depth);
+  }
+
+  HWY_INLINE bool hits(const PointLanes& points) const {
+    const I layer = layers(lookup_.cell(transform(scaled_, offset_, points.position())));
+    return !hn::AllFalse(k_ints, hn::Gt(layer, splat_int(-1)));
+  }
+
+ private:
+  GridLookup lookup_;
+  Matrix scaled_, rotation_;
+  Vec3 offset_;
+  const float* blocks_;
+  const std::int32_t* table_;
+  const std::int32_t* words_;
+  int layer_bits_;
+};
+
+class FieldLoop {
+ public:
+  FieldLoop(const DistanceField& field, const Placement& placement)
+      : lookup_(field.grid),
+        scaled_(placement.scaled),
+        offset_{splat(placement.center.x()), splat(placement.center.y()), splat(placement.center.z())},
+        table_(field.table.data()),
+        samples_(field.samples.data()) {}
+
+  HWY_INLINE void add(const PointLanes& points, LaneSums& sums) const {
+    const Vec3 arm = scaled_ * points.position();
+    Value value;
+    if (!evaluate(plus(arm, offset_), value)) return;
+    const F w = points.weight();
+    const F zero = hn::Zero(k_floats);
+    const auto hit = hn::And(hn::Lt(value.distance, zero), hn::Gt(w, zero));
+    const F depth = hn::IfThenElseZero(hit, hn::Neg(value.distance));
+    const Vec3 push = scale(hn::Mul(w, depth), value.gradient);
+    sums.add(push, cross(arm, push), hn::IfThenElseZero(hit, splat(1.0f)), depth);
+  }
+
+  HWY_INLINE bool hits(const PointLanes& points) const {
+    Value value;
+    return evaluate(transform(scaled_, offset_, points.position()), value) &&
+           !hn::AllFalse(k_floats, hn::Lt(value.distance, hn::Zero(k_floats)));
+  }
+
+ private:
+  struct Value {
+    F distance;
+    Vec3 gradient;
+  };
+
+  /// Weights and slopes of a quadratic B-spline about the nearest sample, which is the voxel's centre.
+  struct Spline {
+    F weight[3], slope[3];
+    /// A coordinate beyond the grid counts as on its border, where the field is positive.
+    HWY_INLINE Spline(F q, F low) {
+      const F half = splat(0.5f);
+      const F from_low = hn::Min(hn::Max(hn::Sub(q, low), hn::Zero(k_floats)), splat(1.0f));
+      const F u = hn::Sub(from_low, half), below = hn::Sub(half, u), above = hn::Add(half, u);
+      weight[0] = hn::Mul(half, hn::Mul(below, below));
+      weight[1] = hn::Sub(splat(0.75f), hn::Mul(u, u));
+      weight[2] = hn::Mul(half, hn::Mul(above, above));
+      slope[0] = hn::Neg(below);
+      slope[1] = hn::Mul(splat(-2.0f), u);
+      slope[2] = above;
+    }
+  };
+
+  /// The splines of all lanes, laid out to be read lane by lane.
+  struct SplineTable {
+    static constexpr std::size_t k_values = 6;
+    alignas(64) float value[3 * k_values * PointTree::k_block];
+    HWY_INLINE void set(std::size_t axis, const Spline& spline) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        hn::Store(spline.weight[i], k_floats, value + (axis * k_values + i) * PointTree::k_block);
+        hn::Store(spline.slope[i], k_floats, value + (axis * k_values + 3 + i) * PointTree::k_block);
+      }
+    }
+    HWY_INLINE float weight(std::size_t axis, std::size_t i, std::size_t lane) const {
+      return value[(axis * k_values + i) * PointTree::k_block + lane];
+    }
+    HWY_INLINE float slope(std::size_t axis, std::size_t i, std::size_t lane) const {
+      return weight(axis, 3 + i, lane);
+    }
+  };
+
+  /// False if the field is positive in all lanes without looking closer; else the field and its gradient, 1 and 0 in
+  /// the lanes where it is. Each lane reads 9 rows of samples, four floats at a time of which three count: that is
+  /// faster than gathering 27 samples in all lanes at once.
+  HWY_INLINE bool evaluate(const Vec3& q, Value& result) const {
+    constexpr int k = DistanceField::k_samples;
+    constexpr std::size_t k_block = PointTree::k_block, k_columns = 4;
+    const Cell cell = lookup_.cell(q);
+    const I brick = hn::GatherIndex(k_ints, table_, cell.brick);
+    if (hn::AllFalse(k_ints, hn::Gt(brick, hn::Zero(k_ints)))) return false;
+    const I place = hn::Add(cell.x, hn::Add(hn::Mul(cell.y, splat_int(k)), hn::Mul(cell.z, splat_int(k * k))));
+    const I first = hn::Add(hn::Mul(brick, splat_int(DistanceField::k_brick_samples)), place);
+    alignas(64) std::int32_t start[k_block];
+    hn::Store(first, k_ints, start);
+    SplineTable table;
+    table.set(0, Spline(q.x, cell.low.x));
+    table.set(1, Spline(q.y, cell.low.y));
+    table.set(2, Spline(q.z, cell.low.z));
+    alignas(64) float out[4][k_block];
+    for (std::size_t lane = 0; lane < hn::Lanes(k_floats); ++lane) {
+      if (start[lane] < DistanceField::k_brick_samples) {  // brick 0
+        out[0][lane] = 1.0f;
+        out[1][lane] = out[2][lane] = out[3][lane] = 0.0f;
+        continue;
+      }
+      // Four columns of the rows: along x the samples stay apart until the end.
+      constexpr hn::CappedTag<float, k_columns> columns;
+      alignas(16) float v[k_columns], vy[k_columns], vz[k_columns];
+      for (std::size_t column = 0; column < k_columns; column += hn::Lanes(columns)) {
+        auto value = hn::Zero(columns), along_y = value, along_z = value;
+        for (std::size_t z = 0; z < 3; ++z) {
+          auto line = hn::Zero(columns), line_y = line;
+          for (std::size_t y = 0; y < 3; ++y) {
+            const auto row = hn::LoadU(columns, samples_ + static_cast<std::size_t>(start[lane]) + column +
+                                                    static_cast<std::size_t>(k) * (k * z + y));
+            line = hn::Add(line, hn::Mul(hn::Set(columns, table.weight(1, y, lane)), row));
+            line_y = hn::Add(line_y, hn::Mul(hn::Set(columns, table.slope(1, y, lane)), row));
+          }
+          const auto weight = hn::Set(columns, table.weight(2, z, lane));
+          const auto slope = hn::Set(columns, table.slope(2, z, lane));
+          value = hn::Add(value, hn::Mul(weight, line));
+          along_y = hn::Add(along_y, hn::Mul(weight, line_y));
+          along_z = hn::Add(along_z, hn::Mul(slope, line));
+        }
+        hn::Store(value, columns, v + column);
+        hn::Store(along_y, columns, vy + column);
+        hn::Store(along_z, columns, vz + column);
+      }
+      const float w0 = table.weight(0, 0, lane), w1 = table.weight(0, 1, lane), w2 = table.weight(0, 2, lane);
+      out[0][lane] = w0 * v[0] + w1 * v[1] + w2 * v[2];
+      out[1][lane] = table.slope(0, 0, lane) * v[0] + table.slope(0, 1, lane) * v[1] + table.slope(0, 2, lane) * v[2];
+      out[2][lane] = w0 * vy[0] + w1 * vy[1] + w2 * vy[2];
+      out[3][lane] = w0 * vz[0] + w1 * vz[1] + w2 * vz[2];
+    }
+    result = {hn::Load(k_floats, out[0]),
+              {hn::Load(k_floats, out[1]), hn::Load(k_floats, out[2]), hn::Load(k_floats, out[3])}};
+    return true;
+  }
+
+  GridLookup lookup_;
+  Matrix scaled_;
+  Vec3 offset_;
+  const std::int32_t* table_;
+  const float* samples_;
+};
+
+/// Calls add(lanes, sums) for all points of the leaves.
+template <class Add>
+HWY_INLINE ContactSums sum_leaves(const PointTree& tree, std::span<const std::uint32_t> leaves, const Add& add) {
+  constexpr std::size_t k_stride = PointTree::k_rows * PointTree::k_block;
+  Accumulator sums;
+  for (const std::uint32_t leaf : leaves) {
+    sums.begin(leaf);
+    const float* const first = tree.blocks() + leaf * PointTree::k_leaf_blocks * k_stride;
+    for (std::size_t lane = 0; lane < PointTree::k_block; lane += hn::Lanes(k_floats)) {
+      LaneSums lanes = sums.load(lane);
+      for (std::size_t b = 0; b < PointTree::k_leaf_blocks; ++b) add(PointLanes{first + b * k_stride + lane}, lanes);
+      sums.store(lane, lanes);
+    }
+  }
+  return sums.finish();
+}
+
+/// Does hits(lanes) hold for some points of the leaves?
+template <class Hits>
+HWY_INLINE bool any_point(const PointTree& tree, std::span<const std::uint32_t> leaves, const Hits& hits) {
+  constexpr std::size_t k_stride = PointTree::k_rows * PointTree::k_block;
+  for (const std::uint32_t leaf : leaves) {
+    const float* const first = tree.blocks() + leaf * PointTree::k_leaf_blocks * k_stride;
+    for (std::size_t b = 0; b < PointTree::k_leaf_blocks; ++b) {
+      for (std::size_t lane = 0; lane < PointTree::k_block; lane += hn::Lanes(k_floats)) {
+        if (hits(PointLanes{first + b * k_stride + lane})) return true;
+      }
+    }
+  }
+  return false;
+}
+
+ContactSums sum_layers_simd(const VoxelMap& map, const PointTree& tree, const Placement& placement, LayerDepth depth,
+                            std::span<const std::uint32_t> leaves) {
+  const LayerLoop loop(map, tree, placement);
+  if (depth == LayerDepth::layers) {
+    return sum_leaves(tree, leaves, [&](PointLanes points, LaneSums& sums) HWY_ATTR { loop.add<false>(points, sums); });
+  }
+  return sum_leaves(tree, leaves, [&](PointLanes points, LaneSums& sums) HWY_ATTR { loop.add<true>(points, sums); });
+}
+
+bool touches_layers_simd(const VoxelMap& map, const PointTree& tree, const Placement& placement,
+                         std::span<const std::uint32_t> leaves) {
+  const LayerLoop loop(map, tree, placement);
+  return any_point(tree, leaves, [&](PointLanes points) HWY_ATTR { return loop.hits(points); });
+}
+
+ContactSums sum_field_simd(const DistanceField& field, const PointTree& tree, const Placement& placement,
+                           std::span<const std::uint32_t> leaves) {
+  const FieldLoop loop(field, placement);
+  return sum_leaves(tree, leaves, [&](PointLanes points, LaneSums& sums) HWY_ATTR { loop.add(points, sums); });
+}
+
+bool touches_field_simd(const DistanceField& field, const PointTree& tree, const Placement& placement,
+                        std::span<const std::uint32_t> leaves) {
+  const FieldLoop loop(field, placement);
+  return any_point(tree, leaves, [&](PointLanes points) HWY_ATTR { return loop.hits(points); });
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sixdof::vps
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sixdof::vps {
+
+HWY_EXPORT(sum_layers_simd);
+HWY_EXPORT(touches_layers_simd);
+HWY_EXPORT(sum_field_simd);
+HWY_EXPORT(touches_field_simd);
+
+ContactSums sum_layers(const VoxelMap& map, const PointTree& tree, const Placement& placement, LayerDepth depth,
+                       std::span<const std::uint32_t> leaves) {
+  return HWY_DYNAMIC_DISPATCH(sum_layers_simd)(map, tree, placement, depth, leaves);
+}
+
+bool touches_layers(const VoxelMap& map, const PointTree& tree, const Placement& placement,
+                    std::span<const std::uint32_t> leaves) {
+  return HWY_DYNAMIC_DISPATCH(touches_layers_simd)(map, tree, placement, leaves);
+}
+
+ContactSums sum_field(const DistanceField& field, const PointTree& tree, const Placement& placement,
+                      std::span<const std::uint32_t> leaves) {
+  return HWY_DYNAMIC_DISPATCH(sum_field_simd)(field, tree, placement, leaves);
+}
+
+bool touches_field(const DistanceField& field, const PointTree& tree, const Placement& placement,
+                   std::span<const std::uint32_t> leaves) {
+  return HWY_DYNAMIC_DISPATCH(touches_field_simd)(field, tree, placement, leaves);
+}
+
+}  // namespace sixdof::vps
+#endif  // HWY_ONCE

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <Eigen/Core>
+
+#include <sixdof/algorithm/vps/field.h>
+#include <sixdof/algorithm/vps/point_tree.h>
+#include <sixdof/algorithm/vps/voxelmap.h>
+
+namespace sixdof::vps {
+
+/// Sums over the colliding points. Points come in blocks of eight; each of the eight lanes has its own sum, rounded to
+/// single precision within a batch of k_batch_leaves leaves and to double precision beyond, and lanes are added last:
+/// the same bits on every instruction set, and whether or not leaves without contact are left out.
+struct ContactSums {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< Weight x voxels.
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< About the tree's center; see the functions for its unit.
+  double contacts = 0.0;                             ///< Number of colliding points.
+  double depth = 0.0;                                ///< Greatest penetration of a point, in voxels.
+};
+
+constexpr std::uint32_t k_batch_leaves = 4;
+
+/// How a point's penetration p is read from the layer v of its voxel (v >= 0), in voxels.
+enum class LayerDepth {
+  layers,            ///< p = v
+  layers_and_local,  ///< p = max(0, n . (voxel centre - point) + v), n the point's inward normal
+};
+
+/// Sum of w p n and of w p (P - C) x n over the points with v >= 0, in the POINTS' frame; torque in weight x voxels x
+/// length.
+/// @param leaves ascending
+ContactSums sum_layers(const VoxelMap& map, const PointTree& tree, const Placement& placement, LayerDepth depth,
+                       std::span<const std::uint32_t> leaves);
+
+/// Does one of these leaves hold a point with v >= 0?
+bool touches_layers(const VoxelMap& map, const PointTree& tree, const Placement& placement,
+                    std::span<const std::uint32_t> leaves);
+
+/// Sum of -w f grad f and of (P - C) x (-w f grad f) over the points where the field f is negative, in the VOXELMAP's
+/// frame and all in voxels: minus the gradient of the energy sum w f^2 / 2 by translation and rotation of the points.
+ContactSums sum_field(const DistanceField& field, const PointTree& tree, const Placement& placement,
+                      std::span<const std::uint32_t> leaves);
+
+/// Does one of these leaves hold a point where the field is negative?
+bool touches_field(const DistanceField& field, const PointTree& tree, const Placement& placement,
+                   std::span<const std::uint32_t> leaves);
+
+}  // namespace sixdof::vps

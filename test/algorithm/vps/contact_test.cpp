@@ -1,0 +1,246 @@
+#include <sixdof/algorithm/vps/contact.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include "bodies.h"
+
+namespace sixdof::vps {
+namespace {
+
+using vps_test::generic_pose;
+using vps_test::moved;
+
+/// One lane after the other in plain C++, in the order of additions that contact.h promises.
+class PlainSums {
+ public:
+  explicit PlainSums(const PointTree& tree) : tree_(tree) {}
+
+  /// visit(position, normal, weight, force, torque, contact, depth) sets the last four.
+  template <class Visit>
+  ContactSums over_all_leaves(const Visit& visit) {
+    for (std::uint32_t leaf = 0; leaf < tree_.leaves(); ++leaf) {
+      if (leaf % k_batch_leaves == 0) flush();
+      for (std::size_t i = 0; i < PointTree::k_leaf_points; ++i) {
+        const std::size_t block = leaf * PointTree::k_leaf_blocks + i / PointTree::k_block,
+                          lane = i % PointTree::k_block;
+        const auto row = [&](std::size_t r) {
+          return tree_.blocks()[(block * PointTree::k_rows + r) * PointTree::k_block + lane];
+        };
+        float term[7] = {};
+        float depth = 0.0f;
+        if (!visit({row(0), row(1), row(2)}, {row(4), row(5), row(6)}, row(3), term, depth)) continue;
+        for (std::size_t s = 0; s < 7; ++s) batch_[s][lane] += term[s];
+        depth_ = std::max(depth_, depth);
+      }
+    }
+    flush();
+    double sum[7] = {};
+    for (std::size_t s = 0; s < 7; ++s) {
+      for (std::size_t lane = 0; lane < PointTree::k_block; ++lane) sum[s] += total_[s][lane];
+    }
+    return {{sum[0], sum[1], sum[2]}, {sum[3], sum[4], sum[5]}, sum[6], static_cast<double>(depth_)};
+  }
+
+ private:
+  void flush() {
+    for (std::size_t s = 0; s < 7; ++s) {
+      for (std::size_t lane = 0; lane < PointTree::k_block; ++lane) {
+        total_[s][lane] += static_cast<double>(batch_[s][lane]);
+        batch_[s][lane] = 0.0f;
+      }
+    }
+  }
+
+  const PointTree& tree_;
+  float batch_[7][PointTree::k_block] = {};
+  double total_[7][PointTree::k_block] = {};
+  float depth_ = 0.0f;
+};
+
+float dot(const float (&a)[3], const float (&b)[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+void transform(const Eigen::Matrix3f& m, const float (&p)[3], float (&out)[3]) {
+  for (int i = 0; i < 3; ++i) out[i] = m(i, 0) * p[0] + m(i, 1) * p[1] + m(i, 2) * p[2];
+}
+
+void cross(const float (&a)[3], const float (&b)[3], float (&out)[3]) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    out[i] = a[j] * b[k] - a[k] * b[j];
+  }
+}
+
+ContactSums plain_layers(const VoxelMap& map, const PointTree& tree, const Placement& placement, LayerDepth kind) {
+  return PlainSums(tree).over_all_leaves(
+      [&](const float(&p)[3], const float(&n)[3], float w, float(&term)[7], float& depth) {
+        float q[3], low[3], rotated[3], arm[3];
+        int voxel[3];
+        transform(placement.scaled, p, q);
+        for (int axis = 0; axis < 3; ++axis) {
+          q[axis] += placement.center[axis];
+          low[axis] = std::min(std::max(std::floor(q[axis]), 0.0f), static_cast<float>(map.grid.voxels()[axis] - 1));
+          voxel[axis] = static_cast<int>(low[axis]);
+        }
+        const int v = map.layer(voxel[0], voxel[1], voxel[2]);
+        if (v < 0 || w == 0.0f) return false;
+        depth = static_cast<float>(v);
+        if (kind == LayerDepth::layers_and_local) {
+          const float eps[3] = {low[0] + 0.5f - q[0], low[1] + 0.5f - q[1], low[2] + 0.5f - q[2]};
+          transform(placement.rotation, n, rotated);
+          depth = std::max(depth + dot(rotated, eps), 0.0f);
+        }
+        cross(p, n, arm);
+        for (std::size_t i = 0; i < 3; ++i) {
+          term[i] = w * depth * n[i];
+          term[3 + i] = w * depth * arm[i];
+        }
+        term[6] = 1.0f;
+        return true;
+      });
+}
+
+ContactSums plain_field(const DistanceField& field, const PointTree& tree, const Placement& placement) {
+  return PlainSums(tree).over_all_leaves(
+      [&](const float(&p)[3], const float(&)[3], float w, float(&term)[7], float& depth) {
+        float arm[3], weight[3][3], slope[3][3], push[3], turn[3];
+        int voxel[3];
+        transform(placement.scaled, p, arm);
+        for (int axis = 0; axis < 3; ++axis) {
+          const float q = arm[axis] + placement.center[axis];
+          const float low = std::min(std::max(std::floor(q), 0.0f), static_cast<float>(field.grid.voxels()[axis] - 1));
+          voxel[axis] = static_cast<int>(low);
+          const float u = std::min(std::max(q - low, 0.0f), 1.0f) - 0.5f;
+          const float below = 0.5f - u, above = 0.5f + u;
+          const float weights[3] = {0.5f * (below * below), 0.75f - u * u, 0.5f * (above * above)};
+          const float slopes[3] = {-below, -2.0f * u, above};
+          for (int i = 0; i < 3; ++i) {
+            weight[axis][i] = weights[i];
+            slope[axis][i] = slopes[i];
+          }
+        }
+        const std::int32_t brick = field.table[field.grid.brick_of(voxel[0], voxel[1], voxel[2])];
+        if (brick == 0 || w == 0.0f) return false;
+        constexpr int k = DistanceField::k_samples;
+        const float* const corner = field.samples.data() + brick * DistanceField::k_brick_samples +
+                                    ((voxel[2] % 8) * k + voxel[1] % 8) * k + voxel[0] % 8;
+        float value[3] = {}, along_y[3] = {}, along_z[3] = {};  // by column x
+        for (int x = 0; x < 3; ++x) {
+          for (int z = 0; z < 3; ++z) {
+            float line = 0.0f, line_y = 0.0f;
+            for (int y = 0; y < 3; ++y) {
+              line += weight[1][y] * corner[(z * k + y) * k + x];
+              line_y += slope[1][y] * corner[(z * k + y) * k + x];
+            }
+            value[x] += weight[2][z] * line;
+            along_y[x] += weight[2][z] * line_y;
+            along_z[x] += slope[2][z] * line;
+          }
+        }
+        const float distance = dot(weight[0], value);
+        if (!(distance < 0.0f)) return false;
+        const float gradient[3] = {dot(slope[0], value), dot(weight[0], along_y), dot(weight[0], along_z)};
+        depth = -distance;
+        for (std::size_t i = 0; i < 3; ++i) push[i] = w * depth * gradient[i];
+        cross(arm, push, turn);
+        for (std::size_t i = 0; i < 3; ++i) {
+          term[i] = push[i];
+          term[3 + i] = turn[i];
+        }
+        term[6] = 1.0f;
+        return true;
+      });
+}
+
+void expect_same_bits(const ContactSums& a, const ContactSums& b) {
+  EXPECT_EQ(a.force, b.force);
+  EXPECT_EQ(a.torque, b.torque);
+  EXPECT_EQ(a.contacts, b.contacts);
+  EXPECT_EQ(a.depth, b.depth);
+}
+
+class Contact : public ::testing::Test {
+ protected:
+  Contact() {
+    all_.resize(tree_.leaves());
+    std::iota(all_.begin(), all_.end(), 0u);
+  }
+  ~Contact() override { hwy::SetSupportedTargetsForTest(0); }
+
+  Placement placement(const VoxelMap& map, std::uint64_t seed, double reach) const {
+    Pose X = generic_pose(seed, reach);
+    X.t += a_.center() - X.R * b_.center();
+    return Placement::of(X, tree_.center(), map.grid);
+  }
+
+  /// From deep overlap to far beyond the grid.
+  static constexpr double k_reaches[] = {0.05, 0.4, 0.9, 1.2, 1.6, 2.0, 2.4, 5.0, 1e4};
+
+  Mesh a_ = moved(make_bumpy_sphere({.amplitude = 0.3}, 600), generic_pose(41, 2.0));
+  Mesh b_ = moved(make_bumpy_sphere({.radius = 0.9, .waves = 1.1}, 500), generic_pose(42, 1.0));
+  VoxelMap map_ = VoxelMap::build(a_, 0.02 * a_.diagonal(), DistanceField::k_border);
+  VoxelMap wide_ = VoxelMap::build(a_, 0.02 * a_.diagonal(), 200);  // 16 bits
+  DistanceField field_ = DistanceField::build(a_, map_);
+  PointTree tree_{PointShell::build(b_, 0.02 * b_.diagonal()), b_.center(), true};
+  std::vector<std::uint32_t> all_;
+};
+
+TEST_F(Contact, EveryInstructionSetGivesTheBitsOfPlainArithmetic) {
+  ASSERT_EQ(wide_.layer_bits, 16);
+  ASSERT_NE(tree_.points() % PointTree::k_leaf_points, 0u);  // the last leaf has padding
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    double contacts = 0.0;
+    std::uint64_t seed = 100;
+    for (const double reach : k_reaches) {
+      const Placement place = placement(map_, ++seed, reach), place_wide = placement(wide_, seed, reach);
+      for (const LayerDepth kind : {LayerDepth::layers, LayerDepth::layers_and_local}) {
+        const ContactSums expected = plain_layers(map_, tree_, place, kind);
+        expect_same_bits(sum_layers(map_, tree_, place, kind, all_), expected);
+        expect_same_bits(sum_layers(wide_, tree_, place_wide, kind, all_),
+                         plain_layers(wide_, tree_, place_wide, kind));
+        EXPECT_EQ(touches_layers(map_, tree_, place, all_), expected.contacts > 0.0);
+        contacts += expected.contacts;
+      }
+      const ContactSums expected = plain_field(field_, tree_, place);
+      expect_same_bits(sum_field(field_, tree_, place, all_), expected);
+      EXPECT_EQ(touches_field(field_, tree_, place, all_), expected.contacts > 0.0);
+      contacts += expected.contacts;
+    }
+    EXPECT_GT(contacts, 1000.0);
+  }
+}
+
+TEST_F(Contact, CullingChangesNoBitAndLeavesOutMuch) {
+  std::vector<std::uint32_t> some;
+  std::size_t left_out = 0, taken = 0;
+  for (std::uint64_t seed = 200; seed < 400; ++seed) {
+    const double reach = k_reaches[seed % std::size(k_reaches)];
+    const Placement place = placement(map_, seed, reach);
+    tree_.cull(map_, place, 0.0, some);
+    ASSERT_TRUE(std::is_sorted(some.begin(), some.end()));
+    expect_same_bits(sum_layers(map_, tree_, place, LayerDepth::layers_and_local, some),
+                     sum_layers(map_, tree_, place, LayerDepth::layers_and_local, all_));
+    left_out += all_.size() - some.size();
+    taken += some.size();
+    tree_.cull(map_, place, DistanceField::k_reach, some);
+    expect_same_bits(sum_field(field_, tree_, place, some), sum_field(field_, tree_, place, all_));
+  }
+  // Two poses out of nine overlap so deeply that nearly all points are in contact.
+  EXPECT_GT(2 * left_out, taken);
+  EXPECT_GT(taken, 0u);
+}
+
+TEST_F(Contact, OneSphereTellsApartWhatIsFar) {
+  std::vector<std::uint32_t> some{7};
+  tree_.cull(map_, placement(map_, 500, 3.5), 0.0, some);
+  EXPECT_TRUE(some.empty());
+}
+
+}  // namespace
+}  // namespace sixdof::vps

@@ -1,0 +1,325 @@
+#include <sixdof/algorithm/vps/vps.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/algorithm/vps/voxelmap.h>
+#include <sixdof/base/error.h>
+
+#include "bodies.h"
+
+namespace sixdof {
+namespace {
+
+namespace fs = std::filesystem;
+using vps_test::ball;
+using vps_test::box;
+using vps_test::generic_pose;
+using vps_test::inside_out;
+using vps_test::moved;
+
+std::unique_ptr<Algorithm> make(const std::string& name) {
+  return name == "vps" ? make_vps_algorithm() : make_vps_field_algorithm();
+}
+
+std::unique_ptr<Query> prepare(const std::string& name, const Mesh& a, const Mesh& b,
+                               const std::vector<std::string>& assignments) {
+  const auto algorithm = make(name);
+  Settings settings = algorithm->settings();
+  settings.set_all(assignments);
+  return algorithm->prepare(a, b, settings);
+}
+
+double angle(const Eigen::Vector3d& u, const Eigen::Vector3d& v) { return std::atan2(u.cross(v).norm(), u.dot(v)); }
+
+/// Nothing is kept on disk unless the test says so.
+class Vps : public ::testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override { ::setenv("SIXDOF_CACHE", "off", 1); }
+  void TearDown() override { ::unsetenv("SIXDOF_CACHE"); }
+};
+
+/// B pressed by `depth` into the middle of A's top face (+z), each body in a mesh frame of its own.
+struct Pressed {
+  Pressed(const Mesh& a_plain, const Mesh& b_plain, double b_bottom, double a_top, double depth) {
+    const Pose to_a = generic_pose(51, 0.8), to_b = generic_pose(52, 0.6);
+    a = std::make_unique<Mesh>(moved(a_plain, to_a));
+    b = std::make_unique<Mesh>(moved(b_plain, to_b));
+    const Pose plain{Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+                     {0.05, -0.03, a_top - b_bottom - depth}};
+    X = to_a * plain * to_b.inverse();
+    up = to_a.R.col(2);
+  }
+  std::unique_ptr<Mesh> a, b;
+  Pose X;
+  Eigen::Vector3d up;  ///< A's outward normal there, in A's frame.
+};
+
+std::vector<std::string> resolution(double a, double b) {
+  return {"voxel_size=" + std::to_string(a), "point_spacing=" + std::to_string(b)};
+}
+
+/// Largest error of a point's depth, in voxels: of its layer (vps), or of the rounded edges of the field.
+double depth_error(const std::string& algorithm) { return algorithm == "vps" ? vps::VoxelMap::k_layer_error : 0.25; }
+
+TEST_P(Vps, ABoxPressedIntoAFaceFeelsAreaTimesDepth) {
+  const double depth = 0.12, area = 0.8 * 0.6, perimeter = 2.8;
+  const Pressed scene(box({2.0, 1.6, 1.2}), box({0.8, 0.6, 0.7}), -0.35, 0.6, depth);
+  // In the layers' law the walls push level and cancel; in the field's law they are pushed up, like all that is deep.
+  const double force = area * depth + (GetParam() == "vps" ? 0.0 : 0.5 * perimeter * depth * depth);
+  std::vector<double> errors;
+  for (const double voxel : {0.02, 0.01, 0.005}) {
+    const double s = voxel * scene.a->diagonal(), error = depth_error(GetParam()) * s * area;
+    const auto query = prepare(GetParam(), *scene.a, *scene.b, resolution(voxel, 0.02));
+    const Response response = query->respond(scene.X).value;
+    EXPECT_NEAR(response.force.norm(), force, error) << voxel;
+    EXPECT_LT(angle(response.force, scene.up), error / force) << voxel;
+    EXPECT_NEAR(response.penalty, depth, depth_error(GetParam()) * s) << voxel;
+    EXPECT_LT(response.torque.norm(), error * scene.b->diagonal()) << voxel;
+    EXPECT_TRUE(response.reference.isApprox(scene.X * scene.b->center(), 1e-12));
+    EXPECT_TRUE(query->collide(scene.X).value);
+    errors.push_back((response.force - force * scene.up).norm());
+  }
+  constexpr double k_quadrature = 1e-3;  // points stand for cells that the faces' borders cut
+  EXPECT_LT(errors.back(), std::max(0.5 * errors.front(), k_quadrature * force));
+}
+
+TEST_P(Vps, ABallAndAFaceFollowTheirClosedFormsInBothRoles) {
+  const double R = 0.7, h = 0.25, c = R - h, pi = std::numbers::pi;
+  const Pressed scene(box({2.4, 2.0, 1.4}), ball(R, 3000), -R, 0.7, h);
+  // Points on the ball: depth below the face. Layers push along the ball's normals: the volume of the cap; the field
+  // pushes along the face's: the integral of depth over the cap's surface.
+  // Points on the face: depth R - r below the ball's surface. Layers push along the face's normal, the field radially.
+  const double cap = pi * h * h * (3.0 * R - h) / 3.0,
+               disc = pi * (R * (R * R - c * c) - 2.0 / 3.0 * (R * R * R - c * c * c));
+  const bool layers = GetParam() == "vps";
+  const double on_ball = layers ? cap : pi * R * h * h, on_face = layers ? disc : pi * c * h * h;
+  const double contact_area = 2.0 * pi * R * h;
+  constexpr double k_mesh = 0.01;  // the mesh of 3000 triangles lies below the ball by 2 thousandths of R, of h / 2
+  for (const double voxel : {0.01, 0.005}) {
+    for (const bool swapped : {false, true}) {
+      auto knobs = resolution(voxel, 0.01);
+      if (swapped) knobs.push_back("pointshell=a");
+      const double s = voxel * (swapped ? scene.b->diagonal() : scene.a->diagonal());
+      const double force = swapped ? on_face : on_ball,
+                   error = depth_error(GetParam()) * s * contact_area + k_mesh * force;
+      const Response response = prepare(GetParam(), *scene.a, *scene.b, knobs)->respond(scene.X).value;
+      EXPECT_NEAR(response.force.norm(), force, error) << voxel << swapped;
+      EXPECT_LT(angle(response.force, scene.up), 0.5 * error / force) << voxel << swapped;
+      EXPECT_LT(response.torque.norm(), 0.5 * error * R) << voxel << swapped;
+      EXPECT_TRUE(response.reference.isApprox(scene.X * scene.b->center(), 1e-12));
+    }
+  }
+}
+
+TEST_P(Vps, TheSameSceneToldTheOtherWayRoundGivesTheReaction) {
+  const Pressed scene(box({2.0, 1.6, 1.2}), make_bumpy_sphere({.radius = 0.5}, 300), -0.4, 0.6, 0.1);
+  auto knobs = resolution(0.02, 0.02);
+  const Response on_a = prepare(GetParam(), *scene.b, *scene.a, knobs)->respond(scene.X.inverse()).value;
+  knobs.push_back("pointshell=a");
+  const Response on_b = prepare(GetParam(), *scene.a, *scene.b, knobs)->respond(scene.X).value;
+  const Response about_same = on_a.about(scene.b->center());
+  ASSERT_GT(on_b.force.norm(), 1e-3);
+  constexpr double k_rounding = 1e-12;  // of a few products in double precision
+  EXPECT_LT((on_b.force + scene.X.R * about_same.force).norm(), k_rounding);
+  EXPECT_LT((on_b.torque + scene.X.R * about_same.torque).norm(), k_rounding);
+}
+
+TEST_P(Vps, DoesNotDependOnWhereTheMeshesFramesAre) {
+  const Mesh a = moved(make_bumpy_sphere({}, 500), generic_pose(61, 0.3));
+  const Mesh b = moved(make_bumpy_sphere({.radius = 0.8}, 400), generic_pose(62, 0.2));
+  const Pose X = generic_pose(63, 1.3);
+  const auto knobs = resolution(0.02, 0.02);
+  const Response plain = prepare(GetParam(), a, b, knobs)->respond(X).value;
+  ASSERT_GT(plain.force.norm(), 0.01);
+  // Coordinates in single precision: a part in 2^24 of some hundred voxels. `vps` may count single points otherwise,
+  // whose rounding falls across a voxel's face: each one part of some hundred contacts.
+  const double tolerance = GetParam() == "vps" ? 5e-3 : 1e-4;
+
+  const Pose shift_a{Eigen::Matrix3d::Identity(), {17.3, -5.1, 0.77}},
+      shift_b{Eigen::Matrix3d::Identity(), {-3.9, 8.2, 2.6}};
+  const Mesh a_shifted = moved(a, shift_a), b_shifted = moved(b, shift_b);
+  const Response shifted =
+      prepare(GetParam(), a_shifted, b_shifted, knobs)->respond(shift_a * X * shift_b.inverse()).value;
+  const double force = tolerance * plain.force.norm(), torque = force * b.diagonal();
+  EXPECT_LT((shifted.force - plain.force).norm(), force);
+  EXPECT_LT((shifted.torque - plain.torque).norm(), torque);
+
+  // A turned by a quarter, which maps its voxels to voxels.
+  Pose turn;
+  turn.R << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  const Mesh a_turned = moved(a, turn);
+  const Response turned = prepare(GetParam(), a_turned, b, knobs)->respond(turn * X).value;
+  EXPECT_LT((turned.force - turn.R * plain.force).norm(), force);
+  EXPECT_LT((turned.torque - turn.R * plain.torque).norm(), torque);
+
+  // Turned by a general angle the voxels are others: the same within the resolution, here a voxel over the depth.
+  const Pose any = generic_pose(64, 0.5);
+  const Mesh a_any = moved(a, any);
+  const Response other = prepare(GetParam(), a_any, b, knobs)->respond(any * X).value;
+  EXPECT_TRUE(other.force.isApprox(any.R * plain.force, 0.02 * a.diagonal() / plain.penalty));
+}
+
+TEST_P(Vps, BodiesApartFeelNothing) {
+  const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
+  const auto query = prepare(GetParam(), a, b, resolution(0.02, 0.02));
+  for (const double reach : {2.3, 10.0, 1e9, 1e300}) {
+    const Pose X = generic_pose(71, reach);
+    EXPECT_FALSE(query->collide(X).value);
+    const Outcome<Response> outcome = query->respond(X);
+    ASSERT_TRUE(outcome.ok());
+    EXPECT_EQ(outcome.value.force, Eigen::Vector3d::Zero());
+    EXPECT_EQ(outcome.value.torque, Eigen::Vector3d::Zero());
+    EXPECT_EQ(outcome.value.penalty, 0.0);
+  }
+  Pose nowhere = generic_pose(72, 1.0);
+  nowhere.t.y() = std::nan("");
+  EXPECT_EQ(query->respond(nowhere).status, Status::non_finite);
+  EXPECT_EQ(query->collide(nowhere).status, Status::non_finite);
+  EXPECT_FALSE(query->diagnosis().empty());
+  EXPECT_EQ(query->distance(generic_pose(73, 1.0)).status, Status::unsupported);
+}
+
+TEST_P(Vps, CullingAndStiffnessAreOnlyThat) {
+  const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
+  auto knobs = resolution(0.02, 0.02);
+  const auto culled = prepare(GetParam(), a, b, knobs);
+  knobs.push_back("culling=off");
+  const auto whole = prepare(GetParam(), a, b, knobs);
+  knobs.push_back("stiffness=2.5");
+  const auto stiff = prepare(GetParam(), a, b, knobs);
+  for (std::uint64_t seed = 80; seed < 100; ++seed) {
+    const Pose X = generic_pose(seed, 1.2 + 0.04 * static_cast<double>(seed - 80));
+    const Response x = culled->respond(X).value, y = whole->respond(X).value, z = stiff->respond(X).value;
+    EXPECT_EQ(x.force, y.force);
+    EXPECT_EQ(x.torque, y.torque);
+    EXPECT_EQ(x.penalty, y.penalty);
+    EXPECT_EQ(culled->collide(X).value, whole->collide(X).value);
+    EXPECT_TRUE(z.force.isApprox(2.5 * x.force, 1e-14));
+  }
+}
+
+TEST_P(Vps, OldNormalisationBoundsTheForceByTenPoints) {
+  const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
+  auto knobs = resolution(0.02, 0.02);
+  knobs.push_back("weight=contacts");
+  const Response response = prepare(GetParam(), a, b, knobs)->respond(generic_pose(91, 1.2)).value;
+  EXPECT_GT(response.penalty, 0.1);
+  EXPECT_LT(response.force.norm(), 10.0 * response.penalty * 1.1);  // gradients may pass 1 by rounding of edges
+  EXPECT_GT(response.force.norm(), response.penalty);               // thousands of points would give far more, one less
+}
+
+TEST_P(Vps, RefusesMeshesThatAreNoSolidsInWords) {
+  const Mesh good = box({1.0, 0.8, 0.6}), bad = inside_out(good);
+  const auto words = [&](const Mesh& a, const Mesh& b) -> std::string {
+    try {
+      prepare(GetParam(), a, b, {});
+    } catch (const BadMesh& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(words(good, bad), ::testing::HasSubstr("inside-out box"));
+  EXPECT_THAT(words(bad, good), ::testing::HasSubstr("inside out"));
+}
+
+TEST_P(Vps, TakesFromDiskWhatItBuiltBeforeBitForBit) {
+  std::string directory = (fs::temp_directory_path() / "sixdof-vps-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(directory.data()), nullptr);
+  ::setenv("SIXDOF_CACHE", directory.c_str(), 1);
+  const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
+  const Pose X = generic_pose(95, 1.3);
+  const auto respond = [&] { return prepare(GetParam(), a, b, resolution(0.02, 0.02))->respond(X).value; };
+  const auto expect_same = [](const Response& x, const Response& y) {
+    EXPECT_EQ(x.force, y.force);
+    EXPECT_EQ(x.torque, y.torque);
+    EXPECT_EQ(x.penalty, y.penalty);
+  };
+  const auto stamps = [&] {
+    std::map<std::string, fs::file_time_type> times;
+    for (const auto& file : fs::directory_iterator(directory)) times[file.path()] = file.last_write_time();
+    return times;
+  };
+  const Response built = respond();
+  ASSERT_GT(built.force.norm(), 0.0);
+  const auto first = stamps();
+  EXPECT_EQ(first.size(), GetParam() == "vps" ? 2u : 3u);
+  expect_same(respond(), built);
+  EXPECT_EQ(stamps(), first);  // nothing was built again
+
+  for (const auto& [path, time] : first) {
+    fs::resize_file(path, fs::file_size(path) - 1000);
+  }
+  const auto damaged = stamps();
+  expect_same(respond(), built);
+  for (const auto& [path, time] : stamps()) EXPECT_NE(time, damaged.at(path)) << path;
+  fs::remove_all(directory);
+}
+
+INSTANTIATE_TEST_SUITE_P(Algorithms, Vps, ::testing::Values("vps", "vps-field"), [](const auto& each) {
+  return each.param == "vps" ? std::string("Layers") : std::string("Field");
+});
+
+TEST(VpsDepth, LayersAloneAreWholeVoxelsAndMissThinPlates) {
+  ::setenv("SIXDOF_CACHE", "off", 1);
+  const Mesh plate = moved(box({2.0, 1.6, 0.004}), generic_pose(96, 0.2)), b = box({0.8, 0.6, 0.7});
+  const Pose X = generic_pose(96, 0.2) *
+                 Pose{Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix(), {0.0, 0.0, 0.348}};
+  auto knobs = resolution(0.01, 0.01);
+  const Response with_place = prepare("vps", plate, b, knobs)->respond(X).value;
+  knobs.push_back("depth=layers");
+  const auto by_layers = prepare("vps", plate, b, knobs);
+  // A plate of a sixth of a voxel is layer 0: felt through the place in the voxel only.
+  EXPECT_GT(with_place.force.dot(generic_pose(96, 0.2).R.col(2)), 0.0);
+  EXPECT_EQ(by_layers->respond(X).value.force, Eigen::Vector3d::Zero());
+  EXPECT_TRUE(by_layers->collide(X).value);
+
+  const Mesh a = box({2.0, 1.6, 1.2});
+  const double s = 0.01 * a.diagonal();
+  const double penalty = prepare("vps", a, b, knobs)->respond(generic_pose(97, 0.7)).value.penalty;
+  EXPECT_GT(penalty, 0.0);
+  EXPECT_NEAR(penalty / s, std::round(penalty / s), 1e-9);
+  ::unsetenv("SIXDOF_CACHE");
+}
+
+TEST(VpsField, DoesNoWorkOnAClosedLoop) {
+  ::setenv("SIXDOF_CACHE", "off", 1);
+  const Mesh a = make_bumpy_sphere({}, 500), b = make_bumpy_sphere({.radius = 0.7, .waves = 1.2}, 400);
+  const auto query = prepare("vps-field", a, b, resolution(0.03, 0.03));
+  const Eigen::Vector3d axis = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
+  const auto pose = [&](double t) {  // B's centre is its mesh origin to within its bumps
+    const double w = 2.0 * std::numbers::pi * t;
+    return Pose{Eigen::AngleAxisd(0.4 * std::sin(w), axis).toRotationMatrix(),
+                {1.25 + 0.2 * std::cos(w), 0.25 * std::sin(w), 0.1 * std::sin(2.0 * w)}};
+  };
+  // Trapezoids over the path; the step's turn is a rotation about one axis, in A's frame.
+  const auto work_share = [&](int steps) {
+    double work = 0.0, length = 0.0, peak = 0.0;
+    Response before = query->respond(pose(0.0)).value;
+    for (int i = 1; i <= steps; ++i) {
+      const Pose from = pose(static_cast<double>(i - 1) / steps), to = pose(static_cast<double>(i) / steps);
+      const Response after = query->respond(to).value;
+      const Eigen::AngleAxisd step(to.R * from.R.transpose());
+      const Eigen::Vector3d way = to * b.center() - from * b.center(), turn = step.angle() * step.axis();
+      work += 0.5 * ((before.force + after.force).dot(way) + (before.torque + after.torque).dot(turn));
+      length += way.norm();
+      peak = std::max(peak, after.force.norm());
+      before = after;
+    }
+    return std::abs(work) / (peak * length);
+  };
+  const double coarse = work_share(16), fine = work_share(256);
+  EXPECT_LT(fine, 1e-5);  // single-precision sums leave a part in 10^6
+  EXPECT_LT(fine, 0.1 * coarse);
+  ::unsetenv("SIXDOF_CACHE");
+}
+
+}  // namespace
+}  // namespace sixdof
