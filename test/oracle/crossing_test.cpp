@@ -1,0 +1,128 @@
+#include <sixdof/oracle/crossing.h>
+
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <boost/multiprecision/cpp_int.hpp>
+
+/// The crossing of two triangles against rational arithmetic with B really translated, by a tiny rational vector.
+namespace sixdof {
+namespace {
+
+using Eigen::Vector3d;
+using Rational = boost::multiprecision::cpp_rational;
+using Point = std::array<Rational, 3>;
+
+Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Point operator*(const Rational& s, const Point& a) { return {s * a[0], s * a[1], s * a[2]}; }
+Point cross_product(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Rational dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+using ExactTriangle = std::array<Point, 3>;
+
+struct Piercing {
+  int side;
+  Point at;
+};
+
+/// Sides of `edges` that pass through the inside of `triangle`; none of them meets its border.
+void collect_piercings(const ExactTriangle& edges, const ExactTriangle& triangle, int first_side,
+                       std::vector<Piercing>& found) {
+  const Point n = cross_product(triangle[1] - triangle[0], triangle[2] - triangle[0]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point &p = edges[i], &q = edges[(i + 1) % 3];
+    const Rational at_p = dot(n, p - triangle[0]), at_q = dot(n, q - triangle[0]);
+    if (at_p.sign() * at_q.sign() >= 0) continue;
+    const Point x = p + (at_p / (at_p - at_q)) * (q - p);
+    bool inside = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point &u = triangle[k], &v = triangle[(k + 1) % 3];
+      inside = inside && dot(n, cross_product(v - u, x - u)) > 0;
+    }
+    if (inside) found.push_back({first_side + static_cast<int>(i), x});
+  }
+}
+
+/// Lattice coordinates: faces, edges and corners coincide all the time, and triangles are often degenerate.
+OrderedTriangle lattice_triangle(std::mt19937_64& random, int top) {
+  std::uniform_int_distribution<int> digit(0, top);
+  OrderedTriangle t;
+  for (Vector3d& c : t.corner) c = Vector3d(digit(random), digit(random), digit(random));
+  t.rises = digit(random) % 2 == 0;
+  return t;
+}
+
+TEST(crossing, ties_are_those_of_a_really_translated_body) {
+  // Determinants of lattice points are whole numbers below 1000, so this translation changes signs of zeros only.
+  const Rational eps = Rational(1) / (1 << 24);
+  const Point e{eps, eps * eps, eps * eps * eps};
+  const double reach = 1e-6;  // how far the translation moves a piercing point: eps times the steepness, below 10
+  std::mt19937_64 random(17);
+  int crossings = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const OrderedTriangle a = lattice_triangle(random, 2), b = lattice_triangle(random, 2);
+    ExactTriangle exact_a, exact_b;
+    for (std::size_t k = 0; k < 3; ++k) {
+      exact_a[k] = {a.corner[k].x(), a.corner[k].y(), a.corner[k].z()};
+      exact_b[k] = Point{b.corner[k].x(), b.corner[k].y(), b.corner[k].z()} + e;
+    }
+    std::vector<Piercing> truth;
+    collect_piercings(exact_a, exact_b, 0, truth);
+    collect_piercings(exact_b, exact_a, 3, truth);
+    const std::optional<Segment> segment = cross(a, b);
+    ASSERT_EQ(segment.has_value(), !truth.empty()) << i;
+    if (!segment) continue;
+    ++crossings;
+    ASSERT_EQ(truth.size(), 2u);
+    const bool in_order = truth[0].side == segment->start_side;
+    const Piercing& start = truth[in_order ? 0 : 1];
+    const Piercing& end = truth[in_order ? 1 : 0];
+    EXPECT_EQ(segment->start_side, start.side);
+    EXPECT_EQ(segment->end_side, end.side);
+    const auto expect_near = [&](const Vector3d& x, const Point& y) {
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(x[k], static_cast<double>(y[static_cast<std::size_t>(k)]), reach);
+    };
+    expect_near(segment->start, start.at);
+    expect_near(segment->end, end.at);
+    // The direction is that of the normals' product, unless a triangle is degenerate and the segment a point.
+    const Point d = cross_product(cross_product(exact_a[1] - exact_a[0], exact_a[2] - exact_a[0]),
+                                  cross_product(exact_b[1] - exact_b[0], exact_b[2] - exact_b[0]));
+    EXPECT_GE(dot(d, end.at - start.at), 0);
+  }
+  EXPECT_GT(crossings, 250);
+}
+
+TEST(crossing, segments_pierce_what_their_ends_say) {
+  std::mt19937_64 random(18);
+  for (int i = 0; i < 20000; ++i) {
+    const OrderedTriangle a = lattice_triangle(random, 3), b = lattice_triangle(random, 3);
+    const std::optional<Segment> segment = cross(a, b);
+    int down = 0, up = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int of_a = pierce_moved_triangle(a.corner[k], a.corner[(k + 1) % 3], b.corner);
+      const int of_b = moved_edge_pierces(b.corner[k], b.corner[(k + 1) % 3], a.corner);
+      const int side = static_cast<int>(k);
+      for (const auto& [sign, number] : {std::pair(of_a, side), std::pair(-of_b, side + 3)}) {
+        // A's sides leave the segment downwards, B's upwards.
+        if (sign > 0) {
+          ++down;
+          ASSERT_TRUE(segment.has_value());
+          EXPECT_EQ(segment->end_side, number);
+        } else if (sign < 0) {
+          ++up;
+          ASSERT_TRUE(segment.has_value());
+          EXPECT_EQ(segment->start_side, number);
+        }
+      }
+    }
+    EXPECT_EQ(down, segment.has_value() ? 1 : 0);
+    EXPECT_EQ(up, down);
+  }
+}
+
+}  // namespace
+}  // namespace sixdof
