@@ -322,6 +322,7 @@ Tree::Tree(const Mesh& mesh) : center_(mesh.center()) {
 
   flatten(builder);
   tbb::parallel_for(std::size_t{0}, nodes_.size(), [this](std::size_t i) { fit_slabs(nodes_[i]); });
+  copy_volumes();
 }
 
 void Tree::flatten(const TreeBuilder& builder) {
@@ -331,6 +332,7 @@ void Tree::flatten(const TreeBuilder& builder) {
     std::size_t lane;
   };
   nodes_.reserve(builder.root->total);
+  std::size_t leaf_count = 0;
   std::vector<Open> open{{builder.root.get(), 0, k_width}};
   while (!open.empty()) {
     const Open top = open.back();
@@ -350,6 +352,7 @@ void Tree::flatten(const TreeBuilder& builder) {
         node.upper[k][i] = box.upper[k];
       }
       if (i < children.size() && !top.subtree->nodes[i]) {
+        node.leaf[i] = static_cast<std::uint32_t>(leaf_count++);
         node.child[i] =
             Child::leaf(static_cast<std::uint32_t>(children[i].first), static_cast<std::uint32_t>(children[i].count()));
       }
@@ -358,6 +361,7 @@ void Tree::flatten(const TreeBuilder& builder) {
       if (top.subtree->nodes[i]) open.push_back({top.subtree->nodes[i].get(), index, i});
     }
   }
+  leaves_.resize(leaf_count);
 }
 
 void Tree::fit_slabs(Node& node) const {
@@ -406,9 +410,48 @@ void Tree::fit_slabs(Node& node) const {
   }
 }
 
+void Tree::copy_volumes() {
+  static_assert(sizeof(Node) == 512 && sizeof(Leaf) == 192);
+  Node& root = nodes_[0];
+  for (std::size_t k = 0; k < 3; ++k) {
+    root.volume.lower[k] = *std::min_element(root.lower[k], root.lower[k] + root.child_count);
+    root.volume.upper[k] = *std::max_element(root.upper[k], root.upper[k] + root.child_count);
+  }
+  tbb::parallel_for(std::size_t{0}, nodes_.size(), [this](std::size_t index) {
+    const Node& node = nodes_[index];
+    for (std::size_t i = 0; i < node.child_count; ++i) {
+      Volume volume{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        volume.lower[k] = node.lower[k][i];
+        volume.upper[k] = node.upper[k][i];
+        volume.normal[k] = node.normal[k][i];
+      }
+      volume.slab_lower = node.slab_lower[i];
+      volume.slab_upper = node.slab_upper[i];
+      const Child child = node.child[i];
+      if (!child.is_leaf()) {
+        nodes_[child.node()].volume = volume;
+        continue;
+      }
+      Leaf& leaf = leaves_[node.leaf[i]];
+      leaf.volume = volume;
+      leaf.child = child;
+      for (std::uint32_t t = 0; t < k_leaf_triangles; ++t) {
+        const Corners& corners = corners_[child.first() + std::min(t, child.count() - 1)];
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            const auto axis = static_cast<Eigen::Index>(k);
+            leaf.corner[corner][k][t] = static_cast<float>(corners[corner][axis] - center_[axis]);
+          }
+        }
+      }
+    }
+  });
+}
+
 std::size_t Tree::bytes() const {
-  return nodes_.capacity() * sizeof(Node) + mesh_triangle_.capacity() * sizeof(std::uint32_t) +
-         corners_.capacity() * sizeof(Corners);
+  return leaves_.capacity() * sizeof(Leaf) + nodes_.capacity() * sizeof(Node) +
+         mesh_triangle_.capacity() * sizeof(std::uint32_t) + corners_.capacity() * sizeof(Corners);
 }
 
 }  // namespace sixdof

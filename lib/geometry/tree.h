@@ -24,8 +24,10 @@ namespace sixdof {
 /// consecutive. Children that exist fill the first lanes; the other lanes hold empty boxes (lower = +k_empty,
 /// upper = -k_empty).
 ///
-/// Built by binned surface-area splits; the result is the same bits for every number of threads. A node takes 448
-/// bytes, a triangle 76; together about 100 MB per million triangles.
+/// Leaves also hold their corners as floats, arranged for SIMD, for tests that come before the exact ones.
+///
+/// Built by binned surface-area splits; the result is the same bits for every number of threads. A node takes 512
+/// bytes, a leaf 192, a triangle 76; together about 155 MB per million triangles.
 class Tree {
  public:
   static constexpr std::size_t k_width = 8;           ///< Children per node, at most.
@@ -55,6 +57,15 @@ class Tree {
     std::uint32_t bits_ = 0;
   };
 
+  /// One child's volume by itself.
+  struct Volume {
+    float lower[3];
+    float upper[3];
+    float normal[3];
+    float slab_lower;
+    float slab_upper;
+  };
+
   struct alignas(64) Node {
     float lower[3][k_width];    ///< Boxes, [axis][child], relative to center().
     float upper[3][k_width];    ///< Boxes, [axis][child], relative to center().
@@ -62,10 +73,19 @@ class Tree {
     float slab_lower[k_width];  ///< Slabs: lower <= normal . (p - center) <= upper for every point p of the child.
     float slab_upper[k_width];
     Child child[k_width];
+    std::uint32_t leaf[k_width];   ///< Index into leaves() of the children that are leaves.
+    Volume volume;                 ///< This node's own; the root's has an empty normal and no slab (0 <= 0 <= 0).
     std::uint32_t child_count;     ///< 1 .. 8 (1 only in the root of a mesh of up to four triangles).
     std::uint32_t first_triangle;  ///< The subtree's triangles in tree order: first_triangle + 0 .. triangle_count - 1.
     std::uint32_t triangle_count;
     std::uint32_t parent;  ///< Index of the parent node; the root's is 0.
+  };
+
+  /// A leaf's corners, rounded to floats relative to center(); lanes beyond the count repeat the last triangle.
+  struct alignas(64) Leaf {
+    float corner[3][3][k_leaf_triangles];  ///< [corner][axis][triangle]
+    Volume volume;
+    Child child;
   };
 
   using Corners = std::array<Eigen::Vector3d, 3>;
@@ -76,6 +96,9 @@ class Tree {
 
   /// Depth first, parents before children; the root is node 0.
   std::span<const Node> nodes() const { return nodes_; }
+
+  /// In tree order.
+  std::span<const Leaf> leaves() const { return leaves_; }
 
   /// Mesh triangle of each triangle in tree order: a permutation of 0 .. n-1.
   std::span<const std::uint32_t> mesh_triangle() const { return mesh_triangle_; }
@@ -94,8 +117,10 @@ class Tree {
  private:
   void flatten(const struct TreeBuilder& builder);
   void fit_slabs(Node& node) const;
+  void copy_volumes();
 
   std::vector<Node> nodes_;
+  std::vector<Leaf> leaves_;
   std::vector<std::uint32_t> mesh_triangle_;
   std::vector<Corners> corners_;
   Eigen::Vector3d center_;

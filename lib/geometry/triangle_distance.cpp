@@ -29,6 +29,12 @@ constexpr double k_roundoff = 0x1p-53;
 constexpr double k_parallel_sine = 2.0 * k_roundoff;
 /// At the smallest angles a step gains little, but there little is to be gained; at 1e-12 a step gains four digits.
 constexpr int k_refinements = 3;
+/// Above this sine one refinement is enough: the first solution is off by about roundoff / sine^2 = 1e-10 times
+/// (distance / edge).
+constexpr double k_wide_sine = 1e-3;
+/// Solutions farther outside the unit interval than this are no error: they could be only where the distance is 1e9
+/// edges, and there the interior gains nothing over the border.
+constexpr double k_margin = 0.125;
 /// A gap of the projections on the line through the closest points that is larger than this times the size cannot come
 /// from rounding: a dot product of differences rounds by less than 8 units.
 constexpr double k_safe_gap = 16.0 * k_roundoff;
@@ -95,9 +101,15 @@ Solution solve_normal(const Vector3d& w0, const Vector3d& u, double uu, const Ve
   const double nn = n.squaredNorm();
   if (!(nn > k_parallel_sine * k_parallel_sine * uu * vv)) return x;
   x.w = w0;
-  for (int i = 0; i <= k_refinements; ++i) {
+  const int refinements = nn > k_wide_sine * k_wide_sine * uu * vv ? 1 : k_refinements;
+  for (int i = 0; i <= refinements; ++i) {
     x.s -= x.w.cross(v).dot(n) / nn;
     x.t -= x.w.cross(u).dot(n) / nn;
+    // Far outside, and too wide an angle for that to be an error: not in the interior.
+    if (i == 0 && refinements == 1 &&
+        !(x.s > -k_margin && x.s < 1.0 + k_margin && x.t > -k_margin && x.t < 1.0 + k_margin)) {
+      return x;
+    }
     x.w = (w0 + x.s * u) - x.t * v;
   }
   x.found = true;

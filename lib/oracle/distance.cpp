@@ -133,7 +133,9 @@ DistanceOracle::DistanceOracle(const Mesh& a, std::shared_ptr<const Tree> tree_a
       solid_a_(a.solid()),
       solid_b_(b.solid()),
       pieces_a_(find_pieces(a)),
-      pieces_b_(&a == &b ? pieces_a_ : find_pieces(b)) {}
+      pieces_b_(&a == &b ? pieces_a_ : find_pieces(b)),
+      samples_a_(*tree_a_),
+      samples_b_(*tree_b_) {}
 
 DistanceOracle::DistanceOracle(const Mesh& a, const Mesh& b)
     : tree_a_(std::make_shared<const Tree>(a)),
@@ -141,7 +143,9 @@ DistanceOracle::DistanceOracle(const Mesh& a, const Mesh& b)
       solid_a_(a.solid()),
       solid_b_(b.solid()),
       pieces_a_(find_pieces(a)),
-      pieces_b_(&a == &b ? pieces_a_ : find_pieces(b)) {}
+      pieces_b_(&a == &b ? pieces_a_ : find_pieces(b)),
+      samples_a_(*tree_a_),
+      samples_b_(*tree_b_) {}
 
 std::size_t DistanceOracle::bytes() const {
   return tree_a_->bytes() + (tree_b_ == tree_a_ ? 0 : tree_b_->bytes()) +
@@ -180,6 +184,7 @@ SurfaceDistance DistanceQuery::distance(const Pose& X_AB, const DistanceOptions&
       t.direction = t.closest.on_b - t.closest.on_a;
     }
   }
+  if (!t.found) detail::offer_seed(t, oracle_.samples_a(), oracle_.samples_b());
   if (!(t.found && t.best == 0.0)) detail::find_closest(t);
   SurfaceDistance result;
   result.within_bound = t.found;

@@ -63,6 +63,9 @@ class DistanceOracle {
   bool solid_a() const { return solid_a_; }
   bool solid_b() const { return solid_b_; }
 
+  const detail::Samples& samples_a() const { return samples_a_; }
+  const detail::Samples& samples_b() const { return samples_b_; }
+
   std::size_t bytes() const;
 
  private:
@@ -72,6 +75,8 @@ class DistanceOracle {
   bool solid_b_;
   std::vector<Piece> pieces_a_;
   std::vector<Piece> pieces_b_;
+  detail::Samples samples_a_;
+  detail::Samples samples_b_;
 };
 
 /// Asks an oracle; one object per thread. The oracle outlives it.

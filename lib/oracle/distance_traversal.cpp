@@ -1,6 +1,8 @@
 #include <sixdof/oracle/distance_traversal.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -45,43 +47,12 @@ struct Frame {
   float toward_fixed[3];     // the same in F
 };
 
-/// A child's volume, taken out of its node.
-struct Volume {
-  float lower[3];
-  float upper[3];
-  float normal[3];
-  float slab_lower;
-  float slab_upper;
-
-  float size() const {
-    const float x = upper[0] - lower[0];
-    const float y = upper[1] - lower[1];
-    const float z = upper[2] - lower[2];
-    return x * x + y * y + z * z;
-  }
-};
-
-Volume volume_of(const Tree& tree, std::uint32_t child) {
-  Volume v;
-  const Tree::Node& node = tree.nodes()[child == OpenPair::k_root ? 0 : child / k_width];
-  if (child == OpenPair::k_root) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      v.lower[k] = *std::min_element(node.lower[k], node.lower[k] + node.child_count);
-      v.upper[k] = *std::max_element(node.upper[k], node.upper[k] + node.child_count);
-      v.normal[k] = 0.0f;
-    }
-    v.slab_lower = v.slab_upper = 0.0f;
-    return v;
-  }
-  const std::size_t lane = child % k_width;
-  for (std::size_t k = 0; k < 3; ++k) {
-    v.lower[k] = node.lower[k][lane];
-    v.upper[k] = node.upper[k][lane];
-    v.normal[k] = node.normal[k][lane];
-  }
-  v.slab_lower = node.slab_lower[lane];
-  v.slab_upper = node.slab_upper[lane];
-  return v;
+/// Square of a box's diagonal.
+float size_of(const Tree::Volume& v) {
+  const float x = v.upper[0] - v.lower[0];
+  const float y = v.upper[1] - v.lower[1];
+  const float z = v.upper[2] - v.lower[2];
+  return x * x + y * y + z * z;
 }
 
 /// The fixed volume, seen from the opened tree's frame N.
@@ -96,7 +67,7 @@ struct Fixed {
   float slab_upper;
   float lowest;  // smallest p . w over the volume, without the translation's part
 
-  Fixed(const Volume& v, const Frame& f) {
+  Fixed(const Tree::Volume& v, const Frame& f) {
     for (std::size_t k = 0; k < 3; ++k) {
       center_fixed[k] = 0.5f * (v.lower[k] + v.upper[k]);
       half_fixed[k] = 0.5f * (v.upper[k] - v.lower[k]);
@@ -136,9 +107,11 @@ struct Slack {
   float far;    // where the translation enters as well
 };
 
-/// Bounds on the distance of each child of `node` from `fixed`: a gap where positive.
-HWY_INLINE void bound_children(const Tree::Node& node, const Fixed& fixed, const Frame& f, const Slack& slack,
-                               float* HWY_RESTRICT bounds) {
+/// Bounds on the distance of each child of `node` from `fixed`: a gap where positive. Returns a bit for each child
+/// whose bound is not above `best`.
+HWY_INLINE unsigned bound_children(const Tree::Node& node, const Fixed& fixed, const Frame& f, const Slack& slack,
+                                   float best, float* HWY_RESTRICT bounds) {
+  unsigned kept = 0;
   const V half = hn::Set(k_lanes, 0.5f);
   const V zero = hn::Zero(k_lanes);
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
@@ -241,31 +214,98 @@ HWY_INLINE void bound_children(const Tree::Node& node, const Fixed& fixed, const
     const V length = hn::Sqrt(hn::Max(length2, hn::Set(k_lanes, 1e-36f)));
     gap = hn::Max(gap, hn::Sub(length, hn::Div(reach, length)));
 
-    hn::Store(hn::Max(gap_toward, hn::Sub(gap, hn::Set(k_lanes, slack.far))), k_lanes, bounds + i);
+    const V bound = hn::Max(gap_toward, hn::Sub(gap, hn::Set(k_lanes, slack.far)));
+    hn::Store(bound, k_lanes, bounds + i);
+    std::uint8_t bits[8];  // as many as StoreMaskBits may write
+    hn::StoreMaskBits(k_lanes, hn::Le(bound, hn::Set(k_lanes, best)), bits);
+    kept |= static_cast<unsigned>(bits[0]) << i;
   }
+  return kept & ((1u << node.child_count) - 1);
 }
 
-/// Up to 4 x 4 triangles of two leaves: floats relative to a corner of the first, so that they are exact to a rounding
-/// of the leaves' own size. Lane 4 i + j holds pair (i, j).
+constexpr std::uint32_t k_leaf = Tree::k_leaf_triangles;
+
+/// All pairs of triangles of two leaves, in A's frame relative to its centre. Lane 4 i + j holds pair (i, j).
 struct LeafPair {
-  static constexpr std::size_t k_pairs = Tree::k_leaf_triangles * Tree::k_leaf_triangles;
+  static constexpr std::size_t k_pairs = k_leaf * k_leaf;
   HWY_ALIGN float a[3][3][k_pairs];  // [corner][axis][pair]
   HWY_ALIGN float b[3][3][k_pairs];
   HWY_ALIGN float bounds[k_pairs];
-  float slack;
+  HWY_ALIGN float reached[k_pairs];  // distance of some points of the two: an upper bound, but for rounding
 };
 
-/// Bounds on the distances of all pairs, by Frank-Wolfe steps towards the closest points of the triangles' difference.
-HWY_INLINE void bound_triangles(LeafPair& pairs, const float* HWY_RESTRICT w, float enough) {
+/// Bounds along w alone; the corners stay in their own frames. Returns whether any pair is left.
+HWY_INLINE bool bound_toward(const Tree::Leaf& a, const Tree::Leaf& b, const Frame& f, const Slack& slack, float best,
+                             float* HWY_RESTRICT bounds) {
+  const hn::CappedTag<float, k_leaf> d;
+  HWY_ALIGN float far_a[k_leaf];
+  HWY_ALIGN float near_b[k_leaf];
+  for (std::size_t i = 0; i < k_leaf; i += hn::Lanes(d)) {
+    auto most = hn::Set(d, -Tree::k_empty);
+    auto least = hn::Set(d, Tree::k_empty);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      auto along_a = hn::Zero(d);
+      auto along_b = hn::Zero(d);
+      for (std::size_t k = 0; k < 3; ++k) {
+        along_a = hn::MulAdd(hn::Set(d, f.toward[k]), hn::Load(d, a.corner[corner][k] + i), along_a);
+        along_b = hn::MulAdd(hn::Set(d, f.toward_fixed[k]), hn::Load(d, b.corner[corner][k] + i), along_b);
+      }
+      most = hn::Max(most, along_a);
+      least = hn::Min(least, along_b);
+    }
+    hn::Store(most, d, far_a + i);
+    hn::Store(least, d, near_b + i);
+  }
+  const double shift = f.translation_along - static_cast<double>(slack.sizes);
+  const float nearest = std::min(std::min(near_b[0], near_b[1]), std::min(near_b[2], near_b[3]));
+  const float farthest = std::max(std::max(far_a[0], far_a[1]), std::max(far_a[2], far_a[3]));
+  if (static_cast<float>(static_cast<double>(nearest - farthest) + shift) > best) return false;
+  for (std::size_t i = 0; i < k_leaf; ++i) {
+    for (std::size_t j = 0; j < k_leaf; ++j) {
+      bounds[k_leaf * i + j] = static_cast<float>(static_cast<double>(near_b[j] - far_a[i]) + shift);
+    }
+  }
+  return true;
+}
+
+/// Lays out all pairs; B's corners are turned into A's frame.
+HWY_INLINE void lay_out(const Tree::Leaf& a, const Tree::Leaf& b, const Frame& f, LeafPair& pairs) {
+  const hn::CappedTag<float, k_leaf> d;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t j = 0; j < k_leaf; j += hn::Lanes(d)) {
+        auto p = hn::Set(d, f.translation[k]);
+        for (std::size_t m = 0; m < 3; ++m) {
+          p = hn::MulAdd(hn::Set(d, f.rotation[k][m]), hn::Load(d, b.corner[corner][m] + j), p);
+        }
+        for (std::size_t i = 0; i < k_leaf; ++i) {
+          hn::Store(p, d, pairs.b[corner][k] + k_leaf * i + j);
+          hn::Store(hn::Set(d, a.corner[corner][k][i]), d, pairs.a[corner][k] + k_leaf * i + j);
+        }
+      }
+    }
+  }
+}
+
+/// Raises the bounds by Frank-Wolfe steps towards the closest points of the triangles' difference.
+HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough) {
   constexpr int k_steps = 5;
+  const V goal = hn::Set(k_lanes, enough);
   for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
     const auto load = [i](const float* p) { return hn::Load(k_lanes, p + i); };
-    const V slack = hn::Set(k_lanes, pairs.slack);
-    const V goal = hn::Set(k_lanes, enough);
-    V x[3];  // the direction tried: first w, from a to b, then the closest difference b - a so far
-    for (std::size_t k = 0; k < 3; ++k) x[k] = hn::Set(k_lanes, w[k]);
-    V best = hn::Set(k_lanes, -Tree::k_empty);
-    for (int step = 0; step <= k_steps; ++step) {
+    V best = load(pairs.bounds);
+    if (hn::AllTrue(k_lanes, hn::Gt(best, goal))) {
+      hn::Store(hn::Set(k_lanes, Tree::k_empty), k_lanes, pairs.reached + i);
+      continue;
+    }
+    V x[3];  // a difference b - a of points of the triangles: first of the centroids, then ever shorter
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V p = hn::Add(hn::Add(load(pairs.a[0][k]), load(pairs.a[1][k])), load(pairs.a[2][k]));
+      const V q = hn::Add(hn::Add(load(pairs.b[0][k]), load(pairs.b[1][k])), load(pairs.b[2][k]));
+      x[k] = hn::Mul(hn::Set(k_lanes, 1.0f / 3.0f), hn::Sub(q, p));
+    }
+    V length;
+    for (int step = 0;; ++step) {
       // The corners of a farthest and of b least far along x.
       V far_a, far_b;
       V p[3], q[3];
@@ -296,19 +336,14 @@ HWY_INLINE void bound_triangles(LeafPair& pairs, const float* HWY_RESTRICT w, fl
       }
       V length2 = hn::Mul(x[0], x[0]);
       for (std::size_t k = 1; k < 3; ++k) length2 = hn::MulAdd(x[k], x[k], length2);
-      const V length = hn::Sqrt(hn::Max(length2, hn::Set(k_lanes, 1e-36f)));
-      best = hn::Max(best, hn::Sub(hn::Div(hn::Sub(far_b, far_a), length), slack));
+      length = hn::Sqrt(hn::Max(length2, hn::Set(k_lanes, 1e-36f)));
+      best = hn::Max(best, hn::Sub(hn::Div(hn::Sub(far_b, far_a), length), hn::Set(k_lanes, slack)));
       if (step == k_steps || hn::AllTrue(k_lanes, hn::Gt(best, goal))) break;
       V d[3];
-      for (std::size_t k = 0; k < 3; ++k) d[k] = hn::Sub(q[k], p[k]);
-      if (step == 0) {  // w is no difference of points of the triangles; d is
-        for (std::size_t k = 0; k < 3; ++k) x[k] = d[k];
-        continue;
-      }
       V down = hn::Zero(k_lanes);
       V norm = hn::Set(k_lanes, 1e-36f);
       for (std::size_t k = 0; k < 3; ++k) {
-        d[k] = hn::Sub(d[k], x[k]);
+        d[k] = hn::Sub(hn::Sub(q[k], p[k]), x[k]);
         down = hn::NegMulAdd(x[k], d[k], down);
         norm = hn::MulAdd(d[k], d[k], norm);
       }
@@ -316,6 +351,7 @@ HWY_INLINE void bound_triangles(LeafPair& pairs, const float* HWY_RESTRICT w, fl
       for (std::size_t k = 0; k < 3; ++k) x[k] = hn::MulAdd(t, d[k], x[k]);
     }
     hn::Store(best, k_lanes, pairs.bounds + i);
+    hn::Store(length, k_lanes, pairs.reached + i);
   }
 }
 
@@ -372,100 +408,248 @@ struct Descent {
                                               std::numeric_limits<float>::infinity());
   }
 
-  static Tree::Child child_of(const Tree& tree, std::uint32_t child) {
-    return child == OpenPair::k_root ? Tree::Child::node(0) : tree.nodes()[child / k_width].child[child % k_width];
+  /// Exact test of two triangles. Returns true if the search is over.
+  bool measure(TrianglePair pair) {
+    const Tree::Corners& a = tree_a.corners()[pair.a];
+    const Tree::Corners& fixed = tree_b.corners()[pair.b];
+    const TriangleCorners b{traversal.X_AB * fixed[0], traversal.X_AB * fixed[1], traversal.X_AB * fixed[2]};
+    ++traversal.counts.triangles;
+    if (only_intersection) {
+      if (!triangles_intersect(a, b)) return false;
+      traversal.found = true;
+      traversal.pair = pair;
+      return true;
+    }
+    if (offer_pair(traversal, pair, a, b)) {
+      if (traversal.best == 0.0) return true;
+      traversal.direction = traversal.closest.on_b - traversal.closest.on_a;
+      set_direction();
+      set_best();
+    }
+    return false;
   }
 
-  /// Exact tests of two leaves. Returns true if the search is over.
-  bool measure(Tree::Child leaf_a, Tree::Child leaf_b) {
+  /// Pairs of triangles of two leaves. Returns true if the search is over.
+  bool measure(const Tree::Leaf& leaf_a, const Tree::Leaf& leaf_b) {
     ++traversal.counts.leaf_pairs;
-    const std::uint32_t count_a = leaf_a.count();
-    const std::uint32_t count_b = leaf_b.count();
-    const Tree::Corners* const a = tree_a.corners().data() + leaf_a.first();
-    TriangleCorners b[Tree::k_leaf_triangles];
-    for (std::uint32_t j = 0; j < count_b; ++j) {
-      const Tree::Corners& corners = tree_b.corners()[leaf_b.first() + j];
-      for (std::size_t k = 0; k < 3; ++k) b[j][k] = traversal.X_AB * corners[k];
-    }
     LeafPair pairs;
-    const Eigen::Vector3d origin = a[0][0];
-    float size = 0.0f;
-    for (std::uint32_t i = 0; i < Tree::k_leaf_triangles; ++i) {
-      const TriangleCorners& ai = a[std::min(i, count_a - 1)];
-      const TriangleCorners& bi = b[std::min(i, count_b - 1)];
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        for (int k = 0; k < 3; ++k) {
-          const auto x = static_cast<float>(ai[corner][k] - origin[k]);
-          const auto y = static_cast<float>(bi[corner][k] - origin[k]);
-          size = std::max({size, std::abs(x), std::abs(y)});
-          for (std::size_t j = 0; j < Tree::k_leaf_triangles; ++j) {
-            pairs.a[corner][k][4 * i + j] = x;
-            pairs.b[corner][k][4 * j + i] = y;
-          }
+    if (!bound_toward(leaf_a, leaf_b, open_a, slack, best, pairs.bounds)) return false;
+    lay_out(leaf_a, leaf_b, open_a, pairs);
+    bound_triangles(pairs, slack.far, best);
+    // Pairs that certainly improve on the best, or that may intersect, are measured now, the most promising first. The
+    // others wait: most of them will have become irrelevant.
+    for (;;) {
+      std::uint32_t next = LeafPair::k_pairs;
+      for (std::uint32_t i = 0; i < leaf_a.child.count(); ++i) {
+        for (std::uint32_t j = 0; j < leaf_b.child.count(); ++j) {
+          const std::uint32_t lane = k_leaf * i + j;
+          if (pairs.bounds[lane] > best || (pairs.bounds[lane] > 0.0f && pairs.reached[lane] >= best)) continue;
+          if (next == LeafPair::k_pairs || pairs.reached[lane] < pairs.reached[next]) next = lane;
         }
       }
+      if (next == LeafPair::k_pairs) break;
+      pairs.bounds[next] = Tree::k_empty;
+      if (measure({leaf_a.child.first() + next / k_leaf, leaf_b.child.first() + next % k_leaf})) return true;
     }
-    pairs.slack = k_slack * size;
-    bound_triangles(pairs, open_a.toward, best);
-    for (std::uint32_t i = 0; i < count_a; ++i) {
-      for (std::uint32_t j = 0; j < count_b; ++j) {
-        if (pairs.bounds[4 * i + j] > best) continue;
-        const TrianglePair pair{leaf_a.first() + i, leaf_b.first() + j};
-        ++traversal.counts.triangles;
-        if (only_intersection) {
-          if (!triangles_intersect(a[i], b[j])) continue;
-          traversal.found = true;
-          traversal.pair = pair;
-          return true;
-        }
-        if (offer_pair(traversal, pair, a[i], b[j])) {
-          if (traversal.best == 0.0) return true;
-          traversal.direction = traversal.closest.on_b - traversal.closest.on_a;
-          set_direction();
-          set_best();
-        }
+    for (std::uint32_t i = 0; i < leaf_a.child.count(); ++i) {
+      for (std::uint32_t j = 0; j < leaf_b.child.count(); ++j) {
+        const float bound = pairs.bounds[k_leaf * i + j];
+        if (bound > best) continue;
+        traversal.deferred.push_back({{leaf_a.child.first() + i, leaf_b.child.first() + j}, bound});
       }
     }
     return false;
   }
 
   void run() {
+    traversal.deferred.clear();
+    if (descend()) return;
+    std::vector<DeferredPair>& rest = traversal.deferred;
+    std::erase_if(rest, [this](const DeferredPair& x) { return x.lower > best; });
+    std::sort(rest.begin(), rest.end(), [](const DeferredPair& x, const DeferredPair& y) { return x.lower < y.lower; });
+    for (const DeferredPair& x : rest) {
+      if (x.lower > best || measure(x.pair)) return;
+    }
+  }
+
+  /// Returns true if the search is over.
+  bool descend() {
     std::vector<OpenPair>& open = traversal.open;
     open.clear();
-    open.push_back({OpenPair::k_root, OpenPair::k_root, 0.0f});
+    open.push_back({0, 0, -Tree::k_empty});
     while (!open.empty()) {
       const OpenPair top = open.back();
       open.pop_back();
       if (top.lower > best) continue;
-      const Tree::Child child_a = child_of(tree_a, top.a);
-      const Tree::Child child_b = child_of(tree_b, top.b);
-      if (child_a.is_leaf() && child_b.is_leaf()) {
-        if (measure(child_a, child_b)) return;
+      const bool leaf_a = (top.a & OpenPair::k_leaf) != 0;
+      const bool leaf_b = (top.b & OpenPair::k_leaf) != 0;
+      if (leaf_a && leaf_b) {
+        if (measure(tree_a.leaves()[top.a - OpenPair::k_leaf], tree_b.leaves()[top.b - OpenPair::k_leaf])) return true;
         continue;
       }
-      const Volume volume_a = volume_of(tree_a, top.a);
-      const Volume volume_b = volume_of(tree_b, top.b);
-      const bool opens_a = child_b.is_leaf() || (!child_a.is_leaf() && volume_a.size() >= volume_b.size());
-      const std::uint32_t index = opens_a ? child_a.node() : child_b.node();
-      const Tree::Node& node = opens_a ? tree_a.nodes()[index] : tree_b.nodes()[index];
+      const Tree::Volume& volume_a =
+          leaf_a ? tree_a.leaves()[top.a - OpenPair::k_leaf].volume : tree_a.nodes()[top.a].volume;
+      const Tree::Volume& volume_b =
+          leaf_b ? tree_b.leaves()[top.b - OpenPair::k_leaf].volume : tree_b.nodes()[top.b].volume;
+      const bool opens_a = leaf_b || (!leaf_a && size_of(volume_a) >= size_of(volume_b));
+      const Tree::Node& node = opens_a ? tree_a.nodes()[top.a] : tree_b.nodes()[top.b];
       const Frame& frame = opens_a ? open_a : open_b;
       HWY_ALIGN float bounds[k_width];
       ++traversal.counts.nodes;
-      bound_children(node, Fixed(opens_a ? volume_b : volume_a, frame), frame, slack, bounds);
+      unsigned kept = bound_children(node, Fixed(opens_a ? volume_b : volume_a, frame), frame, slack, best, bounds);
 
       const std::size_t first = open.size();
-      for (std::uint32_t i = 0; i < node.child_count; ++i) {
-        if (bounds[i] > best) continue;
+      for (; kept != 0; kept &= kept - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(kept));
         OpenPair next{top.a, top.b, bounds[i]};
-        (opens_a ? next.a : next.b) = static_cast<std::uint32_t>(index * k_width + i);
+        (opens_a ? next.a : next.b) = node.child[i].is_leaf() ? OpenPair::k_leaf + node.leaf[i] : node.child[i].node();
         std::size_t at = open.size();
         open.push_back(next);
         for (; at > first && open[at - 1].lower < next.lower; --at) open[at] = open[at - 1];
         open[at] = next;
       }
     }
+    return false;
   }
 };
+
+/// A corner of a tree, the closest to some point so far.
+struct Corner {
+  float squared;
+  std::uint32_t leaf;
+  std::uint32_t triangle;  // in the leaf
+  float point[3];          // relative to the tree's centre
+};
+
+/// Finds a corner closer to p than `best.squared`, nearly the closest. Returns whether there is one. Of corners that
+/// differ by less than a few leaves' width sideways any will do: to look for the very closest of many nearly equal ones
+/// would cost more than it saves.
+bool find_corner(const Tree& tree, const float* p, Corner& best, std::vector<OpenPair>& open) {
+  constexpr double k_leaves_wide = 32.0;  // square of it; r^2 / leaves is about a leaf's area
+  const auto equal =
+      static_cast<float>(k_leaves_wide * tree.radius() * tree.radius() / static_cast<double>(tree.leaves().size()));
+  bool found = false;
+  open.assign(1, {0, 0, 0.0f});
+  while (!open.empty()) {
+    const OpenPair top = open.back();
+    open.pop_back();
+    if (top.lower + equal >= best.squared) continue;
+    if ((top.a & OpenPair::k_leaf) != 0) {
+      const Tree::Leaf& leaf = tree.leaves()[top.a - OpenPair::k_leaf];
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (std::uint32_t t = 0; t < leaf.child.count(); ++t) {
+          float squared = 0.0f;
+          for (std::size_t k = 0; k < 3; ++k) {
+            const float d = leaf.corner[corner][k][t] - p[k];
+            squared += d * d;
+          }
+          if (squared >= best.squared) continue;
+          best = {squared,
+                  top.a - OpenPair::k_leaf,
+                  t,
+                  {leaf.corner[corner][0][t], leaf.corner[corner][1][t], leaf.corner[corner][2][t]}};
+          found = true;
+        }
+      }
+      continue;
+    }
+    const Tree::Node& node = tree.nodes()[top.a];
+    HWY_ALIGN float bounds[k_width];
+    for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+      V squared = hn::Zero(k_lanes);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V at = hn::Set(k_lanes, p[k]);
+        const V below = hn::Sub(hn::Load(k_lanes, node.lower[k] + i), at);
+        const V above = hn::Sub(at, hn::Load(k_lanes, node.upper[k] + i));
+        const V gap = hn::Max(hn::Max(below, above), hn::Zero(k_lanes));
+        squared = hn::MulAdd(gap, gap, squared);
+      }
+      hn::Store(squared, k_lanes, bounds + i);
+    }
+    const std::size_t first = open.size();
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      if (bounds[i] + equal >= best.squared) continue;
+      const OpenPair next{node.child[i].is_leaf() ? OpenPair::k_leaf + node.leaf[i] : node.child[i].node(), 0,
+                          bounds[i]};
+      std::size_t at = open.size();
+      open.push_back(next);
+      for (; at > first && open[at - 1].lower < next.lower; --at) open[at] = open[at - 1];
+      open[at] = next;
+    }
+  }
+  return found;
+}
+
+void turn(const Frame& f, const float* p, float* out) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    out[k] = f.translation[k] + f.rotation[k][0] * p[0] + f.rotation[k][1] * p[1] + f.rotation[k][2] * p[2];
+  }
+}
+
+void offer_seed(Traversal& traversal, const Samples& samples_a, const Samples& samples_b) {
+  constexpr int k_turns = 8;  // most searches settle after a few
+  const Descent descent(traversal, false);
+  const Frame& to_a = descent.open_a;
+  const Frame& to_b = descent.open_b;
+
+  HWY_ALIGN float least[k_width];
+  HWY_ALIGN float pairs[k_width];  // which: an exact small integer
+  float best = std::numeric_limits<float>::infinity();
+  std::size_t best_a = 0;
+  std::size_t best_b = 0;
+  for (std::size_t i = 0; i < Samples::k_count; i += hn::Lanes(k_lanes)) {
+    V b[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      b[k] = hn::Set(k_lanes, to_a.translation[k]);
+      for (std::size_t m = 0; m < 3; ++m) {
+        b[k] = hn::MulAdd(hn::Set(k_lanes, to_a.rotation[k][m]), hn::Load(k_lanes, samples_b.point[m] + i), b[k]);
+      }
+    }
+    V closest = hn::Set(k_lanes, std::numeric_limits<float>::infinity());
+    V which = hn::Zero(k_lanes);
+    for (std::size_t j = 0; j < Samples::k_count; ++j) {
+      V squared = hn::Zero(k_lanes);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V d = hn::Sub(b[k], hn::Set(k_lanes, samples_a.point[k][j]));
+        squared = hn::MulAdd(d, d, squared);
+      }
+      which = hn::IfThenElse(hn::Lt(squared, closest), hn::Set(k_lanes, static_cast<float>(j)), which);
+      closest = hn::Min(closest, squared);
+    }
+    hn::Store(closest, k_lanes, least);
+    hn::Store(which, k_lanes, pairs);
+    for (std::size_t lane = 0; lane < hn::Lanes(k_lanes); ++lane) {
+      if (least[lane] < best) {
+        best = least[lane];
+        best_a = static_cast<std::size_t>(pairs[lane]);
+        best_b = i + lane;
+      }
+    }
+  }
+
+  Corner a{best, samples_a.leaf[best_a], 0, {}};
+  Corner b{best, samples_b.leaf[best_b], 0, {}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    a.point[k] = samples_a.point[k][best_a];
+    b.point[k] = samples_b.point[k][best_b];
+  }
+  float from[3];
+  for (int i = 0; i < k_turns; ++i) {
+    const bool search_b = i % 2 == 0;
+    turn(search_b ? to_b : to_a, search_b ? a.point : b.point, from);
+    Corner& moved = search_b ? b : a;
+    moved.squared = best;
+    if (!find_corner(search_b ? *traversal.b : *traversal.a, from, moved, traversal.open) && i > 0) break;
+    best = moved.squared;
+  }
+  const TrianglePair pair{traversal.a->leaves()[a.leaf].child.first() + a.triangle,
+                          traversal.b->leaves()[b.leaf].child.first() + b.triangle};
+  const Tree::Corners& corners = traversal.b->corners()[pair.b];
+  if (offer_pair(traversal, pair, traversal.a->corners()[pair.a],
+                 {traversal.X_AB * corners[0], traversal.X_AB * corners[1], traversal.X_AB * corners[2]})) {
+    traversal.direction = traversal.closest.on_b - traversal.closest.on_a;
+  }
+}
 
 void find_closest(Traversal& traversal) { Descent(traversal, false).run(); }
 void find_intersection(Traversal& traversal) { Descent(traversal, true).run(); }
@@ -477,6 +661,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sixdof::detail {
 
+HWY_EXPORT(offer_seed);
 HWY_EXPORT(find_closest);
 HWY_EXPORT(find_intersection);
 
@@ -495,6 +680,17 @@ bool offer_pair(Traversal& traversal, TrianglePair pair, const TriangleCorners& 
   traversal.pair = pair;
   traversal.closest = closest;
   return closer;
+}
+
+Samples::Samples(const Tree& tree) {
+  for (std::size_t i = 0; i < k_count; ++i) {
+    leaf[i] = static_cast<std::uint32_t>((2 * i + 1) * tree.leaves().size() / (2 * k_count));
+    for (std::size_t k = 0; k < 3; ++k) point[k][i] = tree.leaves()[leaf[i]].corner[0][k][0];
+  }
+}
+
+void offer_seed(Traversal& traversal, const Samples& a, const Samples& b) {
+  HWY_DYNAMIC_DISPATCH(offer_seed)(traversal, a, b);
 }
 
 void find_closest(Traversal& traversal) { HWY_DYNAMIC_DISPATCH(find_closest)(traversal); }

@@ -14,6 +14,17 @@
 namespace sixdof {
 namespace {
 
+/// A volume kept by itself is that of the lane it was taken from.
+void check_volume(const Tree::Volume& volume, const Tree::Node& node, std::size_t lane) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(volume.lower[k], node.lower[k][lane]);
+    EXPECT_EQ(volume.upper[k], node.upper[k][lane]);
+    EXPECT_EQ(volume.normal[k], node.normal[k][lane]);
+  }
+  EXPECT_EQ(volume.slab_lower, node.slab_lower[lane]);
+  EXPECT_EQ(volume.slab_upper, node.slab_upper[lane]);
+}
+
 /// Walks the tree and checks everything its doc comment promises.
 void check_tree(const Mesh& mesh, const Tree& tree) {
   const std::size_t n = mesh.triangles().size();
@@ -53,6 +64,19 @@ void check_tree(const Mesh& mesh, const Tree& tree) {
         ASSERT_EQ(node.child[i].first(), first);
         count = node.child[i].count();
         for (std::uint32_t t = first; t < first + count; ++t) ++covered[t];
+        const Tree::Leaf& leaf = tree.leaves()[node.leaf[i]];
+        EXPECT_EQ(leaf.child.first(), first);
+        EXPECT_EQ(leaf.child.count(), count);
+        check_volume(leaf.volume, node, i);
+        for (std::uint32_t t = 0; t < Tree::k_leaf_triangles; ++t) {
+          const Tree::Corners& corners = tree.corners()[first + std::min(t, count - 1)];
+          for (std::size_t corner = 0; corner < 3; ++corner) {
+            for (std::size_t k = 0; k < 3; ++k) {
+              const auto axis = static_cast<Eigen::Index>(k);
+              EXPECT_EQ(leaf.corner[corner][k][t], static_cast<float>(corners[corner][axis] - tree.center()[axis]));
+            }
+          }
+        }
       } else {
         ASSERT_GT(node.child[i].node(), index);
         ASSERT_LT(node.child[i].node(), tree.nodes().size());
@@ -60,6 +84,7 @@ void check_tree(const Mesh& mesh, const Tree& tree) {
         ASSERT_EQ(child.first_triangle, first);
         ASSERT_EQ(child.parent, index);
         count = child.triangle_count;
+        check_volume(child.volume, node, i);
       }
       const Eigen::Vector3d normal(node.normal[0][i], node.normal[1][i], node.normal[2][i]);
       EXPECT_LE(normal.norm(), 1.0);
@@ -134,6 +159,7 @@ TEST(Tree, IsTheSameBitsForEveryThreadCount) {
   const Tree four = build(4);
   ASSERT_EQ(one.nodes().size(), four.nodes().size());
   EXPECT_EQ(std::memcmp(one.nodes().data(), four.nodes().data(), one.nodes().size_bytes()), 0);
+  ASSERT_EQ(one.leaves().size(), four.leaves().size());
   EXPECT_TRUE(std::equal(one.mesh_triangle().begin(), one.mesh_triangle().end(), four.mesh_triangle().begin()));
 }
 
