@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <sixdof/algorithm/vps/surface_index.h>
+#include <sixdof/base/error.h>
 
 namespace sixdof::vps {
 namespace {
@@ -79,6 +81,10 @@ DistanceField DistanceField::build(const Mesh& mesh, const VoxelMap& map) {
     if (*std::min_element(brick.begin(), brick.end()) >= 0.0f) continue;
     field.table[cells[i]] = static_cast<std::int32_t>(field.stored_bricks());
     field.samples.insert(field.samples.end(), brick.begin(), brick.end());
+  }
+  if (field.stored_bricks() >= k_most_bricks) {
+    throw BadArgument(fmt::format("{}: voxels of size {} need {} bricks of the distance field, more than {}",
+                                  mesh.name(), map.grid.size, field.stored_bricks(), k_most_bricks - 1));
   }
   field.samples.push_back(1.0f);  // rows are read four samples at a time, the last of them one beyond
   return field;

@@ -26,11 +26,14 @@ struct DistanceField {
   /// Layers outside that the voxelmap must store so that every sample near the body is exact.
   static constexpr int k_border = 4;
 
+  static constexpr std::uint64_t k_most_bricks = std::uint64_t{1} << 21;  ///< The inner loops count samples in 32 bits.
+
   VoxelGrid grid;
   std::vector<std::int32_t> table;  ///< Per brick of the grid, its number in `samples`; 0: positive throughout.
   std::vector<float> samples;       ///< k_brick_samples per brick, x fastest, in voxels. Brick 0 is all 1.
 
   /// @param map of the same mesh, with a border of at least k_border
+  /// @throws BadArgument if the body needs k_most_bricks or more.
   static DistanceField build(const Mesh& mesh, const VoxelMap& map);
 
   std::uint64_t stored_bricks() const { return samples.size() / k_brick_samples; }

@@ -54,7 +54,7 @@ std::optional<VoxelMap> unpack_voxelmap(CacheEntry entry) {
   map.words = entry.take<std::uint32_t>("words");
   const bool sound = (map.layer_bits == 8 || map.layer_bits == 16) && map.grid.bricks.minCoeff() > 0 &&
                      map.table.size() == brick_count(map.grid) && map.stored_bricks() > 0 &&
-                     within(map.table, map.stored_bricks());
+                     map.stored_bricks() < VoxelMap::k_most_bricks && within(map.table, map.stored_bricks());
   return sound ? std::optional(std::move(map)) : std::nullopt;
 }
 

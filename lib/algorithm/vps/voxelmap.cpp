@@ -132,6 +132,10 @@ VoxelMap VoxelMap::build(const Mesh& mesh, double voxel_size, int border) {
   };
   std::size_t stored = 1;
   for (const Slab& slab : slabs) stored += slab.layers.size() / VoxelGrid::k_brick_voxels;
+  if (stored >= k_most_bricks) {
+    throw BadArgument(fmt::format("{}: voxels of size {} fill {} bricks, more than {}", mesh.name(), voxel_size, stored,
+                                  k_most_bricks - 1));
+  }
   map.words.reserve(stored * words_per_brick);
   pack(std::vector<std::int16_t>(VoxelGrid::k_brick_voxels, static_cast<std::int16_t>(map.least_layer())));
   for (Slab& slab : slabs) {

@@ -41,10 +41,12 @@ struct VoxelMap {
 
   /// @param voxel_size edge of a voxel, in the mesh's length unit
   /// @param border >= 0, layers outside to store
-  /// @throws BadMesh if the mesh is not solid(); BadArgument if the grid would pass k_most_voxels.
+  /// @throws BadMesh if the mesh is not solid(); BadArgument if the grid would pass k_most_voxels, or the body
+  /// k_most_bricks.
   static VoxelMap build(const Mesh& mesh, double voxel_size, int border);
 
   static constexpr double k_most_voxels = 8e9;  ///< 16 GB while building: beyond it the size is taken for a slip.
+  static constexpr std::uint64_t k_most_bricks = std::uint64_t{1} << 22;  ///< The inner loops count voxels in 32 bits.
 
   std::int32_t least_layer() const { return layer_bits == 8 ? INT8_MIN : INT16_MIN; }
 
