@@ -16,7 +16,7 @@ OrderedTriangle ordered(const Tree::Corners& corners, Solid::Order order) {
   return {{corners[l], corners[(l + 1) % 3], corners[(l + 2) % 3]}, order.rises};
 }
 
-/// Fluxes through the part of one surface inside the other body, but for the pieces' windings.
+/// Fluxes through the part of one surface inside the other body.
 class SurfacePart {
  public:
   /// @param origin of the moments: in the solid's own mesh frame.
@@ -30,6 +30,9 @@ class SurfacePart {
     if (to_side == 1) add_end(index, triangle, to, 1);
     if (from_side == 1) add_end(index, triangle, from, -1);
   }
+
+  /// A whole piece, as often as the other body winds around its pole.
+  void add_piece(const Solid::Piece& piece, int winding) { add(piece.total, winding); }
 
   /// All fluxes about the origin; first moments of `local` are in A's frame, those of `path` in the mesh's.
   Solid::Moments local() const { return local_; }
@@ -51,12 +54,15 @@ class SurfacePart {
     local_.first += sign * m.first;
   }
 
+  void add(const Solid::Potential& p, int sign) {
+    potential_.volume += sign * p.volume;
+    for (std::size_t k = 0; k < 3; ++k) potential_.first[k] += sign * p.first[k];
+  }
+
   /// The end of a segment on the side opposite the lowest corner slides to the middle corner.
   void add_end(std::uint32_t index, const OrderedTriangle& triangle, const Vector3d& end, int sign) {
     add(triangle_moments(triangle.corner[0], triangle.corner[triangle.rises ? 1 : 2], end), -sign);
-    const Solid::Potential& p = solid_->potential(index);
-    potential_.volume += sign * p.volume;
-    for (std::size_t k = 0; k < 3; ++k) potential_.first[k] += sign * p.first[k];
+    add(solid_->potential(index), sign);
     const OrderedTriangle own = ordered(solid_->tree().corners()[index], solid_->order(index));
     const Vector3d low = own.corner[0] - origin_;
     const Vector3d middle = own.corner[own.rises ? 1 : 2] - origin_;
@@ -72,14 +78,6 @@ class SurfacePart {
   Vector3d area_ = Vector3d::Zero();         // of the region within the path: integral of n
   Matrix3d first_order_ = Matrix3d::Zero();  // integral of p n^T, less its trace
 };
-
-/// Fluxes of whole pieces, as often as the other body winds around their poles.
-void add_piece(Solid::Moments& sum, const Solid& solid, const Solid::Piece& piece, int winding,
-               const Vector3d& origin) {
-  const Vector3d shift = origin - solid.tree().center();
-  sum.volume += winding * piece.total.volume;
-  sum.first += winding * (piece.total.first - shift * piece.total.volume);
-}
 
 /// Centre of the box that both bodies' boxes have in common, in A's frame: everything that happens is near it.
 Vector3d common_center(const Solid& a, const Solid& b, const Pose& X_AB) {
@@ -190,14 +188,10 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference) {
     moment += (x.squaredNorm() + x.dot(y) + y.squaredNorm()) * (x - y);
   }
 
-  Solid::Moments sum_a = part_a.path();  // in A's frame
-  Solid::Moments sum_b = part_b.path();  // in B's frame
-  for (const Solid::Piece& piece : a_->pieces()) {
-    add_piece(sum_a, *a_, piece, winding_of_b(X_AB, piece.pole), origin);
-  }
-  for (const Solid::Piece& piece : b_->pieces()) {
-    add_piece(sum_b, *b_, piece, winding_of_a(X_AB, piece.pole), origin_B);
-  }
+  for (const Solid::Piece& piece : a_->pieces()) part_a.add_piece(piece, winding_of_b(X_AB, piece.pole));
+  for (const Solid::Piece& piece : b_->pieces()) part_b.add_piece(piece, winding_of_a(X_AB, piece.pole));
+  const Solid::Moments sum_a = part_a.path();  // in A's frame
+  const Solid::Moments sum_b = part_b.path();  // in B's frame
   result.volume = sum_a.volume + sum_b.volume + (part_a.local().volume + part_b.local().volume);
   result.area = 0.5 * area;
   result.moment = -moment / 6.0 + (origin - reference).cross(result.area);

@@ -37,7 +37,8 @@ struct Overlap {
 ///
 /// Every decision is exact (predicates.h) for B's vertices rounded to doubles in A's frame, so equal faces, shared
 /// vertices and slivers are no special cases; what is left is the rounding of the integrals. Error of volume: a small
-/// multiple of 1e-16 * (size + distance of the bodies from the origin of A's frame) * (area of the surfaces that meet).
+/// multiple of 1e-16 * (size + distance of the bodies from the origin of A's frame) * (area of the triangles that are
+/// cut), whatever the volume.
 ///
 /// Method: area and moment are integrals along the curve (Stokes). Volume and first moment are fluxes through the parts
 /// of both surfaces that the curve bounds, by the potentials of Solid. Per segment of the curve each of the two

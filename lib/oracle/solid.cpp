@@ -170,7 +170,7 @@ Solid::Solid(const Mesh& mesh, const Tree& tree) : mesh_(&mesh), tree_(&tree) {
   pieces_.resize(roots.size());
   for (std::size_t i = 0; i < roots.size(); ++i) {
     pieces_[i].pole = mesh.vertices()[highest_vertex(triangles[roots[i]])];
-    pieces_[i].total = to_moments(sums[roots[i]]);
+    pieces_[i].total = sums[roots[i]];
   }
 
   potentials_.resize(n);

@@ -52,7 +52,7 @@ class Solid {
   /// Connected piece of the surface (through edges).
   struct Piece {
     Eigen::Vector3d pole = Eigen::Vector3d::Zero();  ///< A vertex, in the mesh's frame.
-    Moments total;                                   ///< About Tree::center().
+    Potential total;                                 ///< Its whole flux, see to_moments().
   };
 
   /// How a triangle's corners are ordered by vertex index.

@@ -1,0 +1,105 @@
+#include <map>
+#include <memory>
+#include <random>
+#include <stdexcept>
+
+#include <benchmark/benchmark.h>
+#include <cgal_overlap.h>
+
+#include "../oracle/bodies.h"
+
+/// The exact overlap against CGAL's corefinement: the same meshes, the same poses, the same volumes (checked before
+/// they are timed). Prepared structures are built outside the timed region for both; corefinement's copies of its
+/// arguments, which it changes, are part of its price.
+namespace sixdof {
+namespace {
+
+constexpr std::size_t k_poses = 8;
+/// Largest difference of the volumes that counts as agreement, relative to A's volume.
+constexpr double k_agreement = 1e-12;
+
+struct Pair {
+  bodies::Body body;
+  std::vector<Pose> poses;
+  reference::CgalOverlap cgal;
+  std::vector<std::vector<std::array<double, 3>>> placed;
+
+  static reference::CgalMesh convert(const Mesh& mesh) {
+    reference::CgalMesh result;
+    for (const Eigen::Vector3d& p : mesh.vertices()) result.vertices.push_back({p.x(), p.y(), p.z()});
+    result.triangles = mesh.triangles();
+    return result;
+  }
+
+  /// Rotations at random; B comes in along a random direction until the overlap is `share` of A's volume.
+  Pair(Mesh mesh, double share) : body(std::move(mesh)), cgal(convert(body.mesh), convert(body.mesh)) {
+    std::mt19937_64 random(20261121);
+    OverlapQuery query(body.solid, body.solid);
+    while (poses.size() < k_poses) {
+      Pose X_AB = bodies::random_pose(random, 0.0);
+      const Eigen::Vector3d u = bodies::random_pose(random, 0.0).R.col(0);
+      double inner = 0.0, outer = body.mesh.diagonal();
+      constexpr int k_bisections = 30;
+      for (int i = 0; i < k_bisections; ++i) {
+        const double middle = 0.5 * (inner + outer);
+        X_AB.t = body.mesh.center() + middle * u - X_AB.R * body.mesh.center();
+        (query.evaluate(X_AB).volume > share * body.mesh.volume() ? inner : outer) = middle;
+      }
+      if (query.evaluate(X_AB).crossings > 0) poses.push_back(X_AB);
+    }
+    for (const Pose& X_AB : poses) {
+      auto& points = placed.emplace_back();
+      for (const Eigen::Vector3d& p : body.mesh.vertices()) {
+        const Eigen::Vector3d q = place(X_AB, p);
+        points.push_back({q.x(), q.y(), q.z()});
+      }
+    }
+    if (std::abs(query.evaluate(poses[0]).volume - cgal.volume(placed[0])) > k_agreement * body.mesh.volume()) {
+      throw std::runtime_error("the exact overlap and corefinement disagree");
+    }
+  }
+};
+
+const Pair& pair_of(std::int64_t triangles, std::int64_t percent) {
+  static std::map<std::pair<std::int64_t, std::int64_t>, std::unique_ptr<Pair>> pairs;
+  auto& pair = pairs[{triangles, percent}];
+  if (!pair) {
+    const auto n = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<double>(triangles) / 4.0)));
+    pair = std::make_unique<Pair>(bodies::bumpy_torus(2 * n, n), 0.01 * static_cast<double>(percent));
+  }
+  return *pair;
+}
+
+void exact(benchmark::State& state) {
+  const Pair& pair = pair_of(state.range(0), state.range(1));
+  OverlapQuery query(pair.body.solid, pair.body.solid);
+  std::size_t crossings = 0;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const Overlap o = query.evaluate(pair.poses[i++ % k_poses]);
+    crossings += o.crossings;
+    benchmark::DoNotOptimize(o.volume);
+  }
+  state.counters["crossings"] = static_cast<double>(crossings) / static_cast<double>(state.iterations());
+}
+
+void corefinement(benchmark::State& state) {
+  const Pair& pair = pair_of(state.range(0), state.range(1));
+  std::size_t i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(pair.cgal.volume(pair.placed[i++ % k_poses]));
+}
+
+void sizes(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"triangles", "volume"})->Unit(benchmark::kMillisecond);
+  for (const std::int64_t triangles : {1000, 10000, 100000}) {
+    for (const std::int64_t percent : {1, 3, 10}) b->Args({triangles, percent});
+  }
+}
+
+BENCHMARK(exact)->Name("oracle/overlap/by:exact")->Apply(sizes)->Args({1000000, 10});
+BENCHMARK(corefinement)->Name("oracle/overlap/by:corefinement")->Apply(sizes);
+
+}  // namespace
+}  // namespace sixdof
+
+BENCHMARK_MAIN();
