@@ -14,6 +14,7 @@
 #include <sixdof/bench/cli/generate.h>
 #include <sixdof/bench/cli/info.h>
 #include <sixdof/bench/cli/models.h>
+#include <sixdof/bench/cli/query.h>
 #include <sixdof/bench/cli/table.h>
 #include <sixdof/bench/cli/verify.h>
 
@@ -31,6 +32,7 @@ void add_commands(CLI::App& app) {
   add_algorithms_command(app);
   add_info_command(app);
   add_models_command(app);
+  add_query_command(app);
   add_table_command(app);
   add_generate_command(app);
   add_verify_command(app);

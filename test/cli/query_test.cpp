@@ -1,0 +1,106 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/bench/cli/commands.h>
+#include <sixdof/geometry/pose.h>
+
+#include "run_program.h"
+
+namespace sixdof {
+namespace {
+
+using ::testing::HasSubstr;
+
+test::ProgramResult query(const std::string& arguments) {
+  return test::run_program(std::string(SIXDOF_PROGRAM) + " query " + arguments);
+}
+
+nlohmann::json answers(const std::string& arguments) {
+  const auto result = query(arguments + " --json");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return nlohmann::json::parse(result.out);
+}
+
+Eigen::Vector3d vector(const nlohmann::json& json) {
+  return Eigen::Vector3d(json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>());
+}
+
+constexpr double k_rounding = 1e-14;
+
+// Two boxes 2 x 1.6 x 1.2, the second shifted: what they share is a box of known edges.
+const char* const k_boxes = "--a box-100 --b box-300 --pose '1.7 -0.3 0.4  1 0 0 0'";
+
+TEST(Query, ExactAnswersForTwoBoxesAreThoseOfTheCommonBox) {
+  const auto json = answers(k_boxes);
+  const Eigen::Vector3d edges(2.0 - 1.7, 1.6 - 0.3, 1.2 - 0.4);
+  EXPECT_EQ(json.at("algorithm"), "exact");
+  EXPECT_EQ(json.at("status"), "ok");
+  EXPECT_EQ(json.at("colliding"), true);
+  EXPECT_EQ(json.at("distance"), 0.0);
+  EXPECT_NEAR(json.at("volume"), edges.prod(), k_rounding);
+  EXPECT_EQ(json.at("penalty"), json.at("volume"));
+  // force = -grad V: the common box shrinks as B moves on along (1, -1, 1).
+  const Eigen::Vector3d force(edges.y() * edges.z(), -edges.x() * edges.z(), edges.x() * edges.y());
+  EXPECT_LE((vector(json.at("force")) - force).norm(), k_rounding);
+  EXPECT_LE((vector(json.at("reference_point")) - Eigen::Vector3d(1.7, -0.3, 0.4)).norm(), k_rounding);
+  EXPECT_GE(json.at("time_ns"), 0);
+}
+
+TEST(Query, TorqueMovesWithTheReferencePoint) {
+  const auto standard = answers(k_boxes), moved = answers(std::string(k_boxes) + " --about '0.5, 2, -1'");
+  const Eigen::Vector3d shift = vector(standard.at("reference_point")) - vector(moved.at("reference_point"));
+  EXPECT_EQ(vector(moved.at("reference_point")), Eigen::Vector3d(0.5, 2.0, -1.0));
+  EXPECT_EQ(vector(moved.at("force")), vector(standard.at("force")));
+  const Eigen::Vector3d expected = vector(standard.at("torque")) + shift.cross(vector(standard.at("force")));
+  EXPECT_LE((vector(moved.at("torque")) - expected).norm(), k_rounding);
+}
+
+TEST(Query, PoseIsTranslationThenQuaternionWithTheScalarFirst) {
+  // A quarter turn about z lays B's edge of 2 along y; the gap along x is 2.5 - 1 - 0.8.
+  const auto json = answers("--a box-100 --b box-100 --pose '2.5 0 0 0.7071067811865476 0 0 0.7071067811865476'");
+  EXPECT_EQ(json.at("colliding"), false);
+  EXPECT_NEAR(json.at("distance"), 0.7, k_rounding);
+  EXPECT_NEAR((vector(json.at("witness_b")) - vector(json.at("witness_a"))).x(), 0.7, k_rounding);
+  EXPECT_EQ(json.at("volume"), 0.0);
+}
+
+TEST(Query, WhatAnAlgorithmDoesNotAnswerIsNull) {
+  const auto json = answers(std::string(k_boxes) + " --algorithm fcl-rss");
+  EXPECT_EQ(json.at("status"), "ok");
+  for (const char* key : {"colliding", "penalty", "volume", "force", "torque", "reference_point"}) {
+    EXPECT_TRUE(json.at(key).is_null()) << key;
+  }
+  EXPECT_EQ(json.at("distance"), 0.0);
+  EXPECT_THAT(query(std::string(k_boxes) + " --algorithm fcl-rss").out, ::testing::Not(HasSubstr("force")));
+}
+
+TEST(Query, SettingsReachTheAlgorithm) {
+  const std::string ist = std::string(k_boxes) + " --algorithm ist --set spheres=50 --set force=gradient";
+  EXPECT_THAT(answers(ist).at("settings").get<std::string>(), HasSubstr("spheres=50"));
+}
+
+TEST(Query, RefusesBadArgumentsAndNamesThem) {
+  const auto refuses = [](const std::string& arguments, const std::string& words) {
+    const auto result = query(arguments);
+    EXPECT_EQ(result.exit_code, cli::k_exit_error) << arguments;
+    EXPECT_EQ(result.out, "") << arguments;
+    EXPECT_THAT(result.err, HasSubstr(words)) << arguments;
+  };
+  const std::string boxes = "--a box-100 --b box-100 ";
+  refuses(boxes + "--pose '0 0 0 0.707107 0 0 0'", "norm");
+  refuses(boxes + "--pose '0 0 nan 1 0 0 0'", "finite");
+  refuses(boxes + "--pose '0 0 0 1 0 0'", "6 numbers instead of 7");
+  refuses(boxes + "--pose '0 0 0 1 0 0 x'", "number 7");
+  refuses(boxes + "--pose '0 0 0 1 0 0 0' --about '1 2'", "--about");
+  refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm exactly", "no such algorithm");
+  refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm ist --set sphere=3", "no such knob");
+  refuses("--a elefant --b box-100 --pose '0 0 0 1 0 0 0'", "elefant");
+  refuses("--a box-100 --b no_such_file.ply --pose '0 0 0 1 0 0 0'", "no_such_file.ply");
+  EXPECT_EQ(query("--a box-100 --b box-100").exit_code, cli::k_exit_usage);
+}
+
+}  // namespace
+}  // namespace sixdof
