@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -34,6 +35,9 @@ namespace sixdof {
 /// triangle's side from the lowest to the middle index. So one potential per triangle, that of its rising side, is all
 /// that is stored. Corners of highest index are never passed, which is where the pole sits: its winding number is that
 /// of a vertex.
+///
+/// Memory: 66 bytes per triangle, besides the tree's. Preparation is linear but for sorting, about 0.3 s per million
+/// triangles. A query casts one ray per piece whose pole lies in the other body's box.
 class Solid {
  public:
   using Integer = __int128;
