@@ -16,16 +16,19 @@
 #include <sixdof/bench/cli/progress_line.h>
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/distance_generator.h>
+#include <sixdof/configuration/ray_cast.h>
 #include <sixdof/configuration/sphere_method.h>
 #include <sixdof/models/zoo.h>
 
 namespace sixdof::cli {
 namespace {
 
+const std::string k_default_oracle = "fcl-rss";
+
 struct Arguments {
   std::string a, b, grid, output;
   std::string distances = "0:30";
-  std::string oracle = "fcl-rss";
+  std::string method, oracle;  // empty: not given
   unsigned threads = 0;
   bool plan = false;
 };
@@ -55,6 +58,13 @@ void print_plan(const Grid& grid, const std::vector<int>& percents) {
   fmt::print("bytes before compression   {}\n", all * sizeof(double));
 }
 
+std::unique_ptr<DistanceGenerator> make_generator(const Arguments& arguments, const Registry& registry) {
+  if (arguments.oracle.empty() && arguments.method != "advance") return make_ray_cast();
+  if (arguments.method == "raycast") throw BadArgument("--oracle is for --method advance");
+  return make_sphere_method(
+      distance_source_argument(registry, arguments.oracle.empty() ? k_default_oracle : arguments.oracle));
+}
+
 void generate(const Arguments& arguments) {
   if (arguments.grid.empty()) throw BadArgument("--grid is needed");
   const Grid grid = make_grid(arguments.grid);
@@ -64,7 +74,7 @@ void generate(const Arguments& arguments) {
 
   Registry registry;
   register_all_algorithms(registry);
-  const auto generator = make_sphere_method(distance_source_argument(registry, arguments.oracle));
+  const auto generator = make_generator(arguments, registry);
   const Mesh a = load_model(arguments.a);
   const Mesh b = arguments.b.empty() || arguments.b == arguments.a ? a : load_model(arguments.b);
 
@@ -121,9 +131,14 @@ void add_generate_command(CLI::App& app) {
   command->add_option("--distances", arguments->distances, "Percent of A's box diagonal, e.g. 0,1,5:10")
       ->capture_default_str();
   command
-      ->add_option("--oracle", arguments->oracle,
-                   "What defines the distances: brute-force, or an algorithm with exact ones")
-      ->capture_default_str();
+      ->add_option("--method", arguments->method,
+                   "raycast: on the project's own trees; advance: step by step with the distances of --oracle. "
+                   "Default: raycast, with --oracle advance")
+      ->check(CLI::IsMember({"raycast", "advance"}));
+  command->add_option(
+      "--oracle", arguments->oracle,
+      "What --method advance measures with: brute-force, or an algorithm with exact distances (default " +
+          k_default_oracle + ")");
   command->add_option("--threads", arguments->threads, "0: as many as the machine has")->capture_default_str();
   command->add_option("-o,--output", arguments->output, "The set (HDF5); replaced if it exists");
   command->add_flag("--plan", arguments->plan, "Only print what would be made");

@@ -1,0 +1,152 @@
+#include <sixdof/configuration/ray_cast.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/configuration/ray_cast_traversal.h>
+#include <sixdof/configuration/ray_cast_tree.h>
+#include <sixdof/geometry/triangle_distance.h>
+
+namespace sixdof {
+namespace {
+
+static_assert(k_ray_cast_tie == detail::k_cast_tie);
+
+class RayCastSolver final : public RaySolver {
+ public:
+  RayCastSolver(const Mesh& a, std::shared_ptr<const detail::CastMesh> cast_a, const Mesh& b,
+                std::shared_ptr<const detail::CastMesh> cast_b)
+      : a_(a), b_(b), tree_a_(std::move(cast_a)), tree_b_(std::move(cast_b)), cast_(tree_a_, tree_b_) {
+    tree_a_.turn(-Eigen::Matrix3d::Identity());
+  }
+
+  void set_rotation(const Eigen::Vector4d& rotation) override {
+    ray_ = ConfigurationRay(a_, b_, rotation);
+    tree_b_.turn(ray_.R);
+    last_direction_.clear();
+  }
+
+  void solve(const Eigen::Vector3d& direction, std::span<const double> aims, std::span<double> travel,
+             std::span<double> residuals) override {
+    ray_.direction = direction;
+    cast_.direction = direction;
+    last_direction_.resize(aims.size());
+    std::optional<detail::CastPair> last_aim;
+    bool reachable = true;
+    for (std::size_t k = 0; k < aims.size(); ++k) {
+      std::optional<detail::CastPair> pair;
+      // Who is missed by a wider aim is missed by a narrower one.
+      if (reachable) pair = cast(aims[k], last_aim, last_direction_[k]);
+      reachable = pair.has_value();
+      travel[k] = std::numeric_limits<double>::quiet_NaN();
+      residuals[k] = 0.0;
+      if (!reachable) continue;
+      last_aim = pair;
+      last_direction_[k] = pair;
+      std::tie(travel[k], residuals[k]) = polish(*pair, cast_.travel, aims[k]);
+    }
+  }
+
+  std::uint64_t measurements() const override { return cast_.counts.distances; }
+
+ private:
+  std::optional<detail::CastPair> cast(double aim, const std::optional<detail::CastPair>& first_guess,
+                                       const std::optional<detail::CastPair>& second_guess) {
+    cast_.aim = aim;
+    // The path ends where the centres meet; what ties with that still counts.
+    cast_.travel = -k_ray_cast_tie * cast_.size();
+    cast_.pair.reset();
+    cast_.axis = cast_.direction;
+    if (first_guess) detail::offer_pair(cast_, *first_guess);
+    if (second_guess) detail::offer_pair(cast_, *second_guess);
+    detail::find_first_hit(cast_);
+    return cast_.pair;
+  }
+
+  /// Ends with the pose as everyone makes it, whose rounding depends on where the meshes lie in their frames.
+  std::pair<double, double> polish(const detail::CastPair& pair, double s, double aim) {
+    const Tree::Corners& a = tree_a_.mesh().tree().corners()[pair.a];
+    const Tree::Corners& b = tree_b_.mesh().tree().corners()[pair.b];
+    const auto measure = [&](double travel) {
+      const Pose X_AB = ray_.pose(travel);
+      ++cast_.counts.distances;
+      return triangle_triangle_distance(a, {X_AB * b[0], X_AB * b[1], X_AB * b[2]});
+    };
+    s = std::max(s, 0.0);
+    ClosestPoints closest = measure(s);
+    double residual = std::abs(closest.distance - aim);
+    if (closest.distance > 0.0) {
+      const double slope = cast_.axis.dot(cast_.direction);
+      const double next = std::max(0.0, s - (closest.distance - aim) / slope);
+      if (slope > 0.0 && std::isfinite(next) && next != s) {
+        closest = measure(next);
+        const double next_residual = std::abs(closest.distance - aim);
+        if (next_residual < residual) {
+          s = next;
+          residual = next_residual;
+        }
+      }
+    }
+    if (residual > k_distance_tolerance * a_.diagonal()) {
+      throw Error(fmt::format("distance {} at s = {} instead of {}: the coordinates are too large for the meshes' size",
+                              closest.distance, s, aim));
+    }
+    return {s, residual};
+  }
+
+  const Mesh& a_;
+  const Mesh& b_;
+  detail::CastTree tree_a_;  // mirrored
+  detail::CastTree tree_b_;
+  detail::Cast cast_;
+  ConfigurationRay ray_;
+  std::vector<std::optional<detail::CastPair>> last_direction_;  // pair of each aim
+};
+
+class RayCast final : public DistanceGenerator {
+ public:
+  const std::string& oracle_name() const override { return name_; }
+  const std::string& oracle_version() const override { return version_; }
+  std::unique_ptr<RaySolver> prepare(const Mesh& a, const Mesh& b) const override {
+    auto cast_a = cast_mesh(a);
+    return std::make_unique<RayCastSolver>(a, cast_a, b, cast_mesh(b));
+  }
+
+ private:
+  /// One for all solvers that are alive.
+  std::shared_ptr<const detail::CastMesh> cast_mesh(const Mesh& mesh) const {
+    const std::scoped_lock lock(mutex_);
+    std::weak_ptr<const detail::CastMesh>& known = known_[mesh.hash()];
+    std::shared_ptr<const detail::CastMesh> made = known.lock();
+    if (!made) {
+      // Isolated, so that a thread that waits for its part of the tree does not come here again.
+      tbb::this_task_arena::isolate(
+          [&] { made = std::make_shared<const detail::CastMesh>(std::make_shared<const Tree>(mesh)); });
+      known = made;
+    }
+    return made;
+  }
+
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, std::weak_ptr<const detail::CastMesh>> known_;
+  const std::string name_ = "triangle-distance";
+  const std::string version_ = SIXDOF_VERSION;
+};
+
+}  // namespace
+
+std::unique_ptr<DistanceGenerator> make_ray_cast() { return std::make_unique<RayCast>(); }
+
+}  // namespace sixdof

@@ -1,0 +1,494 @@
+#include <sixdof/configuration/ray_cast_traversal.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sixdof/configuration/ray_cast_traversal.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// Let S be the set of differences b - a (b in B at travel 0, a in A), a Minkowski sum of B and the mirrored A. B at
+// travel t is at least d away from A for every t >= t0 if some unit vector n with n . u >= 0 has
+//   n . (s + t0 u) >= d for all s in S:
+// moving on along u only adds to the left side. A pair of volumes that passes this test for the travel t0 found so far
+// cannot raise it. That is all there is: no ray parameter is ever divided by n . u, grazing rays are no special case.
+//
+// Axes n tried for a pair of volumes with boxes and slabs:
+//   - the normal at the closest points found so far: where surfaces are smooth it is close to the best for every pair
+//     that matters, and slabs make it tight to second order in the size of the patches;
+//   - from box to box, where the nearest point of the sum of the boxes lies;
+//   - from centre to centre, with slabs: tight for small patches at a distance;
+//   - the normals of the slabs.
+// Where the volumes come nearer as t grows beyond t0, boxes and centres are taken at the nearest travel instead.
+//
+// Nothing here uses fused multiply-add, and all else (+ - * / sqrt min max) is rounded by IEEE rules lane by lane. So
+// which pairs are looked into, and in what order, is the same on every instruction set.
+
+HWY_BEFORE_NAMESPACE();
+namespace sixdof::detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Lanes = hn::CappedTag<float, Tree::k_width>;
+using V = hn::Vec<Lanes>;
+
+constexpr Lanes k_lanes;
+constexpr std::size_t k_width = Tree::k_width;
+constexpr std::size_t k_leaf_triangles = Tree::k_leaf_triangles;
+
+/// Bounds carry a few roundings (6e-8 each) of numbers up to Cast::size(): three of turning a corner, one or two each
+/// of fitting, shifting and adding.
+constexpr float k_slack = 1e-6f;
+
+/// Axes are shorter than unit vectors by more than their rounding: a gap along them never exceeds the distance.
+constexpr double k_axis_length = 1.0 - 4e-7;
+
+/// Squares of lengths below this are taken for this, so that nothing is divided by zero.
+constexpr float k_tiny_square = 1e-36f;
+
+HWY_INLINE V set(float x) { return hn::Set(k_lanes, x); }
+HWY_INLINE V mul_add(V x, V y, V z) { return hn::Add(hn::Mul(x, y), z); }
+HWY_INLINE V sub_mul(V z, V x, V y) { return hn::Sub(z, hn::Mul(x, y)); }
+
+/// The ray in floats.
+struct Ray {
+  float u[3];
+  float axis[3];
+  float aim;
+  float slack;
+};
+
+/// The volume that is not opened.
+struct Fixed {
+  float center[3];
+  float half[3];
+  float normal[3];
+  float slab_offset;
+  float slab_half;
+
+  Fixed(const CastTree& tree, std::uint32_t child) {
+    if (child == Cast::Open::k_root) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        center[k] = tree.root_center()[static_cast<Eigen::Index>(k)];
+        half[k] = tree.root_half()[static_cast<Eigen::Index>(k)];
+        normal[k] = 0.0f;
+      }
+      slab_offset = slab_half = 0.0f;
+      return;
+    }
+    const CastNode& node = tree.nodes()[child / k_width];
+    const std::size_t lane = child % k_width;
+    for (std::size_t k = 0; k < 3; ++k) {
+      center[k] = node.center[k][lane];
+      half[k] = node.half[k][lane];
+      normal[k] = node.normal[k][lane];
+    }
+    slab_offset = node.slab_offset[lane];
+    slab_half = node.slab_half[lane];
+  }
+
+  float size() const { return half[0] * half[0] + half[1] * half[1] + half[2] * half[2]; }
+};
+
+/// Smallest n . (p - centre) over a volume: over the box, and over the slab with what is left of n over the box.
+HWY_INLINE V lowest(const V* HWY_RESTRICT n, const V* HWY_RESTRICT half, const V* HWY_RESTRICT normal, V slab_offset,
+                    V slab_half) {
+  const V along = mul_add(n[2], normal[2], mul_add(n[1], normal[1], hn::Mul(n[0], normal[0])));
+  V box = hn::Mul(hn::Abs(n[0]), half[0]);
+  box = mul_add(hn::Abs(n[1]), half[1], box);
+  box = mul_add(hn::Abs(n[2]), half[2], box);
+  V slab = sub_mul(hn::Mul(along, slab_offset), hn::Abs(along), slab_half);
+  for (std::size_t k = 0; k < 3; ++k) {
+    slab = sub_mul(slab, hn::Abs(sub_mul(n[k], along, normal[k])), half[k]);
+  }
+  return hn::Max(hn::Neg(box), slab);
+}
+
+/// The same for one volume.
+HWY_INLINE float lowest(const float* n, const Fixed& v) {
+  const float along = n[0] * v.normal[0] + n[1] * v.normal[1] + n[2] * v.normal[2];
+  float box = 0.0f;
+  float slab = along * v.slab_offset - std::abs(along) * v.slab_half;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box -= std::abs(n[k]) * v.half[k];
+    slab -= std::abs(n[k] - along * v.normal[k]) * v.half[k];
+  }
+  return std::max(box, slab);
+}
+
+/// By how much each child's distance from `fixed` surely exceeds the aim from cast.travel on.
+/// @param shift travel * u
+HWY_INLINE void bound_children(const CastNode& node, const Fixed& fixed, const Ray& ray, const float* shift,
+                               float* HWY_RESTRICT gaps) {
+  const V zero = hn::Zero(k_lanes);
+  const V aim = set(ray.aim);
+  const V enough = set(ray.slack);
+  float at[3];
+  for (std::size_t k = 0; k < 3; ++k) at[k] = fixed.center[k] + shift[k];
+  const float axis_lowest = lowest(ray.axis, fixed);
+  // The fixed slab's normal, turned to where B comes from.
+  const float toward = fixed.normal[0] * ray.u[0] + fixed.normal[1] * ray.u[1] + fixed.normal[2] * ray.u[2];
+  const float sign = toward < 0.0f ? -1.0f : 1.0f;
+  const float fixed_lowest = sign * fixed.slab_offset - fixed.slab_half;
+
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+    V w[3], half[3], normal[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      w[k] = hn::Add(hn::Load(k_lanes, node.center[k] + i), set(at[k]));
+      half[k] = hn::Load(k_lanes, node.half[k] + i);
+      normal[k] = hn::Load(k_lanes, node.normal[k] + i);
+    }
+    const V slab_offset = hn::Load(k_lanes, node.slab_offset + i);
+    const V slab_half = hn::Load(k_lanes, node.slab_half + i);
+    V gap;
+    {  // The axis found so far.
+      const V n[3] = {set(ray.axis[0]), set(ray.axis[1]), set(ray.axis[2])};
+      V middle = hn::Mul(n[0], w[0]);
+      middle = mul_add(n[1], w[1], middle);
+      middle = mul_add(n[2], w[2], middle);
+      gap = hn::Add(hn::Add(middle, lowest(n, half, normal, slab_offset, slab_half)), set(axis_lowest));
+      gap = hn::Sub(gap, aim);
+    }
+    if (hn::AllTrue(k_lanes, hn::Gt(gap, enough))) {
+      hn::Store(gap, k_lanes, gaps + i);
+      continue;
+    }
+    {  // The slabs' normals.
+      V middle = zero;
+      V reach = set(-fixed_lowest);
+      V up = zero;
+      V child_middle = slab_offset;
+      V child_reach = slab_half;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V n = set(sign * fixed.normal[k]);
+        middle = mul_add(n, w[k], middle);
+        reach = mul_add(hn::Abs(n), half[k], reach);
+        up = mul_add(normal[k], set(ray.u[k]), up);
+        child_middle = mul_add(normal[k], w[k], child_middle);
+        child_reach = mul_add(hn::Abs(normal[k]), set(fixed.half[k]), child_reach);
+      }
+      const V turned = hn::IfThenElse(hn::Lt(up, zero), hn::Neg(child_middle), child_middle);
+      gap = hn::Max(gap, hn::Sub(hn::Max(hn::Sub(middle, reach), hn::Sub(turned, child_reach)), aim));
+    }
+    {  // Boxes and centres at the nearest travel.
+      V later = zero;
+      for (std::size_t k = 0; k < 3; ++k) later = sub_mul(later, w[k], set(ray.u[k]));
+      later = hn::Max(later, zero);
+      V length2 = set(k_tiny_square);
+      V squared = zero;
+      V up = zero;
+      const V fixed_half[3] = {set(fixed.half[0]), set(fixed.half[1]), set(fixed.half[2])};
+      for (std::size_t k = 0; k < 3; ++k) {
+        w[k] = mul_add(later, set(ray.u[k]), w[k]);
+        length2 = mul_add(w[k], w[k], length2);
+        const V apart = hn::Max(hn::Sub(hn::Abs(w[k]), hn::Add(half[k], fixed_half[k])), zero);
+        squared = mul_add(apart, apart, squared);
+        up = mul_add(hn::CopySign(apart, w[k]), set(ray.u[k]), up);
+      }
+      const V boxes = hn::IfThenElseZero(hn::Ge(up, zero), hn::Sqrt(squared));
+      gap = hn::Max(gap, hn::Sub(boxes, aim));
+
+      const V length = hn::Sqrt(length2);
+      const V inverse = hn::Div(set(static_cast<float>(k_axis_length)), length);
+      const V n[3] = {hn::Mul(w[0], inverse), hn::Mul(w[1], inverse), hn::Mul(w[2], inverse)};
+      const V fixed_normal[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
+      V centers = hn::Add(length, lowest(n, half, normal, slab_offset, slab_half));
+      centers = hn::Add(centers, lowest(n, fixed_half, fixed_normal, set(fixed.slab_offset), set(fixed.slab_half)));
+      gap = hn::Max(gap, hn::Sub(centers, aim));
+    }
+    hn::Store(gap, k_lanes, gaps + i);
+  }
+}
+
+/// Up to 4 x 4 pairs of triangles of two leaves; lane 4 i + j holds pair (i, j).
+struct LeafPair {
+  static constexpr std::size_t k_pairs = k_leaf_triangles * k_leaf_triangles;
+  HWY_ALIGN float a[3][3][k_pairs];  // [corner][axis][pair]
+  HWY_ALIGN float b[3][3][k_pairs];
+  HWY_ALIGN float gaps[k_pairs];
+};
+
+/// By how much each pair's distance surely exceeds the aim from cast.travel on: Frank-Wolfe steps towards the point of
+/// S + {t u, t >= cast.travel} that is nearest to the origin.
+HWY_INLINE void bound_triangles(LeafPair& pairs, const Ray& ray) {
+  constexpr int k_steps = 5;
+  const V zero = hn::Zero(k_lanes);
+  const V tiny = set(k_tiny_square);
+  const V enough = set(ray.slack);
+  for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
+    const auto load = [i](const float* p) { return hn::Load(k_lanes, p + i); };
+    V x[3] = {set(ray.axis[0]), set(ray.axis[1]), set(ray.axis[2])};
+    V best = set(-Tree::k_empty);
+    for (int step = 0; step <= k_steps; ++step) {
+      // The corners that lie lowest along x.
+      V low_a, low_b;
+      V p[3], q[3];
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        V along_a = hn::Mul(x[0], load(pairs.a[corner][0]));
+        V along_b = hn::Mul(x[0], load(pairs.b[corner][0]));
+        for (std::size_t k = 1; k < 3; ++k) {
+          along_a = mul_add(x[k], load(pairs.a[corner][k]), along_a);
+          along_b = mul_add(x[k], load(pairs.b[corner][k]), along_b);
+        }
+        if (corner == 0) {
+          low_a = along_a;
+          low_b = along_b;
+          for (std::size_t k = 0; k < 3; ++k) {
+            p[k] = load(pairs.a[0][k]);
+            q[k] = load(pairs.b[0][k]);
+          }
+        } else {
+          const auto lower_a = hn::Lt(along_a, low_a);
+          const auto lower_b = hn::Lt(along_b, low_b);
+          low_a = hn::Min(along_a, low_a);
+          low_b = hn::Min(along_b, low_b);
+          for (std::size_t k = 0; k < 3; ++k) {
+            p[k] = hn::IfThenElse(lower_a, load(pairs.a[corner][k]), p[k]);
+            q[k] = hn::IfThenElse(lower_b, load(pairs.b[corner][k]), q[k]);
+          }
+        }
+      }
+      V length2 = hn::Mul(x[0], x[0]);
+      for (std::size_t k = 1; k < 3; ++k) length2 = mul_add(x[k], x[k], length2);
+      const V length = hn::Sqrt(hn::Max(length2, tiny));
+      const V gap = hn::Sub(hn::Div(hn::Add(low_a, low_b), length), set(ray.aim));
+      best = hn::Max(best, gap);
+      if (step == k_steps || hn::AllTrue(k_lanes, hn::Gt(best, enough))) break;
+      V d[3];
+      for (std::size_t k = 0; k < 3; ++k) d[k] = hn::Add(p[k], q[k]);
+      if (step == 0) {  // the axis is no point of S; d is
+        for (std::size_t k = 0; k < 3; ++k) x[k] = d[k];
+      } else {
+        V down = zero;
+        V norm = tiny;
+        for (std::size_t k = 0; k < 3; ++k) {
+          d[k] = hn::Sub(d[k], x[k]);
+          down = sub_mul(down, x[k], d[k]);
+          norm = mul_add(d[k], d[k], norm);
+        }
+        const V t = hn::Min(hn::Max(hn::Div(down, norm), zero), set(1.0f));
+        for (std::size_t k = 0; k < 3; ++k) x[k] = mul_add(t, d[k], x[k]);
+      }
+      V up = zero;
+      for (std::size_t k = 0; k < 3; ++k) up = sub_mul(up, x[k], set(ray.u[k]));
+      up = hn::Max(up, zero);
+      for (std::size_t k = 0; k < 3; ++k) x[k] = mul_add(up, set(ray.u[k]), x[k]);
+    }
+    hn::Store(best, k_lanes, pairs.gaps + i);
+  }
+}
+
+struct Descent {
+  Cast& cast;
+  const CastTree& tree_a;
+  const CastTree& tree_b;
+  Ray ray;
+  float shift[3];
+  const double tie;
+
+  explicit Descent(Cast& c) : cast(c), tree_a(c.a), tree_b(c.b), tie(k_cast_tie * c.size()) {
+    for (int k = 0; k < 3; ++k) ray.u[k] = static_cast<float>(cast.direction[k]);
+    ray.aim = static_cast<float>(cast.aim);
+    ray.slack = static_cast<float>(k_slack * cast.size());
+    update();
+  }
+
+  /// After a change of travel and axis.
+  void update() {
+    for (int k = 0; k < 3; ++k) {
+      ray.axis[k] = static_cast<float>(k_axis_length * cast.axis[k]);
+      shift[k] = static_cast<float>(cast.travel * cast.direction[k]);
+    }
+  }
+
+  static CastChild child_of(const CastTree& tree, std::uint32_t child) {
+    return child == Cast::Open::k_root ? CastChild::node(0) : tree.nodes()[child / k_width].child[child % k_width];
+  }
+
+  /// Whether slab `x` and slab `y` with a box around are apart by the aim, up to a tie, from cast.travel on.
+  bool slabs_apart(const CastSlab& x, const CastSlab& y, const Fixed& box) const {
+    const double up = x.normal.dot(cast.direction);
+    const double sign = up < 0.0 ? -1.0 : 1.0;
+    const Eigen::Vector3d n = sign * x.normal;
+    const double along = n.dot(y.normal);
+    double low = sign * x.middle - x.half + along * y.middle - std::abs(along) * y.half;
+    const Eigen::Vector3d rest = n - along * y.normal;
+    for (int k = 0; k < 3; ++k) {
+      low += rest[k] * static_cast<double>(box.center[k]) - std::abs(rest[k]) * static_cast<double>(box.half[k]);
+    }
+    return low + cast.travel * std::abs(up) >= cast.aim - tie;
+  }
+
+  /// Whether two flat patches tie with what was found: in double precision, where floats cannot tell.
+  bool ties(std::uint32_t a, std::uint32_t b) const {
+    if (a == Cast::Open::k_root || b == Cast::Open::k_root) return false;
+    const CastSlab slab_a = tree_a.slab(a);
+    const CastSlab slab_b = tree_b.slab(b);
+    return slabs_apart(slab_a, slab_b, Fixed(tree_b, b)) || slabs_apart(slab_b, slab_a, Fixed(tree_a, a));
+  }
+
+  void look_into_leaves(std::uint32_t leaf_a, std::uint32_t leaf_b) {
+    ++cast.counts.leaf_pairs;
+    const CastLeaf& a = tree_a.leaves()[leaf_a];
+    const CastLeaf& b = tree_b.leaves()[leaf_b];
+    LeafPair pairs;
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Relative to one corner, so that only the floats given round.
+      const float origin = a.corner[0][k][0];
+      const float b_shift = origin + shift[k];
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (std::size_t i = 0; i < k_leaf_triangles; ++i) {
+          const float x = a.corner[corner][k][i] - origin;
+          for (std::size_t j = 0; j < k_leaf_triangles; ++j) {
+            pairs.a[corner][k][k_leaf_triangles * i + j] = x;
+            pairs.b[corner][k][k_leaf_triangles * i + j] = b.corner[corner][k][j] + b_shift;
+          }
+        }
+      }
+    }
+    bound_triangles(pairs, ray);
+    const Tree::Child child_a = tree_a.mesh().leaf_children()[leaf_a];
+    const Tree::Child child_b = tree_b.mesh().leaf_children()[leaf_b];
+    std::uint32_t order[LeafPair::k_pairs];
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < child_a.count(); ++i) {
+      for (std::uint32_t j = 0; j < child_b.count(); ++j) {
+        const auto lane = static_cast<std::uint32_t>(k_leaf_triangles * i + j);
+        if (pairs.gaps[lane] > ray.slack) continue;
+        std::size_t at = count++;
+        for (; at > 0 && pairs.gaps[order[at - 1]] > pairs.gaps[lane]; --at) order[at] = order[at - 1];
+        order[at] = lane;
+      }
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+      const std::uint32_t i = order[n] / k_leaf_triangles;
+      const std::uint32_t j = order[n] % k_leaf_triangles;
+      if (offer_pair(cast, {child_a.first() + i, child_b.first() + j})) update();
+    }
+  }
+
+  void run() {
+    std::vector<Cast::Open>& open = cast.open;
+    open.clear();
+    open.push_back({Cast::Open::k_root, Cast::Open::k_root, 0.0f});
+    while (!open.empty()) {
+      const Cast::Open top = open.back();
+      open.pop_back();
+      const CastChild child_a = child_of(tree_a, top.a);
+      const CastChild child_b = child_of(tree_b, top.b);
+      if (child_a.is_leaf() && child_b.is_leaf()) {
+        look_into_leaves(child_a.index(), child_b.index());
+        continue;
+      }
+      const Fixed volume_a(tree_a, top.a);
+      const Fixed volume_b(tree_b, top.b);
+      const bool opens_a = child_b.is_leaf() || (!child_a.is_leaf() && volume_a.size() >= volume_b.size());
+      const std::uint32_t index = opens_a ? child_a.index() : child_b.index();
+      const CastNode& node = opens_a ? tree_a.nodes()[index] : tree_b.nodes()[index];
+      HWY_ALIGN float gaps[k_width];
+      ++cast.counts.nodes;
+      const Fixed& fixed = opens_a ? volume_b : volume_a;
+      bound_children(node, fixed, ray, shift, gaps);
+
+      const std::size_t first = open.size();
+      for (std::uint32_t lane = 0; lane < node.child_count; ++lane) {
+        if (gaps[lane] > ray.slack) continue;
+        Cast::Open next{top.a, top.b, gaps[lane]};
+        (opens_a ? next.a : next.b) = static_cast<std::uint32_t>(index * k_width + lane);
+        const bool flat = node.slab_half[lane] <= ray.slack && fixed.slab_half <= ray.slack;
+        if (flat && gaps[lane] > -ray.slack && ties(next.a, next.b)) continue;
+        std::size_t at = open.size();
+        open.push_back(next);
+        for (; at > first && open[at - 1].gap < next.gap; --at) open[at] = open[at - 1];
+        open[at] = next;
+      }
+    }
+  }
+};
+
+void find_first_hit(Cast& cast) { Descent(cast).run(); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sixdof::detail
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sixdof::detail {
+namespace {
+
+/// Grazing rays halve the error per step, others square it.
+constexpr int k_most_steps = 100;
+
+/// |distance - aim| at which a step changes nothing, in units of Cast::size(): the rounding of the corners.
+constexpr double k_settled = 2e-16;
+
+}  // namespace
+
+HWY_EXPORT(find_first_hit);
+
+void find_first_hit(Cast& cast) { HWY_DYNAMIC_DISPATCH(find_first_hit)(cast); }
+
+bool offer_pair(Cast& cast, CastPair pair) {
+  const TriangleCorners mirrored = cast.a.triangle(pair.a);
+  const TriangleCorners a{-mirrored[0], -mirrored[1], -mirrored[2]};
+  const TriangleCorners at_center = cast.b.triangle(pair.b);
+  const double size = cast.size();
+  const double tie = k_cast_tie * size;
+  // Triangles around the corners and edges of the closest pair tie with it along its axis.
+  if (cast.pair) {
+    double gap = cast.travel * cast.axis.dot(cast.direction);
+    gap += std::min({cast.axis.dot(mirrored[0]), cast.axis.dot(mirrored[1]), cast.axis.dot(mirrored[2])});
+    gap += std::min({cast.axis.dot(at_center[0]), cast.axis.dot(at_center[1]), cast.axis.dot(at_center[2])});
+    if (gap >= cast.aim - tie) return false;
+  }
+  double slope = 0.0;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  const auto distance_at = [&](double t) {
+    ++cast.counts.distances;
+    const Eigen::Vector3d shift = t * cast.direction;
+    const ClosestPoints c =
+        triangle_triangle_distance(a, {at_center[0] + shift, at_center[1] + shift, at_center[2] + shift});
+    axis = c.on_b - c.on_a;
+    const double length = axis.norm();
+    axis = length > 0.0 ? Eigen::Vector3d(axis / length) : Eigen::Vector3d::Zero();
+    slope = axis.dot(cast.direction);
+    return c.distance;
+  };
+  // The distance is convex in t. Where it reaches the aim at t or beyond, Newton's method ends at the last such place:
+  // a step up the slope ends to the right of it, and from there no step goes past it.
+  double t = cast.travel;
+  double distance = distance_at(t);
+  if (distance >= cast.aim - tie && slope >= 0.0) return false;
+  if (distance >= cast.aim || !(slope > 0.0)) {
+    double highest_a = -std::numeric_limits<double>::infinity();
+    double lowest_b = -highest_a;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      highest_a = std::max(highest_a, a[corner].dot(cast.direction));
+      lowest_b = std::min(lowest_b, at_center[corner].dot(cast.direction));
+    }
+    t = highest_a - lowest_b + cast.aim;  // apart by the aim along the ray
+    if (t <= cast.travel) return false;
+    distance = distance_at(t);
+  }
+  for (int step = 0; step < k_most_steps; ++step) {
+    const double above = distance - cast.aim;
+    if (std::abs(above) <= k_settled * size) break;
+    if (!(slope > 0.0)) return false;  // the least distance is above the aim
+    const double next = t - above / slope;
+    if (next <= cast.travel) return false;
+    if (next == t) break;
+    t = next;
+    distance = distance_at(t);
+  }
+  if (!(slope >= 0.0)) return false;
+  cast.travel = t;
+  cast.pair = pair;
+  cast.axis = axis;
+  return true;
+}
+
+}  // namespace sixdof::detail
+#endif

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <sixdof/configuration/ray_cast_tree.h>
+
+/// The branch and bound of the ray cast. Internal: use ray_cast.h.
+namespace sixdof::detail {
+
+/// A pair of triangles in tree order.
+struct CastPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+};
+
+/// What casts looked at.
+struct CastCounts {
+  std::uint64_t nodes = 0;       ///< Nodes whose children were bounded against a volume.
+  std::uint64_t leaf_pairs = 0;  ///< Pairs of leaves whose triangles were bounded.
+  std::uint64_t distances = 0;   ///< Exact distances of two triangles.
+};
+
+/// One ray: B stands at `travel` along `direction` from where the centres of the boxes agree.
+///
+/// Trees are in A's axes, A's mirrored in its centre, so that everything is a sum: the difference b - a of a point b of
+/// B and a of A is a point of the one tree plus a point of the other plus travel * direction.
+struct Cast {
+  Cast(const CastTree& tree_a, const CastTree& tree_b) : a(tree_a), b(tree_b) {}
+
+  const CastTree& a;
+  const CastTree& b;
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+  double aim = 0.0;
+  /// The largest travel found so far at which a pair of triangles is `aim` apart; in the beginning the least that is of
+  /// interest.
+  double travel = 0.0;
+  std::optional<CastPair> pair;                     ///< The pair that is.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< Unit vector from A to B between the pair's closest points.
+  CastCounts counts;
+
+  /// Two volumes still to be looked into, named by 8 * node + lane; the whole tree is k_root.
+  struct Open {
+    static constexpr std::uint32_t k_root = 0xffffffffu;
+    std::uint32_t a;
+    std::uint32_t b;
+    float gap;
+  };
+  std::vector<Open> open;  ///< Scratch.
+
+  /// Lengths that errors are relative to.
+  double size() const { return a.radius() + b.radius() + aim; }
+};
+
+/// Errors of exact distances and their use, in units of Cast::size(): pairs that would raise the travel's distance by
+/// less are as good as the pair that is there already. So of many faces that tie only the first is looked into.
+constexpr double k_cast_tie = 1e-14;
+
+/// Takes a pair of triangles if it raises the travel. Returns whether it did.
+bool offer_pair(Cast& cast, CastPair pair);
+
+/// Finds the pair of triangles with the largest travel above cast.travel. Every instruction set does the same floating
+/// point operations in the same order, so that all find the same pair.
+void find_first_hit(Cast& cast);
+
+}  // namespace sixdof::detail

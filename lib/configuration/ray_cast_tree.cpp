@@ -1,0 +1,161 @@
+#include <sixdof/configuration/ray_cast_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+namespace sixdof::detail {
+namespace {
+
+constexpr std::size_t k_width = Tree::k_width;
+constexpr std::size_t k_leaf_triangles = Tree::k_leaf_triangles;
+
+/// The thinnest slab along the mean normal of triangles first .. first + count - 1.
+CastSlab fit_slab(const Tree& tree, std::uint32_t first, std::uint32_t count) {
+  const auto triangles = tree.corners().subspan(first, count);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Tree::Corners& t : triangles) sum += (t[1] - t[0]).cross(t[2] - t[0]);
+  const double scale = sum.cwiseAbs().maxCoeff();
+  CastSlab slab{.normal = scale > 0.0 ? Eigen::Vector3d((sum / scale).normalized()) : Eigen::Vector3d::UnitX()};
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const Tree::Corners& t : triangles) {
+    for (const Eigen::Vector3d& corner : t) {
+      const double height = slab.normal.dot(corner - tree.center());
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+  }
+  slab.middle = 0.5 * (low + high);
+  slab.half = 0.5 * (high - low);
+  return slab;
+}
+
+}  // namespace
+
+CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
+  nodes_.resize(tree_->nodes().size());
+  slabs_.resize(k_width * nodes_.size());
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const Tree::Node& from = tree_->nodes()[n];
+    CastNode& to = nodes_[n];
+    to = {};
+    to.child_count = from.child_count;
+    for (std::size_t lane = 0; lane < k_width; ++lane) {
+      const std::size_t i = lane < from.child_count ? lane : 0;
+      for (std::size_t k = 0; k < 3; ++k) to.normal[k][lane] = from.normal[k][i];
+      to.slab_offset[lane] = 0.5f * (from.slab_lower[i] + from.slab_upper[i]);
+      to.slab_half[lane] = 0.5f * (from.slab_upper[i] - from.slab_lower[i]);
+      if (lane >= from.child_count) {
+        to.child[lane] = to.child[0];
+        continue;
+      }
+      const Tree::Child child = from.child[i];
+      if (child.is_leaf()) {
+        to.child[lane] = CastChild::leaf(static_cast<std::uint32_t>(leaf_children_.size()));
+        leaf_children_.push_back(child);
+        slabs_[k_width * n + lane] = fit_slab(*tree_, child.first(), child.count());
+      } else {
+        to.child[lane] = CastChild::node(child.node());
+        const Tree::Node& below = tree_->nodes()[child.node()];
+        slabs_[k_width * n + lane] = fit_slab(*tree_, below.first_triangle, below.triangle_count);
+      }
+    }
+  }
+  leaves_.resize(leaf_children_.size());
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    const Tree::Child child = leaf_children_[leaf];
+    for (std::uint32_t i = 0; i < k_leaf_triangles; ++i) {
+      const Tree::Corners& t = tree_->corners()[child.first() + (i < child.count() ? i : 0)];
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Eigen::Vector3f p = (t[corner] - tree_->center()).cast<float>();
+        for (std::size_t k = 0; k < 3; ++k) leaves_[leaf].corner[corner][k][i] = p[static_cast<Eigen::Index>(k)];
+      }
+    }
+  }
+}
+
+CastTree::CastTree(std::shared_ptr<const CastMesh> mesh)
+    : mesh_(std::move(mesh)),
+      nodes_(mesh_->nodes().begin(), mesh_->nodes().end()),
+      leaves_(mesh_->leaves().size()),
+      bounds_(nodes_.size()) {}
+
+CastTree::Bounds CastTree::turn_leaf(std::uint32_t leaf, const float (&m)[3][3]) {
+  const CastLeaf& from = mesh_->leaves()[leaf];
+  CastLeaf& to = leaves_[leaf];
+  Bounds box;
+  for (std::size_t i = 0; i < 3; ++i) {
+    float low[k_leaf_triangles];
+    float high[k_leaf_triangles];
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      for (std::size_t t = 0; t < k_leaf_triangles; ++t) {
+        const float x = m[i][0] * from.corner[corner][0][t] + m[i][1] * from.corner[corner][1][t] +
+                        m[i][2] * from.corner[corner][2][t];
+        to.corner[corner][i][t] = x;
+        low[t] = corner == 0 ? x : std::min(low[t], x);
+        high[t] = corner == 0 ? x : std::max(high[t], x);
+      }
+    }
+    box.lower[i] = std::min(std::min(low[0], low[1]), std::min(low[2], low[3]));
+    box.upper[i] = std::max(std::max(high[0], high[1]), std::max(high[2], high[3]));
+  }
+  return box;
+}
+
+void CastTree::turn(const Eigen::Matrix3d& M) {
+  matrix_ = M;
+  float m[3][3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      m[i][k] = static_cast<float>(M(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+    }
+  }
+  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children before parents
+    const CastNode& from = mesh_->nodes()[n];
+    CastNode& to = nodes_[n];
+    Bounds all{};
+    for (std::size_t lane = 0; lane < from.child_count; ++lane) {
+      const CastChild child = from.child[lane];
+      const Bounds box = child.is_leaf() ? turn_leaf(child.index(), m) : bounds_[child.index()];
+      for (std::size_t k = 0; k < 3; ++k) {
+        to.center[k][lane] = 0.5f * (box.lower[k] + box.upper[k]);
+        to.half[k][lane] = 0.5f * (box.upper[k] - box.lower[k]);
+        all.lower[k] = lane == 0 ? box.lower[k] : std::min(all.lower[k], box.lower[k]);
+        all.upper[k] = lane == 0 ? box.upper[k] : std::max(all.upper[k], box.upper[k]);
+      }
+    }
+    for (std::size_t lane = from.child_count; lane < k_width; ++lane) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        to.center[k][lane] = to.center[k][0];
+        to.half[k][lane] = to.half[k][0];
+      }
+    }
+    bounds_[n] = all;
+    for (std::size_t lane = 0; lane < k_width; ++lane) to.slab_offset[lane] = from.slab_offset[lane];
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t lane = 0; lane < k_width; ++lane) {
+        const float x =
+            m[i][0] * from.normal[0][lane] + m[i][1] * from.normal[1][lane] + m[i][2] * from.normal[2][lane];
+        to.normal[i][lane] = x;
+        to.slab_offset[lane] -= x * to.center[i][lane];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    root_center_[static_cast<Eigen::Index>(k)] = 0.5f * (bounds_[0].lower[k] + bounds_[0].upper[k]);
+    root_half_[static_cast<Eigen::Index>(k)] = 0.5f * (bounds_[0].upper[k] - bounds_[0].lower[k]);
+  }
+}
+
+TriangleCorners CastTree::triangle(std::uint32_t t) const {
+  const Tree& tree = mesh_->tree();
+  const Tree::Corners& corners = tree.corners()[t];
+  return {matrix_ * (corners[0] - tree.center()), matrix_ * (corners[1] - tree.center()),
+          matrix_ * (corners[2] - tree.center())};
+}
+
+}  // namespace sixdof::detail

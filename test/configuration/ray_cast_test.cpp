@@ -1,0 +1,294 @@
+#include <sixdof/configuration/ray_cast.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <sixdof/configuration/brute_force_source.h>
+#include <sixdof/configuration/ray_cast_traversal.h>
+#include <sixdof/configuration/sphere_method.h>
+#include <sixdof/models/zoo.h>
+
+#include "shapes.h"
+
+namespace sixdof {
+namespace {
+
+using test::boxes_mesh;
+using test::lump_mesh;
+using test::random_direction;
+using test::random_rotation;
+
+/// Of a travel, in units of A's box diagonal: both methods stop where the distance is right to 1e-12, which leaves the
+/// travel a thousand times as far off where the ray grazes.
+constexpr double k_same_travel = 1e-9;
+/// |distance - aim|, in units of the sum of the box diagonals: rounding of corners within a few diagonals of the
+/// origin.
+constexpr double k_rounding = 1e-14;
+
+struct Ray {
+  std::vector<double> travel, residual;
+};
+
+Ray shoot(const DistanceGenerator& generator, const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction,
+          const Eigen::Vector4d& rotation, const std::vector<double>& aims) {
+  const auto solver = generator.prepare(a, b);
+  Ray ray{std::vector<double>(aims.size()), std::vector<double>(aims.size())};
+  solver->set_rotation(rotation);
+  solver->solve(direction, aims, ray.travel, ray.residual);
+  return ray;
+}
+
+std::vector<double> aims_of(const Mesh& a) {
+  return {0.3 * a.diagonal(), 0.11 * a.diagonal(), 0.01 * a.diagonal(), k_contact_aim * a.diagonal()};
+}
+
+/// Compares with the advancement on top of all pairs of triangles, in both orders.
+void compare(const Mesh& first, const Mesh& second, int rays, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  for (const auto& [a, b] : {std::pair(&first, &second), std::pair(&second, &first)}) {
+    const auto solver = make_ray_cast()->prepare(*a, *b);
+    const auto expected_solver = make_sphere_method(make_brute_force_source())->prepare(*a, *b);
+    const std::vector<double> aims = aims_of(*a);
+    Ray ray{std::vector<double>(aims.size()), std::vector<double>(aims.size())};
+    Ray expected = ray;
+    for (int i = 0; i < rays; ++i) {
+      const Eigen::Vector3d u = random_direction(random);
+      if (i % 3 == 0) {  // several directions per rotation: the second has the first's pairs to begin with
+        const Eigen::Vector4d q = random_rotation(random);
+        solver->set_rotation(q);
+        expected_solver->set_rotation(q);
+      }
+      solver->solve(u, aims, ray.travel, ray.residual);
+      expected_solver->solve(u, aims, expected.travel, expected.residual);
+      for (std::size_t k = 0; k < aims.size(); ++k) {
+        ASSERT_EQ(std::isnan(ray.travel[k]), std::isnan(expected.travel[k])) << a->name() << ", " << b->name();
+        if (std::isnan(ray.travel[k])) continue;
+        EXPECT_NEAR(ray.travel[k], expected.travel[k], k_same_travel * a->diagonal()) << a->name() << ", " << b->name();
+        EXPECT_LE(ray.residual[k], k_rounding * (a->diagonal() + b->diagonal()));
+      }
+    }
+  }
+}
+
+TEST(RayCast, AgreesWithAdvancementOnLumps) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const Mesh lump = lump_mesh(2 * seed, {0.3, -2.0, 1.1});
+    compare(lump, lump_mesh(2 * seed + 1, {0.7, 0.4, -0.9}), 6, seed);
+    compare(lump, lump, 3, seed + 100);
+  }
+}
+
+TEST(RayCast, AgreesWithAdvancementOnTubesAndLabyrinths) {
+  compare(load_model("torus-knot-600"), test::tetrahedron_mesh({0.1, 0.2, 0.3}, 0.4), 4, 21);
+  compare(load_model("gyroid-ball-1200"), test::tetrahedron_mesh({0.2, 0.1, 0.4}, 0.9), 4, 22);
+}
+
+TEST(RayCast, AgreesWithAdvancementOnUnequalSizesAndThinPlates) {
+  const Mesh plate = boxes_mesh({{{0.3, 0.1, -0.2}, {1.0, 0.7, 1e-4}}}, "plate");
+  const Mesh speck = boxes_mesh({{{3.0, 1.0, 2.0}, {0.001, 0.0012, 0.0007}}}, "speck");
+  compare(plate, speck, 12, 31);
+  compare(plate, lump_mesh(4, {0.0, 0.0, 0.0}), 12, 32);
+  compare(boxes_mesh({{{1.0, 2.0, 0.0}, {1.0, 0.3, 0.4}}}), speck, 12, 33);
+}
+
+TEST(RayCast, IsExactForBoxesFaceToFace) {
+  // Rotations by right angles permute the half edges; along an axis the travel is the sum of both and the aim.
+  const Eigen::Vector3d half_a(1.1, 0.7, 0.4), half_b(0.3, 0.55, 0.8);
+  const Mesh first = boxes_mesh({{{0.9, -2.0, 0.3}, half_a}});
+  const Mesh second = boxes_mesh({{{-1.0, 0.1, 1.7}, half_b}});
+  const auto rotations = zyz_rotations(2);
+  const auto generator = make_ray_cast();
+  for (const auto& [a, b, ha, hb] :
+       {std::tuple(&first, &second, half_a, half_b), std::tuple(&second, &first, half_b, half_a)}) {
+    const std::vector<double> aims = aims_of(*a);
+    for (const Eigen::Vector4d& q : rotations) {
+      const Eigen::Vector3d turned = (configuration_pose(*a, *b, {0, 0, 0}, q, 0.0).R * hb).cwiseAbs();
+      for (const Eigen::Vector3d& u : latitude_directions(2)) {
+        const double reach = u.cwiseAbs().dot(ha + turned);
+        const Ray ray = shoot(*generator, *a, *b, u, q, aims);
+        for (std::size_t k = 0; k < aims.size(); ++k) {
+          EXPECT_NEAR(ray.travel[k], reach + aims[k], k_rounding * a->diagonal());
+        }
+      }
+    }
+  }
+}
+
+/// Radius of the largest ball about the origin inside a convex mesh.
+double inner_radius(const Mesh& mesh) {
+  double r = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : mesh.triangles()) {
+    const Eigen::Vector3d p = mesh.vertices()[t[0]];
+    const Eigen::Vector3d n = (mesh.vertices()[t[1]] - p).cross(mesh.vertices()[t[2]] - p).normalized();
+    r = std::min(r, n.dot(p));
+  }
+  return r;
+}
+
+TEST(RayCast, LiesBetweenInnerAndOuterSpheres) {
+  const Mesh a = load_model("sphere-1000");
+  const Mesh b = load_model("sphere-300");
+  ASSERT_LT(a.center().norm() + b.center().norm(), k_rounding);
+  const std::vector<double> aims = aims_of(a);
+  const auto solver = make_ray_cast()->prepare(a, b);
+  Ray ray{std::vector<double>(aims.size()), std::vector<double>(aims.size())};
+  std::mt19937_64 random(4);
+  const double inner = inner_radius(a) + inner_radius(b);
+  ASSERT_GT(inner, 1.9);
+  for (int i = 0; i < 50; ++i) {
+    solver->set_rotation(random_rotation(random));
+    solver->solve(random_direction(random), aims, ray.travel, ray.residual);
+    for (std::size_t k = 0; k < aims.size(); ++k) {
+      EXPECT_GE(ray.travel[k], inner + aims[k] - k_rounding);
+      EXPECT_LE(ray.travel[k], 2.0 + aims[k] + k_rounding);
+    }
+  }
+}
+
+TEST(RayCast, TakesTheOuterWallNotTheInnerOne) {
+  const Mesh a = boxes_mesh({{{1.0, 0, 0}, {0.01, 0.8, 0.8}}, {{-1.0, 0, 0}, {0.01, 0.8, 0.8}}}, "walls");
+  const Mesh b = boxes_mesh({{{5.0, 5.0, 5.0}, {0.1, 0.12, 0.14}}});
+  const std::vector<double> aims{0.1, 0.03, 1e-6};
+  const Eigen::Vector4d identity(1, 0, 0, 0);
+  for (const double side : {1.0, -1.0}) {
+    const Ray ray = shoot(*make_ray_cast(), a, b, {side, 0, 0}, identity, aims);
+    for (std::size_t k = 0; k < aims.size(); ++k) {
+      EXPECT_NEAR(ray.travel[k], 1.0 + 0.01 + 0.1 + aims[k], k_rounding * a.diagonal());
+    }
+  }
+  const Ray swapped = shoot(*make_ray_cast(), b, a, {1, 0, 0}, identity, aims);
+  EXPECT_NEAR(swapped.travel[0], 1.11 + aims[0], k_rounding * a.diagonal());
+}
+
+TEST(RayCast, FliesThroughAHoleUnhitButNotWhereItIsTooTight) {
+  // A square ring about the ray with an opening of half width 0.5; B of half width 0.2 passes with 0.3 to spare.
+  const Mesh a = boxes_mesh({{{0.75, 0, 0}, {0.25, 1.0, 0.1}},
+                             {{-0.75, 0, 0}, {0.25, 1.0, 0.1}},
+                             {{0, 0.75, 0}, {0.5, 0.25, 0.1}},
+                             {{0, -0.75, 0}, {0.5, 0.25, 0.1}}},
+                            "ring");
+  const Mesh b = boxes_mesh({{{1.0, 2.0, 3.0}, {0.2, 0.2, 0.3}}});
+  const std::vector<double> aims{0.5, 0.31, 0.299, 0.1, 1e-6};
+  const Ray ray = shoot(*make_ray_cast(), a, b, {0, 0, 1}, {1, 0, 0, 0}, aims);
+  EXPECT_NEAR(ray.travel[0], 0.1 + 0.3 + 0.4, k_rounding * a.diagonal());
+  EXPECT_NEAR(ray.travel[1], 0.4 + std::sqrt(0.31 * 0.31 - 0.09), k_rounding * a.diagonal());
+  for (std::size_t k = 2; k < aims.size(); ++k) {
+    EXPECT_TRUE(std::isnan(ray.travel[k]));
+    EXPECT_EQ(ray.residual[k], 0.0);
+  }
+}
+
+TEST(RayCast, FindsTheBriefestHit) {
+  // Two gates across the path, each open by a little less than the aim on either side: the distance dips below the aim
+  // for a travel of 2e-2 to 2e-5 only.
+  constexpr double k_aim = 0.05, k_thin = 1e-8;
+  const Mesh b = boxes_mesh({{{0.7, 0.3, 0.0}, {k_thin, 0.1, 0.1}}});
+  for (const double dip : {1e-3, 1e-6, 1e-9}) {
+    const double open = k_aim - dip;
+    std::vector<test::BoxShape> posts;
+    for (const double x : {2.0, -2.0}) {
+      for (const double side : {1.0, -1.0})
+        posts.push_back({{x, side * (0.1 + open + 0.02), 0.0}, {k_thin, 0.02, 0.01}});
+    }
+    const Mesh a = boxes_mesh(posts, "gates");
+    const Ray ray = shoot(*make_ray_cast(), a, b, {1, 0, 0}, {1, 0, 0, 0}, {k_aim});
+    const double gap = std::sqrt(k_aim * k_aim - open * open);
+    EXPECT_NEAR(ray.travel[0], 2.0 + 2.0 * k_thin + gap, k_same_travel * a.diagonal());
+  }
+}
+
+/// Bounds and distances that the hardest ray of right-angled rotations takes, over the median of rays of any rotation.
+double worst_over_median(const Mesh& a, const Mesh& b) {
+  using namespace detail;
+  CastTree tree_a(std::make_shared<CastMesh>(std::make_shared<Tree>(a)));
+  CastTree tree_b(std::make_shared<CastMesh>(std::make_shared<Tree>(b)));
+  tree_a.turn(-Eigen::Matrix3d::Identity());
+  const auto work = [&](const Eigen::Vector4d& q, const Eigen::Vector3d& u) {
+    tree_b.turn(ConfigurationRay(a, b, q).R);
+    Cast cast(tree_a, tree_b);
+    cast.direction = cast.axis = u;
+    cast.aim = 0.05 * a.diagonal();
+    find_first_hit(cast);
+    EXPECT_TRUE(cast.pair.has_value());
+    return static_cast<double>(cast.counts.nodes + cast.counts.leaf_pairs + 10 * cast.counts.distances);
+  };
+  std::mt19937_64 random(5);
+  std::vector<double> generic;
+  for (int i = 0; i < 51; ++i) generic.push_back(work(random_rotation(random), random_direction(random)));
+  std::ranges::nth_element(generic, generic.begin() + 25);
+  double worst = 0.0;
+  for (const Eigen::Vector4d& q : zyz_rotations(2)) {
+    for (const Eigen::Vector3d& u : latitude_directions(4)) worst = std::max(worst, work(q, u));
+  }
+  return worst / generic[25];
+}
+
+TEST(RayCast, FacesThatTieTakeNoMoreThanAHundredTimesTheMedian) {
+  const Mesh box = load_model("box-12000");
+  EXPECT_LT(worst_over_median(box, box), 100.0);
+  EXPECT_LT(worst_over_median(box, boxes_mesh({{{0.1, 0.2, 0.3}, {0.4, 0.3, 0.2}}})), 100.0);
+}
+
+bool same_bits(const Generated& left, const Generated& right) {
+  bool same = left.buckets.size() == right.buckets.size();
+  for (std::size_t k = 0; same && k < left.buckets.size(); ++k) {
+    const std::vector<double>& x = left.buckets[k].travel;
+    const std::vector<double>& y = right.buckets[k].travel;
+    same = x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0 &&
+           left.buckets[k].summary.largest_residual == right.buckets[k].summary.largest_residual;
+  }
+  return same;
+}
+
+const std::vector<int> k_percents{30, 12, 11, 1, 0};
+
+TEST(RayCast, ThreadsAndShardsDoNotChangeABit) {
+  const Mesh a = load_model("torus-knot-2000");
+  const Mesh b = load_model("box-300");
+  const Grid grid = make_grid("90/60");
+  const auto generator = make_ray_cast();
+  const Generated whole = generate_distances(*generator, a, b, grid, k_percents, {.threads = 1});
+  const Generated threaded = generate_distances(*generator, a, b, grid, k_percents, {.threads = 2});
+  EXPECT_TRUE(same_bits(whole, threaded));
+  EXPECT_EQ(whole.measurements, threaded.measurements);
+  const std::size_t n = grid.directions.size();
+  for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 50), {50, 101}, {101, 144}}) {
+    const Generated shard =
+        generate_distances(*generator, a, b, grid, k_percents, {.first_rotation = first, .last_rotation = last});
+    for (std::size_t k = 0; k < k_percents.size(); ++k) {
+      ASSERT_EQ(shard.buckets[k].travel.size(), (last - first) * n);
+      EXPECT_EQ(std::memcmp(shard.buckets[k].travel.data(), whole.buckets[k].travel.data() + first * n,
+                            (last - first) * n * sizeof(double)),
+                0);
+    }
+  }
+}
+
+TEST(RayCast, EveryInstructionSetGivesTheSameBits) {
+  const Mesh a = load_model("torus-knot-2000");
+  const Mesh b = load_model("box-300");
+  const Grid grid = make_grid("60/90");
+  const auto run = [&] { return generate_distances(*make_ray_cast(), a, b, grid, k_percents, {.threads = 1}); };
+  const Generated standard = run();
+  int tried = 0;
+  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+    hwy::SetSupportedTargetsForTest(targets & -targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    const Generated here = run();
+    EXPECT_TRUE(same_bits(here, standard)) << hwy::TargetName(targets & -targets);
+    EXPECT_EQ(here.measurements, standard.measurements);
+    ++tried;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  EXPECT_GE(tried, 2);  // at least a SIMD and a scalar path
+}
+
+}  // namespace
+}  // namespace sixdof
