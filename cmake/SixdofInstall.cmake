@@ -13,7 +13,7 @@ install(EXPORT sixdof NAMESPACE sixdof:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cma
 
 foreach(room IN ITEMS base geometry oracle configuration algorithm scenario measure study report)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sixdof
-    FILES_MATCHING PATTERN "*.h")
+    FILES_MATCHING PATTERN "*.h" PATTERN "*-inl.h" EXCLUDE)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sixdof
   FILES_MATCHING PATTERN "*.h" PATTERN "cache" EXCLUDE)

@@ -1,0 +1,268 @@
+// Compiled once per instruction set: part of distance_traversal.cpp, included by nothing else.
+#if defined(SIXDOF_ORACLE_DISTANCE_BOUNDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIXDOF_ORACLE_DISTANCE_BOUNDS_INL_H_
+#undef SIXDOF_ORACLE_DISTANCE_BOUNDS_INL_H_
+#else
+#define SIXDOF_ORACLE_DISTANCE_BOUNDS_INL_H_
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include <hwy/highway.h>
+
+#include <sixdof/geometry/pose.h>
+#include <sixdof/geometry/tree.h>
+
+// Lower bounds on the distances of one volume from the eight children of a node, one child per SIMD lane.
+//
+// Every bound is the gap between projections on an axis, or the distance of two axis-aligned boxes:
+//   - the direction of the closest points so far: where surfaces are smooth it is close to the normal of every pair
+//     that matters, and the children's slabs make it tight;
+//   - boxes in the frame of the one tree, and in that of the other;
+//   - the normals of the slabs;
+//   - the line through the centres.
+// Bounds are floats and rounded; k_slack lowers them so far that they stay bounds. Hence which instruction set computed
+// them, and in what order pairs are met, has no influence on the result: it is the smallest of the distances that
+// triangle_triangle_distance() gives for all pairs.
+
+HWY_BEFORE_NAMESPACE();
+namespace sixdof::detail {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Lanes = hn::CappedTag<float, Tree::k_width>;
+using V = hn::Vec<Lanes>;
+
+constexpr Lanes k_lanes;
+constexpr std::size_t k_width = Tree::k_width;
+
+/// A bound is made of fewer than 30 roundings (6e-8 each) of numbers not larger than the sizes that it is scaled by.
+constexpr float k_slack = 4e-6f;
+
+struct Frame {
+  float rotation[3][3];  // p_N = R p_F + t: from the fixed tree's frame to that of the opened one
+  float translation[3];
+  double translation_along;  // t . w
+  float toward[3];           // w: unit vector from the opened tree's body to the fixed one's, in N
+  float toward_fixed[3];     // the same in F
+};
+
+struct Slack {
+  float sizes;  // where only coordinates relative to the centres enter
+  float far;    // where the translation enters as well
+};
+
+/// One query seen from both trees.
+struct Frames {
+  Eigen::Vector3d shift;  // B's centre from A's, in A's frame
+  Eigen::Matrix3d R;
+  Frame open_a;  // N = A, F = B
+  Frame open_b;  // N = B, F = A
+  Slack slack;
+
+  Frames(const Tree& a, const Tree& b, const Pose& X_AB) : shift(X_AB * b.center() - a.center()), R(X_AB.R) {
+    const Eigen::Vector3d back = -(R.transpose() * shift);
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        open_a.rotation[i][k] = static_cast<float>(R(i, k));
+        open_b.rotation[i][k] = static_cast<float>(R(k, i));
+      }
+      open_a.translation[i] = static_cast<float>(shift[i]);
+      open_b.translation[i] = static_cast<float>(back[i]);
+    }
+    const double sizes = a.radius() + b.radius();
+    // Poses and vertices far from the origins round in double before they come here.
+    const double offsets = 1e-14 * (a.center().norm() + b.center().norm() + X_AB.t.norm());
+    slack.sizes = static_cast<float>(k_slack * sizes + offsets);
+    slack.far = static_cast<float>(k_slack * (sizes + shift.norm()) + offsets);
+  }
+
+  /// Sets w from a vector of any length, in A's frame, from A to B.
+  void look_along(const Eigen::Vector3d& direction) {
+    const double length = direction.norm();
+    const Eigen::Vector3d w = length > 0.0 ? Eigen::Vector3d(direction / length) : Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d in_b = R.transpose() * w;
+    for (int i = 0; i < 3; ++i) {
+      open_a.toward[i] = static_cast<float>(w[i]);
+      open_a.toward_fixed[i] = static_cast<float>(in_b[i]);
+      open_b.toward[i] = static_cast<float>(-in_b[i]);
+      open_b.toward_fixed[i] = static_cast<float>(-w[i]);
+    }
+    open_a.translation_along = w.dot(shift);
+    open_b.translation_along = w.dot(shift);  // (-R^T w) . (-R^T shift)
+  }
+};
+
+/// The fixed volume, seen from the opened tree's frame N.
+struct Fixed {
+  float center[3];
+  float axis[3][3];       // axis[k]: half extent along F's axis k, in N
+  float half[3];          // of the box around it in N
+  float center_fixed[3];  // in F
+  float half_fixed[3];    // in F
+  float normal[3];
+  float slab_lower;
+  float slab_upper;
+  float lowest;  // smallest p . w over the volume, without the translation's part
+
+  Fixed(const Tree::Volume& v, const Frame& f) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      center_fixed[k] = 0.5f * (v.lower[k] + v.upper[k]);
+      half_fixed[k] = 0.5f * (v.upper[k] - v.lower[k]);
+    }
+    float normal_shift = 0.0f;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float* r = f.rotation[i];
+      center[i] = f.translation[i] + r[0] * center_fixed[0] + r[1] * center_fixed[1] + r[2] * center_fixed[2];
+      normal[i] = r[0] * v.normal[0] + r[1] * v.normal[1] + r[2] * v.normal[2];
+      normal_shift += normal[i] * f.translation[i];
+      half[i] = 0.0f;
+      for (std::size_t k = 0; k < 3; ++k) {
+        axis[k][i] = r[k] * half_fixed[k];
+        half[i] += std::abs(axis[k][i]);
+      }
+    }
+    slab_lower = v.slab_lower + normal_shift;
+    slab_upper = v.slab_upper + normal_shift;
+
+    // Smallest p . w over the box, and over the slab with the rest of w over the box.
+    const float* w = f.toward_fixed;
+    const float along = w[0] * v.normal[0] + w[1] * v.normal[1] + w[2] * v.normal[2];
+    float over_box = 0.0f;
+    float over_rest = 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) {
+      over_box += w[k] * center_fixed[k] - std::abs(w[k]) * half_fixed[k];
+      const float rest = w[k] - along * v.normal[k];
+      over_rest += rest * center_fixed[k] - std::abs(rest) * half_fixed[k];
+    }
+    over_rest += std::min(along * v.slab_lower, along * v.slab_upper);
+    lowest = std::max(over_box, over_rest);
+  }
+};
+
+/// Bounds on the distance of each child of `node` from `fixed`: a gap where positive. Returns a bit for each child
+/// whose bound is not above `best`.
+HWY_INLINE unsigned bound_children(const Tree::Node& node, const Fixed& fixed, const Frame& f, const Slack& slack,
+                                   float best, float* HWY_RESTRICT bounds) {
+  unsigned kept = 0;
+  const V half = hn::Set(k_lanes, 0.5f);
+  const V zero = hn::Zero(k_lanes);
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+    V c[3], e[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V lower = hn::Load(k_lanes, node.lower[k] + i);
+      const V upper = hn::Load(k_lanes, node.upper[k] + i);
+      c[k] = hn::Mul(half, hn::Add(lower, upper));
+      e[k] = hn::Mul(half, hn::Sub(upper, lower));
+    }
+    const V n[3] = {hn::Load(k_lanes, node.normal[0] + i), hn::Load(k_lanes, node.normal[1] + i),
+                    hn::Load(k_lanes, node.normal[2] + i)};
+    const V slab_lower = hn::Load(k_lanes, node.slab_lower + i);
+    const V slab_upper = hn::Load(k_lanes, node.slab_upper + i);
+
+    // Along w: the children's largest p . w, over the box, and over the slab with the rest of w over the box.
+    V along = zero;
+    V over_box = zero;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V w = hn::Set(k_lanes, f.toward[k]);
+      along = hn::MulAdd(w, n[k], along);
+      over_box = hn::MulAdd(w, c[k], hn::MulAdd(hn::Abs(w), e[k], over_box));
+    }
+    V over_rest = hn::Max(hn::Mul(along, slab_lower), hn::Mul(along, slab_upper));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V rest = hn::NegMulAdd(along, n[k], hn::Set(k_lanes, f.toward[k]));
+      over_rest = hn::MulAdd(rest, c[k], hn::MulAdd(hn::Abs(rest), e[k], over_rest));
+    }
+    const V gap_toward = hn::Sub(
+        hn::Set(k_lanes, static_cast<float>(static_cast<double>(fixed.lowest) + f.translation_along) - slack.sizes),
+        hn::Min(over_box, over_rest));
+
+    // Boxes in N.
+    V m[3];
+    V widest = hn::Set(k_lanes, -Tree::k_empty);
+    V squared = zero;
+    for (std::size_t k = 0; k < 3; ++k) {
+      m[k] = hn::Sub(hn::Set(k_lanes, fixed.center[k]), c[k]);
+      const V gap = hn::Sub(hn::Abs(m[k]), hn::Add(e[k], hn::Set(k_lanes, fixed.half[k])));
+      widest = hn::Max(widest, gap);
+      const V positive = hn::Max(gap, zero);
+      squared = hn::MulAdd(positive, positive, squared);
+    }
+    // Boxes in F: m and e turned by the transposed rotation.
+    V widest_fixed = hn::Set(k_lanes, -Tree::k_empty);
+    V squared_fixed = zero;
+    for (std::size_t k = 0; k < 3; ++k) {
+      V center = zero;
+      V extent = hn::Set(k_lanes, fixed.half_fixed[k]);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const V r = hn::Set(k_lanes, f.rotation[j][k]);
+        center = hn::MulAdd(r, m[j], center);
+        extent = hn::MulAdd(hn::Abs(r), e[j], extent);
+      }
+      const V gap = hn::Sub(hn::Abs(center), extent);
+      widest_fixed = hn::Max(widest_fixed, gap);
+      const V positive = hn::Max(gap, zero);
+      squared_fixed = hn::MulAdd(positive, positive, squared_fixed);
+    }
+    V gap = hn::Max(widest, widest_fixed);
+    gap = hn::Max(gap, hn::Sub(hn::Sqrt(hn::Max(squared, squared_fixed)),
+                               hn::IfThenZeroElse(hn::Gt(gap, zero), hn::Set(k_lanes, Tree::k_empty))));
+
+    // The fixed volume's slab.
+    {
+      V middle = zero;
+      V radius = zero;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V axis = hn::Set(k_lanes, fixed.normal[k]);
+        middle = hn::MulAdd(axis, c[k], middle);
+        radius = hn::MulAdd(hn::Abs(axis), e[k], radius);
+      }
+      const V above = hn::Sub(hn::Sub(middle, radius), hn::Set(k_lanes, fixed.slab_upper));
+      const V below = hn::Sub(hn::Set(k_lanes, fixed.slab_lower), hn::Add(middle, radius));
+      gap = hn::Max(gap, hn::Max(above, below));
+    }
+    // The children's slabs, and the line through the centres.
+    V middle = zero;
+    V length2 = zero;
+    V reach = zero;
+    for (std::size_t k = 0; k < 3; ++k) {
+      middle = hn::MulAdd(n[k], hn::Set(k_lanes, fixed.center[k]), middle);
+      length2 = hn::MulAdd(m[k], m[k], length2);
+      reach = hn::MulAdd(hn::Abs(m[k]), e[k], reach);
+    }
+    V radius = zero;
+    for (std::size_t k = 0; k < 3; ++k) {
+      V on_normal = zero;
+      V on_line = zero;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const V axis = hn::Set(k_lanes, fixed.axis[k][j]);
+        on_normal = hn::MulAdd(axis, n[j], on_normal);
+        on_line = hn::MulAdd(axis, m[j], on_line);
+      }
+      radius = hn::Add(radius, hn::Abs(on_normal));
+      reach = hn::Add(reach, hn::Abs(on_line));
+    }
+    gap = hn::Max(gap,
+                  hn::Max(hn::Sub(hn::Sub(middle, radius), slab_upper), hn::Sub(slab_lower, hn::Add(middle, radius))));
+    const V length = hn::Sqrt(hn::Max(length2, hn::Set(k_lanes, 1e-36f)));
+    gap = hn::Max(gap, hn::Sub(length, hn::Div(reach, length)));
+
+    const V bound = hn::Max(gap_toward, hn::Sub(gap, hn::Set(k_lanes, slack.far)));
+    hn::Store(bound, k_lanes, bounds + i);
+    std::uint8_t bits[8];  // as many as StoreMaskBits may write
+    hn::StoreMaskBits(k_lanes, hn::Le(bound, hn::Set(k_lanes, best)), bits);
+    kept |= static_cast<unsigned>(bits[0]) << i;
+  }
+  return kept & ((1u << node.child_count) - 1);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sixdof::detail
+HWY_AFTER_NAMESPACE();
+
+#endif
