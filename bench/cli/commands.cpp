@@ -14,6 +14,7 @@
 #include <sixdof/bench/cli/generate.h>
 #include <sixdof/bench/cli/info.h>
 #include <sixdof/bench/cli/models.h>
+#include <sixdof/bench/cli/quality.h>
 #include <sixdof/bench/cli/query.h>
 #include <sixdof/bench/cli/table.h>
 #include <sixdof/bench/cli/verify.h>
@@ -32,6 +33,7 @@ void add_commands(CLI::App& app) {
   add_algorithms_command(app);
   add_info_command(app);
   add_models_command(app);
+  add_quality_command(app);
   add_query_command(app);
   add_table_command(app);
   add_generate_command(app);
@@ -48,7 +50,8 @@ int run_guarded(const char* program, const std::function<void()>& work) {
   } catch (const std::bad_alloc&) {
     return report(program, "out of memory", k_exit_error);
   } catch (const std::exception& e) {
-    return report(program, e.what(), k_exit_error);
+    const std::string message = std::ferror(stdout) != 0 ? std::string("standard output: ") + e.what() : e.what();
+    return report(program, message.c_str(), k_exit_error);
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     return report(program, fmt::format("standard output: {}", std::strerror(errno)).c_str(), k_exit_error);

@@ -14,4 +14,8 @@ void add_prepare_rows(Suite& suite);
 /// random order, and in the grid's own order as `.../order:path`.
 void add_query_rows(Suite& suite);
 
+/// `scenario/II/algorithm:A`: mean time of a response along a scenario's path and, as counters, every measure of its
+/// quality against the law that the algorithm declares (lib/measure/metrics.h names them).
+void add_scenario_rows(Suite& suite);
+
 }  // namespace sixdof::bench

@@ -58,6 +58,7 @@ std::optional<double> lag(Vectors ideal, Vectors measured, std::size_t reach) {
       best_value = value;
     }
   }
+  if (best == -limit || best == limit) return std::nullopt;
   const double before = correlation(ideal, measured, best - 1);
   const double after = correlation(ideal, measured, best + 1);
   const double curvature = before - 2.0 * best_value + after;

@@ -17,7 +17,8 @@ std::optional<double> leakage(Vectors unwanted, Vectors wanted, double scale);
 
 /// Shift of the measured series against the ideal one in stamps, positive if it comes late, found where the sum of
 /// i_{k-lag} . m_k over the common part, divided by both norms there, is largest; between stamps by a parabola through
-/// three values. Searched within +-`reach` stamps. Empty if the ideal's variation is too small to tell (a shift by
+/// three values. Searched within +-`reach` stamps. Empty if the
+/// best shift is not strictly within that reach (the series are not shifted copies), if the ideal's variation is too small to tell (a shift by
 /// `reach` changes the ideal by less than k_lag_contrast of itself) or a series is zero.
 std::optional<double> lag(Vectors ideal, Vectors measured, std::size_t reach);
 

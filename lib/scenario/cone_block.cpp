@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include <sixdof/scenario/circles.h>
 #include <sixdof/scenario/knobs.h>
 #include <sixdof/scenario/quadrature.h>
@@ -32,7 +34,10 @@ struct Shape {
     const double tip = depth * radius / height;
     require(depth < height, "the cone sinks in completely: depth must be below cone_height");
     require(overshoot > tip, "the path must start beside the block: overshoot must exceed the tip's radius");
-    require(block_length > 2.0 * tip, "the tip is never wholly over the block: block_length is too small");
+    // Also not so near an end that leaving over the end is shorter than leaving upwards.
+    const double flank = std::sqrt(1.0 + std::pow(radius / height, 2));
+    require(block_length > 2.0 * std::max(tip, depth * flank - tip),
+            "the tip is never wholly over the block: block_length is too small");
     require(0.5 * block_width > tip + std::min(depth, 0.5 * block_height),
             "the block's long edges are too near the tip: block_width is too small");
   }
@@ -76,7 +81,8 @@ class ConeBlock final : public Scenario {
 
   bool in_window(double progress) const override {
     const double x = apex_x(progress);
-    return x >= tip_ && x <= shape_.block_length - tip_;
+    const double inside = std::min(x, shape_.block_length - x);
+    return inside >= tip_ && depth(x) == shape_.depth;
   }
 
   std::optional<IdealWrench> ideal(IdealLaw law, double progress) const override {
@@ -102,6 +108,29 @@ class ConeBlock final : public Scenario {
         return upwards(depth(x) > 0.0 ? std::pow(shape_.depth, 3) : 0.0);
     }
     return std::nullopt;
+  }
+
+  Sketch sketch() const override {
+    // The start of the path; the block goes on to the right.
+    const double x = 1.5 * shape_.radius;
+    const double low = -shape_.depth;
+    Sketch sketch;
+    sketch.progress = (x + shape_.overshoot) / (shape_.block_length + 2.0 * shape_.overshoot);
+    sketch.part = {Eigen::Vector2d(-1.5 * shape_.overshoot, -std::max(shape_.block_height, 1.2 * shape_.depth)),
+                   Eigen::Vector2d(x + 2.0 * shape_.radius, shape_.height - 0.8 * shape_.depth)};
+    sketch.up = Eigen::Vector3d::UnitY();
+    const double rim = x + shape_.radius;
+    const double top = low + shape_.height;
+    sketch.dimensions = {
+        {{x, low}, {x, top}, {1.25 * shape_.radius, 0.0}, fmt::format("H = {:g}", shape_.height)},
+        {{x, top}, {rim, top}, {0.0, 0.12 * shape_.height}, fmt::format("r = {:g}", shape_.radius)},
+        {{x, low}, {x, 0.0}, {-0.75 * shape_.radius, 0.0}, fmt::format("\u03b4 = {:g}", shape_.depth)},
+        {{-shape_.overshoot, 0.0}, {0.0, 0.0}, {0.0, 0.15 * shape_.height}, fmt::format("a = {:g}", shape_.overshoot)},
+        {{rim, -shape_.block_height},
+         {rim, 0.0},
+         {0.6 * shape_.radius, 0.0},
+         fmt::format("h = {:g}", shape_.block_height)}};
+    return sketch;
   }
 
  private:

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include <sixdof/scenario/circles.h>
 #include <sixdof/scenario/knobs.h>
 #include <sixdof/scenario/pin_traction.h>
@@ -44,6 +46,24 @@ struct Shape : PinsShape {
 };
 
 double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+
+/// Dimensions of block and holes; `part` of the plane with a margin for them.
+Sketch pins_sketch(const Shape& shape, double left) {
+  Sketch sketch;
+  const double b = shape.width;
+  const double a = shape.depth;
+  const double c = shape.square_side;
+  const double r = shape.round_radius;
+  sketch.part = {Eigen::Vector2d(left, -0.85 * a), Eigen::Vector2d(0.62 * b, 0.9 * a)};
+  sketch.up = Eigen::Vector3d::UnitZ();
+  sketch.underside = true;  // the plate hides its pins
+  sketch.dimensions = {
+      {{-0.5 * b, -0.5 * a}, {0.5 * b, -0.5 * a}, {0.0, -0.2 * a}, fmt::format("b = {:g}", b)},
+      {{0.5 * b, -0.5 * a}, {0.5 * b, 0.5 * a}, {0.12 * a, 0.0}, fmt::format("a = {:g}", a)},
+      {{-0.25 * b - 0.5 * c, -0.5 * c}, {-0.25 * b + 0.5 * c, -0.5 * c}, {0.0, -0.15 * a}, fmt::format("c = {:g}", c)},
+      {{0.25 * b, 0.0}, {0.25 * b + r, 0.0}, {0.0, -0.4 * a}, fmt::format("r = {:g}", r)}};
+  return sketch;
+}
 
 class TurningPin final : public Scenario {
  public:
@@ -101,6 +121,12 @@ class TurningPin final : public Scenario {
     return std::nullopt;
   }
 
+  Sketch sketch() const override {
+    Sketch sketch = pins_sketch(shape_, -1.15 * shape_.width);
+    sketch.progress = 1.0;
+    return sketch;
+  }
+
  private:
   Shape shape_;
 };
@@ -144,6 +170,17 @@ class OrbitingPins final : public Scenario {
       }
     }
     return std::nullopt;
+  }
+
+  Sketch sketch() const override {
+    Sketch sketch = pins_sketch(shape_, -0.7 * shape_.width);
+    sketch.progress = 0.125;
+    const Eigen::Vector2d d = shape_.orbit * direction(sketch.progress);
+    sketch.dimensions.push_back({Eigen::Vector2d::Zero(),
+                                 {d.x(), 0.0},
+                                 {0.0, 0.7 * shape_.depth},
+                                 fmt::format("\u03c1 cos 45\u00b0, \u03c1 = {:g}", shape_.orbit)});
+    return sketch;
   }
 
  private:

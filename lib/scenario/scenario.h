@@ -45,6 +45,23 @@ struct IdealWrench {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< On B about the scenario's reference point, in A's frame.
 };
 
+/// A length shown in a drawing.
+struct Dimension {
+  Eigen::Vector2d from;  ///< In the x, y plane of A's frame.
+  Eigen::Vector2d to;
+  Eigen::Vector2d offset;  ///< From the measured points to the dimension line.
+  std::string label;
+};
+
+/// How a scenario wants to be drawn (drawing.h).
+struct Sketch {
+  double progress = 0.0;     ///< Where B is shown.
+  Eigen::AlignedBox2d part;  ///< Part of the x, y plane that the plan shows.
+  Eigen::Vector3d up;        ///< What is up in the oblique view.
+  bool underside = false;    ///< The plan shows B's faces that look down, as through glass.
+  std::vector<Dimension> dimensions;
+};
+
 /// Two solids, a path of B, and what a response should be along it.
 class Scenario {
  public:
@@ -80,7 +97,8 @@ class Scenario {
 
   /// Progress of each of `count` time stamps, increasing within [0, 1]. An open path has stamps on both ends, k/(N-1).
   /// A closed one is cut into N equal parts with a stamp in the middle of each, (k + 1/2)/N: no pose counts twice, and
-  /// none of the poses where a flat wall is exactly touched is hit by an even N. @throws BadArgument for fewer than 2.
+  /// none of the poses where a flat wall is exactly touched is hit if N is a multiple of four. @throws BadArgument for
+  /// fewer than 2.
   std::vector<double> stamps(std::size_t count) const;
 
   /// X_AB at `progress` in [0, 1].
@@ -91,6 +109,8 @@ class Scenario {
 
   /// Empty if the law says nothing here (the paper prints no formula). Each law is there for all progress or for none.
   virtual std::optional<IdealWrench> ideal(IdealLaw law, double progress) const = 0;
+
+  virtual Sketch sketch() const = 0;
 
  protected:
   Scenario(About about, Mesh a, Mesh b) : about_(std::move(about)), a_(std::move(a)), b_(std::move(b)) {}

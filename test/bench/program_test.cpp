@@ -56,7 +56,7 @@ json row(const json& document, const std::string& name) {
 }
 
 TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
-  const json document = result("--seed 5 --sample 32");
+  const json document = result("--seed 5 --sample 32 --settings ist:spheres=300 --benchmark_filter=-^scenario/");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;
   std::size_t judged = 0;
@@ -80,6 +80,16 @@ TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
   EXPECT_EQ(families, (std::set<std::string>{"prepare", "collide", "distance"}));
   EXPECT_GT(judged, test::SmallSuite::k_configurations);
   EXPECT_EQ(document.at("context").at("seed"), "5");
+}
+
+TEST_F(BenchProgram, ScenarioRowsCarryTimeAndMeasures) {
+  const json document = result("--budget 0.5 --benchmark_filter=^scenario/II/algorithm:\\(exact\\|null\\)$");
+  const json exact = row(document, "scenario/II/algorithm:exact"), null = row(document, "scenario/II/algorithm:null");
+  for (const char* measure : {"sigma_F", "gamma_F_deg", "nu_F", "misses", "loop_work", "p99_ns", "over_1ms"}) {
+    EXPECT_TRUE(exact.contains(measure)) << measure << " of " << exact;
+  }
+  EXPECT_EQ(exact.at("misses"), 0);
+  EXPECT_EQ(null.at("misses"), null.at("stamps"));
 }
 
 TEST_F(BenchProgram, SeesThatNullIsWrong) {
@@ -116,7 +126,7 @@ TEST_F(BenchProgram, ListsWithoutTouchingASet) {
   std::set<std::string> names;
   for (std::string name; std::getline(lines, name);) {
     EXPECT_TRUE(names.insert(name).second) << name << " twice";
-    EXPECT_TRUE(std::regex_match(name, std::regex("[a-z0-9_/:-]+"))) << name;
+    EXPECT_TRUE(std::regex_match(name, std::regex("[A-Za-z0-9_/:-]+"))) << name;
   }
   EXPECT_TRUE(names.contains("distance/algorithm:fcl-rss/pair:torus-1k-cone-1k/distance:05/order:path"));
   EXPECT_FALSE(names.contains("collide/algorithm:fcl-rss/pair:torus-1k/distance:05"));

@@ -47,6 +47,7 @@ TEST(Lag, IsNotReadFromAConstant) {
   const std::vector<Eigen::Vector3d> constant(100, Eigen::Vector3d(1, 2, 3));
   EXPECT_FALSE(lag(constant, constant, 10));
   EXPECT_FALSE(lag(orbit(100, 0.0), std::vector<Eigen::Vector3d>(100, Eigen::Vector3d::Zero()), 10));
+  EXPECT_FALSE(lag(orbit(400, 0.0), orbit(400, 30.0), 10));  // beyond the reach
   EXPECT_FALSE(lag(orbit(20, 0.0), orbit(20, 0.0), 10));
 }
 

@@ -17,7 +17,7 @@ std::unique_ptr<Algorithm> make_fcl_obbrss_algorithm();
 /// FCL 0.7 copies and refits the whole model for every collide on this volume, which says nothing about the tree.
 std::unique_ptr<Algorithm> make_fcl_rss_algorithm();
 
-/// Adds both.
+/// Adds both and `fcl-contacts` (contacts.h).
 void register_fcl_algorithms(Registry& registry);
 
 }  // namespace sixdof

@@ -1,0 +1,237 @@
+#include <sixdof/scenario/drawing.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+namespace sixdof {
+namespace {
+
+using Vector2d = Eigen::Vector2d;
+using Vector3d = Eigen::Vector3d;
+
+constexpr double k_panel_width = 460.0;
+constexpr double k_panel_height = 330.0;
+constexpr double k_margin = 14.0;
+constexpr double k_title = 26.0;
+constexpr double k_arrow = 62.0;  ///< Pixels of the arrow of a force.
+/// Edges between faces that turn by more than this are drawn: more than a facet of a round part, less than a corner.
+const double k_crease_cosine = std::cos(20.0 * std::numbers::pi / 180.0);
+
+constexpr const char* k_color_a = "#b9bcc2";
+constexpr const char* k_color_b = "#8db4dc";
+constexpr const char* k_color_path = "#c8102e";
+constexpr const char* k_color_wrench = "#123a8c";
+constexpr const char* k_color_dimension = "#333333";
+
+/// Orthographic projection of A's frame onto a panel.
+struct View {
+  Vector3d right, up, toward;  ///< Orthonormal; `toward` points at the eye.
+  Vector2d origin;             ///< Pixels of (0, 0) in the view's plane.
+  double scale = 1.0;          ///< Pixels per unit.
+
+  Vector2d plane(const Vector3d& p) const { return {right.dot(p), up.dot(p)}; }
+  Vector2d operator()(const Vector3d& p) const { return pixel(plane(p)); }
+  Vector2d pixel(const Vector2d& q) const { return {origin.x() + scale * q.x(), origin.y() - scale * q.y()}; }
+
+  /// Shows `box` of the view's plane in the middle of the panel whose left edge is at `left`.
+  void fit(const Eigen::AlignedBox2d& box, double left) {
+    const double width = k_panel_width - 2.0 * k_margin;
+    const double height = k_panel_height - 2.0 * k_margin;
+    scale = std::min(width / box.sizes().x(), height / box.sizes().y());
+    const Vector2d middle = box.center();
+    origin = {left + 0.5 * k_panel_width - scale * middle.x(), k_title + 0.5 * k_panel_height + scale * middle.y()};
+  }
+};
+
+std::string line(const Vector2d& from, const Vector2d& to, const char* style) {
+  return fmt::format("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" {}/>\n", from.x(), from.y(), to.x(), to.y(), style);
+}
+
+std::string text(const Vector2d& at, const std::string& words, const char* style) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", at.x(), at.y(), style, words);
+}
+
+/// Grey or blue, darker where the face turns away from the light.
+std::string shaded(const char* color, double light) {
+  unsigned rgb = 0;
+  for (const char* c = color + 1; *c != '\0'; ++c) {
+    rgb = rgb * 16 + static_cast<unsigned>(*c <= '9' ? *c - '0' : *c - 'a' + 10);
+  }
+  const auto channel = [&](unsigned shift) {
+    return static_cast<unsigned>(std::lround(std::min(255.0, ((rgb >> shift) & 0xffu) * (0.78 + 0.32 * light))));
+  };
+  return fmt::format("#{:02x}{:02x}{:02x}", channel(16), channel(8), channel(0));
+}
+
+/// Faces that look at `eye` from back to front, each with the creases and outline edges it has. `eye` is view.toward,
+/// or its opposite to see the other side as through glass.
+std::string draw_mesh(const Mesh& mesh, const Pose& pose, const View& view, const Vector3d& eye, const char* color) {
+  const auto& triangles = mesh.triangles();
+  std::vector<Vector3d> vertices;
+  for (const Vector3d& v : mesh.vertices()) vertices.push_back(pose * v);
+  std::vector<Vector3d> normals;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> owner;  // directed edge -> triangle
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Triangle& n = triangles[t];
+    normals.push_back((vertices[n[1]] - vertices[n[0]]).cross(vertices[n[2]] - vertices[n[0]]).normalized());
+    for (std::size_t e = 0; e < 3; ++e) owner[{n[e], n[(e + 1) % 3]}] = t;
+  }
+  std::vector<std::pair<double, std::size_t>> order;
+  constexpr double k_edge_on = 1e-9;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (normals[t].dot(eye) <= k_edge_on) continue;
+    const Triangle& n = triangles[t];
+    order.emplace_back((vertices[n[0]] + vertices[n[1]] + vertices[n[2]]).dot(eye), t);
+  }
+  std::sort(order.begin(), order.end());
+  const Vector3d light = (eye + 0.6 * view.up - 0.4 * view.right).normalized();
+  std::string svg;
+  for (const auto& [depth, t] : order) {
+    const Triangle& n = triangles[t];
+    const std::array<Vector2d, 3> p{view(vertices[n[0]]), view(vertices[n[1]]), view(vertices[n[2]])};
+    const std::string fill = shaded(color, normals[t].dot(light));
+    svg += fmt::format(
+        "<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}L{:.1f} {:.1f}Z\" fill=\"{}\" stroke=\"{}\" stroke-width=\".4\"/>\n",
+        p[0].x(), p[0].y(), p[1].x(), p[1].y(), p[2].x(), p[2].y(), fill, fill);
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto other = owner.find({n[(e + 1) % 3], n[e]});
+      const bool outline = other == owner.end() || normals[other->second].dot(eye) <= k_edge_on;
+      if (outline || normals[other->second].dot(normals[t]) < k_crease_cosine) {
+        svg += line(p[e], p[(e + 1) % 3], "stroke=\"#222\" stroke-width=\".9\" stroke-linecap=\"round\"");
+      }
+    }
+  }
+  return svg;
+}
+
+std::string draw_path(const Scenario& scenario, const View& view) {
+  constexpr int k_pieces = 96;
+  std::string d;
+  Vector2d last = Vector2d::Zero();
+  double length = 0.0;
+  for (int k = 0; k <= k_pieces; ++k) {
+    const double progress = static_cast<double>(k) / k_pieces;
+    const Vector2d p = view(scenario.pose(progress) * scenario.reference_b());
+    if (k > 0) length += (p - last).norm();
+    d += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", p.x(), p.y());
+    last = p;
+  }
+  constexpr double k_visible = 2.0;  // pixels; a turn about the reference point has no path
+  if (length < k_visible) return {};
+  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-dasharray=\"6 4\"/>\n", d,
+                     k_color_path);
+}
+
+/// The ideal force of the volume law as an arrow, its torque (along z in all scenarios) as an arc in the x, y plane.
+std::string draw_wrench(const Scenario& scenario, double progress, const View& view) {
+  const auto ideal = scenario.ideal(IdealLaw::volume, progress);
+  const Vector3d at = scenario.pose(progress) * scenario.reference_b();
+  const std::string style =
+      fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"2.6\" marker-end=\"url(#wrench)\"", k_color_wrench);
+  std::string svg;
+  if (ideal->force.norm() > 0.0) {
+    const Vector2d p = view(at);
+    Vector2d tip = view(at + ideal->force.normalized());
+    tip = p + (tip - p) / view.scale * k_arrow;
+    svg += line(p, tip, style.c_str());
+  }
+  if (ideal->torque.norm() > 0.0) {
+    constexpr int k_pieces = 24;
+    const double radius = 0.55 * scenario.reference_length() + 12.0 / view.scale;
+    const double turn = (ideal->torque.z() > 0.0 ? 1.0 : -1.0) * 1.25 * std::numbers::pi;
+    std::string d;
+    for (int k = 0; k <= k_pieces; ++k) {
+      const double angle = -0.4 * std::numbers::pi + turn * k / k_pieces;
+      const Vector2d p = view(at + radius * Vector3d(std::cos(angle), std::sin(angle), 0.0));
+      d += fmt::format("{}{:.1f} {:.1f}", k == 0 ? "M" : "L", p.x(), p.y());
+    }
+    svg += fmt::format("<path d=\"{}\" {}/>\n", d, style);
+  }
+  return svg;
+}
+
+std::string draw_dimension(const Dimension& dimension, const View& view) {
+  const auto pixel = [&](const Vector2d& p) { return view.pixel(p); };
+  const Vector2d from = pixel(dimension.from + dimension.offset);
+  const Vector2d to = pixel(dimension.to + dimension.offset);
+  const std::string thin = fmt::format("stroke=\"{}\" stroke-width=\".6\"", k_color_dimension);
+  const std::string arrows = fmt::format(
+      "stroke=\"{}\" stroke-width=\".9\" marker-start=\"url(#dim)\" marker-end=\"url(#dim)\"", k_color_dimension);
+  std::string svg = line(pixel(dimension.from), from, thin.c_str()) + line(pixel(dimension.to), to, thin.c_str());
+  svg += line(from, to, arrows.c_str());
+  const Vector2d middle = 0.5 * (from + to);
+  // Beside an upright line, above a level one.
+  const bool upright = std::abs(to.y() - from.y()) > std::abs(to.x() - from.x());
+  const Vector2d shift = upright ? Vector2d(6.0, 4.0) : Vector2d(0.0, -5.0);
+  const Vector2d at = upright ? Vector2d(0.35 * from + 0.65 * to) : middle;
+  svg += text(at + shift, dimension.label,
+              upright ? "font-size=\"12\" class=\"halo\"" : "font-size=\"12\" text-anchor=\"middle\" class=\"halo\"");
+  return svg;
+}
+
+std::string draw_panel(const Scenario& scenario, const Sketch& sketch, const View& view, bool underside,
+                       const std::string& clip) {
+  const Pose pose = scenario.pose(sketch.progress);
+  std::string svg = fmt::format("<g clip-path=\"url(#{})\">\n", clip);
+  const Vector3d eye_b = underside ? Vector3d(-view.toward) : view.toward;
+  svg += draw_mesh(scenario.a(), Pose{}, view, view.toward, k_color_a);
+  svg += "<g opacity=\".62\">\n" + draw_mesh(scenario.b(), pose, view, eye_b, k_color_b) + "</g>\n";
+  svg += draw_path(scenario, view);
+  svg += draw_wrench(scenario, sketch.progress, view);
+  return svg + "</g>\n";
+}
+
+View oblique(const Scenario& scenario, const Sketch& sketch, double left) {
+  // From the front right, a little above.
+  const Vector3d side = sketch.up.z() > 0.5 ? Vector3d(0.55, -0.83, 0.0) : Vector3d(0.55, 0.0, 0.83);
+  View view;
+  view.toward = (side + 0.75 * sketch.up).normalized();
+  view.right = sketch.up.cross(view.toward).normalized();
+  view.up = view.toward.cross(view.right);
+  Eigen::AlignedBox2d box;
+  for (const Vector3d& v : scenario.a().vertices()) box.extend(view.plane(v));
+  const Pose pose = scenario.pose(sketch.progress);
+  for (const Vector3d& v : scenario.b().vertices()) box.extend(view.plane(pose * v));
+  view.fit(box, left);
+  return view;
+}
+
+}  // namespace
+
+std::string draw(const Scenario& scenario) {
+  const Sketch sketch = scenario.sketch();
+  View plan{Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ(), Vector2d::Zero()};
+  plan.fit(sketch.part, 0.0);
+  const double width = 2.0 * k_panel_width;
+  const double height = k_panel_height + k_title;
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" "
+      "font-family=\"sans-serif\">\n"
+      "<style>.halo{{paint-order:stroke;stroke:#fff;stroke-width:3.5px;fill:#111}}</style>\n"
+      "<defs><marker id=\"wrench\" viewBox=\"0 0 10 10\" refX=\"6\" refY=\"5\" markerWidth=\"4.5\" "
+      "markerHeight=\"4.5\" "
+      "orient=\"auto\"><path d=\"M0 0L10 5L0 10Z\" fill=\"{2}\"/></marker>\n"
+      "<marker id=\"dim\" viewBox=\"0 0 10 10\" refX=\"10\" refY=\"5\" markerWidth=\"7\" markerHeight=\"7\" "
+      "orient=\"auto-start-reverse\"><path d=\"M0 2L10 5L0 8Z\" fill=\"{3}\"/></marker>\n",
+      width, height, k_color_wrench, k_color_dimension);
+  for (const auto& [id, left] : {std::pair("plan", 0.0), std::pair("view", k_panel_width)}) {
+    svg += fmt::format("<clipPath id=\"{}\"><rect x=\"{:g}\" y=\"{:g}\" width=\"{:g}\" height=\"{:g}\"/></clipPath>\n",
+                       id, left, k_title, k_panel_width, k_panel_height);
+  }
+  svg += fmt::format("</defs>\n<rect width=\"{:g}\" height=\"{:g}\" fill=\"#fff\"/>\n", width, height);
+  svg += text({10.0, 18.0}, "Scenario " + scenario.name(), "font-size=\"15\" font-weight=\"bold\"");
+  svg += draw_panel(scenario, sketch, plan, sketch.underside, "plan");
+  for (const Dimension& dimension : sketch.dimensions) svg += draw_dimension(dimension, plan);
+  svg += draw_panel(scenario, sketch, oblique(scenario, sketch, k_panel_width), false, "view");
+  return svg + "</svg>\n";
+}
+
+}  // namespace sixdof

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <sixdof/scenario/evaluation.h>
+
+namespace sixdof {
+
+/// What a series was recorded with, printed beside it.
+struct SeriesStamp {
+  std::string algorithm;
+  std::string version;   ///< Of the algorithm.
+  std::string settings;  ///< Settings::to_string of the algorithm.
+  std::string shape;     ///< Settings::to_string of the scenario.
+};
+
+/// Writes one recording with its ideal as an HDF5 file, whole or not at all.
+///
+/// Attributes of "/": format, format_version, scenario, law, algorithm, version, settings, shape, rate_hz, and every
+/// measure by its name. Datasets, float64, one row per stamp: /progress, /pose (w, x, y, z, tx, ty, tz), /force,
+/// /torque, /penalty, /time_ns, /ideal_force, /ideal_torque, /ideal_penalty; /status int32 in the order of Status.
+/// Short-time spectra (rows: times, columns: frequencies) of the largest component's magnitude and of its residual
+/// after the least-squares gain: /spectrum/signal, /spectrum/residual, /spectrum/times, /spectrum/frequencies; absent
+/// for fewer than k_spectrum_window stamps. @throws BadFile, BadArgument
+void write_series(const std::filesystem::path& path, const Scenario& scenario, const Recording& recording, IdealLaw law,
+                  const SeriesStamp& stamp, const Measures& measures);
+
+/// Length of a piece of the time-frequency diagram in stamps: 64 ms at 1 kHz, 16 Hz apart.
+inline constexpr std::size_t k_spectrum_window = 64;
+
+}  // namespace sixdof

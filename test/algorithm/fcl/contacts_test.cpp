@@ -1,0 +1,76 @@
+#include <sixdof/algorithm/fcl/contacts.h>
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/scenario/solids.h>
+
+namespace sixdof {
+namespace {
+
+/// A cone's tip 4 deep in a block whose top is tilted by a generic rotation.
+struct Tilted {
+  Mesh block = box_solid({-50.0, -30.0, -40.0}, {45.0, 0.0, 43.0}, "block");
+  Mesh cone = cone_solid(10.0, 20.0, 24, RoundParts::inscribed, "cone");
+  Pose X_AB{Eigen::Matrix3d::Identity(), {3.1, -4.0, 2.2}};
+};
+
+Response respond(const Mesh& a, const Mesh& b, const Pose& X_AB, const char* combine) {
+  const auto algorithm = make_fcl_contacts_algorithm();
+  Settings settings = algorithm->settings();
+  settings.set("combine", combine);
+  const auto outcome = algorithm->prepare(a, b, settings)->respond(X_AB);
+  EXPECT_TRUE(outcome.ok());
+  return outcome.value;
+}
+
+TEST(FclContacts, PushesTheTipOut) {
+  const Tilted t;
+  for (const char* combine : {"mean", "sum", "deepest"}) {
+    const Response r = respond(t.block, t.cone, t.X_AB, combine);
+    EXPECT_GT(r.force.normalized().y(), 0.99) << combine;
+    EXPECT_NEAR(r.penalty, 4.0, 1e-9) << combine;
+    EXPECT_EQ(r.reference, t.X_AB * t.cone.center());
+  }
+  const Response mean = respond(t.block, t.cone, t.X_AB, "mean");
+  EXPECT_LE(mean.force.norm(), 4.0 + 1e-9);
+  EXPECT_GT(respond(t.block, t.cone, t.X_AB, "sum").force.norm(), 10.0 * mean.force.norm());
+}
+
+TEST(FclContacts, ActsEquallyOnBothBodies) {
+  const Tilted t;
+  const Response on_cone = respond(t.block, t.cone, t.X_AB, "mean");
+  const Pose X_BA = t.X_AB.inverse();
+  const Response on_block = respond(t.cone, t.block, X_BA, "mean");  // in the cone's frame
+  EXPECT_TRUE((t.X_AB.R * on_block.force).isApprox(-on_cone.force, 1e-9));
+  const Response moved = on_cone.about(t.X_AB * on_block.reference);
+  EXPECT_TRUE((t.X_AB.R * on_block.torque).isApprox(-moved.torque, 1e-9));
+}
+
+TEST(FclContacts, IsSilentApartAndInside) {
+  const Tilted t;
+  Pose apart = t.X_AB;
+  apart.t.y() = 0.7;
+  EXPECT_EQ(respond(t.block, t.cone, apart, "mean").force.norm(), 0.0);
+  // Known limit: FCL knows surfaces only.
+  const Mesh small = cone_solid(3.0, 5.0, 12, RoundParts::inscribed, "small");
+  EXPECT_EQ(respond(t.block, small, {Eigen::Matrix3d::Identity(), {3.1, -20.0, 2.2}}, "mean").force.norm(), 0.0);
+}
+
+TEST(FclContacts, FailsInWordsWhenContactsAreDropped) {
+  const Tilted t;
+  const auto algorithm = make_fcl_contacts_algorithm();
+  Settings settings = algorithm->settings();
+  settings.set("most_contacts", "3");
+  const auto query = algorithm->prepare(t.block, t.cone, settings);
+  EXPECT_EQ(query->respond(t.X_AB).status, Status::failed);
+  EXPECT_THAT(query->diagnosis(), ::testing::HasSubstr("more contacts than 3"));
+  Pose bad = t.X_AB;
+  bad.t.x() = std::nan("");
+  EXPECT_EQ(query->respond(bad).status, Status::failed);
+}
+
+}  // namespace
+}  // namespace sixdof

@@ -1,0 +1,130 @@
+// Each deliberately bad algorithm is a perfect one (a scenario's own ideal) with one fault, and must be caught by the
+// measure meant for that fault, at the very bound that the perfect one passes.
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/measure/metrics.h>
+#include <sixdof/scenario/evaluation.h>
+
+#include "../scenario/ideal_query.h"
+#include "bounds.h"
+
+namespace sixdof {
+namespace {
+
+using test::IdealQuery;
+using Spoil = IdealQuery::Spoil;
+
+std::map<std::string, double> measures_of(const char* name, const Spoil& spoil, double late_stamps = 0.0) {
+  const auto scenario = make_scenario(name);
+  IdealQuery query(*scenario, IdealLaw::volume, spoil, late_stamps / static_cast<double>(k_gate_stamps));
+  const Recording recording = record(*scenario, query, k_gate_stamps);
+  const Measures measures = evaluate(*scenario, recording, IdealLaw::volume);
+  return {measures.begin(), measures.end()};
+}
+
+/// The bound that catches the fault lets the perfect algorithm pass.
+void expect_caught(const char* scenario, const char* measure, double bound, const Spoil& spoil, double late = 0.0) {
+  EXPECT_EQ(judge(std::abs(measures_of(scenario, {}).at(measure)), bound), Verdict::holds) << scenario << " perfect";
+  EXPECT_EQ(judge(std::abs(measures_of(scenario, spoil, late).at(measure)), bound), Verdict::worse)
+      << scenario << " spoilt";
+}
+
+constexpr double k_rounding = 1e-9;
+
+TEST(BadAlgorithm, NoiseIsCaughtByNoise) {
+  for (const char* scenario : {"Ia", "II", "IV"}) {
+    const auto random = std::make_shared<std::mt19937_64>(5);
+    const Spoil shake = [random](Response& r, double, std::size_t) {
+      std::normal_distribution<double> normal;
+      const double size = 0.01 * r.force.norm();
+      r.force += size * Eigen::Vector3d(normal(*random), normal(*random), normal(*random));
+    };
+    expect_caught(scenario, "noise_F", k_rounding, shake);
+  }
+}
+
+TEST(BadAlgorithm, WrongSignIsCaughtByGamma) {
+  const Spoil flip = [](Response& r, double, std::size_t) {
+    r.force = -r.force;
+    r.torque = -r.torque;
+  };
+  for (const char* scenario : {"Ia", "Ib", "II", "IV"}) expect_caught(scenario, "gamma_F_deg", k_rounding, flip);
+  expect_caught("III", "gamma_T_deg", k_rounding, flip);
+  // The paper's sigma and nu, which know magnitudes only, do not see it.
+  EXPECT_NEAR(measures_of("II", flip).at("sigma_F"), 0.0, k_rounding);
+  EXPECT_NEAR(measures_of("II", flip).at("nu_F"), 1.0, k_rounding);
+}
+
+TEST(BadAlgorithm, TunnellingIsCaughtByMisses) {
+  // Pushes back only near the plate's edge, nothing once the cone is through.
+  const Spoil tunnel = [](Response& r, double progress, std::size_t) {
+    if (progress > 0.4 && progress < 0.6) r = Response{.reference = r.reference};
+  };
+  expect_caught("Ib", "misses", 0.0, tunnel);
+  const Spoil silent = [](Response& r, double, std::size_t) { r = Response{.reference = r.reference}; };
+  expect_caught("Ib", "misses", 0.0, silent);
+}
+
+TEST(BadAlgorithm, GainErrorIsCaughtByTheGain) {
+  const Spoil louder = [](Response& r, double, std::size_t) {
+    r.force *= 1.1;
+    r.torque *= 1.1;
+  };
+  const auto off = [](double gain) { return std::abs(gain - 1.0); };
+  for (const char* scenario : {"Ia", "Ib", "II", "IV"}) {
+    EXPECT_EQ(judge(off(measures_of(scenario, {}).at("gain_F")), k_rounding), Verdict::holds);
+    EXPECT_EQ(judge(off(measures_of(scenario, louder).at("gain_F")), k_rounding), Verdict::worse);
+  }
+  EXPECT_EQ(judge(off(measures_of("III", louder).at("gain_T")), k_rounding), Verdict::worse);
+  // The paper's sigma normalises it away.
+  EXPECT_NEAR(measures_of("II", louder).at("sigma_F"), 0.0, k_rounding);
+}
+
+TEST(BadAlgorithm, GainErrorOnPartOfThePathIsCaughtBySigma) {
+  const Spoil louder = [](Response& r, double progress, std::size_t) {
+    if (progress > 0.5) r.force *= 1.1;
+  };
+  for (const char* scenario : {"Ia", "II", "IV"}) expect_caught(scenario, "sigma_F", k_rounding, louder);
+}
+
+TEST(BadAlgorithm, ALagOfThreeStampsIsCaughtByTheLag) {
+  for (const char* scenario : {"II", "III", "IV"}) {
+    constexpr double k_late = 3.0;
+    const auto late = measures_of(scenario, {}, k_late);
+    EXPECT_NEAR(late.at("lag"), k_late, 0.5) << scenario;
+    // Half a stamp: what the parabola between stamps can be off.
+    EXPECT_EQ(judge(std::abs(measures_of(scenario, {}).at("lag")), 0.5), Verdict::too_loose) << scenario;
+    EXPECT_EQ(judge(std::abs(late.at("lag")), 0.5), Verdict::worse) << scenario;
+  }
+  // In II, where the direction turns with the path, it is an angle as well.
+  EXPECT_NEAR(measures_of("II", {}, 3.0).at("gamma_F_deg"), 3.0 * 360.0 / k_gate_stamps, 1e-6);
+}
+
+TEST(Table, JudgesBothWays) {
+  EXPECT_EQ(judge(0.011, 0.01), Verdict::worse);
+  EXPECT_EQ(judge(0.01, 0.01), Verdict::holds);
+  EXPECT_EQ(judge(0.005, 0.01), Verdict::holds);
+  EXPECT_EQ(judge(0.0049, 0.01), Verdict::too_loose);
+  EXPECT_EQ(judge(0.0, 1e-9), Verdict::holds);  // rounding
+  EXPECT_EQ(judge(0.0, 0.0), Verdict::holds);
+  EXPECT_EQ(judge(1.0, 0.0), Verdict::worse);
+  EXPECT_EQ(judge(std::nan(""), 1.0), Verdict::worse);
+}
+
+TEST(Table, NamesMeasuresAndGivesReasons) {
+  EXPECT_FALSE(bounds().empty());
+  for (const Bound& bound : bounds()) {
+    EXPECT_NO_THROW(metric(bound.measure)) << bound.measure;
+    EXPECT_FALSE(bound.reason.empty());
+    EXPECT_GE(bound.bound, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace sixdof

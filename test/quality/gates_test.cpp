@@ -1,0 +1,106 @@
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/bench/algorithms.h>
+#include <sixdof/scenario/evaluation.h>
+
+#include "bounds.h"
+
+namespace sixdof {
+namespace {
+
+/// An algorithm prepared once per scenario and recorded once, for all bounds of this process.
+struct Recorded {
+  std::unique_ptr<Scenario> scenario;
+  std::unique_ptr<Query> query;
+  Recording recording;
+};
+
+const Recorded& recorded(const std::string& scenario, const std::string& algorithm) {
+  static std::map<std::pair<std::string, std::string>, Recorded> cache;
+  const auto [where, is_new] = cache.try_emplace({scenario, algorithm});
+  Recorded& r = where->second;
+  if (is_new) {
+    Registry registry;
+    register_all_algorithms(registry);
+    const Algorithm& found = registry.find(algorithm);
+    r.scenario = make_scenario(scenario);
+    r.query = found.prepare(r.scenario->a(), r.scenario->b(), found.settings());
+    r.recording = record(*r.scenario, *r.query, k_gate_stamps);
+  }
+  return r;
+}
+
+double measured(const Bound& bound) {
+  const Recorded& r = recorded(std::string(bound.scenario), std::string(bound.algorithm));
+  EXPECT_EQ(r.recording.first_failure, "");
+  Measures measures = evaluate(*r.scenario, r.recording, bound.law);
+  if (bound.measure.starts_with("jump")) measures = evaluate_jumps(*r.scenario, *r.query, r.recording, bound.law);
+  for (const auto& [name, value] : measures) {
+    if (name == bound.measure) return std::abs(value);
+  }
+  ADD_FAILURE() << bound.measure << " is undefined here";
+  return 0.0;
+}
+
+class Gate : public ::testing::TestWithParam<Bound> {};
+
+TEST_P(Gate, Holds) {
+  const Bound& bound = GetParam();
+  const double value = measured(bound);
+  const std::string what =
+      fmt::format("{} of {} on {} by law {}: measured {:.4g}, bound {:g} ({})", bound.measure, bound.algorithm,
+                  bound.scenario, to_string(bound.law), value, bound.bound, bound.reason);
+  switch (judge(value, bound.bound)) {
+    case Verdict::holds:
+      break;
+    case Verdict::worse:
+      ADD_FAILURE() << what << ": WORSE than the table allows";
+      break;
+    case Verdict::too_loose:
+      ADD_FAILURE() << what << ": better than half the bound, tighten test/quality/bounds.cpp";
+  }
+}
+
+std::string name_of(const ::testing::TestParamInfo<Bound>& info) {
+  const Bound& b = info.param;
+  std::string name = fmt::format("{}_{}_{}_{}", b.scenario, b.algorithm, to_string(b.law), b.measure);
+  for (char& c : name) {
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  }
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Gates, Gate, ::testing::ValuesIn(bounds().begin(), bounds().end()), name_of);
+
+/// What is left of `exact` in II is the facets alone: it falls faster than their square.
+TEST(Limit, OfExactInScenarioTwoIsTheTessellation) {
+  Registry registry;
+  register_all_algorithms(registry);
+  const Algorithm& exact = registry.find("exact");
+  const auto error = [&](const char* facets) {
+    Settings shape = scenario_settings("II");
+    shape.set("facets", facets);
+    const auto scenario = make_scenario("II", shape);
+    const auto query = exact.prepare(scenario->a(), scenario->b(), exact.settings());
+    std::map<std::string, double> measures;
+    for (const auto& [name, value] : evaluate(*scenario, record(*scenario, *query, 60), IdealLaw::volume)) {
+      measures[name] = value;
+    }
+    return std::pair(measures.at("sigma_F"), measures.at("gamma_F_deg"));
+  };
+  const auto [coarse_sigma, coarse_gamma] = error("48");
+  const auto [fine_sigma, fine_gamma] = error("192");
+  // From 48 to 192 facets: two halvings.
+  EXPECT_GT(0.5 * std::log2(coarse_sigma / fine_sigma), 2.0);
+  EXPECT_GT(0.5 * std::log2(coarse_gamma / fine_gamma), 2.0);
+}
+
+}  // namespace
+}  // namespace sixdof

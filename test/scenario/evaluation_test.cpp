@@ -1,0 +1,147 @@
+#include <sixdof/scenario/evaluation.h>
+
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/base/hdf5.h>
+#include <sixdof/measure/metrics.h>
+#include <sixdof/scenario/drawing.h>
+#include <sixdof/scenario/series_file.h>
+
+#include "ideal_query.h"
+
+namespace sixdof {
+namespace {
+
+using test::IdealQuery;
+
+constexpr double k_rounding = 1e-9;
+
+std::map<std::string, double> by_name(const Measures& measures) { return {measures.begin(), measures.end()}; }
+
+TEST(Evaluation, AnIdealAnswerIsPerfect) {
+  for (const std::string& name : scenario_names()) {
+    const auto scenario = make_scenario(name);
+    for (const IdealLaw law : {IdealLaw::depth, IdealLaw::volume}) {
+      IdealQuery query(*scenario, law);
+      const Recording recording = record(*scenario, query, 200);
+      const auto m = by_name(evaluate(*scenario, recording, law));
+      const bool by_torque = name == "III";
+      const std::string which = by_torque ? "T" : "F";
+      EXPECT_NEAR(m.at("sigma_" + which), 0.0, k_rounding) << name;
+      EXPECT_NEAR(m.at("gamma_" + which + "_deg"), 0.0, k_rounding) << name;
+      EXPECT_NEAR(m.at("nu_" + which), 1.0, k_rounding) << name;
+      EXPECT_NEAR(m.at("noise_" + which), 0.0, k_rounding) << name;
+      EXPECT_NEAR(m.at("gain_" + which), 1.0, k_rounding) << name;
+      EXPECT_EQ(m.at("misses"), 0.0) << name;
+      EXPECT_EQ(m.at("false_contacts"), 0.0) << name;
+      EXPECT_EQ(m.at("failed"), 0.0) << name;
+      EXPECT_EQ(m.count("sigma_" + std::string(by_torque ? "F" : "T")),
+                name == "IV" && law == IdealLaw::volume ? 1u : 0u);
+      EXPECT_EQ(m.count("leakage"), name == "IV" && law == IdealLaw::volume ? 0u : 1u);
+      EXPECT_EQ(m.count("loop_work"), scenario->closed() ? 1u : 0u);
+      EXPECT_EQ(m.count("sigma_F_all"), name[0] == 'I' && name.size() == 2 && name != "II" && name != "IV" ? 1u : 0u);
+      for (const auto& [key, value] : m) {
+        EXPECT_NO_THROW(metric(key)) << key;
+        EXPECT_TRUE(std::isfinite(value)) << key;
+      }
+      if (name == "II") {
+        EXPECT_NEAR(m.at("loop_work"), 0.0, k_rounding);
+      }
+    }
+  }
+}
+
+TEST(Evaluation, WindowAndWholePathAreToldApart) {
+  const auto scenario = make_scenario("Ia");
+  IdealQuery query(*scenario, IdealLaw::volume);
+  const Recording recording = record(*scenario, query, 961);  // one stamp per unit of length
+  const auto m = by_name(evaluate(*scenario, recording, IdealLaw::volume));
+  EXPECT_EQ(m.at("skipped"), 0.0);
+  // The tip of radius 10 is off the block for x in [-30, -10] and [910, 930].
+  EXPECT_EQ(m.at("skipped_all"), 42.0);
+}
+
+TEST(Evaluation, FailedStampsAreCountedAndLeftOut) {
+  const auto scenario = make_scenario("II");
+  IdealQuery query(*scenario, IdealLaw::volume);
+  Recording recording = record(*scenario, query, 100);
+  for (const std::size_t k : {7u, 8u, 60u}) {
+    recording.status[k] = Status::failed;
+    recording.forces[k].setZero();
+  }
+  const auto m = by_name(evaluate(*scenario, recording, IdealLaw::volume));
+  EXPECT_EQ(m.at("failed"), 3.0);
+  EXPECT_EQ(m.at("misses"), 0.0);
+  EXPECT_NEAR(m.at("sigma_F"), 0.0, k_rounding);
+  EXPECT_GT(m.at("noise_F"), 1e-3);  // a device feels the gap
+}
+
+TEST(Evaluation, RefusesALawThatIsNotThere) {
+  const auto scenario = make_scenario("Ib");
+  IdealQuery query(*scenario, IdealLaw::volume);
+  const Recording recording = record(*scenario, query, 10);
+  EXPECT_THROW(evaluate(*scenario, recording, IdealLaw::paper_volume), BadArgument);
+}
+
+TEST(Evaluation, JumpsAreFoundBetweenStamps) {
+  const auto scenario = make_scenario("II");
+  IdealQuery smooth(*scenario, IdealLaw::volume);
+  const auto none = by_name(evaluate_jumps(*scenario, smooth, record(*scenario, smooth, 100), IdealLaw::volume));
+  EXPECT_LT(none.at("jump_F"), 1e-3);
+  EXPECT_EQ(none.count("jump_T"), 0u);
+  IdealQuery step(*scenario, IdealLaw::volume, [](Response& r, double progress, std::size_t) {
+    if (progress > 0.3141) r.force *= 0.8;
+  });
+  const auto jump = by_name(evaluate_jumps(*scenario, step, record(*scenario, step, 100), IdealLaw::volume));
+  EXPECT_NEAR(jump.at("jump_F"), 0.2, 1e-3);
+}
+
+TEST(SeriesFile, HoldsWhatWasRecorded) {
+  const auto scenario = make_scenario("III");
+  IdealQuery query(*scenario, IdealLaw::volume, [](Response& r, double, std::size_t) { r.torque *= 3.0; });
+  const Recording recording = record(*scenario, query, 150);
+  const Measures measures = evaluate(*scenario, recording, IdealLaw::volume);
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "sixdof_series_test.h5";
+  write_series(path, *scenario, recording, IdealLaw::volume, {"ideal", "1", "x=2", "facets=96"}, measures);
+  {
+    const hdf5::Session session;
+    const hdf5::File file = hdf5::File::open(path);
+    EXPECT_EQ(file.read_string("/", "format"), "sixdof-series");
+    EXPECT_EQ(file.read_string("/", "scenario"), "III");
+    EXPECT_EQ(file.read_string("/", "law"), "volume");
+    EXPECT_EQ(file.read_string("/", "settings"), "x=2");
+    EXPECT_NEAR(file.read_number("/", "gain_T"), 3.0, k_rounding);
+    EXPECT_EQ(file.matrix_size("/torque"), std::pair(std::size_t{150}, std::size_t{3}));
+    EXPECT_EQ(file.read_matrix("/torque")[3 * 149 + 2], recording.torques[149].z());
+    EXPECT_NEAR(file.read_matrix("/ideal_torque")[3 * 149 + 2] * 3.0, recording.torques[149].z(), k_rounding * 1e4);
+    EXPECT_EQ(file.matrix_size("/pose").second, 7u);
+    EXPECT_EQ(file.read_values<std::int32_t>("/status"), std::vector<std::int32_t>(150, 0));
+    const auto [times, frequencies] = file.matrix_size("/spectrum/residual");
+    EXPECT_EQ(frequencies, k_spectrum_window / 2 + 1);
+    EXPECT_EQ(file.read_matrix("/spectrum/times").size(), times);
+  }
+  std::filesystem::remove(path);
+}
+
+TEST(Drawing, IsTheSameEveryTimeAndShowsBothBodies) {
+  for (const std::string& name : scenario_names()) {
+    Settings settings = scenario_settings(name);
+    settings.set("facets", "16");
+    const auto scenario = make_scenario(name, settings);
+    const std::string svg = draw(*scenario);
+    EXPECT_EQ(svg, draw(*make_scenario(name, settings)));
+    EXPECT_TRUE(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
+    EXPECT_NE(svg.find("Scenario " + name + "<"), std::string::npos);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    for (const Dimension& dimension : scenario->sketch().dimensions) {
+      EXPECT_NE(svg.find(dimension.label), std::string::npos) << dimension.label;
+    }
+    EXPECT_NE(svg.find("url(#wrench)"), std::string::npos) << name;
+  }
+}
+
+}  // namespace
+}  // namespace sixdof
