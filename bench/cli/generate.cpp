@@ -18,6 +18,7 @@
 #include <sixdof/configuration/distance_generator.h>
 #include <sixdof/configuration/ray_cast.h>
 #include <sixdof/configuration/sphere_method.h>
+#include <sixdof/configuration/volume_generator.h>
 #include <sixdof/models/zoo.h>
 
 namespace sixdof::cli {
@@ -27,7 +28,7 @@ const std::string k_default_oracle = "fcl-rss";
 
 struct Arguments {
   std::string a, b, grid, output;
-  std::string distances = "0:30";
+  std::string distances, volumes;
   std::string method, oracle;  // empty: not given
   unsigned threads = 0;
   bool plan = false;
@@ -43,18 +44,20 @@ int parse_percent(std::string_view list, std::string_view text) {
   return value;
 }
 
-void print_plan(const Grid& grid, const std::vector<int>& percents) {
+std::vector<int> parse_list(std::string_view text) { return text.empty() ? std::vector<int>{} : parse_percents(text); }
+
+void print_plan(const Grid& grid, std::size_t buckets) {
   const auto map = representatives(grid.rotations);
   const std::size_t distinct = std::set(map.begin(), map.end()).size();
   const std::size_t per_bucket = grid.configurations();
-  const std::size_t all = per_bucket * percents.size();
+  const std::size_t all = per_bucket * buckets;
   fmt::print("grid                       {} ({})\n", grid.spec, grid.sampler);
   fmt::print("directions                 {}\n", grid.directions.size());
   fmt::print("rotations                  {}, of which {} distinct\n", grid.rotations.size(), distinct);
   fmt::print("configurations per bucket  {}\n", per_bucket);
-  fmt::print("buckets                    {}\n", percents.size());
+  fmt::print("buckets                    {}\n", buckets);
   fmt::print("configurations             {}\n", all);
-  fmt::print("of which computed          {}\n", distinct * grid.directions.size() * percents.size());
+  fmt::print("of which computed          {}\n", distinct * grid.directions.size() * buckets);
   fmt::print("bytes before compression   {}\n", all * sizeof(double));
 }
 
@@ -68,8 +71,10 @@ std::unique_ptr<DistanceGenerator> make_generator(const Arguments& arguments, co
 void generate(const Arguments& arguments) {
   if (arguments.grid.empty()) throw BadArgument("--grid is needed");
   const Grid grid = make_grid(arguments.grid);
-  const std::vector<int> percents = parse_percents(arguments.distances);
-  if (arguments.plan) return print_plan(grid, percents);
+  const bool all_distances = arguments.distances.empty() && arguments.volumes.empty();
+  const std::vector<int> distances = parse_list(all_distances ? "0:30" : arguments.distances);
+  const std::vector<int> volumes = parse_list(arguments.volumes);
+  if (arguments.plan) return print_plan(grid, distances.size() + volumes.size());
   if (arguments.a.empty() || arguments.output.empty()) throw BadArgument("--a and -o are needed (or --plan)");
 
   Registry registry;
@@ -87,21 +92,29 @@ void generate(const Arguments& arguments) {
   options.threads = arguments.threads;
   options.cancelled = [] { return InterruptGuard::requested(); };
   const auto start = std::chrono::steady_clock::now();
-  Generated result;
-  {
-    ProgressLine line("configurations");
-    options.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); };
-    result = generate_distances(*generator, a, b, grid, percents, options);
-  }
-  for (const GeneratedBucket& bucket : result.buckets) {
-    InterruptGuard::check();
-    writer.write(bucket.summary, bucket.travel);
-  }
+  // One pass for each kind: sets with volumes alone are common, the paper's grids for the two differ.
+  const auto make = [&](const char* what, const std::vector<int>& percents, auto generate_buckets) -> std::uint64_t {
+    if (percents.empty()) return 0;
+    Generated result;
+    {
+      ProgressLine line(what);
+      options.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); };
+      result = generate_buckets(*generator, a, b, grid, percents, options);
+    }
+    for (const GeneratedBucket& bucket : result.buckets) {
+      InterruptGuard::check();
+      writer.write(bucket.summary, bucket.travel);
+    }
+    return result.measurements;
+  };
+  const std::uint64_t distance_measurements = make("distances", distances, generate_distances);
+  const std::uint64_t volume_measurements = make("volumes", volumes, generate_volumes);
   writer.commit();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fmt::print("{}: {} configurations of {} with {} in {} ({} measurements of the distance by {} {})\n", arguments.output,
-             grid.configurations() * percents.size(), a.name(), b.name(), as_clock(seconds), result.measurements,
-             generator->oracle_name(), generator->oracle_version());
+  fmt::print("{}: {} configurations of {} with {} in {} ({} measurements of the distance by {} {}, {} of the volume)\n",
+             arguments.output, grid.configurations() * (distances.size() + volumes.size()), a.name(), b.name(),
+             as_clock(seconds), distance_measurements, generator->oracle_name(), generator->oracle_version(),
+             volume_measurements);
 }
 
 }  // namespace
@@ -128,8 +141,9 @@ void add_generate_command(CLI::App& app) {
   command->add_option("--b", arguments->b, "Moving mesh B; A if left out");
   command->add_option("--grid", arguments->grid,
                       "paper | paper-volume | STEP | STEP/STEP (degrees: directions/rotations) | so3:N | so3:N:M");
-  command->add_option("--distances", arguments->distances, "Percent of A's box diagonal, e.g. 0,1,5:10")
-      ->capture_default_str();
+  command->add_option("--distances", arguments->distances,
+                      "Percent of A's box diagonal, e.g. 0,1,5:10; 0:30 if no --volumes are given either");
+  command->add_option("--volumes", arguments->volumes, "Percent of A's volume, e.g. 0:10 (A and B must be solids)");
   command
       ->add_option("--method", arguments->method,
                    "raycast: on the project's own trees; advance: step by step with the distances of --oracle. "

@@ -1,81 +1,13 @@
 #include <sixdof/configuration/distance_generator.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <mutex>
-#include <numeric>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/configuration/rotation_sweep.h>
 
 namespace sixdof {
-namespace {
-
-/// The rotations of one run, each distinct one once.
-struct Work {
-  std::span<const Eigen::Vector4d> rotations;
-  std::vector<std::uint32_t> representative;  ///< Of each rotation, within `rotations`.
-  std::vector<std::uint32_t> distinct;        ///< Indices of the representatives.
-};
-
-Work plan_work(const Grid& grid, const GenerateOptions& options) {
-  const std::size_t last = std::min(options.last_rotation, grid.rotations.size());
-  if (options.first_rotation >= last) {
-    throw BadArgument(fmt::format("rotations {} to {}: the grid has {}", options.first_rotation, options.last_rotation,
-                                  grid.rotations.size()));
-  }
-  Work work;
-  work.rotations = std::span(grid.rotations).subspan(options.first_rotation, last - options.first_rotation);
-  work.representative = representatives(work.rotations);
-  for (std::uint32_t r = 0; r < work.representative.size(); ++r) {
-    if (work.representative[r] == r) work.distinct.push_back(r);
-  }
-  return work;
-}
-
-/// The buckets from far to near: a ray meets them in this order.
-std::vector<GeneratedBucket> plan_buckets(const Mesh& a, std::span<const int> percents, std::size_t configurations) {
-  std::vector<GeneratedBucket> buckets;
-  for (const int percent : percents) {
-    buckets.push_back({.summary = distance_bucket(a, percent), .travel = std::vector<double>(configurations)});
-  }
-  std::ranges::sort(buckets, std::ranges::greater{}, [](const GeneratedBucket& b) { return b.summary.key.percent; });
-  const auto repeated = std::ranges::adjacent_find(buckets, {}, [](const auto& b) { return b.summary.key.percent; });
-  if (repeated != buckets.end()) {
-    throw BadArgument(fmt::format("distance {} %: asked for twice", repeated->summary.key.percent));
-  }
-  if (buckets.empty()) throw BadArgument("no distance to generate");
-  return buckets;
-}
-
-/// Counts rays and tells the user, one call at a time.
-class Progress {
- public:
-  Progress(const GenerateOptions& options, std::uint64_t configurations_per_rotation, std::size_t rotations)
-      : options_(options), step_(configurations_per_rotation), total_(configurations_per_rotation * rotations) {
-    if (options_.progress) options_.progress(0, total_);
-  }
-  void rotation_done() {
-    if (!options_.progress) return;
-    const std::scoped_lock lock(mutex_);
-    done_ += step_;
-    options_.progress(done_, total_);
-  }
-
- private:
-  const GenerateOptions& options_;
-  std::mutex mutex_;
-  const std::uint64_t step_, total_;
-  std::uint64_t done_ = 0;
-};
-
-}  // namespace
 
 BucketSummary distance_bucket(const Mesh& a, int percent) {
   if (percent < 0 || percent > BucketKey::k_max_percent) {
@@ -92,62 +24,18 @@ BucketSummary distance_bucket(const Mesh& a, int percent) {
 
 Generated generate_distances(const DistanceGenerator& generator, const Mesh& a, const Mesh& b, const Grid& grid,
                              std::span<const int> percents, const GenerateOptions& options) {
-  const std::size_t n_directions = grid.directions.size();
-  const Work work = plan_work(grid, options);
-  std::vector<GeneratedBucket> buckets = plan_buckets(a, percents, work.rotations.size() * n_directions);
-  std::vector<double> aims;
-  for (const GeneratedBucket& bucket : buckets) aims.push_back(bucket.summary.aim);
-
-  std::vector<std::vector<double>> residuals(work.distinct.size(), std::vector<double>(aims.size()));
-  Progress progress(options, n_directions * aims.size(), work.distinct.size());
-  tbb::enumerable_thread_specific<std::unique_ptr<RaySolver>> solvers([&] { return generator.prepare(a, b); });
-
-  const auto solve_rotation = [&](std::size_t i) {
-    const std::uint32_t r = work.distinct[i];
-    RaySolver& solver = *solvers.local();
-    solver.set_rotation(work.rotations[r]);
-    std::vector<double> travel(aims.size());
-    std::vector<double> residual(aims.size());
-    for (std::size_t u = 0; u < n_directions; ++u) {
-      if (options.cancelled && options.cancelled()) throw Interrupted("interrupted");
-      try {
-        solver.solve(grid.directions[u], aims, travel, residual);
-      } catch (const Error& e) {
-        throw Error(fmt::format("rotation {}, direction {}: {}", options.first_rotation + r, u, e.what()));
-      }
-      for (std::size_t k = 0; k < aims.size(); ++k) {
-        buckets[k].travel[r * n_directions + u] = travel[k];
-        residuals[i][k] = std::max(residuals[i][k], residual[k]);
-      }
-    }
-    progress.rotation_done();
-  };
-  tbb::task_arena arena(options.threads == 0 ? tbb::task_arena::automatic : static_cast<int>(options.threads));
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, work.distinct.size(), 1),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i) solve_rotation(i);
-                      });
-  });
-
-  for (std::size_t k = 0; k < buckets.size(); ++k) {
-    std::vector<double>& travel = buckets[k].travel;
-    for (std::size_t r = 0; r < work.rotations.size(); ++r) {
-      const std::size_t from = work.representative[r] * n_directions;
-      std::copy_n(travel.begin() + static_cast<std::ptrdiff_t>(from), n_directions,
-                  travel.begin() + static_cast<std::ptrdiff_t>(r * n_directions));
-    }
-    for (const auto& of_rotation : residuals) {
-      buckets[k].summary.largest_residual = std::max(buckets[k].summary.largest_residual, of_rotation[k]);
-    }
-    buckets[k].summary.oracle = generator.oracle_name();
-    buckets[k].summary.oracle_version = generator.oracle_version();
+  Generated result;
+  for (const int percent : percents) result.buckets.push_back({.summary = distance_bucket(a, percent), .travel = {}});
+  // From far to near: a ray meets them in this order.
+  detail::order_buckets(result.buckets, true, detail::rotations_asked(grid, options) * grid.directions.size());
+  result.measurements = detail::sweep_rotations([&] { return generator.prepare(a, b); }, grid, result.buckets, options);
+  for (GeneratedBucket& bucket : result.buckets) {
+    bucket.summary.oracle = generator.oracle_name();
+    bucket.summary.oracle_version = generator.oracle_version();
   }
-  std::ranges::sort(buckets, {}, [&](const GeneratedBucket& bucket) {
+  std::ranges::sort(result.buckets, {}, [&](const GeneratedBucket& bucket) {
     return std::ranges::find(percents, bucket.summary.key.percent) - percents.begin();
   });
-  Generated result{.buckets = std::move(buckets)};
-  for (const auto& solver : solvers) result.measurements += solver->measurements();
   return result;
 }
 

@@ -4,12 +4,19 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
 #include <sixdof/configuration/distance_generator.h>
+#include <sixdof/configuration/slope_bounds.h>
+#include <sixdof/configuration/volume_generator.h>
+#include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/overlap.h>
+#include <sixdof/oracle/overlap_global.h>
+#include <sixdof/oracle/solid.h>
 
 namespace sixdof {
 namespace {
@@ -17,30 +24,104 @@ namespace {
 /// Targets are products of a percentage and a diagonal that the set's maker may have rounded in another order.
 constexpr double k_target_rounding = 1e-14;
 
+/// One kind of quantity along rays. What it calls missing is positive as long as the aim has not been met.
+class Gauge {
+ public:
+  virtual ~Gauge() = default;
+  virtual std::string name() const = 0;
+  virtual double measure(const ConfigurationRay& ray, double s) = 0;
+  virtual double missing(const ConfigurationRay& ray, double s, double aim) = 0;
+  /// A way inwards on which what is missing cannot be made up.
+  virtual double safe_way(const ConfigurationRay& ray, double missing) = 0;
+};
+
+class DistanceGauge final : public Gauge {
+ public:
+  DistanceGauge(const DistanceSource& oracle, const Mesh& a, const Mesh& b)
+      : name_(oracle.name()), probe_(oracle.prepare(a, b)) {}
+  std::string name() const override { return name_; }
+  double measure(const ConfigurationRay& ray, double s) override { return probe_->measure(ray.pose(s)).distance; }
+  double missing(const ConfigurationRay& ray, double s, double aim) override { return measure(ray, s) - aim; }
+  double safe_way(const ConfigurationRay& /*ray*/, double missing) override { return missing; }
+
+ private:
+  std::string name_;
+  std::unique_ptr<DistanceProbe> probe_;
+};
+
+class VolumeGauge final : public Gauge {
+ public:
+  VolumeGauge(const Mesh& a, const Mesh& b)
+      : a_(a),
+        b_(b),
+        by_columns_(a.triangles().size() * b.triangles().size() <= k_most_column_pairs),
+        tree_a_(a),
+        tree_b_(b),
+        solid_a_(a, tree_a_),
+        solid_b_(b, tree_b_),
+        query_(solid_a_, solid_b_),
+        areas_a_(area_vectors(a)),
+        areas_b_(area_vectors(b)) {}
+  std::string name() const override { return by_columns_ ? "columns" : "exact"; }
+  double measure(const ConfigurationRay& ray, double s) override {
+    return by_columns_ ? overlap_volume_by_columns(a_, b_, ray.pose(s)) : query_.evaluate(ray.pose(s)).volume;
+  }
+  double missing(const ConfigurationRay& ray, double s, double aim) override {
+    return aim - query_.evaluate(ray.pose(s)).volume;
+  }
+  /// No column along the ray gains more than the way.
+  double safe_way(const ConfigurationRay& ray, double missing) override {
+    const auto projected = [](const std::vector<Eigen::Vector3d>& areas, const Eigen::Vector3d& direction) {
+      double sum = 0.0;
+      for (const Eigen::Vector3d& area : areas) sum += 0.5 * std::abs(area.dot(direction));
+      return sum;
+    };
+    if (ray.direction != direction_ || ray.R != R_) {
+      direction_ = ray.direction;
+      R_ = ray.R;
+      steepest_ = std::min(projected(areas_a_, direction_), projected(areas_b_, R_.transpose() * direction_));
+    }
+    return missing / steepest_;
+  }
+
+ private:
+  const Mesh& a_;
+  const Mesh& b_;
+  const bool by_columns_;
+  Tree tree_a_, tree_b_;
+  Solid solid_a_, solid_b_;
+  OverlapQuery query_;
+  std::vector<Eigen::Vector3d> areas_a_, areas_b_;
+  Eigen::Vector3d direction_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d R_ = Eigen::Matrix3d::Zero();
+  double steepest_ = 0.0;  ///< Of these two.
+};
+
 class Verifier {
  public:
   Verifier(const ConfigurationSet& set, const Mesh& a, const Mesh& b, const DistanceSource& oracle,
            const VerifyOptions& options)
-      : set_(set), a_(a), b_(b), probe_(oracle.prepare(a, b)), options_(options), random_(options.seed) {}
+      : set_(set), a_(a), b_(b), distance_(oracle, a, b), options_(options), random_(options.seed) {}
 
   Verdict run() {
     check_stamp("A", set_.description().a, a_);
     check_stamp("B", set_.description().b, b_);
-    std::vector<double> nearer;
-    std::string nearer_name;
+    std::vector<double> previous;
     total_ = set_.buckets().size() * options_.sample;
+    const BucketSummary* before = nullptr;
     for (const BucketSummary& bucket : set_.buckets()) {
-      const std::vector<double> travel = set_.read(bucket.key);
+      std::vector<double> travel = set_.read(bucket.key);
       check_copies(bucket, travel);
-      BucketVerdict verdict{.summary = bucket};
-      if (bucket.key.kind == BucketKind::distance) {
-        check_summary(bucket);
-        if (!nearer.empty()) check_order(nearer_name, nearer, bucket.key.name(), travel);
-        nearer = travel;
-        nearer_name = bucket.key.name();
-        measure_sample(travel, verdict);
+      check_summary(bucket);
+      // Distances come from near to far, volumes from contact inwards.
+      if (before != nullptr && before->key.kind == bucket.key.kind) {
+        const bool inwards = bucket.key.kind == BucketKind::volume;
+        check_order(inwards ? bucket : *before, inwards ? travel : previous, inwards ? *before : bucket,
+                    inwards ? previous : travel);
       }
-      result_.buckets.push_back(verdict);
+      measure_sample(bucket, travel);
+      previous = std::move(travel);
+      before = &bucket;
     }
     return std::move(result_);
   }
@@ -60,13 +141,17 @@ class Verifier {
     }
   }
 
+  double scale(BucketKind kind) const { return kind == BucketKind::distance ? a_.diagonal() : a_.volume(); }
+
   void check_summary(const BucketSummary& bucket) {
-    const BucketSummary expected = distance_bucket(a_, bucket.key.percent);
-    const double rounding = k_target_rounding * a_.diagonal();
+    const bool distance = bucket.key.kind == BucketKind::distance;
+    const BucketSummary expected =
+        distance ? distance_bucket(a_, bucket.key.percent) : volume_bucket(a_, bucket.key.percent);
+    const double rounding = k_target_rounding * scale(bucket.key.kind);
     if (!(std::abs(bucket.target - expected.target) <= rounding) ||
         !(std::abs(bucket.aim - expected.aim) <= rounding)) {
-      note(fmt::format("{}: target {} and aim {} are not {} % of the diagonal", bucket.key.name(), bucket.target,
-                       bucket.aim, bucket.key.percent));
+      note(fmt::format("{}: target {} and aim {} are not {} % of the {}", bucket.key.name(), bucket.target, bucket.aim,
+                       bucket.key.percent, distance ? "diagonal" : "volume"));
     }
     if (!(bucket.tolerance <= expected.tolerance) || !(bucket.largest_residual <= bucket.tolerance)) {
       note(fmt::format("{}: tolerance {} and largest residual {} are not within {}", bucket.key.name(),
@@ -85,62 +170,81 @@ class Verifier {
     }
   }
 
-  /// A smaller target is met further in, and is unreachable where a larger one is.
-  void check_order(const std::string& near_name, const std::vector<double>& near, const std::string& far_name,
+  /// What is met further in is unreachable where the other is.
+  void check_order(const BucketSummary& inner, const std::vector<double>& near, const BucketSummary& outer,
                    const std::vector<double>& far) {
     const std::size_t n = set_.grid().directions.size();
     for (std::size_t i = 0; i < near.size(); ++i) {
       if (std::isnan(near[i]) || near[i] <= far[i]) continue;
-      return note(fmt::format("rotation {}, direction {}: {} is met at {}, {} at {}", i / n, i % n, near_name, near[i],
-                              far_name, far[i]));
+      return note(fmt::format("rotation {}, direction {}: {} is met at {}, {} at {}", i / n, i % n, inner.key.name(),
+                              near[i], outer.key.name(), far[i]));
     }
   }
 
-  void measure_sample(const std::vector<double>& travel, BucketVerdict& verdict) {
-    verdict.measured = true;
+  void measure_sample(const BucketSummary& bucket, const std::vector<double>& travel) {
+    // Contact is measured as a distance.
+    const bool contact = bucket.key.percent == 0;
+    const bool distance = contact || bucket.key.kind == BucketKind::distance;
+    if (!distance && !volume_) volume_.emplace(a_, b_);
+    Gauge& gauge = distance ? static_cast<Gauge&>(distance_) : *volume_;
+    const bool volume_contact = contact && bucket.key.kind == BucketKind::volume;
+    const Target target{.place = bucket.key,
+                        .aim = volume_contact ? distance_bucket(a_, 0).aim : bucket.aim,
+                        .tolerance = volume_contact ? distance_bucket(a_, 0).tolerance : bucket.tolerance};
+    BucketVerdict verdict{.summary = bucket,
+                          .oracle = gauge.name(),
+                          .scale = scale(distance ? BucketKind::distance : BucketKind::volume),
+                          .tolerance = target.tolerance};
     for (std::size_t k = 0; k < options_.sample; ++k) {
       if (options_.cancelled && options_.cancelled()) throw Interrupted("interrupted");
-      measure_one(random_() % travel.size(), travel, verdict);
+      measure_one(gauge, target, random_() % travel.size(), travel, verdict);
       ++verdict.sampled;
       if (options_.progress) options_.progress(++done_, total_);
     }
+    result_.buckets.push_back(std::move(verdict));
   }
 
-  void measure_one(std::size_t i, const std::vector<double>& travel, BucketVerdict& verdict) {
+  struct Target {
+    BucketKey place;
+    double aim = 0.0, tolerance = 0.0;
+  };
+
+  void measure_one(Gauge& gauge, const Target& target, std::size_t i, const std::vector<double>& travel,
+                   BucketVerdict& verdict) {
     const std::size_t n = set_.grid().directions.size();
     const BucketSummary& bucket = verdict.summary;
     ConfigurationRay ray(a_, b_, set_.grid().rotations[i / n]);
     ray.direction = set_.grid().directions[i % n];
     const double s = travel[i];
     if (std::isnan(s)) {
-      const double hit = march(ray, bucket, 0.0);
+      const double hit = march(gauge, ray, target, 0.0);
       if (!std::isnan(hit) && ++verdict.false_nan == 1) {
-        note(fmt::format("{}: said to be unreachable, but nearer than the target at s = {}", place(bucket, i), hit));
+        note(fmt::format("{}: said to be unreachable, but the target is passed at s = {}", place(bucket, i), hit));
       }
       return;
     }
     ++verdict.reachable;
-    const double measured = probe_->measure(ray.pose(s)).distance;
-    const double residual = std::abs(measured - bucket.aim);
+    const double measured = gauge.measure(ray, s);
+    const double residual = std::abs(measured - target.aim);
     verdict.largest_residual = std::max(verdict.largest_residual, residual);
-    if (!(residual <= bucket.tolerance) && ++verdict.wrong_distance == 1) {
-      note(fmt::format("{}: distance {} instead of {}", place(bucket, i), measured, bucket.aim));
+    if (!(residual <= target.tolerance) && ++verdict.wrong_value == 1) {
+      note(fmt::format("{}: {} instead of {}", place(bucket, i), measured, target.aim));
     }
-    const double hit = march(ray, bucket, s);
+    const double hit = march(gauge, ray, target, s);
     if (!std::isnan(hit) && ++verdict.earlier_hit == 1) {
-      note(fmt::format("{}: s = {}, but nearer than the target at s = {} already", place(bucket, i), s, hit));
+      note(fmt::format("{}: s = {}, but the target is passed at s = {} already", place(bucket, i), s, hit));
     }
   }
 
-  /// From outside down to `end`: the first travel above it at which the distance is below the aim; NaN if there is
-  /// none.
-  double march(const ConfigurationRay& ray, const BucketSummary& bucket, double end) {
+  /// From outside down to `end`: the first travel above it at which the aim has been passed; NaN if there is none.
+  double march(Gauge& gauge, const ConfigurationRay& ray, const Target& target, double end) {
     const double step = k_march_step * a_.diagonal();
-    double s = 0.5 * (a_.diagonal() + b_.diagonal()) + bucket.aim;
+    double s = 0.5 * (a_.diagonal() + b_.diagonal());
+    if (target.place.kind == BucketKind::distance) s += target.aim;
     while (s > end) {
-      const double above = probe_->measure(ray.pose(s)).distance - bucket.aim;
-      if (above < -bucket.tolerance) return s;
-      s -= std::max(above, step);
+      const double missing = gauge.missing(ray, s, target.aim);
+      if (missing < -target.tolerance) return s;
+      s -= std::max(gauge.safe_way(ray, missing), step);
     }
     return std::numeric_limits<double>::quiet_NaN();
   }
@@ -148,7 +252,8 @@ class Verifier {
   const ConfigurationSet& set_;
   const Mesh& a_;
   const Mesh& b_;
-  std::unique_ptr<DistanceProbe> probe_;
+  DistanceGauge distance_;
+  std::optional<VolumeGauge> volume_;  ///< Made when a bucket needs it.
   const VerifyOptions& options_;
   std::mt19937_64 random_;
   Verdict result_;

@@ -122,7 +122,7 @@ TEST(DistanceGenerator, RefusesWhatCannotBeDone) {
   const auto with = [&](std::vector<int> percents, GenerateOptions options = {}) {
     generate_distances(*generator, k_a, k_b, grid, percents, options);
   };
-  EXPECT_THAT([&] { with({}); }, ThrowsMessage<BadArgument>(HasSubstr("no distance")));
+  EXPECT_THAT([&] { with({}); }, ThrowsMessage<BadArgument>(HasSubstr("no bucket")));
   EXPECT_THAT([&] { with({5, 7, 5}); }, ThrowsMessage<BadArgument>(HasSubstr("distance 5 %")));
   EXPECT_THAT([&] { with({-1}); }, ThrowsMessage<BadArgument>(HasSubstr("distance -1 %")));
   EXPECT_THAT([&] { with({101}); }, ThrowsMessage<BadArgument>(HasSubstr("distance 101 %")));

@@ -1,0 +1,136 @@
+#include <sixdof/configuration/rotation_sweep.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof::detail {
+namespace {
+
+/// The rotations of one run, each distinct one once.
+struct Work {
+  std::span<const Eigen::Vector4d> rotations;
+  std::vector<std::uint32_t> representative;  ///< Of each rotation, within `rotations`.
+  std::vector<std::uint32_t> distinct;        ///< Indices of the representatives.
+};
+
+Work plan_work(const Grid& grid, const GenerateOptions& options) {
+  const std::size_t count = rotations_asked(grid, options);
+  Work work;
+  work.rotations = std::span(grid.rotations).subspan(options.first_rotation, count);
+  work.representative = representatives(work.rotations);
+  for (std::uint32_t r = 0; r < work.representative.size(); ++r) {
+    if (work.representative[r] == r) work.distinct.push_back(r);
+  }
+  return work;
+}
+
+/// Counts rays and tells the user, one call at a time.
+class Progress {
+ public:
+  Progress(const GenerateOptions& options, std::uint64_t configurations_per_rotation, std::size_t rotations)
+      : options_(options), step_(configurations_per_rotation), total_(configurations_per_rotation * rotations) {
+    if (options_.progress) options_.progress(0, total_);
+  }
+  void rotation_done() {
+    if (!options_.progress) return;
+    const std::scoped_lock lock(mutex_);
+    done_ += step_;
+    options_.progress(done_, total_);
+  }
+
+ private:
+  const GenerateOptions& options_;
+  std::mutex mutex_;
+  const std::uint64_t step_, total_;
+  std::uint64_t done_ = 0;
+};
+
+}  // namespace
+
+std::size_t rotations_asked(const Grid& grid, const GenerateOptions& options) {
+  const std::size_t last = std::min(options.last_rotation, grid.rotations.size());
+  if (options.first_rotation >= last) {
+    throw BadArgument(fmt::format("rotations {} to {}: the grid has {}", options.first_rotation, options.last_rotation,
+                                  grid.rotations.size()));
+  }
+  return last - options.first_rotation;
+}
+
+void order_buckets(std::vector<GeneratedBucket>& buckets, bool descending, std::size_t configurations) {
+  if (buckets.empty()) throw BadArgument("no bucket to generate");
+  const auto percent = [](const GeneratedBucket& bucket) { return bucket.summary.key.percent; };
+  std::ranges::sort(buckets, {}, [&](const GeneratedBucket& b) { return descending ? -percent(b) : percent(b); });
+  const auto repeated = std::ranges::adjacent_find(buckets, {}, percent);
+  if (repeated != buckets.end()) {
+    const std::string name = repeated->summary.key.name();
+    throw BadArgument(
+        fmt::format("{} {} %: asked for twice", name.substr(0, name.find('/')), repeated->summary.key.percent));
+  }
+  for (GeneratedBucket& bucket : buckets) bucket.travel.resize(configurations);
+}
+
+std::uint64_t sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>& prepare, const Grid& grid,
+                              std::vector<GeneratedBucket>& buckets, const GenerateOptions& options) {
+  const std::size_t n_directions = grid.directions.size();
+  const Work work = plan_work(grid, options);
+  std::vector<double> aims;
+  for (const GeneratedBucket& bucket : buckets) aims.push_back(bucket.summary.aim);
+
+  std::vector<std::vector<double>> residuals(work.distinct.size(), std::vector<double>(aims.size()));
+  Progress progress(options, n_directions * aims.size(), work.distinct.size());
+  tbb::enumerable_thread_specific<std::unique_ptr<RaySolver>> solvers(prepare);
+
+  const auto solve_rotation = [&](std::size_t i) {
+    const std::uint32_t r = work.distinct[i];
+    RaySolver& solver = *solvers.local();
+    solver.set_rotation(work.rotations[r]);
+    std::vector<double> travel(aims.size());
+    std::vector<double> residual(aims.size());
+    for (std::size_t u = 0; u < n_directions; ++u) {
+      if (options.cancelled && options.cancelled()) throw Interrupted("interrupted");
+      try {
+        solver.solve(grid.directions[u], aims, travel, residual);
+      } catch (const Error& e) {
+        throw Error(fmt::format("rotation {}, direction {}: {}", options.first_rotation + r, u, e.what()));
+      }
+      for (std::size_t k = 0; k < aims.size(); ++k) {
+        buckets[k].travel[r * n_directions + u] = travel[k];
+        residuals[i][k] = std::max(residuals[i][k], residual[k]);
+      }
+    }
+    progress.rotation_done();
+  };
+  tbb::task_arena arena(options.threads == 0 ? tbb::task_arena::automatic : static_cast<int>(options.threads));
+  arena.execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, work.distinct.size(), 1),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i != range.end(); ++i) solve_rotation(i);
+                      });
+  });
+
+  for (std::size_t k = 0; k < buckets.size(); ++k) {
+    std::vector<double>& travel = buckets[k].travel;
+    for (std::size_t r = 0; r < work.rotations.size(); ++r) {
+      const std::size_t from = work.representative[r] * n_directions;
+      std::copy_n(travel.begin() + static_cast<std::ptrdiff_t>(from), n_directions,
+                  travel.begin() + static_cast<std::ptrdiff_t>(r * n_directions));
+    }
+    for (const auto& of_rotation : residuals) {
+      buckets[k].summary.largest_residual = std::max(buckets[k].summary.largest_residual, of_rotation[k]);
+    }
+  }
+  std::uint64_t measurements = 0;
+  for (const auto& solver : solvers) measurements += solver->measurements();
+  return measurements;
+}
+
+}  // namespace sixdof::detail

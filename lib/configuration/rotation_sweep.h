@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <sixdof/configuration/distance_generator.h>
+#include <sixdof/configuration/grid.h>
+
+/// The loop over rotations and directions that makes buckets of either kind. Internal: use distance_generator.h or
+/// volume_generator.h.
+namespace sixdof::detail {
+
+/// Number of rotations that options ask for. @throws BadArgument if that is none
+std::size_t rotations_asked(const Grid& grid, const GenerateOptions& options);
+
+/// Puts buckets into the order in which a ray meets them (by percentage), and makes room for their travels.
+/// @throws BadArgument if there is none or a percentage stands twice
+void order_buckets(std::vector<GeneratedBucket>& buckets, bool descending, std::size_t configurations);
+
+/// Fills in travel and largest residual of all buckets: every distinct rotation once, spread over threads; copies for
+/// the others. The result is the same bits for every number of threads.
+/// @param prepare makes one solver per thread; its aims are those of `buckets`, in their order
+/// @return measurements of all solvers
+std::uint64_t sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>& prepare, const Grid& grid,
+                              std::vector<GeneratedBucket>& buckets, const GenerateOptions& options);
+
+}  // namespace sixdof::detail

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/distance_generator.h>
+#include <sixdof/geometry/mesh.h>
+
+namespace sixdof {
+
+namespace detail {
+struct VolumePair;
+}
+
+/// |volume - aim| allowed in a set, in units of A's volume: what the suite promises.
+constexpr double k_volume_tolerance = 1e-9;
+
+/// The volume bucket of a percentage of A's volume: key, target, aim and tolerance filled.
+BucketSummary volume_bucket(const Mesh& a, int percent);
+
+/// Finds the travel at which B, coming from outside, overlaps A by a volume for the first time.
+///
+/// V need not grow monotonically on the way in. From a sample with V below the aim the search goes inwards by whichever
+/// is longer: the way that V surely needs to reach the aim (its slope is bounded, see slope_bounds.h), or the way that
+/// V would need if it went on growing as a power of the way since contact. The oracle's exact derivative makes the
+/// latter good and the last steps cubic. Samples further in serve the next aims. An aim counts as met only if no gap
+/// between samples on the way there can hide an earlier hit: slopes bound V within a gap; where they do not suffice,
+/// the gap is halved, down to k_first_overlap_resolution.
+///
+/// What is not found: V passing the aim and falling below it again within that length of travel, where the bounds
+/// allow it at all; and, in meshes that overlap themselves, the same within longer ways.
+class VolumeGenerator {
+ public:
+  /// @param touching finds where the surfaces meet first
+  /// Both meshes and `touching` outlive this object.
+  /// @throws BadMesh naming the mesh that is no solid and why.
+  VolumeGenerator(const DistanceGenerator& touching, const Mesh& a, const Mesh& b);
+  ~VolumeGenerator();
+  VolumeGenerator(const VolumeGenerator&) = delete;
+  VolumeGenerator& operator=(const VolumeGenerator&) = delete;
+
+  const std::string& oracle_name() const { return oracle_name_; }
+  const std::string& oracle_version() const { return oracle_version_; }
+  const DistanceGenerator& touching() const { return touching_; }
+
+  /// A solver whose aims are volumes in the meshes' unit, ascending; 0 stands for touching, which is distance bucket 0.
+  /// Measurements are those of the volume. May be called from several threads.
+  std::unique_ptr<RaySolver> prepare() const;
+
+ private:
+  const DistanceGenerator& touching_;
+  std::string oracle_name_ = "exact";
+  std::string oracle_version_;
+  std::unique_ptr<const detail::VolumePair> pair_;
+};
+
+/// In units of the smaller mesh's box diagonal.
+constexpr double k_first_overlap_resolution = 2e-3;
+
+/// Finds all configurations of volume buckets, as generate_distances() does those of distances.
+/// @param percents of A's volume, each once, 0 to BucketKey::k_max_percent
+/// @throws BadArgument, BadMesh, Interrupted, and Error naming the configuration
+Generated generate_volumes(const DistanceGenerator& touching, const Mesh& a, const Mesh& b, const Grid& grid,
+                           std::span<const int> percents, const GenerateOptions& options = {});
+
+}  // namespace sixdof

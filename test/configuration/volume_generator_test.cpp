@@ -1,0 +1,358 @@
+#include <sixdof/configuration/volume_generator.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/algorithm/algorithm_source.h>
+#include <sixdof/algorithm/exact.h>
+#include <sixdof/base/error.h>
+#include <sixdof/configuration/brute_force_source.h>
+#include <sixdof/configuration/overlap_march.h>
+#include <sixdof/configuration/sphere_method.h>
+#include <sixdof/configuration/verification.h>
+#include <sixdof/oracle/overlap_global.h>
+
+#include "shapes.h"
+
+namespace sixdof {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+const std::unique_ptr<DistanceGenerator> k_touching = make_sphere_method(make_brute_force_source());
+const std::vector<int> k_percents{0, 10, 1, 5};
+
+/// A grid of one configuration.
+Grid single(const Eigen::Vector3d& direction, const Eigen::Vector4d& rotation) {
+  Grid grid;
+  grid.spec = "single";
+  grid.directions = {direction};
+  grid.rotations = {rotation};
+  return grid;
+}
+
+/// A sphere cut into `rings` parallels and twice as many meridians.
+Mesh ball_mesh(double r, std::size_t rings, const Eigen::Vector3d& center, const std::string& name) {
+  std::vector<Eigen::Vector3d> vertices{center + Eigen::Vector3d(0, 0, r)};
+  std::vector<Triangle> triangles;
+  const auto columns = static_cast<std::uint32_t>(2 * rings);
+  for (std::size_t i = 1; i < rings; ++i) {
+    const double polar = std::numbers::pi * static_cast<double>(i) / static_cast<double>(rings);
+    for (std::uint32_t k = 0; k < columns; ++k) {
+      const double turn = 2.0 * std::numbers::pi * k / columns;
+      vertices.emplace_back(center + r * Eigen::Vector3d(std::sin(polar) * std::cos(turn),
+                                                         std::sin(polar) * std::sin(turn), std::cos(polar)));
+    }
+  }
+  const auto last = static_cast<std::uint32_t>(vertices.size());
+  vertices.emplace_back(center - Eigen::Vector3d(0, 0, r));
+  for (std::uint32_t k = 0; k < columns; ++k) {
+    const std::uint32_t next = (k + 1) % columns;
+    triangles.push_back({0, 1 + k, 1 + next});
+    triangles.push_back({last, last - columns + next, last - columns + k});
+    for (std::uint32_t i = 0; i + 2 < rings; ++i) {
+      const std::uint32_t up = 1 + i * columns, down = up + columns;
+      triangles.push_back({up + k, down + k, down + next});
+      triangles.push_back({up + k, down + next, up + next});
+    }
+  }
+  return Mesh::build(std::move(vertices), std::move(triangles), name);
+}
+
+const GeneratedBucket& bucket_of(const Generated& result, int percent) {
+  for (const GeneratedBucket& bucket : result.buckets) {
+    if (bucket.summary.key == BucketKey{BucketKind::volume, percent}) return bucket;
+  }
+  throw BadArgument("no such bucket");
+}
+
+TEST(VolumeGenerator, BoxesMeetTheirClosedForm) {
+  const Mesh a = test::boxes_mesh({{{1.0, -2.0, 0.5}, {0.7, 0.6, 0.5}}}, "a");
+  const Mesh b = test::boxes_mesh({{{0.3, 0.1, 4.0}, {0.4, 0.35, 0.45}}}, "b");
+  // Half turn about z and no turn: the boxes stay parallel to the axes.
+  for (const auto& [first, second] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    for (const Eigen::Vector4d& q : {Eigen::Vector4d(1, 0, 0, 0), Eigen::Vector4d(0, 0, 0, 1)}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Eigen::Vector3d half_a = 0.5 * first->box().sizes(), half_b = 0.5 * second->box().sizes();
+        const Eigen::Vector3d common = 2.0 * half_a.cwiseMin(half_b);
+        const double section = common.prod() / common[axis];
+        const Generated result =
+            generate_volumes(*k_touching, *first, *second, single(Eigen::Vector3d::Unit(axis), q), k_percents);
+        const double contact = half_a[axis] + half_b[axis];
+        // Contact is aimed at from k_contact_aim outside.
+        EXPECT_NEAR(bucket_of(result, 0).travel[0], contact, 2 * k_contact_aim * first->diagonal());
+        for (const int percent : {1, 5, 10}) {
+          const GeneratedBucket& bucket = bucket_of(result, percent);
+          const double volume = 0.01 * percent * first->volume();
+          EXPECT_DOUBLE_EQ(bucket.summary.target, volume);
+          EXPECT_NEAR(bucket.travel[0], contact - volume / section, k_volume_tolerance * first->volume() / section);
+        }
+      }
+    }
+  }
+}
+
+TEST(VolumeGenerator, BallsMeetTheirLens) {
+  // Volume common to two balls at distance d: pi (R + r - d)^2 (d^2 + 2 d (R + r) - 3 (R - r)^2) / (12 d).
+  const double big = 1.0, small = 0.8;
+  const Mesh a = ball_mesh(big, 24, {0.2, 0.1, -3.0}, "big");
+  const Mesh b = ball_mesh(small, 24, {1.0, 0.0, 0.3}, "small");
+  std::mt19937_64 random(7);
+  const auto exact = make_exact_algorithm();
+  const auto touching = make_sphere_method(make_distance_source(*exact));
+  const auto lens = [&](double d) {
+    const double depth = big + small - d;
+    return std::numbers::pi * depth * depth * (d * d + 2 * d * (big + small) - 3 * (big - small) * (big - small)) /
+           (12 * d);
+  };
+  for (int i = 0; i < 3; ++i) {
+    const Generated result = generate_volumes(
+        *touching, a, b, single(test::random_direction(random), test::random_rotation(random)), k_percents);
+    for (const int percent : {5, 10}) {
+      // Chords of 24 rings take 0.9 % of a volume; of a lens's depth of a quarter radius up to a tenth.
+      const double expected = 0.01 * percent * a.volume();
+      EXPECT_NEAR(lens(bucket_of(result, percent).travel[0]) / expected, 1.0, 0.15) << percent;
+    }
+  }
+}
+
+/// All travels of every bucket against brute force: columns for the volume, small steps for what comes before.
+void expect_right(const Mesh& a, const Mesh& b, const Grid& grid, const Generated& result, double step) {
+  std::size_t reachable = 0;
+  for (const GeneratedBucket& bucket : result.buckets) {
+    if (bucket.summary.key.percent == 0) continue;
+    for (std::size_t r = 0; r < grid.rotations.size(); ++r) {
+      ConfigurationRay ray(a, b, grid.rotations[r]);
+      for (std::size_t u = 0; u < grid.directions.size(); ++u) {
+        ray.direction = grid.directions[u];
+        const double s = bucket.travel[r * grid.directions.size() + u];
+        const double end = std::isnan(s) ? 0.0 : s;
+        if (!std::isnan(s)) {
+          ++reachable;
+          EXPECT_NEAR(overlap_volume_by_columns(a, b, ray.pose(s)), bucket.summary.aim, bucket.summary.tolerance);
+        }
+        for (double t = 0.5 * (a.diagonal() + b.diagonal()); t > end; t -= step) {
+          EXPECT_LE(overlap_volume_by_columns(a, b, ray.pose(t)), bucket.summary.aim + bucket.summary.tolerance)
+              << bucket.summary.key.name() << " at " << s << " is passed at " << t << " already";
+        }
+      }
+    }
+  }
+  EXPECT_GT(reachable, 0u);
+}
+
+TEST(VolumeGenerator, NoEarlierHitByMarching) {
+  const Mesh a = test::lump_mesh(3, {0.4, -0.2, 1.0});
+  const Mesh b = test::tetrahedron_mesh({2.0, 0.2, 3.0}, 2.1);
+  std::mt19937_64 random(11);
+  Grid grid = single(test::random_direction(random), test::random_rotation(random));
+  for (int i = 0; i < 3; ++i) grid.directions.push_back(test::random_direction(random));
+  grid.rotations.push_back(test::random_rotation(random));
+  for (const auto& [first, second] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    expect_right(*first, *second, grid, generate_volumes(*k_touching, *first, *second, grid, k_percents),
+                 0.01 * a.diagonal());
+  }
+}
+
+TEST(VolumeGenerator, FirstCrossingWhereTheVolumeFallsAgain) {
+  // B, a slab, passes A's thin outer wall before it reaches the block: V rises to the wall's
+  // share, falls to nothing, and rises again up to the slab's share.
+  const Mesh a = test::boxes_mesh({{{3.0, 0, 0}, {0.1, 0.5, 0.5}}, {{-0.5, 0, 0}, {1.7, 0.5, 0.5}}}, "wall and block");
+  const Mesh b = test::boxes_mesh({{{0.2, 0.1, 0}, {0.15, 0.7, 0.6}}}, "slab");
+  const double wall = 0.2 * 1.0 * 1.0;
+  ASSERT_GT(wall, 0.05 * a.volume());
+  ASSERT_LT(wall, 0.06 * a.volume());
+  const Generated result = generate_volumes(*k_touching, a, b, single(Eigen::Vector3d::UnitX(), {1, 0, 0, 0}),
+                                            std::vector{0, 5, 6, 7, 8, 10});
+  // Travels are from the centre of A's box.
+  const double outer = 3.1 + 0.15 - a.center().x(), block = 1.2 + 0.15 - a.center().x();
+  for (const int percent : {5, 6, 7, 8}) {
+    const double volume = 0.01 * percent * a.volume();
+    EXPECT_NEAR(bucket_of(result, percent).travel[0], (volume < wall ? outer : block) - volume, 1e-8) << percent;
+  }
+  // Beyond the slab's share.
+  EXPECT_TRUE(std::isnan(bucket_of(result, 10).travel[0]));
+}
+
+TEST(VolumeGenerator, WhatCannotBeReachedIsNaN) {
+  // B has less than 2 % of A's volume.
+  const Mesh a = test::boxes_mesh({{{1.0, 0.5, 0}, {1.0, 0.9, 1.1}}}, "a");
+  const Mesh thin = test::boxes_mesh({{{0, 0, 2.0}, {0.02, 0.8, 1.0}}}, "thin");
+  std::mt19937_64 random(5);
+  const Grid grid = single(test::random_direction(random), test::random_rotation(random));
+  const Generated result = generate_volumes(*k_touching, a, thin, grid, k_percents);
+  EXPECT_FALSE(std::isnan(bucket_of(result, 0).travel[0]));
+  EXPECT_FALSE(std::isnan(bucket_of(result, 1).travel[0]));
+  EXPECT_TRUE(std::isnan(bucket_of(result, 5).travel[0]));
+  EXPECT_TRUE(std::isnan(bucket_of(result, 10).travel[0]));
+
+  // Side by side: B's centre comes to A's, which lies between A's two blocks.
+  const Mesh blocks = test::boxes_mesh({{{2.0, 0, 0}, {0.5, 0.5, 0.5}}, {{-2.0, 0, 0}, {0.5, 0.5, 0.5}}}, "blocks");
+  const Mesh bar = test::boxes_mesh({{{0, 0, 0}, {1.51, 0.3, 0.3}}}, "bar");
+  const Generated gap =
+      generate_volumes(*k_touching, blocks, bar, single(Eigen::Vector3d::UnitY(), {1, 0, 0, 0}), k_percents);
+  EXPECT_FALSE(std::isnan(bucket_of(gap, 0).travel[0]));
+  for (const int percent : {1, 5, 10}) EXPECT_TRUE(std::isnan(bucket_of(gap, percent).travel[0]));
+}
+
+bool same_bits(const std::vector<double>& left, const std::vector<double>& right) {
+  return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size() * sizeof(double)) == 0;
+}
+
+TEST(VolumeGenerator, ThreadsAndShardsDoNotChangeABit) {
+  const Mesh a = test::lump_mesh(3, {0.4, -0.2, 1.0});
+  const Grid grid = make_grid("90");
+  const auto generate = [&](const GenerateOptions& options) {
+    return generate_volumes(*k_touching, a, a, grid, k_percents, options);
+  };
+  const Generated whole = generate({.threads = 1});
+  const Generated threaded = generate({.threads = 2});
+  EXPECT_EQ(whole.measurements, threaded.measurements);
+  const std::size_t n = grid.directions.size();
+  for (std::size_t k = 0; k < k_percents.size(); ++k) {
+    EXPECT_EQ(whole.buckets[k].summary.key.percent, k_percents[k]);
+    EXPECT_TRUE(same_bits(whole.buckets[k].travel, threaded.buckets[k].travel));
+  }
+  const auto map = representatives(grid.rotations);
+  for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 13), {13, 48}}) {
+    const Generated shard = generate({.first_rotation = first, .last_rotation = last});
+    for (std::size_t k = 0; k < k_percents.size(); ++k) {
+      const std::vector<double>& all = whole.buckets[k].travel;
+      EXPECT_TRUE(same_bits(shard.buckets[k].travel, {all.begin() + static_cast<std::ptrdiff_t>(first * n),
+                                                      all.begin() + static_cast<std::ptrdiff_t>(last * n)}));
+    }
+  }
+}
+
+TEST(VolumeGenerator, RefusesWhatIsNoSolid) {
+  const Mesh a = test::lump_mesh(3, {0.4, -0.2, 1.0});
+  std::vector<Triangle> triangles = a.triangles();
+  triangles.pop_back();
+  const Mesh open = Mesh::build(a.vertices(), triangles, "open-lump");
+  const Grid grid = make_grid("90");
+  for (const auto& [first, second] : {std::pair(&a, &open), std::pair(&open, &a)}) {
+    EXPECT_THAT([&] { generate_volumes(*k_touching, *first, *second, grid, k_percents); },
+                ThrowsMessage<BadMesh>(testing::AllOf(HasSubstr("open-lump"), HasSubstr("border"))));
+  }
+  EXPECT_THAT(
+      [&] {
+        generate_volumes(*k_touching, a, a, grid, std::vector{5, 5});
+      },
+      ThrowsMessage<BadArgument>(HasSubstr("volume 5 %")));
+  EXPECT_THAT([&] { generate_volumes(*k_touching, a, a, grid, std::vector{101}); },
+              ThrowsMessage<BadArgument>(HasSubstr("volume 101 %")));
+}
+
+using Edit = std::function<void(std::vector<GeneratedBucket>&)>;
+
+Verdict verify_after(const Edit& edit) {
+  static const Mesh a =
+      test::boxes_mesh({{{1.1, 0.3, 0}, {0.1, 0.4, 0.3}}, {{-0.9, 0.3, 0}, {0.4, 0.4, 0.3}}}, "walls");
+  static const Mesh b = test::lump_mesh(5, {0, 3.0, 0});
+  static const Grid grid = make_grid("90");
+  static const Generated honest = generate_volumes(*k_touching, a, b, grid, std::vector{0, 2, 10});
+  std::vector<GeneratedBucket> buckets = honest.buckets;
+  edit(buckets);
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_volumes.h5");
+  ConfigurationSetWriter writer(path,
+                                {.generator_version = "0", .a = MeshStamp::of(a), .b = MeshStamp::of(b), .grid = grid});
+  for (const GeneratedBucket& bucket : buckets) writer.write(bucket.summary, bucket.travel);
+  writer.commit();
+  const ConfigurationSet set(path);
+  for (const GeneratedBucket& bucket : buckets) {
+    EXPECT_TRUE(same_bits(set.read(bucket.summary.key), bucket.travel));
+    EXPECT_EQ(set.summary(bucket.summary.key).aim, bucket.summary.aim);
+  }
+  const Verdict verdict = verify_set(set, a, b, *make_brute_force_source(), {.sample = 40, .seed = 5});
+  std::filesystem::remove(path);
+  return verdict;
+}
+
+TEST(VolumeVerification, FindsNothingWrongWithAnHonestSet) {
+  const Verdict verdict = verify_after([](auto&) {});
+  EXPECT_THAT(verdict.problems, IsEmpty());
+  ASSERT_EQ(verdict.buckets.size(), 3u);
+  EXPECT_EQ(verdict.buckets[0].oracle, "brute-force");
+  EXPECT_EQ(verdict.buckets[1].oracle, "columns");
+  for (const BucketVerdict& bucket : verdict.buckets) EXPECT_GT(bucket.reachable, 0u);
+}
+
+TEST(VolumeVerification, FindsWhatIsWrong) {
+  const auto shifted = [](std::size_t k, double by) {
+    return [k, by](std::vector<GeneratedBucket>& buckets) {
+      for (double& s : buckets[k].travel) s += by;
+    };
+  };
+  const Verdict outside = verify_after(shifted(1, 1e-6));
+  EXPECT_GT(outside.buckets[1].wrong_value, 0u);
+  EXPECT_EQ(outside.buckets[2].failures(), 0u);
+  // Half a wall deeper: past the hit.
+  const Verdict deeper = verify_after(shifted(1, -0.05));
+  EXPECT_GT(deeper.buckets[1].earlier_hit, 0u);
+  const Verdict nan = verify_after([](auto& buckets) {
+    for (double& s : buckets[1].travel) s = std::numeric_limits<double>::quiet_NaN();
+  });
+  EXPECT_GT(nan.buckets[1].false_nan, 0u);
+  EXPECT_THAT(nan.problems, testing::Contains(HasSubstr("is met at")));
+  const Verdict target = verify_after([](auto& buckets) { buckets[2].summary.aim *= 1.01; });
+  EXPECT_THAT(target.problems, testing::Contains(HasSubstr("of the volume")));
+}
+
+/// A function of the travel in place of an overlap: slopes within -2 .. 2.
+struct Wave {
+  double height = 1.0;
+  int asked = 0;
+  OverlapSample operator()(double s) {
+    ++asked;
+    const double x = 4.0 - s;
+    return {.s = s, .volume = height * (x - std::sin(3.0 * x)), .slope = height * (1.0 - 3.0 * std::cos(3.0 * x))};
+  }
+};
+
+TEST(OverlapMarch, TakesTheFirstOfSeveralCrossings) {
+  constexpr double k_resolution = 1e-3, k_tolerance = 1e-9;
+  for (int i = 1; i < 40; ++i) {
+    const double aim = 0.05 * i;
+    Wave wave;
+    OverlapMarch march(std::ref(wave), [](double) { return SlopeBounds{.rise = 4.0, .fall = 2.0}; }, 4.0,
+                       {.resolution = k_resolution, .tolerance = k_tolerance});
+    // The first upward crossing, by steps far below the resolution.
+    double expected = 4.0;
+    while (Wave{}(expected).volume < aim) expected -= 1e-5;
+    const std::optional<OverlapSample> hit = march.advance(aim);
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(hit->volume, aim, k_tolerance);
+    EXPECT_NEAR(hit->s, expected, 2e-5) << aim;
+    EXPECT_EQ(march.measurements(), wave.asked);
+  }
+}
+
+TEST(OverlapMarch, EndsAtTheCentre) {
+  Wave wave{.height = 0.1};
+  OverlapMarch march(std::ref(wave), [](double) { return SlopeBounds{.rise = 0.4, .fall = 0.2}; }, 4.0,
+                     {.resolution = 1e-3, .tolerance = 1e-9});
+  EXPECT_TRUE(march.advance(0.3));
+  EXPECT_FALSE(march.advance(0.9));
+  EXPECT_FALSE(march.advance(1.1));
+}
+
+TEST(OverlapMarch, RefusesAFunctionThatJumps) {
+  OverlapMarch march([](double s) { return OverlapSample{.s = s, .volume = s < 1.0 / 3.0 ? 1.0 : 0.0}; },
+                     [](double) { return SlopeBounds{.rise = 1.0, .fall = 0.0}; }, 4.0,
+                     {.resolution = 1e-3, .tolerance = 1e-9});
+  EXPECT_THROW(march.advance(0.5), Error);
+}
+
+}  // namespace
+}  // namespace sixdof
