@@ -24,6 +24,11 @@ namespace {
 
 static_assert(k_ray_cast_tie == detail::k_cast_tie);
 
+/// Steps towards the exact distance of the pose as it is used, and the residual that needs none: a few roundings, in
+/// units of Cast::size().
+constexpr int k_most_polish_steps = 10;
+constexpr double k_polished = 3e-16;
+
 class RayCastSolver final : public RaySolver {
  public:
   RayCastSolver(const Mesh& a, std::shared_ptr<const detail::CastMesh> cast_a, const Mesh& b,
@@ -87,17 +92,16 @@ class RayCastSolver final : public RaySolver {
     s = std::max(s, 0.0);
     ClosestPoints closest = measure(s);
     double residual = std::abs(closest.distance - aim);
-    if (closest.distance > 0.0) {
-      const double slope = cast_.axis.dot(cast_.direction);
+    const double slope = cast_.axis.dot(cast_.direction);
+    for (int step = 0; step < k_most_polish_steps && residual > k_polished * cast_.size(); ++step) {
       const double next = std::max(0.0, s - (closest.distance - aim) / slope);
-      if (slope > 0.0 && std::isfinite(next) && next != s) {
-        closest = measure(next);
-        const double next_residual = std::abs(closest.distance - aim);
-        if (next_residual < residual) {
-          s = next;
-          residual = next_residual;
-        }
-      }
+      if (!std::isfinite(next) || next == s) break;
+      const ClosestPoints next_closest = measure(next);
+      const double next_residual = std::abs(next_closest.distance - aim);
+      if (!(next_residual < residual)) break;
+      s = next;
+      closest = next_closest;
+      residual = next_residual;
     }
     if (residual > k_distance_tolerance * a_.diagonal()) {
       throw Error(fmt::format("distance {} at s = {} instead of {}: the coordinates are too large for the meshes' size",

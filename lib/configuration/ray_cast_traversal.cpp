@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include <sixdof/configuration/ray_cast_pair.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/configuration/ray_cast_traversal.cpp"
 #include <hwy/foreach_target.h>
@@ -16,11 +18,11 @@
 // moving on along u only adds to the left side. A pair of volumes that passes this test for the travel t0 found so far
 // cannot raise it. That is all there is: no ray parameter is ever divided by n . u, grazing rays are no special case.
 //
-// Axes n tried for a pair of volumes with boxes and slabs:
+// Axes n tried for a pair of volumes, each the intersection of a box, a ball and a slab:
 //   - the normal at the closest points found so far: where surfaces are smooth it is close to the best for every pair
 //     that matters, and slabs make it tight to second order in the size of the patches;
-//   - from box to box, where the nearest point of the sum of the boxes lies;
 //   - from centre to centre, with slabs: tight for small patches at a distance;
+//   - from box to box, where the nearest point of the sum of the boxes lies;
 //   - the normals of the slabs.
 // Where the volumes come nearer as t grows beyond t0, boxes and centres are taken at the nearest travel instead.
 //
@@ -65,6 +67,8 @@ struct Ray {
 struct Fixed {
   float center[3];
   float half[3];
+  float ball_center[3];
+  float ball_radius;
   float normal[3];
   float slab_offset;
   float slab_half;
@@ -74,8 +78,10 @@ struct Fixed {
       for (std::size_t k = 0; k < 3; ++k) {
         center[k] = tree.root_center()[static_cast<Eigen::Index>(k)];
         half[k] = tree.root_half()[static_cast<Eigen::Index>(k)];
+        ball_center[k] = 0.0f;
         normal[k] = 0.0f;
       }
+      ball_radius = static_cast<float>(tree.radius());
       slab_offset = slab_half = 0.0f;
       return;
     }
@@ -84,8 +90,10 @@ struct Fixed {
     for (std::size_t k = 0; k < 3; ++k) {
       center[k] = node.center[k][lane];
       half[k] = node.half[k][lane];
+      ball_center[k] = node.ball_center[k][lane];
       normal[k] = node.normal[k][lane];
     }
+    ball_radius = node.ball_radius[lane];
     slab_offset = node.slab_offset[lane];
     slab_half = node.slab_half[lane];
   }
@@ -93,30 +101,22 @@ struct Fixed {
   float size() const { return half[0] * half[0] + half[1] * half[1] + half[2] * half[2]; }
 };
 
-/// Smallest n . (p - centre) over a volume: over the box, and over the slab with what is left of n over the box.
-HWY_INLINE V lowest(const V* HWY_RESTRICT n, const V* HWY_RESTRICT half, const V* HWY_RESTRICT normal, V slab_offset,
-                    V slab_half) {
+/// Smallest n . (p - centre of the ball) over a volume: over the ball, and over the slab with what is left of n over
+/// the ball. Both n and the slab's normal are shorter than unit vectors by more than their rounding, so the square root
+/// is never below the length of what is left.
+HWY_INLINE V lowest(const V* HWY_RESTRICT n, V radius, const V* HWY_RESTRICT normal, V slab_offset, V slab_half) {
   const V along = mul_add(n[2], normal[2], mul_add(n[1], normal[1], hn::Mul(n[0], normal[0])));
-  V box = hn::Mul(hn::Abs(n[0]), half[0]);
-  box = mul_add(hn::Abs(n[1]), half[1], box);
-  box = mul_add(hn::Abs(n[2]), half[2], box);
+  const V rest = hn::Sqrt(hn::Max(sub_mul(set(1.0f), along, along), hn::Zero(k_lanes)));
   V slab = sub_mul(hn::Mul(along, slab_offset), hn::Abs(along), slab_half);
-  for (std::size_t k = 0; k < 3; ++k) {
-    slab = sub_mul(slab, hn::Abs(sub_mul(n[k], along, normal[k])), half[k]);
-  }
-  return hn::Max(hn::Neg(box), slab);
+  slab = sub_mul(slab, rest, radius);
+  return hn::Max(hn::Neg(radius), slab);
 }
 
 /// The same for one volume.
 HWY_INLINE float lowest(const float* n, const Fixed& v) {
   const float along = n[0] * v.normal[0] + n[1] * v.normal[1] + n[2] * v.normal[2];
-  float box = 0.0f;
-  float slab = along * v.slab_offset - std::abs(along) * v.slab_half;
-  for (std::size_t k = 0; k < 3; ++k) {
-    box -= std::abs(n[k]) * v.half[k];
-    slab -= std::abs(n[k] - along * v.normal[k]) * v.half[k];
-  }
-  return std::max(box, slab);
+  const float rest = std::sqrt(std::max(1.0f - along * along, 0.0f));
+  return std::max(-v.ball_radius, along * v.slab_offset - std::abs(along) * v.slab_half - rest * v.ball_radius);
 }
 
 /// By how much each child's distance from `fixed` surely exceeds the aim from cast.travel on.
@@ -126,21 +126,24 @@ HWY_INLINE void bound_children(const CastNode& node, const Fixed& fixed, const R
   const V zero = hn::Zero(k_lanes);
   const V aim = set(ray.aim);
   const V enough = set(ray.slack);
-  float at[3];
-  for (std::size_t k = 0; k < 3; ++k) at[k] = fixed.center[k] + shift[k];
-  const float axis_lowest = lowest(ray.axis, fixed);
+  float at[3], box_at[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    at[k] = fixed.ball_center[k] + shift[k];
+    box_at[k] = fixed.center[k] + shift[k];
+  }
+  const float axis_lowest = lowest(ray.axis, fixed) - ray.aim;
   // The fixed slab's normal, turned to where B comes from.
   const float toward = fixed.normal[0] * ray.u[0] + fixed.normal[1] * ray.u[1] + fixed.normal[2] * ray.u[2];
   const float sign = toward < 0.0f ? -1.0f : 1.0f;
-  const float fixed_lowest = sign * fixed.slab_offset - fixed.slab_half;
+  const float fixed_lowest = sign * fixed.slab_offset - fixed.slab_half - ray.aim;
 
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    V w[3], half[3], normal[3];
+    V w[3], normal[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      w[k] = hn::Add(hn::Load(k_lanes, node.center[k] + i), set(at[k]));
-      half[k] = hn::Load(k_lanes, node.half[k] + i);
+      w[k] = hn::Add(hn::Load(k_lanes, node.ball_center[k] + i), set(at[k]));
       normal[k] = hn::Load(k_lanes, node.normal[k] + i);
     }
+    const V radius = hn::Load(k_lanes, node.ball_radius + i);
     const V slab_offset = hn::Load(k_lanes, node.slab_offset + i);
     const V slab_half = hn::Load(k_lanes, node.slab_half + i);
     V gap;
@@ -149,63 +152,78 @@ HWY_INLINE void bound_children(const CastNode& node, const Fixed& fixed, const R
       V middle = hn::Mul(n[0], w[0]);
       middle = mul_add(n[1], w[1], middle);
       middle = mul_add(n[2], w[2], middle);
-      gap = hn::Add(hn::Add(middle, lowest(n, half, normal, slab_offset, slab_half)), set(axis_lowest));
-      gap = hn::Sub(gap, aim);
+      gap = hn::Add(hn::Add(middle, lowest(n, radius, normal, slab_offset, slab_half)), set(axis_lowest));
+    }
+    if (hn::AllTrue(k_lanes, hn::Gt(gap, enough))) {
+      hn::Store(gap, k_lanes, gaps + i);
+      continue;
+    }
+    V later = zero;  // how much farther B goes until the centres are nearest
+    for (std::size_t k = 0; k < 3; ++k) later = sub_mul(later, w[k], set(ray.u[k]));
+    later = hn::Max(later, zero);
+    {  // From centre to centre at the nearest travel.
+      V near[3];
+      V length2 = set(k_tiny_square);
+      for (std::size_t k = 0; k < 3; ++k) {
+        near[k] = mul_add(later, set(ray.u[k]), w[k]);
+        length2 = mul_add(near[k], near[k], length2);
+      }
+      const V length = hn::Sqrt(length2);
+      const V inverse = hn::Div(set(static_cast<float>(k_axis_length)), length);
+      const V n[3] = {hn::Mul(near[0], inverse), hn::Mul(near[1], inverse), hn::Mul(near[2], inverse)};
+      const V fixed_normal[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
+      V centers = hn::Add(length, lowest(n, radius, normal, slab_offset, slab_half));
+      centers = hn::Add(centers,
+                        lowest(n, set(fixed.ball_radius), fixed_normal, set(fixed.slab_offset), set(fixed.slab_half)));
+      gap = hn::Max(gap, hn::Sub(centers, aim));
+    }
+    if (hn::AllTrue(k_lanes, hn::Gt(gap, enough))) {
+      hn::Store(gap, k_lanes, gaps + i);
+      continue;
+    }
+    {  // From box to box at the nearest travel.
+      V squared = zero;
+      V up_box = zero;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V half = hn::Add(hn::Load(k_lanes, node.half[k] + i), set(fixed.half[k]));
+        const V across = mul_add(later, set(ray.u[k]), hn::Add(hn::Load(k_lanes, node.center[k] + i), set(box_at[k])));
+        const V apart = hn::Max(hn::Sub(hn::Abs(across), half), zero);
+        squared = mul_add(apart, apart, squared);
+        up_box = mul_add(hn::CopySign(apart, across), set(ray.u[k]), up_box);
+      }
+      const V boxes = hn::IfThenElseZero(hn::Ge(up_box, zero), hn::Sqrt(squared));
+      gap = hn::Max(gap, hn::Sub(boxes, aim));
     }
     if (hn::AllTrue(k_lanes, hn::Gt(gap, enough))) {
       hn::Store(gap, k_lanes, gaps + i);
       continue;
     }
     {  // The slabs' normals.
+      const V fixed_n[3] = {set(sign * fixed.normal[0]), set(sign * fixed.normal[1]), set(sign * fixed.normal[2])};
       V middle = zero;
-      V reach = set(-fixed_lowest);
-      V up = zero;
+      V child_up = zero;
       V child_middle = slab_offset;
-      V child_reach = slab_half;
       for (std::size_t k = 0; k < 3; ++k) {
-        const V n = set(sign * fixed.normal[k]);
-        middle = mul_add(n, w[k], middle);
-        reach = mul_add(hn::Abs(n), half[k], reach);
-        up = mul_add(normal[k], set(ray.u[k]), up);
+        middle = mul_add(fixed_n[k], w[k], middle);
+        child_up = mul_add(normal[k], set(ray.u[k]), child_up);
         child_middle = mul_add(normal[k], w[k], child_middle);
-        child_reach = mul_add(hn::Abs(normal[k]), set(fixed.half[k]), child_reach);
       }
-      const V turned = hn::IfThenElse(hn::Lt(up, zero), hn::Neg(child_middle), child_middle);
-      gap = hn::Max(gap, hn::Sub(hn::Max(hn::Sub(middle, reach), hn::Sub(turned, child_reach)), aim));
-    }
-    {  // Boxes and centres at the nearest travel.
-      V later = zero;
-      for (std::size_t k = 0; k < 3; ++k) later = sub_mul(later, w[k], set(ray.u[k]));
-      later = hn::Max(later, zero);
-      V length2 = set(k_tiny_square);
-      V squared = zero;
-      V up = zero;
-      const V fixed_half[3] = {set(fixed.half[0]), set(fixed.half[1]), set(fixed.half[2])};
-      for (std::size_t k = 0; k < 3; ++k) {
-        w[k] = mul_add(later, set(ray.u[k]), w[k]);
-        length2 = mul_add(w[k], w[k], length2);
-        const V apart = hn::Max(hn::Sub(hn::Abs(w[k]), hn::Add(half[k], fixed_half[k])), zero);
-        squared = mul_add(apart, apart, squared);
-        up = mul_add(hn::CopySign(apart, w[k]), set(ray.u[k]), up);
-      }
-      const V boxes = hn::IfThenElseZero(hn::Ge(up, zero), hn::Sqrt(squared));
-      gap = hn::Max(gap, hn::Sub(boxes, aim));
-
-      const V length = hn::Sqrt(length2);
-      const V inverse = hn::Div(set(static_cast<float>(k_axis_length)), length);
-      const V n[3] = {hn::Mul(w[0], inverse), hn::Mul(w[1], inverse), hn::Mul(w[2], inverse)};
+      middle = hn::Add(middle, hn::Add(lowest(fixed_n, radius, normal, slab_offset, slab_half), set(fixed_lowest)));
+      const V turned = hn::IfThenElse(hn::Lt(child_up, zero), hn::Neg(child_middle), child_middle);
       const V fixed_normal[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
-      V centers = hn::Add(length, lowest(n, half, normal, slab_offset, slab_half));
-      centers = hn::Add(centers, lowest(n, fixed_half, fixed_normal, set(fixed.slab_offset), set(fixed.slab_half)));
-      gap = hn::Max(gap, hn::Sub(centers, aim));
+      const V flip = hn::CopySign(set(1.0f), child_up);
+      const V child_n[3] = {hn::Mul(flip, normal[0]), hn::Mul(flip, normal[1]), hn::Mul(flip, normal[2])};
+      const V over =
+          lowest(child_n, set(fixed.ball_radius), fixed_normal, set(fixed.slab_offset), set(fixed.slab_half));
+      gap = hn::Max(gap, hn::Max(middle, hn::Sub(hn::Add(hn::Sub(turned, slab_half), over), aim)));
     }
     hn::Store(gap, k_lanes, gaps + i);
   }
 }
 
-/// Up to 4 x 4 pairs of triangles of two leaves; lane 4 i + j holds pair (i, j).
+/// Some pairs of triangles of two leaves.
 struct LeafPair {
-  static constexpr std::size_t k_pairs = k_leaf_triangles * k_leaf_triangles;
+  static constexpr std::size_t k_pairs = 8;
   HWY_ALIGN float a[3][3][k_pairs];  // [corner][axis][pair]
   HWY_ALIGN float b[3][3][k_pairs];
   HWY_ALIGN float gaps[k_pairs];
@@ -330,37 +348,64 @@ struct Descent {
     return slabs_apart(slab_a, slab_b, Fixed(tree_b, b)) || slabs_apart(slab_b, slab_a, Fixed(tree_a, a));
   }
 
+  /// Of each triangle, how low its lowest corner lies along the axis.
+  void lowest_corners(const CastLeaf& leaf, float* HWY_RESTRICT low) const {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const auto& p = leaf.corner[corner];
+      for (std::size_t i = 0; i < k_leaf_triangles; ++i) {
+        const float x = ray.axis[0] * p[0][i] + ray.axis[1] * p[1][i] + ray.axis[2] * p[2][i];
+        low[i] = corner == 0 ? x : std::min(low[i], x);
+      }
+    }
+  }
+
   void look_into_leaves(std::uint32_t leaf_a, std::uint32_t leaf_b) {
     ++cast.counts.leaf_pairs;
     const CastLeaf& a = tree_a.leaves()[leaf_a];
     const CastLeaf& b = tree_b.leaves()[leaf_b];
+    const Tree::Child child_a = tree_a.mesh().leaf_children()[leaf_a];
+    const Tree::Child child_b = tree_b.mesh().leaf_children()[leaf_b];
+
+    // Along the axis found so far, all pairs at once.
+    float low_a[k_leaf_triangles], low_b[k_leaf_triangles];
+    lowest_corners(a, low_a);
+    lowest_corners(b, low_b);
+    const float along = ray.axis[0] * shift[0] + ray.axis[1] * shift[1] + ray.axis[2] * shift[2] - ray.aim;
+    std::uint32_t left[k_leaf_triangles * k_leaf_triangles];  // 4 i + j for pair (i, j)
+    float gap[k_leaf_triangles * k_leaf_triangles];
+    std::size_t left_count = 0;
+    for (std::uint32_t i = 0; i < child_a.count(); ++i) {
+      for (std::uint32_t j = 0; j < child_b.count(); ++j) {
+        left[left_count] = static_cast<std::uint32_t>(k_leaf_triangles) * i + j;
+        left_count += along + low_a[i] + low_b[j] > ray.slack ? 0 : 1;
+      }
+    }
+
+    std::uint32_t order[k_leaf_triangles * k_leaf_triangles];
+    std::size_t count = 0;
     LeafPair pairs;
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Relative to one corner, so that only the floats given round.
-      const float origin = a.corner[0][k][0];
-      const float b_shift = origin + shift[k];
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        for (std::size_t i = 0; i < k_leaf_triangles; ++i) {
-          const float x = a.corner[corner][k][i] - origin;
-          for (std::size_t j = 0; j < k_leaf_triangles; ++j) {
-            pairs.a[corner][k][k_leaf_triangles * i + j] = x;
-            pairs.b[corner][k][k_leaf_triangles * i + j] = b.corner[corner][k][j] + b_shift;
+    for (std::size_t first = 0; first < left_count; first += LeafPair::k_pairs) {
+      const std::size_t chunk = std::min(LeafPair::k_pairs, left_count - first);
+      for (std::size_t k = 0; k < 3; ++k) {
+        // Relative to one corner, so that only the floats given round.
+        const float origin = a.corner[0][k][0];
+        const float b_shift = origin + shift[k];
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          for (std::size_t n = 0; n < LeafPair::k_pairs; ++n) {
+            const std::uint32_t pair = left[first + (n < chunk ? n : 0)];
+            pairs.a[corner][k][n] = a.corner[corner][k][pair / k_leaf_triangles] - origin;
+            pairs.b[corner][k][n] = b.corner[corner][k][pair % k_leaf_triangles] + b_shift;
           }
         }
       }
-    }
-    bound_triangles(pairs, ray);
-    const Tree::Child child_a = tree_a.mesh().leaf_children()[leaf_a];
-    const Tree::Child child_b = tree_b.mesh().leaf_children()[leaf_b];
-    std::uint32_t order[LeafPair::k_pairs];
-    std::size_t count = 0;
-    for (std::uint32_t i = 0; i < child_a.count(); ++i) {
-      for (std::uint32_t j = 0; j < child_b.count(); ++j) {
-        const auto lane = static_cast<std::uint32_t>(k_leaf_triangles * i + j);
-        if (pairs.gaps[lane] > ray.slack) continue;
+      bound_triangles(pairs, ray);
+      for (std::size_t n = 0; n < chunk; ++n) {
+        if (pairs.gaps[n] > ray.slack) continue;
+        const std::uint32_t pair = left[first + n];
+        gap[pair] = pairs.gaps[n];
         std::size_t at = count++;
-        for (; at > 0 && pairs.gaps[order[at - 1]] > pairs.gaps[lane]; --at) order[at] = order[at - 1];
-        order[at] = lane;
+        for (; at > 0 && gap[order[at - 1]] > gap[pair]; --at) order[at] = order[at - 1];
+        order[at] = pair;
       }
     }
     for (std::size_t n = 0; n < count; ++n) {
@@ -444,25 +489,17 @@ bool offer_pair(Cast& cast, CastPair pair) {
     gap += std::min({cast.axis.dot(at_center[0]), cast.axis.dot(at_center[1]), cast.axis.dot(at_center[2])});
     if (gap >= cast.aim - tie) return false;
   }
-  double slope = 0.0;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-  const auto distance_at = [&](double t) {
+  const MovingPair moving(a, at_center, cast.direction);
+  const auto sample_at = [&](double t) {
     ++cast.counts.distances;
-    const Eigen::Vector3d shift = t * cast.direction;
-    const ClosestPoints c =
-        triangle_triangle_distance(a, {at_center[0] + shift, at_center[1] + shift, at_center[2] + shift});
-    axis = c.on_b - c.on_a;
-    const double length = axis.norm();
-    axis = length > 0.0 ? Eigen::Vector3d(axis / length) : Eigen::Vector3d::Zero();
-    slope = axis.dot(cast.direction);
-    return c.distance;
+    return moving.at(t);
   };
   // The distance is convex in t. Where it reaches the aim at t or beyond, Newton's method ends at the last such place:
   // a step up the slope ends to the right of it, and from there no step goes past it.
   double t = cast.travel;
-  double distance = distance_at(t);
-  if (distance >= cast.aim - tie && slope >= 0.0) return false;
-  if (distance >= cast.aim || !(slope > 0.0)) {
+  MovingPair::Sample sample = sample_at(t);
+  if (sample.distance >= cast.aim - tie && sample.slope >= 0.0) return false;
+  if (sample.distance >= cast.aim || !(sample.slope > 0.0)) {
     double highest_a = -std::numeric_limits<double>::infinity();
     double lowest_b = -highest_a;
     for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -471,22 +508,22 @@ bool offer_pair(Cast& cast, CastPair pair) {
     }
     t = highest_a - lowest_b + cast.aim;  // apart by the aim along the ray
     if (t <= cast.travel) return false;
-    distance = distance_at(t);
+    sample = sample_at(t);
   }
   for (int step = 0; step < k_most_steps; ++step) {
-    const double above = distance - cast.aim;
+    const double above = sample.distance - cast.aim;
     if (std::abs(above) <= k_settled * size) break;
-    if (!(slope > 0.0)) return false;  // the least distance is above the aim
-    const double next = t - above / slope;
+    if (!(sample.slope > 0.0)) return false;  // the least distance is above the aim
+    const double next = t - above / sample.slope;
     if (next <= cast.travel) return false;
     if (next == t) break;
     t = next;
-    distance = distance_at(t);
+    sample = sample_at(t);
   }
-  if (!(slope >= 0.0)) return false;
+  if (!(sample.slope >= 0.0)) return false;
   cast.travel = t;
   cast.pair = pair;
-  cast.axis = axis;
+  cast.axis = sample.axis;
   return true;
 }
 

@@ -34,6 +34,42 @@ CastSlab fit_slab(const Tree& tree, std::uint32_t first, std::uint32_t count) {
   return slab;
 }
 
+struct Ball {
+  Eigen::Vector3d center;
+  double radius;
+};
+
+/// A small ball around triangles first .. first + count - 1: from the centre of their box a few steps towards the
+/// farthest corner (Badoiu and Clarkson, "Smaller core-sets for balls", SODA 2003). Relative to the tree's centre.
+Ball fit_ball(const Tree& tree, std::uint32_t first, std::uint32_t count) {
+  constexpr std::uint32_t k_large = 512;  // above it, balls are too far from the surface for steps to matter
+  constexpr int k_steps = 10;
+  const auto triangles = tree.corners().subspan(first, count);
+  Eigen::AlignedBox3d box;
+  for (const Tree::Corners& t : triangles) {
+    for (const Eigen::Vector3d& corner : t) box.extend(corner);
+  }
+  Ball best{box.center(), std::numeric_limits<double>::infinity()};
+  Eigen::Vector3d center = best.center;
+  for (int step = 0; step <= (count > k_large ? 0 : k_steps); ++step) {
+    double squared = -1.0;
+    Eigen::Vector3d farthest = center;
+    for (const Tree::Corners& t : triangles) {
+      for (const Eigen::Vector3d& corner : t) {
+        const double d = (corner - center).squaredNorm();
+        if (d > squared) {
+          squared = d;
+          farthest = corner;
+        }
+      }
+    }
+    if (std::sqrt(squared) < best.radius) best = {center, std::sqrt(squared)};
+    center += (farthest - center) / (step + 3.0);
+  }
+  best.center -= tree.center();
+  return best;
+}
+
 }  // namespace
 
 CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
@@ -51,6 +87,9 @@ CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
       to.slab_half[lane] = 0.5f * (from.slab_upper[i] - from.slab_lower[i]);
       if (lane >= from.child_count) {
         to.child[lane] = to.child[0];
+        for (std::size_t k = 0; k < 3; ++k) to.ball_center[k][lane] = to.ball_center[k][0];
+        to.ball_radius[lane] = to.ball_radius[0];
+        to.slab_offset[lane] = to.slab_offset[0];
         continue;
       }
       const Tree::Child child = from.child[i];
@@ -62,6 +101,14 @@ CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
         to.child[lane] = CastChild::node(child.node());
         const Tree::Node& below = tree_->nodes()[child.node()];
         slabs_[k_width * n + lane] = fit_slab(*tree_, below.first_triangle, below.triangle_count);
+      }
+      const Ball ball = child.is_leaf() ? fit_ball(*tree_, child.first(), child.count())
+                                        : fit_ball(*tree_, tree_->nodes()[child.node()].first_triangle,
+                                                   tree_->nodes()[child.node()].triangle_count);
+      to.ball_radius[lane] = static_cast<float>(ball.radius);
+      for (std::size_t k = 0; k < 3; ++k) {
+        to.ball_center[k][lane] = static_cast<float>(ball.center[static_cast<Eigen::Index>(k)]);
+        to.slab_offset[lane] -= to.normal[k][lane] * to.ball_center[k][lane];
       }
     }
   }
@@ -135,13 +182,12 @@ void CastTree::turn(const Eigen::Matrix3d& M) {
       }
     }
     bounds_[n] = all;
-    for (std::size_t lane = 0; lane < k_width; ++lane) to.slab_offset[lane] = from.slab_offset[lane];
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t lane = 0; lane < k_width; ++lane) {
-        const float x =
+        to.normal[i][lane] =
             m[i][0] * from.normal[0][lane] + m[i][1] * from.normal[1][lane] + m[i][2] * from.normal[2][lane];
-        to.normal[i][lane] = x;
-        to.slab_offset[lane] -= x * to.center[i][lane];
+        to.ball_center[i][lane] = m[i][0] * from.ball_center[0][lane] + m[i][1] * from.ball_center[1][lane] +
+                                  m[i][2] * from.ball_center[2][lane];
       }
     }
   }

@@ -31,10 +31,12 @@ class CastChild {
 
 /// Volumes of up to eight children, [axis][child]; lanes without a child repeat the first.
 struct alignas(64) CastNode {
-  float center[3][Tree::k_width];    ///< Boxes.
-  float half[3][Tree::k_width];      ///< Boxes: half extents.
-  float normal[3][Tree::k_width];    ///< Slabs: a little shorter than unit vectors, as in Tree.
-  float slab_offset[Tree::k_width];  ///< Slabs: height of the middle above the box's centre, along the normal.
+  float center[3][Tree::k_width];  ///< Boxes.
+  float half[3][Tree::k_width];    ///< Boxes: half extents.
+  float normal[3][Tree::k_width];  ///< Slabs: a little shorter than unit vectors, as in Tree.
+  float ball_center[3][Tree::k_width];
+  float ball_radius[Tree::k_width];
+  float slab_offset[Tree::k_width];  ///< Slabs: height of the middle above the ball's centre, along the normal.
   float slab_half[Tree::k_width];    ///< Slabs: half the thickness.
   CastChild child[Tree::k_width];
   std::uint32_t child_count;
@@ -58,7 +60,7 @@ class CastMesh {
   explicit CastMesh(std::shared_ptr<const Tree> tree);
 
   const Tree& tree() const { return *tree_; }
-  std::span<const CastNode> nodes() const { return nodes_; }  ///< Without boxes; slab_offset: above the origin.
+  std::span<const CastNode> nodes() const { return nodes_; }  ///< Without boxes.
   std::span<const CastLeaf> leaves() const { return leaves_; }
   std::span<const Tree::Child> leaf_children() const { return leaf_children_; }  ///< Of each leaf, in the tree.
   /// Of child `lane` of node `node`: at [Tree::k_width * node + lane].
