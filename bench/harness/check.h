@@ -19,10 +19,18 @@ struct Check {
   std::size_t failed = 0;       ///< No answer, whatever the reason.
   std::size_t judged = 0;       ///< Answers that have a truth to be compared with.
   std::size_t mismatch = 0;     ///< Of those, wrong ones.
-  double largest_error = 0.0;   ///< Distances only: largest |answer - truth|, in A's diagonals.
-  double squared_errors = 0.0;  ///< Distances only: sum of the squares of the same.
+  double largest_error = 0.0;   ///< Largest |answer - truth|: distances in A's diagonals, volumes in the aim.
+  double sum_of_errors = 0.0;   ///< Sum of the same.
+  double squared_errors = 0.0;  ///< Sum of the squares of the same.
+  std::size_t misses = 0;       ///< Responses only: no force where the bodies overlap.
   std::string diagnosis;        ///< Of the first failure.
 
+  void add_error(double error) {
+    largest_error = std::max(largest_error, error);
+    sum_of_errors += error;
+    squared_errors += error * error;
+  }
+  double mean_error() const { return judged == 0 ? 0.0 : sum_of_errors / static_cast<double>(judged); }
   double rms_error() const { return judged == 0 ? 0.0 : std::sqrt(squared_errors / static_cast<double>(judged)); }
 };
 
@@ -44,8 +52,18 @@ inline void judge(const BucketSample& bucket, const Separation& answer, Check& c
   const double error = std::abs(answer.distance - (apart ? bucket.aim : 0.0));
   ++check.judged;
   if (!(error <= (apart ? bucket.tolerance : 0.0) + k_distance_slack * bucket.diagonal)) ++check.mismatch;
-  check.largest_error = std::max(check.largest_error, error / bucket.diagonal);
-  check.squared_errors += (error / bucket.diagonal) * (error / bucket.diagonal);
+  check.add_error(error / bucket.diagonal);
+}
+
+/// Responses are judged in overlap buckets: none may be without a force. An algorithm that says what volume it sees is
+/// measured against the aim, which is exact; how far off is reported and no mismatch, as approximations are honest.
+/// Contact has no force.
+inline void judge(const BucketSample& bucket, const Response& answer, Check& check) {
+  if (bucket.key.kind != BucketKind::volume || bucket.key.percent == 0) return;
+  if (answer.force.isZero(0.0)) ++check.misses;
+  if (!std::isfinite(answer.volume)) return;
+  ++check.judged;
+  check.add_error(std::abs(answer.volume - bucket.aim) / bucket.aim);
 }
 
 /// Asks every configuration once, and judges. When `seconds` have passed it stops, at the end of a run of neighbours,

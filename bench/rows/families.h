@@ -11,7 +11,9 @@ void add_all_rows(Suite& suite);
 void add_prepare_rows(Suite& suite);
 
 /// `collide/algorithm:A/pair:P/distance:05`, `distance/...`: queries on the buckets of the configuration sets, in
-/// random order, and in the grid's own order as `.../order:path`.
+/// random order, and in the grid's own order as `.../order:path`. `respond/algorithm:A/pair:P/volume:03` the same, with
+/// the error of the volume that the algorithm sees against the bucket's and the angle between its force and the exact
+/// one as counters.
 void add_query_rows(Suite& suite);
 
 /// `scenario/II/algorithm:A`: mean time of a response along a scenario's path and, as counters, every measure of its

@@ -1,21 +1,40 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include <sixdof/algorithm/exact.h>
 #include <sixdof/base/error.h>
 #include <sixdof/bench/harness/check.h>
 #include <sixdof/bench/harness/timing.h>
 #include <sixdof/bench/rows/families.h>
+#include <sixdof/measure/direction.h>
 
 namespace sixdof::bench {
 namespace {
 
 enum class Question {
   collide,
-  distance
+  distance,
+  respond
 };
+
+const char* to_string(Question question) {
+  switch (question) {
+    case Question::collide:
+      return "collide";
+    case Question::distance:
+      return "distance";
+    case Question::respond:
+      return "respond";
+  }
+  return "";
+}
+
+/// Most configurations whose force is compared with the exact one: enough for a mean, and cheap beside the row.
+constexpr std::size_t k_most_compared_forces = 256;
 
 enum class Order {
   shuffled,
@@ -36,18 +55,22 @@ class QueryRow {
   std::string name() const {
     std::string bucket = key_.name();
     bucket.at(bucket.find('/')) = ':';
-    return fmt::format("{}/algorithm:{}/pair:{}/{}{}", question_ == Question::collide ? "collide" : "distance",
-                       algorithm_.traits().name, pair_.pair, bucket, order_ == Order::path ? "/order:path" : "");
+    return fmt::format("{}/algorithm:{}/pair:{}/{}{}", to_string(question_), algorithm_.traits().name, pair_.pair,
+                       bucket, order_ == Order::path ? "/order:path" : "");
   }
 
   void run(benchmark::State& state) {
-    Query& query = suite_.stock().query(algorithm_, suite_.settings(algorithm_), pair_.a, pair_.b);
     const BucketSample& bucket = suite_.stock().bucket(pair_, key_);
+    if (question_ == Question::respond && !true_forces_) find_true_forces(bucket);
+    Query& query = suite_.stock().query(algorithm_, suite_.settings(algorithm_), pair_.a, pair_.b);
     if (bucket.poses.empty()) throw BadArgument(key_.name() + ": no configuration of this bucket can be reached");
     if (question_ == Question::collide) {
       run(state, bucket, query, [&query](const Pose& pose) { return query.collide(pose); });
-    } else {
+    } else if (question_ == Question::distance) {
       run(state, bucket, query, [&query](const Pose& pose) { return query.distance(pose); });
+    } else {
+      if (!directions_) compare_directions(bucket, query);
+      run(state, bucket, query, [&query](const Pose& pose) { return query.respond(pose); });
     }
   }
 
@@ -69,6 +92,32 @@ class QueryRow {
                                      bucket.poses.begin() + static_cast<std::ptrdiff_t>(check_->asked));
   }
 
+  /// Forces of the first poses by the exact volume law. The sample's runs stand in random order, so these are a fair
+  /// part of it. Before the row's own structure is fetched, since the stock keeps only what was asked for last.
+  void find_true_forces(const BucketSample& bucket) {
+    constexpr double k_share = 0.1;  // of the row's time
+    const auto exact = make_exact_algorithm();
+    Query& truth = suite_.stock().query(*exact, exact->settings(), pair_.a, pair_.b);
+    true_forces_.emplace();
+    const auto start = Clock::now();
+    for (const Pose& pose : bucket.poses) {
+      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      if (true_forces_->size() == k_most_compared_forces || seconds > k_share * suite_.row_budget_s()) return;
+      const Outcome<Response> right = truth.respond(pose);
+      true_forces_->push_back(right.ok() ? right.value.force : Eigen::Vector3d::Zero());
+    }
+  }
+
+  /// A configuration without an answer counts as one without a force.
+  void compare_directions(const BucketSample& bucket, Query& query) {
+    std::vector<Eigen::Vector3d> measured;
+    for (std::size_t i = 0; i < true_forces_->size(); ++i) {
+      const Outcome<Response> answer = query.respond(bucket.poses[i]);
+      measured.push_back(answer.ok() ? answer.value.force : Eigen::Vector3d::Zero());
+    }
+    directions_ = direction_error(*true_forces_, measured);
+  }
+
   void report(benchmark::State& state, const BucketSample& bucket) const {
     const auto count = [&](const char* name, auto value) { state.counters[name] = static_cast<double>(value); };
     count("p50_ns", latency_->p50_ns);
@@ -85,6 +134,15 @@ class QueryRow {
       count("error_rms", check_->rms_error());
       count("error_max", check_->largest_error);
     }
+    if (question_ == Question::respond) {
+      count("misses", check_->misses);
+      if (check_->judged > 0) {
+        count("volume_error_mean", check_->mean_error());
+        count("volume_error_max", check_->largest_error);
+      }
+      if (directions_->gamma_degrees) count("force_angle_deg", *directions_->gamma_degrees);
+      count("forces_compared", directions_->compared);
+    }
     std::string label = suite_.settings(algorithm_).to_string();
     if (check_->failed > 0) label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", check_->diagnosis);
     state.SetLabel(label);
@@ -99,6 +157,8 @@ class QueryRow {
   std::optional<Check> check_;
   std::vector<Pose> poses_;  ///< Those that were checked, in this row's order.
   std::optional<Latency> latency_;
+  std::optional<std::vector<Eigen::Vector3d>> true_forces_;  ///< Of the first poses of the sample.
+  std::optional<DirectionError> directions_;
 };
 
 void add_row(Suite& suite, const Algorithm& algorithm, const CatalogueSet& pair, BucketKey key, Question question) {
@@ -119,6 +179,10 @@ void add_query_rows(Suite& suite) {
         // The distance of overlapping bodies is 0 by definition: nothing to measure.
         if (answers.distance && key.kind == BucketKind::distance) {
           add_row(suite, *algorithm, pair, key, Question::distance);
+        }
+        // Bodies that only touch do not push.
+        if (answers.respond && key.kind == BucketKind::volume && key.percent > 0) {
+          add_row(suite, *algorithm, pair, key, Question::respond);
         }
       }
     }

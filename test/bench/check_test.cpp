@@ -52,6 +52,26 @@ TEST(Judge, ErrorsAreInDiagonals) {
   EXPECT_DOUBLE_EQ(check.rms_error(), std::sqrt((0.04 * 0.04 + 0.03 * 0.03) / 2));
 }
 
+TEST(Judge, ResponsesInOverlapBuckets) {
+  const BucketSample sample = bucket(BucketKind::volume, 3, 0.5);
+  Response answer;
+  Check check;
+  judge(sample, answer, check);
+  EXPECT_EQ(check.misses, 1u);
+  EXPECT_EQ(check.judged, 0u) << "no volume is no error of a volume";
+  answer.force = {0.0, 1e-9, 0.0};
+  for (const double volume : {0.6, 0.3}) {
+    answer.volume = volume;
+    judge(sample, answer, check);
+  }
+  EXPECT_EQ(check.misses, 1u);
+  EXPECT_EQ(check.judged, 2u);
+  EXPECT_DOUBLE_EQ(check.largest_error, 0.4);
+  EXPECT_DOUBLE_EQ(check.mean_error(), 0.3);
+  EXPECT_EQ(judged(bucket(BucketKind::volume, 0, 0.0), answer).judged, 0u);
+  EXPECT_EQ(judged(bucket(BucketKind::distance, 5, 0.5), answer).judged, 0u);
+}
+
 class Moody final : public Query {
  public:
   Outcome<bool> collide(const Pose& pose) override {

@@ -77,7 +77,7 @@ TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
     EXPECT_EQ(entry.at("mismatch"), 0) << name;
     judged += entry.at("judged").get<std::size_t>();
   }
-  EXPECT_EQ(families, (std::set<std::string>{"prepare", "collide", "distance"}));
+  EXPECT_EQ(families, (std::set<std::string>{"prepare", "collide", "distance", "respond"}));
   EXPECT_GT(judged, test::SmallSuite::k_configurations);
   EXPECT_EQ(document.at("context").at("seed"), "5");
 }
@@ -90,6 +90,20 @@ TEST_F(BenchProgram, ScenarioRowsCarryTimeAndMeasures) {
   }
   EXPECT_EQ(exact.at("misses"), 0);
   EXPECT_EQ(null.at("misses"), null.at("stamps"));
+}
+
+TEST_F(BenchProgram, JudgesResponsesByTheirVolumeAndForce) {
+  const json document = result("--sample 32 --benchmark_filter='^respond/.*/pair:torus-1k-cone-1k/volume:03$'");
+  const json exact = row(document, "respond/algorithm:exact/pair:torus-1k-cone-1k/volume:03");
+  EXPECT_EQ(exact.at("judged"), exact.at("configurations"));
+  // The set's tolerance is 1e-9 of A's volume, and 3 % of it is the aim.
+  EXPECT_LE(exact.at("volume_error_max").get<double>(), 1e-9 / 0.03);
+  EXPECT_EQ(exact.at("misses"), 0);
+  EXPECT_EQ(exact.at("force_angle_deg"), 0);
+  EXPECT_GE(exact.at("forces_compared"), 32);
+  const json spheres = row(document, "respond/algorithm:ist/pair:torus-1k-cone-1k/volume:03");
+  EXPECT_GT(spheres.at("force_angle_deg"), 0.01);
+  EXPECT_LT(spheres.at("force_angle_deg"), 45);
 }
 
 TEST_F(BenchProgram, SeesThatNullIsWrong) {

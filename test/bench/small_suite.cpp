@@ -10,6 +10,8 @@
 #include <sixdof/algorithm/fcl/fcl.h>
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/ray_cast.h>
+#include <sixdof/configuration/volume_generator.h>
 #include <sixdof/models/zoo.h>
 
 namespace sixdof::test {
@@ -59,18 +61,13 @@ void make_set(const std::filesystem::path& file, const std::string& name_a, cons
   // Touching is aimed at from just outside.
   const double touching = 2 * k_tolerance * a.diagonal();
   const double apart = 0.05 * a.diagonal();
-  // Not solved for a volume: deep enough that surfaces surely intersect, which is all that the harness judges here.
-  const double pushed_in = 0.1 * a.diagonal();
   write({BucketKind::distance, 0}, 0.0, touching,
         [&](const auto& u, const auto& q) { return solve(*query, a, b, u, q, touching); });
   write({BucketKind::distance, 5}, apart, apart,
         [&](const auto& u, const auto& q) { return solve(*query, a, b, u, q, apart); });
-  write({BucketKind::volume, 3}, 0.03 * a.volume(), 0.03 * a.volume(), [&](const auto& u, const auto& q) {
-    const double s = solve(*query, a, b, u, q, touching) - pushed_in;
-    return s > 0.0 && query->collide(configuration_pose(a, b, u, q, s)).value
-               ? s
-               : std::numeric_limits<double>::quiet_NaN();
-  });
+  const std::vector<int> volumes{3};
+  const Generated overlapping = generate_volumes(*make_ray_cast(), a, b, grid, volumes);
+  for (const GeneratedBucket& bucket : overlapping.buckets) writer.write(bucket.summary, bucket.travel);
   writer.commit();
 }
 
