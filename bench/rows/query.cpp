@@ -102,7 +102,8 @@ class QueryRow {
     const auto start = Clock::now();
     for (const Pose& pose : bucket.poses) {
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-      if (true_forces_->size() == k_most_compared_forces || seconds > k_share * suite_.row_budget_s()) return;
+      const bool late = true_forces_->size() >= BucketSample::k_run && seconds > k_share * suite_.row_budget_s();
+      if (late || true_forces_->size() == k_most_compared_forces) return;
       const Outcome<Response> right = truth.respond(pose);
       true_forces_->push_back(right.ok() ? right.value.force : Eigen::Vector3d::Zero());
     }

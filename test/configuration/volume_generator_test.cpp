@@ -1,5 +1,6 @@
 #include <sixdof/configuration/volume_generator.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -335,6 +336,30 @@ TEST(OverlapMarch, TakesTheFirstOfSeveralCrossings) {
     EXPECT_NEAR(hit->volume, aim, k_tolerance);
     EXPECT_NEAR(hit->s, expected, 2e-5) << aim;
     EXPECT_EQ(march.measurements(), wave.asked);
+  }
+}
+
+TEST(OverlapMarch, FindsABumpThatItsStridesWouldPassOver) {
+  // Steady growth with a bump of width 0.2 on the way: the aim is met within the bump, and later without it.
+  constexpr double k_width = 0.1, k_height = 0.8, k_aim = 1.5, k_tolerance = 1e-9;
+  for (int i = 0; i < 12; ++i) {
+    const double center = 0.85 + 0.04 * i;
+    const auto bump = [&](double s) {
+      const double x = 4.0 - s;
+      const double y = std::clamp((x - center) / k_width, -1.0, 1.0);
+      const double rest = 1.0 - y * y;
+      return OverlapSample{
+          .s = s, .volume = x + k_height * rest * rest, .slope = 1.0 - 4.0 * k_height * y * rest / k_width};
+    };
+    // The steepest slope of the bump is at y = 1 / sqrt(3).
+    const double steepest = k_height * 8.0 / (3.0 * std::sqrt(3.0)) / k_width;
+    OverlapMarch march(bump, [&](double) { return SlopeBounds{.rise = steepest + 1.0, .fall = steepest - 1.0}; }, 4.0,
+                       {.resolution = 1e-3, .tolerance = k_tolerance});
+    const std::optional<OverlapSample> hit = march.advance(k_aim);
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(hit->volume, k_aim, k_tolerance);
+    EXPECT_NEAR(4.0 - hit->s, center, k_width) << "the crossing behind the bump";
+    EXPECT_LT(4.0 - hit->s, center) << "the way down from the bump";
   }
 }
 
