@@ -9,6 +9,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/distance_traversal.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -31,6 +32,8 @@ float size_of(const Tree::Volume& v) {
   const float z = v.upper[2] - v.lower[2];
   return x * x + y * y + z * z;
 }
+
+constexpr std::size_t k_cache_line = 64;  // bytes
 
 struct Descent {
   Traversal& traversal;
@@ -117,6 +120,15 @@ struct Descent {
     }
   }
 
+  /// Asks for what the next steps will read: large trees are not in the caches, and a step is short against a miss.
+  static HWY_INLINE void prefetch(const Tree& tree, const Tree::Node& node, std::size_t i) {
+    const bool leaf = node.child[i].is_leaf();
+    const char* at = leaf ? reinterpret_cast<const char*>(&tree.leaves()[node.leaf[i]])
+                          : reinterpret_cast<const char*>(&tree.nodes()[node.child[i].node()]);
+    const std::size_t bytes = leaf ? sizeof(Tree::Leaf) : sizeof(Tree::Node);
+    for (std::size_t byte = 0; byte < bytes; byte += k_cache_line) hwy::Prefetch(at + byte);
+  }
+
   /// Returns true if the search is over.
   bool descend() {
     std::vector<OpenPair>& open = traversal.open;
@@ -149,6 +161,7 @@ struct Descent {
         const auto i = static_cast<std::size_t>(std::countr_zero(kept));
         OpenPair next{top.a, top.b, bounds[i]};
         (opens_a ? next.a : next.b) = node.child[i].is_leaf() ? OpenPair::k_leaf + node.leaf[i] : node.child[i].node();
+        prefetch(opens_a ? tree_a : tree_b, node, i);
         std::size_t at = open.size();
         open.push_back(next);
         for (; at > first && open[at - 1].lower < next.lower; --at) open[at] = open[at - 1];

@@ -9,10 +9,14 @@
 #include <hwy/targets.h>
 
 #include "../geometry/shapes.h"
+#include "distance_truth.h"
 
 namespace sixdof {
 namespace {
 
+using distance_truth::brute_force;
+using distance_truth::corners_of;
+using distance_truth::turned_inside_out;
 using Eigen::Vector3d;
 using shapes::Generator;
 using shapes::uniform;
@@ -21,33 +25,6 @@ using shapes::uniform;
 constexpr double k_pose_rounding = 1e-14;
 /// The bound of the task: against brute force.
 constexpr double k_brute_force = 1e-13;
-
-TriangleCorners corners_of(const Mesh& mesh, std::size_t i, const Pose& pose) {
-  TriangleCorners t;
-  for (std::size_t k = 0; k < 3; ++k) t[k] = pose * mesh.vertices()[mesh.triangles()[i][k]];
-  return t;
-}
-
-TriangleCorners corners_of(const Mesh& mesh, std::size_t i) {
-  TriangleCorners t;
-  for (std::size_t k = 0; k < 3; ++k) t[k] = mesh.vertices()[mesh.triangles()[i][k]];
-  return t;
-}
-
-/// All pairs, in the order of the documented tie rule.
-SurfaceDistance brute_force(const Mesh& a, const Mesh& b, const Pose& X_AB) {
-  SurfaceDistance best;
-  best.distance = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < a.triangles().size(); ++i) {
-    for (std::size_t j = 0; j < b.triangles().size(); ++j) {
-      const ClosestPoints c = triangle_triangle_distance(corners_of(a, i), corners_of(b, j, X_AB));
-      if (c.distance < best.distance) {
-        best = {true, c.distance, c.on_a, c.on_b, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)};
-      }
-    }
-  }
-  return best;
-}
 
 /// Moves B along u from far until its distance is `target`: advancing by the difference never jumps over it.
 Pose approach(const Mesh& a, const Mesh& b, Pose pose, const Vector3d& u, double target) {
@@ -77,6 +54,8 @@ TEST(DistanceOracle, EqualsBruteForce) {
   Generator generator(1);
   std::vector<Mesh> meshes{shapes::bumpy_sphere(1, 0.3, 1.0, {0.2, 0.1, -0.3}), shapes::bumpy_sphere(1, 0.3, 0.6),
                            shapes::box({0.4, 0.9, 0.5}), shapes::soup(generator, 90, 1.0, 0.3)};
+  // Surfaces seen from behind: slabs face the other way.
+  meshes.push_back(turned_inside_out(shapes::bumpy_sphere(2, 0.1, 1.4, {0.1, -0.3, 0.2})));
   int apart = 0;
   int meeting = 0;
   for (const Mesh& a : meshes) {
@@ -318,6 +297,7 @@ TEST(DistanceOracle, UpperBoundCutsAndKeeps) {
     }
     for (const double factor : {0.0, 0.5, 1.0 - 1e-15}) {
       EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = false}).within_bound);
+      ASSERT_TRUE(query.distance(pose).within_bound);  // a pair to begin with, farther than the bound
       EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = true}).within_bound);
     }
   }
@@ -368,12 +348,6 @@ TEST(DistanceOracle, TouchingIsMeeting) {
   }
 }
 
-Mesh turned_inside_out(const Mesh& mesh) {
-  std::vector<Triangle> t = mesh.triangles();
-  for (Triangle& x : t) std::swap(x[1], x[2]);
-  return Mesh::build(mesh.vertices(), t);
-}
-
 Mesh joined(const Mesh& x, const Mesh& y) {
   std::vector<Vector3d> v = x.vertices();
   std::vector<Triangle> t = x.triangles();
@@ -409,6 +383,10 @@ TEST(DistanceOracle, ContainmentIsCollision) {
     EXPECT_FALSE(collide(small, hollow, inside.inverse()));
     EXPECT_TRUE(collide(big, two, inside));  // the first piece inside, the second far away
     EXPECT_TRUE(collide(two, big, inside.inverse()));
+    Pose second = inside;  // the other way round
+    second.t -= inside.R * Vector3d(5.0, 0.0, 0.0);
+    EXPECT_TRUE(collide(big, two, second));
+    EXPECT_TRUE(collide(two, big, second.inverse()));
     Pose outside = inside;
     outside.t += 4.0 * shapes::unit_vector(generator);
     EXPECT_FALSE(collide(big, small, outside));
