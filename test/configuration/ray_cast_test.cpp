@@ -229,10 +229,14 @@ double worst_over_median(const Mesh& a, const Mesh& b) {
   return worst / generic[25];
 }
 
-TEST(RayCast, FacesThatTieTakeNoMoreThanAHundredTimesTheMedian) {
-  const Mesh box = load_model("box-12000");
-  EXPECT_LT(worst_over_median(box, box), 100.0);
-  EXPECT_LT(worst_over_median(box, boxes_mesh({{{0.1, 0.2, 0.3}, {0.4, 0.3, 0.2}}})), 100.0);
+/// The suite allows 100. Here it is 2 to 4, and would be 16 without the cutoff in double precision, growing with the
+/// number of triangles.
+constexpr double k_most_over_median = 8.0;
+
+TEST(RayCast, FacesThatTieTakeLittleMoreThanTheMedian) {
+  const Mesh box = load_model("box-20000");
+  EXPECT_LT(worst_over_median(box, box), k_most_over_median);
+  EXPECT_LT(worst_over_median(box, boxes_mesh({{{0.1, 0.2, 0.3}, {0.4, 0.3, 0.2}}})), k_most_over_median);
 }
 
 bool same_bits(const Generated& left, const Generated& right) {
