@@ -22,7 +22,7 @@
 namespace sixdof {
 namespace {
 
-static_assert(k_ray_cast_tie == detail::k_cast_tie);
+static_assert(k_ray_cast_tie == ray_cast::k_cast_tie);
 
 /// Steps towards the exact distance of the pose as it is used, and the residual that needs none: a few roundings, in
 /// units of Cast::size().
@@ -31,8 +31,8 @@ constexpr double k_polished = 3e-16;
 
 class RayCastSolver final : public RaySolver {
  public:
-  RayCastSolver(const Mesh& a, std::shared_ptr<const detail::CastMesh> cast_a, const Mesh& b,
-                std::shared_ptr<const detail::CastMesh> cast_b)
+  RayCastSolver(const Mesh& a, std::shared_ptr<const ray_cast::CastMesh> cast_a, const Mesh& b,
+                std::shared_ptr<const ray_cast::CastMesh> cast_b)
       : a_(a), b_(b), tree_a_(std::move(cast_a)), tree_b_(std::move(cast_b)), cast_(tree_a_, tree_b_) {
     tree_a_.turn(-Eigen::Matrix3d::Identity());
   }
@@ -48,10 +48,10 @@ class RayCastSolver final : public RaySolver {
     ray_.direction = direction;
     cast_.direction = direction;
     last_direction_.resize(aims.size());
-    std::optional<detail::CastPair> last_aim;
+    std::optional<ray_cast::CastPair> last_aim;
     bool reachable = true;
     for (std::size_t k = 0; k < aims.size(); ++k) {
-      std::optional<detail::CastPair> pair;
+      std::optional<ray_cast::CastPair> pair;
       // Who is missed by a wider aim is missed by a narrower one.
       if (reachable) pair = cast(aims[k], last_aim, last_direction_[k]);
       reachable = pair.has_value();
@@ -67,21 +67,21 @@ class RayCastSolver final : public RaySolver {
   std::uint64_t measurements() const override { return cast_.counts.distances; }
 
  private:
-  std::optional<detail::CastPair> cast(double aim, const std::optional<detail::CastPair>& first_guess,
-                                       const std::optional<detail::CastPair>& second_guess) {
+  std::optional<ray_cast::CastPair> cast(double aim, const std::optional<ray_cast::CastPair>& first_guess,
+                                         const std::optional<ray_cast::CastPair>& second_guess) {
     cast_.aim = aim;
     // The path ends where the centres meet; what ties with that still counts.
     cast_.travel = -k_ray_cast_tie * cast_.size();
     cast_.pair.reset();
     cast_.axis = cast_.direction;
-    if (first_guess) detail::offer_pair(cast_, *first_guess);
-    if (second_guess) detail::offer_pair(cast_, *second_guess);
-    detail::find_first_hit(cast_);
+    if (first_guess) ray_cast::offer_pair(cast_, *first_guess);
+    if (second_guess) ray_cast::offer_pair(cast_, *second_guess);
+    ray_cast::find_first_hit(cast_);
     return cast_.pair;
   }
 
   /// Ends with the pose as everyone makes it, whose rounding depends on where the meshes lie in their frames.
-  std::pair<double, double> polish(const detail::CastPair& pair, double s, double aim) {
+  std::pair<double, double> polish(const ray_cast::CastPair& pair, double s, double aim) {
     const Tree::Corners& a = tree_a_.mesh().tree().corners()[pair.a];
     const Tree::Corners& b = tree_b_.mesh().tree().corners()[pair.b];
     const auto measure = [&](double travel) {
@@ -112,11 +112,11 @@ class RayCastSolver final : public RaySolver {
 
   const Mesh& a_;
   const Mesh& b_;
-  detail::CastTree tree_a_;  // mirrored
-  detail::CastTree tree_b_;
-  detail::Cast cast_;
+  ray_cast::CastTree tree_a_;  // mirrored
+  ray_cast::CastTree tree_b_;
+  ray_cast::Cast cast_;
   ConfigurationRay ray_;
-  std::vector<std::optional<detail::CastPair>> last_direction_;  // pair of each aim
+  std::vector<std::optional<ray_cast::CastPair>> last_direction_;  // pair of each aim
 };
 
 class RayCast final : public DistanceGenerator {
@@ -130,21 +130,21 @@ class RayCast final : public DistanceGenerator {
 
  private:
   /// One for all solvers that are alive.
-  std::shared_ptr<const detail::CastMesh> cast_mesh(const Mesh& mesh) const {
+  std::shared_ptr<const ray_cast::CastMesh> cast_mesh(const Mesh& mesh) const {
     const std::scoped_lock lock(mutex_);
-    std::weak_ptr<const detail::CastMesh>& known = known_[mesh.hash()];
-    std::shared_ptr<const detail::CastMesh> made = known.lock();
+    std::weak_ptr<const ray_cast::CastMesh>& known = known_[mesh.hash()];
+    std::shared_ptr<const ray_cast::CastMesh> made = known.lock();
     if (!made) {
       // Isolated, so that a thread that waits for its part of the tree does not come here again.
       tbb::this_task_arena::isolate(
-          [&] { made = std::make_shared<const detail::CastMesh>(std::make_shared<const Tree>(mesh)); });
+          [&] { made = std::make_shared<const ray_cast::CastMesh>(std::make_shared<const Tree>(mesh)); });
       known = made;
     }
     return made;
   }
 
   mutable std::mutex mutex_;
-  mutable std::map<std::string, std::weak_ptr<const detail::CastMesh>> known_;
+  mutable std::map<std::string, std::weak_ptr<const ray_cast::CastMesh>> known_;
   const std::string name_ = "triangle-distance";
   const std::string version_ = SIXDOF_VERSION;
 };

@@ -10,7 +10,7 @@
 // Where edges are nearly parallel the place of the closest points along them is uncertain, but not the distance there:
 // any two points of the edges that are used are points of the triangles.
 
-namespace sixdof::detail {
+namespace sixdof::ray_cast {
 namespace {
 
 using Eigen::Vector3d;
@@ -138,4 +138,4 @@ MovingPair::Sample MovingPair::at(double t) const {
   return sample;
 }
 
-}  // namespace sixdof::detail
+}  // namespace sixdof::ray_cast

@@ -6,7 +6,7 @@
 
 #include <sixdof/geometry/triangle_distance.h>
 
-namespace sixdof::detail {
+namespace sixdof::ray_cast {
 
 /// Distance of two triangles while one moves along a line: many times faster than triangle_triangle_distance(), and as
 /// exact but for edges that are nearly parallel and nearly touching (an error of 1e-32 L^2 / (distance angle^2) for
@@ -51,4 +51,4 @@ class MovingPair {
   double drift_[3][k_corners];  // of (corner - face) with t
 };
 
-}  // namespace sixdof::detail
+}  // namespace sixdof::ray_cast

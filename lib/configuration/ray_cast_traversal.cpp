@@ -30,7 +30,7 @@
 // which pairs are looked into, and in what order, is the same on every instruction set.
 
 HWY_BEFORE_NAMESPACE();
-namespace sixdof::detail {
+namespace sixdof::ray_cast {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -457,11 +457,11 @@ struct Descent {
 void find_first_hit(Cast& cast) { Descent(cast).run(); }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sixdof::detail
+}  // namespace sixdof::ray_cast
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace sixdof::detail {
+namespace sixdof::ray_cast {
 namespace {
 
 /// Grazing rays halve the error per step, others square it.
@@ -527,5 +527,5 @@ bool offer_pair(Cast& cast, CastPair pair) {
   return true;
 }
 
-}  // namespace sixdof::detail
+}  // namespace sixdof::ray_cast
 #endif

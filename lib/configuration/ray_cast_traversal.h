@@ -9,7 +9,7 @@
 #include <sixdof/configuration/ray_cast_tree.h>
 
 /// The branch and bound of the ray cast. Internal: use ray_cast.h.
-namespace sixdof::detail {
+namespace sixdof::ray_cast {
 
 /// A pair of triangles in tree order.
 struct CastPair {
@@ -66,4 +66,4 @@ bool offer_pair(Cast& cast, CastPair pair);
 /// point operations in the same order, so that all find the same pair.
 void find_first_hit(Cast& cast);
 
-}  // namespace sixdof::detail
+}  // namespace sixdof::ray_cast

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-namespace sixdof::detail {
+namespace sixdof::ray_cast {
 namespace {
 
 constexpr std::size_t k_width = Tree::k_width;
@@ -204,4 +204,4 @@ TriangleCorners CastTree::triangle(std::uint32_t t) const {
           matrix_ * (corners[2] - tree.center())};
 }
 
-}  // namespace sixdof::detail
+}  // namespace sixdof::ray_cast

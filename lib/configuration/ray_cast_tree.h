@@ -12,7 +12,7 @@
 #include <sixdof/geometry/triangle_distance.h>
 
 /// Trees turned into one common frame, for the ray cast. Internal: use ray_cast.h.
-namespace sixdof::detail {
+namespace sixdof::ray_cast {
 
 /// A child of a CastNode: a node, or a leaf.
 class CastChild {
@@ -118,4 +118,4 @@ class CastTree {
   Eigen::Vector3f root_half_ = Eigen::Vector3f::Zero();
 };
 
-}  // namespace sixdof::detail
+}  // namespace sixdof::ray_cast

@@ -31,11 +31,11 @@ TEST(MovingPair, HasTheDistanceOfTheTrianglesWhereTheyAre) {
     if (i % 13 == 0) b[2] = b[0] + 1e-7 * (b[2] - b[0]);  // a needle
     if (i % 17 == 0) b = {a[0] + Eigen::Vector3d(0.1, 0.2, 0.3), a[1] + Eigen::Vector3d(0.1, 0.2, 0.3), b[2]};
     const Eigen::Vector3d u = test::random_direction(random);
-    const detail::MovingPair pair(a, b, u);
+    const ray_cast::MovingPair pair(a, b, u);
     const double t = 0.3 * travel(random);
     const Eigen::Vector3d shift = t * u;
     const ClosestPoints expected = triangle_triangle_distance(a, {b[0] + shift, b[1] + shift, b[2] + shift});
-    const detail::MovingPair::Sample sample = pair.at(t);
+    const ray_cast::MovingPair::Sample sample = pair.at(t);
     ASSERT_NEAR(sample.distance, expected.distance, k_rounding) << i;
     intersecting += expected.distance == 0.0 ? 1 : 0;
     if (expected.distance == 0.0) continue;

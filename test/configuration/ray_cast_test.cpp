@@ -205,7 +205,7 @@ TEST(RayCast, FindsTheBriefestHit) {
 
 /// Bounds and distances that the hardest ray of right-angled rotations takes, over the median of rays of any rotation.
 double worst_over_median(const Mesh& a, const Mesh& b) {
-  using namespace detail;
+  using namespace ray_cast;
   CastTree tree_a(std::make_shared<CastMesh>(std::make_shared<Tree>(a)));
   CastTree tree_b(std::make_shared<CastMesh>(std::make_shared<Tree>(b)));
   tree_a.turn(-Eigen::Matrix3d::Identity());
