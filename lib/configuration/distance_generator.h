@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -66,13 +64,15 @@ struct GenerateOptions {
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;
   /// Asked before every ray, from every thread: true ends the work with Interrupted.
   std::function<bool()> cancelled;
-  std::size_t first_rotation = 0;                                       ///< A shard's part of the rotations:
-  std::size_t last_rotation = std::numeric_limits<std::size_t>::max();  ///< [first, last), cut to what there is.
+  /// The rotations to solve, by index into the grid: a shard's part. None given: all of the grid.
+  std::vector<std::uint32_t> rotations;
 };
 
 struct GeneratedBucket {
   BucketSummary summary;
-  std::vector<double> travel;  ///< [rotation - first][direction], as ConfigurationSetWriter::write() takes it.
+  /// [rotation][direction], rotations in the order in which they were asked for; those of a whole grid are as
+  /// ConfigurationSetWriter::write() takes them.
+  std::vector<double> travel;
 };
 
 struct Generated {

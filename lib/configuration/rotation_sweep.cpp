@@ -17,15 +17,15 @@ namespace {
 
 /// The rotations of one run, each distinct one once.
 struct Work {
-  std::span<const Eigen::Vector4d> rotations;
+  std::vector<Eigen::Vector4d> rotations;
   std::vector<std::uint32_t> representative;  ///< Of each rotation, within `rotations`.
   std::vector<std::uint32_t> distinct;        ///< Indices of the representatives.
 };
 
 Work plan_work(const Grid& grid, const GenerateOptions& options) {
-  const std::size_t count = rotations_asked(grid, options);
   Work work;
-  work.rotations = std::span(grid.rotations).subspan(options.first_rotation, count);
+  if (options.rotations.empty()) work.rotations = grid.rotations;
+  for (const std::uint32_t r : options.rotations) work.rotations.push_back(grid.rotations[r]);
   work.representative = representatives(work.rotations);
   for (std::uint32_t r = 0; r < work.representative.size(); ++r) {
     if (work.representative[r] == r) work.distinct.push_back(r);
@@ -57,12 +57,12 @@ class Progress {
 }  // namespace
 
 std::size_t rotations_asked(const Grid& grid, const GenerateOptions& options) {
-  const std::size_t last = std::min(options.last_rotation, grid.rotations.size());
-  if (options.first_rotation >= last) {
-    throw BadArgument(fmt::format("rotations {} to {}: the grid has {}", options.first_rotation, options.last_rotation,
-                                  grid.rotations.size()));
+  for (const std::uint32_t r : options.rotations) {
+    if (r >= grid.rotations.size()) {
+      throw BadArgument(fmt::format("rotation {}: the grid has {}", r, grid.rotations.size()));
+    }
   }
-  return last - options.first_rotation;
+  return options.rotations.empty() ? grid.rotations.size() : options.rotations.size();
 }
 
 void order_buckets(std::vector<GeneratedBucket>& buckets, bool descending, std::size_t configurations) {
@@ -100,7 +100,8 @@ std::uint64_t sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>&
       try {
         solver.solve(grid.directions[u], aims, travel, residual);
       } catch (const Error& e) {
-        throw Error(fmt::format("rotation {}, direction {}: {}", options.first_rotation + r, u, e.what()));
+        const std::uint32_t in_grid = options.rotations.empty() ? r : options.rotations[r];
+        throw Error(fmt::format("rotation {}, direction {}: {}", in_grid, u, e.what()));
       }
       for (std::size_t k = 0; k < aims.size(); ++k) {
         buckets[k].travel[r * n_directions + u] = travel[k];

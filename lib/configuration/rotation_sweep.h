@@ -13,7 +13,7 @@
 /// volume_generator.h.
 namespace sixdof::detail {
 
-/// Number of rotations that options ask for. @throws BadArgument if that is none
+/// Number of rotations that options ask for. @throws BadArgument if the grid does not have one of them
 std::size_t rotations_asked(const Grid& grid, const GenerateOptions& options);
 
 /// Puts buckets into the order in which a ray meets them (by percentage), and makes room for their travels.

@@ -77,9 +77,9 @@ TEST(DistanceGenerator, ThreadsAndShardsDoNotChangeABit) {
   }
   EXPECT_EQ(whole.measurements, threaded.measurements);
   // Shards cut through groups of equal rotations.
-  for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 50), {50, 101}, {101, 999}}) {
-    const Generated shard = generate(grid, {.first_rotation = first, .last_rotation = last});
-    const std::size_t rows = std::min(last, n) - first;
+  for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 50), {50, 101}, {101, n}}) {
+    const Generated shard = generate(grid, {.rotations = test::indices(first, last)});
+    const std::size_t rows = last - first;
     for (std::size_t k = 0; k < k_percents.size(); ++k) {
       EXPECT_TRUE(same_bits(
           shard.buckets[k].travel,
@@ -126,7 +126,11 @@ TEST(DistanceGenerator, RefusesWhatCannotBeDone) {
   EXPECT_THAT([&] { with({5, 7, 5}); }, ThrowsMessage<BadArgument>(HasSubstr("distance 5 %")));
   EXPECT_THAT([&] { with({-1}); }, ThrowsMessage<BadArgument>(HasSubstr("distance -1 %")));
   EXPECT_THAT([&] { with({101}); }, ThrowsMessage<BadArgument>(HasSubstr("distance 101 %")));
-  EXPECT_THAT([&] { with({5}, {.first_rotation = 999}); }, ThrowsMessage<BadArgument>(HasSubstr("the grid has")));
+  EXPECT_THAT(
+      [&] {
+        with({5}, {.rotations = {3, 999}});
+      },
+      ThrowsMessage<BadArgument>(HasSubstr("rotation 999: the grid has")));
 }
 
 /// Fails on one ray.
@@ -153,12 +157,8 @@ class Failing final : public DistanceGenerator {
 
 TEST(DistanceGenerator, SaysWhichConfigurationFailed) {
   const Grid grid = make_grid("90");
-  EXPECT_THAT(
-      [&] {
-        generate_distances(Failing(), k_a, k_b, grid, k_percents,
-                           {.threads = 1, .first_rotation = 3, .last_rotation = 4});
-      },
-      ThrowsMessage<Error>("rotation 3, direction 5: lost"));
+  EXPECT_THAT([&] { generate_distances(Failing(), k_a, k_b, grid, k_percents, {.threads = 1, .rotations = {3}}); },
+              ThrowsMessage<Error>("rotation 3, direction 5: lost"));
 }
 
 }  // namespace

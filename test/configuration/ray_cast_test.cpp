@@ -264,7 +264,7 @@ TEST(RayCast, ThreadsAndShardsDoNotChangeABit) {
   const std::size_t n = grid.directions.size();
   for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 50), {50, 101}, {101, 144}}) {
     const Generated shard =
-        generate_distances(*generator, a, b, grid, k_percents, {.first_rotation = first, .last_rotation = last});
+        generate_distances(*generator, a, b, grid, k_percents, {.rotations = test::indices(first, last)});
     for (std::size_t k = 0; k < k_percents.size(); ++k) {
       ASSERT_EQ(shard.buckets[k].travel.size(), (last - first) * n);
       EXPECT_EQ(std::memcmp(shard.buckets[k].travel.data(), whole.buckets[k].travel.data() + first * n,

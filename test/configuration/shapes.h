@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -62,6 +64,13 @@ inline Mesh lump_mesh(std::uint64_t seed, const Eigen::Vector3d& offset) {
                          {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
                          {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}},
                      "lump");
+}
+
+/// first .. last - 1
+inline std::vector<std::uint32_t> indices(std::size_t first, std::size_t last) {
+  std::vector<std::uint32_t> list(last - first);
+  std::iota(list.begin(), list.end(), static_cast<std::uint32_t>(first));
+  return list;
 }
 
 inline Eigen::Vector3d random_direction(std::mt19937_64& random) {

@@ -226,7 +226,7 @@ TEST(VolumeGenerator, ThreadsAndShardsDoNotChangeABit) {
   }
   const auto map = representatives(grid.rotations);
   for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 13), {13, 48}}) {
-    const Generated shard = generate({.first_rotation = first, .last_rotation = last});
+    const Generated shard = generate({.rotations = test::indices(first, last)});
     for (std::size_t k = 0; k < k_percents.size(); ++k) {
       const std::vector<double>& all = whole.buckets[k].travel;
       EXPECT_TRUE(same_bits(shard.buckets[k].travel, {all.begin() + static_cast<std::ptrdiff_t>(first * n),
