@@ -16,6 +16,7 @@
 #include <sixdof/bench/cli/models.h>
 #include <sixdof/bench/cli/quality.h>
 #include <sixdof/bench/cli/query.h>
+#include <sixdof/bench/cli/show.h>
 #include <sixdof/bench/cli/table.h>
 #include <sixdof/bench/cli/verify.h>
 
@@ -35,6 +36,7 @@ void add_commands(CLI::App& app) {
   add_models_command(app);
   add_quality_command(app);
   add_query_command(app);
+  add_show_command(app);
   add_table_command(app);
   add_generate_command(app);
   add_verify_command(app);

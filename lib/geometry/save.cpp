@@ -93,8 +93,12 @@ constexpr Format k_formats[] = {
 void save_ply(const PlyContent& content, const std::filesystem::path& file) {
   const std::size_t count = content.vertices.size();
   const bool coloured = !content.vertex_colours.empty();
+  const bool normals = !content.vertex_normals.empty();
   if (coloured && content.vertex_colours.size() != count) {
     throw BadArgument(fmt::format("{} colours for {} vertices", content.vertex_colours.size(), count));
+  }
+  if (normals && content.vertex_normals.size() != count) {
+    throw BadArgument(fmt::format("{} normals for {} vertices", content.vertex_normals.size(), count));
   }
   for (std::size_t i = 0; i < content.triangles.size(); ++i) {
     for (const std::uint32_t v : content.triangles[i]) {
@@ -105,16 +109,20 @@ void save_ply(const PlyContent& content, const std::filesystem::path& file) {
   const bool is_signed = count <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment written by sixdof\nelement vertex {}\n"
-      "property double x\nproperty double y\nproperty double z\n{}"
+      "property double x\nproperty double y\nproperty double z\n{}{}"
       "element face {}\nproperty list uchar {} vertex_indices\nend_header\n",
-      count, coloured ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "",
-      content.triangles.size(), is_signed ? "int" : "uint");
+      count, normals ? "property double nx\nproperty double ny\nproperty double nz\n" : "",
+      coloured ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "", content.triangles.size(),
+      is_signed ? "int" : "uint");
   constexpr std::size_t k_vertex_bytes = 24;
   constexpr std::size_t k_triangle_bytes = 13;
-  bytes.reserve(bytes.size() + (k_vertex_bytes + (coloured ? 3 : 0)) * count +
+  bytes.reserve(bytes.size() + (k_vertex_bytes * (normals ? 2 : 1) + (coloured ? 3 : 0)) * count +
                 k_triangle_bytes * content.triangles.size());
   for (std::size_t i = 0; i < count; ++i) {
     for (const double coordinate : content.vertices[i]) append_little_endian(bytes, coordinate);
+    if (normals) {
+      for (const double coordinate : content.vertex_normals[i]) append_little_endian(bytes, coordinate);
+    }
     if (coloured) {
       for (const std::uint8_t component : content.vertex_colours[i]) append_little_endian(bytes, component);
     }

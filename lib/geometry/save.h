@@ -29,12 +29,13 @@ using Colour = std::array<std::uint8_t, 3>;  ///< Red, green, blue.
 struct PlyContent {
   std::span<const Eigen::Vector3d> vertices;
   std::span<const Triangle> triangles;
-  std::span<const Colour> vertex_colours = {};  ///< One per vertex, or empty for none.
+  std::span<const Colour> vertex_colours = {};           ///< One per vertex, or empty for none.
+  std::span<const Eigen::Vector3d> vertex_normals = {};  ///< One per vertex, or empty for none.
 };
 
-/// Writes binary little-endian PLY in double precision, whole or not at all.
-/// @throws BadArgument if there are colours, but not one per vertex, or an index is out of range; BadFile if writing
-/// fails.
+/// Writes binary little-endian PLY in double precision, whole or not at all. Without triangles it is a cloud of points.
+/// @throws BadArgument if there are colours or normals, but not one per vertex, or an index is out of range; BadFile if
+/// writing fails.
 void save_ply(const PlyContent& content, const std::filesystem::path& file);
 
 }  // namespace sixdof

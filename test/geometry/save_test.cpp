@@ -97,6 +97,11 @@ TEST_F(Save, PlyTakesColoursAndTheirMeshLoads) {
 
   colours.pop_back();
   EXPECT_THROW(save_ply({mesh.vertices(), mesh.triangles(), colours}, path("short.ply")), BadArgument);
+  std::vector<Eigen::Vector3d> normals = mesh.vertices();
+  save_ply({mesh.vertices(), mesh.triangles(), {}, normals}, path("normals.ply"));
+  EXPECT_EQ(load_mesh(path("normals.ply")).hash(), mesh.hash());
+  normals.pop_back();
+  EXPECT_THROW(save_ply({mesh.vertices(), mesh.triangles(), {}, normals}, path("short.ply")), BadArgument);
   const std::vector<Triangle> foreign{{0, 1, static_cast<std::uint32_t>(mesh.vertices().size())}};
   EXPECT_THROW(save_ply({mesh.vertices(), foreign}, path("short.ply")), BadArgument);
   EXPECT_FALSE(std::filesystem::exists(path("short.ply")));

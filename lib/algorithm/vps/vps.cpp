@@ -20,11 +20,9 @@ constexpr double k_free_contacts = 10.0;
 /// What the two algorithms have in common: points in a tree against something on a grid.
 class PointQuery : public Query {
  public:
-  PointQuery(const Mesh& voxelised, const Mesh& pointed, const Mesh& b, const Settings& settings, int least_border)
-      : map_(cached_voxelmap(voxelised, settings.number("voxel_size") * voxelised.diagonal(),
-                             std::max(least_border, static_cast<int>(settings.number("border"))))),
-        tree_(cached_pointshell(pointed, settings.number("point_spacing") * pointed.diagonal()), pointed.center(),
-              settings.choice("weight") == "area"),
+  PointQuery(const Mesh& voxelised, const Mesh& pointed, const Mesh& b, const Settings& settings)
+      : map_(prepare_voxelmap(voxelised, settings)),
+        tree_(prepare_pointshell(pointed, settings), pointed.center(), settings.choice("weight") == "area"),
         b_center_(b.center()),
         points_of_b_(settings.choice("pointshell") == "b"),
         by_area_(settings.choice("weight") == "area"),
@@ -107,7 +105,7 @@ class PointQuery : public Query {
 class LayerQuery final : public PointQuery {
  public:
   LayerQuery(const Mesh& voxelised, const Mesh& pointed, const Mesh& b, const Settings& settings)
-      : PointQuery(voxelised, pointed, b, settings, 0),
+      : PointQuery(voxelised, pointed, b, settings),
         depth_(settings.choice("depth") == "layers" ? LayerDepth::layers : LayerDepth::layers_and_local) {}
 
  private:
@@ -130,7 +128,7 @@ class LayerQuery final : public PointQuery {
 class FieldQuery final : public PointQuery {
  public:
   FieldQuery(const Mesh& voxelised, const Mesh& pointed, const Mesh& b, const Settings& settings)
-      : PointQuery(voxelised, pointed, b, settings, DistanceField::k_border), field_(cached_field(voxelised, map_)) {}
+      : PointQuery(voxelised, pointed, b, settings), field_(cached_field(voxelised, map_)) {}
 
   Footprint footprint() const override {
     Footprint footprint = PointQuery::footprint();
@@ -157,7 +155,7 @@ class FieldQuery final : public PointQuery {
   DistanceField field_;
 };
 
-std::vector<Knob> common_knobs(const std::string& voxel_size, const std::string& point_spacing) {
+std::vector<Knob> common_knobs(const std::string& voxel_size, const std::string& point_spacing, int least_border) {
   return {
       {.name = "voxel_size",
        .meaning = "Edge of a voxel, as a fraction of the diagonal of the voxelised body's box.",
@@ -175,7 +173,7 @@ std::vector<Knob> common_knobs(const std::string& voxel_size, const std::string&
        .meaning = "Voxel layers outside the body that are stored; further out one distance per brick serves culling.",
        .unit = "voxels",
        .standard = "4",
-       .low = 0,
+       .low = static_cast<double>(least_border),
        .high = 64,
        .integer = true},
       {.name = "weight",
@@ -237,7 +235,7 @@ class VpsAlgorithm final : public Algorithm {
                  .summary = "voxmap-pointshell: integer layers of A at points of B (McNeely 1999, Sagardia 2008)",
                  .answers = {.collide = true, .distance = false, .respond = true},
                  .law = ResponseLaw::depth,
-                 .knobs = common_knobs("0.004", "0.004")};
+                 .knobs = common_knobs("0.004", "0.004", 0)};
 };
 
 class VpsFieldAlgorithm final : public Algorithm {
@@ -253,10 +251,23 @@ class VpsFieldAlgorithm final : public Algorithm {
                  .summary = "points of B in a smooth signed distance to A: conservative, continuous voxmap-pointshell",
                  .answers = {.collide = true, .distance = false, .respond = true},
                  .law = ResponseLaw::depth,
-                 .knobs = common_knobs("0.008", "0.004")};
+                 .knobs = common_knobs("0.008", "0.004", DistanceField::k_border)};
 };
 
 }  // namespace
+
+namespace vps {
+
+VoxelMap prepare_voxelmap(const Mesh& mesh, const Settings& settings) {
+  return cached_voxelmap(mesh, settings.number("voxel_size") * mesh.diagonal(),
+                         static_cast<int>(settings.number("border")));
+}
+
+PointShell prepare_pointshell(const Mesh& mesh, const Settings& settings) {
+  return cached_pointshell(mesh, settings.number("point_spacing") * mesh.diagonal());
+}
+
+}  // namespace vps
 
 std::unique_ptr<Algorithm> make_vps_algorithm() { return std::make_unique<VpsAlgorithm>(); }
 std::unique_ptr<Algorithm> make_vps_field_algorithm() { return std::make_unique<VpsFieldAlgorithm>(); }

@@ -3,6 +3,8 @@
 #include <memory>
 
 #include <sixdof/algorithm/algorithm.h>
+#include <sixdof/algorithm/vps/pointshell.h>
+#include <sixdof/algorithm/vps/voxelmap.h>
 
 namespace sixdof {
 
@@ -33,5 +35,14 @@ namespace sixdof {
 ///   that intersects itself count as surface.
 std::unique_ptr<Algorithm> make_vps_algorithm();
 std::unique_ptr<Algorithm> make_vps_field_algorithm();
+
+/// What queries are made of, from the algorithm's settings, kept on disk between runs (cache.h).
+/// @throws BadMesh, BadArgument as the structures' build() does
+namespace vps {
+
+VoxelMap prepare_voxelmap(const Mesh& mesh, const Settings& settings);
+PointShell prepare_pointshell(const Mesh& mesh, const Settings& settings);
+
+}  // namespace vps
 
 }  // namespace sixdof

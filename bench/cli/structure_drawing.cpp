@@ -1,0 +1,202 @@
+#include <sixdof/bench/cli/structure_drawing.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include <sixdof/models/round.h>
+
+namespace sixdof::cli {
+namespace {
+
+using vps::VoxelGrid;
+
+Colour scaled(const Colour& colour, double factor) {
+  Colour result;
+  for (std::size_t i = 0; i < 3; ++i) result[i] = static_cast<std::uint8_t>(std::lround(colour[i] * factor));
+  return result;
+}
+
+/// Adds tessellated balls.
+class BallPainter {
+ public:
+  explicit BallPainter(double cut_x) : unit_(make_sphere({}, k_ball_triangles)), cut_x_(cut_x) {}
+
+  void add(const ist::Sphere& ball, const Colour& colour) {
+    if (!(ball.center.x() <= cut_x_)) return;
+    const auto first = static_cast<std::uint32_t>(drawing_.vertices.size());
+    for (const Eigen::Vector3d& v : unit_.vertices()) drawing_.vertices.push_back(ball.center + ball.radius * v);
+    drawing_.colours.insert(drawing_.colours.end(), unit_.vertices().size(), colour);
+    for (const Triangle& t : unit_.triangles()) {
+      drawing_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    ++drawing_.elements;
+  }
+
+  Drawing take() { return std::move(drawing_); }
+
+ private:
+  Mesh unit_;
+  double cut_x_;
+  Drawing drawing_;
+};
+
+/// Adds the balls below `node`, whose children are at `level`, down to `last`.
+void add_level(const ist::SphereTree& tree, std::int32_t node, int level, int last, BallPainter& painter) {
+  const ist::SphereNode& here = tree.nodes[static_cast<std::size_t>(node)];
+  for (std::size_t slot = 0; slot < here.child.size(); ++slot) {
+    if (here.child[slot] == ist::SphereNode::k_empty) continue;
+    if (level == last || here.child[slot] < 0) {
+      painter.add(here.sphere(slot), ramp_colour(static_cast<double>(level) / last));
+    } else {
+      add_level(tree, here.child[slot], level + 1, last, painter);
+    }
+  }
+}
+
+/// Draws the faces between voxels of a body and all others. `depth(x, y, z)` is the voxel's depth in voxels, negative
+/// where it is none of the body's; `stored(brick)` is false for bricks without any.
+template <class Stored, class Depth>
+class VoxelPainter {
+ public:
+  VoxelPainter(const VoxelGrid& grid, double cut_x, const Stored& stored, const Depth& depth)
+      : grid_(grid), cut_x_(cut_x), stored_(stored), depth_(depth) {}
+
+  Drawing draw() {
+    for_each([&](int x, int y, int z) { deepest_ = std::max(deepest_, depth_(x, y, z)); });
+    for_each([&](int x, int y, int z) { add(x, y, z); });
+    return std::move(drawing_);
+  }
+
+ private:
+  bool drawn(int x, int y, int z) const { return grid_.center(x, y, z).x() <= cut_x_ && depth_(x, y, z) >= 0.0; }
+
+  /// Calls visit(x, y, z) for the body's voxels. None is at the grid's border (VoxelGrid::around).
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    constexpr int k_edge = VoxelGrid::k_edge;
+    for (int z = 0; z < grid_.voxels().z(); ++z) {
+      for (int y = 0; y < grid_.voxels().y(); ++y) {
+        for (int brick_x = 0; brick_x < grid_.voxels().x(); brick_x += k_edge) {
+          if (!stored_(grid_.brick_of(brick_x, y, z))) continue;
+          for (int x = brick_x; x < brick_x + k_edge; ++x) {
+            if (depth_(x, y, z) >= 0.0) visit(x, y, z);
+          }
+        }
+      }
+    }
+  }
+
+  void add(int x, int y, int z) {
+    if (!drawn(x, y, z)) return;
+    ++drawing_.elements;
+    const Colour colour = depth_colour(depth_(x, y, z), deepest_);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int side : {-1, 1}) {
+        Eigen::Array3i next(x, y, z);
+        next[axis] += side;
+        if (!drawn(next.x(), next.y(), next.z())) add_face({x, y, z}, axis, side, colour);
+      }
+    }
+  }
+
+  /// Counter-clockwise seen from outside. Neighbouring voxels compute the corners they share alike, bit for bit.
+  void add_face(const Eigen::Array3i& voxel, int axis, int side, const Colour& colour) {
+    const auto first = static_cast<std::uint32_t>(drawing_.vertices.size());
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    constexpr std::array<std::pair<int, int>, 4> k_corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    for (const auto& [along_u, along_v] : k_corners) {
+      Eigen::Array3i corner = voxel;
+      corner[axis] += side > 0 ? 1 : 0;
+      corner[u] += side > 0 ? along_u : 1 - along_u;  // mirrored with the side, so that the order turns with it
+      corner[v] += along_v;
+      drawing_.vertices.push_back(grid_.origin + grid_.size * corner.cast<double>().matrix());
+    }
+    drawing_.colours.insert(drawing_.colours.end(), k_corners.size(), colour);
+    drawing_.triangles.push_back({first, first + 1, first + 2});
+    drawing_.triangles.push_back({first, first + 2, first + 3});
+  }
+
+  const VoxelGrid& grid_;
+  double cut_x_;
+  const Stored& stored_;
+  const Depth& depth_;
+  double deepest_ = 0.0;
+  Drawing drawing_;
+};
+
+template <class Stored, class Depth>
+Drawing draw_body(const VoxelGrid& grid, double cut_x, const Stored& stored, const Depth& depth) {
+  return VoxelPainter<Stored, Depth>(grid, cut_x, stored, depth).draw();
+}
+
+}  // namespace
+
+Colour ramp_colour(double share) {
+  // Five points of matplotlib's viridis, which is even in lightness.
+  constexpr std::array<Colour, 5> k_points{{{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
+  const double at = std::clamp(share, 0.0, 1.0) * (k_points.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(at), k_points.size() - 2);
+  const double part = at - static_cast<double>(below);
+  Colour colour;
+  for (std::size_t i = 0; i < 3; ++i) {
+    colour[i] =
+        static_cast<std::uint8_t>(std::lround((1.0 - part) * k_points[below][i] + part * k_points[below + 1][i]));
+  }
+  return colour;
+}
+
+Colour depth_colour(double depth, double deepest) {
+  constexpr double k_darker = 0.7;
+  const Colour colour = ramp_colour(deepest > 0.0 ? depth / deepest : 0.0);
+  return std::lround(depth) % 2 == 0 ? colour : scaled(colour, k_darker);
+}
+
+Drawing draw_spheres(const ist::SphereTree& tree, double cut_x) {
+  double largest = 0.0;
+  for (const ist::Sphere& sphere : tree.leaves) largest = std::max(largest, sphere.radius);
+  BallPainter painter(cut_x);
+  for (const ist::Sphere& sphere : tree.leaves) painter.add(sphere, ramp_colour(sphere.radius / largest));
+  return painter.take();
+}
+
+Drawing draw_balls(const ist::SphereTree& tree, int level, double cut_x) {
+  BallPainter painter(cut_x);
+  add_level(tree, 0, 1, level, painter);
+  return painter.take();
+}
+
+Drawing draw_voxels(const vps::VoxelMap& map, double cut_x) {
+  const auto stored = [&](std::size_t brick) { return map.table[brick] >= 0; };
+  const auto depth = [&](int x, int y, int z) { return static_cast<double>(map.layer(x, y, z)); };
+  return draw_body(map.grid, cut_x, stored, depth);
+}
+
+Drawing draw_field(const vps::DistanceField& field, double cut_x) {
+  const auto stored = [&](std::size_t brick) { return field.table[brick] != 0; };
+  const auto depth = [&](int x, int y, int z) {
+    constexpr int k = vps::DistanceField::k_samples, k_edge = VoxelGrid::k_edge;
+    const int place = ((z % k_edge + 1) * k + y % k_edge + 1) * k + x % k_edge + 1;
+    const auto brick = static_cast<std::size_t>(field.table[field.grid.brick_of(x, y, z)]);
+    const float sample = field.samples[brick * vps::DistanceField::k_brick_samples + static_cast<std::size_t>(place)];
+    return sample < 0.0f ? -static_cast<double>(sample) : -1.0;
+  };
+  return draw_body(field.grid, cut_x, stored, depth);
+}
+
+Drawing draw_points(const vps::PointShell& shell, double cut_x) {
+  const double mean =
+      std::accumulate(shell.areas.begin(), shell.areas.end(), 0.0) / static_cast<double>(shell.areas.size());
+  Drawing drawing;
+  for (std::size_t i = 0; i < shell.points.size(); ++i) {
+    if (!(shell.points[i].x() <= cut_x)) continue;
+    drawing.vertices.push_back(shell.points[i]);
+    drawing.normals.push_back(shell.normals[i]);
+    drawing.colours.push_back(ramp_colour(0.5 * shell.areas[i] / mean));
+  }
+  drawing.elements = drawing.vertices.size();
+  return drawing;
+}
+
+}  // namespace sixdof::cli
