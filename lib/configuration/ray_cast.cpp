@@ -12,9 +12,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/task_arena.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 #include <sixdof/configuration/ray_cast_traversal.h>
 #include <sixdof/configuration/ray_cast_tree.h>
 #include <sixdof/geometry/triangle_distance.h>
@@ -136,7 +136,7 @@ class RayCast final : public DistanceGenerator {
     std::shared_ptr<const ray_cast::CastMesh> made = known.lock();
     if (!made) {
       // Isolated, so that a thread that waits for its part of the tree does not come here again.
-      tbb::this_task_arena::isolate(
+      parallel::isolated(
           [&] { made = std::make_shared<const ray_cast::CastMesh>(std::make_shared<const Tree>(mesh)); });
       known = made;
     }

@@ -5,12 +5,9 @@
 #include <mutex>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 namespace sixdof::detail {
 namespace {
@@ -87,7 +84,7 @@ std::uint64_t sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>&
 
   std::vector<std::vector<double>> residuals(work.distinct.size(), std::vector<double>(aims.size()));
   Progress progress(options, n_directions * aims.size(), work.distinct.size());
-  tbb::enumerable_thread_specific<std::unique_ptr<RaySolver>> solvers(prepare);
+  parallel::PerThread<std::unique_ptr<RaySolver>> solvers(prepare);
 
   const auto solve_rotation = [&](std::size_t i) {
     const std::uint32_t r = work.distinct[i];
@@ -110,13 +107,7 @@ std::uint64_t sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>&
     }
     progress.rotation_done();
   };
-  tbb::task_arena arena(options.threads == 0 ? tbb::task_arena::automatic : static_cast<int>(options.threads));
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, work.distinct.size(), 1),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i != range.end(); ++i) solve_rotation(i);
-                      });
-  });
+  parallel::with_threads(options.threads, [&] { parallel::for_each(work.distinct.size(), solve_rotation); });
 
   for (std::size_t k = 0; k < buckets.size(); ++k) {
     std::vector<double>& travel = buckets[k].travel;

@@ -6,12 +6,9 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-#include <tbb/task_group.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 namespace sixdof {
 namespace {
@@ -95,9 +92,9 @@ struct Binning {
 template <class T, class Fold>
 T fold_parallel(std::size_t first, std::size_t last, const Fold& fold) {
   if (last - first < k_parallel_bins) return fold(first, last, T{});
-  return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(first, last, k_parallel_bins / 8), T{},
-      [&](const tbb::blocked_range<std::size_t>& r, T sum) { return fold(r.begin(), r.end(), std::move(sum)); },
+  return parallel::reduce<T>(
+      last - first, k_parallel_bins / 8,
+      [&](std::size_t begin, std::size_t end, T sum) { return fold(first + begin, first + end, std::move(sum)); },
       [](T x, const T& y) {
         x.add(y);
         return x;
@@ -266,7 +263,7 @@ struct TreeBuilder {
     std::sort(children.begin(), children.end(), [](const Range& x, const Range& y) { return x.first < y.first; });
 
     subtree->nodes.resize(children.size());
-    tbb::task_group tasks;
+    parallel::Tasks tasks;
     for (std::size_t i = 0; i < children.size(); ++i) {
       if (children[i].count() <= Tree::k_leaf_triangles) continue;
       const auto grow = [this, &subtree, i] { subtree->nodes[i] = build(subtree->children[i]); };
@@ -296,8 +293,8 @@ Tree::Tree(const Mesh& mesh) : center_(mesh.center()) {
 
   TreeBuilder builder;
   builder.primitives.resize(n);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, k_parallel_subtree), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+  parallel::for_ranges(n, k_parallel_subtree, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       Eigen::AlignedBox3d box;
       for (const std::uint32_t v : mesh.triangles()[i]) box.extend(mesh.vertices()[v]);
       for (std::size_t k = 0; k < 3; ++k) {
@@ -312,8 +309,8 @@ Tree::Tree(const Mesh& mesh) : center_(mesh.center()) {
 
   mesh_triangle_.resize(n);
   corners_.resize(n);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, k_parallel_subtree), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+  parallel::for_ranges(n, k_parallel_subtree, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       mesh_triangle_[i] = builder.primitives[i].triangle;
       const Triangle& triangle = mesh.triangles()[mesh_triangle_[i]];
       for (std::size_t k = 0; k < 3; ++k) corners_[i][k] = mesh.vertices()[triangle[k]];
@@ -321,7 +318,7 @@ Tree::Tree(const Mesh& mesh) : center_(mesh.center()) {
   });
 
   flatten(builder);
-  tbb::parallel_for(std::size_t{0}, nodes_.size(), [this](std::size_t i) { fit_slabs(nodes_[i]); });
+  parallel::for_each(nodes_.size(), [this](std::size_t i) { fit_slabs(nodes_[i]); });
   copy_volumes();
 }
 
@@ -417,7 +414,7 @@ void Tree::copy_volumes() {
     root.volume.lower[k] = *std::min_element(root.lower[k], root.lower[k] + root.child_count);
     root.volume.upper[k] = *std::max_element(root.upper[k], root.upper[k] + root.child_count);
   }
-  tbb::parallel_for(std::size_t{0}, nodes_.size(), [this](std::size_t index) {
+  parallel::for_each(nodes_.size(), [this](std::size_t index) {
     const Node& node = nodes_[index];
     for (std::size_t i = 0; i < node.child_count; ++i) {
       Volume volume{};

@@ -1,3 +1,4 @@
+#include <sixdof/base/parallel.h>
 #include <sixdof/geometry/tree.h>
 
 #include <algorithm>
@@ -5,7 +6,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <sixdof/base/error.h>
 
@@ -152,7 +152,7 @@ TEST(Tree, HoldsTrianglesWithOneCentreAndDuplicates) {
 TEST(Tree, IsTheSameBitsForEveryThreadCount) {
   const Mesh mesh = shapes::bumpy_sphere(6, 0.2);  // 81,920 triangles: subtrees become tasks
   const auto build = [&](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const parallel::ThreadLimit limit(threads);
     return Tree(mesh);
   };
   const Tree one = build(1);

@@ -1,7 +1,5 @@
 #include <sixdof/algorithm/ist/hierarchy.h>
 
-#include <tbb/task_group.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 namespace sixdof::ist {
 namespace {
@@ -113,7 +112,7 @@ std::unique_ptr<Draft> build(std::span<Sphere> spheres, std::size_t first_leaf) 
   node.r.fill(-std::numeric_limits<double>::infinity());
   node.child.fill(SphereNode::k_empty);
   const std::vector<std::size_t> ends = split(spheres);
-  tbb::task_group tasks;
+  parallel::Tasks tasks;
   std::size_t begin = 0;
   for (std::size_t slot = 0; slot < ends.size(); ++slot) {
     const std::span<Sphere> part = spheres.subspan(begin, ends[slot] - begin);

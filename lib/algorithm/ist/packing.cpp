@@ -1,7 +1,5 @@
 #include <sixdof/algorithm/ist/packing.h>
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include <sixdof/algorithm/ist/sphere_index.h>
 #include <sixdof/base/cache.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>
 
 namespace sixdof::ist {
@@ -247,8 +246,7 @@ class Packer {
     std::vector<Prototype> arrived(starts.size());
     const std::uint64_t first = order_;
     order_ += starts.size();
-    tbb::parallel_for(std::size_t{0}, starts.size(),
-                      [&](std::size_t i) { arrived[i] = climb(space_, starts[i], first + i); });
+    parallel::for_each(starts.size(), [&](std::size_t i) { arrived[i] = climb(space_, starts[i], first + i); });
     for (const Prototype& prototype : arrived) {
       if (prototype.clearance >= least_) waiting_.push(prototype);
     }

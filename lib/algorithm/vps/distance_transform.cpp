@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <oneapi/tbb/parallel_for.h>
+#include <sixdof/base/parallel.h>
 
 namespace sixdof::vps {
 namespace {
@@ -49,10 +49,9 @@ void lower_envelope(int n, DistanceTransform::Scratch& s) {
 DistanceTransform::DistanceTransform(const SurfaceVoxels& surface) : n_(surface.grid().voxels()) {
   const auto nx = static_cast<std::size_t>(n_.x()), ny = static_cast<std::size_t>(n_.y());
   along_z_.resize(nx * ny * static_cast<std::size_t>(n_.z()));
-  oneapi::tbb::parallel_for(0, n_.y(), [&](int y) {
-    const auto line = [&](int z) {
-      return along_z_.data() + (static_cast<std::size_t>(z) * ny + static_cast<std::size_t>(y)) * nx;
-    };
+  parallel::for_each(ny, [&](std::size_t row) {
+    const auto y = static_cast<int>(row);
+    const auto line = [&](int z) { return along_z_.data() + (static_cast<std::size_t>(z) * ny + row) * nx; };
     const auto sweep = [&](int z, const std::uint16_t* previous) {
       std::uint16_t* const here = line(z);
       for (std::size_t x = 0; x < nx; ++x) {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 namespace sixdof::vps {
 namespace {
@@ -57,8 +57,7 @@ DistanceField DistanceField::build(const Mesh& mesh, const VoxelMap& map) {
     cells.push_back(cell);
   }
   std::vector<std::vector<float>> measured(corners.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, corners.size(),
-                            [&](std::size_t i) { measured[i] = measure_brick(map, index, corners[i]); });
+  parallel::for_each(corners.size(), [&](std::size_t i) { measured[i] = measure_brick(map, index, corners[i]); });
 
   const auto sample = [&](int x, int y, int z) -> float {
     if (x < 0 || y < 0 || z < 0 || x >= n.x() || y >= n.y() || z >= n.z()) return k_border;

@@ -5,20 +5,16 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
 
 #include <sixdof/algorithm/vps/grid.h>
 #include <sixdof/algorithm/vps/point_cells.h>
 #include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/algorithm/vps/triangle_voxels.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 namespace sixdof::vps {
 namespace {
-
-namespace tbb = oneapi::tbb;
 
 /// Points nearer than this many spacings are thinned out. Below 1 so that on an axis-aligned face all voxels keep their
 /// point; a random packing of this distance then has about one point per spacing^2 on slanted faces too.
@@ -118,9 +114,10 @@ class ShellBuilder {
       std::uint32_t triangle;
       auto operator<=>(const Touch&) const = default;
     };
-    tbb::enumerable_thread_specific<std::vector<Touch>> found;
+    parallel::PerThread<std::vector<Touch>> found;
     const Eigen::Array<std::uint64_t, 3, 1> n = grid_.voxels().cast<std::uint64_t>();
-    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(mesh_.triangles().size()), [&](std::uint32_t t) {
+    parallel::for_each(mesh_.triangles().size(), [&](std::size_t i) {
+      const auto t = static_cast<std::uint32_t>(i);
       if (outward_[t].isZero()) return;
       std::array<Eigen::Vector3d, 3> in_voxels = corners(t);
       for (Eigen::Vector3d& corner : in_voxels) corner = grid_.coordinates(corner);
@@ -132,7 +129,7 @@ class ShellBuilder {
     });
     std::vector<Touch> touches;
     for (const std::vector<Touch>& part : found) touches.insert(touches.end(), part.begin(), part.end());
-    tbb::parallel_sort(touches);
+    parallel::sort(touches);
 
     std::vector<Point> candidates;
     for (std::size_t i = 0; i < touches.size();) {
@@ -188,7 +185,7 @@ class ShellBuilder {
       positions.reserve(points_.size());
       for (const Point& point : points_) positions.push_back(point.position);
       const PointCells cells(grid_, positions);
-      tbb::parallel_for(std::size_t{0}, pieces_.size(), [&](std::size_t i) { owner_[i] = nearest(cells, pieces_[i]); });
+      parallel::for_each(pieces_.size(), [&](std::size_t i) { owner_[i] = nearest(cells, pieces_[i]); });
       complete = true;
       const std::size_t before = points_.size();
       for (std::size_t i = 0; i < pieces_.size(); ++i) {

@@ -4,16 +4,12 @@
 #include <bit>
 #include <numeric>
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/algorithm/vps/triangle_voxels.h>
+#include <sixdof/base/parallel.h>
 
 namespace sixdof::vps {
 namespace {
-
-namespace tbb = oneapi::tbb;
 
 constexpr std::size_t k_word = 64;
 
@@ -61,7 +57,7 @@ SurfaceVoxels::SurfaceVoxels(const Mesh& mesh, const VoxelGrid& grid)
     std::uint64_t& word = bits_[row_index(y, z) * words_per_row_ + column / k_word];
     std::atomic_ref(word).fetch_or(std::uint64_t{1} << (column % k_word), std::memory_order_relaxed);
   };
-  tbb::parallel_for(std::size_t{0}, mesh.triangles().size(), [&](std::size_t t) {
+  parallel::for_each(mesh.triangles().size(), [&](std::size_t t) {
     std::array<Eigen::Vector3d, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) corners[c] = grid_.coordinates(mesh.vertices()[mesh.triangles()[t][c]]);
     for_each_touched_voxel(SeparatingAxes(corners), true, mark);
@@ -91,10 +87,10 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const SurfaceIndex& index)
     }
   };
   first_.assign(rows + 1, 0);
-  tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t r) { for_each_run(r, [&](int, int) { ++first_[r + 1]; }); });
+  parallel::for_each(rows, [&](std::size_t r) { for_each_run(r, [&](int, int) { ++first_[r + 1]; }); });
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   runs_.resize(first_.back());
-  tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t r) {
+  parallel::for_each(rows, [&](std::size_t r) {
     std::size_t i = first_[r];
     for_each_run(r, [&](int begin, int end) { runs_[i++] = {begin, end, false}; });
   });
@@ -137,11 +133,12 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const SurfaceIndex& index)
     }
   }
   // Region 0 holds the first run, which lies on the grid's border: the outside.
-  tbb::parallel_for(std::size_t{1}, std::max<std::size_t>(1, regions.size()), [&](std::size_t k) {
-    const Region& region = regions[k];
+  parallel::for_each(regions.size(), [&](std::size_t k) {
+    if (k == 0) return;
+    Region& region = regions[k];
     const int x = (runs_[region.run].begin + runs_[region.run].end) / 2;
     const auto y = static_cast<int>(region.row % rows_per_slice_), z = static_cast<int>(region.row / rows_per_slice_);
-    regions[k].inside = index.winding_number(surface.grid().center(x, y, z)) > 0.5;
+    region.inside = index.winding_number(surface.grid().center(x, y, z)) > 0.5;
   });
   regions_ = regions.size();
   for (std::size_t k = 1; k < regions.size(); ++k) voids_ += regions[k].inside ? 0 : 1;

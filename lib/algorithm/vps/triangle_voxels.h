@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include <oneapi/tbb/parallel_invoke.h>
 #include <Eigen/Core>
+
+#include <sixdof/base/parallel.h>
 
 namespace sixdof::vps {
 
@@ -90,8 +91,8 @@ void visit_range(const SeparatingAxes& triangle, const VoxelRange& range, bool p
   first.high[axis] = range.low[axis] + range.extent()[axis] / 2 - 1;
   second.low[axis] = first.high[axis] + 1;
   if (parallel && count >= k_parallel_range) {
-    oneapi::tbb::parallel_invoke([&] { visit_range(triangle, first, parallel, visit); },
-                                 [&] { visit_range(triangle, second, parallel, visit); });
+    parallel::invoke([&] { visit_range(triangle, first, parallel, visit); },
+                     [&] { visit_range(triangle, second, parallel, visit); });
   } else {
     visit_range(triangle, first, parallel, visit);
     visit_range(triangle, second, parallel, visit);

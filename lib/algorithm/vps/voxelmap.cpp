@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <sixdof/algorithm/vps/distance_transform.h>
 #include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/algorithm/vps/surface_voxels.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 namespace sixdof::vps {
 namespace {
@@ -114,8 +114,7 @@ VoxelMap VoxelMap::build(const Mesh& mesh, double voxel_size, int border) {
 
   const SlabComposer composer(map, distances, runs);
   std::vector<Slab> slabs(static_cast<std::size_t>(map.grid.bricks.z()));
-  oneapi::tbb::parallel_for(std::size_t{0}, slabs.size(),
-                            [&](std::size_t bz) { slabs[bz] = composer.compose(static_cast<int>(bz)); });
+  parallel::for_each(slabs.size(), [&](std::size_t bz) { slabs[bz] = composer.compose(static_cast<int>(bz)); });
 
   // Brick 0 is "far outside"; the slabs' bricks follow in their order.
   const auto per_word = static_cast<std::size_t>(32 / map.layer_bits);

@@ -1,12 +1,11 @@
 #include <sixdof/algorithm/ist/hierarchy.h>
 
-#include <tbb/global_control.h>
-
 #include <cstring>
 
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 #include "random_spheres.h"
 
@@ -64,7 +63,7 @@ TEST(SphereTree, ConcentricSpheresStillSplit) {
 
 TEST(SphereTree, SameBitsForAnyNumberOfThreads) {
   const auto build_with = [](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const parallel::ThreadLimit limit(threads);
     return build_sphere_tree(random_spheres(9000, 6));
   };
   const SphereTree one = build_with(1), two = build_with(2);

@@ -1,11 +1,10 @@
 #include <sixdof/algorithm/ist/packing.h>
 
-#include <tbb/global_control.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>
 #include <sixdof/models/zoo.h>
 
@@ -85,7 +84,7 @@ TEST(Packing, SameBitsForAnyNumberOfThreads) {
   const Mesh mesh = load_model("torus-knot-1k");
   const Tree tree(mesh);
   const auto pack_with = [&](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const parallel::ThreadLimit limit(threads);
     return pack_spheres(mesh, tree, goal(300)).spheres;
   };
   const auto one = pack_with(1), two = pack_with(2);

@@ -5,10 +5,10 @@
 #include <numeric>
 
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 #include "bodies.h"
 
@@ -111,7 +111,7 @@ TEST(PointShell, BothSidesOfAThinPlateHaveTheirPoints) {
 TEST(PointShell, IsTheSameForAnyNumberOfThreads) {
   const Mesh body = make_bumpy_sphere({}, 900);
   const auto build = [&](std::size_t threads) {
-    const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+    const parallel::ThreadLimit limit(threads);
     return PointShell::build(body, 0.06);
   };
   const PointShell one = build(1), four = build(4);

@@ -5,11 +5,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <oneapi/tbb/global_control.h>
 
 #include <sixdof/algorithm/vps/field.h>
 #include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 #include "bodies.h"
 
@@ -156,7 +156,7 @@ TEST(VoxelMap, IsTheSameForAnyNumberOfThreads) {
   const Mesh body = together(moved(make_bumpy_sphere({}, 400), generic_pose(21, 0.2)),
                              moved(box({3.0, 0.1, 0.2}), generic_pose(22, 1.5)));
   const auto build = [&](std::size_t threads) {
-    const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+    const parallel::ThreadLimit limit(threads);
     const VoxelMap map = VoxelMap::build(body, 0.01 * body.diagonal(), DistanceField::k_border);
     return std::pair{map, DistanceField::build(body, map)};
   };
