@@ -30,30 +30,6 @@ HWY_ATTR void box_distances(const Tree::Node& node, const std::array<float, 3>& 
   }
 }
 
-/// Ericson, Real-Time Collision Detection (2005), section 5.1.5: by the Voronoi region that p lies in. Some five times
-/// faster than point_triangle_distance(), without its care for needles and flat triangles.
-Eigen::Vector3d closest_on_triangle(const Eigen::Vector3d& p, const Tree::Corners& corner) {
-  const auto& [a, b, c] = corner;
-  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return a;
-  const Eigen::Vector3d bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0.0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + ab * (d1 / (d1 - d3));
-  const Eigen::Vector3d cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0.0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + ac * (d2 / (d2 - d6));
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-  const double sum = va + vb + vc;
-  if (!(sum > 0.0)) return a;  // collinear corners: the three edges were looked at above
-  return a + ab * (vb / sum) + ac * (vc / sum);
-}
-
 /// Bound on the rounding of a squared box distance in single precision, relative to (|p| + radius)^2: the point's own
 /// rounding and some ten operations.
 constexpr double k_float_slack = 4e-7;
@@ -83,7 +59,7 @@ HWY_ATTR bool FindClosest(const Tree& tree, const Eigen::Vector3d& p, double wit
     if (next.squared > reach * reach) continue;
     if (next.child.is_leaf()) {
       for (std::uint32_t i = next.child.first(); i < next.child.first() + next.child.count(); ++i) {
-        const Eigen::Vector3d on = closest_on_triangle(p, tree.corners()[i]);
+        const Eigen::Vector3d on = closest_point_on_triangle(p, tree.corners()[i]);
         const double squared = (on - p).squaredNorm();
         if (squared < best_squared || (found && squared == best_squared && i < best_position)) {
           best_squared = squared;
@@ -120,6 +96,28 @@ HWY_AFTER_NAMESPACE();
 namespace sixdof {
 
 HWY_EXPORT(FindClosest);
+
+Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& p, const Tree::Corners& corners) {
+  const auto& [a, b, c] = corners;
+  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return a;
+  const Eigen::Vector3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0.0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + ab * (d1 / (d1 - d3));
+  const Eigen::Vector3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0.0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  const double sum = va + vb + vc;
+  if (!(sum > 0.0)) return a;  // collinear corners: the three edges were looked at above
+  return a + ab * (vb / sum) + ac * (vc / sum);
+}
 
 std::optional<SurfacePoint> closest_point(const Tree& tree, const Eigen::Vector3d& p, double within) {
   SurfacePoint best;

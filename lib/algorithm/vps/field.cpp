@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/vps/surface_index.h>
+#include <sixdof/algorithm/vps/winding_number.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/geometry/closest_point.h>
 
 namespace sixdof::vps {
 namespace {
@@ -16,10 +18,14 @@ constexpr int k_edge = VoxelGrid::k_edge;
 constexpr int k_samples = DistanceField::k_samples;
 
 /// Signed distances, in voxels, at the centres of a brick's voxels.
-std::vector<float> measure_brick(const VoxelMap& map, const SurfaceIndex& index, const Eigen::Array3i& corner) {
+std::vector<float> measure_brick(const VoxelMap& map, const Tree& tree, const WindingNumber& winding,
+                                 const Eigen::Array3i& corner) {
   std::vector<float> distances;
   distances.reserve(VoxelGrid::k_brick_voxels);
-  std::uint32_t guess = 0;
+  // A distance changes by no more than the way from the point where it was measured last.
+  constexpr double k_rounding_up = 1.0 + 1e-9;
+  double bound = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d before = map.grid.center(corner.x(), corner.y(), corner.z());
   for (int z = corner.z(); z < corner.z() + k_edge; ++z) {
     for (int y = corner.y(); y < corner.y() + k_edge; ++y) {
       for (int x = corner.x(); x < corner.x() + k_edge; ++x) {
@@ -29,11 +35,12 @@ std::vector<float> measure_brick(const VoxelMap& map, const SurfaceIndex& index,
           continue;
         }
         const Eigen::Vector3d center = map.grid.center(x, y, z);
-        const SurfaceIndex::Closest closest = index.closest(center, guess);
-        guess = closest.triangle;
-        const bool inside = layer > 0 || (layer == 0 && index.winding_number(center) > 0.5);
-        const double distance = std::sqrt(closest.squared_distance) / map.grid.size;
-        distances.push_back(static_cast<float>(inside ? -distance : distance));
+        const double distance =
+            closest_point(tree, center, k_rounding_up * (bound + (center - before).norm()))->distance;
+        bound = distance;
+        before = center;
+        const bool inside = layer > 0 || (layer == 0 && winding.at(center) > 0.5);
+        distances.push_back(static_cast<float>((inside ? -distance : distance) / map.grid.size));
       }
     }
   }
@@ -43,7 +50,8 @@ std::vector<float> measure_brick(const VoxelMap& map, const SurfaceIndex& index,
 }  // namespace
 
 DistanceField DistanceField::build(const Mesh& mesh, const VoxelMap& map) {
-  const SurfaceIndex index(mesh);
+  const Tree tree(mesh);
+  const WindingNumber winding(tree);
   const Eigen::Array3i bricks = map.grid.bricks, n = map.grid.voxels();
   std::vector<Eigen::Array3i> corners;  // of the voxelmap's stored bricks, in the order of its table
   std::vector<std::size_t> cells;       // their places in the table
@@ -57,7 +65,8 @@ DistanceField DistanceField::build(const Mesh& mesh, const VoxelMap& map) {
     cells.push_back(cell);
   }
   std::vector<std::vector<float>> measured(corners.size());
-  parallel::for_each(corners.size(), [&](std::size_t i) { measured[i] = measure_brick(map, index, corners[i]); });
+  parallel::for_each(corners.size(),
+                     [&](std::size_t i) { measured[i] = measure_brick(map, tree, winding, corners[i]); });
 
   const auto sample = [&](int x, int y, int z) -> float {
     if (x < 0 || y < 0 || z < 0 || x >= n.x() || y >= n.y() || z >= n.z()) return k_border;

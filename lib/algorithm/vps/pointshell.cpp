@@ -8,10 +8,10 @@
 
 #include <sixdof/algorithm/vps/grid.h>
 #include <sixdof/algorithm/vps/point_cells.h>
-#include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/algorithm/vps/triangle_voxels.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/geometry/closest_point.h>
 
 namespace sixdof::vps {
 namespace {
@@ -142,8 +142,7 @@ class ShellBuilder {
       std::array<Point, 6> best;
       for (; i < touches.size() && touches[i].voxel == voxel; ++i) {
         const std::uint32_t t = touches[i].triangle;
-        const auto [a, b, c] = corners(t);
-        const Eigen::Vector3d point = closest_point_on_triangle(center, a, b, c);
+        const Eigen::Vector3d point = closest_point_on_triangle(center, corners(t));
         const auto side = static_cast<std::size_t>(facing(outward_[t]));
         if (const double distance = (point - center).squaredNorm(); distance < nearest[side]) {
           nearest[side] = distance;
@@ -254,9 +253,8 @@ class ShellBuilder {
     std::vector<Point> moved;
     for (std::size_t j = 0; j < points_.size(); ++j) {
       if (triangle[j] == k_nobody) continue;
-      const auto [a, b, c] = corners(triangle[j]);
-      moved.push_back(
-          {closest_point_on_triangle(cells[j].moment / cells[j].area, a, b, c), direction(cells[j], points_[j])});
+      moved.push_back({closest_point_on_triangle(cells[j].moment / cells[j].area, corners(triangle[j])),
+                       direction(cells[j], points_[j])});
     }
     points_ = std::move(moved);
   }

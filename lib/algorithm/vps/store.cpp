@@ -14,8 +14,8 @@ namespace {
 
 // One higher whenever the same mesh and settings give another structure or layout.
 constexpr int k_voxelmap_version = 1;
-constexpr int k_pointshell_version = 1;
-constexpr int k_field_version = 1;
+constexpr int k_pointshell_version = 2;
+constexpr int k_field_version = 2;
 
 /// Every entry of a table of bricks must point into the bricks that are there: the inner loops look up without checks.
 bool within(const std::vector<std::int32_t>& table, std::uint64_t bricks) {

@@ -4,8 +4,8 @@
 #include <bit>
 #include <numeric>
 
-#include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/algorithm/vps/triangle_voxels.h>
+#include <sixdof/algorithm/vps/winding_number.h>
 #include <sixdof/base/parallel.h>
 
 namespace sixdof::vps {
@@ -70,7 +70,7 @@ std::size_t SurfaceVoxels::count() const {
   return n;
 }
 
-FreeRuns::FreeRuns(const SurfaceVoxels& surface, const SurfaceIndex& index)
+FreeRuns::FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding)
     : rows_per_slice_(static_cast<std::size_t>(surface.grid().voxels().y())) {
   const Eigen::Array3i n = surface.grid().voxels();
   const std::size_t rows = rows_per_slice_ * static_cast<std::size_t>(n.z());
@@ -138,7 +138,7 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const SurfaceIndex& index)
     Region& region = regions[k];
     const int x = (runs_[region.run].begin + runs_[region.run].end) / 2;
     const auto y = static_cast<int>(region.row % rows_per_slice_), z = static_cast<int>(region.row / rows_per_slice_);
-    region.inside = index.winding_number(surface.grid().center(x, y, z)) > 0.5;
+    region.inside = winding.at(surface.grid().center(x, y, z)) > 0.5;
   });
   regions_ = regions.size();
   for (std::size_t k = 1; k < regions.size(); ++k) voids_ += regions[k].inside ? 0 : 1;

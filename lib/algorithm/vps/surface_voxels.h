@@ -10,7 +10,7 @@
 
 namespace sixdof::vps {
 
-class SurfaceIndex;
+class WindingNumber;
 
 /// The voxels that a mesh's surface touches: one bit per voxel of the grid, rows along x padded to 64 bits.
 class SurfaceVoxels {
@@ -50,7 +50,7 @@ class FreeRuns {
     bool inside;
   };
 
-  FreeRuns(const SurfaceVoxels& surface, const SurfaceIndex& index);
+  FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding);
 
   std::span<const Run> row(int y, int z) const {
     const std::size_t r = static_cast<std::size_t>(z) * rows_per_slice_ + static_cast<std::size_t>(y);

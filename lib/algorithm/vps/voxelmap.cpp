@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <sixdof/algorithm/vps/distance_transform.h>
-#include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/algorithm/vps/surface_voxels.h>
+#include <sixdof/algorithm/vps/winding_number.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
 
@@ -105,9 +105,9 @@ VoxelMap VoxelMap::build(const Mesh& mesh, double voxel_size, int border) {
   // No voxel lies deeper than half the body's least extent.
   map.layer_bits = 0.5 * mesh.box().sizes().minCoeff() / voxel_size + 1.0 < INT8_MAX && border < INT8_MAX ? 8 : 16;
 
-  const SurfaceIndex index(mesh);
+  const Tree tree(mesh);
   const SurfaceVoxels surface(mesh, map.grid);
-  const FreeRuns runs(surface, index);
+  const FreeRuns runs(surface, WindingNumber(tree));
   const DistanceTransform distances(surface);
   map.surface_voxels = surface.count();
   map.voids = runs.voids();

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/algorithm/vps/surface_index.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/geometry/closest_point.h>
 
 #include "bodies.h"
 
@@ -27,10 +27,10 @@ constexpr double k_sliver = 1e-11;    // the same divided by the height of trian
 double total_area(const PointShell& shell) { return std::accumulate(shell.areas.begin(), shell.areas.end(), 0.0); }
 
 void expect_points_on(const Mesh& body, const PointShell& shell) {
-  const SurfaceIndex index(body);
+  const Tree tree(body);
   ASSERT_FALSE(shell.points.empty());
   for (std::size_t i = 0; i < shell.points.size(); ++i) {
-    ASSERT_LT(std::sqrt(index.closest(shell.points[i]).squared_distance), k_sliver);
+    ASSERT_LT(closest_point(tree, shell.points[i])->distance, k_sliver);
     ASSERT_NEAR(shell.normals[i].norm(), 1.0, k_rounding);
     ASSERT_GT(shell.areas[i], 0.0);
   }

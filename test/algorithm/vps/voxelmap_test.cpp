@@ -7,9 +7,10 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/algorithm/vps/field.h>
-#include <sixdof/algorithm/vps/surface_index.h>
+#include <sixdof/algorithm/vps/winding_number.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/geometry/triangle_distance.h>
 
 #include "bodies.h"
 
@@ -29,7 +30,7 @@ double brute_force_distance(const Mesh& mesh, const Eigen::Vector3d& p) {
   double least = std::numeric_limits<double>::infinity();
   for (const Triangle& t : mesh.triangles()) {
     const auto& v = mesh.vertices();
-    least = std::min(least, (closest_point_on_triangle(p, v[t[0]], v[t[1]], v[t[2]]) - p).norm());
+    least = std::min(least, point_triangle_distance(p, {v[t[0]], v[t[1]], v[t[2]]}).distance);
   }
   return least;
 }
@@ -183,6 +184,25 @@ TEST(VoxelMap, RefusesWhatIsNoSolidAndWhatIsTooFine) {
   open.pop_back();
   EXPECT_THAT(words(Mesh::build(body.vertices(), open)), ::testing::HasSubstr("border edges"));
   EXPECT_THROW(VoxelMap::build(body, 1e-5, 2), BadArgument);
+}
+
+/// Error of the dipoles that stand for far parts: a few hundredths.
+constexpr double k_dipoles = 0.05;
+
+TEST(WindingNumber, CountsTheBodiesAroundAPoint) {
+  const Mesh outer = moved(make_bumpy_sphere({.radius = 1.3, .amplitude = 0.3}, 3000), generic_pose(15, 2.0));
+  const Mesh inner = moved(make_bumpy_sphere({.radius = 0.4}, 700), generic_pose(15, 2.0));
+  const Mesh both = together(outer, inner);
+  const Tree tree(both);
+  const WindingNumber winding(tree);
+  int counts[3] = {};
+  for (std::uint64_t seed = 300; seed < 700; ++seed) {
+    const Eigen::Vector3d p = outer.center() + generic_pose(seed, 0.005 * static_cast<double>(seed - 300)).t;
+    const int around = (brute_force_inside(outer, p) ? 1 : 0) + (brute_force_inside(inner, p) ? 1 : 0);
+    EXPECT_NEAR(winding.at(p), around, k_dipoles) << seed;
+    ++counts[around];
+  }
+  for (const int count : counts) EXPECT_GT(count, 20);
 }
 
 TEST(DistanceField, SamplesAreExactSignedDistancesNearTheBody) {
