@@ -34,7 +34,8 @@ RowName parse_row_name(const std::string& name) {
   return result;
 }
 
-/// Rows that one result file has under the same name are repetitions: the least mean and its tail are shown.
+/// Rows that one result file has under the same name are repetitions: the least mean and its tail are shown. Queries
+/// run on one thread, so the mean is its processor time, which other work on the machine disturbs least.
 struct Cell {
   double mean_us = 0.0;
   double p99_us = 0.0;
@@ -47,6 +48,7 @@ struct Cell {
     return fmt::format("{} / {}{}{}", number(mean_us), number(p99_us), mismatch ? "!" : "", failed ? "?" : "");
   }
   static std::string number(double us) {
+    if (us < 0.01) return fmt::format("{:.4f}", us);
     return us < 10 ? fmt::format("{:.2f}", us) : us < 100 ? fmt::format("{:.1f}", us) : fmt::format("{:.0f}", us);
   }
 };
@@ -68,7 +70,7 @@ Cell cell_of(const json& row) {
   Cell cell;
   cell.error = row.value("error_occurred", false);
   if (cell.error) return cell;
-  cell.mean_us = row.at("real_time").get<double>() * nanoseconds_per(row.value("time_unit", "ns")) / 1e3;
+  cell.mean_us = row.at("cpu_time").get<double>() * nanoseconds_per(row.value("time_unit", "ns")) / 1e3;
   cell.p99_us = row.value("p99_ns", 0.0) / 1e3;
   cell.failed = row.value("failed", 0.0) > 0;
   cell.mismatch = row.value("mismatch", 0.0) > 0;

@@ -10,11 +10,11 @@ namespace {
 
 TEST(Table, HasALinePerAlgorithmAndAColumnPerBucket) {
   const std::string text = R"({"context": {}, "benchmarks": [
-    {"name": "prepare/algorithm:x/pair:p", "run_type": "iteration", "real_time": 7, "time_unit": "ms"},
-    {"name": "collide/algorithm:x/pair:p/distance:05", "run_type": "iteration", "real_time": 2500, "time_unit": "ns", "p99_ns": 40000, "failed": 0, "mismatch": 0},
-    {"name": "collide/algorithm:x/pair:p/distance:05", "run_type": "iteration", "real_time": 1500, "time_unit": "ns", "p99_ns": 30000, "failed": 0, "mismatch": 0},
-    {"name": "collide/algorithm:x/pair:p/distance:00", "run_type": "iteration", "real_time": 123456, "time_unit": "ns", "p99_ns": 200000, "failed": 1, "mismatch": 2},
-    {"name": "collide/algorithm:x/pair:p/distance:05_mean", "run_type": "aggregate", "real_time": 9, "time_unit": "ns"},
+    {"name": "prepare/algorithm:x/pair:p", "run_type": "iteration", "cpu_time": 7, "time_unit": "ms"},
+    {"name": "collide/algorithm:x/pair:p/distance:05", "run_type": "iteration", "cpu_time": 2500, "time_unit": "ns", "p99_ns": 40000, "failed": 0, "mismatch": 0},
+    {"name": "collide/algorithm:x/pair:p/distance:05", "run_type": "iteration", "cpu_time": 1500, "time_unit": "ns", "p99_ns": 30000, "failed": 0, "mismatch": 0},
+    {"name": "collide/algorithm:x/pair:p/distance:00", "run_type": "iteration", "cpu_time": 123456, "time_unit": "ns", "p99_ns": 200000, "failed": 1, "mismatch": 2},
+    {"name": "collide/algorithm:x/pair:p/distance:05_mean", "run_type": "aggregate", "cpu_time": 9, "time_unit": "ns"},
     {"name": "distance/algorithm:y/pair:p/distance:05/order:path", "run_type": "iteration", "error_occurred": true, "error_message": "no"}]})";
   EXPECT_EQ(results_table(text, "r.json"),
             "p: mean / p99 in us, at distances in percent of A's box diagonal\n"
