@@ -95,7 +95,8 @@ void add_make(CLI::App& models) {
   const auto options = std::make_shared<MakeOptions>();
   command->add_option("name", options->name, "Model, with or without its count: torus, torus-100k, elephant")
       ->required();
-  command->add_option("-n,--triangles", options->triangles, "Number of triangles (odd ones are rounded up)");
+  command->add_option("-n,--triangles", options->triangles, "Number of triangles (odd ones are rounded up)")
+      ->check(CLI::Range(std::size_t{1}, k_maximum_triangles));
   command->add_option("-o,--output", options->output, "File to write: .ply, .off, .obj or .stl")->required();
   command->callback([options] { make(*options); });
 }

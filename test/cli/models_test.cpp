@@ -1,0 +1,107 @@
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/bench/cli/commands.h>
+
+#include "run_program.h"
+#include "scratch_folder.h"
+
+namespace sixdof {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+test::ProgramResult run(const std::string& arguments) {
+  return test::run_program(std::string(SIXDOF_PROGRAM) + " " + arguments);
+}
+
+nlohmann::json json_of(const std::string& arguments) {
+  const auto result = run(arguments + " --json");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return nlohmann::json::parse(result.out);
+}
+
+/// In a folder of its own, removed at the end.
+class Models : public test::ScratchFolder {};
+class Info : public test::ScratchFolder {};
+
+TEST_F(Models, ListsRecipesAndRealObjects) {
+  const auto json = json_of("models list");
+  std::vector<std::string> recipes;
+  for (const auto& recipe : json.at("recipes")) recipes.push_back(recipe.at("name"));
+  EXPECT_THAT(recipes, ::testing::IsSupersetOf({"sphere", "box", "cone", "cylinder", "torus", "bumpy-sphere",
+                                                "torus-knot", "gyroid-ball", "circular-box"}));
+  const std::string text = run("models list").out;
+  for (const auto& model : json.at("fetched")) {
+    EXPECT_THAT(text, HasSubstr(model.at("name").get<std::string>()));
+    EXPECT_FALSE(model.at("licence").get<std::string>().empty());
+    EXPECT_EQ(model.at("hash").get<std::string>().size(), 32u);
+  }
+}
+
+TEST_F(Models, MakesWhatInfoReadsInEveryFormat) {
+  for (const char* extension : {"ply", "off", "obj", "stl"}) {
+    const std::string file = path(std::string("t.") + extension);
+    ASSERT_EQ(run("models make torus --triangles 1200 -o " + file).exit_code, 0);
+    const auto json = json_of("info " + file);
+    EXPECT_EQ(json.at("kind"), "mesh");
+    EXPECT_EQ(json.at("triangles"), 1200);
+    EXPECT_EQ(json.at("solid"), true);
+    EXPECT_EQ(json.at("euler_characteristic"), 0);
+  }
+}
+
+TEST_F(Models, RefusesInWordsAndWritesNothing) {
+  const auto refuses = [&](const std::string& arguments, int exit_code, const std::string& words) {
+    const auto result = run("models make " + arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << arguments;
+    EXPECT_THAT(result.err, HasSubstr(words)) << arguments;
+    EXPECT_EQ(result.out, "") << arguments;
+    EXPECT_TRUE(fs::is_empty(folder())) << arguments;
+  };
+  const std::string output = " -o " + path("m.ply");
+  refuses("sfere -n 500" + output, cli::k_exit_error, "sfere");
+  refuses("sphere" + output, cli::k_exit_error, "sphere-10k");
+  refuses("sphere-500 -n 500" + output, cli::k_exit_error, "already");
+  refuses("sphere -n 3" + output, cli::k_exit_error, "3 were asked for");
+  refuses("sphere -n -3" + output, cli::k_exit_usage, "--triangles");
+  refuses("sphere -n many" + output, cli::k_exit_usage, "--triangles");
+  refuses("sphere -n 500 -o " + path("m.xyz"), cli::k_exit_error, "m.xyz");
+  refuses("sphere -n 500 -o " + path("no/such/m.ply"), cli::k_exit_error, "no/such");
+  refuses("sphere -n 500", cli::k_exit_usage, "--output");
+}
+
+TEST_F(Info, TellsAnOpenMeshFromASolid) {
+  std::ofstream(path("open.off")) << "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n";
+  const auto json = json_of("info " + path("open.off"));
+  EXPECT_EQ(json.at("solid"), false);
+  EXPECT_EQ(json.at("closed"), false);
+  EXPECT_EQ(json.at("border_edges"), 3);
+}
+
+TEST_F(Info, ShowsAConfigurationSet) {
+  ASSERT_EQ(run("generate --a box-12 --grid 90 --distances 0,5 -o " + path("set.h5")).exit_code, 0);
+  const auto json = json_of("info " + path("set.h5"));
+  EXPECT_EQ(json.at("grid"), "90");
+  EXPECT_EQ(json.at("configurations_per_bucket"), 288);
+  EXPECT_EQ(json.at("buckets").size(), 2u);
+  EXPECT_THAT(run("info " + path("set.h5")).out, HasSubstr("distance/05"));
+}
+
+TEST_F(Info, NamesFilesThatItCannotRead) {
+  std::ofstream(path("cut.ply")) << "ply\nformat ascii 1.0\nelement vertex 3\n";
+  for (const char* name : {"cut.ply", "missing.ply", "missing.h5"}) {
+    const auto result = run("info " + path(name));
+    EXPECT_EQ(result.exit_code, cli::k_exit_error);
+    EXPECT_THAT(result.err, HasSubstr(name));
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+}  // namespace
+}  // namespace sixdof
