@@ -62,6 +62,13 @@ struct Footprint {
   std::vector<std::pair<std::string, double>> counts;
 };
 
+/// How much a query looked at, in units that explain its time.
+struct Work {
+  std::string unit;      ///< What is counted, plural, as in names of counters: "points", "sphere_pairs".
+  double visited = 0.0;  ///< By the last query, of any kind.
+  double present = 0.0;  ///< What it would visit if it left out nothing.
+};
+
 struct Traits {
   std::string name;     ///< As typed and as in benchmark names: lower case, digits, '-'.
   std::string version;  ///< Of the library behind it; this project's own version for its own algorithms.
@@ -89,6 +96,9 @@ class Query {
   virtual Outcome<Response> respond(const Pose& /*X_AB*/) { return Status::unsupported; }
 
   virtual Footprint footprint() const { return {}; }
+
+  /// Of the last query; empty where nothing is counted.
+  virtual std::vector<Work> work() const { return {}; }
 
   /// Words for the last outcome that was neither ok nor unsupported.
   const std::string& diagnosis() const { return diagnosis_; }

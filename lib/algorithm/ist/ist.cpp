@@ -74,10 +74,15 @@ class IstQuery final : public Query {
         gain_(settings.choice("correct_fill") == "on" ? 1.0 / (a_->fill * b_->fill) : 1.0),
         stiffness_(settings.number("stiffness")) {}
 
-  Outcome<bool> collide(const Pose& X_AB) override { return overlaps(a_->tree, b_->tree, X_AB, scratch_); }
+  Outcome<bool> collide(const Pose& X_AB) override {
+    const SphereContact contact = overlaps(a_->tree, b_->tree, X_AB, scratch_);
+    count_ = contact.count;
+    return contact.any;
+  }
 
   Outcome<Separation> distance(const Pose& X_AB) override {
     const SphereSeparation gap = separation(a_->tree, b_->tree, X_AB);
+    count_ = gap.count;
     const Sphere& in_a = a_->tree.leaves[static_cast<std::size_t>(gap.leaf_a)];
     const Sphere& in_b = b_->tree.leaves[static_cast<std::size_t>(gap.leaf_b)];
     Separation result;
@@ -96,6 +101,7 @@ class IstQuery final : public Query {
     const Eigen::Vector3d reference = X_AB * center_b_;
     const PenetrationSum sum = budget_ == 0 ? penetration(a_->tree, b_->tree, X_AB, law_, reference, scratch_)
                                             : penetration_within(a_->tree, b_->tree, X_AB, law_, reference, budget_);
+    count_ = sum.count;
     Response response;
     response.volume = gain_ * sum.volume;
     response.penalty = response.volume;
@@ -117,6 +123,12 @@ class IstQuery final : public Query {
              {"fill_b", b_->fill}}};
   }
 
+  /// Visited are pairs of balls, those of inner nodes and empty lanes included; present are pairs of packed spheres.
+  std::vector<Work> work() const override {
+    const auto spheres = [](const InnerSphereTree& tree) { return static_cast<double>(tree.tree.leaves.size()); };
+    return {{"sphere_pairs", static_cast<double>(count_.sphere_tests), spheres(*a_) * spheres(*b_)}};
+  }
+
  private:
   std::shared_ptr<const InnerSphereTree> a_, b_;
   Eigen::Vector3d center_b_;
@@ -125,6 +137,7 @@ class IstQuery final : public Query {
   double gain_;
   double stiffness_;
   TraversalScratch scratch_;
+  TraversalCount count_;  ///< Of the last query.
 };
 
 class IstAlgorithm final : public Algorithm {

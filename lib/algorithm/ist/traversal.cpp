@@ -78,19 +78,94 @@ HWY_ATTR void gaps(const SphereNode& a, std::size_t slot, const MovedNode& b, do
   }
 }
 
-/// A node as it stands, or a leaf dressed as a node with one ball.
-const SphereNode& open(const SphereTree& tree, std::int32_t index, SphereNode& dressed) {
-  if (index >= 0) return tree.nodes[static_cast<std::size_t>(index)];
-  const Sphere& leaf = tree.leaves[static_cast<std::size_t>(~index)];
-  dressed.r.fill(-std::numeric_limits<double>::infinity());
-  dressed.child.fill(SphereNode::k_empty);
-  dressed.x[0] = leaf.center.x();
-  dressed.y[0] = leaf.center.y();
-  dressed.z[0] = leaf.center.z();
-  dressed.r[0] = leaf.radius;
-  dressed.volume[0] = leaf.volume();
-  dressed.child[0] = index;
-  return dressed;
+/// A pair of nodes, opened: their children against each other. A leaf counts as a node with one child, itself.
+class OpenPair {
+ public:
+  OpenPair(const SphereTree& a, const SphereTree& b, const Pose& X_AB) : a_(a), b_(b), X_AB_(X_AB) {}
+
+  HWY_ATTR void open(Entry entry) {
+    node_a_ = &node(a_, entry.first, dressed_a_);
+    node_b_ = &node(b_, entry.second, dressed_b_);
+    move(*node_b_, X_AB_, moved_);
+  }
+
+  /// Calls meet(i, j) for every two children that overlap, until it returns true; says whether it did.
+  template <class Meet>
+  HWY_ATTR bool any_overlap(TraversalCount& count, const Meet& meet) const {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (node_a_->child[i] == SphereNode::k_empty) continue;
+      count.sphere_tests += 4;
+      for (unsigned mask = overlap_mask(*node_a_, i, moved_); mask != 0; mask &= mask - 1) {
+        if (meet(i, static_cast<std::size_t>(__builtin_ctz(mask)))) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Calls meet(i, j, gap) for every two children nearer than `within`, which meet() may lower.
+  template <class Meet>
+  HWY_ATTR void for_each_nearer(const double& within, TraversalCount& count, const Meet& meet) const {
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (node_a_->child[i] == SphereNode::k_empty) continue;
+      count.sphere_tests += 4;
+      double gap[4];
+      gaps(*node_a_, i, moved_, gap);
+      for (std::size_t j = 0; j < 4; ++j) {
+        if (gap[j] < within && node_b_->child[j] != SphereNode::k_empty) meet(i, j, gap[j]);
+      }
+    }
+  }
+
+  Entry children(std::size_t i, std::size_t j) const { return {node_a_->child[i], node_b_->child[j]}; }
+  bool leaves(std::size_t i, std::size_t j) const { return node_a_->child[i] < 0 && node_b_->child[j] < 0; }
+  Sphere ball_a(std::size_t i) const { return node_a_->sphere(i); }
+  Sphere ball_b(std::size_t j) const { return {{moved_.x[j], moved_.y[j], moved_.z[j]}, node_b_->r[j]}; }
+  double volume_a(std::size_t i) const { return node_a_->volume[i]; }
+  double volume_b(std::size_t j) const { return node_b_->volume[j]; }
+
+ private:
+  static const SphereNode& node(const SphereTree& tree, std::int32_t index, SphereNode& dressed) {
+    if (index >= 0) return tree.nodes[static_cast<std::size_t>(index)];
+    const Sphere& leaf = tree.leaves[static_cast<std::size_t>(~index)];
+    dressed.r.fill(-std::numeric_limits<double>::infinity());
+    dressed.child.fill(SphereNode::k_empty);
+    dressed.x[0] = leaf.center.x();
+    dressed.y[0] = leaf.center.y();
+    dressed.z[0] = leaf.center.z();
+    dressed.r[0] = leaf.radius;
+    dressed.volume[0] = leaf.volume();
+    dressed.child[0] = index;
+    return dressed;
+  }
+
+  const SphereTree& a_;
+  const SphereTree& b_;
+  const Pose& X_AB_;
+  const SphereNode* node_a_ = nullptr;
+  const SphereNode* node_b_ = nullptr;
+  SphereNode dressed_a_{}, dressed_b_{};
+  MovedNode moved_;
+};
+
+/// Calls leaf(pair, i, j) for every two leaf spheres that overlap, depth first, until it returns true; says whether it
+/// did.
+template <class Leaf>
+HWY_ATTR bool any_leaf_pair(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch,
+                            TraversalCount& count, const Leaf& leaf) {
+  auto& stack = scratch.stack;
+  stack.assign(1, {0, 0});
+  OpenPair pair(a, b, X_AB);
+  while (!stack.empty()) {
+    pair.open(stack.back());
+    stack.pop_back();
+    const bool done = pair.any_overlap(count, [&](std::size_t i, std::size_t j) HWY_ATTR {
+      if (pair.leaves(i, j)) return leaf(pair, i, j);
+      stack.push_back(pair.children(i, j));
+      return false;
+    });
+    if (done) return true;
+  }
+  return false;
 }
 
 struct PairSumming {
@@ -98,52 +173,34 @@ struct PairSumming {
   PairForce law;
   Eigen::Vector3d about;
 
-  /// Adds the overlap of two balls (centres in A's frame), scaled by `share`.
-  void add(const Eigen::Vector3d& center_a, double r_a, const Eigen::Vector3d& center_b, double r_b,
-           double share) const {
-    const Eigen::Vector3d across = center_b - center_a;
+  /// Adds the overlap of two balls (in A's frame), scaled by `share`.
+  void add(const Sphere& in_a, const Sphere& in_b, double share) const {
+    const Eigen::Vector3d across = in_b.center - in_a.center;
     const double d = across.norm();
-    const double volume = share * overlap_volume(r_a, r_b, d);
+    const double volume = share * overlap_volume(in_a.radius, in_b.radius, d);
     sum.volume += volume;
     if (d == 0.0) return;  // concentric: no direction to push
-    const double magnitude = law == PairForce::volume ? volume : share * overlap_disc_area(r_a, r_b, d);
+    const double magnitude = law == PairForce::volume ? volume : share * overlap_disc_area(in_a.radius, in_b.radius, d);
     const Eigen::Vector3d force = across * (magnitude / d);
     sum.force += force;
     // The force's line of action is the line of centres, so any point on it gives the torque.
-    sum.moment += (center_b - about).cross(force);
+    sum.moment += (in_b.center - about).cross(force);
   }
 };
-
-bool is_leaf(std::int32_t child) { return child < 0; }
 
 HWY_ATTR void SumAll(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
                      const Eigen::Vector3d& about, TraversalScratch& scratch, PenetrationSum& sum) {
   const PairSumming summing{sum, law, about};
-  auto& stack = scratch.stack;
-  stack.assign(1, {0, 0});
-  SphereNode dressed_a{}, dressed_b{};
-  MovedNode moved;
-  while (!stack.empty()) {
-    const auto [ia, ib] = stack.back();
-    stack.pop_back();
-    const SphereNode& node_a = open(a, ia, dressed_a);
-    const SphereNode& node_b = open(b, ib, dressed_b);
-    move(node_b, X_AB, moved);
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (node_a.child[i] == SphereNode::k_empty) continue;
-      sum.count.sphere_tests += 4;
-      for (unsigned mask = overlap_mask(node_a, i, moved); mask != 0; mask &= mask - 1) {
-        const auto j = static_cast<std::size_t>(__builtin_ctz(mask));
-        if (is_leaf(node_a.child[i]) && is_leaf(node_b.child[j])) {
-          summing.add({node_a.x[i], node_a.y[i], node_a.z[i]}, node_a.r[i], {moved.x[j], moved.y[j], moved.z[j]},
-                      node_b.r[j], 1.0);
-          ++sum.count.leaf_pairs;
-        } else {
-          stack.emplace_back(node_a.child[i], node_b.child[j]);
-        }
-      }
-    }
-  }
+  any_leaf_pair(a, b, X_AB, scratch, sum.count, [&](const OpenPair& pair, std::size_t i, std::size_t j) {
+    summing.add(pair.ball_a(i), pair.ball_b(j), 1.0);
+    ++sum.count.leaf_pairs;
+    return false;
+  });
+}
+
+HWY_ATTR bool AnyOverlap(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch,
+                         TraversalCount& count) {
+  return any_leaf_pair(a, b, X_AB, scratch, count, [](const OpenPair&, std::size_t, std::size_t) { return true; });
 }
 
 /// A pair of nodes waiting to be opened, with what to assume of it if it never is.
@@ -151,8 +208,8 @@ struct Expectation {
   double volume;        ///< Expected overlap volume.
   std::uint64_t order;  ///< Breaks ties: first come, first opened.
   Entry entry;
-  Eigen::Vector3d center_a, center_b;
-  double r_a, r_b, share;
+  Sphere in_a, in_b;
+  double share;  ///< Of the balls' lens.
   bool operator<(const Expectation& o) const { return volume != o.volume ? volume < o.volume : order > o.order; }
 };
 
@@ -164,61 +221,29 @@ HWY_ATTR void SumWithin(const SphereTree& a, const SphereTree& b, const Pose& X_
   const auto wait = [&](Entry entry, const Sphere& in_a, double volume_a, const Sphere& in_b, double volume_b) {
     const double share = std::min(1.0, volume_a / in_a.volume()) * std::min(1.0, volume_b / in_b.volume());
     const double lens = overlap_volume(in_a.radius, in_b.radius, (in_b.center - in_a.center).norm());
-    waiting.push({share * lens, order++, entry, in_a.center, in_b.center, in_a.radius, in_b.radius, share});
+    waiting.push({share * lens, order++, entry, in_a, in_b, share});
   };
   wait({0, 0}, a.bound, a.volume, {X_AB * b.bound.center, b.bound.radius}, b.volume);
-  SphereNode dressed_a{}, dressed_b{};
-  MovedNode moved;
+  OpenPair pair(a, b, X_AB);
   while (!waiting.empty()) {
     const Expectation next = waiting.top();
     waiting.pop();
     if (sum.count.sphere_tests >= budget) {
       sum.complete = false;
-      summing.add(next.center_a, next.r_a, next.center_b, next.r_b, next.share);
+      summing.add(next.in_a, next.in_b, next.share);
       continue;
     }
-    const SphereNode& node_a = open(a, next.entry.first, dressed_a);
-    const SphereNode& node_b = open(b, next.entry.second, dressed_b);
-    move(node_b, X_AB, moved);
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (node_a.child[i] == SphereNode::k_empty) continue;
-      sum.count.sphere_tests += 4;
-      for (unsigned mask = overlap_mask(node_a, i, moved); mask != 0; mask &= mask - 1) {
-        const auto j = static_cast<std::size_t>(__builtin_ctz(mask));
-        const Sphere in_a = node_a.sphere(i);
-        const Sphere in_b{{moved.x[j], moved.y[j], moved.z[j]}, node_b.r[j]};
-        if (is_leaf(node_a.child[i]) && is_leaf(node_b.child[j])) {
-          summing.add(in_a.center, in_a.radius, in_b.center, in_b.radius, 1.0);
-          ++sum.count.leaf_pairs;
-        } else {
-          wait({node_a.child[i], node_b.child[j]}, in_a, node_a.volume[i], in_b, node_b.volume[j]);
-        }
+    pair.open(next.entry);
+    pair.any_overlap(sum.count, [&](std::size_t i, std::size_t j) HWY_ATTR {
+      if (pair.leaves(i, j)) {
+        summing.add(pair.ball_a(i), pair.ball_b(j), 1.0);
+        ++sum.count.leaf_pairs;
+      } else {
+        wait(pair.children(i, j), pair.ball_a(i), pair.volume_a(i), pair.ball_b(j), pair.volume_b(j));
       }
-    }
+      return false;
+    });
   }
-}
-
-HWY_ATTR bool AnyOverlap(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch) {
-  auto& stack = scratch.stack;
-  stack.assign(1, {0, 0});
-  SphereNode dressed_a{}, dressed_b{};
-  MovedNode moved;
-  while (!stack.empty()) {
-    const auto [ia, ib] = stack.back();
-    stack.pop_back();
-    const SphereNode& node_a = open(a, ia, dressed_a);
-    const SphereNode& node_b = open(b, ib, dressed_b);
-    move(node_b, X_AB, moved);
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (node_a.child[i] == SphereNode::k_empty) continue;
-      for (unsigned mask = overlap_mask(node_a, i, moved); mask != 0; mask &= mask - 1) {
-        const auto j = static_cast<std::size_t>(__builtin_ctz(mask));
-        if (is_leaf(node_a.child[i]) && is_leaf(node_b.child[j])) return true;
-        stack.emplace_back(node_a.child[i], node_b.child[j]);
-      }
-    }
-  }
-  return false;
 }
 
 HWY_ATTR void Closest(const SphereTree& a, const SphereTree& b, const Pose& X_AB, SphereSeparation& best) {
@@ -226,39 +251,27 @@ HWY_ATTR void Closest(const SphereTree& a, const SphereTree& b, const Pose& X_AB
     double gap;
     Entry entry;
   };
-  std::vector<Bounded> stack{{-std::numeric_limits<double>::infinity(), {0, 0}}};
-  SphereNode dressed_a{}, dressed_b{};
-  MovedNode moved;
+  std::vector<Bounded> stack{{-std::numeric_limits<double>::infinity(), {0, 0}}}, found;
+  OpenPair pair(a, b, X_AB);
   best.distance = std::numeric_limits<double>::infinity();
   while (!stack.empty()) {
     const Bounded next = stack.back();
     stack.pop_back();
     if (next.gap >= best.distance) continue;
-    const SphereNode& node_a = open(a, next.entry.first, dressed_a);
-    const SphereNode& node_b = open(b, next.entry.second, dressed_b);
-    move(node_b, X_AB, moved);
-    std::array<Bounded, 16> found;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (node_a.child[i] == SphereNode::k_empty) continue;
-      best.count.sphere_tests += 4;
-      double gap[4];
-      gaps(node_a, i, moved, gap);
-      for (std::size_t j = 0; j < 4; ++j) {
-        if (gap[j] >= best.distance || node_b.child[j] == SphereNode::k_empty) continue;
-        if (is_leaf(node_a.child[i]) && is_leaf(node_b.child[j])) {
-          best.distance = gap[j];
-          best.leaf_a = ~node_a.child[i];
-          best.leaf_b = ~node_b.child[j];
-        } else {
-          found[count++] = {gap[j], {node_a.child[i], node_b.child[j]}};
-        }
+    pair.open(next.entry);
+    found.clear();
+    pair.for_each_nearer(best.distance, best.count, [&](std::size_t i, std::size_t j, double gap) {
+      if (pair.leaves(i, j)) {
+        best.distance = gap;
+        best.leaf_a = ~pair.children(i, j).first;
+        best.leaf_b = ~pair.children(i, j).second;
+      } else {
+        found.push_back({gap, pair.children(i, j)});
       }
-    }
+    });
     // The most promising pair is opened first, i.e. pushed last.
-    std::sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
-              [](const Bounded& p, const Bounded& q) { return p.gap > q.gap; });
-    stack.insert(stack.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count));
+    std::sort(found.begin(), found.end(), [](const Bounded& p, const Bounded& q) { return p.gap > q.gap; });
+    stack.insert(stack.end(), found.begin(), found.end());
   }
 }
 
@@ -288,8 +301,10 @@ PenetrationSum penetration_within(const SphereTree& a, const SphereTree& b, cons
   return sum;
 }
 
-bool overlaps(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch) {
-  return HWY_DYNAMIC_DISPATCH(AnyOverlap)(a, b, X_AB, scratch);
+SphereContact overlaps(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch) {
+  SphereContact contact;
+  contact.any = HWY_DYNAMIC_DISPATCH(AnyOverlap)(a, b, X_AB, scratch, contact.count);
+  return contact;
 }
 
 SphereSeparation separation(const SphereTree& a, const SphereTree& b, const Pose& X_AB) {

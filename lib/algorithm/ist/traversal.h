@@ -35,9 +35,14 @@ struct PenetrationSum {
   TraversalCount count;
 };
 
+struct SphereContact {
+  bool any = false;  ///< Two leaf spheres overlap.
+  TraversalCount count;
+};
+
 struct SphereSeparation {
-  double distance =
-      0.0;  ///< Smallest gap between two leaf spheres; negative where they overlap (then any overlap found).
+  /// Smallest gap between two leaf spheres; negative where they overlap (then any overlap found).
+  double distance = 0.0;
   std::int32_t leaf_a = 0, leaf_b = 0;
   TraversalCount count;
 };
@@ -53,8 +58,8 @@ PenetrationSum penetration(const SphereTree& a, const SphereTree& b, const Pose&
 PenetrationSum penetration_within(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
                                   const Eigen::Vector3d& about, std::uint64_t budget);
 
-/// True if any two leaf spheres overlap.
-bool overlaps(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch);
+/// Stops at the first two leaf spheres that overlap.
+SphereContact overlaps(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch);
 
 /// Smallest gap of two leaf spheres by branch and bound.
 SphereSeparation separation(const SphereTree& a, const SphereTree& b, const Pose& X_AB);

@@ -36,13 +36,15 @@ class PointQuery : public Query {
     if (!finite(X_AB)) return fail(Status::non_finite, "the pose is not finite");
     const Pose X = points_of_b_ ? X_AB : X_AB.inverse();
     const Placement placement = Placement::of(X, tree_.center(), map_.grid);
-    if (!culling_) return touches(placement, leaves_);
-    return tree_.any_leaves(map_, placement, reach(), [&](std::uint32_t first, std::uint32_t end) {
+    visited_leaves_ = 0;
+    const auto touched = [&](std::uint32_t first, std::uint32_t end) {
       for (std::uint32_t leaf = first; leaf < end; ++leaf) {
+        ++visited_leaves_;
         if (touches(placement, std::span(&leaf, 1))) return true;
       }
       return false;
-    });
+    };
+    return culling_ ? tree_.any_leaves(map_, placement, reach(), touched) : touched(0, tree_.leaves());
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {
@@ -50,6 +52,7 @@ class PointQuery : public Query {
     const Pose X = points_of_b_ ? X_AB : X_AB.inverse();
     const Placement placement = Placement::of(X, tree_.center(), map_.grid);
     if (culling_) tree_.cull(map_, placement, reach(), leaves_);
+    visited_leaves_ = leaves_.size();
     Response response = wrench_on_points(X, placement, leaves_);
     response.reference = X * tree_.center();
     if (!by_area_) {
@@ -79,6 +82,12 @@ class PointQuery : public Query {
                        {"nodes", static_cast<double>(tree_.nodes())}}};
   }
 
+  /// Whole leaves are visited.
+  std::vector<Work> work() const override {
+    const auto points = static_cast<double>(tree_.points());
+    return {{"points", std::min(points, static_cast<double>(visited_leaves_ * PointTree::k_leaf_points)), points}};
+  }
+
  protected:
   virtual double reach() const = 0;
   virtual bool touches(const Placement& placement, std::span<const std::uint32_t> leaves) const = 0;
@@ -100,6 +109,7 @@ class PointQuery : public Query {
   bool culling_;
   double stiffness_;
   std::vector<std::uint32_t> leaves_;
+  std::size_t visited_leaves_ = 0;  ///< By the last query.
 };
 
 class LayerQuery final : public PointQuery {

@@ -62,7 +62,7 @@ TEST_F(TraversalTest, SumsEqualThoseOverAllPairs) {
         EXPECT_NEAR(sum.volume, truth.volume, k_rounding);
         EXPECT_LE((sum.force - truth.force).norm(), k_rounding);
         EXPECT_LE((sum.moment - truth.moment).norm(), k_rounding);
-        EXPECT_EQ(overlaps(*a, *b, X, scratch_), truth.count.leaf_pairs > 0);
+        EXPECT_EQ(overlaps(*a, *b, X, scratch_).any, truth.count.leaf_pairs > 0);
       }
     }
     touching += brute_force(a_, b_, X, PairForce::volume, about_).count.leaf_pairs > 0 ? 1 : 0;
