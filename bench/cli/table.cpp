@@ -4,6 +4,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <vector>
 
@@ -34,18 +35,28 @@ RowName parse_row_name(const std::string& name) {
   return result;
 }
 
-/// Rows that one result file has under the same name are repetitions: the least mean and its tail are shown. Queries
-/// run on one thread, so the mean is its processor time, which other work on the machine disturbs least.
+/// Rows that one result file has under the same name are repetitions: the least mean and what goes with it are shown.
+/// Queries run on one thread, so the mean is its processor time, which other work on the machine disturbs least.
 struct Cell {
   double mean_us = 0.0;
   double p99_us = 0.0;
+  double max_us = 0.0;
+  /// Responses only: mean and largest angle of the force to the exact one, where there are forces to compare.
+  std::optional<std::pair<double, double>> angles_degrees;
+  bool response = false;
   bool error = false;
   bool failed = false;
   bool mismatch = false;
 
   std::string text() const {
     if (error) return "error";
-    return fmt::format("{} / {}{}{}", number(mean_us), number(p99_us), mismatch ? "!" : "", failed ? "?" : "");
+    const std::string marks = fmt::format("{}{}", mismatch ? "!" : "", failed ? "?" : "");
+    if (!response) return fmt::format("{} / {}{}", number(mean_us), number(p99_us), marks);
+    return fmt::format("{} / {} / {}, {}{}", number(mean_us), number(p99_us), number(max_us), angles(), marks);
+  }
+  std::string angles() const {
+    if (!angles_degrees) return "-";
+    return fmt::format("{:.2f} / {:.1f}", angles_degrees->first, angles_degrees->second);
   }
   static std::string number(double us) {
     if (us < 0.01) return fmt::format("{:.4f}", us);
@@ -72,6 +83,10 @@ Cell cell_of(const json& row) {
   if (cell.error) return cell;
   cell.mean_us = row.at("cpu_time").get<double>() * nanoseconds_per(row.value("time_unit", "ns")) / 1e3;
   cell.p99_us = row.value("p99_ns", 0.0) / 1e3;
+  cell.max_us = row.value("max_ns", 0.0) / 1e3;
+  if (row.contains("gamma_F_deg")) {
+    cell.angles_degrees = {row.at("gamma_F_deg").get<double>(), row.at("gamma_max_F_deg").get<double>()};
+  }
   cell.failed = row.value("failed", 0.0) > 0;
   cell.mismatch = row.value("mismatch", 0.0) > 0;
   return cell;
@@ -117,8 +132,11 @@ std::string results_table(const std::string& text, const std::string& file) {
       for (const char* kind : {"distance", "volume"}) {
         const auto bucket = name.parts.find(kind);
         if (bucket == name.parts.end() || !name.parts.contains("algorithm") || !name.parts.contains("pair")) continue;
+        const bool response = name.question == "respond";
         const std::string title =
-            fmt::format("{}: mean / p99 in us, at {}", name.parts.at("pair"),
+            fmt::format("{}: {}, at {}", name.parts.at("pair"),
+                        response ? "mean / p99 / max in us, force's angle to the exact one mean / max in degrees"
+                                 : "mean / p99 in us",
                         kind == std::string("distance") ? "distances in percent of A's box diagonal"
                                                         : "overlaps in percent of A's volume");
         if (!blocks.contains(title)) order.push_back(title);
@@ -126,7 +144,8 @@ std::string results_table(const std::string& text, const std::string& file) {
         std::string line = name.question + " " + name.parts.at("algorithm");
         if (name.parts.contains("order")) line += " (" + name.parts.at("order") + ")";
         if (!block.lines.contains(line)) block.titles.push_back(line);
-        const Cell cell = cell_of(row);
+        Cell cell = cell_of(row);
+        cell.response = response;
         const auto [place, fresh] = block.lines[line].emplace(bucket->second, cell);
         if (!fresh && !cell.error && (place->second.error || cell.mean_us < place->second.mean_us)) {
           place->second = cell;

@@ -7,6 +7,7 @@
 
 #include <sixdof/algorithm/algorithm.h>
 #include <sixdof/bench/harness/timing.h>
+#include <sixdof/bench/harness/work.h>
 #include <sixdof/fixtures/bucket.h>
 
 /// Answers against the set's truth, outside every timed region and before it.
@@ -24,6 +25,7 @@ struct Check {
   double squared_errors = 0.0;  ///< Sum of the squares of the same.
   std::size_t misses = 0;       ///< Responses only: no force where the bodies overlap.
   std::string diagnosis;        ///< Of the first failure.
+  MeanWork work;                ///< Over the answers.
 
   void add_error(double error) {
     largest_error = std::max(largest_error, error);
@@ -79,6 +81,7 @@ Check check_answers(const BucketSample& bucket, Ask ask, const Query& query, dou
     ++check.asked;
     if (answer.ok()) {
       judge(bucket, answer.value, check);
+      check.work.add(query.work());
     } else {
       ++check.failed;
       if (check.diagnosis.empty()) check.diagnosis = query.diagnosis();

@@ -1,5 +1,10 @@
 #include <sixdof/bench/harness/stock.h>
 
+#include <fmt/format.h>
+
+#include <sixdof/algorithm/exact.h>
+#include <sixdof/base/error.h>
+#include <sixdof/bench/harness/timing.h>
 #include <sixdof/models/zoo.h>
 
 namespace sixdof::bench {
@@ -37,6 +42,23 @@ const BucketSample& Stock::bucket(const CatalogueSet& entry, BucketKey key) {
   }
   poses_ += sample.poses.size();
   return buckets_.emplace(place, std::move(sample)).first->second;
+}
+
+const std::vector<Response>& Stock::true_responses(const CatalogueSet& set, BucketKey key, double seconds) {
+  std::vector<Response>& responses = true_responses_[{set.pair, key}];
+  if (!responses.empty()) return responses;
+  const BucketSample& sample = bucket(set, key);
+  const auto exact = make_exact_algorithm();
+  Query& truth = query(*exact, exact->settings(), set.a, set.b);
+  const auto start = Clock::now();
+  for (const Pose& pose : sample.poses) {
+    const bool late = std::chrono::duration<double>(Clock::now() - start).count() > seconds;
+    if (responses.size() == k_most_true || (late && responses.size() >= BucketSample::k_run)) break;
+    const Outcome<Response> answer = truth.respond(pose);
+    if (!answer.ok()) throw Error(fmt::format("{}: exact gives no response: {}", set.pair, truth.diagnosis()));
+    responses.push_back(answer.value);
+  }
+  return responses;
 }
 
 std::unique_ptr<Query> Stock::prepare(const Algorithm& algorithm, const Settings& settings, const Mesh& a,

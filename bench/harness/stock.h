@@ -30,6 +30,15 @@ class Stock {
   /// @throws BadFile, BadArgument
   const BucketSample& bucket(const CatalogueSet& set, BucketKey key);
 
+  /// The exact volume law's answers to the first poses of a bucket's sample, the truth that all algorithms' responses
+  /// to it are compared with. Measured once, at the first call: at least BucketSample::k_run of them, and up to
+  /// k_most_true while `seconds` last. A sample's runs stand in random order, so its first poses are a fair part of it.
+  /// To be called before a row fetches its own structure, which preparing the exact one might drop.
+  const std::vector<Response>& true_responses(const CatalogueSet& set, BucketKey key, double seconds);
+
+  /// Enough for a mean.
+  static constexpr std::size_t k_most_true = 256;
+
   /// @throws what Algorithm::prepare() throws
   Query& query(const Algorithm& algorithm, const Settings& settings, const std::string& a, const std::string& b);
 
@@ -68,7 +77,8 @@ class Stock {
   std::map<std::string, std::unique_ptr<const ConfigurationSet>> sets_;  ///< By pair.
   std::map<std::pair<std::string, BucketKey>, BucketSample> buckets_;    ///< By pair and key.
   std::size_t poses_ = 0;
-  std::list<Prepared> prepared_;  ///< Most recently used first.
+  std::map<std::pair<std::string, BucketKey>, std::vector<Response>> true_responses_;  ///< By pair and key.
+  std::list<Prepared> prepared_;                                                       ///< Most recently used first.
 };
 
 }  // namespace sixdof::bench

@@ -12,12 +12,18 @@ void add_prepare_rows(Suite& suite);
 
 /// `collide/algorithm:A/pair:P/distance:05`, `distance/...`: queries on the buckets of the configuration sets, in
 /// random order, and in the grid's own order as `.../order:path`. `respond/algorithm:A/pair:P/volume:03` the same, with
-/// the error of the volume that the algorithm sees against the bucket's and the angle between its force and the exact
-/// one as counters.
+/// the error of the volume that the algorithm sees against the bucket's and the angles of its force and torque to the
+/// exact ones as counters (gamma_F_deg, gamma_max_F_deg, and of torques: lib/measure/metrics.h). What an algorithm says
+/// about its work (Query::work) is in points_visited, points_present, ns_per_points and so on.
 void add_query_rows(Suite& suite);
 
 /// `scenario/II/algorithm:A`: mean time of a response along a scenario's path and, as counters, every measure of its
 /// quality against the law that the algorithm declares (lib/measure/metrics.h names them).
 void add_scenario_rows(Suite& suite);
+
+/// `kernel/NAME/algorithm:A`: the inner loop of one algorithm on a body of recipe, with settings and poses that isolate
+/// it: time per point on a map in cache and out of it without culling, time per pair of balls, a response without
+/// contact.
+void add_kernel_rows(Suite& suite);
 
 }  // namespace sixdof::bench

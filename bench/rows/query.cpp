@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/exact.h>
 #include <sixdof/base/error.h>
 #include <sixdof/bench/harness/check.h>
 #include <sixdof/bench/harness/timing.h>
@@ -33,9 +32,6 @@ const char* to_string(Question question) {
   return "";
 }
 
-/// Most configurations whose force is compared with the exact one: enough for a mean, and cheap beside the row.
-constexpr std::size_t k_most_compared_forces = 256;
-
 enum class Order {
   shuffled,
   path
@@ -61,7 +57,11 @@ class QueryRow {
 
   void run(benchmark::State& state) {
     const BucketSample& bucket = suite_.stock().bucket(pair_, key_);
-    if (question_ == Question::respond && !true_forces_) find_true_forces(bucket);
+    constexpr double k_share_of_truth = 0.1;  // of the row's time
+    const std::vector<Response>* const truth =
+        question_ == Question::respond
+            ? &suite_.stock().true_responses(pair_, key_, k_share_of_truth * suite_.row_budget_s())
+            : nullptr;
     Query& query = suite_.stock().query(algorithm_, suite_.settings(algorithm_), pair_.a, pair_.b);
     if (bucket.poses.empty()) throw BadArgument(key_.name() + ": no configuration of this bucket can be reached");
     if (question_ == Question::collide) {
@@ -69,7 +69,7 @@ class QueryRow {
     } else if (question_ == Question::distance) {
       run(state, bucket, query, [&query](const Pose& pose) { return query.distance(pose); });
     } else {
-      if (!directions_) compare_directions(bucket, query);
+      if (!directions_) compare_directions(bucket, *truth, query);
       run(state, bucket, query, [&query](const Pose& pose) { return query.respond(pose); });
     }
   }
@@ -92,31 +92,18 @@ class QueryRow {
                                      bucket.poses.begin() + static_cast<std::ptrdiff_t>(check_->asked));
   }
 
-  /// Forces of the first poses by the exact volume law. The sample's runs stand in random order, so these are a fair
-  /// part of it. Before the row's own structure is fetched, since the stock keeps only what was asked for last.
-  void find_true_forces(const BucketSample& bucket) {
-    constexpr double k_share = 0.1;  // of the row's time
-    const auto exact = make_exact_algorithm();
-    Query& truth = suite_.stock().query(*exact, exact->settings(), pair_.a, pair_.b);
-    true_forces_.emplace();
-    const auto start = Clock::now();
-    for (const Pose& pose : bucket.poses) {
-      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-      const bool late = true_forces_->size() >= BucketSample::k_run && seconds > k_share * suite_.row_budget_s();
-      if (late || true_forces_->size() == k_most_compared_forces) return;
-      const Outcome<Response> right = truth.respond(pose);
-      true_forces_->push_back(right.ok() ? right.value.force : Eigen::Vector3d::Zero());
-    }
-  }
-
-  /// A configuration without an answer counts as one without a force.
-  void compare_directions(const BucketSample& bucket, Query& query) {
-    std::vector<Eigen::Vector3d> measured;
-    for (std::size_t i = 0; i < true_forces_->size(); ++i) {
+  /// A configuration without an answer counts as one without force and torque. Torques are about the centre of B's box.
+  void compare_directions(const BucketSample& bucket, const std::vector<Response>& truth, Query& query) {
+    std::vector<Eigen::Vector3d> true_forces, true_torques, forces, torques;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
       const Outcome<Response> answer = query.respond(bucket.poses[i]);
-      measured.push_back(answer.ok() ? answer.value.force : Eigen::Vector3d::Zero());
+      const Response response = answer.ok() ? answer.value.about(truth[i].reference) : Response{};
+      true_forces.push_back(truth[i].force);
+      true_torques.push_back(truth[i].torque);
+      forces.push_back(response.force);
+      torques.push_back(response.torque);
     }
-    directions_ = direction_error(*true_forces_, measured);
+    directions_ = {direction_error(true_forces, forces), direction_error(true_torques, torques)};
   }
 
   void report(benchmark::State& state, const BucketSample& bucket) const {
@@ -131,6 +118,7 @@ class QueryRow {
     count("failed", check_->failed);
     count("judged", check_->judged);
     count("mismatch", check_->mismatch);
+    check_->work.report(state.counters);
     if (question_ == Question::distance) {
       count("error_rms", check_->rms_error());
       count("error_max", check_->largest_error);
@@ -141,8 +129,16 @@ class QueryRow {
         count("volume_error_mean", check_->mean_error());
         count("volume_error_max", check_->largest_error);
       }
-      if (directions_->gamma_degrees) count("force_angle_deg", *directions_->gamma_degrees);
-      count("forces_compared", directions_->compared);
+      const auto& [force, torque] = *directions_;
+      if (force.gamma_degrees) {
+        count("gamma_F_deg", *force.gamma_degrees);
+        count("gamma_max_F_deg", force.largest_degrees);
+      }
+      if (torque.gamma_degrees) {
+        count("gamma_T_deg", *torque.gamma_degrees);
+        count("gamma_max_T_deg", torque.largest_degrees);
+      }
+      count("compared", force.compared);
     }
     std::string label = suite_.settings(algorithm_).to_string();
     if (check_->failed > 0) label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", check_->diagnosis);
@@ -158,8 +154,10 @@ class QueryRow {
   std::optional<Check> check_;
   std::vector<Pose> poses_;  ///< Those that were checked, in this row's order.
   std::optional<Latency> latency_;
-  std::optional<std::vector<Eigen::Vector3d>> true_forces_;  ///< Of the first poses of the sample.
-  std::optional<DirectionError> directions_;
+  struct Directions {
+    DirectionError force, torque;
+  };
+  std::optional<Directions> directions_;  ///< Against the exact ones.
 };
 
 void add_row(Suite& suite, const Algorithm& algorithm, const CatalogueSet& pair, BucketKey key, Question question) {

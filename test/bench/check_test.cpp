@@ -75,8 +75,13 @@ TEST(Judge, ResponsesInOverlapBuckets) {
 class Moody final : public Query {
  public:
   Outcome<bool> collide(const Pose& pose) override {
+    visited_ = pose.t.x();
     return pose.t.x() < 2 ? Outcome<bool>(fail(Status::failed, "gave up")) : Outcome<bool>(true);
   }
+  std::vector<Work> work() const override { return {{"moods", visited_, 7.0}}; }
+
+ private:
+  double visited_ = 0.0;
 };
 
 TEST(CheckAnswers, CountsFailuresAndStopsAtTheEndOfARun) {
@@ -92,6 +97,11 @@ TEST(CheckAnswers, CountsFailuresAndStopsAtTheEndOfARun) {
   EXPECT_EQ(all.failed, 2u);
   EXPECT_EQ(all.mismatch, 98u);
   EXPECT_EQ(all.diagnosis, "gave up");
+  const std::vector<Work> work = all.work.mean();
+  ASSERT_EQ(work.size(), 1u);
+  EXPECT_EQ(work[0].unit, "moods");
+  EXPECT_DOUBLE_EQ(work[0].visited, 0.5 * (2 + 99)) << "of the answers, not of the first two, which failed";
+  EXPECT_DOUBLE_EQ(work[0].present, 7.0);
   EXPECT_EQ(check_answers(sample, ask, query, 0.0).asked, BucketSample::k_run);
 }
 

@@ -56,7 +56,8 @@ json row(const json& document, const std::string& name) {
 }
 
 TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
-  const json document = result("--seed 5 --sample 32 --settings ist:spheres=300 --benchmark_filter=-^scenario/");
+  const json document =
+      result("--seed 5 --sample 32 --settings ist:spheres=300 '--benchmark_filter=-^(scenario|kernel)/'");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;
   std::size_t judged = 0;
@@ -99,11 +100,50 @@ TEST_F(BenchProgram, JudgesResponsesByTheirVolumeAndForce) {
   // The set's tolerance is 1e-9 of A's volume, and 3 % of it is the aim.
   EXPECT_LE(exact.at("volume_error_max").get<double>(), 1e-9 / 0.03);
   EXPECT_EQ(exact.at("misses"), 0);
-  EXPECT_EQ(exact.at("force_angle_deg"), 0);
-  EXPECT_GE(exact.at("forces_compared"), 32);
+  for (const char* angle : {"gamma_F_deg", "gamma_max_F_deg", "gamma_T_deg", "gamma_max_T_deg"}) {
+    EXPECT_EQ(exact.at(angle), 0) << angle;
+  }
+  EXPECT_GE(exact.at("compared"), 32);
   const json spheres = row(document, "respond/algorithm:ist/pair:torus-1k-cone-1k/volume:03");
-  EXPECT_GT(spheres.at("force_angle_deg"), 0.01);
-  EXPECT_LT(spheres.at("force_angle_deg"), 45);
+  EXPECT_GT(spheres.at("gamma_F_deg"), 0.01);
+  EXPECT_LT(spheres.at("gamma_F_deg"), 45);
+  EXPECT_GT(spheres.at("gamma_max_F_deg"), spheres.at("gamma_F_deg"));
+  EXPECT_GT(spheres.at("gamma_max_T_deg"), spheres.at("gamma_T_deg"));
+}
+
+TEST_F(BenchProgram, SaysHowMuchAnAlgorithmLookedAt) {
+  const std::string pair = "/pair:torus-1k-cone-1k/";
+  const json document = result(
+      "--sample 32 --settings ist:spheres=300 --settings vps:point_spacing=0.02 "
+      "--benchmark_filter='^(prepare|respond|collide)/algorithm:(vps|ist)/.*torus-1k-cone-1k'");
+  const json prepared = row(document, "prepare/algorithm:vps/pair:torus-1k-cone-1k");
+  for (const char* kind : {"respond", "collide"}) {
+    const json points = row(document, kind + std::string("/algorithm:vps") + pair + "volume:03");
+    EXPECT_EQ(points.at("points_present"), prepared.at("points")) << kind;
+    EXPECT_GT(points.at("points_visited"), 0) << kind;
+    EXPECT_LT(points.at("points_visited"), 0.5 * points.at("points_present").get<double>()) << kind;
+    EXPECT_GT(points.at("ns_per_points"), 0) << kind;
+    EXPECT_LT(points.at("ns_per_points").get<double>(), points.at("cpu_time").get<double>()) << kind;
+  }
+  const json spheres = row(document, "respond/algorithm:ist" + pair + "volume:03");
+  EXPECT_EQ(spheres.at("sphere_pairs_present"), 300 * 300);
+  EXPECT_GT(spheres.at("sphere_pairs_visited"), 0);
+  EXPECT_LT(spheres.at("sphere_pairs_visited"), 300 * 300);
+}
+
+TEST_F(BenchProgram, KernelRowsSayWhatOneUnitOfWorkCosts) {
+  const json document = result("'--benchmark_filter=^kernel/(map-in-cache|apart)/algorithm:vps'");
+  ASSERT_EQ(document.at("benchmarks").size(), 4u);
+  for (const char* algorithm : {"vps", "vps-field"}) {
+    const json all = row(document, std::string("kernel/map-in-cache/algorithm:") + algorithm);
+    EXPECT_EQ(all.at("points_visited"), all.at("points_present")) << "nothing is culled";
+    EXPECT_GT(all.at("points_present"), 5000);
+    EXPECT_GT(all.at("ns_per_points"), 0);
+    EXPECT_LT(all.at("bytes"), 2e6);
+    const json apart = row(document, std::string("kernel/apart/algorithm:") + algorithm);
+    EXPECT_EQ(apart.at("points_visited"), 0);
+    EXPECT_FALSE(apart.contains("ns_per_points"));
+  }
 }
 
 TEST_F(BenchProgram, SeesThatNullIsWrong) {

@@ -25,6 +25,26 @@ TEST(Table, HasALinePerAlgorithmAndAColumnPerBucket) {
             "! some answers were wrong   ? some queries gave no answer\n");
 }
 
+TEST(Table, ResponsesHaveTheirLargestTimeAndTheErrorOfTheirForce) {
+  const std::string text = R"({"context": {}, "benchmarks": [
+    {"name": "collide/algorithm:x/pair:p/volume:05", "run_type": "iteration", "cpu_time": 2500, "time_unit": "ns", "p99_ns": 40000},
+    {"name": "respond/algorithm:x/pair:p/volume:05", "run_type": "iteration", "cpu_time": 2500, "time_unit": "ns", "p99_ns": 40000, "max_ns": 50000, "gamma_F_deg": 1.234, "gamma_max_F_deg": 20.25},
+    {"name": "respond/algorithm:null/pair:p/volume:05", "run_type": "iteration", "cpu_time": 3, "time_unit": "ns", "p99_ns": 40, "max_ns": 40}]})";
+  EXPECT_EQ(
+      results_table(text, "r.json"),
+      "p: mean / p99 in us, at overlaps in percent of A's volume\n"
+      "                   05 %\n"
+      "collide x   2.50 / 40.0\n"
+      "\n"
+      "p: mean / p99 / max in us, force's angle to the exact one mean / max in degrees, at overlaps in percent of "
+      "A's volume\n"
+      "                                         05 %\n"
+      "respond x     2.50 / 40.0 / 50.0, 1.23 / 20.2\n"
+      "respond null          0.0030 / 0.04 / 0.04, -\n"
+      "\n"
+      "! some answers were wrong   ? some queries gave no answer\n");
+}
+
 TEST(Table, RefusesWhatIsNoResultFile) {
   for (const char* bad : {"", "[]", "{}", R"({"benchmarks": [{}]})"}) {
     EXPECT_THROW(results_table(bad, "r.json"), BadFile) << bad;

@@ -1,0 +1,96 @@
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <sixdof/bench/harness/timing.h>
+#include <sixdof/bench/harness/work.h>
+#include <sixdof/bench/rows/families.h>
+
+namespace sixdof::bench {
+namespace {
+
+/// Both bodies: smooth, closed, of a volume that needs many voxels and spheres.
+constexpr const char* k_model = "bumpy-sphere-10k";
+
+/// One row: responses of an algorithm with some settings at poses of one kind.
+struct Kernel {
+  const char* name;       ///< "kernel/NAME/algorithm:vps".
+  const char* algorithm;  ///< In the registry.
+  std::vector<std::string> settings;
+  double centers_apart;  ///< Distance of the two centres, in box diagonals.
+};
+
+/// Sizes are those of caches: the small map and points take a few hundred kilobytes, the large map 100 megabytes.
+const std::vector<Kernel>& kernels() {
+  constexpr double k_overlap = 0.15, k_apart = 1.2;
+  static const std::vector<Kernel> list{
+      {"map-in-cache", "vps", {"culling=off", "voxel_size=0.02", "point_spacing=0.01"}, k_overlap},
+      {"map-in-memory", "vps", {"culling=off", "voxel_size=0.0017", "point_spacing=0.0017"}, k_overlap},
+      {"apart", "vps", {}, k_apart},
+      {"map-in-cache", "vps-field", {"culling=off", "voxel_size=0.04", "point_spacing=0.01"}, k_overlap},
+      {"apart", "vps-field", {}, k_apart},
+      {"spheres-10k", "ist", {"spheres=10000"}, k_overlap},
+      {"apart", "ist", {"spheres=10000"}, k_apart},
+  };
+  return list;
+}
+
+/// Turned at random, in random directions: the same ones in every run.
+std::vector<Pose> kernel_poses(const Mesh& mesh, double centers_apart) {
+  constexpr std::size_t k_poses = 64;
+  std::mt19937_64 random(k_poses);
+  std::normal_distribution<double> normal;
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < k_poses; ++i) {
+    Eigen::Vector3d direction;
+    Eigen::Vector4d q;
+    for (double& x : direction) x = normal(random);
+    for (double& x : q) x = normal(random);
+    q.normalize();
+    Pose pose = Pose::from_quaternion(q[0], q[1], q[2], q[3], Eigen::Vector3d::Zero());
+    pose.t = mesh.center() + centers_apart * mesh.diagonal() * direction.normalized() - pose.R * mesh.center();
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+class KernelRow {
+ public:
+  KernelRow(Suite& suite, const Kernel& kernel) : suite_(suite), kernel_(kernel) {}
+
+  void run(benchmark::State& state) {
+    const Algorithm& algorithm = suite_.registry().find(kernel_.algorithm);
+    Settings settings = algorithm.settings();
+    settings.set_all(kernel_.settings);
+    Query& query = suite_.stock().query(algorithm, settings, k_model, k_model);
+    const std::vector<Pose> poses = kernel_poses(suite_.stock().mesh(k_model), kernel_.centers_apart);
+    MeanWork work;
+    for (const Pose& pose : poses) {
+      benchmark::DoNotOptimize(query.respond(pose));
+      work.add(query.work());
+    }
+    time_mean(state, poses, [&query](const Pose& pose) { return query.respond(pose); });
+    state.counters["bytes"] = static_cast<double>(query.footprint().bytes);
+    work.report(state.counters);
+    state.SetLabel(settings.to_string());
+  }
+
+ private:
+  Suite& suite_;
+  const Kernel& kernel_;
+};
+
+}  // namespace
+
+void add_kernel_rows(Suite& suite) {
+  for (const Kernel& kernel : kernels()) {
+    const auto row = std::make_shared<KernelRow>(suite, kernel);
+    suite.add(fmt::format("kernel/{}/algorithm:{}", kernel.name, kernel.algorithm),
+              [row](benchmark::State& state) { row->run(state); });
+  }
+}
+
+}  // namespace sixdof::bench
