@@ -33,8 +33,8 @@ TEST(Table, ResponsesHaveTheirLargestTimeAndTheErrorOfTheirForce) {
   EXPECT_EQ(
       results_table(text, "r.json"),
       "p: mean / p99 in us, at overlaps in percent of A's volume\n"
-      "                   05 %\n"
-      "collide x   2.50 / 40.0\n"
+      "                  05 %\n"
+      "collide x  2.50 / 40.0\n"
       "\n"
       "p: mean / p99 / max in us, force's angle to the exact one mean / max in degrees, at overlaps in percent of "
       "A's volume\n"
