@@ -7,6 +7,9 @@
 
 #include <sixdof/base/error.h>
 
+// Only + - * / and square roots: library functions for powers round differently from one instruction set to the next,
+// and where samples lie decides the last bits of a hit.
+
 namespace sixdof {
 namespace {
 
@@ -14,29 +17,16 @@ namespace {
 /// way down to the resolution, for every aim: some 1e5.
 constexpr int k_most_measurements = 1'000'000;
 
-/// One step inwards lengthens the way since contact at most by this factor: powers fitted to a trace of an overlap say
-/// little about what comes further in.
+/// One step inwards lengthens the way since contact at most by this factor: what was measured so far says little about
+/// what comes further in.
 constexpr double k_longest_stride = 3.0;
+/// The step where nothing says how the volume goes on, by the way since contact.
+constexpr double k_blind_stride = 0.5;
 
-/// Exponents that the volume may grow with: 1 for faces that meet flat, 3 for a corner that meets a face; growth by
-/// leaps behind the first contact looks steeper.
-constexpr double k_least_power = 1.0, k_most_power = 8.0;
+/// Steps shorter than the resolution that end without a hit; after them a step is never shorter.
+constexpr int k_most_approaches = 5;
 
-/// The factor, up to k_longest_stride, whose power is `ratio`. By halving: library functions for powers round
-/// differently from one instruction set to the next, and where samples lie decides the last bits of a hit.
-double stride(double ratio, int power) {
-  constexpr int k_halvings = 20;
-  double low = 1.0, high = k_longest_stride;
-  for (int i = 0; i < k_halvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    double value = 1.0;
-    for (int k = 0; k < power; ++k) value *= middle;
-    (value < ratio ? low : high) = middle;
-  }
-  return high;
-}
-
-/// Share of the resolution left between a hit and the sample taken to clear the way up to it.
+/// Share of the resolution left between the ends of a gap and where it is divided.
 constexpr double k_clearance = 0.9;
 
 /// Every so many refinements of one bracket the interval is halved, so that the slowest case is bisection.
@@ -53,58 +43,77 @@ double hermite(const OverlapSample& outer, const OverlapSample& inner, double x)
 
 }  // namespace
 
-OverlapMarch::OverlapMarch(Measure measure, Bounds bounds, double contact, const MarchLimits& limits)
+OverlapMarch::OverlapMarch(Measure measure, Peak peak, double contact, const MarchLimits& limits)
     : measure_(std::move(measure)),
-      bounds_(std::move(bounds)),
+      peak_(std::move(peak)),
       contact_(contact),
       limits_(limits),
       content_(k_content * limits.tolerance),
-      front_{.s = contact} {}
+      passed_{{.s = contact}} {}
 
 void OverlapMarch::insert(double s) {
   if (++measurements_ > k_most_measurements) {
     throw Error(fmt::format("no end after {} measurements of the volume", k_most_measurements));
   }
-  inner_.push_back(measure_(s));
+  inner_.push_back(measure_(s, passed_.back().s));
 }
 
-/// Whether no hit can be in the gap, or it is too short to look into.
-bool OverlapMarch::closed(const OverlapSample& outer, const OverlapSample& inner, double aim) const {
-  const double way = outer.s - inner.s;
-  return way <= limits_.resolution || bounds_(inner.s).peak(outer.volume, inner.volume, way) <= aim + content_;
+/// Where a hit may be hidden up to the sample, if anywhere.
+std::optional<double> OverlapMarch::doubt(const OverlapSample& inner, double aim) const {
+  const OverlapSample& outer = passed_.back();
+  if (outer.s - inner.s <= limits_.resolution) return std::nullopt;
+  const VolumePeak peak = peak_(outer, inner);
+  if (peak.volume <= aim + content_) return std::nullopt;
+  const double clearance = std::min(k_clearance * limits_.resolution, 0.5 * (outer.s - inner.s));
+  return std::clamp(peak.s, inner.s + clearance, outer.s - clearance);
 }
 
-/// Where to measure next if nothing is known further in than the front.
-double OverlapMarch::next(double aim) const {
-  const double gap = aim - front_.volume;
-  // As far as the volume certainly stays below the aim. Bounds grow with the way, so halving finds the limit.
-  constexpr int k_halvings = 20;
-  double certain = 0.0, beyond = front_.s;
-  for (int i = 0; i < k_halvings; ++i) {
-    const double way = 0.5 * (certain + beyond);
-    (bounds_(front_.s - way).rise * way <= gap ? certain : beyond) = way;
+/// How far inwards the aim should be met: the way as a cubic of the square root of the volume, which is nearly straight
+/// where bodies begin to overlap. Two samples about as far apart as the step is long determine it; at contact only the
+/// place is known. Nothing sensible: 0.
+double OverlapMarch::expected(double aim) const {
+  const OverlapSample& front = passed_.back();
+  if (!(front.volume > 0.0 && front.slope > 0.0)) return 0.0;
+  const double root = std::sqrt(front.volume);
+  const double pace = 2.0 * root / front.slope;  // way per root
+  const double ahead = std::sqrt(aim) - root;
+  std::size_t i = passed_.size() - 1;
+  while (i > 0 && 2.0 * (passed_[i].s - front.s) < pace * ahead) --i;
+  const OverlapSample& past = passed_[i];
+  const double behind = root - std::sqrt(std::max(past.volume, 0.0));
+  const double way = past.s - front.s;
+  if (!(behind > 0.0)) return pace * ahead;
+  const double bend = (pace - way / behind) / behind;  // divided differences
+  double step = pace * ahead + bend * ahead * ahead;
+  if (past.volume > 0.0 && past.slope > 0.0) {
+    const double past_pace = 2.0 * (root - behind) / past.slope;
+    const double past_bend = (way / behind - past_pace) / behind;
+    step += (bend - past_bend) / behind * ahead * ahead * (ahead + behind);
   }
-  double expected = 0.0;
-  const double since_contact = contact_ - front_.s;
-  if (front_.volume > 0.0 && since_contact > 0.0) {
-    const double power = std::clamp(front_.slope * since_contact / front_.volume, k_least_power, k_most_power);
-    expected = since_contact * (stride(aim / front_.volume, static_cast<int>(std::lround(power))) - 1.0);
-  }
-  return std::max(0.0, front_.s - std::max({certain, expected, limits_.resolution}));
+  return step > 0.0 ? step : pace * ahead;
 }
 
-/// Where to divide a gap that may hide a hit: just outside of its inner end if that would leave no doubt, else halfway.
-double OverlapMarch::divide(const OverlapSample& outer, const OverlapSample& inner, double aim) const {
-  const double way = outer.s - inner.s;
-  const double near = 1.0 - k_clearance * limits_.resolution / way;
-  const double foreseen = hermite(outer, inner, near);
-  const double s = outer.s - near * way;
-  if (foreseen < aim && bounds_(s).peak(outer.volume, foreseen, near * way) <= aim) return s;
-  return outer.s - 0.5 * way;
+/// Where to measure next if nothing is known further in.
+double OverlapMarch::next(double aim) {
+  const double front = passed_.back().s;
+  const double since_contact = contact_ - front;
+  double step = expected(aim);
+  if (since_contact == 0.0) {
+    step = limits_.first_stride;
+  } else if (step == 0.0) {
+    step = k_blind_stride * since_contact;
+  } else {
+    step = std::min(step, (k_longest_stride - 1.0) * since_contact);
+  }
+  if (step < limits_.resolution && (approaches_++ >= k_most_approaches || !(front - step < front))) {
+    step = limits_.resolution;
+  }
+  return std::max(0.0, front - step);
 }
 
 /// Where the aim is met between two samples, as the cubic through them has it. Nothing between neighbouring doubles.
-std::optional<double> OverlapMarch::refine(const OverlapSample& outer, const OverlapSample& inner, double aim) {
+std::optional<double> OverlapMarch::refine(const OverlapSample& inner, double aim) {
+  const OverlapSample& outer = passed_.back();
   const double way = outer.s - inner.s;
   double low = 0.0, high = 1.0;
   if (++refinements_ % k_halve_every != 0) {
@@ -121,33 +130,38 @@ std::optional<double> OverlapMarch::refine(const OverlapSample& outer, const Ove
   return s;
 }
 
+/// Goes on to the outermost sample further in.
+OverlapSample OverlapMarch::pass() {
+  passed_.push_back(inner_.back());
+  inner_.pop_back();
+  return passed_.back();
+}
+
 std::optional<OverlapSample> OverlapMarch::advance(double aim) {
   refinements_ = 0;
+  approaches_ = 0;
   for (;;) {
     if (inner_.empty()) {
-      if (front_.s == 0.0) return std::nullopt;
+      if (passed_.back().s == 0.0) return std::nullopt;
       insert(next(aim));
       continue;
     }
     const OverlapSample inner = inner_.back();
     if (inner.volume <= aim + content_) {
-      if (!closed(front_, inner, aim)) {
-        insert(divide(front_, inner, aim));
+      if (const std::optional<double> s = doubt(inner, aim)) {
+        insert(*s);
         continue;
       }
-      front_ = inner;
-      inner_.pop_back();
+      pass();
       if (inner.volume >= aim - content_) return inner;
-    } else if (const std::optional<double> s = refine(front_, inner, aim)) {
+    } else if (const std::optional<double> s = refine(inner, aim)) {
       insert(*s);
     } else if (std::abs(inner.volume - aim) <= limits_.tolerance) {
       // Rounding of the volume hides what lies between neighbouring travels.
-      front_ = inner;
-      inner_.pop_back();
-      return inner;
+      return pass();
     } else {
-      throw Error(fmt::format("volume {} at travel {} and {} next to it: the aim {} is passed over", front_.volume,
-                              front_.s, inner.volume, aim));
+      throw Error(fmt::format("volume {} at travel {} and {} next to it: the aim {} is passed over",
+                              passed_.back().volume, passed_.back().s, inner.volume, aim));
     }
   }
 }

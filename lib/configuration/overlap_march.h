@@ -8,27 +8,23 @@
 
 namespace sixdof {
 
-/// The overlap at travel s.
-struct OverlapSample {
-  double s = 0.0;
-  double volume = 0.0;
-  double slope = 0.0;  ///< Derivative of the volume by the way in, -dV/ds.
-};
-
 /// Lengths and volumes in the meshes' unit.
 struct MarchLimits {
-  double resolution = 0.0;  ///< Gaps no longer than this are not looked into.
-  double tolerance = 0.0;   ///< |volume - aim| allowed in a hit; the search ends at k_content of it.
+  double resolution = 0.0;    ///< Gaps no longer than this are not looked into.
+  double tolerance = 0.0;     ///< |volume - aim| allowed in a hit; the search ends at k_content of it.
+  double first_stride = 0.0;  ///< Where to measure first, behind contact.
 };
 
 /// Walks inwards along one ray from contact, and meets aims for the first time; see VolumeGenerator.
 class OverlapMarch {
  public:
-  using Measure = std::function<OverlapSample(double s)>;
-  /// Bounds on the slopes at this travel and everywhere further out.
-  using Bounds = std::function<SlopeBounds(double s)>;
+  /// @param s where to measure
+  /// @param outer no measurement or peak will be asked for further out
+  using Measure = std::function<OverlapSample(double s, double outer)>;
+  /// The largest volume possible in a gap between two measurements.
+  using Peak = std::function<VolumePeak(const OverlapSample& outer, const OverlapSample& inner)>;
 
-  OverlapMarch(Measure measure, Bounds bounds, double contact, const MarchLimits& limits);
+  OverlapMarch(Measure measure, Peak peak, double contact, const MarchLimits& limits);
 
   /// The first hit of an aim. Aims ascend from call to call. Nothing if the volume stays below down to s = 0.
   /// @throws Error if the measurements are those of no continuous function
@@ -41,20 +37,22 @@ class OverlapMarch {
 
  private:
   void insert(double s);
-  bool closed(const OverlapSample& outer, const OverlapSample& inner, double aim) const;
-  double next(double aim) const;
-  double divide(const OverlapSample& outer, const OverlapSample& inner, double aim) const;
-  std::optional<double> refine(const OverlapSample& outer, const OverlapSample& inner, double aim);
+  OverlapSample pass();
+  double next(double aim);
+  double expected(double aim) const;
+  std::optional<double> doubt(const OverlapSample& inner, double aim) const;
+  std::optional<double> refine(const OverlapSample& inner, double aim);
 
   Measure measure_;
-  Bounds bounds_;
+  Peak peak_;
   const double contact_;
   const MarchLimits limits_;
   const double content_;
-  OverlapSample front_;               ///< No hit of the current aim further out.
-  std::vector<OverlapSample> inner_;  ///< Samples further in, the outermost last.
+  std::vector<OverlapSample> passed_;  ///< From contact on; no hit of the current aim up to the last.
+  std::vector<OverlapSample> inner_;   ///< Samples further in, the outermost last.
   int measurements_ = 0;
-  int refinements_ = 0;
+  int refinements_ = 0;  ///< Of the current aim.
+  int approaches_ = 0;   ///< Steps shorter than the resolution towards the current aim.
 };
 
 }  // namespace sixdof

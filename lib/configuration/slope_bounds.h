@@ -2,62 +2,113 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <sixdof/geometry/mesh.h>
-
-namespace sixdof {
+#include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/swept_candidates.h>
 
 /// How fast an overlap volume can change while two bodies move into each other along a line.
+namespace sixdof {
+
+/// The overlap at travel s.
+struct OverlapSample {
+  double s = 0.0;
+  double volume = 0.0;
+  double slope = 0.0;  ///< Derivative of the volume by the way in, -dV/ds.
+};
+
+/// What the slope is known to lie between.
+struct SlopeRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// The largest volume that is possible in a gap between two samples, and a place where it would be.
+struct VolumePeak {
+  double volume = 0.0;
+  double s = 0.0;
+};
+
+/// @param ranges those of the slope in parts of the gap of equal length, from the outer sample to the inner one
+VolumePeak volume_peak(const OverlapSample& outer, const OverlapSample& inner, std::span<const SlopeRange> ranges);
+
+/// Bounds the slope within a gap between two samples by what can change it.
 ///
-/// The derivative of V by the way in is the area (projected along the line) of B's leading faces inside A less that of
-/// B's trailing faces inside A; or the same with A and B exchanged. A face can be inside the other body only if it lies
-/// in the slab that both bodies' extents along the line have in common. So both parts are bounded by the projected area
-/// of all faces that reach as deep: a number per body and depth, tabulated here.
+/// The slope is the area (projected along the line) of B's leading faces inside A less that of B's trailing faces
+/// inside A; or the same with A and B exchanged. A triangle that does not touch the other surface stays inside or
+/// outside. One that does comes in through faces that look against its motion and goes out through faces that look
+/// along it: whether a pair of triangles that meet can only raise the slope or only lower it is seen from their
+/// normals. So from either end of the gap to any place in it the slope rises by at most the area of the triangles that
+/// take part in a raising pair on the way, and falls likewise.
 ///
-/// With these two bounds values at both ends of an interval bound V within it from above, which is what makes a
-/// crossing certainly the first one. They hold for meshes that do not overlap themselves.
-class ReachTable {
+/// Holds for meshes that do not overlap themselves.
+class SlopeBounds {
  public:
-  ReachTable() = default;
+  /// Parts of a gap.
+  static constexpr std::size_t k_parts = 32;
 
-  /// @param areas of all triangles: area times normal, in the mesh's frame
-  /// @param forward the direction (unit, mesh's frame) in which the body meets the other one
-  ReachTable(const Mesh& mesh, std::span<const Eigen::Vector3d> areas, const Eigen::Vector3d& forward);
+  /// @param a_count, b_count numbers of triangles
+  SlopeBounds(std::size_t a_count, std::size_t b_count) : a_(a_count), b_(b_count) {}
 
-  /// How far the body reaches forward from the centre of its box.
-  double front() const { return front_; }
-
-  /// Projected area of the faces that look forward (leading) or back (trailing) and reach into the foremost `depth` of
-  /// the body; rounded up to the next of k_bins depths.
-  double leading(double depth) const { return depth < 0.0 ? 0.0 : leading_[bin(depth)]; }
-  double trailing(double depth) const { return depth < 0.0 ? 0.0 : trailing_[bin(depth)]; }
+  /// @param swept from way in, which holds the gap
+  /// @param areas_a, areas_b area vectors of all triangles in tree order, in each mesh's own frame
+  /// @param outwards_A, outwards_B direction from which B comes (unit), in each mesh's frame
+  /// @param first, last ends of the gap as shares of the way: outer, inner
+  /// @param outer_slope, inner_slope slopes there
+  std::array<SlopeRange, k_parts> bound(const SweptCandidates& swept, std::span<const Eigen::Vector3d> areas_a,
+                                        std::span<const Eigen::Vector3d> areas_b, const Eigen::Vector3d& outwards_A,
+                                        const Eigen::Vector3d& outwards_B, double first, double last,
+                                        double outer_slope, double inner_slope);
 
  private:
-  static constexpr std::size_t k_bins = 128;
-  std::size_t bin(double depth) const;
+  using Areas = std::array<double, k_parts>;
 
-  double front_ = 0.0;
-  double bins_per_length_ = 0.0;
-  std::array<double, k_bins> leading_{};
-  std::array<double, k_bins> trailing_{};
+  /// By how much pairs change the slope, for each part of the gap: from the outer end to any place in that part, and
+  /// from there to the inner end.
+  struct Change {
+    Areas raised_since_outer{}, raised_until_inner{};
+    Areas lowered_since_outer{}, lowered_until_inner{};
+    void accumulate();
+  };
+
+  /// A triangle's parts of the gap from its first to its last pair of a kind.
+  struct Stay {
+    std::uint8_t first, last;
+    static constexpr Stay none() { return {k_parts, 0}; }
+    bool any() const { return first <= last; }
+  };
+
+  struct Mark {
+    float area;  ///< Projected.
+    std::uint32_t round = 0;
+    Stay raising, lowering;
+    std::int8_t side;  ///< 1: it looks outwards, -1: inwards, 0: too close to tell.
+  };
+
+  /// The triangles of one body that meet some triangle of the other.
+  class Body {
+   public:
+    explicit Body(std::size_t count) : marks_(count) {}
+    void clear();
+    Mark& mark(std::uint32_t triangle, std::span<const Eigen::Vector3d> areas, const Eigen::Vector3d& outwards);
+    Change change() const;
+
+   private:
+    std::vector<Mark> marks_;
+    std::vector<std::uint32_t> marked_;
+    std::uint32_t round_ = 0;
+  };
+
+  Body a_;
+  Body b_;
 };
 
-/// Area times normal of every triangle (length^2), in the mesh's frame.
-std::vector<Eigen::Vector3d> area_vectors(const Mesh& mesh);
-
-/// What the slopes of V are known to lie between while the bodies' slabs overlap by no more than some depth.
-struct SlopeBounds {
-  double rise = 0.0;  ///< V grows by at most this per length of way in.
-  double fall = 0.0;  ///< V falls by at most this per length of way in.
-
-  static SlopeBounds at(const ReachTable& a, const ReachTable& b, double depth);
-
-  /// The largest V that is possible within a way of length `way` with V = `outer` at its begin and `inner` at its end.
-  double peak(double outer, double inner, double way) const;
-};
+/// Area times normal of every triangle (length^2) in tree order, in the mesh's frame.
+std::vector<Eigen::Vector3d> area_vectors(const Tree& tree);
 
 }  // namespace sixdof

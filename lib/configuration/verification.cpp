@@ -60,8 +60,8 @@ class VolumeGauge final : public Gauge {
         solid_a_(a, tree_a_),
         solid_b_(b, tree_b_),
         query_(solid_a_, solid_b_),
-        areas_a_(area_vectors(a)),
-        areas_b_(area_vectors(b)) {}
+        areas_a_(area_vectors(tree_a_)),
+        areas_b_(area_vectors(tree_b_)) {}
   std::string name() const override { return by_columns_ ? "columns" : "exact"; }
   double measure(const ConfigurationRay& ray, double s) override {
     return by_columns_ ? overlap_volume_by_columns(a_, b_, ray.pose(s)) : query_.evaluate(ray.pose(s)).volume;

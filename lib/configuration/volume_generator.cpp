@@ -1,10 +1,8 @@
 #include <sixdof/configuration/volume_generator.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 
 #include <fmt/format.h>
@@ -16,6 +14,7 @@
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/overlap.h>
 #include <sixdof/oracle/solid.h>
+#include <sixdof/oracle/swept_candidates.h>
 
 namespace sixdof {
 namespace {
@@ -30,12 +29,16 @@ const Mesh& solid_mesh(const Mesh& mesh) {
 /// What all threads share of a pair.
 struct detail::VolumePair {
   VolumePair(const Mesh& mesh_a, const Mesh& mesh_b)
-      : a(solid_mesh(mesh_a)), b(solid_mesh(mesh_b)), tree_a(a), solid_a(a, tree_a), areas_a(area_vectors(a)) {
+      : a(solid_mesh(mesh_a)), b(solid_mesh(mesh_b)), tree_a(a), solid_a(a, tree_a), areas_a(area_vectors(tree_a)) {
     if (a.hash() == b.hash()) return;
     tree_b.emplace(b);
     solid_b.emplace(b, *tree_b);
-    areas_b = area_vectors(b);
+    areas_b = area_vectors(*tree_b);
   }
+
+  const Tree& tree_of_b() const { return tree_b ? *tree_b : tree_a; }
+  const Solid& solid_of_b() const { return solid_b ? *solid_b : solid_a; }
+  std::span<const Eigen::Vector3d> areas_of_b() const { return tree_b ? areas_b : areas_a; }
 
   const Mesh& a;
   const Mesh& b;
@@ -52,17 +55,63 @@ namespace {
 
 using detail::VolumePair;
 
+/// The overlap along one ray. Pairs of triangles that may meet are collected once for many measurements.
+class OverlapRay {
+ public:
+  explicit OverlapRay(const VolumePair& pair)
+      : pair_(pair),
+        query_(pair.solid_a, pair.solid_of_b()),
+        bounds_(pair.tree_a.corners().size(), pair.tree_of_b().corners().size()) {}
+
+  void set(const ConfigurationRay& ray) {
+    ray_ = ray;
+    outer_ = inner_ = -1.0;  // nothing is collected
+  }
+
+  OverlapSample measure(double s, double outer) {
+    if (s < inner_ || s > outer_) collect(std::max(0.0, s - k_foresight * (outer - s)), outer);
+    select_candidates(swept_, share(s), pairs_);
+    const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a, pairs_);
+    return {.s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray_.direction)};
+  }
+
+  VolumePeak peak(const OverlapSample& outer, const OverlapSample& inner) {
+    if (inner.s < inner_ || outer.s > outer_) collect(inner.s, outer.s);
+    const auto ranges =
+        bounds_.bound(swept_, pair_.areas_a, pair_.areas_of_b(), ray_.direction, ray_.R.transpose() * ray_.direction,
+                      share(outer.s), share(inner.s), outer.slope, inner.slope);
+    return volume_peak(outer, inner, ranges);
+  }
+
+ private:
+  /// Collects this much more than the way up to a measurement, for those that come after.
+  static constexpr double k_foresight = 0.1;
+
+  void collect(double inner, double outer) {
+    inner_ = inner;
+    outer_ = outer;
+    find_swept_candidates(pair_.tree_a, pair_.tree_of_b(), ray_.pose(outer), (inner - outer) * ray_.direction, swept_);
+  }
+  double share(double s) const { return outer_ > inner_ ? (outer_ - s) / (outer_ - inner_) : 0.0; }
+
+  const VolumePair& pair_;
+  OverlapQuery query_;
+  SlopeBounds bounds_;
+  ConfigurationRay ray_;
+  double outer_ = -1.0, inner_ = -1.0;  ///< Between these travels pairs are collected.
+  SweptCandidates swept_;
+  std::vector<CandidatePair> pairs_;
+};
+
 class VolumeSolver final : public RaySolver {
  public:
   VolumeSolver(const VolumePair& pair, std::unique_ptr<RaySolver> touching)
-      : pair_(pair),
-        touching_(std::move(touching)),
-        query_(pair.solid_a, pair.solid_b ? *pair.solid_b : pair.solid_a),
-        touching_aim_(distance_bucket(pair.a, 0).aim) {}
+      : pair_(pair), touching_(std::move(touching)), overlap_(pair), touching_aim_(distance_bucket(pair.a, 0).aim) {}
 
   void set_rotation(const Eigen::Vector4d& rotation) override {
     ray_ = ConfigurationRay(pair_.a, pair_.b, rotation);
     touching_->set_rotation(rotation);
+    first_stride_ = k_first_stride * std::min(pair_.a.diagonal(), pair_.b.diagonal());
   }
 
   void solve(const Eigen::Vector3d& direction, std::span<const double> aims, std::span<double> travel,
@@ -79,42 +128,37 @@ class VolumeSolver final : public RaySolver {
     const double most = std::min(pair_.a.volume(), pair_.b.volume());
     if (k == aims.size() || aims[k] > most) return;
 
-    const ReachTable& reach_a = reach_of_a(direction);
-    const ReachTable reach_b(pair_.b, pair_.solid_b ? pair_.areas_b : pair_.areas_a, -(ray_.R.transpose() * direction));
-    const auto measure = [&](double s) {
-      const Overlap overlap = query_.evaluate(ray_.pose(s));
-      return OverlapSample{.s = s, .volume = overlap.volume, .slope = -overlap.area.dot(direction)};
-    };
+    overlap_.set(ray_);
     OverlapMarch march(
-        measure, [&](double s) { return SlopeBounds::at(reach_a, reach_b, reach_a.front() + reach_b.front() - s); },
-        contact,
+        [&](double s, double outer) { return overlap_.measure(s, outer); },
+        [&](const OverlapSample& outer, const OverlapSample& inner) { return overlap_.peak(outer, inner); }, contact,
         {.resolution = k_first_overlap_resolution * std::min(pair_.a.diagonal(), pair_.b.diagonal()),
-         .tolerance = k_volume_tolerance * pair_.a.volume()});
+         .tolerance = k_volume_tolerance * pair_.a.volume(),
+         .first_stride = first_stride_});
+    const std::size_t first = k;
     for (; k < aims.size() && aims[k] <= most; ++k) {
       const std::optional<OverlapSample> hit = march.advance(aims[k]);
       if (!hit) break;
       travel[k] = hit->s;
       residuals[k] = std::abs(hit->volume - aims[k]);
     }
+    if (k > first) first_stride_ = contact - travel[first];
     measurements_ += static_cast<std::uint64_t>(march.measurements());
   }
 
   std::uint64_t measurements() const override { return measurements_; }
 
  private:
-  /// Directions come again with every rotation.
-  const ReachTable& reach_of_a(const Eigen::Vector3d& u) {
-    const auto [place, fresh] = reach_of_a_.try_emplace({u.x(), u.y(), u.z()});
-    if (fresh) place->second = ReachTable(pair_.a, pair_.areas_a, u);
-    return place->second;
-  }
+  /// Where a rotation's first direction is measured first, in units of the smaller box's diagonal; the others begin
+  /// where the direction before them met its first aim.
+  static constexpr double k_first_stride = 0.02;
 
   const VolumePair& pair_;
   std::unique_ptr<RaySolver> touching_;
-  OverlapQuery query_;
+  OverlapRay overlap_;
   double touching_aim_;
   ConfigurationRay ray_;
-  std::map<std::array<double, 3>, ReachTable> reach_of_a_;
+  double first_stride_ = 0.0;
   std::uint64_t measurements_ = 0;
 };
 

@@ -23,15 +23,21 @@ BucketSummary volume_bucket(const Mesh& a, int percent);
 
 /// Finds the travel at which B, coming from outside, overlaps A by a volume for the first time.
 ///
-/// V need not grow monotonically on the way in. From a sample with V below the aim the search goes inwards by whichever
-/// is longer: the way that V surely needs to reach the aim (its slope is bounded, see slope_bounds.h), or the way that
-/// V would need if it went on growing as a power of the way since contact. The oracle's exact derivative makes the
-/// latter good and the last steps cubic. Samples further in serve the next aims. An aim counts as met only if no gap
-/// between samples on the way there can hide an earlier hit: slopes bound V within a gap; where they do not suffice,
-/// the gap is halved, down to k_first_overlap_resolution.
+/// V need not grow monotonically on the way in. The search goes inwards to where the samples so far foresee the aim
+/// (overlap_march.h); the oracle's exact derivative makes that good and the last steps cubic. Samples further in serve
+/// the next aims. An aim counts as met only if no gap between samples on the way there can hide an earlier hit: what
+/// the triangles that meet within a gap can do to the slope bounds V there (slope_bounds.h). Where that does not
+/// suffice, the gap is divided, down to k_first_overlap_resolution.
+///
+/// The triangles that may meet are collected once for each stretch of the way (swept_candidates.h) and serve all
+/// measurements and bounds on it. A ray takes about three measurements per aim.
 ///
 /// What is not found: V passing the aim and falling below it again within that length of travel, where the bounds
 /// allow it at all; and, in meshes that overlap themselves, the same within longer ways.
+///
+/// Results depend on the rotation and the directions since set_rotation() alone: a ray is first measured as far behind
+/// contact as the ray before it met its first aim. The same bits for every number of threads and on every instruction
+/// set.
 class VolumeGenerator {
  public:
   /// @param touching finds where the surfaces meet first

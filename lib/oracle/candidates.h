@@ -31,7 +31,7 @@ struct CandidatePair {
 };
 
 /// Finds all pairs of triangles of A and placed B that may meet: never misses a pair that meets in the sense of
-/// crossing.h, reports few that do not. Which of those depends on the instruction set; the order of the pairs does not.
+/// crossing.h, reports few that do not. The same pairs in the same order on every instruction set.
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<CandidatePair>& pairs);
 
 /// Finds all triangles of the tree whose boxes meet `box` (in the mesh's frame), up to rounding outwards.

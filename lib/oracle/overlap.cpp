@@ -153,6 +153,14 @@ int OverlapQuery::winding_of_a(const Pose& X_AB, const Vector3d& p_B) {
 }
 
 Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference) {
+  pairs_.clear();
+  if (X_AB.R.allFinite() && X_AB.t.allFinite() && !apart(*a_, *b_, X_AB)) {
+    find_candidates(a_->tree(), b_->tree(), X_AB, pairs_);
+  }
+  return evaluate(X_AB, reference, pairs_);
+}
+
+Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std::span<const CandidatePair> pairs) {
   if (!X_AB.R.allFinite() || !X_AB.t.allFinite() || !reference.allFinite()) {
     throw BadArgument("overlap: pose and reference point must be finite");
   }
@@ -167,8 +175,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference) {
   SurfacePart part_b(*b_, origin_B);
   Vector3d area = Vector3d::Zero();    // twice
   Vector3d moment = Vector3d::Zero();  // minus six times, about the origin
-  find_candidates(a_->tree(), b_->tree(), X_AB, pairs_);
-  for (const CandidatePair& pair : pairs_) {
+  for (const CandidatePair& pair : pairs) {
     const OrderedTriangle a = ordered(a_->tree().corners()[pair.a], a_->order(pair.a));
     OrderedTriangle b = ordered(b_->tree().corners()[pair.b], b_->order(pair.b));
     for (Vector3d& c : b.corner) c = place(X_AB, c);

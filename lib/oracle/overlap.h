@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -55,6 +56,9 @@ class OverlapQuery {
   /// @param reference the point (A's frame) about which the moment is taken.
   /// @throws BadArgument if the pose is not finite.
   Overlap evaluate(const Pose& X_AB, const Eigen::Vector3d& reference);
+
+  /// The same bits from the pairs of triangles that may meet, in the order of find_candidates() and any more of them.
+  Overlap evaluate(const Pose& X_AB, const Eigen::Vector3d& reference, std::span<const CandidatePair> pairs);
 
   /// About the centre of B's bounding box.
   Overlap evaluate(const Pose& X_AB) { return evaluate(X_AB, X_AB * b_->mesh().center()); }
