@@ -13,6 +13,7 @@
 #include <sixdof/bench/cli/algorithms.h>
 #include <sixdof/bench/cli/generate.h>
 #include <sixdof/bench/cli/info.h>
+#include <sixdof/bench/cli/merge.h>
 #include <sixdof/bench/cli/models.h>
 #include <sixdof/bench/cli/quality.h>
 #include <sixdof/bench/cli/query.h>
@@ -39,6 +40,7 @@ void add_commands(CLI::App& app) {
   add_show_command(app);
   add_table_command(app);
   add_generate_command(app);
+  add_merge_command(app);
   add_verify_command(app);
 }
 

@@ -1,8 +1,7 @@
 #include <sixdof/bench/cli/generate.h>
 
 #include <charconv>
-#include <chrono>
-#include <filesystem>
+#include <cstddef>
 #include <memory>
 #include <set>
 #include <string>
@@ -12,26 +11,29 @@
 #include <sixdof/base/error.h>
 #include <sixdof/bench/algorithms.h>
 #include <sixdof/bench/cli/distance_source_argument.h>
-#include <sixdof/bench/cli/interrupt.h>
-#include <sixdof/bench/cli/progress_line.h>
+#include <sixdof/bench/cli/generate_shards.h>
+#include <sixdof/bench/cli/program_version.h>
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/distance_generator.h>
+#include <sixdof/configuration/generation_job.h>
 #include <sixdof/configuration/ray_cast.h>
 #include <sixdof/configuration/sphere_method.h>
-#include <sixdof/configuration/volume_generator.h>
 #include <sixdof/models/zoo.h>
 
 namespace sixdof::cli {
 namespace {
 
+constexpr int k_most_shards = 1'000'000;
 const std::string k_default_oracle = "fcl-rss";
 
 struct Arguments {
   std::string a, b, grid, output;
   std::string distances, volumes;
   std::string method, oracle;  // empty: not given
+  std::string volume_grid;     // empty: not given
   unsigned threads = 0;
-  bool plan = false;
+  std::size_t shards = 0, shard = 0;  // 0: not given
+  bool plan = false, resume = false, progress = false;
 };
 
 int parse_percent(std::string_view list, std::string_view text) {
@@ -68,13 +70,36 @@ std::unique_ptr<DistanceGenerator> make_generator(const Arguments& arguments, co
       distance_source_argument(registry, arguments.oracle.empty() ? k_default_oracle : arguments.oracle));
 }
 
-void generate(const Arguments& arguments) {
+/// The grids of a job, still without meshes.
+SetDescription describe(const Arguments& arguments, const std::vector<int>& distances,
+                        const std::vector<int>& volumes) {
   if (arguments.grid.empty()) throw BadArgument("--grid is needed");
-  const Grid grid = make_grid(arguments.grid);
+  // The paper has a coarser grid for volumes.
+  const std::string volume_grid = !arguments.volume_grid.empty() ? arguments.volume_grid
+                                  : arguments.grid == "paper"    ? "paper-volume"
+                                                                 : arguments.grid;
+  SetDescription set;
+  set.generator_version = SIXDOF_VERSION;
+  set.grid = make_grid(distances.empty() ? volume_grid : arguments.grid);
+  if (distances.empty() || volumes.empty()) return set;
+  Grid other = make_grid(volume_grid);
+  if (other.spec != set.grid.spec) set.volume_grid = std::move(other);
+  return set;
+}
+
+void check_shards(const Arguments& arguments) {
+  if (arguments.shards == 0 && (arguments.shard != 0 || arguments.resume)) {
+    throw BadArgument("--shard and --resume go with --shards N");
+  }
+}
+
+void generate(const Arguments& arguments) {
+  check_shards(arguments);
   const bool all_distances = arguments.distances.empty() && arguments.volumes.empty();
   const std::vector<int> distances = parse_list(all_distances ? "0:30" : arguments.distances);
   const std::vector<int> volumes = parse_list(arguments.volumes);
-  if (arguments.plan) return print_plan(grid, distances.size() + volumes.size());
+  SetDescription set = describe(arguments, distances, volumes);
+  if (arguments.plan) return print_plan(set.grid, distances.size() + volumes.size());
   if (arguments.a.empty() || arguments.output.empty()) throw BadArgument("--a and -o are needed (or --plan)");
 
   Registry registry;
@@ -82,39 +107,20 @@ void generate(const Arguments& arguments) {
   const auto generator = make_generator(arguments, registry);
   const Mesh a = load_model(arguments.a);
   const Mesh b = arguments.b.empty() || arguments.b == arguments.a ? a : load_model(arguments.b);
-
-  const InterruptGuard interruptible;
-  // Opened before the work, so that a folder that is missing or full is known before hours have passed.
-  ConfigurationSetWriter writer(
-      arguments.output,
-      {.generator_version = SIXDOF_VERSION, .a = MeshStamp::of(a), .b = MeshStamp::of(b), .grid = grid});
-  GenerateOptions options;
-  options.threads = arguments.threads;
-  options.cancelled = [] { return InterruptGuard::requested(); };
-  const auto start = std::chrono::steady_clock::now();
-  // One pass for each kind: sets with volumes alone are common, the paper's grids for the two differ.
-  const auto make = [&](const char* what, const std::vector<int>& percents, auto generate_buckets) -> std::uint64_t {
-    if (percents.empty()) return 0;
-    Generated result;
-    {
-      ProgressLine line(what);
-      options.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); };
-      result = generate_buckets(*generator, a, b, grid, percents, options);
-    }
-    for (const GeneratedBucket& bucket : result.buckets) {
-      InterruptGuard::check();
-      writer.write(bucket.summary, bucket.travel);
-    }
-    return result.measurements;
-  };
-  const std::uint64_t distance_measurements = make("distances", distances, generate_distances);
-  const std::uint64_t volume_measurements = make("volumes", volumes, generate_volumes);
-  writer.commit();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fmt::print("{}: {} configurations of {} with {} in {} ({} measurements of the distance by {} {}, {} of the volume)\n",
-             arguments.output, grid.configurations() * (distances.size() + volumes.size()), a.name(), b.name(),
-             as_clock(seconds), distance_measurements, generator->oracle_name(), generator->oracle_version(),
-             volume_measurements);
+  set.a = MeshStamp::of(a);
+  set.b = MeshStamp::of(b);
+  const auto job = GenerationJob::of(program_version(), *generator, a, b, set, distances, volumes);
+  const GenerationWork work{.generator = *generator,
+                            .a = a,
+                            .b = b,
+                            .set = set,
+                            .job = job,
+                            .threads = arguments.threads,
+                            .progress = arguments.progress};
+  if (arguments.shards == 0) return generate_set(work, arguments.output);
+  generate_shards(
+      work,
+      {.folder = arguments.output, .count = arguments.shards, .only = arguments.shard, .resume = arguments.resume});
 }
 
 }  // namespace
@@ -154,7 +160,18 @@ void add_generate_command(CLI::App& app) {
       "What --method advance measures with: brute-force, or an algorithm with exact distances (default " +
           k_default_oracle + ")");
   command->add_option("--threads", arguments->threads, "0: as many as the machine has")->capture_default_str();
-  command->add_option("-o,--output", arguments->output, "The set (HDF5); replaced if it exists");
+  command->add_option("--volume-grid", arguments->volume_grid,
+                      "Grid of the volumes; that of the distances if left out, but paper-volume with --grid paper");
+  command->add_option("-o,--output", arguments->output,
+                      "The set (HDF5); replaced if it exists. With --shards a folder, made if missing");
+  command
+      ->add_option("--shards", arguments->shards,
+                   "Cut the work into N files of equal size, which sixdof merge makes a set of")
+      ->check(CLI::Range(1, k_most_shards));
+  command->add_option("--shard", arguments->shard, "Make only this one, 1 to N; all in turn if left out")
+      ->check(CLI::Range(1, k_most_shards));
+  command->add_flag("--resume", arguments->resume, "Keep shards that are there and sound, make the others");
+  command->add_flag("--progress", arguments->progress, "Show progress where stderr is no terminal, too");
   command->add_flag("--plan", arguments->plan, "Only print what would be made");
   command->callback([arguments] { generate(*arguments); });
 }

@@ -14,27 +14,37 @@ std::string as_clock(double seconds) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-ProgressLine::ProgressLine(std::string what) : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1) {}
+StatusLine::StatusLine(bool always) : terminal_(::isatty(STDERR_FILENO) == 1), visible_(terminal_ || always) {}
 
-ProgressLine::~ProgressLine() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+StatusLine::~StatusLine() {
+  if (shown_ && terminal_) fmt::print(stderr, "\r\033[K");
 }
 
-void ProgressLine::show(std::uint64_t done, std::uint64_t total) {
-  if (!terminal_) return;
-  const Clock::time_point now = Clock::now();
-  if (shown_ && now - last_ < std::chrono::milliseconds(200)) return;
-  last_ = now;
+bool StatusLine::due() const {
+  const auto pause = terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(10'000);
+  return visible_ && (!shown_ || Clock::now() - last_ >= pause);
+}
+
+void StatusLine::show(const std::string& text) {
+  if (!due()) return;
+  last_ = Clock::now();
   shown_ = true;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  std::string line = fmt::format("\r\033[K{} {}/{}", what_, done, total);
+  fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "", text, terminal_ ? "" : "\n");
+  std::fflush(stderr);
+}
+
+ProgressLine::ProgressLine(std::string what, bool always) : line_(always), what_(std::move(what)) {}
+
+void ProgressLine::show(std::uint64_t done, std::uint64_t total) {
+  if (!line_.due()) return;
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
+  std::string line = fmt::format("{} {}/{}", what_, done, total);
   if (done > 0 && total > 0 && elapsed > 0.0) {
     const double rate = static_cast<double>(done) / elapsed;
     line += fmt::format(" ({} %), {:.1f}/s, {} left", done * 100 / total, rate,
                         as_clock(static_cast<double>(total - done) / rate));
   }
-  fmt::print(stderr, "{}", line);
-  std::fflush(stderr);
+  line_.show(line);
 }
 
 }  // namespace sixdof::cli

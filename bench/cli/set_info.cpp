@@ -29,6 +29,12 @@ void print_json(const ConfigurationSet& set) {
                                  {"configurations_per_bucket", d.grid.configurations()},
                                  {"a", as_json(d.a)},
                                  {"b", as_json(d.b)}};
+  if (d.volume_grid) {
+    json["volume_grid"] = {{"grid", d.volume_grid->spec},
+                           {"directions", d.volume_grid->directions.size()},
+                           {"rotations", d.volume_grid->rotations.size()},
+                           {"configurations_per_bucket", d.volume_grid->configurations()}};
+  }
   auto buckets = nlohmann::ordered_json::array();
   for (const BucketSummary& bucket : set.buckets()) {
     buckets.push_back({{"bucket", bucket.key.name()},
@@ -45,6 +51,11 @@ void print_json(const ConfigurationSet& set) {
   fmt::print("{}\n", json.dump(2));
 }
 
+void print_grid(const char* label, const Grid& grid) {
+  fmt::print("{:<18} {} ({}): {} directions x {} rotations = {} configurations per bucket\n", label, grid.spec,
+             grid.sampler, grid.directions.size(), grid.rotations.size(), grid.configurations());
+}
+
 void print_text(const ConfigurationSet& set) {
   const SetDescription& d = set.description();
   fmt::print("configuration set  {}\n", set.path().string());
@@ -54,8 +65,8 @@ void print_text(const ConfigurationSet& set) {
     fmt::print("{:<18} {}: {} triangles, box diagonal {:.6g}, volume {:.6g}, content hash {}\n", label, mesh->name,
                mesh->triangles, mesh->diagonal(), mesh->volume, mesh->hash);
   }
-  fmt::print("grid               {} ({}): {} directions x {} rotations = {} configurations per bucket\n", d.grid.spec,
-             d.grid.sampler, d.grid.directions.size(), d.grid.rotations.size(), d.grid.configurations());
+  print_grid(d.volume_grid ? "grid of distances" : "grid", d.grid);
+  if (d.volume_grid) print_grid("grid of volumes", *d.volume_grid);
   fmt::print("\n{:<13} {:>14} {:>10} {:>14} {:>10}  {}\n", "bucket", "target", "tolerance", "largest resid.",
              "reachable", "oracle");
   for (const BucketSummary& bucket : set.buckets()) {

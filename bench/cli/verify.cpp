@@ -56,7 +56,7 @@ void verify(const Arguments& arguments) {
                           .cancelled = [] { return InterruptGuard::requested(); }});
   }
   fmt::print("{}: {} with {}, grid {}, distances by {} {}, seed {}\n", arguments.file, set.description().a.name,
-             set.description().b.name, set.grid().spec, oracle->name(), oracle->version(), arguments.seed);
+             set.description().b.name, set.grid(BucketKind::distance).spec, oracle->name(), oracle->version(), arguments.seed);
   print_table(verdict);
   for (const std::string& problem : verdict.problems) fmt::print("{}\n", problem);
   if (!verdict.ok()) throw Error(fmt::format("{}: verification failed", arguments.file));

@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 
@@ -16,6 +18,10 @@ namespace {
 std::filesystem::path directory_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
+
+constexpr std::string_view k_partial = ".partial";
+
+std::string temporary_prefix(const std::filesystem::path& target) { return "." + target.filename().string() + "."; }
 
 /// Flushes a file or directory to the disk; returns errno, 0 on success.
 int flush_to_disk(const std::filesystem::path& path, int flags) {
@@ -37,8 +43,8 @@ AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)
   if (::access(directory.c_str(), W_OK) != 0) {
     throw BadFile(target_.string(), "cannot be written: " + std::string(std::strerror(errno)));
   }
-  temporary_ = directory / ("." + target_.filename().string() + "." + std::to_string(::getpid()) + "." +
-                            std::to_string(counter++) + ".partial");
+  temporary_ = directory / (temporary_prefix(target_) + std::to_string(::getpid()) + "." + std::to_string(counter++) +
+                            std::string(k_partial));
 }
 
 AtomicFile::~AtomicFile() {
@@ -57,6 +63,21 @@ void AtomicFile::commit() {
   committed_ = true;
   // The rename is durable once the directory is; a file system that cannot flush a directory still has the whole file.
   flush_to_disk(directory_of(target_), O_RDONLY | O_DIRECTORY);
+}
+
+void remove_stale_partials(const std::filesystem::path& target) {
+  const std::string start = temporary_prefix(target);
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(directory_of(target), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(start) || !name.ends_with(k_partial)) continue;
+    pid_t writer = 0;
+    const char* const digits = name.data() + start.size();
+    const auto [end, error] = std::from_chars(digits, name.data() + name.size(), writer);
+    if (error != std::errc() || *end != '.' || writer <= 0) continue;
+    if (::kill(writer, 0) == 0 || errno != ESRCH) continue;
+    std::filesystem::remove(entry.path(), ignored);
+  }
 }
 
 void write_file_atomically(const std::filesystem::path& target, std::string_view content) {

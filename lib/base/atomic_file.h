@@ -30,6 +30,10 @@ class AtomicFile {
   bool committed_ = false;
 };
 
+/// Removes temporary files that writers of `target` left when they were killed. Those of processes that live on this
+/// machine stay; a writer on another machine would lose its file and fail in commit(), so a target has one writer.
+void remove_stale_partials(const std::filesystem::path& target);
+
 /// Writes `content` to `target`, whole or not at all. @throws BadFile
 void write_file_atomically(const std::filesystem::path& target, std::string_view content);
 

@@ -10,162 +10,35 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/base/hash.h>
 #include <sixdof/base/hdf5.h>
+#include <sixdof/configuration/set_fields.h>
 
 namespace sixdof {
 namespace {
 
 constexpr const char* k_format = "sixdof-configuration-set";
-constexpr std::uint64_t k_format_version = 1;
-constexpr std::size_t k_chunk_bytes = std::size_t{1} << 20;  ///< HDF5's chunk cache of 1 MiB holds one.
+/// Version 2 is version 1 plus a grid of their own for volumes. Sets with one grid stay version 1.
+constexpr std::uint64_t k_one_grid = 1;
+constexpr std::uint64_t k_two_grids = 2;
+constexpr const char* k_volume_grid = "volume_grid";
 
-std::string_view to_string(BucketKind kind) { return kind == BucketKind::distance ? "distance" : "volume"; }
+std::uint64_t format_version(const SetDescription& set) { return set.volume_grid ? k_two_grids : k_one_grid; }
 
-/// Hash of a sequence of named fields; lengths are part of it, so that no two sequences run into one another.
-class FieldHash {
- public:
-  void add(std::string_view text) {
-    const std::array<std::uint64_t, 1> size{text.size()};
-    hash_.add_values(std::span<const std::uint64_t>(size));
-    hash_.add(std::as_bytes(std::span(text)));
-  }
-  void add(std::span<const double> values) {
-    const std::array<std::uint64_t, 1> size{values.size()};
-    hash_.add_values(std::span<const std::uint64_t>(size));
-    hash_.add_values(values);
-  }
-  void add(double value) { add(std::span<const double>(&value, 1)); }
-  void add(std::uint64_t value) { hash_.add_values(std::span<const std::uint64_t>(&value, 1)); }
-  void add(const MeshStamp& mesh) {
-    add(mesh.name);
-    add(mesh.hash);
-    add(mesh.triangles);
-    add(std::span<const double>(mesh.box_min.data(), 3));
-    add(std::span<const double>(mesh.box_max.data(), 3));
-    add(mesh.volume);
-  }
-  std::string hex() const { return hash_.hex(); }
-
- private:
-  ContentHash hash_;
-};
-
-std::span<const double> values_of(const std::vector<Eigen::Vector3d>& directions) {
-  return {directions.front().data(), 3 * directions.size()};
-}
-
-std::span<const double> values_of(const std::vector<Eigen::Vector4d>& rotations) {
-  return {rotations.front().data(), 4 * rotations.size()};
-}
-
-std::string hash_of(std::span<const double> values) {
-  FieldHash hash;
-  hash.add(values);
-  return hash.hex();
+void check_grid(const Grid& grid) {
+  if (grid.directions.empty() || grid.rotations.empty()) throw BadArgument("a configuration set needs a grid");
 }
 
 std::string hash_of(const SetDescription& set, const std::vector<BucketSummary>& buckets) {
-  FieldHash hash;
+  detail::FieldHash hash;
   hash.add(k_format);
-  hash.add(k_format_version);
+  hash.add(format_version(set));
   hash.add(set.generator_version);
   hash.add(set.a);
   hash.add(set.b);
-  hash.add(set.grid.spec);
-  hash.add(set.grid.sampler);
-  hash.add(set.grid.direction_step_degrees);
-  hash.add(set.grid.rotation_step_degrees);
-  hash.add(values_of(set.grid.directions));
-  hash.add(values_of(set.grid.rotations));
-  for (const BucketSummary& bucket : buckets) {
-    hash.add(bucket.key.name());
-    hash.add(bucket.target);
-    hash.add(bucket.aim);
-    hash.add(bucket.tolerance);
-    hash.add(bucket.largest_residual);
-    hash.add(bucket.reachable);
-    hash.add(bucket.oracle);
-    hash.add(bucket.oracle_version);
-    hash.add(bucket.hash);
-  }
+  hash.add(set.grid);
+  if (set.volume_grid) hash.add(*set.volume_grid);
+  for (const BucketSummary& bucket : buckets) hash.add(bucket);
   return hash.hex();
-}
-
-void write_stamp(hdf5::File& file, const std::string& group, const MeshStamp& mesh) {
-  file.make_group(group);
-  file.write_attribute(group, "name", mesh.name);
-  file.write_attribute(group, "content_hash", mesh.hash);
-  file.write_attribute(group, "triangles", mesh.triangles);
-  file.write_attribute(group, "volume", mesh.volume);
-  std::array<double, 6> box{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    box[i] = mesh.box_min[static_cast<Eigen::Index>(i)];
-    box[3 + i] = mesh.box_max[static_cast<Eigen::Index>(i)];
-  }
-  file.write_matrix(group + "/box", box.data(), 2, 3, 0);
-}
-
-MeshStamp read_stamp(const hdf5::File& file, const std::string& name, const std::string& group) {
-  MeshStamp mesh;
-  mesh.name = file.read_string(group, "name");
-  mesh.hash = file.read_string(group, "content_hash");
-  mesh.triangles = file.read_count(group, "triangles");
-  mesh.volume = file.read_number(group, "volume");
-  const std::string box_name = group + "/box";
-  if (file.matrix_size(box_name) != std::pair<std::size_t, std::size_t>(2, 3)) {
-    throw BadFile(name, box_name, "is not 2 x 3");
-  }
-  const std::vector<double> box = file.read_matrix(box_name);
-  mesh.box_min = {box[0], box[1], box[2]};
-  mesh.box_max = {box[3], box[4], box[5]};
-  return mesh;
-}
-
-template <int size>
-std::vector<Eigen::Matrix<double, size, 1>> read_vectors(const hdf5::File& file, const std::string& name,
-                                                         const std::string& object) {
-  const auto [rows, columns] = file.matrix_size(object);
-  if (columns != size || rows == 0 || rows > k_max_grid_samples) {
-    throw BadFile(name, object, fmt::format("is {} x {}, not n x {}", rows, columns, size));
-  }
-  const std::vector<double> values = file.read_matrix(object);
-  std::vector<Eigen::Matrix<double, size, 1>> vectors(rows);
-  for (std::size_t i = 0; i < rows; ++i) {
-    vectors[i] = Eigen::Map<const Eigen::Matrix<double, size, 1>>(&values[i * size]);
-  }
-  return vectors;
-}
-
-void write_summary(hdf5::File& file, const BucketSummary& bucket) {
-  const std::string object = bucket.key.name();
-  file.write_attribute(object, "target_percent", static_cast<std::uint64_t>(bucket.key.percent));
-  file.write_attribute(object, "target", bucket.target);
-  file.write_attribute(object, "aim", bucket.aim);
-  file.write_attribute(object, "tolerance", bucket.tolerance);
-  file.write_attribute(object, "largest_residual", bucket.largest_residual);
-  file.write_attribute(object, "reachable", bucket.reachable);
-  file.write_attribute(object, "oracle", bucket.oracle);
-  file.write_attribute(object, "oracle_version", bucket.oracle_version);
-  file.write_attribute(object, "content_hash", bucket.hash);
-}
-
-BucketSummary read_summary(const hdf5::File& file, BucketKey key) {
-  const std::string object = key.name();
-  return {.key = key,
-          .target = file.read_number(object, "target"),
-          .aim = file.read_number(object, "aim"),
-          .tolerance = file.read_number(object, "tolerance"),
-          .largest_residual = file.read_number(object, "largest_residual"),
-          .reachable = file.read_count(object, "reachable"),
-          .oracle = file.read_string(object, "oracle"),
-          .oracle_version = file.read_string(object, "oracle_version"),
-          .hash = file.read_string(object, "content_hash")};
-}
-
-std::uint64_t count_reachable(std::span<const double> travel) {
-  return static_cast<std::uint64_t>(
-      std::count_if(travel.begin(), travel.end(), [](double s) { return !std::isnan(s); }));
 }
 
 void check_mesh(const std::filesystem::path& file, char which, const MeshStamp& stamp, const Mesh& mesh) {
@@ -177,6 +50,8 @@ void check_mesh(const std::filesystem::path& file, char which, const MeshStamp& 
 }
 
 }  // namespace
+
+std::string to_string(BucketKind kind) { return kind == BucketKind::distance ? "distance" : "volume"; }
 
 std::string BucketKey::name() const { return fmt::format("{}/{:02}", to_string(kind), percent); }
 
@@ -217,24 +92,23 @@ struct ConfigurationSetWriter::State {
 };
 
 ConfigurationSetWriter::ConfigurationSetWriter(std::filesystem::path path, SetDescription description) {
-  const Grid& grid = description.grid;
-  if (grid.directions.empty() || grid.rotations.empty()) throw BadArgument("a configuration set needs a grid");
+  check_grid(description.grid);
+  if (description.volume_grid) check_grid(*description.volume_grid);
   state_ = std::make_unique<State>(std::move(path), std::move(description));
   const SetDescription& set = state_->description;
   const hdf5::Session session;
   state_->file = std::make_unique<hdf5::File>(hdf5::File::create(state_->atomic.temporary_path(), state_->path));
   hdf5::File& file = *state_->file;
   file.write_attribute("/", "format", std::string(k_format));
-  file.write_attribute("/", "format_version", k_format_version);
+  file.write_attribute("/", "format_version", format_version(set));
   file.write_attribute("/", "generator_version", set.generator_version);
-  file.write_attribute("/", "grid", set.grid.spec);
-  file.write_attribute("/", "sampler", set.grid.sampler);
-  file.write_attribute("/", "direction_step_degrees", set.grid.direction_step_degrees);
-  file.write_attribute("/", "rotation_step_degrees", set.grid.rotation_step_degrees);
-  write_stamp(file, "mesh_a", set.a);
-  write_stamp(file, "mesh_b", set.b);
-  file.write_matrix("directions", values_of(set.grid.directions).data(), set.grid.directions.size(), 3, 0);
-  file.write_matrix("rotations", values_of(set.grid.rotations).data(), set.grid.rotations.size(), 4, 0);
+  detail::write_grid(file, "/", set.grid);
+  if (set.volume_grid) {
+    file.make_group(k_volume_grid);
+    detail::write_grid(file, k_volume_grid, *set.volume_grid);
+  }
+  detail::write_stamp(file, "mesh_a", set.a);
+  detail::write_stamp(file, "mesh_b", set.b);
   file.make_group("distance");
   file.make_group("volume");
 }
@@ -246,7 +120,7 @@ ConfigurationSetWriter::~ConfigurationSetWriter() {
 }
 
 void ConfigurationSetWriter::write(BucketSummary summary, std::span<const double> travel) {
-  const Grid& grid = state_->description.grid;
+  const Grid& grid = state_->description.grid_of(summary.key.kind);
   const std::string name = summary.key.name();
   BucketKey::parse(name);
   for (const BucketSummary& other : state_->buckets) {
@@ -259,12 +133,12 @@ void ConfigurationSetWriter::write(BucketSummary summary, std::span<const double
   for (const double s : travel) {
     if (std::isinf(s) || s < 0.0) throw BadArgument(fmt::format("bucket {}: travel {}", name, s));
   }
-  summary.reachable = count_reachable(travel);
-  summary.hash = hash_of(travel);
-  const std::size_t chunk_rows = std::max<std::size_t>(1, k_chunk_bytes / (sizeof(double) * grid.directions.size()));
+  summary.reachable = detail::count_reachable(travel);
+  summary.hash = detail::hash_of(travel);
   const hdf5::Session session;
-  state_->file->write_matrix(name, travel.data(), grid.rotations.size(), grid.directions.size(), chunk_rows);
-  write_summary(*state_->file, summary);
+  state_->file->write_matrix(name, travel.data(), grid.rotations.size(), grid.directions.size(),
+                             detail::chunk_rows(grid.directions.size()));
+  detail::write_summary(*state_->file, summary);
   state_->buckets.push_back(std::move(summary));
 }
 
@@ -283,33 +157,25 @@ ConfigurationSet::ConfigurationSet(std::filesystem::path path) : path_(std::move
   const hdf5::File file = hdf5::File::open(path_);
   if (file.read_string("/", "format") != k_format) throw BadFile(name, "root", "is not a sixdof configuration set");
   const std::uint64_t version = file.read_count("/", "format_version");
-  if (version != k_format_version) {
-    throw BadFile(name, "root",
-                  fmt::format("is of format version {}; this build reads version {}", version, k_format_version));
+  if (version != k_one_grid && version != k_two_grids) {
+    throw BadFile(
+        name, "root",
+        fmt::format("is of format version {}; this build reads versions {} and {}", version, k_one_grid, k_two_grids));
   }
   description_.generator_version = file.read_string("/", "generator_version");
-  description_.a = read_stamp(file, name, "mesh_a");
-  description_.b = read_stamp(file, name, "mesh_b");
-  Grid& grid = description_.grid;
-  grid.spec = file.read_string("/", "grid");
-  grid.sampler = file.read_string("/", "sampler");
-  grid.direction_step_degrees = file.read_number("/", "direction_step_degrees");
-  grid.rotation_step_degrees = file.read_number("/", "rotation_step_degrees");
-  grid.directions = read_vectors<3>(file, name, "directions");
-  grid.rotations = read_vectors<4>(file, name, "rotations");
-  for (const BucketKind kind : {BucketKind::distance, BucketKind::volume}) {
-    if (!file.exists(std::string(to_string(kind)))) continue;
-    for (int percent = 0; percent <= BucketKey::k_max_percent; ++percent) {
-      const BucketKey key{kind, percent};
-      if (!file.exists(key.name())) continue;
-      const auto [rows, columns] = file.matrix_size(key.name());
-      if (rows != grid.rotations.size() || columns != grid.directions.size()) {
-        throw BadFile(name, key.name(),
-                      fmt::format("is {} x {}, not {} rotations x {} directions", rows, columns, grid.rotations.size(),
-                                  grid.directions.size()));
-      }
-      buckets_.push_back(read_summary(file, key));
+  description_.a = detail::read_stamp(file, path_, "mesh_a");
+  description_.b = detail::read_stamp(file, path_, "mesh_b");
+  description_.grid = detail::read_grid(file, path_, "/");
+  if (version == k_two_grids) description_.volume_grid = detail::read_grid(file, path_, k_volume_grid);
+  for (const BucketKey key : detail::bucket_keys(file)) {
+    const Grid& grid = description_.grid_of(key.kind);
+    const auto [rows, columns] = file.matrix_size(key.name());
+    if (rows != grid.rotations.size() || columns != grid.directions.size()) {
+      throw BadFile(name, key.name(),
+                    fmt::format("is {} x {}, not {} rotations x {} directions", rows, columns, grid.rotations.size(),
+                                grid.directions.size()));
     }
+    buckets_.push_back(detail::read_summary(file, key));
   }
   hash_ = file.read_string("/", "content_hash");
   if (hash_of(description_, buckets_) != hash_) {
@@ -338,13 +204,13 @@ std::vector<double> ConfigurationSet::read(BucketKey key) const {
     travel = hdf5::File::open(path_).read_matrix(name);
   }
   ++buckets_read_;
-  if (hash_of(travel) != bucket.hash || travel.size() != grid().configurations()) {
+  if (detail::hash_of(travel) != bucket.hash || travel.size() != grid(key.kind).configurations()) {
     throw BadFile(path_.string(), name,
                   "values do not have the hash that was stored with them: damaged, edited or replaced since opening");
   }
-  if (count_reachable(travel) != bucket.reachable) {
+  if (detail::count_reachable(travel) != bucket.reachable) {
     throw BadFile(path_.string(), name,
-                  fmt::format("{} values are numbers, but {} are said to be reachable", count_reachable(travel),
+                  fmt::format("{} values are numbers, but {} are said to be reachable", detail::count_reachable(travel),
                               bucket.reachable));
   }
   return travel;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,8 @@ enum class BucketKind {
   distance,
   volume
 };
+
+std::string to_string(BucketKind kind);
 
 struct BucketKey {
   BucketKind kind = BucketKind::distance;
@@ -57,6 +60,9 @@ struct SetDescription {
   std::string generator_version;  ///< Of the program that made the set.
   MeshStamp a, b;
   Grid grid;
+  std::optional<Grid> volume_grid;  ///< Of the volume buckets, where they have another; the paper's is coarser.
+
+  const Grid& grid_of(BucketKind kind) const { return kind == BucketKind::volume && volume_grid ? *volume_grid : grid; }
 };
 
 /// One bucket but its values. Lengths in the meshes' unit, volumes in its cube.
@@ -105,7 +111,7 @@ class ConfigurationSet {
 
   const std::filesystem::path& path() const { return path_; }
   const SetDescription& description() const { return description_; }
-  const Grid& grid() const { return description_.grid; }
+  const Grid& grid(BucketKind kind) const { return description_.grid_of(kind); }
   /// Distances before volumes, each by percentage.
   const std::vector<BucketSummary>& buckets() const { return buckets_; }
   /// Content hash of everything in the set: description, grid, summaries and (by their own hashes) values. It does not

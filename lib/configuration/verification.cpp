@@ -130,7 +130,7 @@ class Verifier {
   void note(std::string words) { result_.problems.push_back(std::move(words)); }
 
   std::string place(const BucketSummary& bucket, std::size_t i) const {
-    const std::size_t n = set_.grid().directions.size();
+    const std::size_t n = set_.grid(bucket.key.kind).directions.size();
     return fmt::format("{}: rotation {}, direction {}", bucket.key.name(), i / n, i % n);
   }
 
@@ -161,8 +161,8 @@ class Verifier {
 
   /// Equal rotations have equal rows.
   void check_copies(const BucketSummary& bucket, const std::vector<double>& travel) {
-    const std::size_t n = set_.grid().directions.size();
-    const auto representative = representatives(set_.grid().rotations);
+    const std::size_t n = set_.grid(bucket.key.kind).directions.size();
+    const auto representative = representatives(set_.grid(bucket.key.kind).rotations);
     for (std::size_t r = 0; r < representative.size(); ++r) {
       if (std::memcmp(&travel[r * n], &travel[representative[r] * n], n * sizeof(double)) == 0) continue;
       return note(fmt::format("{}: rotations {} and {} are equal, their travels are not", bucket.key.name(),
@@ -173,7 +173,7 @@ class Verifier {
   /// What is met further in is unreachable where the other is.
   void check_order(const BucketSummary& inner, const std::vector<double>& near, const BucketSummary& outer,
                    const std::vector<double>& far) {
-    const std::size_t n = set_.grid().directions.size();
+    const std::size_t n = set_.grid(inner.key.kind).directions.size();
     for (std::size_t i = 0; i < near.size(); ++i) {
       if (std::isnan(near[i]) || near[i] <= far[i]) continue;
       return note(fmt::format("rotation {}, direction {}: {} is met at {}, {} at {}", i / n, i % n, inner.key.name(),
@@ -211,10 +211,11 @@ class Verifier {
 
   void measure_one(Gauge& gauge, const Target& target, std::size_t i, const std::vector<double>& travel,
                    BucketVerdict& verdict) {
-    const std::size_t n = set_.grid().directions.size();
     const BucketSummary& bucket = verdict.summary;
-    ConfigurationRay ray(a_, b_, set_.grid().rotations[i / n]);
-    ray.direction = set_.grid().directions[i % n];
+    const Grid& grid = set_.grid(bucket.key.kind);
+    const std::size_t n = grid.directions.size();
+    ConfigurationRay ray(a_, b_, grid.rotations[i / n]);
+    ray.direction = grid.directions[i % n];
     const double s = travel[i];
     if (std::isnan(s)) {
       const double hit = march(gauge, ray, target, 0.0);

@@ -1,7 +1,9 @@
 #include <sixdof/base/atomic_file.h>
 
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
@@ -55,6 +57,27 @@ TEST_F(AtomicFileTest, WithoutCommitTheOldContentStays) {
 TEST_F(AtomicFileTest, TwoWritersOfOneTargetDoNotMeet) {
   AtomicFile one(directory_ / "x"), two(directory_ / "x");
   EXPECT_NE(one.temporary_path(), two.temporary_path());
+}
+
+TEST_F(AtomicFileTest, RemovesWhatKilledWritersOfTheTargetLeft) {
+  const auto target = directory_ / "x";
+  const pid_t killed = ::fork();
+  if (killed == 0) {
+    const AtomicFile file(target);
+    std::ofstream(file.temporary_path()) << "half";
+    std::_Exit(0);  // no destructor runs
+  }
+  ::waitpid(killed, nullptr, 0);
+  const AtomicFile alive(target);
+  std::ofstream(alive.temporary_path()) << "half";
+  const AtomicFile another(directory_ / "x.y");
+  std::ofstream(another.temporary_path()) << "half";
+  std::ofstream(directory_ / ".x.backup.partial") << "of somebody else";
+  ASSERT_EQ(file_count(), 4u);
+  remove_stale_partials(target);
+  EXPECT_EQ(file_count(), 3u);
+  EXPECT_TRUE(std::filesystem::exists(alive.temporary_path()));
+  EXPECT_TRUE(std::filesystem::exists(another.temporary_path()));
 }
 
 TEST_F(AtomicFileTest, NamesTheFileThatCannotBeWritten) {

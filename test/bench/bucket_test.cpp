@@ -42,7 +42,7 @@ TEST_F(Bucket, HoldsEveryReachableConfigurationInTheSetsOrder) {
   std::vector<Pose> expected;
   const auto travel = set.read(key);
   for (std::size_t i = 0; i < travel.size(); ++i) {
-    const Grid& grid = set.grid();
+    const Grid& grid = set.grid(key.kind);
     if (std::isnan(travel[i])) continue;
     expected.push_back(configuration_pose(torus, torus, grid.directions[i % grid.directions.size()],
                                           grid.rotations[i / grid.directions.size()], travel[i]));

@@ -96,11 +96,11 @@ TEST_F(ConfigurationSetTest, ComesBackBitForBit) {
   EXPECT_TRUE(same_bits(set.read(k_far), far_));
   EXPECT_TRUE(same_bits(set.read(k_deep), deep_));
 
-  EXPECT_EQ(set.grid().directions, grid_.directions);
-  EXPECT_EQ(set.grid().rotations, grid_.rotations);
-  EXPECT_EQ(set.grid().spec, "60");
-  EXPECT_EQ(set.grid().sampler, grid_.sampler);
-  EXPECT_EQ(set.grid().rotation_step_degrees, 60.0);
+  EXPECT_EQ(set.grid(BucketKind::distance).directions, grid_.directions);
+  EXPECT_EQ(set.grid(BucketKind::distance).rotations, grid_.rotations);
+  EXPECT_EQ(set.grid(BucketKind::distance).spec, "60");
+  EXPECT_EQ(set.grid(BucketKind::distance).sampler, grid_.sampler);
+  EXPECT_EQ(set.grid(BucketKind::distance).rotation_step_degrees, 60.0);
   EXPECT_EQ(set.description().generator_version, "0.1.0");
   EXPECT_EQ(set.description().a.name, "tetrahedron");
   EXPECT_EQ(set.description().a.hash, k_a.hash());
@@ -273,7 +273,8 @@ TEST_F(ConfigurationSetTest, FindsEveryFlippedByteThatMatters) {
       const ConfigurationSet set(path);
       const bool same = same_bits(set.read(k_near), near_) && same_bits(set.read(k_far), far_) &&
                         same_bits(set.read(k_deep), deep_) && set.buckets().size() == 3 &&
-                        set.grid().rotations == grid_.rotations && set.description().a.hash == k_a.hash();
+                        set.grid(BucketKind::distance).rotations == grid_.rotations &&
+                        set.description().a.hash == k_a.hash();
       EXPECT_TRUE(same) << "byte " << where << " was believed";
     } catch (const BadFile& e) {
       EXPECT_THAT(e.what(), HasSubstr(path.string()));

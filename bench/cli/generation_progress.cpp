@@ -1,0 +1,67 @@
+#include <sixdof/bench/cli/generation_progress.h>
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace sixdof::cli {
+namespace {
+
+constexpr std::array k_kinds{BucketKind::distance, BucketKind::volume};
+
+std::size_t index(BucketKind kind) { return static_cast<std::size_t>(kind); }
+
+}  // namespace
+
+GenerationProgress::GenerationProgress(const GenerationJob& job, const SetDescription& set,
+                                       std::span<const ShardNumber> shards, bool always)
+    : line_(always) {
+  for (const BucketKind kind : k_kinds) {
+    const auto buckets = static_cast<std::uint64_t>(
+        std::ranges::count(job.buckets, kind, [](const BucketSummary& bucket) { return bucket.key.kind; }));
+    if (buckets == 0) continue;
+    const Grid& grid = set.grid_of(kind);
+    const DistinctRotations distinct(grid.rotations);
+    for (const ShardNumber shard : shards) {
+      kinds_[index(kind)].total += buckets * distinct.part(shard).size() * grid.directions.size();
+    }
+  }
+}
+
+void GenerationProgress::show(BucketKind kind, std::uint64_t done) {
+  const Clock::time_point now = Clock::now();
+  Kind& current = kinds_[index(kind)];
+  current.seconds += std::chrono::duration<double>(now - last_).count();
+  current.now = done;
+  last_ = now;
+  if (!line_.due()) return;
+
+  std::string text;
+  double left = 0.0;
+  std::string untimed;
+  for (const BucketKind each : k_kinds) {
+    const Kind& k = kinds_[index(each)];
+    if (k.total == 0) continue;
+    text += fmt::format("{}s {}/{} ({} %), ", to_string(each), k.done(), k.total, 100 * k.done() / k.total);
+    if (k.done() > 0) {
+      left += k.seconds * static_cast<double>(k.total - k.done()) / static_cast<double>(k.done());
+    } else {
+      untimed += fmt::format(" and the {}s", to_string(each));
+    }
+  }
+  if (current.done() > 0 && current.seconds > 0.0) {
+    text += fmt::format("{:.1f}/s, ", static_cast<double>(current.done()) / current.seconds);
+  }
+  text += left > 0.0 ? fmt::format("{}{} left", as_clock(left), untimed) : "not timed yet";
+  line_.show(text);
+}
+
+void GenerationProgress::shard_done() {
+  for (Kind& kind : kinds_) {
+    kind.before += kind.now;
+    kind.now = 0;
+  }
+}
+
+}  // namespace sixdof::cli

@@ -1,0 +1,46 @@
+#include <sixdof/bench/cli/merge.h>
+
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/atomic_file.h>
+#include <sixdof/bench/cli/interrupt.h>
+#include <sixdof/bench/cli/progress_line.h>
+#include <sixdof/configuration/shard_merge.h>
+
+namespace sixdof::cli {
+namespace {
+
+struct Arguments {
+  std::string folder, output;
+  bool progress = false;
+};
+
+void merge(const Arguments& arguments) {
+  const InterruptGuard interruptible;
+  remove_stale_partials(arguments.output);
+  {
+    ProgressLine line("merged", arguments.progress);
+    merge_shards(arguments.folder, arguments.output,
+                 {.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
+                  .cancelled = [] { return InterruptGuard::requested(); }});
+  }
+  const ConfigurationSet set(arguments.output);
+  fmt::print("{}: {} with {}, {} buckets, content hash {}\n", arguments.output, set.description().a.name,
+             set.description().b.name, set.buckets().size(), set.hash());
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& app) {
+  auto* const command = app.add_subcommand("merge", "Make one configuration set of the shards in a folder");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("folder", arguments->folder, "Where generate --shards wrote them")->required();
+  command->add_option("-o,--output", arguments->output, "The set (HDF5); replaced if it exists")->required();
+  command->add_flag("--progress", arguments->progress, "Show progress where stderr is no terminal, too");
+  command->callback([arguments] { merge(*arguments); });
+}
+
+}  // namespace sixdof::cli

@@ -1,0 +1,93 @@
+#include <sixdof/configuration/shard_file.h>
+
+#include <cstring>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+
+#include "shard_job.h"
+
+namespace sixdof {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr ShardNumber k_middle{.number = 2, .count = 3};
+
+class ShardFileTest : public test::FolderTest {};
+
+TEST_F(ShardFileTest, ComesBackBitForBit) {
+  const test::SmallJob small;
+  const Generated values = small.compute(k_middle);
+  const auto path = folder_ / shard_file_name(k_middle);
+  EXPECT_EQ(path.filename(), "shard-0002-of-0003.h5");
+  write_shard(path, small.job, small.set, k_middle, values);
+  const ShardFile shard(path);
+  EXPECT_EQ(shard.number(), k_middle);
+  EXPECT_EQ(shard.job().difference(small.job), "");
+  EXPECT_EQ(shard.job().hash(), small.job.hash());
+  EXPECT_NO_THROW(shard.check_values());
+  ASSERT_EQ(values.buckets.size(), 3u);
+  for (const GeneratedBucket& expected : values.buckets) {
+    const GeneratedBucket bucket = shard.read(expected.summary.key);
+    ASSERT_EQ(bucket.travel.size(), expected.travel.size());
+    EXPECT_EQ(std::memcmp(bucket.travel.data(), expected.travel.data(), bucket.travel.size() * sizeof(double)), 0);
+    EXPECT_EQ(bucket.summary.largest_residual, expected.summary.largest_residual);
+    EXPECT_EQ(bucket.summary.oracle, expected.summary.oracle);
+  }
+}
+
+TEST_F(ShardFileTest, ThreadsDoNotChangeAByteOfIt) {
+  const test::SmallJob small;
+  for (const unsigned threads : {1u, 2u}) {
+    write_shard(folder_ / std::to_string(threads), small.job, small.set, k_middle, small.compute(k_middle, threads));
+  }
+  EXPECT_EQ(test::bytes_of(folder_ / "1"), test::bytes_of(folder_ / "2"));
+}
+
+/// Whatever a damaged byte or a missing end leaves is either refused or, where HDF5 does not use the byte, the same.
+TEST_F(ShardFileTest, DamageIsFound) {
+  const test::SmallJob small;
+  const auto sound = folder_ / "sound.h5";
+  const auto damaged = folder_ / "damaged.h5";
+  write_shard(sound, small.job, small.set, k_middle, small.compute(k_middle));
+  const std::string bytes = test::bytes_of(sound);
+  const ShardFile expected(sound);
+  std::size_t refused = 0, tried = 0;
+  constexpr std::size_t k_step = 61;  // no multiple of any structure's size
+  for (std::size_t at = 0; at < bytes.size(); at += k_step, ++tried) {
+    std::filesystem::copy_file(sound, damaged, std::filesystem::copy_options::overwrite_existing);
+    test::flip_byte(damaged, at);
+    try {
+      const ShardFile shard(damaged);
+      shard.check_values();
+      EXPECT_EQ(shard.job().hash(), expected.job().hash()) << at;
+      EXPECT_EQ(shard.number(), expected.number()) << at;
+    } catch (const BadFile& e) {
+      EXPECT_THAT(e.what(), HasSubstr("damaged.h5")) << at;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, tried / 2);
+  for (const double part : {0.0, 0.3, 0.999}) {
+    std::filesystem::copy_file(sound, damaged, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::resize_file(damaged, static_cast<std::uintmax_t>(part * static_cast<double>(bytes.size())));
+    EXPECT_THROW(ShardFile(damaged).check_values(), BadFile) << part;
+  }
+}
+
+TEST_F(ShardFileTest, RefusesWhatIsNoShard) {
+  const auto path = folder_ / "shard-0001-of-0001.h5";
+  EXPECT_THAT([&] { ShardFile shard(path); }, ThrowsMessage<BadFile>(HasSubstr("no such file")));
+  std::ofstream(path) << "text";
+  EXPECT_THAT([&] { ShardFile shard(path); }, ThrowsMessage<BadFile>(HasSubstr("not a readable HDF5 file")));
+  const SetDescription set = test::SmallJob().set;
+  ConfigurationSetWriter(path, set).commit();
+  EXPECT_THAT([&] { ShardFile shard(path); }, ThrowsMessage<BadFile>(HasSubstr("is not a shard")));
+}
+
+}  // namespace
+}  // namespace sixdof

@@ -1,0 +1,118 @@
+#include <sixdof/configuration/shard_merge.h>
+
+#include <cstring>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+
+#include "shard_job.h"
+
+namespace sixdof {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class ShardMerge : public test::FolderTest {
+ protected:
+  std::filesystem::path part(std::size_t number) const {
+    return folder_ / shard_file_name({.number = number, .count = k_count});
+  }
+  void expect_refused(const auto& matcher) const {
+    EXPECT_THAT([&] { merge_shards(folder_, folder_ / "set.h5"); }, ThrowsMessage<BadFile>(matcher));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "set.h5"));
+  }
+
+  static constexpr std::size_t k_count = 4;
+  const test::SmallJob small_;
+};
+
+/// Against the generators' own results on the whole grid, for every number of shards, byte for byte.
+TEST_F(ShardMerge, AnyNumberOfShardsGivesTheSameFile) {
+  std::string first;
+  for (const std::size_t count : {1u, 4u, 7u}) {
+    const auto folder = folder_ / std::to_string(count);
+    std::filesystem::create_directory(folder);
+    small_.write(folder, count);
+    merge_shards(folder, folder_ / "set.h5");
+    const std::string bytes = test::bytes_of(folder_ / "set.h5");
+    if (first.empty()) first = bytes;
+    EXPECT_EQ(bytes, first) << count;
+  }
+  const ConfigurationSet set(folder_ / "set.h5");
+  const Generated whole =
+      generate_distances(*small_.generator, small_.a, small_.b, small_.set.grid, std::vector{20, 0}, {.threads = 2});
+  for (const GeneratedBucket& bucket : whole.buckets) {
+    const std::vector<double> travel = set.read(bucket.summary.key);
+    ASSERT_EQ(travel.size(), bucket.travel.size());
+    EXPECT_EQ(std::memcmp(travel.data(), bucket.travel.data(), travel.size() * sizeof(double)), 0);
+    EXPECT_EQ(set.summary(bucket.summary.key).largest_residual, bucket.summary.largest_residual);
+  }
+  EXPECT_EQ(set.read({BucketKind::volume, 3}).size(), small_.set.volume_grid->configurations());
+  EXPECT_EQ(set.grid(BucketKind::volume).rotations, small_.set.volume_grid->rotations);
+}
+
+TEST_F(ShardMerge, NamesEveryShardThatIsMissingRepeatedForeignOrDamaged) {
+  small_.write(folder_, k_count);
+  std::filesystem::remove(part(1));
+  test::flip_byte(part(2), std::filesystem::file_size(part(2)) / 2);
+  std::filesystem::copy_file(part(3), folder_ / "shard-0003-copy.h5");
+  const test::SmallJob other(7);
+  write_shard(folder_ / "shard-stray.h5", other.job, other.set, {.number = 1, .count = k_count},
+              other.compute({.number = 1, .count = k_count}));
+  write_shard(folder_ / "shard-split.h5", small_.job, small_.set, {.number = 1, .count = 5},
+              small_.compute({.number = 1, .count = 5}));
+  std::ofstream(folder_ / "notes.txt") << "does not matter";
+  expect_refused(AllOf(HasSubstr("shard-0001-of-0004.h5: missing"), HasSubstr("shard-0002-of-0004.h5: "),
+                       HasSubstr("is shard 3 again"), HasSubstr("shard-stray.h5: of another job"),
+                       HasSubstr("mesh A is lump"), HasSubstr("shard-split.h5: is shard 1 of 5")));
+}
+
+TEST_F(ShardMerge, RefusesAShardUnderTheNameOfAnother) {
+  small_.write(folder_, k_count);
+  std::filesystem::copy_file(part(3), part(4), std::filesystem::copy_options::overwrite_existing);
+  expect_refused(AllOf(HasSubstr("is shard 3 again"), HasSubstr("shard 4 is missing")));
+}
+
+TEST_F(ShardMerge, RefusesAFolderWithoutShards) {
+  expect_refused(HasSubstr("no sound shard"));
+  EXPECT_THAT([&] { merge_shards(folder_ / "nowhere", folder_ / "set.h5"); },
+              ThrowsMessage<BadFile>(HasSubstr("is not a directory")));
+}
+
+TEST_F(ShardMerge, ReportsProgressAndStopsWhenAsked) {
+  small_.write(folder_, 2);
+  std::uint64_t last = 0, total = 0;
+  const auto progress = [&](std::uint64_t done, std::uint64_t all) {
+    EXPECT_EQ(done, last + 1);
+    last = done;
+    total = all;
+  };
+  merge_shards(folder_, folder_ / "set.h5", {.progress = progress, .cancelled = nullptr});
+  EXPECT_EQ(last, total);
+  EXPECT_EQ(total, 2u * 3u);
+  std::filesystem::remove(folder_ / "set.h5");
+  int asked = 0;
+  EXPECT_THROW(
+      merge_shards(folder_, folder_ / "set.h5", {.progress = nullptr, .cancelled = [&] { return ++asked > 4; }}),
+      Interrupted);
+  // The two shards are all there is: no set, no temporary file.
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 2);
+}
+
+TEST_F(ShardMerge, RefusesRowsOfTheWrongNumber) {
+  const auto short_rows = [&](ShardNumber shard, BucketKey key) {
+    const Generated values = small_.compute(shard);
+    GeneratedBucket bucket = *std::ranges::find(values.buckets, key, [](const auto& b) { return b.summary.key; });
+    bucket.travel.pop_back();
+    return bucket;
+  };
+  EXPECT_THAT([&] { assemble_set(folder_ / "set.h5", small_.job, small_.set, 2, short_rows); },
+              ThrowsMessage<BadArgument>(HasSubstr("shard 1 of 2, distance/00")));
+}
+
+}  // namespace
+}  // namespace sixdof
