@@ -80,19 +80,24 @@ class TurningPin final : public Scenario {
     return turn;
   }
 
+  /// At phi = 0 the pin just fits: V has a kink there in every direction, and its gradient is a set.
+  bool in_window(double progress) const override { return progress > 0.0; }
+
   std::optional<IdealWrench> ideal(IdealLaw law, double progress) const override {
     const double phi = progress * shape_.turn;
     const double c = shape_.square_side;
     const double bulge = std::numbers::sqrt2 * std::cos(0.25 * std::numbers::pi - phi) - 1.0;  // sin + cos - 1
     const double p = 0.5 * c * bulge;
     const double v = shape_.pin_length() * c * c * bulge / (bulge + 2.0);
-    // dV / dphi; at phi = 0 the pin just fits, and the mean of the two one-sided derivatives is 0.
+    // dV / dphi; at phi = 0 the mean of the two one-sided derivatives is 0.
     const double slope = phi > 0.0 ? shape_.pin_length() * c * c * 2.0 * (std::cos(phi) - std::sin(phi)) /
                                          ((bulge + 2.0) * (bulge + 2.0))
                                    : 0.0;
-    const auto twist = [](double penalty, double torque) {
-      return IdealWrench{penalty, Eigen::Vector3d::Zero(), {0.0, 0.0, torque}};
+    const auto twist = [](double penalty, double torque, double lift = 0.0) {
+      return IdealWrench{penalty, {0.0, 0.0, lift}, {0.0, 0.0, torque}};
     };
+    // -dV / dz where the plate leaves the block: what sticks out, by symmetry centred at the axis, gets shorter.
+    const double lift = v / shape_.pin_length();
     const auto traction = [&](bool along_wall) {
       const PinTraction t = square_pin_traction(c, shape_.pin_length(), -phi, Eigen::Vector2d::Zero(), along_wall);
       return twist(p, t.torque);
@@ -103,9 +108,9 @@ class TurningPin final : public Scenario {
       case IdealLaw::volume:
         return twist(v, v);
       case IdealLaw::gradient:
-        return twist(v, slope);
+        return twist(v, slope, lift);
       case IdealLaw::energy:
-        return twist(v, v * slope);
+        return twist(v, v * slope, v * lift);
       case IdealLaw::traction:
         return traction(false);
       case IdealLaw::wall_traction:
@@ -196,16 +201,19 @@ class OrbitingPins final : public Scenario {
     return {penalty, {sum.x(), sum.y(), 0.0}, {0.0, 0.0, arm * (round.y() - square.y()) + own}};
   }
 
-  double square_volume(const Eigen::Vector2d& u) const {
-    const double c = shape_.square_side;
-    const Eigen::Vector2d free = Eigen::Vector2d::Constant(c) - shape_.orbit * u.cwiseAbs();
-    return shape_.pin_length() * (c * c - free.x() * free.y());
+  /// Areas of the pins' cross-sections inside and outside their holes.
+  double square_inside(const Eigen::Vector2d& u) const {
+    const Eigen::Vector2d free = Eigen::Vector2d::Constant(shape_.square_side) - shape_.orbit * u.cwiseAbs();
+    return free.x() * free.y();
   }
+  double square_outside(const Eigen::Vector2d& u) const {
+    return shape_.square_side * shape_.square_side - square_inside(u);
+  }
+  double round_inside() const { return lens_area(shape_.round_radius, shape_.round_radius, shape_.orbit); }
+  double round_outside() const { return std::numbers::pi * shape_.round_radius * shape_.round_radius - round_inside(); }
 
-  double round_volume() const {
-    const double r = shape_.round_radius;
-    return shape_.pin_length() * (std::numbers::pi * r * r - lens_area(r, r, shape_.orbit));
-  }
+  double square_volume(const Eigen::Vector2d& u) const { return shape_.pin_length() * square_outside(u); }
+  double round_volume() const { return shape_.pin_length() * round_outside(); }
 
   IdealWrench gradient(const Eigen::Vector2d& u, double factor) const {
     const double c = shape_.square_side;
@@ -215,7 +223,15 @@ class OrbitingPins final : public Scenario {
     const Eigen::Vector2d round = -length * lens_chord(shape_.round_radius, shape_.round_radius, shape_.orbit) * u;
     // Turning the square about its own centre: the strips that stick out beside the holes' corners.
     const double own = 0.5 * length * sign(u.x() * u.y()) * (d.x() * (c - d.x()) - d.y() * (c - d.y()));
-    return both(square_volume(u) + round_volume(), factor * square, factor * round, factor * own);
+    IdealWrench wrench = both(square_volume(u) + round_volume(), factor * square, factor * round, factor * own);
+    // -dV / dz where the plate leaves the block: what sticks out of the holes gets shorter. First moment of those areas
+    // about the reference point: a whole pin less the part inside, whose centre is half of d back.
+    const Eigen::Vector2d pins(0.25 * shape_.width * (round_outside() - square_outside(u)), 0.0);
+    const Eigen::Vector2d moment = pins + 0.5 * shape_.orbit * (square_inside(u) + round_inside()) * u;
+    wrench.force.z() = factor * (square_outside(u) + round_outside());
+    wrench.torque.x() = factor * moment.y();
+    wrench.torque.y() = -factor * moment.x();
+    return wrench;
   }
 
   IdealWrench traction(const Eigen::Vector2d& u, bool along_wall) const {

@@ -19,7 +19,8 @@ namespace sixdof {
 enum class IdealLaw {
   depth,     ///< Magnitude = translational penetration depth p, in the direction the paper states.
   volume,    ///< Magnitude = intersection volume V, in the direction the paper states.
-  gradient,  ///< Wrench = -grad V: the energy is V (rigid plastic contact).
+  gradient,  ///< Wrench = -grad V: the energy is V (rigid plastic contact). At a kink of V all along a path (the plate
+             ///< of III and IV on its block): on the side where the bodies separate.
   energy,    ///< Wrench = -V grad V: the energy is V^2 / 2 (elastic contact).
   traction,  ///< Integral, over B's surface inside A, of depth below A's surface along B's inward normals (as VPS).
   wall_traction,  ///< The same along the outward normals of A's nearest wall.
