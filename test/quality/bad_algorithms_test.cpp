@@ -2,9 +2,12 @@
 // measure meant for that fault, at the very bound that the perfect one passes.
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -115,6 +118,48 @@ TEST(Table, JudgesBothWays) {
   EXPECT_EQ(judge(0.0, 0.0), Verdict::holds);
   EXPECT_EQ(judge(1.0, 0.0), Verdict::worse);
   EXPECT_EQ(judge(std::nan(""), 1.0), Verdict::worse);
+  EXPECT_EQ(judge(179.9, 179.9, Kind::records), Verdict::holds);
+  EXPECT_EQ(judge(179.6, 179.9, Kind::records), Verdict::changed);
+  EXPECT_EQ(judge(180.2, 179.9, Kind::records), Verdict::changed);
+  EXPECT_EQ(judge(std::nan(""), 1.0, Kind::records), Verdict::changed);
+}
+
+/// A gate that nothing can be worse than is none.
+TEST(Table, EveryGateCanFail) {
+  const auto worst = [](std::string_view measure) {
+    if (measure.starts_with("gamma")) return 180.0;
+    if (measure.starts_with("sigma")) return 1.0;
+    return std::numeric_limits<double>::infinity();
+  };
+  for (const Bound& bound : bounds()) {
+    if (bound.kind == Kind::gate) {
+      EXPECT_LT(bound.bound, 0.9 * worst(bound.measure)) << bound.scenario << ' ' << bound.algorithm;
+    }
+    if (bound.kind == Kind::gate && bound.measure == "misses") {
+      EXPECT_EQ(bound.bound, 0.0) << bound.scenario << ' ' << bound.algorithm;
+    }
+  }
+}
+
+/// Every algorithm on every scenario: magnitude, direction, misses, failures and jumps; an algorithm that is recorded
+/// to feel nothing there has neither direction nor jumps.
+TEST(Table, LeavesNoAlgorithmAndNoScenarioOut) {
+  for (const std::string& scenario : scenario_names()) {
+    const std::string which = scenario == "III" ? "T" : "F";
+    for (const std::string_view algorithm : {"exact", "vps", "vps-field", "ist", "fcl-contacts"}) {
+      std::map<std::string_view, Kind> kinds;
+      for (const Bound& bound : bounds()) {
+        if (bound.scenario == scenario && bound.algorithm == algorithm) kinds.emplace(bound.measure, bound.kind);
+      }
+      std::vector<std::string> wanted{"sigma_" + which, "misses", "failed"};
+      if (kinds["misses"] == Kind::gate) {
+        wanted.insert(wanted.end(), {"gamma_" + which + "_deg", "noise_" + which, "jump_" + which});
+      }
+      for (const std::string& measure : wanted) {
+        EXPECT_TRUE(kinds.contains(measure)) << scenario << ' ' << algorithm << ' ' << measure;
+      }
+    }
+  }
 }
 
 TEST(Table, NamesMeasuresAndGivesReasons) {

@@ -8,6 +8,11 @@
 
 namespace sixdof {
 
+enum class Kind {
+  gate,     ///< Not worse than the bound, and not better than half of it (that asks for the table to be tightened).
+  records,  ///< A known weakness, as bad as the measure can tell: the value is recorded, and a change either way fails.
+};
+
 /// One gate: a measure of an algorithm on a scenario may not be worse than this.
 struct Bound {
   std::string_view scenario;
@@ -16,10 +21,11 @@ struct Bound {
   std::string_view measure;  ///< As in lib/measure/metrics.h; absolute values are compared.
   double bound;              ///< 0 means exactly zero.
   std::string_view reason;   ///< What limits the value.
+  Kind kind = Kind::gate;
 };
 
-/// The one table. A value above the bound fails. A value below half the bound fails too and asks to tighten the table,
-/// unless the bound is at most k_rounding_bound.
+/// The one table. A value above the bound fails. A value below half the bound fails too, unless the bound is at most
+/// k_rounding_bound.
 std::span<const Bound> bounds();
 
 /// Bounds up to here say "nothing but rounding", and how far below it rounding stays is no merit.
@@ -28,12 +34,16 @@ inline constexpr double k_rounding_bound = 1e-6;
 /// Stamps of every gate's recording: a multiple of four (Scenario::stamps), and 5 ms apart at one second for a path.
 inline constexpr std::size_t k_gate_stamps = 200;
 
+/// Relative change of a recorded value that is none: the table gives four digits.
+inline constexpr double k_record_tolerance = 1e-3;
+
 enum class Verdict {
   holds,
   worse,      ///< Above the bound.
   too_loose,  ///< Below half of the bound: the table is to be tightened.
+  changed,    ///< Not the recorded value.
 };
 
-Verdict judge(double value, double bound);
+Verdict judge(double value, double bound, Kind kind = Kind::gate);
 
 }  // namespace sixdof

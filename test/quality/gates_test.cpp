@@ -57,7 +57,7 @@ TEST_P(Gate, Holds) {
   const std::string what =
       fmt::format("{} of {} on {} by law {}: measured {:.4g}, bound {:g} ({})", bound.measure, bound.algorithm,
                   bound.scenario, to_string(bound.law), value, bound.bound, bound.reason);
-  switch (judge(value, bound.bound)) {
+  switch (judge(value, bound.bound, bound.kind)) {
     case Verdict::holds:
       break;
     case Verdict::worse:
@@ -65,6 +65,9 @@ TEST_P(Gate, Holds) {
       break;
     case Verdict::too_loose:
       ADD_FAILURE() << what << ": better than half the bound, tighten test/quality/bounds.cpp";
+      break;
+    case Verdict::changed:
+      ADD_FAILURE() << what << ": not what test/quality/bounds.cpp records; if it got better, make it a gate";
   }
 }
 
@@ -78,29 +81,6 @@ std::string name_of(const ::testing::TestParamInfo<Bound>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Gates, Gate, ::testing::ValuesIn(bounds().begin(), bounds().end()), name_of);
-
-/// What is left of `exact` in II is the facets alone: it falls faster than their square.
-TEST(Limit, OfExactInScenarioTwoIsTheTessellation) {
-  Registry registry;
-  register_all_algorithms(registry);
-  const Algorithm& exact = registry.find("exact");
-  const auto error = [&](const char* facets) {
-    Settings shape = scenario_settings("II");
-    shape.set("facets", facets);
-    const auto scenario = make_scenario("II", shape);
-    const auto query = exact.prepare(scenario->a(), scenario->b(), exact.settings());
-    std::map<std::string, double> measures;
-    for (const auto& [name, value] : evaluate(*scenario, record(*scenario, *query, 60), IdealLaw::volume)) {
-      measures[name] = value;
-    }
-    return std::pair(measures.at("sigma_F"), measures.at("gamma_F_deg"));
-  };
-  const auto [coarse_sigma, coarse_gamma] = error("48");
-  const auto [fine_sigma, fine_gamma] = error("192");
-  // From 48 to 192 facets: two halvings.
-  EXPECT_GT(0.5 * std::log2(coarse_sigma / fine_sigma), 2.0);
-  EXPECT_GT(0.5 * std::log2(coarse_gamma / fine_gamma), 2.0);
-}
 
 }  // namespace
 }  // namespace sixdof
