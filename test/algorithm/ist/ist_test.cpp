@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -12,6 +14,8 @@
 
 namespace sixdof {
 namespace {
+
+constexpr double k_rounding = 1e-12;  // relative, of some hundred terms
 
 class IstTest : public ::testing::Test {
  protected:
@@ -99,6 +103,41 @@ TEST_F(IstTest, IsConservativeOnAClosedLoop) {
   }
 }
 
+TEST_F(IstTest, CorrectionDividesByBothFillRatesAndStiffnessIsAFactor) {
+  const Mesh a = load_model("torus-knot-1k"), b = load_model("bumpy-sphere-1k");
+  const Pose X = Pose::from_quaternion(0.8, 0.36, 0.0, 0.48, {0.3, 0.4, 0.2});
+  const auto plain = prepare(a, b, {"spheres=200"});
+  const Response response = plain->respond(X).value;
+  ASSERT_GT(response.volume, 0.0);
+  const auto counts = plain->footprint().counts;
+  ASSERT_EQ(counts[2].first, "fill_a");
+  ASSERT_EQ(counts[3].first, "fill_b");
+  EXPECT_GT(std::abs(counts[2].second - counts[3].second), 0.01);  // else the two could be mistaken
+  const double gain = 1.0 / (counts[2].second * counts[3].second);
+  const Response corrected = prepare(a, b, {"spheres=200", "correct_fill=on"})->respond(X).value;
+  EXPECT_NEAR(corrected.volume, gain * response.volume, k_rounding * corrected.volume);
+  EXPECT_LE((corrected.force - gain * response.force).norm(), k_rounding * corrected.force.norm());
+  EXPECT_LE((corrected.torque - gain * response.torque).norm(), k_rounding * corrected.torque.norm());
+  const Response stiff = prepare(a, b, {"spheres=200", "stiffness=2.5"})->respond(X).value;
+  EXPECT_LE((stiff.force - 2.5 * response.force).norm(), k_rounding * stiff.force.norm());
+  EXPECT_LE((stiff.torque - 2.5 * response.torque).norm(), k_rounding * stiff.torque.norm());
+  EXPECT_EQ(stiff.volume, response.volume);
+}
+
+/// Two spheres, whose overlap, force and torque are known in closed form.
+TEST_F(IstTest, TwoBallsPushEachOtherAlongTheirCentres) {
+  const Mesh ball = load_model("sphere-2k");
+  const auto query = prepare(ball, ball, {"spheres=1"});
+  const Pose X = Pose::from_quaternion(0.8, 0.36, 0.0, 0.48, {1.1, 0.7, -0.4});
+  const Response response = query->respond(X).value;
+  const double d = X.t.norm(), r = 1.0, full = std::numbers::pi * std::pow(2 * r - d, 2) * (d + 4 * r) / 12.0;
+  constexpr double k_inscribed = 0.1;  // the largest ball in a mesh of 2,000 triangles has a radius of 0.99
+  EXPECT_NEAR(response.volume, full, k_inscribed * full);
+  EXPECT_LT(response.volume, full);
+  EXPECT_NEAR(response.force.dot(X.t) / d, response.volume, 1e-3 * response.volume);  // on B, away from A
+  EXPECT_LT(response.torque.norm(), 0.02 * response.force.norm());
+}
+
 TEST_F(IstTest, DistanceIsFromAboveAndWitnessesRealiseIt) {
   const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 100);
   const auto query = prepare(block, block, {"spheres=3000"});
@@ -125,6 +164,17 @@ TEST_F(IstTest, KeptPackingGivesTheSameAnswer) {
   EXPECT_EQ(made.force, kept.force);
   EXPECT_EQ(made.torque, kept.torque);
   EXPECT_GT(made.volume, 0.0);
+  // A damaged file is no entry: the packing is made again, and kept.
+  for (const auto& file : std::filesystem::directory_iterator(cache)) {
+    std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) - 500);
+  }
+  EXPECT_EQ(prepare(mesh, mesh, {"spheres=150"})->respond(X).value.force, made.force);
+  for (const auto& file : std::filesystem::directory_iterator(cache)) {
+    std::fstream bytes(file.path(), std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(std::filesystem::file_size(file.path()) / 2));
+    bytes.put('\x5a');
+  }
+  EXPECT_EQ(prepare(mesh, mesh, {"spheres=150"})->respond(X).value.force, made.force);
   EXPECT_EQ(prepare(mesh, mesh, {"spheres=151"})->footprint().counts.front().second, 151.0);  // another key
   std::filesystem::remove_all(cache);
 }

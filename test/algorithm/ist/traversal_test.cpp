@@ -110,6 +110,31 @@ TEST_F(TraversalTest, ABudgetGivesAnEstimateThatConverges) {
   EXPECT_LT(error_large / counted, 0.1);
 }
 
+/// Both bodies' frames moved by rigid motions of their own, and the pose with them.
+TEST_F(TraversalTest, DoesNotDependOnWhereTheFramesAre) {
+  std::mt19937_64 random(35);
+  const auto moved = [](std::vector<Sphere> spheres, const Pose& X) {
+    for (Sphere& s : spheres) s.center = X * s.center;
+    return spheres;
+  };
+  constexpr double k_moved = 1e-10;  // rounding of coordinates of 30 units, against overlaps of a hundredth
+  int touching = 0;
+  for (int i = 0; i < 10; ++i) {
+    const Pose X = random_pose(random, 0.7), move_a = random_pose(random, 20.0), move_b = random_pose(random, 20.0);
+    const SphereTree a = build_sphere_tree(moved(random_spheres(400, 21), move_a));
+    const SphereTree b = build_sphere_tree(moved(random_spheres(250, 22), move_b));
+    const PenetrationSum plain = penetration(a_, b_, X, PairForce::volume, about_, scratch_);
+    const PenetrationSum other =
+        penetration(a, b, move_a * X * move_b.inverse(), PairForce::volume, move_a * about_, scratch_);
+    EXPECT_EQ(other.count.leaf_pairs, plain.count.leaf_pairs);
+    EXPECT_NEAR(other.volume, plain.volume, k_moved);
+    EXPECT_LE((other.force - move_a.R * plain.force).norm(), k_moved);
+    EXPECT_LE((other.moment - move_a.R * plain.moment).norm(), k_moved);
+    touching += plain.volume > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(touching, 5);
+}
+
 TEST_F(TraversalTest, EveryInstructionSetGivesTheSameBits) {
   std::mt19937_64 random(34);
   std::vector<Pose> poses;

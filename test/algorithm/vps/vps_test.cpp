@@ -132,6 +132,45 @@ TEST_P(Vps, TheSameSceneToldTheOtherWayRoundGivesTheReaction) {
   EXPECT_LT((on_b.torque + scene.X.R * about_same.torque).norm(), k_rounding);
 }
 
+/// With the points on the other body the law is another, but on a face pressed into a face by little both feel area
+/// times depth: action and reaction agree within what the voxels of both resolve.
+TEST_P(Vps, ActionIsMinusReactionWithinTheResolutionWhenRolesAreSwapped) {
+  const double depth = 0.05, area = 0.8 * 0.6, perimeter = 2.8;
+  const Pressed scene(box({2.0, 1.6, 1.2}), box({0.8, 0.6, 0.7}), -0.35, 0.6, depth);
+  for (const double voxel : {0.01, 0.005}) {
+    const auto knobs = resolution(voxel, 0.01);
+    const Response on_b = prepare(GetParam(), *scene.a, *scene.b, knobs)->respond(scene.X).value;
+    const Response on_a = prepare(GetParam(), *scene.b, *scene.a, knobs)->respond(scene.X.inverse()).value;
+    const double size = voxel * (scene.a->diagonal() + scene.b->diagonal());
+    // Points beside B's walls are nearest to the walls, which push level or count less: a rim of the depth's width.
+    const double declared = depth_error(GetParam()) * size * area + perimeter * depth * depth;
+    EXPECT_LT((on_b.force + scene.X.R * on_a.force).norm(), declared) << voxel;
+    EXPECT_GT(on_b.force.norm(), 0.5 * area * depth) << voxel;
+    const Response about_b = on_a.about(scene.b->center());
+    EXPECT_LT((on_b.torque + scene.X.R * about_b.torque).norm(), declared * scene.b->diagonal()) << voxel;
+  }
+}
+
+TEST_P(Vps, TinyBodiesAnswerAsLargeOnesDo) {
+  const double factor = 1e-6;
+  const auto scaled = [&](const Mesh& mesh) {
+    std::vector<Eigen::Vector3d> vertices = mesh.vertices();
+    for (Eigen::Vector3d& v : vertices) v *= factor;
+    return Mesh::build(vertices, mesh.triangles(), mesh.name());
+  };
+  const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
+  const Pose X = generic_pose(75, 1.2), small{X.R, factor * X.t};
+  const auto knobs = resolution(0.02, 0.02);
+  const Response large = prepare(GetParam(), a, b, knobs)->respond(X).value;
+  const Response tiny = prepare(GetParam(), scaled(a), scaled(b), knobs)->respond(small).value;
+  ASSERT_GT(large.force.norm(), 0.0);
+  constexpr double k_single = 5e-3;  // single points may fall across a voxel's face by rounding
+  // Area times depth, and once more a length for the torque.
+  EXPECT_TRUE((tiny.force / std::pow(factor, 3)).isApprox(large.force, k_single));
+  EXPECT_TRUE((tiny.torque / std::pow(factor, 4)).isApprox(large.torque, 10 * k_single));
+  EXPECT_NEAR(tiny.penalty / factor, large.penalty, k_single * large.penalty);
+}
+
 TEST_P(Vps, DoesNotDependOnWhereTheMeshesFramesAre) {
   const Mesh a = moved(make_bumpy_sphere({}, 500), generic_pose(61, 0.3));
   const Mesh b = moved(make_bumpy_sphere({.radius = 0.8}, 400), generic_pose(62, 0.2));
