@@ -125,7 +125,7 @@ class ConeBlock final : public Scenario {
         {{x, low}, {x, top}, {1.25 * shape_.radius, 0.0}, fmt::format("H = {:g}", shape_.height)},
         {{x, top}, {rim, top}, {0.0, 0.12 * shape_.height}, fmt::format("r = {:g}", shape_.radius)},
         {{x, low}, {x, 0.0}, {-0.75 * shape_.radius, 0.0}, fmt::format("\u03b4 = {:g}", shape_.depth)},
-        {{-shape_.overshoot, 0.0}, {0.0, 0.0}, {0.0, 0.15 * shape_.height}, fmt::format("a = {:g}", shape_.overshoot)},
+        {{-shape_.overshoot, 0.0}, {0.0, 0.0}, {0.0, -0.15 * shape_.height}, fmt::format("a = {:g}", shape_.overshoot)},
         {{rim, -shape_.block_height},
          {rim, 0.0},
          {0.6 * shape_.radius, 0.0},

@@ -21,6 +21,7 @@ constexpr double k_panel_width = 460.0;
 constexpr double k_panel_height = 330.0;
 constexpr double k_margin = 14.0;
 constexpr double k_title = 26.0;
+constexpr double k_legend = 22.0;
 constexpr double k_arrow = 62.0;  ///< Pixels of the arrow of a force.
 /// Edges between faces that turn by more than this are drawn: more than a facet of a round part, less than a corner.
 const double k_crease_cosine = std::cos(20.0 * std::numbers::pi / 180.0);
@@ -170,7 +171,9 @@ std::string draw_dimension(const Dimension& dimension, const View& view) {
   const Vector2d middle = 0.5 * (from + to);
   // Beside an upright line, above a level one.
   const bool upright = std::abs(to.y() - from.y()) > std::abs(to.x() - from.x());
-  const Vector2d shift = upright ? Vector2d(6.0, 4.0) : Vector2d(0.0, -5.0);
+  constexpr double k_tiny = 14.0;  // pixels: no room for words between the arrows, so above them
+  const bool tiny = (to - from).norm() < k_tiny;
+  const Vector2d shift = upright ? Vector2d(6.0, tiny ? -8.0 : 4.0) : Vector2d(0.0, -5.0);
   const Vector2d at = upright ? Vector2d(0.35 * from + 0.65 * to) : middle;
   svg += text(at + shift, dimension.label,
               upright ? "font-size=\"12\" class=\"halo\"" : "font-size=\"12\" text-anchor=\"middle\" class=\"halo\"");
@@ -211,7 +214,7 @@ std::string draw(const Scenario& scenario) {
   View plan{Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ(), Vector2d::Zero()};
   plan.fit(sketch.part, 0.0);
   const double width = 2.0 * k_panel_width;
-  const double height = k_panel_height + k_title;
+  const double height = k_title + k_panel_height + k_legend;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" "
       "font-family=\"sans-serif\">\n"
@@ -231,6 +234,10 @@ std::string draw(const Scenario& scenario) {
   svg += draw_panel(scenario, sketch, plan, sketch.underside, "plan");
   for (const Dimension& dimension : sketch.dimensions) svg += draw_dimension(dimension, plan);
   svg += draw_panel(scenario, sketch, oblique(scenario, sketch, k_panel_width), false, "view");
+  const std::string legend = fmt::format(
+      "Grey: A, fixed. Blue: B, moving{}. Dashed: path of the reference point. Arrows: ideal force and torque on B.",
+      sketch.underside ? " (plan: its underside, as through glass)" : "");
+  svg += text({10.0, height - 7.0}, legend, "font-size=\"11\" fill=\"#333\"");
   return svg + "</svg>\n";
 }
 

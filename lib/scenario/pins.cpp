@@ -181,10 +181,9 @@ class OrbitingPins final : public Scenario {
     Sketch sketch = pins_sketch(shape_, -0.7 * shape_.width);
     sketch.progress = 0.125;
     const Eigen::Vector2d d = shape_.orbit * direction(sketch.progress);
-    sketch.dimensions.push_back({Eigen::Vector2d::Zero(),
-                                 {d.x(), 0.0},
-                                 {0.0, 0.7 * shape_.depth},
-                                 fmt::format("\u03c1 cos 45\u00b0, \u03c1 = {:g}", shape_.orbit)});
+    sketch.dimensions.push_back({Eigen::Vector2d::Zero(), d,
+                                 0.8 * shape_.depth * Eigen::Vector2d(-d.y(), d.x()) / d.norm(),
+                                 fmt::format("\u03c1 = {:g}", shape_.orbit)});
     return sketch;
   }
 

@@ -36,20 +36,22 @@ void write_poses(hdf5::File& file, const std::vector<Pose>& poses) {
   file.write_matrix("/pose", rows.data(), poses.size(), 7, k_chunk_rows);
 }
 
-void write_spectra(hdf5::File& file, Vectors ideal, Vectors measured) {
-  const std::vector<double> ideal_size = magnitudes(ideal);
+/// Signal and residual of one of the two kinds of vectors.
+void write_spectra(hdf5::File& file, const std::string& kind, Vectors ideal, Vectors measured) {
   const std::vector<double> signal = magnitudes(measured);
-  const auto fit = fit_gain(ideal, measured);
   std::vector<double> residual = signal;
-  for (std::size_t k = 0; k < residual.size(); ++k) residual[k] -= fit ? fit->gain * ideal_size[k] : 0.0;
-  file.make_group("/spectrum");
-  const auto write = [&](const char* name, const std::vector<double>& values) {
-    Spectrogram diagram = short_time_spectrum(values, k_haptic_rate_hz, k_spectrum_window, k_spectrum_hop);
-    file.write_matrix(name, diagram.intensity.data(), diagram.times.size(), diagram.frequencies.size(), k_chunk_rows);
+  if (const auto fit = fit_gain(ideal, measured)) {
+    for (std::size_t k = 0; k < residual.size(); ++k) residual[k] -= fit->gain * ideal[k].norm();
+  }
+  const auto write = [&](const std::string& what, const std::vector<double>& values) {
+    const Spectrogram diagram = short_time_spectrum(values, k_haptic_rate_hz, k_spectrum_window, k_spectrum_hop);
+    file.write_matrix("/spectrum/" + kind + "_" + what, diagram.intensity.data(), diagram.times.size(),
+                      diagram.frequencies.size(), k_chunk_rows);
     return diagram;
   };
-  write("/spectrum/signal", signal);
-  const Spectrogram axes = write("/spectrum/residual", residual);
+  write("signal", signal);
+  const Spectrogram axes = write("residual", residual);
+  if (kind != "force") return;  // the axes are the same
   write_column(file, "/spectrum/times", axes.times);
   write_column(file, "/spectrum/frequencies", axes.frequencies);
 }
@@ -93,8 +95,9 @@ void write_series(const std::filesystem::path& path, const Scenario& scenario, c
   write_column(file, "/ideal_penalty", penalties);
   file.write_values("/status", std::span<const std::int32_t>(status));
   if (recording.size() >= k_spectrum_window) {
-    const bool by_force = peak(forces) > 0.0;
-    write_spectra(file, by_force ? forces : torques, by_force ? recording.forces : recording.torques);
+    file.make_group("/spectrum");
+    write_spectra(file, "force", forces, recording.forces);
+    write_spectra(file, "torque", torques, recording.torques);
   }
   file.close();
   target.commit();

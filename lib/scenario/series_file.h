@@ -20,9 +20,10 @@ struct SeriesStamp {
 /// Attributes of "/": format, format_version, scenario, law, algorithm, version, settings, shape, rate_hz, and every
 /// measure by its name. Datasets, float64, one row per stamp: /progress, /pose (w, x, y, z, tx, ty, tz), /force,
 /// /torque, /penalty, /time_ns, /ideal_force, /ideal_torque, /ideal_penalty; /status int32 in the order of Status.
-/// Short-time spectra (rows: times, columns: frequencies) of the largest component's magnitude and of its residual
-/// after the least-squares gain: /spectrum/signal, /spectrum/residual, /spectrum/times, /spectrum/frequencies; absent
-/// for fewer than k_spectrum_window stamps. @throws BadFile, BadArgument
+/// Time-frequency diagrams (rows: times in s, columns: frequencies in Hz) of the magnitudes of force and torque, and of
+/// their residuals after the least-squares gain (the signal itself where the ideal is zero): /spectrum/force_signal,
+/// force_residual, torque_signal, torque_residual, times, frequencies. Intensity is energy, the unit of the magnitude
+/// squared. Absent for fewer than k_spectrum_window stamps. @throws BadFile, BadArgument
 void write_series(const std::filesystem::path& path, const Scenario& scenario, const Recording& recording, IdealLaw law,
                   const SeriesStamp& stamp, const Measures& measures);
 

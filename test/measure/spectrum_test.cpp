@@ -1,5 +1,6 @@
 #include <sixdof/measure/spectrum.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -111,6 +112,29 @@ TEST(ShortTimeSpectrum, ShowsWhenAToneStarts) {
   EXPECT_NEAR(at(diagram.times.size() - 1, 30), 0.0, k_rounding);
   EXPECT_THROW(short_time_spectrum(signal, 1000.0, 2048, 64), BadArgument);
   EXPECT_THROW(short_time_spectrum(signal, 1000.0, 64, 0), BadArgument);
+}
+
+TEST(ShortTimeSpectrum, FollowsAChirp) {
+  // Frequency rising from 40 Hz by 300 Hz a second: phase 2 pi (40 t + 150 t^2).
+  constexpr double k_rate = 1000.0;
+  std::vector<double> signal;
+  for (int k = 0; k < 1000; ++k) {
+    const double t = k / k_rate;
+    signal.push_back(0.7 * std::sin(k_turn * (40.0 * t + 150.0 * t * t)));
+  }
+  const Spectrogram diagram = short_time_spectrum(signal, k_rate, 64, 8);
+  const std::size_t bins = diagram.frequencies.size();
+  const double bin_width = diagram.frequencies[1];
+  EXPECT_NEAR(bin_width, k_rate / 64.0, k_rounding);
+  for (std::size_t row = 0; row < diagram.times.size(); ++row) {
+    const auto from = diagram.intensity.begin() + static_cast<std::ptrdiff_t>(row * bins);
+    const auto strongest = std::max_element(from, from + static_cast<std::ptrdiff_t>(bins)) - from;
+    const double expected = 40.0 + 300.0 * diagram.times[row];
+    EXPECT_LE(std::abs(diagram.frequencies[static_cast<std::size_t>(strongest)] - expected), 0.75 * bin_width) << row;
+    // The chirp keeps its strength: a piece of amplitude a under a Hann window has energy (3/8) a^2 / 2 per sample.
+    EXPECT_NEAR(std::accumulate(from, from + static_cast<std::ptrdiff_t>(bins), 0.0), 64.0 * 0.375 * 0.49 / 2.0,
+                0.1 * 64.0 * 0.375 * 0.49 / 2.0);
+  }
 }
 
 }  // namespace

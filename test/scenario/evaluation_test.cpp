@@ -1,5 +1,6 @@
 #include <sixdof/scenario/evaluation.h>
 
+#include <algorithm>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/base/hdf5.h>
 #include <sixdof/measure/metrics.h>
+#include <sixdof/measure/spectrum.h>
 #include <sixdof/scenario/drawing.h>
 #include <sixdof/scenario/series_file.h>
 
@@ -119,9 +121,21 @@ TEST(SeriesFile, HoldsWhatWasRecorded) {
     EXPECT_NEAR(file.read_matrix("/ideal_torque")[3 * 149 + 2] * 3.0, recording.torques[149].z(), k_rounding * 1e4);
     EXPECT_EQ(file.matrix_size("/pose").second, 7u);
     EXPECT_EQ(file.read_values<std::int32_t>("/status"), std::vector<std::int32_t>(150, 0));
-    const auto [times, frequencies] = file.matrix_size("/spectrum/residual");
-    EXPECT_EQ(frequencies, k_spectrum_window / 2 + 1);
-    EXPECT_EQ(file.read_matrix("/spectrum/times").size(), times);
+    // Rows start every 8 stamps: (150 - 64) / 8 + 1 of them.
+    for (const char* name : {"force_signal", "force_residual", "torque_signal", "torque_residual"}) {
+      EXPECT_EQ(file.matrix_size(std::string("/spectrum/") + name),
+                std::pair(std::size_t{11}, k_spectrum_window / 2 + 1));
+    }
+    const std::vector<double> times = file.read_matrix("/spectrum/times");
+    ASSERT_EQ(times.size(), 11u);
+    EXPECT_NEAR(times[3], (3 * 8 + 32) * 1e-3, k_rounding);
+    EXPECT_NEAR(file.read_matrix("/spectrum/frequencies").back(), 500.0, k_rounding);
+    const Spectrogram diagram = short_time_spectrum(magnitudes(recording.torques), 1000.0, k_spectrum_window, 8);
+    EXPECT_EQ(file.read_matrix("/spectrum/torque_signal"), diagram.intensity);
+    // Three times the ideal: a gain, and nothing left.
+    const std::vector<double> left = file.read_matrix("/spectrum/torque_residual");
+    EXPECT_LT(*std::max_element(left.begin(), left.end()), k_rounding * diagram.intensity.front());
+    EXPECT_EQ(file.read_matrix("/spectrum/force_residual"), std::vector<double>(left.size(), 0.0));
   }
   std::filesystem::remove(path);
 }
