@@ -2,8 +2,8 @@
 
 #include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
-#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/bench/algorithms.h>
 #include <sixdof/bench/cli/distance_source_argument.h>
+#include <sixdof/bench/cli/generate_plan.h>
 #include <sixdof/bench/cli/generate_shards.h>
 #include <sixdof/bench/cli/program_version.h>
 #include <sixdof/configuration/configuration_set.h>
@@ -33,6 +34,8 @@ struct Arguments {
   std::string volume_grid;     // empty: not given
   unsigned threads = 0;
   std::size_t shards = 0, shard = 0;  // 0: not given
+  double sample_seconds = 5.0;
+  std::uint64_t sample_seed = 1;
   bool plan = false, resume = false, progress = false;
 };
 
@@ -47,21 +50,6 @@ int parse_percent(std::string_view list, std::string_view text) {
 }
 
 std::vector<int> parse_list(std::string_view text) { return text.empty() ? std::vector<int>{} : parse_percents(text); }
-
-void print_plan(const Grid& grid, std::size_t buckets) {
-  const auto map = representatives(grid.rotations);
-  const std::size_t distinct = std::set(map.begin(), map.end()).size();
-  const std::size_t per_bucket = grid.configurations();
-  const std::size_t all = per_bucket * buckets;
-  fmt::print("grid                       {} ({})\n", grid.spec, grid.sampler);
-  fmt::print("directions                 {}\n", grid.directions.size());
-  fmt::print("rotations                  {}, of which {} distinct\n", grid.rotations.size(), distinct);
-  fmt::print("configurations per bucket  {}\n", per_bucket);
-  fmt::print("buckets                    {}\n", buckets);
-  fmt::print("configurations             {}\n", all);
-  fmt::print("of which computed          {}\n", distinct * grid.directions.size() * buckets);
-  fmt::print("bytes before compression   {}\n", all * sizeof(double));
-}
 
 std::unique_ptr<DistanceGenerator> make_generator(const Arguments& arguments, const Registry& registry) {
   if (arguments.oracle.empty() && arguments.method != "advance") return make_ray_cast();
@@ -99,8 +87,12 @@ void generate(const Arguments& arguments) {
   const std::vector<int> distances = parse_list(all_distances ? "0:30" : arguments.distances);
   const std::vector<int> volumes = parse_list(arguments.volumes);
   SetDescription set = describe(arguments, distances, volumes);
-  if (arguments.plan) return print_plan(set.grid, distances.size() + volumes.size());
-  if (arguments.a.empty() || arguments.output.empty()) throw BadArgument("--a and -o are needed (or --plan)");
+  if (arguments.plan) {
+    print_counts(set, distances.size(), volumes.size());
+    if (arguments.a.empty() || arguments.sample_seconds == 0.0) return;
+  } else if (arguments.a.empty() || arguments.output.empty()) {
+    throw BadArgument("--a and -o are needed (or --plan)");
+  }
 
   Registry registry;
   register_all_algorithms(registry);
@@ -117,6 +109,10 @@ void generate(const Arguments& arguments) {
                             .job = job,
                             .threads = arguments.threads,
                             .progress = arguments.progress};
+  if (arguments.plan) {
+    return print_estimate(
+        work, {.shards = arguments.shards, .seconds = arguments.sample_seconds, .seed = arguments.sample_seed});
+  }
   if (arguments.shards == 0) return generate_set(work, arguments.output);
   generate_shards(
       work,
@@ -172,7 +168,12 @@ void add_generate_command(CLI::App& app) {
       ->check(CLI::Range(1, k_most_shards));
   command->add_flag("--resume", arguments->resume, "Keep shards that are there and sound, make the others");
   command->add_flag("--progress", arguments->progress, "Show progress where stderr is no terminal, too");
-  command->add_flag("--plan", arguments->plan, "Only print what would be made");
+  command->add_flag("--plan", arguments->plan,
+                    "Only print what would be made and, given --a, what it would take, from a timed sample of it");
+  command->add_option("--sample-seconds", arguments->sample_seconds, "Of --plan; 0: no sample")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--sample-seed", arguments->sample_seed, "Of --plan")->capture_default_str();
   command->callback([arguments] { generate(*arguments); });
 }
 

@@ -28,11 +28,12 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Clock = std::chrono::steady_clock;
 
 /// Two unlike meshes, both kinds of bucket on grids of their own: about a second.
 const std::vector<std::string> k_job{
-    "generate",    "--a",    "bumpy-sphere-500", "--b", "torus-knot-1000", "--grid", "45", "--volume-grid", "45/90",
+    "generate",    "--a",    "bumpy-sphere-500", "--b", "torus-knot-1000", "--grid", "45", "--volume-grid", "90",
     "--distances", "0,5,20", "--volumes",        "0,5", "--threads",       "1"};
 constexpr std::size_t k_shards = 12;
 
@@ -165,6 +166,22 @@ TEST_F(Generate, RefusesShardsThatCannotBe) {
   EXPECT_THAT(run(job_with({"--shards", "45", "-o", folder_ / "set"})).err, HasSubstr("distinct rotations to share"));
   EXPECT_THAT(run(job_with({"--resume", "-o", folder_ / "set.h5"})).err, HasSubstr("go with --shards"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "set"));
+}
+
+TEST_F(Generate, PlansThePapersSet) {
+  const auto counts = run({"generate", "--grid", "paper", "--distances", "0:30", "--volumes", "0:10", "--plan"});
+  EXPECT_EQ(counts.exit_code, 0) << counts.err;
+  EXPECT_THAT(counts.out, AllOf(HasSubstr("7488, of which 6384 distinct"), HasSubstr("1008, of which 744 distinct"),
+                                HasSubstr("64695456, of which 54819408 computed")));
+  EXPECT_THAT(counts.out, Not(HasSubstr("CPU-hours")));
+  const auto estimate = run(job_with({"--plan", "--shards", "5", "--sample-seconds", "0.2"}));
+  EXPECT_EQ(estimate.exit_code, 0) << estimate.err;
+  for (const char* expected : {"distances", "volumes", "us per configuration", "CPU-hours", "seed 1",
+                               "time of one shard", "memory of a process", "5 shards of"}) {
+    EXPECT_THAT(estimate.out, HasSubstr(expected));
+  }
+  EXPECT_THAT(run(job_with({"--plan", "--sample-seconds", "0"})).out, Not(HasSubstr("CPU-hours")));
+  EXPECT_EQ(run(job_with({"--plan", "--sample-seconds", "-1"})).exit_code, cli::k_exit_usage);
 }
 
 /// kill -9 at random moments: what is there under a shard's name is sound, and --resume and merge end with the bytes of
