@@ -21,7 +21,7 @@ constexpr double k_margin = 1e-9;          // relative gap kept around every sph
 constexpr double k_start_depth = 1e-7;     // of a prototype below its surface point, in diagonals
 constexpr double k_depth_rounding = 1e-6;  // of that depth: rounding of coordinates, 1e-16 / 1e-7, with room
 constexpr int k_escape_steps = 40;         // doublings of the clearance, at most, before the zigzag
-constexpr int k_climb_steps = 16;          // measured clearances per climb after the escape, at most
+constexpr int k_climb_steps = 64;          // measured clearances per climb after the escape, at most: wedges need many
 constexpr std::size_t k_memory = 8;        // obstacles a climbing prototype remembers
 constexpr double k_good_enough = 1e-2;     // a climb ends when its model promises less than this relative gain
 constexpr double k_together = 0.9;         // spheres of at least this share of the largest are inserted in one round
@@ -297,7 +297,7 @@ Packing pack_spheres_cached(const Mesh& mesh, const PackingGoal& goal) {
   if (!mesh.solid()) throw BadMesh(mesh.name() + ": " + mesh.why_not_solid());
   constexpr const char* k_kind = "ist-packing";
   // Raise the number whenever the packing of the same mesh and goal changes.
-  const std::string key = fmt::format("1 {} spheres={} fill={} smallest_radius={} seed={}", mesh.hash(), goal.spheres,
+  const std::string key = fmt::format("2 {} spheres={} fill={} smallest_radius={} seed={}", mesh.hash(), goal.spheres,
                                       goal.fill, goal.smallest_radius, goal.seed);
   if (auto entry = load_cached(k_kind, key)) {
     const auto values = entry->take<double>("spheres");

@@ -113,6 +113,18 @@ TEST(Packing, AThinPlateIsFilledFromWallToWall) {
   }
 }
 
+/// Below a cone's inscribed sphere the next largest stands in the tip, where a climb has to follow a narrow wedge.
+TEST(Packing, FollowsAConeIntoItsTip) {
+  const Mesh cone = load_model("cone-1k");  // base radius 1, height 2, apex up
+  const double sine = 1.0 / std::sqrt(5.0), inscribed = 2.0 / (1.0 + std::sqrt(5.0));
+  const double ratio = (1.0 - sine) / (1.0 + sine);
+  const Packing packing = pack_spheres(cone, Tree(cone), goal(3));
+  constexpr double k_near = 0.02;  // flat sides, and climbs that end within a hundredth of the top
+  EXPECT_NEAR(packing.spheres[0].radius, inscribed, k_near);
+  EXPECT_NEAR(packing.spheres[1].radius, ratio * inscribed, k_near);
+  EXPECT_NEAR(packing.spheres[1].center.z(), 2.0 - ratio * inscribed / sine, k_near);
+}
+
 TEST(Packing, StopsAtTheFillRateAndTheSmallestRadius) {
   const Mesh mesh = load_model("box-1k");
   PackingGoal until = goal(5000);
