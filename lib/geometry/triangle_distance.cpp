@@ -57,6 +57,9 @@ struct Best {
   }
 };
 
+/// Rounding of triangle_gap(), per size: three products, their sum, and as much as the distance that it bounds is off.
+constexpr double k_gap_error = 5e-15;
+
 struct Edge {
   Vector3d from;
   Vector3d to;
@@ -276,6 +279,25 @@ ClosestPoints segment_segment_distance(const Vector3d& p0, const Vector3d& p1, c
   offer_point_edge<-1>(b.to, a, best);
   offer_edge_edge(a, b, best);
   return finish(best, p0);
+}
+
+double triangle_gap(const TriangleCorners& a, const TriangleCorners& b) {
+  const TriangleCorners local_a = relative(a, a[0]);
+  const TriangleCorners local_b = relative(b, a[0]);
+  double gap = -std::numeric_limits<double>::infinity();
+  for (const Vector3d& normal :
+       {Vector3d(local_a[1].cross(local_a[2])), Vector3d((local_b[1] - local_b[0]).cross(local_b[2] - local_b[0]))}) {
+    const double length = normal.norm();
+    if (!(length > 0.0)) continue;
+    const auto [low_a, high_a] = std::minmax({0.0, normal.dot(local_a[1]), normal.dot(local_a[2])});
+    const auto [low_b, high_b] = std::minmax({normal.dot(local_b[0]), normal.dot(local_b[1]), normal.dot(local_b[2])});
+    gap = std::max(gap, std::max(low_b - high_a, low_a - high_b) / length);
+  }
+  double size = 0.0;
+  for (const TriangleCorners* t : {&local_a, &local_b}) {
+    for (const Vector3d& p : *t) size = std::max(size, p.cwiseAbs().sum());
+  }
+  return gap - k_gap_error * size;
 }
 
 ClosestPoints triangle_triangle_distance(const TriangleCorners& a, const TriangleCorners& b) {

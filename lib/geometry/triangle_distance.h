@@ -37,6 +37,11 @@ ClosestPoints segment_segment_distance(const Eigen::Vector3d& p0, const Eigen::V
 /// apart by less than the rounding of their differences can be k_least_distance apart.
 ClosestPoints triangle_triangle_distance(const TriangleCorners& a, const TriangleCorners& b);
 
+/// A lower bound on what triangle_triangle_distance() returns, at a tenth of its cost: the gap along the normal of the
+/// one or the other triangle, less the rounding of both. The distance itself, up to rounding, where the closest points
+/// lie inside of a face; negative where nothing can be said.
+double triangle_gap(const TriangleCorners& a, const TriangleCorners& b);
+
 /// Whether two closed triangles have a point in common: exact for the given doubles, also for touching, coplanar and
 /// degenerate triangles (limits of the coordinates: predicates.h).
 bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b);

@@ -129,37 +129,41 @@ int winding(const Tree& tree, const Pose* pose, const Vector3d& p, std::vector<s
 DistanceOracle::DistanceOracle(const Mesh& a, std::shared_ptr<const Tree> tree_a, const Mesh& b,
                                std::shared_ptr<const Tree> tree_b)
     : tree_a_(std::move(tree_a)),
-      tree_b_(std::move(tree_b)),
+      tree_b_(tree_b ? std::move(tree_b) : second_tree(a, tree_a_, b)),
       solid_a_(a.solid()),
       solid_b_(b.solid()),
       pieces_a_(find_pieces(a)),
       pieces_b_(&a == &b ? pieces_a_ : find_pieces(b)),
       samples_a_(*tree_a_),
-      samples_b_(*tree_b_) {}
+      samples_b_(*tree_b_),
+      flats_a_(std::make_shared<const detail::Flats>(*tree_a_)),
+      flats_b_(tree_b_ == tree_a_ ? flats_a_ : std::make_shared<const detail::Flats>(*tree_b_)) {}
 
 DistanceOracle::DistanceOracle(const Mesh& a, const Mesh& b)
-    : tree_a_(std::make_shared<const Tree>(a)),
-      tree_b_(second_tree(a, tree_a_, b)),
-      solid_a_(a.solid()),
-      solid_b_(b.solid()),
-      pieces_a_(find_pieces(a)),
-      pieces_b_(&a == &b ? pieces_a_ : find_pieces(b)),
-      samples_a_(*tree_a_),
-      samples_b_(*tree_b_) {}
+    : DistanceOracle(a, std::make_shared<const Tree>(a), b, nullptr) {}
 
 std::size_t DistanceOracle::bytes() const {
-  return tree_a_->bytes() + (tree_b_ == tree_a_ ? 0 : tree_b_->bytes()) +
-         (pieces_a_.capacity() + pieces_b_.capacity()) * sizeof(Piece);
+  return tree_a_->bytes() + (tree_b_ == tree_a_ ? 0 : tree_b_->bytes()) + flats_a_->bytes() +
+         (flats_b_ == flats_a_ ? 0 : flats_b_->bytes()) + (pieces_a_.capacity() + pieces_b_.capacity()) * sizeof(Piece);
+}
+
+double DistanceOracle::tie_width(const Pose& X_AB) const {
+  return detail::TieWindow::of(*tree_a_, *flats_a_, *tree_b_, *flats_b_, X_AB).width;
 }
 
 DistanceQuery::DistanceQuery(const DistanceOracle& oracle) : oracle_(oracle) {
   traversal_.a = oracle.tree_a().get();
   traversal_.b = oracle.tree_b().get();
+  traversal_.flats_a = &oracle.flats_a();
+  traversal_.flats_b = &oracle.flats_b();
 }
 
 void DistanceQuery::prepare(const Pose& X_AB, bool warm_start) {
   traversal_.X_AB = X_AB;
+  traversal_.ties =
+      detail::TieWindow::of(*oracle_.tree_a(), oracle_.flats_a(), *oracle_.tree_b(), oracle_.flats_b(), X_AB);
   traversal_.found = false;
+  traversal_.measured.clear();
   traversal_.counts = {};
   if (!warm_start) {
     closest_pair_.reset();
@@ -168,27 +172,18 @@ void DistanceQuery::prepare(const Pose& X_AB, bool warm_start) {
   }
 }
 
-namespace {
-
-TriangleCorners moved(const Pose& X_AB, const TriangleCorners& t) { return {X_AB * t[0], X_AB * t[1], X_AB * t[2]}; }
-
-}  // namespace
-
 SurfaceDistance DistanceQuery::distance(const Pose& X_AB, const DistanceOptions& options) {
   prepare(X_AB, options.warm_start);
   detail::Traversal& t = traversal_;
   t.best = options.upper_bound;
   if (closest_pair_) {
-    const detail::TrianglePair pair = *closest_pair_;
-    if (detail::offer_pair(t, pair, t.a->corners()[pair.a], moved(X_AB, t.b->corners()[pair.b]))) {
-      t.direction = t.closest.on_b - t.closest.on_a;
-    }
+    if (detail::offer_pair(t, *closest_pair_)) t.direction = t.closest.on_b - t.closest.on_a;
   }
-  if (!t.found) detail::offer_seed(t, oracle_.samples_a(), oracle_.samples_b());
+  if (!(t.found && t.best == 0.0)) detail::offer_seed(t, oracle_.samples_a(), oracle_.samples_b());
   if (!(t.found && t.best == 0.0)) detail::find_closest(t);
   SurfaceDistance result;
-  result.within_bound = t.found;
-  if (!t.found) return result;
+  result.within_bound = t.found && t.closest.distance <= options.upper_bound;
+  if (!result.within_bound) return result;
   closest_pair_ = t.pair;
   result.distance = t.closest.distance;
   result.on_a = t.closest.on_a;
@@ -202,8 +197,7 @@ bool DistanceQuery::surfaces_intersect(const Pose& X_AB, bool warm_start) {
   prepare(X_AB, warm_start);
   detail::Traversal& t = traversal_;
   if (intersecting_pair_) {
-    const detail::TrianglePair pair = *intersecting_pair_;
-    if (triangles_intersect(t.a->corners()[pair.a], moved(X_AB, t.b->corners()[pair.b]))) return true;
+    if (detail::intersects(t, *intersecting_pair_)) return true;
   }
   detail::find_intersection(t);
   if (t.found) intersecting_pair_ = t.pair;

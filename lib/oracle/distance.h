@@ -63,8 +63,16 @@ class DistanceOracle {
   bool solid_a() const { return solid_a_; }
   bool solid_b() const { return solid_b_; }
 
+  /// Distances that differ by no more than this length count as equal, and DistanceQuery may answer with any of them: 0
+  /// unless both trees have flat parts, subtrees of 4 triangles and more in one plane. It is a few times what rounding
+  /// makes of the distances between two flat parts that are parallel: 1.2e-14 times (radii of the meshes + distance of
+  /// their centres) + 4.5e-15 times (distances of the meshes' centres from their origins + |t|).
+  double tie_width(const Pose& X_AB) const;
+
   const detail::Samples& samples_a() const { return samples_a_; }
   const detail::Samples& samples_b() const { return samples_b_; }
+  const detail::Flats& flats_a() const { return *flats_a_; }
+  const detail::Flats& flats_b() const { return *flats_b_; }
 
   std::size_t bytes() const;
 
@@ -77,6 +85,8 @@ class DistanceOracle {
   std::vector<Piece> pieces_b_;
   detail::Samples samples_a_;
   detail::Samples samples_b_;
+  std::shared_ptr<const detail::Flats> flats_a_;
+  std::shared_ptr<const detail::Flats> flats_b_;
 };
 
 /// Asks an oracle; one object per thread. The oracle outlives it.
@@ -87,9 +97,13 @@ class DistanceOracle {
 /// of the closest pair + distance). Rounding the corners adds up to about 4e-16 times (|R p| + |t|) to what the real
 /// numbers behind X_AB would give: relative to the meshes' size at the origin, relative to the offset far from it.
 ///
-/// A distance has the same bits on every instruction set, for every thread, warm or cold. So do witness points and
-/// triangles where the surfaces are apart: of several closest pairs the one with the lowest triangle in A, then in B,
-/// is taken. Where surfaces meet, witnesses are any one common point.
+/// Ties: where surfaces are apart, the closest pair is the one with the lowest triangle in A, then in B, of all pairs
+/// that are equally far; distance and points are those of this pair. Pairs are equally far if their distances are the
+/// same double, or, if both meshes have flat parts, if they exceed the smallest by no more than tie_width(): a ship's
+/// deck over another is thousands of pairs that differ by their rounding alone. Where surfaces meet, witnesses are any
+/// one common point.
+///
+/// The answer has the same bits on every instruction set, for every thread, warm or cold.
 ///
 /// Poses must be finite with a rotation matrix in R; nothing is checked here.
 class DistanceQuery {

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <hwy/highway.h>
@@ -35,8 +36,8 @@ struct Corner {
 
 /// Finds a corner closer to p than `best.squared`, nearly the closest. Returns whether there is one. Of corners that
 /// differ by less than a few leaves' width sideways any will do: to look for the very closest of many nearly equal ones
-/// would cost more than it saves.
-bool find_corner(const Tree& tree, const float* p, Corner& best, std::vector<OpenPair>& open) {
+/// would cost more than it saves. So will any whose square is less than `tolerance` times that of the closest.
+bool find_corner(const Tree& tree, const float* p, float tolerance, Corner& best, std::vector<OpenPair>& open) {
   constexpr double k_leaves_wide = 32.0;  // square of it; r^2 / leaves is about a leaf's area
   const auto equal =
       static_cast<float>(k_leaves_wide * tree.radius() * tree.radius() / static_cast<double>(tree.leaves().size()));
@@ -45,7 +46,7 @@ bool find_corner(const Tree& tree, const float* p, Corner& best, std::vector<Ope
   while (!open.empty()) {
     const OpenPair top = open.back();
     open.pop_back();
-    if (top.lower + equal >= best.squared) continue;
+    if (tolerance * top.lower + equal >= best.squared) continue;
     if ((top.a & OpenPair::k_leaf) != 0) {
       const Tree::Leaf& leaf = tree.leaves()[top.a - OpenPair::k_leaf];
       for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -80,7 +81,7 @@ bool find_corner(const Tree& tree, const float* p, Corner& best, std::vector<Ope
     }
     const std::size_t first = open.size();
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      if (bounds[i] + equal >= best.squared) continue;
+      if (tolerance * bounds[i] + equal >= best.squared) continue;
       const OpenPair next{node.child[i].is_leaf() ? OpenPair::k_leaf + node.leaf[i] : node.child[i].node(), 0,
                           bounds[i]};
       std::size_t at = open.size();
@@ -99,7 +100,6 @@ void turn(const Frame& f, const float* p, float* out) {
 }
 
 void offer_seed(Traversal& traversal, const Samples& samples_a, const Samples& samples_b) {
-  constexpr int k_turns = 8;  // most searches settle after a few
   const Frames frames(*traversal.a, *traversal.b, traversal.X_AB);
   const Frame& to_a = frames.open_a;
   const Frame& to_b = frames.open_b;
@@ -139,6 +139,9 @@ void offer_seed(Traversal& traversal, const Samples& samples_a, const Samples& s
     }
   }
 
+  // What is known already may be closer: the answer to the last query on a path.
+  if (traversal.found && traversal.best * traversal.best <= static_cast<double>(best)) return;
+
   Corner a{best, samples_a.leaf[best_a], 0, {}};
   Corner b{best, samples_b.leaf[best_b], 0, {}};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -146,21 +149,20 @@ void offer_seed(Traversal& traversal, const Samples& samples_a, const Samples& s
     b.point[k] = samples_b.point[k][best_b];
   }
   float from[3];
-  for (int i = 0; i < k_turns; ++i) {
-    const bool search_b = i % 2 == 0;
-    turn(search_b ? to_b : to_a, search_b ? a.point : b.point, from);
-    Corner& moved = search_b ? b : a;
-    moved.squared = best;
-    if (!find_corner(search_b ? *traversal.b : *traversal.a, from, moved, traversal.open) && i > 0) break;
-    best = moved.squared;
+  bool search_b = true;
+  for (const auto& [tolerance, turns] : {std::pair(1.1f, 6), std::pair(1.0f, 4)}) {  // most settle after fewer
+    int misses = 0;
+    for (int i = 0; i < turns && misses < 2; ++i, search_b = !search_b) {
+      turn(search_b ? to_b : to_a, search_b ? a.point : b.point, from);
+      Corner& moved = search_b ? b : a;
+      moved.squared = best;
+      if (!find_corner(search_b ? *traversal.b : *traversal.a, from, tolerance, moved, traversal.open)) ++misses;
+      best = moved.squared;
+    }
   }
   const TrianglePair pair{traversal.a->leaves()[a.leaf].child.first() + a.triangle,
                           traversal.b->leaves()[b.leaf].child.first() + b.triangle};
-  const Tree::Corners& corners = traversal.b->corners()[pair.b];
-  if (offer_pair(traversal, pair, traversal.a->corners()[pair.a],
-                 {traversal.X_AB * corners[0], traversal.X_AB * corners[1], traversal.X_AB * corners[2]})) {
-    traversal.direction = traversal.closest.on_b - traversal.closest.on_a;
-  }
+  if (offer_pair(traversal, pair)) traversal.direction = traversal.closest.on_b - traversal.closest.on_a;
 }
 
 }  // namespace HWY_NAMESPACE

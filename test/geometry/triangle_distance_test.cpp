@@ -128,6 +128,7 @@ void check(const TriangleCorners& a, const TriangleCorners& b, double& worst) {
     ASSERT_LE(error, k_triangle_distance_error) << "truth " << truth << " got " << closest.distance;
     EXPECT_EQ(closest.distance == 0.0, truth == 0.0);
     EXPECT_EQ(triangles_intersect(a, b), truth == 0.0);
+    EXPECT_LE(swapped ? triangle_gap(b, a) : triangle_gap(a, b), closest.distance);
     const TriangleCorners& of_a = swapped ? b : a;
     const TriangleCorners& of_b = swapped ? a : b;
     const double tolerance = 8.0 * k_triangle_distance_error * size + 4.0 * point_rounding(a, b);
@@ -216,6 +217,48 @@ TEST(TriangleDistance, MatchesHighPrecisionWhereFacesAreParallel) {
       p = a[0] + uniform(g, -1.0, 2.0) * (a[1] - a[0]) + uniform(g, -1.0, 2.0) * (a[2] - a[0]) + gap * normal;
     }
   });
+}
+
+TEST(TriangleGap, IsTheDistanceWhereFacesAreInvolved) {
+  // A corner of the one over the middle of the other, faces tilted by up to a right angle or parallel, at any offset.
+  // The bound is lowered by k_gap_error per size: a box of the differences' sums, up to twice the longest of them.
+  constexpr double k_lowered = 1e-14;
+  Generator g(11);
+  for (int i = 0; i < 400; ++i) {
+    TriangleCorners a = any_triangle(g);
+    const Vector3d normal = (a[1] - a[0]).cross(a[2] - a[0]).normalized() * (i % 2 ? 1.0 : -1.0);
+    const double gap = std::pow(10.0, uniform(g, -9.0, 1.0));
+    const Vector3d middle = (a[0] + a[1] + a[2]) / 3.0;
+    const double tilt = i % 3 == 0 ? 0.0 : uniform(g, 0.0, 1.0);
+    TriangleCorners b;
+    for (Vector3d& p : b) {
+      const Vector3d aside = normal.cross(shapes::unit_vector(g));
+      p = middle + 0.5 * aside + (gap + tilt * uniform(g, 0.1, 1.0)) * normal;
+    }
+    b[g() % 3] = middle + gap * normal;
+    const Vector3d offset = (i % 5 == 0 ? 100.0 : 0.0) * shapes::unit_vector(g);
+    for (TriangleCorners* t : {&a, &b}) {
+      for (Vector3d& p : *t) p += offset;
+    }
+    const double distance = triangle_triangle_distance(a, b).distance;
+    EXPECT_NEAR(distance, gap, 1e-14 * (3.0 + gap + offset.norm()));
+    EXPECT_LE(triangle_gap(a, b), distance);
+    EXPECT_GE(triangle_gap(a, b), distance - k_lowered * (3.0 + gap));
+    EXPECT_LE(triangle_gap(b, a), distance);
+    EXPECT_GE(triangle_gap(b, a), distance - k_lowered * (3.0 + gap));
+  }
+}
+
+TEST(TriangleGap, SaysNothingWhereItCannot) {
+  Generator g(12);
+  for (int i = 0; i < 50; ++i) {
+    const TriangleCorners a = any_triangle(g);
+    const Vector3d p = shapes::uniform_vector(g, 2.0);
+    const Vector3d along = shapes::unit_vector(g);
+    EXPECT_LT(triangle_gap({p, p, p}, {p + along, p + along, p + 3.0 * along}), 0.0);  // no normals
+    EXPECT_LT(triangle_gap(a, {a[0], p, p + along}), 0.0);                             // a common corner
+    EXPECT_LT(triangle_gap(a, a), 0.0);
+  }
 }
 
 TEST(TriangleDistance, ErrorDoesNotGrowWithTheOffset) {

@@ -1,0 +1,263 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <sixdof/models/boxes.h>
+#include <sixdof/oracle/distance.h>
+
+#include "../geometry/shapes.h"
+#include "distance_truth.h"
+
+// Flat parts that face each other: pairs of triangles that tie by the thousand.
+
+namespace sixdof {
+namespace {
+
+using distance_truth::brute_force;
+using Eigen::Vector3d;
+using shapes::Generator;
+using shapes::uniform;
+
+Mesh shuffled(const Mesh& mesh, Generator& generator) {
+  std::vector<Triangle> t = mesh.triangles();
+  for (std::size_t i = t.size(); i > 1; --i) std::swap(t[i - 1], t[generator() % i]);
+  return Mesh::build(mesh.vertices(), t);
+}
+
+/// The answer is that of all pairs by the rule of ties, in every bit.
+void expect_same(const SurfaceDistance& answer, const SurfaceDistance& truth) {
+  ASSERT_TRUE(answer.within_bound);
+  EXPECT_EQ(answer.distance, truth.distance);
+  EXPECT_EQ(answer.triangle_a, truth.triangle_a);
+  EXPECT_EQ(answer.triangle_b, truth.triangle_b);
+  EXPECT_EQ(answer.on_a, truth.on_a);
+  EXPECT_EQ(answer.on_b, truth.on_b);
+}
+
+/// A pose that lays face `b_down` of B (a unit normal in B's frame) over face `a_up` of A, turned at will; `over` is
+/// the middle of A's face, `under` that of B's.
+Pose face_to_face(Generator& generator, const Vector3d& a_up, const Vector3d& over, const Vector3d& b_down,
+                  const Vector3d& under, double gap) {
+  Pose pose;
+  pose.R = (Eigen::AngleAxisd(uniform(generator, 0.0, 6.0), a_up) * Eigen::Quaterniond::FromTwoVectors(b_down, -a_up))
+               .toRotationMatrix();
+  pose.t = over + gap * a_up - pose.R * under;
+  return pose;
+}
+
+/// A block with its frame anywhere, one of its faces known.
+struct Block {
+  Mesh mesh;
+  Vector3d normal;
+  Vector3d middle;
+
+  static Block make(Generator& generator, const Vector3d& size, std::size_t triangles, double offset) {
+    const Pose pose = shapes::random_pose(generator, offset);
+    const Mesh straight = make_box({size}, triangles);
+    return {shuffled(shapes::moved(straight, pose), generator), pose.R.col(2),
+            pose * (straight.center() + Vector3d(0.0, 0.0, 0.5 * size.z()))};
+  }
+};
+
+TEST(DistanceTies, CubesOnAGridTieInEveryBit) {
+  // Cubes of 2 x 2 x 2 with corners on a grid of powers of two, face to face: every pair of the two faces' triangles
+  // that overlap is equally far in every bit.
+  Generator generator(20);
+  const Mesh cube = make_box({Vector3d(2.0, 2.0, 2.0)}, 192);  // faces of 4 x 4 squares
+  for (int i = 0; i < 12; ++i) {
+    const Mesh a = shuffled(cube, generator);
+    const Mesh b = shuffled(cube, generator);
+    const DistanceOracle oracle(a, b);
+    DistanceQuery query(oracle);
+    Pose pose;
+    pose.t = Vector3d(0.625, -0.375, 2.25);
+    if (i % 2 == 1) pose.R << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+    const SurfaceDistance truth = brute_force(a, b, pose);
+    ASSERT_EQ(truth.distance, 0.25);
+    for (const bool warm : {false, true}) expect_same(query.distance(pose, {.warm_start = warm}), truth);
+  }
+}
+
+TEST(DistanceTies, BlocksFaceToFaceAnywhere) {
+  Generator generator(23);
+  int tied = 0;
+  for (int i = 0; i < 24; ++i) {
+    // Frames at the blocks, and a few sizes away.
+    const double offset = i % 3 == 0 ? 5.0 : 0.3;
+    const Block a = Block::make(generator, {1.7, 1.3, 0.9}, 400, offset);
+    const Block b = Block::make(generator, {0.8, 1.1, 0.6}, 300, offset);
+    const DistanceOracle oracle(a.mesh, b.mesh);
+    DistanceQuery query(oracle);
+    const double gap = std::pow(10.0, uniform(generator, -11.0, 0.3));
+    Pose pose = face_to_face(generator, a.normal, a.middle, b.normal, b.middle, gap);
+    const Vector3d aside = a.normal.cross(shapes::unit_vector(generator));
+    pose.t += 0.4 * aside;
+    const double width = oracle.tie_width(pose);
+    ASSERT_GT(width, 0.0);
+    const double sizes = a.mesh.diagonal() + b.mesh.diagonal() + gap + a.mesh.center().norm() + pose.t.norm();
+    EXPECT_LT(width, 3e-14 * (sizes + b.mesh.center().norm()));  // far below the 1e-13 asked of distances
+    const SurfaceDistance truth = brute_force(a.mesh, b.mesh, pose, width);
+    EXPECT_NEAR(truth.distance, gap, width);
+    tied += brute_force(a.mesh, b.mesh, pose).distance < truth.distance;
+    expect_same(query.distance(pose, {.warm_start = false}), truth);
+    expect_same(query.distance(pose), truth);
+    Pose before = pose;  // another part of the plane, another pair to begin with
+    before.t += 0.2 * aside;
+    query.distance(before);
+    expect_same(query.distance(pose), truth);
+    // The bound is one of the distance that is returned, not of the smallest.
+    expect_same(query.distance(pose, {.upper_bound = truth.distance, .warm_start = i % 2 == 0}), truth);
+    const double below = std::nextafter(truth.distance, 0.0);
+    EXPECT_FALSE(query.distance(pose, {.upper_bound = below, .warm_start = i % 2 == 0}).within_bound);
+    EXPECT_FALSE(query.distance(pose, {.upper_bound = 0.5 * below, .warm_start = false}).within_bound);
+    EXPECT_FALSE(query.collide(pose));
+
+    const DistanceOracle swapped(b.mesh, a.mesh);
+    expect_same(DistanceQuery(swapped).distance(pose.inverse()),
+                brute_force(b.mesh, a.mesh, pose.inverse(), swapped.tie_width(pose.inverse())));
+  }
+  EXPECT_GT(tied, 3);  // the rule was needed: the first of the ties is not the smallest in every bit
+}
+
+TEST(DistanceTies, AreTheSameBitsOnEveryInstructionSet) {
+  Generator generator(24);
+  for (int i = 0; i < 4; ++i) {
+    const Block a = Block::make(generator, {1.7, 1.3, 0.9}, 1200, 0.5);
+    const Block b = Block::make(generator, {0.8, 1.1, 0.6}, 1500, 0.5);
+    const DistanceOracle oracle(a.mesh, b.mesh);
+    const Pose pose = face_to_face(generator, a.normal, a.middle, b.normal, b.middle, i == 0 ? 1e-9 : 0.1);
+    const SurfaceDistance standard = DistanceQuery(oracle).distance(pose);
+    for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+      hwy::SetSupportedTargetsForTest(targets & -targets);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      expect_same(DistanceQuery(oracle).distance(pose), standard);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+}
+
+/// Adds a square of side `side`, cut in n x n squares of two triangles each.
+void add_square(std::vector<Vector3d>& v, std::vector<Triangle>& t, const Vector3d& corner, double side,
+                std::uint32_t n) {
+  const auto first = static_cast<std::uint32_t>(v.size());
+  for (std::uint32_t i = 0; i <= n; ++i) {
+    for (std::uint32_t j = 0; j <= n; ++j) v.push_back(corner + side / n * Vector3d(i, j, 0.0));
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const std::uint32_t k = first + i * (n + 1) + j;
+      t.push_back({k, k + n + 1, k + 1});
+      t.push_back({k + 1, k + n + 1, k + n + 2});
+    }
+  }
+}
+
+TEST(DistanceTies, HeightsAtTheLimitOfATieAreToldApart) {
+  // Small plates over a large one, at heights that climb in steps of a tenth of what counts as a tie: bounds cannot say
+  // which of them tie, and what may be left alone depends on it.
+  Generator generator(25);
+  constexpr std::uint32_t k_plates = 8;  // in a row; squared
+  for (int i = 0; i < 40; ++i) {
+    std::vector<Vector3d> v;
+    std::vector<Triangle> t;
+    add_square(v, t, {-1.0, -1.0, 0.0}, 2.0, 6);
+    const Pose turn = shapes::random_pose(generator, 0.0);
+    const Mesh ground = shuffled(shapes::moved(Mesh::build(v, t), turn), generator);
+    v.clear();
+    t.clear();
+    const double gap = i % 2 == 0 ? 0.37 : 3e-7;
+    const double step = 1e-14;  // about a third of the width
+    for (std::uint32_t x = 0; x < k_plates; ++x) {
+      for (std::uint32_t y = 0; y < k_plates; ++y) {
+        const double height = gap + 0.3 * step * static_cast<double>(generator() % 40);
+        add_square(v, t, {0.2 * x - 0.8, 0.2 * y - 0.8, height}, 0.15, 1);
+      }
+    }
+    add_square(v, t, {-0.8, -0.8, 1.4}, 1.6, 5);  // a roof: what makes this a mesh with flat parts
+    const Mesh plates = shuffled(shapes::moved(Mesh::build(v, t), turn), generator);
+
+    const DistanceOracle oracle(ground, plates);
+    DistanceQuery query(oracle);
+    Pose pose;  // a little beside where the plates were made
+    pose.t = 0.01 * turn.R.col(0);
+    const double width = oracle.tie_width(pose);
+    const SurfaceDistance truth = brute_force(ground, plates, pose, width);
+    ASSERT_NEAR(truth.distance, gap, 13.0 * step);
+    expect_same(query.distance(pose, {.warm_start = false}), truth);
+    for (int k = 0; k < 5; ++k) {
+      Pose before = pose;
+      before.t += 0.1 * turn.R * Vector3d(uniform(generator, -1.0, 1.0), uniform(generator, -1.0, 1.0), 0.1);
+      query.distance(before);
+      expect_same(query.distance(pose), truth);
+    }
+    const DistanceOracle swapped(plates, ground);
+    const Pose back = pose.inverse();
+    expect_same(DistanceQuery(swapped).distance(back), brute_force(plates, ground, back, swapped.tie_width(back)));
+  }
+}
+
+TEST(DistanceTies, FacesThatTouchUpToRounding) {
+  // Gaps around nothing: the distance is 0 if and only if two triangles meet, whatever the ties.
+  Generator generator(26);
+  int apart = 0;
+  int meeting = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Block a = Block::make(generator, {1.7, 1.3, 0.9}, 150, 0.4);
+    const Block b = Block::make(generator, {0.8, 1.1, 0.6}, 150, 0.4);
+    const DistanceOracle oracle(a.mesh, b.mesh);
+    DistanceQuery query(oracle);
+    const double gap = std::pow(10.0, uniform(generator, -17.0, -13.0));
+    const Pose pose = face_to_face(generator, a.normal, a.middle, b.normal, b.middle, gap);
+    const SurfaceDistance smallest = brute_force(a.mesh, b.mesh, pose);
+    EXPECT_EQ(query.surfaces_intersect(pose, false), smallest.distance == 0.0);
+    if (smallest.distance == 0.0) {
+      ++meeting;
+      EXPECT_EQ(query.distance(pose, {.warm_start = false}).distance, 0.0);
+    } else {
+      ++apart;
+      expect_same(query.distance(pose, {.warm_start = false}),
+                  brute_force(a.mesh, b.mesh, pose, oracle.tie_width(pose)));
+    }
+  }
+  EXPECT_GT(apart, 5);
+  EXPECT_GT(meeting, 5);
+}
+
+TEST(DistanceTies, CostLittle) {
+  // Faces with thousands of ties are cut whole, and what was cut is opened along one path to its lowest triangles.
+  constexpr double k_pairs_per_triangle = 0.1;
+  constexpr double k_volumes_per_triangle = 0.5;
+  const auto check = [](const Mesh& mesh) {
+    const DistanceOracle oracle(mesh, mesh);
+    DistanceQuery query(oracle);
+    const auto triangles = static_cast<double>(mesh.triangles().size());
+    const double height = mesh.box().sizes().z();
+    const auto check_counts = [&] {
+      EXPECT_LT(static_cast<double>(query.counts().triangles), k_pairs_per_triangle * triangles);
+      EXPECT_LT(static_cast<double>(query.counts().nodes), k_volumes_per_triangle * triangles);
+      EXPECT_LT(static_cast<double>(query.counts().leaf_pairs), k_volumes_per_triangle * triangles);
+    };
+    for (const double gap : {1e-6, 0.3}) {
+      for (int quarter = 0; quarter < 4; ++quarter) {
+        SCOPED_TRACE(testing::Message() << mesh.name() << " gap " << gap << " quarter " << quarter);
+        const Eigen::AngleAxisd turn(1.5707963267948966 * quarter, Vector3d::UnitZ());
+        const Pose pose{turn.toRotationMatrix(), {0.0137, -0.0211, height + gap}};
+        EXPECT_NEAR(query.distance(pose, {.warm_start = false}).distance, gap, oracle.tie_width(pose));
+        check_counts();
+        EXPECT_FALSE(query.collide(pose, false));
+        check_counts();
+      }
+    }
+  };
+  check(make_box({}, 2500));
+  check(make_box({}, 10000));
+  check(make_circular_box({}, 10000));
+}
+
+}  // namespace
+}  // namespace sixdof
