@@ -26,4 +26,11 @@ void add_scenario_rows(Suite& suite);
 /// contact.
 void add_kernel_rows(Suite& suite);
 
+/// `generate/distance/algorithm:raycast/pair:P`, `.../algorithm:fcl/...` (conservative advancement by FCL's distances),
+/// `generate/volume/algorithm:overlap/pair:P`: what a configuration of the paper's grid and buckets costs to make, on
+/// the same seeded rays for all, as the counter ns_per_configuration (CPU time). For the catalogue's pairs and for
+/// recipes of 10k to a million triangles, which are made on the spot; some rows take half a minute. bench/run leaves
+/// them out unless asked for: `--benchmark_filter=^generate/`.
+void add_generate_rows(Suite& suite);
+
 }  // namespace sixdof::bench

@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <sixdof/algorithm/algorithm_source.h>
+#include <sixdof/bench/rows/families.h>
+#include <sixdof/configuration/ray_cast.h>
+#include <sixdof/configuration/sphere_method.h>
+#include <sixdof/configuration/volume_generator.h>
+#include <sixdof/configuration/work_sample.h>
+
+namespace sixdof::bench {
+namespace {
+
+constexpr std::size_t k_runs = 4;  ///< Of RayRuns::k_length rays each, with all the paper's buckets.
+constexpr const char* k_fcl = "fcl-rss";
+
+/// Copies of one recipe, where cost is to be seen against size.
+constexpr const char* k_recipes[] = {"torus-knot-10k",   "torus-knot-100k",   "torus-knot-1m",
+                                     "bumpy-sphere-10k", "bumpy-sphere-100k", "bumpy-sphere-1m"};
+
+enum class Method {
+  raycast,
+  fcl,
+  overlap
+};
+
+struct MethodWords {
+  BucketKind kind;
+  const char* name;  ///< In the row's name.
+  const char* grid;
+};
+
+MethodWords words(Method method) {
+  switch (method) {
+    case Method::raycast:
+      return {BucketKind::distance, "raycast", "paper"};
+    case Method::fcl:
+      return {BucketKind::distance, "fcl", "paper"};
+    case Method::overlap:
+      break;
+  }
+  return {BucketKind::volume, "overlap", "paper-volume"};
+}
+
+/// A generator with one solver. Both are large for large meshes, so all rows share one place for the last.
+struct Generator {
+  std::string row;
+  std::unique_ptr<DistanceGenerator> distances;
+  std::unique_ptr<VolumeGenerator> volumes;
+  std::unique_ptr<RaySolver> solver;  // Last: it refers to the others.
+};
+
+class GenerateRow {
+ public:
+  GenerateRow(Suite& suite, Method method, std::string pair, std::string a, std::string b,
+              std::shared_ptr<Generator> last)
+      : suite_(suite),
+        method_(method),
+        pair_(std::move(pair)),
+        a_(std::move(a)),
+        b_(std::move(b)),
+        last_(std::move(last)) {}
+
+  std::string name() const {
+    return fmt::format("generate/{}/algorithm:{}/pair:{}", to_string(words(method_).kind), words(method_).name, pair_);
+  }
+
+  /// Every pass over the rays is one iteration of the row. The row's own time has more in it than the counter: the rays
+  /// that warm up, and a rotation's preparation for a few rays instead of all.
+  void run(benchmark::State& state) {
+    RaySolver& solver = prepare();
+    const Grid grid = make_grid(words(method_).grid);
+    const std::vector<double> aims = bucket_aims();
+    double seconds = 0.0;
+    std::size_t rays = 0;
+    for ([[maybe_unused]] auto _ : state) {
+      RayRuns runs(grid, suite_.options().seed);
+      for (std::size_t i = 0; i < k_runs; ++i) {
+        const RunCost cost = time_run(solver, grid, runs.next(), aims);
+        const double share = static_cast<double>(cost.rays) / static_cast<double>(grid.directions.size());
+        seconds += cost.rays_s + share * cost.set_rotation_s;
+        rays += cost.rays;
+      }
+    }
+    const auto configurations = static_cast<double>(rays * aims.size());
+    state.counters["ns_per_configuration"] = 1e9 * seconds / configurations;
+    state.counters["configurations"] = configurations / static_cast<double>(state.iterations());
+    const Mesh& a = suite_.stock().mesh(a_);
+    const Mesh& b = suite_.stock().mesh(b_);
+    state.counters["triangles"] = static_cast<double>(a.triangles().size() + b.triangles().size());
+  }
+
+ private:
+  std::vector<double> bucket_aims() const {
+    const Mesh& a = suite_.stock().mesh(a_);
+    std::vector<double> aims;
+    if (words(method_).kind == BucketKind::volume) {
+      for (int percent = 0; percent < static_cast<int>(k_paper_volume_buckets); ++percent) {
+        aims.push_back(volume_bucket(a, percent).aim);
+      }
+    } else {
+      for (int percent = static_cast<int>(k_paper_distance_buckets) - 1; percent >= 0; --percent) {
+        aims.push_back(distance_bucket(a, percent).aim);
+      }
+    }
+    return aims;
+  }
+
+  RaySolver& prepare() {
+    if (last_->row == name()) return *last_->solver;
+    last_->solver.reset();
+    last_->volumes.reset();
+    const Mesh& a = suite_.stock().mesh(a_);
+    const Mesh& b = suite_.stock().mesh(b_);
+    last_->distances = method_ == Method::fcl ? make_sphere_method(make_distance_source(suite_.registry().find(k_fcl)))
+                                              : make_ray_cast();
+    if (method_ == Method::overlap) last_->volumes = std::make_unique<VolumeGenerator>(*last_->distances, a, b);
+    last_->solver = last_->volumes ? last_->volumes->prepare() : last_->distances->prepare(a, b);
+    last_->row = name();
+    return *last_->solver;
+  }
+
+  Suite& suite_;
+  const Method method_;
+  const std::string pair_, a_, b_;
+  std::shared_ptr<Generator> last_;
+};
+
+bool has_fcl(const Suite& suite) {
+  const auto& all = suite.registry().all();
+  return std::ranges::any_of(all, [](const auto& algorithm) { return algorithm->traits().name == k_fcl; });
+}
+
+}  // namespace
+
+void add_generate_rows(Suite& suite) {
+  const auto last = std::make_shared<Generator>();
+  const auto add = [&](const std::string& pair, const std::string& a, const std::string& b) {
+    for (const Method method : {Method::raycast, Method::fcl, Method::overlap}) {
+      if (method == Method::fcl && !has_fcl(suite)) continue;
+      const auto row = std::make_shared<GenerateRow>(suite, method, pair, a, b, last);
+      auto* const entry = suite.add(row->name(), [row](benchmark::State& state) { row->run(state); });
+      entry->Unit(benchmark::kMillisecond);
+    }
+  };
+  std::set<std::string> pairs;
+  for (const CatalogueSet& pair : suite.catalogue().sets()) {
+    if (pairs.insert(pair.pair).second) add(pair.pair, pair.a, pair.b);
+  }
+  for (const char* const recipe : k_recipes) {
+    if (pairs.insert(recipe).second) add(recipe, recipe, recipe);
+  }
+}
+
+}  // namespace sixdof::bench
