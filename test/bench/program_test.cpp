@@ -249,6 +249,21 @@ TEST_F(BenchProgram, TakesSettingsAndShowsThem) {
   EXPECT_EQ(exact.at("label"), "relative_error=0");
 }
 
+TEST_F(BenchProgram, TimesTheMakingOfSets) {
+  const json document = result("'--benchmark_filter=^generate/.*/pair:torus-1k-cone-1k$'");
+  ASSERT_EQ(document.at("benchmarks").size(), 3u);
+  const auto cost = [&](const char* method, double configurations) {
+    const json made = row(document, std::string("generate/") + method + "/pair:torus-1k-cone-1k");
+    EXPECT_EQ(made.at("configurations"), configurations) << method;
+    EXPECT_EQ(made.at("triangles"), 2000.0) << method;
+    return made.at("ns_per_configuration").get<double>();
+  };
+  // 4 runs of 8 rays, with all buckets of the paper.
+  EXPECT_GT(cost("volume/algorithm:overlap", 4 * 8 * 11), 0.0);
+  // A factor of tens: no noise turns it around.
+  EXPECT_LT(cost("distance/algorithm:raycast", 4 * 8 * 31), cost("distance/algorithm:fcl", 4 * 8 * 31));
+}
+
 TEST_F(BenchProgram, TakesAUsersSet) {
   const auto list =
       test::run_program(std::string(SIXDOF_BENCH_PROGRAM) + " --no-manifest --benchmark_list_tests --set " +
