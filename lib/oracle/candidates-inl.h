@@ -66,6 +66,8 @@ struct Placement {
   float half_way[3];    ///< Half of the way.
   float reach_in_a[3];  ///< How far volumes reach beyond their place at the middle: half of the way.
   float reach_in_b[3];  ///< The same along B's axes.
+  float per_way[3];     ///< Shares of the way per length along each axis of A.
+  float room[3];  ///< Lengths added along axes on which B hardly moves, where the shares are of the slack instead.
 
   Placement(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& way_A) {
     const Eigen::Vector3d d = X_AB.R * b.center() + X_AB.t - a.center();
@@ -86,6 +88,9 @@ struct Placement {
       middle[i] = static_cast<float>(d[i] + 0.5 * way_A[i]);
       reach_in_a[i] = std::abs(half_way[i]);
       reach_in_b[i] = static_cast<float>(0.5 * std::abs(way_B[i]));
+      const bool moves = std::abs(way[i]) > slack;
+      per_way[i] = 1.0f / (moves ? way[i] : slack);
+      room[i] = moves ? 0.0f : slack;
     }
   }
 };
@@ -258,6 +263,44 @@ HWY_INLINE void load_leaf_of_a(const Tree::Leaf& from, LeafLanes& out) {
   complete(out, 0.0f);
 }
 
+/// Shares of the way, per lane, between which two boxes of A's frame meet along an axis.
+HWY_INLINE void narrow_to_boxes(V lower_a, V upper_a, V lower_b, V upper_b, std::size_t axis, const Placement& x,
+                                V& first, V& last) {
+  const V room = hn::Set(k_lanes, x.room[axis]);
+  const V per_way = hn::Set(k_lanes, x.per_way[axis]);
+  const V low = hn::Mul(hn::Sub(hn::Sub(lower_a, upper_b), room), per_way);
+  const V high = hn::Mul(hn::Add(hn::Sub(upper_a, lower_b), room), per_way);
+  first = hn::Max(first, x.per_way[axis] < 0.0f ? high : low);
+  last = hn::Min(last, x.per_way[axis] < 0.0f ? low : high);
+}
+
+/// Some way beyond every share of it.
+constexpr float k_beyond = 1e9f;
+
+/// Shares are quotients of rounded differences.
+constexpr float k_share_rounding = 2e-6f;
+
+/// Children of A (bits) whose boxes a leaf of B meets on the way.
+HWY_INLINE std::uint32_t meeting_boxes(const Tree::Node& node_a, const LeafLanes& b, const Placement& x) {
+  float lower[3], upper[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    lower[k] = *std::min_element(b.lower[k], b.lower[k] + k_leaf);
+    upper[k] = *std::max_element(b.upper[k], b.upper[k] + k_leaf);
+  }
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+    V first = hn::Zero(k_lanes), last = hn::Set(k_lanes, 1.0f);
+    for (std::size_t k = 0; k < 3; ++k) {
+      narrow_to_boxes(hn::Load(k_lanes, node_a.lower[k] + i), hn::Load(k_lanes, node_a.upper[k] + i),
+                      hn::Set(k_lanes, lower[k]), hn::Set(k_lanes, upper[k]), k, x, first, last);
+    }
+    HWY_ALIGN std::uint8_t stored[8] = {};
+    hn::StoreMaskBits(k_lanes, hn::Le(first, hn::Add(last, hn::Set(k_lanes, 2.0f * k_share_rounding))), stored);
+    bits |= static_cast<std::uint32_t>(stored[0]) << i;
+  }
+  return bits;
+}
+
 /// Values of A's and of B's triangles for pairs i ...: pair 4 i + j is that of triangles i and j.
 HWY_INLINE V load_of_a(const float* p, std::size_t i) {
 #if HWY_TARGET == HWY_SCALAR
@@ -347,7 +390,9 @@ class Descent {
       const Tree::Child leaf_b = node_b.child[j];
       if (!leaf_b.is_leaf() || (meet[j] & leaves_a) == 0) continue;
       load_leaf_of_b(b_.leaves()[node_b.leaf[j]], placement_, of_b);
-      for (std::uint32_t m = meet[j] & leaves_a; m != 0; m &= m - 1) {
+      std::uint32_t left = meet[j] & leaves_a;
+      if constexpr (moving) left &= meeting_boxes(node_a, of_b, placement_);
+      for (std::uint32_t m = left; m != 0; m &= m - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(m));
         const Tree::Child leaf_a = node_a.child[i];
         if ((loaded & 1u << i) == 0) load_leaf_of_a(a_.leaves()[node_a.leaf[i]], of_a[i]);

@@ -19,9 +19,6 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {
 namespace HWY_NAMESPACE {
 
-/// Some way beyond every share of it.
-constexpr float k_beyond = 1e9f;
-
 /// Shares of the way, per lane.
 struct Shares {
   V first, last;
@@ -59,13 +56,6 @@ HWY_INLINE std::uint32_t sweeping_triangles(const LeafLanes& a, const LeafLanes&
   std::uint32_t bits = 0;
   const V zero = hn::Zero(k_lanes);
   const V one = hn::Set(k_lanes, 1.0f);
-  // Axes along which B hardly moves cannot tell shares apart, only triangles.
-  float per_way[3], room[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const bool moves = std::abs(x.way[k]) > x.slack;
-    per_way[k] = 1.0f / (moves ? x.way[k] : x.slack);
-    room[k] = moves ? 0.0f : x.slack;
-  }
   const V way[3] = {hn::Set(k_lanes, x.way[0]), hn::Set(k_lanes, x.way[1]), hn::Set(k_lanes, x.way[2])};
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
     const auto of_a = [i](const float* p) { return load_of_a(p, i); };
@@ -73,16 +63,11 @@ HWY_INLINE std::uint32_t sweeping_triangles(const LeafLanes& a, const LeafLanes&
     Shares shares{hn::Set(k_lanes, -k_beyond), hn::Set(k_lanes, k_beyond)};
     // B's boxes have the slack.
     for (std::size_t k = 0; k < 3; ++k) {
-      const V gap = hn::Sub(hn::Sub(of_a(a.lower[k]), of_b(b.upper[k])), hn::Set(k_lanes, room[k]));
-      const V reach = hn::Add(hn::Sub(of_a(a.upper[k]), of_b(b.lower[k])), hn::Set(k_lanes, room[k]));
-      const V low = hn::Mul(gap, hn::Set(k_lanes, per_way[k]));
-      const V high = hn::Mul(reach, hn::Set(k_lanes, per_way[k]));
-      shares.first = hn::Max(shares.first, per_way[k] < 0.0f ? high : low);
-      shares.last = hn::Min(shares.last, per_way[k] < 0.0f ? low : high);
+      narrow_to_boxes(of_a(a.lower[k]), of_a(a.upper[k]), of_b(b.lower[k]), of_b(b.upper[k]), k, x, shares.first,
+                      shares.last);
     }
     const auto meets = [&] {
-      // Shares are quotients of rounded differences.
-      const V pad = hn::Set(k_lanes, 2e-6f);
+      const V pad = hn::Set(k_lanes, k_share_rounding);
       const V low = hn::Sub(hn::Max(shares.first, hn::Neg(one)), pad);
       const V high = hn::Add(hn::Min(shares.last, hn::Add(one, one)), pad);
       hn::StoreU(low, k_lanes, first + i);
