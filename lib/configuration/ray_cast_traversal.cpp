@@ -1,6 +1,7 @@
 #include <sixdof/configuration/ray_cast_traversal.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/configuration/ray_cast_traversal.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -22,9 +24,10 @@
 //   - the normal at the closest points found so far: where surfaces are smooth it is close to the best for every pair
 //     that matters, and slabs make it tight to second order in the size of the patches;
 //   - from centre to centre, with slabs: tight for small patches at a distance;
-//   - from box to box, where the nearest point of the sum of the boxes lies;
+//   - from box to box, where the nearest point of the sum of the boxes lies; bounds at that travel are lowered by the
+//     way there;
 //   - the normals of the slabs.
-// Where the volumes come nearer as t grows beyond t0, boxes and centres are taken at the nearest travel instead.
+// Where centres come nearer as t grows beyond t0, boxes and centres are taken at the nearest travel instead.
 //
 // Nothing here uses fused multiply-add, and all else (+ - * / sqrt min max) is rounded by IEEE rules lane by lane. So
 // which pairs are looked into, and in what order, is the same on every instruction set.
@@ -63,44 +66,6 @@ struct Ray {
   float slack;
 };
 
-/// The volume that is not opened.
-struct Fixed {
-  float center[3];
-  float half[3];
-  float ball_center[3];
-  float ball_radius;
-  float normal[3];
-  float slab_offset;
-  float slab_half;
-
-  Fixed(const CastTree& tree, std::uint32_t child) {
-    if (child == Cast::Open::k_root) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        center[k] = tree.root_center()[static_cast<Eigen::Index>(k)];
-        half[k] = tree.root_half()[static_cast<Eigen::Index>(k)];
-        ball_center[k] = 0.0f;
-        normal[k] = 0.0f;
-      }
-      ball_radius = static_cast<float>(tree.radius());
-      slab_offset = slab_half = 0.0f;
-      return;
-    }
-    const CastNode& node = tree.nodes()[child / k_width];
-    const std::size_t lane = child % k_width;
-    for (std::size_t k = 0; k < 3; ++k) {
-      center[k] = node.center[k][lane];
-      half[k] = node.half[k][lane];
-      ball_center[k] = node.ball_center[k][lane];
-      normal[k] = node.normal[k][lane];
-    }
-    ball_radius = node.ball_radius[lane];
-    slab_offset = node.slab_offset[lane];
-    slab_half = node.slab_half[lane];
-  }
-
-  float size() const { return half[0] * half[0] + half[1] * half[1] + half[2] * half[2]; }
-};
-
 /// Smallest n . (p - centre of the ball) over a volume: over the ball, and over the slab with what is left of n over
 /// the ball. Both n and the slab's normal are shorter than unit vectors by more than their rounding, so the square root
 /// is never below the length of what is left.
@@ -113,7 +78,7 @@ HWY_INLINE V lowest(const V* HWY_RESTRICT n, V radius, const V* HWY_RESTRICT nor
 }
 
 /// The same for one volume.
-HWY_INLINE float lowest(const float* n, const Fixed& v) {
+HWY_INLINE float lowest(const float* n, const CastVolume& v) {
   const float along = n[0] * v.normal[0] + n[1] * v.normal[1] + n[2] * v.normal[2];
   const float rest = std::sqrt(std::max(1.0f - along * along, 0.0f));
   return std::max(-v.ball_radius, along * v.slab_offset - std::abs(along) * v.slab_half - rest * v.ball_radius);
@@ -121,8 +86,10 @@ HWY_INLINE float lowest(const float* n, const Fixed& v) {
 
 /// By how much each child's distance from `fixed` surely exceeds the aim from cast.travel on.
 /// @param shift travel * u
-HWY_INLINE void bound_children(const CastNode& node, const Fixed& fixed, const Ray& ray, const float* shift,
-                               float* HWY_RESTRICT gaps) {
+/// @param heights of the balls' centres above the fixed one's along the axis found so far: the lowest is most likely to
+/// hold what hits first
+HWY_INLINE void bound_children(const CastNode& node, const CastVolume& fixed, const Ray& ray, const float* shift,
+                               float* HWY_RESTRICT gaps, float* HWY_RESTRICT heights) {
   const V zero = hn::Zero(k_lanes);
   const V aim = set(ray.aim);
   const V enough = set(ray.slack);
@@ -152,6 +119,7 @@ HWY_INLINE void bound_children(const CastNode& node, const Fixed& fixed, const R
       V middle = hn::Mul(n[0], w[0]);
       middle = mul_add(n[1], w[1], middle);
       middle = mul_add(n[2], w[2], middle);
+      hn::Store(middle, k_lanes, heights + i);
       gap = hn::Add(hn::Add(middle, lowest(n, radius, normal, slab_offset, slab_half)), set(axis_lowest));
     }
     if (hn::AllTrue(k_lanes, hn::Gt(gap, enough))) {
@@ -177,10 +145,6 @@ HWY_INLINE void bound_children(const CastNode& node, const Fixed& fixed, const R
                         lowest(n, set(fixed.ball_radius), fixed_normal, set(fixed.slab_offset), set(fixed.slab_half)));
       gap = hn::Max(gap, hn::Sub(centers, aim));
     }
-    if (hn::AllTrue(k_lanes, hn::Gt(gap, enough))) {
-      hn::Store(gap, k_lanes, gaps + i);
-      continue;
-    }
     {  // From box to box at the nearest travel.
       V squared = zero;
       V up_box = zero;
@@ -191,12 +155,11 @@ HWY_INLINE void bound_children(const CastNode& node, const Fixed& fixed, const R
         squared = mul_add(apart, apart, squared);
         up_box = mul_add(hn::CopySign(apart, across), set(ray.u[k]), up_box);
       }
-      const V boxes = hn::IfThenElseZero(hn::Ge(up_box, zero), hn::Sqrt(squared));
+      // That is at the travel where the centres are nearest; from cast.travel on it is less by the way there.
+      const V length = hn::Sqrt(hn::Max(squared, set(k_tiny_square)));
+      const V from_now_on = hn::Sub(length, hn::Div(hn::Mul(later, up_box), length));
+      const V boxes = hn::IfThenElseZero(hn::Ge(up_box, zero), from_now_on);
       gap = hn::Max(gap, hn::Sub(boxes, aim));
-    }
-    if (hn::AllTrue(k_lanes, hn::Gt(gap, enough))) {
-      hn::Store(gap, k_lanes, gaps + i);
-      continue;
     }
     {  // The slabs' normals.
       const V fixed_n[3] = {set(sign * fixed.normal[0]), set(sign * fixed.normal[1]), set(sign * fixed.normal[2])};
@@ -322,12 +285,26 @@ struct Descent {
     }
   }
 
+  /// What is opened next is not far.
+  static void prefetch(const CastTree& tree, CastChild child) {
+    constexpr std::size_t k_cache_line = 64;  // bytes
+    const bool leaf = child.is_leaf();
+    const char* begin = leaf ? reinterpret_cast<const char*>(&tree.leaves()[child.index()])
+                             : reinterpret_cast<const char*>(&tree.nodes()[child.index()]);
+    const std::size_t size = leaf ? sizeof(CastLeaf) : sizeof(CastNode);
+    for (std::size_t offset = 0; offset < size; offset += k_cache_line) hwy::Prefetch(begin + offset);
+  }
+
+  static const CastVolume& volume_of(const CastTree& tree, std::uint32_t child) {
+    return child == Cast::Open::k_root ? tree.root_volume() : tree.volume(child);
+  }
+
   static CastChild child_of(const CastTree& tree, std::uint32_t child) {
     return child == Cast::Open::k_root ? CastChild::node(0) : tree.nodes()[child / k_width].child[child % k_width];
   }
 
   /// Whether slab `x` and slab `y` with a box around are apart by the aim, up to a tie, from cast.travel on.
-  bool slabs_apart(const CastSlab& x, const CastSlab& y, const Fixed& box) const {
+  bool slabs_apart(const CastSlab& x, const CastSlab& y, const CastVolume& box) const {
     const double up = x.normal.dot(cast.direction);
     const double sign = up < 0.0 ? -1.0 : 1.0;
     const Eigen::Vector3d n = sign * x.normal;
@@ -335,7 +312,8 @@ struct Descent {
     double low = sign * x.middle - x.half + along * y.middle - std::abs(along) * y.half;
     const Eigen::Vector3d rest = n - along * y.normal;
     for (int k = 0; k < 3; ++k) {
-      low += rest[k] * static_cast<double>(box.center[k]) - std::abs(rest[k]) * static_cast<double>(box.half[k]);
+      const double half = static_cast<double>(box.half[k]) + static_cast<double>(ray.slack);
+      low += rest[k] * static_cast<double>(box.center[k]) - std::abs(rest[k]) * half;
     }
     return low + cast.travel * std::abs(up) >= cast.aim - tie;
   }
@@ -345,7 +323,7 @@ struct Descent {
     if (a == Cast::Open::k_root || b == Cast::Open::k_root) return false;
     const CastSlab slab_a = tree_a.slab(a);
     const CastSlab slab_b = tree_b.slab(b);
-    return slabs_apart(slab_a, slab_b, Fixed(tree_b, b)) || slabs_apart(slab_b, slab_a, Fixed(tree_a, a));
+    return slabs_apart(slab_a, slab_b, tree_b.volume(b)) || slabs_apart(slab_b, slab_a, tree_a.volume(a));
   }
 
   /// Of each triangle, how low its lowest corner lies along the axis.
@@ -428,26 +406,34 @@ struct Descent {
         look_into_leaves(child_a.index(), child_b.index());
         continue;
       }
-      const Fixed volume_a(tree_a, top.a);
-      const Fixed volume_b(tree_b, top.b);
-      const bool opens_a = child_b.is_leaf() || (!child_a.is_leaf() && volume_a.size() >= volume_b.size());
+      const CastVolume& volume_a = volume_of(tree_a, top.a);
+      const CastVolume& volume_b = volume_of(tree_b, top.b);
+      const bool opens_a = child_b.is_leaf() || (!child_a.is_leaf() && volume_a.size >= volume_b.size);
       const std::uint32_t index = opens_a ? child_a.index() : child_b.index();
       const CastNode& node = opens_a ? tree_a.nodes()[index] : tree_b.nodes()[index];
-      HWY_ALIGN float gaps[k_width];
+      HWY_ALIGN float gaps[k_width], heights[k_width];
       ++cast.counts.nodes;
-      const Fixed& fixed = opens_a ? volume_b : volume_a;
-      bound_children(node, fixed, ray, shift, gaps);
+      const CastVolume& fixed = opens_a ? volume_b : volume_a;
+      bound_children(node, fixed, ray, shift, gaps, heights);
 
       const std::size_t first = open.size();
-      for (std::uint32_t lane = 0; lane < node.child_count; ++lane) {
-        if (gaps[lane] > ray.slack) continue;
-        Cast::Open next{top.a, top.b, gaps[lane]};
+      std::uint32_t left = 0;
+      for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+        HWY_ALIGN std::uint8_t stored[8] = {};
+        hn::StoreMaskBits(k_lanes, hn::Le(hn::Load(k_lanes, gaps + i), set(ray.slack)), stored);
+        left |= static_cast<std::uint32_t>(stored[0]) << i;
+      }
+      left &= (1u << node.child_count) - 1;
+      for (; left != 0; left &= left - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+        Cast::Open next{top.a, top.b, heights[lane]};
         (opens_a ? next.a : next.b) = static_cast<std::uint32_t>(index * k_width + lane);
         const bool flat = node.slab_half[lane] <= ray.slack && fixed.slab_half <= ray.slack;
         if (flat && gaps[lane] > -ray.slack && ties(next.a, next.b)) continue;
+        prefetch(opens_a ? tree_a : tree_b, node.child[lane]);
         std::size_t at = open.size();
         open.push_back(next);
-        for (; at > first && open[at - 1].gap < next.gap; --at) open[at] = open[at - 1];
+        for (; at > first && open[at - 1].height < next.height; --at) open[at] = open[at - 1];
         open[at] = next;
       }
     }

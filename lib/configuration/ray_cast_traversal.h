@@ -47,7 +47,7 @@ struct Cast {
     static constexpr std::uint32_t k_root = 0xffffffffu;
     std::uint32_t a;
     std::uint32_t b;
-    float gap;
+    float height;  ///< Of what hits first, most likely the lowest.
   };
   std::vector<Open> open;  ///< Scratch.
 

@@ -70,6 +70,23 @@ Ball fit_ball(const Tree& tree, std::uint32_t first, std::uint32_t count) {
   return best;
 }
 
+float box_size(const CastVolume& v) { return v.half[0] * v.half[0] + v.half[1] * v.half[1] + v.half[2] * v.half[2]; }
+
+CastVolume volume_of(const CastNode& node, std::size_t lane) {
+  CastVolume v;
+  for (std::size_t k = 0; k < 3; ++k) {
+    v.center[k] = node.center[k][lane];
+    v.half[k] = node.half[k][lane];
+    v.normal[k] = node.normal[k][lane];
+    v.ball_center[k] = node.ball_center[k][lane];
+  }
+  v.ball_radius = node.ball_radius[lane];
+  v.slab_offset = node.slab_offset[lane];
+  v.slab_half = node.slab_half[lane];
+  v.size = box_size(v);
+  return v;
+}
+
 }  // namespace
 
 CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
@@ -128,6 +145,7 @@ CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
 CastTree::CastTree(std::shared_ptr<const CastMesh> mesh)
     : mesh_(std::move(mesh)),
       nodes_(mesh_->nodes().begin(), mesh_->nodes().end()),
+      volumes_(k_width * nodes_.size()),
       leaves_(mesh_->leaves().size()),
       bounds_(nodes_.size()) {}
 
@@ -190,11 +208,14 @@ void CastTree::turn(const Eigen::Matrix3d& M) {
                                   m[i][2] * from.ball_center[2][lane];
       }
     }
+    for (std::size_t lane = 0; lane < from.child_count; ++lane) volumes_[k_width * n + lane] = volume_of(to, lane);
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    root_center_[static_cast<Eigen::Index>(k)] = 0.5f * (bounds_[0].lower[k] + bounds_[0].upper[k]);
-    root_half_[static_cast<Eigen::Index>(k)] = 0.5f * (bounds_[0].upper[k] - bounds_[0].lower[k]);
+    root_volume_.center[k] = 0.5f * (bounds_[0].lower[k] + bounds_[0].upper[k]);
+    root_volume_.half[k] = 0.5f * (bounds_[0].upper[k] - bounds_[0].lower[k]);
   }
+  root_volume_.ball_radius = static_cast<float>(radius());
+  root_volume_.size = box_size(root_volume_);
 }
 
 TriangleCorners CastTree::triangle(std::uint32_t t) const {

@@ -42,6 +42,18 @@ struct alignas(64) CastNode {
   std::uint32_t child_count;
 };
 
+/// The volumes of one child by themselves, as in CastNode: one cache line.
+struct alignas(64) CastVolume {
+  float center[3];
+  float half[3];
+  float normal[3];
+  float ball_center[3];
+  float ball_radius;
+  float slab_offset;
+  float slab_half;
+  float size;  ///< Square of half the box's diagonal.
+};
+
 /// Corners of a leaf's triangles, [corner][axis][triangle]; places without a triangle repeat the first.
 struct CastLeaf {
   float corner[3][3][Tree::k_leaf_triangles];
@@ -89,8 +101,10 @@ class CastTree {
   const Eigen::Matrix3d& matrix() const { return matrix_; }
   std::span<const CastNode> nodes() const { return nodes_; }
   std::span<const CastLeaf> leaves() const { return leaves_; }
-  const Eigen::Vector3f& root_center() const { return root_center_; }
-  const Eigen::Vector3f& root_half() const { return root_half_; }
+  /// Of child `lane` of node `node`: at [Tree::k_width * node + lane].
+  const CastVolume& volume(std::size_t node_and_lane) const { return volumes_[node_and_lane]; }
+  /// The whole tree's: no slab.
+  const CastVolume& root_volume() const { return root_volume_; }
   double radius() const { return mesh_->tree().radius(); }
 
   /// Triangle `t` in tree order, in double precision.
@@ -112,10 +126,10 @@ class CastTree {
   std::shared_ptr<const CastMesh> mesh_;
   Eigen::Matrix3d matrix_ = Eigen::Matrix3d::Identity();
   std::vector<CastNode> nodes_;
+  std::vector<CastVolume> volumes_;
   std::vector<CastLeaf> leaves_;
   std::vector<Bounds> bounds_;  // of each node
-  Eigen::Vector3f root_center_ = Eigen::Vector3f::Zero();
-  Eigen::Vector3f root_half_ = Eigen::Vector3f::Zero();
+  CastVolume root_volume_{};
 };
 
 }  // namespace sixdof::ray_cast

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <sixdof/algorithm/algorithm_source.h>
+#include <sixdof/algorithm/exact.h>
 #include <sixdof/configuration/brute_force_source.h>
 #include <sixdof/configuration/ray_cast_traversal.h>
 #include <sixdof/configuration/sphere_method.h>
@@ -184,6 +186,27 @@ TEST(RayCast, FliesThroughAHoleUnhitButNotWhereItIsTooTight) {
   }
 }
 
+TEST(RayCast, PassesOverNoHitBetweenManySmallTriangles) {
+  // Rays on which volumes whose balls are nearest farther in, but whose boxes are not, hid the first hit.
+  const Mesh a = load_model("torus-knot-100k");
+  const Grid grid = make_grid("15/90");
+  const auto exact = make_exact_algorithm();
+  const auto solver = make_ray_cast()->prepare(a, a);
+  const auto expected_solver = make_sphere_method(make_distance_source(*exact))->prepare(a, a);
+  const std::vector<double> aims = {0.05 * a.diagonal(), 0.01 * a.diagonal(), k_contact_aim * a.diagonal()};
+  Ray ray{std::vector<double>(aims.size()), std::vector<double>(aims.size())};
+  Ray expected = ray;
+  for (const auto& [rotation, direction] : {std::pair<std::size_t, std::size_t>(38, 182), {38, 90}, {21, 68}}) {
+    solver->set_rotation(grid.rotations[rotation]);
+    expected_solver->set_rotation(grid.rotations[rotation]);
+    solver->solve(grid.directions[direction], aims, ray.travel, ray.residual);
+    expected_solver->solve(grid.directions[direction], aims, expected.travel, expected.residual);
+    for (std::size_t k = 0; k < aims.size(); ++k) {
+      EXPECT_NEAR(ray.travel[k], expected.travel[k], k_same_travel * a.diagonal()) << rotation << ", " << direction;
+    }
+  }
+}
+
 TEST(RayCast, FindsTheBriefestHit) {
   // Two gates across the path, each open by a little less than the aim on either side: the distance dips below the aim
   // for a travel of 2e-2 to 2e-5 only.
@@ -229,9 +252,9 @@ double worst_over_median(const Mesh& a, const Mesh& b) {
   return worst / generic[25];
 }
 
-/// The suite allows 100. Here it is 2 to 4, and would be 16 without the cutoff in double precision, growing with the
-/// number of triangles.
-constexpr double k_most_over_median = 8.0;
+/// The suite allows 100. Here it is 5 to 10 (counts, the same on every machine), and would be 16 without the cutoff in
+/// double precision, growing with the number of triangles.
+constexpr double k_most_over_median = 12.0;
 
 TEST(RayCast, FacesThatTieTakeLittleMoreThanTheMedian) {
   const Mesh box = load_model("box-20000");
