@@ -72,56 +72,104 @@ bool add_crossing(const Vector3d& p, const Vector3d& q, const TriangleCorners& t
   return true;
 }
 
-/// Winding number of the surface of `tree`, moved by `pose`, around p.
-int winding(const Tree& tree, const Pose* pose, const Vector3d& p, std::vector<std::uint32_t>& open) {
-  const Vector3d local_p = (pose ? pose->inverse() * p : p) - tree.center();
-  // Longer than any way out of the mesh, from a point that lies inside its sphere.
-  if (local_p.norm() > 1.01 * tree.radius()) return 0;
-  const double length = 4.0 * tree.radius();
-  const double offset = tree.center().norm() + (pose ? pose->t.norm() : 0.0) + p.norm();
-  const double slack = 1e-6 * tree.radius() + 1e-14 * offset;  // of the way to the tree's frame, far above rounding
-  for (const std::array<double, 3>& ray : k_rays) {
-    const Vector3d direction = Vector3d(ray[0], ray[1], ray[2]).normalized();
-    const Vector3d q = p + length * direction;
-    const Vector3d local_direction = pose ? Vector3d(pose->R.transpose() * direction) : direction;
-    int sum = 0;
-    bool clear = true;
-    open.assign(1, 0);
-    while (!open.empty() && clear) {
-      const Tree::Node& node = tree.nodes()[open.back()];
-      open.pop_back();
-      for (std::uint32_t i = 0; i < node.child_count && clear; ++i) {
-        double enter = 0.0;
-        double leave = length;
-        for (int k = 0; k < 3; ++k) {  // no component of a direction is zero in A; in B it may be
-          const double lower = static_cast<double>(node.lower[k][i]) - slack - local_p[k];
-          const double upper = static_cast<double>(node.upper[k][i]) + slack - local_p[k];
-          const double d = local_direction[k];
-          if (std::abs(d) < 1e-9) {  // drifts less than the slack over the whole length
-            if (lower > 0.0 || upper < 0.0) leave = -1.0;
-            continue;
-          }
-          enter = std::max(enter, std::min(lower / d, upper / d));
-          leave = std::min(leave, std::max(lower / d, upper / d));
+/// A ray as a segment that ends outside of the mesh: from p, in A's frame, and in the frame of the tree that it
+/// crosses.
+struct Ray {
+  Vector3d from;
+  Vector3d to;
+  Vector3d local_from;  // relative to the tree's centre
+  Vector3d local_direction;
+  double length;
+  double slack;  // of the way to the tree's frame, far above rounding
+
+  /// Whether it may cross child `i` of a node.
+  bool meets(const Tree::Node& node, std::size_t i) const {
+    double enter = 0.0;
+    double leave = length;
+    for (int k = 0; k < 3; ++k) {  // no component of a direction is zero in A; in B it may be
+      const double lower = static_cast<double>(node.lower[k][i]) - slack - local_from[k];
+      const double upper = static_cast<double>(node.upper[k][i]) + slack - local_from[k];
+      const double d = local_direction[k];
+      if (std::abs(d) < 1e-9) {  // drifts less than the slack over the whole length
+        if (lower > 0.0 || upper < 0.0) return false;
+        continue;
+      }
+      enter = std::max(enter, std::min(lower / d, upper / d));
+      leave = std::min(leave, std::max(lower / d, upper / d));
+    }
+    return enter <= leave;
+  }
+};
+
+/// Adds up all crossings of the surface of `tree`, moved by `pose`. Returns false if the ray touches a border.
+bool add_crossings(const Tree& tree, const Pose* pose, const Ray& ray, std::vector<std::uint32_t>& open, int& sum) {
+  open.assign(1, 0);
+  while (!open.empty()) {
+    const Tree::Node& node = tree.nodes()[open.back()];
+    open.pop_back();
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      if (!ray.meets(node, i)) continue;
+      const Tree::Child child = node.child[i];
+      if (!child.is_leaf()) {
+        open.push_back(child.node());
+        continue;
+      }
+      for (std::uint32_t t = child.first(); t < child.first() + child.count(); ++t) {
+        TriangleCorners corners = tree.corners()[t];
+        if (pose) {
+          for (Vector3d& corner : corners) corner = *pose * corner;
         }
-        if (enter > leave) continue;
-        const Tree::Child child = node.child[i];
-        if (!child.is_leaf()) {
-          open.push_back(child.node());
-          continue;
-        }
-        for (std::uint32_t t = child.first(); t < child.first() + child.count() && clear; ++t) {
-          TriangleCorners corners = tree.corners()[t];
-          if (pose) {
-            for (Vector3d& corner : corners) corner = *pose * corner;
-          }
-          clear = add_crossing(p, q, corners, sum);
-        }
+        if (!add_crossing(ray.from, ray.to, corners, sum)) return false;
       }
     }
-    if (clear) return sum;
+  }
+  return true;
+}
+
+/// Winding number of the surface of `tree`, moved by `pose`, around p.
+int winding(const Tree& tree, const Pose* pose, const Vector3d& p, std::vector<std::uint32_t>& open) {
+  const Vector3d local_p = (pose ? Vector3d(pose->R.transpose() * (p - pose->t)) : p) - tree.center();
+  const double offset = tree.center().norm() + (pose ? pose->t.norm() : 0.0) + p.norm();
+  const double slack = 1e-6 * tree.radius() + 1e-14 * offset;
+  const Tree::Volume& box = tree.nodes()[0].volume;
+  for (int k = 0; k < 3; ++k) {
+    if (local_p[k] < static_cast<double>(box.lower[k]) - slack) return 0;
+    if (local_p[k] > static_cast<double>(box.upper[k]) + slack) return 0;
+  }
+  const double length = 4.0 * tree.radius();  // longer than any way out of the mesh from inside of its box
+  const auto direction = [](std::size_t i) { return Vector3d(k_rays[i][0], k_rays[i][1], k_rays[i][2]).normalized(); };
+  // The ray that leads away from the centre most directly meets the least of the mesh.
+  const Vector3d outwards = pose ? Vector3d(pose->R * local_p) : local_p;
+  std::size_t first = 0;
+  for (std::size_t i = 1; i < k_rays.size(); ++i) {
+    if (direction(i).dot(outwards) > direction(first).dot(outwards)) first = i;
+  }
+  for (std::size_t tried = 0; tried < k_rays.size(); ++tried) {
+    const Vector3d u = direction((first + tried) % k_rays.size());
+    const Vector3d local_u = pose ? Vector3d(pose->R.transpose() * u) : u;
+    int sum = 0;
+    if (add_crossings(tree, pose, {p, p + length * u, local_p, local_u, length, slack}, open, sum)) return sum;
   }
   return 0;  // p lies on the surface, up to rounding
+}
+
+/// Whether the boxes around two whole meshes are apart for certain, by their faces' normals.
+bool boxes_apart(const Tree& a, const Tree& b, const Pose& X_AB) {
+  const Tree::Volume& box_a = a.nodes()[0].volume;
+  const Tree::Volume& box_b = b.nodes()[0].volume;
+  Vector3d half_a, half_b, middle_a, middle_b;
+  for (int k = 0; k < 3; ++k) {
+    half_a[k] = 0.5 * (static_cast<double>(box_a.upper[k]) - static_cast<double>(box_a.lower[k]));
+    half_b[k] = 0.5 * (static_cast<double>(box_b.upper[k]) - static_cast<double>(box_b.lower[k]));
+    middle_a[k] = static_cast<double>(box_a.lower[k]) + half_a[k] + a.center()[k];
+    middle_b[k] = static_cast<double>(box_b.lower[k]) + half_b[k] + b.center()[k];
+  }
+  const Vector3d between = X_AB * middle_b - middle_a;
+  const double slack = 1e-9 * (a.radius() + b.radius()) +
+                       1e-14 * (a.center().cwiseAbs() + b.center().cwiseAbs() + X_AB.t.cwiseAbs()).sum();
+  const Eigen::Matrix3d reach = X_AB.R.cwiseAbs();
+  return (between.cwiseAbs() - half_a - reach * half_b).maxCoeff() > slack ||
+         ((X_AB.R.transpose() * between).cwiseAbs() - half_b - reach.transpose() * half_a).maxCoeff() > slack;
 }
 
 }  // namespace
@@ -193,7 +241,16 @@ SurfaceDistance DistanceQuery::distance(const Pose& X_AB, const DistanceOptions&
   return result;
 }
 
+bool DistanceQuery::may_meet(const Pose& X_AB) {
+  traversal_.counts = {};
+  return !boxes_apart(*oracle_.tree_a(), *oracle_.tree_b(), X_AB);
+}
+
 bool DistanceQuery::surfaces_intersect(const Pose& X_AB, bool warm_start) {
+  return may_meet(X_AB) && intersect(X_AB, warm_start);
+}
+
+bool DistanceQuery::intersect(const Pose& X_AB, bool warm_start) {
   prepare(X_AB, warm_start);
   detail::Traversal& t = traversal_;
   if (intersecting_pair_) {
@@ -205,7 +262,8 @@ bool DistanceQuery::surfaces_intersect(const Pose& X_AB, bool warm_start) {
 }
 
 bool DistanceQuery::collide(const Pose& X_AB, bool warm_start) {
-  if (surfaces_intersect(X_AB, warm_start)) return true;
+  if (!may_meet(X_AB)) return false;
+  if (intersect(X_AB, warm_start)) return true;
   if (oracle_.solid_a()) {
     for (const DistanceOracle::Piece& piece : oracle_.pieces_b()) {
       if (winding_a(X_AB * piece.vertex) > 0) return true;

@@ -131,6 +131,8 @@ class DistanceQuery {
 
  private:
   void prepare(const Pose& X_AB, bool warm_start);
+  bool may_meet(const Pose& X_AB);
+  bool intersect(const Pose& X_AB, bool warm_start);
 
   const DistanceOracle& oracle_;
   detail::Traversal traversal_;
