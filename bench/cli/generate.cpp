@@ -110,6 +110,7 @@ void generate(const Arguments& arguments) {
                             .threads = arguments.threads,
                             .progress = arguments.progress};
   if (arguments.plan) {
+    if (arguments.shards != 0) check_shard_number({.number = 1, .count = arguments.shards}, set, job);
     return print_estimate(
         work, {.shards = arguments.shards, .seconds = arguments.sample_seconds, .seed = arguments.sample_seed});
   }

@@ -168,6 +168,15 @@ TEST_F(Generate, RefusesShardsThatCannotBe) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "set"));
 }
 
+TEST_F(Generate, ShowsProgressOnlyWhereAsked) {
+  const auto silent = run(job_with({"-o", folder_ / "set.h5"}));
+  EXPECT_EQ(silent.err, "");
+  const auto shown = make_shards("set", {"--progress"});
+  EXPECT_THAT(shown.err, AllOf(HasSubstr("distances 0/"), HasSubstr("volumes 0/"), Not(HasSubstr("\r"))));
+  EXPECT_EQ(run({"merge", folder_ / "set", "-o", folder_ / "merged.h5"}).err, "");
+  EXPECT_THAT(run({"merge", folder_ / "set", "-o", folder_ / "merged.h5", "--progress"}).err, HasSubstr("merged 1/"));
+}
+
 TEST_F(Generate, PlansThePapersSet) {
   const auto counts = run({"generate", "--grid", "paper", "--distances", "0:30", "--volumes", "0:10", "--plan"});
   EXPECT_EQ(counts.exit_code, 0) << counts.err;
@@ -180,6 +189,7 @@ TEST_F(Generate, PlansThePapersSet) {
                                "time of one shard", "memory of a process", "5 shards of"}) {
     EXPECT_THAT(estimate.out, HasSubstr(expected));
   }
+  EXPECT_THAT(run(job_with({"--plan", "--shards", "1000"})).err, HasSubstr("distinct rotations to share"));
   EXPECT_THAT(run(job_with({"--plan", "--sample-seconds", "0"})).out, Not(HasSubstr("CPU-hours")));
   EXPECT_EQ(run(job_with({"--plan", "--sample-seconds", "-1"})).exit_code, cli::k_exit_usage);
 }

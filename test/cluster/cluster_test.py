@@ -186,7 +186,7 @@ def run_array(slurm, sixdof, script, folder):
     victim_file = shards / f"shard-{VICTIM:04}-of-{SHARDS:04}.h5"
 
     process = wait_for("the victim's process", WORK_S, lambda: slurm.processes_of(VICTIM, sixdof))[0]
-    time.sleep(0.3)
+    time.sleep(0.1)
     check(not victim_file.exists(), "the victim was to be killed before its end")
     os.kill(process, signal.SIGKILL)
     wait_for("the rest of the array", WORK_S, lambda: not slurm.tasks())
