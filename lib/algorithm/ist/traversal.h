@@ -18,7 +18,7 @@ enum class PairForce {
 
 /// Memory that a traversal reuses from query to query.
 struct TraversalScratch {
-  std::vector<std::pair<std::int32_t, std::int32_t>> stack;
+  std::vector<std::pair<std::int32_t, std::int32_t>> waiting;  ///< Pairs of nodes to be opened.
 };
 
 struct TraversalCount {
