@@ -112,7 +112,7 @@ SwitchType=switch/none
 MpiDefault=none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
-SchedulerParameters=batch_sched_delay=0,sched_min_interval=0
+SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=1,bf_interval=1
 ReturnToService=2
 NodeName=n1 NodeHostname={host} NodeAddr=127.0.0.1 Port={nodes[0]} CPUs=1
 NodeName=n2 NodeHostname={host} NodeAddr=127.0.0.1 Port={nodes[1]} CPUs=1
@@ -180,6 +180,8 @@ def check(truth, words):
 
 def run_array(slurm, sixdof, script, folder):
     whole, merged, shards = folder / "whole.h5", folder / "merged.h5", folder / "shards"
+    alone = subprocess.run([script, str(shards), str(SHARDS), *JOB], capture_output=True, text=True)
+    check(alone.returncode == 2 and "usage" in alone.stderr, "the script outside an array")
     subprocess.run([sixdof, "generate", *JOB, "--threads", "1", "-o", str(whole)], check=True)
     slurm.environment["SIXDOF"] = sixdof
     job = slurm.submit(f"--array=1-{SHARDS}", script, str(shards), str(SHARDS), *JOB)
