@@ -10,6 +10,7 @@
 #include <sixdof/models/boxes.h>
 #include <sixdof/models/zoo.h>
 
+#include "../closed_loop.h"
 #include "random_spheres.h"
 
 namespace sixdof {
@@ -74,32 +75,16 @@ TEST_F(IstTest, ReactionIsOppositeToAction) {
   EXPECT_GT(touching, 5);
 }
 
-/// The gradient force derives from the summed volume: pushing along a closed loop costs nothing.
+/// Every pair's force is along the line of centres and depends on their distance alone, so both laws derive from an
+/// energy: a closed loop of translations and turns costs nothing.
 TEST_F(IstTest, IsConservativeOnAClosedLoop) {
   const Mesh a = load_model("torus-knot-1k"), b = load_model("bumpy-sphere-1k");
   for (const char* law : {"force=gradient", "force=volume"}) {
     const auto query = prepare(a, b, {"spheres=200", law});
-    const auto relative_work = [&](int steps) {
-      // Midpoint rule: its error falls with the square of the step.
-      double work = 0.0, peak = 0.0, length = 0.0;
-      const auto place = [](double angle) {
-        return Eigen::Vector3d(0.3 + 0.4 * std::cos(angle), 0.1 + 0.5 * std::sin(angle), 0.2 * std::sin(2.0 * angle));
-      };
-      for (int i = 0; i < steps; ++i) {
-        const double from = 2.0 * std::numbers::pi * i / steps, to = 2.0 * std::numbers::pi * (i + 1) / steps;
-        Pose X = Pose::from_quaternion(0.8, 0.36, 0.0, 0.48, place(0.5 * (from + to)));
-        const Eigen::Vector3d force = query->respond(X).value.force;
-        const Eigen::Vector3d step = place(to) - place(from);
-        work += force.dot(step);
-        peak = std::max(peak, force.norm());
-        length += step.norm();
-      }
-      EXPECT_GT(peak, 0.0);
-      return std::abs(work) / (peak * length);
-    };
-    const double fine = relative_work(800);
+    const auto work = [&](int steps) { return test::loop_work(*query, b, {0.3, 0.1, 0.0}, 0.4, steps); };
+    const double coarse = work(16), fine = work(800);
     EXPECT_LT(fine, 1e-4) << law;
-    EXPECT_LT(fine, 0.2 * relative_work(50)) << law;
+    EXPECT_LT(fine, 0.2 * coarse) << law;
   }
 }
 

@@ -13,6 +13,7 @@
 #include <sixdof/algorithm/vps/voxelmap.h>
 #include <sixdof/base/error.h>
 
+#include "../closed_loop.h"
 #include "bodies.h"
 
 namespace sixdof {
@@ -332,29 +333,8 @@ TEST(VpsField, DoesNoWorkOnAClosedLoop) {
   ::setenv("SIXDOF_CACHE", "off", 1);
   const Mesh a = make_bumpy_sphere({}, 500), b = make_bumpy_sphere({.radius = 0.7, .waves = 1.2}, 400);
   const auto query = prepare("vps-field", a, b, resolution(0.03, 0.03));
-  const Eigen::Vector3d axis = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
-  const auto pose = [&](double t) {  // B's centre is its mesh origin to within its bumps
-    const double w = 2.0 * std::numbers::pi * t;
-    return Pose{Eigen::AngleAxisd(0.4 * std::sin(w), axis).toRotationMatrix(),
-                {1.25 + 0.2 * std::cos(w), 0.25 * std::sin(w), 0.1 * std::sin(2.0 * w)}};
-  };
-  // Trapezoids over the path; the step's turn is a rotation about one axis, in A's frame.
-  const auto work_share = [&](int steps) {
-    double work = 0.0, length = 0.0, peak = 0.0;
-    Response before = query->respond(pose(0.0)).value;
-    for (int i = 1; i <= steps; ++i) {
-      const Pose from = pose(static_cast<double>(i - 1) / steps), to = pose(static_cast<double>(i) / steps);
-      const Response after = query->respond(to).value;
-      const Eigen::AngleAxisd step(to.R * from.R.transpose());
-      const Eigen::Vector3d way = to * b.center() - from * b.center(), turn = step.angle() * step.axis();
-      work += 0.5 * ((before.force + after.force).dot(way) + (before.torque + after.torque).dot(turn));
-      length += way.norm();
-      peak = std::max(peak, after.force.norm());
-      before = after;
-    }
-    return std::abs(work) / (peak * length);
-  };
-  const double coarse = work_share(16), fine = work_share(256);
+  const auto work = [&](int steps) { return test::loop_work(*query, b, {1.25, 0.0, 0.1}, 0.2, steps); };
+  const double coarse = work(16), fine = work(256);
   EXPECT_LT(fine, 1e-5);  // single-precision sums leave a part in 10^6
   EXPECT_LT(fine, 0.1 * coarse);
   ::unsetenv("SIXDOF_CACHE");
