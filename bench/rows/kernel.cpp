@@ -23,7 +23,7 @@ struct Kernel {
   double centers_apart;  ///< Distance of the two centres, in box diagonals.
 };
 
-/// Sizes are those of caches: the small map and points take a few hundred kilobytes, the large map 100 megabytes.
+/// Sizes are those of caches: the small map and its points take 300 kilobytes, the large ones 50 megabytes.
 const std::vector<Kernel>& kernels() {
   constexpr double k_overlap = 0.15, k_apart = 1.2;
   static const std::vector<Kernel> list{

@@ -28,6 +28,9 @@ namespace sixdof {
 /// - A is known at B's points only. Where A lies wholly inside B, or pokes through B between two points, nothing is
 /// felt;
 ///   `pointshell=a` sees it.
+/// - Where B swallows a thin part of A, `vps-field` pushes each point out of that part the nearest way, which is
+/// sideways;
+///   `vps` still pushes along B's normals.
 /// - Anything smaller than a voxel is a surface voxel. A plate thinner than a voxel is felt by `vps` (layer 0: p counts
 ///   from the voxel's centre, so a point on either side is pushed along its own normal), not with `depth=layers`, and
 ///   hardly by `vps-field`.
