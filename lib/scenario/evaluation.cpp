@@ -45,6 +45,7 @@ class Evaluator {
     }
     const Latency times = latency(recording_.times_ns);
     measures_.insert(measures_.end(), {{"mean_ns", times.mean},
+                                       {"processor_ns", recording_.processor_ns},
                                        {"p50_ns", times.p50},
                                        {"p99_ns", times.p99},
                                        {"p999_ns", times.p999},

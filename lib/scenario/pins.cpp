@@ -237,7 +237,8 @@ class OrbitingPins final : public Scenario {
     const Eigen::Vector2d d = shape_.orbit * u;
     const PinTraction square = square_pin_traction(shape_.square_side, shape_.pin_length(), 0.0, d, along_wall);
     const PinTraction round = round_pin_traction(shape_.round_radius, shape_.pin_length(), d, along_wall);
-    return both(shape_.orbit, square.force, round.force, square.torque + round.torque);
+    // About its own centre the round pin has no torque: it is its own mirror image in the line of the shift.
+    return both(shape_.orbit, square.force, round.force, square.torque);
   }
 
   Shape shape_;

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <exception>
 
 #include <fmt/format.h>
@@ -50,6 +51,7 @@ Recording record(const Scenario& scenario, Query& query, std::size_t count) {
   for (const double progress : recording.progress) recording.poses.push_back(scenario.pose(progress));
   std::string words;
   guarded(query, recording.poses.front(), words);
+  const std::clock_t processor_start = std::clock();
   for (const Pose& X_AB : recording.poses) {
     const auto start = std::chrono::steady_clock::now();
     Outcome<Response> outcome = guarded(query, X_AB, words);
@@ -66,6 +68,8 @@ Recording record(const Scenario& scenario, Query& query, std::size_t count) {
     recording.penalties.push_back(response.penalty);
     recording.times_ns.push_back(std::chrono::duration<double, std::nano>(stop - start).count());
   }
+  const double processor_s = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
+  recording.processor_ns = processor_s * 1e9 / static_cast<double>(count);
   return recording;
 }
 

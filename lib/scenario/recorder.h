@@ -21,6 +21,7 @@ struct Recording {
   std::vector<Eigen::Vector3d> torques;  ///< On B about the scenario's reference point, in A's frame.
   std::vector<double> penalties;
   std::vector<double> times_ns;  ///< Of the query alone, successful or not.
+  double processor_ns = 0.0;     ///< Mean processor time per stamp, with the recorder's own some 100 ns.
   std::string first_failure;     ///< Diagnosis of the first stamp without an answer; empty if there is none.
 
   std::size_t size() const { return progress.size(); }

@@ -96,6 +96,30 @@ TEST(TurningPin, DepthIsThatOfTheCorner) {
   }
 }
 
+TEST(TurningPin, NothingActsWhereThePinJustFits) {
+  const auto scenario = make_scenario("III");
+  for (const IdealLaw law : all_ideal_laws()) {
+    if (law == IdealLaw::paper_depth) continue;
+    constexpr double k_rounding = 1e-11;  // of some thousands, the torques' size
+    EXPECT_LT(scenario->ideal(law, 0.0)->torque.norm(), k_rounding) << to_string(law);
+    EXPECT_LT(scenario->ideal(law, 0.0)->force.norm(), k_rounding) << to_string(law);
+  }
+  EXPECT_FALSE(scenario->in_window(0.0));
+  EXPECT_TRUE(scenario->in_window(1e-6));
+}
+
+TEST(TurningPin, TractionIsThatOfTheTurnedSquare) {
+  const auto scenario = make_scenario("III");
+  for (const bool along_wall : {false, true}) {
+    const auto ideal = scenario->ideal(along_wall ? IdealLaw::wall_traction : IdealLaw::traction, 0.7);
+    const double turn = -0.7 * k_pi / 6.0;
+    const PinTraction t = square_pin_traction(20.0, 40.0, turn, Eigen::Vector2d::Zero(), along_wall);
+    EXPECT_GT(t.torque, 0.0);
+    EXPECT_TRUE(ideal->torque.isApprox(Eigen::Vector3d(0.0, 0.0, t.torque), 1e-14));
+    EXPECT_EQ(ideal->force, Eigen::Vector3d::Zero());
+  }
+}
+
 TEST(TurningPin, PoseTurnsTheSquarePinAboutItsHole) {
   const auto scenario = make_scenario("III");
   for (const double s : {0.0, 0.4, 1.0}) {
@@ -132,7 +156,7 @@ struct Sum {
 
 Sum sum_over_wall(const Loop& outline, double turn, const Eigen::Vector2d& shift,
                   const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& nearest_on_hole) {
-  const int count = 2000;
+  const int count = 8000;
   const int layers = 400;
   Sum sum;
   const Loop placed = moved(outline, turn, shift);
@@ -161,20 +185,21 @@ Sum sum_over_wall(const Loop& outline, double turn, const Eigen::Vector2d& shift
   return sum;
 }
 
-void expect_traction(const PinTraction& t, const Eigen::Vector3d& sum, double scale) {
-  EXPECT_NEAR(t.force.x(), sum.x(), 1e-2 * scale);
-  EXPECT_NEAR(t.force.y(), sum.y(), 1e-2 * scale);
-  EXPECT_NEAR(t.torque, sum.z(), 1e-2 * scale * 10.0);
+void expect_traction(const PinTraction& t, const Eigen::Vector3d& sum, double scale, double grid) {
+  EXPECT_NEAR(t.force.x(), sum.x(), grid * scale);
+  EXPECT_NEAR(t.force.y(), sum.y(), grid * scale);
+  EXPECT_NEAR(t.torque, sum.z(), grid * scale * 10.0);
 }
 
 TEST(PinTractionOfASquare, IsTheSumOverTheWall) {
+  constexpr double k_grid = 1e-3;
   const auto nearest = [](const Eigen::Vector2d& p) { return Eigen::Vector2d(p.cwiseMax(-10.0).cwiseMin(10.0)); };
   for (const auto& [turn, shift] : {std::pair(-0.31, Eigen::Vector2d(0, 0)), std::pair(0.0, Eigen::Vector2d(1.3, -1.9)),
                                     std::pair(0.2, Eigen::Vector2d(-0.7, 0.9))}) {
     const Sum sum = sum_over_wall(square(20.0), turn, shift, nearest);
     const double scale = std::max(sum.pin.head<2>().norm(), std::abs(sum.pin.z()) / 10.0);
-    expect_traction(square_pin_traction(20.0, 40.0, turn, shift, false), sum.pin, scale);
-    expect_traction(square_pin_traction(20.0, 40.0, turn, shift, true), sum.wall, scale);
+    expect_traction(square_pin_traction(20.0, 40.0, turn, shift, false), sum.pin, scale, k_grid);
+    expect_traction(square_pin_traction(20.0, 40.0, turn, shift, true), sum.wall, scale, k_grid);
   }
 }
 
@@ -184,8 +209,8 @@ TEST(PinTractionOfACircle, IsTheSumOverTheWall) {
   };
   const Eigen::Vector2d shift(-1.1, 1.7);
   const Sum sum = sum_over_wall(polygon(10.0, 1000, RoundParts::equal_area), 0.0, shift, nearest);
-  expect_traction(round_pin_traction(10.0, 40.0, shift, false), sum.pin, sum.pin.head<2>().norm());
-  expect_traction(round_pin_traction(10.0, 40.0, shift, true), sum.wall, sum.wall.head<2>().norm());
+  expect_traction(round_pin_traction(10.0, 40.0, shift, false), sum.pin, sum.pin.head<2>().norm(), 1e-2);  // its facets
+  expect_traction(round_pin_traction(10.0, 40.0, shift, true), sum.wall, sum.wall.head<2>().norm(), 1e-2);
   EXPECT_EQ(round_pin_traction(10.0, 40.0, Eigen::Vector2d::Zero(), true).force.norm(), 0.0);
 }
 
@@ -240,12 +265,53 @@ TEST(OrbitingPins, ForceLeadsBackToTheFit) {
     for (const IdealLaw law : {IdealLaw::gradient, IdealLaw::traction, IdealLaw::wall_traction}) {
       EXPECT_GT(scenario->ideal(law, s)->force.normalized().dot(inwards), 0.7) << to_string(law);
     }
-    EXPECT_EQ(scenario->ideal(IdealLaw::depth, s)->torque, Eigen::Vector3d::Zero());
-    EXPECT_NEAR(scenario->ideal(IdealLaw::depth, s)->force.norm(), 2.0, 1e-12);
+    for (const IdealLaw law : {IdealLaw::depth, IdealLaw::paper_depth}) {
+      EXPECT_EQ(scenario->ideal(law, s)->torque, Eigen::Vector3d::Zero());
+      EXPECT_NEAR(scenario->ideal(law, s)->force.norm(), 2.0, 1e-12);
+    }
+    const auto printed = scenario->ideal(IdealLaw::paper_volume, s);
+    EXPECT_EQ(printed->torque, Eigen::Vector3d::Zero());
+    EXPECT_NEAR(printed->force.norm(), printed->penalty, 1e-10);
+    const auto volume = scenario->ideal(IdealLaw::volume, s);
+    const auto gradient = scenario->ideal(IdealLaw::gradient, s);
+    const auto energy = scenario->ideal(IdealLaw::energy, s);
+    EXPECT_TRUE(energy->force.isApprox(volume->penalty * gradient->force, 1e-12));
+    EXPECT_TRUE(energy->torque.isApprox(volume->penalty * gradient->torque, 1e-12));
     // Literal: no length, an empty integral, the whole disc instead of what sticks out.
     const Eigen::Vector2d d = scenario->pose(s).t.head<2>().cwiseAbs();
     EXPECT_NEAR(scenario->ideal(IdealLaw::paper_volume, s)->penalty,
                 400.0 - (20.0 - d.x()) * (20.0 - d.y()) + k_pi * 100.0, 1e-10);
+  }
+}
+
+/// With c other than 2 r the printed integral, from c/2 to r of r^2 - t^2, is not empty.
+TEST(OrbitingPins, PaperIntegralIsLiteral) {
+  Settings settings = scenario_settings("IV");
+  settings.set("square_side", "14");
+  const auto scenario = make_scenario("IV", settings);
+  double integral = 0.0;
+  const int count = 2000;
+  for (int i = 0; i < count; ++i) {
+    const double t = 7.0 + 3.0 * (i + 0.5) / count;
+    integral += (100.0 - t * t) * 3.0 / count;
+  }
+  const Eigen::Vector2d d = scenario->pose(0.2).t.head<2>().cwiseAbs();
+  EXPECT_NEAR(scenario->ideal(IdealLaw::paper_volume, 0.2)->penalty,
+              196.0 - (14.0 - d.x()) * (14.0 - d.y()) + k_pi * 100.0 - 4.0 * integral, 1e-5);
+}
+
+/// Tractions of the scenario are those of its pins, at their places.
+TEST(OrbitingPins, TractionIsThatOfItsPins) {
+  const auto scenario = make_scenario("IV");
+  const Eigen::Vector2d d = scenario->pose(0.17).t.head<2>();
+  for (const bool along_wall : {false, true}) {
+    const auto ideal = scenario->ideal(along_wall ? IdealLaw::wall_traction : IdealLaw::traction, 0.17);
+    const PinTraction square = square_pin_traction(20.0, 40.0, 0.0, d, along_wall);
+    const PinTraction round = round_pin_traction(10.0, 40.0, d, along_wall);
+    EXPECT_TRUE(ideal->force.head<2>().isApprox(square.force + round.force, 1e-12));
+    EXPECT_NEAR(ideal->torque.z(), square.torque + 20.0 * (round.force.y() - square.force.y()), 1e-9);
+    EXPECT_NEAR(round.torque, 0.0, 1e-9);
+    EXPECT_EQ(ideal->penalty, 2.0);
   }
 }
 

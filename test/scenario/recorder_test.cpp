@@ -1,8 +1,11 @@
 #include <sixdof/scenario/recorder.h>
 
+#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -55,6 +58,35 @@ TEST(Recorder, FailuresAreStampsToo) {
     EXPECT_EQ(recording.forces[k].norm() > 0.0, expected[k] == Status::ok);
     EXPECT_EQ(recording.penalties[k], expected[k] == Status::ok ? 0.5 : 0.0);
   }
+}
+
+/// Works, or waits, for some milliseconds a query.
+class Busy final : public Query {
+ public:
+  explicit Busy(bool works) : works_(works) {}
+  Outcome<Response> respond(const Pose&) override {
+    constexpr double k_seconds = 0.004;
+    if (!works_) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(k_seconds));
+      return Response{};
+    }
+    const std::clock_t start = std::clock();
+    while (static_cast<double>(std::clock() - start) < k_seconds * CLOCKS_PER_SEC) {
+    }
+    return Response{};
+  }
+
+ private:
+  bool works_;
+};
+
+TEST(Recorder, ProcessorTimeLeavesWaitingOut) {
+  const auto scenario = make_scenario("II");
+  Busy working(true);
+  Busy waiting(false);
+  const double worked = record(*scenario, working, 10).processor_ns;
+  EXPECT_GT(worked, 3.9e6);
+  EXPECT_LT(record(*scenario, waiting, 10).processor_ns, 0.5 * worked);
 }
 
 TEST(Recorder, TorqueIsAboutTheScenariosReference) {

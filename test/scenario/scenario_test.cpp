@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -66,25 +68,96 @@ TEST(Scenario, LawsHaveWords) {
   EXPECT_THROW(parse_ideal_law("areas", ResponseLaw::depth), BadArgument);
 }
 
-TEST(Scenario, RefusesContradictions) {
+TEST(Scenario, RefusesUnknownNames) {
   EXPECT_THROW(make_scenario("V"), BadArgument);
   EXPECT_THROW(scenario_settings("i"), BadArgument);
-  const auto refuses = [](const char* name, const char* assignment) {
-    Settings settings = scenario_settings(name);
-    settings.set_all({assignment});
-    EXPECT_THROW(make_scenario(name, settings), BadArgument) << name << ' ' << assignment;
+}
+
+/// Every limit on lengths from both sides. With the defaults the cone's tip has radius 10 and a flank of sqrt(1.25).
+TEST(Scenario, RefusesContradictionsAndNothingElse) {
+  struct Limit {
+    const char* scenario;
+    std::vector<std::string> others;
+    const char* length;
+    double accepted, refused;
   };
-  refuses("Ia", "depth=60");
-  refuses("Ia", "overshoot=9");
-  refuses("Ib", "block_length=19");
-  refuses("Ia", "block_width=40");
-  refuses("II", "orbit_radius=60");
-  refuses("II", "orbit_radius=29");
-  refuses("II", "cylinder_length=40");
-  refuses("III", "square_side=29");
-  refuses("III", "round_radius=20");
-  refuses("III", "turn_degrees=45");
-  refuses("IV", "orbit_radius=11");
+  const std::vector<Limit> limits{
+      {"Ia", {}, "depth", 59.9, 60.1},
+      {"Ia", {}, "overshoot", 10.1, 9.9},
+      {"Ib", {}, "block_length", 24.8, 24.6},                  // 2 (20 sqrt(1.25) - 10)
+      {"Ia", {"cone_radius=60"}, "block_length", 40.2, 39.8},  // twice the tip's radius
+      {"Ia", {}, "block_width", 50.2, 49.8},                   // tip and half of the height
+      {"Ia", {"block_height=60"}, "block_width", 60.2, 59.8},  // tip and depth
+      {"II", {}, "orbit_radius", 59.9, 60.1},
+      {"II", {"sphere_radius=25", "cylinder_length=200"}, "orbit_radius", 30.1, 29.9},
+      {"II", {"cylinder_radius=25", "cylinder_length=200"}, "orbit_radius", 30.1, 29.9},
+      {"II", {}, "cylinder_length", 64.8, 64.6},         // 2 (sqrt(500) + 10)
+      {"III", {}, "square_side", 28.2, 28.4},            // its diagonal in the block's depth
+      {"III", {"width=70"}, "square_side", 24.6, 24.9},  // and in half of its width
+      {"III", {"width=100", "turn_degrees=1"}, "round_radius", 19.9, 20.1},
+      {"III", {}, "round_radius", 14.5, 14.7},  // turns into the block's side
+      {"III", {}, "turn_degrees", 41.3, 41.5},
+      {"IV", {"square_side=12"}, "orbit_radius", 5.9, 6.1},    // half the side
+      {"IV", {"round_radius=2.5"}, "orbit_radius", 4.9, 5.1},  // the diameter
+      {"IV", {"square_side=24"}, "orbit_radius", 7.9, 8.1},    // walls beside the square hole
+      {"IV", {"round_radius=13"}, "orbit_radius", 6.9, 7.1},   // walls beside the round hole
+      {"IV", {"width=70", "square_side=24"}, "orbit_radius", 5.4, 5.6},
+  };
+  for (const Limit& limit : limits) {
+    Settings settings = scenario_settings(limit.scenario);
+    settings.set("facets", "256");  // polygons stick out of their circles by a ten-thousandth
+    settings.set_all(limit.others);
+    settings.set(limit.length, std::to_string(limit.accepted));
+    EXPECT_NO_THROW(make_scenario(limit.scenario, settings)) << limit.scenario << ' ' << limit.length;
+    settings.set(limit.length, std::to_string(limit.refused));
+    EXPECT_THROW(make_scenario(limit.scenario, settings), BadArgument) << limit.scenario << ' ' << limit.length;
+  }
+}
+
+TEST(Scenario, ConeStandsWhereTheDocumentationSays) {
+  const auto thick = make_scenario("Ia");
+  EXPECT_EQ(thick->a().box().min(), Eigen::Vector3d(0.0, -30.0, -187.5));
+  EXPECT_EQ(thick->a().box().max(), Eigen::Vector3d(900.0, 0.0, 187.5));
+  EXPECT_EQ(thick->pose(0.0).t, Eigen::Vector3d(-30.0, -20.0, 0.0));
+  EXPECT_TRUE(thick->pose(1.0).t.isApprox(Eigen::Vector3d(930.0, -20.0, 0.0), k_rounding));
+  EXPECT_EQ(thick->reference_b(), Eigen::Vector3d(0.0, 30.0, 0.0));
+  EXPECT_EQ(make_scenario("Ib")->a().box().min().y(), -0.2);
+}
+
+/// Past an end the way out is square to the flank: the tip's radius over the block times the cosine of the half angle.
+TEST(Scenario, ConeGetsShallowerAtTheEnds) {
+  const auto scenario = make_scenario("Ia");
+  const auto depth_at = [&](double x) { return scenario->ideal(IdealLaw::depth, (x + 30.0) / 960.0)->penalty; };
+  const double cosine = 60.0 / std::hypot(60.0, 30.0);
+  for (const double over : {0.7, 5.0, 19.0, 22.3}) {
+    EXPECT_NEAR(depth_at(over - 10.0), over * cosine, 1e-12) << over;
+    EXPECT_NEAR(depth_at(910.0 - over), over * cosine, 1e-12) << over;
+  }
+  EXPECT_EQ(depth_at(12.4), 20.0);  // 22.4 cosine = 20.03
+  EXPECT_EQ(depth_at(-10.1), 0.0);
+}
+
+/// In the window the whole tip is over the block, and up is the shortest way out, whichever comes last.
+TEST(Scenario, WindowOfTheConeEndsWhereItsTipLeaves) {
+  const auto inside = [](const Scenario& scenario, double x) { return scenario.in_window((x + 30.0) / 960.0); };
+  const auto slender = make_scenario("Ia");  // up is the shorter way from x = 20 sqrt(1.25) - 10 = 12.36 on
+  Settings settings = scenario_settings("Ia");
+  settings.set("cone_radius", "60");  // tip of radius 20; up is the shorter way from 8.28 on
+  const auto wide = make_scenario("Ia", settings);
+  for (const auto& [scenario, end] : {std::pair(slender.get(), 12.36), std::pair(wide.get(), 20.0)}) {
+    EXPECT_FALSE(inside(*scenario, end - 0.1));
+    EXPECT_TRUE(inside(*scenario, end + 0.1));
+    EXPECT_TRUE(inside(*scenario, 900.0 - end - 0.1));
+    EXPECT_FALSE(inside(*scenario, 900.0 - end + 0.1));
+  }
+}
+
+TEST(Scenario, PaperFormulasOfTheConeAreLiteral) {
+  const auto thick = make_scenario("Ia");
+  EXPECT_EQ(thick->ideal(IdealLaw::paper_depth, 0.4)->force, Eigen::Vector3d(0.0, 20.0, 0.0));
+  EXPECT_EQ(thick->ideal(IdealLaw::paper_volume, 0.4)->force, Eigen::Vector3d(0.0, 8000.0, 0.0));
+  EXPECT_EQ(thick->ideal(IdealLaw::paper_depth, 0.0)->penalty, 0.0);
+  EXPECT_EQ(thick->ideal(IdealLaw::paper_volume, 1.0)->penalty, 0.0);
 }
 
 TEST(Scenario, ConeHasTheClosedFormWhereItsTipIsOverTheBlock) {
