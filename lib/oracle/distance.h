@@ -40,6 +40,9 @@ struct SurfaceDistance {
 
 /// Two meshes prepared for exact distances at any pose: immutable, shared by the DistanceQuery objects of all threads.
 /// The meshes outlive it.
+///
+/// A mesh of a million triangles takes 151 MB (its tree), and 2 to 8 MB more if it has flat parts: bytes() of
+/// torus-knot-1m, box-1m and elephant-1m, which the growth of the process (148 MB and 2 to 6 MB) bears out.
 class DistanceOracle {
  public:
   /// Builds a tree per mesh; a single one if both are the same object.

@@ -104,9 +104,9 @@ void Flats::find_planes(const Tree& tree) {
     }
   }
   if (largest < k_least_triangles) {
-    planes_ = {};
-    node_plane_ = {};
-    leaf_plane_ = {};
+    planes_ = std::vector<Plane>();  // which gives the memory back
+    node_plane_ = std::vector<std::uint32_t>();
+    leaf_plane_ = std::vector<std::uint32_t>();
   }
 }
 

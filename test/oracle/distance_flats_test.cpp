@@ -81,7 +81,9 @@ TEST(DistanceFlats, HoldASheetWhole) {
 }
 
 TEST(DistanceFlats, AreAbsentFromCurvedSurfacesAndFromABlockOfTwelve) {
-  EXPECT_TRUE(Flats(Tree(shapes::bumpy_sphere(4, 0.2))).empty());
+  const Flats none(Tree(shapes::bumpy_sphere(4, 0.2)));
+  EXPECT_TRUE(none.empty());
+  EXPECT_EQ(none.bytes(), 0u);
   EXPECT_TRUE(Flats(Tree(shapes::box({1.0, 2.0, 0.5}))).empty());
   // Bent by more than rounding: heights of 1e-12 are no tie.
   const Mesh block = make_box({}, 3000);
