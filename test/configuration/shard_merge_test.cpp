@@ -1,6 +1,10 @@
 #include <sixdof/configuration/shard_merge.h>
 
+#include <sys/resource.h>
+
 #include <cstring>
+#include <numeric>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -102,6 +106,36 @@ TEST_F(ShardMerge, ReportsProgressAndStopsWhenAsked) {
   // The two shards are all there is: no set, no temporary file.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 2);
 }
+
+#ifndef __SANITIZE_ADDRESS__  // which keeps what was freed
+/// Peak of the process's memory so far, in bytes.
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+TEST_F(ShardMerge, HoldsOneBucketInMemoryAndNotTheSet) {
+  SetDescription set = small_.set;
+  set.grid = make_grid("30");
+  set.volume_grid.reset();
+  std::vector<int> percents(BucketKey::k_max_percent + 1);
+  std::iota(percents.begin(), percents.end(), 0);
+  const auto job = GenerationJob::of("", *small_.generator, small_.a, small_.b, set, percents, {});
+  const DistinctRotations distinct(set.grid.rotations);
+  const auto rows = [&](ShardNumber shard, BucketKey key) {
+    GeneratedBucket bucket;
+    bucket.summary.key = key;
+    bucket.travel.assign(distinct.part(shard).size() * set.grid.directions.size(), 1.0 + key.percent);
+    return bucket;
+  };
+  const std::size_t bucket_bytes = set.grid.configurations() * sizeof(double);
+  const std::size_t before = peak_memory();
+  assemble_set(folder_ / "set.h5", job, set, 64, rows);
+  // A bucket, its compression, and what HDF5 keeps; the set is 101 buckets.
+  EXPECT_LT(peak_memory() - before, 30 * bucket_bytes);
+}
+#endif
 
 TEST_F(ShardMerge, RefusesRowsOfTheWrongNumber) {
   const auto short_rows = [&](ShardNumber shard, BucketKey key) {
