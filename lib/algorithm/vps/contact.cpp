@@ -9,52 +9,11 @@
 #include <hwy/highway.h>
 
 #include <sixdof/algorithm/vps/contact.h>
+#include <sixdof/algorithm/vps/lookup-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::vps {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, PointTree::k_block>;
-using Ints = hn::RebindToSigned<Floats>;
-using Words = hn::RebindToUnsigned<Floats>;
-using F = hn::Vec<Floats>;
-using I = hn::Vec<Ints>;
-
-constexpr Floats k_floats;
-constexpr Ints k_ints;
-constexpr Words k_words;
-
-struct Vec3 {
-  F x, y, z;
-};
-
-HWY_INLINE F splat(float value) { return hn::Set(k_floats, value); }
-HWY_INLINE I splat_int(std::int32_t value) { return hn::Set(k_ints, value); }
-
-HWY_INLINE F dot(const Vec3& a, const Vec3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-HWY_INLINE Vec3 scale(F s, const Vec3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
-HWY_INLINE Vec3 minus(const Vec3& a, const Vec3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-
-HWY_INLINE Vec3 plus(const Vec3& a, const Vec3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
-
-struct Matrix {
-  Vec3 row[3];
-  explicit HWY_INLINE Matrix(const Eigen::Matrix3f& m)
-      : row{{splat(m(0, 0)), splat(m(0, 1)), splat(m(0, 2))},
-            {splat(m(1, 0)), splat(m(1, 1)), splat(m(1, 2))},
-            {splat(m(2, 0)), splat(m(2, 1)), splat(m(2, 2))}} {}
-  HWY_INLINE Vec3 operator*(const Vec3& v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
-};
 
 /// Rows of a block, from the given lane on.
 struct PointLanes {
@@ -64,46 +23,6 @@ struct PointLanes {
   HWY_INLINE F weight() const { return row(3); }
   HWY_INLINE Vec3 normal() const { return {row(4), row(5), row(6)}; }
 };
-
-/// The voxels that points stand in, moved into the grid: its outermost voxels are as far outside as all beyond.
-struct Cell {
-  Vec3 low;   ///< Least corner, in voxel coordinates.
-  I brick;    ///< Index into the table of bricks.
-  I x, y, z;  ///< Place inside the brick, 0 .. 7.
-};
-
-class GridLookup {
- public:
-  explicit HWY_INLINE GridLookup(const VoxelGrid& grid)
-      : last_{splat(static_cast<float>(grid.voxels().x() - 1)), splat(static_cast<float>(grid.voxels().y() - 1)),
-              splat(static_cast<float>(grid.voxels().z() - 1))},
-        row_(splat_int(grid.bricks.x())),
-        slice_(splat_int(grid.bricks.x() * grid.bricks.y())) {}
-
-  HWY_INLINE Cell cell(const Vec3& q) const {
-    Cell c;
-    const F zero = hn::Zero(k_floats);
-    c.low = {hn::Min(hn::Max(hn::Floor(q.x), zero), last_.x), hn::Min(hn::Max(hn::Floor(q.y), zero), last_.y),
-             hn::Min(hn::Max(hn::Floor(q.z), zero), last_.z)};
-    const I x = hn::ConvertTo(k_ints, c.low.x), y = hn::ConvertTo(k_ints, c.low.y), z = hn::ConvertTo(k_ints, c.low.z);
-    c.brick = hn::Add(hn::Add(hn::ShiftRight<3>(x), hn::Mul(hn::ShiftRight<3>(y), row_)),
-                      hn::Mul(hn::ShiftRight<3>(z), slice_));
-    const I seven = splat_int(VoxelGrid::k_edge - 1);
-    c.x = hn::And(x, seven);
-    c.y = hn::And(y, seven);
-    c.z = hn::And(z, seven);
-    return c;
-  }
-
- private:
-  Vec3 last_;
-  I row_, slice_;
-};
-
-HWY_INLINE Vec3 transform(const Matrix& m, const Vec3& offset, const Vec3& p) {
-  const Vec3 v = m * p;
-  return {hn::Add(v.x, offset.x), hn::Add(v.y, offset.y), hn::Add(v.z, offset.z)};
-}
 
 /// Sums of some lanes over a leaf, in registers.
 struct LaneSums {
@@ -177,37 +96,19 @@ class Accumulator {
 
 class LayerLoop {
  public:
-  LayerLoop(const VoxelMap& map, const PointTree& tree, const Placement& placement)
+  LayerLoop(const VoxelMap& map, const Placement& placement)
       : lookup_(map.grid),
         scaled_(placement.scaled),
         rotation_(placement.rotation),
         offset_{splat(placement.center.x()), splat(placement.center.y()), splat(placement.center.z())},
-        blocks_(tree.blocks()),
-        table_(map.table.data()),
-        words_(reinterpret_cast<const std::int32_t*>(map.words.data())),
-        layer_bits_(map.layer_bits) {}
-
-  /// Layers of the voxels, one per lane.
-  HWY_INLINE I layers(const Cell& cell) const {
-    const I entry = hn::Max(hn::GatherIndex(k_ints, table_, cell.brick), hn::Zero(k_ints));
-    const I place = hn::Or(hn::Or(cell.x, hn::ShiftLeft<3>(cell.y)), hn::ShiftLeft<6>(cell.z));
-    const I index = hn::Or(hn::ShiftLeft<9>(entry), place);
-    if (layer_bits_ == 8) {
-      const I word = hn::GatherIndex(k_ints, words_, hn::ShiftRight<2>(index));
-      const I up = hn::Sub(splat_int(24), hn::ShiftLeft<3>(hn::And(index, splat_int(3))));
-      return hn::ShiftRight<24>(hn::Shl(word, up));
-    }
-    const I word = hn::GatherIndex(k_ints, words_, hn::ShiftRight<1>(index));
-    const I up = hn::Sub(splat_int(16), hn::ShiftLeft<4>(hn::And(index, splat_int(1))));
-    return hn::ShiftRight<16>(hn::Shl(word, up));
-  }
+        layers_(map) {}
 
   template <bool k_local>
   HWY_INLINE void add(const PointLanes& points, LaneSums& sums) const {
     const Vec3 p = points.position();
     const Vec3 q = transform(scaled_, offset_, p);
     const Cell cell = lookup_.cell(q);
-    const I layer = layers(cell);
+    const I layer = layers_.layers(cell, layers_.entries(cell));
     const auto hit_int = hn::Gt(layer, splat_int(-1));
     if (hn::AllFalse(k_ints, hit_int)) return;
     const F w = points.weight();
@@ -226,7 +127,8 @@ class LayerLoop {
   }
 
   HWY_INLINE bool hits(const PointLanes& points) const {
-    const I layer = layers(lookup_.cell(transform(scaled_, offset_, points.position())));
+    const Cell cell = lookup_.cell(transform(scaled_, offset_, points.position()));
+    const I layer = layers_.layers(cell, layers_.entries(cell));
     return !hn::AllFalse(k_ints, hn::Gt(layer, splat_int(-1)));
   }
 
@@ -234,10 +136,7 @@ class LayerLoop {
   GridLookup lookup_;
   Matrix scaled_, rotation_;
   Vec3 offset_;
-  const float* blocks_;
-  const std::int32_t* table_;
-  const std::int32_t* words_;
-  int layer_bits_;
+  LayerLookup layers_;
 };
 
 class FieldLoop {
@@ -407,7 +306,7 @@ HWY_INLINE bool any_point(const PointTree& tree, std::span<const std::uint32_t> 
 
 ContactSums sum_layers_simd(const VoxelMap& map, const PointTree& tree, const Placement& placement, LayerDepth depth,
                             std::span<const std::uint32_t> leaves) {
-  const LayerLoop loop(map, tree, placement);
+  const LayerLoop loop(map, placement);
   if (depth == LayerDepth::layers) {
     return sum_leaves(tree, leaves, [&](PointLanes points, LaneSums& sums) HWY_ATTR { loop.add<false>(points, sums); });
   }
@@ -416,7 +315,7 @@ ContactSums sum_layers_simd(const VoxelMap& map, const PointTree& tree, const Pl
 
 bool touches_layers_simd(const VoxelMap& map, const PointTree& tree, const Placement& placement,
                          std::span<const std::uint32_t> leaves) {
-  const LayerLoop loop(map, tree, placement);
+  const LayerLoop loop(map, placement);
   return any_point(tree, leaves, [&](PointLanes points) HWY_ATTR { return loop.hits(points); });
 }
 

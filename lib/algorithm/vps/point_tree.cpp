@@ -1,17 +1,90 @@
+// The spheres of a node's eight children are told apart at once, compiled once per instruction set and chosen at run
+// time.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)  // as in contact.cpp
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sixdof/algorithm/vps/point_tree.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+
+#include <hwy/highway.h>
+
+#include <sixdof/algorithm/vps/lookup-inl.h>
 #include <sixdof/algorithm/vps/point_tree.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace sixdof::vps {
+namespace HWY_NAMESPACE {
+
+/// Slack for the rounding of single-precision voxel coordinates, in voxels: coordinates below 2^12 round to 2^-12.
+constexpr float k_rounding = 1e-3f;
+constexpr float k_half_diagonal = 0.8660254f;  // of a voxel
+
+/// The part of a coordinate that lies beyond [0, end], squared.
+HWY_INLINE F squared_beyond(F q, float end) {
+  const F out = hn::Sub(q, hn::Min(hn::Max(q, hn::Zero(k_floats)), splat(end)));
+  return hn::Mul(out, out);
+}
+
+/// Bits of a mask's lanes.
+template <class M>
+HWY_INLINE unsigned bits_of(M mask) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(k_floats, mask, bits);
+  return bits[0] & ((1u << hn::Lanes(k_floats)) - 1u);
+}
+
+/// @param spheres x, y, z and radius of eight spheres, one row each
+/// @param outside, inside receive one bit per sphere
+void find_sides(const float* spheres, const VoxelMap& map, const Placement& placement, float reach, unsigned& outside,
+                unsigned& inside) {
+  const GridLookup lookup(map.grid);
+  const LayerLookup layers(map);
+  const Matrix scaled(placement.scaled);
+  const Vec3 offset{splat(placement.center.x()), splat(placement.center.y()), splat(placement.center.z())};
+  const Eigen::Array3f end = map.grid.voxels().cast<float>();
+  const auto per_size = static_cast<float>(1.0 / map.grid.size);
+  outside = inside = 0;
+  for (std::size_t l = 0; l < PointTree::k_block; l += hn::Lanes(k_floats)) {
+    const auto row = [&](std::size_t r) HWY_ATTR { return hn::LoadU(k_floats, spheres + r * PointTree::k_block + l); };
+    const Vec3 q = transform(scaled, offset, {row(0), row(1), row(2)});
+    const F radius = hn::Add(hn::Mul(row(3), splat(per_size)), splat(k_rounding + reach));
+    // A centre beyond the grid is moved to its border; the way there counts as one leg of a right angle, since all of
+    // the surface lies on the other side of that border.
+    const F beyond =
+        hn::Add(hn::Add(squared_beyond(q.x, end.x()), squared_beyond(q.y, end.y())), squared_beyond(q.z, end.z()));
+    const F left = hn::Sub(hn::Mul(radius, radius), beyond);
+    const auto in_reach = hn::Ge(left, hn::Zero(k_floats));
+    // As VoxelMap::outside_distance().
+    const Cell cell = lookup.cell(q);
+    const I entry = layers.entries(cell);
+    const F unstored = hn::Sub(splat(-1.0f), hn::ConvertTo(k_floats, entry));
+    const F stored = hn::Sub(splat(-0.5f), hn::ConvertTo(k_floats, layers.layers(cell, entry)));
+    const auto is_stored = hn::RebindMask(k_floats, hn::Gt(entry, splat_int(-1)));
+    const F distance = hn::IfThenElse(is_stored, stored, unstored);
+    // A straight way from the node's centre to a voxel with v >= 0 first enters such a voxel where it is a surface
+    // voxel: half a diagonal from that voxel's centre at most. The node's centre is within half a diagonal of its own
+    // voxel's.
+    const F out = hn::Max(hn::Sub(distance, splat(2.0f * k_half_diagonal)), hn::Zero(k_floats));
+    const auto near = hn::And(in_reach, hn::Le(hn::Mul(out, out), left));
+    // Inside, |v| is rounded the other way; no way as short leads out of voxels with v >= 0.
+    const F in = hn::Sub(splat(-1.0f - 2.0f * k_half_diagonal), distance);
+    outside |= bits_of(hn::Not(near)) << l;
+    inside |= bits_of(hn::And(near, hn::Gt(in, radius))) << l;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sixdof::vps
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace sixdof::vps {
-namespace {
 
-/// Slack for the rounding of single-precision voxel coordinates, in voxels: coordinates below 2^12 round to 2^-12.
-constexpr float k_rounding = 1e-3f;
-constexpr float k_half_diagonal = 0.8660254f;  // of a voxel
-
-}  // namespace
+HWY_EXPORT(find_sides);
 
 Placement Placement::of(const Pose& X, const Eigen::Vector3d& center, const VoxelGrid& grid) {
   return {.rotation = X.R.cast<float>(),
@@ -23,7 +96,7 @@ PointTree::PointTree(const PointShell& shell, const Eigen::Vector3d& center, boo
     : center_(center), points_(shell.points.size()) {
   std::vector<std::uint32_t> order(points_);
   std::iota(order.begin(), order.end(), 0u);
-  build(shell, order, 0, points_);
+  build(shell, order, {0, points_});
   leaves_ = static_cast<std::uint32_t>((points_ + k_leaf_points - 1) / k_leaf_points);
   blocks_.resize(leaves_ * k_leaf_blocks * k_rows * k_block);
   for (std::size_t i = 0; i < leaves_ * k_leaf_points; ++i) {
@@ -36,73 +109,68 @@ PointTree::PointTree(const PointShell& shell, const Eigen::Vector3d& center, boo
   }
 }
 
-void PointTree::build(const PointShell& shell, std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end) {
-  const std::size_t here = nodes_.size();
-  nodes_.emplace_back();
+std::pair<PointTree::Range, PointTree::Range> PointTree::split(const PointShell& shell,
+                                                               std::vector<std::uint32_t>& order, Range range) {
   Eigen::AlignedBox3d box;
-  for (std::size_t i = begin; i < end; ++i) box.extend(shell.points[order[i]]);
-  Node node;
-  const Eigen::Vector3f middle_of_box = (box.center() - center_).cast<float>();
-  node.x = middle_of_box.x();
-  node.y = middle_of_box.y();
-  node.z = middle_of_box.z();
-  double radius = 0.0;
-  for (std::size_t i = begin; i < end; ++i) {
-    radius = std::max(radius, (shell.points[order[i]] - box.center()).norm());
-  }
-  node.radius = static_cast<float>(radius);
-  const std::size_t leaves = (end - begin + k_leaf_points - 1) / k_leaf_points;
-  node.first_leaf = static_cast<std::uint32_t>(begin / k_leaf_points);
-  node.end_leaf = static_cast<std::uint32_t>(begin / k_leaf_points + leaves);
-  if (leaves > 1) {
-    // Halves of whole leaves, so that only the last leaf is not full.
-    const std::size_t middle = begin + (leaves + 1) / 2 * k_leaf_points;
-    int axis = 0;
-    box.sizes().maxCoeff(&axis);
-    const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t i, std::uint32_t j) {
-      const double a = shell.points[i][axis], b = shell.points[j][axis];
-      return a != b ? a < b : i < j;
-    });
-    build(shell, order, begin, middle);
-    build(shell, order, middle, end);
-  }
-  node.skip = static_cast<std::uint32_t>(nodes_.size());
-  nodes_[here] = node;
+  for (std::size_t i = range.begin; i < range.end; ++i) box.extend(shell.points[order[i]]);
+  int axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const std::size_t middle = range.begin + (range.leaves() + 1) / 2 * k_leaf_points;
+  const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(range.begin), at(middle), at(range.end), [&](std::uint32_t i, std::uint32_t j) {
+    const double a = shell.points[i][axis], b = shell.points[j][axis];
+    return a != b ? a < b : i < j;
+  });
+  return {{range.begin, middle}, {middle, range.end}};
 }
 
-PointTree::Culling::Culling(const VoxelMap& map, const Placement& placement, double reach)
-    : map_(map),
-      placement_(placement),
-      per_size_(static_cast<float>(1.0 / map.grid.size)),
-      slack_(k_rounding + static_cast<float>(reach)),
-      end_(map.grid.voxels().cast<float>()) {}
-
-PointTree::Side PointTree::Culling::side(const Node& node) const {
-  const Eigen::Matrix3f& m = placement_.scaled;
-  const float q[3] = {m(0, 0) * node.x + m(0, 1) * node.y + m(0, 2) * node.z + placement_.center.x(),
-                      m(1, 0) * node.x + m(1, 1) * node.y + m(1, 2) * node.z + placement_.center.y(),
-                      m(2, 0) * node.x + m(2, 1) * node.y + m(2, 2) * node.z + placement_.center.z()};
-  // A centre beyond the grid is moved to its border; the way there counts as one leg of a right angle, since all of the
-  // surface lies on the other side of that border.
-  float beyond = 0.0f;
-  int voxel[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const float moved = std::min(std::max(q[axis], 0.0f), end_[axis]);
-    beyond += (q[axis] - moved) * (q[axis] - moved);
-    voxel[axis] = std::min(static_cast<int>(moved), static_cast<int>(end_[axis]) - 1);
+std::uint32_t PointTree::build(const PointShell& shell, std::vector<std::uint32_t>& order, Range range) {
+  const auto here = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  std::vector<Range> ranges{range};
+  for (std::size_t width = 1; width < k_width; width *= 2) {
+    std::vector<Range> halves;
+    for (const Range& part : ranges) {
+      if (part.leaves() == 1) {
+        halves.push_back(part);
+        continue;
+      }
+      const auto [low, high] = split(shell, order, part);
+      halves.push_back(low);
+      halves.push_back(high);
+    }
+    ranges = std::move(halves);
   }
-  const float radius = node.radius * per_size_ + slack_;
-  const float left = radius * radius - beyond;
-  if (!(left >= 0.0f)) return Side::outside;
-  // A straight way from the node's centre to a voxel with v >= 0 first enters such a voxel where it is a surface voxel:
-  // half a diagonal from that voxel's centre at most. The node's centre is within half a diagonal of its own voxel's.
-  const float distance = map_.outside_distance(voxel[0], voxel[1], voxel[2]);
-  const float out = distance - 2.0f * k_half_diagonal;
-  if (out > 0.0f && out * out > left) return Side::outside;
-  // Inside, |v| is rounded the other way; no way as short leads out of voxels with v >= 0.
-  const float in = -distance - 1.0f - 2.0f * k_half_diagonal;
-  return in > radius ? Side::inside : Side::both;
+  Node node;
+  node.children = static_cast<std::uint32_t>(ranges.size());
+  for (std::size_t i = 0; i < k_width; ++i) {
+    const Range& part = ranges[std::min(i, ranges.size() - 1)];
+    Eigen::AlignedBox3d box;
+    for (std::size_t k = part.begin; k < part.end; ++k) box.extend(shell.points[order[k]]);
+    const Eigen::Vector3d middle = box.center();
+    double radius = 0.0;
+    for (std::size_t k = part.begin; k < part.end; ++k) {
+      radius = std::max(radius, (shell.points[order[k]] - middle).norm());
+    }
+    const Eigen::Vector3f center = (middle - center_).cast<float>();
+    for (Eigen::Index k = 0; k < 3; ++k) node.sphere[k][i] = center[k];
+    node.sphere[3][i] = static_cast<float>(radius);
+  }
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const auto first_leaf = static_cast<std::uint32_t>(ranges[i].begin / k_leaf_points);
+    node.child[i] = {.node = ranges[i].leaves() == 1 ? k_no_node : build(shell, order, ranges[i]),
+                     .first_leaf = first_leaf,
+                     .end_leaf = first_leaf + static_cast<std::uint32_t>(ranges[i].leaves())};
+  }
+  nodes_[here] = node;
+  return here;
+}
+
+PointTree::Sides PointTree::sides_of(const Node& node, const VoxelMap& map, const Placement& placement, double reach) {
+  Sides sides;
+  HWY_DYNAMIC_DISPATCH(find_sides)
+  (node.sphere[0], map, placement, static_cast<float>(reach), sides.outside, sides.inside);
+  return sides;
 }
 
 void PointTree::cull(const VoxelMap& map, const Placement& placement, double reach,
@@ -115,3 +183,4 @@ void PointTree::cull(const VoxelMap& map, const Placement& placement, double rea
 }
 
 }  // namespace sixdof::vps
+#endif  // HWY_ONCE

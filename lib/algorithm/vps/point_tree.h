@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <sixdof/algorithm/vps/pointshell.h>
@@ -19,7 +22,8 @@ struct Placement {
   static Placement of(const Pose& X, const Eigen::Vector3d& center, const VoxelGrid& grid);
 };
 
-/// A pointshell in leaves of 32 points, four blocks of 8 that are computed at once, under a binary tree of spheres.
+/// A pointshell in leaves of 32 points, four blocks of 8 that are computed at once, under a tree of spheres with eight
+/// children a node, which are told apart at once too.
 class PointTree {
  public:
   static constexpr std::size_t k_block = 8;
@@ -48,50 +52,60 @@ class PointTree {
   /// The same in ascending order until visit(first leaf, end leaf) returns true; says whether one did.
   template <class Visit>
   bool any_leaves(const VoxelMap& map, const Placement& placement, double reach, const Visit& visit) const {
-    const Culling culling(map, placement, reach);
-    for (std::size_t n = 0; n < nodes_.size();) {
-      const Node& node = nodes_[n];
-      const Side side = culling.side(node);
-      if (side == Side::outside) {
-        n = node.skip;
-      } else if (side == Side::inside || node.end_leaf - node.first_leaf == 1) {
-        if (visit(node.first_leaf, node.end_leaf)) return true;
-        n = node.skip;
-      } else {
-        ++n;
+    std::array<Child, k_stack> stack;
+    std::size_t size = 0;
+    stack[size++] = {.node = 0};
+    while (size > 0) {
+      const Child next = stack[--size];
+      if (next.node == k_no_node) {
+        if (visit(next.first_leaf, next.end_leaf)) return true;
+        continue;
+      }
+      const Node& node = nodes_[next.node];
+      const Sides sides = sides_of(node, map, placement, reach);
+      for (std::uint32_t i = node.children; i-- > 0;) {  // the last one pushed is the next one popped
+        if ((sides.outside >> i & 1u) != 0) continue;
+        Child& child = stack[size++];
+        child = node.child[i];
+        if ((sides.inside >> i & 1u) != 0) child.node = k_no_node;
       }
     }
     return false;
   }
 
  private:
-  struct Node {
-    float x, y, z;                       ///< Centre, relative to center_.
-    float radius;                        ///< Of the points only.
-    std::uint32_t skip;                  ///< Next node in preorder that is not below this one.
-    std::uint32_t first_leaf, end_leaf;  ///< Below this node.
+  static constexpr std::uint32_t k_no_node = UINT32_MAX;
+  static constexpr std::size_t k_width = 8;       ///< Children per node, at most.
+  static constexpr std::size_t k_stack = 16 * 8;  ///< Eight per level: 8^11 leaves of 32 points pass 32 bits.
+
+  struct Child {
+    std::uint32_t node = k_no_node;              ///< k_no_node: a leaf, or to be taken whole.
+    std::uint32_t first_leaf = 0, end_leaf = 0;  ///< Below this child.
   };
 
-  enum class Side {
-    outside,  ///< No point can be in contact.
-    inside,   ///< All points surely are.
-    both
+  /// Spheres around the points of up to eight children; those that exist fill the first lanes, the others repeat the
+  /// last one.
+  struct alignas(32) Node {
+    float sphere[4][k_width];  ///< Rows x, y, z (centres, relative to center_) and radius (of the points only).
+    Child child[k_width];
+    std::uint32_t children = 0;
   };
 
-  /// Tells nodes' sides, for one query.
-  class Culling {
-   public:
-    Culling(const VoxelMap& map, const Placement& placement, double reach);
-    Side side(const Node& node) const;
-
-   private:
-    const VoxelMap& map_;
-    const Placement& placement_;
-    float per_size_, slack_;
-    Eigen::Array3f end_;
+  /// One bit per child.
+  struct Sides {
+    unsigned outside = 0;  ///< No point can be in contact.
+    unsigned inside = 0;   ///< All points surely are.
   };
 
-  void build(const PointShell& shell, std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end);
+  static Sides sides_of(const Node& node, const VoxelMap& map, const Placement& placement, double reach);
+
+  struct Range {
+    std::size_t begin, end;
+    std::size_t leaves() const { return (end - begin + k_leaf_points - 1) / k_leaf_points; }
+  };
+  /// Sorts the points of a range into two halves of whole leaves, so that only the last leaf is not full.
+  static std::pair<Range, Range> split(const PointShell& shell, std::vector<std::uint32_t>& order, Range range);
+  std::uint32_t build(const PointShell& shell, std::vector<std::uint32_t>& order, Range range);
 
   Eigen::Vector3d center_;
   std::size_t points_;
