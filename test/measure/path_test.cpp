@@ -43,6 +43,29 @@ TEST(Lag, FindsShiftsBetweenStampsAndTheirSign) {
   EXPECT_NEAR(*lag(ideal, ideal, 10), 0.0, k_parabola);
 }
 
+TEST(Lag, IsFoundUpToItsReachOnBothSides) {
+  const std::vector<Eigen::Vector3d> ideal = orbit(400, 0.0);
+  constexpr double k_parabola = 1e-2;
+  EXPECT_NEAR(*lag(ideal, orbit(400, 9.0), 10), 9.0, k_parabola);
+  EXPECT_NEAR(*lag(ideal, orbit(400, -9.0), 10), -9.0, k_parabola);
+  EXPECT_FALSE(lag(ideal, orbit(400, -30.0), 10));
+  EXPECT_TRUE(lag(orbit(21, 0.0), orbit(21, 0.0), 10));  // one stamp more than twice the reach
+}
+
+/// A shift by 10 of 400 stamps turns the varying part by 9 degrees: 1 - correlation is about a^2 (1 - cos 9 degrees).
+TEST(Lag, NeedsAnIdealThatVaries) {
+  const auto wobble = [](double amplitude, double late) {
+    std::vector<Eigen::Vector3d> values;
+    for (int k = 0; k < 400; ++k) {
+      const double angle = k_turn * (k - late) / 400.0;
+      values.emplace_back(1.0, amplitude * std::cos(angle), amplitude * std::sin(angle));
+    }
+    return values;
+  };
+  EXPECT_FALSE(lag(wobble(5e-3, 0.0), wobble(5e-3, 3.0), 10));             // 3e-7
+  EXPECT_NEAR(*lag(wobble(2e-2, 0.0), wobble(2e-2, 3.0), 10), 3.0, 1e-2);  // 5e-6
+}
+
 TEST(Lag, IsNotReadFromAConstant) {
   const std::vector<Eigen::Vector3d> constant(100, Eigen::Vector3d(1, 2, 3));
   EXPECT_FALSE(lag(constant, constant, 10));
@@ -72,6 +95,13 @@ TEST(Jump, TellsADiscontinuityFromASlope) {
   EXPECT_NEAR(jumping.refined, 0.25, 1e-4);
   EXPECT_NEAR(jumping.where, 0.6180339, 0.02 / 4096.0);
   EXPECT_THROW(largest_jump(progress, {}, stepped, 3, 3), BadArgument);
+  // More candidates than intervals, and nothing that changes: the first interval's middle.
+  const std::vector<double> ends{0.2, 0.6};
+  const std::vector<Eigen::Vector3d> same(2, Eigen::Vector3d(1, 2, 3));
+  const Jump none = largest_jump(
+      ends, same, [](double) { return Eigen::Vector3d(1, 2, 3); }, 5, 4);
+  EXPECT_EQ(none.refined, 0.0);
+  EXPECT_NEAR(none.where, 0.4, k_rounding);
   EXPECT_EQ(largest_jump(std::span(progress).first(1), Vectors(step).first(1), stepped, 3, 3).coarse, 0.0);
 }
 

@@ -81,6 +81,20 @@ TEST(Evaluation, FailedStampsAreCountedAndLeftOut) {
   EXPECT_GT(m.at("noise_F"), 1e-3);  // a device feels the gap
 }
 
+/// A torque of 3 about the reference where none should be, and a force where none should be, over the wanted part and
+/// by the scenario's reference length: 30 in II, 20 in III.
+TEST(Evaluation, LeakageIsScaledByTheReferenceLength) {
+  const auto orbit = make_scenario("II");
+  IdealQuery twisting(*orbit, IdealLaw::depth, [](Response& r, double, std::size_t) { r.torque.x() += 3.0; });
+  const auto twisted = by_name(evaluate(*orbit, record(*orbit, twisting, 40), IdealLaw::depth));
+  EXPECT_NEAR(twisted.at("leakage"), 3.0 / (10.0 * 30.0), k_rounding);
+  const auto turn = make_scenario("III");
+  IdealQuery pushing(*turn, IdealLaw::depth,
+                     [](Response& r, double, std::size_t) { r.force.x() = 0.25 * r.torque.z(); });
+  const auto pushed = by_name(evaluate(*turn, record(*turn, pushing, 40), IdealLaw::depth));
+  EXPECT_NEAR(pushed.at("leakage"), 0.25 * 20.0, k_rounding);
+}
+
 TEST(Evaluation, RefusesALawThatIsNotThere) {
   const auto scenario = make_scenario("Ib");
   IdealQuery query(*scenario, IdealLaw::volume);

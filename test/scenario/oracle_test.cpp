@@ -132,8 +132,8 @@ TEST(IdealAgainstOracle, OrbitingPinsConvergeWithTheirRoundPin) {
   const Errors fine = worst(192);
   EXPECT_GT(order(coarse.volume, fine.volume), 2.0) << coarse.volume << ' ' << fine.volume;
   EXPECT_LT(fine.volume, 2e-4);
-  EXPECT_LT(fine.force, 5e-3);
-  EXPECT_LT(fine.torque, 5e-3);
+  EXPECT_LT(fine.force, 2e-4);
+  EXPECT_LT(fine.torque, 2e-4);
 }
 
 /// The superfluous contact is really there: sinking B by a little adds the plate's whole contact area times that

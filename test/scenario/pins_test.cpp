@@ -207,10 +207,11 @@ TEST(PinTractionOfACircle, IsTheSumOverTheWall) {
   const auto nearest = [](const Eigen::Vector2d& p) {
     return p.norm() > 10.0 ? Eigen::Vector2d(p.normalized() * 10.0) : p;
   };
+  constexpr double k_grid = 5e-4;  // layers, and its facets
   const Eigen::Vector2d shift(-1.1, 1.7);
   const Sum sum = sum_over_wall(polygon(10.0, 1000, RoundParts::equal_area), 0.0, shift, nearest);
-  expect_traction(round_pin_traction(10.0, 40.0, shift, false), sum.pin, sum.pin.head<2>().norm(), 1e-2);  // its facets
-  expect_traction(round_pin_traction(10.0, 40.0, shift, true), sum.wall, sum.wall.head<2>().norm(), 1e-2);
+  expect_traction(round_pin_traction(10.0, 40.0, shift, false), sum.pin, sum.pin.head<2>().norm(), k_grid);
+  expect_traction(round_pin_traction(10.0, 40.0, shift, true), sum.wall, sum.wall.head<2>().norm(), k_grid);
   EXPECT_EQ(round_pin_traction(10.0, 40.0, Eigen::Vector2d::Zero(), true).force.norm(), 0.0);
 }
 

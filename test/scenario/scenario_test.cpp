@@ -242,6 +242,14 @@ TEST(Scenario, SphereHasTheKnownVolume) {
   EXPECT_NEAR(scenario->ideal(IdealLaw::volume, 0.1)->penalty / 27000.0, 0.22778, 5e-6);
   EXPECT_EQ(scenario->ideal(IdealLaw::depth, 0.1)->penalty, 10.0);
   EXPECT_EQ(scenario->ideal(IdealLaw::paper_depth, 0.1)->penalty, 50.0);
+  EXPECT_EQ(scenario->ideal(IdealLaw::paper_volume, 0.1)->penalty, 1.0);
+  EXPECT_NEAR(scenario->ideal(IdealLaw::paper_volume, 0.1)->force.norm(), 1.0, k_rounding);
+  EXPECT_NEAR(scenario->ideal(IdealLaw::volume, 0.1)->force.norm() / scenario->ideal(IdealLaw::volume, 0.1)->penalty,
+              1.0, k_rounding);
+  EXPECT_TRUE(scenario->ideal(IdealLaw::energy, 0.1)
+                  ->force.isApprox(
+                      scenario->ideal(IdealLaw::volume, 0.1)->penalty * scenario->ideal(IdealLaw::gradient, 0.1)->force,
+                      k_rounding));
   const Eigen::Vector3d outwards(std::cos(0.2 * k_pi), std::sin(0.2 * k_pi), 0.0);
   for (const IdealLaw law : all_ideal_laws()) {
     const auto ideal = scenario->ideal(law, 0.1);

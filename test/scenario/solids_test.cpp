@@ -71,6 +71,42 @@ TEST(Solids, InscribedConvergesWithTheSquareOfTheFacets) {
   EXPECT_GT(error(64), 0.0);
 }
 
+/// Overlapping or folded triangles would make the surface too large.
+TEST(Solids, SurfacesDoNotFold) {
+  for (const int facets : {21, 96}) {
+    PinsShape shape;
+    shape.facets = facets;
+    shape.width = 77.0;
+    const double vertex = polygon_radius(shape.round_radius, facets, shape.round);
+    const double round_walls = facets * 2.0 * vertex * std::sin(k_pi / facets) * shape.depth;
+    const double square_walls = 4.0 * shape.square_side * shape.depth;
+    const double slab = shape.width * shape.depth;
+    const double holes = 400.0 + k_pi * 100.0;
+    const double outline = 2.0 * (shape.width + shape.depth);
+    const double block = outline * shape.depth + square_walls + round_walls + 2.0 * (slab - holes);
+    EXPECT_NEAR(holes_solid(shape, "").area() / block, 1.0, k_rounding);
+    const double pins = outline * shape.plate_thickness + square_walls + round_walls + 2.0 * slab;
+    EXPECT_NEAR(pins_solid(shape, "").area() / pins, 1.0, k_rounding);
+  }
+}
+
+TEST(Solids, SphereIsMadeOfEqualBands) {
+  const Mesh sphere = sphere_solid(3.0, 24, RoundParts::inscribed, "");
+  EXPECT_EQ(sphere.triangles().size(), 2u * 24u * 11u);
+  EXPECT_LT(sphere.centroid().norm(), k_rounding);
+  for (const Eigen::Vector3d& v : sphere.vertices()) EXPECT_NEAR(v.norm(), 3.0, k_rounding);
+  EXPECT_NEAR(sphere.box().max().z(), 3.0, k_rounding);
+  // The widest ring is the equator.
+  EXPECT_NEAR(sphere.box().max().x(), 3.0 * std::cos(k_pi / 24), k_rounding);
+}
+
+/// No vertex on the axes, so that flat walls of other solids do not meet one exactly.
+TEST(Solids, PolygonsStartHalfAFacetFromTheAxis) {
+  const auto loop = polygon(2.0, 10, RoundParts::inscribed);
+  EXPECT_NEAR(std::atan2(loop[0].y(), loop[0].x()), k_pi / 10, k_rounding);
+  EXPECT_NEAR(std::atan2(loop[1].y(), loop[1].x()), 3.0 * k_pi / 10, k_rounding);
+}
+
 TEST(Solids, BoxesLieWhereTheDocumentationSays) {
   const Mesh cone = cone_solid(3.0, 6.1, 16, RoundParts::inscribed, "");
   EXPECT_EQ(cone.box().min().y(), 0.0);
