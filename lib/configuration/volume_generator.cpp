@@ -85,7 +85,7 @@ class OverlapRay {
 
  private:
   /// Collects this much more than the way up to a measurement, for those that come after.
-  static constexpr double k_foresight = 0.1;
+  static constexpr double k_foresight = 0.03;
 
   void collect(double inner, double outer) {
     inner_ = inner;
