@@ -127,6 +127,9 @@ TEST(LoopWork, VanishesForARadialForceAndIsOneForADrivingOne) {
   EXPECT_NEAR(*loop_work(radial, none, poses, Eigen::Vector3d::Zero()), 0.0, k_rounding);
   // Mean of the two tangents of a chord of angle t, along the chord: cos(t / 2).
   EXPECT_NEAR(*loop_work(driving, none, poses, Eigen::Vector3d::Zero()), std::cos(k_turn / 180.0), k_rounding);
+  std::vector<Eigen::Vector3d> braking;
+  for (const Eigen::Vector3d& force : driving) braking.push_back(-force);
+  EXPECT_NEAR(*loop_work(braking, none, poses, Eigen::Vector3d::Zero()), std::cos(k_turn / 180.0), k_rounding);
   EXPECT_FALSE(loop_work(none, none, poses, Eigen::Vector3d::Zero()));
   EXPECT_THROW(loop_work(none, none, {}, Eigen::Vector3d::Zero()), BadArgument);
 }
@@ -146,6 +149,20 @@ TEST(LoopWork, CountsTheTorqueOfATurn) {
   EXPECT_NEAR(*loop_work(none, torques, poses, {0.5, -0.25, 2.0}), expected, 1e-12);
   // The reference point stands still, so a force there does no work but one elsewhere does not enter either.
   EXPECT_NEAR(*loop_work(torques, torques, poses, {0.5, -0.25, 2.0}), expected, 1e-12);
+  // A point off the axis goes round too; a force along its way adds its work to the torque's.
+  const Eigen::Vector3d off(1.5, 0.75, 2.0);
+  std::vector<Eigen::Vector3d> along;
+  double length = 0.0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Eigen::Vector3d here = poses[k] * off;
+    const Eigen::Vector3d step = poses[(k + 1) % poses.size()] * off - here;
+    length += step.norm();
+    along.push_back(axis.cross(here - Eigen::Vector3d(4, 5, 6)).normalized());
+  }
+  const double force_work = length * std::cos(k_turn / 80.0);
+  const double torque_work = k_turn * torque.dot(axis);
+  EXPECT_NEAR(*loop_work(along, torques, poses, off), (force_work + torque_work) / (length + k_turn * torque.norm()),
+              1e-12);
 }
 
 }  // namespace

@@ -88,6 +88,7 @@ TEST(ResidualNoise, AnOppositeForceIsJudgedByItself) {
   const std::vector<Eigen::Vector3d> ideal = along_x(std::vector<double>(500, 1.0));
   EXPECT_NEAR(*residual_noise(ideal, along_x(std::vector<double>(500, -3.0)), 1000.0, 50.0), 0.0, k_rounding);
   EXPECT_FALSE(residual_noise(ideal, along_x(std::vector<double>(500, 0.0)), 1000.0, 50.0));
+  EXPECT_NO_THROW(residual_noise(ideal, ideal, 1000.0, 0.0));
   EXPECT_THROW(residual_noise(ideal, ideal, 1000.0, 500.0), BadArgument);
   EXPECT_THROW(residual_noise(ideal, ideal, 1000.0, -1.0), BadArgument);
 }
