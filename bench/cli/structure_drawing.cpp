@@ -179,8 +179,8 @@ Drawing draw_field(const vps::DistanceField& field, double cut_x) {
     constexpr int k = vps::DistanceField::k_samples, k_edge = VoxelGrid::k_edge;
     const int place = ((z % k_edge + 1) * k + y % k_edge + 1) * k + x % k_edge + 1;
     const auto brick = static_cast<std::size_t>(field.table[field.grid.brick_of(x, y, z)]);
-    const float sample = field.samples[brick * vps::DistanceField::k_brick_samples + static_cast<std::size_t>(place)];
-    return sample < 0.0f ? -static_cast<double>(sample) : -1.0;
+    return -static_cast<double>(
+        field.samples[brick * vps::DistanceField::k_brick_samples + static_cast<std::size_t>(place)]);
   };
   return draw_body(field.grid, cut_x, stored, depth);
 }

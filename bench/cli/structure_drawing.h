@@ -44,7 +44,7 @@ Drawing draw_balls(const ist::SphereTree& tree, int level, double cut_x = k_uncu
 /// Voxels with layer v >= 0. Faces between two of them are left out. Colour: depth_colour(v, greatest v).
 Drawing draw_voxels(const vps::VoxelMap& map, double cut_x = k_uncut);
 
-/// Voxels whose sample f is negative, likewise. Colour: depth_colour(-f, greatest -f).
+/// Voxels whose sample f is not positive, likewise. Colour: depth_colour(-f, greatest -f).
 Drawing draw_field(const vps::DistanceField& field, double cut_x = k_uncut);
 
 /// Points with their inward normals, no triangles. Colour: ramp_colour(half the point's area over the mean area).
