@@ -55,7 +55,23 @@ class ScenarioRow {
     recording_ = record(*scenario_, *query, stamps);
     measures_ = evaluate(*scenario_, recording_, law_);
     for (const auto& measure : evaluate_jumps(*scenario_, *query, recording_, law_)) measures_.push_back(measure);
+    add_other_laws();
     query_ = std::move(query);
+  }
+
+  /// Magnitude and direction by every law but the declared one: in III and IV the ideal of a wrench is not the one its
+  /// penalty's law has.
+  void add_other_laws() {
+    for (const IdealLaw law :
+         {IdealLaw::depth, IdealLaw::volume, IdealLaw::gradient, IdealLaw::traction, IdealLaw::wall_traction}) {
+      if (law == law_) continue;
+      std::string suffix = fmt::format("_by_{}", to_string(law));
+      std::replace(suffix.begin(), suffix.end(), '-', '_');
+      for (const auto& [name, value] : evaluate(*scenario_, recording_, law)) {
+        const bool wanted = name == "sigma_F" || name == "sigma_T" || name == "gamma_F_deg" || name == "gamma_T_deg";
+        if (wanted) measures_.emplace_back(name + suffix, value);
+      }
+    }
   }
 
   Suite& suite_;

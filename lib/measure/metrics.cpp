@@ -80,7 +80,8 @@ std::span<const Metric> metrics() { return k_metrics; }
 
 const Metric& metric(std::string_view name) {
   constexpr std::string_view k_whole_path = "_all";
-  std::string_view stem = name;
+  constexpr std::string_view k_other_law = "_by_";
+  std::string_view stem = name.substr(0, name.find(k_other_law));
   if (stem.ends_with(k_whole_path)) stem.remove_suffix(k_whole_path.size());
   const auto* found = std::find_if(k_metrics.begin(), k_metrics.end(), [&](const Metric& m) { return m.name == stem; });
   if (found == k_metrics.end()) throw BadArgument("no measure is called \"" + std::string(name) + "\"");

@@ -16,7 +16,8 @@ enum class Better {
 std::string_view to_string(Better better);
 
 /// One measure of a response benchmark's row. `_F` and `_T` mean force and torque; the suffix "_all", not listed here,
-/// means the whole path where the plain name is over the scenario's window.
+/// means the whole path where the plain name is over the scenario's window, and "_by_" with a law's name that the ideal
+/// is that law's and not the one the algorithm declares.
 struct Metric {
   std::string_view name;  ///< Counter in the results, API.
   std::string_view unit;  ///< "1" for pure numbers.
@@ -28,7 +29,7 @@ struct Metric {
 /// The one table of measures, read by recorder, benchmark rows, command line and report.
 std::span<const Metric> metrics();
 
-/// @throws BadArgument if there is no measure of that name; a suffix "_all" is looked through.
+/// @throws BadArgument if there is no measure of that name; suffixes "_all" and "_by_LAW" are looked through.
 const Metric& metric(std::string_view name);
 
 }  // namespace sixdof

@@ -27,6 +27,9 @@ TEST(Metrics, NamesAreUniqueAndReadable) {
 TEST(Metrics, WholePathVariantsAreTheSameMeasure) {
   EXPECT_EQ(metric("gamma_F_deg_all").name, "gamma_F_deg");
   EXPECT_EQ(metric("gamma_F_deg_all").unit, "degree");
+  EXPECT_EQ(metric("sigma_T_by_wall_traction").name, "sigma_T");
+  EXPECT_EQ(metric("sigma_F_all_by_depth").name, "sigma_F");
+  EXPECT_THROW(metric("_by_depth"), BadArgument);
   EXPECT_EQ(to_string(metric("nu_F").better), "nearer 1");
   EXPECT_EQ(to_string(metric("sigma_F").better), "lower");
   EXPECT_THROW(metric("sigma"), BadArgument);

@@ -156,6 +156,9 @@ TEST(Scenario, PaperFormulasOfTheConeAreLiteral) {
   const auto thick = make_scenario("Ia");
   EXPECT_EQ(thick->ideal(IdealLaw::paper_depth, 0.4)->force, Eigen::Vector3d(0.0, 20.0, 0.0));
   EXPECT_EQ(thick->ideal(IdealLaw::paper_volume, 0.4)->force, Eigen::Vector3d(0.0, 8000.0, 0.0));
+  constexpr double k_just_touching = (30.0 - 9.95) / 960.0;  // 0.05 of the tip over the block
+  EXPECT_EQ(thick->ideal(IdealLaw::paper_depth, k_just_touching)->penalty, 20.0);
+  EXPECT_EQ(thick->ideal(IdealLaw::paper_volume, k_just_touching)->penalty, 8000.0);
   EXPECT_EQ(thick->ideal(IdealLaw::paper_depth, 0.0)->penalty, 0.0);
   EXPECT_EQ(thick->ideal(IdealLaw::paper_volume, 1.0)->penalty, 0.0);
 }
