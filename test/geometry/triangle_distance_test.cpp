@@ -339,6 +339,51 @@ TEST(TriangleDistance, IntersectionTellsApartWhatDiffersInTheLastBit) {
   }
 }
 
+TEST(TriangleDistance, IsZeroExactlyWhereTrianglesMeetUpToTheLastBit) {
+  // A corner rounded to a point of the other's plane: half of these pierce it by less than a unit in the last place,
+  // and the distance of the features is as good as nothing for all.
+  Generator g(9);
+  int meeting = 0;
+  int apart = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const TriangleCorners a = any_triangle(g);
+    const Vector3d normal = (a[1] - a[0]).cross(a[2] - a[0]).normalized();
+    const double s = uniform(g, 0.05, 0.45);
+    const double t = uniform(g, 0.05, 0.45);
+    TriangleCorners b;
+    b[0] = a[0] + s * (a[1] - a[0]) + t * (a[2] - a[0]);
+    for (std::size_t k = 1; k < 3; ++k) {
+      b[k] = b[0] + normal * uniform(g, 0.1, 1.0) + normal.cross(shapes::unit_vector(g)) * uniform(g, 0.0, 2.0);
+    }
+    std::rotate(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(g() % 3), b.end());
+    const bool meet = triangles_intersect(a, b);
+    (meet ? meeting : apart) += 1;
+    EXPECT_EQ(triangle_triangle_distance(a, b).distance == 0.0, meet);
+    EXPECT_EQ(triangle_triangle_distance(b, a).distance == 0.0, meet);
+  }
+  EXPECT_GT(meeting, 4000);
+  EXPECT_GT(apart, 4000);
+}
+
+TEST(TriangleDistance, ATriangleInsideAnotherInItsPlaneMeetsIt) {
+  // On a grid of powers of two, in planes along and across the axes; no edge of the one comes near one of the other.
+  Generator g(10);
+  for (int i = 0; i < 60; ++i) {
+    const auto number = [&g] { return static_cast<double>(static_cast<int>(g() % 9) - 4); };
+    const Vector3d u(number() + 0.5, number(), number());
+    const Vector3d v(number(), number() + 0.5, number());
+    const Vector3d at(number(), number(), number());
+    if (u.cross(v).norm() == 0.0) continue;
+    const TriangleCorners large{at, at + 16.0 * u, at + 16.0 * v};
+    TriangleCorners small{at + 4.0 * u + 4.0 * v, at + 5.0 * u + 4.0 * v, at + 4.0 * u + 6.0 * v};
+    std::rotate(small.begin(), small.begin() + i % 3, small.end());
+    EXPECT_TRUE(triangles_intersect(large, small));
+    EXPECT_TRUE(triangles_intersect(small, large));
+    EXPECT_EQ(triangle_triangle_distance(large, small).distance, 0.0);
+    EXPECT_EQ(triangle_triangle_distance(small, large).distance, 0.0);
+  }
+}
+
 TEST(SegmentDistance, MatchesHighPrecision) {
   Generator g(10);
   double worst = 0.0;

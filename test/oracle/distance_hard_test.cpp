@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -43,6 +44,73 @@ TEST(DistanceOracle, FarFromTheOriginEveryBitIsThatOfBruteForce) {
     }
   }
   EXPECT_GT(apart, 10);
+}
+
+/// Triangles over the middle of a plane z = 0, each with its lowest corner at a height of `gap` .. `gap` + `spread`.
+Mesh spikes(Generator& generator, std::size_t count, double gap, double spread) {
+  std::vector<Vector3d> v;
+  std::vector<Triangle> t;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Vector3d tip = shapes::uniform_vector(generator, 0.4);
+    tip.z() = gap + shapes::uniform(generator, 0.0, spread);
+    v.push_back(tip);
+    for (int k = 0; k < 2; ++k) {
+      Vector3d p = tip + shapes::uniform_vector(generator, 0.02);
+      p.z() = tip.z() + shapes::uniform(generator, 0.01, 0.05);
+      v.push_back(p);
+    }
+    t.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return Mesh::build(v, t);
+}
+
+TEST(DistanceOracle, TipsThatDifferByLessThanFloatsAreToldApart) {
+  // Hundreds of tips over a plate, at heights that only doubles tell apart: bounds in floats leave all of them open,
+  // and each has to be measured, in whatever order, until none can be lower. At the origin and far from it, where a
+  // moved corner is off by more than what floats alone would excuse.
+  Generator generator(27);
+  for (int i = 0; i < 60; ++i) {
+    const double gap = std::pow(10.0, shapes::uniform(generator, -3.0, 0.0));
+    const double far = i % 3 == 0 ? std::pow(10.0, shapes::uniform(generator, 8.0, 10.0)) : 0.3;
+    const double spread = std::max(std::pow(10.0, shapes::uniform(generator, -9.0, -5.0)), 4e-16 * far);
+    Pose at_a = shapes::random_pose(generator, 0.0);
+    Pose at_b = shapes::random_pose(generator, 0.0);
+    at_a.t = far * shapes::unit_vector(generator);
+    at_b.t = far * shapes::unit_vector(generator);
+    const Mesh plate = shapes::moved(
+        Mesh::build({{-1.0, -1.0, 0.0}, {1.0, -1.0, 0.0}, {1.0, 1.0, 0.0}, {-1.0, 1.0, 0.0}}, {{0, 1, 2}, {0, 2, 3}}),
+        at_a);
+    const Mesh tips = shapes::moved(spikes(generator, 300, gap, spread), at_b);
+    const DistanceOracle oracle(plate, tips);
+    const DistanceOracle swapped(tips, plate);
+    const Pose pose = at_a * at_b.inverse();
+    ASSERT_EQ(oracle.tie_width(pose), 0.0);
+    const auto expect_same = [](const SurfaceDistance& answer, const SurfaceDistance& truth) {
+      EXPECT_EQ(answer.distance, truth.distance);
+      if (truth.distance == 0.0) return;
+      EXPECT_EQ(answer.triangle_a, truth.triangle_a);
+      EXPECT_EQ(answer.triangle_b, truth.triangle_b);
+    };
+    expect_same(DistanceQuery(oracle).distance(pose), brute_force(plate, tips, pose));
+    expect_same(DistanceQuery(swapped).distance(pose.inverse()), brute_force(tips, plate, pose.inverse()));
+  }
+}
+
+TEST(DistanceOracle, FarApartTheBitsAreThoseOfBruteForce) {
+  // Where the distance is so large that floats round it by more than the bodies' features.
+  Generator generator(28);
+  const Mesh a = shapes::bumpy_sphere(1, 0.2);
+  const Mesh b = shapes::bumpy_sphere(1, 0.3, 0.7);
+  const DistanceOracle oracle(a, b);
+  for (int i = 0; i < 40; ++i) {
+    Pose pose = shapes::random_pose(generator, 0.0);
+    pose.t = std::pow(10.0, shapes::uniform(generator, 1.0, 8.0)) * shapes::unit_vector(generator);
+    const SurfaceDistance truth = brute_force(a, b, pose);
+    const SurfaceDistance d = DistanceQuery(oracle).distance(pose);
+    EXPECT_EQ(d.distance, truth.distance);
+    EXPECT_EQ(d.triangle_a, truth.triangle_a);
+    EXPECT_EQ(d.triangle_b, truth.triangle_b);
+  }
 }
 
 TEST(DistanceOracle, RaysThroughEdgesAreNotCountedTwice) {
