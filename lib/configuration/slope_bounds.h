@@ -44,7 +44,7 @@ VolumePeak volume_peak(const OverlapSample& outer, const OverlapSample& inner, s
 /// outside. One that does comes in through faces that look against its motion and goes out through faces that look
 /// along it: whether a pair of triangles that meet can only raise the slope or only lower it is seen from their
 /// normals. So from either end of the gap to any place in it the slope rises by at most the area of the triangles that
-/// take part in a raising pair on the way, and falls likewise.
+/// take part in a raising pair on the way, and falls likewise. Through triangles along the line nothing comes or goes.
 ///
 /// Holds for meshes that do not overlap themselves.
 class SlopeBounds {
@@ -87,7 +87,7 @@ class SlopeBounds {
     float area;  ///< Projected.
     std::uint32_t round = 0;
     Stay raising, lowering;
-    std::int8_t side;  ///< 1: it looks outwards, -1: inwards, 0: too close to tell.
+    std::int8_t side;  ///< 1: it looks outwards, -1: inwards, 0: along the line.
   };
 
   /// The triangles of one body that meet some triangle of the other.
