@@ -274,6 +274,9 @@ TEST(OrbitingPins, ForceLeadsBackToTheFit) {
     EXPECT_EQ(printed->torque, Eigen::Vector3d::Zero());
     EXPECT_NEAR(printed->force.norm(), printed->penalty, 1e-10);
     const auto volume = scenario->ideal(IdealLaw::volume, s);
+    const Eigen::Vector2d shift = scenario->pose(s).t.head<2>();
+    const double v_square = 40.0 * (400.0 - (20.0 - std::abs(shift.x())) * (20.0 - std::abs(shift.y())));
+    EXPECT_NEAR(volume->torque.z(), -20.0 * (volume->penalty - 2.0 * v_square) * shift.y() / 2.0, 1e-8);
     const auto gradient = scenario->ideal(IdealLaw::gradient, s);
     const auto energy = scenario->ideal(IdealLaw::energy, s);
     EXPECT_TRUE(energy->force.isApprox(volume->penalty * gradient->force, 1e-12));
