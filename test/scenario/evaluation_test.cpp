@@ -70,8 +70,9 @@ TEST(Evaluation, FailedStampsAreCountedAndLeftOut) {
   const auto scenario = make_scenario("II");
   IdealQuery query(*scenario, IdealLaw::volume);
   Recording recording = record(*scenario, query, 100);
-  for (const std::size_t k : {7u, 8u, 60u}) {
-    recording.status[k] = Status::failed;
+  const std::map<std::size_t, Status> failures{{7, Status::failed}, {8, Status::non_finite}, {60, Status::unsupported}};
+  for (const auto& [k, status] : failures) {
+    recording.status[k] = status;
     recording.forces[k].setZero();
   }
   const auto m = by_name(evaluate(*scenario, recording, IdealLaw::volume));
