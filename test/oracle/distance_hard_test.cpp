@@ -71,7 +71,7 @@ TEST(DistanceOracle, TipsThatDifferByLessThanFloatsAreToldApart) {
   Generator generator(27);
   for (int i = 0; i < 60; ++i) {
     const double gap = std::pow(10.0, shapes::uniform(generator, -3.0, 0.0));
-    const double far = i % 3 == 0 ? std::pow(10.0, shapes::uniform(generator, 8.0, 10.0)) : 0.3;
+    const double far = i % 3 == 0 ? std::pow(10.0, shapes::uniform(generator, 9.0, 11.5)) : 0.3;
     const double spread = std::max(std::pow(10.0, shapes::uniform(generator, -9.0, -5.0)), 4e-16 * far);
     Pose at_a = shapes::random_pose(generator, 0.0);
     Pose at_b = shapes::random_pose(generator, 0.0);
