@@ -76,6 +76,12 @@ TEST(ResidualNoise, SeesOnlyWhatIsAboveTheCutoff) {
   EXPECT_NEAR(*residual_noise(ideal, measured, 500.0, 70.0), 0.0, k_rounding);
 }
 
+TEST(ResidualNoise, ASmallGainIsNoNoise) {
+  const std::vector<Eigen::Vector3d> ideal = along_x(tone(1000, 120.0, 2.0));
+  const std::vector<Eigen::Vector3d> faint = along_x(tone(1000, 120.0, 0.1));
+  EXPECT_NEAR(*residual_noise(ideal, faint, 1000.0, 50.0), 0.0, k_rounding);
+}
+
 TEST(ResidualNoise, ASlowErrorIsNoNoise) {
   const std::vector<Eigen::Vector3d> ideal = along_x(std::vector<double>(1000, 1.0));
   std::vector<double> ramp(1000);
