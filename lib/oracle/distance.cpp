@@ -1,11 +1,11 @@
 #include <sixdof/oracle/distance.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 #include <sixdof/geometry/predicates.h>
+#include <sixdof/oracle/winding_rays.h>
 
 namespace sixdof {
 namespace {
@@ -45,16 +45,6 @@ std::vector<DistanceOracle::Piece> find_pieces(const Mesh& mesh) {
 std::shared_ptr<const Tree> second_tree(const Mesh& a, const std::shared_ptr<const Tree>& tree_a, const Mesh& b) {
   return &a == &b ? tree_a : std::make_shared<const Tree>(b);
 }
-
-/// Directions of rays, tried in turn: unrelated to each other and to the axes.
-constexpr std::array<std::array<double, 3>, 8> k_rays{{{0.8217, 0.3391, 0.4583},
-                                                       {-0.2861, 0.7127, 0.6405},
-                                                       {0.1379, -0.5623, 0.8153},
-                                                       {-0.6427, -0.4919, 0.5871},
-                                                       {0.4339, 0.2671, -0.8605},
-                                                       {-0.7193, 0.5281, -0.4513},
-                                                       {0.3067, -0.8837, -0.3533},
-                                                       {-0.4801, -0.3169, -0.8179}}};
 
 /// Adds up how segment p -> q passes through triangle t: +1 leaving (along the normal), -1 entering, 0 missing.
 /// Returns false if it touches the border or an end: the sum says nothing then.
@@ -137,15 +127,16 @@ int winding(const Tree& tree, const Pose* pose, const Vector3d& p, std::vector<s
     if (local_p[k] > static_cast<double>(box.upper[k]) + slack) return 0;
   }
   const double length = 4.0 * tree.radius();  // longer than any way out of the mesh from inside of its box
-  const auto direction = [](std::size_t i) { return Vector3d(k_rays[i][0], k_rays[i][1], k_rays[i][2]).normalized(); };
+  const auto& rays = detail::k_winding_rays;
+  const auto direction = [&rays](std::size_t i) { return Vector3d(rays[i][0], rays[i][1], rays[i][2]).normalized(); };
   // The ray that leads away from the centre most directly meets the least of the mesh.
   const Vector3d outwards = pose ? Vector3d(pose->R * local_p) : local_p;
   std::size_t first = 0;
-  for (std::size_t i = 1; i < k_rays.size(); ++i) {
+  for (std::size_t i = 1; i < rays.size(); ++i) {
     if (direction(i).dot(outwards) > direction(first).dot(outwards)) first = i;
   }
-  for (std::size_t tried = 0; tried < k_rays.size(); ++tried) {
-    const Vector3d u = direction((first + tried) % k_rays.size());
+  for (std::size_t tried = 0; tried < rays.size(); ++tried) {
+    const Vector3d u = direction((first + tried) % rays.size());
     const Vector3d local_u = pose ? Vector3d(pose->R.transpose() * u) : u;
     int sum = 0;
     if (add_crossings(tree, pose, {p, p + length * u, local_p, local_u, length, slack}, open, sum)) return sum;

@@ -1,12 +1,15 @@
 #include <sixdof/oracle/distance.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
+
+#include <sixdof/oracle/winding_rays.h>
 
 #include "../geometry/shapes.h"
 #include "distance_truth.h"
@@ -303,6 +306,63 @@ TEST(DistanceOracle, UpperBoundCutsAndKeeps) {
   }
 }
 
+TEST(DistanceOracle, WarmStartsAreMeasuredBeforeTheyCount) {
+  // One triangle each: the remembered pair is the only one, and what it was at the last pose says nothing of this one.
+  Generator generator(27);
+  for (int i = 0; i < 20; ++i) {
+    const Mesh a = shapes::soup(generator, 1, 0.5, 0.4);
+    const Mesh b = shapes::soup(generator, 1, 0.5, 0.4);
+    const DistanceOracle oracle(a, b);
+    const Pose turn = shapes::random_pose(generator, 0.0);
+    const Vector3d line = shapes::unit_vector(generator);
+    const Pose near{turn.R, 3.0 * line};
+    const Pose far{turn.R, 9.0 * line};
+    DistanceQuery query(oracle);
+    const double bound = 6.0;
+    const double near_distance = query.distance(near, {.upper_bound = bound}).distance;
+    ASSERT_EQ(near_distance, brute_force(a, b, near).distance);
+    EXPECT_FALSE(query.distance(far, {.upper_bound = bound}).within_bound);
+    EXPECT_EQ(query.distance(far).distance, brute_force(a, b, far).distance);
+    EXPECT_EQ(query.distance(near, {.upper_bound = bound}).distance, near_distance);
+  }
+}
+
+TEST(DistanceOracle, WarmStartsReachABoundThatIsTheDistance) {
+  // Steps that keep the closest triangles, towards each other and apart, and jumps to where others are closest: the
+  // bound is reached exactly, so nothing is smaller than it, and what was closest before must not stand in.
+  const Mesh a = shapes::bumpy_sphere(3, 0.25);
+  const Mesh b = shapes::bumpy_sphere(2, 0.3, 0.6);
+  const DistanceOracle oracle(a, b);
+  DistanceQuery cold(oracle);
+  Generator generator(28);
+  int kept = 0;
+  for (int i = 0; i < 30; ++i) {
+    const Pose before{shapes::random_pose(generator, 0.0).R, 2.6 * shapes::unit_vector(generator)};
+    const SurfaceDistance last = cold.distance(before, {.warm_start = false});
+    ASSERT_GT(last.distance, 0.1);
+    Pose step = before;
+    step.t += (i % 2 == 0 ? 0.01 : -0.01) * (last.on_b - last.on_a).normalized();
+    const Pose jump{shapes::random_pose(generator, 0.0).R, 3.0 * shapes::unit_vector(generator)};
+    for (const Pose& pose : {step, jump}) {
+      const SurfaceDistance truth = cold.distance(pose, {.warm_start = false});
+      kept += truth.triangle_a == last.triangle_a && truth.triangle_b == last.triangle_b;
+      DistanceQuery query(oracle);
+      query.distance(before);
+      const SurfaceDistance warm = query.distance(pose, {.upper_bound = truth.distance});
+      ASSERT_TRUE(warm.within_bound);
+      EXPECT_EQ(warm.distance, truth.distance);
+      EXPECT_EQ(warm.triangle_a, truth.triangle_a);
+      EXPECT_EQ(warm.triangle_b, truth.triangle_b);
+      EXPECT_EQ(warm.on_a, truth.on_a);
+      EXPECT_EQ(warm.on_b, truth.on_b);
+      DistanceQuery again(oracle);
+      again.distance(before);
+      EXPECT_FALSE(again.distance(pose, {.upper_bound = std::nextafter(truth.distance, 0.0)}).within_bound);
+    }
+  }
+  EXPECT_GT(kept, 15);
+}
+
 TEST(DistanceOracle, CloseApproachesAreSeenOnBothSides) {
   // B at a hair's breadth, then moved on along the witnesses' line by a little more and a little less than the gap.
   const Mesh a = shapes::bumpy_sphere(4, 0.2);
@@ -417,6 +477,47 @@ TEST(DistanceOracle, WindingTellsSidesApart) {
     inside += winding;
   }
   EXPECT_GT(inside, 200);
+}
+
+TEST(DistanceOracle, RaysAlongAxesOfBFindTheirWay) {
+  // Two blocks in a row as one mesh, turned so that the row lies along a ray: what leads outwards best is tried first,
+  // and in B's frame the way of this ray has no width.
+  Generator generator(29);
+  const Vector3d half(1.1, 0.9, 1.3);
+  const Vector3d aside(0.3, -0.2, 0.4);
+  const Mesh small = shapes::box({0.03, 0.02, 0.04});
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Vector3d row = Vector3d::Unit(axis);
+    const Mesh blocks = joined(shapes::box(half, -2.5 * row), shapes::box(half, 2.5 * row));
+    const DistanceOracle forth(small, blocks);
+    const DistanceOracle back(blocks, small);
+    DistanceQuery query(forth);
+    DistanceQuery query_back(back);
+    for (const std::array<double, 3>& ray : detail::k_winding_rays) {
+      for (const double sign : {-1.0, 1.0}) {
+        const Vector3d along = sign * row;
+        const Vector3d u = Vector3d(ray[0], ray[1], ray[2]).normalized();
+        const Eigen::AngleAxisd spin(uniform(generator, 0.0, 6.0), u);
+        Pose pose;
+        pose.R = (spin * Eigen::Quaterniond::FromTwoVectors(along, u)).toRotationMatrix();
+        pose.t = shapes::uniform_vector(generator, 3.0);
+        ASSERT_NEAR((pose.R.transpose() * u - along).norm(), 0.0, k_pose_rounding);
+        const auto check = [&](const Vector3d& p, int winding) {
+          EXPECT_EQ(query.winding_b(pose, pose * p), winding) << "p " << p.transpose();
+          const Pose around{pose.R, pose.t - pose * p};  // p, and with it the small box, at A's origin
+          EXPECT_FALSE(query.surfaces_intersect(around));
+          EXPECT_EQ(query.collide(around), winding == 1) << "p " << p.transpose();
+          EXPECT_EQ(query_back.collide(around.inverse()), winding == 1) << "p " << p.transpose();
+        };
+        // In the outer block, and between the two, with the block to cross; in the middle a face's diagonal is met.
+        for (const Vector3d& off : {Vector3d(Vector3d::Zero()), aside}) {
+          check(2.5 * along + off, 1);
+          check(2.5 * along + 0.6 * half.cwiseProduct(along) + off, 1);
+          check(0.7 * along + off, 0);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -201,6 +201,52 @@ TEST(DistanceTies, HeightsAtTheLimitOfATieAreToldApart) {
   }
 }
 
+TEST(DistanceTies, LowestOfWholeFlatPartsLeftAlone) {
+  // A fine plate over a fine one, and over eight large triangles that come last in their mesh: whole volumes are left
+  // alone, and the lowest pair in them is settled at the end; over a large triangle the index in the fine plate
+  // decides.
+  Generator generator(30);
+  constexpr std::uint32_t k_fine = 16;  // squares along a side
+  const auto fine = [&](const Pose& frame) {
+    std::vector<Vector3d> v;
+    std::vector<Triangle> t;
+    add_square(v, t, {-1.0, -1.0, 0.0}, 2.0, k_fine);
+    return shuffled(shapes::moved(Mesh::build(v, t), frame), generator);
+  };
+  const auto large = [&](const Pose& frame) {
+    std::vector<Vector3d> v;
+    std::vector<Triangle> t;
+    add_square(v, t, {-1.0, -1.0, -3.0}, 2.0, k_fine);  // below, out of reach
+    add_square(v, t, {-1.0, -1.0, 0.0}, 2.0, 2);
+    return shapes::moved(Mesh::build(v, t), frame);
+  };
+  const auto check = [](const Mesh& a, const Mesh& b, const Pose& pose, const Pose& before) {
+    const DistanceOracle oracle(a, b);
+    const SurfaceDistance truth = brute_force(a, b, pose, oracle.tie_width(pose));
+    ASSERT_GT(truth.distance, 0.0);
+    DistanceQuery query(oracle);
+    expect_same(query.distance(pose, {.warm_start = false}), truth);
+    for (int i = 0; i < 4; ++i) {  // begun with other pairs of the plates
+      Pose aside = before;
+      aside.t += 0.1 * i * (before.t - pose.t);
+      query.distance(aside);
+      expect_same(query.distance(pose), truth);
+    }
+  };
+  for (int i = 0; i < 6; ++i) {
+    const Pose frame_a = shapes::random_pose(generator, 0.5);
+    const Pose frame_b = shapes::random_pose(generator, 0.5);
+    const Mesh a = i % 2 == 0 ? fine(frame_a) : large(frame_a);
+    const Mesh b = fine(frame_b);
+    Pose pose = face_to_face(generator, frame_a.R.col(2), frame_a.t, -frame_b.R.col(2), frame_b.t, 0.013);
+    pose.t += 0.31 * frame_a.R.col(0) - 0.23 * frame_a.R.col(1);
+    Pose before = pose;
+    before.t += 0.4 * frame_a.R * Vector3d(-1.0, 0.8, 0.1);
+    check(a, b, pose, before);
+    check(b, a, pose.inverse(), before.inverse());
+  }
+}
+
 TEST(DistanceTies, FacesThatTouchUpToRounding) {
   // Gaps around nothing: the distance is 0 if and only if two triangles meet, whatever the ties.
   Generator generator(26);
@@ -257,6 +303,30 @@ TEST(DistanceTies, CostLittle) {
   check(make_box({}, 2500));
   check(make_box({}, 10000));
   check(make_circular_box({}, 10000));
+}
+
+TEST(DistanceTies, AreSettledFromTheLowestOn) {
+  // Triangles in no order: of the thousands of pairs that tie, those that hold the lowest are opened first. The answer
+  // would be the same in any order, after hundreds of pairs.
+  constexpr double k_pairs_per_query = 40.0;
+  Generator generator(31);
+  double pairs = 0.0;
+  int queries = 0;
+  for (int i = 0; i < 6; ++i) {
+    const Block a = Block::make(generator, {1.7, 1.3, 0.9}, 6000, 0.4);
+    const Block b = Block::make(generator, {0.8, 1.1, 0.6}, 5000, 0.4);
+    const Pose pose = face_to_face(generator, a.normal, a.middle, b.normal, b.middle, i % 2 == 0 ? 1e-6 : 0.3);
+    const auto count = [&](const Mesh& first, const Mesh& second, const Pose& at) {
+      const DistanceOracle oracle(first, second);
+      DistanceQuery query(oracle);
+      query.distance(at, {.warm_start = false});
+      pairs += static_cast<double>(query.counts().triangles);
+      ++queries;
+    };
+    count(a.mesh, b.mesh, pose);
+    count(b.mesh, a.mesh, pose.inverse());
+  }
+  EXPECT_LT(pairs / queries, k_pairs_per_query);
 }
 
 }  // namespace
