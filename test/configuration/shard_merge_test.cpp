@@ -107,7 +107,7 @@ TEST_F(ShardMerge, ReportsProgressAndStopsWhenAsked) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 2);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which keeps what was freed
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which keep what was freed, and notes of it
 /// Peak of the process's memory so far, in bytes.
 std::size_t peak_memory() {
   rusage usage{};
