@@ -204,6 +204,11 @@ TEST(overlap, area_and_moment_are_the_gradient_of_volume) {
   expect_gradient(a, b, 11);
 }
 
+TEST_F(pairs_of_meshes, area_and_moment_are_the_gradient_of_volume) {
+  expect_gradient(sphere, torus, 12);
+  expect_gradient(torus, sphere, 13);
+}
+
 TEST(overlap, small_overlaps_are_as_accurate_as_the_faces_that_meet_are_large) {
   // A corner dips into a face. The error is that of fluxes through the triangles that are cut, which have size 1 here,
   // and it stays there however small the volume is.
