@@ -49,8 +49,8 @@ struct Overlap {
 ///
 /// Cost: with the curve, not the surface. A bumpy torus on itself at 10 % of its volume, 1e3, 1e4, 1e5, 1e6 triangles:
 /// 145, 453, 1436, 4537 crossings and 0.04, 0.17, 0.74, 3.2 ms of processor time (overlap_benchmark
-/// --benchmark_filter=by:exact/.*/volume:10, in test/reference, AMD EPYC). At 1e5, by perf: 35 % finding candidates in the
-/// trees, 30 % crossing points, 26 % sums over crossings.
+/// --benchmark_filter=by:exact/.*/volume:10, in test/reference, AMD EPYC). At 1e5, by perf: 35 % finding candidates in
+/// the trees, 30 % crossing points, 26 % sums over crossings.
 ///
 /// One thread at a time; any number of objects may share the solids. No allocation once the scratch has grown.
 class OverlapQuery {
