@@ -19,6 +19,7 @@
 
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/candidates.h>
 
 // Pairs of nodes are descended depth first. Of each pair of nodes, all 8 x 8 pairs of children are tested at once, one
 // child of A per SIMD lane, by boxes in both frames and by both slabs. Pairs of leaves go on to a test of their 4 x 4
@@ -31,7 +32,7 @@
 // order of pairs is that of the trees, whatever is let through.
 
 HWY_BEFORE_NAMESPACE();
-namespace sixdof::detail {
+namespace sixdof::candidates {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -334,6 +335,17 @@ HWY_INLINE void height_tolerances(V size_a, V size_b, float slack, V& tolerance_
   tolerance_b = hn::Mul(hn::Mul(s, size_b), hn::Add(both, size_b));
 }
 
+/// Calls visit(lane, pair) for the pairs of triangles whose bits are set; bit 4 i + j is triangle i of A's leaf and
+/// triangle j of B's. Lanes beyond a leaf's triangles do not count.
+template <class Visit>
+HWY_INLINE void for_each_pair(std::uint32_t bits, Tree::Child leaf_a, Tree::Child leaf_b, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    const std::uint32_t t = lane / k_leaf, u = lane % k_leaf;
+    if (t < leaf_a.count() && u < leaf_b.count()) visit(lane, CandidatePair{leaf_a.first() + t, leaf_b.first() + u});
+  }
+}
+
 /// @tparam moving B's way is not zero.
 /// @tparam Meet called with two leaves and their lanes: finds the pairs of triangles that may meet.
 template <bool moving, class Meet>
@@ -409,7 +421,7 @@ class Descent {
 };
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sixdof::detail
+}  // namespace sixdof::candidates
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -1,6 +1,5 @@
 #include <sixdof/oracle/candidates.h>
 
-#include <bit>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/candidates.cpp"
@@ -11,7 +10,7 @@
 #include <sixdof/oracle/candidates-inl.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace sixdof::detail {
+namespace sixdof::candidates {
 namespace HWY_NAMESPACE {
 
 /// Lanes in which all corners lie strictly on one side of a plane, by more than `tolerance`.
@@ -62,29 +61,26 @@ HWY_INLINE std::uint32_t meeting_triangles(const LeafLanes& a, const LeafLanes& 
 void find_candidates_here(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<CandidatePair>& pairs) {
   const Placement placement(a, b, X_AB, Eigen::Vector3d::Zero());
   const auto meet = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b) {
-    for (std::uint32_t p = meeting_triangles(of_a, of_b, placement.slack); p != 0; p &= p - 1) {
-      const auto pair = static_cast<std::uint32_t>(std::countr_zero(p));
-      const std::uint32_t t = pair / k_leaf, u = pair % k_leaf;
-      if (t < leaf_a.count() && u < leaf_b.count()) pairs.push_back({leaf_a.first() + t, leaf_b.first() + u});
-    }
+    for_each_pair(meeting_triangles(of_a, of_b, placement.slack), leaf_a, leaf_b,
+                  [&](std::uint32_t, CandidatePair pair) { pairs.push_back(pair); });
   };
   Descent<false, decltype(meet)>(a, b, placement, meet).visit(0, 0, ~0u, ~0u);
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sixdof::detail
+}  // namespace sixdof::candidates
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sixdof {
 
-namespace detail {
+namespace candidates {
 HWY_EXPORT(find_candidates_here);
 }
 
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<CandidatePair>& pairs) {
   pairs.clear();
-  HWY_DYNAMIC_DISPATCH(detail::find_candidates_here)(a, b, X_AB, pairs);
+  HWY_DYNAMIC_DISPATCH(candidates::find_candidates_here)(a, b, X_AB, pairs);
 }
 
 void find_in_box(const Tree& tree, const Eigen::AlignedBox3d& box, std::vector<std::uint32_t>& triangles) {

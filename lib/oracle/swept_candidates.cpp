@@ -1,7 +1,6 @@
 #include <sixdof/oracle/swept_candidates.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -16,7 +15,7 @@
 // between which shares of the way it cannot. The pair may meet where no test can.
 
 HWY_BEFORE_NAMESPACE();
-namespace sixdof::detail {
+namespace sixdof::candidates {
 namespace HWY_NAMESPACE {
 
 /// Shares of the way, per lane.
@@ -113,26 +112,24 @@ void find_swept_candidates_here(const Tree& a, const Tree& b, const Pose& X_AB, 
   const Placement placement(a, b, X_AB, way);
   const auto meet = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b) {
     float first[k_pairs], last[k_pairs];
-    for (std::uint32_t p = sweeping_triangles(of_a, of_b, placement, first, last); p != 0; p &= p - 1) {
-      const auto pair = static_cast<std::uint32_t>(std::countr_zero(p));
-      const std::uint32_t t = pair / k_leaf, u = pair % k_leaf;
-      if (t >= leaf_a.count() || u >= leaf_b.count()) continue;
-      found.pairs.push_back({leaf_a.first() + t, leaf_b.first() + u});
-      found.first.push_back(first[pair]);
-      found.last.push_back(last[pair]);
-    }
+    const std::uint32_t bits = sweeping_triangles(of_a, of_b, placement, first, last);
+    for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t lane, CandidatePair pair) {
+      found.pairs.push_back(pair);
+      found.first.push_back(first[lane]);
+      found.last.push_back(last[lane]);
+    });
   };
   Descent<true, decltype(meet)>(a, b, placement, meet).visit(0, 0, ~0u, ~0u);
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace sixdof::detail
+}  // namespace sixdof::candidates
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sixdof {
 
-namespace detail {
+namespace candidates {
 HWY_EXPORT(find_swept_candidates_here);
 }
 
@@ -141,7 +138,7 @@ void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const
   found.pairs.clear();
   found.first.clear();
   found.last.clear();
-  HWY_DYNAMIC_DISPATCH(detail::find_swept_candidates_here)(a, b, X_AB, way, found);
+  HWY_DYNAMIC_DISPATCH(candidates::find_swept_candidates_here)(a, b, X_AB, way, found);
 }
 
 void select_candidates(const SweptCandidates& swept, double x, std::vector<CandidatePair>& pairs) {
