@@ -26,11 +26,16 @@ void add_scenario_rows(Suite& suite);
 /// contact.
 void add_kernel_rows(Suite& suite);
 
-/// `generate/distance/algorithm:raycast/pair:P`, `.../algorithm:fcl/...` (conservative advancement by FCL's distances),
-/// `generate/volume/algorithm:overlap/pair:P`: what a configuration of the paper's grid and buckets costs to make, on
-/// the same seeded rays for all, as the counter ns_per_configuration (CPU time). For the catalogue's pairs and for
-/// recipes of 10k to a million triangles, which are made on the spot; some rows take half a minute. bench/run leaves
-/// them out unless asked for: `--benchmark_filter=^generate/`.
+/// What a configuration of the paper's grid and buckets costs to make, on the same seeded rays for all, as the counter
+/// ns_per_configuration (CPU time):
+/// - `generate/distance/algorithm:raycast/pair:P`: make_ray_cast();
+/// - `generate/distance/algorithm:fcl/...`: plain conservative advancement by FCL's distances, every configuration
+///   alone from outside (SphereMarch::conservative);
+/// - `generate/distance/algorithm:fcl-sweep/...`: certified steps from bucket to bucket by the same distances;
+/// - `generate/volume/algorithm:overlap/...`.
+/// For the catalogue's pairs and for recipes of 10k to a million triangles, which are made on the spot; some rows take
+/// half a minute. bench/run leaves them out unless asked for: `--benchmark_filter=^generate/`. bench/generate-ratios
+/// prints how many times faster the ray cast is than FCL.
 void add_generate_rows(Suite& suite);
 
 }  // namespace sixdof::bench

@@ -22,13 +22,18 @@ constexpr const char* k_fcl = "fcl-rss";
 
 /// Copies of one recipe, where cost is to be seen against size.
 constexpr const char* k_recipes[] = {"torus-knot-10k",   "torus-knot-100k",   "torus-knot-1m",
-                                     "bumpy-sphere-10k", "bumpy-sphere-100k", "bumpy-sphere-1m"};
+                                     "bumpy-sphere-10k", "bumpy-sphere-100k", "bumpy-sphere-1m",
+                                     "gyroid-ball-10k",  "gyroid-ball-100k",  "gyroid-ball-1m"};
 
 enum class Method {
   raycast,
-  fcl,
+  fcl,        ///< Plain conservative advancement.
+  fcl_sweep,  ///< Certified steps that go on from bucket to bucket.
   overlap
 };
+constexpr Method k_methods[] = {Method::raycast, Method::fcl, Method::fcl_sweep, Method::overlap};
+
+bool is_fcl(Method method) { return method == Method::fcl || method == Method::fcl_sweep; }
 
 struct MethodWords {
   BucketKind kind;
@@ -42,6 +47,8 @@ MethodWords words(Method method) {
       return {BucketKind::distance, "raycast", "paper"};
     case Method::fcl:
       return {BucketKind::distance, "fcl", "paper"};
+    case Method::fcl_sweep:
+      return {BucketKind::distance, "fcl-sweep", "paper"};
     case Method::overlap:
       break;
   }
@@ -112,14 +119,19 @@ class GenerateRow {
     return aims;
   }
 
+  std::unique_ptr<DistanceGenerator> make_distances() const {
+    if (!is_fcl(method_)) return make_ray_cast();
+    return make_sphere_method(make_distance_source(suite_.registry().find(k_fcl)),
+                              method_ == Method::fcl ? SphereMarch::conservative : SphereMarch::certified);
+  }
+
   RaySolver& prepare() {
     if (last_->row == name()) return *last_->solver;
     last_->solver.reset();
     last_->volumes.reset();
     const Mesh& a = suite_.stock().mesh(a_);
     const Mesh& b = suite_.stock().mesh(b_);
-    last_->distances = method_ == Method::fcl ? make_sphere_method(make_distance_source(suite_.registry().find(k_fcl)))
-                                              : make_ray_cast();
+    last_->distances = make_distances();
     if (method_ == Method::overlap) last_->volumes = std::make_unique<VolumeGenerator>(*last_->distances, a, b);
     last_->solver = last_->volumes ? last_->volumes->prepare() : last_->distances->prepare(a, b);
     last_->row = name();
@@ -142,8 +154,8 @@ bool has_fcl(const Suite& suite) {
 void add_generate_rows(Suite& suite) {
   const auto last = std::make_shared<Generator>();
   const auto add = [&](const std::string& pair, const std::string& a, const std::string& b) {
-    for (const Method method : {Method::raycast, Method::fcl, Method::overlap}) {
-      if (method == Method::fcl && !has_fcl(suite)) continue;
+    for (const Method method : k_methods) {
+      if (is_fcl(method) && !has_fcl(suite)) continue;
       const auto row = std::make_shared<GenerateRow>(suite, method, pair, a, b, last);
       auto* const entry = suite.add(row->name(), [row](benchmark::State& state) { row->run(state); });
       entry->Unit(benchmark::kMillisecond);

@@ -67,6 +67,16 @@ class RayMarch {
     }
   }
 
+  /// The same by conservative steps.
+  bool advance_conservatively(double aim, Sample& outer) {
+    while (outer.f > aim + content()) {
+      if (outer.s == 0.0) return false;
+      outer = measure(std::max(0.0, outer.s - (outer.f - aim)));
+    }
+    if (outer.f < aim - content()) throw_lost(aim, outer);
+    return true;
+  }
+
  private:
   double content() const { return k_content * diagonal_; }
   double resolution() const { return k_first_hit_resolution * diagonal_; }
@@ -146,8 +156,8 @@ class RayMarch {
 
 class SphereMethodSolver final : public RaySolver {
  public:
-  SphereMethodSolver(const DistanceSource& oracle, const Mesh& a, const Mesh& b)
-      : a_(a), b_(b), probe_(oracle.prepare(a, b)) {}
+  SphereMethodSolver(const DistanceSource& oracle, SphereMarch march, const Mesh& a, const Mesh& b)
+      : a_(a), b_(b), march_(march), probe_(oracle.prepare(a, b)) {}
 
   void set_rotation(const Eigen::Vector4d& rotation) override { ray_ = ConfigurationRay(a_, b_, rotation); }
 
@@ -156,9 +166,12 @@ class SphereMethodSolver final : public RaySolver {
     ray_.direction = direction;
     RayMarch march(*probe_, ray_, a_.diagonal());
     // Each mesh lies in the ball of half a diagonal about its centre.
-    Sample outer = march.measure(0.5 * (a_.diagonal() + b_.diagonal()) + aims.front());
+    const double reach = 0.5 * (a_.diagonal() + b_.diagonal());
+    const bool alone = march_ == SphereMarch::conservative;
+    Sample outer;
     for (std::size_t k = 0; k < aims.size(); ++k) {
-      const bool hit = march.advance(aims[k], outer);
+      if (alone || k == 0) outer = march.measure(reach + aims[k]);
+      const bool hit = alone ? march.advance_conservatively(aims[k], outer) : march.advance(aims[k], outer);
       travel[k] = hit ? outer.s : std::numeric_limits<double>::quiet_NaN();
       residuals[k] = hit ? std::abs(outer.f - aims[k]) : 0.0;
     }
@@ -170,6 +183,7 @@ class SphereMethodSolver final : public RaySolver {
  private:
   const Mesh& a_;
   const Mesh& b_;
+  const SphereMarch march_;
   std::unique_ptr<DistanceProbe> probe_;
   ConfigurationRay ray_;
   std::uint64_t measurements_ = 0;
@@ -177,21 +191,23 @@ class SphereMethodSolver final : public RaySolver {
 
 class SphereMethod final : public DistanceGenerator {
  public:
-  explicit SphereMethod(std::shared_ptr<const DistanceSource> oracle) : oracle_(std::move(oracle)) {}
+  SphereMethod(std::shared_ptr<const DistanceSource> oracle, SphereMarch march)
+      : oracle_(std::move(oracle)), march_(march) {}
   const std::string& oracle_name() const override { return oracle_->name(); }
   const std::string& oracle_version() const override { return oracle_->version(); }
   std::unique_ptr<RaySolver> prepare(const Mesh& a, const Mesh& b) const override {
-    return std::make_unique<SphereMethodSolver>(*oracle_, a, b);
+    return std::make_unique<SphereMethodSolver>(*oracle_, march_, a, b);
   }
 
  private:
   std::shared_ptr<const DistanceSource> oracle_;
+  const SphereMarch march_;
 };
 
 }  // namespace
 
-std::unique_ptr<DistanceGenerator> make_sphere_method(std::shared_ptr<const DistanceSource> oracle) {
-  return std::make_unique<SphereMethod>(std::move(oracle));
+std::unique_ptr<DistanceGenerator> make_sphere_method(std::shared_ptr<const DistanceSource> oracle, SphereMarch march) {
+  return std::make_unique<SphereMethod>(std::move(oracle), march);
 }
 
 }  // namespace sixdof

@@ -58,8 +58,9 @@ struct Ray {
 };
 
 Ray shoot(std::shared_ptr<const DistanceSource> oracle, const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction,
-          const Eigen::Vector4d& rotation, const std::vector<double>& aims) {
-  const auto generator = make_sphere_method(std::move(oracle));
+          const Eigen::Vector4d& rotation, const std::vector<double>& aims,
+          SphereMarch march = SphereMarch::certified) {
+  const auto generator = make_sphere_method(std::move(oracle), march);
   const auto solver = generator->prepare(a, b);
   Ray ray{std::vector<double>(aims.size()), std::vector<double>(aims.size())};
   solver->set_rotation(rotation);
@@ -152,6 +153,7 @@ TEST(SphereMethod, MeetsTheFirstHitOfUnionsOfBalls) {
   std::mt19937_64 random(3);
   std::array<int, 2> count{};
   std::array<std::uint64_t, 2> measurements{};
+  std::uint64_t conservative = 0;
   constexpr int k_rays = 300;
   for (const bool swapped : {false, true}) {
     const auto& balls_a = swapped ? shape_b : shape_a;
@@ -169,13 +171,18 @@ TEST(SphereMethod, MeetsTheFirstHitOfUnionsOfBalls) {
         const Ray ray = shoot(oracle, a, b, u, q, aims);
         measurements[witnesses ? 0 : 1] += ray.measurements;
         check_ray(balls_a, balls_b, a, b, u, q, aims, ray, count);
+        if (!witnesses) continue;
+        const Ray plain = shoot(oracle, a, b, u, q, aims, SphereMarch::conservative);
+        conservative += plain.measurements;
+        check_ray(balls_a, balls_b, a, b, u, q, aims, plain, count);
       }
     }
   }
-  EXPECT_GT(count[0], 4000);
-  EXPECT_GT(count[1], 50);
-  // Certified Newton steps take a handful of measurements each (plain conservative advancement takes 28 on these rays).
+  EXPECT_GT(count[0], 6000);
+  EXPECT_GT(count[1], 75);
+  // Certified Newton steps take a handful of measurements each, conservative ones 28 on these rays.
   EXPECT_LT(measurements[0], 8u * 2 * k_rays * 5);
+  EXPECT_GT(conservative, 20u * 2 * k_rays * 5);
   EXPECT_LT(measurements[0], measurements[1]);
 }
 
@@ -203,6 +210,24 @@ TEST(SphereMethod, StopsAtANeedleBesideThePath) {
     check_ray(balls_a, balls_b, a, b, u, q, aims, shoot(oracle, a, b, u, q, aims), count);
   }
   EXPECT_EQ(count[0], 800);
+}
+
+TEST(SphereMethod, ConservativeMarchesTakeEveryAimAlone) {
+  const Mesh a = lump_mesh(3, {0.2, 1.4, -0.7});
+  const Mesh b = lump_mesh(4, {-0.6, 0.3, 0.5});
+  std::mt19937_64 random(9);
+  const std::vector<double> aims{0.3 * a.diagonal(), 0.07 * a.diagonal(), k_contact_aim * a.diagonal()};
+  const Eigen::Vector3d u = random_direction(random);
+  const Eigen::Vector4d q = random_rotation(random);
+  const Ray together = shoot(make_brute_force_source(), a, b, u, q, aims, SphereMarch::conservative);
+  std::uint64_t measurements = 0;
+  for (std::size_t k = 0; k < aims.size(); ++k) {
+    const Ray alone = shoot(make_brute_force_source(), a, b, u, q, {aims[k]}, SphereMarch::conservative);
+    EXPECT_EQ(alone.travel[0], together.travel[k]);
+    EXPECT_EQ(alone.residual[0], together.residual[k]);
+    measurements += alone.measurements;
+  }
+  EXPECT_EQ(measurements, together.measurements);
 }
 
 TEST(SphereMethod, IsExactForBoxesFaceToFace) {
@@ -307,11 +332,13 @@ TEST(SphereMethod, RefusesAnOracleThatIsNoDistance) {
     const double s = X_AB.t.norm();
     return ProbedDistance{.distance = s > 1.7 ? s - 1.0 : 0.2};
   });
-  EXPECT_THAT(
-      [&] {
-        shoot(jumping, a, a, {0, 0, 1}, {1, 0, 0, 0}, {0.3});
-      },
-      testing::ThrowsMessage<Error>(testing::HasSubstr("jumps")));
+  for (const SphereMarch march : {SphereMarch::certified, SphereMarch::conservative}) {
+    EXPECT_THAT(
+        [&] {
+          shoot(jumping, a, a, {0, 0, 1}, {1, 0, 0, 0}, {0.3}, march);
+        },
+        testing::ThrowsMessage<Error>(testing::HasSubstr("jumps")));
+  }
 }
 
 }  // namespace
