@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+"""bench/response-table: its numbers are those of `sixdof quality`, and it says what is wrong instead of printing half a table.
+
+usage: response_table_test.py SIXDOF RESPONSE_TABLE
+"""
+import json
+import subprocess
+import sys
+
+SAMPLES = "25"
+ALGORITHMS = ["exact", "vps", "vps-field", "ist", "fcl-contacts"]
+
+
+def main():
+    sixdof, script = sys.argv[1:3]
+
+    def table(*options):
+        return subprocess.run([sys.executable, "-B", script, *options], capture_output=True, text=True)
+
+    run = table("--program", sixdof, "--defaults", "--scenario", "II", "--samples", SAMPLES)
+    assert run.returncode == 0, run.stderr
+    lines = [line.strip("|").split("|") for line in run.stdout.splitlines() if line.startswith("|")]
+    rows = {tuple(cell.strip() for cell in line[:2]): [cell.strip() for cell in line[2:]] for line in lines}
+    assert rows["scenario", "measure"] == ALGORITHMS, run.stdout
+    assert {scenario for scenario, _ in rows if len(scenario) < 4 and scenario.strip("-")} == {"II"}, run.stdout
+    assert all(float(value) > 0 for value in rows["II", "mean ms"]), run.stdout
+
+    for column, algorithm in enumerate(ALGORITHMS):
+        command = [sixdof, "quality", "--scenario", "II", "--algorithm", algorithm, "--samples", SAMPLES, "--json"]
+        measures = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)["measures"]
+        for name in ("sigma_F", "gamma_F_deg", "leakage"):
+            shown = float(rows["II", name][column])
+            assert abs(shown - measures[name]) <= 0.06 * abs(measures[name]), (algorithm, name, shown, measures[name])
+
+    missing = table("--program", sixdof + "-is-not-there")
+    assert missing.returncode == 1 and "is-not-there" in missing.stderr and not missing.stdout, missing
+    unknown = table("--program", sixdof, "--scenario", "V")
+    assert unknown.returncode == 2 and "'V'" in unknown.stderr, unknown
+    refused = table("--program", sixdof, "--defaults", "--scenario", "II", "--samples", "0")
+    assert refused.returncode == 1 and "samples" in refused.stderr, refused
+
+
+if __name__ == "__main__":
+    main()
