@@ -43,14 +43,13 @@ class BallPainter {
 };
 
 /// Adds the balls below `node`, whose children are at `level`, down to `last`.
-void add_level(const ist::SphereTree& tree, std::int32_t node, int level, int last, BallPainter& painter) {
-  const ist::SphereNode& here = tree.nodes[static_cast<std::size_t>(node)];
-  for (std::size_t slot = 0; slot < here.child.size(); ++slot) {
-    if (here.child[slot] == ist::SphereNode::k_empty) continue;
-    if (level == last || here.child[slot] < 0) {
-      painter.add(here.sphere(slot), ramp_colour(static_cast<double>(level) / last));
+void add_level(const ist::SphereTree& tree, std::size_t node, int level, int last, BallPainter& painter) {
+  const std::int32_t below = tree.below[node];
+  for (std::size_t slot = 0; slot < tree.children(node); ++slot) {
+    if (level == last || below < 0) {
+      painter.add(tree.ball(node, slot), ramp_colour(static_cast<double>(level) / last));
     } else {
-      add_level(tree, here.child[slot], level + 1, last, painter);
+      add_level(tree, static_cast<std::size_t>(below) + slot, level + 1, last, painter);
     }
   }
 }

@@ -17,7 +17,8 @@ constexpr std::size_t k_branching = 4;
 constexpr int k_epochs = 20;  // T: beyond it clusters no longer change visibly
 constexpr double k_lambda_start = k_branching / 2.0;
 constexpr double k_lambda_end = 0.01;
-constexpr std::size_t k_parallel_from = 2000;  // spheres below which a subtree is not worth a task
+constexpr std::size_t k_evenly_to = k_branching * k_branching;  // spheres that are shared out evenly
+constexpr std::size_t k_parallel_from = 2000;                   // spheres below which a subtree is not worth a task
 
 using Prototypes = std::array<Eigen::Vector3d, k_branching>;
 
@@ -75,12 +76,34 @@ Prototypes batch_neural_gas(std::span<const Sphere> spheres) {
   return prototypes;
 }
 
-/// Sorts `spheres` into up to four clusters and returns their ends. Falls back to equal parts along the longest axis
-/// where the clusters do not separate the spheres (all centres equal).
+/// Sorts `spheres` into `parts` of nearly equal number, by halves across the longest axis, and appends their ends.
+void split_evenly(std::span<Sphere> spheres, std::size_t parts, std::size_t begin, std::vector<std::size_t>& ends) {
+  if (parts == 1) {
+    ends.push_back(begin + spheres.size());
+    return;
+  }
+  Eigen::AlignedBox3d box;
+  for (const Sphere& s : spheres) box.extend(s.center);
+  int axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const std::size_t low = (parts + 1) / 2, middle = (spheres.size() * low + parts - 1) / parts;
+  std::nth_element(spheres.begin(), spheres.begin() + static_cast<std::ptrdiff_t>(middle), spheres.end(),
+                   [&](const Sphere& p, const Sphere& q) { return p.center[axis] < q.center[axis]; });
+  split_evenly(spheres.first(middle), low, begin, ends);
+  split_evenly(spheres.subspan(middle), parts - low, begin + middle, ends);
+}
+
+/// Sorts `spheres` into up to four clusters and returns their ends. A few spheres are shared out evenly, so that nodes
+/// of leaves are nearly full: clusters would leave two leaves in a node of four. Falls back to equal parts along the
+/// longest axis where the clusters do not separate the spheres (all centres equal).
 std::vector<std::size_t> split(std::span<Sphere> spheres) {
   std::vector<std::size_t> ends;
   if (spheres.size() <= k_branching) {
     for (std::size_t i = 1; i <= spheres.size(); ++i) ends.push_back(i);
+    return ends;
+  }
+  if (spheres.size() <= k_evenly_to) {
+    split_evenly(spheres, (spheres.size() + k_branching - 1) / k_branching, 0, ends);
     return ends;
   }
   const Prototypes prototypes = batch_neural_gas(spheres);
@@ -102,32 +125,35 @@ std::vector<std::size_t> split(std::span<Sphere> spheres) {
 
 /// A subtree under construction; flattened when all tasks are done.
 struct Draft {
-  SphereNode node{};
-  std::array<std::unique_ptr<Draft>, k_branching> below;
+  struct Child {
+    Sphere ball;
+    double volume = 0.0;
+    std::unique_ptr<Draft> below;  ///< None if this node's children are leaves.
+  };
+  std::vector<Child> children;
+  std::size_t first_leaf = 0;
 };
 
 std::unique_ptr<Draft> build(std::span<Sphere> spheres, std::size_t first_leaf) {
   auto draft = std::make_unique<Draft>();
-  SphereNode& node = draft->node;
-  node.r.fill(-std::numeric_limits<double>::infinity());
-  node.child.fill(SphereNode::k_empty);
+  draft->first_leaf = first_leaf;
+  const bool of_leaves = spheres.size() <= k_branching;
   const std::vector<std::size_t> ends = split(spheres);
+  draft->children.resize(ends.size());
   parallel::Tasks tasks;
   std::size_t begin = 0;
   for (std::size_t slot = 0; slot < ends.size(); ++slot) {
     const std::span<Sphere> part = spheres.subspan(begin, ends[slot] - begin);
-    const Sphere bound = enclosing_sphere(part);
-    node.x[slot] = bound.center.x();
-    node.y[slot] = bound.center.y();
-    node.z[slot] = bound.center.z();
-    node.r[slot] = bound.radius;
-    for (const Sphere& s : part) node.volume[slot] += s.volume();
-    if (part.size() == 1) {
-      node.child[slot] = ~static_cast<std::int32_t>(first_leaf + begin);
-    } else if (part.size() >= k_parallel_from) {
-      tasks.run([&draft, slot, part, leaf = first_leaf + begin] { draft->below[slot] = build(part, leaf); });
-    } else {
-      draft->below[slot] = build(part, first_leaf + begin);
+    Draft::Child& child = draft->children[slot];
+    child.ball = enclosing_sphere(part);
+    for (const Sphere& s : part) child.volume += s.volume();
+    if (!of_leaves) {
+      const std::size_t leaf = first_leaf + begin;
+      if (part.size() >= k_parallel_from) {
+        tasks.run([&child, part, leaf] { child.below = build(part, leaf); });
+      } else {
+        child.below = build(part, leaf);
+      }
     }
     begin = ends[slot];
   }
@@ -135,15 +161,40 @@ std::unique_ptr<Draft> build(std::span<Sphere> spheres, std::size_t first_leaf) 
   return draft;
 }
 
-std::int32_t flatten(const Draft& draft, std::vector<SphereNode>& nodes) {
-  const auto index = static_cast<std::int32_t>(nodes.size());
-  nodes.push_back(draft.node);
-  for (std::size_t slot = 0; slot < k_branching; ++slot) {
-    if (!draft.below[slot]) continue;
-    const std::int32_t child = flatten(*draft.below[slot], nodes);
-    nodes[static_cast<std::size_t>(index)].child[slot] = child;
+/// Rounded to single precision, relative to `bound`; the radius makes up for all rounding.
+void set_ball(SphereNode& node, std::size_t slot, const Sphere& ball, const Sphere& bound) {
+  // Coordinates and radii are at most about 1: each is rounded by 2^-25 at most, the place by sqrt(3) times that.
+  constexpr double k_rounding_up = 2.0 / (1 << 23);
+  const Eigen::Vector3f place = ((ball.center - bound.center) / bound.radius).cast<float>();
+  node.x[slot] = place.x();
+  node.y[slot] = place.y();
+  node.z[slot] = place.z();
+  node.r[slot] = static_cast<float>(ball.radius / bound.radius + k_rounding_up);
+}
+
+/// Writes the subtree's root to `index`, which is there already, and all below it behind the last node.
+void flatten(const Draft& draft, std::size_t index, SphereTree& tree) {
+  SphereNode node{};
+  node.r.fill(-std::numeric_limits<float>::infinity());
+  std::array<double, SphereNode::k_slots> volumes{};
+  for (std::size_t slot = 0; slot < draft.children.size(); ++slot) {
+    set_ball(node, slot, draft.children[slot].ball, tree.bound);
+    volumes[slot] = draft.children[slot].volume;
   }
-  return index;
+  tree.nodes[index] = node;
+  tree.volumes[index] = volumes;
+  if (!draft.children.front().below) {
+    tree.below[index] = ~static_cast<std::int32_t>(draft.first_leaf);
+    return;
+  }
+  const std::size_t first = tree.nodes.size(), after = first + draft.children.size();
+  tree.below[index] = static_cast<std::int32_t>(first);
+  tree.nodes.resize(after);
+  tree.below.resize(after);
+  tree.volumes.resize(after);
+  for (std::size_t slot = 0; slot < draft.children.size(); ++slot) {
+    flatten(*draft.children[slot].below, first + slot, tree);
+  }
 }
 
 }  // namespace
@@ -153,7 +204,10 @@ SphereTree build_sphere_tree(std::vector<Sphere> spheres) {
   SphereTree tree;
   tree.bound = enclosing_sphere(spheres);
   const std::unique_ptr<Draft> root = build(spheres, 0);
-  flatten(*root, tree.nodes);
+  tree.nodes.resize(1);
+  tree.below.resize(1);
+  tree.volumes.resize(1);
+  flatten(*root, 0, tree);
   tree.leaves = std::move(spheres);
   for (const Sphere& s : tree.leaves) tree.volume += s.volume();
   return tree;

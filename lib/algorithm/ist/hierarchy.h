@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -9,33 +10,46 @@
 
 namespace sixdof::ist {
 
-/// One node: its up to four children side by side, so that one vector instruction tests them all. Empty slots have
-/// radius -infinity: every overlap test with them fails.
-struct alignas(32) SphereNode {
-  static constexpr std::int32_t k_empty = INT32_MIN;
-  std::array<double, 4> x, y, z, r;
-  std::array<double, 4> volume;       ///< Sum of the leaf volumes below, for estimates.
-  std::array<std::int32_t, 4> child;  ///< >= 0: index of a node; < 0: ~index of a leaf sphere; k_empty: none.
-
-  Sphere sphere(std::size_t slot) const { return {{x[slot], y[slot], z[slot]}, r[slot]}; }
+/// One node: its up to four children's balls side by side, so that sixteen of the balls of two nodes are tested at
+/// once; one cache line. In single precision, relative to the centre of the tree's bound and in units of its radius; a
+/// ball is rounded up, so it still contains all leaf spheres below it. Children fill the slots from the first on; empty
+/// slots have radius -infinity.
+struct alignas(64) SphereNode {
+  static constexpr std::size_t k_slots = 4;
+  std::array<float, k_slots> x, y, z, r;
 };
 
 /// Inner sphere tree: leaves are the packed spheres; an inner node's ball contains all LEAF spheres below it
-/// ("wrapped", Weller and Zachmann 2009), which is tighter than containing the children's balls.
+/// ("wrapped", Weller and Zachmann 2009), which is tighter than containing the children's balls. A node's children are
+/// all nodes or all leaves; a leaf among nodes is the only one of a node of its own.
 struct SphereTree {
-  std::vector<SphereNode> nodes;  ///< nodes[0] is the root.
-  std::vector<Sphere> leaves;     ///< In tree order: a subtree's leaves are neighbours.
-  Sphere bound;                   ///< Contains all leaves.
-  double volume = 0.0;            ///< Sum of the leaf volumes.
+  std::vector<SphereNode> nodes;    ///< nodes[0] is the root; a node's children are neighbours.
+  std::vector<std::int32_t> below;  ///< Per node: the child in its first slot; >= 0: a node; < 0: ~index of a leaf.
+  std::vector<std::array<double, SphereNode::k_slots>> volumes;  ///< Per node and slot: sum of the leaf volumes.
+  std::vector<Sphere> leaves;                                    ///< In tree order: a subtree's leaves are neighbours.
+  Sphere bound;                                                  ///< Contains all leaves.
+  double volume = 0.0;                                           ///< Sum of the leaf volumes.
 
-  std::size_t bytes() const { return nodes.size() * sizeof(SphereNode) + leaves.size() * sizeof(Sphere); }
+  std::size_t children(std::size_t node) const {
+    const auto& r = nodes[node].r;
+    return static_cast<std::size_t>(std::count_if(r.begin(), r.end(), [](float radius) { return radius >= 0.0f; }));
+  }
+  /// The ball of a child, in the mesh's frame and length unit.
+  Sphere ball(std::size_t node, std::size_t slot) const {
+    const SphereNode& n = nodes[node];
+    return {bound.center + bound.radius * Eigen::Vector3d(n.x[slot], n.y[slot], n.z[slot]), bound.radius * n.r[slot]};
+  }
+  std::size_t bytes() const {
+    return nodes.size() * (sizeof(SphereNode) + sizeof(below[0]) + sizeof(volumes[0])) + leaves.size() * sizeof(Sphere);
+  }
 };
 
 /// Builds the hierarchy top-down: each node's spheres are split in four by batch neural gas with volume-weighted
 /// magnification (Weller and Zachmann 2009; Cottrell et al. 2006):
 ///   w_i = sum_j h(k_ij) v_j x_j / sum_j h(k_ij) v_j,  h(k) = exp(-k / lambda),  lambda_t = lambda_0 (0.01 /
 ///   lambda_0)^(t / T),
-/// with k_ij the rank of prototype i by distance from sphere j, v_j its volume, lambda_0 = 4 / 2.
+/// with k_ij the rank of prototype i by distance from sphere j, v_j its volume, lambda_0 = 4 / 2. The last 16 spheres
+/// are shared out evenly among up to four nodes of leaves instead.
 /// Deterministic, whatever the number of threads. @throws BadArgument if there is no sphere.
 SphereTree build_sphere_tree(std::vector<Sphere> spheres);
 

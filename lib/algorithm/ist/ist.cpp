@@ -75,12 +75,14 @@ class IstQuery final : public Query {
         stiffness_(settings.number("stiffness")) {}
 
   Outcome<bool> collide(const Pose& X_AB) override {
+    if (!finite(X_AB)) return bad_pose();
     const SphereContact contact = overlaps(a_->tree, b_->tree, X_AB, scratch_);
     count_ = contact.count;
     return contact.any;
   }
 
   Outcome<Separation> distance(const Pose& X_AB) override {
+    if (!finite(X_AB)) return bad_pose();
     const SphereSeparation gap = separation(a_->tree, b_->tree, X_AB);
     count_ = gap.count;
     const Sphere& in_a = a_->tree.leaves[static_cast<std::size_t>(gap.leaf_a)];
@@ -98,6 +100,7 @@ class IstQuery final : public Query {
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {
+    if (!finite(X_AB)) return bad_pose();
     const Eigen::Vector3d reference = X_AB * center_b_;
     const PenetrationSum sum = budget_ == 0 ? penetration(a_->tree, b_->tree, X_AB, law_, reference, scratch_)
                                             : penetration_within(a_->tree, b_->tree, X_AB, law_, reference, budget_);
@@ -130,6 +133,9 @@ class IstQuery final : public Query {
   }
 
  private:
+  static bool finite(const Pose& X) { return X.R.allFinite() && X.t.allFinite(); }
+  Status bad_pose() { return fail(Status::non_finite, "the pose is not finite"); }
+
   std::shared_ptr<const InnerSphereTree> a_, b_;
   Eigen::Vector3d center_b_;
   PairForce law_;

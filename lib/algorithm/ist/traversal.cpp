@@ -7,244 +7,80 @@
 #include <numbers>
 #include <queue>
 
+// Vectors are kept in structures here, which sets of unknown vector length (SVE, RVV) do not allow; NEON serves them.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/algorithm/ist/traversal.cpp"
-#include <hwy/foreach_target.h>
+#include <hwy/foreach_target.h>  // must come before highway.h
+
 #include <hwy/highway.h>
 
-// Four balls of B, moved to A's frame, are tested at once against each ball of A. No fused multiply-add is used, so
-// every instruction set gives the same bits.
+#include <sixdof/algorithm/ist/node_pair-inl.h>
+
+// Pairs of nodes are tested in single precision, with slack; pairs of leaves that pass are computed in double
+// precision. No fused multiply-add is used, so every instruction set gives the same bits.
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::ist {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using Lanes4 = hn::CappedTag<double, 4>;
-using Entry = std::pair<std::int32_t, std::int32_t>;
+/// A pair of leaves, each in its own tree's frame.
+struct LeafPair {
+  const Sphere &a, &b;
+  double distance;  ///< Of their centres.
 
-/// Children of a node side by side, or a leaf by itself, in A's frame.
-struct Balls {
-  const double *x, *y, *z, *r;
-  const std::int32_t* child;
+  LeafPair(const SphereTree& tree_a, const SphereTree& tree_b, const Pose& X_AB, std::int32_t leaf_a,
+           std::int32_t leaf_b)
+      : a(tree_a.leaves[static_cast<std::size_t>(leaf_a)]),
+        b(tree_b.leaves[static_cast<std::size_t>(leaf_b)]),
+        distance((X_AB * b.center - a.center).norm()) {}
+  double gap() const { return distance - (a.radius + b.radius); }
+  bool overlap() const { return gap() < 0.0; }
 };
 
-/// Moves four balls to A's frame. A single one is moved by the same operations in the same order, see move_one().
-HWY_INLINE void move_four(const SphereNode& node, const Pose& X, double* x_out, double* y_out, double* z_out) {
-  const Lanes4 d;
-  const std::size_t n = hn::Lanes(d);
-  double* const out[3] = {x_out, y_out, z_out};
-  for (std::size_t l = 0; l < 4; l += n) {
-    const auto x = hn::LoadU(d, node.x.data() + l);
-    const auto y = hn::LoadU(d, node.y.data() + l);
-    const auto z = hn::LoadU(d, node.z.data() + l);
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const auto rotated = hn::Add(hn::Add(hn::Mul(hn::Set(d, X.R(k, 0)), x), hn::Mul(hn::Set(d, X.R(k, 1)), y)),
-                                   hn::Mul(hn::Set(d, X.R(k, 2)), z));
-      hn::Store(hn::Add(rotated, hn::Set(d, X.t[k])), d, out[k] + l);
-    }
-  }
-}
-
-double move_one(const Eigen::Vector3d& p, const Pose& X, Eigen::Index k) {
-  return X.R(k, 0) * p.x() + X.R(k, 1) * p.y() + X.R(k, 2) * p.z() + X.t[k];
-}
-
-/// Squared distances of the centres of four balls from that of ball `i` of `one`, and the sums of their radii.
-struct Reach {
-  hn::Vec<Lanes4> squared, radii;
-  HWY_INLINE Reach(const Balls& four, std::size_t l, const Balls& one, std::size_t i) {
-    const Lanes4 d;
-    const auto dx = hn::Sub(hn::LoadU(d, four.x + l), hn::Set(d, one.x[i]));
-    const auto dy = hn::Sub(hn::LoadU(d, four.y + l), hn::Set(d, one.y[i]));
-    const auto dz = hn::Sub(hn::LoadU(d, four.z + l), hn::Set(d, one.z[i]));
-    squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    radii = hn::Add(hn::LoadU(d, four.r + l), hn::Set(d, one.r[i]));
-  }
-};
-
-/// Bit j is set if ball j of `four` overlaps ball `i` of `one`.
-HWY_INLINE unsigned overlap_mask(const Balls& four, const Balls& one, std::size_t i) {
-  const Lanes4 d;
-  const std::size_t n = hn::Lanes(d);
-  unsigned mask = 0;
-  for (std::size_t l = 0; l < 4; l += n) {
-    const Reach reach(four, l, one, i);
-    const auto hit =
-        hn::And(hn::Gt(reach.radii, hn::Zero(d)), hn::Lt(reach.squared, hn::Mul(reach.radii, reach.radii)));
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hit, bits);
-    mask |= static_cast<unsigned>(bits[0] & ((1u << n) - 1u)) << l;
-  }
-  return mask;
-}
-
-/// Gaps (distance of centres minus both radii) of ball `i` of `one` to four balls; +infinity for empty slots.
-HWY_INLINE void gaps(const Balls& four, const Balls& one, std::size_t i, double* out) {
-  const Lanes4 d;
-  for (std::size_t l = 0; l < 4; l += hn::Lanes(d)) {
-    const Reach reach(four, l, one, i);
-    hn::StoreU(hn::Sub(hn::Sqrt(reach.squared), reach.radii), d, out + l);
-  }
-}
-
-/// A pair of nodes, opened: their children against each other, four at a time. One of the two may be a leaf, which is
-/// tested against the other's four children at once.
-class OpenPair {
+/// Tests pairs of nodes of two trees.
+class NodePairs {
  public:
-  OpenPair(const SphereTree& a, const SphereTree& b, const Pose& X_AB) : tree_a_(a), tree_b_(b), X_AB_(X_AB) {}
+  HWY_INLINE NodePairs(const SphereTree& a, const SphereTree& b, const NodePlacement& placement)
+      : a_(a), b_(b), test_(placement) {}
 
-  HWY_INLINE void open(Entry entry) {
-    entry_ = entry;
-    if (entry.first >= 0) {
-      const SphereNode& node = tree_a_.nodes[static_cast<std::size_t>(entry.first)];
-      a_ = {node.x.data(), node.y.data(), node.z.data(), node.r.data(), node.child.data()};
-    } else {
-      const Sphere& leaf = tree_a_.leaves[static_cast<std::size_t>(~entry.first)];
-      a_ = {&leaf.center.x(), &leaf.center.y(), &leaf.center.z(), &leaf.radius, &entry_.first};
-    }
-    if (entry.second >= 0) {
-      const SphereNode& node = tree_b_.nodes[static_cast<std::size_t>(entry.second)];
-      move_four(node, X_AB_, x_, y_, z_);
-      b_ = {x_, y_, z_, node.r.data(), node.child.data()};
-    } else {
-      const Sphere& leaf = tree_b_.leaves[static_cast<std::size_t>(~entry.second)];
-      x_[0] = move_one(leaf.center, X_AB_, 0);
-      y_[0] = move_one(leaf.center, X_AB_, 1);
-      z_[0] = move_one(leaf.center, X_AB_, 2);
-      b_ = {x_, y_, z_, &leaf.radius, &entry_.second};
-    }
+  HWY_INLINE Descent descend(std::int32_t a, std::int32_t b) const {
+    return {a, a_.below[a], b, b_.below[b], test_.overlapping(a_.nodes[a], b_.nodes[b])};
   }
-
-  /// Calls meet(i, j) for every child i of A's node and j of B's that overlap, until it returns true; says whether it
-  /// did. All are tested before the first is met: one loop over what was found is easier to foresee than four.
-  template <class Meet>
-  HWY_INLINE bool any_overlap(TraversalCount& count, const Meet& meet) const {
-    const bool leaf_b = entry_.second < 0;
-    const std::size_t tests = leaf_b ? 1 : rows();
-    unsigned found = 0;
-    for (std::size_t k = 0; k < tests; ++k) {
-      found |= overlap_mask(leaf_b ? a_ : b_, leaf_b ? b_ : a_, k) << (4 * k);
-    }
-    count.sphere_tests += 4 * tests;
-    for (; found != 0; found &= found - 1) {
-      const auto bit = static_cast<std::size_t>(__builtin_ctz(found));
-      const std::size_t one = bit / 4, lane = bit % 4;
-      if (leaf_b ? meet(lane, one) : meet(one, lane)) return true;
-    }
-    return false;
+  /// Asks for the cache lines of what will be tested soon.
+  HWY_INLINE void prefetch(std::int32_t a, std::int32_t b) const {
+    __builtin_prefetch(a_.nodes + a);
+    __builtin_prefetch(b_.nodes + b);
+    __builtin_prefetch(a_.below + a);
+    __builtin_prefetch(b_.below + b);
   }
-
-  /// Calls meet(i, j, gap) for every two children nearer than `within`, which meet() may lower.
-  template <class Meet>
-  HWY_ATTR void for_each_nearer(const double& within, TraversalCount& count, const Meet& meet) const {
-    const auto measure = [&](const Balls& four, const Balls& one, std::size_t k, const auto& meet_lane) HWY_ATTR {
-      count.sphere_tests += 4;
-      double gap[4];
-      gaps(four, one, k, gap);
-      for (std::size_t lane = 0; lane < 4; ++lane) {
-        if (gap[lane] < within && four.child[lane] != SphereNode::k_empty) meet_lane(lane, gap[lane]);
-      }
-    };
-    if (entry_.second < 0) {
-      measure(a_, b_, 0, [&](std::size_t i, double gap) { meet(i, std::size_t{0}, gap); });
-      return;
-    }
-    for (std::size_t i = 0; i < rows(); ++i) {
-      measure(b_, a_, i, [&](std::size_t j, double gap) { meet(i, j, gap); });
-    }
-  }
-
-  Entry children(std::size_t i, std::size_t j) const { return {a_.child[i], b_.child[j]}; }
-  bool leaves(std::size_t i, std::size_t j) const { return a_.child[i] < 0 && b_.child[j] < 0; }
-  Sphere ball_a(std::size_t i) const { return {{a_.x[i], a_.y[i], a_.z[i]}, a_.r[i]}; }
-  Sphere ball_b(std::size_t j) const { return {{b_.x[j], b_.y[j], b_.z[j]}, b_.r[j]}; }
-  double volume_a(std::size_t i) const { return volume(tree_a_, entry_.first, i); }
-  double volume_b(std::size_t j) const { return volume(tree_b_, entry_.second, j); }
 
  private:
-  /// Children of A's node. Nodes fill their slots from the first on.
-  std::size_t rows() const {
-    if (entry_.first < 0) return 1;
-    std::size_t count = 4;
-    while (a_.child[count - 1] == SphereNode::k_empty) --count;
-    return count;
-  }
-  static double volume(const SphereTree& tree, std::int32_t index, std::size_t slot) {
-    return index >= 0 ? tree.nodes[static_cast<std::size_t>(index)].volume[slot]
-                      : tree.leaves[static_cast<std::size_t>(~index)].volume();
-  }
-
-  const SphereTree& tree_a_;
-  const SphereTree& tree_b_;
-  const Pose& X_AB_;
-  Entry entry_;
-  Balls a_{}, b_{};
-  HWY_ALIGN double x_[4], y_[4], z_[4];  ///< B's balls in A's frame.
-};
-
-/// Asks for the cache lines of what will be opened soon.
-inline void prefetch(const SphereTree& tree, std::int32_t index) {
-  if (index < 0) {
-    __builtin_prefetch(&tree.leaves[static_cast<std::size_t>(~index)]);
-    return;
-  }
-  constexpr std::size_t k_line = 64;
-  const auto* const bytes = reinterpret_cast<const char*>(&tree.nodes[static_cast<std::size_t>(index)]);
-  for (std::size_t at = 0; at < sizeof(SphereNode); at += k_line) __builtin_prefetch(bytes + at);
-}
-
-enum class Order {
-  depth_first,   ///< Finds the first leaves soon.
-  breadth_first  ///< Knows long before which nodes come next, so that they are in the cache by then.
-};
-
-/// Calls leaf(pair, i, j) for every two leaf spheres that overlap until it returns true; says whether it did.
-template <Order k_order, class Leaf>
-HWY_ATTR bool any_leaf_pair(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch,
-                            TraversalCount& count, const Leaf& leaf) {
-  constexpr std::size_t k_ahead = 6;  // entries between asking for a node and opening it
-  auto& waiting = scratch.waiting;
-  waiting.assign(1, {0, 0});
-  OpenPair pair(a, b, X_AB);
-  const auto open_all = [&](std::size_t i, std::size_t j) HWY_ATTR {
-    if (pair.leaves(i, j)) return leaf(pair, i, j);
-    waiting.push_back(pair.children(i, j));
-    return false;
+  struct Arrays {
+    const SphereNode* nodes;
+    const std::int32_t* below;
+    explicit Arrays(const SphereTree& tree) : nodes(tree.nodes.data()), below(tree.below.data()) {}
   };
-  if constexpr (k_order == Order::breadth_first) {
-    for (std::size_t next = 0; next < waiting.size(); ++next) {
-      if (next + k_ahead < waiting.size()) {
-        prefetch(a, waiting[next + k_ahead].first);
-        prefetch(b, waiting[next + k_ahead].second);
-      }
-      pair.open(waiting[next]);
-      if (pair.any_overlap(count, open_all)) return true;
-    }
-  } else {
-    while (!waiting.empty()) {
-      pair.open(waiting.back());
-      waiting.pop_back();
-      if (pair.any_overlap(count, open_all)) return true;
-    }
-  }
-  return false;
-}
+  Arrays a_, b_;
+  NodePairTest test_;
+};
 
-/// Sums over pairs of overlapping balls, collected and then computed four at a time. Each of the four lanes has sums of
-/// its own, which are added last: the same bits on every instruction set.
+/// Sums over pairs of overlapping balls, collected and then computed several at a time. Each of the eight lanes has
+/// sums of its own, which are added last: the same bits on every instruction set.
 class PairSums {
  public:
-  PairSums(PairForce law, const Eigen::Vector3d& about) : law_(law), about_(about) {}
+  PairSums(PairForce law, const Pose& X_AB, const Eigen::Vector3d& about) : law_(law), X_AB_(X_AB), about_(about) {}
 
-  /// The overlap of two balls (in A's frame), scaled by `share`.
-  HWY_ATTR void add(const Sphere& in_a, const Sphere& in_b, double share) {
-    put(in_a, in_b, share);
-    if (filled_ == k_batch) flush();
+  /// The overlap of a ball of A and a ball of B, each in its own frame, scaled by `share`.
+  HWY_ATTR void add(const Sphere& a, const Sphere& b, double share) {
+    a_[filled_] = a;
+    b_[filled_] = b;
+    share_[filled_] = share;
+    if (++filled_ == k_batch) flush();
   }
 
   HWY_ATTR void finish(PenetrationSum& sum) {
-    while (filled_ % k_lanes != 0) put({{0, 0, 0}, 1.0}, {{1, 0, 0}, 1.0}, 0.0);
+    while (filled_ % k_lanes != 0) add(a_[filled_ - 1], b_[filled_ - 1], 0.0);
     flush();
     for (std::size_t lane = 0; lane < k_lanes; ++lane) {
       sum.volume += total_[k_volume][lane];
@@ -255,17 +91,13 @@ class PairSums {
     }
   }
 
+  /// How many of the added pairs overlapped.
+  std::uint64_t overlapping() const { return overlapping_; }
+
  private:
-  static constexpr std::size_t k_lanes = 4;
-  static constexpr std::size_t k_batch = 32;  ///< Numbers stored one by one are not read as vectors at once.
-  enum Input : std::size_t {
-    k_a,            ///< Centre of A's ball, three rows.
-    k_b = k_a + 3,  ///< Centre of B's ball.
-    k_radius_a = k_b + 3,
-    k_radius_b,
-    k_share,
-    k_inputs
-  };
+  static constexpr std::size_t k_lanes = 8;
+  static constexpr std::size_t k_batch = 32;  ///< What was just written is not read at once as wider vectors.
+  using Lanes = hn::CappedTag<double, k_lanes>;
   enum Output : std::size_t {
     k_volume,
     k_force,
@@ -273,30 +105,30 @@ class PairSums {
     k_outputs = k_moment + 3
   };
 
-  void put(const Sphere& in_a, const Sphere& in_b, double share) {
-    const double lane[k_inputs] = {in_a.center.x(), in_a.center.y(), in_a.center.z(),
-                                   in_b.center.x(), in_b.center.y(), in_b.center.z(),
-                                   in_a.radius,     in_b.radius,     share};
-    for (std::size_t i = 0; i < k_inputs; ++i) pair_[i][filled_] = lane[i];
-    ++filled_;
-  }
-
   HWY_ATTR void flush() {
-    const Lanes4 d;
+    const Lanes d;
     for (std::size_t first = 0; first < filled_; first += hn::Lanes(d)) compute(first);
     filled_ = 0;
   }
 
   /// Volume and disc area as overlap_volume() and overlap_disc_area() have them.
   HWY_INLINE void compute(std::size_t first) {
-    const Lanes4 d;
+    const Lanes d;
     const std::size_t sums = first % k_lanes;
     const auto constant = [&](double value) HWY_ATTR { return hn::Set(d, value); };
     constexpr double k_pi = std::numbers::pi;
-    const auto in = [&](std::size_t i) HWY_ATTR { return hn::Load(d, pair_[i] + first); };
-    const auto zero = hn::Zero(d), r1 = in(k_radius_a), r2 = in(k_radius_b), share = in(k_share);
-    const auto x = hn::Sub(in(k_b), in(k_a)), y = hn::Sub(in(k_b + 1), in(k_a + 1)),
-               z = hn::Sub(in(k_b + 2), in(k_a + 2));
+    const auto zero = hn::Zero(d), share = hn::LoadU(d, share_ + first);
+    static_assert(sizeof(Sphere) == 4 * sizeof(double), "center x, y, z and radius");
+    hn::Vec<Lanes> a_x, a_y, a_z, r1, b_x, b_y, b_z, r2;
+    hn::LoadInterleaved4(d, &a_[first].center.x(), a_x, a_y, a_z, r1);
+    hn::LoadInterleaved4(d, &b_[first].center.x(), b_x, b_y, b_z, r2);
+    const auto moved = [&](Eigen::Index k) HWY_ATTR {
+      const auto turned = hn::Add(hn::Add(hn::Mul(constant(X_AB_.R(k, 0)), b_x), hn::Mul(constant(X_AB_.R(k, 1)), b_y)),
+                                  hn::Mul(constant(X_AB_.R(k, 2)), b_z));
+      return hn::Add(turned, constant(X_AB_.t[k]));
+    };
+    const auto p_x = moved(0), p_y = moved(1), p_z = moved(2);
+    const auto x = hn::Sub(p_x, a_x), y = hn::Sub(p_y, a_y), z = hn::Sub(p_z, a_z);
     const auto squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
     const auto distance = hn::Sqrt(squared), sum = hn::Add(r1, r2), difference = hn::Sub(r1, r2);
     const auto contained = hn::Le(distance, hn::Abs(difference));
@@ -314,12 +146,14 @@ class PairSums {
       const auto crossing = hn::Mul(share, hn::Mul(constant(k_pi), disc));
       magnitude = hn::IfThenElse(hn::Or(contained, hn::Ge(distance, sum)), zero, crossing);
     }
+    const auto overlap = hn::And(hn::Lt(distance, sum), hn::Gt(share, zero));
+    overlapping_ += hn::CountTrue(d, overlap);
     // Concentric balls have no direction to push.
     const auto factor = hn::IfThenElse(hn::Gt(distance, zero), hn::Div(magnitude, distance), zero);
     const auto fx = hn::Mul(factor, x), fy = hn::Mul(factor, y), fz = hn::Mul(factor, z);
     // The force's line of action is the line of centres, so any point on it gives the torque.
-    const auto ax = hn::Sub(in(k_b), constant(about_.x())), ay = hn::Sub(in(k_b + 1), constant(about_.y())),
-               az = hn::Sub(in(k_b + 2), constant(about_.z()));
+    const auto ax = hn::Sub(p_x, constant(about_.x())), ay = hn::Sub(p_y, constant(about_.y())),
+               az = hn::Sub(p_z, constant(about_.z()));
     const auto add_to = [&](std::size_t i, auto value)
                             HWY_ATTR { hn::Store(hn::Add(hn::Load(d, total_[i] + sums), value), d, total_[i] + sums); };
     add_to(k_volume, volume);
@@ -332,98 +166,185 @@ class PairSums {
   }
 
   PairForce law_;
+  const Pose& X_AB_;
   Eigen::Vector3d about_;
   std::size_t filled_ = 0;
-  HWY_ALIGN double pair_[k_inputs][k_batch];
+  std::uint64_t overlapping_ = 0;
+  Sphere a_[k_batch], b_[k_batch];
+  double share_[k_batch];
   HWY_ALIGN double total_[k_outputs][k_lanes] = {};
 };
 
-HWY_ATTR void SumAll(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
-                     const Eigen::Vector3d& about, TraversalScratch& scratch, PenetrationSum& sum) {
-  PairSums sums(law, about);
-  any_leaf_pair<Order::breadth_first>(a, b, X_AB, scratch, sum.count,
-                                      [&](const OpenPair& pair, std::size_t i, std::size_t j) HWY_ATTR {
-                                        sums.add(pair.ball_a(i), pair.ball_b(j), 1.0);
-                                        ++sum.count.leaf_pairs;
-                                        return false;
-                                      });
-  sums.finish(sum);
+/// Finds all pairs of leaves that overlap, and a few more. @return how many are in scratch.leaves.
+HWY_ATTR std::size_t FindLeafPairs(const SphereTree& a, const SphereTree& b, const NodePlacement& placement,
+                                   TraversalScratch& scratch, TraversalCount& count) {
+  constexpr std::size_t k_batch = 64;  // pairs of nodes between two looks at the memory left
+  constexpr std::size_t k_ahead = 12;  // pairs between asking for nodes and testing them
+  const NodePairs nodes(a, b, placement);
+  PairList &waiting = scratch.waiting, &leaves = scratch.leaves;
+  waiting.make_room(1);
+  waiting.a[0] = waiting.b[0] = 0;
+  std::size_t next = 0, waits = 1, found = 0;
+  // First come, first tested: so it is known long before which nodes come next.
+  while (next < waits) {
+    const std::size_t end = std::min(waits, next + k_batch);
+    waiting.make_room(waits + k_batch * k_pairs);
+    leaves.make_room(found + k_batch * k_pairs);
+    const std::int32_t *const waiting_a = waiting.a.data(), *const waiting_b = waiting.b.data();
+    // Where the next pairs go, of nodes and of leaves: chosen by an index, since a branch could not be foreseen.
+    std::int32_t* out_a[2] = {waiting.a.data() + waits, leaves.a.data() + found};
+    std::int32_t* out_b[2] = {waiting.b.data() + waits, leaves.b.data() + found};
+    for (; next < end; ++next) {
+      nodes.prefetch(waiting_a[next + k_ahead], waiting_b[next + k_ahead]);  // there may be none yet: any will do
+      const Descent below = nodes.descend(waiting_a[next], waiting_b[next]);
+      const std::size_t kind = below.leaves ? 1 : 0, pairs = below.write(out_a[kind], out_b[kind]);
+      out_a[kind] += pairs;
+      out_b[kind] += pairs;
+    }
+    waits = static_cast<std::size_t>(out_a[0] - waiting.a.data());
+    found = static_cast<std::size_t>(out_a[1] - leaves.a.data());
+  }
+  count.sphere_tests += waits * k_pairs;
+  return found;
 }
 
-HWY_ATTR bool AnyOverlap(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch,
-                         TraversalCount& count) {
-  return any_leaf_pair<Order::depth_first>(a, b, X_AB, scratch, count,
-                                           [](const OpenPair&, std::size_t, std::size_t) { return true; });
+HWY_ATTR void SumAll(const SphereTree& a, const SphereTree& b, const Pose& X_AB, const NodePlacement& placement,
+                     PairForce law, const Eigen::Vector3d& about, TraversalScratch& scratch, PenetrationSum& sum) {
+  constexpr std::size_t k_ahead = 16;  // pairs between asking for leaves and reading them
+  const std::size_t found = FindLeafPairs(a, b, placement, scratch, sum.count);
+  if (found == 0) return;
+  const PairList& pairs = scratch.leaves;
+  const auto leaf = [](const SphereTree& tree, std::int32_t index) -> const Sphere& {
+    return tree.leaves[static_cast<std::size_t>(index)];
+  };
+  PairSums sums(law, X_AB, about);
+  for (std::size_t i = 0; i < found; ++i) {
+    const std::size_t soon = std::min(i + k_ahead, found - 1);
+    __builtin_prefetch(&leaf(a, pairs.a[soon]));
+    __builtin_prefetch(&leaf(b, pairs.b[soon]));
+    sums.add(leaf(a, pairs.a[i]), leaf(b, pairs.b[i]), 1.0);
+  }
+  sums.finish(sum);
+  sum.count.leaf_pairs = sums.overlapping();
+}
+
+/// Depth first: finds the first leaves soon.
+HWY_ATTR bool AnyOverlap(const SphereTree& a, const SphereTree& b, const Pose& X_AB, const NodePlacement& placement,
+                         TraversalScratch& scratch, TraversalCount& count) {
+  const NodePairs nodes(a, b, placement);
+  PairList& waiting = scratch.waiting;
+  waiting.make_room(1);
+  waiting.a[0] = waiting.b[0] = 0;
+  for (std::size_t waits = 1; waits > 0;) {
+    --waits;
+    count.sphere_tests += k_pairs;
+    const Descent below = nodes.descend(waiting.a[waits], waiting.b[waits]);
+    if (!below.leaves) {
+      waiting.make_room(waits + k_pairs);
+      waits += below.write(waiting.a.data() + waits, waiting.b.data() + waits);
+      continue;
+    }
+    for (unsigned left = below.pairs; left != 0; left &= left - 1) {
+      const auto pair = static_cast<unsigned>(__builtin_ctz(left));
+      if (LeafPair(a, b, X_AB, below.in_a(pair), below.in_b(pair)).overlap()) return true;
+    }
+  }
+  return false;
 }
 
 /// A pair of nodes waiting to be opened, with what to assume of it if it never is.
 struct Expectation {
   double volume;        ///< Expected overlap volume.
   std::uint64_t order;  ///< Breaks ties: first come, first opened.
-  Entry entry;
-  Sphere in_a, in_b;
-  double share;  ///< Of the balls' lens.
+  std::int32_t node_a, node_b;
+  Sphere in_a, in_b;          ///< The balls around what lies below, each in its own tree's frame.
+  double volume_a, volume_b;  ///< Of the leaves below.
+  double share;               ///< Of the balls' lens.
   bool operator<(const Expectation& o) const { return volume != o.volume ? volume < o.volume : order > o.order; }
 };
 
-HWY_ATTR void SumWithin(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
-                        const Eigen::Vector3d& about, std::uint64_t budget, PenetrationSum& sum) {
-  PairSums sums(law, about);
+HWY_ATTR void SumWithin(const SphereTree& a, const SphereTree& b, const Pose& X_AB, const NodePlacement& placement,
+                        PairForce law, const Eigen::Vector3d& about, std::uint64_t budget, PenetrationSum& sum) {
+  const NodePairs nodes(a, b, placement);
+  PairSums sums(law, X_AB, about);
   std::priority_queue<Expectation> waiting;
   std::uint64_t order = 0;
-  const auto wait = [&](Entry entry, const Sphere& in_a, double volume_a, const Sphere& in_b, double volume_b) {
-    const double share = std::min(1.0, volume_a / in_a.volume()) * std::min(1.0, volume_b / in_b.volume());
-    const double lens = overlap_volume(in_a.radius, in_b.radius, (in_b.center - in_a.center).norm());
-    waiting.push({share * lens, order++, entry, in_a, in_b, share});
+  const auto wait = [&](Expectation next) {
+    next.order = order++;
+    next.share = std::min(1.0, next.volume_a / next.in_a.volume()) * std::min(1.0, next.volume_b / next.in_b.volume());
+    next.volume =
+        next.share * overlap_volume(next.in_a.radius, next.in_b.radius, (next.in_b.center - next.in_a.center).norm());
+    waiting.push(next);
   };
-  wait({0, 0}, a.bound, a.volume, {X_AB * b.bound.center, b.bound.radius}, b.volume);
-  OpenPair pair(a, b, X_AB);
+  wait({.node_a = 0, .node_b = 0, .in_a = a.bound, .in_b = b.bound, .volume_a = a.volume, .volume_b = b.volume});
   while (!waiting.empty()) {
-    const Expectation next = waiting.top();
+    const Expectation here = waiting.top();
     waiting.pop();
     if (sum.count.sphere_tests >= budget) {
       sum.complete = false;
-      sums.add(next.in_a, next.in_b, next.share);
+      sums.add(here.in_a, here.in_b, here.share);
       continue;
     }
-    pair.open(next.entry);
-    pair.any_overlap(sum.count, [&](std::size_t i, std::size_t j) HWY_ATTR {
-      if (pair.leaves(i, j)) {
-        sums.add(pair.ball_a(i), pair.ball_b(j), 1.0);
+    sum.count.sphere_tests += k_pairs;
+    const Descent below = nodes.descend(here.node_a, here.node_b);
+    for (unsigned left = below.pairs; left != 0; left &= left - 1) {
+      const auto pair = static_cast<unsigned>(__builtin_ctz(left));
+      const std::int32_t in_a = below.in_a(pair), in_b = below.in_b(pair);
+      if (below.leaves) {
+        const LeafPair leaf(a, b, X_AB, in_a, in_b);
+        if (!leaf.overlap()) continue;
+        sums.add(leaf.a, leaf.b, 1.0);
         ++sum.count.leaf_pairs;
-      } else {
-        wait(pair.children(i, j), pair.ball_a(i), pair.volume_a(i), pair.ball_b(j), pair.volume_b(j));
+        continue;
       }
-      return false;
-    });
+      Expectation next = here;
+      next.node_a = in_a;
+      next.node_b = in_b;
+      if (below.others_a != 0) {
+        next.in_a = a.ball(static_cast<std::size_t>(here.node_a), pair / k_slots);
+        next.volume_a = a.volumes[static_cast<std::size_t>(here.node_a)][pair / k_slots];
+      }
+      if (below.others_b != 0) {
+        next.in_b = b.ball(static_cast<std::size_t>(here.node_b), pair % k_slots);
+        next.volume_b = b.volumes[static_cast<std::size_t>(here.node_b)][pair % k_slots];
+      }
+      wait(next);
+    }
   }
   sums.finish(sum);
 }
 
 HWY_ATTR void Closest(const SphereTree& a, const SphereTree& b, const Pose& X_AB, SphereSeparation& best) {
   struct Bounded {
-    double gap;
-    Entry entry;
+    double gap;  ///< Lower bound.
+    std::int32_t node_a, node_b;
   };
-  std::vector<Bounded> stack{{-std::numeric_limits<double>::infinity(), {0, 0}}};
-  std::array<Bounded, 16> found;
-  OpenPair pair(a, b, X_AB);
+  constexpr unsigned k_all = (1u << k_pairs) - 1u;
+  const NodePairGaps gaps(a, b, X_AB);
+  std::vector<Bounded> stack{{-std::numeric_limits<double>::infinity(), 0, 0}};
+  std::array<Bounded, k_pairs> found;
   best.distance = std::numeric_limits<double>::infinity();
   while (!stack.empty()) {
-    const Bounded next = stack.back();
+    const Bounded here = stack.back();
     stack.pop_back();
-    if (next.gap >= best.distance) continue;
-    pair.open(next.entry);
+    if (here.gap >= best.distance) continue;
+    double gap[k_pairs];
+    const auto node_a = static_cast<std::size_t>(here.node_a), node_b = static_cast<std::size_t>(here.node_b);
+    gaps.measure(a.nodes[node_a], b.nodes[node_b], gap);
+    best.count.sphere_tests += k_pairs;
+    const Descent below(here.node_a, a.below[node_a], here.node_b, b.below[node_b], k_all);
     std::size_t count = 0;
-    pair.for_each_nearer(best.distance, best.count, [&](std::size_t i, std::size_t j, double gap) {
-      if (pair.leaves(i, j)) {
-        best.distance = gap;
-        best.leaf_a = ~pair.children(i, j).first;
-        best.leaf_b = ~pair.children(i, j).second;
-      } else {
-        found[count++] = {gap, pair.children(i, j)};
+    for (unsigned pair = 0; pair < k_pairs; ++pair) {
+      if (!(gap[pair] < best.distance)) continue;  // or an empty slot
+      const std::int32_t in_a = below.in_a(pair), in_b = below.in_b(pair);
+      if (!below.leaves) {
+        found[count++] = {gap[pair], in_a, in_b};
+      } else if (const double exact = LeafPair(a, b, X_AB, in_a, in_b).gap(); exact < best.distance) {
+        best.distance = exact;
+        best.leaf_a = in_a;
+        best.leaf_b = in_b;
       }
-    });
+    }
     // The most promising pair is opened first, i.e. pushed last.
     const auto end = found.begin() + static_cast<std::ptrdiff_t>(count);
     std::sort(found.begin(), end, [](const Bounded& p, const Bounded& q) { return p.gap > q.gap; });
@@ -446,20 +367,23 @@ HWY_EXPORT(Closest);
 PenetrationSum penetration(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
                            const Eigen::Vector3d& about, TraversalScratch& scratch) {
   PenetrationSum sum;
-  HWY_DYNAMIC_DISPATCH(SumAll)(a, b, X_AB, law, about, scratch, sum);
+  const auto placement = NodePlacement::of(a, b, X_AB);
+  if (!placement.apart) HWY_DYNAMIC_DISPATCH(SumAll)(a, b, X_AB, placement, law, about, scratch, sum);
   return sum;
 }
 
 PenetrationSum penetration_within(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
                                   const Eigen::Vector3d& about, std::uint64_t budget) {
   PenetrationSum sum;
-  HWY_DYNAMIC_DISPATCH(SumWithin)(a, b, X_AB, law, about, budget, sum);
+  const auto placement = NodePlacement::of(a, b, X_AB);
+  if (!placement.apart) HWY_DYNAMIC_DISPATCH(SumWithin)(a, b, X_AB, placement, law, about, budget, sum);
   return sum;
 }
 
 SphereContact overlaps(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch) {
   SphereContact contact;
-  contact.any = HWY_DYNAMIC_DISPATCH(AnyOverlap)(a, b, X_AB, scratch, contact.count);
+  const auto placement = NodePlacement::of(a, b, X_AB);
+  if (!placement.apart) contact.any = HWY_DYNAMIC_DISPATCH(AnyOverlap)(a, b, X_AB, placement, scratch, contact.count);
   return contact;
 }
 

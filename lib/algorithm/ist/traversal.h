@@ -1,10 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
-#include <vector>
 
 #include <sixdof/algorithm/ist/hierarchy.h>
+#include <sixdof/algorithm/ist/node_pair.h>
 #include <sixdof/geometry/pose.h>
 
 namespace sixdof::ist {
@@ -18,7 +17,8 @@ enum class PairForce {
 
 /// Memory that a traversal reuses from query to query.
 struct TraversalScratch {
-  std::vector<std::pair<std::int32_t, std::int32_t>> waiting;  ///< Pairs of nodes to be opened.
+  PairList waiting;  ///< Pairs of nodes to be opened.
+  PairList leaves;   ///< Pairs of leaves that may overlap.
 };
 
 struct TraversalCount {

@@ -13,31 +13,35 @@ namespace sixdof::ist {
 namespace {
 
 constexpr double k_rounding = 1e-12;
+constexpr double k_single = 1e-6;  // some roundings to single precision of numbers up to 1
 
-/// Checks that every leaf below `node` lies in `bound`, counts leaves and returns the volume below.
+/// Checks that every leaf below `node` lies in `bound` and in all its ancestors, counts leaves and returns the volume
+/// below.
 double check_subtree(const SphereTree& tree, std::size_t node, const Sphere& bound, std::vector<int>& seen,
                      std::vector<Sphere> ancestors) {
   ancestors.push_back(bound);
   double volume = 0.0;
-  for (std::size_t slot = 0; slot < 4; ++slot) {
-    const SphereNode& n = tree.nodes[node];
-    if (n.child[slot] == SphereNode::k_empty) {
-      EXPECT_LT(n.r[slot], 0.0);
-      continue;
-    }
+  const std::size_t children = tree.children(node);
+  EXPECT_GE(children, 1u);
+  for (std::size_t slot = children; slot < SphereNode::k_slots; ++slot) EXPECT_LT(tree.nodes[node].r[slot], 0.0f);
+  for (std::size_t slot = 0; slot < children; ++slot) {
     double below = 0.0;
-    if (n.child[slot] < 0) {
-      const auto leaf = static_cast<std::size_t>(~n.child[slot]);
+    const Sphere ball = tree.ball(node, slot);
+    if (tree.below[node] < 0) {
+      const std::size_t leaf = static_cast<std::size_t>(~tree.below[node]) + slot;
       ++seen[leaf];
       below = tree.leaves[leaf].volume();
+      ancestors.push_back(ball);
       for (const Sphere& ancestor : ancestors) {
         const double reach = (tree.leaves[leaf].center - ancestor.center).norm() + tree.leaves[leaf].radius;
         EXPECT_LE(reach, ancestor.radius * (1.0 + k_rounding));
       }
+      ancestors.pop_back();
+      EXPECT_LT(ball.radius, tree.leaves[leaf].radius + k_single * tree.bound.radius);
     } else {
-      below = check_subtree(tree, static_cast<std::size_t>(n.child[slot]), n.sphere(slot), seen, ancestors);
+      below = check_subtree(tree, static_cast<std::size_t>(tree.below[node]) + slot, ball, seen, ancestors);
     }
-    EXPECT_NEAR(n.volume[slot], below, k_rounding * below);
+    EXPECT_NEAR(tree.volumes[node][slot], below, k_rounding * below);
     volume += below;
   }
   return volume;
@@ -69,6 +73,8 @@ TEST(SphereTree, SameBitsForAnyNumberOfThreads) {
   const SphereTree one = build_with(1), two = build_with(2);
   ASSERT_EQ(one.nodes.size(), two.nodes.size());
   EXPECT_EQ(std::memcmp(one.nodes.data(), two.nodes.data(), one.nodes.size() * sizeof(SphereNode)), 0);
+  EXPECT_EQ(one.below, two.below);
+  EXPECT_EQ(one.volumes, two.volumes);
 }
 
 TEST(SphereTree, RefusesNothing) { EXPECT_THROW(build_sphere_tree({}), BadArgument); }

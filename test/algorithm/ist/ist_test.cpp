@@ -136,6 +136,25 @@ TEST_F(IstTest, DistanceIsFromAboveAndWitnessesRealiseIt) {
   EXPECT_TRUE(query->collide({Eigen::Matrix3d::Identity(), {0.1, 0.2, 1.0}}).value);
 }
 
+TEST_F(IstTest, FarApartThereIsNothingAndAPoseThatIsNotFiniteIsAFailure) {
+  const Mesh mesh = load_model("torus-knot-1k");
+  const auto query = prepare(mesh, mesh, {"spheres=100"});
+  for (const double reach : {3.0, 1e9, 1e300}) {
+    const Pose X = Pose::from_quaternion(0.8, 0.36, 0.0, 0.48, {0.0, reach, 0.0});
+    EXPECT_FALSE(query->collide(X).value) << reach;
+    const auto response = query->respond(X);
+    ASSERT_TRUE(response.ok()) << reach;
+    EXPECT_EQ(response.value.force, Eigen::Vector3d::Zero()) << reach;
+    EXPECT_EQ(response.value.volume, 0.0) << reach;
+  }
+  Pose nowhere = Pose::from_quaternion(0.8, 0.36, 0.0, 0.48, {0.3, 0.4, 0.2});
+  nowhere.R(1, 2) = std::nan("");
+  EXPECT_EQ(query->collide(nowhere).status, Status::non_finite);
+  EXPECT_EQ(query->distance(nowhere).status, Status::non_finite);
+  EXPECT_EQ(query->respond(nowhere).status, Status::non_finite);
+  EXPECT_FALSE(query->diagnosis().empty());
+}
+
 TEST_F(IstTest, KeptPackingGivesTheSameAnswer) {
   const std::string cache = ::testing::TempDir() + "/sixdof_ist_cache";
   std::filesystem::remove_all(cache);

@@ -73,13 +73,69 @@ TEST_F(TraversalTest, SumsEqualThoseOverAllPairs) {
 
 TEST_F(TraversalTest, SeparationEqualsTheSmallestGap) {
   std::mt19937_64 random(32);
-  for (int i = 0; i < 30; ++i) {
-    Pose X = random_pose(random, 0.4);
-    X.t += X.t.normalized() * 4.0;
-    const double gap = brute_force_gap(a_, b_, X);
-    ASSERT_GT(gap, 0.0);
-    EXPECT_NEAR(separation(a_, b_, X).distance, gap, k_rounding);
-    EXPECT_NEAR(separation(b_, a_, X.inverse()).distance, gap, k_rounding);
+  for (const double reach : {4.0, 30.0, 1e4, 1e7}) {
+    std::uint64_t tests = 0;
+    for (int i = 0; i < 20; ++i) {
+      Pose X = random_pose(random, 0.4);
+      X.t += X.t.normalized() * reach;
+      const double gap = brute_force_gap(a_, b_, X);
+      ASSERT_GT(gap, 0.0);
+      EXPECT_NEAR(separation(a_, b_, X).distance, gap, k_rounding * reach);
+      EXPECT_NEAR(separation(b_, a_, X.inverse()).distance, gap, k_rounding * reach);
+      tests += separation(a_, b_, X).count.sphere_tests;
+    }
+    EXPECT_LT(tests / 20, a_.leaves.size() * b_.leaves.size() / 20) << reach;  // and it visits few of them
+  }
+}
+
+/// The traversal reckons in single precision in units of one of the bodies.
+TEST_F(TraversalTest, BodiesOfAnySizeAndOfVeryDifferentSizesAnswerAsOverAllPairs) {
+  std::mt19937_64 random(36);
+  const auto scaled = [](std::vector<Sphere> spheres, double factor) {
+    for (Sphere& s : spheres) {
+      s.center *= factor;
+      s.radius *= factor;
+    }
+    return build_sphere_tree(std::move(spheres));
+  };
+  for (const auto& [size_a, size_b] : {std::pair{1e-12, 1e-12}, {1e12, 1e12}, {1.0, 1e-4}, {1e-4, 1.0}, {1e9, 1e3}}) {
+    const SphereTree a = scaled(random_spheres(300, 23), size_a), b = scaled(random_spheres(200, 24), size_b);
+    int touching = 0;
+    for (int i = 0; i < 20; ++i) {
+      const Pose X = random_pose(random, 0.5 * std::max(size_a, size_b));
+      const PenetrationSum truth = brute_force(a, b, X, PairForce::volume, about_);
+      const PenetrationSum sum = penetration(a, b, X, PairForce::volume, about_, scratch_);
+      EXPECT_EQ(sum.count.leaf_pairs, truth.count.leaf_pairs) << size_a << ' ' << size_b;
+      EXPECT_NEAR(sum.volume, truth.volume, k_rounding * truth.volume);
+      EXPECT_LE((sum.force - truth.force).norm(), k_rounding * truth.volume);
+      EXPECT_EQ(overlaps(a, b, X, scratch_).any, truth.count.leaf_pairs > 0);
+      touching += truth.count.leaf_pairs > 0 ? 1 : 0;
+    }
+    EXPECT_GT(touching, 2) << size_a << ' ' << size_b;
+  }
+}
+
+/// Two spheres that just touch, or just do not: nothing is lost to the rounding of the tree.
+TEST_F(TraversalTest, SpheresThatOverlapByLittleAreFound) {
+  std::mt19937_64 random(37);
+  for (int i = 0; i < 200; ++i) {
+    Pose X = random_pose(random, 1.0);
+    const auto of = [&](const SphereTree& tree) { return tree.leaves[random() % tree.leaves.size()]; };
+    // One leaf in touch, all others away: b's leaf is alone.
+    const SphereTree lonely = build_sphere_tree({of(b_)});
+    const Sphere ball = lonely.leaves.front();
+    X.t += X.t.normalized() * 5.0;
+    const double gap = brute_force_gap(a_, lonely, X);
+    const SphereSeparation nearest = separation(a_, lonely, X);
+    const Eigen::Vector3d way = a_.leaves[static_cast<std::size_t>(nearest.leaf_a)].center - X * ball.center;
+    X.t += way.normalized() * (gap + 1e-9);
+    const PenetrationSum truth = brute_force(a_, lonely, X, PairForce::volume, about_);
+    ASSERT_GT(truth.count.leaf_pairs, 0u);
+    EXPECT_EQ(penetration(a_, lonely, X, PairForce::volume, about_, scratch_).count.leaf_pairs, truth.count.leaf_pairs);
+    EXPECT_TRUE(overlaps(a_, lonely, X, scratch_).any);
+    X.t -= way.normalized() * 2e-9;
+    ASSERT_GT(brute_force_gap(a_, lonely, X), 0.0);
+    EXPECT_FALSE(overlaps(a_, lonely, X, scratch_).any);
   }
 }
 
@@ -142,8 +198,9 @@ TEST_F(TraversalTest, EveryInstructionSetGivesTheSameBits) {
   std::vector<PenetrationSum> reference;
   for (const Pose& X : poses) reference.push_back(penetration(a_, b_, X, PairForce::volume, about_, scratch_));
   int targets = 0;
-  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
-    hwy::SetSupportedTargetsForTest(left & -left);
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const PenetrationSum sum = penetration(a_, b_, poses[i], PairForce::volume, about_, scratch_);
       EXPECT_EQ(sum.volume, reference[i].volume);
