@@ -47,6 +47,7 @@ class RayCastSolver final : public RaySolver {
              std::span<double> residuals) override {
     ray_.direction = direction;
     cast_.direction = direction;
+    cast_.front.clear();
     last_direction_.resize(aims.size());
     std::optional<ray_cast::CastPair> last_aim;
     bool reachable = true;

@@ -9,7 +9,8 @@ namespace sixdof {
 /// The sphere method without an outer iteration: B's path is a ray that is cast against all differences of a point of B
 /// and a point of A, grown by the aim. The largest travel s with dist(A, B + s u) = aim is the largest over all pairs
 /// of triangles, so one branch and bound over two trees finds it, whatever the surfaces do in between. It is the first
-/// hit from outside: no resolution limits how narrow a hit may be.
+/// hit from outside: no resolution limits how narrow a hit may be. A ray's aims share that work: each goes on from what
+/// the wider one before it could not cull.
 ///
 /// A hit that lies outside another by less than k_ray_cast_tie, in units of the meshes' radii and the aim, may give way
 /// to it; of faces that touch along their whole extent only one is looked into.

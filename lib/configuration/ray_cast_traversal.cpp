@@ -14,266 +14,26 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-// Let S be the set of differences b - a (b in B at travel 0, a in A), a Minkowski sum of B and the mirrored A. B at
-// travel t is at least d away from A for every t >= t0 if some unit vector n with n . u >= 0 has
-//   n . (s + t0 u) >= d for all s in S:
-// moving on along u only adds to the left side. A pair of volumes that passes this test for the travel t0 found so far
-// cannot raise it. That is all there is: no ray parameter is ever divided by n . u, grazing rays are no special case.
-//
-// Axes n tried for a pair of volumes, each the intersection of a box, a ball and a slab:
-//   - the normal at the closest points found so far: where surfaces are smooth it is close to the best for every pair
-//     that matters, and slabs make it tight to second order in the size of the patches;
-//   - from centre to centre, with slabs: tight for small patches at a distance;
-//   - from box to box, where the nearest point of the sum of the boxes lies; bounds at that travel are lowered by the
-//     way there;
-//   - the normals of the slabs.
-// Where centres come nearer as t grows beyond t0, boxes and centres are taken at the nearest travel instead.
-//
-// Nothing here uses fused multiply-add, and all else (+ - * / sqrt min max) is rounded by IEEE rules lane by lane. So
-// which pairs are looked into, and in what order, is the same on every instruction set.
+#include <sixdof/configuration/ray_cast_bounds-inl.h>
+#include <sixdof/configuration/ray_cast_leaves-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Lanes = hn::CappedTag<float, Tree::k_width>;
-using V = hn::Vec<Lanes>;
-
-constexpr Lanes k_lanes;
-constexpr std::size_t k_width = Tree::k_width;
-constexpr std::size_t k_leaf_triangles = Tree::k_leaf_triangles;
-
-/// Bounds carry a few roundings (6e-8 each) of numbers up to Cast::size(): three of turning a corner, one or two each
-/// of fitting, shifting and adding.
-constexpr float k_slack = 1e-6f;
-
-/// Axes are shorter than unit vectors by more than their rounding: a gap along them never exceeds the distance.
-constexpr double k_axis_length = 1.0 - 4e-7;
-
-/// Squares of lengths below this are taken for this, so that nothing is divided by zero.
-constexpr float k_tiny_square = 1e-36f;
-
-HWY_INLINE V set(float x) { return hn::Set(k_lanes, x); }
-HWY_INLINE V mul_add(V x, V y, V z) { return hn::Add(hn::Mul(x, y), z); }
-HWY_INLINE V sub_mul(V z, V x, V y) { return hn::Sub(z, hn::Mul(x, y)); }
-
-/// The ray in floats.
-struct Ray {
-  float u[3];
-  float axis[3];
-  float aim;
-  float slack;
-};
-
-/// Smallest n . (p - centre of the ball) over a volume: over the ball, and over the slab with what is left of n over
-/// the ball. Both n and the slab's normal are shorter than unit vectors by more than their rounding, so the square root
-/// is never below the length of what is left.
-HWY_INLINE V lowest(const V* HWY_RESTRICT n, V radius, const V* HWY_RESTRICT normal, V slab_offset, V slab_half) {
-  const V along = mul_add(n[2], normal[2], mul_add(n[1], normal[1], hn::Mul(n[0], normal[0])));
-  const V rest = hn::Sqrt(hn::Max(sub_mul(set(1.0f), along, along), hn::Zero(k_lanes)));
-  V slab = sub_mul(hn::Mul(along, slab_offset), hn::Abs(along), slab_half);
-  slab = sub_mul(slab, rest, radius);
-  return hn::Max(hn::Neg(radius), slab);
-}
-
-/// The same for one volume.
-HWY_INLINE float lowest(const float* n, const CastVolume& v) {
-  const float along = n[0] * v.normal[0] + n[1] * v.normal[1] + n[2] * v.normal[2];
-  const float rest = std::sqrt(std::max(1.0f - along * along, 0.0f));
-  return std::max(-v.ball_radius, along * v.slab_offset - std::abs(along) * v.slab_half - rest * v.ball_radius);
-}
-
-/// By how much each child's distance from `fixed` surely exceeds the aim from cast.travel on.
-/// @param shift travel * u
-/// @param heights of the balls' centres above the fixed one's along the axis found so far: the lowest is most likely to
-/// hold what hits first
-HWY_INLINE void bound_children(const CastNode& node, const CastVolume& fixed, const Ray& ray, const float* shift,
-                               float* HWY_RESTRICT gaps, float* HWY_RESTRICT heights) {
-  const V zero = hn::Zero(k_lanes);
-  const V aim = set(ray.aim);
-  const V enough = set(ray.slack);
-  float at[3], box_at[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    at[k] = fixed.ball_center[k] + shift[k];
-    box_at[k] = fixed.center[k] + shift[k];
-  }
-  const float axis_lowest = lowest(ray.axis, fixed) - ray.aim;
-  // The fixed slab's normal, turned to where B comes from.
-  const float toward = fixed.normal[0] * ray.u[0] + fixed.normal[1] * ray.u[1] + fixed.normal[2] * ray.u[2];
-  const float sign = toward < 0.0f ? -1.0f : 1.0f;
-  const float fixed_lowest = sign * fixed.slab_offset - fixed.slab_half - ray.aim;
-
-  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    V w[3], normal[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      w[k] = hn::Add(hn::Load(k_lanes, node.ball_center[k] + i), set(at[k]));
-      normal[k] = hn::Load(k_lanes, node.normal[k] + i);
-    }
-    const V radius = hn::Load(k_lanes, node.ball_radius + i);
-    const V slab_offset = hn::Load(k_lanes, node.slab_offset + i);
-    const V slab_half = hn::Load(k_lanes, node.slab_half + i);
-    V gap;
-    {  // The axis found so far.
-      const V n[3] = {set(ray.axis[0]), set(ray.axis[1]), set(ray.axis[2])};
-      V middle = hn::Mul(n[0], w[0]);
-      middle = mul_add(n[1], w[1], middle);
-      middle = mul_add(n[2], w[2], middle);
-      hn::Store(middle, k_lanes, heights + i);
-      gap = hn::Add(hn::Add(middle, lowest(n, radius, normal, slab_offset, slab_half)), set(axis_lowest));
-    }
-    if (hn::AllTrue(k_lanes, hn::Gt(gap, enough))) {
-      hn::Store(gap, k_lanes, gaps + i);
-      continue;
-    }
-    V later = zero;  // how much farther B goes until the centres are nearest
-    for (std::size_t k = 0; k < 3; ++k) later = sub_mul(later, w[k], set(ray.u[k]));
-    later = hn::Max(later, zero);
-    {  // From centre to centre at the nearest travel.
-      V near[3];
-      V length2 = set(k_tiny_square);
-      for (std::size_t k = 0; k < 3; ++k) {
-        near[k] = mul_add(later, set(ray.u[k]), w[k]);
-        length2 = mul_add(near[k], near[k], length2);
-      }
-      const V length = hn::Sqrt(length2);
-      const V inverse = hn::Div(set(static_cast<float>(k_axis_length)), length);
-      const V n[3] = {hn::Mul(near[0], inverse), hn::Mul(near[1], inverse), hn::Mul(near[2], inverse)};
-      const V fixed_normal[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
-      V centers = hn::Add(length, lowest(n, radius, normal, slab_offset, slab_half));
-      centers = hn::Add(centers,
-                        lowest(n, set(fixed.ball_radius), fixed_normal, set(fixed.slab_offset), set(fixed.slab_half)));
-      gap = hn::Max(gap, hn::Sub(centers, aim));
-    }
-    {  // From box to box at the nearest travel.
-      V squared = zero;
-      V up_box = zero;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const V half = hn::Add(hn::Load(k_lanes, node.half[k] + i), set(fixed.half[k]));
-        const V across = mul_add(later, set(ray.u[k]), hn::Add(hn::Load(k_lanes, node.center[k] + i), set(box_at[k])));
-        const V apart = hn::Max(hn::Sub(hn::Abs(across), half), zero);
-        squared = mul_add(apart, apart, squared);
-        up_box = mul_add(hn::CopySign(apart, across), set(ray.u[k]), up_box);
-      }
-      // That is at the travel where the centres are nearest; from cast.travel on it is less by the way there.
-      const V length = hn::Sqrt(hn::Max(squared, set(k_tiny_square)));
-      const V from_now_on = hn::Sub(length, hn::Div(hn::Mul(later, up_box), length));
-      const V boxes = hn::IfThenElseZero(hn::Ge(up_box, zero), from_now_on);
-      gap = hn::Max(gap, hn::Sub(boxes, aim));
-    }
-    {  // The slabs' normals.
-      const V fixed_n[3] = {set(sign * fixed.normal[0]), set(sign * fixed.normal[1]), set(sign * fixed.normal[2])};
-      V middle = zero;
-      V child_up = zero;
-      V child_middle = slab_offset;
-      for (std::size_t k = 0; k < 3; ++k) {
-        middle = mul_add(fixed_n[k], w[k], middle);
-        child_up = mul_add(normal[k], set(ray.u[k]), child_up);
-        child_middle = mul_add(normal[k], w[k], child_middle);
-      }
-      middle = hn::Add(middle, hn::Add(lowest(fixed_n, radius, normal, slab_offset, slab_half), set(fixed_lowest)));
-      const V turned = hn::IfThenElse(hn::Lt(child_up, zero), hn::Neg(child_middle), child_middle);
-      const V fixed_normal[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
-      const V flip = hn::CopySign(set(1.0f), child_up);
-      const V child_n[3] = {hn::Mul(flip, normal[0]), hn::Mul(flip, normal[1]), hn::Mul(flip, normal[2])};
-      const V over =
-          lowest(child_n, set(fixed.ball_radius), fixed_normal, set(fixed.slab_offset), set(fixed.slab_half));
-      gap = hn::Max(gap, hn::Max(middle, hn::Sub(hn::Add(hn::Sub(turned, slab_half), over), aim)));
-    }
-    hn::Store(gap, k_lanes, gaps + i);
-  }
-}
-
-/// Some pairs of triangles of two leaves.
-struct LeafPair {
-  static constexpr std::size_t k_pairs = 8;
-  HWY_ALIGN float a[3][3][k_pairs];  // [corner][axis][pair]
-  HWY_ALIGN float b[3][3][k_pairs];
-  HWY_ALIGN float gaps[k_pairs];
-};
-
-/// By how much each pair's distance surely exceeds the aim from cast.travel on: Frank-Wolfe steps towards the point of
-/// S + {t u, t >= cast.travel} that is nearest to the origin.
-HWY_INLINE void bound_triangles(LeafPair& pairs, const Ray& ray) {
-  constexpr int k_steps = 5;
-  const V zero = hn::Zero(k_lanes);
-  const V tiny = set(k_tiny_square);
-  const V enough = set(ray.slack);
-  for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
-    const auto load = [i](const float* p) { return hn::Load(k_lanes, p + i); };
-    V x[3] = {set(ray.axis[0]), set(ray.axis[1]), set(ray.axis[2])};
-    V best = set(-Tree::k_empty);
-    for (int step = 0; step <= k_steps; ++step) {
-      // The corners that lie lowest along x.
-      V low_a, low_b;
-      V p[3], q[3];
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        V along_a = hn::Mul(x[0], load(pairs.a[corner][0]));
-        V along_b = hn::Mul(x[0], load(pairs.b[corner][0]));
-        for (std::size_t k = 1; k < 3; ++k) {
-          along_a = mul_add(x[k], load(pairs.a[corner][k]), along_a);
-          along_b = mul_add(x[k], load(pairs.b[corner][k]), along_b);
-        }
-        if (corner == 0) {
-          low_a = along_a;
-          low_b = along_b;
-          for (std::size_t k = 0; k < 3; ++k) {
-            p[k] = load(pairs.a[0][k]);
-            q[k] = load(pairs.b[0][k]);
-          }
-        } else {
-          const auto lower_a = hn::Lt(along_a, low_a);
-          const auto lower_b = hn::Lt(along_b, low_b);
-          low_a = hn::Min(along_a, low_a);
-          low_b = hn::Min(along_b, low_b);
-          for (std::size_t k = 0; k < 3; ++k) {
-            p[k] = hn::IfThenElse(lower_a, load(pairs.a[corner][k]), p[k]);
-            q[k] = hn::IfThenElse(lower_b, load(pairs.b[corner][k]), q[k]);
-          }
-        }
-      }
-      V length2 = hn::Mul(x[0], x[0]);
-      for (std::size_t k = 1; k < 3; ++k) length2 = mul_add(x[k], x[k], length2);
-      const V length = hn::Sqrt(hn::Max(length2, tiny));
-      const V gap = hn::Sub(hn::Div(hn::Add(low_a, low_b), length), set(ray.aim));
-      best = hn::Max(best, gap);
-      if (step == k_steps || hn::AllTrue(k_lanes, hn::Gt(best, enough))) break;
-      V d[3];
-      for (std::size_t k = 0; k < 3; ++k) d[k] = hn::Add(p[k], q[k]);
-      if (step == 0) {  // the axis is no point of S; d is
-        for (std::size_t k = 0; k < 3; ++k) x[k] = d[k];
-      } else {
-        V down = zero;
-        V norm = tiny;
-        for (std::size_t k = 0; k < 3; ++k) {
-          d[k] = hn::Sub(d[k], x[k]);
-          down = sub_mul(down, x[k], d[k]);
-          norm = mul_add(d[k], d[k], norm);
-        }
-        const V t = hn::Min(hn::Max(hn::Div(down, norm), zero), set(1.0f));
-        for (std::size_t k = 0; k < 3; ++k) x[k] = mul_add(t, d[k], x[k]);
-      }
-      V up = zero;
-      for (std::size_t k = 0; k < 3; ++k) up = sub_mul(up, x[k], set(ray.u[k]));
-      up = hn::Max(up, zero);
-      for (std::size_t k = 0; k < 3; ++k) x[k] = mul_add(up, set(ray.u[k]), x[k]);
-    }
-    hn::Store(best, k_lanes, pairs.gaps + i);
-  }
-}
-
 struct Descent {
   Cast& cast;
+  CastFront& front;
   const CastTree& tree_a;
   const CastTree& tree_b;
   Ray ray;
-  float shift[3];
   const double tie;
 
-  explicit Descent(Cast& c) : cast(c), tree_a(c.a), tree_b(c.b), tie(k_cast_tie * c.size()) {
+  explicit Descent(Cast& c) : cast(c), front(c.front), tree_a(c.a), tree_b(c.b), tie(k_cast_tie * c.size()) {
     for (int k = 0; k < 3; ++k) ray.u[k] = static_cast<float>(cast.direction[k]);
     ray.aim = static_cast<float>(cast.aim);
     ray.slack = static_cast<float>(k_slack * cast.size());
+    ray.reach = static_cast<float>(1.01 * cast.size());
     update();
   }
 
@@ -281,8 +41,9 @@ struct Descent {
   void update() {
     for (int k = 0; k < 3; ++k) {
       ray.axis[k] = static_cast<float>(k_axis_length * cast.axis[k]);
-      shift[k] = static_cast<float>(cast.travel * cast.direction[k]);
+      ray.shift[k] = static_cast<float>(cast.travel * cast.direction[k]);
     }
+    ray.travel = static_cast<float>(cast.travel);
   }
 
   /// What is opened next is not far.
@@ -296,11 +57,11 @@ struct Descent {
   }
 
   static const CastVolume& volume_of(const CastTree& tree, std::uint32_t child) {
-    return child == Cast::Open::k_root ? tree.root_volume() : tree.volume(child);
+    return child == CastFront::k_root ? tree.root_volume() : tree.volume(child);
   }
 
   static CastChild child_of(const CastTree& tree, std::uint32_t child) {
-    return child == Cast::Open::k_root ? CastChild::node(0) : tree.nodes()[child / k_width].child[child % k_width];
+    return child == CastFront::k_root ? CastChild::node(0) : tree.nodes()[child / k_width].child[child % k_width];
   }
 
   /// Whether slab `x` and slab `y` with a box around are apart by the aim, up to a tie, from cast.travel on.
@@ -320,7 +81,7 @@ struct Descent {
 
   /// Whether two flat patches tie with what was found: in double precision, where floats cannot tell.
   bool ties(std::uint32_t a, std::uint32_t b) const {
-    if (a == Cast::Open::k_root || b == Cast::Open::k_root) return false;
+    if (a == CastFront::k_root || b == CastFront::k_root) return false;
     const CastSlab slab_a = tree_a.slab(a);
     const CastSlab slab_b = tree_b.slab(b);
     return slabs_apart(slab_a, slab_b, tree_b.volume(b)) || slabs_apart(slab_b, slab_a, tree_a.volume(a));
@@ -337,25 +98,34 @@ struct Descent {
     }
   }
 
-  void look_into_leaves(std::uint32_t leaf_a, std::uint32_t leaf_b) {
+  /// @param line of the pair, to be set
+  void look_into_leaves(std::uint32_t leaf_a, std::uint32_t leaf_b, const CastFront::Open& line) {
     ++cast.counts.leaf_pairs;
     const CastLeaf& a = tree_a.leaves()[leaf_a];
     const CastLeaf& b = tree_b.leaves()[leaf_b];
-    const Tree::Child child_a = tree_a.mesh().leaf_children()[leaf_a];
-    const Tree::Child child_b = tree_b.mesh().leaf_children()[leaf_b];
 
     // Along the axis found so far, all pairs at once.
     float low_a[k_leaf_triangles], low_b[k_leaf_triangles];
     lowest_corners(a, low_a);
     lowest_corners(b, low_b);
-    const float along = ray.axis[0] * shift[0] + ray.axis[1] * shift[1] + ray.axis[2] * shift[2] - ray.aim;
+    const float along = ray.axis[0] * ray.shift[0] + ray.axis[1] * ray.shift[1] + ray.axis[2] * ray.shift[2] - ray.aim;
+    float least =
+        along + *std::min_element(low_a, low_a + k_leaf_triangles) + *std::min_element(low_b, low_b + k_leaf_triangles);
+    if (least > ray.slack) return set_line(line, least, ray.axis_slope());
+
+    const Tree::Child child_a = tree_a.mesh().leaf_children()[leaf_a];
+    const Tree::Child child_b = tree_b.mesh().leaf_children()[leaf_b];
+    least = CastFront::k_always;  // of the pairs that are culled
+    float steepest = ray.axis_slope();
     std::uint32_t left[k_leaf_triangles * k_leaf_triangles];  // 4 i + j for pair (i, j)
     float gap[k_leaf_triangles * k_leaf_triangles];
     std::size_t left_count = 0;
     for (std::uint32_t i = 0; i < child_a.count(); ++i) {
       for (std::uint32_t j = 0; j < child_b.count(); ++j) {
         left[left_count] = static_cast<std::uint32_t>(k_leaf_triangles) * i + j;
-        left_count += along + low_a[i] + low_b[j] > ray.slack ? 0 : 1;
+        const float over = along + low_a[i] + low_b[j];
+        left_count += over > ray.slack ? 0 : 1;
+        least = over > ray.slack ? std::min(least, over) : least;
       }
     }
 
@@ -364,21 +134,14 @@ struct Descent {
     LeafPair pairs;
     for (std::size_t first = 0; first < left_count; first += LeafPair::k_pairs) {
       const std::size_t chunk = std::min(LeafPair::k_pairs, left_count - first);
-      for (std::size_t k = 0; k < 3; ++k) {
-        // Relative to one corner, so that only the floats given round.
-        const float origin = a.corner[0][k][0];
-        const float b_shift = origin + shift[k];
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-          for (std::size_t n = 0; n < LeafPair::k_pairs; ++n) {
-            const std::uint32_t pair = left[first + (n < chunk ? n : 0)];
-            pairs.a[corner][k][n] = a.corner[corner][k][pair / k_leaf_triangles] - origin;
-            pairs.b[corner][k][n] = b.corner[corner][k][pair % k_leaf_triangles] + b_shift;
-          }
-        }
-      }
+      pick_pairs(a, b, left + first, chunk, pairs);
       bound_triangles(pairs, ray);
       for (std::size_t n = 0; n < chunk; ++n) {
-        if (pairs.gaps[n] > ray.slack) continue;
+        if (pairs.gaps[n] > ray.slack) {
+          least = std::min(least, pairs.gaps[n]);
+          steepest = std::max(steepest, pairs.slopes[n]);
+          continue;
+        }
         const std::uint32_t pair = left[first + n];
         gap[pair] = pairs.gaps[n];
         std::size_t at = count++;
@@ -386,6 +149,8 @@ struct Descent {
         order[at] = pair;
       }
     }
+    // Below the least gap with the steepest slope lie the lines of all.
+    set_line(line, count == 0 ? least : CastFront::k_never, steepest);
     for (std::size_t n = 0; n < count; ++n) {
       const std::uint32_t i = order[n] / k_leaf_triangles;
       const std::uint32_t j = order[n] % k_leaf_triangles;
@@ -393,49 +158,199 @@ struct Descent {
     }
   }
 
-  void run() {
-    std::vector<Cast::Open>& open = cast.open;
-    open.clear();
-    open.push_back({Cast::Open::k_root, Cast::Open::k_root, 0.0f});
-    while (!open.empty()) {
-      const Cast::Open top = open.back();
-      open.pop_back();
-      const CastChild child_a = child_of(tree_a, top.a);
-      const CastChild child_b = child_of(tree_b, top.b);
+  /// @param chosen 4 i + j for pair (i, j)
+  void pick_pairs(const CastLeaf& a, const CastLeaf& b, const std::uint32_t* chosen, std::size_t count,
+                  LeafPair& pairs) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Relative to one corner, so that only the floats given round.
+      const float origin = a.corner[0][k][0];
+      const float b_shift = origin + ray.shift[k];
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (std::size_t n = 0; n < LeafPair::k_pairs; ++n) {
+          const std::uint32_t pair = chosen[n < count ? n : 0];
+          pairs.a[corner][k][n] = a.corner[corner][k][pair / k_leaf_triangles] - origin;
+          pairs.b[corner][k][n] = b.corner[corner][k][pair % k_leaf_triangles] + b_shift;
+        }
+      }
+    }
+  }
+
+  void set_line(const CastFront::Open& child, float gap, float slope) {
+    front.lines[child.visit].low[child.lane] = gap + ray.aim - slope * ray.travel;
+    front.lines[child.visit].slope[child.lane] = slope;
+  }
+
+  bool is_culled(const CastFront::Open& child) const {
+    const CastFront::Lines& lines = front.lines[child.visit];
+    return lines.low[child.lane] + lines.slope[child.lane] * ray.travel - ray.aim > ray.slack;
+  }
+
+  /// What the worst of a visit's lines says, less the aim.
+  float least_gap(std::uint32_t visit) const {
+    const CastFront::Lines& lines = front.lines[visit];
+    V least = set(CastFront::k_always);
+    for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+      const V slope = hn::Load(k_lanes, lines.slope + i);
+      least = hn::Min(least, mul_add(slope, set(ray.travel), hn::Load(k_lanes, lines.low + i)));
+    }
+    return hn::GetLane(hn::MinOfLanes(k_lanes, least)) - ray.aim;
+  }
+
+  /// Bounds a visit's children, which raises their lines, and leaves for later what no line culls.
+  void look_into(std::uint32_t visit) {
+    ++cast.counts.nodes;
+    const auto [index, other, opens_a] = front.visits[visit];
+    const CastTree& tree = opens_a ? tree_a : tree_b;
+    const CastNode& node = tree.nodes()[index];
+    const CastVolume& fixed = volume_of(opens_a ? tree_b : tree_a, other);
+    HWY_ALIGN float gaps[k_width], slopes[k_width], heights[k_width];
+    bound_children(node, fixed, ray, gaps, slopes, heights);
+    CastFront::Lines& lines = front.lines[visit];
+    std::uint32_t left = 0;
+    for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+      const V low = hn::Load(k_lanes, lines.low + i);
+      const V slope = hn::Load(k_lanes, lines.slope + i);
+      const V known = hn::Sub(mul_add(slope, set(ray.travel), low), set(ray.aim));
+      const V gap = hn::Load(k_lanes, gaps + i);
+      const V new_slope = hn::Load(k_lanes, slopes + i);
+      const V new_low = hn::Add(sub_mul(gap, new_slope, set(ray.travel)), set(ray.aim));
+      const auto raises = hn::Gt(gap, known);
+      hn::Store(hn::IfThenElse(raises, new_low, low), k_lanes, lines.low + i);
+      hn::Store(hn::IfThenElse(raises, new_slope, slope), k_lanes, lines.slope + i);
+      HWY_ALIGN std::uint8_t stored[8] = {};
+      hn::StoreMaskBits(k_lanes, hn::Le(hn::Max(gap, known), set(ray.slack)), stored);
+      left |= static_cast<std::uint32_t>(stored[0]) << i;
+    }
+    std::vector<CastFront::Open>& open = front.open;
+    const std::size_t first = open.size();
+    for (; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      const bool flat = node.slab_half[lane] <= ray.slack && fixed.slab_half <= ray.slack;
+      if (flat && gaps[lane] > -ray.slack) {
+        const auto own = static_cast<std::uint32_t>(index * k_width + lane);
+        if (ties(opens_a ? own : other, opens_a ? other : own)) continue;
+      }
+      prefetch(tree, node.child[lane]);
+      const CastFront::Open next{visit, lane, heights[lane]};
+      std::size_t at = open.size();
+      open.push_back(next);
+      for (; at > first && open[at - 1].height < next.height; --at) open[at] = open[at - 1];
+      open[at] = next;
+    }
+  }
+
+  /// Opens the larger of two volumes that are not both leaves.
+  void visit(std::uint32_t a, std::uint32_t b) {
+    const CastChild child_a = child_of(tree_a, a);
+    const CastChild child_b = child_of(tree_b, b);
+    const bool opens_a =
+        child_b.is_leaf() || (!child_a.is_leaf() && volume_of(tree_a, a).size >= volume_of(tree_b, b).size);
+    const std::uint32_t index = (opens_a ? child_a : child_b).index();
+    front.visits.push_back({index, opens_a ? b : a, opens_a});
+    CastFront::Lines& lines = front.lines.emplace_back();
+    const std::uint32_t count = (opens_a ? tree_a : tree_b).nodes()[index].child_count;
+    for (std::uint32_t lane = 0; lane < k_width; ++lane) {
+      lines.low[lane] = lane < count ? CastFront::k_never : CastFront::k_always;
+      lines.slope[lane] = 0.0f;
+    }
+    look_into(static_cast<std::uint32_t>(front.visits.size() - 1));
+  }
+
+  /// Looks into all that was left for later.
+  void empty_open() {
+    while (!front.open.empty()) {
+      const CastFront::Open top = front.open.back();
+      front.open.pop_back();
+      if (is_culled(top)) continue;  // the travel may have been raised since
+      const CastFront::Visit from = front.visits[top.visit];
+      const auto own = static_cast<std::uint32_t>(k_width * from.node + top.lane);
+      const std::uint32_t a = from.opens_a ? own : from.other;
+      const std::uint32_t b = from.opens_a ? from.other : own;
+      const CastChild child_a = child_of(tree_a, a);
+      const CastChild child_b = child_of(tree_b, b);
       if (child_a.is_leaf() && child_b.is_leaf()) {
-        look_into_leaves(child_a.index(), child_b.index());
+        look_into_leaves(child_a.index(), child_b.index(), top);
+      } else {
+        set_line(top, CastFront::k_always, 0.0f);
+        visit(a, b);
+      }
+    }
+  }
+
+  /// Finds the visits of which a child is no longer culled.
+  void find_uncovered() {
+    front.uncovered.clear();
+    const V enough = set(ray.aim + ray.slack);
+    const V travel = set(ray.travel);
+    const auto count = static_cast<std::uint32_t>(front.visits.size());
+    for (std::uint32_t visit = 0; visit < count; ++visit) {
+      const CastFront::Lines& lines = front.lines[visit];
+      bool culled = true;
+      for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+        const V value = mul_add(hn::Load(k_lanes, lines.slope + i), travel, hn::Load(k_lanes, lines.low + i));
+        culled = culled && hn::AllTrue(k_lanes, hn::Gt(value, enough));
+      }
+      if (!culled) front.uncovered.push_back(visit);
+    }
+  }
+
+  /// Looks into the visits that are uncovered: into the worst few first, for as long as they raise the travel.
+  void look_into_uncovered() {
+    std::vector<std::uint32_t>& all = front.uncovered;
+    double before = -1.0;
+    while (!all.empty()) {
+      if (cast.travel != before) {
+        before = cast.travel;
+        look_into_worst();
+      } else {
+        const std::uint32_t visit = all.back();
+        all.pop_back();
+        look_into(visit);
+        empty_open();
+      }
+    }
+  }
+
+  /// Looks into the worst few of the visits that are uncovered, and drops those that no longer are.
+  void look_into_worst() {
+    constexpr std::size_t k_few = 8;
+    struct {
+      float gap;
+      std::uint32_t visit;
+    } worst[k_few];  // ascending
+    std::size_t few = 0;
+    std::size_t left = 0;
+    std::vector<std::uint32_t>& all = front.uncovered;
+    for (const std::uint32_t visit : all) {
+      const float gap = least_gap(visit);
+      if (gap > ray.slack) continue;
+      if (few == k_few && gap >= worst[k_few - 1].gap) {
+        all[left++] = visit;
         continue;
       }
-      const CastVolume& volume_a = volume_of(tree_a, top.a);
-      const CastVolume& volume_b = volume_of(tree_b, top.b);
-      const bool opens_a = child_b.is_leaf() || (!child_a.is_leaf() && volume_a.size >= volume_b.size);
-      const std::uint32_t index = opens_a ? child_a.index() : child_b.index();
-      const CastNode& node = opens_a ? tree_a.nodes()[index] : tree_b.nodes()[index];
-      HWY_ALIGN float gaps[k_width], heights[k_width];
-      ++cast.counts.nodes;
-      const CastVolume& fixed = opens_a ? volume_b : volume_a;
-      bound_children(node, fixed, ray, shift, gaps, heights);
+      if (few == k_few) all[left++] = worst[--few].visit;
+      std::size_t at = few++;
+      for (; at > 0 && worst[at - 1].gap > gap; --at) worst[at] = worst[at - 1];
+      worst[at] = {gap, visit};
+    }
+    all.resize(left);
+    for (std::size_t i = 0; i < few; ++i) {
+      if (i > 0 && least_gap(worst[i].visit) > ray.slack) continue;
+      look_into(worst[i].visit);
+      empty_open();
+    }
+  }
 
-      const std::size_t first = open.size();
-      std::uint32_t left = 0;
-      for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-        HWY_ALIGN std::uint8_t stored[8] = {};
-        hn::StoreMaskBits(k_lanes, hn::Le(hn::Load(k_lanes, gaps + i), set(ray.slack)), stored);
-        left |= static_cast<std::uint32_t>(stored[0]) << i;
-      }
-      left &= (1u << node.child_count) - 1;
-      for (; left != 0; left &= left - 1) {
-        const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-        Cast::Open next{top.a, top.b, heights[lane]};
-        (opens_a ? next.a : next.b) = static_cast<std::uint32_t>(index * k_width + lane);
-        const bool flat = node.slab_half[lane] <= ray.slack && fixed.slab_half <= ray.slack;
-        if (flat && gaps[lane] > -ray.slack && ties(next.a, next.b)) continue;
-        prefetch(opens_a ? tree_a : tree_b, node.child[lane]);
-        std::size_t at = open.size();
-        open.push_back(next);
-        for (; at > first && open[at - 1].height < next.height; --at) open[at] = open[at - 1];
-        open[at] = next;
-      }
+  void run() {
+    if (cast.aim > front.aim) front.clear();  // lines need travels that do not grow
+    front.aim = cast.aim;
+    front.open.clear();
+    if (front.visits.empty()) {
+      visit(CastFront::k_root, CastFront::k_root);
+      empty_open();
+    } else {
+      find_uncovered();
+      look_into_uncovered();
     }
   }
 };

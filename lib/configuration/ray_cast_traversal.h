@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <sixdof/configuration/ray_cast_front.h>
 #include <sixdof/configuration/ray_cast_tree.h>
 
 /// The branch and bound of the ray cast. Internal: use ray_cast.h.
@@ -41,15 +42,8 @@ struct Cast {
   std::optional<CastPair> pair;                     ///< The pair that is.
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< Unit vector from A to B between the pair's closest points.
   CastCounts counts;
-
-  /// Two volumes still to be looked into, named by 8 * node + lane; the whole tree is k_root.
-  struct Open {
-    static constexpr std::uint32_t k_root = 0xffffffffu;
-    std::uint32_t a;
-    std::uint32_t b;
-    float height;  ///< Of what hits first, most likely the lowest.
-  };
-  std::vector<Open> open;  ///< Scratch.
+  /// What wider aims taught about this ray. To be cleared when a tree was turned or the direction changed.
+  CastFront front;
 
   /// Lengths that errors are relative to.
   double size() const { return a.radius() + b.radius() + aim; }
@@ -62,7 +56,8 @@ constexpr double k_cast_tie = 1e-14;
 /// Takes a pair of triangles if it raises the travel. Returns whether it did.
 bool offer_pair(Cast& cast, CastPair pair);
 
-/// Finds the pair of triangles with the largest travel above cast.travel. Every instruction set does the same floating
+/// Finds the pair of triangles with the largest travel above cast.travel. After a wider aim on the same ray, whose work
+/// is in cast.front, it takes a fraction of the time. Every instruction set does the same floating
 /// point operations in the same order, so that all find the same pair.
 void find_first_hit(Cast& cast);
 
