@@ -6,6 +6,8 @@
 #define HWY_TARGET_INCLUDE "sixdof/algorithm/vps/contact.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
 
+#include <algorithm>
+
 #include <hwy/highway.h>
 
 #include <sixdof/algorithm/vps/contact.h>
@@ -15,16 +17,16 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::vps {
 namespace HWY_NAMESPACE {
 
-/// Rows of a block, from the given lane on.
+/// Rows of a leaf, from the given lane on.
 struct PointLanes {
   const float* at;
-  HWY_INLINE F row(std::size_t r) const { return hn::LoadU(k_floats, at + r * PointTree::k_block); }
+  HWY_INLINE F row(std::size_t r) const { return hn::LoadU(k_floats, at + r * PointTree::k_leaf_points); }
   HWY_INLINE Vec3 position() const { return {row(0), row(1), row(2)}; }
   HWY_INLINE F weight() const { return row(3); }
   HWY_INLINE Vec3 normal() const { return {row(4), row(5), row(6)}; }
 };
 
-/// Sums of some lanes over a leaf, in registers.
+/// Sums of some lanes over a batch of leaves, in registers.
 struct LaneSums {
   Vec3 force, torque;
   F contacts, depth;
@@ -37,43 +39,32 @@ struct LaneSums {
   }
 };
 
-/// Eight lanes of sums of single precision, moved to double precision after every batch of leaves.
+/// Eight lanes of sums of double precision, of batches of single precision.
 class Accumulator {
  public:
   static constexpr std::size_t k_sums = 7;  ///< force, torque, contacts
-  static constexpr std::size_t k_block = PointTree::k_block;
+  static constexpr std::size_t k_lanes = PointTree::k_leaf_points;
 
-  /// Sums so far of the lanes from `lane` on.
-  HWY_INLINE LaneSums load(std::size_t lane) const {
-    const float* const at = batch_ + lane;
-    const auto sum = [&](std::size_t i) HWY_ATTR { return hn::Load(k_floats, at + i * k_block); };
-    return {{sum(0), sum(1), sum(2)}, {sum(3), sum(4), sum(5)}, sum(6), hn::Load(k_floats, depth_ + lane)};
-  }
-  HWY_INLINE void store(std::size_t lane, const LaneSums& sums) {
-    float* const at = batch_ + lane;
-    hn::Store(sums.force.x, k_floats, at);
-    hn::Store(sums.force.y, k_floats, at + k_block);
-    hn::Store(sums.force.z, k_floats, at + 2 * k_block);
-    hn::Store(sums.torque.x, k_floats, at + 3 * k_block);
-    hn::Store(sums.torque.y, k_floats, at + 4 * k_block);
-    hn::Store(sums.torque.z, k_floats, at + 5 * k_block);
-    hn::Store(sums.contacts, k_floats, at + 6 * k_block);
-    hn::Store(sums.depth, k_floats, depth_ + lane);
-  }
-  HWY_INLINE void begin(std::uint32_t leaf) {
-    if (leaf / k_batch_leaves == current_) return;
-    flush();
-    current_ = leaf / k_batch_leaves;
+  /// Adds a batch's sums of the lanes from `lane` on.
+  HWY_INLINE void add(std::size_t lane, const LaneSums& sums) {
+    if (hn::AllFalse(k_floats, hn::Gt(sums.contacts, hn::Zero(k_floats)))) return;
+    HWY_ALIGN float batch[k_sums][k_lanes];
+    const F rows[k_sums] = {sums.force.x,  sums.force.y,  sums.force.z, sums.torque.x,
+                            sums.torque.y, sums.torque.z, sums.contacts};
+    for (std::size_t s = 0; s < k_sums; ++s) {
+      hn::Store(rows[s], k_floats, batch[s]);
+      for (std::size_t l = 0; l < hn::Lanes(k_floats); ++l) total_[s][lane + l] += static_cast<double>(batch[s][l]);
+    }
+    hn::Store(hn::Max(hn::Load(k_floats, depth_ + lane), sums.depth), k_floats, depth_ + lane);
   }
 
-  ContactSums finish() {
-    flush();
+  ContactSums finish() const {
     double sum[k_sums] = {};
     ContactSums result;
     for (std::size_t s = 0; s < k_sums; ++s) {
-      for (std::size_t lane = 0; lane < k_block; ++lane) sum[s] += total_[s * k_block + lane];
+      for (const double lane : total_[s]) sum[s] += lane;
     }
-    for (const float depth : depth_) result.depth = depth > result.depth ? static_cast<double>(depth) : result.depth;
+    for (const float depth : depth_) result.depth = std::max(result.depth, static_cast<double>(depth));
     result.force = {sum[0], sum[1], sum[2]};
     result.torque = {sum[3], sum[4], sum[5]};
     result.contacts = sum[6];
@@ -81,17 +72,8 @@ class Accumulator {
   }
 
  private:
-  void flush() {
-    for (std::size_t i = 0; i < k_sums * k_block; ++i) {
-      total_[i] += static_cast<double>(batch_[i]);
-      batch_[i] = 0.0f;
-    }
-  }
-
-  alignas(64) float batch_[k_sums * k_block] = {};
-  alignas(64) float depth_[k_block] = {};
-  alignas(64) double total_[k_sums * k_block] = {};
-  std::uint32_t current_ = 0;
+  HWY_ALIGN float depth_[k_lanes] = {};
+  HWY_ALIGN double total_[k_sums][k_lanes] = {};
 };
 
 class LayerLoop {
@@ -172,6 +154,20 @@ class FieldLoop {
     Vec3 gradient;
   };
 
+  /// Is the nearest sample, at the voxel's centre, so large that the field is positive? See DistanceField::k_reach.
+  HWY_INLINE hn::Mask<Ints> is_far(const Vec3& q, const Cell& cell, I first) const {
+    constexpr int k = DistanceField::k_samples;
+    constexpr float k_rounding = 1e-3f;  // of coordinates below 2^12 in single precision
+    const F zero = hn::Zero(k_floats), one = splat(1.0f), half = splat(0.5f);
+    const auto off_center = [&](F coordinate, F low) HWY_ATTR {
+      return hn::Sub(hn::Min(hn::Max(hn::Sub(coordinate, low), zero), one), half);
+    };
+    const Vec3 off{off_center(q.x, cell.low.x), off_center(q.y, cell.low.y), off_center(q.z, cell.low.z)};
+    const F sample = hn::GatherIndex(k_floats, samples_, hn::Add(first, splat_int(1 + k + k * k)));
+    const F reach = splat(static_cast<float>(DistanceField::k_reach) + k_rounding);
+    return hn::RebindMask(k_ints, hn::Gt(hn::Sub(sample, hn::Sqrt(dot(off, off))), reach));
+  }
+
   /// Weights and slopes of a quadratic B-spline about the nearest sample, which is the voxel's centre.
   struct Spline {
     F weight[3], slope[3];
@@ -192,41 +188,43 @@ class FieldLoop {
   /// The splines of all lanes, laid out to be read lane by lane.
   struct SplineTable {
     static constexpr std::size_t k_values = 6;
-    alignas(64) float value[3 * k_values * PointTree::k_block];
+    alignas(64) float value[3 * k_values * PointTree::k_leaf_points];
     HWY_INLINE void set(std::size_t axis, const Spline& spline) {
       for (std::size_t i = 0; i < 3; ++i) {
-        hn::Store(spline.weight[i], k_floats, value + (axis * k_values + i) * PointTree::k_block);
-        hn::Store(spline.slope[i], k_floats, value + (axis * k_values + 3 + i) * PointTree::k_block);
+        hn::Store(spline.weight[i], k_floats, value + (axis * k_values + i) * PointTree::k_leaf_points);
+        hn::Store(spline.slope[i], k_floats, value + (axis * k_values + 3 + i) * PointTree::k_leaf_points);
       }
     }
     HWY_INLINE float weight(std::size_t axis, std::size_t i, std::size_t lane) const {
-      return value[(axis * k_values + i) * PointTree::k_block + lane];
+      return value[(axis * k_values + i) * PointTree::k_leaf_points + lane];
     }
     HWY_INLINE float slope(std::size_t axis, std::size_t i, std::size_t lane) const {
       return weight(axis, 3 + i, lane);
     }
   };
 
-  /// False if the field is positive in all lanes without looking closer; else the field and its gradient, 1 and 0 in
-  /// the lanes where it is. Each lane reads 9 rows of samples, four floats at a time of which three count: that is
-  /// faster than gathering 27 samples in all lanes at once.
+  /// False if the field is surely positive in all lanes; else the field and its gradient, 1 and 0 in the lanes where it
+  /// surely is. Each lane reads 9 rows of samples, four floats at a time of which three count: that is faster than
+  /// gathering 27 samples in all lanes at once.
   HWY_INLINE bool evaluate(const Vec3& q, Value& result) const {
     constexpr int k = DistanceField::k_samples;
-    constexpr std::size_t k_block = PointTree::k_block, k_columns = 4;
+    constexpr std::size_t k_lanes = PointTree::k_leaf_points, k_columns = 4;
     const Cell cell = lookup_.cell(q);
-    const I brick = hn::GatherIndex(k_ints, table_, cell.brick);
-    if (hn::AllFalse(k_ints, hn::Gt(brick, hn::Zero(k_ints)))) return false;
+    const I brick = hn::GatherIndex(k_ints, table_, cell.brick), none = hn::Zero(k_ints);
     const I place = hn::Add(cell.x, hn::Add(hn::Mul(cell.y, splat_int(k)), hn::Mul(cell.z, splat_int(k * k))));
-    const I first = hn::Add(hn::Mul(brick, splat_int(DistanceField::k_brick_samples)), place);
-    alignas(64) std::int32_t start[k_block];
+    const I at = hn::Add(hn::Mul(brick, splat_int(DistanceField::k_brick_samples)), place);
+    const auto positive = hn::Or(hn::Eq(brick, none), is_far(q, cell, at));
+    if (hn::AllTrue(k_ints, positive)) return false;
+    const I first = hn::IfThenElse(positive, none, at);
+    alignas(64) std::int32_t start[k_lanes];
     hn::Store(first, k_ints, start);
     SplineTable table;
     table.set(0, Spline(q.x, cell.low.x));
     table.set(1, Spline(q.y, cell.low.y));
     table.set(2, Spline(q.z, cell.low.z));
-    alignas(64) float out[4][k_block];
+    alignas(64) float out[4][k_lanes];
     for (std::size_t lane = 0; lane < hn::Lanes(k_floats); ++lane) {
-      if (start[lane] < DistanceField::k_brick_samples) {  // brick 0
+      if (start[lane] == 0) {  // brick 0
         out[0][lane] = 1.0f;
         out[1][lane] = out[2][lane] = out[3][lane] = 0.0f;
         continue;
@@ -272,18 +270,22 @@ class FieldLoop {
   const float* samples_;
 };
 
+HWY_INLINE PointLanes lanes_of(const PointTree& tree, std::uint32_t leaf, std::size_t lane) {
+  return {tree.blocks() + leaf * PointTree::k_rows * PointTree::k_leaf_points + lane};
+}
+
 /// Calls add(lanes, sums) for all points of the leaves.
 template <class Add>
 HWY_INLINE ContactSums sum_leaves(const PointTree& tree, std::span<const std::uint32_t> leaves, const Add& add) {
-  constexpr std::size_t k_stride = PointTree::k_rows * PointTree::k_block;
   Accumulator sums;
-  for (const std::uint32_t leaf : leaves) {
-    sums.begin(leaf);
-    const float* const first = tree.blocks() + leaf * PointTree::k_leaf_blocks * k_stride;
-    for (std::size_t lane = 0; lane < PointTree::k_block; lane += hn::Lanes(k_floats)) {
-      LaneSums lanes = sums.load(lane);
-      for (std::size_t b = 0; b < PointTree::k_leaf_blocks; ++b) add(PointLanes{first + b * k_stride + lane}, lanes);
-      sums.store(lane, lanes);
+  const F zero = hn::Zero(k_floats);
+  for (std::size_t begin = 0, end = 0; begin < leaves.size(); begin = end) {
+    const std::uint32_t batch = leaves[begin] / k_batch_leaves;
+    while (end < leaves.size() && leaves[end] / k_batch_leaves == batch) ++end;
+    for (std::size_t lane = 0; lane < PointTree::k_leaf_points; lane += hn::Lanes(k_floats)) {
+      LaneSums lanes{{zero, zero, zero}, {zero, zero, zero}, zero, zero};
+      for (std::size_t i = begin; i < end; ++i) add(lanes_of(tree, leaves[i], lane), lanes);
+      sums.add(lane, lanes);
     }
   }
   return sums.finish();
@@ -292,13 +294,9 @@ HWY_INLINE ContactSums sum_leaves(const PointTree& tree, std::span<const std::ui
 /// Does hits(lanes) hold for some points of the leaves?
 template <class Hits>
 HWY_INLINE bool any_point(const PointTree& tree, std::span<const std::uint32_t> leaves, const Hits& hits) {
-  constexpr std::size_t k_stride = PointTree::k_rows * PointTree::k_block;
   for (const std::uint32_t leaf : leaves) {
-    const float* const first = tree.blocks() + leaf * PointTree::k_leaf_blocks * k_stride;
-    for (std::size_t b = 0; b < PointTree::k_leaf_blocks; ++b) {
-      for (std::size_t lane = 0; lane < PointTree::k_block; lane += hn::Lanes(k_floats)) {
-        if (hits(PointLanes{first + b * k_stride + lane})) return true;
-      }
+    for (std::size_t lane = 0; lane < PointTree::k_leaf_points; lane += hn::Lanes(k_floats)) {
+      if (hits(lanes_of(tree, leaf, lane))) return true;
     }
   }
   return false;

@@ -11,7 +11,7 @@
 
 namespace sixdof::vps {
 
-/// Sums over the colliding points. Points come in blocks of eight; each of the eight lanes has its own sum, rounded to
+/// Sums over the colliding points. Leaves have eight points; each of the eight lanes has its own sum, rounded to
 /// single precision within a batch of k_batch_leaves leaves and to double precision beyond, and lanes are added last:
 /// the same bits on every instruction set, and whether or not leaves without contact are left out.
 struct ContactSums {
@@ -21,7 +21,7 @@ struct ContactSums {
   double depth = 0.0;                                ///< Greatest penetration of a point, in voxels.
 };
 
-constexpr std::uint32_t k_batch_leaves = 4;
+constexpr std::uint32_t k_batch_leaves = 16;
 
 /// How a point's penetration p is read from the layer v of its voxel (v >= 0), in voxels.
 enum class LayerDepth {

@@ -21,8 +21,11 @@ namespace sixdof::vps {
 struct DistanceField {
   static constexpr int k_samples = VoxelGrid::k_edge + 2;  ///< Along a brick's edge, one beyond on each side.
   static constexpr int k_brick_samples = k_samples * k_samples * k_samples;
-  /// How far from a voxel with v >= 0 the field may be negative, in voxels: the diagonal of the voxel between.
-  static constexpr double k_reach = 1.7320508075688772;
+  /// How far outside the surface the field may be negative, in voxels. It is a mean of samples, each no smaller than
+  /// the signed distance at the point less the way from there to the sample (or than k_border, which stands for what is
+  /// left unmeasured). The mean way is at most its root mean square: the squares of a quadratic B-spline's ways average
+  /// 1/4 along each axis.
+  static constexpr double k_reach = 0.8660254037844387;
   /// Layers outside that the voxelmap must store so that every sample near the body is exact.
   static constexpr int k_border = 4;
 

@@ -25,7 +25,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, PointTree::k_block>;
+using Floats = hn::CappedTag<float, PointTree::k_leaf_points>;
 using Ints = hn::RebindToSigned<Floats>;
 using Words = hn::RebindToUnsigned<Floats>;
 using F = hn::Vec<Floats>;
@@ -129,6 +129,16 @@ class LayerLookup {
     const I word = hn::GatherIndex(k_ints, words_, hn::ShiftRight<1>(index));
     const I up = hn::Sub(splat_int(16), hn::ShiftLeft<4>(hn::And(index, splat_int(1))));
     return hn::ShiftRight<16>(hn::Shl(word, up));
+  }
+
+  /// As VoxelMap::outside_distance().
+  HWY_INLINE F outside_distance(const Cell& cell) const {
+    const I entry = entries(cell);
+    const F v = hn::ConvertTo(k_floats, layers(cell, entry)), one = splat(1.0f), zero = hn::Zero(k_floats);
+    const F from_layer = hn::Sqrt(hn::Add(hn::Add(hn::Mul(v, v), v), one));
+    const F from_table = hn::Sub(hn::Neg(one), hn::ConvertTo(k_floats, entry));
+    const auto is_stored = hn::RebindMask(k_floats, hn::Gt(entry, splat_int(-1)));
+    return hn::IfThenElse(is_stored, hn::IfThenElse(hn::Lt(v, zero), from_layer, zero), from_table);
   }
 
  private:

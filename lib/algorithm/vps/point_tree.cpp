@@ -5,6 +5,9 @@
 #define HWY_TARGET_INCLUDE "sixdof/algorithm/vps/point_tree.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
 
+#include <algorithm>
+#include <utility>
+
 #include <hwy/highway.h>
 
 #include <sixdof/algorithm/vps/lookup-inl.h>
@@ -18,58 +21,110 @@ namespace HWY_NAMESPACE {
 constexpr float k_rounding = 1e-3f;
 constexpr float k_half_diagonal = 0.8660254f;  // of a voxel
 
-/// The part of a coordinate that lies beyond [0, end], squared.
-HWY_INLINE F squared_beyond(F q, float end) {
-  const F out = hn::Sub(q, hn::Min(hn::Max(q, hn::Zero(k_floats)), splat(end)));
-  return hn::Mul(out, out);
-}
+/// Which of a node's children may hold points in contact.
+class NodeTest {
+ public:
+  HWY_INLINE NodeTest(const VoxelMap& map, const Placement& placement, double reach)
+      : lookup_(map.grid),
+        layers_(map),
+        scaled_(placement.scaled),
+        offset_{splat(placement.center.x()), splat(placement.center.y()), splat(placement.center.z())},
+        end_{splat(static_cast<float>(map.grid.voxels().x())), splat(static_cast<float>(map.grid.voxels().y())),
+             splat(static_cast<float>(map.grid.voxels().z()))},
+        per_size_(splat(static_cast<float>(1.0 / map.grid.size))),
+        reach_(splat(k_rounding + static_cast<float>(reach))) {}
 
-/// Bits of a mask's lanes.
-template <class M>
-HWY_INLINE unsigned bits_of(M mask) {
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(k_floats, mask, bits);
-  return bits[0] & ((1u << hn::Lanes(k_floats)) - 1u);
-}
+  /// Writes first + i for every such child i, ascending, and up to k_width numbers without meaning behind them.
+  /// @return how many there are.
+  HWY_INLINE std::size_t write_near(const PointTree::Node& node, std::uint32_t first, std::uint32_t* out) const {
+    std::size_t count = 0;
+    for (std::size_t l = 0; l < PointTree::k_width; l += hn::Lanes(k_floats)) {
+      const auto row = [&](std::size_t r) HWY_ATTR { return hn::Load(k_floats, node.sphere[r] + l); };
+      const auto near = hn::RebindMask(k_words, is_near({row(0), row(1), row(2)}, row(3)));
+      const auto child = hn::Iota(k_words, first + static_cast<std::uint32_t>(l));
+      hn::StoreU(hn::Compress(child, near), k_words, out + count);
+      count += hn::CountTrue(k_words, near);
+    }
+    return count;
+  }
 
-/// @param spheres x, y, z and radius of eight spheres, one row each
-/// @param outside, inside receive one bit per sphere
-void find_sides(const float* spheres, const VoxelMap& map, const Placement& placement, float reach, unsigned& outside,
-                unsigned& inside) {
-  const GridLookup lookup(map.grid);
-  const LayerLookup layers(map);
-  const Matrix scaled(placement.scaled);
-  const Vec3 offset{splat(placement.center.x()), splat(placement.center.y()), splat(placement.center.z())};
-  const Eigen::Array3f end = map.grid.voxels().cast<float>();
-  const auto per_size = static_cast<float>(1.0 / map.grid.size);
-  outside = inside = 0;
-  for (std::size_t l = 0; l < PointTree::k_block; l += hn::Lanes(k_floats)) {
-    const auto row = [&](std::size_t r) HWY_ATTR { return hn::LoadU(k_floats, spheres + r * PointTree::k_block + l); };
-    const Vec3 q = transform(scaled, offset, {row(0), row(1), row(2)});
-    const F radius = hn::Add(hn::Mul(row(3), splat(per_size)), splat(k_rounding + reach));
+ private:
+  HWY_INLINE hn::Mask<Floats> is_near(const Vec3& center, F radius) const {
+    const F zero = hn::Zero(k_floats);
+    const Vec3 q = transform(scaled_, offset_, center);
+    const F reach = hn::Add(hn::Mul(radius, per_size_), reach_);  // negative where there is no child
     // A centre beyond the grid is moved to its border; the way there counts as one leg of a right angle, since all of
     // the surface lies on the other side of that border.
-    const F beyond =
-        hn::Add(hn::Add(squared_beyond(q.x, end.x()), squared_beyond(q.y, end.y())), squared_beyond(q.z, end.z()));
-    const F left = hn::Sub(hn::Mul(radius, radius), beyond);
-    const auto in_reach = hn::Ge(left, hn::Zero(k_floats));
-    // As VoxelMap::outside_distance().
-    const Cell cell = lookup.cell(q);
-    const I entry = layers.entries(cell);
-    const F unstored = hn::Sub(splat(-1.0f), hn::ConvertTo(k_floats, entry));
-    const F stored = hn::Sub(splat(-0.5f), hn::ConvertTo(k_floats, layers.layers(cell, entry)));
-    const auto is_stored = hn::RebindMask(k_floats, hn::Gt(entry, splat_int(-1)));
-    const F distance = hn::IfThenElse(is_stored, stored, unstored);
-    // A straight way from the node's centre to a voxel with v >= 0 first enters such a voxel where it is a surface
-    // voxel: half a diagonal from that voxel's centre at most. The node's centre is within half a diagonal of its own
-    // voxel's.
-    const F out = hn::Max(hn::Sub(distance, splat(2.0f * k_half_diagonal)), hn::Zero(k_floats));
-    const auto near = hn::And(in_reach, hn::Le(hn::Mul(out, out), left));
-    // Inside, |v| is rounded the other way; no way as short leads out of voxels with v >= 0.
-    const F in = hn::Sub(splat(-1.0f - 2.0f * k_half_diagonal), distance);
-    outside |= bits_of(hn::Not(near)) << l;
-    inside |= bits_of(hn::And(near, hn::Gt(in, radius))) << l;
+    const Vec3 moved{hn::Min(hn::Max(q.x, zero), end_.x), hn::Min(hn::Max(q.y, zero), end_.y),
+                     hn::Min(hn::Max(q.z, zero), end_.z)};
+    const Vec3 beyond = minus(q, moved);
+    const Cell cell = lookup_.cell(q);
+    const F half = splat(0.5f);
+    const Vec3 off = minus(moved, plus(cell.low, {half, half, half}));
+    // A straight way from here to a voxel with v >= 0 first enters such a voxel where it is a surface voxel: half a
+    // diagonal from that voxel's centre at most. Distances of voxels are known from the centre of this one.
+    const F out = hn::Max(
+        hn::Sub(hn::Sub(layers_.outside_distance(cell), splat(k_half_diagonal)), hn::Sqrt(dot(off, off))), zero);
+    const F least = hn::Add(dot(beyond, beyond), hn::Mul(out, out));
+    return hn::And(hn::Ge(reach, zero), hn::Le(least, hn::Mul(reach, reach)));
   }
+
+  GridLookup lookup_;
+  LayerLookup layers_;
+  Matrix scaled_;
+  Vec3 offset_, end_;
+  F per_size_, reach_;
+};
+
+/// Level by level, so that one node need not wait for another. @return the number of leaves, which are in scratch.here.
+std::size_t cull_simd(const PointTree::Node* nodes, const std::uint32_t* first, std::uint32_t last_level,
+                      const VoxelMap& map, const Placement& placement, double reach, PointTree::Scratch& scratch) {
+  const NodeTest test(map, placement, reach);
+  if (scratch.here.empty()) scratch.here.resize(1);
+  scratch.here[0] = 0;
+  std::size_t count = 1;
+  for (bool last = false; !last && count > 0;) {
+    last = scratch.here[0] >= last_level;
+    if (scratch.below.size() < (count + 1) * PointTree::k_width)
+      scratch.below.resize(2 * (count + 1) * PointTree::k_width);
+    const std::uint32_t* const here = scratch.here.data();
+    std::uint32_t* const below = scratch.below.data();
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      found += test.write_near(nodes[here[i]], first[here[i]], below + found);
+    }
+    count = found;
+    std::swap(scratch.here, scratch.below);
+  }
+  return count;
+}
+
+/// Some nodes at a time, the deepest first.
+bool any_leaves_simd(const PointTree::Node* nodes, const std::uint32_t* first, std::uint32_t last_level,
+                     const VoxelMap& map, const Placement& placement, double reach, PointTree::Scratch& scratch,
+                     const PointTree::Visit& visit) {
+  constexpr std::size_t k_some = 8;  // enough that one node need not wait for another
+  constexpr std::size_t k_room = (k_some + 1) * PointTree::k_width;
+  const NodeTest test(map, placement, reach);
+  if (scratch.here.size() < k_room) scratch.here.resize(k_room);
+  scratch.here[0] = 0;
+  std::uint32_t leaves[k_room];
+  for (std::size_t waiting = 1; waiting > 0;) {
+    std::uint32_t now[k_some];
+    const std::size_t count = std::min(waiting, k_some);
+    waiting -= count;
+    std::copy_n(scratch.here.data() + waiting, count, now);
+    if (scratch.here.size() < waiting + k_room) scratch.here.resize(2 * (waiting + k_room));
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool last = now[i] >= last_level;
+      const std::size_t near =
+          test.write_near(nodes[now[i]], first[now[i]], last ? leaves + found : scratch.here.data() + waiting);
+      (last ? found : waiting) += near;
+    }
+    if (found > 0 && visit(std::span(leaves, found))) return true;
+  }
+  return false;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -78,13 +133,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace sixdof::vps {
 
-HWY_EXPORT(find_sides);
+HWY_EXPORT(cull_simd);
+HWY_EXPORT(any_leaves_simd);
 
 Placement Placement::of(const Pose& X, const Eigen::Vector3d& center, const VoxelGrid& grid) {
   return {.rotation = X.R.cast<float>(),
@@ -96,55 +152,60 @@ PointTree::PointTree(const PointShell& shell, const Eigen::Vector3d& center, boo
     : center_(center), points_(shell.points.size()) {
   std::vector<std::uint32_t> order(points_);
   std::iota(order.begin(), order.end(), 0u);
-  build(shell, order, {0, points_});
-  leaves_ = static_cast<std::uint32_t>((points_ + k_leaf_points - 1) / k_leaf_points);
-  blocks_.resize(leaves_ * k_leaf_blocks * k_rows * k_block);
+  std::vector<Range> level{{0, points_}};
+  leaves_ = static_cast<std::uint32_t>(level.front().leaves());
+  std::size_t child_leaves = 1;  // most that a child on this level may have
+  while (child_leaves * k_width < leaves_) child_leaves *= k_width;
+  for (; child_leaves > 0; child_leaves /= k_width) {
+    last_level_ = static_cast<std::uint32_t>(nodes_.size());
+    const auto next_level = static_cast<std::uint32_t>(child_leaves > 1 ? nodes_.size() + level.size() : 0);
+    std::vector<Range> below;
+    for (const Range& range : level) {
+      const std::size_t first = below.size();
+      split(shell, order, range, (range.leaves() + child_leaves - 1) / child_leaves, below);
+      first_.push_back(next_level + static_cast<std::uint32_t>(first));
+      nodes_.push_back(enclose(shell, order, std::span(below).subspan(first)));
+    }
+    level = std::move(below);
+  }
+  blocks_.resize(leaves_ * k_rows * k_leaf_points);
   for (std::size_t i = 0; i < leaves_ * k_leaf_points; ++i) {
     const std::uint32_t p = order[std::min(i, points_ - 1)];
     const Eigen::Vector3f position = (shell.points[p] - center_).cast<float>(), normal = shell.normals[p].cast<float>();
     const float weight = i >= points_ ? 0.0f : by_area ? static_cast<float>(shell.areas[p]) : 1.0f;
-    float* const lane = blocks_.data() + i / k_block * k_rows * k_block + i % k_block;
+    float* const lane = blocks_.data() + i / k_leaf_points * k_rows * k_leaf_points + i % k_leaf_points;
     const float row[k_rows] = {position.x(), position.y(), position.z(), weight, normal.x(), normal.y(), normal.z()};
-    for (std::size_t r = 0; r < k_rows; ++r) lane[r * k_block] = row[r];
+    for (std::size_t r = 0; r < k_rows; ++r) lane[r * k_leaf_points] = row[r];
   }
 }
 
-std::pair<PointTree::Range, PointTree::Range> PointTree::split(const PointShell& shell,
-                                                               std::vector<std::uint32_t>& order, Range range) {
+void PointTree::split(const PointShell& shell, std::vector<std::uint32_t>& order, Range range, std::size_t parts,
+                      std::vector<Range>& out) {
+  if (parts == 1) {
+    out.push_back(range);
+    return;
+  }
   Eigen::AlignedBox3d box;
   for (std::size_t i = range.begin; i < range.end; ++i) box.extend(shell.points[order[i]]);
   int axis = 0;
   box.sizes().maxCoeff(&axis);
-  const std::size_t middle = range.begin + (range.leaves() + 1) / 2 * k_leaf_points;
+  const std::size_t low = (parts + 1) / 2;
+  const std::size_t middle = range.begin + (range.leaves() * low + parts - 1) / parts * k_leaf_points;
   const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(at(range.begin), at(middle), at(range.end), [&](std::uint32_t i, std::uint32_t j) {
     const double a = shell.points[i][axis], b = shell.points[j][axis];
     return a != b ? a < b : i < j;
   });
-  return {{range.begin, middle}, {middle, range.end}};
+  split(shell, order, {range.begin, middle}, low, out);
+  split(shell, order, {middle, range.end}, parts - low, out);
 }
 
-std::uint32_t PointTree::build(const PointShell& shell, std::vector<std::uint32_t>& order, Range range) {
-  const auto here = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  std::vector<Range> ranges{range};
-  for (std::size_t width = 1; width < k_width; width *= 2) {
-    std::vector<Range> halves;
-    for (const Range& part : ranges) {
-      if (part.leaves() == 1) {
-        halves.push_back(part);
-        continue;
-      }
-      const auto [low, high] = split(shell, order, part);
-      halves.push_back(low);
-      halves.push_back(high);
-    }
-    ranges = std::move(halves);
-  }
-  Node node;
-  node.children = static_cast<std::uint32_t>(ranges.size());
-  for (std::size_t i = 0; i < k_width; ++i) {
-    const Range& part = ranges[std::min(i, ranges.size() - 1)];
+PointTree::Node PointTree::enclose(const PointShell& shell, const std::vector<std::uint32_t>& order,
+                                   std::span<const Range> children) const {
+  Node node{};
+  std::fill_n(node.sphere[3], k_width, -std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    const Range& part = children[i];
     Eigen::AlignedBox3d box;
     for (std::size_t k = part.begin; k < part.end; ++k) box.extend(shell.points[order[k]]);
     const Eigen::Vector3d middle = box.center();
@@ -156,30 +217,20 @@ std::uint32_t PointTree::build(const PointShell& shell, std::vector<std::uint32_
     for (Eigen::Index k = 0; k < 3; ++k) node.sphere[k][i] = center[k];
     node.sphere[3][i] = static_cast<float>(radius);
   }
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const auto first_leaf = static_cast<std::uint32_t>(ranges[i].begin / k_leaf_points);
-    node.child[i] = {.node = ranges[i].leaves() == 1 ? k_no_node : build(shell, order, ranges[i]),
-                     .first_leaf = first_leaf,
-                     .end_leaf = first_leaf + static_cast<std::uint32_t>(ranges[i].leaves())};
-  }
-  nodes_[here] = node;
-  return here;
+  return node;
 }
 
-PointTree::Sides PointTree::sides_of(const Node& node, const VoxelMap& map, const Placement& placement, double reach) {
-  Sides sides;
-  HWY_DYNAMIC_DISPATCH(find_sides)
-  (node.sphere[0], map, placement, static_cast<float>(reach), sides.outside, sides.inside);
-  return sides;
+std::span<const std::uint32_t> PointTree::cull(const VoxelMap& map, const Placement& placement, double reach,
+                                               Scratch& scratch) const {
+  const std::size_t count =
+      HWY_DYNAMIC_DISPATCH(cull_simd)(nodes_.data(), first_.data(), last_level_, map, placement, reach, scratch);
+  return std::span(scratch.here).first(count);
 }
 
-void PointTree::cull(const VoxelMap& map, const Placement& placement, double reach,
-                     std::vector<std::uint32_t>& leaves) const {
-  leaves.clear();
-  any_leaves(map, placement, reach, [&](std::uint32_t first, std::uint32_t end) {
-    for (std::uint32_t leaf = first; leaf < end; ++leaf) leaves.push_back(leaf);
-    return false;
-  });
+bool PointTree::any_leaves(const VoxelMap& map, const Placement& placement, double reach, Scratch& scratch,
+                           const Visit& visit) const {
+  return HWY_DYNAMIC_DISPATCH(any_leaves_simd)(nodes_.data(), first_.data(), last_level_, map, placement, reach,
+                                               scratch, visit);
 }
 
 }  // namespace sixdof::vps

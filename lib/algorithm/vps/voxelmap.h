@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -56,10 +57,12 @@ struct VoxelMap {
   }
 
   /// Lower bound, in voxels, of the distance from the centre of a voxel outside to the nearest surface voxel's centre;
-  /// -v - 1/2 where v >= 0.
+  /// 0 where v >= 0. Squares of such distances are integers d^2 >= (|v| - 1/2)^2, so d^2 >= v^2 - |v| + 1.
   float outside_distance(int x, int y, int z) const {
     const std::int32_t entry = table[grid.brick_of(x, y, z)];
-    return entry < 0 ? static_cast<float>(-1 - entry) : static_cast<float>(-stored_layer(entry, x, y, z)) - 0.5f;
+    if (entry < 0) return static_cast<float>(-1 - entry);
+    const auto v = static_cast<float>(stored_layer(entry, x, y, z));
+    return v < 0.0f ? std::sqrt(v * v + v + 1.0f) : 0.0f;
   }
 
   std::uint64_t stored_bricks() const {

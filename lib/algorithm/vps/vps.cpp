@@ -28,8 +28,8 @@ class PointQuery : public Query {
         by_area_(settings.choice("weight") == "area"),
         culling_(settings.choice("culling") == "on"),
         stiffness_(settings.number("stiffness")) {
-    leaves_.resize(tree_.leaves());
-    std::iota(leaves_.begin(), leaves_.end(), 0u);
+    all_leaves_.resize(culling_ ? 0 : tree_.leaves());
+    std::iota(all_leaves_.begin(), all_leaves_.end(), 0u);
   }
 
   Outcome<bool> collide(const Pose& X_AB) override {
@@ -37,23 +37,23 @@ class PointQuery : public Query {
     const Pose X = points_of_b_ ? X_AB : X_AB.inverse();
     const Placement placement = Placement::of(X, tree_.center(), map_.grid);
     visited_leaves_ = 0;
-    const auto touched = [&](std::uint32_t first, std::uint32_t end) {
-      for (std::uint32_t leaf = first; leaf < end; ++leaf) {
-        ++visited_leaves_;
-        if (touches(placement, std::span(&leaf, 1))) return true;
-      }
-      return false;
+    const auto touched = [&](std::span<const std::uint32_t> leaves) {
+      visited_leaves_ += leaves.size();
+      return touches(placement, leaves);
     };
-    return culling_ ? tree_.any_leaves(map_, placement, reach(), touched) : touched(0, tree_.leaves());
+    return culling_ ? tree_.any_leaves(map_, placement, reach(), scratch_, touched) : touched(all_leaves_);
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {
     if (!finite(X_AB)) return fail(Status::non_finite, "the pose is not finite");
     const Pose X = points_of_b_ ? X_AB : X_AB.inverse();
     const Placement placement = Placement::of(X, tree_.center(), map_.grid);
-    if (culling_) tree_.cull(map_, placement, reach(), leaves_);
-    visited_leaves_ = leaves_.size();
-    Response response = wrench_on_points(X, placement, leaves_);
+    const std::span<const std::uint32_t> leaves =
+        culling_ ? tree_.cull(map_, placement, reach(), scratch_) : std::span<const std::uint32_t>(all_leaves_);
+    visited_leaves_ = leaves.size();
+    Response response;
+    contacts_ = 0.0;
+    if (!leaves.empty()) response = wrench_on_points(X, placement, leaves);
     response.reference = X * tree_.center();
     if (!by_area_) {
       const double share = std::max(1.0, contacts_ / k_free_contacts);
@@ -73,7 +73,7 @@ class PointQuery : public Query {
   }
 
   Footprint footprint() const override {
-    return {.bytes = map_.bytes() + tree_.bytes() + leaves_.capacity() * sizeof(leaves_[0]),
+    return {.bytes = map_.bytes() + tree_.bytes() + all_leaves_.capacity() * sizeof(all_leaves_[0]),
             .counts = {{"voxels", map_.grid.voxel_count()},
                        {"surface_voxels", static_cast<double>(map_.surface_voxels)},
                        {"inside_voxels", static_cast<double>(map_.inside_voxels)},
@@ -108,7 +108,8 @@ class PointQuery : public Query {
   bool by_area_;
   bool culling_;
   double stiffness_;
-  std::vector<std::uint32_t> leaves_;
+  std::vector<std::uint32_t> all_leaves_;  ///< Without culling.
+  PointTree::Scratch scratch_;
   std::size_t visited_leaves_ = 0;  ///< By the last query.
 };
 

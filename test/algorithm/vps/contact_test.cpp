@@ -25,11 +25,9 @@ class PlainSums {
   ContactSums over_all_leaves(const Visit& visit) {
     for (std::uint32_t leaf = 0; leaf < tree_.leaves(); ++leaf) {
       if (leaf % k_batch_leaves == 0) flush();
-      for (std::size_t i = 0; i < PointTree::k_leaf_points; ++i) {
-        const std::size_t block = leaf * PointTree::k_leaf_blocks + i / PointTree::k_block,
-                          lane = i % PointTree::k_block;
+      for (std::size_t lane = 0; lane < PointTree::k_leaf_points; ++lane) {
         const auto row = [&](std::size_t r) {
-          return tree_.blocks()[(block * PointTree::k_rows + r) * PointTree::k_block + lane];
+          return tree_.blocks()[(leaf * PointTree::k_rows + r) * PointTree::k_leaf_points + lane];
         };
         float term[7] = {};
         float depth = 0.0f;
@@ -41,7 +39,7 @@ class PlainSums {
     flush();
     double sum[7] = {};
     for (std::size_t s = 0; s < 7; ++s) {
-      for (std::size_t lane = 0; lane < PointTree::k_block; ++lane) sum[s] += total_[s][lane];
+      for (std::size_t lane = 0; lane < PointTree::k_leaf_points; ++lane) sum[s] += total_[s][lane];
     }
     return {{sum[0], sum[1], sum[2]}, {sum[3], sum[4], sum[5]}, sum[6], static_cast<double>(depth_)};
   }
@@ -49,7 +47,7 @@ class PlainSums {
  private:
   void flush() {
     for (std::size_t s = 0; s < 7; ++s) {
-      for (std::size_t lane = 0; lane < PointTree::k_block; ++lane) {
+      for (std::size_t lane = 0; lane < PointTree::k_leaf_points; ++lane) {
         total_[s][lane] += static_cast<double>(batch_[s][lane]);
         batch_[s][lane] = 0.0f;
       }
@@ -57,8 +55,8 @@ class PlainSums {
   }
 
   const PointTree& tree_;
-  float batch_[7][PointTree::k_block] = {};
-  double total_[7][PointTree::k_block] = {};
+  float batch_[7][PointTree::k_leaf_points] = {};
+  double total_[7][PointTree::k_leaf_points] = {};
   float depth_ = 0.0f;
 };
 
@@ -217,18 +215,18 @@ TEST_F(Contact, EveryInstructionSetGivesTheBitsOfPlainArithmetic) {
 }
 
 TEST_F(Contact, CullingChangesNoBitAndLeavesOutMuch) {
-  std::vector<std::uint32_t> some;
+  PointTree::Scratch scratch;
   std::size_t left_out = 0, taken = 0;
   for (std::uint64_t seed = 200; seed < 400; ++seed) {
     const double reach = k_reaches[seed % std::size(k_reaches)];
     const Placement place = placement(map_, seed, reach);
-    tree_.cull(map_, place, 0.0, some);
+    std::span<const std::uint32_t> some = tree_.cull(map_, place, 0.0, scratch);
     ASSERT_TRUE(std::is_sorted(some.begin(), some.end()));
     expect_same_bits(sum_layers(map_, tree_, place, LayerDepth::layers_and_local, some),
                      sum_layers(map_, tree_, place, LayerDepth::layers_and_local, all_));
     left_out += all_.size() - some.size();
     taken += some.size();
-    tree_.cull(map_, place, DistanceField::k_reach, some);
+    some = tree_.cull(map_, place, DistanceField::k_reach, scratch);
     expect_same_bits(sum_field(field_, tree_, place, some), sum_field(field_, tree_, place, all_));
   }
   // Two poses out of nine overlap so deeply that nearly all points are in contact.
@@ -237,9 +235,8 @@ TEST_F(Contact, CullingChangesNoBitAndLeavesOutMuch) {
 }
 
 TEST_F(Contact, OneSphereTellsApartWhatIsFar) {
-  std::vector<std::uint32_t> some{7};
-  tree_.cull(map_, placement(map_, 500, 3.5), 0.0, some);
-  EXPECT_TRUE(some.empty());
+  PointTree::Scratch scratch;
+  EXPECT_TRUE(tree_.cull(map_, placement(map_, 500, 3.5), 0.0, scratch).empty());
 }
 
 }  // namespace
