@@ -193,6 +193,59 @@ struct Descent {
   }
 };
 
+/// The end of a list, where pairs are appended.
+struct ListEnd {
+  PairList& list;
+  std::size_t& size;
+};
+
+/// Tests pairs of nodes of two trees.
+class NodePairs {
+ public:
+  HWY_INLINE NodePairs(const SphereTree& a, const SphereTree& b, const NodePlacement& placement)
+      : a_(a), b_(b), test_(placement) {}
+
+  HWY_INLINE Descent descend(std::int32_t a, std::int32_t b) const {
+    return {a, a_.below[a], b, b_.below[b], test_.overlapping(a_.nodes[a], b_.nodes[b])};
+  }
+
+  /// Appends what lies below `count` pairs of nodes, which both lists must have room for.
+  /// @tparam k_ahead pairs between asking for nodes and testing them; 0: not at all. What stands in the columns that
+  /// far behind the last pair is asked for too, whatever it is.
+  template <std::size_t k_ahead>
+  HWY_INLINE void descend_all(const std::int32_t* a, const std::int32_t* b, std::size_t count, ListEnd of_nodes,
+                              ListEnd of_leaves) const {
+    // Where the next pairs go, of nodes and of leaves: chosen by an index, since a branch could not be foreseen.
+    std::int32_t* out_a[2] = {of_nodes.list.a.data() + of_nodes.size, of_leaves.list.a.data() + of_leaves.size};
+    std::int32_t* out_b[2] = {of_nodes.list.b.data() + of_nodes.size, of_leaves.list.b.data() + of_leaves.size};
+    for (std::size_t i = 0; i < count; ++i) {
+      if constexpr (k_ahead > 0) {
+        a_.prefetch(a[i + k_ahead]);
+        b_.prefetch(b[i + k_ahead]);
+      }
+      const Descent below = descend(a[i], b[i]);
+      const std::size_t kind = below.leaves ? 1 : 0, pairs = below.write(out_a[kind], out_b[kind]);
+      out_a[kind] += pairs;
+      out_b[kind] += pairs;
+    }
+    of_nodes.size = static_cast<std::size_t>(out_a[0] - of_nodes.list.a.data());
+    of_leaves.size = static_cast<std::size_t>(out_a[1] - of_leaves.list.a.data());
+  }
+
+ private:
+  struct Arrays {
+    const SphereNode* nodes;
+    const std::int32_t* below;
+    explicit Arrays(const SphereTree& tree) : nodes(tree.nodes.data()), below(tree.below.data()) {}
+    HWY_INLINE void prefetch(std::int32_t node) const {
+      __builtin_prefetch(nodes + node);
+      __builtin_prefetch(below + node);
+    }
+  };
+  Arrays a_, b_;
+  NodePairTest test_;
+};
+
 }  // namespace HWY_NAMESPACE
 }  // namespace sixdof::ist
 HWY_AFTER_NAMESPACE();

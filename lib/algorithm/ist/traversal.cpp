@@ -38,33 +38,6 @@ struct LeafPair {
   bool overlap() const { return gap() < 0.0; }
 };
 
-/// Tests pairs of nodes of two trees.
-class NodePairs {
- public:
-  HWY_INLINE NodePairs(const SphereTree& a, const SphereTree& b, const NodePlacement& placement)
-      : a_(a), b_(b), test_(placement) {}
-
-  HWY_INLINE Descent descend(std::int32_t a, std::int32_t b) const {
-    return {a, a_.below[a], b, b_.below[b], test_.overlapping(a_.nodes[a], b_.nodes[b])};
-  }
-  /// Asks for the cache lines of what will be tested soon.
-  HWY_INLINE void prefetch(std::int32_t a, std::int32_t b) const {
-    __builtin_prefetch(a_.nodes + a);
-    __builtin_prefetch(b_.nodes + b);
-    __builtin_prefetch(a_.below + a);
-    __builtin_prefetch(b_.below + b);
-  }
-
- private:
-  struct Arrays {
-    const SphereNode* nodes;
-    const std::int32_t* below;
-    explicit Arrays(const SphereTree& tree) : nodes(tree.nodes.data()), below(tree.below.data()) {}
-  };
-  Arrays a_, b_;
-  NodePairTest test_;
-};
-
 /// Sums over pairs of overlapping balls, collected and then computed several at a time. Each of the eight lanes has
 /// sums of its own, which are added last: the same bits on every instruction set.
 class PairSums {
@@ -190,19 +163,9 @@ HWY_ATTR std::size_t FindLeafPairs(const SphereTree& a, const SphereTree& b, con
     const std::size_t end = std::min(waits, next + k_batch);
     waiting.make_room(waits + k_batch * k_pairs);
     leaves.make_room(found + k_batch * k_pairs);
-    const std::int32_t *const waiting_a = waiting.a.data(), *const waiting_b = waiting.b.data();
-    // Where the next pairs go, of nodes and of leaves: chosen by an index, since a branch could not be foreseen.
-    std::int32_t* out_a[2] = {waiting.a.data() + waits, leaves.a.data() + found};
-    std::int32_t* out_b[2] = {waiting.b.data() + waits, leaves.b.data() + found};
-    for (; next < end; ++next) {
-      nodes.prefetch(waiting_a[next + k_ahead], waiting_b[next + k_ahead]);  // there may be none yet: any will do
-      const Descent below = nodes.descend(waiting_a[next], waiting_b[next]);
-      const std::size_t kind = below.leaves ? 1 : 0, pairs = below.write(out_a[kind], out_b[kind]);
-      out_a[kind] += pairs;
-      out_b[kind] += pairs;
-    }
-    waits = static_cast<std::size_t>(out_a[0] - waiting.a.data());
-    found = static_cast<std::size_t>(out_a[1] - leaves.a.data());
+    nodes.descend_all<k_ahead>(waiting.a.data() + next, waiting.b.data() + next, end - next, {waiting, waits},
+                               {leaves, found});
+    next = end;
   }
   count.sphere_tests += waits * k_pairs;
   return found;
@@ -228,25 +191,27 @@ HWY_ATTR void SumAll(const SphereTree& a, const SphereTree& b, const Pose& X_AB,
   sum.count.leaf_pairs = sums.overlapping();
 }
 
-/// Depth first: finds the first leaves soon.
+/// Some pairs of nodes at a time, the deepest first: finds the first leaves soon.
 HWY_ATTR bool AnyOverlap(const SphereTree& a, const SphereTree& b, const Pose& X_AB, const NodePlacement& placement,
                          TraversalScratch& scratch, TraversalCount& count) {
+  constexpr std::size_t k_some = 4;  // enough that one pair need not wait for another
   const NodePairs nodes(a, b, placement);
-  PairList& waiting = scratch.waiting;
+  PairList &waiting = scratch.waiting, &leaves = scratch.leaves;
+  leaves.make_room(k_some * k_pairs);
   waiting.make_room(1);
   waiting.a[0] = waiting.b[0] = 0;
   for (std::size_t waits = 1; waits > 0;) {
-    --waits;
-    count.sphere_tests += k_pairs;
-    const Descent below = nodes.descend(waiting.a[waits], waiting.b[waits]);
-    if (!below.leaves) {
-      waiting.make_room(waits + k_pairs);
-      waits += below.write(waiting.a.data() + waits, waiting.b.data() + waits);
-      continue;
-    }
-    for (unsigned left = below.pairs; left != 0; left &= left - 1) {
-      const auto pair = static_cast<unsigned>(__builtin_ctz(left));
-      if (LeafPair(a, b, X_AB, below.in_a(pair), below.in_b(pair)).overlap()) return true;
+    const std::size_t taken = std::min(waits, k_some);
+    waits -= taken;
+    std::int32_t now_a[k_some], now_b[k_some];
+    std::copy_n(waiting.a.data() + waits, taken, now_a);
+    std::copy_n(waiting.b.data() + waits, taken, now_b);
+    waiting.make_room(waits + k_some * k_pairs);
+    std::size_t found = 0;
+    nodes.descend_all<0>(now_a, now_b, taken, {waiting, waits}, {leaves, found});
+    count.sphere_tests += taken * k_pairs;
+    for (std::size_t i = 0; i < found; ++i) {
+      if (LeafPair(a, b, X_AB, leaves.a[i], leaves.b[i]).overlap()) return true;
     }
   }
   return false;
