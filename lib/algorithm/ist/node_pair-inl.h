@@ -6,6 +6,7 @@
 #define SIXDOF_IST_NODE_PAIR_INL_H_
 #endif
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -112,8 +113,10 @@ class NodePairGaps {
   /// Writes the gap (distance of centres minus both radii) of ball i of `a` to ball j of `b` to out[4 i + j], in the
   /// meshes' length unit; +infinity where a slot is empty. A lower bound of the gaps of the leaves below: balls are
   /// rounded up by far more than what is rounded here.
-  HWY_INLINE void measure(const SphereNode& a, const SphereNode& b, double* out) const {
+  /// @return bit 4 i + j is set if the gap is smaller than `within`.
+  HWY_INLINE unsigned measure(const SphereNode& a, const SphereNode& b, double within, double* out) const {
     const Doubles d;
+    unsigned bits = 0;
     for (std::size_t l = 0; l < k_slots; l += hn::Lanes(d)) {
       const auto row = [&](const std::array<float, k_slots>& values) HWY_ATTR {
         return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, Doubles>(), values.data() + l));
@@ -129,9 +132,14 @@ class NodePairGaps {
         const auto of_a = [&](float value) HWY_ATTR { return hn::Set(d, unit_a_ * static_cast<double>(value)); };
         const auto dx = hn::Sub(bx, of_a(a.x[i])), dy = hn::Sub(by, of_a(a.y[i])), dz = hn::Sub(bz, of_a(a.z[i]));
         const auto squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-        hn::StoreU(hn::Sub(hn::Sqrt(squared), hn::Add(r, of_a(a.r[i]))), d, out + k_slots * i + l);
+        const auto gap = hn::Sub(hn::Sqrt(squared), hn::Add(r, of_a(a.r[i])));
+        hn::StoreU(gap, d, out + k_slots * i + l);
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(d, hn::Lt(gap, hn::Set(d, within)), bytes);
+        bits |= (bytes[0] & ((1u << hn::Lanes(d)) - 1u)) << (k_slots * i + l);
       }
     }
+    return bits;
   }
 
  private:
@@ -170,6 +178,16 @@ struct Descent {
 
   std::int32_t in_a(unsigned pair) const { return first_a + (others_a & static_cast<std::int32_t>(pair / k_slots)); }
   std::int32_t in_b(unsigned pair) const { return first_b + (others_b & static_cast<std::int32_t>(pair % k_slots)); }
+
+  /// The least of the gaps (of NodePairGaps) that this pair stands for: its own, or those of all leaves of a node that
+  /// is met again.
+  double least(const double* gap, unsigned pair) const {
+    const unsigned step = others_a == 0 ? k_slots : 1,
+                   end = others_a != 0 && others_b != 0 ? pair + 1 : pair + 4 * step;
+    double result = gap[pair];
+    for (unsigned i = pair; i < end; i += step) result = std::min(result, gap[i]);
+    return result;
+  }
 
   /// Writes the pairs' members, and up to k_pairs numbers without meaning behind them. @return how many pairs there
   /// are.

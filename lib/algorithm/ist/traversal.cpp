@@ -284,7 +284,6 @@ HWY_ATTR void Closest(const SphereTree& a, const SphereTree& b, const Pose& X_AB
     double gap;  ///< Lower bound.
     std::int32_t node_a, node_b;
   };
-  constexpr unsigned k_all = (1u << k_pairs) - 1u;
   const NodePairGaps gaps(a, b, X_AB);
   std::vector<Bounded> stack{{-std::numeric_limits<double>::infinity(), 0, 0}};
   std::array<Bounded, k_pairs> found;
@@ -295,15 +294,15 @@ HWY_ATTR void Closest(const SphereTree& a, const SphereTree& b, const Pose& X_AB
     if (here.gap >= best.distance) continue;
     double gap[k_pairs];
     const auto node_a = static_cast<std::size_t>(here.node_a), node_b = static_cast<std::size_t>(here.node_b);
-    gaps.measure(a.nodes[node_a], b.nodes[node_b], gap);
+    const unsigned nearer = gaps.measure(a.nodes[node_a], b.nodes[node_b], best.distance, gap);
     best.count.sphere_tests += k_pairs;
-    const Descent below(here.node_a, a.below[node_a], here.node_b, b.below[node_b], k_all);
+    const Descent below(here.node_a, a.below[node_a], here.node_b, b.below[node_b], nearer);
     std::size_t count = 0;
-    for (unsigned pair = 0; pair < k_pairs; ++pair) {
-      if (!(gap[pair] < best.distance)) continue;  // or an empty slot
+    for (unsigned left = below.pairs; left != 0; left &= left - 1) {
+      const auto pair = static_cast<unsigned>(__builtin_ctz(left));
       const std::int32_t in_a = below.in_a(pair), in_b = below.in_b(pair);
       if (!below.leaves) {
-        found[count++] = {gap[pair], in_a, in_b};
+        found[count++] = {below.least(gap, pair), in_a, in_b};
       } else if (const double exact = LeafPair(a, b, X_AB, in_a, in_b).gap(); exact < best.distance) {
         best.distance = exact;
         best.leaf_a = in_a;
