@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <sixdof/scenario/scenario.h>
 
@@ -13,10 +14,19 @@ enum class Kind {
   records,  ///< A known weakness, as bad as the measure can tell: the value is recorded, and a change either way fails.
 };
 
+/// What is recorded: an algorithm with its default settings, or with some knobs changed.
+struct Subject {
+  std::string algorithm;
+  std::vector<std::string> knobs;  ///< "name=value"
+};
+
+/// By the name in the table: that of an algorithm, or of a variant.
+Subject subject(std::string_view name);
+
 /// One gate: a measure of an algorithm on a scenario may not be worse than this.
 struct Bound {
   std::string_view scenario;
-  std::string_view algorithm;
+  std::string_view algorithm;  ///< See subject().
   IdealLaw law;
   std::string_view measure;  ///< As in lib/measure/metrics.h; absolute values are compared.
   double bound;              ///< 0 means exactly zero.

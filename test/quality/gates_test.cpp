@@ -29,9 +29,12 @@ const Recorded& recorded(const std::string& scenario, const std::string& algorit
   if (is_new) {
     Registry registry;
     register_all_algorithms(registry);
-    const Algorithm& found = registry.find(algorithm);
+    const auto& [name, knobs] = subject(algorithm);
+    const Algorithm& found = registry.find(name);
+    Settings settings = found.settings();
+    settings.set_all(knobs);
     r.scenario = make_scenario(scenario);
-    r.query = found.prepare(r.scenario->a(), r.scenario->b(), found.settings());
+    r.query = found.prepare(r.scenario->a(), r.scenario->b(), settings);
     r.recording = record(*r.scenario, *r.query, k_gate_stamps);
   }
   return r;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
@@ -211,6 +212,26 @@ SphereTree build_sphere_tree(std::vector<Sphere> spheres) {
   tree.leaves = std::move(spheres);
   for (const Sphere& s : tree.leaves) tree.volume += s.volume();
   return tree;
+}
+
+void set_shares(SphereTree& tree, std::vector<double> shares) {
+  tree.shares = std::move(shares);
+  tree.volume = 0.0;
+  // Children come after their parents, so backwards all sums below a node are there before its own.
+  for (std::size_t node = tree.nodes.size(); node-- > 0;) {
+    const std::int32_t below = tree.below[node];
+    for (std::size_t slot = 0; slot < tree.children(node); ++slot) {
+      double& volume = tree.volumes[node][slot];
+      if (below < 0) {
+        const std::size_t leaf = static_cast<std::size_t>(~below) + slot;
+        volume = tree.shares[leaf] * tree.leaves[leaf].volume();
+      } else {
+        const auto& sums = tree.volumes[static_cast<std::size_t>(below) + slot];
+        volume = std::accumulate(sums.begin(), sums.end(), 0.0);
+      }
+    }
+  }
+  for (const double volume : tree.volumes.front()) tree.volume += volume;
 }
 
 }  // namespace sixdof::ist

@@ -25,10 +25,12 @@ struct alignas(64) SphereNode {
 struct SphereTree {
   std::vector<SphereNode> nodes;    ///< nodes[0] is the root; a node's children are neighbours.
   std::vector<std::int32_t> below;  ///< Per node: the child in its first slot; >= 0: a node; < 0: ~index of a leaf.
-  std::vector<std::array<double, SphereNode::k_slots>> volumes;  ///< Per node and slot: sum of the leaf volumes.
-  std::vector<Sphere> leaves;                                    ///< In tree order: a subtree's leaves are neighbours.
-  Sphere bound;                                                  ///< Contains all leaves.
-  double volume = 0.0;                                           ///< Sum of the leaf volumes.
+  /// Per node and slot: sum of the leaf volumes, each times its share.
+  std::vector<std::array<double, SphereNode::k_slots>> volumes;
+  std::vector<Sphere> leaves;  ///< In tree order: a subtree's leaves are neighbours.
+  std::vector<double> shares;  ///< How much a leaf's overlaps count; empty: 1 each.
+  Sphere bound;                ///< Contains all leaves.
+  double volume = 0.0;         ///< Of all leaves, as `volumes`.
 
   std::size_t children(std::size_t node) const {
     const auto& r = nodes[node].r;
@@ -39,8 +41,10 @@ struct SphereTree {
     const SphereNode& n = nodes[node];
     return {bound.center + bound.radius * Eigen::Vector3d(n.x[slot], n.y[slot], n.z[slot]), bound.radius * n.r[slot]};
   }
+  double share(std::int32_t leaf) const { return shares.empty() ? 1.0 : shares[static_cast<std::size_t>(leaf)]; }
   std::size_t bytes() const {
-    return nodes.size() * (sizeof(SphereNode) + sizeof(below[0]) + sizeof(volumes[0])) + leaves.size() * sizeof(Sphere);
+    return nodes.size() * (sizeof(SphereNode) + sizeof(below[0]) + sizeof(volumes[0])) +
+           leaves.size() * sizeof(Sphere) + shares.size() * sizeof(double);
   }
 };
 
@@ -52,5 +56,8 @@ struct SphereTree {
 /// are shared out evenly among up to four nodes of leaves instead.
 /// Deterministic, whatever the number of threads. @throws BadArgument if there is no sphere.
 SphereTree build_sphere_tree(std::vector<Sphere> spheres);
+
+/// Makes every leaf's overlaps count `shares` times, one per leaf in tree order; sums of volumes follow.
+void set_shares(SphereTree& tree, std::vector<double> shares);
 
 }  // namespace sixdof::ist

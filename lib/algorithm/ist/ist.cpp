@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <sixdof/algorithm/ist/cells.h>
+#include <sixdof/algorithm/ist/descent.h>
 #include <sixdof/algorithm/ist/packing.h>
 #include <sixdof/algorithm/ist/traversal.h>
 
@@ -31,15 +33,17 @@ std::vector<Knob> knobs() {
            .low = 1e-6,
            .high = 0.5},
           {.name = "force",
-           .meaning = "force of a pair of spheres: its overlap's volume, or minus that volume's gradient",
+           .meaning = "pairs of spheres push with their overlap's volume, or minus its gradient; descent: all of the "
+                      "volume along the sum of the gradients",
            .unit = "",
            .standard = "volume",
-           .choices = {"volume", "gradient"}},
+           .choices = {"volume", "gradient", "descent"}},
           {.name = "correct_fill",
-           .meaning = "divide volume and force by both fill rates",
+           .meaning = "divide volume and force by both fill rates; cells: each sphere counts for the part of the solid "
+                      "nearest to it",
            .unit = "",
            .standard = "off",
-           .choices = {"off", "on"}},
+           .choices = {"off", "on", "cells"}},
           {.name = "budget",
            .meaning = "sphere tests per response, the rest is estimated; 0: no limit",
            .unit = "1",
@@ -48,7 +52,7 @@ std::vector<Knob> knobs() {
            .high = 1e9,
            .integer = true},
           {.name = "stiffness",
-           .meaning = "force per volume (force=volume) or per area (force=gradient)",
+           .meaning = "force per volume (force=volume, descent) or per area (force=gradient)",
            .unit = "1",
            .standard = "1",
            .low = 1e-12,
@@ -69,7 +73,8 @@ class IstQuery final : public Query {
       : a_(std::move(a)),
         b_(std::move(b)),
         center_b_(mesh_b.center()),
-        law_(settings.choice("force") == "gradient" ? PairForce::gradient : PairForce::volume),
+        law_(settings.choice("force") == "volume" ? PairForce::volume : PairForce::gradient),
+        descends_(settings.choice("force") == "descent"),
         budget_(static_cast<std::uint64_t>(settings.number("budget"))),
         gain_(settings.choice("correct_fill") == "on" ? 1.0 / (a_->fill * b_->fill) : 1.0),
         stiffness_(settings.number("stiffness")) {}
@@ -108,8 +113,9 @@ class IstQuery final : public Query {
     Response response;
     response.volume = gain_ * sum.volume;
     response.penalty = response.volume;
-    response.force = gain_ * stiffness_ * sum.force;
-    response.torque = gain_ * stiffness_ * sum.moment;
+    const PushSum push = descends_ ? steepest_descent(sum) : PushSum{sum.force, sum.moment};
+    response.force = gain_ * stiffness_ * push.force;
+    response.torque = gain_ * stiffness_ * push.moment;
     response.reference = reference;
     if (!response.force.allFinite() || !response.torque.allFinite() || !std::isfinite(response.volume)) {
       return fail(Status::non_finite, "force, torque or volume is not finite");
@@ -139,6 +145,7 @@ class IstQuery final : public Query {
   std::shared_ptr<const InnerSphereTree> a_, b_;
   Eigen::Vector3d center_b_;
   PairForce law_;
+  bool descends_;
   std::uint64_t budget_;
   double gain_;
   double stiffness_;
@@ -173,7 +180,11 @@ InnerSphereTree build_inner_sphere_tree(const Mesh& mesh, const Settings& settin
                                                .fill = settings.number("fill"),
                                                .smallest_radius = settings.number("smallest_radius"),
                                                .seed = static_cast<std::uint64_t>(settings.number("seed"))});
-  return {build_sphere_tree(std::move(packing.spheres)), packing.fill};
+  InnerSphereTree result{build_sphere_tree(std::move(packing.spheres)), packing.fill};
+  if (settings.choice("correct_fill") == "cells") {
+    set_shares(result.tree, cell_shares_cached(mesh, result.tree.leaves));
+  }
+  return result;
 }
 
 }  // namespace ist

@@ -12,11 +12,13 @@ namespace sixdof {
 /// centres.
 ///
 /// The spheres fill only a part of each solid (the fill rate, a count of the footprint), so volume and force are biased
-/// low and distances high; knob `correct_fill` divides volume and force by both fill rates. `collide` and `distance`
-/// answer for the spheres, not the surfaces.
+/// low and distances high. Knob `correct_fill=on` divides volume and force by both fill rates; `correct_fill=cells` lets
+/// each sphere count for the part of the solid that is nearest to it (cells.h), so that a volume is right wherever it
+/// is, not on average over the body. `collide` and `distance` answer for the spheres, not the surfaces.
 ///
 /// With `force=gradient` the force is minus the gradient of that volume and approaches the exact one as spheres grow in
 /// number, in direction and (corrected) in magnitude; with `force=volume`, the paper's, the direction keeps an error.
+/// `force=descent` has the volume as magnitude, as the paper's law asks, and the gradient's direction (descent.h).
 std::unique_ptr<Algorithm> make_ist_algorithm();
 
 namespace ist {

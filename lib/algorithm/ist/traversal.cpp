@@ -57,9 +57,11 @@ class PairSums {
     flush();
     for (std::size_t lane = 0; lane < k_lanes; ++lane) {
       sum.volume += total_[k_volume][lane];
+      sum.second += total_[k_second][lane];
       for (std::size_t k = 0; k < 3; ++k) {
         sum.force[static_cast<Eigen::Index>(k)] += total_[k_force + k][lane];
         sum.moment[static_cast<Eigen::Index>(k)] += total_[k_moment + k][lane];
+        sum.first[static_cast<Eigen::Index>(k)] += total_[k_first + k][lane];
       }
     }
   }
@@ -75,7 +77,9 @@ class PairSums {
     k_volume,
     k_force,
     k_moment = k_force + 3,
-    k_outputs = k_moment + 3
+    k_first = k_moment + 3,
+    k_second = k_first + 3,
+    k_outputs
   };
 
   HWY_ATTR void flush() {
@@ -112,12 +116,25 @@ class PairSums {
                                hn::Mul(constant(3.0), hn::Mul(difference, difference)));
     const auto lens = hn::Div(hn::Mul(constant(k_pi / 12.0), hn::Mul(hn::Mul(depth, depth), shape)), distance);
     const auto volume = hn::Mul(share, hn::IfThenElse(contained, ball, lens));
+    const auto ax = hn::Sub(p_x, constant(about_.x())), ay = hn::Sub(p_y, constant(about_.y())),
+               az = hn::Sub(p_z, constant(about_.z()));
+    const auto add_to = [&](std::size_t i, auto value)
+                            HWY_ATTR { hn::Store(hn::Add(hn::Load(d, total_[i] + sums), value), d, total_[i] + sums); };
     auto magnitude = volume;
     if (law_ == PairForce::gradient) {
       const auto to_plane = hn::Div(hn::Add(squared, hn::Mul(difference, sum)), hn::Mul(constant(2.0), distance));
       const auto disc = hn::Max(hn::Sub(hn::Mul(r1, r1), hn::Mul(to_plane, to_plane)), zero);
       const auto crossing = hn::Mul(share, hn::Mul(constant(k_pi), disc));
       magnitude = hn::IfThenElse(hn::Or(contained, hn::Ge(distance, sum)), zero, crossing);
+      // The middle of the disc, or the centre of the ball inside the other, seen from B's centre.
+      const auto in_b = hn::IfThenElse(hn::Lt(r1, r2), constant(-1.0), zero);
+      const auto back = hn::IfThenElse(contained, in_b, hn::Sub(hn::Div(to_plane, distance), constant(1.0)));
+      const auto mx = hn::Add(ax, hn::Mul(back, x)), my = hn::Add(ay, hn::Mul(back, y)),
+                 mz = hn::Add(az, hn::Mul(back, z));
+      add_to(k_first, hn::Mul(volume, mx));
+      add_to(k_first + 1, hn::Mul(volume, my));
+      add_to(k_first + 2, hn::Mul(volume, mz));
+      add_to(k_second, hn::Mul(volume, hn::Add(hn::Add(hn::Mul(mx, mx), hn::Mul(my, my)), hn::Mul(mz, mz))));
     }
     const auto overlap = hn::And(hn::Lt(distance, sum), hn::Gt(share, zero));
     overlapping_ += hn::CountTrue(d, overlap);
@@ -125,10 +142,6 @@ class PairSums {
     const auto factor = hn::IfThenElse(hn::Gt(distance, zero), hn::Div(magnitude, distance), zero);
     const auto fx = hn::Mul(factor, x), fy = hn::Mul(factor, y), fz = hn::Mul(factor, z);
     // The force's line of action is the line of centres, so any point on it gives the torque.
-    const auto ax = hn::Sub(p_x, constant(about_.x())), ay = hn::Sub(p_y, constant(about_.y())),
-               az = hn::Sub(p_z, constant(about_.z()));
-    const auto add_to = [&](std::size_t i, auto value)
-                            HWY_ATTR { hn::Store(hn::Add(hn::Load(d, total_[i] + sums), value), d, total_[i] + sums); };
     add_to(k_volume, volume);
     add_to(k_force, fx);
     add_to(k_force + 1, fy);
@@ -185,7 +198,7 @@ HWY_ATTR void SumAll(const SphereTree& a, const SphereTree& b, const Pose& X_AB,
     const std::size_t soon = std::min(i + k_ahead, found - 1);
     __builtin_prefetch(&leaf(a, pairs.a[soon]));
     __builtin_prefetch(&leaf(b, pairs.b[soon]));
-    sums.add(leaf(a, pairs.a[i]), leaf(b, pairs.b[i]), 1.0);
+    sums.add(leaf(a, pairs.a[i]), leaf(b, pairs.b[i]), a.share(pairs.a[i]) * b.share(pairs.b[i]));
   }
   sums.finish(sum);
   sum.count.leaf_pairs = sums.overlapping();
@@ -258,7 +271,7 @@ HWY_ATTR void SumWithin(const SphereTree& a, const SphereTree& b, const Pose& X_
       if (below.leaves) {
         const LeafPair leaf(a, b, X_AB, in_a, in_b);
         if (!leaf.overlap()) continue;
-        sums.add(leaf.a, leaf.b, 1.0);
+        sums.add(leaf.a, leaf.b, a.share(in_a) * b.share(in_b));
         ++sum.count.leaf_pairs;
         continue;
       }

@@ -31,7 +31,11 @@ struct PenetrationSum {
   double volume = 0.0;                               ///< Sum of the pairwise overlap volumes.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< Sum of the pair forces, unit stiffness.
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< Their moment about the point `about`.
-  bool complete = true;                              ///< False if a budget cut the traversal short.
+  /// Sums of V (p - about) and of V |p - about|^2, p the middle of a pair's overlap and V its volume: where the overlap
+  /// is, and how far it spreads. Of PairForce::gradient only.
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  double second = 0.0;
+  bool complete = true;  ///< False if a budget cut the traversal short.
   TraversalCount count;
 };
 

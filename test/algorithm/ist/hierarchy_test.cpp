@@ -30,7 +30,7 @@ double check_subtree(const SphereTree& tree, std::size_t node, const Sphere& bou
     if (tree.below[node] < 0) {
       const std::size_t leaf = static_cast<std::size_t>(~tree.below[node]) + slot;
       ++seen[leaf];
-      below = tree.leaves[leaf].volume();
+      below = tree.share(static_cast<std::int32_t>(leaf)) * tree.leaves[leaf].volume();
       ancestors.push_back(ball);
       for (const Sphere& ancestor : ancestors) {
         const double reach = (tree.leaves[leaf].center - ancestor.center).norm() + tree.leaves[leaf].radius;
@@ -49,11 +49,18 @@ double check_subtree(const SphereTree& tree, std::size_t node, const Sphere& bou
 
 TEST(SphereTree, EveryLeafOnceAndInsideAllItsAncestors) {
   for (const std::size_t count : {1u, 2u, 4u, 5u, 17u, 3000u}) {
-    const SphereTree tree = build_sphere_tree(random_spheres(count, 5));
-    std::vector<int> seen(tree.leaves.size(), 0);
-    const double volume = check_subtree(tree, 0, tree.bound, seen, {});
-    EXPECT_EQ(seen, std::vector<int>(count, 1));
-    EXPECT_NEAR(volume, tree.volume, k_rounding * tree.volume);
+    SphereTree tree = build_sphere_tree(random_spheres(count, 5));
+    for (const bool shared : {false, true}) {
+      if (shared) {
+        std::vector<double> shares(count);
+        for (std::size_t i = 0; i < count; ++i) shares[i] = 1.0 + 0.01 * static_cast<double>(i % 97);
+        set_shares(tree, std::move(shares));
+      }
+      std::vector<int> seen(tree.leaves.size(), 0);
+      const double volume = check_subtree(tree, 0, tree.bound, seen, {});
+      EXPECT_EQ(seen, std::vector<int>(count, 1));
+      EXPECT_NEAR(volume, tree.volume, k_rounding * tree.volume);
+    }
   }
 }
 

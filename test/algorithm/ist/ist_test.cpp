@@ -58,21 +58,71 @@ TEST_F(IstTest, VolumeAndForceApproachTheBlocksAsSpheresGrowInNumber) {
 
 TEST_F(IstTest, ReactionIsOppositeToAction) {
   const Mesh a = load_model("torus-knot-1k"), b = load_model("bumpy-sphere-1k");
-  const auto forward = prepare(a, b, {"spheres=300"}), backward = prepare(b, a, {"spheres=300"});
-  std::mt19937_64 random(41);
-  int touching = 0;
-  for (int i = 0; i < 20; ++i) {
-    const Pose X_AB = ist::random_pose(random, 0.5);
-    const Response on_b = forward->respond(X_AB).value;
-    const Response on_a_in_b = backward->respond(X_AB.inverse()).value;
-    touching += on_b.volume > 0.0 ? 1 : 0;
-    EXPECT_NEAR(on_b.volume, on_a_in_b.volume, 1e-12);
-    EXPECT_LE((on_b.force + X_AB.R * on_a_in_b.force).norm(), 1e-12);
-    const Response about_origin = on_b.about(Eigen::Vector3d::Zero());
-    const Response reaction = on_a_in_b.about(X_AB.inverse() * Eigen::Vector3d::Zero());
-    EXPECT_LE((about_origin.torque + X_AB.R * reaction.torque).norm(), 1e-12);
+  for (const std::vector<std::string>& knobs :
+       {std::vector<std::string>{"spheres=300"}, {"spheres=300", "force=descent", "correct_fill=cells"}}) {
+    const auto forward = prepare(a, b, knobs), backward = prepare(b, a, knobs);
+    std::mt19937_64 random(41);
+    int touching = 0;
+    for (int i = 0; i < 20; ++i) {
+      const Pose X_AB = ist::random_pose(random, 0.5);
+      const Response on_b = forward->respond(X_AB).value;
+      const Response on_a_in_b = backward->respond(X_AB.inverse()).value;
+      touching += on_b.volume > 0.0 ? 1 : 0;
+      EXPECT_NEAR(on_b.volume, on_a_in_b.volume, 1e-12);
+      EXPECT_LE((on_b.force + X_AB.R * on_a_in_b.force).norm(), 1e-12);
+      const Response about_origin = on_b.about(Eigen::Vector3d::Zero());
+      const Response reaction = on_a_in_b.about(X_AB.inverse() * Eigen::Vector3d::Zero());
+      EXPECT_LE((about_origin.torque + X_AB.R * reaction.torque).norm(), 1e-12);
+    }
+    EXPECT_GT(touching, 5);
   }
-  EXPECT_GT(touching, 5);
+}
+
+/// Blocks again: the overlap is a box, so its volume, its gradient and its place are known.
+TEST_F(IstTest, DescentPushesWithTheVolumeAndTheGradientsDirection) {
+  const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 100);
+  const std::vector<std::string> knobs{"spheres=3000", "correct_fill=cells"};
+  const auto with = [&](const char* force) {
+    std::vector<std::string> all = knobs;
+    all.emplace_back(force);
+    return prepare(block, block, all);
+  };
+  const auto descent = with("force=descent"), gradient = with("force=gradient");
+  std::mt19937_64 random(43);
+  std::uniform_real_distribution<double> overlap(0.2, 0.6);
+  for (int i = 0; i < 6; ++i) {
+    const double x = overlap(random), y = overlap(random), z = overlap(random);
+    const Pose X{Eigen::Matrix3d::Identity(), {2.0 - x, 1.6 - y, 1.2 - z}};
+    const Response push = descent->respond(X).value, slope = gradient->respond(X).value;
+    const double volume = x * y * z;
+    EXPECT_NEAR(push.volume, volume, 0.1 * volume);
+    EXPECT_EQ(push.volume, slope.volume);
+    // The gradient acts through the box's middle, nearly: hardly any of the magnitude goes into a torque.
+    EXPECT_LE(push.force.norm(), push.volume * (1.0 + k_rounding));
+    EXPECT_GT(push.force.norm(), 0.97 * push.volume);
+    EXPECT_LE((push.force.normalized() - slope.force.normalized()).norm(), k_rounding);
+    EXPECT_LE((push.torque / push.force.norm() - slope.torque / slope.force.norm()).norm(), k_rounding);
+    const double angle = std::acos(push.force.normalized().dot(Eigen::Vector3d(y * z, x * z, x * y).normalized()));
+    EXPECT_LT(angle, 10.0 * std::numbers::pi / 180.0);  // with 3,000 spheres; the paper's law: up to 40
+  }
+}
+
+TEST_F(IstTest, CellsMeasureVolumesBetterThanFillRates) {
+  const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 100);
+  const auto even = prepare(block, block, {"spheres=1000", "correct_fill=on"});
+  const auto cells = prepare(block, block, {"spheres=1000", "correct_fill=cells"});
+  std::mt19937_64 random(44);
+  std::uniform_real_distribution<double> overlap(0.1, 0.7);
+  double even_error = 0.0, cells_error = 0.0;
+  constexpr int k_poses = 30;
+  for (int i = 0; i < k_poses; ++i) {
+    const double x = overlap(random), y = overlap(random), z = overlap(random);
+    const Pose X{Eigen::Matrix3d::Identity(), {2.0 - x, 1.6 - y, 1.2 - z}};
+    even_error += std::abs(even->respond(X).value.volume / (x * y * z) - 1.0) / k_poses;
+    cells_error += std::abs(cells->respond(X).value.volume / (x * y * z) - 1.0) / k_poses;
+  }
+  EXPECT_LT(cells_error, 0.5 * even_error);
+  EXPECT_LT(cells_error, 0.2);
 }
 
 /// Every pair's force is along the line of centres and depends on their distance alone, so both laws derive from an
@@ -162,6 +212,10 @@ TEST_F(IstTest, KeptPackingGivesTheSameAnswer) {
   const Mesh mesh = load_model("torus-knot-1k");
   const Pose X = Pose::from_quaternion(0.8, 0.36, 0.0, 0.48, {0.3, 0.4, 0.2});
   const Response made = prepare(mesh, mesh, {"spheres=150"})->respond(X).value;
+  const std::vector<std::string> shared{"spheres=150", "correct_fill=cells"};
+  const Response weighed = prepare(mesh, mesh, shared)->respond(X).value;
+  EXPECT_GT(weighed.volume, made.volume);
+  EXPECT_EQ(prepare(mesh, mesh, shared)->respond(X).value.force, weighed.force);
   ASSERT_FALSE(std::filesystem::is_empty(cache));
   const Response kept = prepare(mesh, mesh, {"spheres=150"})->respond(X).value;
   EXPECT_EQ(made.volume, kept.volume);
@@ -178,6 +232,7 @@ TEST_F(IstTest, KeptPackingGivesTheSameAnswer) {
     bytes.seekp(static_cast<std::streamoff>(std::filesystem::file_size(file.path()) / 2));
     bytes.put('\x5a');
   }
+  EXPECT_EQ(prepare(mesh, mesh, shared)->respond(X).value.force, weighed.force);
   EXPECT_EQ(prepare(mesh, mesh, {"spheres=150"})->respond(X).value.force, made.force);
   EXPECT_EQ(prepare(mesh, mesh, {"spheres=151"})->footprint().counts.front().second, 151.0);  // another key
   std::filesystem::remove_all(cache);

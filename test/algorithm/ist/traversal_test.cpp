@@ -11,22 +11,38 @@ namespace {
 
 constexpr double k_rounding = 1e-12;  // sums of some 1e4 terms in another order
 
+/// Of two balls that cross, the centre of the circle in which their surfaces meet; else the centre of the inner one.
+Eigen::Vector3d middle_of_overlap(const Sphere& s, const Sphere& t) {
+  const double d = (t.center - s.center).norm();
+  if (d + t.radius <= s.radius) return t.center;
+  if (d + s.radius <= t.radius) return s.center;
+  const double cosine = (s.radius * s.radius + d * d - t.radius * t.radius) / (2.0 * s.radius * d);
+  return s.center + s.radius * cosine * (t.center - s.center) / d;
+}
+
 /// All pairs, no tree.
 PenetrationSum brute_force(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
                            const Eigen::Vector3d& about) {
   PenetrationSum sum;
-  for (const Sphere& s : a.leaves) {
-    for (const Sphere& t : b.leaves) {
+  for (std::size_t i = 0; i < a.leaves.size(); ++i) {
+    for (std::size_t j = 0; j < b.leaves.size(); ++j) {
+      const Sphere &s = a.leaves[i], &t = b.leaves[j];
+      const double share = a.shares.empty() ? 1.0 : a.shares[i] * b.shares[j];
       const Eigen::Vector3d center = X_AB * t.center;
       const double d = (center - s.center).norm();
-      const double volume = overlap_volume(s.radius, t.radius, d);
+      const double volume = share * overlap_volume(s.radius, t.radius, d);
       if (volume == 0.0) continue;
       sum.volume += volume;
-      const double size = law == PairForce::volume ? volume : overlap_disc_area(s.radius, t.radius, d);
+      const double size = law == PairForce::volume ? volume : share * overlap_disc_area(s.radius, t.radius, d);
       const Eigen::Vector3d force = size * (center - s.center).normalized();
       sum.force += force;
       // The arm may end anywhere on the line of centres: here on A's sphere.
       sum.moment += (s.center - about).cross(force);
+      if (law == PairForce::gradient) {
+        const Eigen::Vector3d p = middle_of_overlap(s, {center, t.radius}) - about;
+        sum.first += volume * p;
+        sum.second += volume * p.squaredNorm();
+      }
       ++sum.count.leaf_pairs;
     }
   }
@@ -62,6 +78,8 @@ TEST_F(TraversalTest, SumsEqualThoseOverAllPairs) {
         EXPECT_NEAR(sum.volume, truth.volume, k_rounding);
         EXPECT_LE((sum.force - truth.force).norm(), k_rounding);
         EXPECT_LE((sum.moment - truth.moment).norm(), k_rounding);
+        EXPECT_LE((sum.first - truth.first).norm(), k_rounding);
+        EXPECT_NEAR(sum.second, truth.second, k_rounding);
         EXPECT_EQ(overlaps(*a, *b, X, scratch_).any, truth.count.leaf_pairs > 0);
       }
     }
@@ -69,6 +87,33 @@ TEST_F(TraversalTest, SumsEqualThoseOverAllPairs) {
   }
   EXPECT_GT(touching, 5);
   EXPECT_LT(touching, 40);
+}
+
+TEST_F(TraversalTest, EveryPairCountsAsOftenAsItsSharesSay) {
+  std::mt19937_64 random(38);
+  std::uniform_real_distribution<double> share(1.0, 3.0);
+  SphereTree a = a_, b = b_;
+  for (SphereTree* tree : {&a, &b}) {
+    std::vector<double> shares(tree->leaves.size());
+    for (double& s : shares) s = share(random);
+    set_shares(*tree, std::move(shares));
+  }
+  int touching = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Pose X = random_pose(random, 1.0);
+    const PenetrationSum truth = brute_force(a, b, X, PairForce::gradient, about_);
+    // A budget that is never spent sums the same pairs in another order.
+    for (const PenetrationSum& sum : {penetration(a, b, X, PairForce::gradient, about_, scratch_),
+                                      penetration_within(a, b, X, PairForce::gradient, about_, 1u << 30)}) {
+      EXPECT_NEAR(sum.volume, truth.volume, k_rounding);
+      EXPECT_LE((sum.force - truth.force).norm(), k_rounding);
+      EXPECT_LE((sum.moment - truth.moment).norm(), k_rounding);
+      EXPECT_LE((sum.first - truth.first).norm(), k_rounding);
+      EXPECT_NEAR(sum.second, truth.second, k_rounding);
+    }
+    touching += truth.volume > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(touching, 3);
 }
 
 TEST_F(TraversalTest, SeparationEqualsTheSmallestGap) {
