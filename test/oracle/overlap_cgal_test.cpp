@@ -17,13 +17,6 @@ namespace {
 using bodies::Body;
 using Eigen::Vector3d;
 
-reference::CgalMesh convert(const Mesh& mesh) {
-  reference::CgalMesh result;
-  for (const Vector3d& p : mesh.vertices()) result.vertices.push_back({p.x(), p.y(), p.z()});
-  result.triangles = mesh.triangles();
-  return result;
-}
-
 std::vector<std::array<double, 3>> placed(const Mesh& mesh, const Pose& X_AB) {
   std::vector<std::array<double, 3>> result;
   for (const Vector3d& p : mesh.vertices()) {
@@ -39,7 +32,8 @@ constexpr double k_share_of_volume = 1e-12;
 /// B turned at random, its box centre within `reach` of A's.
 void expect_agreement(const Mesh& a, const Mesh& b, int poses, unsigned seed, double reach = 0.25) {
   const Body body_a(a), body_b(b);
-  const reference::CgalOverlap ab(convert(a), convert(b)), ba(convert(b), convert(a));
+  const reference::CgalOverlap ab(reference::to_cgal(a), reference::to_cgal(b)),
+      ba(reference::to_cgal(b), reference::to_cgal(a));
   std::mt19937_64 random(seed);
   int met = 0;
   for (int i = 0; i < poses; ++i) {

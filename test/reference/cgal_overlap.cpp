@@ -1,8 +1,12 @@
 #include "cgal_overlap.h"
 
+#include <iterator>
+#include <utility>
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
 namespace sixdof::reference {
@@ -42,6 +46,13 @@ double CgalOverlap::volume(const std::vector<std::array<double, 3>>& placed_b) c
   Surface common;
   if (!CGAL::Polygon_mesh_processing::corefine_and_compute_intersection(a, b, common)) return -1.0;
   return common.number_of_faces() == 0 ? 0.0 : CGAL::Polygon_mesh_processing::volume(common);
+}
+
+std::size_t count_self_intersections(const CgalMesh& mesh) {
+  const Surface surface = convert(mesh);
+  std::vector<std::pair<Surface::Face_index, Surface::Face_index>> pairs;
+  CGAL::Polygon_mesh_processing::self_intersections(surface, std::back_inserter(pairs));
+  return pairs.size();
 }
 
 }  // namespace sixdof::reference

@@ -1,18 +1,16 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
-/// Volume of the intersection of two closed meshes by CGAL's corefinement: an independent exact Boolean, for tests and
-/// benchmarks only (CGAL's corefinement is GPL; the library does not link it).
-namespace sixdof::reference {
+#include "cgal_mesh.h"
 
-struct CgalMesh {
-  std::vector<std::array<double, 3>> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-};
+/// Volume of the intersection of two closed meshes by CGAL's corefinement, an independent exact Boolean, and what CGAL
+/// finds wrong with a mesh: for tests and benchmarks only (these parts of CGAL are GPL; the library does not link
+/// them).
+namespace sixdof::reference {
 
 /// A fixed and a moving mesh, converted once; the moving one is copied and placed per query, as corefinement changes
 /// its arguments.
@@ -28,5 +26,8 @@ class CgalOverlap {
   struct Meshes;
   std::unique_ptr<Meshes> meshes_;
 };
+
+/// Pairs of triangles that meet elsewhere than in a corner or an edge that they share, by exact predicates.
+std::size_t count_self_intersections(const CgalMesh& mesh);
 
 }  // namespace sixdof::reference

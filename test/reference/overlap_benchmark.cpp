@@ -24,15 +24,9 @@ struct Pair {
   reference::CgalOverlap cgal;
   std::vector<std::vector<std::array<double, 3>>> placed;
 
-  static reference::CgalMesh convert(const Mesh& mesh) {
-    reference::CgalMesh result;
-    for (const Eigen::Vector3d& p : mesh.vertices()) result.vertices.push_back({p.x(), p.y(), p.z()});
-    result.triangles = mesh.triangles();
-    return result;
-  }
-
   /// Rotations at random; B comes in along a random direction until the overlap is `share` of A's volume.
-  Pair(Mesh mesh, double share) : body(std::move(mesh)), cgal(convert(body.mesh), convert(body.mesh)) {
+  Pair(Mesh mesh, double share)
+      : body(std::move(mesh)), cgal(reference::to_cgal(body.mesh), reference::to_cgal(body.mesh)) {
     std::mt19937_64 random(20261121);
     OverlapQuery query(body.solid, body.solid);
     while (poses.size() < k_poses) {

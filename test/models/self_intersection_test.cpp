@@ -1,0 +1,48 @@
+#include <filesystem>
+
+#include <cgal_overlap.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/models/boxes.h>
+#include <sixdof/models/manifest.h>
+#include <sixdof/models/recipe.h>
+#include <sixdof/models/zoo.h>
+
+/// No model's surface passes through itself, by CGAL's exact predicates: an inside that is one would not be defined.
+namespace sixdof {
+namespace {
+
+std::size_t crossings(const Mesh& mesh) { return reference::count_self_intersections(reference::to_cgal(mesh)); }
+
+TEST(SelfIntersection, IsNowhereInARecipe) {
+  for (const Recipe& recipe : recipes()) {
+    for (const std::size_t triangles : {recipe.minimum, std::size_t{1000}, std::size_t{10'000}}) {
+      EXPECT_EQ(crossings(recipe.make(triangles)), 0U) << recipe.name << ' ' << triangles;
+    }
+  }
+}
+
+/// Refining does not change a shape.
+TEST(SelfIntersection, ComesWithNoRefinement) {
+  for (const char* name : {"bear-40k", "knot-30k"}) {
+    const FetchedModel* const model = find_fetched_model(parse_model_name(name).base);
+    ASSERT_NE(model, nullptr);
+    if (!std::filesystem::exists(model_cache() / model->file))
+      GTEST_SKIP() << "models/fetch " << model->name << " first";
+    EXPECT_EQ(crossings(load_model(name)), crossings(load_model(std::string(model->name)))) << name;
+  }
+}
+
+/// Two blocks in one mesh that cross: the count is not always zero.
+TEST(SelfIntersection, OfCrossingBlocksIsSeen) {
+  const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 12);
+  std::vector<Eigen::Vector3d> vertices = block.vertices();
+  std::vector<Triangle> triangles = block.triangles();
+  const auto count = static_cast<std::uint32_t>(vertices.size());
+  for (const Eigen::Vector3d& p : block.vertices()) vertices.push_back(p + Eigen::Vector3d(0.3, 0.5, 0.7));
+  for (const Triangle& t : block.triangles()) triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+  EXPECT_GT(crossings(Mesh::build(vertices, triangles, "crossing")), 10U);
+}
+
+}  // namespace
+}  // namespace sixdof

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+/// What goes to CGAL: its code is compiled apart, see CMakeLists.txt, and knows nothing of this project's types.
+namespace sixdof::reference {
+
+struct CgalMesh {
+  std::vector<std::array<double, 3>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Of any type with vertices() and triangles(), as Mesh has them.
+template <class M>
+CgalMesh to_cgal(const M& mesh) {
+  CgalMesh result;
+  result.vertices.reserve(mesh.vertices().size());
+  for (const auto& p : mesh.vertices()) result.vertices.push_back({p.x(), p.y(), p.z()});
+  result.triangles.assign(mesh.triangles().begin(), mesh.triangles().end());
+  return result;
+}
+
+}  // namespace sixdof::reference
