@@ -54,7 +54,6 @@ class VolumeGauge final : public Gauge {
   VolumeGauge(const Mesh& a, const Mesh& b)
       : a_(a),
         b_(b),
-        by_columns_(a.triangles().size() * b.triangles().size() <= k_most_column_pairs),
         tree_a_(a),
         tree_b_(b),
         solid_a_(a, tree_a_),
@@ -62,9 +61,9 @@ class VolumeGauge final : public Gauge {
         query_(solid_a_, solid_b_),
         areas_a_(area_vectors(tree_a_)),
         areas_b_(area_vectors(tree_b_)) {}
-  std::string name() const override { return by_columns_ ? "columns" : "exact"; }
+  std::string name() const override { return "columns"; }
   double measure(const ConfigurationRay& ray, double s) override {
-    return by_columns_ ? overlap_volume_by_columns(a_, b_, ray.pose(s)) : query_.evaluate(ray.pose(s)).volume;
+    return overlap_volume_by_columns(a_, b_, ray.pose(s));
   }
   double missing(const ConfigurationRay& ray, double s, double aim) override {
     return aim - query_.evaluate(ray.pose(s)).volume;
@@ -87,7 +86,6 @@ class VolumeGauge final : public Gauge {
  private:
   const Mesh& a_;
   const Mesh& b_;
-  const bool by_columns_;
   Tree tree_a_, tree_b_;
   Solid solid_a_, solid_b_;
   OverlapQuery query_;

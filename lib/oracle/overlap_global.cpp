@@ -101,6 +101,95 @@ double column(const Face& f, const Face& g) {
          integrate(g_lower, [&](const Vector2d& x) { return g.z(x); });
 }
 
+/// Faces filed by the cells of a grid that the boxes of their projections meet.
+class FaceGrid {
+ public:
+  explicit FaceGrid(const std::vector<Face>& faces) : faces_(faces) {
+    if (faces.empty()) return;
+    low_ = faces.front().low;
+    high_ = faces.front().high;
+    for (const Face& f : faces) {
+      low_ = low_.cwiseMin(f.low);
+      high_ = high_.cwiseMax(f.high);
+    }
+    // About as many square cells as faces.
+    const Vector2d size = high_ - low_;
+    const double edge = std::max(std::sqrt(size.x() * size.y() / static_cast<double>(faces.size())),
+                                 size.maxCoeff() / k_most_cells_along);
+    per_length_ = edge > 0.0 ? 1.0 / edge : 0.0;
+    along_x_ = 1 + cell(high_.x(), low_.x());
+    along_y_ = 1 + cell(high_.y(), low_.y());
+    // Counted first, then filed: begin_[c] .. begin_[c + 1] are the faces of cell c.
+    begin_.assign(along_x_ * along_y_ + 1, 0);
+    for (const Face& f : faces) {
+      for_each_cell(f, [&](std::size_t c, std::size_t, std::size_t) { ++begin_[c + 1]; });
+    }
+    for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
+    filed_.resize(begin_.back());
+    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      for_each_cell(faces[i], [&](std::size_t c, std::size_t, std::size_t) { filed_[next[c]++] = i; });
+    }
+  }
+
+  /// Calls meet(g) once for every face g whose projection's box meets that of `f` in more than a line.
+  template <class Meet>
+  void for_each_near(const Face& f, const Meet& meet) const {
+    if (faces_.empty() || f.low.x() >= high_.x() || f.low.y() >= high_.y()) return;
+    if (f.high.x() <= low_.x() || f.high.y() <= low_.y()) return;
+    for_each_cell(f, [&](std::size_t c, std::size_t x, std::size_t y) {
+      for (std::size_t k = begin_[c]; k < begin_[c + 1]; ++k) {
+        const Face& g = faces_[filed_[k]];
+        if (g.low.x() >= f.high.x() || g.high.x() <= f.low.x() || g.low.y() >= f.high.y() || g.high.y() <= f.low.y()) {
+          continue;
+        }
+        // Both are filed in several cells: the one in which the common part of their boxes begins counts.
+        if (cell(std::max(f.low.x(), g.low.x()), low_.x()) == x &&
+            cell(std::max(f.low.y(), g.low.y()), low_.y()) == y) {
+          meet(g);
+        }
+      }
+    });
+  }
+
+ private:
+  static constexpr double k_most_cells_along = 4096;
+
+  std::size_t cell(double at, double from) const {
+    return static_cast<std::size_t>(std::clamp((at - from) * per_length_, 0.0, 2.0 * k_most_cells_along));
+  }
+
+  /// Calls visit(index, x, y) for the cells that the box of `f` meets, as far as they are in the grid.
+  template <class Visit>
+  void for_each_cell(const Face& f, const Visit& visit) const {
+    const std::size_t end_x = std::min(along_x_ - 1, cell(f.high.x(), low_.x()));
+    const std::size_t end_y = std::min(along_y_ - 1, cell(f.high.y(), low_.y()));
+    for (std::size_t y = cell(f.low.y(), low_.y()); y <= end_y; ++y) {
+      for (std::size_t x = cell(f.low.x(), low_.x()); x <= end_x; ++x) visit(y * along_x_ + x, x, y);
+    }
+  }
+
+  const std::vector<Face>& faces_;
+  Vector2d low_ = Vector2d::Zero(), high_ = Vector2d::Zero();
+  double per_length_ = 0.0;
+  std::size_t along_x_ = 0, along_y_ = 0;
+  std::vector<std::size_t> begin_, filed_;
+};
+
+/// A sum with Neumaier's compensation.
+class Sum {
+ public:
+  void add(double x) {
+    const double t = sum_ + x;
+    rest_ += std::abs(sum_) >= std::abs(x) ? (sum_ - t) + x : (x - t) + sum_;
+    sum_ = t;
+  }
+  double value() const { return sum_ + rest_; }
+
+ private:
+  double sum_ = 0.0, rest_ = 0.0;
+};
+
 }  // namespace
 
 double overlap_volume_by_columns(const Mesh& a, const Mesh& b, const Pose& X_AB) {
@@ -109,21 +198,13 @@ double overlap_volume_by_columns(const Mesh& a, const Mesh& b, const Pose& X_AB)
   }
   const Vector3d origin = a.center();
   const std::vector<Face> of_a = project(a, Pose{}, origin);
-  std::vector<Face> of_b = project(b, X_AB, origin);
-  std::sort(of_b.begin(), of_b.end(), [](const Face& f, const Face& g) { return f.low.x() < g.low.x(); });
-  double sum = 0.0;
-  double rest = 0.0;  // Neumaier's compensation
+  const std::vector<Face> of_b = project(b, X_AB, origin);
+  const FaceGrid grid(of_b);
+  Sum sum;
   for (const Face& f : of_a) {
-    for (const Face& g : of_b) {
-      if (g.low.x() >= f.high.x()) break;
-      if (g.high.x() <= f.low.x() || g.low.y() >= f.high.y() || g.high.y() <= f.low.y()) continue;
-      const double x = f.sign * g.sign * column(f, g);
-      const double t = sum + x;
-      rest += std::abs(sum) >= std::abs(x) ? (sum - t) + x : (x - t) + sum;
-      sum = t;
-    }
+    grid.for_each_near(f, [&](const Face& g) { sum.add(f.sign * g.sign * column(f, g)); });
   }
-  return sum + rest;
+  return sum.value();
 }
 
 }  // namespace sixdof

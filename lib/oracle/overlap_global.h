@@ -6,7 +6,8 @@
 namespace sixdof {
 
 /// Volume of the intersection of two closed meshes at a pose by a method that shares nothing with OverlapQuery: an
-/// independent check, for small meshes (its time grows with the product of the triangle counts).
+/// independent check. Its time grows with the number of pairs of triangles that meet in projection to a plane, whatever
+/// is above or below: a fraction of a second for scanned bodies of 100,000 triangles.
 ///
 /// A body is the signed sum of the columns below its faces, so the intersection's volume is the sum over all pairs of
 /// faces (f of A, g of B) of s_f s_g times the integral of min(z_f, z_g) over the overlap of their projections to the
