@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include <sixdof/bench/algorithms.h>
 #include <sixdof/bench/cli/distance_source_argument.h>
 #include <sixdof/bench/cli/generate_plan.h>
+#include <sixdof/bench/cli/generate_profile.h>
 #include <sixdof/bench/cli/generate_shards.h>
 #include <sixdof/bench/cli/program_version.h>
 #include <sixdof/configuration/configuration_set.h>
@@ -36,7 +38,8 @@ struct Arguments {
   std::size_t shards = 0, shard = 0;  // 0: not given
   double sample_seconds = 5.0;
   std::uint64_t sample_seed = 1;
-  bool plan = false, resume = false, progress = false;
+  std::optional<std::size_t> rotations;
+  bool plan = false, profile = false, resume = false, progress = false;
 };
 
 int parse_percent(std::string_view list, std::string_view text) {
@@ -79,6 +82,7 @@ void check_shards(const Arguments& arguments) {
   if (arguments.shards == 0 && (arguments.shard != 0 || arguments.resume)) {
     throw BadArgument("--shard and --resume go with --shards N");
   }
+  if (arguments.shards != 0 && arguments.profile) throw BadArgument("--profile makes no shards");
 }
 
 void generate(const Arguments& arguments) {
@@ -90,8 +94,8 @@ void generate(const Arguments& arguments) {
   if (arguments.plan) {
     print_counts(set, distances.size(), volumes.size());
     if (arguments.a.empty() || arguments.sample_seconds == 0.0) return;
-  } else if (arguments.a.empty() || arguments.output.empty()) {
-    throw BadArgument("--a and -o are needed (or --plan)");
+  } else if (arguments.a.empty() || (arguments.output.empty() && !arguments.profile)) {
+    throw BadArgument("--a and -o are needed (or --plan, or --a and --profile)");
   }
 
   Registry registry;
@@ -114,6 +118,7 @@ void generate(const Arguments& arguments) {
     return print_estimate(
         work, {.shards = arguments.shards, .seconds = arguments.sample_seconds, .seed = arguments.sample_seed});
   }
+  if (arguments.profile) return print_profile(work, {.rotations = arguments.rotations, .seed = arguments.sample_seed});
   if (arguments.shards == 0) return generate_set(work, arguments.output);
   generate_shards(
       work,
@@ -159,8 +164,9 @@ void add_generate_command(CLI::App& app) {
   command->add_option("--threads", arguments->threads, "0: as many as the machine has")->capture_default_str();
   command->add_option("--volume-grid", arguments->volume_grid,
                       "Grid of the volumes; that of the distances if left out, but paper-volume with --grid paper");
-  command->add_option("-o,--output", arguments->output,
-                      "The set (HDF5); replaced if it exists. With --shards a folder, made if missing");
+  auto* const output =
+      command->add_option("-o,--output", arguments->output,
+                          "The set (HDF5); replaced if it exists. With --shards a folder, made if missing");
   command
       ->add_option("--shards", arguments->shards,
                    "Cut the work into N files of equal size, which sixdof merge makes a set of")
@@ -169,12 +175,21 @@ void add_generate_command(CLI::App& app) {
       ->check(CLI::Range(1, k_most_shards));
   command->add_flag("--resume", arguments->resume, "Keep shards that are there and sound, make the others");
   command->add_flag("--progress", arguments->progress, "Show progress where stderr is no terminal, too");
-  command->add_flag("--plan", arguments->plan,
-                    "Only print what would be made and, given --a, what it would take, from a timed sample of it");
+  auto* const plan =
+      command->add_flag("--plan", arguments->plan,
+                        "Only print what would be made and, given --a, what it would take, from a timed sample of it");
   command->add_option("--sample-seconds", arguments->sample_seconds, "Of --plan; 0: no sample")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--sample-seed", arguments->sample_seed, "Of --plan")->capture_default_str();
+  auto* const profile =
+      command->add_flag("--profile", arguments->profile,
+                        "Only solve, and print how evenly the work is spread: median and worst configuration");
+  profile->excludes(plan)->excludes(output);
+  command
+      ->add_option("--rotations", arguments->rotations,
+                   "Of --profile: how many besides those that turn an axis onto an axis; all if left out")
+      ->needs(profile);
+  command->add_option("--sample-seed", arguments->sample_seed, "Of --plan and --profile")->capture_default_str();
   command->callback([arguments] { generate(*arguments); });
 }
 

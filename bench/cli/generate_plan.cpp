@@ -51,11 +51,7 @@ Kind describe(const GenerationWork& work, BucketKind which) {
             .rotations = grid.rotations.size(),
             .distinct = DistinctRotations(grid.rotations).first.size(),
             .cost = {}};
-  for (const BucketSummary& bucket : work.job.buckets) {
-    if (bucket.key.kind == which) kind.aims.push_back(bucket.aim);
-  }
-  // From outside: distances from far to near, volumes from contact inwards.
-  if (which == BucketKind::distance) std::ranges::reverse(kind.aims);
+  for (const BucketSummary& bucket : buckets_in_order(work.job, which)) kind.aims.push_back(bucket.aim);
   return kind;
 }
 
@@ -80,6 +76,15 @@ void measure(const GenerationWork& work, const EstimateRequest& request, double 
 void print_line(const char* what, const std::string& text) { fmt::print("{:<26} {}\n", what, text); }
 
 }  // namespace
+
+std::vector<BucketSummary> buckets_in_order(const GenerationJob& job, BucketKind kind) {
+  std::vector<BucketSummary> buckets;
+  for (const BucketSummary& bucket : job.buckets) {
+    if (bucket.key.kind == kind) buckets.push_back(bucket);
+  }
+  if (kind == BucketKind::distance) std::ranges::reverse(buckets);
+  return buckets;
+}
 
 void print_counts(const SetDescription& set, std::size_t distances, std::size_t volumes) {
   std::size_t all = 0, computed = 0;

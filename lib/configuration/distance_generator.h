@@ -35,6 +35,11 @@ class RaySolver {
 
   /// Distance measurements so far: what the work consists of.
   virtual std::uint64_t measurements() const = 0;
+
+  /// What each aim of the last solve() took, in counts of steps weighed by their usual time: for one pair about
+  /// proportional to processor time, but the same on every machine and in every run. So single configurations can be
+  /// compared, whose times a busy machine hides. What several aims share counts for the first of them.
+  virtual std::span<const std::uint64_t> work() const = 0;
 };
 
 /// A way to find the configurations of the distance buckets.

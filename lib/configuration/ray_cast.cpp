@@ -40,6 +40,7 @@ class RayCastSolver final : public RaySolver {
   void set_rotation(const Eigen::Vector4d& rotation) override {
     ray_ = ConfigurationRay(a_, b_, rotation);
     tree_b_.turn(ray_.R);
+    cast_.ties.clear();
     last_direction_.clear();
   }
 
@@ -49,23 +50,28 @@ class RayCastSolver final : public RaySolver {
     cast_.direction = direction;
     cast_.front.clear();
     last_direction_.resize(aims.size());
+    work_.assign(aims.size(), 0);
     std::optional<ray_cast::CastPair> last_aim;
     bool reachable = true;
     for (std::size_t k = 0; k < aims.size(); ++k) {
       std::optional<ray_cast::CastPair> pair;
+      const std::uint64_t before = cast_.counts.work();
       // Who is missed by a wider aim is missed by a narrower one.
       if (reachable) pair = cast(aims[k], last_aim, last_direction_[k]);
       reachable = pair.has_value();
       travel[k] = std::numeric_limits<double>::quiet_NaN();
       residuals[k] = 0.0;
-      if (!reachable) continue;
-      last_aim = pair;
-      last_direction_[k] = pair;
-      std::tie(travel[k], residuals[k]) = polish(*pair, cast_.travel, aims[k]);
+      if (reachable) {
+        last_aim = pair;
+        last_direction_[k] = pair;
+        std::tie(travel[k], residuals[k]) = polish(*pair, cast_.travel, aims[k]);
+      }
+      work_[k] = cast_.counts.work() - before;
     }
   }
 
   std::uint64_t measurements() const override { return cast_.counts.distances; }
+  std::span<const std::uint64_t> work() const override { return work_; }
 
  private:
   std::optional<ray_cast::CastPair> cast(double aim, const std::optional<ray_cast::CastPair>& first_guess,
@@ -118,6 +124,7 @@ class RayCastSolver final : public RaySolver {
   ray_cast::Cast cast_;
   ConfigurationRay ray_;
   std::vector<std::optional<ray_cast::CastPair>> last_direction_;  // pair of each aim
+  std::vector<std::uint64_t> work_;                                // of each aim
 };
 
 class RayCast final : public DistanceGenerator {

@@ -21,6 +21,9 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
 namespace HWY_NAMESPACE {
 
+/// So many pairs are left open in vain where surfaces are only smooth.
+constexpr std::uint64_t k_few_futile = 8;
+
 struct Descent {
   Cast& cast;
   CastFront& front;
@@ -28,6 +31,9 @@ struct Descent {
   const CastTree& tree_b;
   Ray ray;
   const double tie;
+  // How many pairs bounds in floats left open in vain: so far, when double precision last cut one, and when it is to
+  // try next. Where surfaces are only smooth it cuts none, and tries become rare.
+  std::uint64_t futile = 0, last_cut = 0, next_try = k_few_futile;
 
   explicit Descent(Cast& c) : cast(c), front(c.front), tree_a(c.a), tree_b(c.b), tie(k_cast_tie * c.size()) {
     for (int k = 0; k < 3; ++k) ray.u[k] = static_cast<float>(cast.direction[k]);
@@ -85,6 +91,18 @@ struct Descent {
     const CastSlab slab_a = tree_a.slab(a);
     const CastSlab slab_b = tree_b.slab(b);
     return slabs_apart(slab_a, slab_b, tree_b.volume(b)) || slabs_apart(slab_b, slab_a, tree_a.volume(a));
+  }
+
+  /// Whether two subtrees are apart by the aim along the axis along which triangles were last found to be, if it is
+  /// time to find out. What is cut is farther in than what offer_pair() turns down by half a tie, which is more than
+  /// the rounding of both. Their line stays as it is: a narrower aim looks into them again.
+  bool apart_along_axis(std::uint32_t a, std::uint32_t b) {
+    if (futile < next_try || !cast.pair || a == CastFront::k_root || b == CastFront::k_root) return false;
+    const double along = cast.travel * cast.apart_axis.dot(cast.direction);
+    const bool apart = cast.ties.apart(a, b, cast.apart_axis, along, cast.aim - 0.5 * tie);
+    if (apart) last_cut = futile;
+    next_try = apart ? futile : futile + 1 + (futile - last_cut) / 2;
+    return apart;
   }
 
   /// Of each triangle, how low its lowest corner lies along the axis.
@@ -154,7 +172,11 @@ struct Descent {
     for (std::size_t n = 0; n < count; ++n) {
       const std::uint32_t i = order[n] / k_leaf_triangles;
       const std::uint32_t j = order[n] % k_leaf_triangles;
-      if (offer_pair(cast, {child_a.first() + i, child_b.first() + j})) update();
+      if (offer_pair(cast, {child_a.first() + i, child_b.first() + j})) {
+        update();
+      } else {
+        ++futile;
+      }
     }
   }
 
@@ -225,10 +247,13 @@ struct Descent {
     const std::size_t first = open.size();
     for (; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      const bool flat = node.slab_half[lane] <= ray.slack && fixed.slab_half <= ray.slack;
-      if (flat && gaps[lane] > -ray.slack) {
+      if (gaps[lane] > -ray.slack) {
+        ++futile;
         const auto own = static_cast<std::uint32_t>(index * k_width + lane);
-        if (ties(opens_a ? own : other, opens_a ? other : own)) continue;
+        const std::uint32_t a = opens_a ? own : other;
+        const std::uint32_t b = opens_a ? other : own;
+        const bool flat = node.slab_half[lane] <= ray.slack && fixed.slab_half <= ray.slack;
+        if ((flat && ties(a, b)) || apart_along_axis(a, b)) continue;
       }
       prefetch(tree, node.child[lane]);
       const CastFront::Open next{visit, lane, heights[lane]};
@@ -266,6 +291,7 @@ struct Descent {
       const auto own = static_cast<std::uint32_t>(k_width * from.node + top.lane);
       const std::uint32_t a = from.opens_a ? own : from.other;
       const std::uint32_t b = from.opens_a ? from.other : own;
+      if (apart_along_axis(a, b)) continue;
       const CastChild child_a = child_of(tree_a, a);
       const CastChild child_b = child_of(tree_b, b);
       if (child_a.is_leaf() && child_b.is_leaf()) {
@@ -371,25 +397,32 @@ constexpr int k_most_steps = 100;
 /// |distance - aim| at which a step changes nothing, in units of Cast::size(): the rounding of the corners.
 constexpr double k_settled = 2e-16;
 
+/// Below this aim, in units of Cast::size(), the rounding of closest points turns the axis between them so far that
+/// ties along it are not seen. Of buckets this is only that of contact.
+constexpr double k_blurred_aim = 1e-3;
+
 }  // namespace
 
 HWY_EXPORT(find_first_hit);
 
-void find_first_hit(Cast& cast) { HWY_DYNAMIC_DISPATCH(find_first_hit)(cast); }
+void find_first_hit(Cast& cast) {
+  HWY_DYNAMIC_DISPATCH(find_first_hit)(cast);
+  cast.counts.supports = cast.ties.supports();
+}
 
 bool offer_pair(Cast& cast, CastPair pair) {
+  ++cast.counts.offers;
   const TriangleCorners mirrored = cast.a.triangle(pair.a);
   const TriangleCorners a{-mirrored[0], -mirrored[1], -mirrored[2]};
   const TriangleCorners at_center = cast.b.triangle(pair.b);
   const double size = cast.size();
   const double tie = k_cast_tie * size;
   // Triangles around the corners and edges of the closest pair tie with it along its axis.
-  if (cast.pair) {
-    double gap = cast.travel * cast.axis.dot(cast.direction);
-    gap += std::min({cast.axis.dot(mirrored[0]), cast.axis.dot(mirrored[1]), cast.axis.dot(mirrored[2])});
-    gap += std::min({cast.axis.dot(at_center[0]), cast.axis.dot(at_center[1]), cast.axis.dot(at_center[2])});
-    if (gap >= cast.aim - tie) return false;
-  }
+  const auto apart_along = [&](const Eigen::Vector3d& axis) {
+    return cast.travel * axis.dot(cast.direction) + lowest_difference(mirrored, at_center, axis);
+  };
+  const double enough = cast.aim - tie;
+  if (cast.pair && (apart_along(cast.axis) >= enough || apart_along(cast.apart_axis) >= enough)) return false;
   const MovingPair moving(a, at_center, cast.direction);
   const auto sample_at = [&](double t) {
     ++cast.counts.distances;
@@ -399,7 +432,17 @@ bool offer_pair(Cast& cast, CastPair pair) {
   // a step up the slope ends to the right of it, and from there no step goes past it.
   double t = cast.travel;
   MovingPair::Sample sample = sample_at(t);
-  if (sample.distance >= cast.aim - tie && sample.slope >= 0.0) return false;
+  const auto separating_axis = [&](const MovingPair::Sample& at, double travel) -> Eigen::Vector3d {
+    if (cast.aim >= k_blurred_aim * size) return at.axis;
+    const Eigen::Vector3d move = travel * cast.direction;
+    const Eigen::Vector3d axis =
+        sharp_axis(mirrored, {at_center[0] + move, at_center[1] + move, at_center[2] + move}, at.axis, 0.25 * tie);
+    return axis.dot(cast.direction) >= 0.0 ? axis : at.axis;
+  };
+  if (sample.distance >= cast.aim - tie && sample.slope >= 0.0) {
+    if (cast.pair) cast.apart_axis = separating_axis(sample, t);
+    return false;
+  }
   if (sample.distance >= cast.aim || !(sample.slope > 0.0)) {
     double highest_a = -std::numeric_limits<double>::infinity();
     double lowest_b = -highest_a;
@@ -424,7 +467,7 @@ bool offer_pair(Cast& cast, CastPair pair) {
   if (!(sample.slope >= 0.0)) return false;
   cast.travel = t;
   cast.pair = pair;
-  cast.axis = sample.axis;
+  cast.axis = cast.apart_axis = separating_axis(sample, t);
   return true;
 }
 

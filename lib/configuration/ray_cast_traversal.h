@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <sixdof/configuration/ray_cast_front.h>
+#include <sixdof/configuration/ray_cast_ties.h>
 #include <sixdof/configuration/ray_cast_tree.h>
 
 /// The branch and bound of the ray cast. Internal: use ray_cast.h.
@@ -22,7 +23,13 @@ struct CastPair {
 struct CastCounts {
   std::uint64_t nodes = 0;       ///< Nodes whose children were bounded against a volume.
   std::uint64_t leaf_pairs = 0;  ///< Pairs of leaves whose triangles were bounded.
+  std::uint64_t offers = 0;      ///< Pairs of triangles that came up for exact distances.
   std::uint64_t distances = 0;   ///< Exact distances of two triangles.
+  std::uint64_t supports = 0;    ///< Triangles whose height along an axis was found (CastTies).
+
+  /// All of them, in units of some 20 ns: within a factor of two of the time of nearly all rays (fitted to rays of
+  /// seven pairs of 12 to 100,000 triangles).
+  std::uint64_t work() const { return 2 * (nodes + leaf_pairs) + 6 * offers + 8 * distances + supports; }
 };
 
 /// One ray: B stands at `travel` along `direction` from where the centres of the boxes agree.
@@ -30,7 +37,7 @@ struct CastCounts {
 /// Trees are in A's axes, A's mirrored in its centre, so that everything is a sum: the difference b - a of a point b of
 /// B and a of A is a point of the one tree plus a point of the other plus travel * direction.
 struct Cast {
-  Cast(const CastTree& tree_a, const CastTree& tree_b) : a(tree_a), b(tree_b) {}
+  Cast(const CastTree& tree_a, const CastTree& tree_b) : a(tree_a), b(tree_b), ties(tree_a, tree_b) {}
 
   const CastTree& a;
   const CastTree& b;
@@ -41,9 +48,12 @@ struct Cast {
   double travel = 0.0;
   std::optional<CastPair> pair;                     ///< The pair that is.
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< Unit vector from A to B between the pair's closest points.
+  /// Unit vector along which the last pair that was turned down is apart by the aim, up to a tie.
+  Eigen::Vector3d apart_axis = Eigen::Vector3d::UnitX();
   CastCounts counts;
   /// What wider aims taught about this ray. To be cleared when a tree was turned or the direction changed.
   CastFront front;
+  CastTies ties;  ///< To be cleared when a tree was turned.
 
   /// Lengths that errors are relative to.
   double size() const { return a.radius() + b.radius() + aim; }

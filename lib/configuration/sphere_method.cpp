@@ -169,9 +169,12 @@ class SphereMethodSolver final : public RaySolver {
     const double reach = 0.5 * (a_.diagonal() + b_.diagonal());
     const bool alone = march_ == SphereMarch::conservative;
     Sample outer;
+    work_.assign(aims.size(), 0);
     for (std::size_t k = 0; k < aims.size(); ++k) {
+      const int before = march.measurements();
       if (alone || k == 0) outer = march.measure(reach + aims[k]);
       const bool hit = alone ? march.advance_conservatively(aims[k], outer) : march.advance(aims[k], outer);
+      work_[k] = static_cast<std::uint64_t>(march.measurements() - before);
       travel[k] = hit ? outer.s : std::numeric_limits<double>::quiet_NaN();
       residuals[k] = hit ? std::abs(outer.f - aims[k]) : 0.0;
     }
@@ -179,6 +182,7 @@ class SphereMethodSolver final : public RaySolver {
   }
 
   std::uint64_t measurements() const override { return measurements_; }
+  std::span<const std::uint64_t> work() const override { return work_; }
 
  private:
   const Mesh& a_;
@@ -187,6 +191,7 @@ class SphereMethodSolver final : public RaySolver {
   std::unique_ptr<DistanceProbe> probe_;
   ConfigurationRay ray_;
   std::uint64_t measurements_ = 0;
+  std::vector<std::uint64_t> work_;  // measurements for each aim
 };
 
 class SphereMethod final : public DistanceGenerator {

@@ -12,12 +12,6 @@
 namespace sixdof {
 namespace {
 
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 /// Standard error of the mean cost of a ray, where rays come in runs that are alike within.
 double standard_error(std::span<const RunCost> runs, double mean, std::size_t rays) {
   if (runs.size() < 2) return 0.0;
@@ -31,6 +25,12 @@ double standard_error(std::span<const RunCost> runs, double mean, std::size_t ra
 }
 
 }  // namespace
+
+double thread_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 RayRuns::RayRuns(const Grid& grid, std::uint64_t seed)
     : grid_(grid), rotations_(DistinctRotations(grid.rotations).first), random_(seed) {}

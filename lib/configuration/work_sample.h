@@ -16,6 +16,9 @@
 
 namespace sixdof {
 
+/// CPU seconds that the calling thread has had.
+double thread_seconds();
+
 /// Neighbouring directions under one rotation: what a solver meets in the real work.
 struct RayRun {
   std::size_t rotation = 0;

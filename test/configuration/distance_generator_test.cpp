@@ -146,6 +146,7 @@ class Failing final : public DistanceGenerator {
         if (direction.z() == -1.0) throw Error("lost");
       }
       std::uint64_t measurements() const override { return 0; }
+      std::span<const std::uint64_t> work() const override { return {}; }
       int rotation = 0;
     };
     return std::make_unique<Solver>();

@@ -32,6 +32,7 @@ struct BurningSolver final : RaySolver {
     burn(1e-3);
   }
   std::uint64_t measurements() const override { return 0; }
+  std::span<const std::uint64_t> work() const override { return {}; }
 
   std::size_t rotations = 0;
   std::vector<Eigen::Vector3d> directions;

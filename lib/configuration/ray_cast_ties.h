@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <sixdof/configuration/ray_cast_tree.h>
+#include <sixdof/geometry/triangle_distance.h>
+
+/// Ties of whole subtrees, told in double precision. Internal: use ray_cast.h.
+namespace sixdof::ray_cast {
+
+/// How high the differences b - a of two triangles lie along an axis, at least.
+/// @param mirrored A's corners, mirrored
+/// @param b B's corners where it stands
+double lowest_difference(const TriangleCorners& mirrored, const TriangleCorners& b, const Eigen::Vector3d& axis);
+
+/// The axis between the closest points of two triangles that are nearly in touch, without the rounding of the points.
+/// At a distance d the difference of two points of size L is off by an angle of 1e-16 L / d, so that ties along it are
+/// not seen. Normals and directions across two edges have no such error.
+/// @param axis unit vector between the points
+/// @param room the triangles may be apart by this much less along the new axis
+/// @return the normal or direction across two edges beside `axis` along which they are farthest apart; `axis` if there
+/// is none
+Eigen::Vector3d sharp_axis(const TriangleCorners& mirrored, const TriangleCorners& b, const Eigen::Vector3d& axis,
+                           double room);
+
+/// Heights of subtrees along one axis.
+class CastSupports {
+ public:
+  explicit CastSupports(const CastTree& tree) : tree_(&tree) {}
+
+  /// Forgets all heights.
+  void set_axis(const Eigen::Vector3d& axis);
+
+  static constexpr double k_unknown = -std::numeric_limits<double>::infinity();
+
+  /// The least axis . p over the triangles of child `lane` of node `node`, given as Tree::k_width * node + lane: to the
+  /// rounding of CastTree::triangle() and the product. k_unknown if there are more triangles than `credit`; those
+  /// looked at are taken off it.
+  double lowest(std::size_t node_and_lane, std::uint64_t& credit);
+
+  std::uint64_t triangles() const { return triangles_; }  ///< Looked at so far.
+
+ private:
+  struct Height {
+    double value;
+    std::uint64_t round;
+  };
+
+  double find(std::size_t node_and_lane);
+
+  const CastTree* tree_;
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
+  std::vector<Height> heights_;  // of each child of each node; empty until needed
+  std::uint64_t round_ = 0;      // heights of other rounds are of other axes
+  std::uint64_t triangles_ = 0;
+};
+
+/// Cuts pairs of subtrees that are apart along an axis along which pairs of their triangles were found to be. Where
+/// faces lie over each other, edges along edges or corners beside corners, thousands of pairs of volumes are as far
+/// apart as the aim asks. Bounds in floats cannot say whether they are a little nearer; in double precision they are
+/// not, and the pair found already stands for all. The same helps where a few large triangles face thousands of small
+/// ones.
+///
+/// Heights are paid for by tries: they take at most a multiple of the time of what was left open in vain.
+class CastTies {
+ public:
+  CastTies(const CastTree& a, const CastTree& b) : a_(a), b_(b) {}
+
+  /// After a tree was turned: nothing is known, nothing is paid for.
+  void clear() {
+    known_ = false;
+    credit_ = 0;
+  }
+
+  /// Whether the differences b - a of two children, given as Tree::k_width * node + lane, lie at least `gap` high along
+  /// `axis` (unit vector), `along` included. False if it would take too long to find out.
+  bool apart(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, double along, double gap);
+
+  std::uint64_t supports() const { return a_.triangles() + b_.triangles(); }
+
+ private:
+  CastSupports a_, b_;
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
+  bool known_ = false;
+  std::uint64_t credit_ = 0;  // triangles that may be looked at
+};
+
+}  // namespace sixdof::ray_cast
