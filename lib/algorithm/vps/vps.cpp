@@ -52,7 +52,6 @@ class PointQuery : public Query {
         culling_ ? tree_.cull(map_, placement, reach(), scratch_) : std::span<const std::uint32_t>(all_leaves_);
     visited_leaves_ = leaves.size();
     Response response;
-    contacts_ = 0.0;
     if (!leaves.empty()) response = wrench_on_points(X, placement, leaves);
     response.reference = X * tree_.center();
     if (!by_area_) {
