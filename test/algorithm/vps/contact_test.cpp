@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -232,6 +233,75 @@ TEST_F(Contact, CullingChangesNoBitAndLeavesOutMuch) {
   // Two poses out of nine overlap so deeply that nearly all points are in contact.
   EXPECT_GT(2 * left_out, taken);
   EXPECT_GT(taken, 0u);
+}
+
+/// The point of the voxels with v >= 0 that is nearest to `middle`, a little inside its voxel; all in voxel
+/// coordinates.
+Eigen::Vector3d nearest_in_contact(const VoxelMap& map, const Eigen::Vector3d& middle, int reach) {
+  constexpr double k_inside = 0.01;  // far more than single precision rounds
+  const Eigen::Array3i cell = middle.array().floor().cast<int>();
+  const Eigen::Array3i low = (cell - reach).max(0), high = (cell + reach).min(map.grid.voxels() - 1);
+  Eigen::Vector3d nearest = Eigen::Vector3d::Constant(1e9);
+  for (int z = low.z(); z <= high.z(); ++z) {
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int x = low.x(); x <= high.x(); ++x) {
+        if (map.layer(x, y, z) < 0) continue;
+        const Eigen::Array3d corner(x, y, z);
+        const Eigen::Vector3d p = middle.array().max(corner + k_inside).min(corner + (1.0 - k_inside));
+        if ((p - middle).squaredNorm() < (nearest - middle).squaredNorm()) nearest = p;
+      }
+    }
+  }
+  return nearest;
+}
+
+/// Nodes that reach just as far as the nearest voxel in contact: a bound on its distance that is too large by little
+/// loses them.
+TEST_F(Contact, CullingKeepsANodeThatJustReachesAContact) {
+  std::mt19937_64 random(77);
+  std::uniform_real_distribution<double> uniform;
+  constexpr int k_reach = 9;
+  PointTree::Scratch scratch;
+  const std::uint32_t leaf = 0;
+  int stored = 0, unstored = 0, beyond = 0, field_contacts = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Eigen::Array3d n = map_.grid.voxels().cast<double>();
+    constexpr double k_outside = 4.0;  // voxels around the grid
+    const Eigen::Array3d place(uniform(random), uniform(random), uniform(random));
+    const Eigen::Vector3d middle = place * (n + 2.0 * k_outside) - k_outside;
+    const bool in_grid = (middle.array() >= 0.0).all() && (middle.array() < n).all();
+    const Eigen::Array3i cell = middle.array().floor().cast<int>();
+    if (in_grid && map_.layer(cell.x(), cell.y(), cell.z()) >= 0) continue;
+    const Eigen::Vector3d contact = nearest_in_contact(map_, middle, k_reach);
+    if ((contact - middle).norm() > k_reach) continue;
+    (!in_grid ? beyond : map_.table[map_.grid.brick_of(cell.x(), cell.y(), cell.z())] < 0 ? unstored : stored)++;
+    // A point and its mirror image, so that their sphere is about `middle`: from before the contact to within the body.
+    const double way = (contact - middle).norm();
+    bool felt = false;
+    for (double beyond_contact = -0.5; beyond_contact < 2.5 && !felt; beyond_contact += 0.1) {
+      PointShell shell;
+      for (const double side : {1.0, -1.0}) {
+        const Eigen::Vector3d point = middle + side * (1.0 + beyond_contact / way) * (contact - middle);
+        shell.points.push_back(map_.grid.origin + map_.grid.size * point);
+        shell.normals.push_back(Eigen::Vector3d::UnitZ());
+        shell.areas.push_back(1.0);
+      }
+      const PointTree tree(shell, a_.center(), true);
+      const Placement at = Placement::of(Pose{}, tree.center(), map_.grid);
+      if (touches_layers(map_, tree, at, std::span(&leaf, 1))) {
+        ASSERT_EQ(tree.cull(map_, at, 0.0, scratch).size(), 1u) << middle.transpose();
+      }
+      felt = touches_field(field_, tree, at, std::span(&leaf, 1));
+      if (felt) {
+        ++field_contacts;
+        ASSERT_EQ(tree.cull(map_, at, DistanceField::k_reach, scratch).size(), 1u) << middle.transpose();
+      }
+    }
+  }
+  EXPECT_GT(stored, 300);
+  EXPECT_GT(unstored, 30);
+  EXPECT_GT(beyond, 100);
+  EXPECT_GT(field_contacts, 100);
 }
 
 TEST_F(Contact, OneSphereTellsApartWhatIsFar) {
