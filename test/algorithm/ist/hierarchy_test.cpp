@@ -1,5 +1,6 @@
 #include <sixdof/algorithm/ist/hierarchy.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -62,6 +63,14 @@ TEST(SphereTree, EveryLeafOnceAndInsideAllItsAncestors) {
       EXPECT_NEAR(volume, tree.volume, k_rounding * tree.volume);
     }
   }
+}
+
+/// Sixteen pairs of leaves are tested at once, whether or not they are there.
+TEST(SphereTree, NodesOfLeavesAreNearlyFull) {
+  const SphereTree tree = build_sphere_tree(random_spheres(3000, 7));
+  const auto of_leaves =
+      std::count_if(tree.below.begin(), tree.below.end(), [](std::int32_t below) { return below < 0; });
+  EXPECT_GT(static_cast<double>(tree.leaves.size()) / static_cast<double>(of_leaves), 3.0);  // clusters alone leave 2
 }
 
 TEST(SphereTree, ConcentricSpheresStillSplit) {

@@ -184,6 +184,25 @@ TEST_F(TraversalTest, SpheresThatOverlapByLittleAreFound) {
   }
 }
 
+/// The same for two whole bodies, whose nearest leaves are anywhere in them.
+TEST_F(TraversalTest, BodiesThatOverlapByLittleAreFound) {
+  std::mt19937_64 random(38);
+  for (int i = 0; i < 4000; ++i) {
+    Pose X = random_pose(random, 1.0);
+    X.t += X.t.normalized() * 5.0;
+    for (int step = 0; step < 3; ++step) {  // other leaves may be nearest after a step
+      const SphereSeparation nearest = separation(a_, b_, X);
+      const Eigen::Vector3d way = a_.leaves[static_cast<std::size_t>(nearest.leaf_a)].center -
+                                  X * b_.leaves[static_cast<std::size_t>(nearest.leaf_b)].center;
+      X.t += way.normalized() * (nearest.distance + 1e-10);
+      if (separation(a_, b_, X).distance < 0.0) break;
+    }
+    ASSERT_LT(separation(a_, b_, X).distance, 0.0);
+    EXPECT_TRUE(overlaps(a_, b_, X, scratch_).any) << i;
+    EXPECT_GT(penetration(a_, b_, X, PairForce::volume, about_, scratch_).count.leaf_pairs, 0u) << i;
+  }
+}
+
 TEST_F(TraversalTest, ABudgetGivesAnEstimateThatConverges) {
   std::mt19937_64 random(33);
   double error_small = 0.0, error_large = 0.0;
