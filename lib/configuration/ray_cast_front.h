@@ -42,6 +42,7 @@ struct CastFront {
 
   std::vector<Visit> visits;
   std::vector<Lines> lines;  ///< Of each visit.
+  std::size_t fresh = 0;     ///< Visits of the cast that began it.
   double aim = 0.0;          ///< The last one.
 
   std::vector<Open> open;                ///< Scratch.

@@ -24,6 +24,10 @@ namespace HWY_NAMESPACE {
 /// So many pairs are left open in vain where surfaces are only smooth.
 constexpr std::uint64_t k_few_futile = 8;
 
+/// Visits of a front, over those of the cast that began it. Nodes that were opened where hits were before are not
+/// closed again; beyond this, starting over costs less.
+constexpr double k_most_growth = 1.5;
+
 struct Descent {
   Cast& cast;
   CastFront& front;
@@ -370,10 +374,12 @@ struct Descent {
   void run() {
     if (cast.aim > front.aim) front.clear();  // lines need travels that do not grow
     front.aim = cast.aim;
+    if (static_cast<double>(front.visits.size()) > k_most_growth * static_cast<double>(front.fresh)) front.clear();
     front.open.clear();
     if (front.visits.empty()) {
       visit(CastFront::k_root, CastFront::k_root);
       empty_open();
+      front.fresh = front.visits.size();
     } else {
       find_uncovered();
       look_into_uncovered();
