@@ -230,6 +230,26 @@ TEST_F(TraversalTest, ABudgetGivesAnEstimateThatConverges) {
   EXPECT_LT(error_large / counted, 0.1);
 }
 
+/// With the roots alone opened: the lens of every two of their children's balls, times how much of both is leaves.
+TEST_F(TraversalTest, WhatIsNotOpenedCountsWithItsBallsOverlap) {
+  std::mt19937_64 random(39);
+  for (int i = 0; i < 20; ++i) {
+    const Pose X = random_pose(random, 0.5);
+    double expected = 0.0;
+    for (std::size_t m = 0; m < a_.children(0); ++m) {
+      for (std::size_t n = 0; n < b_.children(0); ++n) {
+        const Sphere p = a_.ball(0, m), q = b_.ball(0, n);
+        const double share =
+            std::min(1.0, a_.volumes[0][m] / p.volume()) * std::min(1.0, b_.volumes[0][n] / q.volume());
+        expected += share * overlap_volume(p.radius, q.radius, (X * q.center - p.center).norm());
+      }
+    }
+    const PenetrationSum estimate = penetration_within(a_, b_, X, PairForce::volume, about_, 1);
+    EXPECT_EQ(estimate.count.sphere_tests, 16u);
+    EXPECT_NEAR(estimate.volume, expected, k_rounding * (1.0 + expected));
+  }
+}
+
 /// Both bodies' frames moved by rigid motions of their own, and the pose with them.
 TEST_F(TraversalTest, DoesNotDependOnWhereTheFramesAre) {
   std::mt19937_64 random(35);
