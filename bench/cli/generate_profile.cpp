@@ -51,7 +51,8 @@ void print_kind(BucketKind kind, const GenerationWork& work, const ProfileReques
     if (profile.reachable[k] == rays) continue;
     unreachable.push_back(fmt::format("{} {}", buckets[k].key.name(), rays - profile.reachable[k]));
   }
-  print_line("configurations", fmt::format("{}, of which {} reachable", profile.work.count(), reachable));
+  print_line("configurations", fmt::format("{}, of which {} reachable and {} without work", rays * buckets.size(),
+                                           reachable, rays * buckets.size() - profile.work.count()));
   if (!unreachable.empty()) print_line("unreachable", fmt::format("{}", fmt::join(unreachable, ", ")));
   constexpr double k_nearly_all = 0.999;
   print_line("work per configuration",

@@ -61,7 +61,7 @@ RotationProfile profile_rotation(RaySolver& solver, const Grid& grid, std::span<
     ray.seconds = thread_seconds() - start;
     for (std::uint32_t k = 0; k < aims.size(); ++k) {
       const std::uint64_t work = solver.work()[k];
-      profile.work.add(work);
+      if (work != 0) profile.work.add(work);
       ray.work += work;
       if (work > profile.worst_work) {
         profile.worst_work = work;

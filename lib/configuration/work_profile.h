@@ -55,7 +55,9 @@ struct ProfilePlace {
 };
 
 struct WorkProfile {
-  WorkHistogram work;                    ///< RaySolver::work() of every configuration.
+  /// RaySolver::work() of every configuration that takes any: what is known to be unreachable without a look does not
+  /// count.
+  WorkHistogram work;
   std::uint64_t worst_work = 0;          ///< The largest of them,
   ProfilePlace worst;                    ///< and where.
   std::vector<std::uint64_t> reachable;  ///< Of each aim.
@@ -68,7 +70,11 @@ struct WorkProfile {
   /// Seconds per unit of work: of a ray in the middle, and such that all but 1 in 1000 rays take less and more.
   double median_unit_s = 0.0, least_unit_s = 0.0, most_unit_s = 0.0;
 
-  double worst_over_median() const { return static_cast<double>(worst_work) / static_cast<double>(work.quantile(0.5)); }
+  /// 0 if nothing takes any work.
+  double worst_over_median() const {
+    const std::uint64_t median = work.quantile(0.5);
+    return median == 0 ? 0.0 : static_cast<double>(worst_work) / static_cast<double>(median);
+  }
 };
 
 struct ProfileOptions {

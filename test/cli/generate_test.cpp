@@ -275,5 +275,15 @@ TEST_F(Generate, InterruptEndsWithItsCodeAndLeavesOnlyWholeShards) {
   }
 }
 
+TEST_F(Generate, ProfileShowsMedianAndWorstAndWritesNothing) {
+  const auto result = run(job_with({"--profile", "--rotations", "3"}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("distances: grid 45/60"), HasSubstr("volumes: grid 90"),
+                                HasSubstr("work per configuration"), HasSubstr("times the median")));
+  EXPECT_NE(run(job_with({"--profile", "-o", folder_ / "set.h5"})).exit_code, 0);
+  EXPECT_NE(run(job_with({"--rotations", "3", "-o", folder_ / "set.h5"})).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
 }  // namespace
 }  // namespace sixdof
