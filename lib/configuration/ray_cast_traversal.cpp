@@ -206,9 +206,10 @@ struct Descent {
     front.lines[child.visit].slope[child.lane] = slope;
   }
 
-  bool is_culled(const CastFront::Open& child) const {
+  /// What a child's line says, less the aim.
+  float gap_of(const CastFront::Open& child) const {
     const CastFront::Lines& lines = front.lines[child.visit];
-    return lines.low[child.lane] + lines.slope[child.lane] * ray.travel - ray.aim > ray.slack;
+    return lines.low[child.lane] + lines.slope[child.lane] * ray.travel - ray.aim;
   }
 
   /// What the worst of a visit's lines says, less the aim.
@@ -290,12 +291,13 @@ struct Descent {
     while (!front.open.empty()) {
       const CastFront::Open top = front.open.back();
       front.open.pop_back();
-      if (is_culled(top)) continue;  // the travel may have been raised since
+      const float gap = gap_of(top);
+      if (gap > ray.slack) continue;  // the travel may have been raised since
       const CastFront::Visit from = front.visits[top.visit];
       const auto own = static_cast<std::uint32_t>(k_width * from.node + top.lane);
       const std::uint32_t a = from.opens_a ? own : from.other;
       const std::uint32_t b = from.opens_a ? from.other : own;
-      if (apart_along_axis(a, b)) continue;
+      if (gap > -ray.slack && apart_along_axis(a, b)) continue;
       const CastChild child_a = child_of(tree_a, a);
       const CastChild child_b = child_of(tree_b, b);
       if (child_a.is_leaf() && child_b.is_leaf()) {
