@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/configuration/overlap_ceiling.h>
 #include <sixdof/configuration/overlap_march.h>
 #include <sixdof/configuration/rotation_sweep.h>
 #include <sixdof/configuration/slope_bounds.h>
@@ -123,6 +124,10 @@ class VolumeSolver final : public RaySolver {
     ray_ = ConfigurationRay(pair_.a, pair_.b, rotation);
     touching_->set_rotation(rotation);
     first_stride_ = k_first_stride * std::min(pair_.a.diagonal(), pair_.b.diagonal());
+    // Boxes turned by R exclude volumes for all directions; the room covers the rounding of R.
+    constexpr double k_room = 1.0 + 1e-9;
+    const double ceiling = overlap_ceiling(pair_.a.box().sizes(), pair_.b.box().sizes(), ray_.R);
+    most_ = std::min({pair_.a.volume(), pair_.b.volume(), k_room * ceiling + k_volume_tolerance * pair_.a.volume()});
   }
 
   void solve(const Eigen::Vector3d& direction, std::span<const double> aims, std::span<double> travel,
@@ -137,9 +142,7 @@ class VolumeSolver final : public RaySolver {
     if (std::isnan(contact)) return;  // Surfaces that never touch enclose nothing together: B comes from outside.
     std::size_t k = 0;
     for (; k < aims.size() && aims[k] == 0.0; ++k) travel[k] = contact;
-    // Nothing overlaps by more than the smaller body.
-    const double most = std::min(pair_.a.volume(), pair_.b.volume());
-    if (k == aims.size() || aims[k] > most) return;
+    if (k == aims.size() || aims[k] > most_) return;
 
     overlap_.set(ray_);
     OverlapMarch march(
@@ -149,7 +152,7 @@ class VolumeSolver final : public RaySolver {
          .tolerance = k_volume_tolerance * pair_.a.volume(),
          .first_stride = first_stride_});
     const std::size_t first = k;
-    for (; k < aims.size() && aims[k] <= most; ++k) {
+    for (; k < aims.size() && aims[k] <= most_; ++k) {
       const std::uint64_t before = overlap_.work();
       const std::optional<OverlapSample> hit = march.advance(aims[k]);
       work_[k] += overlap_.work() - before;
@@ -175,6 +178,7 @@ class VolumeSolver final : public RaySolver {
   double touching_aim_;
   ConfigurationRay ray_;
   double first_stride_ = 0.0;
+  double most_ = 0.0;  ///< No overlap of this rotation is larger.
   std::uint64_t measurements_ = 0;
   std::vector<std::uint64_t> work_;  // of each aim
 };
