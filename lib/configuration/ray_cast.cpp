@@ -40,7 +40,7 @@ class RayCastSolver final : public RaySolver {
   void set_rotation(const Eigen::Vector4d& rotation) override {
     ray_ = ConfigurationRay(a_, b_, rotation);
     tree_b_.turn(ray_.R);
-    cast_.ties.clear();
+    cast_.forget_rotation();
     last_direction_.clear();
   }
 

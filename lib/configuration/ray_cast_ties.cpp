@@ -20,6 +20,10 @@ constexpr double k_same_axis = 5e-16;
 /// Axes that are turned by more than this, an angle of 1.4e-4, are others: bucket 0 is off by some 1e-5.
 constexpr double k_least_cosine = 1.0 - 1e-8;
 
+/// Axes that are turned from a normal by more than this, an angle of 1.4e-3, do not stand on the face: triangles of a
+/// flat patch are turned by less.
+constexpr double k_least_face_cosine = 1.0 - 1e-6;
+
 }  // namespace
 
 double lowest_difference(const TriangleCorners& mirrored, const TriangleCorners& b, const Eigen::Vector3d& axis) {
@@ -49,6 +53,18 @@ Eigen::Vector3d sharp_axis(const TriangleCorners& mirrored, const TriangleCorner
     for (std::size_t j = 0; j < 3; ++j) try_out(edge(mirrored, i), edge(b, j));
   }
   return best;
+}
+
+void CastFace::note(const Eigen::Vector3d& normal, float size, const Eigen::Vector3d& axis,
+                    const Eigen::Vector3d& direction) {
+  CastFace face;
+  face.normal_ = normal.dot(direction) < 0.0 ? Eigen::Vector3d(-normal) : normal;
+  face.size_ = size;
+  if (face.faces(axis, direction)) *this = face;
+}
+
+bool CastFace::faces(const Eigen::Vector3d& axis, const Eigen::Vector3d& direction) const {
+  return size_ > 0.0f && normal_.dot(axis) >= k_least_face_cosine && normal_.dot(direction) >= 0.0;
 }
 
 void CastSupports::set_axis(const Eigen::Vector3d& axis) {

@@ -28,6 +28,31 @@ double lowest_difference(const TriangleCorners& mirrored, const TriangleCorners&
 Eigen::Vector3d sharp_axis(const TriangleCorners& mirrored, const TriangleCorners& b, const Eigen::Vector3d& axis,
                            double room);
 
+/// The normal of a face that lies over another. Where coordinates were rounded, a face's triangles are turned by their
+/// roughness over their size, and so are the axes between them, each by something else: along none of them are
+/// triangles apart that lie farther off. Along the mean normal of the largest flat patch that was met they are, up to
+/// the roughness itself, and it stays the same while directions and aims change, so that heights along it are known.
+class CastFace {
+ public:
+  void clear() { size_ = 0.0f; }
+
+  /// Takes a patch's normal, unless it is off `axis`.
+  /// @param normal unit vector, of either side
+  /// @param size of the patch, CastVolume::size
+  /// @param axis unit vector from A to B along which they were found to be apart
+  void note(const Eigen::Vector3d& normal, float size, const Eigen::Vector3d& axis, const Eigen::Vector3d& direction);
+
+  /// Whether there is a face, and `axis` stands on it, whose normal does not point against the direction.
+  bool faces(const Eigen::Vector3d& axis, const Eigen::Vector3d& direction) const;
+
+  const Eigen::Vector3d& normal() const { return normal_; }  ///< Unit vector.
+  float size() const { return size_; }                       ///< Of the patch; 0 if there is none.
+
+ private:
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();
+  float size_ = 0.0f;
+};
+
 /// Heights of subtrees along one axis.
 class CastSupports {
  public:

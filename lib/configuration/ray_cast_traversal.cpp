@@ -28,6 +28,22 @@ constexpr std::uint64_t k_few_futile = 8;
 /// closed again; beyond this, starting over costs less.
 constexpr double k_most_growth = 1.5;
 
+/// Where two flat patches lie face to face, bounds in floats fall short by this times their radii: 1.3e-3 for normals
+/// that are shorter than unit vectors, as much again for how far those of one rough face are turned.
+constexpr float k_flat_blur = 2e-3f;
+
+/// When double precision is to try a cut again: how many pairs bounds in floats have left open in vain by then. Where
+/// surfaces are only smooth it cuts none, and tries become rare.
+struct Tries {
+  std::uint64_t last_cut = 0;
+  std::uint64_t next = k_few_futile;
+
+  void note(bool cut, std::uint64_t futile) {
+    if (cut) last_cut = futile;
+    next = cut ? futile : futile + 1 + (futile - last_cut) / 2;
+  }
+};
+
 struct Descent {
   Cast& cast;
   CastFront& front;
@@ -35,9 +51,8 @@ struct Descent {
   const CastTree& tree_b;
   Ray ray;
   const double tie;
-  // How many pairs bounds in floats left open in vain: so far, when double precision last cut one, and when it is to
-  // try next. Where surfaces are only smooth it cuts none, and tries become rare.
-  std::uint64_t futile = 0, last_cut = 0, next_try = k_few_futile;
+  std::uint64_t futile = 0;  // pairs that bounds in floats left open in vain so far
+  Tries face_tries, axis_tries;
 
   explicit Descent(Cast& c) : cast(c), front(c.front), tree_a(c.a), tree_b(c.b), tie(k_cast_tie * c.size()) {
     for (int k = 0; k < 3; ++k) ray.u[k] = static_cast<float>(cast.direction[k]);
@@ -97,16 +112,34 @@ struct Descent {
     return slabs_apart(slab_a, slab_b, tree_b.volume(b)) || slabs_apart(slab_b, slab_a, tree_a.volume(a));
   }
 
-  /// Whether two subtrees are apart by the aim along the axis along which triangles were last found to be, if it is
-  /// time to find out. What is cut is farther in than what offer_pair() turns down by half a tie, which is more than
-  /// the rounding of both. Their line stays as it is: a narrower aim looks into them again.
-  bool apart_along_axis(std::uint32_t a, std::uint32_t b) {
-    if (futile < next_try || !cast.pair || a == CastFront::k_root || b == CastFront::k_root) return false;
-    const double along = cast.travel * cast.apart_axis.dot(cast.direction);
-    const bool apart = cast.ties.apart(a, b, cast.apart_axis, along, cast.aim - 0.5 * tie);
-    if (apart) last_cut = futile;
-    next_try = apart ? futile : futile + 1 + (futile - last_cut) / 2;
-    return apart;
+  /// Whether two subtrees are apart by the aim along the face's normal, or along the axis along which triangles were
+  /// last found to be, if it is time to find out. Neither points against the direction, so that they stay apart. What
+  /// is cut is farther in than what offer_pair() turns down by half a tie, which is more than the rounding of both.
+  /// Their line stays as it is: a narrower aim looks into them again.
+  bool apart_along_axes(std::uint32_t a, std::uint32_t b) {
+    if (!cast.pair || a == CastFront::k_root || b == CastFront::k_root) return false;
+    const auto apart = [&](CastTies& known, const Eigen::Vector3d& axis, Tries& tries) {
+      const bool cut = known.apart(a, b, axis, cast.travel * axis.dot(cast.direction), cast.aim - 0.5 * tie);
+      tries.note(cut, futile);
+      return cut;
+    };
+    if (futile >= face_tries.next && cast.face.faces(cast.axis, cast.direction) &&
+        apart(cast.face_ties, cast.face.normal(), face_tries)) {
+      return true;
+    }
+    return futile >= axis_tries.next && apart(cast.ties, cast.apart_axis, axis_tries);
+  }
+
+  /// Learns the normal of the face that two flat patches are of.
+  void note_face(std::uint32_t a, std::uint32_t b) {
+    if (!cast.pair || a == CastFront::k_root || b == CastFront::k_root) return;
+    const bool larger_a = tree_a.volume(a).size >= tree_b.volume(b).size;
+    const CastTree& tree = larger_a ? tree_a : tree_b;
+    const std::uint32_t larger = larger_a ? a : b;
+    const float size = tree.volume(larger).size;
+    if (size > cast.face.size() || !cast.face.faces(cast.axis, cast.direction)) {
+      cast.face.note(tree.slab(larger).normal, size, cast.axis, cast.direction);
+    }
   }
 
   /// Of each triangle, how low its lowest corner lies along the axis.
@@ -250,15 +283,21 @@ struct Descent {
     }
     std::vector<CastFront::Open>& open = front.open;
     const std::size_t first = open.size();
+    const bool fixed_flat = fixed.slab_half <= ray.slack;
     for (; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      if (gaps[lane] > -ray.slack) {
+      const bool flat = fixed_flat && node.slab_half[lane] <= ray.slack;
+      const float blur = flat ? k_flat_blur * (node.ball_radius[lane] + fixed.ball_radius) : 0.0f;
+      if (gaps[lane] > -ray.slack - blur) {
         ++futile;
         const auto own = static_cast<std::uint32_t>(index * k_width + lane);
         const std::uint32_t a = opens_a ? own : other;
         const std::uint32_t b = opens_a ? other : own;
-        const bool flat = node.slab_half[lane] <= ray.slack && fixed.slab_half <= ray.slack;
-        if ((flat && ties(a, b)) || apart_along_axis(a, b)) continue;
+        if (flat) {
+          if (ties(a, b)) continue;
+          note_face(a, b);
+        }
+        if (apart_along_axes(a, b)) continue;
       }
       prefetch(tree, node.child[lane]);
       const CastFront::Open next{visit, lane, heights[lane]};
@@ -297,7 +336,7 @@ struct Descent {
       const auto own = static_cast<std::uint32_t>(k_width * from.node + top.lane);
       const std::uint32_t a = from.opens_a ? own : from.other;
       const std::uint32_t b = from.opens_a ? from.other : own;
-      if (gap > -ray.slack && apart_along_axis(a, b)) continue;
+      if (gap > -ray.slack && apart_along_axes(a, b)) continue;
       const CastChild child_a = child_of(tree_a, a);
       const CastChild child_b = child_of(tree_b, b);
       if (child_a.is_leaf() && child_b.is_leaf()) {
@@ -415,7 +454,7 @@ HWY_EXPORT(find_first_hit);
 
 void find_first_hit(Cast& cast) {
   HWY_DYNAMIC_DISPATCH(find_first_hit)(cast);
-  cast.counts.supports = cast.ties.supports();
+  cast.counts.supports = cast.ties.supports() + cast.face_ties.supports();
 }
 
 bool offer_pair(Cast& cast, CastPair pair) {

@@ -37,7 +37,16 @@ struct CastCounts {
 /// Trees are in A's axes, A's mirrored in its centre, so that everything is a sum: the difference b - a of a point b of
 /// B and a of A is a point of the one tree plus a point of the other plus travel * direction.
 struct Cast {
-  Cast(const CastTree& tree_a, const CastTree& tree_b) : a(tree_a), b(tree_b), ties(tree_a, tree_b) {}
+  Cast(const CastTree& tree_a, const CastTree& tree_b)
+      : a(tree_a), b(tree_b), face_ties(tree_a, tree_b), ties(tree_a, tree_b) {}
+
+  /// After a tree was turned.
+  void forget_rotation() {
+    face.clear();
+    face_ties.clear();
+    ties.clear();
+    front.clear();
+  }
 
   const CastTree& a;
   const CastTree& b;
@@ -51,9 +60,11 @@ struct Cast {
   /// Unit vector along which the last pair that was turned down is apart by the aim, up to a tie.
   Eigen::Vector3d apart_axis = Eigen::Vector3d::UnitX();
   CastCounts counts;
-  /// What wider aims taught about this ray. To be cleared when a tree was turned or the direction changed.
+  /// What wider aims taught about this ray. To be cleared when the direction changed.
   CastFront front;
-  CastTies ties;  ///< To be cleared when a tree was turned.
+  CastFace face;       ///< Of A or B, over one of the other.
+  CastTies face_ties;  ///< Along its normal.
+  CastTies ties;       ///< Along apart_axis.
 
   /// Lengths that errors are relative to.
   double size() const { return a.radius() + b.radius() + aim; }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -227,12 +228,32 @@ TEST(RayCast, FindsTheBriefestHit) {
   }
 }
 
+/// The mesh with corners moved by up to `roughness` box diagonals along each axis: as if scanned, or as CAD programs
+/// write it. Its flat faces tie up to that, whichever triangles are closest.
+Mesh rough_mesh(const Mesh& mesh, double roughness) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> move(-roughness * mesh.diagonal(), roughness * mesh.diagonal());
+  std::vector<Eigen::Vector3d> vertices(mesh.vertices().begin(), mesh.vertices().end());
+  for (Eigen::Vector3d& p : vertices) p += Eigen::Vector3d(move(random), move(random), move(random));
+  return Mesh::build(std::move(vertices), {mesh.triangles().begin(), mesh.triangles().end()}, mesh.name() + "-rough");
+}
+
+/// As of the CAD part `fandisk`.
+constexpr double k_roughness = 1e-6;
+
 TEST(RayCast, AgreesWithAdvancementWhereFacesTie) {
   const auto exact = make_exact_algorithm();
   const Mesh ring = load_model("circular-box-960");
   const Mesh box = load_model("box-500");
+  const Mesh rough = rough_mesh(load_model("box-2000"), k_roughness);
   const Grid grid = make_grid("45/90");
-  for (const auto& [a, b] : {std::pair(&ring, &ring), {&ring, &box}, {&box, &ring}, {&box, &box}}) {
+  for (const auto& [a, b] : {std::pair(&ring, &ring),
+                             {&ring, &box},
+                             {&box, &ring},
+                             {&box, &box},
+                             {&rough, &rough},
+                             {&rough, &ring},
+                             {&ring, &rough}}) {
     const auto solver = make_ray_cast()->prepare(*a, *b);
     const auto expected_solver = make_sphere_method(make_distance_source(*exact))->prepare(*a, *b);
     const std::vector<double> aims = aims_of(*a);
@@ -276,6 +297,36 @@ TEST(RayCast, FacesThatTieTakeLittleMoreThanTheMedian) {
   for (const auto& [a, b] : {std::pair(&box, &box), {&box, &brick}, {&brick, &box}, {&ring, &ring}, {&ring, &brick}}) {
     EXPECT_LT(worst_over_median(*a, *b), k_most_over_median) << a->name() << ", " << b->name();
   }
+}
+
+/// Work of every ray of a body against itself with buckets of 30, 27, .. 0 %, ascending: what buckets share counts
+/// once.
+std::vector<std::uint64_t> work_of_rays(const Mesh& mesh, const Grid& grid) {
+  std::vector<double> aims;
+  for (int percent = 30; percent >= 0; percent -= 3) aims.push_back(distance_bucket(mesh, percent).aim);
+  std::vector<double> travel(aims.size()), residuals(aims.size());
+  const auto solver = make_ray_cast()->prepare(mesh, mesh);
+  std::vector<std::uint64_t> rays;
+  for (const std::uint32_t r : DistinctRotations(grid.rotations).first) {
+    solver->set_rotation(grid.rotations[r]);
+    for (const Eigen::Vector3d& u : grid.directions) {
+      solver->solve(u, aims, travel, residuals);
+      rays.push_back(std::accumulate(solver->work().begin(), solver->work().end(), std::uint64_t{0}));
+    }
+  }
+  std::sort(rays.begin(), rays.end());
+  return rays;
+}
+
+/// The suite allows as much. Here it is 59; 172 where bounds in floats are left alone with pairs of rough faces.
+constexpr double k_most_ray_over_median = 100.0;
+
+TEST(RayCast, RoughFacesThatTieAreCutInDoublePrecision) {
+  const Mesh rough = rough_mesh(load_model("box-20000"), k_roughness);
+  const std::vector<std::uint64_t> tied = work_of_rays(rough, make_grid("45/90"));
+  const std::vector<std::uint64_t> turned = work_of_rays(rough, make_grid("so3:10:26"));
+  const double worst_over_median = static_cast<double>(tied.back()) / static_cast<double>(turned[turned.size() / 2]);
+  EXPECT_LT(worst_over_median, k_most_ray_over_median);
 }
 
 bool same_bits(const Generated& left, const Generated& right) {
