@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/base/compensated_sum.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/hash.h>
 
@@ -202,20 +203,6 @@ MeshTopology analyse_topology(std::size_t vertex_count, const std::vector<Triang
                                 static_cast<std::int64_t>(triangles.size());
   return result;
 }
-
-/// A sum that keeps what rounding drops (Neumaier), so that a million terms lose no digits.
-class CompensatedSum {
- public:
-  void operator+=(double x) {
-    const double t = sum_ + x;
-    rest_ += std::abs(sum_) >= std::abs(x) ? (sum_ - t) + x : (x - t) + sum_;
-    sum_ = t;
-  }
-  double value() const { return sum_ + rest_; }
-
- private:
-  double sum_ = 0.0, rest_ = 0.0;
-};
 
 struct MassProperties {
   double area, volume;

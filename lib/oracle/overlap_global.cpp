@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include <sixdof/base/compensated_sum.h>
 #include <sixdof/base/error.h>
 
 namespace sixdof {
@@ -176,20 +177,6 @@ class FaceGrid {
   std::vector<std::size_t> begin_, filed_;
 };
 
-/// A sum with Neumaier's compensation.
-class Sum {
- public:
-  void add(double x) {
-    const double t = sum_ + x;
-    rest_ += std::abs(sum_) >= std::abs(x) ? (sum_ - t) + x : (x - t) + sum_;
-    sum_ = t;
-  }
-  double value() const { return sum_ + rest_; }
-
- private:
-  double sum_ = 0.0, rest_ = 0.0;
-};
-
 }  // namespace
 
 double overlap_volume_by_columns(const Mesh& a, const Mesh& b, const Pose& X_AB) {
@@ -200,9 +187,9 @@ double overlap_volume_by_columns(const Mesh& a, const Mesh& b, const Pose& X_AB)
   const std::vector<Face> of_a = project(a, Pose{}, origin);
   const std::vector<Face> of_b = project(b, X_AB, origin);
   const FaceGrid grid(of_b);
-  Sum sum;
+  CompensatedSum sum;
   for (const Face& f : of_a) {
-    grid.for_each_near(f, [&](const Face& g) { sum.add(f.sign * g.sign * column(f, g)); });
+    grid.for_each_near(f, [&](const Face& g) { sum += f.sign * g.sign * column(f, g); });
   }
   return sum.value();
 }

@@ -40,6 +40,7 @@ constexpr std::string_view k_centers =
 constexpr std::string_view k_inside =
     "a small sphere inside a large one is pushed away from its centre, whichever side is out";
 constexpr std::string_view k_gaps = "10,000 spheres, their gaps made up for: falls with their number";
+constexpr std::string_view k_steepest = "pushes along -grad V, which is 13 degrees off the law's radial direction at worst";
 constexpr std::string_view k_swallowed = "tiny spheres of the plate inside those of the cone: a volume without a gradient";
 constexpr std::string_view k_thin_spheres = "a layer of tiny spheres: pushes along the plate as much as out of it";
 // fcl-contacts
@@ -127,6 +128,8 @@ constexpr std::array k_bounds{
     Bound{"Ib",  "ist",          volume,        "noise_F",     1.2,        k_thin_spheres},
     Bound{"Ib",  "ist",          volume,        "jump_F",      0.015,      k_slope},
     Bound{"Ib",  "ist-descent",  volume,        "sigma_F",     0.8,        k_swallowed},
+    Bound{"Ib",  "ist-descent",  volume,        "gamma_F_deg", 92.44,      k_thin_spheres, records},
+    Bound{"Ib",  "ist-descent",  volume,        "misses",      22,         k_swallowed, records},
     Bound{"Ib",  "ist-descent",  volume,        "failed",      k_zero,     k_answers},
     Bound{"Ib",  "fcl-contacts", depth,         "sigma_F",     0.02,       k_pairs},
     Bound{"Ib",  "fcl-contacts", depth,         "gamma_F_deg", 179.9,      k_blind, records},
@@ -279,6 +282,9 @@ constexpr std::array k_bounds{
     Bound{"IV",  "ist",          volume,        "loop_work",   1e-6,       k_centers},
     Bound{"IV",  "ist",          volume,        "jump_F",      5e-5,       k_slope},
     Bound{"IV",  "ist-descent",  volume,        "sigma_F",     0.06,       k_gaps},
+    Bound{"IV",  "ist-descent",  volume,        "gamma_F_deg", 12,         k_steepest},
+    Bound{"IV",  "ist-descent",  volume,        "sigma_T",     0.7,        k_steepest},
+    Bound{"IV",  "ist-descent",  volume,        "gamma_T_deg", 60,         k_steepest},
     Bound{"IV",  "ist-descent",  volume,        "misses",      k_zero,     k_no_miss},
     Bound{"IV",  "ist-descent",  volume,        "failed",      k_zero,     k_answers},
     Bound{"IV",  "ist-descent",  volume,        "noise_F",     0.0008,     k_gaps},
