@@ -10,8 +10,18 @@ namespace {
 
 constexpr std::size_t k_width = Tree::k_width;
 
-/// Triangles that one try pays for: some two or three times what looking into a pair in vain costs.
-constexpr std::uint64_t k_per_try = 16;
+/// So much credit is kept, whatever was saved: one configuration is not to spend what a thousand did not need.
+constexpr std::uint64_t k_most_credit = 1024;
+
+/// Heights may be too low by this, in units of the tree's radius, where that saves looking at all that is as low: more
+/// than the rounding that bounds are lowered by.
+constexpr double k_height_room = 2e-15;
+/// Rounding of bounds of heights, in the same units: of some ten products and sums.
+constexpr double k_height_rounding = 1e-15;
+/// Of balls, which are in floats.
+constexpr double k_float_rounding = 1e-6;
+/// A subtree's height mostly takes no more than this, a node of each level.
+constexpr std::uint64_t k_least_credit = 64;
 
 /// Axes of pairs that tie differ by rounding. Heights along this close an axis are off by less than half of what ties
 /// may be off (k_cast_tie) for points within Cast::size().
@@ -67,46 +77,88 @@ bool CastFace::faces(const Eigen::Vector3d& axis, const Eigen::Vector3d& directi
   return size_ > 0.0f && normal_.dot(axis) >= k_least_face_cosine && normal_.dot(direction) >= 0.0;
 }
 
+CastSupports::CastSupports(const CastTree& tree)
+    : tree_(&tree), room_(k_height_room * tree.radius()), rounding_(k_height_rounding * tree.radius()) {}
+
 void CastSupports::set_axis(const Eigen::Vector3d& axis) {
-  axis_ = axis;
+  axis_ = tree_->matrix().transpose() * axis;
   ++round_;
 }
 
 double CastSupports::lowest(std::size_t node_and_lane, std::uint64_t& credit) {
   if (heights_.empty()) heights_.resize(k_width * tree_->nodes().size());
-  if (heights_[node_and_lane].round == round_) return heights_[node_and_lane].value;
-  const CastChild child = tree_->nodes()[node_and_lane / k_width].child[node_and_lane % k_width];
-  const CastMesh& mesh = tree_->mesh();
-  const std::uint64_t triangles =
-      child.is_leaf() ? mesh.leaf_children()[child.index()].count() : mesh.tree().nodes()[child.index()].triangle_count;
-  if (triangles > credit) return k_unknown;
-  const std::uint64_t before = triangles_;
-  const double height = find(node_and_lane);
-  credit -= triangles_ - before;
-  return height;
+  Height& height = heights_[node_and_lane];
+  if (height.round == round_) return height.value;
+  const CastChild from = child(node_and_lane);
+  const std::uint64_t triangles = from.is_leaf() ? tree_->mesh().leaf_children()[from.index()].count()
+                                                 : tree_->mesh().tree().nodes()[from.index()].triangle_count;
+  if (credit < std::min(triangles, k_least_credit)) return k_unknown;
+  const std::uint64_t before = looked_at_;
+  const std::uint64_t most = before + credit;
+  const Found found = look_into(from, {.least = -k_unknown, .most = most});
+  credit -= std::min(credit, looked_at_ - before);
+  height = {std::min(found.low, found.least), round_};
+  return height.value;
 }
 
-double CastSupports::find(std::size_t node_and_lane) {
-  if (heights_[node_and_lane].round == round_) return heights_[node_and_lane].value;
-  const CastChild child = tree_->nodes()[node_and_lane / k_width].child[node_and_lane % k_width];
-  double low = std::numeric_limits<double>::infinity();
-  if (child.is_leaf()) {
-    const Tree::Child leaf = tree_->mesh().leaf_children()[child.index()];
+double CastSupports::bound(std::size_t node_and_lane) const {
+  const CastSlab& slab = tree_->mesh().slabs()[node_and_lane];
+  const CastNode& node = tree_->mesh().nodes()[node_and_lane / k_width];
+  const std::size_t lane = node_and_lane % k_width;
+  const Eigen::Vector3d center(node.ball_center[0][lane], node.ball_center[1][lane], node.ball_center[2][lane]);
+  const double radius = static_cast<double>(node.ball_radius[lane]) + k_float_rounding * tree_->radius();
+  const double along = axis_.dot(slab.normal);
+  const Eigen::Vector3d rest = axis_ - along * slab.normal;
+  const double ball = axis_.dot(center) - radius;
+  const double in_slab = along * slab.middle - std::abs(along) * slab.half + rest.dot(center) - rest.norm() * radius;
+  const CastBox& box = tree_->mesh().boxes()[node_and_lane];
+  const double in_box = axis_.dot(box.center) - axis_.cwiseAbs().dot(box.half);
+  return std::max({ball, in_slab, in_box}) - rounding_;
+}
+
+CastSupports::Found CastSupports::look_into(CastChild from, Limits limits) {
+  Found found;
+  if (from.is_leaf()) {
+    const Tree::Child leaf = tree_->mesh().leaf_children()[from.index()];
+    const Tree& tree = tree_->mesh().tree();
     for (std::uint32_t t = leaf.first(); t < leaf.first() + leaf.count(); ++t) {
-      for (const Eigen::Vector3d& corner : tree_->triangle(t)) low = std::min(low, axis_.dot(corner));
+      for (const Eigen::Vector3d& corner : tree.corners()[t]) {
+        found.least = std::min(found.least, axis_.dot(corner - tree.center()));
+      }
     }
-    triangles_ += leaf.count();
-  } else {
-    for (std::size_t lane = 0; lane < tree_->nodes()[child.index()].child_count; ++lane) {
-      low = std::min(low, find(k_width * child.index() + lane));
-    }
+    looked_at_ += leaf.count();
+    return found;
   }
-  heights_[node_and_lane] = {low, round_};
-  return low;
+  // Lowest first.
+  const std::size_t count = tree_->nodes()[from.index()].child_count;
+  struct {
+    double bound;
+    std::size_t child;
+  } order[k_width];
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const double low = bound(k_width * from.index() + lane);
+    std::size_t at = lane;
+    for (; at > 0 && order[at - 1].bound > low; --at) order[at] = order[at - 1];
+    order[at] = {low, k_width * from.index() + lane};
+  }
+  looked_at_ += count;
+  for (std::size_t i = 0; i < count; ++i) {
+    limits.least = std::min(limits.least, found.least);
+    if (order[i].bound >= limits.least - room_ || looked_at_ >= limits.most) {
+      found.low = std::min(found.low, order[i].bound);
+      break;
+    }
+    const Found below = look_into(child(order[i].child), limits);
+    if (below.least <= below.low + room_) heights_[order[i].child] = {std::min(below.low, below.least), round_};
+    found.low = std::min(found.low, below.low);
+    found.least = std::min(found.least, below.least);
+  }
+  return found;
 }
 
-bool CastTies::apart(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, double along, double gap) {
-  credit_ += k_per_try;
+bool CastTies::apart(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, double along, double gap,
+                     std::uint64_t pay) {
+  credit_ = std::min(credit_ + pay, k_most_credit);
   if (!known_ || (axis - axis_).cwiseAbs().maxCoeff() > k_same_axis) {
     known_ = true;
     axis_ = axis;

@@ -53,43 +53,62 @@ class CastFace {
   float size_ = 0.0f;
 };
 
-/// Heights of subtrees along one axis.
+/// Heights of subtrees along one axis, found by branch and bound.
 class CastSupports {
  public:
-  explicit CastSupports(const CastTree& tree) : tree_(&tree) {}
+  explicit CastSupports(const CastTree& tree);
 
   /// Forgets all heights.
+  /// @param axis unit vector in the common frame
   void set_axis(const Eigen::Vector3d& axis);
 
   static constexpr double k_unknown = -std::numeric_limits<double>::infinity();
 
-  /// The least axis . p over the triangles of child `lane` of node `node`, given as Tree::k_width * node + lane: to the
-  /// rounding of CastTree::triangle() and the product. k_unknown if there are more triangles than `credit`; those
-  /// looked at are taken off it.
+  /// How low the triangles of a child lie along the axis: the least axis . p, or less by at most a few roundings of the
+  /// tree's radius (k_height_room, k_height_rounding), or by more where credit ran out.
+  /// @param node_and_lane of the child, Tree::k_width * node + lane
+  /// @param credit triangles and volumes that may be looked at; those that were are taken off it
+  /// @return k_unknown if there is too little credit to begin
   double lowest(std::size_t node_and_lane, std::uint64_t& credit);
 
-  std::uint64_t triangles() const { return triangles_; }  ///< Looked at so far.
+  std::uint64_t looked_at() const { return looked_at_; }  ///< Triangles and volumes, so far.
 
  private:
+  /// Of axis . p over a subtree.
+  struct Found {
+    double low = -k_unknown;    ///< Not above any of what was not looked at.
+    double least = -k_unknown;  ///< The least of what was.
+  };
+  struct Limits {
+    double least;        ///< What was found elsewhere: what is not lower need not be looked at.
+    std::uint64_t most;  ///< looked_at_ at which bounds have to do.
+  };
   struct Height {
     double value;
     std::uint64_t round;
   };
 
-  double find(std::size_t node_and_lane);
+  CastChild child(std::size_t node_and_lane) const {
+    return tree_->nodes()[node_and_lane / Tree::k_width].child[node_and_lane % Tree::k_width];
+  }
+  /// Surely not above any axis . p of a child's triangles.
+  double bound(std::size_t node_and_lane) const;
+  Found look_into(CastChild child, Limits limits);
 
   const CastTree* tree_;
-  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
-  std::vector<Height> heights_;  // of each child of each node; empty until needed
-  std::uint64_t round_ = 0;      // heights of other rounds are of other axes
-  std::uint64_t triangles_ = 0;
+  double room_;                                     // k_height_room of the radius
+  double rounding_;                                 // k_height_rounding of it
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();  // in the mesh's frame
+  std::vector<Height> heights_;                     // of each child of each node; empty until needed
+  std::uint64_t round_ = 0;                         // heights of other rounds are of other axes
+  std::uint64_t looked_at_ = 0;
 };
 
 /// Cuts pairs of subtrees that are apart along an axis along which pairs of their triangles were found to be. Where
 /// faces lie over each other, edges along edges or corners beside corners, thousands of pairs of volumes are as far
 /// apart as the aim asks. Bounds in floats cannot say whether they are a little nearer; in double precision they are
 /// not, and the pair found already stands for all. The same helps where a few large triangles face thousands of small
-/// ones.
+/// ones, and where volumes around edges reach below their triangles.
 ///
 /// Heights are paid for by tries: they take at most a multiple of the time of what was left open in vain.
 class CastTies {
@@ -104,15 +123,17 @@ class CastTies {
 
   /// Whether the differences b - a of two children, given as Tree::k_width * node + lane, lie at least `gap` high along
   /// `axis` (unit vector), `along` included. False if it would take too long to find out.
-  bool apart(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, double along, double gap);
+  /// @param pay triangles and volumes that this try adds to those that may be looked at
+  bool apart(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, double along, double gap,
+             std::uint64_t pay);
 
-  std::uint64_t supports() const { return a_.triangles() + b_.triangles(); }
+  std::uint64_t supports() const { return a_.looked_at() + b_.looked_at(); }
 
  private:
   CastSupports a_, b_;
   Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
   bool known_ = false;
-  std::uint64_t credit_ = 0;  // triangles that may be looked at
+  std::uint64_t credit_ = 0;  // triangles and volumes that may be looked at
 };
 
 }  // namespace sixdof::ray_cast

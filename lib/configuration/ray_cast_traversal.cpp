@@ -32,6 +32,16 @@ constexpr double k_most_growth = 1.5;
 /// that are shorter than unit vectors, as much again for how far those of one rough face are turned.
 constexpr float k_flat_blur = 2e-3f;
 
+/// Volumes of which none is flat reach below their triangles, so that it does not show which pairs of them tie: one in
+/// so many counts as left open in vain.
+constexpr std::uint64_t k_per_futile = 4;
+
+/// What a try to cut two subtrees in double precision adds to what may be looked at for it (CastTies). Where they may
+/// tie: two or three times what it takes to look into them in vain. Elsewhere: so little that smooth surfaces, where
+/// such tries cut next to nothing, take 1 % longer.
+constexpr std::uint64_t k_pay_near = 16;
+constexpr std::uint64_t k_pay_far = 2;
+
 /// When double precision is to try a cut again: how many pairs bounds in floats have left open in vain by then. Where
 /// surfaces are only smooth it cuts none, and tries become rare.
 struct Tries {
@@ -52,6 +62,7 @@ struct Descent {
   Ray ray;
   const double tie;
   std::uint64_t futile = 0;  // pairs that bounds in floats left open in vain so far
+  std::uint64_t far = 0;     // pairs that are left open by more than rounding
   Tries face_tries, axis_tries;
 
   explicit Descent(Cast& c) : cast(c), front(c.front), tree_a(c.a), tree_b(c.b), tie(k_cast_tie * c.size()) {
@@ -116,10 +127,10 @@ struct Descent {
   /// last found to be, if it is time to find out. Neither points against the direction, so that they stay apart. What
   /// is cut is farther in than what offer_pair() turns down by half a tie, which is more than the rounding of both.
   /// Their line stays as it is: a narrower aim looks into them again.
-  bool apart_along_axes(std::uint32_t a, std::uint32_t b) {
+  bool apart_along_axes(std::uint32_t a, std::uint32_t b, std::uint64_t pay) {
     if (!cast.pair || a == CastFront::k_root || b == CastFront::k_root) return false;
     const auto apart = [&](CastTies& known, const Eigen::Vector3d& axis, Tries& tries) {
-      const bool cut = known.apart(a, b, axis, cast.travel * axis.dot(cast.direction), cast.aim - 0.5 * tie);
+      const bool cut = known.apart(a, b, axis, cast.travel * axis.dot(cast.direction), cast.aim - 0.5 * tie, pay);
       tries.note(cut, futile);
       return cut;
     };
@@ -288,17 +299,16 @@ struct Descent {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
       const bool flat = fixed_flat && node.slab_half[lane] <= ray.slack;
       const float blur = flat ? k_flat_blur * (node.ball_radius[lane] + fixed.ball_radius) : 0.0f;
-      if (gaps[lane] > -ray.slack - blur) {
-        ++futile;
-        const auto own = static_cast<std::uint32_t>(index * k_width + lane);
-        const std::uint32_t a = opens_a ? own : other;
-        const std::uint32_t b = opens_a ? other : own;
-        if (flat) {
-          if (ties(a, b)) continue;
-          note_face(a, b);
-        }
-        if (apart_along_axes(a, b)) continue;
+      const bool near = gaps[lane] > -ray.slack - blur;
+      if (near || ++far % k_per_futile == 0) ++futile;
+      const auto own = static_cast<std::uint32_t>(index * k_width + lane);
+      const std::uint32_t a = opens_a ? own : other;
+      const std::uint32_t b = opens_a ? other : own;
+      if (near && flat) {
+        if (ties(a, b)) continue;
+        note_face(a, b);
       }
+      if (apart_along_axes(a, b, near ? k_pay_near : k_pay_far)) continue;
       prefetch(tree, node.child[lane]);
       const CastFront::Open next{visit, lane, heights[lane]};
       std::size_t at = open.size();
@@ -336,7 +346,7 @@ struct Descent {
       const auto own = static_cast<std::uint32_t>(k_width * from.node + top.lane);
       const std::uint32_t a = from.opens_a ? own : from.other;
       const std::uint32_t b = from.opens_a ? from.other : own;
-      if (gap > -ray.slack && apart_along_axes(a, b)) continue;
+      if (apart_along_axes(a, b, gap > -ray.slack ? k_pay_near : k_pay_far)) continue;
       const CastChild child_a = child_of(tree_a, a);
       const CastChild child_b = child_of(tree_b, b);
       if (child_a.is_leaf() && child_b.is_leaf()) {

@@ -25,7 +25,7 @@ struct CastCounts {
   std::uint64_t leaf_pairs = 0;  ///< Pairs of leaves whose triangles were bounded.
   std::uint64_t offers = 0;      ///< Pairs of triangles that came up for exact distances.
   std::uint64_t distances = 0;   ///< Exact distances of two triangles.
-  std::uint64_t supports = 0;    ///< Triangles whose height along an axis was found (CastTies).
+  std::uint64_t supports = 0;    ///< Triangles and volumes whose height along an axis was found (CastTies).
 
   /// All of them, in units of some 20 ns: within a factor of two of the time of nearly all rays (fitted to rays of
   /// seven pairs of 12 to 100,000 triangles).

@@ -34,6 +34,14 @@ CastSlab fit_slab(const Tree& tree, std::uint32_t first, std::uint32_t count) {
   return slab;
 }
 
+CastBox fit_box(const Tree& tree, std::uint32_t first, std::uint32_t count) {
+  Eigen::AlignedBox3d box;
+  for (const Tree::Corners& t : tree.corners().subspan(first, count)) {
+    for (const Eigen::Vector3d& corner : t) box.extend(corner - tree.center());
+  }
+  return {box.center(), 0.5 * box.sizes()};
+}
+
 struct Ball {
   Eigen::Vector3d center;
   double radius;
@@ -92,6 +100,7 @@ CastVolume volume_of(const CastNode& node, std::size_t lane) {
 CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
   nodes_.resize(tree_->nodes().size());
   slabs_.resize(k_width * nodes_.size());
+  boxes_.resize(k_width * nodes_.size());
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const Tree::Node& from = tree_->nodes()[n];
     CastNode& to = nodes_[n];
@@ -114,10 +123,12 @@ CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
         to.child[lane] = CastChild::leaf(static_cast<std::uint32_t>(leaf_children_.size()));
         leaf_children_.push_back(child);
         slabs_[k_width * n + lane] = fit_slab(*tree_, child.first(), child.count());
+        boxes_[k_width * n + lane] = fit_box(*tree_, child.first(), child.count());
       } else {
         to.child[lane] = CastChild::node(child.node());
         const Tree::Node& below = tree_->nodes()[child.node()];
         slabs_[k_width * n + lane] = fit_slab(*tree_, below.first_triangle, below.triangle_count);
+        boxes_[k_width * n + lane] = fit_box(*tree_, below.first_triangle, below.triangle_count);
       }
       const Ball ball = child.is_leaf() ? fit_ball(*tree_, child.first(), child.count())
                                         : fit_ball(*tree_, tree_->nodes()[child.node()].first_triangle,

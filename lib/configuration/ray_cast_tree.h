@@ -66,6 +66,12 @@ struct CastSlab {
   double half = 0.0;
 };
 
+/// A box in double precision, along the mesh's axes.
+struct CastBox {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Vector3d half = Eigen::Vector3d::Zero();  ///< Half extents.
+};
+
 /// What does not depend on the rotation. All coordinates are relative to the centre of the mesh's box. Immutable.
 class CastMesh {
  public:
@@ -77,6 +83,7 @@ class CastMesh {
   std::span<const Tree::Child> leaf_children() const { return leaf_children_; }  ///< Of each leaf, in the tree.
   /// Of child `lane` of node `node`: at [Tree::k_width * node + lane].
   std::span<const CastSlab> slabs() const { return slabs_; }
+  std::span<const CastBox> boxes() const { return boxes_; }  ///< Likewise.
 
  private:
   std::shared_ptr<const Tree> tree_;
@@ -84,6 +91,7 @@ class CastMesh {
   std::vector<CastLeaf> leaves_;
   std::vector<Tree::Child> leaf_children_;
   std::vector<CastSlab> slabs_;
+  std::vector<CastBox> boxes_;
 };
 
 /// A mesh seen from another frame: p -> M (p - centre), where M is a rotation or minus the identity. Its boxes are
