@@ -29,6 +29,11 @@ static_assert(k_ray_cast_tie == ray_cast::k_cast_tie);
 constexpr int k_most_polish_steps = 10;
 constexpr double k_polished = 3e-16;
 
+/// How far behind a wider aim's travel a hit is looked for, in units of where its axis would have it; and how much
+/// farther next.
+constexpr double k_first_way = 2.0;
+constexpr double k_way_growth = 3.0;
+
 class RayCastSolver final : public RaySolver {
  public:
   RayCastSolver(const Mesh& a, std::shared_ptr<const ray_cast::CastMesh> cast_a, const Mesh& b,
@@ -51,18 +56,18 @@ class RayCastSolver final : public RaySolver {
     cast_.front.clear();
     last_direction_.resize(aims.size());
     work_.assign(aims.size(), 0);
-    std::optional<ray_cast::CastPair> last_aim;
+    std::optional<LastAim> last;
     bool reachable = true;
     for (std::size_t k = 0; k < aims.size(); ++k) {
       std::optional<ray_cast::CastPair> pair;
       const std::uint64_t before = cast_.counts.work();
       // Who is missed by a wider aim is missed by a narrower one.
-      if (reachable) pair = cast(aims[k], last_aim, last_direction_[k]);
+      if (reachable) pair = cast(aims[k], last, last_direction_[k]);
       reachable = pair.has_value();
       travel[k] = std::numeric_limits<double>::quiet_NaN();
       residuals[k] = 0.0;
       if (reachable) {
-        last_aim = pair;
+        last = {aims[k], cast_.travel, cast_.axis.dot(cast_.direction), *pair, cast_.axis};
         last_direction_[k] = pair;
         std::tie(travel[k], residuals[k]) = polish(*pair, cast_.travel, aims[k]);
       }
@@ -74,17 +79,47 @@ class RayCastSolver final : public RaySolver {
   std::span<const std::uint64_t> work() const override { return work_; }
 
  private:
-  std::optional<ray_cast::CastPair> cast(double aim, const std::optional<ray_cast::CastPair>& first_guess,
+  /// What the aim before taught, if it was not this ray's first.
+  struct LastAim {
+    double aim;
+    double travel;
+    double slope;  ///< d aim / d travel
+    ray_cast::CastPair pair;
+    Eigen::Vector3d axis;
+  };
+
+  void start_at(double travel, const Eigen::Vector3d& axis) {
+    cast_.travel = travel;
+    cast_.axis = axis;
+    cast_.pair.reset();
+  }
+
+  std::optional<ray_cast::CastPair> cast(double aim, const std::optional<LastAim>& last,
                                          const std::optional<ray_cast::CastPair>& second_guess) {
     cast_.aim = aim;
     // The path ends where the centres meet; what ties with that still counts.
-    cast_.travel = -k_ray_cast_tie * cast_.size();
-    cast_.pair.reset();
-    cast_.axis = cast_.direction;
-    if (first_guess) ray_cast::offer_pair(cast_, *first_guess);
+    start_at(-k_ray_cast_tie * cast_.size(), cast_.direction);
+    if (last) ray_cast::offer_pair(cast_, last->pair);
     if (second_guess) ray_cast::offer_pair(cast_, *second_guess);
+    if (last && find_from_above(*last)) return cast_.pair;
     ray_cast::find_first_hit(cast_);
     return cast_.pair;
+  }
+
+  /// Where guesses are far behind the aim before, looks between the two first: a narrower aim is met a little later,
+  /// and a search that begins far behind opens much in vain.
+  /// @return whether there was a hit; if not, guesses stay
+  bool find_from_above(const LastAim& last) {
+    const auto guess = std::tuple(cast_.travel, cast_.pair, cast_.axis, cast_.apart_axis);
+    const double behind = std::get<0>(guess);
+    double way = k_first_way * (last.aim - cast_.aim) / last.slope;
+    for (; last.travel - k_way_growth * way > behind; way *= k_way_growth) {
+      start_at(last.travel - way, last.axis);
+      ray_cast::find_first_hit(cast_);
+      if (cast_.pair) return true;
+    }
+    std::tie(cast_.travel, cast_.pair, cast_.axis, cast_.apart_axis) = guess;
+    return false;
   }
 
   /// Ends with the pose as everyone makes it, whose rounding depends on where the meshes lie in their frames.

@@ -302,7 +302,7 @@ double one_aim_over_median(const Mesh& a, const Mesh& b) {
   return worst / generic[25];
 }
 
-/// The suite allows 100. Here it is 5 to 10 (counts, the same on every machine), and would be 16 without the cutoff in
+/// The suite allows 100. Here it is 4 to 11 (counts, the same on every machine), and would be 16 without the cutoff in
 /// double precision, growing with the number of triangles.
 constexpr double k_most_one_aim_over_median = 12.0;
 
@@ -324,7 +324,7 @@ double worst_over_median(const Mesh& a, const Mesh& b) {
   return profile.worst_over_median();
 }
 
-/// The suite allows 100. Here it is 8 to 31.
+/// The suite allows 100. Here it is 13 to 34.
 constexpr double k_most_over_median = 40.0;
 
 TEST(RayCast, FacesThatTieTakeLittleMoreThanTheMedian) {
@@ -334,6 +334,30 @@ TEST(RayCast, FacesThatTieTakeLittleMoreThanTheMedian) {
   for (const auto& [a, b] : {std::pair(&box, &box), {&box, &brick}, {&brick, &box}, {&ring, &ring}, {&ring, &brick}}) {
     EXPECT_LT(worst_over_median(*a, *b), k_most_over_median) << a->name() << ", " << b->name();
   }
+}
+
+/// The suite allows 100. Here it is 15; 98 where a narrower aim that misses what wider ones hit is looked for from the
+/// ray's end on.
+constexpr double k_most_narrow_over_median = 40.0;
+
+TEST(RayCast, NarrowerAimsThatMissWhatWiderOnesHitTakeLittleMore) {
+  const Mesh box = load_model("box-20000");
+  const Grid grid = make_grid("15/90");
+  std::vector<double> aims;
+  for (int percent = 30; percent >= 0; --percent) aims.push_back(distance_bucket(box, percent).aim);
+  std::vector<double> travel(aims.size()), residuals(aims.size());
+  const auto solver = make_ray_cast()->prepare(box, box);
+  std::vector<std::uint64_t> narrower;
+  for (const std::size_t r : {8u, 9u}) {
+    solver->set_rotation(grid.rotations[r]);
+    for (const Eigen::Vector3d& u : grid.directions) {
+      solver->solve(u, aims, travel, residuals);
+      narrower.insert(narrower.end(), solver->work().begin() + 1, solver->work().end());
+    }
+  }
+  std::ranges::sort(narrower);
+  const auto median = static_cast<double>(narrower[narrower.size() / 2]);
+  EXPECT_LT(static_cast<double>(narrower.back()) / median, k_most_narrow_over_median);
 }
 
 /// Work of every ray of a body against itself with buckets of 30, 27, .. 0 %, ascending: what buckets share counts
@@ -355,7 +379,7 @@ std::vector<std::uint64_t> work_of_rays(const Mesh& mesh, const Grid& grid) {
   return rays;
 }
 
-/// The suite allows as much. Here it is 59; 172 where bounds in floats are left alone with pairs of rough faces.
+/// The suite allows as much. Here it is 57; 172 where bounds in floats are left alone with pairs of rough faces.
 constexpr double k_most_ray_over_median = 100.0;
 
 TEST(RayCast, RoughFacesThatTieAreCutInDoublePrecision) {
