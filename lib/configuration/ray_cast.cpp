@@ -32,7 +32,7 @@ constexpr double k_polished = 3e-16;
 /// How far behind a wider aim's travel a hit is looked for, in units of where its axis would have it; and how much
 /// farther next.
 constexpr double k_first_way = 2.0;
-constexpr double k_way_growth = 3.0;
+constexpr double k_way_growth = 2.0;
 
 class RayCastSolver final : public RaySolver {
  public:
@@ -113,7 +113,7 @@ class RayCastSolver final : public RaySolver {
     const auto guess = std::tuple(cast_.travel, cast_.pair, cast_.axis, cast_.apart_axis);
     const double behind = std::get<0>(guess);
     double way = k_first_way * (last.aim - cast_.aim) / last.slope;
-    for (; last.travel - k_way_growth * way > behind; way *= k_way_growth) {
+    for (; last.travel - way > behind; way *= k_way_growth) {
       start_at(last.travel - way, last.axis);
       ray_cast::find_first_hit(cast_);
       if (cast_.pair) return true;
