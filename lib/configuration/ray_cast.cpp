@@ -90,7 +90,7 @@ class RayCastSolver final : public RaySolver {
 
   void start_at(double travel, const Eigen::Vector3d& axis) {
     cast_.travel = travel;
-    cast_.axis = axis;
+    cast_.axis = cast_.apart_axis = axis;
     cast_.pair.reset();
   }
 

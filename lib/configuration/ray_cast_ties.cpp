@@ -16,10 +16,8 @@ constexpr std::uint64_t k_most_credit = 1024;
 /// Heights may be too low by this, in units of the tree's radius, where that saves looking at all that is as low: more
 /// than the rounding that bounds are lowered by.
 constexpr double k_height_room = 2e-15;
-/// Rounding of bounds of heights, in the same units: of some ten products and sums.
+/// Rounding of bounds of heights, in the same units: of some fifteen products and sums.
 constexpr double k_height_rounding = 1e-15;
-/// Of balls, which are in floats.
-constexpr double k_float_rounding = 1e-6;
 /// A subtree's height mostly takes no more than this, a node of each level.
 constexpr std::uint64_t k_least_credit = 64;
 
@@ -101,19 +99,19 @@ double CastSupports::lowest(std::size_t node_and_lane, std::uint64_t& credit) {
   return height.value;
 }
 
-double CastSupports::bound(std::size_t node_and_lane) const {
-  const CastSlab& slab = tree_->mesh().slabs()[node_and_lane];
-  const CastNode& node = tree_->mesh().nodes()[node_and_lane / k_width];
-  const std::size_t lane = node_and_lane % k_width;
-  const Eigen::Vector3d center(node.ball_center[0][lane], node.ball_center[1][lane], node.ball_center[2][lane]);
-  const double radius = static_cast<double>(node.ball_radius[lane]) + k_float_rounding * tree_->radius();
-  const double along = axis_.dot(slab.normal);
-  const Eigen::Vector3d rest = axis_ - along * slab.normal;
-  const double ball = axis_.dot(center) - radius;
-  const double in_slab = along * slab.middle - std::abs(along) * slab.half + rest.dot(center) - rest.norm() * radius;
-  const CastBox& box = tree_->mesh().boxes()[node_and_lane];
-  const double in_box = axis_.dot(box.center) - axis_.cwiseAbs().dot(box.half);
-  return std::max({ball, in_slab, in_box}) - rounding_;
+void CastSupports::bound_children(const CastPatches& patches, double* low) const {
+  const double a[3] = {axis_[0], axis_[1], axis_[2]};
+  for (std::size_t i = 0; i < k_width; ++i) {
+    const double along = a[0] * patches.normal[0][i] + a[1] * patches.normal[1][i] + a[2] * patches.normal[2][i];
+    double in_slab = along * patches.middle[i] - std::abs(along) * patches.half[i];
+    double in_box = -rounding_;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double rest = a[k] - along * patches.normal[k][i];
+      in_slab += rest * patches.box_center[k][i] - std::abs(rest) * patches.box_half[k][i];
+      in_box += a[k] * patches.box_center[k][i] - std::abs(a[k]) * patches.box_half[k][i];
+    }
+    low[i] = std::max(in_slab - rounding_, in_box);
+  }
 }
 
 CastSupports::Found CastSupports::look_into(CastChild from, Limits limits) {
@@ -129,35 +127,28 @@ CastSupports::Found CastSupports::look_into(CastChild from, Limits limits) {
     looked_at_ += leaf.count();
     return found;
   }
-  // Lowest first.
   const std::size_t count = tree_->nodes()[from.index()].child_count;
-  struct {
-    double bound;
-    std::size_t child;
-  } order[k_width];
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    const double low = bound(k_width * from.index() + lane);
-    std::size_t at = lane;
-    for (; at > 0 && order[at - 1].bound > low; --at) order[at] = order[at - 1];
-    order[at] = {low, k_width * from.index() + lane};
-  }
+  alignas(64) double low[k_width];
+  bound_children(tree_->mesh().patches()[from.index()], low);
   looked_at_ += count;
   for (std::size_t i = 0; i < count; ++i) {
+    const auto lane = static_cast<std::size_t>(std::min_element(low, low + count) - low);
     limits.least = std::min(limits.least, found.least);
-    if (order[i].bound >= limits.least - room_ || looked_at_ >= limits.most) {
-      found.low = std::min(found.low, order[i].bound);
+    if (low[lane] >= limits.least - room_ || looked_at_ >= limits.most) {
+      found.low = std::min(found.low, low[lane]);
       break;
     }
-    const Found below = look_into(child(order[i].child), limits);
-    if (below.least <= below.low + room_) heights_[order[i].child] = {std::min(below.low, below.least), round_};
+    low[lane] = -k_unknown;
+    const std::size_t next = k_width * from.index() + lane;
+    const Found below = look_into(child(next), limits);
+    if (below.least <= below.low + room_) heights_[next] = {std::min(below.low, below.least), round_};
     found.low = std::min(found.low, below.low);
     found.least = std::min(found.least, below.least);
   }
   return found;
 }
 
-bool CastTies::apart(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, double along, double gap,
-                     std::uint64_t pay) {
+double CastTies::lowest(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, std::uint64_t pay) {
   credit_ = std::min(credit_ + pay, k_most_credit);
   if (!known_ || (axis - axis_).cwiseAbs().maxCoeff() > k_same_axis) {
     known_ = true;
@@ -166,8 +157,7 @@ bool CastTies::apart(std::size_t child_a, std::size_t child_b, const Eigen::Vect
     b_.set_axis(axis);
   }
   const double low_a = a_.lowest(child_a, credit_);
-  if (low_a == CastSupports::k_unknown) return false;
-  return along + low_a + b_.lowest(child_b, credit_) >= gap;
+  return low_a == CastSupports::k_unknown ? low_a : low_a + b_.lowest(child_b, credit_);
 }
 
 }  // namespace sixdof::ray_cast

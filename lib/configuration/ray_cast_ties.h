@@ -91,8 +91,8 @@ class CastSupports {
   CastChild child(std::size_t node_and_lane) const {
     return tree_->nodes()[node_and_lane / Tree::k_width].child[node_and_lane % Tree::k_width];
   }
-  /// Surely not above any axis . p of a child's triangles.
-  double bound(std::size_t node_and_lane) const;
+  /// @param low for each child, surely not above any axis . p of its triangles
+  void bound_children(const CastPatches& patches, double* low) const;
   Found look_into(CastChild child, Limits limits);
 
   const CastTree* tree_;
@@ -104,13 +104,13 @@ class CastSupports {
   std::uint64_t looked_at_ = 0;
 };
 
-/// Cuts pairs of subtrees that are apart along an axis along which pairs of their triangles were found to be. Where
-/// faces lie over each other, edges along edges or corners beside corners, thousands of pairs of volumes are as far
-/// apart as the aim asks. Bounds in floats cannot say whether they are a little nearer; in double precision they are
-/// not, and the pair found already stands for all. The same helps where a few large triangles face thousands of small
-/// ones, and where volumes around edges reach below their triangles.
+/// How low the differences of two subtrees lie along an axis along which pairs of their triangles were found to be
+/// apart. Where faces lie over each other, edges along edges or corners beside corners, thousands of pairs of volumes
+/// are as far apart as the aim asks. Bounds in floats cannot say whether they are a little nearer; in double precision
+/// they are not, and the pair found already stands for all. The same helps where a few large triangles face thousands
+/// of small ones, and wherever volumes reach below their triangles.
 ///
-/// Heights are paid for by tries: they take at most a multiple of the time of what was left open in vain.
+/// Heights are paid for by tries: they take at most a multiple of the time of what was left open.
 class CastTies {
  public:
   CastTies(const CastTree& a, const CastTree& b) : a_(a), b_(b) {}
@@ -121,11 +121,10 @@ class CastTies {
     credit_ = 0;
   }
 
-  /// Whether the differences b - a of two children, given as Tree::k_width * node + lane, lie at least `gap` high along
-  /// `axis` (unit vector), `along` included. False if it would take too long to find out.
+  /// How low the differences b - a of two children, given as Tree::k_width * node + lane, lie along `axis` (unit
+  /// vector), as CastSupports::lowest(); k_unknown if it would take too long to find out.
   /// @param pay triangles and volumes that this try adds to those that may be looked at
-  bool apart(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, double along, double gap,
-             std::uint64_t pay);
+  double lowest(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, std::uint64_t pay);
 
   std::uint64_t supports() const { return a_.looked_at() + b_.looked_at(); }
 

@@ -21,36 +21,32 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
 namespace HWY_NAMESPACE {
 
-/// So many pairs are left open in vain where surfaces are only smooth.
-constexpr std::uint64_t k_few_futile = 8;
+/// So many pairs are left open before the first try to cut some by their heights.
+constexpr std::uint64_t k_first_try = 8;
 
 /// Visits of a front, over those of the cast that began it. Nodes that were opened where hits were before are not
 /// closed again; beyond this, starting over costs less.
-constexpr double k_most_growth = 1.5;
+constexpr double k_most_growth = 2.0;
 
 /// Where two flat patches lie face to face, bounds in floats fall short by this times their radii: 1.3e-3 for normals
 /// that are shorter than unit vectors, as much again for how far those of one rough face are turned.
 constexpr float k_flat_blur = 2e-3f;
 
-/// Volumes of which none is flat reach below their triangles, so that it does not show which pairs of them tie: one in
-/// so many counts as left open in vain.
-constexpr std::uint64_t k_per_futile = 4;
-
-/// What a try to cut two subtrees in double precision adds to what may be looked at for it (CastTies). Where they may
-/// tie: two or three times what it takes to look into them in vain. Elsewhere: so little that smooth surfaces, where
-/// such tries cut next to nothing, take 1 % longer.
+/// What a try to cut two subtrees by their heights adds to what may be looked at for it (CastTies): where they may tie
+/// two or three times what it takes to look into them in vain, elsewhere as much. Heights along the axis found last are
+/// exact, where volumes reach below their triangles: on smooth surfaces they halve the nodes that are looked into.
 constexpr std::uint64_t k_pay_near = 16;
-constexpr std::uint64_t k_pay_far = 2;
+constexpr std::uint64_t k_pay_far = 8;
 
-/// When double precision is to try a cut again: how many pairs bounds in floats have left open in vain by then. Where
-/// surfaces are only smooth it cuts none, and tries become rare.
+/// When heights are to try a cut again: how many pairs bounds in floats have left open by then. Where they cut none,
+/// tries become rare.
 struct Tries {
   std::uint64_t last_cut = 0;
-  std::uint64_t next = k_few_futile;
+  std::uint64_t next = k_first_try;
 
-  void note(bool cut, std::uint64_t futile) {
-    if (cut) last_cut = futile;
-    next = cut ? futile : futile + 1 + (futile - last_cut) / 2;
+  void note(bool cut, std::uint64_t left_open) {
+    if (cut) last_cut = left_open;
+    next = cut ? left_open : left_open + 1 + (left_open - last_cut) / 2;
   }
 };
 
@@ -61,8 +57,7 @@ struct Descent {
   const CastTree& tree_b;
   Ray ray;
   const double tie;
-  std::uint64_t futile = 0;  // pairs that bounds in floats left open in vain so far
-  std::uint64_t far = 0;     // pairs that are left open by more than rounding
+  std::uint64_t left_open = 0;  // pairs that bounds in floats left open so far
   Tries face_tries, axis_tries;
 
   explicit Descent(Cast& c) : cast(c), front(c.front), tree_a(c.a), tree_b(c.b), tie(k_cast_tie * c.size()) {
@@ -124,21 +119,26 @@ struct Descent {
   }
 
   /// Whether two subtrees are apart by the aim along the face's normal, or along the axis along which triangles were
-  /// last found to be, if it is time to find out. Neither points against the direction, so that they stay apart. What
-  /// is cut is farther in than what offer_pair() turns down by half a tie, which is more than the rounding of both.
-  /// Their line stays as it is: a narrower aim looks into them again.
-  bool apart_along_axes(std::uint32_t a, std::uint32_t b, std::uint64_t pay) {
-    if (!cast.pair || a == CastFront::k_root || b == CastFront::k_root) return false;
+  /// last found to be, if it is time to find out. Where the axis does not point against the direction, they stay apart.
+  /// What is cut is farther in than what offer_pair() turns down by half a tie, which is more than the rounding of
+  /// both; as long as no pair stands for it, a tie is not cut. Unless it is more than floats round, the child's line
+  /// stays as it is: a narrower aim looks into it again.
+  bool apart_along_axes(const CastFront::Open& child, std::uint32_t a, std::uint32_t b, std::uint64_t pay) {
+    if (a == CastFront::k_root || b == CastFront::k_root) return false;
     const auto apart = [&](CastTies& known, const Eigen::Vector3d& axis, Tries& tries) {
-      const bool cut = known.apart(a, b, axis, cast.travel * axis.dot(cast.direction), cast.aim - 0.5 * tie, pay);
-      tries.note(cut, futile);
+      const double slope = axis.dot(cast.direction);
+      if (slope < 0.0) return false;
+      const double gap = cast.travel * slope + known.lowest(a, b, axis, pay) - cast.aim;
+      const bool cut = gap >= (cast.pair ? -0.5 * tie : 0.0);
+      tries.note(cut, left_open);
+      if (gap > ray.slack) set_line(child, static_cast<float>(gap), static_cast<float>(slope));
       return cut;
     };
-    if (futile >= face_tries.next && cast.face.faces(cast.axis, cast.direction) &&
+    if (left_open >= face_tries.next && cast.face.faces(cast.axis, cast.direction) &&
         apart(cast.face_ties, cast.face.normal(), face_tries)) {
       return true;
     }
-    return futile >= axis_tries.next && apart(cast.ties, cast.apart_axis, axis_tries);
+    return left_open >= axis_tries.next && apart(cast.ties, cast.apart_axis, axis_tries);
   }
 
   /// Learns the normal of the face that two flat patches are of.
@@ -223,7 +223,7 @@ struct Descent {
       if (offer_pair(cast, {child_a.first() + i, child_b.first() + j})) {
         update();
       } else {
-        ++futile;
+        ++left_open;
       }
     }
   }
@@ -300,7 +300,7 @@ struct Descent {
       const bool flat = fixed_flat && node.slab_half[lane] <= ray.slack;
       const float blur = flat ? k_flat_blur * (node.ball_radius[lane] + fixed.ball_radius) : 0.0f;
       const bool near = gaps[lane] > -ray.slack - blur;
-      if (near || ++far % k_per_futile == 0) ++futile;
+      ++left_open;
       const auto own = static_cast<std::uint32_t>(index * k_width + lane);
       const std::uint32_t a = opens_a ? own : other;
       const std::uint32_t b = opens_a ? other : own;
@@ -308,9 +308,9 @@ struct Descent {
         if (ties(a, b)) continue;
         note_face(a, b);
       }
-      if (apart_along_axes(a, b, near ? k_pay_near : k_pay_far)) continue;
-      prefetch(tree, node.child[lane]);
       const CastFront::Open next{visit, lane, heights[lane]};
+      if (apart_along_axes(next, a, b, near ? k_pay_near : k_pay_far)) continue;
+      prefetch(tree, node.child[lane]);
       std::size_t at = open.size();
       open.push_back(next);
       for (; at > first && open[at - 1].height < next.height; --at) open[at] = open[at - 1];
@@ -346,7 +346,7 @@ struct Descent {
       const auto own = static_cast<std::uint32_t>(k_width * from.node + top.lane);
       const std::uint32_t a = from.opens_a ? own : from.other;
       const std::uint32_t b = from.opens_a ? from.other : own;
-      if (apart_along_axes(a, b, gap > -ray.slack ? k_pay_near : k_pay_far)) continue;
+      if (apart_along_axes(top, a, b, gap > -ray.slack ? k_pay_near : k_pay_far)) continue;
       const CastChild child_a = child_of(tree_a, a);
       const CastChild child_b = child_of(tree_b, b);
       if (child_a.is_leaf() && child_b.is_leaf()) {
@@ -424,8 +424,9 @@ struct Descent {
 
   void run() {
     if (cast.aim > front.aim) front.clear();  // lines need travels that do not grow
+    const bool grown = static_cast<double>(front.visits.size()) > k_most_growth * static_cast<double>(front.fresh);
+    if (cast.aim != front.aim && grown) front.clear();
     front.aim = cast.aim;
-    if (static_cast<double>(front.visits.size()) > k_most_growth * static_cast<double>(front.fresh)) front.clear();
     front.open.clear();
     if (front.visits.empty()) {
       visit(CastFront::k_root, CastFront::k_root);

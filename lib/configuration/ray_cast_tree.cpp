@@ -34,12 +34,21 @@ CastSlab fit_slab(const Tree& tree, std::uint32_t first, std::uint32_t count) {
   return slab;
 }
 
-CastBox fit_box(const Tree& tree, std::uint32_t first, std::uint32_t count) {
+/// Slab and box of triangles first .. first + count - 1.
+void fit_patch(const Tree& tree, std::uint32_t first, std::uint32_t count, CastPatches& patches, std::size_t lane) {
+  const CastSlab slab = fit_slab(tree, first, count);
   Eigen::AlignedBox3d box;
   for (const Tree::Corners& t : tree.corners().subspan(first, count)) {
     for (const Eigen::Vector3d& corner : t) box.extend(corner - tree.center());
   }
-  return {box.center(), 0.5 * box.sizes()};
+  patches.middle[lane] = slab.middle;
+  patches.half[lane] = slab.half;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    patches.normal[k][lane] = slab.normal[axis];
+    patches.box_center[k][lane] = 0.5 * (box.min()[axis] + box.max()[axis]);
+    patches.box_half[k][lane] = 0.5 * (box.max()[axis] - box.min()[axis]);
+  }
 }
 
 struct Ball {
@@ -99,8 +108,7 @@ CastVolume volume_of(const CastNode& node, std::size_t lane) {
 
 CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
   nodes_.resize(tree_->nodes().size());
-  slabs_.resize(k_width * nodes_.size());
-  boxes_.resize(k_width * nodes_.size());
+  patches_.resize(nodes_.size());
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const Tree::Node& from = tree_->nodes()[n];
     CastNode& to = nodes_[n];
@@ -122,13 +130,11 @@ CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
       if (child.is_leaf()) {
         to.child[lane] = CastChild::leaf(static_cast<std::uint32_t>(leaf_children_.size()));
         leaf_children_.push_back(child);
-        slabs_[k_width * n + lane] = fit_slab(*tree_, child.first(), child.count());
-        boxes_[k_width * n + lane] = fit_box(*tree_, child.first(), child.count());
+        fit_patch(*tree_, child.first(), child.count(), patches_[n], lane);
       } else {
         to.child[lane] = CastChild::node(child.node());
         const Tree::Node& below = tree_->nodes()[child.node()];
-        slabs_[k_width * n + lane] = fit_slab(*tree_, below.first_triangle, below.triangle_count);
-        boxes_[k_width * n + lane] = fit_box(*tree_, below.first_triangle, below.triangle_count);
+        fit_patch(*tree_, below.first_triangle, below.triangle_count, patches_[n], lane);
       }
       const Ball ball = child.is_leaf() ? fit_ball(*tree_, child.first(), child.count())
                                         : fit_ball(*tree_, tree_->nodes()[child.node()].first_triangle,

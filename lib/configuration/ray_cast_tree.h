@@ -66,10 +66,18 @@ struct CastSlab {
   double half = 0.0;
 };
 
-/// A box in double precision, along the mesh's axes.
-struct CastBox {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  Eigen::Vector3d half = Eigen::Vector3d::Zero();  ///< Half extents.
+/// Slabs and boxes of a node's children in double precision, [axis][child], in the mesh's axes: |normal . p - middle|
+/// <= half, |p - box_center| <= box_half. Lanes without a child are zero.
+struct alignas(64) CastPatches {
+  double normal[3][Tree::k_width];  ///< Unit vectors.
+  double middle[Tree::k_width];
+  double half[Tree::k_width];
+  double box_center[3][Tree::k_width];
+  double box_half[3][Tree::k_width];
+
+  CastSlab slab(std::size_t lane) const {
+    return {{normal[0][lane], normal[1][lane], normal[2][lane]}, middle[lane], half[lane]};
+  }
 };
 
 /// What does not depend on the rotation. All coordinates are relative to the centre of the mesh's box. Immutable.
@@ -81,17 +89,14 @@ class CastMesh {
   std::span<const CastNode> nodes() const { return nodes_; }  ///< Without boxes.
   std::span<const CastLeaf> leaves() const { return leaves_; }
   std::span<const Tree::Child> leaf_children() const { return leaf_children_; }  ///< Of each leaf, in the tree.
-  /// Of child `lane` of node `node`: at [Tree::k_width * node + lane].
-  std::span<const CastSlab> slabs() const { return slabs_; }
-  std::span<const CastBox> boxes() const { return boxes_; }  ///< Likewise.
+  std::span<const CastPatches> patches() const { return patches_; }              ///< Of each node.
 
  private:
   std::shared_ptr<const Tree> tree_;
   std::vector<CastNode> nodes_;
   std::vector<CastLeaf> leaves_;
   std::vector<Tree::Child> leaf_children_;
-  std::vector<CastSlab> slabs_;
-  std::vector<CastBox> boxes_;
+  std::vector<CastPatches> patches_;
 };
 
 /// A mesh seen from another frame: p -> M (p - centre), where M is a rotation or minus the identity. Its boxes are
@@ -120,7 +125,7 @@ class CastTree {
 
   /// The slab of a child in double precision.
   CastSlab slab(std::size_t node_and_lane) const {
-    const CastSlab& s = mesh_->slabs()[node_and_lane];
+    const CastSlab s = mesh_->patches()[node_and_lane / Tree::k_width].slab(node_and_lane % Tree::k_width);
     return {matrix_ * s.normal, s.middle, s.half};
   }
 

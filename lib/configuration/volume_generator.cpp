@@ -64,8 +64,8 @@ class OverlapRay {
         query_(pair.solid_a, pair.solid_of_b()),
         bounds_(pair.tree_a.corners().size(), pair.tree_of_b().corners().size()) {}
 
-  /// In units of some 20 ns, as those of the ray cast: within a factor of two of the time of nearly all rays, but up to
-  /// five times as long where many faces coincide, whose crossings take exact arithmetic.
+  /// In units of some 20 ns, near those of the ray cast: within a factor of two of the time of nearly all rays, but up
+  /// to five times as long where many faces coincide, whose crossings take exact arithmetic.
   std::uint64_t work() const { return work_; }
 
   void set(const ConfigurationRay& ray) {

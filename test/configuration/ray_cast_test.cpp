@@ -302,7 +302,7 @@ double one_aim_over_median(const Mesh& a, const Mesh& b) {
   return worst / generic[25];
 }
 
-/// The suite allows 100. Here it is 4 to 11 (counts, the same on every machine), and would be 16 without the cutoff in
+/// The suite allows 100. Here it is 1 to 3 (counts, the same on every machine), and would be 16 without the cutoff in
 /// double precision, growing with the number of triangles.
 constexpr double k_most_one_aim_over_median = 12.0;
 
@@ -324,7 +324,7 @@ double worst_over_median(const Mesh& a, const Mesh& b) {
   return profile.worst_over_median();
 }
 
-/// The suite allows 100. Here it is 13 to 34.
+/// The suite allows 100. Here it is 12 to 27; 43 without heights along axes, 72 without double precision at all.
 constexpr double k_most_over_median = 40.0;
 
 TEST(RayCast, FacesThatTieTakeLittleMoreThanTheMedian) {
@@ -336,9 +336,9 @@ TEST(RayCast, FacesThatTieTakeLittleMoreThanTheMedian) {
   }
 }
 
-/// The suite allows 100. Here it is 15; 98 where a narrower aim that misses what wider ones hit is looked for from the
+/// The suite allows 100. Here it is 5; 28 where a narrower aim that misses what wider ones hit is looked for from the
 /// ray's end on.
-constexpr double k_most_narrow_over_median = 40.0;
+constexpr double k_most_narrow_over_median = 15.0;
 
 TEST(RayCast, NarrowerAimsThatMissWhatWiderOnesHitTakeLittleMore) {
   const Mesh box = load_model("box-20000");
@@ -402,8 +402,9 @@ std::vector<std::uint64_t> work_of_rays(const Mesh& mesh, const Grid& grid) {
   return rays;
 }
 
-/// The suite allows as much. Here it is 57; 172 where bounds in floats are left alone with pairs of rough faces.
-constexpr double k_most_ray_over_median = 100.0;
+/// The suite allows 100. Here it is 32; 71 without heights along the face's normal, 185 where bounds in floats are left
+/// alone with pairs of rough faces.
+constexpr double k_most_ray_over_median = 60.0;
 
 TEST(RayCast, RoughFacesThatTieAreCutInDoublePrecision) {
   const Mesh rough = rough_mesh(load_model("box-20000"), k_roughness);
