@@ -112,8 +112,10 @@ TEST(CastSupports, AreNeverTooHighWhereCreditRunsOut) {
       supports.set_axis(axis);
       for (const std::size_t child : children_of(tree, random)) {
         std::uint64_t credit = most;
+        const std::uint64_t before = supports.looked_at();
         const double low = supports.lowest(child, credit);
         EXPECT_LE(credit, most);
+        EXPECT_LE(supports.looked_at() - before, most + Tree::k_width);  // a node's children are looked at together
         const double least = least_height(tree, child, axis);
         EXPECT_LE(low, least + k_same_height * tree.radius()) << body.mesh.name() << ", child " << child;
         short_of_credit += low < least - k_same_height * tree.radius() ? 1 : 0;
