@@ -112,7 +112,8 @@ class RayCastSolver final : public RaySolver {
   bool find_from_above(const LastAim& last) {
     const auto guess = std::tuple(cast_.travel, cast_.pair, cast_.axis, cast_.apart_axis);
     const double behind = std::get<0>(guess);
-    double way = k_first_way * (last.aim - cast_.aim) / last.slope;
+    // Equal aims have no way between them, but one that grows.
+    double way = std::max(k_first_way * (last.aim - cast_.aim) / last.slope, k_ray_cast_tie * cast_.size());
     for (; last.travel - way > behind; way *= k_way_growth) {
       start_at(last.travel - way, last.axis);
       ray_cast::find_first_hit(cast_);

@@ -32,9 +32,10 @@ constexpr double k_most_growth = 2.0;
 /// that are shorter than unit vectors, as much again for how far those of one rough face are turned.
 constexpr float k_flat_blur = 2e-3f;
 
-/// What a try to cut two subtrees by their heights adds to what may be looked at for it (CastTies): where they may tie
-/// two or three times what it takes to look into them in vain, elsewhere as much. Heights along the axis found last are
-/// exact, where volumes reach below their triangles: on smooth surfaces they halve the nodes that are looked into.
+/// What a try to cut two subtrees by their heights adds to what may be looked at for it (CastTies), where they may tie
+/// and elsewhere. Heights along the axis found last are exact, where volumes reach below their triangles: on smooth
+/// surfaces they halve the nodes that are looked into. Of 1, 2, 4 .. 64 elsewhere, 8 took the least time on three
+/// bodies.
 constexpr std::uint64_t k_pay_near = 16;
 constexpr std::uint64_t k_pay_far = 8;
 
