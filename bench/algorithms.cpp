@@ -1,5 +1,6 @@
-#include <sixdof/bench/algorithms.h>
+#include "bench/algorithms.h"
 
+#include <sixdof/algorithm/core_algorithms.h>
 #ifdef SIXDOF_WITH_FCL
 #include <sixdof/algorithm/fcl/fcl.h>
 #endif

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <sixdof/algorithm/registry.h>
+#include <sixdof/query/registry.h>
 
 namespace sixdof {
 

@@ -1,3 +1,3 @@
-#include <sixdof/bench/cli/commands.h>
+#include "bench/cli/commands.h"
 
 int main(int argc, char** argv) { return sixdof::cli::run(argc, argv); }

@@ -9,17 +9,6 @@ if(PROJECT_IS_TOP_LEVEL AND SIXDOF_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${SIXDOF_CCACHE})
 endif()
 
-# Rooms are included as <sixdof/room/file.h>, in the build tree as after installation. Links make the build tree look
-# like the installed one; the sources themselves stay in their rooms.
-set(SIXDOF_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
-file(MAKE_DIRECTORY ${SIXDOF_INCLUDE_DIR}/sixdof)
-foreach(room IN ITEMS base geometry oracle configuration algorithm scenario measure study report)
-  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/lib/${room} ${SIXDOF_INCLUDE_DIR}/sixdof/${room} SYMBOLIC)
-endforeach()
-foreach(room IN ITEMS models fixtures bench)
-  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${room} ${SIXDOF_INCLUDE_DIR}/sixdof/${room} SYMBOLIC)
-endforeach()
-
 # Strict warnings, sanitizers and floating-point rules for our own code. Contraction (fused multiply-add) is off because
 # exact results must be the same bits on every instruction set.
 add_library(sixdof_build_flags INTERFACE)
@@ -41,6 +30,6 @@ function(sixdof_library target)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${export_name} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${SIXDOF_INCLUDE_DIR}> $<INSTALL_INTERFACE:include>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/lib> $<INSTALL_INTERFACE:include>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:sixdof_build_flags>)
 endfunction()

@@ -11,12 +11,8 @@ install(TARGETS ${sixdof_install_targets} EXPORT sixdof
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT sixdof NAMESPACE sixdof:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof FILE sixdof-targets.cmake)
 
-foreach(room IN ITEMS base geometry oracle configuration algorithm scenario measure study report)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sixdof
-    FILES_MATCHING PATTERN "*.h" PATTERN "*-inl.h" EXCLUDE)
-endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sixdof
-  FILES_MATCHING PATTERN "*.h" PATTERN "cache" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/sixdof DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN "*.h" PATTERN "*-inl.h" EXCLUDE)
 
 foreach(program IN ITEMS sixdof_program sixdof-bench)
   if(TARGET ${program})

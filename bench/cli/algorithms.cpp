@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/algorithms.h>
+#include "bench/cli/algorithms.h"
 
 #include <memory>
 #include <string>
@@ -8,7 +8,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <sixdof/bench/algorithms.h>
+#include "bench/algorithms.h"
 
 namespace sixdof::cli {
 namespace {
@@ -33,20 +33,20 @@ std::vector<std::string> names_of(const QuerySet& answers) {
   return names;
 }
 
-std::string range_of(const Knob& knob) {
-  if (!knob.choices.empty()) return fmt::format("{}", fmt::join(knob.choices, " | "));
-  return fmt::format("{} .. {}{}", knob.low, knob.high, knob.integer ? ", whole" : "");
+std::string range_of(const Parameter& parameter) {
+  if (!parameter.choices.empty()) return fmt::format("{}", fmt::join(parameter.choices, " | "));
+  return fmt::format("{} .. {}{}", parameter.low, parameter.high, parameter.integer ? ", whole" : "");
 }
 
-nlohmann::ordered_json as_json(const Knob& knob) {
-  nlohmann::ordered_json json = {{"name", knob.name}, {"meaning", knob.meaning}, {"unit", knob.unit}};
-  json["default"] = knob.standard;
-  if (knob.choices.empty()) {
-    json["low"] = knob.low;
-    json["high"] = knob.high;
-    json["integer"] = knob.integer;
+nlohmann::ordered_json as_json(const Parameter& parameter) {
+  nlohmann::ordered_json json = {{"name", parameter.name}, {"meaning", parameter.meaning}, {"unit", parameter.unit}};
+  json["default"] = parameter.standard;
+  if (parameter.choices.empty()) {
+    json["low"] = parameter.low;
+    json["high"] = parameter.high;
+    json["integer"] = parameter.integer;
   } else {
-    json["choices"] = knob.choices;
+    json["choices"] = parameter.choices;
   }
   return json;
 }
@@ -55,14 +55,14 @@ void print_json(const Registry& registry) {
   auto list = nlohmann::ordered_json::array();
   for (const auto& algorithm : registry.all()) {
     const Traits& traits = algorithm->traits();
-    auto knobs = nlohmann::ordered_json::array();
-    for (const Knob& knob : traits.knobs) knobs.push_back(as_json(knob));
+    auto parameters = nlohmann::ordered_json::array();
+    for (const Parameter& parameter : traits.parameters) parameters.push_back(as_json(parameter));
     list.push_back({{"name", traits.name},
                     {"version", traits.version},
                     {"summary", traits.summary},
                     {"answers", names_of(traits.answers)},
                     {"law", to_string(traits.law)},
-                    {"knobs", knobs}});
+                    {"parameters", parameters}});
   }
   fmt::print("{}\n", list.dump(2));
 }
@@ -73,9 +73,9 @@ void print_text(const Registry& registry) {
     const Traits& traits = algorithm->traits();
     fmt::print("{:<16} {:<10} {:<28} {:<7} {}\n", traits.name, traits.version,
                fmt::format("{}", fmt::join(names_of(traits.answers), ",")), to_string(traits.law), traits.summary);
-    for (const Knob& knob : traits.knobs) {
-      fmt::print("  {}={}  [{}]  unit {}: {}\n", knob.name, knob.standard, range_of(knob),
-                 knob.unit.empty() ? "none" : knob.unit, knob.meaning);
+    for (const Parameter& parameter : traits.parameters) {
+      fmt::print("  {}={}  [{}]  unit {}: {}\n", parameter.name, parameter.standard, range_of(parameter),
+                 parameter.unit.empty() ? "none" : parameter.unit, parameter.meaning);
     }
   }
 }
@@ -83,7 +83,7 @@ void print_text(const Registry& registry) {
 }  // namespace
 
 void add_algorithms_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("algorithms", "What each algorithm answers, its knobs and version");
+  auto* const command = app.add_subcommand("algorithms", "What each algorithm answers, its parameters and version");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "As JSON");
   command->callback([json] {

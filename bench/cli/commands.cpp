@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/commands.h>
+#include "bench/cli/commands.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -10,16 +10,16 @@
 #include <CLI/Formatter.hpp>
 
 #include <sixdof/base/error.h>
-#include <sixdof/bench/cli/algorithms.h>
-#include <sixdof/bench/cli/generate.h>
-#include <sixdof/bench/cli/info.h>
-#include <sixdof/bench/cli/merge.h>
-#include <sixdof/bench/cli/models.h>
-#include <sixdof/bench/cli/quality.h>
-#include <sixdof/bench/cli/query.h>
-#include <sixdof/bench/cli/show.h>
-#include <sixdof/bench/cli/table.h>
-#include <sixdof/bench/cli/verify.h>
+#include "bench/cli/algorithms.h"
+#include "bench/cli/generate.h"
+#include "bench/cli/info.h"
+#include "bench/cli/merge.h"
+#include "bench/cli/models.h"
+#include "bench/cli/quality.h"
+#include "bench/cli/query.h"
+#include "bench/cli/show.h"
+#include "bench/cli/table.h"
+#include "bench/cli/verify.h"
 
 namespace sixdof::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/generate.h>
+#include "bench/cli/generate.h"
 
 #include <charconv>
 #include <cstddef>
@@ -10,18 +10,17 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/bench/algorithms.h>
-#include <sixdof/bench/cli/distance_source_argument.h>
-#include <sixdof/bench/cli/generate_plan.h>
-#include <sixdof/bench/cli/generate_profile.h>
-#include <sixdof/bench/cli/generate_shards.h>
-#include <sixdof/bench/cli/program_version.h>
+#include "bench/algorithms.h"
+#include "bench/cli/generate_plan.h"
+#include "bench/cli/generate_profile.h"
+#include "bench/cli/generate_shards.h"
+#include "bench/cli/program_version.h"
 #include <sixdof/configuration/configuration_set.h>
-#include <sixdof/configuration/distance_generator.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/configuration/generation_job.h>
-#include <sixdof/configuration/ray_cast.h>
-#include <sixdof/configuration/sphere_method.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/generation/ray_cast.h>
+#include <sixdof/generation/sphere_method.h>
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::cli {
 namespace {
@@ -57,8 +56,7 @@ std::vector<int> parse_list(std::string_view text) { return text.empty() ? std::
 std::unique_ptr<DistanceGenerator> make_generator(const Arguments& arguments, const Registry& registry) {
   if (arguments.oracle.empty() && arguments.method != "advance") return make_ray_cast();
   if (arguments.method == "raycast") throw BadArgument("--oracle is for --method advance");
-  return make_sphere_method(
-      distance_source_argument(registry, arguments.oracle.empty() ? k_default_oracle : arguments.oracle));
+  return make_sphere_method(registry.find(arguments.oracle.empty() ? k_default_oracle : arguments.oracle));
 }
 
 /// The grids of a job, still without meshes.
@@ -103,9 +101,10 @@ void generate(const Arguments& arguments) {
   const auto generator = make_generator(arguments, registry);
   const Mesh a = load_model(arguments.a);
   const Mesh b = arguments.b.empty() || arguments.b == arguments.a ? a : load_model(arguments.b);
-  set.a = MeshStamp::of(a);
-  set.b = MeshStamp::of(b);
-  const auto job = GenerationJob::of(program_version(), *generator, a, b, set, distances, volumes);
+  set.a = MeshIdentity::of(a);
+  set.b = MeshIdentity::of(b);
+  const auto job = GenerationJob::of(program_version(), generator->oracle_name(), generator->oracle_version(), a, b, set,
+                                     distances, volumes);
   const GenerationWork work{.generator = *generator,
                             .a = a,
                             .b = b,

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/generate_plan.h>
+#include "bench/cli/generate_plan.h"
 
 #include <sys/resource.h>
 
@@ -13,10 +13,10 @@
 
 #include <fmt/format.h>
 
-#include <sixdof/bench/cli/interrupt.h>
-#include <sixdof/bench/cli/progress_line.h>
-#include <sixdof/configuration/volume_generator.h>
-#include <sixdof/configuration/work_sample.h>
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress_line.h"
+#include <sixdof/generation/volume_generator.h>
+#include <sixdof/generation/work_sample.h>
 
 namespace sixdof::cli {
 namespace {
@@ -33,25 +33,25 @@ double peak_bytes() {
 /// What one kind of bucket asks for, and what it was found to cost.
 struct Kind {
   BucketKind kind;
-  std::vector<double> aims;  ///< In the order in which a ray meets them.
+  std::vector<double> targets;  ///< In the order in which a ray meets them.
   std::size_t directions = 0, rotations = 0, distinct = 0;
   double prepare_s = 0.0;     ///< Wall time.
   double solver_bytes = 0.0;  ///< Of each further thread.
   WorkCost cost;
 
-  double configurations() const { return static_cast<double>(distinct * directions * aims.size()); }
+  double configurations() const { return static_cast<double>(distinct * directions * targets.size()); }
   double cpu_s() const { return cost.total_s(distinct, directions); }
 };
 
 Kind describe(const GenerationWork& work, BucketKind which) {
   const Grid& grid = work.set.grid_of(which);
   Kind kind{.kind = which,
-            .aims = {},
+            .targets = {},
             .directions = grid.directions.size(),
             .rotations = grid.rotations.size(),
             .distinct = DistinctRotations(grid.rotations).first.size(),
             .cost = {}};
-  for (const BucketSummary& bucket : buckets_in_order(work.job, which)) kind.aims.push_back(bucket.aim);
+  for (const BucketSummary& bucket : buckets_in_order(work.job, which)) kind.targets.push_back(bucket.target);
   return kind;
 }
 
@@ -64,12 +64,12 @@ void measure(const GenerationWork& work, const EstimateRequest& request, double 
   const auto prepare = [&] { return volumes ? volumes->prepare() : work.generator.prepare(work.a, work.b); };
   const auto solver = prepare();
   kind.prepare_s = std::chrono::duration<double>(Clock::now() - start).count();
-  kind.cost = sample_work(*solver, work.set.grid_of(kind.kind), kind.aims, seconds, request.seed,
+  kind.cost = sample_work(*solver, work.set.grid_of(kind.kind), kind.targets, seconds, request.seed,
                           [] { return InterruptGuard::requested(); });
   // A second solver, warmed up by one ray, is what every thread beyond the first adds.
   const double before = peak_bytes();
   const auto second = prepare();
-  sample_work(*second, work.set.grid_of(kind.kind), kind.aims, 0.0, request.seed);
+  sample_work(*second, work.set.grid_of(kind.kind), kind.targets, 0.0, request.seed);
   kind.solver_bytes = std::max(0.0, peak_bytes() - before);
 }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <sixdof/bench/cli/generate_shards.h>
+#include "bench/cli/generate_shards.h"
 #include <sixdof/configuration/configuration_set.h>
 
 namespace sixdof::cli {

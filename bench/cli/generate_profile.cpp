@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/generate_profile.h>
+#include "bench/cli/generate_profile.h"
 
 #include <limits>
 #include <string>
@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <sixdof/bench/cli/generate_plan.h>
-#include <sixdof/bench/cli/interrupt.h>
-#include <sixdof/bench/cli/progress_line.h>
-#include <sixdof/configuration/volume_generator.h>
-#include <sixdof/configuration/work_profile.h>
+#include "bench/cli/generate_plan.h"
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress_line.h"
+#include <sixdof/generation/volume_generator.h>
+#include <sixdof/generation/work_profile.h>
 
 namespace sixdof::cli {
 namespace {
@@ -25,8 +25,8 @@ std::string place(const ProfilePlace& at) {
 void print_kind(BucketKind kind, const GenerationWork& work, const ProfileRequest& request) {
   const Grid& grid = work.set.grid_of(kind);
   const std::vector<BucketSummary> buckets = buckets_in_order(work.job, kind);
-  std::vector<double> aims;
-  for (const BucketSummary& bucket : buckets) aims.push_back(bucket.aim);
+  std::vector<double> targets;
+  for (const BucketSummary& bucket : buckets) targets.push_back(bucket.target);
   const ProfileRotations rotations(grid, request.rotations.value_or(std::numeric_limits<std::size_t>::max()),
                                    request.seed);
   std::optional<VolumeGenerator> volumes;
@@ -35,7 +35,7 @@ void print_kind(BucketKind kind, const GenerationWork& work, const ProfileReques
   {
     ProgressLine line(fmt::format("{} rotations", to_string(kind)), work.progress);
     profile = profile_work([&] { return volumes ? volumes->prepare() : work.generator.prepare(work.a, work.b); }, grid,
-                           aims, rotations.indices,
+                           targets, rotations.indices,
                            {.threads = work.threads,
                             .progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
                             .cancelled = [] { return InterruptGuard::requested(); }});
@@ -58,7 +58,7 @@ void print_kind(BucketKind kind, const GenerationWork& work, const ProfileReques
   print_line("work per configuration",
              fmt::format("median {}, p99.9 {}, worst {}: {:.1f} times the median", profile.work.quantile(0.5),
                          profile.work.quantile(k_nearly_all), profile.worst_work, profile.worst_over_median()));
-  print_line("worst", fmt::format("{}, {}", buckets[profile.worst.aim].key.name(), place(profile.worst)));
+  print_line("worst", fmt::format("{}, {}", buckets[profile.worst.target].key.name(), place(profile.worst)));
   print_line("CPU time per ray, us",
              fmt::format("median {:.1f}, p99.9 {:.1f}, worst {:.1f}: {:.1f} times the median ({})",
                          1e6 * profile.median_ray_s, 1e6 * profile.p999_ray_s, 1e6 * profile.worst_ray_s,

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include <sixdof/bench/cli/generate_shards.h>
+#include "bench/cli/generate_shards.h"
 
 namespace sixdof::cli {
 

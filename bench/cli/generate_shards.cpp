@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/generate_shards.h>
+#include "bench/cli/generate_shards.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,10 +10,11 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
-#include <sixdof/bench/cli/generation_progress.h>
-#include <sixdof/bench/cli/interrupt.h>
+#include "bench/cli/generation_progress.h"
+#include "bench/cli/interrupt.h"
 #include <sixdof/configuration/shard_file.h>
 #include <sixdof/configuration/shard_merge.h>
+#include <sixdof/generation/shard_generator.h>
 
 namespace sixdof::cli {
 namespace {
@@ -88,7 +89,7 @@ void generate_set(const GenerationWork& work, const std::filesystem::path& outpu
     values = generate_one(work, k_whole, progress);
   }
   const auto take = [&](ShardNumber, BucketKey key) {
-    const auto of_key = [](const GeneratedBucket& bucket) { return bucket.summary.key; };
+    const auto of_key = [](const Bucket& bucket) { return bucket.summary.key; };
     return std::move(*std::ranges::find(values.buckets, key, of_key));
   };
   AssembleOptions options;
@@ -113,7 +114,7 @@ void generate_shards(const GenerationWork& work, const ShardRequest& request) {
   for (const ShardNumber shard : missing) {
     const Generated values = generate_one(work, shard, progress);
     InterruptGuard::check();
-    write_shard(request.folder / shard_file_name(shard), work.job, work.set, shard, values);
+    write_shard(request.folder / shard_file_name(shard), work.job, work.set, shard, values.buckets);
   }
   const std::size_t asked = request.only == 0 ? request.count : 1;
   fmt::print("{}: {} of {} shards of {} with {} made in {}, {} kept; when all {} are there: sixdof merge {} -o SET\n",

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <memory>
 
-#include <sixdof/algorithm/registry.h>
-#include <sixdof/configuration/distance_generator.h>
+#include <sixdof/query/registry.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/configuration/generation_job.h>
 #include <sixdof/geometry/mesh.h>
 

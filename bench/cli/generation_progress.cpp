@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/generation_progress.h>
+#include "bench/cli/generation_progress.h"
 
 #include <algorithm>
 #include <string>
@@ -24,7 +24,7 @@ GenerationProgress::GenerationProgress(const GenerationJob& job, const SetDescri
     const Grid& grid = set.grid_of(kind);
     const DistinctRotations distinct(grid.rotations);
     for (const ShardNumber shard : shards) {
-      kinds_[index(kind)].total += buckets * distinct.part(shard).size() * grid.directions.size();
+      kinds_[index(kind)].total += buckets * rotations_of(shard, distinct).size() * grid.directions.size();
     }
   }
 }

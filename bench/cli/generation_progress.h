@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include <sixdof/bench/cli/progress_line.h>
+#include "bench/cli/progress_line.h"
 #include <sixdof/configuration/generation_job.h>
 
 namespace sixdof::cli {

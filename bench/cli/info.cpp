@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/info.h>
+#include "bench/cli/info.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include <sixdof/bench/cli/info_mesh.h>
-#include <sixdof/bench/cli/set_info.h>
+#include "bench/cli/info_mesh.h"
+#include "bench/cli/set_info.h"
 #include <sixdof/configuration/configuration_set.h>
 
 namespace sixdof::cli {

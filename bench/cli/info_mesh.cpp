@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/info_mesh.h>
+#include "bench/cli/info_mesh.h"
 
 #include <array>
 
@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/geometry/mesh.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/interrupt.h>
+#include "bench/cli/interrupt.h"
 
 #include <atomic>
 

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/merge.h>
+#include "bench/cli/merge.h"
 
 #include <memory>
 #include <string>
@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/atomic_file.h>
-#include <sixdof/bench/cli/interrupt.h>
-#include <sixdof/bench/cli/progress_line.h>
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress_line.h"
 #include <sixdof/configuration/shard_merge.h>
 
 namespace sixdof::cli {

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/models.h>
+#include "bench/cli/models.h"
 
 #include <filesystem>
 #include <memory>
@@ -13,7 +13,7 @@
 #include <sixdof/models/manifest.h>
 #include <sixdof/models/recipe.h>
 #include <sixdof/models/surface.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::cli {
 namespace {

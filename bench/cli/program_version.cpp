@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/program_version.h>
+#include "bench/cli/program_version.h"
 
 #include <string_view>
 

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/progress_line.h>
+#include "bench/cli/progress_line.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/quality.h>
+#include "bench/cli/quality.h"
 
 #include <memory>
 #include <string>
@@ -9,7 +9,7 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
-#include <sixdof/bench/algorithms.h>
+#include "bench/algorithms.h"
 #include <sixdof/measure/metrics.h>
 #include <sixdof/scenario/drawing.h>
 #include <sixdof/scenario/evaluation.h>
@@ -21,7 +21,7 @@ namespace {
 struct Options {
   std::string scenario;
   std::string algorithm;
-  std::vector<std::string> knobs;
+  std::vector<std::string> parameters;
   std::vector<std::string> lengths;
   std::size_t samples = k_default_stamps;
   std::string law = "own";
@@ -71,7 +71,7 @@ void run(const Options& options) {
   register_all_algorithms(registry);
   const Algorithm& algorithm = registry.find(options.algorithm);
   Settings settings = algorithm.settings();
-  settings.set_all(options.knobs);
+  settings.set_all(options.parameters);
   const Traits& traits = algorithm.traits();
   if (!traits.answers.respond) throw BadArgument(fmt::format("{} gives no response", traits.name));
   const IdealLaw law = parse_ideal_law(options.law, traits.law);
@@ -96,7 +96,7 @@ void add_quality_command(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command->add_option("--scenario", options->scenario, "Ia, Ib, II, III or IV")->required();
   command->add_option("--algorithm", options->algorithm, "Name of an algorithm that gives responses");
-  command->add_option("--set", options->knobs, "Knob of the algorithm, knob=value; may be repeated");
+  command->add_option("--set", options->parameters, "Parameter of the algorithm, parameter=value; may be repeated");
   command->add_option("--shape", options->lengths, "Length of the scenario, name=value; may be repeated");
   command->add_option("--samples", options->samples, "Time stamps along the path")->capture_default_str();
   command

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/query.h>
+#include "bench/cli/query.h"
 
 #include <array>
 #include <charconv>
@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-#include <sixdof/bench/algorithms.h>
-#include <sixdof/models/zoo.h>
+#include "bench/algorithms.h"
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::cli {
 namespace {
@@ -181,7 +181,7 @@ void add_query_command(CLI::App& app) {
           "Pose of B in A's frame, in one argument: \"tx ty tz qw qx qy qz\", a point p of B goes to q p q* + t")
       ->required();
   command->add_option("--algorithm", arguments->algorithm, "See `sixdof algorithms`")->capture_default_str();
-  command->add_option("--set", arguments->settings, "A knob of the algorithm: NAME=VALUE; may be repeated")
+  command->add_option("--set", arguments->settings, "A parameter of the algorithm: NAME=VALUE; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--about", arguments->about,
                       "Point \"x y z\" in A's frame about which the torque is taken (default: centre of B's box)");

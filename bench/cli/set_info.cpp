@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/set_info.h>
+#include "bench/cli/set_info.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@
 namespace sixdof::cli {
 namespace {
 
-nlohmann::ordered_json as_json(const MeshStamp& mesh) {
+nlohmann::ordered_json as_json(const MeshIdentity& mesh) {
   return {{"name", mesh.name},
           {"content_hash", mesh.hash},
           {"triangles", mesh.triangles},
@@ -38,8 +38,8 @@ void print_json(const ConfigurationSet& set) {
   auto buckets = nlohmann::ordered_json::array();
   for (const BucketSummary& bucket : set.buckets()) {
     buckets.push_back({{"bucket", bucket.key.name()},
+                       {"nominal", bucket.nominal},
                        {"target", bucket.target},
-                       {"aim", bucket.aim},
                        {"tolerance", bucket.tolerance},
                        {"largest_residual", bucket.largest_residual},
                        {"reachable", bucket.reachable},
@@ -70,7 +70,7 @@ void print_text(const ConfigurationSet& set) {
   fmt::print("\n{:<13} {:>14} {:>10} {:>14} {:>10}  {}\n", "bucket", "target", "tolerance", "largest resid.",
              "reachable", "oracle");
   for (const BucketSummary& bucket : set.buckets()) {
-    fmt::print("{:<13} {:>14.6g} {:>10.1e} {:>14.1e} {:>10}  {} {}\n", bucket.key.name(), bucket.target,
+    fmt::print("{:<13} {:>14.6g} {:>10.1e} {:>14.1e} {:>10}  {} {}\n", bucket.key.name(), bucket.nominal,
                bucket.tolerance, bucket.largest_residual, bucket.reachable, bucket.oracle, bucket.oracle_version);
   }
 }

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/show.h>
+#include "bench/cli/show.h"
 
 #include <memory>
 #include <string>
@@ -10,9 +10,9 @@
 #include <sixdof/algorithm/vps/store.h>
 #include <sixdof/algorithm/vps/vps.h>
 #include <sixdof/base/error.h>
-#include <sixdof/bench/algorithms.h>
-#include <sixdof/bench/cli/structure_drawing.h>
-#include <sixdof/models/zoo.h>
+#include "bench/algorithms.h"
+#include "bench/cli/structure_drawing.h"
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::cli {
 namespace {
@@ -112,7 +112,7 @@ void add_show_command(CLI::App& app) {
       ->add_option("--keep", arguments->keep,
                    "Cut the body open: draw only what lies within this share of its box along x")
       ->check(CLI::Range(0.0, 1.0));
-  command->add_option("--set", arguments->settings, "A knob of the algorithm: NAME=VALUE; may be repeated")
+  command->add_option("--set", arguments->settings, "A parameter of the algorithm: NAME=VALUE; may be repeated")
       ->allow_extra_args(false);
   command->callback([arguments] { run_show(*arguments); });
 }

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/table.h>
+#include "bench/cli/table.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/verify.h>
+#include "bench/cli/verify.h"
 
 #include <memory>
 #include <string>
@@ -6,13 +6,12 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/bench/algorithms.h>
-#include <sixdof/bench/cli/distance_source_argument.h>
-#include <sixdof/bench/cli/interrupt.h>
-#include <sixdof/bench/cli/progress_line.h>
+#include "bench/algorithms.h"
+#include "bench/cli/interrupt.h"
+#include "bench/cli/progress_line.h"
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/verification.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::cli {
 namespace {
@@ -40,7 +39,7 @@ void verify(const Arguments& arguments) {
   const ConfigurationSet set(arguments.file);
   Registry registry;
   register_all_algorithms(registry);
-  const auto oracle = distance_source_argument(registry, arguments.oracle);
+  const Algorithm& oracle = registry.find(arguments.oracle);
   const std::string& a_name = arguments.a.empty() ? set.description().a.name : arguments.a;
   const std::string& b_name = arguments.b.empty() ? set.description().b.name : arguments.b;
   const Mesh a = load_model(a_name);
@@ -49,14 +48,15 @@ void verify(const Arguments& arguments) {
   Verdict verdict;
   {
     ProgressLine line("verified");
-    verdict = verify_set(set, a, b, *oracle,
+    verdict = verify_set(set, a, b, oracle,
                          {.sample = arguments.sample,
                           .seed = arguments.seed,
                           .progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
                           .cancelled = [] { return InterruptGuard::requested(); }});
   }
   fmt::print("{}: {} with {}, grid {}, distances by {} {}, seed {}\n", arguments.file, set.description().a.name,
-             set.description().b.name, set.grid(BucketKind::distance).spec, oracle->name(), oracle->version(), arguments.seed);
+             set.description().b.name, set.grid(BucketKind::distance).spec, oracle.traits().name,
+             oracle.traits().version, arguments.seed);
   print_table(verdict);
   for (const std::string& problem : verdict.problems) fmt::print("{}\n", problem);
   if (!verdict.ok()) throw Error(fmt::format("{}: verification failed", arguments.file));

@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/build_info.h>
+#include "bench/harness/build_info.h"
 
 #include <fstream>
 

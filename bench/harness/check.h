@@ -5,10 +5,10 @@
 #include <span>
 #include <string>
 
-#include <sixdof/algorithm/algorithm.h>
-#include <sixdof/bench/harness/timing.h>
-#include <sixdof/bench/harness/work.h>
-#include <sixdof/fixtures/bucket.h>
+#include <sixdof/query/algorithm.h>
+#include "bench/harness/timing.h"
+#include "bench/harness/work.h"
+#include <sixdof/configuration/bucket_sample.h>
 
 /// Answers against the set's truth, outside every timed region and before it.
 
@@ -20,7 +20,7 @@ struct Check {
   std::size_t failed = 0;       ///< No answer, whatever the reason.
   std::size_t judged = 0;       ///< Answers that have a truth to be compared with.
   std::size_t mismatch = 0;     ///< Of those, wrong ones.
-  double largest_error = 0.0;   ///< Largest |answer - truth|: distances in A's diagonals, volumes in the aim.
+  double largest_error = 0.0;   ///< Largest |answer - truth|: distances in A's diagonals, volumes in the target.
   double sum_of_errors = 0.0;   ///< Sum of the same.
   double squared_errors = 0.0;  ///< Sum of the squares of the same.
   std::size_t misses = 0;       ///< Responses only: no force where the bodies overlap.
@@ -51,21 +51,21 @@ inline void judge(const BucketSample& bucket, bool answer, Check& check) {
 /// Configurations of an overlap bucket have distance 0.
 inline void judge(const BucketSample& bucket, const Separation& answer, Check& check) {
   const bool apart = bucket.key.kind == BucketKind::distance;
-  const double error = std::abs(answer.distance - (apart ? bucket.aim : 0.0));
+  const double error = std::abs(answer.distance - (apart ? bucket.target : 0.0));
   ++check.judged;
   if (!(error <= (apart ? bucket.tolerance : 0.0) + k_distance_slack * bucket.diagonal)) ++check.mismatch;
   check.add_error(error / bucket.diagonal);
 }
 
 /// Responses are judged in overlap buckets: none may be without a force. An algorithm that says what volume it sees is
-/// measured against the aim, which is exact; how far off is reported and no mismatch, as approximations are honest.
+/// measured against the target, which is exact; how far off is reported and no mismatch, as approximations are honest.
 /// Contact has no force.
 inline void judge(const BucketSample& bucket, const Response& answer, Check& check) {
   if (bucket.key.kind != BucketKind::volume || bucket.key.percent == 0) return;
   if (answer.force.isZero(0.0)) ++check.misses;
   if (!std::isfinite(answer.volume)) return;
   ++check.judged;
-  check.add_error(std::abs(answer.volume - bucket.aim) / bucket.aim);
+  check.add_error(std::abs(answer.volume - bucket.target) / bucket.target);
 }
 
 /// Asks every configuration once, and judges. When `seconds` have passed it stops, at the end of a run of neighbours,

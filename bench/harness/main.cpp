@@ -1,3 +1,3 @@
-#include <sixdof/bench/harness/run.h>
+#include "bench/harness/run.h"
 
 int main(int argc, char** argv) { return sixdof::bench::run(argc, argv); }

@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/options.h>
+#include "bench/harness/options.h"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include <sixdof/bench/cli/commands.h>
+#include "bench/cli/commands.h"
 
 namespace sixdof::bench {
 namespace {
@@ -35,7 +35,7 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   app.add_flag("--no-manifest", no_manifest, "No catalogue: only the sets named by --set")->excludes(manifest);
   app.add_option("--set", options.sets, "A configuration set of your own (sixdof generate); may be repeated")
       ->check(CLI::ExistingFile);
-  app.add_option("--settings", options.settings, "ALGORITHM:KNOB=VALUE (sixdof algorithms); may be repeated");
+  app.add_option("--settings", options.settings, "ALGORITHM:PARAMETER=VALUE (sixdof algorithms); may be repeated");
   app.add_option("--sample", options.sample, "Configurations per bucket, drawn by seed; 0 for all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -12,7 +12,7 @@ namespace sixdof::bench {
 struct Options {
   std::filesystem::path manifest;           ///< Catalogue of configuration sets; empty for none.
   std::vector<std::filesystem::path> sets;  ///< Further sets of the user's.
-  std::vector<std::string> settings;        ///< "ALGORITHM:KNOB=VALUE".
+  std::vector<std::string> settings;        ///< "ALGORITHM:PARAMETER=VALUE".
   std::size_t sample = 1024;                ///< Configurations per bucket; 0 for all.
   double budget_s = 0.0;                    ///< Wall time for all rows together; 0 for no limit.
   std::uint64_t seed = 1;                   ///< Of samples and orders.

@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/progress.h>
+#include "bench/harness/progress.h"
 
 #include <unistd.h>
 

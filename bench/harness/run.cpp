@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/run.h>
+#include "bench/harness/run.h"
 
 #include <algorithm>
 #include <memory>
@@ -10,16 +10,16 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
-#include <sixdof/bench/algorithms.h>
-#include <sixdof/bench/cli/commands.h>
-#include <sixdof/bench/cli/interrupt.h>
-#include <sixdof/bench/harness/build_info.h>
-#include <sixdof/bench/harness/options.h>
-#include <sixdof/bench/harness/registrar.h>
-#include <sixdof/bench/harness/reporter.h>
-#include <sixdof/bench/harness/suite.h>
-#include <sixdof/bench/harness/timing.h>
-#include <sixdof/bench/rows/families.h>
+#include "bench/algorithms.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/interrupt.h"
+#include "bench/harness/build_info.h"
+#include "bench/harness/options.h"
+#include <sixdof/query/registrar.h>
+#include "bench/harness/reporter.h"
+#include "bench/harness/suite.h"
+#include "bench/harness/timing.h"
+#include "bench/rows/families.h"
 
 namespace sixdof::bench {
 namespace {
@@ -127,8 +127,8 @@ int run(int argc, const char* const* argv) {
     Registry registry;
     register_all_algorithms(registry);
     for (const auto& maker : Registrar::makers()) registry.add(maker());
-    Catalogue catalogue;
-    if (!options.manifest.empty()) catalogue = Catalogue::read(options.manifest);
+    SetCatalogue catalogue;
+    if (!options.manifest.empty()) catalogue = SetCatalogue::read(options.manifest);
     for (const auto& set : options.sets) catalogue.add_file(set);
 
     Suite suite(options, registry, catalogue);

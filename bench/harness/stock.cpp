@@ -1,11 +1,11 @@
-#include <sixdof/bench/harness/stock.h>
+#include "bench/harness/stock.h"
 
 #include <fmt/format.h>
 
 #include <sixdof/algorithm/exact.h>
 #include <sixdof/base/error.h>
-#include <sixdof/bench/harness/timing.h>
-#include <sixdof/models/zoo.h>
+#include "bench/harness/timing.h"
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::bench {
 
@@ -18,7 +18,7 @@ const Mesh& Stock::mesh(const std::string& model) {
   return *slot;
 }
 
-const ConfigurationSet& Stock::set(const CatalogueSet& set) {
+const ConfigurationSet& Stock::set(const CatalogueEntry& set) {
   auto& slot = sets_[set.pair];
   if (!slot) {
     slot = std::make_unique<const ConfigurationSet>(set.file);
@@ -27,7 +27,7 @@ const ConfigurationSet& Stock::set(const CatalogueSet& set) {
   return *slot;
 }
 
-const BucketSample& Stock::bucket(const CatalogueSet& entry, BucketKey key) {
+const BucketSample& Stock::bucket(const CatalogueEntry& entry, BucketKey key) {
   const auto place = std::pair(entry.pair, key);
   if (const auto found = buckets_.find(place); found != buckets_.end()) return found->second;
   const Mesh& a = mesh(entry.a);
@@ -44,7 +44,7 @@ const BucketSample& Stock::bucket(const CatalogueSet& entry, BucketKey key) {
   return buckets_.emplace(place, std::move(sample)).first->second;
 }
 
-const std::vector<Response>& Stock::true_responses(const CatalogueSet& set, BucketKey key, double seconds) {
+const std::vector<Response>& Stock::true_responses(const CatalogueEntry& set, BucketKey key, double seconds) {
   std::vector<Response>& responses = true_responses_[{set.pair, key}];
   if (!responses.empty()) return responses;
   const BucketSample& sample = bucket(set, key);

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include <sixdof/algorithm/algorithm.h>
+#include <sixdof/query/algorithm.h>
 #include <sixdof/configuration/configuration_set.h>
-#include <sixdof/fixtures/bucket.h>
-#include <sixdof/fixtures/catalogue.h>
+#include <sixdof/configuration/bucket_sample.h>
+#include <sixdof/configuration/set_catalogue.h>
 #include <sixdof/geometry/mesh.h>
 
 namespace sixdof::bench {
@@ -28,13 +28,13 @@ class Stock {
 
   /// Checks that the set belongs to the pair's meshes when it takes the sample.
   /// @throws BadFile, BadArgument
-  const BucketSample& bucket(const CatalogueSet& set, BucketKey key);
+  const BucketSample& bucket(const CatalogueEntry& set, BucketKey key);
 
   /// The exact volume law's answers to the first poses of a bucket's sample, the truth that all algorithms' responses
   /// to it are compared with. Measured once, at the first call: at least BucketSample::k_run of them, and up to
   /// k_most_true while `seconds` last. A sample's runs stand in random order, so its first poses are a fair part of it.
   /// To be called before a row fetches its own structure, which preparing the exact one might drop.
-  const std::vector<Response>& true_responses(const CatalogueSet& set, BucketKey key, double seconds);
+  const std::vector<Response>& true_responses(const CatalogueEntry& set, BucketKey key, double seconds);
 
   /// Enough for a mean.
   static constexpr std::size_t k_most_true = 256;
@@ -62,7 +62,7 @@ class Stock {
   static constexpr std::size_t k_most_poses = 4'000'000;
 
  private:
-  const ConfigurationSet& set(const CatalogueSet& set);
+  const ConfigurationSet& set(const CatalogueEntry& set);
 
   struct Prepared {
     std::string key;

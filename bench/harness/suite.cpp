@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/suite.h>
+#include "bench/harness/suite.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,16 +6,16 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/bench/cli/interrupt.h>
+#include "bench/cli/interrupt.h"
 
 namespace sixdof::bench {
 
-Suite::Suite(const Options& options, const Registry& registry, const Catalogue& catalogue)
+Suite::Suite(const Options& options, const Registry& registry, const SetCatalogue& catalogue)
     : options_(options), registry_(registry), catalogue_(catalogue), stock_(options.sample, options.seed) {
   for (const auto& algorithm : registry.all()) settings_.emplace(algorithm->traits().name, algorithm->settings());
   for (const std::string& text : options.settings) {
     const auto colon = text.find(':');
-    if (colon == std::string::npos) throw BadArgument(fmt::format("{}: must read ALGORITHM:KNOB=VALUE", text));
+    if (colon == std::string::npos) throw BadArgument(fmt::format("{}: must read ALGORITHM:PARAMETER=VALUE", text));
     const Algorithm& algorithm = registry.find(text.substr(0, colon));
     settings_.at(algorithm.traits().name).set_all({text.substr(colon + 1)});
   }

@@ -6,11 +6,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include <sixdof/algorithm/registry.h>
-#include <sixdof/bench/harness/options.h>
-#include <sixdof/bench/harness/progress.h>
-#include <sixdof/bench/harness/stock.h>
-#include <sixdof/fixtures/catalogue.h>
+#include <sixdof/query/registry.h>
+#include "bench/harness/options.h"
+#include "bench/harness/progress.h"
+#include "bench/harness/stock.h"
+#include <sixdof/configuration/set_catalogue.h>
 
 namespace sixdof::bench {
 
@@ -22,8 +22,8 @@ class Suite {
  public:
   using Row = std::function<void(benchmark::State&)>;
 
-  /// @throws BadArgument for settings of an algorithm or knob that does not exist
-  Suite(const Options& options, const Registry& registry, const Catalogue& catalogue);
+  /// @throws BadArgument for settings of an algorithm or parameter that does not exist
+  Suite(const Options& options, const Registry& registry, const SetCatalogue& catalogue);
 
   /// Registers a row. The library calls `row` several times until it has found the number of iterations; it keeps for
   /// itself what needs to be done once. Exceptions end the row, not the program; only Interrupted flies on, through the
@@ -32,7 +32,7 @@ class Suite {
 
   const Options& options() const { return options_; }
   const Registry& registry() const { return registry_; }
-  const Catalogue& catalogue() const { return catalogue_; }
+  const SetCatalogue& catalogue() const { return catalogue_; }
   Stock& stock() { return stock_; }
   /// Of one algorithm: its defaults and what the command line says.
   const Settings& settings(const Algorithm& algorithm) const { return settings_.at(algorithm.traits().name); }
@@ -51,7 +51,7 @@ class Suite {
 
   const Options& options_;
   const Registry& registry_;
-  const Catalogue& catalogue_;
+  const SetCatalogue& catalogue_;
   Stock stock_;
   std::map<std::string, Settings> settings_;
   std::vector<std::string> names_;

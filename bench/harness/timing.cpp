@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/timing.h>
+#include "bench/harness/timing.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/work.h>
+#include "bench/harness/work.h"
 
 namespace sixdof::bench {
 

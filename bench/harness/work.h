@@ -5,7 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <sixdof/algorithm/algorithm.h>
+#include <sixdof/query/algorithm.h>
 
 namespace sixdof::bench {
 

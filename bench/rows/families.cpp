@@ -1,4 +1,4 @@
-#include <sixdof/bench/rows/families.h>
+#include "bench/rows/families.h"
 
 namespace sixdof::bench {
 

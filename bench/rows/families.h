@@ -1,6 +1,6 @@
 #pragma once
 
-#include <sixdof/bench/harness/suite.h>
+#include "bench/harness/suite.h"
 
 namespace sixdof::bench {
 

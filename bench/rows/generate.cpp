@@ -7,12 +7,11 @@
 
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/algorithm_source.h>
-#include <sixdof/bench/rows/families.h>
-#include <sixdof/configuration/ray_cast.h>
-#include <sixdof/configuration/sphere_method.h>
-#include <sixdof/configuration/volume_generator.h>
-#include <sixdof/configuration/work_sample.h>
+#include "bench/rows/families.h"
+#include <sixdof/generation/ray_cast.h>
+#include <sixdof/generation/sphere_method.h>
+#include <sixdof/generation/volume_generator.h>
+#include <sixdof/generation/work_sample.h>
 
 namespace sixdof::bench {
 namespace {
@@ -83,19 +82,19 @@ class GenerateRow {
   void run(benchmark::State& state) {
     RaySolver& solver = prepare();
     const Grid grid = make_grid(words(method_).grid);
-    const std::vector<double> aims = bucket_aims();
+    const std::vector<double> targets = bucket_targets();
     double seconds = 0.0;
     std::size_t rays = 0;
     for ([[maybe_unused]] auto _ : state) {
       RayRuns runs(grid, suite_.options().seed);
       for (std::size_t i = 0; i < k_runs; ++i) {
-        const RunCost cost = time_run(solver, grid, runs.next(), aims);
+        const RunCost cost = time_run(solver, grid, runs.next(), targets);
         const double share = static_cast<double>(cost.rays) / static_cast<double>(grid.directions.size());
         seconds += cost.rays_s + share * cost.set_rotation_s;
         rays += cost.rays;
       }
     }
-    const auto configurations = static_cast<double>(rays * aims.size());
+    const auto configurations = static_cast<double>(rays * targets.size());
     state.counters["ns_per_configuration"] = 1e9 * seconds / configurations;
     state.counters["configurations"] = configurations / static_cast<double>(state.iterations());
     const Mesh& a = suite_.stock().mesh(a_);
@@ -104,24 +103,24 @@ class GenerateRow {
   }
 
  private:
-  std::vector<double> bucket_aims() const {
+  std::vector<double> bucket_targets() const {
     const Mesh& a = suite_.stock().mesh(a_);
-    std::vector<double> aims;
+    std::vector<double> targets;
     if (words(method_).kind == BucketKind::volume) {
       for (int percent = 0; percent < static_cast<int>(k_paper_volume_buckets); ++percent) {
-        aims.push_back(volume_bucket(a, percent).aim);
+        targets.push_back(volume_bucket(a, percent).target);
       }
     } else {
       for (int percent = static_cast<int>(k_paper_distance_buckets) - 1; percent >= 0; --percent) {
-        aims.push_back(distance_bucket(a, percent).aim);
+        targets.push_back(distance_bucket(a, percent).target);
       }
     }
-    return aims;
+    return targets;
   }
 
   std::unique_ptr<DistanceGenerator> make_distances() const {
     if (!is_fcl(method_)) return make_ray_cast();
-    return make_sphere_method(make_distance_source(suite_.registry().find(k_fcl)),
+    return make_sphere_method(suite_.registry().find(k_fcl),
                               method_ == Method::fcl ? SphereMarch::conservative : SphereMarch::certified);
   }
 
@@ -162,7 +161,7 @@ void add_generate_rows(Suite& suite) {
     }
   };
   std::set<std::string> pairs;
-  for (const CatalogueSet& pair : suite.catalogue().sets()) {
+  for (const CatalogueEntry& pair : suite.catalogue().sets()) {
     if (pairs.insert(pair.pair).second) add(pair.pair, pair.a, pair.b);
   }
   for (const char* const recipe : k_recipes) {

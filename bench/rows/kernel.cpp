@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include <sixdof/bench/harness/timing.h>
-#include <sixdof/bench/harness/work.h>
-#include <sixdof/bench/rows/families.h>
+#include "bench/harness/timing.h"
+#include "bench/harness/work.h"
+#include "bench/rows/families.h"
 
 namespace sixdof::bench {
 namespace {

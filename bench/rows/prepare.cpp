@@ -1,12 +1,12 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <sixdof/bench/rows/families.h>
+#include "bench/rows/families.h"
 
 namespace sixdof::bench {
 namespace {
 
-void run(Suite& suite, const Algorithm& algorithm, const CatalogueSet& pair, benchmark::State& state) {
+void run(Suite& suite, const Algorithm& algorithm, const CatalogueEntry& pair, benchmark::State& state) {
   const Settings& settings = suite.settings(algorithm);
   const Mesh& a = suite.stock().mesh(pair.a);
   const Mesh& b = suite.stock().mesh(pair.b);
@@ -30,8 +30,9 @@ void run(Suite& suite, const Algorithm& algorithm, const CatalogueSet& pair, ben
 }  // namespace
 
 void add_prepare_rows(Suite& suite) {
-  for (const CatalogueSet& pair : suite.catalogue().sets()) {
+  for (const CatalogueEntry& pair : suite.catalogue().sets()) {
     for (const auto& algorithm : suite.registry().all()) {
+      if (!algorithm->traits().timed) continue;
       const auto name = fmt::format("prepare/algorithm:{}/pair:{}", algorithm->traits().name, pair.pair);
       auto* const row = suite.add(name, [&suite, &algorithm = *algorithm, &pair](benchmark::State& state) {
         run(suite, algorithm, pair, state);

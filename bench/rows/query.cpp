@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/bench/harness/check.h>
-#include <sixdof/bench/harness/timing.h>
-#include <sixdof/bench/rows/families.h>
+#include "bench/harness/check.h"
+#include "bench/harness/timing.h"
+#include "bench/rows/families.h"
 #include <sixdof/measure/direction.h>
 
 namespace sixdof::bench {
@@ -44,7 +44,7 @@ constexpr double k_passes = 3.0 + k_latency_passes;
 /// One row, and what it did in its first call.
 class QueryRow {
  public:
-  QueryRow(Suite& suite, const Algorithm& algorithm, const CatalogueSet& pair, BucketKey key, Question question,
+  QueryRow(Suite& suite, const Algorithm& algorithm, const CatalogueEntry& pair, BucketKey key, Question question,
            Order order)
       : suite_(suite), algorithm_(algorithm), pair_(pair), key_(key), question_(question), order_(order) {}
 
@@ -147,7 +147,7 @@ class QueryRow {
 
   Suite& suite_;
   const Algorithm& algorithm_;
-  const CatalogueSet& pair_;
+  const CatalogueEntry& pair_;
   const BucketKey key_;
   const Question question_;
   const Order order_;
@@ -160,7 +160,7 @@ class QueryRow {
   std::optional<Directions> directions_;  ///< Against the exact ones.
 };
 
-void add_row(Suite& suite, const Algorithm& algorithm, const CatalogueSet& pair, BucketKey key, Question question) {
+void add_row(Suite& suite, const Algorithm& algorithm, const CatalogueEntry& pair, BucketKey key, Question question) {
   for (const Order order : {Order::shuffled, Order::path}) {
     const auto row = std::make_shared<QueryRow>(suite, algorithm, pair, key, question, order);
     suite.add(row->name(), [row](benchmark::State& state) { row->run(state); });
@@ -170,8 +170,9 @@ void add_row(Suite& suite, const Algorithm& algorithm, const CatalogueSet& pair,
 }  // namespace
 
 void add_query_rows(Suite& suite) {
-  for (const CatalogueSet& pair : suite.catalogue().sets()) {
+  for (const CatalogueEntry& pair : suite.catalogue().sets()) {
     for (const auto& algorithm : suite.registry().all()) {
+      if (!algorithm->traits().timed) continue;
       const QuerySet& answers = algorithm->traits().answers;
       for (const BucketKey key : pair.buckets) {
         if (answers.collide) add_row(suite, *algorithm, pair, key, Question::collide);

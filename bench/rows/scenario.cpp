@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/bench/harness/timing.h>
-#include <sixdof/bench/rows/families.h>
+#include "bench/harness/timing.h"
+#include "bench/rows/families.h"
 #include <sixdof/scenario/evaluation.h>
 
 namespace sixdof::bench {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include <sixdof/algorithm/algorithm.h>
+#include <sixdof/query/algorithm.h>
 
 namespace sixdof::test {
 

@@ -4,9 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/algorithm/registry.h>
+#include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/query/registry.h>
 #include <sixdof/measure/direction.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof {
 namespace {

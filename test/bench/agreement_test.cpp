@@ -15,11 +15,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <sixdof/fixtures/bucket.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/configuration/bucket_sample.h>
+#include <sixdof/models/model_catalogue.h>
 
 #include "../cli/run_program.h"
-#include "small_suite.h"
+#include "../configuration/small_suite.h"
 
 namespace sixdof {
 namespace {

@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/check.h>
+#include "bench/harness/check.h"
 
 #include <limits>
 
@@ -7,8 +7,8 @@
 namespace sixdof::bench {
 namespace {
 
-BucketSample bucket(BucketKind kind, int percent, double aim) {
-  return {.key = {kind, percent}, .aim = aim, .tolerance = 1e-3, .diagonal = 10.0};
+BucketSample bucket(BucketKind kind, int percent, double target) {
+  return {.key = {kind, percent}, .target = target, .tolerance = 1e-3, .diagonal = 10.0};
 }
 
 Check judged(const BucketSample& sample, auto answer) {

@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <sixdof/bench/cli/commands.h>
+#include "bench/cli/commands.h"
 
 #include "../cli/run_program.h"
-#include "small_suite.h"
+#include "../configuration/small_suite.h"
 
 namespace sixdof {
 namespace {
@@ -97,7 +97,7 @@ TEST_F(BenchProgram, JudgesResponsesByTheirVolumeAndForce) {
   const json document = result("--sample 32 --benchmark_filter='^respond/.*/pair:torus-1k-cone-1k/volume:03$'");
   const json exact = row(document, "respond/algorithm:exact/pair:torus-1k-cone-1k/volume:03");
   EXPECT_EQ(exact.at("judged"), exact.at("configurations"));
-  // The set's tolerance is 1e-9 of A's volume, and 3 % of it is the aim.
+  // The set's tolerance is 1e-9 of A's volume, and 3 % of it is the target.
   EXPECT_LE(exact.at("volume_error_max").get<double>(), 1e-9 / 0.03);
   EXPECT_EQ(exact.at("misses"), 0);
   for (const char* angle : {"gamma_F_deg", "gamma_max_F_deg", "gamma_T_deg", "gamma_max_T_deg"}) {

@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/reporter.h>
+#include "bench/harness/reporter.h"
 
 #include <cmath>
 #include <limits>

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include <sixdof/bench/harness/registrar.h>
+#include <sixdof/query/registrar.h>
 
 namespace {
 

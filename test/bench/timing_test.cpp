@@ -1,4 +1,4 @@
-#include <sixdof/bench/harness/timing.h>
+#include "bench/harness/timing.h"
 
 #include <algorithm>
 #include <numeric>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/algorithm/outcome.h>
+#include <sixdof/query/outcome.h>
 
 namespace sixdof::bench {
 namespace {

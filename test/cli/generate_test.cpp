@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/generate.h>
+#include "bench/cli/generate.h"
 
 #include <algorithm>
 #include <chrono>
@@ -18,7 +18,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/bench/cli/commands.h>
+#include "bench/cli/commands.h"
 #include <sixdof/configuration/shard_file.h>
 
 #include "run_program.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <sixdof/bench/cli/commands.h>
+#include "bench/cli/commands.h"
 
 #include "run_program.h"
 #include "scratch_folder.h"

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-#include <sixdof/bench/cli/commands.h>
+#include "bench/cli/commands.h"
 
 #include "run_program.h"
 
@@ -51,7 +51,7 @@ TEST(Program, TurnsExceptionsIntoOneLineAndAnExitCode) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "sixdof: interrupted\n");
 }
 
-TEST(Algorithms, ListsAnswersAndKnobs) {
+TEST(Algorithms, ListsAnswersAndParameters) {
   const auto result = sixdof_program("algorithms --json");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto list = nlohmann::json::parse(result.out);
@@ -62,10 +62,10 @@ TEST(Algorithms, ListsAnswersAndKnobs) {
   for (const auto& algorithm : list) {
     EXPECT_FALSE(algorithm.at("version").get<std::string>().empty()) << algorithm;
     EXPECT_THAT(text.out, HasSubstr(algorithm.at("name").get<std::string>()));
-    for (const auto& knob : algorithm.at("knobs")) {
-      EXPECT_TRUE(knob.contains("default") && knob.contains("unit") &&
-                  (knob.contains("low") || knob.contains("choices")))
-          << knob;
+    for (const auto& parameter : algorithm.at("parameters")) {
+      EXPECT_TRUE(parameter.contains("default") && parameter.contains("unit") &&
+                  (parameter.contains("low") || parameter.contains("choices")))
+          << parameter;
     }
   }
 }

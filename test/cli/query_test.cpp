@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <sixdof/bench/cli/commands.h>
+#include "bench/cli/commands.h"
 #include <sixdof/geometry/pose.h>
 
 #include "run_program.h"
@@ -96,7 +96,7 @@ TEST(Query, RefusesBadArgumentsAndNamesThem) {
   refuses(boxes + "--pose '0 0 0 1 0 0 x'", "number 7");
   refuses(boxes + "--pose '0 0 0 1 0 0 0' --about '1 2'", "--about");
   refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm exactly", "no such algorithm");
-  refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm ist --set sphere=3", "no such knob");
+  refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm ist --set sphere=3", "no such parameter");
   refuses("--a elefant --b box-100 --pose '0 0 0 1 0 0 0'", "elefant");
   refuses("--a box-100 --b no_such_file.ply --pose '0 0 0 1 0 0 0'", "no_such_file.ply");
   EXPECT_EQ(query("--a box-100 --b box-100").exit_code, cli::k_exit_usage);

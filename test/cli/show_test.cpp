@@ -9,10 +9,10 @@
 
 #include <sixdof/algorithm/ist/ist.h>
 #include <sixdof/algorithm/vps/vps.h>
-#include <sixdof/bench/cli/commands.h>
+#include "bench/cli/commands.h"
 #include <sixdof/geometry/load.h>
 #include <sixdof/geometry/save.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 #include "run_program.h"
 
@@ -119,7 +119,7 @@ TEST_F(Show, RefusesBadArgumentsAndLeavesNothingBehind) {
   refuses(good + "--part points", "ist has spheres, balls");
   refuses(good + "--part balls", "--level");
   refuses(good + "--level 2", "--level");
-  refuses(good + "--set sphere=5", "no such knob");
+  refuses(good + "--set sphere=5", "no such parameter");
   refuses(good + "--set spheres=many", "spheres");
   refuses("--algorithm ist --model tourus-1k -o " + path("x.ply"), "tourus");
   refuses("--algorithm vps --model torus-1k -o " + path("x.obj"), "must end in .ply");

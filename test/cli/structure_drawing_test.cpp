@@ -1,4 +1,4 @@
-#include <sixdof/bench/cli/structure_drawing.h>
+#include "bench/cli/structure_drawing.h"
 
 #include <cmath>
 #include <map>

@@ -29,18 +29,18 @@ constexpr BucketKey k_deep{BucketKind::volume, 3};
 const Mesh k_a = test::tetrahedron_mesh({0, 0, 0}, 1.7);
 const Mesh k_b = test::tetrahedron_mesh({0, 0, 0}, 0.9);
 
-std::vector<double> some_travel(const Grid& grid, std::uint64_t seed) {
+std::vector<double> some_translation(const Grid& grid, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> travel(0.0, 4.0);
+  std::uniform_real_distribution<double> translations(0.0, 4.0);
   std::vector<double> values(grid.configurations());
-  for (double& s : values) s = random() % 5 == 0 ? std::numeric_limits<double>::quiet_NaN() : travel(random);
+  for (double& s : values) s = random() % 5 == 0 ? std::numeric_limits<double>::quiet_NaN() : translations(random);
   return values;
 }
 
 BucketSummary some_summary(BucketKey key) {
   return {.key = key,
-          .target = 0.1,
-          .aim = 0.1 + 1e-11,
+          .nominal = 0.1,
+          .target = 0.1 + 1e-11,
           .tolerance = 1e-9,
           .largest_residual = 3e-13,
           .oracle = "exact",
@@ -71,7 +71,7 @@ class ConfigurationSetTest : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   SetDescription description() const {
-    return {.generator_version = "0.1.0", .a = MeshStamp::of(k_a), .b = MeshStamp::of(k_b), .grid = grid_};
+    return {.generator_version = "0.1.0", .a = MeshIdentity::of(k_a), .b = MeshIdentity::of(k_b), .grid = grid_};
   }
 
   std::filesystem::path write(const std::string& name) const {
@@ -84,9 +84,9 @@ class ConfigurationSetTest : public testing::Test {
   }
 
   const Grid grid_ = make_grid("60");
-  const std::vector<double> near_ = some_travel(grid_, 1);
-  const std::vector<double> far_ = some_travel(grid_, 2);
-  const std::vector<double> deep_ = some_travel(grid_, 3);
+  const std::vector<double> near_ = some_translation(grid_, 1);
+  const std::vector<double> far_ = some_translation(grid_, 2);
+  const std::vector<double> deep_ = some_translation(grid_, 3);
   std::filesystem::path folder_;
 };
 
@@ -115,8 +115,8 @@ TEST_F(ConfigurationSetTest, ComesBackBitForBit) {
   EXPECT_EQ(set.buckets()[1].key, k_far);
   EXPECT_EQ(set.buckets()[2].key, k_deep);
   const BucketSummary& bucket = set.summary(k_near);
-  EXPECT_EQ(bucket.target, 0.1);
-  EXPECT_EQ(bucket.aim, 0.1 + 1e-11);
+  EXPECT_EQ(bucket.nominal, 0.1);
+  EXPECT_EQ(bucket.target, 0.1 + 1e-11);
   EXPECT_EQ(bucket.tolerance, 1e-9);
   EXPECT_EQ(bucket.largest_residual, 3e-13);
   EXPECT_EQ(bucket.oracle, "exact");
@@ -199,13 +199,13 @@ TEST_F(ConfigurationSetTest, AppearsWholeOrNotAtAll) {
 
 TEST_F(ConfigurationSetTest, RefusesWhatCannotBeWritten) {
   ConfigurationSetWriter writer(folder_ / "set.h5", description());
-  std::vector<double> travel = near_;
-  travel.pop_back();
-  EXPECT_THROW(writer.write(some_summary(k_near), travel), BadArgument);
-  travel.push_back(-0.1);
-  EXPECT_THROW(writer.write(some_summary(k_near), travel), BadArgument);
-  travel.back() = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(writer.write(some_summary(k_near), travel), BadArgument);
+  std::vector<double> translations = near_;
+  translations.pop_back();
+  EXPECT_THROW(writer.write(some_summary(k_near), translations), BadArgument);
+  translations.push_back(-0.1);
+  EXPECT_THROW(writer.write(some_summary(k_near), translations), BadArgument);
+  translations.back() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(writer.write(some_summary(k_near), translations), BadArgument);
   writer.write(some_summary(k_near), near_);
   EXPECT_THROW(writer.write(some_summary(k_near), near_), BadArgument);
   EXPECT_THROW(writer.write(some_summary({BucketKind::volume, 101}), near_), BadArgument);

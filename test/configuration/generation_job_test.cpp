@@ -23,7 +23,7 @@ TEST(DistinctRotations, PartsShareTheWorkEvenlyAndLeaveNothingOut) {
     std::vector<std::uint32_t> all;
     std::set<std::size_t> sizes;
     for (std::size_t number = 1; number <= count; ++number) {
-      const auto part = distinct.part({.number = number, .count = count});
+      const auto part = rotations_of({.number = number, .count = count}, distinct);
       all.insert(all.end(), part.begin(), part.end());
       sizes.insert(part.size());
     }
@@ -59,7 +59,7 @@ TEST(GenerationJob, HashAndWordsTellEveryDifference) {
   EXPECT_THAT(changed([](GenerationJob& job) { job.oracle = "other"; }), HasSubstr("by other"));
   EXPECT_THAT(changed([](GenerationJob& job) { job.program = "1.2.3 def"; }), HasSubstr("made by sixdof 1.2.3 def"));
   EXPECT_THAT(changed([](GenerationJob& job) { job.buckets.pop_back(); }), HasSubstr("the buckets are"));
-  EXPECT_THAT(changed([](GenerationJob& job) { job.buckets[1].aim *= 1.0 + 1e-15; }), HasSubstr("distance/20"));
+  EXPECT_THAT(changed([](GenerationJob& job) { job.buckets[1].target *= 1.0 + 1e-15; }), HasSubstr("distance/20"));
 }
 
 TEST(GenerationJob, DescribesItsSetAgain) {
@@ -75,7 +75,7 @@ TEST(GenerationJob, DescribesItsSetAgain) {
 TEST(GenerationJob, RefusesWhatCannotBeDone) {
   const test::SmallJob small;
   const auto with = [&](std::vector<int> distances, std::vector<int> volumes) {
-    static_cast<void>(GenerationJob::of("", *small.generator, small.a, small.b, small.set, distances, volumes));
+    static_cast<void>(GenerationJob::of("", "raycast", "1", small.a, small.b, small.set, distances, volumes));
   };
   EXPECT_THAT([&] { with({}, {}); }, ThrowsMessage<BadArgument>(HasSubstr("no bucket")));
   EXPECT_THAT([&] { with({3, 3}, {}); }, ThrowsMessage<BadArgument>(HasSubstr("distance/03")));

@@ -22,7 +22,7 @@ constexpr double k_rounding = 1e-15;
 constexpr double k_degree = std::numbers::pi / 180.0;
 
 std::size_t distinct(const std::vector<Eigen::Vector4d>& rotations) {
-  const auto map = representatives(rotations);
+  const auto map = DistinctRotations(rotations).representative;
   return std::set(map.begin(), map.end()).size();
 }
 
@@ -128,7 +128,7 @@ TEST(Grid, RotationsAreTheEulerAnglesProduct) {
 
 TEST(Grid, RepresentativesAreTheSameRotationAndNoOtherRotationIs) {
   const auto rotations = zyz_rotations(6);
-  const auto map = representatives(rotations);
+  const auto map = DistinctRotations(rotations).representative;
   // Two rotations that differ on this grid do so by an angle of whole degrees, far above this.
   constexpr double k_same = 1e-9;
   for (std::size_t i = 0; i < rotations.size(); ++i) {
@@ -230,12 +230,12 @@ TEST(ConfigurationPose, PutsTheCentreOfBsBoxAtDistanceSInDirectionU) {
   const Mesh second = test::tetrahedron_mesh({-0.7, 5.0, 2.2}, 0.9);
   const Grid grid = make_grid("30");
   std::mt19937_64 random(21);
-  std::uniform_real_distribution<double> travel(0.0, 9.0);
+  std::uniform_real_distribution<double> translations(0.0, 9.0);
   for (const auto& [a, b] : {std::pair(&first, &second), std::pair(&second, &first)}) {
     for (int repeat = 0; repeat < 50; ++repeat) {
       const Eigen::Vector3d& u = grid.directions[random() % grid.directions.size()];
       const Eigen::Vector4d& q = grid.rotations[random() % grid.rotations.size()];
-      const double s = travel(random);
+      const double s = translations(random);
       const Pose X_AB = configuration_pose(*a, *b, u, q, s);
       EXPECT_TRUE((X_AB * b->center()).isApprox(a->center() + s * u, 20 * k_rounding));
       EXPECT_NEAR(std::abs(X_AB.quaternion().dot(q)), 1.0, 4 * k_rounding);

@@ -24,17 +24,17 @@ TEST_F(ShardFileTest, ComesBackBitForBit) {
   const Generated values = small.compute(k_middle);
   const auto path = folder_ / shard_file_name(k_middle);
   EXPECT_EQ(path.filename(), "shard-0002-of-0003.h5");
-  write_shard(path, small.job, small.set, k_middle, values);
+  write_shard(path, small.job, small.set, k_middle, values.buckets);
   const ShardFile shard(path);
   EXPECT_EQ(shard.number(), k_middle);
   EXPECT_EQ(shard.job().difference(small.job), "");
   EXPECT_EQ(shard.job().hash(), small.job.hash());
   EXPECT_NO_THROW(shard.check_values());
   ASSERT_EQ(values.buckets.size(), 3u);
-  for (const GeneratedBucket& expected : values.buckets) {
-    const GeneratedBucket bucket = shard.read(expected.summary.key);
-    ASSERT_EQ(bucket.travel.size(), expected.travel.size());
-    EXPECT_EQ(std::memcmp(bucket.travel.data(), expected.travel.data(), bucket.travel.size() * sizeof(double)), 0);
+  for (const Bucket& expected : values.buckets) {
+    const Bucket bucket = shard.read(expected.summary.key);
+    ASSERT_EQ(bucket.translations.size(), expected.translations.size());
+    EXPECT_EQ(std::memcmp(bucket.translations.data(), expected.translations.data(), bucket.translations.size() * sizeof(double)), 0);
     EXPECT_EQ(bucket.summary.largest_residual, expected.summary.largest_residual);
     EXPECT_EQ(bucket.summary.oracle, expected.summary.oracle);
   }
@@ -43,7 +43,7 @@ TEST_F(ShardFileTest, ComesBackBitForBit) {
 TEST_F(ShardFileTest, ThreadsDoNotChangeAByteOfIt) {
   const test::SmallJob small;
   for (const unsigned threads : {1u, 2u}) {
-    write_shard(folder_ / std::to_string(threads), small.job, small.set, k_middle, small.compute(k_middle, threads));
+    write_shard(folder_ / std::to_string(threads), small.job, small.set, k_middle, small.compute(k_middle, threads).buckets);
   }
   EXPECT_EQ(test::bytes_of(folder_ / "1"), test::bytes_of(folder_ / "2"));
 }
@@ -53,7 +53,7 @@ TEST_F(ShardFileTest, DamageIsFound) {
   const test::SmallJob small;
   const auto sound = folder_ / "sound.h5";
   const auto damaged = folder_ / "damaged.h5";
-  write_shard(sound, small.job, small.set, k_middle, small.compute(k_middle));
+  write_shard(sound, small.job, small.set, k_middle, small.compute(k_middle).buckets);
   const std::string bytes = test::bytes_of(sound);
   const ShardFile expected(sound);
   std::size_t refused = 0, tried = 0;

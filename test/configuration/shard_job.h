@@ -10,8 +10,9 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/configuration/generation_job.h>
-#include <sixdof/configuration/ray_cast.h>
+#include <sixdof/generation/ray_cast.h>
 #include <sixdof/configuration/shard_file.h>
+#include <sixdof/generation/shard_generator.h>
 
 #include "shapes.h"
 
@@ -22,11 +23,11 @@ struct SmallJob {
   explicit SmallJob(std::uint64_t seed = 1)
       : a(lump_mesh(seed, {0.3, -0.1, 2.0})), b(lump_mesh(seed + 1, {-1.0, 0.4, 0.2})) {
     set.generator_version = "1.2.3";
-    set.a = MeshStamp::of(a);
-    set.b = MeshStamp::of(b);
+    set.a = MeshIdentity::of(a);
+    set.b = MeshIdentity::of(b);
     set.grid = make_grid("90/60");
     set.volume_grid = make_grid("90");
-    job = GenerationJob::of("1.2.3 abc", *generator, a, b, set, std::vector{20, 0}, std::vector{3});
+    job = GenerationJob::of("1.2.3 abc", generator->oracle_name(), generator->oracle_version(), a, b, set, std::vector{20, 0}, std::vector{3});
   }
 
   Generated compute(ShardNumber shard, unsigned threads = 1) const {
@@ -39,7 +40,7 @@ struct SmallJob {
     for (std::size_t number = 1; number <= count; ++number) {
       const ShardNumber shard{.number = number, .count = count};
       paths.push_back(folder / shard_file_name(shard));
-      write_shard(paths.back(), job, set, shard, compute(shard));
+      write_shard(paths.back(), job, set, shard, compute(shard).buckets);
     }
     return paths;
   }

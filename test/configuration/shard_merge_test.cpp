@@ -49,10 +49,10 @@ TEST_F(ShardMerge, AnyNumberOfShardsGivesTheSameFile) {
   const ConfigurationSet set(folder_ / "set.h5");
   const Generated whole =
       generate_distances(*small_.generator, small_.a, small_.b, small_.set.grid, std::vector{20, 0}, {.threads = 2});
-  for (const GeneratedBucket& bucket : whole.buckets) {
-    const std::vector<double> travel = set.read(bucket.summary.key);
-    ASSERT_EQ(travel.size(), bucket.travel.size());
-    EXPECT_EQ(std::memcmp(travel.data(), bucket.travel.data(), travel.size() * sizeof(double)), 0);
+  for (const Bucket& bucket : whole.buckets) {
+    const std::vector<double> translations = set.read(bucket.summary.key);
+    ASSERT_EQ(translations.size(), bucket.translations.size());
+    EXPECT_EQ(std::memcmp(translations.data(), bucket.translations.data(), translations.size() * sizeof(double)), 0);
     EXPECT_EQ(set.summary(bucket.summary.key).largest_residual, bucket.summary.largest_residual);
   }
   EXPECT_EQ(set.read({BucketKind::volume, 3}).size(), small_.set.volume_grid->configurations());
@@ -66,9 +66,9 @@ TEST_F(ShardMerge, NamesEveryShardThatIsMissingRepeatedForeignOrDamaged) {
   std::filesystem::copy_file(part(3), folder_ / "shard-0003-copy.h5");
   const test::SmallJob other(7);
   write_shard(folder_ / "shard-stray.h5", other.job, other.set, {.number = 1, .count = k_count},
-              other.compute({.number = 1, .count = k_count}));
+              other.compute({.number = 1, .count = k_count}).buckets);
   write_shard(folder_ / "shard-split.h5", small_.job, small_.set, {.number = 1, .count = 5},
-              small_.compute({.number = 1, .count = 5}));
+              small_.compute({.number = 1, .count = 5}).buckets);
   std::ofstream(folder_ / "notes.txt") << "does not matter";
   expect_refused(AllOf(HasSubstr("shard-0001-of-0004.h5: missing"), HasSubstr("shard-0002-of-0004.h5: "),
                        HasSubstr("is shard 3 again"), HasSubstr("shard-stray.h5: of another job"),
@@ -121,12 +121,12 @@ TEST_F(ShardMerge, HoldsOneBucketInMemoryAndNotTheSet) {
   set.volume_grid.reset();
   std::vector<int> percents(BucketKey::k_max_percent + 1);
   std::iota(percents.begin(), percents.end(), 0);
-  const auto job = GenerationJob::of("", *small_.generator, small_.a, small_.b, set, percents, {});
+  const auto job = GenerationJob::of("", "raycast", "1", small_.a, small_.b, set, percents, {});
   const DistinctRotations distinct(set.grid.rotations);
   const auto rows = [&](ShardNumber shard, BucketKey key) {
-    GeneratedBucket bucket;
+    Bucket bucket;
     bucket.summary.key = key;
-    bucket.travel.assign(distinct.part(shard).size() * set.grid.directions.size(), 1.0 + key.percent);
+    bucket.translations.assign(rotations_of(shard, distinct).size() * set.grid.directions.size(), 1.0 + key.percent);
     return bucket;
   };
   const std::size_t bucket_bytes = set.grid.configurations() * sizeof(double);
@@ -140,8 +140,8 @@ TEST_F(ShardMerge, HoldsOneBucketInMemoryAndNotTheSet) {
 TEST_F(ShardMerge, RefusesRowsOfTheWrongNumber) {
   const auto short_rows = [&](ShardNumber shard, BucketKey key) {
     const Generated values = small_.compute(shard);
-    GeneratedBucket bucket = *std::ranges::find(values.buckets, key, [](const auto& b) { return b.summary.key; });
-    bucket.travel.pop_back();
+    Bucket bucket = *std::ranges::find(values.buckets, key, [](const auto& b) { return b.summary.key; });
+    bucket.translations.pop_back();
     return bucket;
   };
   EXPECT_THAT([&] { assemble_set(folder_ / "set.h5", small_.job, small_.set, 2, short_rows); },

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/configuration/brute_force_source.h>
-#include <sixdof/configuration/distance_generator.h>
-#include <sixdof/configuration/sphere_method.h>
+#include <sixdof/algorithm/brute_force.h>
+#include <sixdof/generation/distance_generator.h>
+#include <sixdof/generation/sphere_method.h>
 
 #include "shapes.h"
 
@@ -22,36 +22,38 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Two walls and a box: the aim is met from outside at the outer wall, and again between the walls; past the walls'
+const std::unique_ptr<Algorithm> k_brute_force = make_brute_force_algorithm();
+
+// Two walls and a box: the target is met from outside at the outer wall, and again between the walls; past the walls'
 // edges the ray is free.
 const Mesh k_a = test::boxes_mesh({{{1.1, 0.3, 0}, {0.05, 0.3, 0.3}}, {{-0.9, 0.3, 0}, {0.05, 0.3, 0.3}}}, "walls");
 const Mesh k_b = test::boxes_mesh({{{5.0, 1.0, 2.0}, {0.1, 0.12, 0.14}}}, "box");
 const Grid k_grid = make_grid("90");
 const std::vector<int> k_percents{0, 2, 10};
 
-using Edit = std::function<void(std::vector<GeneratedBucket>&)>;
+using Edit = std::function<void(std::vector<Bucket>&)>;
 
 /// Generates, edits, writes and verifies.
 Verdict verify_after(const Edit& edit, std::size_t sample = 200) {
   static const Generated honest =
-      generate_distances(*make_sphere_method(make_brute_force_source()), k_a, k_b, k_grid, k_percents);
-  std::vector<GeneratedBucket> buckets = honest.buckets;
+      generate_distances(*make_sphere_method(*k_brute_force), k_a, k_b, k_grid, k_percents);
+  std::vector<Bucket> buckets = honest.buckets;
   edit(buckets);
   const auto path = std::filesystem::path(testing::TempDir()) /
                     (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_verify.h5");
   ConfigurationSetWriter writer(
-      path, {.generator_version = "0", .a = MeshStamp::of(k_a), .b = MeshStamp::of(k_b), .grid = k_grid});
-  for (const GeneratedBucket& bucket : buckets) writer.write(bucket.summary, bucket.travel);
+      path, {.generator_version = "0", .a = MeshIdentity::of(k_a), .b = MeshIdentity::of(k_b), .grid = k_grid});
+  for (const Bucket& bucket : buckets) writer.write(bucket.summary, bucket.translations);
   writer.commit();
   const ConfigurationSet set(path);
-  const Verdict verdict = verify_set(set, k_a, k_b, *make_brute_force_source(), {.sample = sample, .seed = 5});
+  const Verdict verdict = verify_set(set, k_a, k_b, *k_brute_force, {.sample = sample, .seed = 5});
   std::filesystem::remove(path);
   return verdict;
 }
 
 /// Applies to every row alike, so that repeated rotations stay equal.
-void for_all(GeneratedBucket& bucket, const std::function<double(double)>& f) {
-  for (double& s : bucket.travel) s = f(s);
+void for_all(Bucket& bucket, const std::function<double(double)>& f) {
+  for (double& s : bucket.translations) s = f(s);
 }
 
 TEST(Verification, FindsNothingWrongWithAnHonestSet) {
@@ -87,12 +89,12 @@ TEST(Verification, FindsAHitThatIsNotTheFirst) {
   const Verdict verdict = verify_after(
       [&](auto& buckets) {
         const std::size_t n = k_grid.directions.size();
-        const double aim = buckets[1].summary.aim;
-        for (std::size_t i = 0; i < buckets[1].travel.size(); ++i) {
+        const double target = buckets[1].summary.target;
+        for (std::size_t i = 0; i < buckets[1].translations.size(); ++i) {
           if (k_grid.directions[i % n].x() != 1.0) continue;
-          double& s = buckets[1].travel[i];
-          const double half_b = s - aim - wall - half_wall;
-          s = wall - half_wall - half_b - aim;
+          double& s = buckets[1].translations[i];
+          const double half_b = s - target - wall - half_wall;
+          s = wall - half_wall - half_b - target;
         }
       },
       400);
@@ -110,29 +112,29 @@ TEST(Verification, FindsFalseNaN) {
 }
 
 TEST(Verification, FindsSummariesAndCopiesThatDoNotFit) {
-  EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.aim *= 10.0; }, 0).problems,
+  EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.target *= 10.0; }, 0).problems,
               Contains(HasSubstr("distance/00: target")));
   EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.tolerance *= 2.0; }, 0).problems,
               Contains(HasSubstr("distance/00: tolerance")));
   EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.largest_residual = 1.0; }, 0).problems,
               Contains(HasSubstr("largest residual")));
-  const auto map = representatives(k_grid.rotations);
+  const auto map = DistinctRotations(k_grid.rotations).representative;
   std::size_t copy = 0;
   while (map[copy] == copy) ++copy;
   const std::size_t n = k_grid.directions.size();
-  EXPECT_THAT(verify_after([&](auto& buckets) { buckets[2].travel[copy * n] = 2.125; }, 0).problems,
-              Contains(HasSubstr("are equal, their travels are not")));
+  EXPECT_THAT(verify_after([&](auto& buckets) { buckets[2].translations[copy * n] = 2.125; }, 0).problems,
+              Contains(HasSubstr("are equal, their translations are not")));
 }
 
 TEST(Verification, StopsWhenAsked) {
   const auto path = std::filesystem::path(testing::TempDir()) / "sixdof_verify_stop.h5";
   ConfigurationSetWriter writer(
-      path, {.generator_version = "0", .a = MeshStamp::of(k_a), .b = MeshStamp::of(k_b), .grid = k_grid});
+      path, {.generator_version = "0", .a = MeshIdentity::of(k_a), .b = MeshIdentity::of(k_b), .grid = k_grid});
   writer.write(distance_bucket(k_a, 5), std::vector<double>(k_grid.configurations(), 1.0));
   writer.commit();
   const ConfigurationSet set(path);
-  EXPECT_THROW(verify_set(set, k_a, k_b, *make_brute_force_source(), {.cancelled = [] { return true; }}), Interrupted);
-  EXPECT_THROW(verify_set(set, k_b, k_b, *make_brute_force_source()), BadArgument);
+  EXPECT_THROW(verify_set(set, k_a, k_b, *k_brute_force, {.cancelled = [] { return true; }}), Interrupted);
+  EXPECT_THROW(verify_set(set, k_b, k_b, *k_brute_force), BadArgument);
   std::filesystem::remove(path);
 }
 

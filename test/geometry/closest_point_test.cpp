@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/geometry/triangle_distance.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof {
 namespace {

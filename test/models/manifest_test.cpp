@@ -13,7 +13,7 @@
 #include <sixdof/geometry/save.h>
 #include <sixdof/models/recipe.h>
 #include <sixdof/models/tube.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof {
 namespace {

@@ -33,8 +33,8 @@ TEST(DistanceOracle, FarFromTheOriginEveryBitIsThatOfBruteForce) {
     DistanceQuery query(oracle);
     Pose pose = shapes::random_pose(generator, 0.0);
     pose.t = at_a - pose.R * at_b + 1.9 * shapes::unit_vector(generator);
-    const SurfaceDistance truth = brute_force(a, b, pose);
-    const SurfaceDistance d = query.distance(pose);
+    const Separation truth = brute_force(a, b, pose);
+    const Separation d = query.distance(pose);
     EXPECT_EQ(d.distance, truth.distance);
     EXPECT_EQ(query.surfaces_intersect(pose, false), truth.distance == 0.0);
     if (truth.distance > 0.0) {
@@ -85,7 +85,7 @@ TEST(DistanceOracle, TipsThatDifferByLessThanFloatsAreToldApart) {
     const DistanceOracle swapped(tips, plate);
     const Pose pose = at_a * at_b.inverse();
     ASSERT_EQ(oracle.tie_width(pose), 0.0);
-    const auto expect_same = [](const SurfaceDistance& answer, const SurfaceDistance& truth) {
+    const auto expect_same = [](const Separation& answer, const Separation& truth) {
       EXPECT_EQ(answer.distance, truth.distance);
       if (truth.distance == 0.0) return;
       EXPECT_EQ(answer.triangle_a, truth.triangle_a);
@@ -105,8 +105,8 @@ TEST(DistanceOracle, FarApartTheBitsAreThoseOfBruteForce) {
   for (int i = 0; i < 40; ++i) {
     Pose pose = shapes::random_pose(generator, 0.0);
     pose.t = std::pow(10.0, shapes::uniform(generator, 1.0, 8.0)) * shapes::unit_vector(generator);
-    const SurfaceDistance truth = brute_force(a, b, pose);
-    const SurfaceDistance d = DistanceQuery(oracle).distance(pose);
+    const Separation truth = brute_force(a, b, pose);
+    const Separation d = DistanceQuery(oracle).distance(pose);
     EXPECT_EQ(d.distance, truth.distance);
     EXPECT_EQ(d.triangle_a, truth.triangle_a);
     EXPECT_EQ(d.triangle_b, truth.triangle_b);

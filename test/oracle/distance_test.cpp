@@ -35,22 +35,22 @@ Pose approach(const Mesh& a, const Mesh& b, Pose pose, const Vector3d& u, double
   DistanceQuery query(oracle);
   const double far = 1.1 * (a.diagonal() + b.diagonal()) + target;
   const Vector3d start = a.center() - pose.R * b.center();
-  double travel = far;
+  double translations = far;
   for (int i = 0; i < 300; ++i) {
-    pose.t = start + travel * u;
+    pose.t = start + translations * u;
     const double excess = query.distance(pose).distance - target;
     if (excess < 1e-9 * far) break;
-    travel -= excess;
+    translations -= excess;
   }
   return pose;
 }
 
-void check_witnesses(const Mesh& a, const Mesh& b, const Pose& X_AB, const SurfaceDistance& d) {
+void check_witnesses(const Mesh& a, const Mesh& b, const Pose& X_AB, const Separation& d) {
   const double offset = a.center().norm() + X_AB.t.norm() + b.center().norm();
   const double tolerance = 8.0 * k_triangle_distance_error * (a.diagonal() + b.diagonal() + d.distance + offset);
-  EXPECT_LE(point_triangle_distance(d.on_a, corners_of(a, d.triangle_a)).distance, tolerance);
-  EXPECT_LE(point_triangle_distance(d.on_b, corners_of(b, d.triangle_b, X_AB)).distance, tolerance);
-  EXPECT_NEAR((d.on_a - d.on_b).norm(), d.distance, tolerance);
+  EXPECT_LE(point_triangle_distance(d.witness_a, corners_of(a, d.triangle_a)).distance, tolerance);
+  EXPECT_LE(point_triangle_distance(d.witness_b, corners_of(b, d.triangle_b, X_AB)).distance, tolerance);
+  EXPECT_NEAR((d.witness_a - d.witness_b).norm(), d.distance, tolerance);
 }
 
 TEST(DistanceOracle, EqualsBruteForce) {
@@ -67,17 +67,17 @@ TEST(DistanceOracle, EqualsBruteForce) {
       DistanceQuery query(oracle);
       for (int i = 0; i < 6; ++i) {
         const Pose pose = shapes::random_pose(generator, 0.4 + 0.6 * i);
-        const SurfaceDistance truth = brute_force(a, b, pose);
-        const SurfaceDistance d = query.distance(pose);
-        ASSERT_TRUE(d.within_bound);
+        const Separation truth = brute_force(a, b, pose);
+        const Separation d = query.distance(pose);
+        ASSERT_TRUE(d.has_witnesses);
         ASSERT_NEAR(d.distance, truth.distance, k_brute_force * truth.distance);
         EXPECT_EQ(d.distance, truth.distance);
         if (truth.distance > 0.0) {
           ++apart;
           EXPECT_EQ(d.triangle_a, truth.triangle_a);
           EXPECT_EQ(d.triangle_b, truth.triangle_b);
-          EXPECT_EQ(d.on_a, truth.on_a);
-          EXPECT_EQ(d.on_b, truth.on_b);
+          EXPECT_EQ(d.witness_a, truth.witness_a);
+          EXPECT_EQ(d.witness_b, truth.witness_b);
         } else {
           ++meeting;
         }
@@ -100,8 +100,8 @@ TEST(DistanceOracle, IsSymmetric) {
   DistanceQuery query_back(back);
   for (int i = 0; i < 30; ++i) {
     const Pose pose = shapes::random_pose(generator, 2.5);
-    const SurfaceDistance x = query_forth.distance(pose);
-    const SurfaceDistance y = query_back.distance(pose.inverse());
+    const Separation x = query_forth.distance(pose);
+    const Separation y = query_back.distance(pose.inverse());
     EXPECT_NEAR(x.distance, y.distance, k_pose_rounding * (a.diagonal() + pose.t.norm()));
     EXPECT_EQ(query_forth.collide(pose), query_back.collide(pose.inverse()));
   }
@@ -188,8 +188,8 @@ TEST(DistanceOracle, ErrorGrowsWithTheOffsetOnlyAsCoordinatesRound) {
         const Mesh a0 = shapes::moved(a, {Eigen::Matrix3d::Identity(), -at_a});
         const Mesh b0 = shapes::moved(b, {Eigen::Matrix3d::Identity(), -at_b});
         const Pose pose0{pose.R, pose.t - at_a + pose.R * at_b};
-        const SurfaceDistance truth = brute_force(a0, b0, pose0);
-        const SurfaceDistance d = query.distance(pose);
+        const Separation truth = brute_force(a0, b0, pose0);
+        const Separation d = query.distance(pose);
         EXPECT_NEAR(d.distance, truth.distance, k_offset_rounding * scale * (10.0 + offset + pose0.t.norm() / scale));
         check_witnesses(a, b, pose, d);
       }
@@ -205,7 +205,7 @@ TEST(DistanceOracle, FarApartItStillPrunes) {
   for (const double far : {1e2, 1e4, 1e6}) {
     Pose pose = shapes::random_pose(generator, 0.0);
     pose.t = far * shapes::unit_vector(generator);
-    const SurfaceDistance d = query.distance(pose);
+    const Separation d = query.distance(pose);
     EXPECT_NEAR(d.distance, far, 3.0);
     // Of 26 million pairs. Leaves are compared in floats, which lets more through as the distance grows.
     EXPECT_LT(query.counts().triangles, 30000u) << "far " << far;
@@ -227,24 +227,24 @@ TEST(DistanceOracle, WarmAndColdAndThreadsAgreeInEveryBit) {
   }
   const auto run = [&](bool warm) {
     DistanceQuery query(oracle);
-    std::vector<SurfaceDistance> all;
+    std::vector<Separation> all;
     for (const Pose& p : path) all.push_back(query.distance(p, {.warm_start = warm}));
     return all;
   };
-  const std::vector<SurfaceDistance> cold = run(false);
-  std::vector<SurfaceDistance> warm;
-  std::vector<SurfaceDistance> other;
+  const std::vector<Separation> cold = run(false);
+  std::vector<Separation> warm;
+  std::vector<Separation> other;
   std::thread first([&] { warm = run(true); });
   std::thread second([&] { other = run(true); });
   first.join();
   second.join();
-  for (const std::vector<SurfaceDistance>* answers : {&warm, &other}) {
+  for (const std::vector<Separation>* answers : {&warm, &other}) {
     for (std::size_t i = 0; i < path.size(); ++i) {
-      const SurfaceDistance& x = (*answers)[i];
+      const Separation& x = (*answers)[i];
       EXPECT_EQ(x.distance, cold[i].distance);
       if (x.distance == 0.0) continue;
-      EXPECT_EQ(x.on_a, cold[i].on_a);
-      EXPECT_EQ(x.on_b, cold[i].on_b);
+      EXPECT_EQ(x.witness_a, cold[i].witness_a);
+      EXPECT_EQ(x.witness_b, cold[i].witness_b);
       EXPECT_EQ(x.triangle_a, cold[i].triangle_a);
       EXPECT_EQ(x.triangle_b, cold[i].triangle_b);
     }
@@ -258,22 +258,22 @@ TEST(DistanceOracle, IsTheSameBitsOnEveryInstructionSet) {
   const auto run = [&] {
     Generator generator(8);
     DistanceQuery query(oracle);
-    std::vector<SurfaceDistance> all;
+    std::vector<Separation> all;
     for (int i = 0; i < 40; ++i) {
       all.push_back(query.distance(shapes::random_pose(generator, 2.0), {.warm_start = false}));
     }
     return all;
   };
-  const std::vector<SurfaceDistance> standard = run();
+  const std::vector<Separation> standard = run();
   int tried = 0;
   for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
     hwy::SetSupportedTargetsForTest(targets & -targets);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    const std::vector<SurfaceDistance> here = run();
+    const std::vector<Separation> here = run();
     for (std::size_t i = 0; i < here.size(); ++i) {
       EXPECT_EQ(here[i].distance, standard[i].distance) << hwy::TargetName(targets & -targets);
       if (here[i].distance == 0.0) continue;
-      EXPECT_EQ(here[i].on_a, standard[i].on_a);
+      EXPECT_EQ(here[i].witness_a, standard[i].witness_a);
       EXPECT_EQ(here[i].triangle_b, standard[i].triangle_b);
     }
     ++tried;
@@ -291,17 +291,17 @@ TEST(DistanceOracle, UpperBoundCutsAndKeeps) {
   for (int i = 0; i < 20; ++i) {
     Pose pose = shapes::random_pose(generator, 0.0);
     pose.t = uniform(generator, 2.6, 4.0) * shapes::unit_vector(generator);
-    const SurfaceDistance d = query.distance(pose, {.warm_start = false});
+    const Separation d = query.distance(pose, {.warm_start = false});
     for (const double factor : {1.0, 1.0 + 1e-15, 1.5}) {
-      const SurfaceDistance x = query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = false});
-      EXPECT_TRUE(x.within_bound);
+      const Separation x = query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = false});
+      EXPECT_TRUE(x.has_witnesses);
       EXPECT_EQ(x.distance, d.distance);
-      EXPECT_EQ(x.on_b, d.on_b);
+      EXPECT_EQ(x.witness_b, d.witness_b);
     }
     for (const double factor : {0.0, 0.5, 1.0 - 1e-15}) {
-      EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = false}).within_bound);
-      ASSERT_TRUE(query.distance(pose).within_bound);  // a pair to begin with, farther than the bound
-      EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = true}).within_bound);
+      EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = false}).has_witnesses);
+      ASSERT_TRUE(query.distance(pose).has_witnesses);  // a pair to begin with, farther than the bound
+      EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = true}).has_witnesses);
     }
   }
 }
@@ -321,7 +321,7 @@ TEST(DistanceOracle, WarmStartsAreMeasuredBeforeTheyCount) {
     const double bound = 6.0;
     const double near_distance = query.distance(near, {.upper_bound = bound}).distance;
     ASSERT_EQ(near_distance, brute_force(a, b, near).distance);
-    EXPECT_FALSE(query.distance(far, {.upper_bound = bound}).within_bound);
+    EXPECT_FALSE(query.distance(far, {.upper_bound = bound}).has_witnesses);
     EXPECT_EQ(query.distance(far).distance, brute_force(a, b, far).distance);
     EXPECT_EQ(query.distance(near, {.upper_bound = bound}).distance, near_distance);
   }
@@ -338,26 +338,26 @@ TEST(DistanceOracle, WarmStartsReachABoundThatIsTheDistance) {
   int kept = 0;
   for (int i = 0; i < 30; ++i) {
     const Pose before{shapes::random_pose(generator, 0.0).R, 2.6 * shapes::unit_vector(generator)};
-    const SurfaceDistance last = cold.distance(before, {.warm_start = false});
+    const Separation last = cold.distance(before, {.warm_start = false});
     ASSERT_GT(last.distance, 0.1);
     Pose step = before;
-    step.t += (i % 2 == 0 ? 0.01 : -0.01) * (last.on_b - last.on_a).normalized();
+    step.t += (i % 2 == 0 ? 0.01 : -0.01) * (last.witness_b - last.witness_a).normalized();
     const Pose jump{shapes::random_pose(generator, 0.0).R, 3.0 * shapes::unit_vector(generator)};
     for (const Pose& pose : {step, jump}) {
-      const SurfaceDistance truth = cold.distance(pose, {.warm_start = false});
+      const Separation truth = cold.distance(pose, {.warm_start = false});
       kept += truth.triangle_a == last.triangle_a && truth.triangle_b == last.triangle_b;
       DistanceQuery query(oracle);
       query.distance(before);
-      const SurfaceDistance warm = query.distance(pose, {.upper_bound = truth.distance});
-      ASSERT_TRUE(warm.within_bound);
+      const Separation warm = query.distance(pose, {.upper_bound = truth.distance});
+      ASSERT_TRUE(warm.has_witnesses);
       EXPECT_EQ(warm.distance, truth.distance);
       EXPECT_EQ(warm.triangle_a, truth.triangle_a);
       EXPECT_EQ(warm.triangle_b, truth.triangle_b);
-      EXPECT_EQ(warm.on_a, truth.on_a);
-      EXPECT_EQ(warm.on_b, truth.on_b);
+      EXPECT_EQ(warm.witness_a, truth.witness_a);
+      EXPECT_EQ(warm.witness_b, truth.witness_b);
       DistanceQuery again(oracle);
       again.distance(before);
-      EXPECT_FALSE(again.distance(pose, {.upper_bound = std::nextafter(truth.distance, 0.0)}).within_bound);
+      EXPECT_FALSE(again.distance(pose, {.upper_bound = std::nextafter(truth.distance, 0.0)}).has_witnesses);
     }
   }
   EXPECT_GT(kept, 15);
@@ -372,9 +372,9 @@ TEST(DistanceOracle, CloseApproachesAreSeenOnBothSides) {
   Generator generator(10);
   for (int i = 0; i < 10; ++i) {
     const Pose pose = approach(a, b, shapes::random_pose(generator, 0.0), shapes::unit_vector(generator), 1e-4);
-    const SurfaceDistance d = query.distance(pose);
+    const Separation d = query.distance(pose);
     ASSERT_GT(d.distance, 0.0);
-    const Vector3d line = (d.on_a - d.on_b) / d.distance;
+    const Vector3d line = (d.witness_a - d.witness_b) / d.distance;
     Pose short_of = pose;
     short_of.t += d.distance * (1.0 - 1e-9) * line;
     EXPECT_NEAR(query.distance(short_of).distance, 1e-9 * d.distance, k_pose_rounding);

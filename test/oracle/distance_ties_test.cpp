@@ -29,13 +29,13 @@ Mesh shuffled(const Mesh& mesh, Generator& generator) {
 }
 
 /// The answer is that of all pairs by the rule of ties, in every bit.
-void expect_same(const SurfaceDistance& answer, const SurfaceDistance& truth) {
-  ASSERT_TRUE(answer.within_bound);
+void expect_same(const Separation& answer, const Separation& truth) {
+  ASSERT_TRUE(answer.has_witnesses);
   EXPECT_EQ(answer.distance, truth.distance);
   EXPECT_EQ(answer.triangle_a, truth.triangle_a);
   EXPECT_EQ(answer.triangle_b, truth.triangle_b);
-  EXPECT_EQ(answer.on_a, truth.on_a);
-  EXPECT_EQ(answer.on_b, truth.on_b);
+  EXPECT_EQ(answer.witness_a, truth.witness_a);
+  EXPECT_EQ(answer.witness_b, truth.witness_b);
 }
 
 /// A pose that lays face `b_down` of B (a unit normal in B's frame) over face `a_up` of A, turned at will; `over` is
@@ -76,7 +76,7 @@ TEST(DistanceTies, CubesOnAGridTieInEveryBit) {
     Pose pose;
     pose.t = Vector3d(0.625, -0.375, 2.25);
     if (i % 2 == 1) pose.R << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
-    const SurfaceDistance truth = brute_force(a, b, pose);
+    const Separation truth = brute_force(a, b, pose);
     ASSERT_EQ(truth.distance, 0.25);
     for (const bool warm : {false, true}) expect_same(query.distance(pose, {.warm_start = warm}), truth);
   }
@@ -100,7 +100,7 @@ TEST(DistanceTies, BlocksFaceToFaceAnywhere) {
     ASSERT_GT(width, 0.0);
     const double sizes = a.mesh.diagonal() + b.mesh.diagonal() + gap + a.mesh.center().norm() + pose.t.norm();
     EXPECT_LT(width, 3e-14 * (sizes + b.mesh.center().norm()));  // far below the 1e-13 asked of distances
-    const SurfaceDistance truth = brute_force(a.mesh, b.mesh, pose, width);
+    const Separation truth = brute_force(a.mesh, b.mesh, pose, width);
     EXPECT_NEAR(truth.distance, gap, width);
     tied += brute_force(a.mesh, b.mesh, pose).distance < truth.distance;
     expect_same(query.distance(pose, {.warm_start = false}), truth);
@@ -112,8 +112,8 @@ TEST(DistanceTies, BlocksFaceToFaceAnywhere) {
     // The bound is one of the distance that is returned, not of the smallest.
     expect_same(query.distance(pose, {.upper_bound = truth.distance, .warm_start = i % 2 == 0}), truth);
     const double below = std::nextafter(truth.distance, 0.0);
-    EXPECT_FALSE(query.distance(pose, {.upper_bound = below, .warm_start = i % 2 == 0}).within_bound);
-    EXPECT_FALSE(query.distance(pose, {.upper_bound = 0.5 * below, .warm_start = false}).within_bound);
+    EXPECT_FALSE(query.distance(pose, {.upper_bound = below, .warm_start = i % 2 == 0}).has_witnesses);
+    EXPECT_FALSE(query.distance(pose, {.upper_bound = 0.5 * below, .warm_start = false}).has_witnesses);
     EXPECT_FALSE(query.collide(pose));
 
     const DistanceOracle swapped(b.mesh, a.mesh);
@@ -130,7 +130,7 @@ TEST(DistanceTies, AreTheSameBitsOnEveryInstructionSet) {
     const Block b = Block::make(generator, {0.8, 1.1, 0.6}, 1500, 0.5);
     const DistanceOracle oracle(a.mesh, b.mesh);
     const Pose pose = face_to_face(generator, a.normal, a.middle, b.normal, b.middle, i == 0 ? 1e-9 : 0.1);
-    const SurfaceDistance standard = DistanceQuery(oracle).distance(pose);
+    const Separation standard = DistanceQuery(oracle).distance(pose);
     for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
       hwy::SetSupportedTargetsForTest(targets & -targets);
       hwy::GetChosenTarget().Update(hwy::SupportedTargets());
@@ -186,7 +186,7 @@ TEST(DistanceTies, HeightsAtTheLimitOfATieAreToldApart) {
     Pose pose;  // a little beside where the plates were made
     pose.t = 0.01 * turn.R.col(0);
     const double width = oracle.tie_width(pose);
-    const SurfaceDistance truth = brute_force(ground, plates, pose, width);
+    const Separation truth = brute_force(ground, plates, pose, width);
     ASSERT_NEAR(truth.distance, gap, 13.0 * step);
     expect_same(query.distance(pose, {.warm_start = false}), truth);
     for (int k = 0; k < 5; ++k) {
@@ -222,7 +222,7 @@ TEST(DistanceTies, LowestOfWholeFlatPartsLeftAlone) {
   };
   const auto check = [](const Mesh& a, const Mesh& b, const Pose& pose, const Pose& before) {
     const DistanceOracle oracle(a, b);
-    const SurfaceDistance truth = brute_force(a, b, pose, oracle.tie_width(pose));
+    const Separation truth = brute_force(a, b, pose, oracle.tie_width(pose));
     ASSERT_GT(truth.distance, 0.0);
     DistanceQuery query(oracle);
     expect_same(query.distance(pose, {.warm_start = false}), truth);
@@ -259,7 +259,7 @@ TEST(DistanceTies, FacesThatTouchUpToRounding) {
     DistanceQuery query(oracle);
     const double gap = std::pow(10.0, uniform(generator, -17.0, -13.0));
     const Pose pose = face_to_face(generator, a.normal, a.middle, b.normal, b.middle, gap);
-    const SurfaceDistance smallest = brute_force(a.mesh, b.mesh, pose);
+    const Separation smallest = brute_force(a.mesh, b.mesh, pose);
     EXPECT_EQ(query.surfaces_intersect(pose, false), smallest.distance == 0.0);
     if (smallest.distance == 0.0) {
       ++meeting;

@@ -29,19 +29,19 @@ inline TriangleCorners corners_of(const Mesh& mesh, std::size_t i) {
 
 /// All pairs. Of those that exceed the smallest distance by no more than `tie_width` the first, in the order of the
 /// documented rule.
-inline SurfaceDistance brute_force(const Mesh& a, const Mesh& b, const Pose& X_AB, double tie_width = 0.0) {
+inline Separation brute_force(const Mesh& a, const Mesh& b, const Pose& X_AB, double tie_width = 0.0) {
   double smallest = std::numeric_limits<double>::infinity();
-  std::vector<SurfaceDistance> close;
+  std::vector<Separation> close;
   for (std::size_t i = 0; i < a.triangles().size(); ++i) {
     for (std::size_t j = 0; j < b.triangles().size(); ++j) {
       const ClosestPoints c = triangle_triangle_distance(corners_of(a, i), corners_of(b, j, X_AB));
       if (c.distance > smallest + tie_width) continue;
       smallest = std::min(smallest, c.distance);
-      close.push_back({true, c.distance, c.on_a, c.on_b, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)});
+      close.push_back({c.distance, true, c.on_a, c.on_b, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)});
     }
   }
   return *std::find_if(close.begin(), close.end(),
-                       [&](const SurfaceDistance& x) { return x.distance <= smallest + tie_width; });
+                       [&](const Separation& x) { return x.distance <= smallest + tie_width; });
 }
 
 inline Mesh turned_inside_out(const Mesh& mesh) {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/models/manifest.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 #include <sixdof/oracle/overlap.h>
 
 #include "bodies.h"

@@ -14,10 +14,10 @@ enum class Kind {
   records,  ///< A known weakness, as bad as the measure can tell: the value is recorded, and a change either way fails.
 };
 
-/// What is recorded: an algorithm with its default settings, or with some knobs changed.
+/// What is recorded: an algorithm with its default settings, or with some parameters changed.
 struct Subject {
   std::string algorithm;
-  std::vector<std::string> knobs;  ///< "name=value"
+  std::vector<std::string> parameters;  ///< "name=value"
 };
 
 /// By the name in the table: that of an algorithm, or of a variant.

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/bench/algorithms.h>
+#include "bench/algorithms.h"
 #include <sixdof/scenario/evaluation.h>
 
 #include "bounds.h"
@@ -29,10 +29,10 @@ const Recorded& recorded(const std::string& scenario, const std::string& algorit
   if (is_new) {
     Registry registry;
     register_all_algorithms(registry);
-    const auto& [name, knobs] = subject(algorithm);
+    const auto& [name, parameters] = subject(algorithm);
     const Algorithm& found = registry.find(name);
     Settings settings = found.settings();
-    settings.set_all(knobs);
+    settings.set_all(parameters);
     r.scenario = make_scenario(scenario);
     r.query = found.prepare(r.scenario->a(), r.scenario->b(), settings);
     r.recording = record(*r.scenario, *r.query, k_gate_stamps);

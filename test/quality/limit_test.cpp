@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/bench/algorithms.h>
+#include "bench/algorithms.h"
 #include <sixdof/measure/direction.h>
 #include <sixdof/measure/magnitude.h>
 #include <sixdof/scenario/evaluation.h>

@@ -191,7 +191,7 @@ TEST_F(BruteForce, BoundsTheApproximateDistance) {
       EXPECT_LE(answer.value.distance, 1.25 * truth + k_rounding);
       inexact += answer.value.distance > truth + k_rounding;
     }
-    // The knob must do something.
+    // The parameter must do something.
     EXPECT_GT(inexact, 0) << algorithm->traits().name;
   }
 }

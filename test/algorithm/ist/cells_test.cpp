@@ -7,7 +7,7 @@
 #include <sixdof/algorithm/ist/packing.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/models/boxes.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::ist {
 namespace {

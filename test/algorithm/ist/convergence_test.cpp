@@ -7,7 +7,7 @@
 
 #include <sixdof/algorithm/ist/packing.h>
 #include <sixdof/algorithm/ist/traversal.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 #include "../exact_responses.h"
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/models/boxes.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 #include "../closed_loop.h"
 #include "random_spheres.h"
@@ -22,9 +22,9 @@ class IstTest : public ::testing::Test {
  protected:
   void SetUp() override { ::setenv("SIXDOF_CACHE", "off", 1); }
 
-  std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const std::vector<std::string>& knobs) const {
+  std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const std::vector<std::string>& parameters) const {
     Settings settings = algorithm_->settings();
-    settings.set_all(knobs);
+    settings.set_all(parameters);
     return algorithm_->prepare(a, b, settings);
   }
 
@@ -58,9 +58,9 @@ TEST_F(IstTest, VolumeAndForceApproachTheBlocksAsSpheresGrowInNumber) {
 
 TEST_F(IstTest, ReactionIsOppositeToAction) {
   const Mesh a = load_model("torus-knot-1k"), b = load_model("bumpy-sphere-1k");
-  for (const std::vector<std::string>& knobs :
+  for (const std::vector<std::string>& parameters :
        {std::vector<std::string>{"spheres=300"}, {"spheres=300", "force=descent", "correct_fill=cells"}}) {
-    const auto forward = prepare(a, b, knobs), backward = prepare(b, a, knobs);
+    const auto forward = prepare(a, b, parameters), backward = prepare(b, a, parameters);
     std::mt19937_64 random(41);
     int touching = 0;
     for (int i = 0; i < 20; ++i) {
@@ -81,9 +81,9 @@ TEST_F(IstTest, ReactionIsOppositeToAction) {
 /// Blocks again: the overlap is a box, so its volume, its gradient and its place are known.
 TEST_F(IstTest, DescentPushesWithTheVolumeAndTheGradientsDirection) {
   const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 100);
-  const std::vector<std::string> knobs{"spheres=3000", "correct_fill=cells"};
+  const std::vector<std::string> parameters{"spheres=3000", "correct_fill=cells"};
   const auto with = [&](const char* force) {
-    std::vector<std::string> all = knobs;
+    std::vector<std::string> all = parameters;
     all.emplace_back(force);
     return prepare(block, block, all);
   };

@@ -10,7 +10,7 @@
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>
 #include <sixdof/models/boxes.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::ist {
 namespace {

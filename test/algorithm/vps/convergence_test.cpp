@@ -9,7 +9,7 @@
 #include <sixdof/algorithm/vps/vps.h>
 #include <sixdof/algorithm/vps/winding_number.h>
 #include <sixdof/geometry/closest_point.h>
-#include <sixdof/models/zoo.h>
+#include <sixdof/models/model_catalogue.h>
 
 #include "../exact_responses.h"
 

@@ -106,12 +106,12 @@ TEST_P(Vps, ABallAndAFaceFollowTheirClosedFormsInBothRoles) {
   constexpr double k_mesh = 0.01;  // the mesh of 3000 triangles lies below the ball by 2 thousandths of R, of h / 2
   for (const double voxel : {0.01, 0.005}) {
     for (const bool swapped : {false, true}) {
-      auto knobs = resolution(voxel, 0.01);
-      if (swapped) knobs.push_back("pointshell=a");
+      auto parameters = resolution(voxel, 0.01);
+      if (swapped) parameters.push_back("pointshell=a");
       const double s = voxel * (swapped ? scene.b->diagonal() : scene.a->diagonal());
       const double force = swapped ? on_face : on_ball,
                    error = depth_error(GetParam()) * s * contact_area + k_mesh * force;
-      const Response response = prepare(GetParam(), *scene.a, *scene.b, knobs)->respond(scene.X).value;
+      const Response response = prepare(GetParam(), *scene.a, *scene.b, parameters)->respond(scene.X).value;
       EXPECT_NEAR(response.force.norm(), force, error) << voxel << swapped;
       EXPECT_LT(angle(response.force, scene.up), 0.5 * error / force) << voxel << swapped;
       EXPECT_LT(response.torque.norm(), 0.5 * error * R) << voxel << swapped;
@@ -122,10 +122,10 @@ TEST_P(Vps, ABallAndAFaceFollowTheirClosedFormsInBothRoles) {
 
 TEST_P(Vps, TheSameSceneToldTheOtherWayRoundGivesTheReaction) {
   const Pressed scene(box({2.0, 1.6, 1.2}), make_bumpy_sphere({.radius = 0.5}, 300), -0.4, 0.6, 0.1);
-  auto knobs = resolution(0.02, 0.02);
-  const Response on_a = prepare(GetParam(), *scene.b, *scene.a, knobs)->respond(scene.X.inverse()).value;
-  knobs.push_back("pointshell=a");
-  const Response on_b = prepare(GetParam(), *scene.a, *scene.b, knobs)->respond(scene.X).value;
+  auto parameters = resolution(0.02, 0.02);
+  const Response on_a = prepare(GetParam(), *scene.b, *scene.a, parameters)->respond(scene.X.inverse()).value;
+  parameters.push_back("pointshell=a");
+  const Response on_b = prepare(GetParam(), *scene.a, *scene.b, parameters)->respond(scene.X).value;
   const Response about_same = on_a.about(scene.b->center());
   ASSERT_GT(on_b.force.norm(), 1e-3);
   constexpr double k_rounding = 1e-12;  // of a few products in double precision
@@ -139,9 +139,9 @@ TEST_P(Vps, ActionIsMinusReactionWithinTheResolutionWhenRolesAreSwapped) {
   const double depth = 0.05, area = 0.8 * 0.6, perimeter = 2.8;
   const Pressed scene(box({2.0, 1.6, 1.2}), box({0.8, 0.6, 0.7}), -0.35, 0.6, depth);
   for (const double voxel : {0.01, 0.005}) {
-    const auto knobs = resolution(voxel, 0.01);
-    const Response on_b = prepare(GetParam(), *scene.a, *scene.b, knobs)->respond(scene.X).value;
-    const Response on_a = prepare(GetParam(), *scene.b, *scene.a, knobs)->respond(scene.X.inverse()).value;
+    const auto parameters = resolution(voxel, 0.01);
+    const Response on_b = prepare(GetParam(), *scene.a, *scene.b, parameters)->respond(scene.X).value;
+    const Response on_a = prepare(GetParam(), *scene.b, *scene.a, parameters)->respond(scene.X.inverse()).value;
     const double size = voxel * (scene.a->diagonal() + scene.b->diagonal());
     // Points beside B's walls are nearest to the walls, which push level or count less: a rim of the depth's width.
     const double declared = depth_error(GetParam()) * size * area + perimeter * depth * depth;
@@ -161,9 +161,9 @@ TEST_P(Vps, TinyBodiesAnswerAsLargeOnesDo) {
   };
   const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
   const Pose X = generic_pose(75, 1.2), small{X.R, factor * X.t};
-  const auto knobs = resolution(0.02, 0.02);
-  const Response large = prepare(GetParam(), a, b, knobs)->respond(X).value;
-  const Response tiny = prepare(GetParam(), scaled(a), scaled(b), knobs)->respond(small).value;
+  const auto parameters = resolution(0.02, 0.02);
+  const Response large = prepare(GetParam(), a, b, parameters)->respond(X).value;
+  const Response tiny = prepare(GetParam(), scaled(a), scaled(b), parameters)->respond(small).value;
   ASSERT_GT(large.force.norm(), 0.0);
   constexpr double k_single = 5e-3;  // single points may fall across a voxel's face by rounding
   // Area times depth, and once more a length for the torque.
@@ -176,8 +176,8 @@ TEST_P(Vps, DoesNotDependOnWhereTheMeshesFramesAre) {
   const Mesh a = moved(make_bumpy_sphere({}, 500), generic_pose(61, 0.3));
   const Mesh b = moved(make_bumpy_sphere({.radius = 0.8}, 400), generic_pose(62, 0.2));
   const Pose X = generic_pose(63, 1.3);
-  const auto knobs = resolution(0.02, 0.02);
-  const Response plain = prepare(GetParam(), a, b, knobs)->respond(X).value;
+  const auto parameters = resolution(0.02, 0.02);
+  const Response plain = prepare(GetParam(), a, b, parameters)->respond(X).value;
   ASSERT_GT(plain.force.norm(), 0.01);
   // Coordinates in single precision: a part in 2^24 of some hundred voxels. `vps` may count single points otherwise,
   // whose rounding falls across a voxel's face: each one part of some hundred contacts.
@@ -187,7 +187,7 @@ TEST_P(Vps, DoesNotDependOnWhereTheMeshesFramesAre) {
       shift_b{Eigen::Matrix3d::Identity(), {-3.9, 8.2, 2.6}};
   const Mesh a_shifted = moved(a, shift_a), b_shifted = moved(b, shift_b);
   const Response shifted =
-      prepare(GetParam(), a_shifted, b_shifted, knobs)->respond(shift_a * X * shift_b.inverse()).value;
+      prepare(GetParam(), a_shifted, b_shifted, parameters)->respond(shift_a * X * shift_b.inverse()).value;
   const double force = tolerance * plain.force.norm(), torque = force * b.diagonal();
   EXPECT_LT((shifted.force - plain.force).norm(), force);
   EXPECT_LT((shifted.torque - plain.torque).norm(), torque);
@@ -196,14 +196,14 @@ TEST_P(Vps, DoesNotDependOnWhereTheMeshesFramesAre) {
   Pose turn;
   turn.R << 0, 0, 1, 1, 0, 0, 0, 1, 0;
   const Mesh a_turned = moved(a, turn);
-  const Response turned = prepare(GetParam(), a_turned, b, knobs)->respond(turn * X).value;
+  const Response turned = prepare(GetParam(), a_turned, b, parameters)->respond(turn * X).value;
   EXPECT_LT((turned.force - turn.R * plain.force).norm(), force);
   EXPECT_LT((turned.torque - turn.R * plain.torque).norm(), torque);
 
   // Turned by a general angle the voxels are others: the same within the resolution, here a voxel over the depth.
   const Pose any = generic_pose(64, 0.5);
   const Mesh a_any = moved(a, any);
-  const Response other = prepare(GetParam(), a_any, b, knobs)->respond(any * X).value;
+  const Response other = prepare(GetParam(), a_any, b, parameters)->respond(any * X).value;
   EXPECT_TRUE(other.force.isApprox(any.R * plain.force, 0.02 * a.diagonal() / plain.penalty));
 }
 
@@ -229,12 +229,12 @@ TEST_P(Vps, BodiesApartFeelNothing) {
 
 TEST_P(Vps, CullingAndStiffnessAreOnlyThat) {
   const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
-  auto knobs = resolution(0.02, 0.02);
-  const auto culled = prepare(GetParam(), a, b, knobs);
-  knobs.push_back("culling=off");
-  const auto whole = prepare(GetParam(), a, b, knobs);
-  knobs.push_back("stiffness=2.5");
-  const auto stiff = prepare(GetParam(), a, b, knobs);
+  auto parameters = resolution(0.02, 0.02);
+  const auto culled = prepare(GetParam(), a, b, parameters);
+  parameters.push_back("culling=off");
+  const auto whole = prepare(GetParam(), a, b, parameters);
+  parameters.push_back("stiffness=2.5");
+  const auto stiff = prepare(GetParam(), a, b, parameters);
   for (std::uint64_t seed = 80; seed < 100; ++seed) {
     const Pose X = generic_pose(seed, 1.2 + 0.04 * static_cast<double>(seed - 80));
     const Response x = culled->respond(X).value, y = whole->respond(X).value, z = stiff->respond(X).value;
@@ -248,9 +248,9 @@ TEST_P(Vps, CullingAndStiffnessAreOnlyThat) {
 
 TEST_P(Vps, OldNormalisationBoundsTheForceByTenPoints) {
   const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
-  auto knobs = resolution(0.02, 0.02);
-  knobs.push_back("weight=contacts");
-  const Response response = prepare(GetParam(), a, b, knobs)->respond(generic_pose(91, 1.2)).value;
+  auto parameters = resolution(0.02, 0.02);
+  parameters.push_back("weight=contacts");
+  const Response response = prepare(GetParam(), a, b, parameters)->respond(generic_pose(91, 1.2)).value;
   EXPECT_GT(response.penalty, 0.1);
   EXPECT_LT(response.force.norm(), 10.0 * response.penalty * 1.1);  // gradients may pass 1 by rounding of edges
   EXPECT_GT(response.force.norm(), response.penalty);               // thousands of points would give far more, one less
@@ -312,10 +312,10 @@ TEST(VpsDepth, LayersAloneAreWholeVoxelsAndMissThinPlates) {
   const Mesh plate = moved(box({2.0, 1.6, 0.004}), generic_pose(96, 0.2)), b = box({0.8, 0.6, 0.7});
   const Pose X = generic_pose(96, 0.2) *
                  Pose{Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix(), {0.0, 0.0, 0.348}};
-  auto knobs = resolution(0.01, 0.01);
-  const Response with_place = prepare("vps", plate, b, knobs)->respond(X).value;
-  knobs.push_back("depth=layers");
-  const auto by_layers = prepare("vps", plate, b, knobs);
+  auto parameters = resolution(0.01, 0.01);
+  const Response with_place = prepare("vps", plate, b, parameters)->respond(X).value;
+  parameters.push_back("depth=layers");
+  const auto by_layers = prepare("vps", plate, b, parameters);
   // A plate of a sixth of a voxel is layer 0: felt through the place in the voxel only.
   EXPECT_GT(with_place.force.dot(generic_pose(96, 0.2).R.col(2)), 0.0);
   EXPECT_EQ(by_layers->respond(X).value.force, Eigen::Vector3d::Zero());
@@ -323,7 +323,7 @@ TEST(VpsDepth, LayersAloneAreWholeVoxelsAndMissThinPlates) {
 
   const Mesh a = box({2.0, 1.6, 1.2});
   const double s = 0.01 * a.diagonal();
-  const double penalty = prepare("vps", a, b, knobs)->respond(generic_pose(97, 0.7)).value.penalty;
+  const double penalty = prepare("vps", a, b, parameters)->respond(generic_pose(97, 0.7)).value.penalty;
   EXPECT_GT(penalty, 0.0);
   EXPECT_NEAR(penalty / s, std::round(penalty / s), 1e-9);
   ::unsetenv("SIXDOF_CACHE");

@@ -1,5 +1,6 @@
 // A stranger's program: a mesh, the registry and one query through the installed headers and libraries.
-#include <sixdof/algorithm/registry.h>
+#include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/query/registry.h>
 #include <sixdof/geometry/mesh.h>
 
 #include <cstdio>

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <sixdof/query/registry.h>
+
+namespace sixdof {
+
+/// Adds the algorithms of the core library: those that need no third-party collision library.
+void register_core_algorithms(Registry& registry);
+
+}  // namespace sixdof

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <sixdof/base/atomic_file.h>
+#include <sixdof/configuration/bucket.h>
+#include <sixdof/configuration/set_description.h>
+#include <sixdof/geometry/mesh.h>
+
+namespace sixdof {
+
+/// Writes a set, whole or not at all. The same input gives the same bytes (for one version of zlib).
+class ConfigurationSetWriter {
+ public:
+  /// @throws BadFile if the file cannot be created; BadArgument if the grid is empty.
+  ConfigurationSetWriter(std::filesystem::path path, SetDescription description);
+  ~ConfigurationSetWriter();
+  ConfigurationSetWriter(const ConfigurationSetWriter&) = delete;
+  ConfigurationSetWriter& operator=(const ConfigurationSetWriter&) = delete;
+
+  /// Adds a bucket.
+  /// @param translation s of rotation r and direction u at [r * directions + u], NaN where unreachable.
+  /// @throws BadArgument if the bucket is there already, the size is wrong, or a value is infinite or negative.
+  void write(BucketSummary summary, std::span<const double> translations);
+
+  /// Makes the file appear under its name.
+  void commit();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A set on disk. Opening reads the description, the grid and the summaries; values are read bucket by bucket.
+/// May be used from several threads (reading is one at a time in the process).
+class ConfigurationSet {
+ public:
+  /// @throws BadFile if the file is no configuration set, of a version this build does not know, truncated or damaged.
+  explicit ConfigurationSet(std::filesystem::path path);
+
+  const std::filesystem::path& path() const { return path_; }
+  const SetDescription& description() const { return description_; }
+  const Grid& grid(BucketKind kind) const { return description_.grid_of(kind); }
+  /// Distances before volumes, each by percentage.
+  const std::vector<BucketSummary>& buckets() const { return buckets_; }
+  /// Content hash of everything in the set: description, grid, summaries and (by their own hashes) values. It does not
+  /// depend on compression.
+  const std::string& hash() const { return hash_; }
+
+  bool has(BucketKey key) const;
+  /// @throws BadArgument naming the buckets there are.
+  const BucketSummary& summary(BucketKey key) const;
+
+  /// The translation s of rotation r and direction u at [r * directions + u], in the meshes' unit, NaN where unreachable.
+  /// Touches no other bucket.
+  /// @throws BadArgument if there is no such bucket; BadFile if it is damaged or the file has changed since opening.
+  std::vector<double> read(BucketKey key) const;
+
+  /// How many times read() has read values: shows that a benchmark reads only what it needs.
+  std::size_t buckets_read() const { return buckets_read_; }
+
+  /// @throws BadArgument if the set was made for other meshes, saying which.
+  void check_meshes(const Mesh& a, const Mesh& b) const;
+
+ private:
+  std::filesystem::path path_;
+  SetDescription description_;
+  std::vector<BucketSummary> buckets_;
+  std::string hash_;
+  mutable std::atomic<std::size_t> buckets_read_{0};
+};
+
+/// True if the file begins as HDF5 files do; how commands tell a set from a mesh.
+bool looks_like_configuration_set(const std::filesystem::path& path);
+
+}  // namespace sixdof

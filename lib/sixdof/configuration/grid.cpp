@@ -1,0 +1,285 @@
+#include <sixdof/configuration/grid.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof {
+namespace {
+
+/// 180 / step may miss a whole number by the rounding of a step typed with many digits (e.g. 180/7 as 25.714285714286).
+constexpr double k_step_tolerance = 1e-9;
+
+struct CosSin {
+  double cos, sin;
+};
+
+/// Cosine and sine rounded from extended precision: the C library picks its double versions by the processor's
+/// features, and their last bits differ.
+CosSin cos_sin(long double radians) {
+  return {static_cast<double>(std::cos(radians)), static_cast<double>(std::sin(radians))};
+}
+
+/// Of the angle of k / n turns. Folded by whole numbers to [0, 45] degrees, so that multiples of 30 and 45 degrees are
+/// the best doubles and symmetric angles have symmetric bits.
+CosSin cos_sin_of_turn(std::int64_t k, std::int64_t n) {
+  k = (k % n + n) % n;
+  const std::int64_t quadrant = 4 * k / n;
+  const std::int64_t r = 4 * k - quadrant * n;  // r / n of a quarter turn
+  const bool beyond_45 = 2 * r > n;
+  const std::int64_t folded = beyond_45 ? n - r : r;
+  CosSin p{1.0, 0.0};
+  if (2 * folded == n) {
+    p = {std::sqrt(0.5), std::sqrt(0.5)};
+  } else if (3 * folded == n) {
+    p = {std::sqrt(0.75), 0.5};
+  } else if (folded != 0) {
+    p = cos_sin(std::numbers::pi_v<long double> * static_cast<long double>(folded) / static_cast<long double>(2 * n));
+  }
+  if (beyond_45) std::swap(p.cos, p.sin);
+  switch (quadrant) {
+    case 0:
+      return p;
+    case 1:
+      return {-p.sin, p.cos};
+    case 2:
+      return {-p.cos, -p.sin};
+    default:
+      return {p.sin, -p.cos};
+  }
+}
+
+/// q and -q are one rotation: makes the first component that is not zero positive, and every zero +0.
+Eigen::Vector4d canonical(const Eigen::Vector4d& q) {
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    if (q[i] == 0.0) continue;
+    return (q[i] < 0.0 ? Eigen::Vector4d(-q) : q) + Eigen::Vector4d::Zero();
+  }
+  return q;
+}
+
+/// Fractional part of x in [0, 1).
+long double fraction(long double x) { return x - std::floor(x); }
+
+template <class T>
+std::optional<T> parse_number(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+[[noreturn]] void refuse(std::string_view spec, const std::string& why) {
+  throw BadArgument(fmt::format(
+      "grid '{}': {}; it reads paper, paper-volume, STEP, STEP/STEP (degrees, dividing 180), so3:N or so3:N:M", spec,
+      why));
+}
+
+/// The number of steps in 180 degrees.
+std::size_t parse_step(std::string_view spec, std::string_view text) {
+  const auto step = parse_number<double>(text);
+  if (!step || !std::isfinite(*step)) refuse(spec, fmt::format("'{}' is not a number", text));
+  if (!(*step > 0.0 && *step <= 180.0)) refuse(spec, fmt::format("step {} is not in (0, 180]", text));
+  const double steps = 180.0 / *step;
+  const double whole = std::round(steps);
+  if (std::abs(steps - whole) > k_step_tolerance * whole) {
+    refuse(spec, fmt::format("180 degrees are not a whole number of steps of {}", text));
+  }
+  if (whole > static_cast<double>(k_max_grid_samples)) refuse(spec, fmt::format("step {} is too fine", text));
+  return static_cast<std::size_t>(whole);
+}
+
+std::size_t parse_count(std::string_view spec, std::string_view text) {
+  const auto count = parse_number<std::size_t>(text);
+  if (!count || *count == 0) refuse(spec, fmt::format("'{}' is not a count", text));
+  return *count;
+}
+
+void check_size(std::string_view spec, double directions, double rotations) {
+  const auto limit = static_cast<double>(k_max_grid_samples);
+  if (directions > limit || rotations > limit) {
+    refuse(spec, fmt::format("{:.0f} directions and {:.0f} rotations are more than {}", directions, rotations,
+                             k_max_grid_samples));
+  }
+}
+
+Grid make_zyz_grid(std::string_view spec, std::size_t n_directions, std::size_t n_rotations) {
+  const auto d = static_cast<double>(n_directions);
+  const auto r = static_cast<double>(n_rotations);
+  check_size(spec, 2.0 * d * (d - 1.0) + 2.0, 4.0 * r * r * (r + 1.0));
+  Grid grid;
+  grid.spec = spec;
+  grid.sampler = "zyz-euler";
+  grid.direction_step_degrees = 180.0 / d;
+  grid.rotation_step_degrees = 180.0 / r;
+  grid.directions = latitude_directions(n_directions);
+  grid.rotations = zyz_rotations(n_rotations);
+  return grid;
+}
+
+/// Rotations have the volume 8 pi^2 when measured by the rotation angle (as axis times angle near the identity),
+/// directions the area 4 pi: the count of directions whose cells have the same edge.
+std::size_t matching_direction_count(std::size_t rotations) {
+  constexpr double pi = std::numbers::pi;
+  const double edge = std::cbrt(8.0 * pi * pi / static_cast<double>(rotations));
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(4.0 * pi / (edge * edge))));
+}
+
+Grid make_uniform_grid(std::string_view spec, std::string_view counts) {
+  const std::size_t colon = counts.find(':');
+  const std::size_t rotations = parse_count(spec, counts.substr(0, colon));
+  check_size(spec, 1.0, static_cast<double>(rotations));
+  const std::size_t directions = colon == std::string_view::npos ? matching_direction_count(rotations)
+                                                                 : parse_count(spec, counts.substr(colon + 1));
+  check_size(spec, static_cast<double>(directions), static_cast<double>(rotations));
+  Grid grid;
+  grid.spec = fmt::format("so3:{}:{}", rotations, directions);
+  grid.sampler = "super-fibonacci";
+  grid.directions = fibonacci_directions(directions);
+  grid.rotations = super_fibonacci_rotations(rotations);
+  return grid;
+}
+
+struct QuaternionBits {
+  std::array<std::uint64_t, 4> bits;
+  explicit QuaternionBits(const Eigen::Vector4d& q) {
+    for (std::size_t i = 0; i < 4; ++i) bits[i] = std::bit_cast<std::uint64_t>(q[static_cast<Eigen::Index>(i)]);
+  }
+  bool operator==(const QuaternionBits&) const = default;
+};
+
+struct QuaternionBitsHash {
+  std::size_t operator()(const QuaternionBits& q) const {
+    std::uint64_t h = 0;
+    for (const std::uint64_t word : q.bits) {
+      h = (h ^ word) * 0xBF58476D1CE4E5B9ull;
+      h ^= h >> 31;
+    }
+    return h;
+  }
+};
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> latitude_directions(std::size_t n) {
+  const auto turn = static_cast<std::int64_t>(2 * n);
+  std::vector<Eigen::Vector3d> directions;
+  directions.reserve(2 * n * (n - 1) + 2);
+  directions.emplace_back(0.0, 0.0, 1.0);
+  for (std::int64_t k = 1; 2 * k < turn; ++k) {
+    const CosSin theta = cos_sin_of_turn(k, turn);
+    for (std::int64_t i = 0; i < turn; ++i) {
+      const CosSin phi = cos_sin_of_turn(i, turn);
+      directions.emplace_back(theta.sin * phi.cos, theta.sin * phi.sin, theta.cos);
+    }
+  }
+  directions.emplace_back(0.0, 0.0, -1.0);
+  return directions;
+}
+
+std::vector<Eigen::Vector4d> zyz_rotations(std::size_t n) {
+  const auto half_turn = static_cast<std::int64_t>(n);
+  const std::int64_t turn = 2 * half_turn;
+  std::vector<Eigen::Vector4d> rotations;
+  rotations.reserve(4 * n * n * (n + 1));
+  for (std::int64_t alpha = 0; alpha < turn; ++alpha) {
+    for (std::int64_t beta = 0; beta <= half_turn; ++beta) {
+      const CosSin b = cos_sin_of_turn(beta, 2 * turn);  // of half the angle
+      for (std::int64_t gamma = 0; gamma < turn; ++gamma) {
+        const CosSin sum = cos_sin_of_turn(alpha + gamma, 2 * turn);
+        const CosSin difference = cos_sin_of_turn(alpha - gamma, 2 * turn);
+        rotations.push_back(
+            canonical({b.cos * sum.cos, -b.sin * difference.sin, b.sin * difference.cos, b.cos * sum.sin}));
+      }
+    }
+  }
+  return rotations;
+}
+
+std::vector<Eigen::Vector4d> super_fibonacci_rotations(std::size_t count) {
+  constexpr auto turn = 2.0L * std::numbers::pi_v<long double>;
+  constexpr auto phi = std::numbers::sqrt2_v<long double>;
+  constexpr long double psi = 1.533751168755204288118041L;
+  std::vector<Eigen::Vector4d> rotations;
+  rotations.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const long double s = static_cast<long double>(i) + 0.5L;
+    const long double t = s / static_cast<long double>(count);
+    const auto r = static_cast<double>(std::sqrt(t));
+    const auto rest = static_cast<double>(std::sqrt(1.0L - t));
+    const CosSin alpha = cos_sin(turn * fraction(s / phi));
+    const CosSin beta = cos_sin(turn * fraction(s / psi));
+    rotations.push_back(canonical({r * alpha.sin, r * alpha.cos, rest * beta.sin, rest * beta.cos}));
+  }
+  return rotations;
+}
+
+std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count) {
+  constexpr auto turn = 2.0L * std::numbers::pi_v<long double>;
+  std::vector<Eigen::Vector3d> directions;
+  directions.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto index = static_cast<long double>(i);
+    const long double z = 1.0L - (2.0L * index + 1.0L) / static_cast<long double>(count);
+    const auto parallel = static_cast<double>(std::sqrt((1.0L - z) * (1.0L + z)));
+    const CosSin longitude = cos_sin(turn * fraction(index / std::numbers::phi_v<long double>));
+    directions.emplace_back(parallel * longitude.cos, parallel * longitude.sin, static_cast<double>(z));
+  }
+  return directions;
+}
+
+Grid make_grid(std::string_view spec) {
+  // 12 steps of 15 degrees and 6 of 30 make 180.
+  if (spec == "paper") return make_zyz_grid(spec, 12, 12);
+  if (spec == "paper-volume") return make_zyz_grid(spec, 12, 6);
+  constexpr std::string_view uniform = "so3:";
+  if (spec.starts_with(uniform)) return make_uniform_grid(spec, spec.substr(uniform.size()));
+  const std::size_t slash = spec.find('/');
+  const std::size_t directions = parse_step(spec, spec.substr(0, slash));
+  const std::size_t rotations = slash == std::string_view::npos ? directions : parse_step(spec, spec.substr(slash + 1));
+  Grid grid = make_zyz_grid(spec, directions, rotations);
+  grid.spec = fmt::format("{}", grid.direction_step_degrees);
+  if (directions != rotations) grid.spec += fmt::format("/{}", grid.rotation_step_degrees);
+  return grid;
+}
+
+DistinctRotations::DistinctRotations(std::span<const Eigen::Vector4d> rotations) {
+  std::unordered_map<QuaternionBits, std::uint32_t, QuaternionBitsHash> index_of;
+  index_of.reserve(rotations.size());
+  representative.reserve(rotations.size());
+  for (std::uint32_t r = 0; r < rotations.size(); ++r) {
+    const auto [entry, is_new] = index_of.try_emplace(QuaternionBits(rotations[r]), r);
+    if (is_new) first.push_back(r);
+    representative.push_back(entry->second);
+  }
+}
+
+void DistinctRotations::copy_to_repeats(std::span<double> values, std::size_t row_size) const {
+  for (std::size_t r = 0; r < representative.size(); ++r) {
+    const std::size_t from = representative[r];
+    if (from != r) std::copy_n(&values[from * row_size], row_size, &values[r * row_size]);
+  }
+}
+
+ConfigurationRay::ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation)
+    : R(Pose::from_quaternion(rotation[0], rotation[1], rotation[2], rotation[3], Eigen::Vector3d::Zero()).R),
+      center_a(a.center()),
+      turned_center_b(R * b.center()) {}
+
+Pose configuration_pose(const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction, const Eigen::Vector4d& rotation,
+                        double s) {
+  ConfigurationRay ray(a, b, rotation);
+  ray.direction = direction;
+  return ray.pose(s);
+}
+
+}  // namespace sixdof

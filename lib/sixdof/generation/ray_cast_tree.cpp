@@ -1,0 +1,245 @@
+#include <sixdof/generation/ray_cast_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+namespace sixdof::ray_cast {
+namespace {
+
+constexpr std::size_t k_width = Tree::k_width;
+constexpr std::size_t k_leaf_triangles = Tree::k_leaf_triangles;
+
+/// The thinnest slab along the mean normal of triangles first .. first + count - 1.
+CastSlab fit_slab(const Tree& tree, std::uint32_t first, std::uint32_t count) {
+  const auto triangles = tree.corners().subspan(first, count);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Tree::Corners& t : triangles) sum += (t[1] - t[0]).cross(t[2] - t[0]);
+  const double scale = sum.cwiseAbs().maxCoeff();
+  CastSlab slab{.normal = scale > 0.0 ? Eigen::Vector3d((sum / scale).normalized()) : Eigen::Vector3d::UnitX()};
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const Tree::Corners& t : triangles) {
+    for (const Eigen::Vector3d& corner : t) {
+      const double height = slab.normal.dot(corner - tree.center());
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+  }
+  slab.middle = 0.5 * (low + high);
+  slab.half = 0.5 * (high - low);
+  return slab;
+}
+
+/// Slab and box of triangles first .. first + count - 1.
+void fit_patch(const Tree& tree, std::uint32_t first, std::uint32_t count, CastPatches& patches, std::size_t lane) {
+  const CastSlab slab = fit_slab(tree, first, count);
+  Eigen::AlignedBox3d box;
+  for (const Tree::Corners& t : tree.corners().subspan(first, count)) {
+    for (const Eigen::Vector3d& corner : t) box.extend(corner - tree.center());
+  }
+  patches.middle[lane] = slab.middle;
+  patches.half[lane] = slab.half;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    patches.normal[k][lane] = slab.normal[axis];
+    patches.box_center[k][lane] = 0.5 * (box.min()[axis] + box.max()[axis]);
+    patches.box_half[k][lane] = 0.5 * (box.max()[axis] - box.min()[axis]);
+  }
+}
+
+struct Ball {
+  Eigen::Vector3d center;
+  double radius;
+};
+
+/// A small ball around triangles first .. first + count - 1: from the centre of their box a few steps towards the
+/// farthest corner (Badoiu and Clarkson, "Smaller core-sets for balls", SODA 2003). Relative to the tree's centre.
+Ball fit_ball(const Tree& tree, std::uint32_t first, std::uint32_t count) {
+  constexpr std::uint32_t k_large = 512;  // above it, balls are too far from the surface for steps to matter
+  constexpr int k_steps = 10;
+  const auto triangles = tree.corners().subspan(first, count);
+  Eigen::AlignedBox3d box;
+  for (const Tree::Corners& t : triangles) {
+    for (const Eigen::Vector3d& corner : t) box.extend(corner);
+  }
+  Ball best{box.center(), std::numeric_limits<double>::infinity()};
+  Eigen::Vector3d center = best.center;
+  for (int step = 0; step <= (count > k_large ? 0 : k_steps); ++step) {
+    double squared = -1.0;
+    Eigen::Vector3d farthest = center;
+    for (const Tree::Corners& t : triangles) {
+      for (const Eigen::Vector3d& corner : t) {
+        const double d = (corner - center).squaredNorm();
+        if (d > squared) {
+          squared = d;
+          farthest = corner;
+        }
+      }
+    }
+    if (std::sqrt(squared) < best.radius) best = {center, std::sqrt(squared)};
+    center += (farthest - center) / (step + 3.0);
+  }
+  best.center -= tree.center();
+  return best;
+}
+
+float box_size(const CastVolume& v) { return v.half[0] * v.half[0] + v.half[1] * v.half[1] + v.half[2] * v.half[2]; }
+
+CastVolume volume_of(const CastNode& node, std::size_t lane) {
+  CastVolume v;
+  for (std::size_t k = 0; k < 3; ++k) {
+    v.center[k] = node.center[k][lane];
+    v.half[k] = node.half[k][lane];
+    v.normal[k] = node.normal[k][lane];
+    v.ball_center[k] = node.ball_center[k][lane];
+  }
+  v.ball_radius = node.ball_radius[lane];
+  v.slab_offset = node.slab_offset[lane];
+  v.slab_half = node.slab_half[lane];
+  v.size = box_size(v);
+  return v;
+}
+
+}  // namespace
+
+CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
+  nodes_.resize(tree_->nodes().size());
+  patches_.resize(nodes_.size());
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const Tree::Node& from = tree_->nodes()[n];
+    CastNode& to = nodes_[n];
+    to = {};
+    to.child_count = from.child_count;
+    for (std::size_t lane = 0; lane < k_width; ++lane) {
+      const std::size_t i = lane < from.child_count ? lane : 0;
+      for (std::size_t k = 0; k < 3; ++k) to.normal[k][lane] = from.normal[k][i];
+      to.slab_offset[lane] = 0.5f * (from.slab_lower[i] + from.slab_upper[i]);
+      to.slab_half[lane] = 0.5f * (from.slab_upper[i] - from.slab_lower[i]);
+      if (lane >= from.child_count) {
+        to.child[lane] = to.child[0];
+        for (std::size_t k = 0; k < 3; ++k) to.ball_center[k][lane] = to.ball_center[k][0];
+        to.ball_radius[lane] = to.ball_radius[0];
+        to.slab_offset[lane] = to.slab_offset[0];
+        continue;
+      }
+      const Tree::Child child = from.child[i];
+      if (child.is_leaf()) {
+        to.child[lane] = CastChild::leaf(static_cast<std::uint32_t>(leaf_children_.size()));
+        leaf_children_.push_back(child);
+        fit_patch(*tree_, child.first(), child.count(), patches_[n], lane);
+      } else {
+        to.child[lane] = CastChild::node(child.node());
+        const Tree::Node& below = tree_->nodes()[child.node()];
+        fit_patch(*tree_, below.first_triangle, below.triangle_count, patches_[n], lane);
+      }
+      const Ball ball = child.is_leaf() ? fit_ball(*tree_, child.first(), child.count())
+                                        : fit_ball(*tree_, tree_->nodes()[child.node()].first_triangle,
+                                                   tree_->nodes()[child.node()].triangle_count);
+      to.ball_radius[lane] = static_cast<float>(ball.radius);
+      for (std::size_t k = 0; k < 3; ++k) {
+        to.ball_center[k][lane] = static_cast<float>(ball.center[static_cast<Eigen::Index>(k)]);
+        to.slab_offset[lane] -= to.normal[k][lane] * to.ball_center[k][lane];
+      }
+    }
+  }
+  leaves_.resize(leaf_children_.size());
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
+    const Tree::Child child = leaf_children_[leaf];
+    for (std::uint32_t i = 0; i < k_leaf_triangles; ++i) {
+      const Tree::Corners& t = tree_->corners()[child.first() + (i < child.count() ? i : 0)];
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Eigen::Vector3f p = (t[corner] - tree_->center()).cast<float>();
+        for (std::size_t k = 0; k < 3; ++k) leaves_[leaf].corner[corner][k][i] = p[static_cast<Eigen::Index>(k)];
+      }
+    }
+  }
+}
+
+CastTree::CastTree(std::shared_ptr<const CastMesh> mesh)
+    : mesh_(std::move(mesh)),
+      nodes_(mesh_->nodes().begin(), mesh_->nodes().end()),
+      volumes_(k_width * nodes_.size()),
+      leaves_(mesh_->leaves().size()),
+      bounds_(nodes_.size()) {}
+
+CastTree::Bounds CastTree::turn_leaf(std::uint32_t leaf, const float (&m)[3][3]) {
+  const CastLeaf& from = mesh_->leaves()[leaf];
+  CastLeaf& to = leaves_[leaf];
+  Bounds box;
+  for (std::size_t i = 0; i < 3; ++i) {
+    float low[k_leaf_triangles];
+    float high[k_leaf_triangles];
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      for (std::size_t t = 0; t < k_leaf_triangles; ++t) {
+        const float x = m[i][0] * from.corner[corner][0][t] + m[i][1] * from.corner[corner][1][t] +
+                        m[i][2] * from.corner[corner][2][t];
+        to.corner[corner][i][t] = x;
+        low[t] = corner == 0 ? x : std::min(low[t], x);
+        high[t] = corner == 0 ? x : std::max(high[t], x);
+      }
+    }
+    box.lower[i] = std::min(std::min(low[0], low[1]), std::min(low[2], low[3]));
+    box.upper[i] = std::max(std::max(high[0], high[1]), std::max(high[2], high[3]));
+  }
+  return box;
+}
+
+void CastTree::turn(const Eigen::Matrix3d& M) {
+  matrix_ = M;
+  float m[3][3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      m[i][k] = static_cast<float>(M(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
+    }
+  }
+  for (std::size_t n = nodes_.size(); n-- > 0;) {  // children before parents
+    const CastNode& from = mesh_->nodes()[n];
+    CastNode& to = nodes_[n];
+    Bounds all{};
+    for (std::size_t lane = 0; lane < from.child_count; ++lane) {
+      const CastChild child = from.child[lane];
+      const Bounds box = child.is_leaf() ? turn_leaf(child.index(), m) : bounds_[child.index()];
+      for (std::size_t k = 0; k < 3; ++k) {
+        to.center[k][lane] = 0.5f * (box.lower[k] + box.upper[k]);
+        to.half[k][lane] = 0.5f * (box.upper[k] - box.lower[k]);
+        all.lower[k] = lane == 0 ? box.lower[k] : std::min(all.lower[k], box.lower[k]);
+        all.upper[k] = lane == 0 ? box.upper[k] : std::max(all.upper[k], box.upper[k]);
+      }
+    }
+    for (std::size_t lane = from.child_count; lane < k_width; ++lane) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        to.center[k][lane] = to.center[k][0];
+        to.half[k][lane] = to.half[k][0];
+      }
+    }
+    bounds_[n] = all;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t lane = 0; lane < k_width; ++lane) {
+        to.normal[i][lane] =
+            m[i][0] * from.normal[0][lane] + m[i][1] * from.normal[1][lane] + m[i][2] * from.normal[2][lane];
+        to.ball_center[i][lane] = m[i][0] * from.ball_center[0][lane] + m[i][1] * from.ball_center[1][lane] +
+                                  m[i][2] * from.ball_center[2][lane];
+      }
+    }
+    for (std::size_t lane = 0; lane < from.child_count; ++lane) volumes_[k_width * n + lane] = volume_of(to, lane);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    root_volume_.center[k] = 0.5f * (bounds_[0].lower[k] + bounds_[0].upper[k]);
+    root_volume_.half[k] = 0.5f * (bounds_[0].upper[k] - bounds_[0].lower[k]);
+  }
+  root_volume_.ball_radius = static_cast<float>(radius());
+  root_volume_.size = box_size(root_volume_);
+}
+
+TriangleCorners CastTree::triangle(std::uint32_t t) const {
+  const Tree& tree = mesh_->tree();
+  const Tree::Corners& corners = tree.corners()[t];
+  return {matrix_ * (corners[0] - tree.center()), matrix_ * (corners[1] - tree.center()),
+          matrix_ * (corners[2] - tree.center())};
+}
+
+}  // namespace sixdof::ray_cast

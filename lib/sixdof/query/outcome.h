@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string_view>
+
+namespace sixdof {
+
+/// Why a query gave no value. Every query ends as exactly one of these; none is ever dropped.
+enum class Status {
+  ok,
+  unsupported,  ///< The algorithm does not answer this kind of query.
+  failed,       ///< The algorithm gave up, threw, or returned something that is no answer.
+  non_finite,   ///< The algorithm returned a NaN or an infinity.
+};
+
+std::string_view to_string(Status status);
+
+/// A value, or why there is none. `value` is meaningful only if ok(). The words behind a failure are
+/// Query::diagnosis().
+template <class T>
+struct Outcome {
+  Status status = Status::unsupported;
+  T value{};
+
+  Outcome() = default;
+  Outcome(Status why) : status(why) {}                      // NOLINT(google-explicit-constructor): reads as a value
+  Outcome(T answer) : status(Status::ok), value(answer) {}  // NOLINT(google-explicit-constructor)
+
+  bool ok() const { return status == Status::ok; }
+};
+
+}  // namespace sixdof

@@ -1,0 +1,305 @@
+#include <sixdof/scenario/cone_block.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <sixdof/scenario/circles.h>
+#include <sixdof/scenario/parameters.h>
+#include <sixdof/scenario/quadrature.h>
+
+namespace sixdof {
+namespace {
+
+struct Shape {
+  double height, radius, block_length, block_height, block_width, depth, overshoot, reference_length;
+  int facets;
+  RoundParts round;
+
+  explicit Shape(const Settings& s)
+      : height(s.number("cone_height")),
+        radius(s.number("cone_radius")),
+        block_length(s.number("block_length")),
+        block_height(s.number("block_height")),
+        block_width(s.number("block_width")),
+        depth(s.number("depth")),
+        overshoot(s.number("overshoot")),
+        reference_length(radius),
+        facets(facets_of(s)),
+        round(round_parts_of(s)) {
+    const double tip = depth * radius / height;
+    require(depth < height, "the cone sinks in completely: depth must be below cone_height");
+    require(overshoot > tip, "the path must start beside the block: overshoot must exceed the tip's radius");
+    // Also not so near an end that leaving over the end is shorter than leaving upwards.
+    const double flank = std::sqrt(1.0 + std::pow(radius / height, 2));
+    require(block_length > 2.0 * std::max(tip, depth * flank - tip),
+            "the tip is never wholly over the block: block_length is too small");
+    require(0.5 * block_width > tip + std::min(depth, 0.5 * block_height),
+            "the block's long edges are too near the tip: block_width is too small");
+  }
+};
+
+/// Sums the wrench of surface elements. Everything is symmetric in z, so only x, y and the torque's z remain.
+struct PlaneWrench {
+  double x = 0.0, y = 0.0, torque = 0.0;
+
+  PlaneWrench& operator+=(const PlaneWrench& other) {
+    x += other.x;
+    y += other.y;
+    torque += other.torque;
+    return *this;
+  }
+  friend PlaneWrench operator*(double factor, const PlaneWrench& w) {
+    return {factor * w.x, factor * w.y, factor * w.torque};
+  }
+  friend PlaneWrench operator+(PlaneWrench a, const PlaneWrench& b) { return a += b; }
+};
+
+PlaneWrench at(double arm_x, double arm_y, double force_x, double force_y) {
+  return {force_x, force_y, arm_x * force_y - arm_y * force_x};
+}
+
+class ConeBlock final : public Scenario {
+ public:
+  ConeBlock(About about, const Shape& shape)
+      : Scenario(std::move(about),
+                 box_solid({0.0, -shape.block_height, -0.5 * shape.block_width},
+                           {shape.block_length, 0.0, 0.5 * shape.block_width}, "block"),
+                 cone_solid(shape.radius, shape.height, shape.facets, shape.round, "cone")),
+        shape_(shape),
+        slope_(shape.radius / shape.height),
+        tip_(slope_ * shape.depth),
+        bottom_(std::max(0.0, shape.depth - shape.block_height)) {}
+
+  Pose pose(double progress) const override {
+    return {Eigen::Matrix3d::Identity(), {apex_x(progress), -shape_.depth, 0.0}};
+  }
+
+  bool in_window(double progress) const override {
+    const double x = apex_x(progress);
+    const double inside = std::min(x, shape_.block_length - x);
+    return inside >= tip_ && depth(x) == shape_.depth;
+  }
+
+  std::optional<IdealWrench> ideal(IdealLaw law, double progress) const override {
+    const double x = apex_x(progress);
+    switch (law) {
+      case IdealLaw::depth:
+        return upwards(depth(x));
+      case IdealLaw::volume:
+        return upwards(volume(x));
+      case IdealLaw::gradient:
+        return wrench(volume(x), gradient(x));
+      case IdealLaw::energy:
+        return wrench(volume(x), volume(x) * gradient(x));
+      case IdealLaw::traction:
+        return wrench(depth(x), traction(x, false));
+      case IdealLaw::wall_traction:
+        return wrench(depth(x), traction(x, true));
+      // "p ~ delta" and "V ~ delta^3": constant as long as the bodies meet.
+      case IdealLaw::paper_depth:
+        return upwards(depth(x) > 0.0 ? shape_.depth : 0.0);
+      case IdealLaw::paper_volume:
+        if (name() == "Ib") return std::nullopt;
+        return upwards(depth(x) > 0.0 ? std::pow(shape_.depth, 3) : 0.0);
+    }
+    return std::nullopt;
+  }
+
+  Sketch sketch() const override {
+    // The start of the path; the block goes on to the right.
+    const double x = 1.5 * shape_.radius;
+    const double low = -shape_.depth;
+    Sketch sketch;
+    sketch.progress = (x + shape_.overshoot) / (shape_.block_length + 2.0 * shape_.overshoot);
+    sketch.part = {Eigen::Vector2d(-1.5 * shape_.overshoot, -std::max(shape_.block_height, 1.2 * shape_.depth)),
+                   Eigen::Vector2d(x + 2.0 * shape_.radius, shape_.height - 0.8 * shape_.depth)};
+    sketch.up = Eigen::Vector3d::UnitY();
+    const double rim = x + shape_.radius;
+    const double top = low + shape_.height;
+    sketch.dimensions = {
+        {{x, low}, {x, top}, {1.25 * shape_.radius, 0.0}, fmt::format("H = {:g}", shape_.height)},
+        {{x, top}, {rim, top}, {0.0, 0.12 * shape_.height}, fmt::format("r = {:g}", shape_.radius)},
+        {{x, low}, {x, 0.0}, {-0.75 * shape_.radius, 0.0}, fmt::format("\u03b4 = {:g}", shape_.depth)},
+        {{-shape_.overshoot, 0.0}, {0.0, 0.0}, {0.0, -0.15 * shape_.height}, fmt::format("a = {:g}", shape_.overshoot)},
+        {{rim, -shape_.block_height},
+         {rim, 0.0},
+         {0.6 * shape_.radius, 0.0},
+         fmt::format("h = {:g}", shape_.block_height)}};
+    return sketch;
+  }
+
+ private:
+  double apex_x(double progress) const {
+    return -shape_.overshoot + progress * (shape_.block_length + 2.0 * shape_.overshoot);
+  }
+
+  static IdealWrench upwards(double magnitude) { return {magnitude, {0.0, magnitude, 0.0}, Eigen::Vector3d::Zero()}; }
+
+  static IdealWrench wrench(double penalty, const PlaneWrench& w) {
+    return {penalty, {w.x, w.y, 0.0}, {0.0, 0.0, w.torque}};
+  }
+
+  /// Translational penetration depth: out of the top (delta), or past an end edge, square to the cone's flank: the part
+  /// of the tip's radius that is over the block, times the cosine of the half angle.
+  double depth(double x) const {
+    const double over = std::min(x, shape_.block_length - x) + tip_;
+    const double cosine = 1.0 / std::sqrt(1.0 + slope_ * slope_);
+    return std::clamp(over * cosine, 0.0, shape_.depth);
+  }
+
+  /// Disc of the cone at height s above the apex, cut to the block's length. Moment about the axis.
+  DiscPart section(double s, double x) const {
+    const DiscPart from_start = disc_part(slope_ * s, -x);
+    const DiscPart past_end = disc_part(slope_ * s, shape_.block_length - x);
+    return {from_start.area - past_end.area, from_start.moment_x - past_end.moment_x};
+  }
+
+  /// Heights above the apex between which sections change smoothly: where the disc first reaches an end.
+  std::vector<double> pieces(double x) const {
+    std::vector<double> cuts{bottom_, shape_.depth};
+    for (const double reach : {std::abs(x) / slope_, std::abs(shape_.block_length - x) / slope_}) {
+      if (reach > bottom_ && reach < shape_.depth) cuts.push_back(reach);
+    }
+    std::sort(cuts.begin(), cuts.end());
+    return cuts;
+  }
+
+  double volume(double x) const {
+    double sum = 0.0;
+    const std::vector<double> cuts = pieces(x);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      sum += integrate_chords([&](double s) { return section(s, x).area; }, cuts[i], cuts[i + 1]);
+    }
+    return sum;
+  }
+
+  /// -grad V = integral of A's normal over the part of A's surface inside B: top, bottom and both ends.
+  PlaneWrench gradient(double x) const {
+    const double middle = 0.5 * shape_.height;  // of the cone, where the reference point is
+    const DiscPart top = section(shape_.depth, x);
+    const DiscPart bottom = section(bottom_, x);
+    PlaneWrench sum{0.0, top.area - bottom.area, top.moment_x - bottom.moment_x};
+    for (const bool far_end : {false, true}) {
+      const double offset = std::abs(far_end ? shape_.block_length - x : x);
+      const double normal = far_end ? 1.0 : -1.0;
+      const double from = std::max(bottom_, offset / slope_);
+      const auto chord = [&](double s) {
+        const double r = slope_ * s;
+        return 2.0 * std::sqrt(std::max(0.0, (r - offset) * (r + offset)));
+      };
+      sum.x += normal * integrate_chords(chord, from, shape_.depth);
+      sum.torque -= normal * integrate_chords([&](double s) { return (s - middle) * chord(s); }, from, shape_.depth);
+    }
+    return sum;
+  }
+
+  /// Integral over the cone's flank inside the block of the depth below the nearest face.
+  PlaneWrench traction(double x, bool along_wall) const {
+    // Beyond these panels nothing is gained: the integrand's remaining kinks sit at the panels' scale.
+    constexpr int k_panels = 8;
+    std::vector<double> cuts = pieces(x);
+    const double turning = shape_.depth - 0.5 * shape_.block_height;  // as deep below the top as above the bottom
+    if (turning > bottom_) cuts.push_back(turning);
+    for (int i = 1; i < k_panels; ++i) cuts.push_back(bottom_ + (shape_.depth - bottom_) * i / k_panels);
+    std::sort(cuts.begin(), cuts.end());
+    PlaneWrench sum;
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      const auto component = [&](double PlaneWrench::*which) {
+        return integrate([&](double s) { return ring(s, x, along_wall).*which; }, cuts[i], cuts[i + 1]);
+      };
+      sum += {component(&PlaneWrench::x), component(&PlaneWrench::y), component(&PlaneWrench::torque)};
+    }
+    return sum;
+  }
+
+  /// Traction of the flank's ring at height s above the apex, per unit of s.
+  PlaneWrench ring(double s, double x, bool along_wall) const {
+    const double below_top = shape_.depth - s;
+    const double above_bottom = shape_.block_height - below_top;
+    const double vertical = std::min(below_top, above_bottom);
+    const double r = slope_ * s;
+    const double flank = std::sqrt(1.0 + slope_ * slope_);
+    const double arm_y = s - 0.5 * shape_.height;
+    // Angles at which the distance to an end face takes over from the vertical one, or ends.
+    std::vector<double> angles{0.0, std::numbers::pi};
+    for (const double at_x : {0.0, vertical, shape_.block_length - vertical, shape_.block_length}) {
+      const double cosine = r > 0.0 ? (at_x - x) / r : 2.0;
+      if (std::abs(cosine) < 1.0) angles.push_back(std::acos(cosine));
+    }
+    std::sort(angles.begin(), angles.end());
+    PlaneWrench sum;
+    for (std::size_t i = 0; i + 1 < angles.size(); ++i) {
+      const double from = angles[i];
+      const double to = angles[i + 1];
+      const double middle = x + r * std::cos(0.5 * (from + to));
+      if (middle <= 0.0 || middle >= shape_.block_length) continue;
+      // On the whole piece one face is the nearest.
+      const double to_start = middle;
+      const double to_end = shape_.block_length - middle;
+      const bool start = to_start < std::min(vertical, to_end);
+      const bool end = !start && to_end < vertical;
+      const auto element = [&](double angle) {
+        const double arm_x = r * std::cos(angle);
+        const double d = start ? x + arm_x : end ? shape_.block_length - x - arm_x : vertical;
+        double nx = -std::cos(angle) / flank;  // inward normal of the cone
+        double ny = slope_ / flank;
+        if (along_wall) {
+          nx = start ? -1.0 : end ? 1.0 : 0.0;
+          ny = start || end ? 0.0 : below_top <= above_bottom ? 1.0 : -1.0;
+        }
+        return at(arm_x, arm_y, d * nx, d * ny);
+      };
+      const auto component = [&](double PlaneWrench::*which) {
+        return integrate([&](double angle) { return element(angle).*which; }, from, to);
+      };
+      sum += {component(&PlaneWrench::x), component(&PlaneWrench::y), component(&PlaneWrench::torque)};
+    }
+    // Both sides of the plane z = 0; area element r flank dangle ds.
+    return 2.0 * r * flank * sum;
+  }
+
+  Shape shape_;
+  double slope_;   ///< radius / height
+  double tip_;     ///< radius of the cone in the plane of the block's top
+  double bottom_;  ///< height above the apex of the block's bottom; 0 if the apex is above it
+};
+
+}  // namespace
+
+Settings cone_block_settings(bool thin) {
+  std::vector<Parameter> parameters{
+      length_parameter("cone_height", "height H of the cone", "60"),
+      length_parameter("cone_radius", "radius r of the cone's base", "30"),
+      length_parameter("block_length", "length L of the block along the path", "900"),
+      length_parameter("block_height", "thickness h of the block", thin ? "0.2" : "30"),
+      length_parameter("block_width", "width of the block across the path", "375"),
+      length_parameter("depth", "how far the apex is below the block's top, delta", "20"),
+      length_parameter("overshoot", "path before and behind the block, a", "30"),
+  };
+  add_round_parameters(parameters);
+  return Settings(std::move(parameters));
+}
+
+std::unique_ptr<Scenario> make_cone_block(const Settings& settings, bool thin) {
+  const Shape shape(settings);
+  const std::vector<std::string> rules{
+      "The block is a closed solid; an algorithm may not be told which face the cone came through.",
+      "Force and torque are those on the cone, about the middle of its bounding box.",
+      "Plain measures are taken where the whole tip is over the block; the suffix _all means the whole path."};
+  ConeBlock::About about{
+      thin ? "Ib" : "Ia",
+      thin ? "Does a plate far thinner than the penetration still push back, or does the cone tunnel through it?"
+           : "Does a sharp tip that slides over a flat face feel a constant force along the face's normal?",
+      rules,
+      {0.0, 0.5 * shape.height, 0.0},
+      shape.reference_length,
+      false};
+  return std::make_unique<ConeBlock>(std::move(about), shape);
+}
+
+}  // namespace sixdof

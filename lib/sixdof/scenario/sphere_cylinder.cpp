@@ -1,0 +1,170 @@
+#include <sixdof/scenario/sphere_cylinder.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <sixdof/scenario/circles.h>
+#include <sixdof/scenario/parameters.h>
+#include <sixdof/scenario/quadrature.h>
+
+namespace sixdof {
+namespace {
+
+struct Shape {
+  double sphere_radius, cylinder_radius, cylinder_length, orbit;
+  int facets;
+  RoundParts round;
+
+  explicit Shape(const Settings& s)
+      : sphere_radius(s.number("sphere_radius")),
+        cylinder_radius(s.number("cylinder_radius")),
+        cylinder_length(s.number("cylinder_length")),
+        orbit(s.number("orbit_radius")),
+        facets(facets_of(s)),
+        round(round_parts_of(s)) {
+    require(orbit < sphere_radius + cylinder_radius, "the sphere never touches: orbit_radius is too large");
+    require(orbit > cylinder_radius && orbit > sphere_radius,
+            "one centre is inside the other body: orbit_radius must exceed both radii");
+    // The nearest surface is then never a flat end: the part inside stays further from the ends than from the wall.
+    require(0.5 * cylinder_length > half_height() + sphere_radius + cylinder_radius - orbit,
+            "the sphere meets the cylinder's ends: cylinder_length is too small");
+  }
+
+  /// Half height of the common part, where the sphere's horizontal circle only touches the cylinder.
+  double half_height() const {
+    const double reach = orbit - cylinder_radius;
+    return std::sqrt((sphere_radius - reach) * (sphere_radius + reach));
+  }
+};
+
+class SphereCylinder final : public Scenario {
+ public:
+  SphereCylinder(About about, const Shape& shape)
+      : Scenario(std::move(about),
+                 cylinder_solid(shape.cylinder_radius, shape.cylinder_length, shape.facets, shape.round, "cylinder"),
+                 sphere_solid(shape.sphere_radius, shape.facets, shape.round, "sphere")),
+        shape_(shape) {
+    depth_ = shape.sphere_radius + shape.cylinder_radius - shape.orbit;
+    const double half = shape.half_height();
+    volume_ = 2.0 * integrate_chords([&](double z) { return lens_area(circle(z), cylinder(), orbit()); }, 0.0, half);
+    gradient_ = 2.0 * integrate_chords([&](double z) { return lens_chord(circle(z), cylinder(), orbit()); }, 0.0, half);
+    traction_ = 2.0 * integrate_chords([&](double z) { return traction(z, false); }, 0.0, half);
+    wall_traction_ = 2.0 * integrate_chords([&](double z) { return traction(z, true); }, 0.0, half);
+  }
+
+  Pose pose(double progress) const override { return {Eigen::Matrix3d::Identity(), shape_.orbit * outwards(progress)}; }
+
+  std::optional<IdealWrench> ideal(IdealLaw law, double progress) const override {
+    const auto radial = [&](double penalty, double magnitude) {
+      return IdealWrench{penalty, magnitude * outwards(progress), Eigen::Vector3d::Zero()};
+    };
+    switch (law) {
+      case IdealLaw::depth:
+        return radial(depth_, depth_);
+      case IdealLaw::volume:
+        return radial(volume_, volume_);
+      case IdealLaw::gradient:
+        return radial(volume_, gradient_);
+      case IdealLaw::energy:
+        return radial(volume_, volume_ * gradient_);
+      case IdealLaw::traction:
+        return radial(depth_, traction_);
+      case IdealLaw::wall_traction:
+        return radial(depth_, wall_traction_);
+      case IdealLaw::paper_depth:
+        return radial(shape_.orbit, shape_.orbit);  // "p = rho"
+      case IdealLaw::paper_volume:
+        return radial(1.0, 1.0);  // "V = const"
+    }
+    return std::nullopt;
+  }
+
+  Sketch sketch() const override {
+    Sketch sketch;
+    sketch.progress = 0.09;
+    const Eigen::Vector2d center = shape_.orbit * outwards(sketch.progress).head<2>();
+    const Eigen::Vector2d across(-center.y() / shape_.orbit, center.x() / shape_.orbit);
+    const double reach = 1.1 * (shape_.orbit + shape_.sphere_radius);
+    sketch.part = {Eigen::Vector2d(-1.3 * shape_.orbit, -1.3 * shape_.orbit), Eigen::Vector2d(reach, reach)};
+    sketch.up = Eigen::Vector3d::UnitZ();
+    const Eigen::Vector2d left(-shape_.cylinder_radius, 0.0);
+    sketch.dimensions = {
+        {Eigen::Vector2d::Zero(), center, 0.55 * shape_.sphere_radius * across,
+         fmt::format("\u03c1 = {:g}", shape_.orbit)},
+        {Eigen::Vector2d::Zero(),
+         left,
+         {0.0, 0.3 * shape_.cylinder_radius},
+         fmt::format("R = {:g}", shape_.cylinder_radius)},
+        {center,
+         center + shape_.sphere_radius * Eigen::Vector2d::UnitX(),
+         {0.0, -0.35 * shape_.sphere_radius},
+         fmt::format("r = {:g}", shape_.sphere_radius)},
+        {center * (1.0 - shape_.sphere_radius / shape_.orbit), center * (shape_.cylinder_radius / shape_.orbit),
+         -0.95 * shape_.sphere_radius * across, fmt::format("p = {:g}", depth_)}};
+    return sketch;
+  }
+
+ private:
+  double orbit() const { return shape_.orbit; }
+  double cylinder() const { return shape_.cylinder_radius; }
+
+  /// Radius of the sphere's horizontal circle at height z.
+  double circle(double z) const { return std::sqrt((shape_.sphere_radius - z) * (shape_.sphere_radius + z)); }
+
+  Eigen::Vector3d outwards(double progress) const {
+    const double angle = 2.0 * std::numbers::pi * progress;
+    return {std::cos(angle), std::sin(angle), 0.0};
+  }
+
+  /// Radial part of the traction on the sphere's horizontal circle at height z, per unit of z. Points are at `angle`
+  /// from the direction towards the cylinder's axis; the sphere's area element is radius * dz * dangle at any height.
+  double traction(double z, bool along_wall) const {
+    const double q = circle(z);
+    const double cosine = (orbit() * orbit() + q * q - cylinder() * cylinder()) / (2.0 * orbit() * q);
+    if (cosine >= 1.0) return 0.0;
+    const auto element = [&](double angle) {
+      const double x = orbit() - q * std::cos(angle);
+      const double from_axis = std::hypot(x, q * std::sin(angle));
+      const double normal = along_wall ? x / from_axis : q * std::cos(angle) / shape_.sphere_radius;
+      return (cylinder() - from_axis) * normal * shape_.sphere_radius;
+    };
+    return 2.0 * integrate(element, 0.0, std::acos(cosine));
+  }
+
+  Shape shape_;
+  double depth_ = 0.0;
+  double volume_ = 0.0;
+  double gradient_ = 0.0;  ///< -dV / d orbit
+  double traction_ = 0.0;
+  double wall_traction_ = 0.0;
+};
+
+}  // namespace
+
+Settings sphere_cylinder_settings() {
+  std::vector<Parameter> parameters{
+      length_parameter("sphere_radius", "radius r of the sphere", "30"),
+      length_parameter("cylinder_radius", "radius R of the cylinder", "30"),
+      length_parameter("cylinder_length", "length of the cylinder", "100"),
+      length_parameter("orbit_radius", "distance rho of the sphere's centre from the cylinder's axis", "50"),
+  };
+  add_round_parameters(parameters);
+  return Settings(std::move(parameters));
+}
+
+std::unique_ptr<Scenario> make_sphere_cylinder(const Settings& settings) {
+  const Shape shape(settings);
+  SphereCylinder::About about{
+      "II",
+      "Does a constant contact of two smooth round bodies give a constant force that turns with "
+      "the contact, and no torque?",
+      {"The sphere is carried round without turning.", "Force and torque are those on the sphere, about its centre."},
+      Eigen::Vector3d::Zero(),
+      shape.sphere_radius,
+      true};
+  return std::make_unique<SphereCylinder>(std::move(about), shape);
+}
+
+}  // namespace sixdof

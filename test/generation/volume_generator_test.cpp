@@ -1,0 +1,398 @@
+#include <sixdof/generation/volume_generator.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <hwy/targets.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/algorithm/exact.h>
+#include <sixdof/base/error.h>
+#include <sixdof/algorithm/brute_force.h>
+#include <sixdof/generation/ray_cast.h>
+#include <sixdof/generation/sphere_method.h>
+#include <sixdof/configuration/verification.h>
+#include <sixdof/models/boxes.h>
+#include <sixdof/models/model_catalogue.h>
+#include <sixdof/oracle/overlap_global.h>
+
+#include "../configuration/shapes.h"
+
+namespace sixdof {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+const std::unique_ptr<Algorithm> k_brute_force = make_brute_force_algorithm();
+
+const std::unique_ptr<DistanceGenerator> k_touching = make_sphere_method(*k_brute_force);
+const std::vector<int> k_percents{0, 10, 1, 5};
+
+/// A grid of one configuration.
+Grid single(const Eigen::Vector3d& direction, const Eigen::Vector4d& rotation) {
+  Grid grid;
+  grid.spec = "single";
+  grid.directions = {direction};
+  grid.rotations = {rotation};
+  return grid;
+}
+
+/// A sphere cut into `rings` parallels and twice as many meridians.
+Mesh ball_mesh(double r, std::size_t rings, const Eigen::Vector3d& center, const std::string& name) {
+  std::vector<Eigen::Vector3d> vertices{center + Eigen::Vector3d(0, 0, r)};
+  std::vector<Triangle> triangles;
+  const auto columns = static_cast<std::uint32_t>(2 * rings);
+  for (std::size_t i = 1; i < rings; ++i) {
+    const double polar = std::numbers::pi * static_cast<double>(i) / static_cast<double>(rings);
+    for (std::uint32_t k = 0; k < columns; ++k) {
+      const double turn = 2.0 * std::numbers::pi * k / columns;
+      vertices.emplace_back(center + r * Eigen::Vector3d(std::sin(polar) * std::cos(turn),
+                                                         std::sin(polar) * std::sin(turn), std::cos(polar)));
+    }
+  }
+  const auto last = static_cast<std::uint32_t>(vertices.size());
+  vertices.emplace_back(center - Eigen::Vector3d(0, 0, r));
+  for (std::uint32_t k = 0; k < columns; ++k) {
+    const std::uint32_t next = (k + 1) % columns;
+    triangles.push_back({0, 1 + k, 1 + next});
+    triangles.push_back({last, last - columns + next, last - columns + k});
+    for (std::uint32_t i = 0; i + 2 < rings; ++i) {
+      const std::uint32_t up = 1 + i * columns, down = up + columns;
+      triangles.push_back({up + k, down + k, down + next});
+      triangles.push_back({up + k, down + next, up + next});
+    }
+  }
+  return Mesh::build(std::move(vertices), std::move(triangles), name);
+}
+
+const Bucket& bucket_of(const Generated& result, int percent) {
+  for (const Bucket& bucket : result.buckets) {
+    if (bucket.summary.key == BucketKey{BucketKind::volume, percent}) return bucket;
+  }
+  throw BadArgument("no such bucket");
+}
+
+TEST(VolumeGenerator, BoxesMeetTheirClosedForm) {
+  const Mesh a = test::boxes_mesh({{{1.0, -2.0, 0.5}, {0.7, 0.6, 0.5}}}, "a");
+  const Mesh b = test::boxes_mesh({{{0.3, 0.1, 4.0}, {0.4, 0.35, 0.45}}}, "b");
+  // Half turn about z and no turn: the boxes stay parallel to the axes.
+  for (const auto& [first, second] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    for (const Eigen::Vector4d& q : {Eigen::Vector4d(1, 0, 0, 0), Eigen::Vector4d(0, 0, 0, 1)}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const Eigen::Vector3d half_a = 0.5 * first->box().sizes(), half_b = 0.5 * second->box().sizes();
+        const Eigen::Vector3d common = 2.0 * half_a.cwiseMin(half_b);
+        const double section = common.prod() / common[axis];
+        const Generated result =
+            generate_volumes(*k_touching, *first, *second, single(Eigen::Vector3d::Unit(axis), q), k_percents);
+        const double contact = half_a[axis] + half_b[axis];
+        // Contact is aimed at from k_contact_target outside.
+        EXPECT_NEAR(bucket_of(result, 0).translations[0], contact, 2 * k_contact_target * first->diagonal());
+        for (const int percent : {1, 5, 10}) {
+          const Bucket& bucket = bucket_of(result, percent);
+          const double volume = 0.01 * percent * first->volume();
+          EXPECT_DOUBLE_EQ(bucket.summary.nominal, volume);
+          EXPECT_NEAR(bucket.translations[0], contact - volume / section, k_volume_tolerance * first->volume() / section);
+        }
+      }
+    }
+  }
+}
+
+TEST(VolumeGenerator, BallsMeetTheirLens) {
+  // Volume common to two balls at distance d: pi (R + r - d)^2 (d^2 + 2 d (R + r) - 3 (R - r)^2) / (12 d).
+  const double big = 1.0, small = 0.8;
+  const Mesh a = ball_mesh(big, 24, {0.2, 0.1, -3.0}, "big");
+  const Mesh b = ball_mesh(small, 24, {1.0, 0.0, 0.3}, "small");
+  std::mt19937_64 random(7);
+  const auto exact = make_exact_algorithm();
+  const auto touching = make_sphere_method(*exact);
+  const auto lens = [&](double d) {
+    const double depth = big + small - d;
+    return std::numbers::pi * depth * depth * (d * d + 2 * d * (big + small) - 3 * (big - small) * (big - small)) /
+           (12 * d);
+  };
+  for (int i = 0; i < 3; ++i) {
+    const Generated result = generate_volumes(
+        *touching, a, b, single(test::random_direction(random), test::random_rotation(random)), k_percents);
+    for (const int percent : {5, 10}) {
+      // Chords of 24 rings take 0.9 % of a volume; of a lens's depth of a quarter radius up to a tenth.
+      const double expected = 0.01 * percent * a.volume();
+      EXPECT_NEAR(lens(bucket_of(result, percent).translations[0]) / expected, 1.0, 0.15) << percent;
+    }
+  }
+}
+
+/// All translations of every bucket against brute force: columns for the volume, small steps for what comes before.
+void expect_right(const Mesh& a, const Mesh& b, const Grid& grid, const Generated& result, double step) {
+  std::size_t reachable = 0;
+  for (const Bucket& bucket : result.buckets) {
+    if (bucket.summary.key.percent == 0) continue;
+    for (std::size_t r = 0; r < grid.rotations.size(); ++r) {
+      ConfigurationRay ray(a, b, grid.rotations[r]);
+      for (std::size_t u = 0; u < grid.directions.size(); ++u) {
+        ray.direction = grid.directions[u];
+        const double s = bucket.translations[r * grid.directions.size() + u];
+        const double end = std::isnan(s) ? 0.0 : s;
+        if (!std::isnan(s)) {
+          ++reachable;
+          EXPECT_NEAR(overlap_volume_by_columns(a, b, ray.pose(s)), bucket.summary.target, bucket.summary.tolerance);
+        }
+        for (double t = 0.5 * (a.diagonal() + b.diagonal()); t > end; t -= step) {
+          EXPECT_LE(overlap_volume_by_columns(a, b, ray.pose(t)), bucket.summary.target + bucket.summary.tolerance)
+              << bucket.summary.key.name() << " at " << s << " is passed at " << t << " already";
+        }
+      }
+    }
+  }
+  EXPECT_GT(reachable, 0u);
+}
+
+TEST(VolumeGenerator, NoEarlierHitByMarching) {
+  const Mesh a = test::lump_mesh(3, {0.4, -0.2, 1.0});
+  const Mesh b = test::tetrahedron_mesh({2.0, 0.2, 3.0}, 2.1);
+  std::mt19937_64 random(11);
+  Grid grid = single(test::random_direction(random), test::random_rotation(random));
+  for (int i = 0; i < 3; ++i) grid.directions.push_back(test::random_direction(random));
+  grid.rotations.push_back(test::random_rotation(random));
+  for (const auto& [first, second] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    expect_right(*first, *second, grid, generate_volumes(*k_touching, *first, *second, grid, k_percents),
+                 0.01 * a.diagonal());
+  }
+}
+
+TEST(VolumeGenerator, FirstCrossingWhereTheVolumeFallsAgain) {
+  // B, a slab, passes A's thin outer wall before it reaches the block: V rises to the wall's
+  // share, falls to nothing, and rises again up to the slab's share.
+  const Mesh a = test::boxes_mesh({{{3.0, 0, 0}, {0.1, 0.5, 0.5}}, {{-0.5, 0, 0}, {1.7, 0.5, 0.5}}}, "wall and block");
+  const Mesh b = test::boxes_mesh({{{0.2, 0.1, 0}, {0.15, 0.7, 0.6}}}, "slab");
+  const double wall = 0.2 * 1.0 * 1.0;
+  ASSERT_GT(wall, 0.05 * a.volume());
+  ASSERT_LT(wall, 0.06 * a.volume());
+  const Generated result = generate_volumes(*k_touching, a, b, single(Eigen::Vector3d::UnitX(), {1, 0, 0, 0}),
+                                            std::vector{0, 5, 6, 7, 8, 10});
+  // Translations are from the centre of A's box.
+  const double outer = 3.1 + 0.15 - a.center().x(), block = 1.2 + 0.15 - a.center().x();
+  for (const int percent : {5, 6, 7, 8}) {
+    const double volume = 0.01 * percent * a.volume();
+    EXPECT_NEAR(bucket_of(result, percent).translations[0], (volume < wall ? outer : block) - volume, 1e-8) << percent;
+  }
+  // Beyond the slab's share.
+  EXPECT_TRUE(std::isnan(bucket_of(result, 10).translations[0]));
+}
+
+TEST(VolumeGenerator, WhatCannotBeReachedIsNaN) {
+  // B has less than 2 % of A's volume.
+  const Mesh a = test::boxes_mesh({{{1.0, 0.5, 0}, {1.0, 0.9, 1.1}}}, "a");
+  const Mesh thin = test::boxes_mesh({{{0, 0, 2.0}, {0.02, 0.8, 1.0}}}, "thin");
+  std::mt19937_64 random(5);
+  const Grid grid = single(test::random_direction(random), test::random_rotation(random));
+  const Generated result = generate_volumes(*k_touching, a, thin, grid, k_percents);
+  EXPECT_FALSE(std::isnan(bucket_of(result, 0).translations[0]));
+  EXPECT_FALSE(std::isnan(bucket_of(result, 1).translations[0]));
+  EXPECT_TRUE(std::isnan(bucket_of(result, 5).translations[0]));
+  EXPECT_TRUE(std::isnan(bucket_of(result, 10).translations[0]));
+
+  // Side by side: B's centre comes to A's, which lies between A's two blocks.
+  const Mesh blocks = test::boxes_mesh({{{2.0, 0, 0}, {0.5, 0.5, 0.5}}, {{-2.0, 0, 0}, {0.5, 0.5, 0.5}}}, "blocks");
+  const Mesh bar = test::boxes_mesh({{{0, 0, 0}, {1.51, 0.3, 0.3}}}, "bar");
+  const Generated gap =
+      generate_volumes(*k_touching, blocks, bar, single(Eigen::Vector3d::UnitY(), {1, 0, 0, 0}), k_percents);
+  EXPECT_FALSE(std::isnan(bucket_of(gap, 0).translations[0]));
+  for (const int percent : {1, 5, 10}) EXPECT_TRUE(std::isnan(bucket_of(gap, percent).translations[0]));
+}
+
+bool same_bits(const std::vector<double>& left, const std::vector<double>& right) {
+  return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size() * sizeof(double)) == 0;
+}
+
+void expect_same_bits_from_threads_and_shards(const Mesh& a) {
+  const Grid grid = make_grid("90");
+  const auto generate = [&](const GenerateOptions& options) {
+    return generate_volumes(*k_touching, a, a, grid, k_percents, options);
+  };
+  const Generated whole = generate({.threads = 1});
+  const Generated threaded = generate({.threads = 2});
+  EXPECT_EQ(whole.measurements, threaded.measurements);
+  const std::size_t n = grid.directions.size();
+  for (std::size_t k = 0; k < k_percents.size(); ++k) {
+    EXPECT_EQ(whole.buckets[k].summary.key.percent, k_percents[k]);
+    EXPECT_TRUE(same_bits(whole.buckets[k].translations, threaded.buckets[k].translations));
+  }
+  const auto map = DistinctRotations(grid.rotations).representative;
+  for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 13), {13, 48}}) {
+    const Generated shard = generate({.rotations = test::indices(first, last)});
+    for (std::size_t k = 0; k < k_percents.size(); ++k) {
+      const std::vector<double>& all = whole.buckets[k].translations;
+      EXPECT_TRUE(same_bits(shard.buckets[k].translations, {all.begin() + static_cast<std::ptrdiff_t>(first * n),
+                                                      all.begin() + static_cast<std::ptrdiff_t>(last * n)}));
+    }
+  }
+}
+
+TEST(VolumeGenerator, ThreadsAndShardsDoNotChangeABit) {
+  expect_same_bits_from_threads_and_shards(test::lump_mesh(3, {0.4, -0.2, 1.0}));
+  // Faces lie over each other at right angles.
+  expect_same_bits_from_threads_and_shards(load_model("box-48"));
+}
+
+TEST(VolumeGenerator, EveryInstructionSetGivesTheSameBits) {
+  const Mesh a = load_model("torus-knot-2000");
+  const Mesh b = load_model("box-300");
+  const Grid grid = make_grid("60/90");
+  const auto touching = make_ray_cast();
+  const auto run = [&] { return generate_volumes(*touching, a, b, grid, k_percents, {.threads = 1}); };
+  const Generated standard = run();
+  int tried = 0;
+  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+    hwy::SetSupportedTargetsForTest(targets & -targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    const Generated here = run();
+    for (std::size_t k = 0; k < k_percents.size(); ++k) {
+      EXPECT_TRUE(same_bits(here.buckets[k].translations, standard.buckets[k].translations)) << hwy::TargetName(targets & -targets);
+    }
+    EXPECT_EQ(here.measurements, standard.measurements);
+    ++tried;
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+  EXPECT_GE(tried, 2);  // at least a SIMD and a scalar path
+}
+
+TEST(VolumeGenerator, FewMeasurementsMeetABucket) {
+  // Seeds and cubics: a bucket takes a measurement where it is foreseen and one or two where the cubics meet it. What
+  // is more certifies first hits where the bounds leave doubt, most of it in coarse meshes of many parts.
+  const std::vector<int> percents{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  const auto touching = make_ray_cast();
+  for (const char* name : {"bumpy-sphere-8k", "torus-knot-8k"}) {
+    const Mesh a = load_model(name);
+    const Generated result = generate_volumes(*touching, a, a, make_grid("so3:2:12"), percents);
+    std::size_t reachable = 0;
+    for (const Bucket& bucket : result.buckets) {
+      reachable +=
+          static_cast<std::size_t>(std::ranges::count_if(bucket.translations, [](double s) { return !std::isnan(s); }));
+    }
+    ASSERT_GT(reachable, 200u);
+    constexpr double k_most_per_bucket = 5.0;  // 3.0 and 3.6 were measured
+    EXPECT_LT(static_cast<double>(result.measurements) / static_cast<double>(reachable), k_most_per_bucket) << name;
+  }
+}
+
+/// Crossing plates never share a percent of their volume, which their boxes tell at once: nothing is measured on
+/// the way in.
+TEST(VolumeGenerator, PlatesThatCrossTakeNoSearchForWhatTheyCannotShare) {
+  const Mesh plate = make_box({.size = {2.0, 1.6, 0.002}}, 12);
+  const Grid grid = make_grid("90");
+  const std::vector<int> percents{1, 2, 5};
+  const auto touching = make_ray_cast();
+  const Generated result = generate_volumes(*touching, plate, plate, grid, percents);
+  const VolumeGenerator generator(*touching, plate, plate);
+  const auto solver = generator.prepare();
+  std::size_t crossing = 0;
+  std::uint64_t before = 0;
+  for (const Eigen::Vector4d& rotation : grid.rotations) {
+    const double across = std::abs(ConfigurationRay(plate, plate, rotation).R(2, 2));
+    solver->set_rotation(rotation);
+    for (const Eigen::Vector3d& direction : grid.directions) {
+      const std::array<double, 3> targets{0.01 * plate.volume(), 0.02 * plate.volume(), 0.05 * plate.volume()};
+      std::array<double, 3> translations{}, residuals{};
+      solver->solve(direction, targets, translations, residuals);
+      const std::uint64_t measured = solver->measurements() - std::exchange(before, solver->measurements());
+      if (across > 0.5) continue;
+      ++crossing;
+      EXPECT_TRUE(std::isnan(translations[0]));
+      EXPECT_EQ(measured, 0u);
+    }
+  }
+  EXPECT_GT(crossing, 50u);
+  EXPECT_GT(result.measurements, 0u);  // those that lie flat are measured
+}
+
+TEST(VolumeGenerator, RefusesWhatIsNoSolid) {
+  const Mesh a = test::lump_mesh(3, {0.4, -0.2, 1.0});
+  std::vector<Triangle> triangles = a.triangles();
+  triangles.pop_back();
+  const Mesh open = Mesh::build(a.vertices(), triangles, "open-lump");
+  const Grid grid = make_grid("90");
+  for (const auto& [first, second] : {std::pair(&a, &open), std::pair(&open, &a)}) {
+    EXPECT_THAT([&] { generate_volumes(*k_touching, *first, *second, grid, k_percents); },
+                ThrowsMessage<BadMesh>(testing::AllOf(HasSubstr("open-lump"), HasSubstr("border"))));
+  }
+  EXPECT_THAT(
+      [&] {
+        generate_volumes(*k_touching, a, a, grid, std::vector{5, 5});
+      },
+      ThrowsMessage<BadArgument>(HasSubstr("volume 5 %")));
+  EXPECT_THAT([&] { generate_volumes(*k_touching, a, a, grid, std::vector{101}); },
+              ThrowsMessage<BadArgument>(HasSubstr("volume 101 %")));
+}
+
+using Edit = std::function<void(std::vector<Bucket>&)>;
+
+Verdict verify_after(const Edit& edit) {
+  static const Mesh a =
+      test::boxes_mesh({{{1.1, 0.3, 0}, {0.1, 0.4, 0.3}}, {{-0.9, 0.3, 0}, {0.4, 0.4, 0.3}}}, "walls");
+  static const Mesh b = test::lump_mesh(5, {0, 3.0, 0});
+  static const Grid grid = make_grid("90");
+  static const Generated honest = generate_volumes(*k_touching, a, b, grid, std::vector{0, 2, 10});
+  std::vector<Bucket> buckets = honest.buckets;
+  edit(buckets);
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_volumes.h5");
+  ConfigurationSetWriter writer(path,
+                                {.generator_version = "0", .a = MeshIdentity::of(a), .b = MeshIdentity::of(b), .grid = grid});
+  for (const Bucket& bucket : buckets) writer.write(bucket.summary, bucket.translations);
+  writer.commit();
+  const ConfigurationSet set(path);
+  for (const Bucket& bucket : buckets) {
+    EXPECT_TRUE(same_bits(set.read(bucket.summary.key), bucket.translations));
+    EXPECT_EQ(set.summary(bucket.summary.key).target, bucket.summary.target);
+  }
+  const Verdict verdict = verify_set(set, a, b, *k_brute_force, {.sample = 40, .seed = 5});
+  std::filesystem::remove(path);
+  return verdict;
+}
+
+TEST(VolumeVerification, FindsNothingWrongWithAnHonestSet) {
+  const Verdict verdict = verify_after([](auto&) {});
+  EXPECT_THAT(verdict.problems, IsEmpty());
+  ASSERT_EQ(verdict.buckets.size(), 3u);
+  EXPECT_EQ(verdict.buckets[0].oracle, "brute-force");
+  EXPECT_EQ(verdict.buckets[1].oracle, "columns");
+  for (const BucketVerdict& bucket : verdict.buckets) EXPECT_GT(bucket.reachable, 0u);
+}
+
+TEST(VolumeVerification, FindsWhatIsWrong) {
+  const auto shifted = [](std::size_t k, double by) {
+    return [k, by](std::vector<Bucket>& buckets) {
+      for (double& s : buckets[k].translations) s += by;
+    };
+  };
+  const Verdict outside = verify_after(shifted(1, 1e-6));
+  EXPECT_GT(outside.buckets[1].wrong_value, 0u);
+  EXPECT_EQ(outside.buckets[2].failures(), 0u);
+  // Half a wall deeper: past the hit.
+  const Verdict deeper = verify_after(shifted(1, -0.05));
+  EXPECT_GT(deeper.buckets[1].earlier_hit, 0u);
+  const Verdict nan = verify_after([](auto& buckets) {
+    for (double& s : buckets[1].translations) s = std::numeric_limits<double>::quiet_NaN();
+  });
+  EXPECT_GT(nan.buckets[1].false_nan, 0u);
+  EXPECT_THAT(nan.problems, testing::Contains(HasSubstr("is met at")));
+  const Verdict target = verify_after([](auto& buckets) { buckets[2].summary.target *= 1.01; });
+  EXPECT_THAT(target.problems, testing::Contains(HasSubstr("of the volume")));
+}
+
+}  // namespace
+}  // namespace sixdof
