@@ -8,7 +8,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/algorithms.h"
+#include "bench/common/all_algorithms.h"
+#include "bench/common/examples.h"
 
 namespace sixdof::cli {
 namespace {
@@ -40,7 +41,7 @@ std::string range_of(const Parameter& parameter) {
 
 nlohmann::ordered_json as_json(const Parameter& parameter) {
   nlohmann::ordered_json json = {{"name", parameter.name}, {"meaning", parameter.meaning}, {"unit", parameter.unit}};
-  json["default"] = parameter.standard;
+  json["default"] = parameter.default_value;
   if (parameter.choices.empty()) {
     json["low"] = parameter.low;
     json["high"] = parameter.high;
@@ -62,19 +63,21 @@ void print_json(const Registry& registry) {
                     {"summary", traits.summary},
                     {"answers", names_of(traits.answers)},
                     {"law", to_string(traits.law)},
+                    {"timed", traits.timed},
                     {"parameters", parameters}});
   }
   fmt::print("{}\n", list.dump(2));
 }
 
 void print_text(const Registry& registry) {
-  fmt::print("{:<16} {:<10} {:<28} {:<7} {}\n", "algorithm", "version", "answers", "law", "what it is");
+  fmt::print("{:<16} {:<10} {:<28} {:<7} {}\n", "algorithm", "version", "answers", "law", "summary");
   for (const auto& algorithm : registry.all()) {
     const Traits& traits = algorithm->traits();
     fmt::print("{:<16} {:<10} {:<28} {:<7} {}\n", traits.name, traits.version,
-               fmt::format("{}", fmt::join(names_of(traits.answers), ",")), to_string(traits.law), traits.summary);
+               fmt::format("{}", fmt::join(names_of(traits.answers), ",")), to_string(traits.law),
+               traits.timed ? traits.summary : traits.summary + " (not timed)");
     for (const Parameter& parameter : traits.parameters) {
-      fmt::print("  {}={}  [{}]  unit {}: {}\n", parameter.name, parameter.standard, range_of(parameter),
+      fmt::print("  {}={}  [{}]  unit {}: {}\n", parameter.name, parameter.default_value, range_of(parameter),
                  parameter.unit.empty() ? "none" : parameter.unit, parameter.meaning);
     }
   }
@@ -83,7 +86,8 @@ void print_text(const Registry& registry) {
 }  // namespace
 
 void add_algorithms_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("algorithms", "What each algorithm answers, its parameters and version");
+  auto* const command =
+      app.add_subcommand("algorithms", "List the algorithms: what each answers, its parameters and version");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "As JSON");
   command->callback([json] {
@@ -91,6 +95,7 @@ void add_algorithms_command(CLI::App& app) {
     register_all_algorithms(registry);
     *json ? print_json(registry) : print_text(registry);
   });
+  add_examples(*command, "sixdof algorithms", "sixdof algorithms --json");
 }
 
 }  // namespace sixdof::cli

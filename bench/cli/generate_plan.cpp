@@ -3,9 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -13,30 +11,30 @@
 
 #include <fmt/format.h>
 
-#include "bench/cli/interrupt.h"
-#include "bench/cli/progress_line.h"
 #include <sixdof/generation/volume_generator.h>
 #include <sixdof/generation/work_sample.h>
+#include "bench/common/interrupt.h"
+#include "bench/common/progress_line.h"
 
 namespace sixdof::cli {
 namespace {
 
 constexpr double k_mebibyte = 1024.0 * 1024.0;
 
-/// The largest memory that this process has had so far, in bytes.
+/// Largest resident memory of this process so far, in bytes.
 double peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// What one kind of bucket asks for, and what it was found to cost.
+/// The buckets of one kind, and what they were measured to cost.
 struct Kind {
   BucketKind kind;
   std::vector<double> targets;  ///< In the order in which a ray meets them.
   std::size_t directions = 0, rotations = 0, distinct = 0;
   double prepare_s = 0.0;     ///< Wall time.
-  double solver_bytes = 0.0;  ///< Of each further thread.
+  double solver_bytes = 0.0;  ///< Of each thread beyond the first.
   WorkCost cost;
 
   double configurations() const { return static_cast<double>(distinct * directions * targets.size()); }
@@ -51,11 +49,15 @@ Kind describe(const GenerationWork& work, BucketKind which) {
             .rotations = grid.rotations.size(),
             .distinct = DistinctRotations(grid.rotations).first.size(),
             .cost = {}};
-  for (const BucketSummary& bucket : buckets_in_order(work.job, which)) kind.targets.push_back(bucket.target);
+  for (const BucketSummary& bucket : work.job.buckets) {
+    if (bucket.key.kind == which) kind.targets.push_back(bucket.target);
+  }
+  // The job has them ascending; a ray comes from far.
+  if (which == BucketKind::distance) std::ranges::reverse(kind.targets);
   return kind;
 }
 
-/// Fills in what the kind costs.
+/// Fills in the costs.
 void measure(const GenerationWork& work, const EstimateRequest& request, double seconds, Kind& kind) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -64,27 +66,32 @@ void measure(const GenerationWork& work, const EstimateRequest& request, double 
   const auto prepare = [&] { return volumes ? volumes->prepare() : work.generator.prepare(work.a, work.b); };
   const auto solver = prepare();
   kind.prepare_s = std::chrono::duration<double>(Clock::now() - start).count();
-  kind.cost = sample_work(*solver, work.set.grid_of(kind.kind), kind.targets, seconds, request.seed,
-                          [] { return InterruptGuard::requested(); });
-  // A second solver, warmed up by one ray, is what every thread beyond the first adds.
+  RunOptions run;
+  run.cancelled = InterruptGuard::requested;
+  kind.cost = sample_work(*solver, work.set.grid_of(kind.kind), kind.targets, seconds, request.seed, run);
+  // Every further thread adds the memory of a second solver that has solved a ray.
   const double before = peak_bytes();
   const auto second = prepare();
   sample_work(*second, work.set.grid_of(kind.kind), kind.targets, 0.0, request.seed);
   kind.solver_bytes = std::max(0.0, peak_bytes() - before);
 }
 
-void print_line(const char* what, const std::string& text) { fmt::print("{:<26} {}\n", what, text); }
+void print_line(const std::string& what, const std::string& text) { fmt::print("{:<26} {}\n", what, text); }
+
+void print_cost(const Kind& kind, std::uint64_t seed) {
+  const WorkCost& cost = kind.cost;
+  print_line(fmt::format("{}s", to_string(kind.kind)),
+             fmt::format("{:.2f} us per configuration +- {:.0f} % ({} rays sampled, seed {}): {:.3f} CPU-hours",
+                         1e6 * kind.cpu_s() / kind.configurations(), 100.0 * cost.ray_standard_error_s / cost.ray_s,
+                         cost.rays, seed, kind.cpu_s() / 3600.0));
+  print_line("  CPU time of a ray",
+             fmt::format("median {:.1f} us, p99 {:.1f} us, greatest {:.1f} us (rotation {}, direction {})",
+                         1e6 * cost.median_ray_s, 1e6 * cost.p99_ray_s, 1e6 * cost.greatest_ray_s,
+                         cost.greatest_rotation, cost.greatest_direction));
+  print_line("  unreachable", fmt::format("{} of {} configurations sampled", cost.unreachable, cost.configurations));
+}
 
 }  // namespace
-
-std::vector<BucketSummary> buckets_in_order(const GenerationJob& job, BucketKind kind) {
-  std::vector<BucketSummary> buckets;
-  for (const BucketSummary& bucket : job.buckets) {
-    if (bucket.key.kind == kind) buckets.push_back(bucket);
-  }
-  if (kind == BucketKind::distance) std::ranges::reverse(buckets);
-  return buckets;
-}
 
 void print_counts(const SetDescription& set, std::size_t distances, std::size_t volumes) {
   std::size_t all = 0, computed = 0;
@@ -119,21 +126,17 @@ void print_estimate(const GenerationWork& work, const EstimateRequest& request) 
     solver_bytes = std::max(solver_bytes, kind.solver_bytes);
     rows_bytes += sizeof(double) * kind.configurations();
     bucket_bytes = std::max(bucket_bytes, static_cast<double>(sizeof(double) * kind.rotations * kind.directions));
-    print_line(fmt::format("{}s", to_string(kind.kind)).c_str(),
-               fmt::format("{:.2f} us per configuration +- {:.0f} % ({} rays sampled, seed {}): {:.3f} CPU-hours",
-                           1e6 * kind.cpu_s() / kind.configurations(),
-                           100.0 * kind.cost.ray_standard_error_s / kind.cost.ray_s, kind.cost.rays, request.seed,
-                           kind.cpu_s() / 3600.0));
+    print_cost(kind, request.seed);
   }
   const unsigned threads = work.threads != 0 ? work.threads : std::max(1u, std::thread::hardware_concurrency());
   const double shards = static_cast<double>(std::max<std::size_t>(1, request.shards));
   const double shard_s = prepare_s + cpu_s / shards / threads;
   print_line("time", fmt::format("{} with {} threads{}", as_clock(prepare_s * shards + cpu_s / threads), threads,
-                                 request.shards == 0 ? "" : ", all shards in turn"));
+                                 request.shards == 0 ? "" : ", all shards in sequence"));
   if (request.shards != 0) {
     print_line("time of one shard", fmt::format("{:.1f} s, of which {:.2f} s preparation", shard_s, prepare_s));
   }
-  // In one piece, rows stay in memory until the buckets are put together.
+  // Without shards all rows stay in memory until the buckets are put together.
   const double values = request.shards == 0 ? rows_bytes + bucket_bytes : rows_bytes / shards;
   print_line("memory of a process",
              fmt::format("{:.0f} MiB, of which values {:.0f} MiB",

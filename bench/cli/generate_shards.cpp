@@ -10,11 +10,12 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
-#include "bench/cli/generation_progress.h"
-#include "bench/cli/interrupt.h"
 #include <sixdof/configuration/shard_file.h>
 #include <sixdof/configuration/shard_merge.h>
 #include <sixdof/generation/shard_generator.h>
+#include "bench/cli/generation_progress.h"
+#include "bench/common/interrupt.h"
+#include "bench/common/run_guarded.h"
 
 namespace sixdof::cli {
 namespace {
@@ -26,10 +27,10 @@ std::string seconds_since(Clock::time_point start) {
 }
 
 Generated generate_one(const GenerationWork& work, ShardNumber shard, GenerationProgress& progress) {
-  ShardOptions options{.threads = work.threads,
-                       .progress = [&](BucketKind kind, std::uint64_t done) { progress.show(kind, done); },
-                       .cancelled = [] { return InterruptGuard::requested(); }};
-  Generated values = generate_shard(work.job, work.set, shard, work.generator, work.a, work.b, options);
+  const RunOptions run{.threads = work.threads,
+                       .progress = [&](std::uint64_t done, std::uint64_t /*total*/) { progress.show(done); },
+                       .cancelled = InterruptGuard::requested};
+  Generated values = generate_shard(work.job, work.set, shard, work.generator, work.a, work.b, run);
   progress.shard_done();
   return values;
 }
@@ -40,8 +41,8 @@ void make_folder(const std::filesystem::path& folder) {
   if (error) throw BadFile(folder.string(), "cannot be made: " + error.message());
 }
 
-/// Whether a finished shard may stay. @throws BadFile if it is of another job
-bool is_sound(const GenerationWork& work, ShardNumber shard, const std::filesystem::path& path) {
+/// Whether the file is the shard and undamaged. @throws BadArgument if it is of another job
+bool is_valid(const GenerationWork& work, ShardNumber shard, const std::filesystem::path& path) {
   try {
     const ShardFile file(path);
     if (const std::string difference = file.job().difference(work.job); !difference.empty()) {
@@ -53,12 +54,12 @@ bool is_sound(const GenerationWork& work, ShardNumber shard, const std::filesyst
     file.check_values();
     return true;
   } catch (const BadFile& e) {
-    fmt::print(stderr, "sixdof: made again: {}\n", e.what());
+    print_message("sixdof", fmt::format("made again: {}", e.what()));
     return false;
   }
 }
 
-/// The shards that are asked for and not there.
+/// The shards that are asked for and not there, or damaged.
 std::vector<ShardNumber> missing_shards(const GenerationWork& work, const ShardRequest& request) {
   std::vector<ShardNumber> missing;
   for (std::size_t number = 1; number <= request.count; ++number) {
@@ -68,9 +69,9 @@ std::vector<ShardNumber> missing_shards(const GenerationWork& work, const ShardR
     if (request.resume) remove_stale_partials(path);
     const bool there = std::filesystem::exists(path);
     if (there && !request.resume) {
-      throw BadFile(path.string(), "is there already (--resume keeps what is finished and sound)");
+      throw BadFile(path.string(), "is there already (--resume keeps valid shards)");
     }
-    if (!there || !is_sound(work, shard, path)) missing.push_back(shard);
+    if (!there || !is_valid(work, shard, path)) missing.push_back(shard);
   }
   return missing;
 }
@@ -79,8 +80,7 @@ std::vector<ShardNumber> missing_shards(const GenerationWork& work, const ShardR
 
 void generate_set(const GenerationWork& work, const std::filesystem::path& output) {
   const InterruptGuard interruptible;
-  // Looked at before the work, so that a folder that is missing is known before hours have passed.
-  const AtomicFile writable(output);
+  const AtomicFile writable(output);  // Fails before the work begins if the folder is missing or not writable.
   const auto start = Clock::now();
   constexpr ShardNumber k_whole{};
   Generated values;
@@ -92,12 +92,13 @@ void generate_set(const GenerationWork& work, const std::filesystem::path& outpu
     const auto of_key = [](const Bucket& bucket) { return bucket.summary.key; };
     return std::move(*std::ranges::find(values.buckets, key, of_key));
   };
-  AssembleOptions options;
-  options.cancelled = [] { return InterruptGuard::requested(); };
-  assemble_set(output, work.job, work.set, k_whole.count, take, options);
+  RunOptions run;
+  run.cancelled = InterruptGuard::requested;
+  assemble_set(output, work.job, work.set, k_whole.count, take, run);
   std::size_t configurations = 0;
-  for (const BucketSummary& bucket : work.job.buckets)
+  for (const BucketSummary& bucket : work.job.buckets) {
     configurations += work.set.grid_of(bucket.key.kind).configurations();
+  }
   fmt::print("{}: {} configurations of {} with {} in {} ({} measurements, distances by {} {})\n", output.string(),
              configurations, work.a.name(), work.b.name(), seconds_since(start), values.measurements, work.job.oracle,
              work.job.oracle_version);
@@ -117,7 +118,7 @@ void generate_shards(const GenerationWork& work, const ShardRequest& request) {
     write_shard(request.folder / shard_file_name(shard), work.job, work.set, shard, values.buckets);
   }
   const std::size_t asked = request.only == 0 ? request.count : 1;
-  fmt::print("{}: {} of {} shards of {} with {} made in {}, {} kept; when all {} are there: sixdof merge {} -o SET\n",
+  fmt::print("{}: {} of {} shards of {} with {} made in {}, {} kept; merge all {}: sixdof merge {} -o SET\n",
              request.folder.string(), missing.size(), asked, work.a.name(), work.b.name(), seconds_since(start),
              asked - missing.size(), request.count, request.folder.string());
 }

@@ -2,16 +2,15 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 
-#include <sixdof/query/registry.h>
-#include <sixdof/generation/distance_generator.h>
 #include <sixdof/configuration/generation_job.h>
+#include <sixdof/configuration/set_description.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/geometry/mesh.h>
 
 namespace sixdof::cli {
 
-/// A job with all that it takes to do it.
+/// A job, and what it takes to do it.
 struct GenerationWork {
   const DistanceGenerator& generator;
   const Mesh& a;
@@ -19,22 +18,22 @@ struct GenerationWork {
   const SetDescription& set;
   const GenerationJob& job;
   unsigned threads = 0;   ///< 0: as many as the machine has.
-  bool progress = false;  ///< Show it where stderr is no terminal, too.
+  bool progress = false;  ///< Show it where stderr is not a terminal, too.
 };
 
-/// Makes the whole set in memory and writes it to `output`. Prints what it did.
+/// Makes the whole set in memory, writes it to `output` and prints a summary.
 void generate_set(const GenerationWork& work, const std::filesystem::path& output);
 
 /// Which shards to make, and where.
 struct ShardRequest {
   std::filesystem::path folder;
   std::size_t count = 1;
-  std::size_t only = 0;  ///< The number of the one to make; 0: all, in turn.
-  bool resume = false;   ///< Shards that are there and sound stay, damaged ones and stale temporary files go.
+  std::size_t only = 0;  ///< Number of the one to make; 0: all.
+  bool resume = false;   ///< Keep valid shards that are there; replace damaged ones, remove stale temporary files.
 };
 
-/// Makes shards in a folder, which is made if missing. Prints what it did.
-/// @throws BadFile for a shard of another job, or, without `resume`, any that is there
+/// Makes shards in a folder, which is made if missing, and prints a summary.
+/// @throws BadArgument for a shard of another job; BadFile, without `resume`, for any shard that is there
 void generate_shards(const GenerationWork& work, const ShardRequest& request);
 
 }  // namespace sixdof::cli

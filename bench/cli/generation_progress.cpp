@@ -20,20 +20,25 @@ GenerationProgress::GenerationProgress(const GenerationJob& job, const SetDescri
   for (const BucketKind kind : k_kinds) {
     const auto buckets = static_cast<std::uint64_t>(
         std::ranges::count(job.buckets, kind, [](const BucketSummary& bucket) { return bucket.key.kind; }));
-    if (buckets == 0) continue;
     const Grid& grid = set.grid_of(kind);
     const DistinctRotations distinct(grid.rotations);
     for (const ShardNumber shard : shards) {
-      kinds_[index(kind)].total += buckets * rotations_of(shard, distinct).size() * grid.directions.size();
+      kinds_[index(kind)].of_shard.push_back(buckets * rotations_of(shard, distinct).size() * grid.directions.size());
+      kinds_[index(kind)].total += kinds_[index(kind)].of_shard.back();
     }
   }
 }
 
-void GenerationProgress::show(BucketKind kind, std::uint64_t done) {
+void GenerationProgress::show(std::uint64_t done) {
+  const std::uint64_t step = done - done_in_shard_;
+  // A call without a step comes when a kind begins.
+  const std::uint64_t configuration = step == 0 ? done : done - 1;
+  const bool distance = configuration < kinds_[index(BucketKind::distance)].of_shard[shard_];
+  Kind& current = kinds_[index(distance ? BucketKind::distance : BucketKind::volume)];
   const Clock::time_point now = Clock::now();
-  Kind& current = kinds_[index(kind)];
   current.seconds += std::chrono::duration<double>(now - last_).count();
-  current.now = done;
+  current.done += step;
+  done_in_shard_ = done;
   last_ = now;
   if (!line_.due()) return;
 
@@ -43,25 +48,23 @@ void GenerationProgress::show(BucketKind kind, std::uint64_t done) {
   for (const BucketKind each : k_kinds) {
     const Kind& k = kinds_[index(each)];
     if (k.total == 0) continue;
-    text += fmt::format("{}s {}/{} ({} %), ", to_string(each), k.done(), k.total, 100 * k.done() / k.total);
-    if (k.done() > 0) {
-      left += k.seconds * static_cast<double>(k.total - k.done()) / static_cast<double>(k.done());
+    text += fmt::format("{}s {}/{} ({} %), ", to_string(each), k.done, k.total, 100 * k.done / k.total);
+    if (k.done > 0) {
+      left += k.seconds * static_cast<double>(k.total - k.done) / static_cast<double>(k.done);
     } else {
       untimed += fmt::format(" and the {}s", to_string(each));
     }
   }
-  if (current.done() > 0 && current.seconds > 0.0) {
-    text += fmt::format("{:.1f}/s, ", static_cast<double>(current.done()) / current.seconds);
+  if (current.done > 0 && current.seconds > 0.0) {
+    text += fmt::format("{:.1f}/s, ", static_cast<double>(current.done) / current.seconds);
   }
   text += left > 0.0 ? fmt::format("{}{} left", as_clock(left), untimed) : "not timed yet";
   line_.show(text);
 }
 
 void GenerationProgress::shard_done() {
-  for (Kind& kind : kinds_) {
-    kind.before += kind.now;
-    kind.now = 0;
-  }
+  ++shard_;
+  done_in_shard_ = 0;
 }
 
 }  // namespace sixdof::cli

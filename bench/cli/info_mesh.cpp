@@ -13,6 +13,10 @@ namespace {
 
 std::array<double, 3> coordinates(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
+nlohmann::ordered_json file_repairs(const FileRepairs& repairs) {
+  return {{"count", repairs.count}, {"first_place", repairs.first_place}};
+}
+
 void print_json(const Mesh& mesh) {
   const MeshTopology& topology = mesh.topology();
   const MeshRepairs& repairs = mesh.repairs();
@@ -39,7 +43,10 @@ void print_json(const Mesh& mesh) {
       {"diagonal", mesh.diagonal()},
       {"hash", mesh.hash()},
       {"repairs",
-       {{"welded_vertices", repairs.welded_vertices},
+       {{"crossing_polygons", file_repairs(repairs.crossing_polygons)},
+        {"nonplanar_polygons", file_repairs(repairs.nonplanar_polygons)},
+        {"skipped_statements", file_repairs(repairs.skipped_statements)},
+        {"welded_vertices", repairs.welded_vertices},
         {"unreferenced_vertices", repairs.unreferenced_vertices},
         {"collapsed_triangles", repairs.collapsed_triangles},
         {"zero_area_triangles", repairs.zero_area_triangles.size()}}}};
@@ -75,6 +82,12 @@ void print_text(const Mesh& mesh) {
       fmt::format("{} vertices welded, {} unused dropped; {} collapsed triangles dropped, {} of zero area kept",
                   repairs.welded_vertices, repairs.unreferenced_vertices, repairs.collapsed_triangles,
                   repairs.zero_area_triangles.size()));
+  const auto file_row = [&](const FileRepairs& of_kind, const char* what) {
+    if (of_kind.count > 0) row("", fmt::format("{} {}, first at {}", of_kind.count, what, of_kind.first_place));
+  };
+  file_row(repairs.crossing_polygons, "polygons that cross themselves triangulated");
+  file_row(repairs.nonplanar_polygons, "polygons that are not flat triangulated");
+  file_row(repairs.skipped_statements, "unknown statements skipped");
 }
 
 }  // namespace

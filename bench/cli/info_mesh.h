@@ -4,7 +4,7 @@
 
 namespace sixdof::cli {
 
-/// Prints a mesh's counts, soundness, measures, hash and repairs. Lengths are in the mesh's own unit and frame; numbers
+/// Prints a mesh's counts, topology, measures, hash and repairs. Lengths are in the mesh's own unit and frame; numbers
 /// in JSON have up to 17 significant digits. @throws BadFile, BadArgument (load_model)
 void print_mesh_info(const std::string& name_or_file, bool json);
 

@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/atomic_file.h>
-#include "bench/cli/interrupt.h"
-#include "bench/cli/progress_line.h"
+#include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/shard_merge.h>
+#include "bench/common/examples.h"
+#include "bench/common/interrupt.h"
+#include "bench/common/progress_line.h"
 
 namespace sixdof::cli {
 namespace {
@@ -25,7 +27,7 @@ void merge(const Arguments& arguments) {
     ProgressLine line("merged", arguments.progress);
     merge_shards(arguments.folder, arguments.output,
                  {.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
-                  .cancelled = [] { return InterruptGuard::requested(); }});
+                  .cancelled = InterruptGuard::requested});
   }
   const ConfigurationSet set(arguments.output);
   fmt::print("{}: {} with {}, {} buckets, content hash {}\n", arguments.output, set.description().a.name,
@@ -37,9 +39,11 @@ void merge(const Arguments& arguments) {
 void add_merge_command(CLI::App& app) {
   auto* const command = app.add_subcommand("merge", "Make one configuration set of the shards in a folder");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("folder", arguments->folder, "Where generate --shards wrote them")->required();
+  command->add_option("folder", arguments->folder, "The folder that sixdof generate --shards wrote")->required();
   command->add_option("-o,--output", arguments->output, "The set (HDF5); replaced if it exists")->required();
-  command->add_flag("--progress", arguments->progress, "Show progress where stderr is no terminal, too");
+  command->add_flag("--progress", arguments->progress, "Show progress where stderr is not a terminal, too");
+  add_examples(*command, "sixdof generate --a cone-1k --grid 60 --distances 0:3 --shards 4 --resume -o shards",
+               "sixdof merge shards -o merged.h5");
   command->callback([arguments] { merge(*arguments); });
 }
 

@@ -11,9 +11,11 @@
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/save.h>
 #include <sixdof/models/manifest.h>
+#include <sixdof/models/model_catalogue.h>
 #include <sixdof/models/recipe.h>
 #include <sixdof/models/surface.h>
-#include <sixdof/models/model_catalogue.h>
+
+#include "bench/common/examples.h"
 
 namespace sixdof::cli {
 namespace {
@@ -49,13 +51,13 @@ void list_as_json() {
 
 void list_as_text() {
   fmt::print("Recipes, at any even number of triangles up to {}: NAME-COUNT, as in torus-100k\n", k_maximum_triangles);
-  fmt::print("{:<14} {:>8} {:>6}  {}\n", "name", "at least", "genus", "what it is");
+  fmt::print("{:<14} {:>8} {:>6}  {}\n", "name", "at least", "genus", "summary");
   for (const Recipe& recipe : recipes()) {
     fmt::print("{:<14} {:>8} {:>6}  {}\n", recipe.name, recipe.minimum, recipe.genus, recipe.summary);
   }
-  fmt::print("\nReal objects, got by models/fetch, kept in {}; NAME-COUNT cuts one finer, as in elephant-1m\n",
+  fmt::print("\nScanned objects, fetched by models/fetch into {}; NAME-COUNT subdivides one, as in elephant-1m\n",
              model_cache().string());
-  fmt::print("{:<14} {:>8} {:>6}  {:<8} {:<28} {}\n", "name", "count", "genus", "state", "size", "what it is");
+  fmt::print("{:<14} {:>8} {:>6}  {:<8} {:<28} {}\n", "name", "count", "genus", "state", "size", "summary");
   for (const FetchedModel& model : fetched_models()) {
     const std::string size = fmt::format("{:.4g} x {:.4g} x {:.4g}", model.size.x(), model.size.y(), model.size.z());
     fmt::print("{:<14} {:>8} {:>6}  {:<8} {:<28} {}\n", model.name, model.triangles, model.genus,
@@ -64,10 +66,11 @@ void list_as_text() {
 }
 
 void add_list(CLI::App& models) {
-  auto* const command = models.add_subcommand("list", "Every model, its size and frame");
+  auto* const command = models.add_subcommand("list", "List every model with its triangle counts and size");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "As JSON");
   command->callback([json] { *json ? list_as_json() : list_as_text(); });
+  add_examples(*command, "sixdof models list", "sixdof models list --json");
 }
 
 struct MakeOptions {
@@ -80,7 +83,7 @@ void make(const MakeOptions& options) {
   std::string name = options.name;
   if (options.triangles) {
     if (parse_model_name(name).triangles) {
-      throw BadArgument(fmt::format("{} says how many triangles already; leave out --triangles", name));
+      throw BadArgument(fmt::format("{} already has a number of triangles; leave out --triangles", name));
     }
     name += fmt::format("-{}", *options.triangles);
   }
@@ -99,15 +102,18 @@ void add_make(CLI::App& models) {
       ->check(CLI::Range(std::size_t{1}, k_maximum_triangles));
   command->add_option("-o,--output", options->output, "File to write: .ply, .off, .obj or .stl")->required();
   command->callback([options] { make(*options); });
+  add_examples(*command, "sixdof models make cone-1k -o cone.ply",
+               "sixdof models make torus-knot --triangles 10000 -o knot.stl");
 }
 
 }  // namespace
 
 void add_models_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("models", "List and make models");
+  auto* const command = app.add_subcommand("models", "List models and write them to files");
   command->require_subcommand(1);
   add_list(*command);
   add_make(*command);
+  add_examples(*command, "sixdof models list", "sixdof models make torus-1k -o torus.ply");
 }
 
 }  // namespace sixdof::cli

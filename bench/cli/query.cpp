@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,15 +12,17 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-#include "bench/algorithms.h"
 #include <sixdof/models/model_catalogue.h>
+
+#include "bench/cli/algorithm_options.h"
+#include "bench/common/examples.h"
 
 namespace sixdof::cli {
 namespace {
 
 struct Arguments {
-  std::string a, b, pose, about, algorithm = "exact";
-  std::vector<std::string> settings;
+  std::string a, b, pose, about;
+  AlgorithmOptions algorithm{.name = "exact", .parameters = {}};
   bool json = false;
 };
 
@@ -51,14 +54,19 @@ Pose parse_pose(const std::string& text) {
   return Pose::from_quaternion(n[3], n[4], n[5], n[6], {n[0], n[1], n[2]});
 }
 
-/// One kind of query: its outcome and how long it took, once, cold.
+using Clock = std::chrono::steady_clock;
+
+std::int64_t nanoseconds_since(Clock::time_point begin) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
+}
+
+/// One kind of query: its outcome and the time of this one call, with cold caches.
 template <class T>
 struct Timed {
+  bool asked = false;  ///< The algorithm answers this kind of query.
   Outcome<T> outcome;
   std::string diagnosis;
   std::int64_t nanoseconds = 0;
-
-  bool asked = false;  ///< The algorithm says that it answers this kind.
 };
 
 template <class T, class Ask>
@@ -66,10 +74,9 @@ Timed<T> timed(Query& query, bool answers, const Ask& ask) {
   Timed<T> result;
   result.asked = answers;
   if (!answers) return result;
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   result.outcome = ask();
-  result.nanoseconds =
-      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin).count();
+  result.nanoseconds = nanoseconds_since(begin);
   if (!result.outcome.ok()) result.diagnosis = query.diagnosis();
   return result;
 }
@@ -80,7 +87,7 @@ struct Answers {
   Timed<Response> respond;
   std::int64_t prepare_ns = 0;
 
-  /// ok, or what became of the first query that was asked and gave no answer, with its words.
+  /// ok, or the status of the first query that was asked and gave no answer, with its diagnosis.
   std::pair<Status, std::string> status() const {
     if (collide.asked && !collide.outcome.ok()) return {collide.outcome.status, collide.diagnosis};
     if (distance.asked && !distance.outcome.ok()) return {distance.outcome.status, distance.diagnosis};
@@ -91,10 +98,9 @@ struct Answers {
 
 Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Settings& settings, const Pose& X_AB) {
   Answers answers;
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   const std::unique_ptr<Query> query = algorithm.prepare(a, b, settings);
-  answers.prepare_ns =
-      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - begin).count();
+  answers.prepare_ns = nanoseconds_since(begin);
   const QuerySet kinds = algorithm.traits().answers;
   answers.collide = timed<bool>(*query, kinds.collide, [&] { return query->collide(X_AB); });
   answers.distance = timed<Separation>(*query, kinds.distance, [&] { return query->distance(X_AB); });
@@ -106,9 +112,9 @@ using Json = nlohmann::ordered_json;
 
 Json as_json(const Eigen::Vector3d& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; }
 
-/// Numbers as nlohmann::json prints them: as few digits, up to 17, as give back the same double; NaN becomes null.
+/// nlohmann::json prints numbers with as few digits as identify the double, and NaN as null.
 Json describe(const Traits& traits, const Settings& settings, const Answers& answers) {
-  const auto [status, words] = answers.status();
+  const auto [status, diagnosis] = answers.status();
   const bool separated = answers.distance.outcome.ok();
   const Separation& gap = answers.distance.outcome.value;
   const bool witnesses = separated && gap.has_witnesses;
@@ -120,7 +126,7 @@ Json describe(const Traits& traits, const Settings& settings, const Answers& ans
           {"version", traits.version},
           {"settings", settings.to_string()},
           {"status", to_string(status)},
-          {"diagnosis", or_null(!words.empty(), words)},
+          {"diagnosis", or_null(!diagnosis.empty(), diagnosis)},
           {"colliding", or_null(answers.collide.outcome.ok(), answers.collide.outcome.value)},
           {"distance", or_null(separated, gap.distance)},
           {"witness_a", or_null(witnesses, as_json(gap.witness_a))},
@@ -146,47 +152,45 @@ void print_text(const Json& answers) {
 }
 
 void run_query(const Arguments& arguments) {
-  Registry registry;
-  register_all_algorithms(registry);
-  const Algorithm& algorithm = registry.find(arguments.algorithm);
-  Settings settings = algorithm.settings();
-  settings.set_all(arguments.settings);
+  const auto [registry, algorithm, settings] = select_algorithm(arguments.algorithm);
   const Pose X_AB = parse_pose(arguments.pose);
   std::vector<double> about;
   if (!arguments.about.empty()) about = parse_numbers(arguments.about, 3, "--about");
 
   const Mesh a = load_model(arguments.a);
   const Mesh b = arguments.b == arguments.a ? a : load_model(arguments.b);
-  Answers answers = ask(algorithm, a, b, settings, X_AB);
+  Answers answers = ask(*algorithm, a, b, settings, X_AB);
   if (!about.empty() && answers.respond.outcome.ok()) {
     answers.respond.outcome.value = answers.respond.outcome.value.about({about[0], about[1], about[2]});
   }
-  const Json json = describe(algorithm.traits(), settings, answers);
+  const Json json = describe(algorithm->traits(), settings, answers);
   arguments.json ? fmt::print("{}\n", json.dump(2)) : print_text(json);
-  if (const auto [status, words] = answers.status(); status != Status::ok) {
-    throw Error(fmt::format("{}: {}: {}", arguments.algorithm, to_string(status), words));
+  if (const auto [status, diagnosis] = answers.status(); status != Status::ok) {
+    throw Error(fmt::format("{}: {}: {}", arguments.algorithm.name, to_string(status), diagnosis));
   }
 }
 
 }  // namespace
 
 void add_query_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("query", "Every answer of one algorithm at one pose");
+  auto* const command = app.add_subcommand("query", "Print all answers of one algorithm at one pose");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("--a", arguments->a, "The fixed object: a model's name or a mesh file")->required();
   command->add_option("--b", arguments->b, "The moving object")->required();
   command
       ->add_option(
           "--pose", arguments->pose,
-          "Pose of B in A's frame, in one argument: \"tx ty tz qw qx qy qz\", a point p of B goes to q p q* + t")
+          "Pose of B in A's frame, as one argument: \"tx ty tz qw qx qy qz\"; a point p of B is at q p q* + t in A")
       ->required();
-  command->add_option("--algorithm", arguments->algorithm, "See `sixdof algorithms`")->capture_default_str();
-  command->add_option("--set", arguments->settings, "A parameter of the algorithm: NAME=VALUE; may be repeated")
-      ->allow_extra_args(false);
+  add_algorithm_options(*command, arguments->algorithm, "Name of an algorithm (sixdof algorithms lists them)")
+      ->capture_default_str();
   command->add_option("--about", arguments->about,
-                      "Point \"x y z\" in A's frame about which the torque is taken (default: centre of B's box)");
+                      "Reference point \"x y z\" of the torque, in A's frame (default: centre of B's bounding box)");
   command->add_flag("--json", arguments->json, "As JSON; null where the algorithm gives no answer");
   command->callback([arguments] { run_query(*arguments); });
+  add_examples(
+      *command, "sixdof query --a cone-1k --b torus-1k --pose '0.9 0 0.1 1 0 0 0'",
+      "sixdof query --a cone-1k --b torus-1k --pose '0.9 0 0.1 1 0 0 0' --algorithm ist -p spheres=500 --json");
 }
 
 }  // namespace sixdof::cli

@@ -4,7 +4,7 @@
 
 namespace sixdof::cli {
 
-/// `sixdof query`: one pose, every answer that one algorithm gives.
+/// `sixdof query --a MESH --b MESH --pose POSE [--algorithm NAME] [--json]`: the answers of one algorithm at one pose.
 void add_query_command(CLI::App& app);
 
 }  // namespace sixdof::cli

@@ -67,7 +67,7 @@ void print_text(const ConfigurationSet& set) {
   }
   print_grid(d.volume_grid ? "grid of distances" : "grid", d.grid);
   if (d.volume_grid) print_grid("grid of volumes", *d.volume_grid);
-  fmt::print("\n{:<13} {:>14} {:>10} {:>14} {:>10}  {}\n", "bucket", "target", "tolerance", "largest resid.",
+  fmt::print("\n{:<13} {:>14} {:>10} {:>14} {:>10}  {}\n", "bucket", "nominal", "tolerance", "largest resid.",
              "reachable", "oracle");
   for (const BucketSummary& bucket : set.buckets()) {
     fmt::print("{:<13} {:>14.6g} {:>10.1e} {:>14.1e} {:>10}  {} {}\n", bucket.key.name(), bucket.nominal,

@@ -44,7 +44,7 @@ class BallPainter {
 
 /// Adds the balls below `node`, whose children are at `level`, down to `last`.
 void add_level(const ist::SphereTree& tree, std::size_t node, int level, int last, BallPainter& painter) {
-  const std::int32_t below = tree.below[node];
+  const std::int32_t below = tree.first_child[node];
   for (std::size_t slot = 0; slot < tree.children(node); ++slot) {
     if (level == last || below < 0) {
       painter.add(tree.ball(node, slot), ramp_colour(static_cast<double>(level) / last));
@@ -54,8 +54,8 @@ void add_level(const ist::SphereTree& tree, std::size_t node, int level, int las
   }
 }
 
-/// Draws the faces between voxels of a body and all others. `depth(x, y, z)` is the voxel's depth in voxels, negative
-/// where it is none of the body's; `stored(brick)` is false for bricks without any.
+/// Draws the faces between the voxels of a body and all others. `depth(x, y, z)` is the voxel's depth in voxels,
+/// negative outside the body; `stored(brick)` is false for bricks without a voxel of the body.
 template <class Stored, class Depth>
 class VoxelPainter {
  public:
@@ -71,16 +71,16 @@ class VoxelPainter {
  private:
   bool drawn(int x, int y, int z) const { return grid_.center(x, y, z).x() <= cut_x_ && depth_(x, y, z) >= 0.0; }
 
-  /// Calls visit(x, y, z) for the body's voxels. None is at the grid's border (VoxelGrid::around).
-  template <class Visit>
-  void for_each(const Visit& visit) const {
+  /// Calls action(x, y, z) for the body's voxels. None is at the grid's border (VoxelGrid::around).
+  template <class Action>
+  void for_each(const Action& action) const {
     constexpr int k_edge = VoxelGrid::k_edge;
     for (int z = 0; z < grid_.voxels().z(); ++z) {
       for (int y = 0; y < grid_.voxels().y(); ++y) {
         for (int brick_x = 0; brick_x < grid_.voxels().x(); brick_x += k_edge) {
           if (!stored_(grid_.brick_of(brick_x, y, z))) continue;
           for (int x = brick_x; x < brick_x + k_edge; ++x) {
-            if (depth_(x, y, z) >= 0.0) visit(x, y, z);
+            if (depth_(x, y, z) >= 0.0) action(x, y, z);
           }
         }
       }
@@ -100,7 +100,7 @@ class VoxelPainter {
     }
   }
 
-  /// Counter-clockwise seen from outside. Neighbouring voxels compute the corners they share alike, bit for bit.
+  /// Counter-clockwise seen from outside. Neighbouring voxels compute equal coordinates for common corners.
   void add_face(const Eigen::Array3i& voxel, int axis, int side, const Colour& colour) {
     const auto first = static_cast<std::uint32_t>(drawing_.vertices.size());
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -108,7 +108,7 @@ class VoxelPainter {
     for (const auto& [along_u, along_v] : k_corners) {
       Eigen::Array3i corner = voxel;
       corner[axis] += side > 0 ? 1 : 0;
-      corner[u] += side > 0 ? along_u : 1 - along_u;  // mirrored with the side, so that the order turns with it
+      corner[u] += side > 0 ? along_u : 1 - along_u;  // mirrored, so that both sides are counter-clockwise
       corner[v] += along_v;
       drawing_.vertices.push_back(grid_.origin + grid_.size * corner.cast<double>().matrix());
     }
@@ -132,10 +132,10 @@ Drawing draw_body(const VoxelGrid& grid, double cut_x, const Stored& stored, con
 
 }  // namespace
 
-Colour ramp_colour(double share) {
-  // Five points of matplotlib's viridis, which is even in lightness.
+Colour ramp_colour(double fraction) {
+  // Five points of matplotlib's colour map viridis, whose lightness increases uniformly.
   constexpr std::array<Colour, 5> k_points{{{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
-  const double at = std::clamp(share, 0.0, 1.0) * (k_points.size() - 1);
+  const double at = std::clamp(fraction, 0.0, 1.0) * (k_points.size() - 1);
   const std::size_t below = std::min(static_cast<std::size_t>(at), k_points.size() - 2);
   const double part = at - static_cast<double>(below);
   Colour colour;
@@ -175,11 +175,11 @@ Drawing draw_voxels(const vps::VoxelMap& map, double cut_x) {
 Drawing draw_field(const vps::DistanceField& field, double cut_x) {
   const auto stored = [&](std::size_t brick) { return field.table[brick] != 0; };
   const auto depth = [&](int x, int y, int z) {
-    constexpr int k = vps::DistanceField::k_samples, k_edge = VoxelGrid::k_edge;
-    const int place = ((z % k_edge + 1) * k + y % k_edge + 1) * k + x % k_edge + 1;
+    constexpr int k = vps::DistanceField::k_brick_edge, k_edge = VoxelGrid::k_edge;
+    const int index = ((z % k_edge + 1) * k + y % k_edge + 1) * k + x % k_edge + 1;
     const auto brick = static_cast<std::size_t>(field.table[field.grid.brick_of(x, y, z)]);
     return -static_cast<double>(
-        field.samples[brick * vps::DistanceField::k_brick_samples + static_cast<std::size_t>(place)]);
+        field.coefficients[brick * vps::DistanceField::k_brick_coefficients + static_cast<std::size_t>(index)]);
   };
   return draw_body(field.grid, cut_x, stored, depth);
 }

@@ -9,7 +9,7 @@
 #include <sixdof/algorithm/vps/voxelmap.h>
 #include <sixdof/geometry/save.h>
 
-/// Pictures of the structures that algorithms prepare: coloured triangles or points, in the mesh's frame and unit.
+/// Drawings of the structures that algorithms prepare: coloured triangles or points, in the mesh's frame and unit.
 
 namespace sixdof::cli {
 
@@ -21,30 +21,31 @@ struct Drawing {
   std::size_t elements = 0;              ///< Spheres, voxels or points that were drawn.
 };
 
-/// Draws only what has its centre at x <= this (mesh's frame): opens a body to the view.
+/// Every drawing leaves out elements whose centre has x > cut_x (mesh's frame), which opens a body to the view.
 constexpr double k_uncut = std::numeric_limits<double>::infinity();
 
-/// Every drawn ball has this many vertices, all of them on the ball's surface, and triangles.
+/// Vertices (all on the ball's surface) and triangles of every ball drawn.
 constexpr std::size_t k_ball_vertices = 42;
 constexpr std::size_t k_ball_triangles = 80;
 
-/// From dark blue (0, and less) over green to yellow (1, and more).
-Colour ramp_colour(double share);
-/// Colour of a voxel `depth` voxels deep in a body whose deepest is `deepest`: along the ramp, every other voxel layer
-/// darker, so that layers can be counted.
+/// From dark blue (<= 0) over green to yellow (>= 1).
+Colour ramp_colour(double fraction);
+/// Colour of a voxel `depth` voxels deep in a body whose greatest depth is `deepest`: along the ramp, every second
+/// layer darker, so that layers can be counted.
 Colour depth_colour(double depth, double deepest);
 
 /// The packed spheres. Colour: ramp_colour(radius / largest radius).
 Drawing draw_spheres(const ist::SphereTree& tree, double cut_x = k_uncut);
 
-/// The balls that the hierarchy has `level` steps below its root's bound (1: the root's children), and the packed
-/// spheres that are nearer to the root than that. Colour: ramp_colour(level of the ball / `level`).
+/// The balls of the hierarchy at `level` (1: the root's children), and the packed spheres at lower levels.
+/// Colour: ramp_colour(level of the ball / `level`).
 Drawing draw_balls(const ist::SphereTree& tree, int level, double cut_x = k_uncut);
 
-/// Voxels with layer v >= 0. Faces between two of them are left out. Colour: depth_colour(v, greatest v).
+/// The outer faces of the voxels with layer v >= 0. Colour: depth_colour(v, greatest v).
 Drawing draw_voxels(const vps::VoxelMap& map, double cut_x = k_uncut);
 
-/// Voxels whose sample f is not positive, likewise. Colour: depth_colour(-f, greatest -f).
+/// The same of the voxels whose coefficient f of the distance field is not positive. Colour: depth_colour(-f, greatest
+/// -f).
 Drawing draw_field(const vps::DistanceField& field, double cut_x = k_uncut);
 
 /// Points with their inward normals, no triangles. Colour: ramp_colour(half the point's area over the mean area).

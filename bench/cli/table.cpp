@@ -9,16 +9,20 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/measure/metrics.h>
+
+#include "bench/common/examples.h"
 
 namespace sixdof::cli {
 namespace {
 
 using nlohmann::json;
 
-/// "collide/algorithm:fcl-rss/pair:elephant/distance:05/order:path" taken apart.
+/// "collide/algorithm:fcl-rss/pair:elephant/distance:05/order:path" in parts.
 struct RowName {
   std::string question;
   std::map<std::string, std::string> parts;
@@ -35,41 +39,32 @@ RowName parse_row_name(const std::string& name) {
   return result;
 }
 
-/// Rows that one result file has under the same name are repetitions: the least mean and what goes with it are shown.
-/// Queries run on one thread, so the mean is its processor time, which other work on the machine disturbs least.
-struct Cell {
-  double mean_us = 0.0;
-  double p99_us = 0.0;
-  double max_us = 0.0;
-  /// Responses only: mean and largest angle of the force to the exact one, where there are forces to compare.
-  std::optional<std::pair<double, double>> angles_degrees;
-  bool response = false;
-  bool error = false;
-  bool failed = false;
-  bool mismatch = false;
-
-  std::string text() const {
-    if (error) return "error";
-    const std::string marks = fmt::format("{}{}", mismatch ? "!" : "", failed ? "?" : "");
-    if (!response) return fmt::format("{} / {}{}", number(mean_us), number(p99_us), marks);
-    return fmt::format("{} / {} / {}, {}{}", number(mean_us), number(p99_us), number(max_us), angles(), marks);
-  }
-  std::string angles() const {
-    if (!angles_degrees) return "-";
-    return fmt::format("{:.2f} / {:.1f}", angles_degrees->first, angles_degrees->second);
-  }
-  static std::string number(double us) {
-    if (us < 0.01) return fmt::format("{:.4f}", us);
-    return us < 10 ? fmt::format("{:.2f}", us) : us < 100 ? fmt::format("{:.1f}", us) : fmt::format("{:.0f}", us);
-  }
+/// Metrics of one unit that a cell shows side by side, with names for the title.
+struct Group {
+  std::string names;
+  std::vector<const char*> metrics;
 };
 
-using Line = std::map<std::string, Cell>;  ///< By bucket.
+/// The first metric is the mean of the processor time: a query runs on one thread, and other work on the machine hardly
+/// changes this time.
+const std::vector<Group>& groups_of(const std::string& question) {
+  static const std::vector<Group> times{{"mean / p99", {"cpu_time", "p99_ns"}}};
+  static const std::vector<Group> responses{
+      {"mean / p99 / max", {"cpu_time", "p99_ns", "max_ns"}},
+      {"force's angle to the exact one mean / max", {"gamma_F_deg", "gamma_max_F_deg"}}};
+  return question == "respond" ? responses : times;
+}
 
-struct Block {
-  std::vector<std::string> titles;  ///< In order of appearance.
-  std::map<std::string, Line> lines;
-};
+bool is_time(const Metric& metric) { return metric.unit == "ns" || metric.unit == "time_unit"; }
+
+std::string title_of(const std::vector<Group>& groups) {
+  std::vector<std::string> titles;
+  for (const Group& group : groups) {
+    const Metric& metric = *find_metric(group.metrics.front());
+    titles.push_back(is_time(metric) ? group.names + " in us" : fmt::format("{} in {}s", group.names, metric.unit));
+  }
+  return fmt::format("{}", fmt::join(titles, ", "));
+}
 
 double nanoseconds_per(const std::string& unit) {
   if (unit == "us") return 1e3;
@@ -77,20 +72,60 @@ double nanoseconds_per(const std::string& unit) {
   return unit == "s" ? 1e9 : 1.0;
 }
 
-Cell cell_of(const json& row) {
-  Cell cell;
-  cell.error = row.value("error_occurred", false);
-  if (cell.error) return cell;
-  cell.mean_us = row.at("cpu_time").get<double>() * nanoseconds_per(row.value("time_unit", "ns")) / 1e3;
-  cell.p99_us = row.value("p99_ns", 0.0) / 1e3;
-  cell.max_us = row.value("max_ns", 0.0) / 1e3;
-  if (row.contains("gamma_F_deg")) {
-    cell.angles_degrees = {row.at("gamma_F_deg").get<double>(), row.at("gamma_max_F_deg").get<double>()};
-  }
-  cell.failed = row.value("failed", 0.0) > 0;
-  cell.mismatch = row.value("mismatch", 0.0) > 0;
-  return cell;
+/// In microseconds for times, in the metric's own unit otherwise; empty where the row has no such value.
+std::optional<double> value_of(const json& row, const Metric& metric) {
+  const auto found = row.find(metric.name);
+  if (found == row.end()) return std::nullopt;
+  const double factor = metric.unit == "time_unit" ? nanoseconds_per(row.value("time_unit", "ns")) : 1.0;
+  return is_time(metric) ? found->get<double>() * factor / 1e3 : found->get<double>();
 }
+
+std::string text_of(const Group& group, const json& row) {
+  std::vector<std::string> texts;
+  for (const char* name : group.metrics) {
+    const Metric& metric = *find_metric(name);
+    const std::optional<double> value = value_of(row, metric);
+    if (!value) return "-";
+    // Three significant digits of a time; the largest angle with fewer decimals than the mean one.
+    const int decimals = !is_time(metric) ? (texts.empty() ? 2 : 1)
+                         : *value < 0.01  ? 4
+                         : *value < 10.0  ? 2
+                         : *value < 100.0 ? 1
+                                          : 0;
+    texts.push_back(fmt::format("{:.{}f}", *value, decimals));
+  }
+  return fmt::format("{}", fmt::join(texts, " / "));
+}
+
+struct Cell {
+  std::string text = "error";
+  std::optional<double> mean;  ///< Empty for a row that could not be run.
+};
+
+Cell cell_of(const json& row, const std::vector<Group>& groups) {
+  if (row.value("error_occurred", false)) return {};
+  std::vector<std::string> texts;
+  for (const Group& group : groups) texts.push_back(text_of(group, row));
+  const char* const wrong = row.value("mismatch", 0.0) > 0 ? "!" : "";
+  const char* const failed = row.value("failed", 0.0) > 0 ? "?" : "";
+  return {fmt::format("{}{}{}", fmt::join(texts, ", "), wrong, failed),
+          value_of(row, *find_metric(groups.front().metrics.front()))};
+}
+
+using Line = std::map<std::string, Cell>;  ///< By bucket.
+
+struct Block {
+  std::vector<std::string> names;  ///< Of the lines, in order of appearance.
+  std::map<std::string, Line> lines;
+
+  /// Rows of the same name are repetitions, of which the one with the best mean is shown.
+  void add(const std::string& name, const std::string& bucket, const Cell& cell) {
+    if (!lines.contains(name)) names.push_back(name);
+    Cell& shown = lines[name].try_emplace(bucket, cell).first->second;
+    const Better better = find_metric("cpu_time")->better;
+    if (cell.mean && (!shown.mean || is_better(better, *cell.mean, *shown.mean))) shown = cell;
+  }
+};
 
 void print(std::string& out, const std::string& title, const Block& block) {
   std::vector<std::string> buckets;
@@ -99,20 +134,19 @@ void print(std::string& out, const std::string& title, const Block& block) {
     first_width = std::max(first_width, name.size());
     for (const auto& [bucket, cell] : line) {
       if (std::find(buckets.begin(), buckets.end(), bucket) == buckets.end()) buckets.push_back(bucket);
-      width = std::max(width, cell.text().size());
+      width = std::max(width, cell.text.size());
     }
   }
   std::sort(buckets.begin(), buckets.end());
-  out += title + "\n";
-  out += fmt::format("{:<{}}", "", first_width);
+  out += title + "\n" + fmt::format("{:<{}}", "", first_width);
   for (const std::string& bucket : buckets) out += fmt::format("  {:>{}}", bucket + " %", width);
   out += "\n";
-  for (const std::string& name : block.titles) {
+  for (const std::string& name : block.names) {
     out += fmt::format("{:<{}}", name, first_width);
+    const Line& line = block.lines.at(name);
     for (const std::string& bucket : buckets) {
-      const Line& line = block.lines.at(name);
       const auto found = line.find(bucket);
-      out += fmt::format("  {:>{}}", found == line.end() ? "-" : found->second.text(), width);
+      out += fmt::format("  {:>{}}", found == line.end() ? "-" : found->second.text, width);
     }
     out += "\n";
   }
@@ -122,6 +156,8 @@ void print(std::string& out, const std::string& title, const Block& block) {
 }  // namespace
 
 std::string results_table(const std::string& text, const std::string& file) {
+  const std::pair<const char*, const char*> kinds[] = {{"distance", "distances in percent of A's box diagonal"},
+                                                       {"volume", "overlaps in percent of A's volume"}};
   std::vector<std::string> order;
   std::map<std::string, Block> blocks;
   try {
@@ -129,31 +165,19 @@ std::string results_table(const std::string& text, const std::string& file) {
     for (const json& row : document.at("benchmarks")) {
       if (row.value("run_type", "iteration") != "iteration") continue;
       const RowName name = parse_row_name(row.at("name").get<std::string>());
-      for (const char* kind : {"distance", "volume"}) {
-        const auto bucket = name.parts.find(kind);
-        if (bucket == name.parts.end() || !name.parts.contains("algorithm") || !name.parts.contains("pair")) continue;
-        const bool response = name.question == "respond";
-        const std::string title =
-            fmt::format("{}: {}, at {}", name.parts.at("pair"),
-                        response ? "mean / p99 / max in us, force's angle to the exact one mean / max in degrees"
-                                 : "mean / p99 in us",
-                        kind == std::string("distance") ? "distances in percent of A's box diagonal"
-                                                        : "overlaps in percent of A's volume");
+      if (!name.parts.contains("algorithm") || !name.parts.contains("pair")) continue;
+      for (const auto& [kind, buckets] : kinds) {
+        if (!name.parts.contains(kind)) continue;
+        const std::vector<Group>& groups = groups_of(name.question);
+        const std::string title = fmt::format("{}: {}, at {}", name.parts.at("pair"), title_of(groups), buckets);
         if (!blocks.contains(title)) order.push_back(title);
-        Block& block = blocks[title];
         std::string line = name.question + " " + name.parts.at("algorithm");
         if (name.parts.contains("order")) line += " (" + name.parts.at("order") + ")";
-        if (!block.lines.contains(line)) block.titles.push_back(line);
-        Cell cell = cell_of(row);
-        cell.response = response;
-        const auto [place, fresh] = block.lines[line].emplace(bucket->second, cell);
-        if (!fresh && !cell.error && (place->second.error || cell.mean_us < place->second.mean_us)) {
-          place->second = cell;
-        }
+        blocks[title].add(line, name.parts.at(kind), cell_of(row, groups));
       }
     }
   } catch (const json::exception& e) {
-    throw BadFile(file, std::string("no result file of sixdof-bench: ") + e.what());
+    throw BadFile(file, std::string("not a result file of sixdof-bench: ") + e.what());
   }
   std::string out;
   for (const std::string& title : order) print(out, title, blocks.at(title));
@@ -162,7 +186,7 @@ std::string results_table(const std::string& text, const std::string& file) {
 }
 
 void add_table_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("table", "Results of sixdof-bench as tables");
+  auto* const command = app.add_subcommand("table", "Print results of sixdof-bench as tables");
   const auto file = std::make_shared<std::string>();
   command->add_option("file", *file, "Result file (JSON)")->required();
   command->callback([file] {
@@ -172,6 +196,10 @@ void add_table_command(CLI::App& app) {
     text << in.rdbuf();
     fmt::print("{}", results_table(text.str(), *file));
   });
+  add_examples(*command,
+               "sixdof-bench --benchmark_filter=/algorithm:exact/pair:torus-knot-10k/distance:05 --sample 32 "
+               "--out results.json",
+               "sixdof table results.json");
 }
 
 }  // namespace sixdof::cli

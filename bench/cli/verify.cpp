@@ -6,12 +6,13 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include "bench/algorithms.h"
-#include "bench/cli/interrupt.h"
-#include "bench/cli/progress_line.h"
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/verification.h>
 #include <sixdof/models/model_catalogue.h>
+#include "bench/common/all_algorithms.h"
+#include "bench/common/examples.h"
+#include "bench/common/interrupt.h"
+#include "bench/common/progress_line.h"
 
 namespace sixdof::cli {
 namespace {
@@ -32,7 +33,7 @@ void print_table(const Verdict& verdict) {
                bucket.tolerance / bucket.scale, bucket.wrong_value, bucket.earlier_hit, bucket.false_nan,
                bucket.oracle);
   }
-  fmt::print("residuals in A's box diagonals and A's volumes\n");
+  fmt::print("residuals and what is allowed: in diagonals of A's box and in A's volumes\n");
 }
 
 void verify(const Arguments& arguments) {
@@ -48,11 +49,9 @@ void verify(const Arguments& arguments) {
   Verdict verdict;
   {
     ProgressLine line("verified");
-    verdict = verify_set(set, a, b, oracle,
-                         {.sample = arguments.sample,
-                          .seed = arguments.seed,
-                          .progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
-                          .cancelled = [] { return InterruptGuard::requested(); }});
+    verdict = verify_set(set, a, b, oracle, {.size = arguments.sample, .seed = arguments.seed},
+                         {.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
+                          .cancelled = InterruptGuard::requested});
   }
   fmt::print("{}: {} with {}, grid {}, distances by {} {}, seed {}\n", arguments.file, set.description().a.name,
              set.description().b.name, set.grid(BucketKind::distance).spec, oracle.traits().name,
@@ -65,17 +64,18 @@ void verify(const Arguments& arguments) {
 }  // namespace
 
 void add_verify_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("verify", "Re-measure a sample of a configuration set");
+  auto* const command = app.add_subcommand("verify", "Measure a sample of a configuration set again");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("file", arguments->file, "The set")->required();
-  command->add_option("--a", arguments->a, "Mesh A, if the set's own name for it is no model here");
+  command->add_option("--a", arguments->a, "Mesh A, if its name in the set is not a model here");
   command->add_option("--b", arguments->b, "Mesh B, likewise");
-  command->add_option("--sample", arguments->sample, "Configurations per bucket")->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Of the sample")->capture_default_str();
-  command
-      ->add_option("--oracle", arguments->oracle,
-                   "What measures distances: brute-force, or an algorithm with exact ones")
+  command->add_option("--sample", arguments->sample, "Configurations per bucket, drawn at random")
       ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Of the sample")->capture_default_str();
+  command->add_option("--oracle", arguments->oracle, "Algorithm with exact distances that measures them")
+      ->capture_default_str();
+  add_examples(*command, "sixdof generate --a torus-knot-10k --grid 90 --distances 0,10 -o set.h5",
+               "sixdof verify set.h5 --sample 20 --seed 7");
   command->callback([arguments] { verify(*arguments); });
 }
 

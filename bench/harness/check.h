@@ -1,47 +1,61 @@
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <span>
-#include <string>
+#include <vector>
 
-#include <sixdof/query/algorithm.h>
-#include "bench/harness/timing.h"
-#include "bench/harness/work.h"
 #include <sixdof/configuration/bucket_sample.h>
+#include <sixdof/query/algorithm.h>
+#include "bench/harness/guarded_query.h"
+#include "bench/harness/work.h"
 
-/// Answers against the set's truth, outside every timed region and before it.
+/// Compares answers with the set's truth, before anything is timed.
 
 namespace sixdof::bench {
 
-/// What came of asking each configuration once.
-struct Check {
-  std::size_t asked = 0;        ///< Configurations asked; fewer than given where the time ran out.
-  std::size_t failed = 0;       ///< No answer, whatever the reason.
-  std::size_t judged = 0;       ///< Answers that have a truth to be compared with.
-  std::size_t mismatch = 0;     ///< Of those, wrong ones.
-  double largest_error = 0.0;   ///< Largest |answer - truth|: distances in A's diagonals, volumes in the target.
-  double sum_of_errors = 0.0;   ///< Sum of the same.
-  double squared_errors = 0.0;  ///< Sum of the squares of the same.
-  std::size_t misses = 0;       ///< Responses only: no force where the bodies overlap.
-  std::string diagnosis;        ///< Of the first failure.
-  MeanWork work;                ///< Over the answers.
+/// Differences between answers and truth, none negative.
+class Errors {
+ public:
+  /// Larger errors, e.g. of an answer of 1e308, count as this one, whose square and sums of it do not overflow.
+  static constexpr double k_largest = 1e150;
 
-  void add_error(double error) {
-    largest_error = std::max(largest_error, error);
-    sum_of_errors += error;
-    squared_errors += error * error;
+  void add(double error) {
+    error = std::min(error, k_largest);
+    ++count_;
+    largest_ = std::max(largest_, error);
+    sum_ += error;
+    squares_ += error * error;
   }
-  double mean_error() const { return judged == 0 ? 0.0 : sum_of_errors / static_cast<double>(judged); }
-  double rms_error() const { return judged == 0 ? 0.0 : std::sqrt(squared_errors / static_cast<double>(judged)); }
+  double largest() const { return largest_; }
+  double mean() const { return count_ == 0 ? 0.0 : sum_ / static_cast<double>(count_); }
+  double rms() const { return count_ == 0 ? 0.0 : std::sqrt(squares_ / static_cast<double>(count_)); }
+
+ private:
+  std::size_t count_ = 0;
+  double largest_ = 0.0;
+  double sum_ = 0.0;
+  double squares_ = 0.0;
 };
 
-/// A distance counts as wrong if it is off by more than the set's own tolerance plus this share of A's diagonal. It
-/// covers what one exact algorithm computes differently from another (some 1e-13 in double precision for coordinates of
-/// the size of the diagonal), and is still far below what any approximation is off by.
+/// The answers to each configuration of a bucket, asked once.
+struct Check {
+  std::size_t asked = 0;       ///< Configurations asked; fewer than given where the time ran out.
+  std::vector<Pose> answered;  ///< Those that got an answer, in the order in which they were asked.
+  std::size_t judged = 0;      ///< Answers that are compared with a truth.
+  std::size_t mismatch = 0;    ///< Wrong ones among them.
+  Errors errors;               ///< |answer - truth|: distances in A's diagonals, volumes in the bucket's volume.
+  std::size_t misses = 0;      ///< Responses without a force although the bodies overlap.
+  MeanWork work;               ///< Over the answers.
+};
+
+/// A distance is wrong if it differs by more than the set's own tolerance plus this fraction of A's diagonal. Two exact
+/// algorithms in double precision differ by some 1e-13 for coordinates of the size of the diagonal; approximations
+/// differ by far more than this.
 constexpr double k_distance_slack = 1e-9;
 
-/// Judges one answer. Yes/no is not judged in bucket 0, where touching may be called either way.
+/// Yes/no is not judged in bucket 0, where both answers to touching bodies are right.
 inline void judge(const BucketSample& bucket, bool answer, Check& check) {
   if (bucket.key.percent == 0) return;
   ++check.judged;
@@ -54,38 +68,34 @@ inline void judge(const BucketSample& bucket, const Separation& answer, Check& c
   const double error = std::abs(answer.distance - (apart ? bucket.target : 0.0));
   ++check.judged;
   if (!(error <= (apart ? bucket.tolerance : 0.0) + k_distance_slack * bucket.diagonal)) ++check.mismatch;
-  check.add_error(error / bucket.diagonal);
+  check.errors.add(error / bucket.diagonal);
 }
 
-/// Responses are judged in overlap buckets: none may be without a force. An algorithm that says what volume it sees is
-/// measured against the target, which is exact; how far off is reported and no mismatch, as approximations are honest.
-/// Contact has no force.
+/// Responses are judged in overlap buckets, where each has a force; touching bodies (0 %) have none. A response's
+/// volume is compared with the bucket's; how far off it is counts as no mismatch, since many algorithms approximate it.
 inline void judge(const BucketSample& bucket, const Response& answer, Check& check) {
   if (bucket.key.kind != BucketKind::volume || bucket.key.percent == 0) return;
   if (answer.force.isZero(0.0)) ++check.misses;
   if (!std::isfinite(answer.volume)) return;
   ++check.judged;
-  check.add_error(std::abs(answer.volume - bucket.target) / bucket.target);
+  check.errors.add(std::abs(answer.volume - bucket.target) / bucket.target);
 }
 
-/// Asks every configuration once, and judges. When `seconds` have passed it stops, at the end of a run of neighbours,
-/// so that what was asked is a fair sample of what was given.
+/// Asks every configuration once. Stops when `seconds` have passed, at the end of a run of neighbours, so that the
+/// configurations asked are a random sample of those given.
 template <class Ask>
-Check check_answers(const BucketSample& bucket, Ask ask, const Query& query, double seconds) {
+Check check_answers(const BucketSample& bucket, GuardedQuery<Ask>& query, double seconds) {
   Check check;
-  const auto start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   for (const Pose& pose : bucket.poses) {
     const bool run_ends = check.asked > 0 && check.asked % BucketSample::k_run == 0;
-    if (run_ends && std::chrono::duration<double>(Clock::now() - start).count() > seconds) break;
-    const auto answer = ask(pose);
+    if (run_ends && std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds) break;
+    const auto answer = query.ask(pose);
     ++check.asked;
-    if (answer.ok()) {
-      judge(bucket, answer.value, check);
-      check.work.add(query.work());
-    } else {
-      ++check.failed;
-      if (check.diagnosis.empty()) check.diagnosis = query.diagnosis();
-    }
+    if (!answer.ok()) continue;
+    check.answered.push_back(pose);
+    judge(bucket, answer.value, check);
+    check.work.add(query.query().work());
   }
   return check;
 }

@@ -8,16 +8,49 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include "bench/cli/commands.h"
+#include <sixdof/base/error.h>
+#include "bench/common/run_guarded.h"
 
 namespace sixdof::bench {
 namespace {
 
-/// Short enough for a suite of hundreds of rows; a round over the bucket is the shortest measurement anyway.
+/// Short enough for a suite of hundreds of rows; one round over the bucket is the shortest measurement.
 constexpr const char* k_default_min_time = "--benchmark_min_time=0.1";
+
+constexpr const char* k_examples =
+    "\nExamples:\n"
+    "  sixdof-bench --benchmark_filter='^distance/algorithm:(exact|fcl-rss)/pair:torus-knot-10k/distance:05$' "
+    "--sample 64\n"
+    "  sixdof-bench --suite default --benchmark_list_tests\n";
 
 bool has_flag(const std::vector<std::string>& flags, const std::string& name) {
   return std::any_of(flags.begin(), flags.end(), [&](const auto& flag) { return flag.starts_with(name); });
+}
+
+std::string refuse_csv(const std::string& format) {
+  return format == "csv" ? "csv needs the same counters in every row, and rows differ: use json" : std::string();
+}
+
+void print_help(const CLI::App& app) {
+  fmt::print("{}\nGoogle Benchmark's own flags:\n", app.help());
+  benchmark::PrintDefaultHelp();
+  fmt::print("{}", k_examples);
+}
+
+/// Google Benchmark reads its flags from a command line, and keeps a pointer to the program's name.
+/// @returns the first word that it does not know; empty if it knows all
+std::string initialize_benchmark(const std::vector<std::string>& flags) {
+  static std::vector<std::string> words;
+  words = {"sixdof-bench"};
+  words.insert(words.end(), flags.begin(), flags.end());
+  // It insists on a file name before it calls a reporter of files; ours keeps the text in memory.
+  words.emplace_back("--benchmark_out=/dev/null");
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  int count = static_cast<int>(words.size());
+  benchmark::Initialize(&count, pointers.data());
+  return count > 1 ? pointers[1] : std::string();
 }
 
 }  // namespace
@@ -29,13 +62,20 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   options.manifest = SIXDOF_FIXTURES_DIR "/manifest.json";
   std::string format = "console";
   std::string out_format = "json";
+  std::string suite;
   bool no_manifest = false;
   auto* const manifest =
       app.add_option("--manifest", options.manifest, "Catalogue of configuration sets")->capture_default_str();
   app.add_flag("--no-manifest", no_manifest, "No catalogue: only the sets named by --set")->excludes(manifest);
   app.add_option("--set", options.sets, "A configuration set of your own (sixdof generate); may be repeated")
+      ->allow_extra_args(false)
       ->check(CLI::ExistingFile);
-  app.add_option("--settings", options.settings, "ALGORITHM:PARAMETER=VALUE (sixdof algorithms); may be repeated");
+  app.add_option("--suite", suite,
+                 "Rows to run: default (bench/default_suite.json), all, or a file of the same form. Without this "
+                 "option: default, but all with a --benchmark_filter or sets of your own");
+  app.add_option("-p,--parameter", options.parameters,
+                 "Parameter of an algorithm: ALGORITHM:NAME=VALUE (sixdof algorithms); may be repeated")
+      ->allow_extra_args(false);
   app.add_option("--sample", options.sample, "Configurations per bucket, drawn by seed; 0 for all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
@@ -43,32 +83,45 @@ int parse_options(int argc, const char* const* argv, Options& options) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Of samples and orders")->capture_default_str();
-  app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were touched");
+  app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were used");
   app.add_option("--benchmark_out,--out", options.out, "Result file (JSON); appears whole or not at all");
   app.add_option("--benchmark_out_format", out_format)->check(CLI::IsMember({"json"}))->group("");
-  app.add_option("--benchmark_format", format)->check(CLI::IsMember({"console", "json", "csv"}))->group("");
+  app.add_option("--benchmark_format", format)->check(refuse_csv)->check(CLI::IsMember({"console", "json"}))->group("");
   try {
     app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& e) {
-    app.exit(e);
-    fmt::print("\nGoogle Benchmark's own flags are understood too:\n");
-    std::fflush(stdout);
-    benchmark::PrintDefaultHelp();
+  } catch (const CLI::CallForHelp&) {
+    print_help(app);
     return 0;
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : cli::k_exit_usage;
+    return app.exit(e) == 0 ? 0 : k_exit_usage;
   }
 
+  std::vector<std::string> flags = app.remaining();
+  const bool own_sets = no_manifest || !manifest->empty() || !options.sets.empty();
+  if (suite.empty()) suite = own_sets || has_flag(flags, "--benchmark_filter") ? "all" : "default";
+  if (suite != "all") options.suite = suite == "default" ? SIXDOF_DEFAULT_SUITE : suite;
   if (no_manifest) options.manifest.clear();
-  options.benchmark_flags = app.remaining();
   options.json_on_stdout = format == "json";
-  if (format == "csv") options.benchmark_flags.emplace_back("--benchmark_format=csv");
-  options.list_only = has_flag(options.benchmark_flags, "--benchmark_list_tests") &&
-                      !has_flag(options.benchmark_flags, "--benchmark_list_tests=false");
-  if (!has_flag(options.benchmark_flags, "--benchmark_min_time")) {
-    options.benchmark_flags.emplace_back(k_default_min_time);
+  options.list_only = has_flag(flags, "--benchmark_list_tests") && !has_flag(flags, "--benchmark_list_tests=false");
+  if (!has_flag(flags, "--benchmark_min_time")) flags.emplace_back(k_default_min_time);
+  const std::string unknown = initialize_benchmark(flags);
+  if (unknown.empty()) return -1;
+  print_message("sixdof-bench", unknown + ": no such option (--help lists them)");
+  return k_exit_usage;
+}
+
+std::map<std::string, Settings> parse_parameters(const std::vector<std::string>& parameters, const Registry& registry) {
+  std::map<std::string, Settings> settings;
+  for (const auto& algorithm : registry.all()) settings.emplace(algorithm->traits().name, algorithm->settings());
+  for (const std::string& text : parameters) {
+    const auto colon = text.find(':');
+    if (colon == std::string::npos) {
+      throw BadArgument(fmt::format("--parameter {}: must read ALGORITHM:NAME=VALUE", text));
+    }
+    const Algorithm& algorithm = registry.find(text.substr(0, colon));
+    settings.at(algorithm.traits().name).set_all({text.substr(colon + 1)});
   }
-  return -1;
+  return settings;
 }
 
 }  // namespace sixdof::bench

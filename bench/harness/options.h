@@ -3,8 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
+
+#include <sixdof/query/registry.h>
 
 namespace sixdof::bench {
 
@@ -12,20 +15,24 @@ namespace sixdof::bench {
 struct Options {
   std::filesystem::path manifest;           ///< Catalogue of configuration sets; empty for none.
   std::vector<std::filesystem::path> sets;  ///< Further sets of the user's.
-  std::vector<std::string> settings;        ///< "ALGORITHM:PARAMETER=VALUE".
+  std::filesystem::path suite;              ///< List of rows (harness/suite.h); empty for all rows.
+  std::vector<std::string> parameters;      ///< "ALGORITHM:NAME=VALUE".
   std::size_t sample = 1024;                ///< Configurations per bucket; 0 for all.
   double budget_s = 0.0;                    ///< Wall time for all rows together; 0 for no limit.
   std::uint64_t seed = 1;                   ///< Of samples and orders.
-  bool stats = false;                       ///< Print what was opened, read, loaded and prepared.
+  bool stats = false;                       ///< Print how much was opened, read, loaded and prepared.
   std::filesystem::path out;                ///< Result file; empty for none.
   bool json_on_stdout = false;
   bool list_only = false;
-
-  std::vector<std::string> benchmark_flags;  ///< Left for Google Benchmark, without the program's name.
 };
 
-/// Parses the command line. Help and version are printed to stdout.
-/// @returns the exit code if the program should end now, -1 otherwise.
+/// Parses the command line and hands Google Benchmark its part of it. Help, version and errors are printed.
+/// @returns the exit code if the program should end now, -1 otherwise
 int parse_options(int argc, const char* const* argv, Options& options);
+
+/// The settings of every algorithm by its name: defaults, and what the command line says.
+/// @param parameters "ALGORITHM:NAME=VALUE"
+/// @throws BadArgument for an algorithm or parameter that does not exist
+std::map<std::string, Settings> parse_parameters(const std::vector<std::string>& parameters, const Registry& registry);
 
 }  // namespace sixdof::bench

@@ -1,61 +1,62 @@
 #include "bench/harness/suite.h"
 
 #include <algorithm>
-#include <limits>
+#include <fstream>
 
-#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-#include "bench/cli/interrupt.h"
 
 namespace sixdof::bench {
+namespace {
 
-Suite::Suite(const Options& options, const Registry& registry, const SetCatalogue& catalogue)
-    : options_(options), registry_(registry), catalogue_(catalogue), stock_(options.sample, options.seed) {
-  for (const auto& algorithm : registry.all()) settings_.emplace(algorithm->traits().name, algorithm->settings());
-  for (const std::string& text : options.settings) {
-    const auto colon = text.find(':');
-    if (colon == std::string::npos) throw BadArgument(fmt::format("{}: must read ALGORITHM:PARAMETER=VALUE", text));
-    const Algorithm& algorithm = registry.find(text.substr(0, colon));
-    settings_.at(algorithm.traits().name).set_all({text.substr(colon + 1)});
-  }
-}
+constexpr const char* k_query = "query";
+constexpr const char* k_algorithm = "algorithm";
 
-benchmark::internal::Benchmark* Suite::add(const std::string& name, Row row) {
-  names_.push_back(name);
-  return benchmark::RegisterBenchmark(
-      name.c_str(), [this, name, row = std::move(row)](benchmark::State& state) { run(name, row, state); });
-}
+}  // namespace
 
-void Suite::run(const std::string& name, const Row& row, benchmark::State& state) {
-  InterruptGuard::check();
-  if (current_ != name) {
-    current_ = name;
-    ++begun_;
-    if (progress_) progress_->begin(name);
-  }
+Suite Suite::read(const std::filesystem::path& file, const std::vector<std::string>& external_algorithms) {
+  std::ifstream in(file);
+  if (!in) throw BadFile(file.string(), "cannot be opened");
+  Suite suite;
   try {
-    row(state);
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const std::exception& e) {
-    state.SkipWithError(e.what());
+    const auto json = nlohmann::json::parse(in);
+    for (const auto& rows : json.at("rows")) {
+      Entry entry;
+      for (const auto& [key, values] : rows.items()) {
+        auto& allowed = entry[key];
+        if (values == "all") continue;
+        allowed = values.get<std::vector<std::string>>();
+        if (allowed.empty()) throw BadFile(file.string(), key, "an empty list");
+        if (key == k_algorithm) allowed.insert(allowed.end(), external_algorithms.begin(), external_algorithms.end());
+      }
+      suite.entries_.push_back(std::move(entry));
+    }
+  } catch (const nlohmann::json::exception& e) {
+    throw BadFile(file.string(), e.what());
   }
-  if (progress_) progress_->wipe();
-  InterruptGuard::check();
+  return suite;
 }
 
-void Suite::expect_rows(std::size_t count) {
-  expected_ = count;
-  progress_ = std::make_unique<Progress>(count);
-  start_ = std::chrono::steady_clock::now();
-}
-
-double Suite::row_budget_s() const {
-  if (options_.budget_s == 0.0) return std::numeric_limits<double>::infinity();
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const std::size_t left = expected_ > begun_ ? expected_ - begun_ + 1 : 1;
-  return std::max(0.0, options_.budget_s - elapsed) / static_cast<double>(left);
+bool Suite::contains(std::string_view row) const {
+  const auto allows = [](const Entry& entry, std::string_view key, std::string_view value) {
+    const auto found = entry.find(key);
+    if (found == entry.end()) return false;
+    return found->second.empty() || std::ranges::find(found->second, value) != found->second.end();
+  };
+  return std::ranges::any_of(entries_, [&](const Entry& entry) {
+    std::size_t slash = row.find('/');
+    if (!allows(entry, k_query, row.substr(0, slash))) return false;
+    while (slash != std::string_view::npos) {
+      const std::size_t begin = slash + 1;
+      slash = row.find('/', begin);
+      const std::string_view part = row.substr(begin, slash == std::string_view::npos ? slash : slash - begin);
+      const std::size_t colon = part.find(':');
+      if (colon == std::string_view::npos) continue;
+      if (!allows(entry, part.substr(0, colon), part.substr(colon + 1))) return false;
+    }
+    return true;
+  });
 }
 
 }  // namespace sixdof::bench

@@ -1,76 +1,70 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include <sixdof/geometry/pose.h>
+#include <sixdof/measure/latency.h>
+#include "bench/harness/guarded_query.h"
 
-/// How queries are timed. Everything here is a template on the question (a callable Pose -> Outcome), so that nothing
-/// but the query itself stands in the timed loops.
+/// How queries are timed. The functions are templates on the question, so that the timed loops contain nothing but the
+/// query.
 
 namespace sixdof::bench {
 
-using Clock = std::chrono::steady_clock;
-
-inline std::int64_t nanoseconds(Clock::duration d) {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(d).count();
-}
-
-/// The haptic deadline: a query that takes longer breaks a 1 kHz loop.
-constexpr std::int64_t k_deadline_ns = 1'000'000;
-
-/// Each query's own time is the least of this many passes over the bucket: the interruptions of a machine that does
-/// other things as well hardly hit the same query every time. Whole passes and not one query several times over, since
-/// a repeated pose is the best case of every warm start.
+/// The time of a query is the least of this many passes over the bucket: interruptions by other work on the machine
+/// rarely meet the same query in every pass. Each pass visits all poses, since the same pose twice in a row is the best
+/// case of a warm start.
 constexpr int k_latency_passes = 3;
 
-/// Distribution of single queries' times.
-struct Latency {
-  std::int64_t p50_ns = 0;
-  std::int64_t p99_ns = 0;
-  std::int64_t p999_ns = 0;
-  std::int64_t max_ns = 0;
-  double over_1ms = 0.0;  ///< Share of queries beyond the haptic deadline, 0..1.
-};
-
-/// Nearest-rank percentiles: p999 of fewer than a thousand queries is their maximum. All zero for no samples.
-Latency latency_of(std::vector<std::int64_t> samples);
-
-/// What reading the clock twice in a row shows, in ns (median of many): contained in every single query's time.
+/// Time between two successive readings of the clock in ns (median of many). The time of every query contains it.
 double clock_overhead_ns();
 
-/// The timed loop: whole rounds over all poses, so that the mean is over the bucket and not over a part of it. One
-/// iteration is one query.
+/// The timed loop of a row: whole rounds over all poses, so that the mean is over all of them. One iteration is one
+/// query.
 template <class Ask>
-void time_mean(benchmark::State& state, std::span<const Pose> poses, Ask ask) {
+void time_mean(benchmark::State& state, std::span<const Pose> poses, GuardedQuery<Ask> query) {
   const auto round = static_cast<benchmark::IterationCount>(poses.size());
   while (state.KeepRunningBatch(round)) {
     for (const Pose& pose : poses) {
-      auto answer = ask(pose);
+      auto answer = query.ask_timed(pose);
       benchmark::DoNotOptimize(answer);
     }
   }
 }
 
-/// Every query timed by itself.
+/// The distribution of the times of single queries, by wall clock. Poses that fail in any pass are removed.
 template <class Ask>
-Latency time_each(std::span<const Pose> poses, Ask ask) {
-  std::vector<std::int64_t> least(poses.size());
+Latency time_each(std::vector<Pose>& poses, GuardedQuery<Ask> query) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> least_ns(poses.size());
+  std::vector<bool> failed(poses.size());
   for (int pass = 0; pass < k_latency_passes; ++pass) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const auto start = Clock::now();
-      auto answer = ask(poses[i]);
+      auto answer = query.ask_timed(poses[i]);
       benchmark::DoNotOptimize(answer);
-      const std::int64_t took = nanoseconds(Clock::now() - start);
-      if (pass == 0 || took < least[i]) least[i] = took;
+      const auto stop = Clock::now();
+      const double took_ns = std::chrono::duration<double, std::nano>(stop - start).count();
+      if (pass == 0 || took_ns < least_ns[i]) least_ns[i] = took_ns;
+      query.examine(poses[i], answer);
+      if (!answer.ok()) failed[i] = true;
     }
   }
-  return latency_of(std::move(least));
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (failed[i]) continue;
+    poses[kept] = poses[i];
+    least_ns[kept++] = least_ns[i];
+  }
+  poses.resize(kept);
+  least_ns.resize(kept);
+  return latency(least_ns);
 }
 
 }  // namespace sixdof::bench

@@ -1,14 +1,17 @@
 #include "bench/harness/work.h"
 
+#include <sixdof/base/error.h>
+
 namespace sixdof::bench {
 
 void MeanWork::add(const std::vector<Work>& work) {
-  if (sums_.empty()) {
+  if (queries_ == 0) {
     for (const Work& each : work) sums_.push_back({.unit = each.unit});
   }
+  if (work.size() != sums_.size()) throw Error("Query::work() names other units than at the first query");
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    sums_[i].visited += work[i].visited;
-    sums_[i].present += work[i].present;
+    sums_[i].tested += work[i].tested;
+    sums_[i].total += work[i].total;
   }
   ++queries_;
 }
@@ -16,8 +19,8 @@ void MeanWork::add(const std::vector<Work>& work) {
 std::vector<Work> MeanWork::mean() const {
   std::vector<Work> mean = sums_;
   for (Work& each : mean) {
-    each.visited /= static_cast<double>(queries_);
-    each.present /= static_cast<double>(queries_);
+    each.tested /= static_cast<double>(queries_);
+    each.total /= static_cast<double>(queries_);
   }
   return mean;
 }
@@ -25,10 +28,10 @@ std::vector<Work> MeanWork::mean() const {
 void MeanWork::report(benchmark::UserCounters& counters) const {
   constexpr double k_ns = 1e-9;
   for (const Work& each : mean()) {
-    counters[each.unit + "_visited"] = each.visited;
-    counters[each.unit + "_present"] = each.present;
-    if (each.visited == 0.0) continue;
-    counters["ns_per_" + each.unit] = {each.visited * k_ns,
+    counters[each.unit + "_tested"] = each.tested;
+    counters[each.unit + "_total"] = each.total;
+    if (each.tested == 0.0) continue;
+    counters["ns_per_" + each.unit] = {each.tested * k_ns,
                                        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert};
   }
 }

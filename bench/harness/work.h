@@ -9,17 +9,17 @@
 
 namespace sixdof::bench {
 
-/// What the queries of a row looked at, on average.
+/// The mean of Query::work() over the queries of a row.
 class MeanWork {
  public:
-  /// Of one query; every call names the same units.
+  /// @throws Error if a later query names other units than the first
   void add(const std::vector<Work>& work);
 
   /// In the order of Query::work().
   std::vector<Work> mean() const;
 
-  /// For every unit, say points: counters points_visited and points_present per query, and ns_per_points, the timed
-  /// loop's time per visited one, where one iteration of it is one query.
+  /// For every unit, e.g. points: counters points_tested and points_total per query, and ns_per_points, the time of the
+  /// timed loop per tested element. One iteration of the loop is one query.
   void report(benchmark::UserCounters& counters) const;
 
  private:

@@ -1,41 +1,40 @@
 #pragma once
 
-#include "bench/harness/suite.h"
+#include <vector>
+
+#include "bench/harness/row.h"
+
+/// The families of rows. A new family is a file rows/NAME.cpp with one function, declared here and called in
+/// sixdof_bench.cpp. lib/sixdof/measure/metrics.h explains the counters.
 
 namespace sixdof::bench {
 
-/// Registers the rows of every family. A new family is a file rows/NAME.cpp with one function, named here.
-void add_all_rows(Suite& suite);
+/// `prepare/algorithm:A/pair:P`: time to build the structures of a pair, their size and the counts that explain it.
+std::vector<Row> prepare_rows(const Resources& resources);
 
-/// `prepare/algorithm:A/pair:P`: build time, bytes and the counts that explain them.
-void add_prepare_rows(Suite& suite);
+/// `collide/algorithm:A/pair:P/distance:05`, `distance/...`, `respond/algorithm:A/pair:P/volume:03`: queries on the
+/// buckets of the configuration sets, in random order, and in the grid's own order as `.../order:path`. Responses are
+/// compared with the bucket's volume and with the directions of the exact ones.
+std::vector<Row> query_rows(const Resources& resources);
 
-/// `collide/algorithm:A/pair:P/distance:05`, `distance/...`: queries on the buckets of the configuration sets, in
-/// random order, and in the grid's own order as `.../order:path`. `respond/algorithm:A/pair:P/volume:03` the same, with
-/// the error of the volume that the algorithm sees against the bucket's and the angles of its force and torque to the
-/// exact ones as counters (gamma_F_deg, gamma_max_F_deg, and of torques: lib/measure/metrics.h). What an algorithm says
-/// about its work (Query::work) is in points_visited, points_present, ns_per_points and so on.
-void add_query_rows(Suite& suite);
+/// `scenario/II/algorithm:A`: mean time of a response along a scenario's path and every measure of its quality, against
+/// the law that the algorithm declares and, with the suffix "_by_LAW", against every other.
+std::vector<Row> scenario_rows(const Resources& resources);
 
-/// `scenario/II/algorithm:A`: mean time of a response along a scenario's path and, as counters, every measure of its
-/// quality against the law that the algorithm declares (lib/measure/metrics.h names them).
-void add_scenario_rows(Suite& suite);
-
-/// `kernel/NAME/algorithm:A`: the inner loop of one algorithm on a body of recipe, with settings and poses that isolate
-/// it: time per point on a map in cache and out of it without culling, time per pair of balls, a response without
+/// `kernel/NAME/algorithm:A`: the inner loop of one algorithm on a generated body, with settings and poses that isolate
+/// it: time per point on a map in cache and in memory without culling, time per pair of spheres, a response without
 /// contact.
-void add_kernel_rows(Suite& suite);
+std::vector<Row> kernel_rows(const Resources& resources);
 
 /// What a configuration of the paper's grid and buckets costs to make, on the same seeded rays for all, as the counter
-/// ns_per_configuration (CPU time):
+/// ns_per_configuration (processor time):
 /// - `generate/distance/algorithm:raycast/pair:P`: make_ray_cast();
-/// - `generate/distance/algorithm:fcl/...`: plain conservative advancement by FCL's distances, every configuration
-///   alone from outside (SphereMarch::conservative);
+/// - `generate/distance/algorithm:fcl/...`: conservative advancement by FCL's distances, every configuration alone from
+///   outside (SphereMarch::conservative);
 /// - `generate/distance/algorithm:fcl-sweep/...`: certified steps from bucket to bucket by the same distances;
 /// - `generate/volume/algorithm:overlap/...`.
-/// For the catalogue's pairs and for recipes of 10k to a million triangles, which are made on the spot; some rows take
-/// half a minute. bench/run leaves them out unless asked for: `--benchmark_filter=^generate/`. bench/generate-ratios
-/// prints how many times faster the ray cast is than FCL.
-void add_generate_rows(Suite& suite);
+/// For the catalogue's pairs and for generated models of 10k to a million triangles. Some rows take half a minute, so
+/// they are not in the default suite. bench/generate-ratios prints how many times faster the ray cast is than FCL.
+std::vector<Row> generate_rows(const Resources& resources);
 
 }  // namespace sixdof::bench

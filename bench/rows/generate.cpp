@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
-#include "bench/rows/families.h"
 #include <sixdof/generation/ray_cast.h>
 #include <sixdof/generation/sphere_method.h>
 #include <sixdof/generation/volume_generator.h>
 #include <sixdof/generation/work_sample.h>
+#include "bench/rows/families.h"
 
 namespace sixdof::bench {
 namespace {
@@ -54,31 +54,31 @@ MethodWords words(Method method) {
   return {BucketKind::volume, "overlap", "paper-volume"};
 }
 
-/// A generator with one solver. Both are large for large meshes, so all rows share one place for the last.
+/// A generator with one solver. Both are large for large meshes, so all rows share one object of this type.
 struct Generator {
   std::string row;
   std::unique_ptr<DistanceGenerator> distances;
   std::unique_ptr<VolumeGenerator> volumes;
-  std::unique_ptr<RaySolver> solver;  // Last: it refers to the others.
+  std::unique_ptr<RaySolver> solver;  // declared last: it refers to the others
 };
 
 class GenerateRow {
  public:
-  GenerateRow(Suite& suite, Method method, std::string pair, std::string a, std::string b,
-              std::shared_ptr<Generator> last)
-      : suite_(suite),
+  GenerateRow(const Resources& resources, Method method, std::string pair, std::string a, std::string b,
+              std::shared_ptr<Generator> generator)
+      : resources_(resources),
         method_(method),
         pair_(std::move(pair)),
         a_(std::move(a)),
         b_(std::move(b)),
-        last_(std::move(last)) {}
+        generator_(std::move(generator)) {}
 
   std::string name() const {
     return fmt::format("generate/{}/algorithm:{}/pair:{}", to_string(words(method_).kind), words(method_).name, pair_);
   }
 
-  /// Every pass over the rays is one iteration of the row. The row's own time has more in it than the counter: the rays
-  /// that warm up, and a rotation's preparation for a few rays instead of all.
+  /// One iteration is one pass over the rays. The row's own time contains more than the counter: the rays that warm up,
+  /// and the cost of setting a rotation for a few rays instead of all.
   void run(benchmark::State& state) {
     RaySolver& solver = prepare();
     const Grid grid = make_grid(words(method_).grid);
@@ -86,25 +86,25 @@ class GenerateRow {
     double seconds = 0.0;
     std::size_t rays = 0;
     for ([[maybe_unused]] auto _ : state) {
-      RayRuns runs(grid, suite_.options().seed);
+      RayRuns runs(grid, resources_.seed);
       for (std::size_t i = 0; i < k_runs; ++i) {
         const RunCost cost = time_run(solver, grid, runs.next(), targets);
-        const double share = static_cast<double>(cost.rays) / static_cast<double>(grid.directions.size());
-        seconds += cost.rays_s + share * cost.set_rotation_s;
-        rays += cost.rays;
+        const double fraction = static_cast<double>(cost.ray_s.size()) / static_cast<double>(grid.directions.size());
+        seconds += cost.rays_s + fraction * cost.set_rotation_s;
+        rays += cost.ray_s.size();
       }
     }
     const auto configurations = static_cast<double>(rays * targets.size());
     state.counters["ns_per_configuration"] = 1e9 * seconds / configurations;
     state.counters["configurations"] = configurations / static_cast<double>(state.iterations());
-    const Mesh& a = suite_.stock().mesh(a_);
-    const Mesh& b = suite_.stock().mesh(b_);
+    const Mesh& a = resources_.cache.mesh(a_);
+    const Mesh& b = resources_.cache.mesh(b_);
     state.counters["triangles"] = static_cast<double>(a.triangles().size() + b.triangles().size());
   }
 
  private:
   std::vector<double> bucket_targets() const {
-    const Mesh& a = suite_.stock().mesh(a_);
+    const Mesh& a = resources_.cache.mesh(a_);
     std::vector<double> targets;
     if (words(method_).kind == BucketKind::volume) {
       for (int percent = 0; percent < static_cast<int>(k_paper_volume_buckets); ++percent) {
@@ -120,53 +120,58 @@ class GenerateRow {
 
   std::unique_ptr<DistanceGenerator> make_distances() const {
     if (!is_fcl(method_)) return make_ray_cast();
-    return make_sphere_method(suite_.registry().find(k_fcl),
+    return make_sphere_method(resources_.registry.find(k_fcl),
                               method_ == Method::fcl ? SphereMarch::conservative : SphereMarch::certified);
   }
 
   RaySolver& prepare() {
-    if (last_->row == name()) return *last_->solver;
-    last_->solver.reset();
-    last_->volumes.reset();
-    const Mesh& a = suite_.stock().mesh(a_);
-    const Mesh& b = suite_.stock().mesh(b_);
-    last_->distances = make_distances();
-    if (method_ == Method::overlap) last_->volumes = std::make_unique<VolumeGenerator>(*last_->distances, a, b);
-    last_->solver = last_->volumes ? last_->volumes->prepare() : last_->distances->prepare(a, b);
-    last_->row = name();
-    return *last_->solver;
+    Generator& generator = *generator_;
+    if (generator.row == name()) return *generator.solver;
+    const Mesh& a = resources_.cache.mesh(a_);
+    const Mesh& b = resources_.cache.mesh(b_);
+    if (method_ == Method::overlap) require_solids(a, b);
+    generator.row.clear();
+    generator.solver.reset();
+    generator.volumes.reset();
+    generator.distances = make_distances();
+    if (method_ == Method::overlap) generator.volumes = std::make_unique<VolumeGenerator>(*generator.distances, a, b);
+    generator.solver = generator.volumes ? generator.volumes->prepare() : generator.distances->prepare(a, b);
+    generator.row = name();
+    return *generator.solver;
   }
 
-  Suite& suite_;
+  const Resources& resources_;
   const Method method_;
   const std::string pair_, a_, b_;
-  std::shared_ptr<Generator> last_;
+  std::shared_ptr<Generator> generator_;
 };
 
-bool has_fcl(const Suite& suite) {
-  const auto& all = suite.registry().all();
-  return std::ranges::any_of(all, [](const auto& algorithm) { return algorithm->traits().name == k_fcl; });
+bool has_fcl(const Registry& registry) {
+  return std::ranges::any_of(registry.all(), [](const auto& algorithm) { return algorithm->traits().name == k_fcl; });
 }
 
 }  // namespace
 
-void add_generate_rows(Suite& suite) {
-  const auto last = std::make_shared<Generator>();
+std::vector<Row> generate_rows(const Resources& resources) {
+  std::vector<Row> rows;
+  const auto generator = std::make_shared<Generator>();
   const auto add = [&](const std::string& pair, const std::string& a, const std::string& b) {
     for (const Method method : k_methods) {
-      if (is_fcl(method) && !has_fcl(suite)) continue;
-      const auto row = std::make_shared<GenerateRow>(suite, method, pair, a, b, last);
-      auto* const entry = suite.add(row->name(), [row](benchmark::State& state) { row->run(state); });
-      entry->Unit(benchmark::kMillisecond);
+      if (is_fcl(method) && !has_fcl(resources.registry)) continue;
+      const auto row = std::make_shared<GenerateRow>(resources, method, pair, a, b, generator);
+      rows.push_back({.name = row->name(),
+                      .run = [row](benchmark::State& state, double) { row->run(state); },
+                      .unit = benchmark::kMillisecond});
     }
   };
   std::set<std::string> pairs;
-  for (const CatalogueEntry& pair : suite.catalogue().sets()) {
+  for (const CatalogueEntry& pair : resources.catalogue.sets()) {
     if (pairs.insert(pair.pair).second) add(pair.pair, pair.a, pair.b);
   }
   for (const char* const recipe : k_recipes) {
     if (pairs.insert(recipe).second) add(recipe, recipe, recipe);
   }
+  return rows;
 }
 
 }  // namespace sixdof::bench

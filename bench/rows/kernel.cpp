@@ -1,3 +1,4 @@
+#include <cstddef>
 #include <memory>
 #include <random>
 #include <string>
@@ -5,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/base/error.h>
 #include "bench/harness/timing.h"
 #include "bench/harness/work.h"
 #include "bench/rows/families.h"
@@ -38,7 +40,7 @@ const std::vector<Kernel>& kernels() {
   return list;
 }
 
-/// Turned at random, in random directions: the same ones in every run.
+/// Random rotations in random directions, the same ones in every run.
 std::vector<Pose> kernel_poses(const Mesh& mesh, double centers_apart) {
   constexpr std::size_t k_poses = 64;
   std::mt19937_64 random(k_poses);
@@ -57,40 +59,35 @@ std::vector<Pose> kernel_poses(const Mesh& mesh, double centers_apart) {
   return poses;
 }
 
-class KernelRow {
- public:
-  KernelRow(Suite& suite, const Kernel& kernel) : suite_(suite), kernel_(kernel) {}
-
-  void run(benchmark::State& state) {
-    const Algorithm& algorithm = suite_.registry().find(kernel_.algorithm);
-    Settings settings = algorithm.settings();
-    settings.set_all(kernel_.settings);
-    Query& query = suite_.stock().query(algorithm, settings, k_model, k_model);
-    const std::vector<Pose> poses = kernel_poses(suite_.stock().mesh(k_model), kernel_.centers_apart);
-    MeanWork work;
-    for (const Pose& pose : poses) {
-      benchmark::DoNotOptimize(query.respond(pose));
-      work.add(query.work());
-    }
-    time_mean(state, poses, [&query](const Pose& pose) { return query.respond(pose); });
-    state.counters["bytes"] = static_cast<double>(query.footprint().bytes);
-    work.report(state.counters);
-    state.SetLabel(settings.to_string());
+void run(const Resources& resources, const Kernel& kernel, benchmark::State& state) {
+  const Algorithm& algorithm = resources.registry.find(kernel.algorithm);
+  Settings settings = algorithm.settings();
+  settings.set_all(kernel.settings);
+  Query& query = resources.cache.query(algorithm, settings, k_model, k_model);
+  const std::vector<Pose> poses = kernel_poses(resources.cache.mesh(k_model), kernel.centers_apart);
+  Failures failures;
+  GuardedQuery guarded(
+      query, [&query](const Pose& pose) { return query.respond(pose); }, failures);
+  MeanWork work;
+  for (const Pose& pose : poses) {
+    if (guarded.ask(pose).ok()) work.add(query.work());
   }
-
- private:
-  Suite& suite_;
-  const Kernel& kernel_;
-};
+  time_mean(state, poses, guarded);
+  if (failures.count() > 0) throw Error(fmt::format("no response: {}", failures.first()));
+  state.counters["bytes"] = static_cast<double>(query.footprint().bytes);
+  work.report(state.counters);
+  state.SetLabel(settings.to_string());
+}
 
 }  // namespace
 
-void add_kernel_rows(Suite& suite) {
+std::vector<Row> kernel_rows(const Resources& resources) {
+  std::vector<Row> rows;
   for (const Kernel& kernel : kernels()) {
-    const auto row = std::make_shared<KernelRow>(suite, kernel);
-    suite.add(fmt::format("kernel/{}/algorithm:{}", kernel.name, kernel.algorithm),
-              [row](benchmark::State& state) { row->run(state); });
+    rows.push_back({.name = fmt::format("kernel/{}/algorithm:{}", kernel.name, kernel.algorithm),
+                    .run = [&resources, &kernel](benchmark::State& state, double) { run(resources, kernel, state); }});
   }
+  return rows;
 }
 
 }  // namespace sixdof::bench

@@ -1,3 +1,5 @@
+#include <memory>
+
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -6,19 +8,19 @@
 namespace sixdof::bench {
 namespace {
 
-void run(Suite& suite, const Algorithm& algorithm, const CatalogueEntry& pair, benchmark::State& state) {
-  const Settings& settings = suite.settings(algorithm);
-  const Mesh& a = suite.stock().mesh(pair.a);
-  const Mesh& b = suite.stock().mesh(pair.b);
+void run(const Resources& resources, const Algorithm& algorithm, const CatalogueEntry& pair, benchmark::State& state) {
+  const Settings& settings = resources.settings_of(algorithm);
+  const Mesh& a = resources.cache.mesh(pair.a);
+  const Mesh& b = resources.cache.mesh(pair.b);
   std::unique_ptr<Query> query;
   for ([[maybe_unused]] auto _ : state) {
     if (query) {
-      // Taking the last structure apart is no part of building one.
+      // The time to destroy the last structure is not part of preparing the next one.
       state.PauseTiming();
       query.reset();
       state.ResumeTiming();
     }
-    query = suite.stock().prepare(algorithm, settings, a, b);
+    query = resources.cache.prepare(algorithm, settings, a, b);
     benchmark::DoNotOptimize(query.get());
   }
   const Footprint footprint = query->footprint();
@@ -29,17 +31,18 @@ void run(Suite& suite, const Algorithm& algorithm, const CatalogueEntry& pair, b
 
 }  // namespace
 
-void add_prepare_rows(Suite& suite) {
-  for (const CatalogueEntry& pair : suite.catalogue().sets()) {
-    for (const auto& algorithm : suite.registry().all()) {
+std::vector<Row> prepare_rows(const Resources& resources) {
+  std::vector<Row> rows;
+  for (const CatalogueEntry& pair : resources.catalogue.sets()) {
+    for (const auto& algorithm : resources.registry.all()) {
       if (!algorithm->traits().timed) continue;
-      const auto name = fmt::format("prepare/algorithm:{}/pair:{}", algorithm->traits().name, pair.pair);
-      auto* const row = suite.add(name, [&suite, &algorithm = *algorithm, &pair](benchmark::State& state) {
-        run(suite, algorithm, pair, state);
-      });
-      row->Unit(benchmark::kMillisecond);
+      rows.push_back({.name = fmt::format("prepare/algorithm:{}/pair:{}", algorithm->traits().name, pair.pair),
+                      .run = [&resources, &algorithm = *algorithm, &pair](
+                                 benchmark::State& state, double) { run(resources, algorithm, pair, state); },
+                      .unit = benchmark::kMillisecond});
     }
   }
+  return rows;
 }
 
 }  // namespace sixdof::bench

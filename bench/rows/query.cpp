@@ -1,15 +1,17 @@
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/measure/direction.h>
 #include "bench/harness/check.h"
 #include "bench/harness/timing.h"
 #include "bench/rows/families.h"
-#include <sixdof/measure/direction.h>
 
 namespace sixdof::bench {
 namespace {
@@ -37,16 +39,29 @@ enum class Order {
   path
 };
 
-/// A row asks each configuration about six times: once to check, in up to two timed rounds, and in the passes that time
-/// each query by itself. Its first pass gets that share of the row's time.
+/// A row asks each configuration about six times: once in the check, in one or two timed rounds, and in the passes that
+/// time single queries. The check gets this part of the row's time.
 constexpr double k_passes = 3.0 + k_latency_passes;
+/// Fraction of the row's time for the exact responses that answers are compared with.
+constexpr double k_exact_time = 0.1;
 
-/// One row, and what it did in its first call.
+/// The same wrench about another point, scaled down where moving the torque might overflow; directions do not change.
+Response about(Response response, const Eigen::Vector3d& point) {
+  constexpr double k_large = 1e100;
+  const double largest = std::max(response.force.cwiseAbs().maxCoeff(), response.torque.cwiseAbs().maxCoeff());
+  if (largest > k_large) {
+    response.force /= largest;
+    response.torque /= largest;
+  }
+  return response.about(point);
+}
+
+/// One row, and what its first call measured.
 class QueryRow {
  public:
-  QueryRow(Suite& suite, const Algorithm& algorithm, const CatalogueEntry& pair, BucketKey key, Question question,
-           Order order)
-      : suite_(suite), algorithm_(algorithm), pair_(pair), key_(key), question_(question), order_(order) {}
+  QueryRow(const Resources& resources, const Algorithm& algorithm, const CatalogueEntry& pair, BucketKey key,
+           Question question, Order order)
+      : resources_(resources), algorithm_(algorithm), pair_(pair), key_(key), question_(question), order_(order) {}
 
   std::string name() const {
     std::string bucket = key_.name();
@@ -55,79 +70,80 @@ class QueryRow {
                        bucket, order_ == Order::path ? "/order:path" : "");
   }
 
-  void run(benchmark::State& state) {
-    const BucketSample& bucket = suite_.stock().bucket(pair_, key_);
-    constexpr double k_share_of_truth = 0.1;  // of the row's time
-    const std::vector<Response>* const truth =
-        question_ == Question::respond
-            ? &suite_.stock().true_responses(pair_, key_, k_share_of_truth * suite_.row_budget_s())
-            : nullptr;
-    Query& query = suite_.stock().query(algorithm_, suite_.settings(algorithm_), pair_.a, pair_.b);
+  void run(benchmark::State& state, double seconds) {
+    PairCache& cache = resources_.cache;
+    const BucketSample& bucket = cache.bucket(pair_, key_);
     if (bucket.poses.empty()) throw BadArgument(key_.name() + ": no configuration of this bucket can be reached");
+    if (key_.kind == BucketKind::volume) require_solids(cache.mesh(pair_.a), cache.mesh(pair_.b));
+    const std::vector<Response>* const exact =
+        question_ == Question::respond ? &cache.exact_responses(pair_, key_, k_exact_time * seconds) : nullptr;
+    Query& query = cache.query(algorithm_, resources_.settings_of(algorithm_), pair_.a, pair_.b);
     if (question_ == Question::collide) {
-      run(state, bucket, query, [&query](const Pose& pose) { return query.collide(pose); });
+      const auto ask = [&query](const Pose& pose) { return query.collide(pose); };
+      run(state, bucket, GuardedQuery(query, ask, failures_), seconds);
     } else if (question_ == Question::distance) {
-      run(state, bucket, query, [&query](const Pose& pose) { return query.distance(pose); });
+      const auto ask = [&query](const Pose& pose) { return query.distance(pose); };
+      run(state, bucket, GuardedQuery(query, ask, failures_), seconds);
     } else {
-      if (!directions_) compare_directions(bucket, *truth, query);
-      run(state, bucket, query, [&query](const Pose& pose) { return query.respond(pose); });
+      const auto ask = [&query](const Pose& pose) { return query.respond(pose); };
+      GuardedQuery guarded(query, ask, failures_);
+      if (!directions_) compare_directions(bucket, *exact, guarded);
+      run(state, bucket, guarded, seconds);
     }
   }
 
  private:
   template <class Ask>
-  void run(benchmark::State& state, const BucketSample& bucket, const Query& query, Ask ask) {
-    if (!check_) prepare(bucket, query, ask);
-    time_mean(state, poses_, ask);
-    if (!latency_) latency_ = time_each(poses_, ask);
+  void run(benchmark::State& state, const BucketSample& bucket, GuardedQuery<Ask> query, double seconds) {
+    if (!check_) {
+      check_ = check_answers(bucket, query, seconds / k_passes);
+      poses_ = order_ == Order::path ? check_->answered
+                                     : shuffled(check_->answered, check_->answered.size(), resources_.seed);
+      check_->answered.clear();
+      latency_ = time_each(poses_, query);
+    }
+    if (poses_.empty()) throw Error(fmt::format("no configuration has an answer: {}", failures_.first()));
+    time_mean(state, poses_, query);
     report(state, bucket);
   }
 
+  /// A configuration without an answer counts as one without force and torque.
   template <class Ask>
-  void prepare(const BucketSample& bucket, const Query& query, Ask ask) {
-    check_ = check_answers(bucket, ask, query, suite_.row_budget_s() / k_passes);
-    poses_ = order_ == Order::shuffled
-                 ? shuffled(bucket.poses, check_->asked, suite_.options().seed)
-                 : std::vector<Pose>(bucket.poses.begin(),
-                                     bucket.poses.begin() + static_cast<std::ptrdiff_t>(check_->asked));
-  }
-
-  /// A configuration without an answer counts as one without force and torque. Torques are about the centre of B's box.
-  void compare_directions(const BucketSample& bucket, const std::vector<Response>& truth, Query& query) {
-    std::vector<Eigen::Vector3d> true_forces, true_torques, forces, torques;
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      const Outcome<Response> answer = query.respond(bucket.poses[i]);
-      const Response response = answer.ok() ? answer.value.about(truth[i].reference) : Response{};
-      true_forces.push_back(truth[i].force);
-      true_torques.push_back(truth[i].torque);
+  void compare_directions(const BucketSample& bucket, const std::vector<Response>& exact, GuardedQuery<Ask>& query) {
+    std::vector<Eigen::Vector3d> exact_forces, exact_torques, forces, torques;
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      const Outcome<Response> answer = query.ask(bucket.poses[i]);
+      const Response response = answer.ok() ? about(answer.value, exact[i].reference) : Response{};
+      exact_forces.push_back(exact[i].force);
+      exact_torques.push_back(exact[i].torque);
       forces.push_back(response.force);
       torques.push_back(response.torque);
     }
-    directions_ = {direction_error(true_forces, forces), direction_error(true_torques, torques)};
+    directions_ = {direction_error(exact_forces, forces), direction_error(exact_torques, torques)};
   }
 
   void report(benchmark::State& state, const BucketSample& bucket) const {
     const auto count = [&](const char* name, auto value) { state.counters[name] = static_cast<double>(value); };
-    count("p50_ns", latency_->p50_ns);
-    count("p99_ns", latency_->p99_ns);
-    count("p999_ns", latency_->p999_ns);
-    count("max_ns", latency_->max_ns);
-    count("over_1ms", latency_->over_1ms);
+    count("p50_ns", latency_.p50);
+    count("p99_ns", latency_.p99);
+    count("p999_ns", latency_.p999);
+    count("max_ns", latency_.max);
+    count("over_1ms", latency_.over_deadline);
     count("configurations", check_->asked);
     count("reachable", bucket.reachable);
-    count("failed", check_->failed);
+    count("failed", failures_.count());
     count("judged", check_->judged);
     count("mismatch", check_->mismatch);
     check_->work.report(state.counters);
     if (question_ == Question::distance) {
-      count("error_rms", check_->rms_error());
-      count("error_max", check_->largest_error);
+      count("error_rms", check_->errors.rms());
+      count("error_max", check_->errors.largest());
     }
     if (question_ == Question::respond) {
       count("misses", check_->misses);
       if (check_->judged > 0) {
-        count("volume_error_mean", check_->mean_error());
-        count("volume_error_max", check_->largest_error);
+        count("volume_error_mean", check_->errors.mean());
+        count("volume_error_max", check_->errors.largest());
       }
       const auto& [force, torque] = *directions_;
       if (force.gamma_degrees) {
@@ -140,53 +156,60 @@ class QueryRow {
       }
       count("compared", force.compared);
     }
-    std::string label = suite_.settings(algorithm_).to_string();
-    if (check_->failed > 0) label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", check_->diagnosis);
+    std::string label = resources_.settings_of(algorithm_).to_string();
+    if (failures_.count() > 0) {
+      label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures_.first());
+    }
     state.SetLabel(label);
   }
 
-  Suite& suite_;
+  const Resources& resources_;
   const Algorithm& algorithm_;
   const CatalogueEntry& pair_;
   const BucketKey key_;
   const Question question_;
   const Order order_;
+  Failures failures_;
   std::optional<Check> check_;
-  std::vector<Pose> poses_;  ///< Those that were checked, in this row's order.
-  std::optional<Latency> latency_;
+  std::vector<Pose> poses_;  ///< Those with an answer, in this row's order.
+  Latency latency_;
   struct Directions {
     DirectionError force, torque;
   };
-  std::optional<Directions> directions_;  ///< Against the exact ones.
+  std::optional<Directions> directions_;  ///< To the exact responses; torques about the centre of B's box.
 };
 
-void add_row(Suite& suite, const Algorithm& algorithm, const CatalogueEntry& pair, BucketKey key, Question question) {
+void add_rows(const Resources& resources, const Algorithm& algorithm, const CatalogueEntry& pair, BucketKey key,
+              Question question, std::vector<Row>& rows) {
   for (const Order order : {Order::shuffled, Order::path}) {
-    const auto row = std::make_shared<QueryRow>(suite, algorithm, pair, key, question, order);
-    suite.add(row->name(), [row](benchmark::State& state) { row->run(state); });
+    const auto row = std::make_shared<QueryRow>(resources, algorithm, pair, key, question, order);
+    rows.push_back(
+        {.name = row->name(), .run = [row](benchmark::State& state, double seconds) { row->run(state, seconds); }});
   }
 }
 
 }  // namespace
 
-void add_query_rows(Suite& suite) {
-  for (const CatalogueEntry& pair : suite.catalogue().sets()) {
-    for (const auto& algorithm : suite.registry().all()) {
+std::vector<Row> query_rows(const Resources& resources) {
+  std::vector<Row> rows;
+  for (const CatalogueEntry& pair : resources.catalogue.sets()) {
+    for (const auto& algorithm : resources.registry.all()) {
       if (!algorithm->traits().timed) continue;
       const QuerySet& answers = algorithm->traits().answers;
       for (const BucketKey key : pair.buckets) {
-        if (answers.collide) add_row(suite, *algorithm, pair, key, Question::collide);
+        if (answers.collide) add_rows(resources, *algorithm, pair, key, Question::collide, rows);
         // The distance of overlapping bodies is 0 by definition: nothing to measure.
         if (answers.distance && key.kind == BucketKind::distance) {
-          add_row(suite, *algorithm, pair, key, Question::distance);
+          add_rows(resources, *algorithm, pair, key, Question::distance, rows);
         }
-        // Bodies that only touch do not push.
+        // Bodies that only touch have no force.
         if (answers.respond && key.kind == BucketKind::volume && key.percent > 0) {
-          add_row(suite, *algorithm, pair, key, Question::respond);
+          add_rows(resources, *algorithm, pair, key, Question::respond, rows);
         }
       }
     }
   }
+  return rows;
 }
 
 }  // namespace sixdof::bench

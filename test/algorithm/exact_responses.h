@@ -13,12 +13,12 @@
 
 namespace sixdof::test {
 
-/// Exact responses (volume law) at random poses with at least `least_volume` of overlap.
+/// Exact responses (volume law) at random poses with an overlap volume of at least `min_volume`.
 struct ExactResponses {
   std::vector<Pose> poses;
   std::vector<Response> responses;
 
-  ExactResponses(const Mesh& a, const Mesh& b, std::size_t count, double centers_apart, double least_volume) {
+  ExactResponses(const Mesh& a, const Mesh& b, std::size_t count, double centers_apart, double min_volume) {
     const auto exact = make_exact_algorithm();
     const auto query = exact->prepare(a, b, exact->settings());
     std::mt19937_64 random(count);
@@ -31,7 +31,7 @@ struct ExactResponses {
       const Eigen::Matrix3d R = q.normalized().toRotationMatrix();
       const Pose X{R, a.center() + centers_apart * direction.normalized() - R * b.center()};
       const Response response = query->respond(X).value;
-      if (response.volume < least_volume) continue;
+      if (response.volume < min_volume) continue;
       poses.push_back(X);
       responses.push_back(response);
     }
@@ -43,11 +43,11 @@ struct ResponseErrors {
   double force_degrees = 0.0;   ///< Mean angle between the forces.
   double torque_degrees = 0.0;  ///< Mean angle between the torques.
   double gain = 0.0;            ///< Least-squares factor from true to measured force magnitudes.
-  double residual = 0.0;        ///< RMS of what the gain leaves, over the gain times the RMS of the true magnitudes.
+  double residual = 0.0;        ///< RMS of measured - gain * true magnitudes, over gain * RMS of the true ones.
 
   ResponseErrors(const std::vector<Response>& truth, const std::vector<Response>& measured) {
     std::vector<Eigen::Vector3d> true_forces, true_torques, forces, torques;
-    double product = 0.0, square = 0.0, rest = 0.0;
+    double product = 0.0, square = 0.0, squared_errors = 0.0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
       true_forces.push_back(truth[i].force);
       true_torques.push_back(truth[i].torque);
@@ -58,9 +58,9 @@ struct ResponseErrors {
     }
     gain = product / square;
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      rest += std::pow(forces[i].norm() - gain * true_forces[i].norm(), 2);
+      squared_errors += std::pow(forces[i].norm() - gain * true_forces[i].norm(), 2);
     }
-    residual = std::sqrt(rest / square) / gain;
+    residual = std::sqrt(squared_errors / square) / gain;
     force_degrees = direction_error(true_forces, forces).gamma_degrees.value();
     torque_degrees = direction_error(true_torques, torques).gamma_degrees.value();
   }

@@ -1,9 +1,11 @@
 #include <sixdof/algorithm/exact.h>
 
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "../geometry/shapes.h"
 #include "../oracle/bodies.h"
 
 namespace sixdof {
@@ -11,14 +13,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-Pose turned_about(const Pose& X, const Vector3d& point, const Vector3d& rotation) {
+Pose rotated_about(const Pose& X, const Vector3d& point, const Vector3d& rotation) {
   const Eigen::Matrix3d R = rotation.norm() > 0.0
                                 ? Eigen::AngleAxisd(rotation.norm(), rotation.normalized()).toRotationMatrix()
                                 : Eigen::Matrix3d::Identity();
   return {R * X.R, point + R * (X.t - point)};
 }
 
-TEST(exact, response_is_minus_the_gradient_of_the_volume) {
+TEST(ExactAlgorithm, ResponseIsMinusTheGradientOfTheVolume) {
   const Mesh a = bodies::bumpy_sphere(4), b = bodies::bumpy_torus(40, 16);
   const auto algorithm = make_exact_algorithm();
   EXPECT_EQ(algorithm->traits().law, ResponseLaw::volume);
@@ -39,26 +41,26 @@ TEST(exact, response_is_minus_the_gradient_of_the_volume) {
       const double slope = (response({X_AB.R, X_AB.t + u}).penalty - response({X_AB.R, X_AB.t - u}).penalty);
       EXPECT_NEAR(r.value.force[k], -slope / (2.0 * k_step), k_tolerance);
       const Vector3d& about = r.value.reference;
-      const double turn =
-          response(turned_about(X_AB, about, u)).penalty - response(turned_about(X_AB, about, -u)).penalty;
-      EXPECT_NEAR(r.value.torque[k], -turn / (2.0 * k_step), k_tolerance);
+      const double rotation_slope =
+          response(rotated_about(X_AB, about, u)).penalty - response(rotated_about(X_AB, about, -u)).penalty;
+      EXPECT_NEAR(r.value.torque[k], -rotation_slope / (2.0 * k_step), k_tolerance);
     }
   }
 }
 
-TEST(exact, force_pushes_b_out_of_a) {
+TEST(ExactAlgorithm, ForcePushesBOutOfA) {
   const Mesh a = bodies::box({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}), b = bodies::box({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2});
   const auto algorithm = make_exact_algorithm();
   const auto query = algorithm->prepare(a, b, algorithm->settings());
   const Outcome<Response> r = query->respond({Eigen::Matrix3d::Identity(), {0.1, 0.05, 0.4}});
   ASSERT_TRUE(r.ok());
-  // B dips 0.1 into A's upper face with an area of 0.16.
+  // B penetrates 0.1 into A's upper face with an area of 0.16.
   EXPECT_NEAR(r.value.volume, 0.016, 1e-15);
   EXPECT_LT((r.value.force - Vector3d(0.0, 0.0, 0.16)).norm(), 1e-15);
   EXPECT_LT(r.value.torque.norm(), 1e-15);
 }
 
-TEST(exact, one_mesh_may_be_both_bodies) {
+TEST(ExactAlgorithm, TakesOneMeshAsBothBodies) {
   const Mesh a = bodies::bumpy_torus(24, 12);
   const Mesh copy = bodies::moved(a, Pose{});
   const auto algorithm = make_exact_algorithm();
@@ -72,7 +74,7 @@ TEST(exact, one_mesh_may_be_both_bodies) {
   EXPECT_LT(shared->footprint().bytes, two->footprint().bytes);
 }
 
-TEST(exact, what_is_no_solid_gets_no_response_but_a_reason) {
+TEST(ExactAlgorithm, GivesAReasonWhereAMeshIsNotSolid) {
   const Mesh solid = bodies::bumpy_sphere(2);
   std::vector<Triangle> t = solid.triangles();
   t.pop_back();
@@ -83,6 +85,37 @@ TEST(exact, what_is_no_solid_gets_no_response_but_a_reason) {
     EXPECT_EQ(query->respond(Pose{}).status, Status::failed);
     EXPECT_EQ(query->diagnosis(), "open: " + open.why_not_solid());
     EXPECT_TRUE(query->distance(Pose{}).ok());
+  }
+}
+
+TEST(ExactAlgorithm, RefusesPosesThatAreNotRigid) {
+  const Mesh mesh = shapes::box({0.3, 0.4, 0.5});
+  const auto exact = make_exact_algorithm();
+  const auto query = exact->prepare(mesh, mesh, exact->settings());
+  Pose pose;
+  pose.t.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(query->distance(pose).status, Status::failed);
+  EXPECT_EQ(query->collide(pose).status, Status::failed);
+  EXPECT_FALSE(query->diagnosis().empty());
+  pose = Pose();
+  pose.R *= 1.001;
+  EXPECT_EQ(query->distance(pose).status, Status::failed);
+  pose.R = -Eigen::Matrix3d::Identity();
+  EXPECT_EQ(query->distance(pose).status, Status::failed);
+}
+
+TEST(ExactAlgorithm, WarmStartChangesNoDistance) {
+  const Mesh mesh = shapes::bumpy_sphere(4, 0.25);
+  const auto exact = make_exact_algorithm();
+  Settings warm = exact->settings();
+  warm.set("warm_start", "on");
+  const auto cold_query = exact->prepare(mesh, mesh, exact->settings());
+  const auto warm_query = exact->prepare(mesh, mesh, warm);
+  shapes::Generator generator(2);
+  for (int i = 0; i < 40; ++i) {
+    const Pose pose = shapes::random_pose(generator, 2.0);
+    EXPECT_EQ(warm_query->distance(pose).value.distance, cold_query->distance(pose).value.distance);
+    EXPECT_EQ(warm_query->collide(pose).value, cold_query->collide(pose).value);
   }
 }
 

@@ -1,13 +1,13 @@
-// Every algorithm that gives responses, on every kind of closed body that there is a recipe for.
+// Every algorithm that answers responses, on one model of every recipe for closed bodies.
 
 #include <cstdlib>
 
 #include <gtest/gtest.h>
 
 #include <sixdof/algorithm/core_algorithms.h>
-#include <sixdof/query/registry.h>
 #include <sixdof/measure/direction.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/query/registry.h>
 
 namespace sixdof {
 namespace {
@@ -20,8 +20,8 @@ class Responses : public ::testing::TestWithParam<const char*> {
   }
   void TearDown() override { ::unsetenv("SIXDOF_CACHE"); }
 
-  /// B pushed from outside along `u` until about `share` of its volume is inside A.
-  Pose pushed_in(const Mesh& a, const Mesh& b, const Eigen::Vector3d& u, double share) const {
+  /// B translated from outside along -u until about `fraction` of its volume is inside A.
+  Pose overlapping_pose(const Mesh& a, const Mesh& b, const Eigen::Vector3d& u, double fraction) const {
     const Algorithm& exact = registry_.find("exact");
     const auto query = exact.prepare(a, b, exact.settings());
     Pose X = Pose::from_quaternion(0.48, 0.6, -0.64, 0.0, Eigen::Vector3d::Zero());
@@ -29,7 +29,7 @@ class Responses : public ::testing::TestWithParam<const char*> {
     for (int i = 0; i < 20; ++i) {
       const double s = 0.5 * (outside + inside);
       X.t = a.center() + s * u - X.R * b.center();
-      (query->respond(X).value.volume < share * b.volume() ? outside : inside) = s;
+      (query->respond(X).value.volume < fraction * b.volume() ? outside : inside) = s;
     }
     return X;
   }
@@ -37,9 +37,9 @@ class Responses : public ::testing::TestWithParam<const char*> {
   Registry registry_;
 };
 
-TEST_P(Responses, EveryAlgorithmPushesOutOfEveryBody) {
+TEST_P(Responses, PushBOutOfA) {
   const Mesh a = load_model(GetParam()), b = load_model("bumpy-sphere-1k");
-  const Pose X = pushed_in(a, b, Eigen::Vector3d(0.48, -0.6, 0.64), 0.05);
+  const Pose X = overlapping_pose(a, b, Eigen::Vector3d(0.48, -0.6, 0.64), 0.05);
   const Algorithm& exact = registry_.find("exact");
   const Eigen::Vector3d out = exact.prepare(a, b, exact.settings())->respond(X).value.force;
   int answered = 0;
@@ -54,8 +54,8 @@ TEST_P(Responses, EveryAlgorithmPushesOutOfEveryBody) {
     ASSERT_TRUE(outcome.ok()) << name << ": " << query->diagnosis();
     EXPECT_GT(outcome.value.penalty, 0.0) << name;
     EXPECT_GT(outcome.value.force.norm(), 0.0) << name;
-    // Laws differ in direction. The field's pushes each point out of A the nearest way, which is sideways where B
-    // swallows a thin part of A; the others never pull B in.
+    // The laws differ in direction. That of vps-field pushes each point out of A the shortest way, which is sideways
+    // where B encloses a thin part of A; the others never pull B in.
     if (name != "vps-field") {
       EXPECT_LT(angle_degrees(outcome.value.force, out), 90.0) << name;
     }

@@ -34,7 +34,7 @@ class AtomicFileTest : public ::testing::Test {
   std::filesystem::path directory_;
 };
 
-TEST_F(AtomicFileTest, WritesWholeAndLeavesNothingElse) {
+TEST_F(AtomicFileTest, WritesTheFileAndLeavesNoOther) {
   const auto target = directory_ / "result.json";
   write_file_atomically(target, "first");
   write_file_atomically(target, "second");
@@ -54,12 +54,12 @@ TEST_F(AtomicFileTest, WithoutCommitTheOldContentStays) {
   EXPECT_EQ(file_count(), 1u);
 }
 
-TEST_F(AtomicFileTest, TwoWritersOfOneTargetDoNotMeet) {
+TEST_F(AtomicFileTest, TwoWritersHaveDifferentTemporaryFiles) {
   AtomicFile one(directory_ / "x"), two(directory_ / "x");
   EXPECT_NE(one.temporary_path(), two.temporary_path());
 }
 
-TEST_F(AtomicFileTest, RemovesWhatKilledWritersOfTheTargetLeft) {
+TEST_F(AtomicFileTest, RemovesTemporaryFilesOfKilledWriters) {
   const auto target = directory_ / "x";
   const pid_t killed = ::fork();
   if (killed == 0) {
@@ -72,7 +72,7 @@ TEST_F(AtomicFileTest, RemovesWhatKilledWritersOfTheTargetLeft) {
   std::ofstream(alive.temporary_path()) << "half";
   const AtomicFile another(directory_ / "x.y");
   std::ofstream(another.temporary_path()) << "half";
-  std::ofstream(directory_ / ".x.backup.partial") << "of somebody else";
+  std::ofstream(directory_ / ".x.backup.partial") << "foreign";
   ASSERT_EQ(file_count(), 4u);
   remove_stale_partials(target);
   EXPECT_EQ(file_count(), 3u);

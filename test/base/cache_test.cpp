@@ -24,7 +24,7 @@ class Cache : public ::testing::Test {
     entry_.put<std::int32_t>("table", {3, -7, 2000000000});
     entry_.put<std::uint32_t>("words", {0xffffffffu, 1u});
     entry_.put<std::uint64_t>("counts", {std::uint64_t{1} << 60});
-    entry_.put<float>("samples", {0.1f, -2.5e-30f});
+    entry_.put<float>("radii", {0.1f, -2.5e-30f});
     entry_.put<double>("areas", {});
   }
   void TearDown() override {
@@ -35,27 +35,27 @@ class Cache : public ::testing::Test {
   CacheEntry entry_;
 };
 
-TEST_F(Cache, GivesBackWhatWasStored) {
+TEST_F(Cache, LoadsWhatWasStored) {
   EXPECT_FALSE(load_cached("kind", "key").has_value());
   ASSERT_TRUE(store_cached("kind", "key", entry_));
   std::optional<CacheEntry> loaded = load_cached("kind", "key");
   ASSERT_TRUE(loaded.has_value());
   EXPECT_EQ(loaded->arrays(), entry_.arrays());
-  EXPECT_EQ(loaded->take<float>("samples"), (std::vector<float>{0.1f, -2.5e-30f}));
-  EXPECT_THROW(loaded->take<double>("samples"), BadFile);
+  EXPECT_EQ(loaded->take<float>("radii"), (std::vector<float>{0.1f, -2.5e-30f}));
+  EXPECT_THROW(loaded->take<double>("radii"), BadFile);
   EXPECT_THROW(loaded->take<double>("nothing"), BadFile);
 }
 
-TEST_F(Cache, TellsKindsAndKeysApart) {
+TEST_F(Cache, DistinguishesKindsAndKeys) {
   ASSERT_TRUE(store_cached("kind", "key", entry_));
   EXPECT_FALSE(load_cached("kind", "key2").has_value());
   EXPECT_FALSE(load_cached("kind2", "key").has_value());
-  // The same file under another key's name is foreign: the key inside does not match.
+  // The file of another key: the key inside does not match.
   fs::copy_file(cache_file("kind", "key"), cache_file("kind", "other"));
   EXPECT_FALSE(load_cached("kind", "other").has_value());
 }
 
-TEST_F(Cache, FindsEveryDamagedByteOfTheArrays) {
+TEST_F(Cache, DetectsEveryDamagedByteOfAnArray) {
   ASSERT_TRUE(store_cached("kind", "key", entry_));
   const fs::path path = cache_file("kind", "key");
   std::string bytes;
@@ -63,7 +63,7 @@ TEST_F(Cache, FindsEveryDamagedByteOfTheArrays) {
     std::ifstream in(path, std::ios::binary);
     bytes.assign(std::istreambuf_iterator<char>(in), {});
   }
-  // Where the arrays lie, by their content: the two words, and the least float.
+  // The position of an array in the file, found by its content.
   const std::string words("\xff\xff\xff\xff\x01\0\0\0", 8);
   const std::size_t at = bytes.find(words);
   ASSERT_NE(at, std::string::npos);
@@ -73,7 +73,7 @@ TEST_F(Cache, FindsEveryDamagedByteOfTheArrays) {
     std::ofstream(path, std::ios::binary) << damaged;
     EXPECT_FALSE(load_cached("kind", "key").has_value()) << "byte " << i;
   }
-  // Cut short, empty, and no HDF5 at all.
+  // Truncated, empty, and not HDF5.
   for (const std::string& wrong : {bytes.substr(0, bytes.size() / 2), std::string(), std::string("not a cache")}) {
     std::ofstream(path, std::ios::binary) << wrong;
     EXPECT_FALSE(load_cached("kind", "key").has_value());
@@ -82,13 +82,13 @@ TEST_F(Cache, FindsEveryDamagedByteOfTheArrays) {
   EXPECT_TRUE(load_cached("kind", "key").has_value());
 }
 
-TEST_F(Cache, CanBeTurnedOffAndSurvivesADirectoryThatCannotBe) {
+TEST_F(Cache, IsOffOnRequestAndWithoutAWritableDirectory) {
   ::setenv("SIXDOF_CACHE", "off", 1);
   EXPECT_TRUE(cache_file("kind", "key").empty());
   EXPECT_FALSE(store_cached("kind", "key", entry_));
   EXPECT_FALSE(load_cached("kind", "key").has_value());
 
-  std::ofstream(directory_ / "file") << "in the way";
+  std::ofstream(directory_ / "file") << "not a directory";
   ::setenv("SIXDOF_CACHE", (directory_ / "file").c_str(), 1);
   EXPECT_FALSE(store_cached("kind", "key", entry_));
   EXPECT_FALSE(load_cached("kind", "key").has_value());

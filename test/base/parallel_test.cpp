@@ -1,50 +1,194 @@
+#include <sixdof/base/parallel.h>
+
 #include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <sixdof/base/parallel.h>
-
-namespace {
-constexpr std::size_t k_many = 10007;
-}
-
-// What builds use, and, so that the stand-in for thread-sanitizer builds is tested in every build, that as well.
-#define SIXDOF_SUITE Parallel
-#define SIXDOF_PARALLEL parallel
-#include "parallel_checks.h"
-
-#if !defined(SIXDOF_PARALLEL_THREADS)
-#include <sixdof/base/parallel_threads.h>
-#undef SIXDOF_SUITE
-#undef SIXDOF_PARALLEL
-#define SIXDOF_SUITE ParallelThreads
-#define SIXDOF_PARALLEL parallel_threads
-#include "parallel_checks.h"
-
-#else
-
-#include <cstdlib>
 
 namespace sixdof {
 namespace {
+
+constexpr std::size_t k_many = 10007;
+
+TEST(Parallel, EveryIndexIsUsedOnce) {
+  for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{3}, k_many}) {
+    std::vector<int> uses(n, 0);
+    parallel::for_each(n, [&](std::size_t i) { ++uses[i]; });
+    EXPECT_EQ(uses, std::vector<int>(n, 1));
+  }
+}
+
+TEST(Parallel, RangesCoverAllAndAreNotBelowTheGrain) {
+  std::vector<int> uses(k_many, 0);
+  std::atomic<std::size_t> smallest{k_many};
+  parallel::for_ranges(k_many, 100, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) ++uses[i];
+    std::size_t before = smallest;
+    while (end != k_many && end - begin < before && !smallest.compare_exchange_weak(before, end - begin)) {
+    }
+  });
+  EXPECT_EQ(uses, std::vector<int>(k_many, 1));
+  EXPECT_GE(smallest, 50u);  // a range of more than the grain is halved
+}
+
+TEST(Parallel, ReductionJoinsFromLeftToRight) {
+  const auto digits = parallel::reduce<std::vector<std::size_t>>(
+      k_many, 10,
+      [](std::size_t begin, std::size_t end) {
+        std::vector<std::size_t> list;
+        for (std::size_t i = begin; i < end; ++i) list.push_back(i);
+        return list;
+      },
+      [](std::vector<std::size_t> left, const std::vector<std::size_t>& right) {
+        left.insert(left.end(), right.begin(), right.end());
+        return left;
+      });
+  std::vector<std::size_t> expected(k_many);
+  std::iota(expected.begin(), expected.end(), std::size_t{0});
+  EXPECT_EQ(digits, expected);
+}
+
+TEST(Parallel, TasksMayStartTasksAndAreWaitedFor) {
+  std::atomic<int> leaves{0};
+  const std::function<void(int)> grow = [&](int depth) {
+    if (depth == 0) {
+      ++leaves;
+      return;
+    }
+    parallel::Tasks tasks;
+    for (int child = 0; child < 3; ++child) tasks.run([&, depth] { grow(depth - 1); });
+    tasks.wait();
+  };
+  grow(5);
+  EXPECT_EQ(leaves, 243);
+}
+
+TEST(Parallel, InvokeRunsBoth) {
+  int first = 0;
+  int second = 0;
+  parallel::invoke([&] { first = 1; }, [&] { second = 2; });
+  EXPECT_EQ(first, 1);
+  EXPECT_EQ(second, 2);
+}
+
+TEST(Parallel, SortsAscending) {
+  constexpr std::size_t k_many_pieces = 20 * k_many + 1;
+  for (const std::size_t n : {std::size_t{0}, k_many, k_many_pieces}) {
+    std::vector<std::size_t> values(n);
+    for (std::size_t i = 0; i < n; ++i) values[i] = i * 7919 % n;  // a permutation: 7919 is a prime
+    parallel::sort(values);
+    std::vector<std::size_t> expected(n);
+    std::iota(expected.begin(), expected.end(), std::size_t{0});
+    EXPECT_EQ(values, expected);
+  }
+}
+
+TEST(Parallel, EachThreadHasItsOwnValue) {
+  std::atomic<int> made{0};
+  parallel::PerThread<std::vector<std::size_t>> lists([&] {
+    ++made;
+    return std::vector<std::size_t>{k_many};
+  });
+  parallel::for_each(k_many, [&](std::size_t i) { lists.local().push_back(i); });
+  std::set<std::size_t> seen;
+  std::size_t all = 0;
+  int count = 0;
+  for (const std::vector<std::size_t>& list : lists) {
+    seen.insert(list.begin(), list.end());
+    all += list.size();
+    ++count;
+  }
+  EXPECT_EQ(count, made);
+  EXPECT_EQ(seen.size(), k_many + 1);
+  EXPECT_EQ(all, k_many + static_cast<std::size_t>(count));
+}
+
+TEST(Parallel, ExceptionsReachTheCaller) {
+  const auto fail = [](std::size_t i) {
+    if (i == 77) throw std::runtime_error("body 77");
+  };
+  EXPECT_THROW(parallel::for_each(k_many, fail), std::runtime_error);
+  parallel::Tasks tasks;
+  tasks.run([] { throw std::runtime_error("task"); });
+  EXPECT_THROW(tasks.wait(), std::runtime_error);
+  EXPECT_THROW(parallel::invoke([] {}, [] { throw std::runtime_error("second"); }), std::runtime_error);
+  EXPECT_THROW(parallel::with_threads(1, [] { throw std::runtime_error("limited"); }), std::runtime_error);
+}
+
+TEST(Parallel, TasksEndBeforeAnExceptionLeavesTheirOwner) {
+  std::atomic<int> started{0};
+  std::atomic<int> ended{0};
+  try {
+    parallel::Tasks tasks;
+    for (int i = 0; i < 8; ++i) {
+      tasks.run([&] {
+        ++started;
+        std::this_thread::yield();
+        ++ended;
+      });
+    }
+    throw std::runtime_error("owner");
+  } catch (const std::runtime_error&) {
+  }
+  EXPECT_EQ(started, ended);
+}
+
+TEST(Parallel, OneThreadMeansTheCallersOnly) {
+  const auto threads = [] {
+    parallel::PerThread<int> used;
+    parallel::for_each(k_many, [&](std::size_t) { ++used.local(); });
+    int count = 0;
+    for (const int uses : used) count += uses > 0 ? 1 : 0;
+    return count;
+  };
+  int limited = 0;
+  parallel::with_threads(1, [&] { limited = threads(); });
+  EXPECT_EQ(limited, 1);
+  const parallel::ThreadLimit limit(1);
+  EXPECT_EQ(threads(), 1);
+}
+
+TEST(Parallel, IsolatedRunsAtOnce) {
+  bool ran = false;
+  parallel::isolated([&] { ran = true; });
+  EXPECT_TRUE(ran);
+}
+
+#if defined(__SANITIZE_THREAD__)
+
+/// Runs f() twice at the same time on two threads, if there are two. The relaxed counter orders nothing else.
+template <class F>
+void run_on_two_threads(const F& f) {
+  std::atomic<int> started{0};
+  const auto body = [&] {
+    started.fetch_add(1, std::memory_order_relaxed);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (started.load(std::memory_order_relaxed) < 2 && std::chrono::steady_clock::now() < end) {
+    }
+    f();
+  };
+  parallel::invoke(body, body);
+}
 
 TEST(ParallelDeathTest, TheSanitizerSeesARaceBetweenBodies) {
   constexpr int k_exit_after_reports = 66;  // the thread sanitizer's default
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
   int shared = 0;
   const auto race = [&] {
-    parallel::for_each(k_many, [&](std::size_t) { ++shared; });
+    run_on_two_threads([&] { ++shared; });
     std::exit(shared == 0 ? 1 : 0);
   };
   EXPECT_EXIT(race(), ::testing::ExitedWithCode(k_exit_after_reports), "data race");
 }
 
+#endif
+
 }  // namespace
 }  // namespace sixdof
-
-#endif

@@ -1,6 +1,5 @@
-// Does the harness measure the query, and nothing but the query? FCL called in a bare loop over the same poses, against
-// the mean that sixdof-bench reports; and `null`, whose time is the harness's own. The figures are printed; what is
-// asserted is wide, because this runs on machines that do other things as well.
+// The mean time that sixdof-bench reports against FCL called in a plain loop over the same poses; and the time of
+// `null`, which is the harness's own. Bounds are wide, because other work may run on the machine.
 
 #include <algorithm>
 #include <ctime>
@@ -24,15 +23,14 @@
 namespace sixdof {
 namespace {
 
-/// Same-binary noise of 30 % was seen between runs; beyond a factor of two the harness measures something else.
+/// Noise between runs of one program is some 30 %.
 constexpr double k_widest_ratio = 2.0;
-/// Interleaved measurements of each kind; the least of them is compared, since noise only adds.
+/// Interleaved measurements of each kind; the smallest are compared, since noise only adds time.
 constexpr int k_repetitions = 5;
-/// A call through the interface and a record of 60 bytes, with room for sanitizers and unoptimised builds. In an
-/// optimised build it is a few ns.
+/// A call through the interface and an answer of 60 bytes, with room for sanitizers and unoptimised builds.
 constexpr double k_most_overhead_ns = 1000.0;
 
-/// Poses asked; few, so that an interleaved round is short.
+/// Few poses, so that an interleaved round is short.
 constexpr std::size_t k_sample = 64;
 
 using Model = fcl::BVHModel<fcl::OBBRSSd>;
@@ -57,11 +55,11 @@ struct Agreement : ::testing::TestWithParam<std::string> {
   }
 };
 
-double bare_ns(const std::string& question, const Model& model, const std::vector<fcl::Transform3d>& poses) {
+double plain_ns(const std::string& question, const Model& model, const std::vector<fcl::Transform3d>& poses) {
   const fcl::Transform3d identity = fcl::Transform3d::Identity();
   const fcl::CollisionRequestd first_contact(1);
   const fcl::DistanceRequestd nearest_points(true);
-  // Processor time, as Google Benchmark's cpu_time: what others do on the machine is no part of the comparison.
+  // Processor time, as Google Benchmark's cpu_time.
   const std::clock_t start = std::clock();
   std::size_t asked = 0;
   while (std::clock() - start < CLOCKS_PER_SEC / 10) {
@@ -81,7 +79,7 @@ double bare_ns(const std::string& question, const Model& model, const std::vecto
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC * 1e9 / static_cast<double>(asked);
 }
 
-TEST_P(Agreement, OfHarnessAndBareLoop) {
+TEST_P(Agreement, OfHarnessAndPlainLoop) {
   const Mesh mesh = load_model("torus-1k");
   const ConfigurationSet set(SIXDOF_SMALL_SUITE "/torus-1k.h5");
   const BucketSample bucket = sample_bucket(set, {BucketKind::distance, 5}, mesh, mesh, k_sample, 1);
@@ -92,24 +90,24 @@ TEST_P(Agreement, OfHarnessAndBareLoop) {
     poses.back().translation() = pose.t;
   }
   const auto model = fcl_model(mesh);
-  double bare = 1e300, harness = 1e300;
+  double plain = 1e300, harness = 1e300;
   for (int i = 0; i < k_repetitions; ++i) {
-    bare = std::min(bare, bare_ns(GetParam(), *model, poses));
+    plain = std::min(plain, plain_ns(GetParam(), *model, poses));
     harness = std::min(harness, harness_ns(GetParam() + "/algorithm:fcl-obbrss/pair:torus-1k/distance:05"));
   }
-  const double ratio = harness / bare;
-  fmt::print("{}: bare loop {:.0f} ns, harness {:.0f} ns, ratio {:.3f}\n", GetParam(), bare, harness, ratio);
+  const double ratio = harness / plain;
+  fmt::print("{}: plain loop {:.0f} ns, harness {:.0f} ns, ratio {:.3f}\n", GetParam(), plain, harness, ratio);
   EXPECT_GT(ratio, 1 / k_widest_ratio);
   EXPECT_LT(ratio, k_widest_ratio);
 }
 
 TEST_P(Agreement, OfNullAndNothing) {
-  double least = 1e300;
+  double smallest = 1e300;
   for (int i = 0; i < k_repetitions; ++i) {
-    least = std::min(least, harness_ns(GetParam() + "/algorithm:null/pair:torus-1k/distance:05"));
+    smallest = std::min(smallest, harness_ns(GetParam() + "/algorithm:null/pair:torus-1k/distance:05"));
   }
-  fmt::print("{}: the harness costs {:.1f} ns per query\n", GetParam(), least);
-  EXPECT_LT(least, k_most_overhead_ns);
+  fmt::print("{}: the harness costs {:.1f} ns per query\n", GetParam(), smallest);
+  EXPECT_LT(smallest, k_most_overhead_ns);
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, Agreement, ::testing::Values("collide", "distance"),

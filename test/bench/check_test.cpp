@@ -1,8 +1,11 @@
 #include "bench/harness/check.h"
 
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
 
 namespace sixdof::bench {
 namespace {
@@ -48,8 +51,21 @@ TEST(Judge, ErrorsAreInDiagonals) {
   const BucketSample sample = bucket(BucketKind::distance, 5, 0.5);
   judge(sample, at(0.9), check);
   judge(sample, at(0.2), check);
-  EXPECT_DOUBLE_EQ(check.largest_error, 0.04);
-  EXPECT_DOUBLE_EQ(check.rms_error(), std::sqrt((0.04 * 0.04 + 0.03 * 0.03) / 2));
+  EXPECT_DOUBLE_EQ(check.errors.largest(), 0.04);
+  EXPECT_DOUBLE_EQ(check.errors.rms(), std::sqrt((0.04 * 0.04 + 0.03 * 0.03) / 2));
+}
+
+TEST(Errors, HaveFiniteMeans) {
+  Errors errors;
+  EXPECT_EQ(errors.mean(), 0.0);
+  EXPECT_EQ(errors.largest(), 0.0);
+  for (const double error : {3.0, 4.0}) errors.add(error);
+  EXPECT_EQ(errors.mean(), 3.5);
+  EXPECT_DOUBLE_EQ(errors.rms(), std::sqrt(12.5));
+  for (int i = 0; i < 2; ++i) errors.add(std::numeric_limits<double>::infinity());
+  EXPECT_EQ(errors.largest(), Errors::k_largest);
+  EXPECT_DOUBLE_EQ(errors.mean(), 0.5 * Errors::k_largest);
+  EXPECT_DOUBLE_EQ(errors.rms(), Errors::k_largest * std::sqrt(0.5));
 }
 
 TEST(Judge, ResponsesInOverlapBuckets) {
@@ -66,22 +82,23 @@ TEST(Judge, ResponsesInOverlapBuckets) {
   }
   EXPECT_EQ(check.misses, 1u);
   EXPECT_EQ(check.judged, 2u);
-  EXPECT_DOUBLE_EQ(check.largest_error, 0.4);
-  EXPECT_DOUBLE_EQ(check.mean_error(), 0.3);
+  EXPECT_DOUBLE_EQ(check.errors.largest(), 0.4);
+  EXPECT_DOUBLE_EQ(check.errors.mean(), 0.3);
   EXPECT_EQ(judged(bucket(BucketKind::volume, 0, 0.0), answer).judged, 0u);
   EXPECT_EQ(judged(bucket(BucketKind::distance, 5, 0.5), answer).judged, 0u);
 }
 
-class Moody final : public Query {
+/// Gives up at the first two poses; counts one unit of work a pose.
+class GivesUpEarly final : public Query {
  public:
   Outcome<bool> collide(const Pose& pose) override {
-    visited_ = pose.t.x();
+    tested_ = pose.t.x();
     return pose.t.x() < 2 ? Outcome<bool>(fail(Status::failed, "gave up")) : Outcome<bool>(true);
   }
-  std::vector<Work> work() const override { return {{"moods", visited_, 7.0}}; }
+  std::vector<Work> work() const override { return {{"nodes", tested_, 7.0}}; }
 
  private:
-  double visited_ = 0.0;
+  double tested_ = 0.0;
 };
 
 TEST(CheckAnswers, CountsFailuresAndStopsAtTheEndOfARun) {
@@ -90,19 +107,29 @@ TEST(CheckAnswers, CountsFailuresAndStopsAtTheEndOfARun) {
     sample.poses.emplace_back();
     sample.poses.back().t.x() = i;
   }
-  Moody query;
-  const auto ask = [&](const Pose& pose) { return query.collide(pose); };
-  const Check all = check_answers(sample, ask, query, std::numeric_limits<double>::infinity());
+  GivesUpEarly query;
+  Failures failures;
+  GuardedQuery guarded(
+      query, [&](const Pose& pose) { return query.collide(pose); }, failures);
+  const Check all = check_answers(sample, guarded, std::numeric_limits<double>::infinity());
   EXPECT_EQ(all.asked, 100u);
-  EXPECT_EQ(all.failed, 2u);
+  EXPECT_EQ(failures.count(), 2u);
+  EXPECT_EQ(failures.first(), "gave up");
   EXPECT_EQ(all.mismatch, 98u);
-  EXPECT_EQ(all.diagnosis, "gave up");
+  ASSERT_EQ(all.answered.size(), 98u);
+  EXPECT_EQ(all.answered.front().t.x(), 2.0);
   const std::vector<Work> work = all.work.mean();
   ASSERT_EQ(work.size(), 1u);
-  EXPECT_EQ(work[0].unit, "moods");
-  EXPECT_DOUBLE_EQ(work[0].visited, 0.5 * (2 + 99)) << "of the answers, not of the first two, which failed";
-  EXPECT_DOUBLE_EQ(work[0].present, 7.0);
-  EXPECT_EQ(check_answers(sample, ask, query, 0.0).asked, BucketSample::k_run);
+  EXPECT_EQ(work[0].unit, "nodes");
+  EXPECT_DOUBLE_EQ(work[0].tested, 0.5 * (2 + 99)) << "over the answers, without the two failures";
+  EXPECT_DOUBLE_EQ(work[0].total, 7.0);
+  EXPECT_EQ(check_answers(sample, guarded, 0.0).asked, BucketSample::k_run);
+}
+
+TEST(MeanWork, RefusesOtherUnits) {
+  MeanWork work;
+  work.add({{"nodes", 1.0, 2.0}});
+  EXPECT_THROW(work.add({}), Error);
 }
 
 }  // namespace

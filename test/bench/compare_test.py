@@ -1,9 +1,10 @@
-"""The verdict of bench/compare on synthetic times: it must see a slowdown and must not see one in noise."""
+"""The verdict of bench/compare on synthetic times: a slowdown is found, noise is not taken for one; the rows it runs."""
 
 import importlib.machinery
 import importlib.util
 import pathlib
 import random
+import tempfile
 import unittest
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench" / "compare"
@@ -36,7 +37,7 @@ class Verdict(unittest.TestCase):
 
     def test_needs_significance_after_correction(self):
         self.assertEqual(verdict({"a": self.base}, {"a": self.twice}, {"a": 0.06}), ([], 1))
-        # 0.01 is certain for one row but not for the best of ten.
+        # 0.01 is significant for one row but not for the best of ten.
         names = [f"r{i}" for i in range(10)]
         p_values = {name: 0.01 for name in names}
         self.assertEqual(verdict(dict.fromkeys(names, self.base), dict.fromkeys(names, self.twice), p_values)[0], [])
@@ -45,13 +46,36 @@ class Verdict(unittest.TestCase):
         slightly = [1.05 * t for t in self.base]
         self.assertEqual(verdict({"a": self.base}, {"a": slightly}, {"a": 1e-4})[0], [])
 
-    def test_is_not_taken_in_by_a_busy_machine(self):
-        # Slower in most runs, but as fast as ever in one.
+    def test_ignores_a_busy_machine(self):
+        # Slower in most runs, but as fast as before in one.
         busy = self.twice[:8] + [min(self.base)]
         self.assertEqual(verdict({"a": self.base}, {"a": busy}, {"a": 1e-4})[0], [])
 
     def test_does_not_call_faster_slower(self):
         self.assertEqual(verdict({"a": self.twice}, {"a": self.base}, {"a": 1e-4})[0], [])
+
+
+class Rows(unittest.TestCase):
+    def program(self, text):
+        path = pathlib.Path(self.folder.name) / f"program-{len(list(pathlib.Path(self.folder.name).iterdir()))}"
+        path.write_text("#!/bin/sh\n" + text, encoding="utf-8")
+        path.chmod(0o755)
+        return path
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.old = self.program("exit 2\n")
+        self.new = self.program('[ "$*" = "--suite default --benchmark_list_tests" ] && printf "a/b:1\\nc/d:2\\n"\n')
+
+    def test_are_the_default_suite_of_a_commit_that_has_one(self):
+        for base, contender in ((self.old, self.new), (self.new, self.old)):
+            filter_ = compare.filter_of_default_suite({"base": base, "contender": contender})
+            self.assertEqual(filter_, "^(a/b:1|c/d:2)$")
+
+    def test_have_to_be_chosen_where_there_is_none(self):
+        with self.assertRaises(compare.Failure):
+            compare.filter_of_default_suite({"base": self.old, "contender": self.old})
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
-#include <cstdlib>
+#include <algorithm>
 #include <fstream>
-#include <memory>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -9,55 +8,22 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/commands.h"
+#include "bench/common/run_guarded.h"
 
-#include "../cli/run_program.h"
-#include "../configuration/small_suite.h"
+#include "bench_program.h"
 
 namespace sixdof {
 namespace {
 
 using nlohmann::json;
+using test::BenchProgram;
+using test::row;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The least that gives a row: one round over the bucket.
-constexpr const char* k_quick = " --benchmark_min_time=0.000001";
-
-struct BenchProgram : ::testing::Test {
-  /// A folder of the test's own, so that it may spoil what is in it.
-  const std::unique_ptr<test::SuiteCopy> suite = std::make_unique<test::SuiteCopy>(SIXDOF_SMALL_SUITE);
-  const std::filesystem::path out = suite->directory() / "out.json";
-
-  std::string command(const std::string& arguments, const char* program = SIXDOF_BENCH_PROGRAM) const {
-    return std::string(program) + " --manifest " + suite->manifest().string() + k_quick + " " + arguments;
-  }
-  test::ProgramResult bench(const std::string& arguments) const { return test::run_program(command(arguments)); }
-  json result(const std::string& arguments, int exit_code = 0) const {
-    const auto run = bench(arguments + " --benchmark_out=" + out.string());
-    EXPECT_EQ(run.exit_code, exit_code) << run.err;
-    std::ifstream file(out);
-    return json::parse(file);
-  }
-  bool any_partial_file() const {
-    for (const auto& entry : std::filesystem::directory_iterator(suite->directory())) {
-      if (entry.path().extension() == ".partial") return true;
-    }
-    return false;
-  }
-};
-
-json row(const json& document, const std::string& name) {
-  for (const json& entry : document.at("benchmarks")) {
-    if (entry.at("name") == name) return entry;
-  }
-  ADD_FAILURE() << name << " is missing";
-  return {};
-}
-
 TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
   const json document =
-      result("--seed 5 --sample 32 --settings ist:spheres=300 '--benchmark_filter=-^(scenario|kernel|generate)/'");
+      result("--seed 5 --sample 32 -p ist:spheres=300 '--benchmark_filter=-^(scenario|kernel|generate)/'");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;
   std::size_t judged = 0;
@@ -90,7 +56,7 @@ TEST_F(BenchProgram, ScenarioRowsCarryTimeAndMeasures) {
     EXPECT_TRUE(exact.contains(measure)) << measure << " of " << exact;
   }
   EXPECT_EQ(exact.at("misses"), 0);
-  EXPECT_EQ(null.at("misses"), null.at("stamps"));
+  EXPECT_EQ(null.at("misses"), null.at("steps"));
 }
 
 TEST_F(BenchProgram, JudgesResponsesByTheirVolumeAndForce) {
@@ -111,42 +77,42 @@ TEST_F(BenchProgram, JudgesResponsesByTheirVolumeAndForce) {
   EXPECT_GT(spheres.at("gamma_max_T_deg"), spheres.at("gamma_T_deg"));
 }
 
-TEST_F(BenchProgram, SaysHowMuchAnAlgorithmLookedAt) {
+TEST_F(BenchProgram, ReportsTheWorkOfQueries) {
   const std::string pair = "/pair:torus-1k-cone-1k/";
   const json document = result(
-      "--sample 32 --settings ist:spheres=300 --settings vps:point_spacing=0.02 "
+      "--sample 32 -p ist:spheres=300 --parameter vps:point_spacing=0.02 "
       "--benchmark_filter='^(prepare|respond|collide)/algorithm:(vps|ist)/.*torus-1k-cone-1k'");
   const json prepared = row(document, "prepare/algorithm:vps/pair:torus-1k-cone-1k");
   for (const char* kind : {"respond", "collide"}) {
     const json points = row(document, kind + std::string("/algorithm:vps") + pair + "volume:03");
-    EXPECT_EQ(points.at("points_present"), prepared.at("points")) << kind;
-    EXPECT_GT(points.at("points_visited"), 0) << kind;
-    EXPECT_LT(points.at("points_visited"), 0.5 * points.at("points_present").get<double>()) << kind;
+    EXPECT_EQ(points.at("points_total"), prepared.at("points")) << kind;
+    EXPECT_GT(points.at("points_tested"), 0) << kind;
+    EXPECT_LT(points.at("points_tested"), 0.5 * points.at("points_total").get<double>()) << kind;
     EXPECT_GT(points.at("ns_per_points"), 0) << kind;
     EXPECT_LT(points.at("ns_per_points").get<double>(), points.at("cpu_time").get<double>()) << kind;
   }
   const json spheres = row(document, "respond/algorithm:ist" + pair + "volume:03");
-  EXPECT_EQ(spheres.at("sphere_pairs_present"), 300 * 300);
-  EXPECT_GT(spheres.at("sphere_pairs_visited"), 0);
-  EXPECT_LT(spheres.at("sphere_pairs_visited"), 300 * 300);
+  EXPECT_EQ(spheres.at("sphere_pairs_total"), 300 * 300);
+  EXPECT_GT(spheres.at("sphere_pairs_tested"), 0);
+  EXPECT_LT(spheres.at("sphere_pairs_tested"), 300 * 300);
 }
 
-TEST_F(BenchProgram, KernelRowsSayWhatOneUnitOfWorkCosts) {
+TEST_F(BenchProgram, KernelRowsReportTheTimeOfOneUnitOfWork) {
   const json document = result("'--benchmark_filter=^kernel/(map-in-cache|apart)/algorithm:vps'");
   ASSERT_EQ(document.at("benchmarks").size(), 4u);
   for (const char* algorithm : {"vps", "vps-field"}) {
     const json all = row(document, std::string("kernel/map-in-cache/algorithm:") + algorithm);
-    EXPECT_EQ(all.at("points_visited"), all.at("points_present")) << "nothing is culled";
-    EXPECT_GT(all.at("points_present"), 5000);
+    EXPECT_EQ(all.at("points_tested"), all.at("points_total")) << "nothing is culled";
+    EXPECT_GT(all.at("points_total"), 5000);
     EXPECT_GT(all.at("ns_per_points"), 0);
     EXPECT_LT(all.at("bytes"), 2e6);
     const json apart = row(document, std::string("kernel/apart/algorithm:") + algorithm);
-    EXPECT_EQ(apart.at("points_visited"), 0);
+    EXPECT_EQ(apart.at("points_tested"), 0);
     EXPECT_FALSE(apart.contains("ns_per_points"));
   }
 }
 
-TEST_F(BenchProgram, SeesThatNullIsWrong) {
+TEST_F(BenchProgram, CountsTheMismatchesOfNull) {
   const json document = result("--benchmark_filter=algorithm:null/pair:torus-1k/");
   const json distance = row(document, "distance/algorithm:null/pair:torus-1k/distance:05");
   EXPECT_EQ(distance.at("mismatch"), distance.at("judged"));
@@ -186,7 +152,7 @@ TEST_F(BenchProgram, ListsWithoutTouchingASet) {
   EXPECT_FALSE(names.contains("collide/algorithm:fcl-rss/pair:torus-1k/distance:05"));
 }
 
-TEST_F(BenchProgram, SaysWhatItMeasuredWith) {
+TEST_F(BenchProgram, RecordsItsContext) {
   const json context =
       result("--sample 32 --benchmark_filter=^collide/algorithm:fcl-obbrss/pair:torus-1k/").at("context");
   for (const char* key : {"commit", "commit_dirty", "compiler", "flags", "cpu_model", "algorithm:fcl-obbrss",
@@ -199,24 +165,27 @@ TEST_F(BenchProgram, SaysWhatItMeasuredWith) {
   EXPECT_EQ(context.at("interrupted"), "false");
 }
 
-TEST_F(BenchProgram, FailsIfNothingMatchesOrIsUnderstood) {
-  for (const char* bad : {"--benchmark_filter=no-such-row", "--benchmark_filter='('", "--settings fcl-obbrss:speed=9",
-                          "--settings speed=9", "--manifest no-such-file", "--benchmark_out=/no-such-folder/x.json"}) {
+TEST_F(BenchProgram, FailsIfNothingMatchesOrAnOptionIsUnknown) {
+  for (const char* bad : {"--benchmark_filter=no-such-row", "--benchmark_filter='('", "--parameter fcl-obbrss:speed=9",
+                          "-p speed=9", "--manifest no-such-file", "--benchmark_out=/no-such-folder/x.json"}) {
     const auto run = bench(std::string("--benchmark_out=") + out.string() + " " + bad);
     EXPECT_NE(run.exit_code, 0) << bad;
     EXPECT_NE(run.err, "") << bad;
     EXPECT_FALSE(std::filesystem::exists(out)) << bad;
   }
-  for (const char* bad : {"--no-such-flag", "--sample=-1", "--benchmark_out_format=csv", "stray"}) {
-    EXPECT_EQ(bench(bad).exit_code, cli::k_exit_usage) << bad;
+  for (const char* bad : {"--no-such-flag", "--sample=-1", "--benchmark_out_format=csv", "stray", "--set no-such-file",
+                          "--benchmark_format=csv"}) {
+    EXPECT_EQ(bench(bad).exit_code, k_exit_usage) << bad;
   }
+  EXPECT_THAT(bench("--benchmark_format=csv").err, HasSubstr("csv needs the same counters in every row"));
+  EXPECT_EQ(bench("--suite no-such-file --benchmark_list_tests").exit_code, k_exit_error);
 }
 
 TEST_F(BenchProgram, ReportsRowsThatCannotRunAndFails) {
   const auto set = suite->directory() / "torus-1k.h5";
   const auto kept = suite->directory() / "kept.h5";
   std::filesystem::rename(set, kept);
-  const json document = result("--benchmark_filter='^collide/algorithm:fcl-obbrss/.*distance:05$'", cli::k_exit_error);
+  const json document = result("--benchmark_filter='^collide/algorithm:fcl-obbrss/.*distance:05$'", k_exit_error);
   std::filesystem::rename(kept, set);
   const json failed = row(document, "collide/algorithm:fcl-obbrss/pair:torus-1k/distance:05");
   EXPECT_EQ(failed.at("error_occurred"), true);
@@ -236,9 +205,9 @@ TEST_F(BenchProgram, DrawsSamplesByNumberAndByTime) {
   EXPECT_GT(hurried.at("configurations"), 0);
 }
 
-TEST_F(BenchProgram, TakesSettingsAndShowsThem) {
+TEST_F(BenchProgram, TakesParametersAndShowsThem) {
   const json document = result(
-      "--sample 32 --settings fcl-rss:relative_error=0.5 "
+      "--sample 32 --parameter fcl-rss:relative_error=0.5 "
       "--benchmark_filter='^distance/algorithm:fcl.*pair:torus-1k/distance:05$'");
   const json loose = row(document, "distance/algorithm:fcl-rss/pair:torus-1k/distance:05");
   EXPECT_GT(loose.at("mismatch"), 0);
@@ -247,6 +216,22 @@ TEST_F(BenchProgram, TakesSettingsAndShowsThem) {
   const json exact = row(document, "distance/algorithm:fcl-obbrss/pair:torus-1k/distance:05");
   EXPECT_EQ(exact.at("mismatch"), 0);
   EXPECT_EQ(exact.at("label"), "relative_error=0");
+}
+
+TEST_F(BenchProgram, RunsTheDefaultSuiteUnlessRowsOrSetsAreChosen) {
+  const auto count_rows = [](const std::string& arguments) {
+    const auto list = test::run_program(std::string(SIXDOF_BENCH_PROGRAM) + " --benchmark_list_tests " + arguments);
+    EXPECT_EQ(list.exit_code, 0) << list.err;
+    return std::ranges::count(list.out, '\n');
+  };
+  const auto all = count_rows("--suite all"), standard = count_rows("--suite default");
+  EXPECT_GT(standard, 100);
+  EXPECT_LT(standard, all / 2);
+  EXPECT_EQ(count_rows(""), standard);
+  EXPECT_EQ(count_rows("--benchmark_filter=."), all);
+  EXPECT_EQ(count_rows("--suite default --benchmark_filter=."), standard);
+  EXPECT_EQ(count_rows("--suite default --benchmark_filter=^scenario/"), count_rows("--benchmark_filter=^scenario/"));
+  EXPECT_GT(count_rows("--manifest " + suite->manifest().string()), 0) << "sets of the user: all rows";
 }
 
 TEST_F(BenchProgram, TimesTheMakingOfSets) {
@@ -260,13 +245,13 @@ TEST_F(BenchProgram, TimesTheMakingOfSets) {
   };
   // 4 runs of 8 rays, with all buckets of the paper.
   EXPECT_GT(cost("volume/algorithm:overlap", 4 * 8 * 11), 0.0);
-  // Factors of tens and of about five: no noise turns them around.
+  // The ratios are some tens and about five, far above noise.
   const double sweep = cost("distance/algorithm:fcl-sweep", 4 * 8 * 31);
   EXPECT_LT(cost("distance/algorithm:raycast", 4 * 8 * 31), sweep);
   EXPECT_LT(sweep, cost("distance/algorithm:fcl", 4 * 8 * 31));
 }
 
-TEST_F(BenchProgram, TakesAUsersSet) {
+TEST_F(BenchProgram, TakesASetOfTheUser) {
   const auto list =
       test::run_program(std::string(SIXDOF_BENCH_PROGRAM) + " --no-manifest --benchmark_list_tests --set " +
                         (suite->directory() / "torus-1k-cone-1k.h5").string());
@@ -275,12 +260,12 @@ TEST_F(BenchProgram, TakesAUsersSet) {
   EXPECT_THAT(list.out, Not(HasSubstr("pair:torus-1k/")));
 }
 
-TEST_F(BenchProgram, LeavesAWholeFileOnCtrlC) {
-  // Far more repetitions than can be over before the signal comes.
+TEST_F(BenchProgram, WritesAWholeFileOnCtrlC) {
+  // Far more repetitions than end before the signal comes.
   const std::string endless = command(
       "--benchmark_repetitions=1000000 --benchmark_filter=fcl --benchmark_out=" + out.string() + " > /dev/null");
   const auto run = test::run_program(endless + " & sleep 1; kill -INT $!; wait $!");
-  EXPECT_EQ(run.exit_code, cli::k_exit_interrupted) << run.err;
+  EXPECT_EQ(run.exit_code, k_exit_interrupted) << run.err;
   EXPECT_THAT(run.err, HasSubstr("interrupted"));
   std::ifstream file(out);
   EXPECT_EQ(json::parse(file).at("context").at("interrupted"), "true");
@@ -293,7 +278,7 @@ TEST_F(BenchProgram, PrintsJsonToStandardOutputWhole) {
   EXPECT_EQ(json::parse(run.out).at("benchmarks").size(), 2u);
 }
 
-TEST_F(BenchProgram, HasNoNumberThatJsonLacksWithRepetitions) {
+TEST_F(BenchProgram, WritesNoNaNWithRepetitions) {
   const json document =
       result("--sample 32 --benchmark_repetitions=3 --benchmark_filter=^collide/algorithm:fcl-obbrss/pair:torus-1k/");
   std::size_t aggregates = 0;
@@ -302,9 +287,9 @@ TEST_F(BenchProgram, HasNoNumberThatJsonLacksWithRepetitions) {
   // A coefficient of variation of zeros would be NaN, which nlohmann's parser refuses.
 }
 
-TEST_F(BenchProgram, GivesAStrangersAlgorithmTheWholeSuite) {
+TEST_F(BenchProgram, RunsEveryRowOfAnExternalAlgorithm) {
   const auto run = test::run_program(
-      command("--sample 64 --benchmark_filter=algorithm:ball/ --benchmark_out=" + out.string(), STRANGER_PROGRAM));
+      command("--sample 64 --benchmark_filter=algorithm:ball/ --benchmark_out=" + out.string(), EXTERNAL_PROGRAM));
   EXPECT_EQ(run.exit_code, 0) << run.err;
   std::ifstream file(out);
   const json document = json::parse(file);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -25,7 +27,8 @@ ResultRow row(const std::string& name) {
 }
 
 struct Collector : ::testing::Test {
-  ResultCollector collector;
+  std::set<std::string> left_out;
+  ResultCollector collector{left_out};
   void SetUp() override { collector.ReportContext(benchmark::BenchmarkReporter::Context()); }
   nlohmann::json document() {
     collector.Finalize();
@@ -33,20 +36,37 @@ struct Collector : ::testing::Test {
   }
 };
 
-TEST_F(Collector, LeavesOutWhatJsonCannotSay) {
-  ResultRow run = row("a");
-  run.counters["good"] = 2.5;
-  run.counters["nan"] = std::nan("");
-  run.counters["infinite"] = std::numeric_limits<double>::infinity();
-  ResultRow coefficient_of_variation = row("b");
-  coefficient_of_variation.cpu_accumulated_time = std::nan("");
-  collector.ReportRuns({run, coefficient_of_variation});
+TEST_F(Collector, MakesARowWithANonFiniteCounterAnError) {
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    ResultRow run = row("a");
+    run.counters["good"] = 2.5;
+    run.counters["misses"] = bad;
+    collector.ReportRuns({run});
+  }
+  EXPECT_EQ(collector.failed(), 2);
   const auto json = document();
   EXPECT_EQ(json.at("context").at("seed"), "7");
+  ASSERT_EQ(json.at("benchmarks").size(), 2u);
+  EXPECT_EQ(json.at("benchmarks")[0].at("error_occurred"), true);
+  EXPECT_EQ(json.at("benchmarks")[0].at("error_message"), "counter misses is not finite (nan)");
+  EXPECT_EQ(json.at("benchmarks")[1].at("error_message"), "counter misses is not finite (inf)");
+  EXPECT_FALSE(json.at("benchmarks")[0].contains("good"));
+}
+
+TEST_F(Collector, LeavesOutTheCoefficientOfVariationOfZeros) {
+  ResultRow variation = row("a");
+  variation.run_type = ResultRow::RT_Aggregate;
+  variation.aggregate_name = "cv";
+  variation.counters["failed"] = std::nan("");
+  variation.counters["p50_ns"] = 0.1;
+  ResultRow without_time = variation;
+  without_time.cpu_accumulated_time = std::nan("");
+  collector.ReportRuns({variation, without_time});
+  EXPECT_EQ(collector.failed(), 0);
+  const auto json = document();
   ASSERT_EQ(json.at("benchmarks").size(), 1u);
-  EXPECT_EQ(json.at("benchmarks")[0].at("good"), 2.5);
-  EXPECT_FALSE(json.at("benchmarks")[0].contains("nan"));
-  EXPECT_FALSE(json.at("benchmarks")[0].contains("infinite"));
+  EXPECT_EQ(json.at("benchmarks")[0].at("p50_ns"), 0.1);
+  EXPECT_FALSE(json.at("benchmarks")[0].contains("failed"));
 }
 
 TEST_F(Collector, KeepsAndCountsFailures) {
@@ -56,11 +76,22 @@ TEST_F(Collector, KeepsAndCountsFailures) {
   collector.ReportRuns({failure});
   collector.ReportRuns({row("c")});
   EXPECT_EQ(collector.failed(), 1);
-  EXPECT_EQ(collector.rows(), 1);
   const auto json = document();
   ASSERT_EQ(json.at("benchmarks").size(), 2u);
   EXPECT_EQ(json.at("benchmarks")[0].at("error_message"), "no such model");
   EXPECT_EQ(json.at("benchmarks")[1].at("name"), "c");
+}
+
+TEST_F(Collector, LeavesOutRowsByName) {
+  left_out.insert("needs-a-solid");
+  ResultRow skipped = row("needs-a-solid");
+  skipped.error_occurred = true;
+  collector.ReportRuns({skipped});
+  collector.ReportRuns({row("b")});
+  EXPECT_EQ(collector.failed(), 0);
+  const auto json = document();
+  ASSERT_EQ(json.at("benchmarks").size(), 1u);
+  EXPECT_EQ(json.at("benchmarks")[0].at("name"), "b");
 }
 
 TEST_F(Collector, IsValidWithoutAnyRow) { EXPECT_EQ(document().at("benchmarks").size(), 0u); }

@@ -7,13 +7,13 @@ import json
 import subprocess
 import sys
 
-SAMPLES = "25"
+STEPS = "25"
 COLUMNS = {
     "exact": ["exact"],
     "vps": ["vps"],
     "vps-field": ["vps-field"],
     "ist": ["ist"],
-    "ist-descent": ["ist", "--set", "force=descent", "--set", "correct_fill=cells"],
+    "ist-steepest": ["ist", "--parameter", "force=steepest_descent", "--parameter", "correct_fill=cells"],
     "fcl-contacts": ["fcl-contacts"],
 }
 
@@ -24,7 +24,7 @@ def main():
     def table(*options):
         return subprocess.run([sys.executable, "-B", script, *options], capture_output=True, text=True)
 
-    run = table("--program", sixdof, "--defaults", "--scenario", "II", "--samples", SAMPLES)
+    run = table("--program", sixdof, "--defaults", "--scenario", "II", "--steps", STEPS)
     assert run.returncode == 0, run.stderr
     lines = [line.strip("|").split("|") for line in run.stdout.splitlines() if line.startswith("|")]
     rows = {tuple(cell.strip() for cell in line[:2]): [cell.strip() for cell in line[2:]] for line in lines}
@@ -33,7 +33,7 @@ def main():
     assert all(float(value) > 0 for value in rows["II", "mean ms"]), run.stdout
 
     for column, (name_of_column, algorithm) in enumerate(COLUMNS.items()):
-        command = [sixdof, "quality", "--scenario", "II", "--samples", SAMPLES, "--json", "--algorithm", *algorithm]
+        command = [sixdof, "quality", "--scenario", "II", "--steps", STEPS, "--json", "--algorithm", *algorithm]
         measures = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)["measures"]
         for name in ("sigma_F", "gamma_F_deg", "leakage"):
             shown = float(rows["II", name][column])
@@ -43,8 +43,8 @@ def main():
     assert missing.returncode == 1 and "is-not-there" in missing.stderr and not missing.stdout, missing
     unknown = table("--program", sixdof, "--scenario", "V")
     assert unknown.returncode == 2 and "'V'" in unknown.stderr, unknown
-    refused = table("--program", sixdof, "--defaults", "--scenario", "II", "--samples", "0")
-    assert refused.returncode == 1 and "samples" in refused.stderr, refused
+    refused = table("--program", sixdof, "--defaults", "--scenario", "II", "--steps", "0")
+    assert refused.returncode == 1 and "steps" in refused.stderr, refused
 
 
 if __name__ == "__main__":

@@ -1,49 +1,53 @@
 #include "bench/harness/timing.h"
 
-#include <algorithm>
-#include <numeric>
-#include <random>
+#include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
-
-#include <sixdof/query/outcome.h>
 
 namespace sixdof::bench {
 namespace {
 
-TEST(Latency, IsNearestRank) {
-  std::vector<std::int64_t> samples(2000);
-  std::iota(samples.begin(), samples.end(), 1);
-  std::mt19937_64 random(3);
-  std::shuffle(samples.begin(), samples.end(), random);
-  const Latency latency = latency_of(samples);
-  EXPECT_EQ(latency.p50_ns, 1000);
-  EXPECT_EQ(latency.p99_ns, 1980);
-  EXPECT_EQ(latency.p999_ns, 1998);
-  EXPECT_EQ(latency.max_ns, 2000);
-  EXPECT_EQ(latency.over_1ms, 0.0);
-}
-
-TEST(Latency, CountsWhatIsBeyondTheDeadline) {
-  // Exactly a millisecond is in time.
-  const Latency latency = latency_of({1'000'000, 1'000'001, 5'000'000, 3});
-  EXPECT_EQ(latency.over_1ms, 0.5);
-  EXPECT_EQ(latency.p50_ns, 1'000'000);
-  EXPECT_EQ(latency.p999_ns, 5'000'000);
-  EXPECT_EQ(latency_of({7}).p50_ns, 7);
-  EXPECT_EQ(latency_of({}).max_ns, 0);
+std::vector<Pose> numbered_poses(int count) {
+  std::vector<Pose> poses(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) poses[static_cast<std::size_t>(i)].t.x() = i;
+  return poses;
 }
 
 TEST(TimeEach, AsksEveryPoseInEveryPassInOrder) {
-  std::vector<Pose> poses(5);
-  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].t.x() = static_cast<double>(i);
+  std::vector<Pose> poses = numbered_poses(5);
   std::vector<int> asked;
-  time_each(poses, [&](const Pose& pose) {
+  const auto ask = [&](const Pose& pose) {
     asked.push_back(static_cast<int>(pose.t.x()));
     return Outcome<bool>(true);
-  });
+  };
+  const Query query;
+  Failures failures;
+  const Latency latency = time_each(poses, GuardedQuery(query, ask, failures));
   ASSERT_EQ(asked.size(), poses.size() * k_latency_passes);
   for (std::size_t i = 0; i < asked.size(); ++i) EXPECT_EQ(asked[i], static_cast<int>(i % poses.size()));
+  EXPECT_EQ(latency.count, 5u);
+  EXPECT_EQ(failures.count(), 0u);
+}
+
+TEST(TimeEach, RemovesPosesThatFailInOnePass) {
+  std::vector<Pose> poses = numbered_poses(10);
+  int asked = 0;
+  const auto ask = [&](const Pose& pose) -> Outcome<bool> {
+    ++asked;
+    if (pose.t.x() == 3.0 && asked > 10) throw std::runtime_error("only once");
+    if (pose.t.x() == 7.0 && asked > 20) return Status::failed;
+    return true;
+  };
+  const Query query;
+  Failures failures;
+  const Latency latency = time_each(poses, GuardedQuery(query, ask, failures));
+  EXPECT_EQ(latency.count, 8u);
+  ASSERT_EQ(poses.size(), 8u);
+  EXPECT_EQ(poses[3].t.x(), 4.0);
+  EXPECT_EQ(poses[7].t.x(), 9.0);
+  EXPECT_EQ(failures.count(), 2u) << "a configuration counts once, however often it fails";
+  EXPECT_EQ(failures.first(), "only once");
 }
 
 TEST(Clock, HasACost) { EXPECT_GT(clock_overhead_ns(), 0.0); }

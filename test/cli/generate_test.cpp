@@ -18,8 +18,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/cli/commands.h"
 #include <sixdof/configuration/shard_file.h>
+#include "bench/common/run_guarded.h"
 
 #include "run_program.h"
 
@@ -31,7 +31,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Clock = std::chrono::steady_clock;
 
-/// Two unlike meshes, both kinds of bucket on grids of their own: less than a second.
+/// Two different meshes, both kinds of bucket on different grids.
 const std::vector<std::string> k_job{
     "generate",    "--a",    "bumpy-sphere-200", "--b", "torus-knot-600", "--grid", "45/60", "--volume-grid", "90",
     "--distances", "0,5,20", "--volumes",        "5",   "--threads",      "1"};
@@ -137,7 +137,7 @@ TEST_F(Generate, ShardsMergeToTheBytesOfTheWholeSet) {
   EXPECT_EQ(bytes_of(folder_ / "one-by-one.h5"), expected);
 }
 
-TEST_F(Generate, ResumeKeepsWhatIsSoundAndMendsTheRest) {
+TEST_F(Generate, ResumeKeepsValidShardsAndMakesTheOthersAgain) {
   ASSERT_EQ(make_shards("set").exit_code, 0);
   const auto first = folder_ / "set" / shard_file_name({.number = 1, .count = k_shards});
   const auto second = folder_ / "set" / shard_file_name({.number = 2, .count = k_shards});
@@ -145,7 +145,7 @@ TEST_F(Generate, ResumeKeepsWhatIsSoundAndMendsTheRest) {
   const auto kept = std::filesystem::last_write_time(first);
   std::filesystem::resize_file(second, bytes.size() / 2);
   EXPECT_THAT(merge("set").err, AllOf(HasSubstr("cannot be merged"), HasSubstr(second.string())));
-  EXPECT_EQ(make_shards("set").exit_code, cli::k_exit_error) << "without --resume nothing is replaced";
+  EXPECT_EQ(make_shards("set").exit_code, k_exit_error) << "without --resume nothing is replaced";
 
   const auto resumed = make_shards("set", {"--resume"});
   EXPECT_EQ(resumed.exit_code, 0);
@@ -154,16 +154,16 @@ TEST_F(Generate, ResumeKeepsWhatIsSoundAndMendsTheRest) {
   EXPECT_EQ(bytes_of(second), bytes);
   EXPECT_EQ(std::filesystem::last_write_time(first), kept);
 
-  // Another job's shards are nobody's to replace.
+  // Shards of another job are not replaced.
   const auto foreign = make_shards("set", {"--resume", "--distances", "0"});
-  EXPECT_EQ(foreign.exit_code, cli::k_exit_error);
+  EXPECT_EQ(foreign.exit_code, k_exit_error);
   EXPECT_THAT(foreign.err, AllOf(HasSubstr(first.string()), HasSubstr("the buckets are")));
   EXPECT_EQ(std::filesystem::last_write_time(first), kept);
 }
 
 TEST_F(Generate, RefusesShardsThatCannotBe) {
   EXPECT_THAT(make_shards("set", {"--shard", "13"}).err, HasSubstr("shard 13 of 12"));
-  EXPECT_THAT(run(job_with({"--shards", "45", "-o", folder_ / "set"})).err, HasSubstr("distinct rotations to share"));
+  EXPECT_THAT(run(job_with({"--shards", "45", "-o", folder_ / "set"})).err, HasSubstr("distinct rotations"));
   EXPECT_THAT(run(job_with({"--resume", "-o", folder_ / "set.h5"})).err, HasSubstr("go with --shards"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "set"));
 }
@@ -183,20 +183,21 @@ TEST_F(Generate, PlansThePapersSet) {
   EXPECT_THAT(counts.out, AllOf(HasSubstr("7488, of which 6384 distinct"), HasSubstr("1008, of which 744 distinct"),
                                 HasSubstr("64695456, of which 54819408 computed")));
   EXPECT_THAT(counts.out, Not(HasSubstr("CPU-hours")));
-  const auto estimate = run(job_with({"--plan", "--shards", "5", "--sample-seconds", "0.2"}));
+  const auto estimate = run(job_with({"--plan", "--shards", "5", "--plan-seconds", "0.2"}));
   EXPECT_EQ(estimate.exit_code, 0) << estimate.err;
-  for (const char* expected : {"distances", "volumes", "us per configuration", "CPU-hours", "seed 1",
-                               "time of one shard", "memory of a process", "5 shards of"}) {
+  for (const char* expected :
+       {"distances", "volumes", "us per configuration", "CPU-hours", "seed 1", "time of one shard",
+        "memory of a process", "5 shards of", "median", "p99", "greatest", "(rotation ", "configurations sampled"}) {
     EXPECT_THAT(estimate.out, HasSubstr(expected));
   }
-  EXPECT_THAT(run(job_with({"--plan", "--shards", "1000"})).err, HasSubstr("distinct rotations to share"));
-  EXPECT_THAT(run(job_with({"--plan", "--sample-seconds", "0"})).out, Not(HasSubstr("CPU-hours")));
-  EXPECT_EQ(run(job_with({"--plan", "--sample-seconds", "-1"})).exit_code, cli::k_exit_usage);
+  EXPECT_THAT(run(job_with({"--plan", "--shards", "1000"})).err, HasSubstr("distinct rotations"));
+  EXPECT_THAT(run(job_with({"--plan", "--plan-seconds", "0"})).out, Not(HasSubstr("CPU-hours")));
+  EXPECT_EQ(run(job_with({"--plan", "--plan-seconds", "-1"})).exit_code, k_exit_usage);
 }
 
-/// kill -9 at random moments: what is there under a shard's name is sound, and --resume and merge end with the bytes of
-/// the undisturbed set. SIXDOF_SEED repeats a run.
-TEST_F(Generate, SurvivesKillsAtAnyMoment) {
+/// kill -9 at random times: every file with a shard's name is valid, and --resume and merge give the bytes of the
+/// undisturbed set. SIXDOF_SEED repeats a run.
+TEST_F(Generate, SurvivesKillsAtAnyTime) {
   constexpr int k_rounds = 20;
   const char* const wish = std::getenv("SIXDOF_SEED");
   const unsigned seed = wish != nullptr ? static_cast<unsigned>(std::atoi(wish)) : std::random_device{}();
@@ -227,14 +228,14 @@ TEST_F(Generate, SurvivesKillsAtAnyMoment) {
     with_some += finished > 0 && finished < k_shards ? 1 : 0;
     const auto resumed = make_shards(where, {"--resume"});
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
-    EXPECT_EQ(resumed.err, "") << "nothing had to be made again";
+    EXPECT_EQ(resumed.err, "") << "no shard was damaged";
     EXPECT_EQ(count(where, ".partial"), 0u);
     const auto merged = merge(where);
     EXPECT_EQ(merged.exit_code, 0) << merged.err;
     EXPECT_EQ(bytes_of(folder_ / (where + ".h5")), expected);
     std::filesystem::remove_all(folder_ / where);
   }
-  // Otherwise the moments were not those that matter.
+  // Most kills came before the end, and some between two shards.
   EXPECT_GT(killed, k_rounds / 2);
   EXPECT_GT(with_some, k_rounds / 4);
 }
@@ -260,29 +261,19 @@ TEST_F(Generate, KilledMergeLeavesNoSetOrAWholeOne) {
 }
 
 TEST_F(Generate, InterruptEndsWithItsCodeAndLeavesOnlyWholeShards) {
-  // Long enough that its end does not come before the signal.
+  // A grid fine enough that the work does not end before the signal.
   const Running running(job_with({"--grid", "20", "--shards", std::to_string(k_shards), "-o", folder_ / "set"}));
   while (!std::filesystem::exists(folder_ / "set" / shard_file_name({.number = 1, .count = k_shards}))) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   running.send(SIGINT);
-  EXPECT_EQ(running.wait(), cli::k_exit_interrupted);
+  EXPECT_EQ(running.wait(), k_exit_interrupted);
   EXPECT_EQ(count("set", ".partial"), 0u);
   EXPECT_GE(count("set", ".h5"), 1u);
   EXPECT_LT(count("set", ".h5"), k_shards);
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "set")) {
     EXPECT_NO_THROW(ShardFile(entry.path()).check_values());
   }
-}
-
-TEST_F(Generate, ProfileShowsMedianAndWorstAndWritesNothing) {
-  const auto result = run(job_with({"--profile", "--rotations", "3"}));
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("distances: grid 45/60"), HasSubstr("volumes: grid 90"),
-                                HasSubstr("work per configuration"), HasSubstr("times the median")));
-  EXPECT_NE(run(job_with({"--profile", "-o", folder_ / "set.h5"})).exit_code, 0);
-  EXPECT_NE(run(job_with({"--rotations", "3", "-o", folder_ / "set.h5"})).exit_code, 0);
-  EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/commands.h"
+#include "bench/common/run_guarded.h"
 
 #include "run_program.h"
 #include "scratch_folder.h"
@@ -65,15 +65,15 @@ TEST_F(Models, RefusesInWordsAndWritesNothing) {
     EXPECT_TRUE(fs::is_empty(folder())) << arguments;
   };
   const std::string output = " -o " + path("m.ply");
-  refuses("sfere -n 500" + output, cli::k_exit_error, "sfere");
-  refuses("sphere" + output, cli::k_exit_error, "sphere-10k");
-  refuses("sphere-500 -n 500" + output, cli::k_exit_error, "already");
-  refuses("sphere -n 3" + output, cli::k_exit_error, "3 were asked for");
-  refuses("sphere -n -3" + output, cli::k_exit_usage, "--triangles");
-  refuses("sphere -n many" + output, cli::k_exit_usage, "--triangles");
-  refuses("sphere -n 500 -o " + path("m.xyz"), cli::k_exit_error, "m.xyz");
-  refuses("sphere -n 500 -o " + path("no/such/m.ply"), cli::k_exit_error, "no/such");
-  refuses("sphere -n 500", cli::k_exit_usage, "--output");
+  refuses("sfere -n 500" + output, k_exit_error, "sfere");
+  refuses("sphere" + output, k_exit_error, "sphere-10k");
+  refuses("sphere-500 -n 500" + output, k_exit_error, "already");
+  refuses("sphere -n 3" + output, k_exit_error, "3 were asked for");
+  refuses("sphere -n -3" + output, k_exit_usage, "--triangles");
+  refuses("sphere -n many" + output, k_exit_usage, "--triangles");
+  refuses("sphere -n 500 -o " + path("m.xyz"), k_exit_error, "m.xyz");
+  refuses("sphere -n 500 -o " + path("no/such/m.ply"), k_exit_error, "no/such");
+  refuses("sphere -n 500", k_exit_usage, "--output");
 }
 
 TEST_F(Info, TellsAnOpenMeshFromASolid) {
@@ -97,7 +97,7 @@ TEST_F(Info, NamesFilesThatItCannotRead) {
   std::ofstream(path("cut.ply")) << "ply\nformat ascii 1.0\nelement vertex 3\n";
   for (const char* name : {"cut.ply", "missing.ply", "missing.h5"}) {
     const auto result = run("info " + path(name));
-    EXPECT_EQ(result.exit_code, cli::k_exit_error);
+    EXPECT_EQ(result.exit_code, k_exit_error);
     EXPECT_THAT(result.err, HasSubstr(name));
     EXPECT_EQ(result.out, "");
   }

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/commands.h"
 #include <sixdof/geometry/pose.h>
+#include "bench/common/run_guarded.h"
 
 #include "run_program.h"
 
@@ -30,10 +30,10 @@ Eigen::Vector3d vector(const nlohmann::json& json) {
 
 constexpr double k_rounding = 1e-14;
 
-// Two boxes 2 x 1.6 x 1.2, the second shifted: what they share is a box of known edges.
+// Two boxes 2 x 1.6 x 1.2, the second shifted: their intersection is a box with known edges.
 const char* const k_boxes = "--a box-100 --b box-300 --pose '1.7 -0.3 0.4  1 0 0 0'";
 
-TEST(Query, ExactAnswersForTwoBoxesAreThoseOfTheCommonBox) {
+TEST(Query, ExactAnswersForTwoBoxesAreThoseOfTheirIntersection) {
   const auto json = answers(k_boxes);
   const Eigen::Vector3d edges(2.0 - 1.7, 1.6 - 0.3, 1.2 - 0.4);
   EXPECT_EQ(json.at("algorithm"), "exact");
@@ -42,7 +42,7 @@ TEST(Query, ExactAnswersForTwoBoxesAreThoseOfTheCommonBox) {
   EXPECT_EQ(json.at("distance"), 0.0);
   EXPECT_NEAR(json.at("volume"), edges.prod(), k_rounding);
   EXPECT_EQ(json.at("penalty"), json.at("volume"));
-  // force = -grad V: the common box shrinks as B moves on along (1, -1, 1).
+  // force = -grad V: the intersection shrinks as B moves along (1, -1, 1).
   const Eigen::Vector3d force(edges.y() * edges.z(), -edges.x() * edges.z(), edges.x() * edges.y());
   EXPECT_LE((vector(json.at("force")) - force).norm(), k_rounding);
   EXPECT_LE((vector(json.at("reference_point")) - Eigen::Vector3d(1.7, -0.3, 0.4)).norm(), k_rounding);
@@ -59,7 +59,7 @@ TEST(Query, TorqueMovesWithTheReferencePoint) {
 }
 
 TEST(Query, PoseIsTranslationThenQuaternionWithTheScalarFirst) {
-  // A quarter turn about z lays B's edge of 2 along y; the gap along x is 2.5 - 1 - 0.8.
+  // A rotation by 90 degrees about z puts B's edge of 2 along y; the gap along x is 2.5 - 1 - 0.8.
   const auto json = answers("--a box-100 --b box-100 --pose '2.5 0 0 0.7071067811865476 0 0 0.7071067811865476'");
   EXPECT_EQ(json.at("colliding"), false);
   EXPECT_NEAR(json.at("distance"), 0.7, k_rounding);
@@ -67,7 +67,7 @@ TEST(Query, PoseIsTranslationThenQuaternionWithTheScalarFirst) {
   EXPECT_EQ(json.at("volume"), 0.0);
 }
 
-TEST(Query, WhatAnAlgorithmDoesNotAnswerIsNull) {
+TEST(Query, AnswersThatAnAlgorithmDoesNotGiveAreNull) {
   const auto json = answers(std::string(k_boxes) + " --algorithm fcl-rss");
   EXPECT_EQ(json.at("status"), "ok");
   for (const char* key : {"colliding", "penalty", "volume", "force", "torque", "reference_point"}) {
@@ -77,15 +77,15 @@ TEST(Query, WhatAnAlgorithmDoesNotAnswerIsNull) {
   EXPECT_THAT(query(std::string(k_boxes) + " --algorithm fcl-rss").out, ::testing::Not(HasSubstr("force")));
 }
 
-TEST(Query, SettingsReachTheAlgorithm) {
-  const std::string ist = std::string(k_boxes) + " --algorithm ist --set spheres=50 --set force=gradient";
+TEST(Query, ParametersReachTheAlgorithm) {
+  const std::string ist = std::string(k_boxes) + " --algorithm ist -p spheres=50 --parameter force=gradient";
   EXPECT_THAT(answers(ist).at("settings").get<std::string>(), HasSubstr("spheres=50"));
 }
 
 TEST(Query, RefusesBadArgumentsAndNamesThem) {
   const auto refuses = [](const std::string& arguments, const std::string& words) {
     const auto result = query(arguments);
-    EXPECT_EQ(result.exit_code, cli::k_exit_error) << arguments;
+    EXPECT_EQ(result.exit_code, k_exit_error) << arguments;
     EXPECT_EQ(result.out, "") << arguments;
     EXPECT_THAT(result.err, HasSubstr(words)) << arguments;
   };
@@ -96,10 +96,10 @@ TEST(Query, RefusesBadArgumentsAndNamesThem) {
   refuses(boxes + "--pose '0 0 0 1 0 0 x'", "number 7");
   refuses(boxes + "--pose '0 0 0 1 0 0 0' --about '1 2'", "--about");
   refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm exactly", "no such algorithm");
-  refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm ist --set sphere=3", "no such parameter");
+  refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm ist -p sphere=3", "no such parameter");
   refuses("--a elefant --b box-100 --pose '0 0 0 1 0 0 0'", "elefant");
   refuses("--a box-100 --b no_such_file.ply --pose '0 0 0 1 0 0 0'", "no_such_file.ply");
-  EXPECT_EQ(query("--a box-100 --b box-100").exit_code, cli::k_exit_usage);
+  EXPECT_EQ(query("--a box-100 --b box-100").exit_code, k_exit_usage);
 }
 
 }  // namespace

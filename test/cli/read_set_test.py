@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""fixtures/read_set.py: the poses that it works out by itself have the distance and the volume of their bucket.
+"""fixtures/read_set.py: the poses that it computes have the distance and the volume of their bucket.
 
 usage: read_set_test.py SIXDOF READ_SET
 """

@@ -5,28 +5,24 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <sixdof/algorithm/ist/ist.h>
 #include <sixdof/algorithm/vps/vps.h>
-#include "bench/cli/commands.h"
 #include <sixdof/geometry/load.h>
 #include <sixdof/geometry/save.h>
 #include <sixdof/models/model_catalogue.h>
+#include "bench/common/run_guarded.h"
 
 #include "run_program.h"
+#include "scratch_folder.h"
 
 namespace sixdof {
 namespace {
 
 using ::testing::HasSubstr;
 
-class Show : public ::testing::Test {
+class Show : public test::ScratchFolder {
  protected:
-  void SetUp() override { std::filesystem::create_directories(directory_); }
-  void TearDown() override { std::filesystem::remove_all(directory_); }
-
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
   test::ProgramResult show(const std::string& arguments) const {
     return test::run_program("SIXDOF_CACHE=off " + std::string(SIXDOF_PROGRAM) + " show " + arguments);
   }
@@ -36,11 +32,8 @@ class Show : public ::testing::Test {
     return bytes.str();
   }
   std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(directory_), {}));
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder()), {}));
   }
-
-  std::filesystem::path directory_ =
-      std::filesystem::temp_directory_path() / ("sixdof-show-" + std::to_string(::getpid()));
 };
 
 double double_at(const std::string& bytes, std::size_t at) {
@@ -50,7 +43,7 @@ double double_at(const std::string& bytes, std::size_t at) {
 }
 
 TEST_F(Show, WritesSpheresThatLoadAsAMesh) {
-  const auto run = show("--algorithm ist --model torus-1k --set spheres=60 --set seed=3 -o " + path("s.ply"));
+  const auto run = show("--algorithm ist --model torus-1k --parameter spheres=60 -p seed=3 -o " + path("s.ply"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("60 spheres as 2520 vertices and 4800 triangles"));
   const Mesh mesh = load_mesh(path("s.ply"));
@@ -68,11 +61,10 @@ TEST_F(Show, WritesSpheresThatLoadAsAMesh) {
 }
 
 TEST_F(Show, WritesBallsOfALevelAndHalfABody) {
-  ASSERT_EQ(
-      show("--algorithm ist --model torus-1k --set spheres=60 --part balls --level 1 -o " + path("b.ply")).exit_code,
-      0);
+  ASSERT_EQ(show("--algorithm ist --model torus-1k -p spheres=60 --part balls --level 1 -o " + path("b.ply")).exit_code,
+            0);
   EXPECT_LE(load_mesh(path("b.ply")).triangles().size(), 4u * 80u);
-  ASSERT_EQ(show("--algorithm vps --model box-12 --set voxel_size=0.03 --keep 0.5 -o " + path("v.ply")).exit_code, 0);
+  ASSERT_EQ(show("--algorithm vps --model box-12 -p voxel_size=0.03 --keep 0.5 -o " + path("v.ply")).exit_code, 0);
   const Mesh half = load_mesh(path("v.ply"));
   const double voxel = 0.03 * load_model("box-12").diagonal();
   EXPECT_NEAR(half.box().max().x(), 0.0, voxel);
@@ -83,8 +75,8 @@ TEST_F(Show, WritesBallsOfALevelAndHalfABody) {
 
 TEST_F(Show, WritesPointsWithNormals) {
   for (const char* algorithm : {"vps", "vps-field"}) {
-    const auto run = show(std::string("--model box-12 --part points --set point_spacing=0.05 --algorithm ") +
-                          algorithm + " -o " + path("p.ply"));
+    const auto run = show(std::string("--model box-12 --part points -p point_spacing=0.05 --algorithm ") + algorithm +
+                          " -o " + path("p.ply"));
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const std::string bytes = read("p.ply");
     EXPECT_THAT(bytes, HasSubstr("property double nx\n"));
@@ -106,21 +98,21 @@ TEST_F(Show, WritesPointsWithNormals) {
 TEST_F(Show, RefusesBadArgumentsAndLeavesNothingBehind) {
   const Mesh open = Mesh::build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, "open");
   save_mesh(open, path("open.ply"));
-  const auto refuses = [&](const std::string& arguments, const std::string& words, int code = cli::k_exit_error) {
+  const auto refuses = [&](const std::string& arguments, const std::string& words, int code = k_exit_error) {
     const auto result = show(arguments);
     EXPECT_EQ(result.exit_code, code) << arguments;
     EXPECT_EQ(result.out, "") << arguments;
     EXPECT_THAT(result.err, HasSubstr(words)) << arguments;
     EXPECT_EQ(files(), 1u) << arguments;
   };
-  const std::string good = "--algorithm ist --model torus-1k --set spheres=5 -o " + path("x.ply") + " ";
+  const std::string good = "--algorithm ist --model torus-1k -p spheres=5 -o " + path("x.ply") + " ";
   refuses("--algorithm exact --model torus-1k -o " + path("x.ply"), "exact: has no structure to show");
   refuses("--algorithm octree --model torus-1k -o " + path("x.ply"), "no such algorithm");
   refuses(good + "--part points", "ist has spheres, balls");
   refuses(good + "--part balls", "--level");
   refuses(good + "--level 2", "--level");
-  refuses(good + "--set sphere=5", "no such parameter");
-  refuses(good + "--set spheres=many", "spheres");
+  refuses(good + "-p sphere=5", "no such parameter");
+  refuses(good + "-p spheres=many", "spheres");
   refuses("--algorithm ist --model tourus-1k -o " + path("x.ply"), "tourus");
   refuses("--algorithm vps --model torus-1k -o " + path("x.obj"), "must end in .ply");
   refuses("--algorithm vps --model torus-1k -o " + path("no_such_folder/x.ply"), "no_such_folder");
@@ -128,9 +120,9 @@ TEST_F(Show, RefusesBadArgumentsAndLeavesNothingBehind) {
     refuses(std::string("--algorithm ") + algorithm + " --model " + path("open.ply") + " -o " + path("x.ply"),
             "border edges");
   }
-  refuses(good + "--level 0", "--level", cli::k_exit_usage);
-  refuses(good + "--keep 1.5", "--keep", cli::k_exit_usage);
-  refuses("--algorithm ist --model torus-1k", "--output", cli::k_exit_usage);
+  refuses(good + "--level 0", "--level", k_exit_usage);
+  refuses(good + "--keep 1.5", "--keep", k_exit_usage);
+  refuses("--algorithm ist --model torus-1k", "--output", k_exit_usage);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ struct Ball {
   Colour colour{};
 };
 
-/// Takes a drawing of balls apart, and checks that each has one colour and its vertices at one distance.
+/// The balls of a drawing. Checks that each has one colour and its vertices at one distance from the centre.
 std::vector<Ball> balls_of(const Drawing& drawing) {
   std::vector<Ball> balls;
   EXPECT_EQ(drawing.vertices.size(), drawing.elements * k_ball_vertices);
@@ -51,7 +51,7 @@ std::vector<Ball> balls_of(const Drawing& drawing) {
 
 Mesh as_mesh(const Drawing& drawing) { return Mesh::build(drawing.vertices, drawing.triangles); }
 
-TEST(Drawing, ShowsEverySphereAtItsPlaceColouredByRadius) {
+TEST(Drawing, ShowsEverySphereAtItsCentreColouredByRadius) {
   const ist::SphereTree tree = some_tree();
   const Drawing drawing = draw_spheres(tree);
   const std::vector<Ball> balls = balls_of(drawing);
@@ -63,13 +63,13 @@ TEST(Drawing, ShowsEverySphereAtItsPlaceColouredByRadius) {
     EXPECT_NEAR(balls[i].radius, tree.leaves[i].radius, k_rounding);
     EXPECT_EQ(balls[i].colour, ramp_colour(tree.leaves[i].radius / largest));
   }
-  // Faceted balls are inside the round ones, and face outwards.
+  // Faceted balls are inside the round ones, and their faces are oriented outwards.
   const double volume = as_mesh(drawing).volume();
   EXPECT_LT(volume, tree.volume);
   EXPECT_GT(volume, 0.85 * tree.volume);  // 80 facets
 }
 
-TEST(Drawing, CutLeavesOutWhatHasItsCentreBeyond) {
+TEST(Drawing, CutLeavesOutElementsWithTheirCentreBeyond) {
   const ist::SphereTree tree = some_tree();
   const double x = tree.leaves[20].center.x();
   const auto kept = static_cast<std::size_t>(std::count_if(
@@ -85,7 +85,7 @@ TEST(Drawing, CutLeavesOutWhatHasItsCentreBeyond) {
   for (const Eigen::Vector3d& p : points.vertices) EXPECT_LE(p.x(), 0.1);
 }
 
-TEST(Drawing, BallsOfALevelHoldAllSpheresBelow) {
+TEST(Drawing, BallsOfALevelContainAllSpheresBelow) {
   const ist::SphereTree tree = some_tree();
   EXPECT_EQ(draw_balls(tree, 1).elements, tree.children(0));
   for (const int level : {1, 2, 3}) {
@@ -96,7 +96,7 @@ TEST(Drawing, BallsOfALevelHoldAllSpheresBelow) {
       });
       EXPECT_TRUE(held) << level;
     }
-    // Leaves above the level keep the colour of their own.
+    // Leaves above the level have the colour of their own level.
     const auto last =
         std::count_if(balls.begin(), balls.end(), [](const Ball& ball) { return ball.colour == ramp_colour(1.0); });
     EXPECT_GT(last, 0) << level;
@@ -163,7 +163,7 @@ TEST(Drawing, VoxelsAreShownByLayerAndOnlyFromOutside) {
     const Drawing whole = draw_voxels(map);
     return std::set<Colour>(whole.colours.begin(), whole.colours.end());
   }();
-  // From outside only surface voxels are seen; cut open, all layers are.
+  // Only surface voxels have outer faces; in the open body all layers have.
   EXPECT_EQ(whole_colours.size(), 1u);
   EXPECT_GT(std::set<Colour>(open.colours.begin(), open.colours.end()).size(), 6u);
 }
@@ -176,7 +176,7 @@ TEST(Drawing, FieldShowsWhereItIsNegative) {
     const auto brick = static_cast<std::size_t>(field.table[field.grid.brick_of(v.x(), v.y(), v.z())]);
     const Eigen::Array3i at = v.unaryExpr([](int i) { return i % 8 + 1; });
     return -static_cast<double>(
-        field.samples[brick * 1000 + static_cast<std::size_t>(at.x() + 10 * at.y() + 100 * at.z())]);
+        field.coefficients[brick * 1000 + static_cast<std::size_t>(at.x() + 10 * at.y() + 100 * at.z())]);
   };
   for (const double cut_x : {k_uncut, -0.02}) expect_faces(draw_field(field, cut_x), field.grid, cut_x, depth);
 }

@@ -8,7 +8,7 @@
 namespace sixdof::cli {
 namespace {
 
-TEST(Table, HasALinePerAlgorithmAndAColumnPerBucket) {
+TEST(ResultsTable, HasALinePerAlgorithmAndAColumnPerBucket) {
   const std::string text = R"({"context": {}, "benchmarks": [
     {"name": "prepare/algorithm:x/pair:p", "run_type": "iteration", "cpu_time": 7, "time_unit": "ms"},
     {"name": "collide/algorithm:x/pair:p/distance:05", "run_type": "iteration", "cpu_time": 2500, "time_unit": "ns", "p99_ns": 40000, "failed": 0, "mismatch": 0},
@@ -25,7 +25,7 @@ TEST(Table, HasALinePerAlgorithmAndAColumnPerBucket) {
             "! some answers were wrong   ? some queries gave no answer\n");
 }
 
-TEST(Table, ResponsesHaveTheirLargestTimeAndTheErrorOfTheirForce) {
+TEST(ResultsTable, ResponsesHaveTheirLargestTimeAndTheErrorOfTheirForce) {
   const std::string text = R"({"context": {}, "benchmarks": [
     {"name": "collide/algorithm:x/pair:p/volume:05", "run_type": "iteration", "cpu_time": 2500, "time_unit": "ns", "p99_ns": 40000},
     {"name": "respond/algorithm:x/pair:p/volume:05", "run_type": "iteration", "cpu_time": 2500, "time_unit": "ns", "p99_ns": 40000, "max_ns": 50000, "gamma_F_deg": 1.234, "gamma_max_F_deg": 20.25},
@@ -45,7 +45,7 @@ TEST(Table, ResponsesHaveTheirLargestTimeAndTheErrorOfTheirForce) {
       "! some answers were wrong   ? some queries gave no answer\n");
 }
 
-TEST(Table, RefusesWhatIsNoResultFile) {
+TEST(ResultsTable, RefusesOtherFiles) {
   for (const char* bad : {"", "[]", "{}", R"({"benchmarks": [{}]})"}) {
     EXPECT_THROW(results_table(bad, "r.json"), BadFile) << bad;
   }

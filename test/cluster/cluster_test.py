@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The job array of bench/slurm on a real Slurm: a controller and two nodes on this machine, started here and ended here.
+"""The job array of bench/slurm on a real Slurm: a controller and two nodes, started and ended on this machine.
 
 usage: cluster_test.py SIXDOF SCRIPT
 
-One task is killed with signal 9, the array's shards are then not enough for a set, the task is requeued, and the merged
-set has the bytes of the one that a single process makes. Exit code 77: Slurm is not installed.
+One task is killed with signal 9. Merging then fails, the task is requeued, and the merged set has the bytes of the one
+that a single process makes. Exit code 77: Slurm is not installed.
 """
 import os
 import pathlib
@@ -21,7 +21,7 @@ SKIPPED = 77
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "squeue", "sinfo", "scontrol", "scancel")
 SHARDS = 6
 VICTIM = 3
-# A shard takes a second or two: long enough to be hit in the middle.
+# A shard takes a second or two: long enough to be killed before its end.
 JOB = ("--a bumpy-sphere-500 --b torus-knot-1000 --grid 30 --volume-grid 30/90 --distances 0,20 --volumes 2").split()
 START_S = 60.0  # for daemons to come up on a busy machine
 WORK_S = 240.0  # for the array
@@ -89,9 +89,9 @@ class Slurm:
         controller, *nodes = free_ports(3)
         host, user, folder = socket.gethostname(), self.user, self.folder
         (folder / "state").mkdir()
-        # Nothing here uses control groups; left to find their version out, slurmd ends where none are mounted.
+        # Control groups are not used. Without this line slurmd looks for their version and ends where none are mounted.
         (folder / "cgroup.conf").write_text("CgroupPlugin=cgroup/v1\n")
-        # cred_expire is also what a requeued task waits.
+        # A requeued task waits for cred_expire.
         (folder / "slurm.conf").write_text(f"""ClusterName=sixdof
 SlurmctldHost={host}(127.0.0.1)
 SlurmctldPort={controller}

@@ -16,7 +16,7 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(DistinctRotations, PartsShareTheWorkEvenlyAndLeaveNothingOut) {
+TEST(DistinctRotations, ShardsDivideThemEvenlyAndLeaveNoneOut) {
   const DistinctRotations distinct(make_grid("paper").rotations);
   ASSERT_EQ(distinct.first.size(), 6384u);
   for (const std::size_t count : {1u, 7u, 64u, 6384u}) {
@@ -32,7 +32,7 @@ TEST(DistinctRotations, PartsShareTheWorkEvenlyAndLeaveNothingOut) {
   }
 }
 
-TEST(DistinctRotations, EveryRotationHasAnEqualOneThatIsComputed) {
+TEST(DistinctRotations, EveryRotationHasAnEqualRepresentative) {
   const Grid grid = make_grid("45");
   const DistinctRotations distinct(grid.rotations);
   EXPECT_LT(distinct.first.size(), grid.rotations.size());

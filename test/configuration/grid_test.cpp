@@ -150,7 +150,7 @@ TEST(Grid, RotationsByRightAnglesAreExact) {
     ++exact;
     EXPECT_EQ(R, rounded);
   }
-  EXPECT_GE(exact, 24u);  // the rotation group of the cube, some several times
+  EXPECT_GE(exact, 24u);  // The rotation group of the cube, some of them repeated.
 }
 
 /// Angles from random rotations to the nearest of a set.
@@ -221,7 +221,7 @@ TEST(Grid, UniformDirectionsMatchTheRotationsSpacing) {
   }
   EXPECT_LT(mean.norm(), 1e-2);
   EXPECT_LT((moment - Eigen::Matrix3d::Identity() / 3.0).norm(), 1e-2);
-  // 235 caps of equal area have a radius of 7.5 degrees: neighbours of a good lattice stand above that apart.
+  // 235 caps of equal area have a radius of 7.5 degrees: neighbours of a good lattice are farther apart than that.
   EXPECT_GT(std::acos(closest_pair), 7.5 * k_degree);
 }
 

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <numeric>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -71,6 +73,10 @@ inline std::vector<std::uint32_t> indices(std::size_t first, std::size_t last) {
   std::vector<std::uint32_t> list(last - first);
   std::iota(list.begin(), list.end(), static_cast<std::uint32_t>(first));
   return list;
+}
+
+inline bool same_bits(std::span<const double> left, std::span<const double> right) {
+  return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size_bytes()) == 0;
 }
 
 inline Eigen::Vector3d random_direction(std::mt19937_64& random) {

@@ -1,12 +1,13 @@
 #include <sixdof/configuration/shard_file.h>
 
-#include <cstring>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/hdf5.h>
+#include <sixdof/configuration/configuration_set.h>
 
+#include "folder_test.h"
 #include "shard_job.h"
 
 namespace sixdof {
@@ -33,8 +34,7 @@ TEST_F(ShardFileTest, ComesBackBitForBit) {
   ASSERT_EQ(values.buckets.size(), 3u);
   for (const Bucket& expected : values.buckets) {
     const Bucket bucket = shard.read(expected.summary.key);
-    ASSERT_EQ(bucket.translations.size(), expected.translations.size());
-    EXPECT_EQ(std::memcmp(bucket.translations.data(), expected.translations.data(), bucket.translations.size() * sizeof(double)), 0);
+    EXPECT_TRUE(test::same_bits(bucket.translations, expected.translations));
     EXPECT_EQ(bucket.summary.largest_residual, expected.summary.largest_residual);
     EXPECT_EQ(bucket.summary.oracle, expected.summary.oracle);
   }
@@ -43,23 +43,24 @@ TEST_F(ShardFileTest, ComesBackBitForBit) {
 TEST_F(ShardFileTest, ThreadsDoNotChangeAByteOfIt) {
   const test::SmallJob small;
   for (const unsigned threads : {1u, 2u}) {
-    write_shard(folder_ / std::to_string(threads), small.job, small.set, k_middle, small.compute(k_middle, threads).buckets);
+    write_shard(folder_ / std::to_string(threads), small.job, small.set, k_middle,
+                small.compute(k_middle, threads).buckets);
   }
   EXPECT_EQ(test::bytes_of(folder_ / "1"), test::bytes_of(folder_ / "2"));
 }
 
-/// Whatever a damaged byte or a missing end leaves is either refused or, where HDF5 does not use the byte, the same.
+/// A file with a damaged byte or without its end is refused, or reads the same where HDF5 does not use the byte.
 TEST_F(ShardFileTest, DamageIsFound) {
   const test::SmallJob small;
-  const auto sound = folder_ / "sound.h5";
+  const auto valid = folder_ / "valid.h5";
   const auto damaged = folder_ / "damaged.h5";
-  write_shard(sound, small.job, small.set, k_middle, small.compute(k_middle).buckets);
-  const std::string bytes = test::bytes_of(sound);
-  const ShardFile expected(sound);
+  write_shard(valid, small.job, small.set, k_middle, small.compute(k_middle).buckets);
+  const std::string bytes = test::bytes_of(valid);
+  const ShardFile expected(valid);
   std::size_t refused = 0, tried = 0;
-  constexpr std::size_t k_step = 61;  // no multiple of any structure's size
+  constexpr std::size_t k_step = 61;  // Not a multiple of the size of any structure.
   for (std::size_t at = 0; at < bytes.size(); at += k_step, ++tried) {
-    std::filesystem::copy_file(sound, damaged, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy_file(valid, damaged, std::filesystem::copy_options::overwrite_existing);
     test::flip_byte(damaged, at);
     try {
       const ShardFile shard(damaged);
@@ -73,13 +74,13 @@ TEST_F(ShardFileTest, DamageIsFound) {
   }
   EXPECT_GT(refused, tried / 2);
   for (const double part : {0.0, 0.3, 0.999}) {
-    std::filesystem::copy_file(sound, damaged, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy_file(valid, damaged, std::filesystem::copy_options::overwrite_existing);
     std::filesystem::resize_file(damaged, static_cast<std::uintmax_t>(part * static_cast<double>(bytes.size())));
     EXPECT_THROW(ShardFile(damaged).check_values(), BadFile) << part;
   }
 }
 
-TEST_F(ShardFileTest, RefusesWhatIsNoShard) {
+TEST_F(ShardFileTest, RefusesOtherFiles) {
   const auto path = folder_ / "shard-0001-of-0001.h5";
   EXPECT_THAT([&] { ShardFile shard(path); }, ThrowsMessage<BadFile>(HasSubstr("no such file")));
   std::ofstream(path) << "text";
@@ -87,6 +88,15 @@ TEST_F(ShardFileTest, RefusesWhatIsNoShard) {
   const SetDescription set = test::SmallJob().set;
   ConfigurationSetWriter(path, set).commit();
   EXPECT_THAT([&] { ShardFile shard(path); }, ThrowsMessage<BadFile>(HasSubstr("is not a shard")));
+  {
+    const hdf5::Session session;
+    auto file = hdf5::File::create(path, path);
+    file.write_attribute("/", "format", std::string("sixdof-shard"));
+    file.write_attribute("/", "format_version", std::uint64_t{1});
+    file.close();
+  }
+  EXPECT_THAT([&] { ShardFile shard(path); },
+              ThrowsMessage<BadFile>(HasSubstr("has format version 1, but this build reads version 2")));
 }
 
 }  // namespace

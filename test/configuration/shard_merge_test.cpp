@@ -2,7 +2,6 @@
 
 #include <sys/resource.h>
 
-#include <cstring>
 #include <numeric>
 #include <vector>
 
@@ -10,7 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/configuration/configuration_set.h>
 
+#include "folder_test.h"
 #include "shard_job.h"
 
 namespace sixdof {
@@ -34,7 +35,7 @@ class ShardMerge : public test::FolderTest {
   const test::SmallJob small_;
 };
 
-/// Against the generators' own results on the whole grid, for every number of shards, byte for byte.
+/// The file is the same for every number of shards and has the values that the generators give on the whole grid.
 TEST_F(ShardMerge, AnyNumberOfShardsGivesTheSameFile) {
   std::string first;
   for (const std::size_t count : {1u, 4u, 7u}) {
@@ -51,8 +52,7 @@ TEST_F(ShardMerge, AnyNumberOfShardsGivesTheSameFile) {
       generate_distances(*small_.generator, small_.a, small_.b, small_.set.grid, std::vector{20, 0}, {.threads = 2});
   for (const Bucket& bucket : whole.buckets) {
     const std::vector<double> translations = set.read(bucket.summary.key);
-    ASSERT_EQ(translations.size(), bucket.translations.size());
-    EXPECT_EQ(std::memcmp(translations.data(), bucket.translations.data(), translations.size() * sizeof(double)), 0);
+    EXPECT_TRUE(test::same_bits(translations, bucket.translations));
     EXPECT_EQ(set.summary(bucket.summary.key).largest_residual, bucket.summary.largest_residual);
   }
   EXPECT_EQ(set.read({BucketKind::volume, 3}).size(), small_.set.volume_grid->configurations());
@@ -69,7 +69,7 @@ TEST_F(ShardMerge, NamesEveryShardThatIsMissingRepeatedForeignOrDamaged) {
               other.compute({.number = 1, .count = k_count}).buckets);
   write_shard(folder_ / "shard-split.h5", small_.job, small_.set, {.number = 1, .count = 5},
               small_.compute({.number = 1, .count = 5}).buckets);
-  std::ofstream(folder_ / "notes.txt") << "does not matter";
+  std::ofstream(folder_ / "notes.txt") << "is ignored";
   expect_refused(AllOf(HasSubstr("shard-0001-of-0004.h5: missing"), HasSubstr("shard-0002-of-0004.h5: "),
                        HasSubstr("is shard 3 again"), HasSubstr("shard-stray.h5: of another job"),
                        HasSubstr("mesh A is lump"), HasSubstr("shard-split.h5: is shard 1 of 5")));
@@ -82,7 +82,7 @@ TEST_F(ShardMerge, RefusesAShardUnderTheNameOfAnother) {
 }
 
 TEST_F(ShardMerge, RefusesAFolderWithoutShards) {
-  expect_refused(HasSubstr("no sound shard"));
+  expect_refused(HasSubstr("no valid shard"));
   EXPECT_THAT([&] { merge_shards(folder_ / "nowhere", folder_ / "set.h5"); },
               ThrowsMessage<BadFile>(HasSubstr("is not a directory")));
 }
@@ -103,12 +103,12 @@ TEST_F(ShardMerge, ReportsProgressAndStopsWhenAsked) {
   EXPECT_THROW(
       merge_shards(folder_, folder_ / "set.h5", {.progress = nullptr, .cancelled = [&] { return ++asked > 4; }}),
       Interrupted);
-  // The two shards are all there is: no set, no temporary file.
+  // Only the two shards are left: no set, no temporary file.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 2);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which keep what was freed, and notes of it
-/// Peak of the process's memory so far, in bytes.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // Sanitizers hold freed memory and shadow memory.
+/// Largest resident memory of the process so far, in bytes.
 std::size_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -132,7 +132,7 @@ TEST_F(ShardMerge, HoldsOneBucketInMemoryAndNotTheSet) {
   const std::size_t bucket_bytes = set.grid.configurations() * sizeof(double);
   const std::size_t before = peak_memory();
   assemble_set(folder_ / "set.h5", job, set, 64, rows);
-  // A bucket, its compression, and what HDF5 keeps; the set is 101 buckets.
+  // A bucket, its compressed chunks and HDF5's own memory; the set has 101 buckets.
   EXPECT_LT(peak_memory() - before, 30 * bucket_bytes);
 }
 #endif

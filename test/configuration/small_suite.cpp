@@ -17,19 +17,19 @@
 namespace sixdof::test {
 namespace {
 
-/// Far below what the harness judges by, far above rounding.
+/// In units of A's diagonal: far below the tolerance of the harness, far above rounding.
 constexpr double k_tolerance = 1e-10;
 constexpr int k_most_steps = 300;
 
-/// Where B stands at distance `target` for the first time, coming from outside: distance changes by no more than the
-/// translation does, so stepping by what is missing never steps over. NaN if that does not converge (a grazing ray).
+/// The first translation from outside at which B has the distance `target`, by conservative advancement. NaN if that
+/// does not converge (a grazing ray).
 double solve(Query& query, const Mesh& a, const Mesh& b, const Eigen::Vector3d& u, const Eigen::Vector4d& q,
              double target) {
   double s = a.diagonal() + b.diagonal();
   for (int step = 0; step < k_most_steps; ++step) {
-    const double missing = query.distance(configuration_pose(a, b, u, q, s)).value.distance - target;
-    if (std::abs(missing) <= k_tolerance * a.diagonal()) return s;
-    s -= missing;
+    const double remaining = query.distance(configuration_pose(a, b, u, q, s)).value.distance - target;
+    if (std::abs(remaining) <= k_tolerance * a.diagonal()) return s;
+    s -= remaining;
     if (s < 0.0) break;
   }
   return std::numeric_limits<double>::quiet_NaN();
@@ -58,11 +58,11 @@ void make_set(const std::filesystem::path& file, const std::string& name_a, cons
                   .oracle_version = algorithm->traits().version},
                  translations);
   };
-  // Touching is aimed at from just outside.
-  const double touching = 2 * k_tolerance * a.diagonal();
+  // Bucket 0 is solved for a distance just outside contact.
+  const double contact = 2 * k_tolerance * a.diagonal();
   const double apart = 0.05 * a.diagonal();
-  write({BucketKind::distance, 0}, 0.0, touching,
-        [&](const auto& u, const auto& q) { return solve(*query, a, b, u, q, touching); });
+  write({BucketKind::distance, 0}, 0.0, contact,
+        [&](const auto& u, const auto& q) { return solve(*query, a, b, u, q, contact); });
   write({BucketKind::distance, 5}, apart, apart,
         [&](const auto& u, const auto& q) { return solve(*query, a, b, u, q, apart); });
   const std::vector<int> volumes{3};

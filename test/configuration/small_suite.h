@@ -7,8 +7,8 @@
 
 namespace sixdof::test {
 
-/// Two small sets with a manifest, solved with FCL on models made from recipes: what the tests of the harness run on.
-/// They are made once, when the tests are built, because every case is a process of its own.
+/// Two small sets with a manifest, on models made from recipes, for the tests of sets and of the harness. They are made
+/// once, when the tests are built, because every test runs in a process of its own.
 struct SmallSuite {
   static constexpr std::size_t k_configurations = 288;  ///< In each bucket: 6 directions x 48 rotations.
 
@@ -19,7 +19,7 @@ struct SmallSuite {
   static void make(const std::filesystem::path& directory);
 };
 
-/// A copy of the suite that a test may spoil; removed when this goes.
+/// A copy of the suite that a test may change; removed by the destructor.
 class SuiteCopy {
  public:
   explicit SuiteCopy(const std::filesystem::path& original);

@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/base/error.h>
 #include <sixdof/algorithm/brute_force.h>
+#include <sixdof/base/error.h>
 #include <sixdof/generation/distance_generator.h>
 #include <sixdof/generation/sphere_method.h>
 
@@ -24,8 +24,8 @@ using testing::IsEmpty;
 
 const std::unique_ptr<Algorithm> k_brute_force = make_brute_force_algorithm();
 
-// Two walls and a box: the target is met from outside at the outer wall, and again between the walls; past the walls'
-// edges the ray is free.
+// Two walls and a box: the target is met from outside at the outer wall, and again between the walls. Rays beside the
+// walls meet nothing.
 const Mesh k_a = test::boxes_mesh({{{1.1, 0.3, 0}, {0.05, 0.3, 0.3}}, {{-0.9, 0.3, 0}, {0.05, 0.3, 0.3}}}, "walls");
 const Mesh k_b = test::boxes_mesh({{{5.0, 1.0, 2.0}, {0.1, 0.12, 0.14}}}, "box");
 const Grid k_grid = make_grid("90");
@@ -35,8 +35,7 @@ using Edit = std::function<void(std::vector<Bucket>&)>;
 
 /// Generates, edits, writes and verifies.
 Verdict verify_after(const Edit& edit, std::size_t sample = 200) {
-  static const Generated honest =
-      generate_distances(*make_sphere_method(*k_brute_force), k_a, k_b, k_grid, k_percents);
+  static const Generated honest = generate_distances(*make_sphere_method(*k_brute_force), k_a, k_b, k_grid, k_percents);
   std::vector<Bucket> buckets = honest.buckets;
   edit(buckets);
   const auto path = std::filesystem::path(testing::TempDir()) /
@@ -46,12 +45,12 @@ Verdict verify_after(const Edit& edit, std::size_t sample = 200) {
   for (const Bucket& bucket : buckets) writer.write(bucket.summary, bucket.translations);
   writer.commit();
   const ConfigurationSet set(path);
-  const Verdict verdict = verify_set(set, k_a, k_b, *k_brute_force, {.sample = sample, .seed = 5});
+  const Verdict verdict = verify_set(set, k_a, k_b, *k_brute_force, {.size = sample, .seed = 5});
   std::filesystem::remove(path);
   return verdict;
 }
 
-/// Applies to every row alike, so that repeated rotations stay equal.
+/// Applies f to all rows, so that repeated rotations stay equal.
 void for_all(Bucket& bucket, const std::function<double(double)>& f) {
   for (double& s : bucket.translations) s = f(s);
 }
@@ -73,7 +72,7 @@ TEST(Verification, FindsNothingWrongWithAnHonestSet) {
 }
 
 TEST(Verification, FindsDistancesThatAreOff) {
-  // Twice the tolerance, where the wall is met face to face.
+  // By twice the tolerance where faces are parallel.
   const Verdict verdict = verify_after([](auto& buckets) {
     for_all(buckets[1], [](double s) { return s + 2.0 * k_distance_tolerance * k_a.diagonal(); });
   });
@@ -84,7 +83,7 @@ TEST(Verification, FindsDistancesThatAreOff) {
 }
 
 TEST(Verification, FindsAHitThatIsNotTheFirst) {
-  // The inner side of the near wall: the right distance, the wrong hit.
+  // At the inner side of the near wall: the distance is right, but it is not the first hit.
   const double wall = 1.0, half_wall = 0.05;
   const Verdict verdict = verify_after(
       [&](auto& buckets) {
@@ -107,13 +106,13 @@ TEST(Verification, FindsFalseNaN) {
       [](auto& buckets) { for_all(buckets[2], [](double) { return std::numeric_limits<double>::quiet_NaN(); }); });
   EXPECT_GT(verdict.buckets[2].false_nan, 0u);
   EXPECT_THAT(verdict.problems, Contains(HasSubstr("unreachable")));
-  // Where the nearer bucket is reachable, so is the farther one.
+  // A farther bucket is reachable wherever a nearer one is.
   EXPECT_THAT(verdict.problems, Contains(HasSubstr("is met at")));
 }
 
 TEST(Verification, FindsSummariesAndCopiesThatDoNotFit) {
   EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.target *= 10.0; }, 0).problems,
-              Contains(HasSubstr("distance/00: target")));
+              Contains(HasSubstr("distance/00: nominal")));
   EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.tolerance *= 2.0; }, 0).problems,
               Contains(HasSubstr("distance/00: tolerance")));
   EXPECT_THAT(verify_after([](auto& buckets) { buckets[0].summary.largest_residual = 1.0; }, 0).problems,
@@ -133,7 +132,7 @@ TEST(Verification, StopsWhenAsked) {
   writer.write(distance_bucket(k_a, 5), std::vector<double>(k_grid.configurations(), 1.0));
   writer.commit();
   const ConfigurationSet set(path);
-  EXPECT_THROW(verify_set(set, k_a, k_b, *k_brute_force, {.cancelled = [] { return true; }}), Interrupted);
+  EXPECT_THROW(verify_set(set, k_a, k_b, *k_brute_force, {}, {.cancelled = [] { return true; }}), Interrupted);
   EXPECT_THROW(verify_set(set, k_b, k_b, *k_brute_force), BadArgument);
   std::filesystem::remove(path);
 }

@@ -2,14 +2,13 @@
 
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <mutex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/base/error.h>
 #include <sixdof/algorithm/brute_force.h>
+#include <sixdof/base/error.h>
 #include <sixdof/generation/sphere_method.h>
 
 #include "../configuration/shapes.h"
@@ -17,22 +16,20 @@
 namespace sixdof {
 namespace {
 
+using test::same_bits;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 const std::unique_ptr<Algorithm> k_brute_force = make_brute_force_algorithm();
 
-// Few triangles: the oracle looks at every pair.
+// Few triangles, since the oracle tests every pair.
 const Mesh k_a = test::tetrahedron_mesh({1.0, -2.0, 0.5}, 1.7);
 const Mesh k_b = test::tetrahedron_mesh({0.1, 0.2, 3.0}, 0.8);
 const std::vector<int> k_percents{0, 30, 5};
 
-bool same_bits(std::span<const double> left, std::span<const double> right) {
-  return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size_bytes()) == 0;
-}
-
-Generated generate(const Grid& grid, const GenerateOptions& options = {}, const Mesh& a = k_a, const Mesh& b = k_b) {
-  return generate_distances(*make_sphere_method(*k_brute_force), a, b, grid, k_percents, options);
+Generated generate(const Grid& grid, const RunOptions& run = {}, const Mesh& a = k_a, const Mesh& b = k_b,
+                   const std::vector<std::uint32_t>& rotations = {}) {
+  return generate_distances(*make_sphere_method(*k_brute_force), a, b, grid, k_percents, run, rotations);
 }
 
 TEST(DistanceGenerator, EveryConfigurationHasItsDistance) {
@@ -52,7 +49,7 @@ TEST(DistanceGenerator, EveryConfigurationHasItsDistance) {
       for (std::size_t r = 0; r < grid.rotations.size(); ++r) {
         for (std::size_t u = 0; u < grid.directions.size(); ++u) {
           const double s = translations[r * grid.directions.size() + u];
-          // A tetrahedron's box centre may lie outside of it: some rays pass.
+          // The box centre of a tetrahedron may lie outside of it: some rays meet nothing.
           if (std::isnan(s)) continue;
           ++reachable;
           const double d =
@@ -78,19 +75,19 @@ TEST(DistanceGenerator, ThreadsAndShardsDoNotChangeABit) {
     EXPECT_EQ(whole.buckets[k].summary.largest_residual, threaded.buckets[k].summary.largest_residual);
   }
   EXPECT_EQ(whole.measurements, threaded.measurements);
-  // Shards cut through groups of equal rotations.
+  // The shards divide groups of equal rotations.
   for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 50), {50, 101}, {101, n}}) {
-    const Generated shard = generate(grid, {.rotations = test::indices(first, last)});
+    const Generated shard = generate(grid, {}, k_a, k_b, test::indices(first, last));
     const std::size_t rows = last - first;
     for (std::size_t k = 0; k < k_percents.size(); ++k) {
-      EXPECT_TRUE(same_bits(
-          shard.buckets[k].translations,
-          std::span(whole.buckets[k].translations).subspan(first * grid.directions.size(), rows * grid.directions.size())));
+      EXPECT_TRUE(same_bits(shard.buckets[k].translations,
+                            std::span(whole.buckets[k].translations)
+                                .subspan(first * grid.directions.size(), rows * grid.directions.size())));
     }
   }
 }
 
-TEST(DistanceGenerator, RepeatedRotationsAreComputedOnce) {
+TEST(DistanceGenerator, RepeatedRotationsAreSolvedOnce) {
   Grid grid = make_grid("90");
   const std::uint64_t measurements = generate(grid).measurements;
   grid.rotations.insert(grid.rotations.end(), grid.rotations.begin(), grid.rotations.end());
@@ -101,38 +98,34 @@ TEST(DistanceGenerator, ReportsProgressToTheEndAndStopsWhenAsked) {
   const Grid grid = make_grid("90");
   std::uint64_t last = 0, total = 0;
   int calls = 0;
-  GenerateOptions options{.threads = 2, .progress = [&](std::uint64_t done, std::uint64_t all) {
-                            EXPECT_GE(done, last);
-                            last = done;
-                            total = all;
-                            ++calls;
-                          }};
-  generate(grid, options);
+  RunOptions run{.threads = 2, .progress = [&](std::uint64_t done, std::uint64_t all) {
+                   EXPECT_GE(done, last);
+                   last = done;
+                   total = all;
+                   ++calls;
+                 }};
+  generate(grid, run);
   EXPECT_EQ(last, total);
   EXPECT_GT(calls, 10u);
 
   std::atomic<int> asked = 0;
-  options.progress = nullptr;
-  options.cancelled = [&] { return ++asked > 20; };
-  EXPECT_THROW(generate(grid, options), Interrupted);
+  run.progress = nullptr;
+  run.cancelled = [&] { return ++asked > 20; };
+  EXPECT_THROW(generate(grid, run), Interrupted);
   EXPECT_LT(asked, 40);
 }
 
 TEST(DistanceGenerator, RefusesWhatCannotBeDone) {
   const Grid grid = make_grid("90");
   const auto generator = make_sphere_method(*k_brute_force);
-  const auto with = [&](std::vector<int> percents, GenerateOptions options = {}) {
-    generate_distances(*generator, k_a, k_b, grid, percents, options);
+  const auto with = [&](const std::vector<int>& percents, const std::vector<std::uint32_t>& rotations = {}) {
+    generate_distances(*generator, k_a, k_b, grid, percents, {}, rotations);
   };
   EXPECT_THAT([&] { with({}); }, ThrowsMessage<BadArgument>(HasSubstr("no bucket")));
   EXPECT_THAT([&] { with({5, 7, 5}); }, ThrowsMessage<BadArgument>(HasSubstr("distance 5 %")));
   EXPECT_THAT([&] { with({-1}); }, ThrowsMessage<BadArgument>(HasSubstr("distance -1 %")));
   EXPECT_THAT([&] { with({101}); }, ThrowsMessage<BadArgument>(HasSubstr("distance 101 %")));
-  EXPECT_THAT(
-      [&] {
-        with({5}, {.rotations = {3, 999}});
-      },
-      ThrowsMessage<BadArgument>(HasSubstr("rotation 999: the grid has")));
+  EXPECT_THAT([&] { with({5}, {3, 999}); }, ThrowsMessage<BadArgument>(HasSubstr("rotation 999: the grid has")));
 }
 
 /// Fails on one ray.
@@ -143,12 +136,11 @@ class Failing final : public DistanceGenerator {
   std::unique_ptr<RaySolver> prepare(const Mesh& /*a*/, const Mesh& /*b*/) const override {
     struct Solver final : RaySolver {
       void set_rotation(const Eigen::Vector4d& /*rotation*/) override { ++rotation; }
-      void solve(const Eigen::Vector3d& direction, std::span<const double> /*targets*/, std::span<double> /*translations*/,
-                 std::span<double> /*residuals*/) override {
+      void solve(const Eigen::Vector3d& direction, std::span<const double> /*targets*/,
+                 std::span<double> /*translations*/, std::span<double> /*residuals*/) override {
         if (direction.z() == -1.0) throw Error("lost");
       }
       std::uint64_t measurements() const override { return 0; }
-      std::span<const std::uint64_t> work() const override { return {}; }
       int rotation = 0;
     };
     return std::make_unique<Solver>();
@@ -160,7 +152,8 @@ class Failing final : public DistanceGenerator {
 
 TEST(DistanceGenerator, SaysWhichConfigurationFailed) {
   const Grid grid = make_grid("90");
-  EXPECT_THAT([&] { generate_distances(Failing(), k_a, k_b, grid, k_percents, {.threads = 1, .rotations = {3}}); },
+  const std::vector<std::uint32_t> rotations{3};
+  EXPECT_THAT([&] { generate_distances(Failing(), k_a, k_b, grid, k_percents, {.threads = 1}, rotations); },
               ThrowsMessage<Error>("rotation 3, direction 5: lost"));
 }
 

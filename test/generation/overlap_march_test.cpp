@@ -13,20 +13,21 @@
 namespace sixdof {
 namespace {
 
-/// A function of the translation in place of an overlap: slopes within -2 .. 2.
+/// A function of the translation in place of an overlap. Slopes within -2 .. 4.
 struct Wave {
-  double height = 1.0;
-  int asked = 0;
-  OverlapSample operator()(double s, double /*outer*/) {
-    ++asked;
+  double amplitude = 1.0;
+  int calls = 0;
+  OverlapMeasurement operator()(double s, double /*outer*/) {
+    ++calls;
     const double x = 4.0 - s;
-    return {.s = s, .volume = height * (x - std::sin(3.0 * x)), .slope = height * (1.0 - 3.0 * std::cos(3.0 * x))};
+    return {
+        .s = s, .volume = amplitude * (x - std::sin(3.0 * x)), .slope = amplitude * (1.0 - 3.0 * std::cos(3.0 * x))};
   }
 };
 
 /// Bounds that are the same everywhere.
 OverlapMarch::Peak within(double rise, double fall) {
-  return [=](const OverlapSample& outer, const OverlapSample& inner) {
+  return [=](const OverlapMeasurement& outer, const OverlapMeasurement& inner) {
     return volume_peak(outer, inner, std::array{SlopeRange{.low = -fall, .high = rise}});
   };
 }
@@ -37,54 +38,53 @@ TEST(OverlapMarch, TakesTheFirstOfSeveralCrossings) {
     const double target = 0.05 * i;
     Wave wave;
     OverlapMarch march(std::ref(wave), within(4.0, 2.0), 4.0,
-                       {.resolution = k_resolution, .tolerance = k_tolerance, .first_stride = 0.1});
+                       {.resolution = k_resolution, .tolerance = k_tolerance, .first_step = 0.1});
     // The first upward crossing, by steps far below the resolution.
     double expected = 4.0;
     while (Wave{}(expected, 4.0).volume < target) expected -= 1e-5;
-    const std::optional<OverlapSample> hit = march.advance(target);
+    const std::optional<OverlapMeasurement> hit = march.advance(target);
     ASSERT_TRUE(hit);
     EXPECT_NEAR(hit->volume, target, k_tolerance);
     EXPECT_NEAR(hit->s, expected, 2e-5) << target;
-    EXPECT_EQ(march.measurements(), wave.asked);
+    EXPECT_EQ(march.measurements(), wave.calls);
   }
 }
 
-TEST(OverlapMarch, FindsABumpThatItsStridesWouldPassOver) {
-  // Steady growth with a bump of width 0.2 on the way: the target is met within the bump, and later without it.
-  constexpr double k_width = 0.1, k_height = 0.8, k_target = 1.5, k_tolerance = 1e-9;
+TEST(OverlapMarch, FindsABumpThatItsStepsWouldPassOver) {
+  // Linear growth with a bump of width 0.2: the target is met within the bump, and without it farther inwards.
+  constexpr double k_width = 0.1, k_bump = 0.8, k_target = 1.5, k_tolerance = 1e-9;
   for (int i = 0; i < 12; ++i) {
     const double center = 0.85 + 0.04 * i;
     const auto bump = [&](double s, double /*outer*/) {
       const double x = 4.0 - s;
       const double y = std::clamp((x - center) / k_width, -1.0, 1.0);
       const double rest = 1.0 - y * y;
-      return OverlapSample{
-          .s = s, .volume = x + k_height * rest * rest, .slope = 1.0 - 4.0 * k_height * y * rest / k_width};
+      return OverlapMeasurement{
+          .s = s, .volume = x + k_bump * rest * rest, .slope = 1.0 - 4.0 * k_bump * y * rest / k_width};
     };
     // The steepest slope of the bump is at y = 1 / sqrt(3).
-    const double steepest = k_height * 8.0 / (3.0 * std::sqrt(3.0)) / k_width;
+    const double steepest = k_bump * 8.0 / (3.0 * std::sqrt(3.0)) / k_width;
     OverlapMarch march(bump, within(steepest + 1.0, steepest - 1.0), 4.0,
-                       {.resolution = 1e-3, .tolerance = k_tolerance, .first_stride = 0.1});
-    const std::optional<OverlapSample> hit = march.advance(k_target);
+                       {.resolution = 1e-3, .tolerance = k_tolerance, .first_step = 0.1});
+    const std::optional<OverlapMeasurement> hit = march.advance(k_target);
     ASSERT_TRUE(hit);
     EXPECT_NEAR(hit->volume, k_target, k_tolerance);
     EXPECT_NEAR(4.0 - hit->s, center, k_width) << "the crossing behind the bump";
-    EXPECT_LT(4.0 - hit->s, center) << "the way down from the bump";
+    EXPECT_LT(4.0 - hit->s, center) << "the falling side of the bump";
   }
 }
 
 TEST(OverlapMarch, EndsAtTheCentre) {
-  Wave wave{.height = 0.1};
-  OverlapMarch march(std::ref(wave), within(0.4, 0.2), 4.0,
-                     {.resolution = 1e-3, .tolerance = 1e-9, .first_stride = 0.1});
+  Wave wave{.amplitude = 0.1};
+  OverlapMarch march(std::ref(wave), within(0.4, 0.2), 4.0, {.resolution = 1e-3, .tolerance = 1e-9, .first_step = 0.1});
   EXPECT_TRUE(march.advance(0.3));
   EXPECT_FALSE(march.advance(0.9));
   EXPECT_FALSE(march.advance(1.1));
 }
 
 TEST(OverlapMarch, RefusesAFunctionThatJumps) {
-  OverlapMarch march([](double s, double) { return OverlapSample{.s = s, .volume = s < 1.0 / 3.0 ? 1.0 : 0.0}; },
-                     within(1.0, 0.0), 4.0, {.resolution = 1e-3, .tolerance = 1e-9, .first_stride = 0.1});
+  OverlapMarch march([](double s, double) { return OverlapMeasurement{.s = s, .volume = s < 1.0 / 3.0 ? 1.0 : 0.0}; },
+                     within(1.0, 0.0), 4.0, {.resolution = 1e-3, .tolerance = 1e-9, .first_step = 0.1});
   EXPECT_THROW(march.advance(0.5), Error);
 }
 

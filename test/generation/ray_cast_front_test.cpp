@@ -20,18 +20,18 @@ namespace {
 using test::random_direction;
 using test::random_rotation;
 
-/// A line may be above the distance by the rounding that gaps are held against, in units of Cast::size(): 1e-6 for the
-/// bound that it was made from, 8e-7 for itself.
+/// A bound may be above the distance by the rounding that gaps are compared with, in units of Cast::size(): 1e-6 where
+/// it is computed, 8e-7 where it is kept and read.
 constexpr double k_rounding = 2e-6;
-/// Of translations along one ray, found with and without a front: those of exact distances.
+/// Of translations along one ray, found with and without a front: the error of exact distances.
 constexpr double k_same_translation = 1e-12;
 
 struct Trees {
   Trees(const Mesh& mesh_a, const Mesh& mesh_b, const Eigen::Vector4d& q)
       : a(std::make_shared<CastMesh>(std::make_shared<Tree>(mesh_a))),
         b(std::make_shared<CastMesh>(std::make_shared<Tree>(mesh_b))) {
-    a.turn(-Eigen::Matrix3d::Identity());
-    b.turn(ConfigurationRay(mesh_a, mesh_b, q).R);
+    a.transform(-Eigen::Matrix3d::Identity());
+    b.transform(ConfigurationRay(mesh_a, mesh_b, q).R);
   }
   CastTree a, b;
 };
@@ -42,33 +42,31 @@ Cast cast_along(const Trees& trees, const Eigen::Vector3d& u) {
   return cast;
 }
 
-/// As the solver does it, without a guess. Returns the translation, or less than 0 where nothing is hit.
+/// Searches without a guess. Returns the translation, or less than 0 where nothing is hit.
 double find(Cast& cast, double target) {
   cast.target = target;
-  cast.translations = -k_cast_tie * cast.size();
-  cast.pair.reset();
-  cast.axis = cast.direction;
+  cast.best = {.translation = -k_cast_tie * cast.size(), .pair = {}, .axis = cast.direction};
   find_first_hit(cast);
-  return cast.pair ? cast.translations : -1.0;
+  return cast.best.pair ? cast.best.translation : -1.0;
 }
 
-/// The triangles of a volume, in tree order: first and count.
-std::pair<std::uint32_t, std::uint32_t> triangles_of(const CastTree& cast_tree, std::uint32_t volume) {
+/// The triangles of a slot's volume, in tree order: first and count.
+std::pair<std::uint32_t, std::uint32_t> triangles_of(const CastTree& cast_tree, std::uint32_t slot) {
   const Tree& tree = cast_tree.mesh().tree();
-  if (volume == CastFront::k_root) return {0, static_cast<std::uint32_t>(tree.corners().size())};
-  const Tree::Child child = tree.nodes()[volume / Tree::k_width].child[volume % Tree::k_width];
+  if (slot == CastFront::k_root) return {0, static_cast<std::uint32_t>(tree.corners().size())};
+  const Tree::Child child = tree.nodes()[slot / Tree::k_width].child[slot % Tree::k_width];
   if (child.is_leaf()) return {child.first(), child.count()};
   const Tree::Node& node = tree.nodes()[child.node()];
   return {node.first_triangle, node.triangle_count};
 }
 
-double distance(const Cast& cast, std::uint32_t volume_a, std::uint32_t volume_b, double t) {
-  const auto [first_a, count_a] = triangles_of(cast.a, volume_a);
-  const auto [first_b, count_b] = triangles_of(cast.b, volume_b);
+double distance(const Cast& cast, std::uint32_t slot_a, std::uint32_t slot_b, double t) {
+  const auto [first_a, count_a] = triangles_of(cast.a, slot_a);
+  const auto [first_b, count_b] = triangles_of(cast.b, slot_b);
   double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = first_a; i < first_a + count_a; ++i) {
-    const TriangleCorners mirrored = cast.a.triangle(i);
-    const TriangleCorners a{-mirrored[0], -mirrored[1], -mirrored[2]};
+    const TriangleCorners reflected = cast.a.triangle(i);
+    const TriangleCorners a{-reflected[0], -reflected[1], -reflected[2]};
     for (std::uint32_t j = first_b; j < first_b + count_b; ++j) {
       TriangleCorners b = cast.b.triangle(j);
       for (Eigen::Vector3d& corner : b) corner += t * cast.direction;
@@ -78,28 +76,28 @@ double distance(const Cast& cast, std::uint32_t volume_a, std::uint32_t volume_b
   return least;
 }
 
-/// Checks every line of the front whose volumes are not too large for all pairs of triangles; returns how many.
-int check_lines(const Cast& cast) {
+/// Checks every bound of the front whose volumes do not have too many pairs of triangles; returns how many.
+int check_bounds(const Cast& cast) {
   constexpr std::uint64_t k_most_pairs = 256;
   int checked = 0;
-  for (std::size_t v = 0; v < cast.front.visits.size(); ++v) {
-    const CastFront::Visit& visit = cast.front.visits[v];
+  for (std::size_t n = 0; n < cast.front.expansions.size(); ++n) {
+    const CastFront::Expansion& expansion = cast.front.expansions[n];
     for (std::uint32_t lane = 0; lane < Tree::k_width; ++lane) {
-      const float low = cast.front.lines[v].low[lane];
-      const float slope = cast.front.lines[v].slope[lane];
-      if (low == CastFront::k_never || low == CastFront::k_always) continue;
+      const float offset = cast.front.bounds[n].offset[lane];
+      const float slope = cast.front.bounds[n].slope[lane];
+      if (offset == CastFront::k_no_bound || offset == CastFront::k_not_in_front) continue;
       EXPECT_GE(slope, 0.0f);
       EXPECT_LE(slope, 1.0f + 1e-6f);
-      const auto own = static_cast<std::uint32_t>(Tree::k_width * visit.node + lane);
-      const std::uint32_t a = visit.opens_a ? own : visit.other;
-      const std::uint32_t b = visit.opens_a ? visit.other : own;
+      const auto own = static_cast<std::uint32_t>(Tree::k_width * expansion.node + lane);
+      const std::uint32_t a = expansion.expands_a ? own : expansion.other;
+      const std::uint32_t b = expansion.expands_a ? expansion.other : own;
       if (std::uint64_t{triangles_of(cast.a, a).second} * triangles_of(cast.b, b).second > k_most_pairs) continue;
-      // Below the translation that the line was made at and above it, where it says no more than that the target is exceeded.
-      for (const double share : {0.0, 0.31, 0.77, 0.95, 1.0, 1.04}) {
-        const double t = share * cast.translations;
-        const double line = static_cast<double>(low) + static_cast<double>(slope) * t;
-        EXPECT_LE(std::min(line, cast.target), distance(cast, a, b, t) + k_rounding * cast.size())
-            << "visit " << v << ", lane " << lane << ", share " << share;
+      // At translations above that at which the bound was made, it says no more than that the target is exceeded.
+      for (const double fraction : {0.0, 0.31, 0.77, 0.95, 1.0, 1.04}) {
+        const double t = fraction * cast.best.translation;
+        const double bound = static_cast<double>(offset) + static_cast<double>(slope) * t;
+        EXPECT_LE(std::min(bound, cast.target), distance(cast, a, b, t) + k_rounding * cast.size())
+            << "expansion " << n << ", lane " << lane << ", fraction " << fraction;
       }
       ++checked;
     }
@@ -107,7 +105,7 @@ int check_lines(const Cast& cast) {
   return checked;
 }
 
-TEST(CastFront, LinesAreNeverAboveTheDistance) {
+TEST(CastFront, BoundsAreNeverAboveTheDistance) {
   std::mt19937_64 random(41);
   const std::vector<std::pair<Mesh, Mesh>> pairs{
       {load_model("bumpy-sphere-600"), load_model("gyroid-ball-1200")},
@@ -123,7 +121,7 @@ TEST(CastFront, LinesAreNeverAboveTheDistance) {
       Cast cast = cast_along(trees, random_direction(random));
       for (const double percent : {22.0, 21.0, 4.0, 1e-9}) {
         if (find(cast, 0.01 * percent * a.diagonal()) < 0.0) break;
-        checked += check_lines(cast);
+        checked += check_bounds(cast);
       }
     }
   }
@@ -134,8 +132,8 @@ TEST(CastFront, FindsTheSameHitsAndSavesMostOfTheWork) {
   std::mt19937_64 random(42);
   const Mesh a = load_model("torus-knot-10k");
   const Mesh b = load_model("gyroid-ball-10k");
-  std::uint64_t shared = 0;
-  std::uint64_t alone = 0;
+  std::uint64_t with_front = 0;
+  std::uint64_t without = 0;
   for (const auto& [first, second] : {std::pair(&a, &b), std::pair(&b, &a)}) {
     for (int i = 0; i < 4; ++i) {
       const Trees trees(*first, *second, random_rotation(random));
@@ -145,13 +143,13 @@ TEST(CastFront, FindsTheSameHitsAndSavesMostOfTheWork) {
         const double target = distance_bucket(*first, percent).target;
         Cast fresh = cast_along(trees, u);
         EXPECT_NEAR(find(cast, target), find(fresh, target), k_same_translation * cast.size()) << percent;
-        alone += fresh.counts.nodes + fresh.counts.leaf_pairs;
+        without += fresh.counts.nodes + fresh.counts.leaf_pairs;
       }
-      shared += cast.counts.nodes + cast.counts.leaf_pairs;
+      with_front += cast.counts.nodes + cast.counts.leaf_pairs;
     }
   }
-  // A count, the same on every machine: a third to a fifth.
-  EXPECT_LT(shared, alone / 2);
+  // Counts are the same on every machine. The fraction is a third to a fifth.
+  EXPECT_LT(with_front, without / 2);
 }
 
 TEST(CastFront, TakesTargetsInAnyOrder) {

@@ -13,15 +13,15 @@ namespace {
 constexpr double k_rounding = 1e-14;
 
 TriangleCorners random_triangle(std::mt19937_64& random, double size) {
-  std::uniform_real_distribution<double> place(-0.5, 0.5);
-  const auto point = [&] { return Eigen::Vector3d(place(random), place(random), place(random)); };
+  std::uniform_real_distribution<double> coordinate(-0.5, 0.5);
+  const auto point = [&] { return Eigen::Vector3d(coordinate(random), coordinate(random), coordinate(random)); };
   const Eigen::Vector3d center = point();
   return {center + size * point(), center + size * point(), center + size * point()};
 }
 
 TEST(MovingPair, HasTheDistanceOfTheTrianglesWhereTheyAre) {
   std::mt19937_64 random(11);
-  std::uniform_real_distribution<double> translations(-1.0, 1.0);
+  std::uniform_real_distribution<double> translation(-1.0, 1.0);
   int intersecting = 0;
   for (int i = 0; i < 20'000; ++i) {
     TriangleCorners a = random_triangle(random, i % 2 == 0 ? 1.0 : 0.05);
@@ -32,19 +32,19 @@ TEST(MovingPair, HasTheDistanceOfTheTrianglesWhereTheyAre) {
     if (i % 17 == 0) b = {a[0] + Eigen::Vector3d(0.1, 0.2, 0.3), a[1] + Eigen::Vector3d(0.1, 0.2, 0.3), b[2]};
     const Eigen::Vector3d u = test::random_direction(random);
     const ray_cast::MovingPair pair(a, b, u);
-    const double t = 0.3 * translations(random);
+    const double t = 0.3 * translation(random);
     const Eigen::Vector3d shift = t * u;
     const ClosestPoints expected = triangle_triangle_distance(a, {b[0] + shift, b[1] + shift, b[2] + shift});
-    const ray_cast::MovingPair::Sample sample = pair.at(t);
-    ASSERT_NEAR(sample.distance, expected.distance, k_rounding) << i;
+    const ray_cast::MovingPair::Distance distance = pair.distance_at(t);
+    ASSERT_NEAR(distance.value, expected.distance, k_rounding) << i;
     intersecting += expected.distance == 0.0 ? 1 : 0;
     if (expected.distance == 0.0) continue;
-    EXPECT_NEAR(sample.slope, sample.axis.dot(u), k_rounding);
-    EXPECT_NEAR(sample.axis.norm(), 1.0, k_rounding);
+    EXPECT_NEAR(distance.slope, distance.axis.dot(u), k_rounding);
+    EXPECT_NEAR(distance.axis.norm(), 1.0, k_rounding);
     // The axis separates the triangles by the distance.
     double gap = 10.0;
     for (const Eigen::Vector3d& p : a) {
-      for (const Eigen::Vector3d& q : b) gap = std::min(gap, sample.axis.dot(q + shift - p));
+      for (const Eigen::Vector3d& q : b) gap = std::min(gap, distance.axis.dot(q + shift - p));
     }
     if (expected.distance > 1e-3) {
       EXPECT_NEAR(gap, expected.distance, 1e3 * k_rounding) << i;

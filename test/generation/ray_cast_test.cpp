@@ -5,21 +5,21 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include <sixdof/algorithm/exact.h>
 #include <sixdof/algorithm/brute_force.h>
-#include <sixdof/configuration/generation_job.h>
-#include <sixdof/generation/ray_cast_traversal.h>
+#include <sixdof/algorithm/exact.h>
+#include <sixdof/configuration/bucket.h>
+#include <sixdof/configuration/grid.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/generation/sphere_method.h>
-#include <sixdof/generation/work_profile.h>
 #include <sixdof/models/model_catalogue.h>
 
 #include "../configuration/shapes.h"
+#include "rough_mesh.h"
 
 namespace sixdof {
 namespace {
@@ -31,8 +31,8 @@ using test::random_rotation;
 
 const std::unique_ptr<Algorithm> k_brute_force = make_brute_force_algorithm();
 
-/// Of a translation, in units of A's box diagonal: both methods stop where the distance is right to 1e-12, which leaves the
-/// translation a thousand times as far off where the ray grazes.
+/// Of a translation, in units of A's box diagonal: both methods stop where the distance is right to 1e-12. Where the
+/// ray grazes, the translation may be off by a thousand times as much.
 constexpr double k_same_translation = 1e-9;
 /// |distance - target|, in units of the sum of the box diagonals: rounding of corners within a few diagonals of the
 /// origin.
@@ -42,8 +42,8 @@ struct Ray {
   std::vector<double> translations, residual;
 };
 
-Ray shoot(const DistanceGenerator& generator, const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction,
-          const Eigen::Vector4d& rotation, const std::vector<double>& targets) {
+Ray cast_ray(const DistanceGenerator& generator, const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction,
+             const Eigen::Vector4d& rotation, const std::vector<double>& targets) {
   const auto solver = generator.prepare(a, b);
   Ray ray{std::vector<double>(targets.size()), std::vector<double>(targets.size())};
   solver->set_rotation(rotation);
@@ -51,22 +51,22 @@ Ray shoot(const DistanceGenerator& generator, const Mesh& a, const Mesh& b, cons
   return ray;
 }
 
-std::vector<double> aims_of(const Mesh& a) {
+std::vector<double> some_targets(const Mesh& a) {
   return {0.3 * a.diagonal(), 0.11 * a.diagonal(), 0.01 * a.diagonal(), k_contact_target * a.diagonal()};
 }
 
-/// Compares with the advancement on top of all pairs of triangles, in both orders.
+/// Compares with the sphere method on top of all pairs of triangles, in both orders.
 void compare(const Mesh& first, const Mesh& second, int rays, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   for (const auto& [a, b] : {std::pair(&first, &second), std::pair(&second, &first)}) {
     const auto solver = make_ray_cast()->prepare(*a, *b);
     const auto expected_solver = make_sphere_method(*k_brute_force)->prepare(*a, *b);
-    const std::vector<double> targets = aims_of(*a);
+    const std::vector<double> targets = some_targets(*a);
     Ray ray{std::vector<double>(targets.size()), std::vector<double>(targets.size())};
     Ray expected = ray;
     for (int i = 0; i < rays; ++i) {
       const Eigen::Vector3d u = random_direction(random);
-      if (i % 3 == 0) {  // several directions per rotation: the second has the first's pairs to begin with
+      if (i % 3 == 0) {  // several directions per rotation: a search starts from the pairs of the ray before
         const Eigen::Vector4d q = random_rotation(random);
         solver->set_rotation(q);
         expected_solver->set_rotation(q);
@@ -74,16 +74,18 @@ void compare(const Mesh& first, const Mesh& second, int rays, std::uint64_t seed
       solver->solve(u, targets, ray.translations, ray.residual);
       expected_solver->solve(u, targets, expected.translations, expected.residual);
       for (std::size_t k = 0; k < targets.size(); ++k) {
-        ASSERT_EQ(std::isnan(ray.translations[k]), std::isnan(expected.translations[k])) << a->name() << ", " << b->name();
+        ASSERT_EQ(std::isnan(ray.translations[k]), std::isnan(expected.translations[k]))
+            << a->name() << ", " << b->name();
         if (std::isnan(ray.translations[k])) continue;
-        EXPECT_NEAR(ray.translations[k], expected.translations[k], k_same_translation * a->diagonal()) << a->name() << ", " << b->name();
+        EXPECT_NEAR(ray.translations[k], expected.translations[k], k_same_translation * a->diagonal())
+            << a->name() << ", " << b->name();
         EXPECT_LE(ray.residual[k], k_rounding * (a->diagonal() + b->diagonal()));
       }
     }
   }
 }
 
-TEST(RayCast, AgreesWithAdvancementOnLumps) {
+TEST(RayCast, AgreesWithTheSphereMethodOnLumps) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Mesh lump = lump_mesh(2 * seed, {0.3, -2.0, 1.1});
     compare(lump, lump_mesh(2 * seed + 1, {0.7, 0.4, -0.9}), 6, seed);
@@ -91,12 +93,12 @@ TEST(RayCast, AgreesWithAdvancementOnLumps) {
   }
 }
 
-TEST(RayCast, AgreesWithAdvancementOnTubesAndLabyrinths) {
+TEST(RayCast, AgreesWithTheSphereMethodOnTubesAndLabyrinths) {
   compare(load_model("torus-knot-600"), test::tetrahedron_mesh({0.1, 0.2, 0.3}, 0.4), 4, 21);
   compare(load_model("gyroid-ball-1200"), test::tetrahedron_mesh({0.2, 0.1, 0.4}, 0.9), 4, 22);
 }
 
-TEST(RayCast, AgreesWithAdvancementOnUnequalSizesAndThinPlates) {
+TEST(RayCast, AgreesWithTheSphereMethodOnUnequalSizesAndThinPlates) {
   const Mesh plate = boxes_mesh({{{0.3, 0.1, -0.2}, {1.0, 0.7, 1e-4}}}, "plate");
   const Mesh speck = boxes_mesh({{{3.0, 1.0, 2.0}, {0.001, 0.0012, 0.0007}}}, "speck");
   compare(plate, speck, 12, 31);
@@ -113,12 +115,12 @@ TEST(RayCast, IsExactForBoxesFaceToFace) {
   const auto generator = make_ray_cast();
   for (const auto& [a, b, ha, hb] :
        {std::tuple(&first, &second, half_a, half_b), std::tuple(&second, &first, half_b, half_a)}) {
-    const std::vector<double> targets = aims_of(*a);
+    const std::vector<double> targets = some_targets(*a);
     for (const Eigen::Vector4d& q : rotations) {
-      const Eigen::Vector3d turned = (configuration_pose(*a, *b, {0, 0, 0}, q, 0.0).R * hb).cwiseAbs();
+      const Eigen::Vector3d half_in_a = (configuration_pose(*a, *b, {0, 0, 0}, q, 0.0).R * hb).cwiseAbs();
       for (const Eigen::Vector3d& u : latitude_directions(2)) {
-        const double reach = u.cwiseAbs().dot(ha + turned);
-        const Ray ray = shoot(*generator, *a, *b, u, q, targets);
+        const double reach = u.cwiseAbs().dot(ha + half_in_a);
+        const Ray ray = cast_ray(*generator, *a, *b, u, q, targets);
         for (std::size_t k = 0; k < targets.size(); ++k) {
           EXPECT_NEAR(ray.translations[k], reach + targets[k], k_rounding * a->diagonal());
         }
@@ -142,7 +144,7 @@ TEST(RayCast, LiesBetweenInnerAndOuterSpheres) {
   const Mesh a = load_model("sphere-1000");
   const Mesh b = load_model("sphere-300");
   ASSERT_LT(a.center().norm() + b.center().norm(), k_rounding);
-  const std::vector<double> targets = aims_of(a);
+  const std::vector<double> targets = some_targets(a);
   const auto solver = make_ray_cast()->prepare(a, b);
   Ray ray{std::vector<double>(targets.size()), std::vector<double>(targets.size())};
   std::mt19937_64 random(4);
@@ -164,16 +166,16 @@ TEST(RayCast, TakesTheOuterWallNotTheInnerOne) {
   const std::vector<double> targets{0.1, 0.03, 1e-6};
   const Eigen::Vector4d identity(1, 0, 0, 0);
   for (const double side : {1.0, -1.0}) {
-    const Ray ray = shoot(*make_ray_cast(), a, b, {side, 0, 0}, identity, targets);
+    const Ray ray = cast_ray(*make_ray_cast(), a, b, {side, 0, 0}, identity, targets);
     for (std::size_t k = 0; k < targets.size(); ++k) {
       EXPECT_NEAR(ray.translations[k], 1.0 + 0.01 + 0.1 + targets[k], k_rounding * a.diagonal());
     }
   }
-  const Ray swapped = shoot(*make_ray_cast(), b, a, {1, 0, 0}, identity, targets);
+  const Ray swapped = cast_ray(*make_ray_cast(), b, a, {1, 0, 0}, identity, targets);
   EXPECT_NEAR(swapped.translations[0], 1.11 + targets[0], k_rounding * a.diagonal());
 }
 
-TEST(RayCast, FliesThroughAHoleUnhitButNotWhereItIsTooTight) {
+TEST(RayCast, PassesThroughAHoleUnlessItIsTooTight) {
   // A square ring about the ray with an opening of half width 0.5; B of half width 0.2 passes with 0.3 to spare.
   const Mesh a = boxes_mesh({{{0.75, 0, 0}, {0.25, 1.0, 0.1}},
                              {{-0.75, 0, 0}, {0.25, 1.0, 0.1}},
@@ -182,7 +184,7 @@ TEST(RayCast, FliesThroughAHoleUnhitButNotWhereItIsTooTight) {
                             "ring");
   const Mesh b = boxes_mesh({{{1.0, 2.0, 3.0}, {0.2, 0.2, 0.3}}});
   const std::vector<double> targets{0.5, 0.31, 0.299, 0.1, 1e-6};
-  const Ray ray = shoot(*make_ray_cast(), a, b, {0, 0, 1}, {1, 0, 0, 0}, targets);
+  const Ray ray = cast_ray(*make_ray_cast(), a, b, {0, 0, 1}, {1, 0, 0, 0}, targets);
   EXPECT_NEAR(ray.translations[0], 0.1 + 0.3 + 0.4, k_rounding * a.diagonal());
   EXPECT_NEAR(ray.translations[1], 0.4 + std::sqrt(0.31 * 0.31 - 0.09), k_rounding * a.diagonal());
   for (std::size_t k = 2; k < targets.size(); ++k) {
@@ -191,8 +193,8 @@ TEST(RayCast, FliesThroughAHoleUnhitButNotWhereItIsTooTight) {
   }
 }
 
-TEST(RayCast, PassesOverNoHitBetweenManySmallTriangles) {
-  // Rays on which volumes whose balls are nearest farther in, but whose boxes are not, hid the first hit.
+TEST(RayCast, MissesNoHitOfManySmallTriangles) {
+  // On these rays the balls of some volumes are nearest farther in than their boxes.
   const Mesh a = load_model("torus-knot-100k");
   const Grid grid = make_grid("15/90");
   const auto exact = make_exact_algorithm();
@@ -207,48 +209,36 @@ TEST(RayCast, PassesOverNoHitBetweenManySmallTriangles) {
     solver->solve(grid.directions[direction], targets, ray.translations, ray.residual);
     expected_solver->solve(grid.directions[direction], targets, expected.translations, expected.residual);
     for (std::size_t k = 0; k < targets.size(); ++k) {
-      EXPECT_NEAR(ray.translations[k], expected.translations[k], k_same_translation * a.diagonal()) << rotation << ", " << direction;
+      EXPECT_NEAR(ray.translations[k], expected.translations[k], k_same_translation * a.diagonal())
+          << rotation << ", " << direction;
     }
   }
 }
 
-TEST(RayCast, FindsTheBriefestHit) {
-  // Two gates across the path, each open by a little less than the target on either side: the distance dips below the target
-  // for a translation of 2e-2 to 2e-5 only.
+TEST(RayCast, FindsTheShortestHit) {
+  // Two gates across the path, each with a clearance a little less than the target on either side: the distance falls
+  // below the target for an interval of 2e-2 to 2e-5 only.
   constexpr double k_target = 0.05, k_thin = 1e-8;
   const Mesh b = boxes_mesh({{{0.7, 0.3, 0.0}, {k_thin, 0.1, 0.1}}});
   for (const double dip : {1e-3, 1e-6, 1e-9}) {
-    const double open = k_target - dip;
+    const double clearance = k_target - dip;
     std::vector<test::BoxShape> posts;
     for (const double x : {2.0, -2.0}) {
       for (const double side : {1.0, -1.0})
-        posts.push_back({{x, side * (0.1 + open + 0.02), 0.0}, {k_thin, 0.02, 0.01}});
+        posts.push_back({{x, side * (0.1 + clearance + 0.02), 0.0}, {k_thin, 0.02, 0.01}});
     }
     const Mesh a = boxes_mesh(posts, "gates");
-    const Ray ray = shoot(*make_ray_cast(), a, b, {1, 0, 0}, {1, 0, 0, 0}, {k_target});
-    const double gap = std::sqrt(k_target * k_target - open * open);
+    const Ray ray = cast_ray(*make_ray_cast(), a, b, {1, 0, 0}, {1, 0, 0, 0}, {k_target});
+    const double gap = std::sqrt(k_target * k_target - clearance * clearance);
     EXPECT_NEAR(ray.translations[0], 2.0 + 2.0 * k_thin + gap, k_same_translation * a.diagonal());
   }
 }
 
-/// The mesh with corners moved by up to `roughness` box diagonals along each axis: as if scanned, or as CAD programs
-/// write it. Its flat faces tie up to that, whichever triangles are closest.
-Mesh rough_mesh(const Mesh& mesh, double roughness) {
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> move(-roughness * mesh.diagonal(), roughness * mesh.diagonal());
-  std::vector<Eigen::Vector3d> vertices(mesh.vertices().begin(), mesh.vertices().end());
-  for (Eigen::Vector3d& p : vertices) p += Eigen::Vector3d(move(random), move(random), move(random));
-  return Mesh::build(std::move(vertices), {mesh.triangles().begin(), mesh.triangles().end()}, mesh.name() + "-rough");
-}
-
-/// As of the CAD part `fandisk`.
-constexpr double k_roughness = 1e-6;
-
-TEST(RayCast, AgreesWithAdvancementWhereFacesTie) {
+TEST(RayCast, AgreesWithTheSphereMethodWhereFacesTie) {
   const auto exact = make_exact_algorithm();
   const Mesh ring = load_model("circular-box-960");
   const Mesh box = load_model("box-500");
-  const Mesh rough = rough_mesh(load_model("box-2000"), k_roughness);
+  const Mesh rough = test::rough_mesh(load_model("box-2000"));
   const Grid grid = make_grid("45/90");
   for (const auto& [a, b] : {std::pair(&ring, &ring),
                              {&ring, &box},
@@ -259,7 +249,7 @@ TEST(RayCast, AgreesWithAdvancementWhereFacesTie) {
                              {&ring, &rough}}) {
     const auto solver = make_ray_cast()->prepare(*a, *b);
     const auto expected_solver = make_sphere_method(*exact)->prepare(*a, *b);
-    const std::vector<double> targets = aims_of(*a);
+    const std::vector<double> targets = some_targets(*a);
     Ray ray{std::vector<double>(targets.size()), std::vector<double>(targets.size())};
     Ray expected = ray;
     for (const std::uint32_t r : DistinctRotations(grid.rotations).first) {
@@ -269,114 +259,33 @@ TEST(RayCast, AgreesWithAdvancementWhereFacesTie) {
         solver->solve(u, targets, ray.translations, ray.residual);
         expected_solver->solve(u, targets, expected.translations, expected.residual);
         for (std::size_t k = 0; k < targets.size(); ++k) {
-          ASSERT_EQ(std::isnan(ray.translations[k]), std::isnan(expected.translations[k])) << r << ", " << u.transpose();
+          ASSERT_EQ(std::isnan(ray.translations[k]), std::isnan(expected.translations[k]))
+              << r << ", " << u.transpose();
           if (std::isnan(ray.translations[k])) continue;
-          EXPECT_NEAR(ray.translations[k], expected.translations[k], k_same_translation * a->diagonal()) << r << ", " << u.transpose();
+          EXPECT_NEAR(ray.translations[k], expected.translations[k], k_same_translation * a->diagonal())
+              << r << ", " << u.transpose();
         }
       }
     }
   }
 }
 
-/// Bounds and distances that the hardest ray of right-angled rotations takes, over the median of rays of any rotation.
-double one_target_over_median(const Mesh& a, const Mesh& b) {
-  using namespace ray_cast;
-  CastTree tree_a(std::make_shared<CastMesh>(std::make_shared<Tree>(a)));
-  CastTree tree_b(std::make_shared<CastMesh>(std::make_shared<Tree>(b)));
-  tree_a.turn(-Eigen::Matrix3d::Identity());
-  const auto work = [&](const Eigen::Vector4d& q, const Eigen::Vector3d& u) {
-    tree_b.turn(ConfigurationRay(a, b, q).R);
-    Cast cast(tree_a, tree_b);
-    cast.direction = cast.axis = u;
-    cast.target = 0.05 * a.diagonal();
-    find_first_hit(cast);
-    EXPECT_TRUE(cast.pair.has_value());
-    return static_cast<double>(cast.counts.nodes + cast.counts.leaf_pairs + 10 * cast.counts.distances);
-  };
-  std::mt19937_64 random(5);
-  std::vector<double> generic;
-  for (int i = 0; i < 51; ++i) generic.push_back(work(random_rotation(random), random_direction(random)));
-  std::ranges::nth_element(generic, generic.begin() + 25);
-  double worst = 0.0;
-  for (const Eigen::Vector4d& q : zyz_rotations(2)) {
-    for (const Eigen::Vector3d& u : latitude_directions(4)) worst = std::max(worst, work(q, u));
-  }
-  return worst / generic[25];
-}
-
-/// The suite allows 100. Here it is 1 to 3 (counts, the same on every machine), and would be 16 without the cutoff in
-/// double precision, growing with the number of triangles.
-constexpr double k_most_one_target_over_median = 12.0;
-
-TEST(RayCast, FacesThatTieTakeLittleOfASingleAim) {
-  const Mesh box = load_model("box-20000");
-  EXPECT_LT(one_target_over_median(box, box), k_most_one_target_over_median);
-  EXPECT_LT(one_target_over_median(box, boxes_mesh({{{0.1, 0.2, 0.3}, {0.4, 0.3, 0.2}}})), k_most_one_target_over_median);
-}
-
-/// Work of the hardest configuration over the median one's, on a grid with all rotations that turn axes onto axes:
-/// faces lie over faces there, edges along edges and corners over corners. Counts, the same on every machine.
-double worst_over_median(const Mesh& a, const Mesh& b) {
-  const Grid grid = make_grid("45/30");
-  const ProfileRotations rotations(grid, 100, 5);
-  const auto generator = make_ray_cast();
-  const WorkProfile profile =
-      profile_work([&] { return generator->prepare(a, b); }, grid, aims_of(a), rotations.indices);
-  EXPECT_GT(rotations.aligned, 100u);
-  return profile.worst_over_median();
-}
-
-/// The suite allows 100. Here it is 12 to 27; 43 without heights along axes, 72 without double precision at all.
-constexpr double k_most_over_median = 40.0;
-
-TEST(RayCast, FacesThatTieTakeLittleMoreThanTheMedian) {
-  const Mesh box = load_model("box-20000");
-  const Mesh ring = load_model("circular-box-2000");
-  const Mesh brick = boxes_mesh({{{0.1, 0.2, 0.3}, {0.4, 0.3, 0.2}}});
-  for (const auto& [a, b] : {std::pair(&box, &box), {&box, &brick}, {&brick, &box}, {&ring, &ring}, {&ring, &brick}}) {
-    EXPECT_LT(worst_over_median(*a, *b), k_most_over_median) << a->name() << ", " << b->name();
-  }
-}
-
-/// 30, 29, .. 0 %.
-std::vector<double> paper_aims(const Mesh& a) {
+/// Buckets of 30, 29, .. 0 %.
+std::vector<double> all_targets(const Mesh& a) {
   std::vector<double> targets;
   for (int percent = 30; percent >= 0; --percent) targets.push_back(distance_bucket(a, percent).target);
   return targets;
 }
 
-/// The suite allows 100. Here it is 5; 28 where a narrower target that misses what wider ones hit is looked for from the
-/// ray's end on.
-constexpr double k_most_narrow_over_median = 15.0;
-
-TEST(RayCast, NarrowerTargetsThatMissWhatWiderOnesHitTakeLittleMore) {
-  const Mesh box = load_model("box-20000");
-  const Grid grid = make_grid("15/90");
-  const std::vector<double> targets = paper_aims(box);
-  std::vector<double> translations(targets.size()), residuals(targets.size());
-  const auto solver = make_ray_cast()->prepare(box, box);
-  std::vector<std::uint64_t> narrower;
-  for (const std::size_t r : {8u, 9u}) {
-    solver->set_rotation(grid.rotations[r]);
-    for (const Eigen::Vector3d& u : grid.directions) {
-      solver->solve(u, targets, translations, residuals);
-      narrower.insert(narrower.end(), solver->work().begin() + 1, solver->work().end());
-    }
-  }
-  std::ranges::sort(narrower);
-  const auto median = static_cast<double>(narrower[narrower.size() / 2]);
-  EXPECT_LT(static_cast<double>(narrower.back()) / median, k_most_narrow_over_median);
-}
-
-/// Exact distances per configuration. A count, the same on every machine: 7.4 here; 18 where triangles that the ray
-/// leads past each other are told apart by axes between them alone.
+/// Exact distances per configuration, a count that is the same on every machine: 7.4, and 18 without axes across the
+/// ray.
 constexpr double k_most_distances = 12.0;
 
 TEST(RayCast, TrianglesThatPassEachOtherTakeNoExactDistances) {
   const Mesh ring = load_model("torus-2000");
   const Mesh speck = boxes_mesh({{{0.3, 0.1, -0.2}, {0.01, 0.008, 0.006}}});
   const Grid grid = make_grid("60/60");
-  const std::vector<double> targets = paper_aims(ring);
+  const std::vector<double> targets = all_targets(ring);
   const auto solver = make_ray_cast()->prepare(ring, speck);
   std::vector<double> translations(targets.size()), residuals(targets.size());
   std::size_t configurations = 0;
@@ -390,10 +299,10 @@ TEST(RayCast, TrianglesThatPassEachOtherTakeNoExactDistances) {
   EXPECT_LT(static_cast<double>(solver->measurements()) / static_cast<double>(configurations), k_most_distances);
 }
 
-TEST(RayCast, AimsMayRepeat) {
+TEST(RayCast, TargetsMayRepeat) {
   const Mesh a = load_model("torus-knot-600");
   const auto solver = make_ray_cast()->prepare(a, a);
-  std::vector<double> targets = paper_aims(a);
+  std::vector<double> targets = all_targets(a);
   const std::vector<double> once = targets;
   for (const double target : once) targets.insert(targets.end(), {target, target});
   std::ranges::sort(targets, std::greater{});
@@ -411,37 +320,6 @@ TEST(RayCast, AimsMayRepeat) {
       }
     }
   }
-}
-
-/// Work of every ray of a body against itself with buckets of 30, 27, .. 0 %, ascending: what buckets share counts
-/// once.
-std::vector<std::uint64_t> work_of_rays(const Mesh& mesh, const Grid& grid) {
-  std::vector<double> targets;
-  for (int percent = 30; percent >= 0; percent -= 3) targets.push_back(distance_bucket(mesh, percent).target);
-  std::vector<double> translations(targets.size()), residuals(targets.size());
-  const auto solver = make_ray_cast()->prepare(mesh, mesh);
-  std::vector<std::uint64_t> rays;
-  for (const std::uint32_t r : DistinctRotations(grid.rotations).first) {
-    solver->set_rotation(grid.rotations[r]);
-    for (const Eigen::Vector3d& u : grid.directions) {
-      solver->solve(u, targets, translations, residuals);
-      rays.push_back(std::accumulate(solver->work().begin(), solver->work().end(), std::uint64_t{0}));
-    }
-  }
-  std::sort(rays.begin(), rays.end());
-  return rays;
-}
-
-/// The suite allows 100. Here it is 32; 71 without heights along the face's normal, 185 where bounds in floats are left
-/// alone with pairs of rough faces.
-constexpr double k_most_ray_over_median = 60.0;
-
-TEST(RayCast, RoughFacesThatTieAreCutInDoublePrecision) {
-  const Mesh rough = rough_mesh(load_model("box-20000"), k_roughness);
-  const std::vector<std::uint64_t> tied = work_of_rays(rough, make_grid("45/90"));
-  const std::vector<std::uint64_t> turned = work_of_rays(rough, make_grid("so3:10:26"));
-  const double worst_over_median = static_cast<double>(tied.back()) / static_cast<double>(turned[turned.size() / 2]);
-  EXPECT_LT(worst_over_median, k_most_ray_over_median);
 }
 
 bool same_bits(const Generated& left, const Generated& right) {
@@ -467,7 +345,7 @@ INSTANTIATE_TEST_SUITE_P(Pairs, RayCastBits,
                          testing::Values(std::pair("torus-knot-2000", "box-300"),
                                          std::pair("circular-box-1000", "circular-box-1000")));
 
-TEST_P(RayCastBits, ThreadsAndShardsDoNotChangeOne) {
+TEST_P(RayCastBits, ThreadsAndShardsDoNotChangeABit) {
   const Grid grid = make_grid("90/60");
   const auto generator = make_ray_cast();
   const Generated whole = generate_distances(*generator, a, b, grid, k_percents, {.threads = 1});
@@ -476,8 +354,7 @@ TEST_P(RayCastBits, ThreadsAndShardsDoNotChangeOne) {
   EXPECT_EQ(whole.measurements, threaded.measurements);
   const std::size_t n = grid.directions.size();
   for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 50), {50, 101}, {101, 144}}) {
-    const Generated shard =
-        generate_distances(*generator, a, b, grid, k_percents, {.rotations = test::indices(first, last)});
+    const Generated shard = generate_distances(*generator, a, b, grid, k_percents, {}, test::indices(first, last));
     for (std::size_t k = 0; k < k_percents.size(); ++k) {
       ASSERT_EQ(shard.buckets[k].translations.size(), (last - first) * n);
       EXPECT_EQ(std::memcmp(shard.buckets[k].translations.data(), whole.buckets[k].translations.data() + first * n,
@@ -487,7 +364,7 @@ TEST_P(RayCastBits, ThreadsAndShardsDoNotChangeOne) {
   }
 }
 
-TEST_P(RayCastBits, AreTheSameOnEveryInstructionSet) {
+TEST_P(RayCastBits, EveryInstructionSetGivesTheSameBits) {
   const Grid grid = make_grid("60/90");
   const auto run = [&] { return generate_distances(*make_ray_cast(), a, b, grid, k_percents, {.threads = 1}); };
   const Generated standard = run();

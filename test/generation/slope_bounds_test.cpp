@@ -18,24 +18,24 @@
 namespace sixdof {
 namespace {
 
-TEST(VolumePeak, IsThatOfTheSteepestWay) {
-  const OverlapSample outer{.s = 5.0, .volume = 1.0}, inner{.s = 3.0, .volume = 2.0};
-  // Up by 2 for a way x, down by 1 for the rest: 1 + 2 x = 2 + (2 - x).
+TEST(VolumePeak, IsThatOfTheSteepestSlopes) {
+  const OverlapMeasurement outer{.s = 5.0, .volume = 1.0}, inner{.s = 3.0, .volume = 2.0};
+  // Up with slope 2 for a length x, down with slope 1 for the rest: 1 + 2 x = 2 + (2 - x).
   const VolumePeak one = volume_peak(outer, inner, std::array{SlopeRange{.low = -1.0, .high = 2.0}});
   EXPECT_DOUBLE_EQ(one.volume, 3.0);
   EXPECT_DOUBLE_EQ(one.s, 4.0);
-  // No way down: the volume cannot pass that of the inner end.
+  // It cannot fall, so it cannot exceed the volume of the inner end.
   const VolumePeak steady = volume_peak(outer, inner, std::array{SlopeRange{.low = 0.0, .high = 9.0}});
   EXPECT_DOUBLE_EQ(steady.volume, 2.0);
-  // It falls in the inner half alone: up to the top and straight down.
+  // It can fall in the inner half only.
   const VolumePeak late =
       volume_peak(outer, inner, std::array{SlopeRange{.low = 0.0, .high = 1.0}, SlopeRange{.low = -4.0, .high = 1.0}});
   EXPECT_DOUBLE_EQ(late.volume, 2.8);  // 1 + x = 2 + 4 (2 - x) at x = 1.8
   EXPECT_DOUBLE_EQ(late.s, 3.2);
 }
 
-/// What a ray needs to be measured and bounded.
-struct Bench {
+/// A ray that can be measured and bounded.
+struct BoundedRay {
   const Mesh& a;
   const Mesh& b;
   Tree tree_a, tree_b;
@@ -43,7 +43,7 @@ struct Bench {
   std::vector<Eigen::Vector3d> areas_a, areas_b;
   ConfigurationRay ray;
 
-  Bench(const Mesh& first, const Mesh& second, const Eigen::Vector4d& rotation, const Eigen::Vector3d& direction)
+  BoundedRay(const Mesh& first, const Mesh& second, const Eigen::Vector4d& rotation, const Eigen::Vector3d& direction)
       : a(first),
         b(second),
         tree_a(a),
@@ -56,56 +56,58 @@ struct Bench {
     ray.direction = direction;
   }
 
-  OverlapSample measure(double s) const {
+  OverlapMeasurement measure(double s) const {
     const Overlap overlap = OverlapQuery(solid_a, solid_b).evaluate(ray.pose(s));
     return {.s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray.direction)};
   }
 };
 
-/// Slopes and volumes within a gap against their bounds. Returns the excess of the peak over the largest volume.
-double expect_bounded(const Bench& bench, double outer_s, double inner_s) {
+/// Compares slopes and volumes in an interval with their bounds. Returns the excess of the peak over the largest
+/// volume.
+double expect_bounded(const BoundedRay& bounded, double outer_s, double inner_s) {
   SweptCandidates swept;
-  // The gap is a part of what is collected.
+  // The interval is a part of the displacement for which candidates are collected.
   const double margin = 0.3 * (outer_s - inner_s);
-  const double begin = outer_s + margin, way = outer_s - inner_s + 2.0 * margin;
-  find_swept_candidates(bench.tree_a, bench.tree_b, bench.ray.pose(begin), -way * bench.ray.direction, swept);
-  const OverlapSample outer = bench.measure(outer_s), inner = bench.measure(inner_s);
-  SlopeBounds bounds(bench.a.triangles().size(), bench.b.triangles().size());
+  const double begin = outer_s + margin, length = outer_s - inner_s + 2.0 * margin;
+  find_swept_candidates(bounded.tree_a, bounded.tree_b, bounded.ray.pose(begin), -length * bounded.ray.direction,
+                        swept);
+  const OverlapMeasurement outer = bounded.measure(outer_s), inner = bounded.measure(inner_s);
+  SlopeBounds bounds(bounded.a.triangles().size(), bounded.b.triangles().size());
   std::array<SlopeRange, SlopeBounds::k_parts> ranges;
-  for (int again = 0; again < 2; ++again) {  // nothing is left over from the time before
-    ranges = bounds.bound(swept, bench.areas_a, bench.areas_b, bench.ray.direction,
-                          bench.ray.R.transpose() * bench.ray.direction, (begin - outer_s) / way,
-                          (begin - inner_s) / way, outer.slope, inner.slope);
+  for (int again = 0; again < 2; ++again) {  // The second call does not depend on the first.
+    ranges = bounds.bound(swept, bounded.areas_a, bounded.areas_b, bounded.ray.direction,
+                          bounded.ray.R.transpose() * bounded.ray.direction, (begin - outer_s) / length,
+                          (begin - inner_s) / length, outer.slope, inner.slope);
   }
   const VolumePeak peak = volume_peak(outer, inner, ranges);
   EXPECT_LE(peak.s, outer_s);
   EXPECT_GE(peak.s, inner_s);
   // Rounding of measured slopes and volumes.
-  const double area_slack = 1e-12 * bench.a.diagonal() * bench.a.diagonal();
-  const double volume_slack = area_slack * bench.a.diagonal();
+  const double area_slack = 1e-12 * bounded.a.diagonal() * bounded.a.diagonal();
+  const double volume_slack = area_slack * bounded.a.diagonal();
   double largest = 0.0;
-  constexpr std::size_t k_places = 3 * SlopeBounds::k_parts;
-  for (std::size_t i = 0; i < k_places; ++i) {
-    const double share = (static_cast<double>(i) + 0.5) / k_places;
-    const OverlapSample sample = bench.measure(outer_s - share * (outer_s - inner_s));
+  constexpr std::size_t k_points = 3 * SlopeBounds::k_parts;
+  for (std::size_t i = 0; i < k_points; ++i) {
+    const double fraction = (static_cast<double>(i) + 0.5) / k_points;
+    const OverlapMeasurement measured = bounded.measure(outer_s - fraction * (outer_s - inner_s));
     const SlopeRange& range = ranges[i / 3];
-    EXPECT_LE(sample.slope, range.high + area_slack) << share;
-    EXPECT_GE(sample.slope, range.low - area_slack) << share;
-    EXPECT_LE(sample.volume, peak.volume + volume_slack) << share;
-    largest = std::max(largest, sample.volume);
+    EXPECT_LE(measured.slope, range.high + area_slack) << fraction;
+    EXPECT_GE(measured.slope, range.low - area_slack) << fraction;
+    EXPECT_LE(measured.volume, peak.volume + volume_slack) << fraction;
+    largest = std::max(largest, measured.volume);
   }
   return peak.volume - std::max(largest, inner.volume);
 }
 
-TEST(SlopeBounds, HoldOnEveryWay) {
+TEST(SlopeBounds, HoldInEveryDirection) {
   const Mesh knot = load_model("torus-knot-1200");
   const Mesh lump = test::lump_mesh(9, {0.3, 0.1, -0.5});
   std::mt19937_64 random(31);
   for (const auto& [a, b] : {std::pair(&knot, &lump), std::pair(&lump, &knot), std::pair(&knot, &knot)}) {
     for (int i = 0; i < 6; ++i) {
-      const Bench bench(*a, *b, test::random_rotation(random), test::random_direction(random));
+      const BoundedRay ray(*a, *b, test::random_rotation(random), test::random_direction(random));
       const double far = 0.5 * (a->diagonal() + b->diagonal());
-      for (const double share : {0.9, 0.7, 0.5, 0.3, 0.1}) expect_bounded(bench, share * far, (share - 0.08) * far);
+      for (const double outer : {0.9, 0.7, 0.5, 0.3, 0.1}) expect_bounded(ray, outer * far, (outer - 0.08) * far);
     }
   }
 }
@@ -114,17 +116,17 @@ TEST(SlopeBounds, HoldForFacesThatMeetFlat) {
   const Mesh a = test::boxes_mesh({{{3.0, 0, 0}, {0.1, 0.5, 0.5}}, {{-0.5, 0, 0}, {1.7, 0.5, 0.5}}}, "wall and block");
   const Mesh b = test::boxes_mesh({{{0.2, 0.1, 0}, {0.15, 0.7, 0.6}}}, "slab");
   for (const auto& [first, second] : {std::pair(&a, &b), std::pair(&b, &a)}) {
-    const Bench bench(*first, *second, {1, 0, 0, 0}, Eigen::Vector3d::UnitX());
-    for (double s = 0.1; s < 2.5; s += 0.21) expect_bounded(bench, s + 0.2, s);
+    const BoundedRay ray(*first, *second, {1, 0, 0, 0}, Eigen::Vector3d::UnitX());
+    for (double s = 0.1; s < 2.5; s += 0.21) expect_bounded(ray, s + 0.2, s);
   }
 }
 
-TEST(SlopeBounds, LeaveNoDoubtWhereBodiesSinkIntoEachOther) {
-  // Two balls: the slope rises all the way, which the normals show.
+TEST(SlopeBounds, AreTightWhileConvexBodiesApproach) {
+  // Of two balls the slope can only rise, which the normals tell.
   const Mesh ball = load_model("sphere-5k");
   std::mt19937_64 random(3);
-  const Bench bench(ball, ball, test::random_rotation(random), test::random_direction(random));
-  for (const double s : {1.8, 1.6, 1.4}) EXPECT_LT(expect_bounded(bench, 1.9, s), 1e-12) << s;
+  const BoundedRay ray(ball, ball, test::random_rotation(random), test::random_direction(random));
+  for (const double s : {1.8, 1.6, 1.4}) EXPECT_LT(expect_bounded(ray, 1.9, s), 1e-12) << s;
 }
 
 }  // namespace

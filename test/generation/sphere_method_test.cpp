@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/base/error.h>
 #include <sixdof/algorithm/brute_force.h>
+#include <sixdof/base/error.h>
 
 #include "../configuration/shapes.h"
 
@@ -27,12 +27,11 @@ const std::unique_ptr<Algorithm> k_brute_force = make_brute_force_algorithm();
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
 
-/// |distance - target| at which the search ends, in units of A's box diagonal (k_content of the source), with room for the
-/// rounding of this test's own distances.
+/// |distance - target| at which the search has converged, in units of the diagonal of A's box (k_converged of
+/// sphere_method.cpp), with room for the rounding of this test's own distances.
 constexpr double k_found = 1.1e-12;
 
-/// An oracle given by a function of the pose, for shapes whose distance is known. The meshes only say where the boxes
-/// lie.
+/// An oracle given by a function of the pose, for shapes whose distance is known. The meshes only give the boxes.
 class FunctionAlgorithm final : public Algorithm {
  public:
   using Function = std::function<Separation(const Pose&)>;
@@ -53,7 +52,7 @@ class FunctionAlgorithm final : public Algorithm {
 };
 
 struct Ray {
-  std::vector<double> translations, residual;
+  std::vector<double> translations, residuals;
   std::uint64_t measurements = 0;
 };
 
@@ -64,7 +63,7 @@ Ray shoot(const Algorithm& oracle, const Mesh& a, const Mesh& b, const Eigen::Ve
   const auto solver = generator->prepare(a, b);
   Ray ray{std::vector<double>(targets.size()), std::vector<double>(targets.size())};
   solver->set_rotation(rotation);
-  solver->solve(direction, targets, ray.translations, ray.residual);
+  solver->solve(direction, targets, ray.translations, ray.residuals);
   ray.measurements = solver->measurements();
   return ray;
 }
@@ -75,8 +74,7 @@ struct Ball {
 };
 
 /// Distance of two unions of ball surfaces, with witnesses where the closest balls are apart.
-Separation balls_distance(const std::vector<Ball>& a, const std::vector<Ball>& b, const Pose& X_AB,
-                              bool witnesses) {
+Separation balls_distance(const std::vector<Ball>& a, const std::vector<Ball>& b, const Pose& X_AB, bool witnesses) {
   Separation best{.distance = std::numeric_limits<double>::infinity()};
   for (const Ball& first : a) {
     for (const Ball& second : b) {
@@ -105,19 +103,20 @@ double largest_root(const Eigen::Vector3d& offset, const Eigen::Vector3d& u, dou
   return discriminant < 0.0 || s < 0.0 ? k_nan : s;
 }
 
-/// First hit from outside: the largest over all pairs of balls.
+/// First translation from outside at which the target is met: the largest over all pairs of balls.
 double first_hit(const std::vector<Ball>& a, const std::vector<Ball>& b, const Pose& X_AB_at_0,
                  const Eigen::Vector3d& u, double target) {
   double s = k_nan;
   for (const Ball& first : a) {
     for (const Ball& second : b) {
-      s = std::fmax(s, largest_root(X_AB_at_0 * second.center - first.center, u, first.radius + second.radius + target));
+      s = std::fmax(s,
+                    largest_root(X_AB_at_0 * second.center - first.center, u, first.radius + second.radius + target));
     }
   }
   return s;
 }
 
-/// Checks one ray against closed forms and counts (hits, misses).
+/// Compares one ray with closed forms and counts {hits, misses}.
 void check_ray(const std::vector<Ball>& balls_a, const std::vector<Ball>& balls_b, const Mesh& a, const Mesh& b,
                const Eigen::Vector3d& u, const Eigen::Vector4d& q, const std::vector<double>& targets, const Ray& ray,
                std::array<int, 2>& count) {
@@ -126,16 +125,16 @@ void check_ray(const std::vector<Ball>& balls_a, const std::vector<Ball>& balls_
     ++count[std::isnan(expected) ? 1 : 0];
     if (std::isnan(expected)) {
       EXPECT_TRUE(std::isnan(ray.translations[k])) << "target " << targets[k] << ": " << ray.translations[k];
-      EXPECT_EQ(ray.residual[k], 0.0);
+      EXPECT_EQ(ray.residuals[k], 0.0);
       continue;
     }
     const auto distance_at = [&](double s) {
       return balls_distance(balls_a, balls_b, configuration_pose(a, b, u, q, s), false).distance;
     };
     EXPECT_LE(std::abs(distance_at(ray.translations[k]) - targets[k]), k_found * a.diagonal());
-    EXPECT_LE(ray.residual[k], k_found * a.diagonal());
-    // At grazing incidence a small error of the distance is a large one of the translation: from a quadratic minimum of
-    // curvature 1 / reach the error e in distance is sqrt(2 e reach) in translation, at most.
+    EXPECT_LE(ray.residuals[k], k_found * a.diagonal());
+    // At grazing incidence a small error of the distance is a large error of the translation: near a quadratic minimum
+    // of curvature 1 / reach an error e of the distance is at most sqrt(2 e reach) in translation.
     const double reach = a.diagonal() + b.diagonal();
     EXPECT_NEAR(ray.translations[k], expected, std::sqrt(2.0 * k_found * a.diagonal() * reach));
     const double slope = (distance_at(expected + 1e-6) - targets[k]) / 1e-6;
@@ -180,17 +179,18 @@ TEST(SphereMethod, MeetsTheFirstHitOfUnionsOfBalls) {
   }
   EXPECT_GT(count[0], 6000);
   EXPECT_GT(count[1], 75);
-  // Certified Newton steps take a handful of measurements each, conservative ones 28 on these rays.
+  // Bounds on measurements per target: certified steps take fewer than 8, conservative ones more than 20.
   EXPECT_LT(measurements[0], 8u * 2 * k_rays * 5);
   EXPECT_GT(conservative, 20u * 2 * k_rays * 5);
   EXPECT_LT(measurements[0], measurements[1]);
 }
 
 TEST(SphereMethod, StopsAtANeedleBesideThePath) {
-  // A tiny ball beside the ray takes the distance below the target for a short translation only, far outside the big ball.
+  // A tiny ball beside the ray lowers the distance below the target over a short interval only, far outside the big
+  // ball.
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> exponent(-8.0, -1.0);
-  std::uniform_real_distribution<double> place(1.2, 2.5);
+  std::uniform_real_distribution<double> position(1.2, 2.5);
   const Mesh a = boxes_mesh({{{0.2, 0.1, -0.3}, {3.0, 3.0, 3.0}}});
   const Mesh b = boxes_mesh({{{0.7, 0.3, 0.0}, {0.1, 0.1, 0.1}}});
   std::array<int, 2> count{};
@@ -202,17 +202,16 @@ TEST(SphereMethod, StopsAtANeedleBesideThePath) {
     const double needle = 0.001;
     const std::vector<Ball> balls_b{{b.center(), 0.1}};
     const Eigen::Vector3d aside = u.cross(random_direction(random)).normalized();
-    const std::vector<Ball> balls_a{{a.center(), 0.4},
-                                    {a.center() + place(random) * u + (target + 0.1 + needle - dip) * aside, needle}};
-    const FunctionAlgorithm oracle(
-        [&](const Pose& X_AB) { return balls_distance(balls_a, balls_b, X_AB, true); });
+    const std::vector<Ball> balls_a{
+        {a.center(), 0.4}, {a.center() + position(random) * u + (target + 0.1 + needle - dip) * aside, needle}};
+    const FunctionAlgorithm oracle([&](const Pose& X_AB) { return balls_distance(balls_a, balls_b, X_AB, true); });
     const std::vector<double> targets{target + 0.3, target};
     check_ray(balls_a, balls_b, a, b, u, q, targets, shoot(oracle, a, b, u, q, targets), count);
   }
   EXPECT_EQ(count[0], 800);
 }
 
-TEST(SphereMethod, ConservativeMarchesTakeEveryAimAlone) {
+TEST(SphereMethod, ConservativeMarchesSolveEveryTargetAlone) {
   const Mesh a = lump_mesh(3, {0.2, 1.4, -0.7});
   const Mesh b = lump_mesh(4, {-0.6, 0.3, 0.5});
   std::mt19937_64 random(9);
@@ -224,7 +223,7 @@ TEST(SphereMethod, ConservativeMarchesTakeEveryAimAlone) {
   for (std::size_t k = 0; k < targets.size(); ++k) {
     const Ray alone = shoot(*k_brute_force, a, b, u, q, {targets[k]}, SphereMarch::conservative);
     EXPECT_EQ(alone.translations[0], together.translations[k]);
-    EXPECT_EQ(alone.residual[0], together.residual[k]);
+    EXPECT_EQ(alone.residuals[0], together.residuals[k]);
     measurements += alone.measurements;
   }
   EXPECT_EQ(measurements, together.measurements);
@@ -244,9 +243,9 @@ TEST(SphereMethod, IsExactForBoxesFaceToFace) {
       if (distinct[r] != r) continue;
       const Eigen::Vector4d& q = rotations[r];
       const Eigen::Matrix3d R = configuration_pose(*a, *b, {0, 0, 0}, q, 0.0).R;
-      const Eigen::Vector3d turned = (R * hb).cwiseAbs();
+      const Eigen::Vector3d rotated = (R * hb).cwiseAbs();
       for (const Eigen::Vector3d& u : latitude_directions(2)) {
-        const double reach = u.cwiseAbs().dot(ha + turned);
+        const double reach = u.cwiseAbs().dot(ha + rotated);
         const Ray ray = shoot(*k_brute_force, *a, *b, u, q, targets);
         for (std::size_t k = 0; k < targets.size(); ++k) {
           EXPECT_NEAR(ray.translations[k], reach + targets[k], k_found * a->diagonal());
@@ -257,7 +256,8 @@ TEST(SphereMethod, IsExactForBoxesFaceToFace) {
 }
 
 TEST(SphereMethod, TakesTheOuterWallNotTheInnerOne) {
-  // Two walls across the ray. Between them the target is met again on both sides; the first hit is outside the outer wall.
+  // Two walls across the ray. Between them the target is met again on both sides; the first hit is outside the outer
+  // wall.
   const Mesh a = boxes_mesh({{{1.0, 0, 0}, {0.01, 0.8, 0.8}}, {{-1.0, 0, 0}, {0.01, 0.8, 0.8}}}, "walls");
   const Mesh b = boxes_mesh({{{5.0, 5.0, 5.0}, {0.1, 0.12, 0.14}}});
   const std::vector<double> targets{0.1, 0.03, 1e-6};
@@ -268,13 +268,13 @@ TEST(SphereMethod, TakesTheOuterWallNotTheInnerOne) {
       EXPECT_NEAR(ray.translations[k], 1.0 + 0.01 + 0.1 + targets[k], k_found * a.diagonal());
     }
   }
-  // Swapped, the walls move and the box stands still: the same.
+  // The same with the walls as B.
   const Ray swapped = shoot(*k_brute_force, b, a, {1, 0, 0}, identity, targets);
   EXPECT_NEAR(swapped.translations[0], 1.11 + targets[0], k_found * b.diagonal());
 }
 
-TEST(SphereMethod, FliesThroughAHoleUnhitButNotWhereItIsTooTight) {
-  // A square ring about the ray with an opening of half width 0.5; B of half width 0.2 passes with 0.3 to spare.
+TEST(SphereMethod, PassesThroughAHoleButNotWhereItIsTooNarrow) {
+  // A square ring about the ray with an opening of half width 0.5. B of half width 0.2 passes at a distance of 0.3.
   const Mesh a = boxes_mesh({{{0.75, 0, 0}, {0.25, 1.0, 0.1}},
                              {{-0.75, 0, 0}, {0.25, 1.0, 0.1}},
                              {{0, 0.75, 0}, {0.5, 0.25, 0.1}},
@@ -309,11 +309,11 @@ TEST(SphereMethod, AgreesWithFineMarchingOnMeshes) {
       const Eigen::Vector4d q = random_rotation(random);
       const Ray ray = shoot(*k_brute_force, *a, *b, u, q, targets);
       for (std::size_t k = 0; k < targets.size(); ++k) {
-        // Convex-ish bodies whose centres coincide at s = 0 always meet.
+        // The bodies overlap at s = 0.
         ASSERT_FALSE(std::isnan(ray.translations[k]));
         const double found = query->distance(configuration_pose(*a, *b, u, q, ray.translations[k])).value.distance;
         EXPECT_NEAR(found, targets[k], k_found * a->diagonal());
-        // Never below the target on the way there.
+        // The distance is greater before.
         constexpr int k_steps = 20;
         const double start = 0.5 * (a->diagonal() + b->diagonal()) + targets[k];
         for (int i = 0; i < k_steps; ++i) {
@@ -325,9 +325,9 @@ TEST(SphereMethod, AgreesWithFineMarchingOnMeshes) {
   }
 }
 
-TEST(SphereMethod, RefusesAnOracleThatIsNoDistance) {
+TEST(SphereMethod, RefusesAnOracleThatIsNotADistance) {
   const Mesh a = boxes_mesh({{{0, 0, 0}, {1, 1, 1}}});
-  // Jumps over the target.
+  // It jumps past the target.
   const FunctionAlgorithm jumping([](const Pose& X_AB) {
     const double s = X_AB.t.norm();
     return Separation{.distance = s > 1.7 ? s - 1.0 : 0.2};

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -16,21 +15,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sixdof/algorithm/brute_force.h>
 #include <sixdof/algorithm/exact.h>
 #include <sixdof/base/error.h>
-#include <sixdof/algorithm/brute_force.h>
+#include <sixdof/configuration/verification.h>
 #include <sixdof/generation/ray_cast.h>
 #include <sixdof/generation/sphere_method.h>
-#include <sixdof/configuration/verification.h>
 #include <sixdof/models/boxes.h>
 #include <sixdof/models/model_catalogue.h>
-#include <sixdof/oracle/overlap_global.h>
+#include <sixdof/oracle/overlap_by_columns.h>
 
 #include "../configuration/shapes.h"
 
 namespace sixdof {
 namespace {
 
+using test::same_bits;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
@@ -57,9 +57,9 @@ Mesh ball_mesh(double r, std::size_t rings, const Eigen::Vector3d& center, const
   for (std::size_t i = 1; i < rings; ++i) {
     const double polar = std::numbers::pi * static_cast<double>(i) / static_cast<double>(rings);
     for (std::uint32_t k = 0; k < columns; ++k) {
-      const double turn = 2.0 * std::numbers::pi * k / columns;
-      vertices.emplace_back(center + r * Eigen::Vector3d(std::sin(polar) * std::cos(turn),
-                                                         std::sin(polar) * std::sin(turn), std::cos(polar)));
+      const double azimuth = 2.0 * std::numbers::pi * k / columns;
+      vertices.emplace_back(center + r * Eigen::Vector3d(std::sin(polar) * std::cos(azimuth),
+                                                         std::sin(polar) * std::sin(azimuth), std::cos(polar)));
     }
   }
   const auto last = static_cast<std::uint32_t>(vertices.size());
@@ -87,7 +87,7 @@ const Bucket& bucket_of(const Generated& result, int percent) {
 TEST(VolumeGenerator, BoxesMeetTheirClosedForm) {
   const Mesh a = test::boxes_mesh({{{1.0, -2.0, 0.5}, {0.7, 0.6, 0.5}}}, "a");
   const Mesh b = test::boxes_mesh({{{0.3, 0.1, 4.0}, {0.4, 0.35, 0.45}}}, "b");
-  // Half turn about z and no turn: the boxes stay parallel to the axes.
+  // Rotated by 0 and 180 degrees about z: the boxes stay parallel to the axes.
   for (const auto& [first, second] : {std::pair(&a, &b), std::pair(&b, &a)}) {
     for (const Eigen::Vector4d& q : {Eigen::Vector4d(1, 0, 0, 0), Eigen::Vector4d(0, 0, 0, 1)}) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -97,13 +97,14 @@ TEST(VolumeGenerator, BoxesMeetTheirClosedForm) {
         const Generated result =
             generate_volumes(*k_touching, *first, *second, single(Eigen::Vector3d::Unit(axis), q), k_percents);
         const double contact = half_a[axis] + half_b[axis];
-        // Contact is aimed at from k_contact_target outside.
+        // Bucket 0 is k_contact_target outside contact.
         EXPECT_NEAR(bucket_of(result, 0).translations[0], contact, 2 * k_contact_target * first->diagonal());
         for (const int percent : {1, 5, 10}) {
           const Bucket& bucket = bucket_of(result, percent);
           const double volume = 0.01 * percent * first->volume();
           EXPECT_DOUBLE_EQ(bucket.summary.nominal, volume);
-          EXPECT_NEAR(bucket.translations[0], contact - volume / section, k_volume_tolerance * first->volume() / section);
+          EXPECT_NEAR(bucket.translations[0], contact - volume / section,
+                      k_volume_tolerance * first->volume() / section);
         }
       }
     }
@@ -127,14 +128,15 @@ TEST(VolumeGenerator, BallsMeetTheirLens) {
     const Generated result = generate_volumes(
         *touching, a, b, single(test::random_direction(random), test::random_rotation(random)), k_percents);
     for (const int percent : {5, 10}) {
-      // Chords of 24 rings take 0.9 % of a volume; of a lens's depth of a quarter radius up to a tenth.
+      // The facets of 24 rings reduce a ball's volume by 0.9 %, that of the lens by up to a tenth.
       const double expected = 0.01 * percent * a.volume();
       EXPECT_NEAR(lens(bucket_of(result, percent).translations[0]) / expected, 1.0, 0.15) << percent;
     }
   }
 }
 
-/// All translations of every bucket against brute force: columns for the volume, small steps for what comes before.
+/// Compares all translations of every bucket with brute force: the volume there by columns, and none as large before,
+/// by small steps.
 void expect_right(const Mesh& a, const Mesh& b, const Grid& grid, const Generated& result, double step) {
   std::size_t reachable = 0;
   for (const Bucket& bucket : result.buckets) {
@@ -151,7 +153,7 @@ void expect_right(const Mesh& a, const Mesh& b, const Grid& grid, const Generate
         }
         for (double t = 0.5 * (a.diagonal() + b.diagonal()); t > end; t -= step) {
           EXPECT_LE(overlap_volume_by_columns(a, b, ray.pose(t)), bucket.summary.target + bucket.summary.tolerance)
-              << bucket.summary.key.name() << " at " << s << " is passed at " << t << " already";
+              << bucket.summary.key.name() << " at " << s << " is passed before, at " << t;
         }
       }
     }
@@ -173,8 +175,8 @@ TEST(VolumeGenerator, NoEarlierHitByMarching) {
 }
 
 TEST(VolumeGenerator, FirstCrossingWhereTheVolumeFallsAgain) {
-  // B, a slab, passes A's thin outer wall before it reaches the block: V rises to the wall's
-  // share, falls to nothing, and rises again up to the slab's share.
+  // B, a slab, passes through A's thin outer wall before it reaches the block: V rises to the wall's volume, falls to
+  // zero, and rises again up to the slab's volume.
   const Mesh a = test::boxes_mesh({{{3.0, 0, 0}, {0.1, 0.5, 0.5}}, {{-0.5, 0, 0}, {1.7, 0.5, 0.5}}}, "wall and block");
   const Mesh b = test::boxes_mesh({{{0.2, 0.1, 0}, {0.15, 0.7, 0.6}}}, "slab");
   const double wall = 0.2 * 1.0 * 1.0;
@@ -188,11 +190,11 @@ TEST(VolumeGenerator, FirstCrossingWhereTheVolumeFallsAgain) {
     const double volume = 0.01 * percent * a.volume();
     EXPECT_NEAR(bucket_of(result, percent).translations[0], (volume < wall ? outer : block) - volume, 1e-8) << percent;
   }
-  // Beyond the slab's share.
+  // More than the slab's volume inside the block.
   EXPECT_TRUE(std::isnan(bucket_of(result, 10).translations[0]));
 }
 
-TEST(VolumeGenerator, WhatCannotBeReachedIsNaN) {
+TEST(VolumeGenerator, UnreachableTargetsAreNaN) {
   // B has less than 2 % of A's volume.
   const Mesh a = test::boxes_mesh({{{1.0, 0.5, 0}, {1.0, 0.9, 1.1}}}, "a");
   const Mesh thin = test::boxes_mesh({{{0, 0, 2.0}, {0.02, 0.8, 1.0}}}, "thin");
@@ -204,7 +206,7 @@ TEST(VolumeGenerator, WhatCannotBeReachedIsNaN) {
   EXPECT_TRUE(std::isnan(bucket_of(result, 5).translations[0]));
   EXPECT_TRUE(std::isnan(bucket_of(result, 10).translations[0]));
 
-  // Side by side: B's centre comes to A's, which lies between A's two blocks.
+  // At s = 0 B's centre is between A's two blocks, which it hardly overlaps.
   const Mesh blocks = test::boxes_mesh({{{2.0, 0, 0}, {0.5, 0.5, 0.5}}, {{-2.0, 0, 0}, {0.5, 0.5, 0.5}}}, "blocks");
   const Mesh bar = test::boxes_mesh({{{0, 0, 0}, {1.51, 0.3, 0.3}}}, "bar");
   const Generated gap =
@@ -213,14 +215,10 @@ TEST(VolumeGenerator, WhatCannotBeReachedIsNaN) {
   for (const int percent : {1, 5, 10}) EXPECT_TRUE(std::isnan(bucket_of(gap, percent).translations[0]));
 }
 
-bool same_bits(const std::vector<double>& left, const std::vector<double>& right) {
-  return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size() * sizeof(double)) == 0;
-}
-
 void expect_same_bits_from_threads_and_shards(const Mesh& a) {
   const Grid grid = make_grid("90");
-  const auto generate = [&](const GenerateOptions& options) {
-    return generate_volumes(*k_touching, a, a, grid, k_percents, options);
+  const auto generate = [&](const RunOptions& run, const std::vector<std::uint32_t>& rotations = {}) {
+    return generate_volumes(*k_touching, a, a, grid, k_percents, run, rotations);
   };
   const Generated whole = generate({.threads = 1});
   const Generated threaded = generate({.threads = 2});
@@ -230,20 +228,18 @@ void expect_same_bits_from_threads_and_shards(const Mesh& a) {
     EXPECT_EQ(whole.buckets[k].summary.key.percent, k_percents[k]);
     EXPECT_TRUE(same_bits(whole.buckets[k].translations, threaded.buckets[k].translations));
   }
-  const auto map = DistinctRotations(grid.rotations).representative;
   for (const auto& [first, last] : {std::pair<std::size_t, std::size_t>(0, 13), {13, 48}}) {
-    const Generated shard = generate({.rotations = test::indices(first, last)});
+    const Generated shard = generate({}, test::indices(first, last));
     for (std::size_t k = 0; k < k_percents.size(); ++k) {
       const std::vector<double>& all = whole.buckets[k].translations;
-      EXPECT_TRUE(same_bits(shard.buckets[k].translations, {all.begin() + static_cast<std::ptrdiff_t>(first * n),
-                                                      all.begin() + static_cast<std::ptrdiff_t>(last * n)}));
+      EXPECT_TRUE(same_bits(shard.buckets[k].translations, std::span(all).subspan(first * n, (last - first) * n)));
     }
   }
 }
 
 TEST(VolumeGenerator, ThreadsAndShardsDoNotChangeABit) {
   expect_same_bits_from_threads_and_shards(test::lump_mesh(3, {0.4, -0.2, 1.0}));
-  // Faces lie over each other at right angles.
+  // Faces coincide at rotations by right angles.
   expect_same_bits_from_threads_and_shards(load_model("box-48"));
 }
 
@@ -260,19 +256,20 @@ TEST(VolumeGenerator, EveryInstructionSetGivesTheSameBits) {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     const Generated here = run();
     for (std::size_t k = 0; k < k_percents.size(); ++k) {
-      EXPECT_TRUE(same_bits(here.buckets[k].translations, standard.buckets[k].translations)) << hwy::TargetName(targets & -targets);
+      EXPECT_TRUE(same_bits(here.buckets[k].translations, standard.buckets[k].translations))
+          << hwy::TargetName(targets & -targets);
     }
     EXPECT_EQ(here.measurements, standard.measurements);
     ++tried;
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   }
-  EXPECT_GE(tried, 2);  // at least a SIMD and a scalar path
+  EXPECT_GE(tried, 2);  // At least a SIMD and a scalar target.
 }
 
 TEST(VolumeGenerator, FewMeasurementsMeetABucket) {
-  // Seeds and cubics: a bucket takes a measurement where it is foreseen and one or two where the cubics meet it. What
-  // is more certifies first hits where the bounds leave doubt, most of it in coarse meshes of many parts.
+  // A bucket takes one measurement where it is predicted and one or two where the cubics meet it. The others divide
+  // intervals in which the bounds do not exclude an earlier hit, most of them in coarse meshes of many parts.
   const std::vector<int> percents{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
   const auto touching = make_ray_cast();
   for (const char* name : {"bumpy-sphere-8k", "torus-knot-8k"}) {
@@ -284,14 +281,13 @@ TEST(VolumeGenerator, FewMeasurementsMeetABucket) {
           static_cast<std::size_t>(std::ranges::count_if(bucket.translations, [](double s) { return !std::isnan(s); }));
     }
     ASSERT_GT(reachable, 200u);
-    constexpr double k_most_per_bucket = 5.0;  // 3.0 and 3.6 were measured
+    constexpr double k_most_per_bucket = 5.0;
     EXPECT_LT(static_cast<double>(result.measurements) / static_cast<double>(reachable), k_most_per_bucket) << name;
   }
 }
 
-/// Crossing plates never share a percent of their volume, which their boxes tell at once: nothing is measured on
-/// the way in.
-TEST(VolumeGenerator, PlatesThatCrossTakeNoSearchForWhatTheyCannotShare) {
+/// Crossing plates overlap by less than a percent of their volume, which follows from their boxes: nothing is measured.
+TEST(VolumeGenerator, CrossingPlatesTakeNoMeasurements) {
   const Mesh plate = make_box({.size = {2.0, 1.6, 0.002}}, 12);
   const Grid grid = make_grid("90");
   const std::vector<int> percents{1, 2, 5};
@@ -316,10 +312,10 @@ TEST(VolumeGenerator, PlatesThatCrossTakeNoSearchForWhatTheyCannotShare) {
     }
   }
   EXPECT_GT(crossing, 50u);
-  EXPECT_GT(result.measurements, 0u);  // those that lie flat are measured
+  EXPECT_GT(result.measurements, 0u);  // Parallel plates are measured.
 }
 
-TEST(VolumeGenerator, RefusesWhatIsNoSolid) {
+TEST(VolumeGenerator, RefusesMeshesThatAreNotSolids) {
   const Mesh a = test::lump_mesh(3, {0.4, -0.2, 1.0});
   std::vector<Triangle> triangles = a.triangles();
   triangles.pop_back();
@@ -350,8 +346,8 @@ Verdict verify_after(const Edit& edit) {
   edit(buckets);
   const auto path = std::filesystem::path(testing::TempDir()) /
                     (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_volumes.h5");
-  ConfigurationSetWriter writer(path,
-                                {.generator_version = "0", .a = MeshIdentity::of(a), .b = MeshIdentity::of(b), .grid = grid});
+  ConfigurationSetWriter writer(
+      path, {.generator_version = "0", .a = MeshIdentity::of(a), .b = MeshIdentity::of(b), .grid = grid});
   for (const Bucket& bucket : buckets) writer.write(bucket.summary, bucket.translations);
   writer.commit();
   const ConfigurationSet set(path);
@@ -359,7 +355,7 @@ Verdict verify_after(const Edit& edit) {
     EXPECT_TRUE(same_bits(set.read(bucket.summary.key), bucket.translations));
     EXPECT_EQ(set.summary(bucket.summary.key).target, bucket.summary.target);
   }
-  const Verdict verdict = verify_set(set, a, b, *k_brute_force, {.sample = 40, .seed = 5});
+  const Verdict verdict = verify_set(set, a, b, *k_brute_force, {.size = 40, .seed = 5});
   std::filesystem::remove(path);
   return verdict;
 }
@@ -382,7 +378,7 @@ TEST(VolumeVerification, FindsWhatIsWrong) {
   const Verdict outside = verify_after(shifted(1, 1e-6));
   EXPECT_GT(outside.buckets[1].wrong_value, 0u);
   EXPECT_EQ(outside.buckets[2].failures(), 0u);
-  // Half a wall deeper: past the hit.
+  // Half a wall farther inwards, past the hit.
   const Verdict deeper = verify_after(shifted(1, -0.05));
   EXPECT_GT(deeper.buckets[1].earlier_hit, 0u);
   const Verdict nan = verify_after([](auto& buckets) {

@@ -45,7 +45,7 @@ inline Mesh bumpy_torus(std::size_t n, std::size_t m, double scale, std::uint64_
 /// A folder of this process's own, removed at the end of the test.
 class TestFolder : public ::testing::Test {
  protected:
-  TestFolder() : folder_(place() / ("sixdof_geometry_" + std::to_string(::getpid()))) {
+  TestFolder() : folder_(parent() / ("sixdof_geometry_" + std::to_string(::getpid()))) {
     std::filesystem::create_directories(folder_);
   }
   ~TestFolder() override {
@@ -53,8 +53,8 @@ class TestFolder : public ::testing::Test {
     std::filesystem::remove_all(folder_, ignored);
   }
 
-  /// In memory where there is such a place: the tests of damaged files write thousands.
-  static std::filesystem::path place() { return ::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : ::testing::TempDir(); }
+  /// A file system in memory if there is one: the tests of damaged files write thousands.
+  static std::filesystem::path parent() { return ::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : ::testing::TempDir(); }
 
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
 

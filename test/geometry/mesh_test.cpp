@@ -34,14 +34,14 @@ TEST(Mesh, TetrahedronIsASolidOfKnownVolumeAndCentroid) {
   EXPECT_NEAR(mesh.diagonal(), Eigen::Vector3d(2.4, 1.7, 3.1).norm(), k_rounding);
 }
 
-TEST(Mesh, VolumeDoesNotSufferFromAnOffset) {
+TEST(Mesh, VolumeIsAccurateFarFromTheOrigin) {
   Vertices far = tetrahedron_vertices();
   for (auto& p : far) p += Eigen::Vector3d(1e6, -3e6, 2e6);
   // Rounding of the vertices themselves: eps * offset / size in each of three factors.
   EXPECT_NEAR(Mesh::build(far, tetrahedron_triangles()).volume(), k_tetrahedron_volume, 1e-8);
 }
 
-TEST(Mesh, WeldsExactlyEqualVerticesAndNothingElse) {
+TEST(Mesh, WeldsExactlyEqualVerticesOnly) {
   Vertices soup;
   Triangles triangles;
   for (const Triangle& t : tetrahedron_triangles()) {
@@ -66,7 +66,7 @@ TEST(Mesh, NegativeZeroIsZero) {
   EXPECT_EQ(mesh.repairs().welded_vertices, 1u);
 }
 
-TEST(Mesh, ReportsWhatItDropsAndWhatIsDegenerate) {
+TEST(Mesh, CountsDroppedAndDegenerateElements) {
   Vertices v = tetrahedron_vertices();
   v.push_back({9.0, 9.0, 9.0});
   v.push_back(0.5 * (v[0] + v[1]));
@@ -83,11 +83,11 @@ TEST(Mesh, ReportsWhatItDropsAndWhatIsDegenerate) {
   EXPECT_EQ(split.repairs().zero_area_triangles, std::vector<std::uint32_t>{2});
 }
 
-TEST(Mesh, TellsOpenFlippedInsideOutAndNonManifoldApart) {
+TEST(Mesh, ClassifiesOpenFlippedInsideOutAndNonManifold) {
   const Triangles t = tetrahedron_triangles();
   const Vertices v = tetrahedron_vertices();
-  const Mesh open = Mesh::build(v, {t[0], t[1], t[2]});
-  EXPECT_EQ(open.topology().border_edges, 3u);
+  const Mesh with_border = Mesh::build(v, {t[0], t[1], t[2]});
+  EXPECT_EQ(with_border.topology().border_edges, 3u);
 
   const Mesh flipped = Mesh::build(v, {t[0], t[1], t[2], {0, 2, 3}});
   EXPECT_TRUE(flipped.topology().closed);
@@ -98,7 +98,7 @@ TEST(Mesh, TellsOpenFlippedInsideOutAndNonManifoldApart) {
   EXPECT_TRUE(inside_out.topology().oriented);
   EXPECT_THAT(inside_out.why_not_solid(), HasSubstr("inside out"));
 
-  // Two tetrahedra that share one vertex.
+  // Two tetrahedra with one common vertex.
   Vertices two = v;
   for (std::size_t i = 1; i < 4; ++i) two.push_back(2.0 * v[0] - v[i]);
   const Mesh touching = Mesh::build(two, {t[0], t[1], t[2], t[3], {0, 4, 5}, {0, 6, 4}, {4, 6, 5}, {5, 6, 0}});
@@ -108,7 +108,7 @@ TEST(Mesh, TellsOpenFlippedInsideOutAndNonManifoldApart) {
   EXPECT_TRUE(touching.solid());
 }
 
-TEST(Mesh, RefusesWhatIsNoMeshAndNamesTheElement) {
+TEST(Mesh, RefusesInvalidInputAndNamesTheElement) {
   Vertices v = tetrahedron_vertices();
   const auto message = [](const Vertices& vertices, const Triangles& triangles) -> std::string {
     try {
@@ -130,14 +130,14 @@ TEST(Mesh, RefusesWhatIsNoMeshAndNamesTheElement) {
   EXPECT_THAT(message(v, tetrahedron_triangles()), HasSubstr("too large"));
 }
 
-TEST(Mesh, HashSeesContentNotNames) {
+TEST(Mesh, HashDependsOnContentNotOnTheName) {
   const Mesh a = Mesh::build(tetrahedron_vertices(), tetrahedron_triangles(), "one");
   const Mesh b = Mesh::build(tetrahedron_vertices(), tetrahedron_triangles(), "other");
-  Vertices moved = tetrahedron_vertices();
-  moved[3].z() = std::nextafter(moved[3].z(), 10.0);
+  Vertices changed = tetrahedron_vertices();
+  changed[3].z() = std::nextafter(changed[3].z(), 10.0);
   EXPECT_EQ(a.hash(), b.hash());
   EXPECT_EQ(a.hash().size(), 32u);
-  EXPECT_NE(a.hash(), Mesh::build(moved, tetrahedron_triangles()).hash());
+  EXPECT_NE(a.hash(), Mesh::build(changed, tetrahedron_triangles()).hash());
 }
 
 }  // namespace

@@ -21,16 +21,16 @@ TEST(Pose, ComposesAndInverts) {
   EXPECT_TRUE((k_first.inverse() * (k_first * p)).isApprox(p, 4 * k_rounding));
 }
 
-TEST(Pose, QuaternionComesBackWithPositiveScalar) {
+TEST(Pose, QuaternionHasPositiveScalar) {
   EXPECT_TRUE(k_second.quaternion().isApprox(Eigen::Vector4d(0.6, -0.48, 0.0, -0.64), k_rounding));
 }
 
-TEST(Pose, RefusesWhatIsNoRotation) {
+TEST(Pose, RefusesNonRotations) {
   EXPECT_THROW(Pose::from_quaternion(0.707107, 0, 0, 0, {0, 0, 0}), BadArgument);
   EXPECT_THROW(Pose::from_quaternion(0, 0, 0, 0, {0, 0, 0}), BadArgument);
   EXPECT_THROW(Pose::from_quaternion(std::nan(""), 0, 0, 1, {0, 0, 0}), BadArgument);
   EXPECT_THROW(Pose::from_quaternion(1, 0, 0, 0, {0, std::numeric_limits<double>::infinity(), 0}), BadArgument);
-  // Seven printed digits are rounding, and are normalised.
+  // Rounded to seven digits: normalised.
   const Pose rounded = Pose::from_quaternion(0.7071068, 0.7071068, 0, 0, {0, 0, 0});
   EXPECT_NEAR(rounded.R.determinant(), 1.0, 4 * k_rounding);
 }

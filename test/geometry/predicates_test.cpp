@@ -37,8 +37,8 @@ Rational determinant(const RationalVector& a, const RationalVector& b, const Rat
   return dot(cross(b - a, c - a), d - a);
 }
 
-/// A translation small enough to change no sign that is not a tie for the coordinates used here (multiples of 2^-60
-/// with at most 4 digits before the point have determinants that are multiples of 2^-180).
+/// A translation too small to change a sign that is not a tie: the coordinates used here are multiples of 2^-60 below
+/// 10^4, so their determinants are multiples of 2^-180.
 RationalVector infinitesimal() {
   const Rational eps = Rational(1) / pow(boost::multiprecision::cpp_int(2), 400);
   return {eps, eps * eps, eps * eps * eps};
@@ -51,9 +51,9 @@ class Points {
   explicit Points(unsigned seed) : random_(seed) {}
 
   Vector3d generic(double size) { return size * Vector3d(uniform(), uniform(), uniform()); }
-  /// A coarse lattice: coplanar and collinear quadruples abound.
+  /// On a coarse lattice, where many quadruples are coplanar or collinear.
   Vector3d lattice() { return Vector3d(digit(), digit(), digit()); }
-  /// Near the plane through three points: its rounded combination, some units in the last place off.
+  /// Up to three units in the last place away from a point of the plane through three points.
   Vector3d near_plane(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
     const double s = uniform(), t = uniform();
     Vector3d p = a + s * (b - a) + t * (c - a);
@@ -84,16 +84,16 @@ std::vector<Quadruple> quadruples() {
     result.push_back({a, b, c, points.near_plane(a, b, c)});
     result.push_back({a, b, points.near_plane(a, b, b), points.near_plane(a, b, a)});
     result.push_back({points.lattice(), points.lattice(), points.lattice(), points.lattice()});
-    // Far from the origin, differing in the last places only.
+    // Far from the origin, with differences in the last digits only.
     const Vector3d far(1.0e6 / 3.0, -2.0e6 / 7.0, 5.0e5 / 9.0);
     result.push_back({far + 1e-9 * a, far + 1e-9 * b, far + 1e-9 * c, far + 1e-9 * points.lattice()});
-    // Coordinates of very unlike size.
+    // Coordinates of very different magnitudes.
     result.push_back({a, 1e-25 * b, 1e25 * c, points.near_plane(a, b, c)});
   }
   return result;
 }
 
-TEST(predicates, orient3d_has_the_sign_of_exact_arithmetic) {
+TEST(Predicates, Orient3dHasTheExactSign) {
   int ties = 0;
   for (const auto& [a, b, c, d] : quadruples()) {
     const Rational truth = determinant(exact(a), exact(b), exact(c), exact(d));
@@ -106,7 +106,7 @@ TEST(predicates, orient3d_has_the_sign_of_exact_arithmetic) {
   EXPECT_GT(ties, 100);
 }
 
-TEST(predicates, orient3d_value_is_accurate_however_small) {
+TEST(Predicates, Orient3dValueIsAccurateAtAnyMagnitude) {
   for (const auto& [a, b, c, d] : quadruples()) {
     const Rational truth = determinant(exact(a), exact(b), exact(c), exact(d));
     const Rational error = abs(Rational(orient3d_value(a, b, c, d)) - truth);
@@ -114,7 +114,7 @@ TEST(predicates, orient3d_value_is_accurate_however_small) {
   }
 }
 
-TEST(predicates, orient2d_has_the_sign_of_exact_arithmetic) {
+TEST(Predicates, Orient2dHasTheExactSign) {
   for (const auto& [a, b, c, d] : quadruples()) {
     const RationalVector u = exact(b) - exact(a), v = exact(c) - exact(a);
     EXPECT_EQ(orient2d(a.head<2>(), b.head<2>(), c.head<2>()), sign(u[0] * v[1] - u[1] * v[0]));
@@ -122,11 +122,11 @@ TEST(predicates, orient2d_has_the_sign_of_exact_arithmetic) {
   }
 }
 
-TEST(predicates, the_documented_range_is_honoured) {
+TEST(Predicates, AreExactInTheDocumentedRange) {
   Points points(7);
   for (int i = 0; i < 300; ++i) {
     for (const double size : {4.0 * k_smallest_exact_coordinate, k_largest_exact_coordinate / 4.0}) {
-      // Whole multiples, so that no coordinate falls out of the range; then a step in the last place.
+      // Integer multiples, so that every coordinate is in the range; some are changed in the last bit.
       const auto point = [&] {
         Vector3d p = size * points.lattice();
         if (points.digit() == 0) p.x() = std::nextafter(p.x(), size);
@@ -142,29 +142,30 @@ TEST(predicates, the_documented_range_is_honoured) {
   }
 }
 
-TEST(predicates, ties_are_broken_by_one_translation_of_the_moving_body) {
+TEST(Predicates, BreakTiesByOneTranslationOfB) {
   const RationalVector e = infinitesimal();
   int ties = 0;
   Points points(99);
   for (int i = 0; i < 1000; ++i) {
     const Vector3d a = points.lattice(), b = points.lattice(), c = points.lattice(), d = points.lattice();
     ties += orient3d(a, b, c, d) == 0;
-    EXPECT_EQ(side_of_moved_point(a, b, c, d), sign(determinant(exact(a), exact(b), exact(c), exact(d) + e)));
-    EXPECT_EQ(side_of_moved_plane(a, b, c, d), sign(determinant(exact(a) + e, exact(b) + e, exact(c) + e, exact(d))));
-    EXPECT_EQ(passing_of_moved_edge(a, b, c, d), sign(determinant(exact(a), exact(b), exact(c) + e, exact(d) + e)));
+    EXPECT_EQ(side_of_perturbed_point(a, b, c, d), sign(determinant(exact(a), exact(b), exact(c), exact(d) + e)));
+    EXPECT_EQ(side_of_perturbed_plane(a, b, c, d),
+              sign(determinant(exact(a) + e, exact(b) + e, exact(c) + e, exact(d))));
+    EXPECT_EQ(side_of_perturbed_edge(a, b, c, d), sign(determinant(exact(a), exact(b), exact(c) + e, exact(d) + e)));
   }
   EXPECT_GT(ties, 150);
 }
 
-TEST(predicates, what_stays_zero_is_degenerate_by_itself) {
+TEST(Predicates, AreZeroForDegenerateFiguresOnly) {
   Points points(5);
   for (int i = 0; i < 3000; ++i) {
     const Vector3d a = points.lattice(), b = points.lattice(), c = points.lattice(), d = points.lattice();
     const bool collinear = (b - a).cross(c - a).isZero(0.0);  // small integers: exact
     const bool parallel = (b - a).cross(d - c).isZero(0.0);
-    EXPECT_EQ(side_of_moved_point(a, b, c, d) == 0, collinear);
-    EXPECT_EQ(side_of_moved_plane(a, b, c, d) == 0, collinear);
-    if (passing_of_moved_edge(a, b, c, d) == 0) {
+    EXPECT_EQ(side_of_perturbed_point(a, b, c, d) == 0, collinear);
+    EXPECT_EQ(side_of_perturbed_plane(a, b, c, d) == 0, collinear);
+    if (side_of_perturbed_edge(a, b, c, d) == 0) {
       EXPECT_TRUE(parallel);
     }
   }

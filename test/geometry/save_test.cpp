@@ -121,7 +121,7 @@ class CommaNumbers : public std::numpunct<char> {
   std::string do_grouping() const override { return "\3"; }
 };
 
-TEST_F(Save, NoLocaleHasASayInNumbers) {
+TEST_F(Save, NumbersDoNotDependOnTheLocale) {
   const std::string before = std::setlocale(LC_ALL, nullptr);
   const std::locale global = std::locale::global(std::locale(std::locale::classic(), new CommaNumbers));
   bool comma = false;

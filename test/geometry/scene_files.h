@@ -1,9 +1,10 @@
 #pragma once
 
-// Small glTF and 3DS files, written by hand: an independent reading of the two formats.
+// Small files of the formats that assimp reads, written by hand.
 
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include <sixdof/geometry/mesh.h>
 
@@ -79,11 +80,17 @@ inline std::string chunk_3ds(unsigned id, const std::string& contents) {
 }
 
 /// A 3DS object "part" with its vertices and faces, and what else a file may hold.
-inline std::string object_3ds(const Mesh& mesh) {
+/// @param red numbers of the faces that have the material "red".
+inline std::string object_3ds(const Mesh& mesh, const std::vector<std::uint16_t>& red = {}) {
   std::string faces = little(static_cast<std::uint16_t>(mesh.triangles().size()));
   for (const Triangle& t : mesh.triangles()) {
     for (const std::uint32_t v : t) faces += little(static_cast<std::uint16_t>(v));
     faces += little(std::uint16_t{7});
+  }
+  if (!red.empty()) {
+    std::string numbers = std::string("red\0", 4) + little(static_cast<std::uint16_t>(red.size()));
+    for (const std::uint16_t face : red) numbers += little(face);
+    faces += chunk_3ds(0x4130, numbers);
   }
   std::string axes;
   for (int i = 0; i < 12; ++i) axes += little(0.3f + 1.7f * static_cast<float>(i * i));
@@ -94,9 +101,77 @@ inline std::string object_3ds(const Mesh& mesh) {
                                              chunk_3ds(0x4120, faces) + chunk_3ds(0x4160, axes)));
 }
 
-inline std::string file_3ds(const std::string& objects) {
-  return chunk_3ds(0x4D4D,
-                   chunk_3ds(0x0002, little(3u)) + chunk_3ds(0x3D3D, chunk_3ds(0x0100, little(25.4f)) + objects));
+/// @param key_framer the chunk behind the objects, or nothing.
+inline std::string file_3ds(const std::string& objects, const std::string& key_framer = {}) {
+  return chunk_3ds(0x4D4D, chunk_3ds(0x0002, little(3u)) +
+                               chunk_3ds(0x3D3D, chunk_3ds(0x0100, little(25.4f)) + objects) + key_framer);
+}
+
+/// A pyramid over a square of side 2 whose tip points along -z, translated by (10, 0, 0) and mirrored in z.
+/// @param corner the base's corner (2, 2, 0) before its translation to (12, 2, 0).
+inline std::string collada_pyramid(const std::string& corner) {
+  return R"(<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><up_axis>Y_UP</up_axis></asset>
+  <library_geometries><geometry id="g"><mesh>
+    <source id="p"><float_array id="pa" count="15">0 0 0 2 0 0 )" +
+         corner + R"( 0 2 0 1 1 -3</float_array>
+      <technique_common><accessor source="#pa" count="5" stride="3">
+        <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+      </accessor></technique_common></source>
+    <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+    <polylist count="5"><input semantic="VERTEX" source="#v" offset="0"/>
+      <vcount>4 3 3 3 3</vcount><p>0 1 2 3 4 1 0 4 2 1 4 3 2 4 0 3</p></polylist>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="s"><node id="n"><translate>10 0 0</translate><scale>1 1 -1</scale>
+    <instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>
+)";
+}
+
+inline std::string x3d_pyramid() {
+  return R"(<?xml version="1.0" encoding="UTF-8"?>
+<X3D profile="Interchange" version="3.0"><Scene><Transform translation="10 0 0"><Shape>
+<IndexedFaceSet coordIndex="3 2 1 0 -1 0 1 4 -1 1 2 4 -1 2 3 4 -1 3 0 4 -1">
+<Coordinate point="0 0 0 2 0 0 2 2 0 0 2 0 1 1 3"/></IndexedFaceSet></Shape></Transform></Scene></X3D>
+)";
+}
+
+/// @param last_corner of the first triangle: -5 stands for vertex 4, the tip.
+inline std::string fbx_pyramid(const std::string& last_corner) {
+  return R"(; FBX 7.3.0 project file
+FBXHeaderExtension:  {
+	FBXHeaderVersion: 1003
+	FBXVersion: 7300
+}
+Definitions:  {
+	Version: 100
+	Count: 0
+}
+Objects:  {
+	Geometry: 100, "Geometry::g", "Mesh" {
+		Vertices: *15 {
+			a: 0,0,0,2,0,0,2,2,0,0,2,0,1,1,3
+		}
+		PolygonVertexIndex: *16 {
+			a: 3,2,1,-1,0,1,)" +
+         last_corner + R"(,1,2,-5,2,3,-5,3,0,-5
+		}
+		GeometryVersion: 124
+	}
+	Model: 200, "Model::m", "Mesh" {
+		Version: 232
+		Properties70:  {
+			P: "Lcl Translation", "Lcl Translation", "", "A",10,0,0
+		}
+	}
+}
+Connections:  {
+	C: "OO",200,0
+	C: "OO",100,200
+}
+)";
 }
 
 }  // namespace sixdof::testing_support

@@ -30,7 +30,7 @@ inline Eigen::Vector3d uniform_vector(Generator& generator, double half_width) {
   return {x, y, z};
 }
 
-/// Uniform over the sphere: a normalised Gaussian-free rejection sample.
+/// Uniform over the sphere, by rejection.
 inline Eigen::Vector3d unit_vector(Generator& generator) {
   for (;;) {
     const Eigen::Vector3d p = uniform_vector(generator, 1.0);
@@ -40,8 +40,8 @@ inline Eigen::Vector3d unit_vector(Generator& generator) {
 }
 
 inline Pose random_pose(Generator& generator, double half_width) {
-  const Eigen::AngleAxisd turn(uniform(generator, 0.1, 3.0), unit_vector(generator));
-  return {turn.toRotationMatrix(), uniform_vector(generator, half_width)};
+  const Eigen::AngleAxisd rotation(uniform(generator, 0.1, 3.0), unit_vector(generator));
+  return {rotation.toRotationMatrix(), uniform_vector(generator, half_width)};
 }
 
 /// Icosahedron subdivided `levels` times (20 * 4^levels triangles), radius 1 + `bump` * a smooth function.
@@ -71,8 +71,8 @@ inline Mesh bumpy_sphere(int levels, double bump, double radius = 1.0,
     t = std::move(finer);
   }
   for (Eigen::Vector3d& p : v) {
-    const double height = std::sin(5.0 * p.x() + 0.3) * std::sin(6.0 * p.y() + 1.1) * std::sin(7.0 * p.z() + 2.3);
-    p = center + p * radius * (1.0 + bump * height);
+    const double wave = std::sin(5.0 * p.x() + 0.3) * std::sin(6.0 * p.y() + 1.1) * std::sin(7.0 * p.z() + 2.3);
+    p = center + p * radius * (1.0 + bump * wave);
   }
   return Mesh::build(std::move(v), std::move(t), "bumpy sphere");
 }

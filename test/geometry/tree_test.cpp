@@ -1,4 +1,3 @@
-#include <sixdof/base/parallel.h>
 #include <sixdof/geometry/tree.h>
 
 #include <algorithm>
@@ -8,13 +7,14 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 
 #include "shapes.h"
 
 namespace sixdof {
 namespace {
 
-/// A volume kept by itself is that of the lane it was taken from.
+/// The volume stored with a node or leaf is that of its lane in the parent.
 void check_volume(const Tree::Volume& volume, const Tree::Node& node, std::size_t lane) {
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(volume.lower[k], node.lower[k][lane]);
@@ -25,7 +25,7 @@ void check_volume(const Tree::Volume& volume, const Tree::Node& node, std::size_
   EXPECT_EQ(volume.slab_upper, node.slab_upper[lane]);
 }
 
-/// Walks the tree and checks everything its doc comment promises.
+/// Checks all that the doc comment of Tree states.
 void check_tree(const Mesh& mesh, const Tree& tree) {
   const std::size_t n = mesh.triangles().size();
   ASSERT_EQ(tree.mesh_triangle().size(), n);
@@ -109,25 +109,25 @@ void check_tree(const Mesh& mesh, const Tree& tree) {
   EXPECT_EQ(tree.nodes()[0].triangle_count, n);
 }
 
-TEST(Tree, KeepsItsPromisesOnASmoothSurface) {
+TEST(Tree, IsValidOnASmoothSurface) {
   const Mesh mesh = shapes::bumpy_sphere(4, 0.2, 0.7, {0.3, -0.2, 0.9});
   check_tree(mesh, Tree(mesh));
 }
 
-TEST(Tree, KeepsItsPromisesOnASoup) {
+TEST(Tree, IsValidOnASoup) {
   shapes::Generator generator(11);
   const Mesh mesh = shapes::soup(generator, 777, 3.0, 0.4);
   check_tree(mesh, Tree(mesh));
 }
 
-TEST(Tree, KeepsItsPromisesFarFromTheOriginAndAtEveryScale) {
+TEST(Tree, IsValidFarFromTheOriginAndAtEveryScale) {
   for (const double scale : {1e-9, 1e-6, 1.0, 1e6, 1e9}) {
     const Mesh mesh = shapes::bumpy_sphere(2, 0.3, scale, scale * 1e6 * Eigen::Vector3d(0.7, -0.9, 0.4));
     check_tree(mesh, Tree(mesh));
   }
 }
 
-TEST(Tree, HoldsMeshesOfEverySmallSize) {
+TEST(Tree, IsValidForEverySmallNumberOfTriangles) {
   shapes::Generator generator(12);
   for (std::size_t n = 1; n <= 70; ++n) {
     const Mesh mesh = shapes::soup(generator, n, 1.0, 0.2);
@@ -135,7 +135,7 @@ TEST(Tree, HoldsMeshesOfEverySmallSize) {
   }
 }
 
-TEST(Tree, HoldsTrianglesWithOneCentreAndDuplicates) {
+TEST(Tree, IsValidForDuplicatesAndTrianglesWithEqualCentres) {
   shapes::Generator generator(13);
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Triangle> triangles;
@@ -150,7 +150,7 @@ TEST(Tree, HoldsTrianglesWithOneCentreAndDuplicates) {
 }
 
 TEST(Tree, IsTheSameBitsForEveryThreadCount) {
-  const Mesh mesh = shapes::bumpy_sphere(6, 0.2);  // 81,920 triangles: subtrees become tasks
+  const Mesh mesh = shapes::bumpy_sphere(7, 0.2);  // 327,680 triangles: binned in parts, subtrees are tasks
   const auto build = [&](std::size_t threads) {
     const parallel::ThreadLimit limit(threads);
     return Tree(mesh);
@@ -164,7 +164,7 @@ TEST(Tree, IsTheSameBitsForEveryThreadCount) {
 }
 
 TEST(Tree, IsFilledWell) {
-  // Fill decides memory and speed. Typical: 3.9 triangles per leaf, 5.5 children per node.
+  // Memory and speed depend on it. Typical: 3.9 triangles per leaf, 5.5 children per node.
   constexpr double k_triangles_per_leaf = 3.5;
   constexpr double k_children_per_node = 5.0;
   const Mesh mesh = shapes::bumpy_sphere(5, 0.2);
@@ -181,7 +181,7 @@ TEST(Tree, IsFilledWell) {
   RecordProperty("children_per_node", std::to_string(children / static_cast<double>(tree.nodes().size())));
 }
 
-TEST(Tree, RefusesSizesWithoutRoomForFloats) {
+TEST(Tree, RefusesDiagonalsOutOfRange) {
   EXPECT_THROW(Tree(shapes::box({1e16, 1.0, 1.0})), BadMesh);
   EXPECT_THROW(Tree(shapes::box({1e-17, 1e-17, 1e-17})), BadMesh);
 }

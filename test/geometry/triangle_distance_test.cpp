@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 using shapes::Generator;
 using shapes::uniform;
 
-// Truth: the same question asked with 100 decimal digits, where no angle that doubles can form is ill conditioned, by
-// formulas of its own (Cramer's rule; no refinement, no common origin).
+// Truth: the distance in arithmetic of 100 decimal digits, in which no angle between vectors of doubles is ill
+// conditioned, by other formulas (Cramer's rule; no refinement, no common origin).
 using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>, boost::multiprecision::et_off>;
 using Vector = std::array<Real, 3>;
 
@@ -30,19 +30,19 @@ Real dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + 
 
 struct Truth {
   Real squared = 1e300;
-  void offer(const Vector& w) { squared = std::min(squared, dot(w, w)); }
+  void try_update(const Vector& w) { squared = std::min(squared, dot(w, w)); }
 
   void point_segment(const Vector& p, const Vector& q0, const Vector& q1) {
-    offer(p - q0);
-    offer(p - q1);
+    try_update(p - q0);
+    try_update(p - q1);
     const Vector v = q1 - q0;
     const Real vv = dot(v, v);
     if (vv == 0) return;
     const Real t = dot(p - q0, v) / vv;
-    if (t >= 0 && t <= 1) offer(p - (q0 + t * v));
+    if (t >= 0 && t <= 1) try_update(p - (q0 + t * v));
   }
 
-  /// Least-squares p + s u = q + t v; offered if `inside` the domain.
+  /// Least-squares p + s u = q + t v, if `inside` the domain.
   template <class Inside>
   void stationary(const Vector& p, const Vector& u, const Vector& q, const Vector& v, const Inside& inside) {
     const Vector w = p - q;
@@ -51,7 +51,7 @@ struct Truth {
     if (det <= 0) return;
     const Real s = (b * e - c * d) / det;
     const Real t = (a * e - b * d) / det;
-    if (inside(s, t)) offer((p + s * u) - (q + t * v));
+    if (inside(s, t)) try_update((p + s * u) - (q + t * v));
   }
 
   void segment_segment(const Vector& p0, const Vector& p1, const Vector& q0, const Vector& q1) {
@@ -82,7 +82,8 @@ struct Truth {
   }
 };
 
-/// Squares below this are the rounding of 100 digits (1e-200); what doubles of these tests can form is far above.
+/// Squares below this come from the rounding of 100 digits (1e-200); those that doubles of these tests form are above
+/// it.
 const Real k_truth_zero = 1e-160;
 
 double root(const Truth& truth) {
@@ -103,6 +104,10 @@ double true_distance(const TriangleCorners& a, const TriangleCorners& b) {
   }
   return root(truth);
 }
+
+/// A point, or a segment, as a triangle.
+TriangleCorners point(const Vector3d& p) { return {p, p, p}; }
+TriangleCorners segment(const Vector3d& p, const Vector3d& q) { return {p, q, q}; }
 
 double longest_edge(const TriangleCorners& t) {
   return std::max({(t[0] - t[1]).norm(), (t[1] - t[2]).norm(), (t[2] - t[0]).norm()});
@@ -132,8 +137,8 @@ void check(const TriangleCorners& a, const TriangleCorners& b, double& worst) {
     const TriangleCorners& of_a = swapped ? b : a;
     const TriangleCorners& of_b = swapped ? a : b;
     const double tolerance = 8.0 * k_triangle_distance_error * size + 4.0 * point_rounding(a, b);
-    EXPECT_LE(point_triangle_distance(closest.on_a, of_a).distance, tolerance);
-    EXPECT_LE(point_triangle_distance(closest.on_b, of_b).distance, tolerance);
+    EXPECT_LE(triangle_triangle_distance(point(closest.on_a), of_a).distance, tolerance);
+    EXPECT_LE(triangle_triangle_distance(point(closest.on_b), of_b).distance, tolerance);
     EXPECT_NEAR((closest.on_a - closest.on_b).norm(), closest.distance, tolerance);
   }
 }
@@ -192,7 +197,7 @@ TEST(TriangleDistance, MatchesHighPrecisionOnNeedlesAndFlatTriangles) {
 }
 
 TEST(TriangleDistance, MatchesHighPrecisionWhereEdgesAreNearlyParallel) {
-  // An edge of b runs beside an edge of a under an angle of 1e-17 .. 0.1, at a distance of 1e-12 .. 1, crossing it.
+  // An edge of b crosses over an edge of a at an angle of 1e-17 .. 0.1, at a distance of 1e-12 .. 1.
   check_many(3, 400, [](Generator& g, TriangleCorners& a, TriangleCorners& b) {
     a = any_triangle(g);
     const Vector3d along = (a[1] - a[0]).normalized();
@@ -219,9 +224,9 @@ TEST(TriangleDistance, MatchesHighPrecisionWhereFacesAreParallel) {
   });
 }
 
-TEST(TriangleGap, IsTheDistanceWhereFacesAreInvolved) {
-  // A corner of the one over the middle of the other, faces tilted by up to a right angle or parallel, at any offset.
-  // The bound is lowered by k_gap_error per size: a box of the differences' sums, up to twice the longest of them.
+TEST(TriangleGap, IsTheDistanceFromAFace) {
+  // A corner of b above the middle of a, with parallel or tilted faces, at several offsets. The bound is less than the
+  // gap by k_gap_error per size, where the size is up to twice the longest difference.
   constexpr double k_lowered = 1e-14;
   Generator g(11);
   for (int i = 0; i < 400; ++i) {
@@ -249,7 +254,7 @@ TEST(TriangleGap, IsTheDistanceWhereFacesAreInvolved) {
   }
 }
 
-TEST(TriangleGap, SaysNothingWhereItCannot) {
+TEST(TriangleGap, IsNegativeWithoutAGap) {
   Generator g(12);
   for (int i = 0; i < 50; ++i) {
     const TriangleCorners a = any_triangle(g);
@@ -261,7 +266,7 @@ TEST(TriangleGap, SaysNothingWhereItCannot) {
   }
 }
 
-TEST(TriangleDistance, ErrorDoesNotGrowWithTheOffset) {
+TEST(TriangleDistance, ErrorDoesNotDependOnTheOffset) {
   for (const double offset : {1e3, 1e6, 1e9}) {
     check_many(5, 60, [offset](Generator& g, TriangleCorners& a, TriangleCorners& b) {
       const Vector3d far(offset, -0.7 * offset, 0.3 * offset);
@@ -295,9 +300,9 @@ TEST(TriangleDistance, CollinearAndCoincidentCornersAreSegmentsAndPoints) {
   });
 }
 
-// Coordinates on a coarse grid: touching in corners, edges and faces, coplanar overlap and identity all happen often,
-// and every predicate has ties.
-TEST(TriangleDistance, IntersectionIsExactOnAGridFullOfTies) {
+// Coordinates on a coarse grid: many triangles touch in corners, edges and faces, are coplanar or equal, and every
+// predicate has ties.
+TEST(TriangleDistance, ZeroIsExactOnAGridWithManyTies) {
   Generator generator(8);
   const auto corner = [&generator](int cells) {
     const auto coordinate = [&] { return 0.1 * static_cast<double>(generator() % static_cast<unsigned>(cells)); };
@@ -321,7 +326,7 @@ TEST(TriangleDistance, IntersectionIsExactOnAGridFullOfTies) {
   EXPECT_LT(touching, 500);
 }
 
-TEST(TriangleDistance, IntersectionTellsApartWhatDiffersInTheLastBit) {
+TEST(TriangleDistance, ZeroDependsOnTheLastBit) {
   Generator generator(9);
   for (int i = 0; i < 100; ++i) {
     // b's first corner lies on a's plane z = h, the others above: touching. One unit in the last place up: apart.
@@ -339,9 +344,8 @@ TEST(TriangleDistance, IntersectionTellsApartWhatDiffersInTheLastBit) {
   }
 }
 
-TEST(TriangleDistance, IsZeroExactlyWhereTrianglesMeetUpToTheLastBit) {
-  // A corner rounded to a point of the other's plane: half of these pierce it by less than a unit in the last place,
-  // and the distance of the features is as good as nothing for all.
+TEST(TriangleDistance, IsZeroExactlyWhereTrianglesIntersect) {
+  // A corner of b is a point of a, rounded: about half of these pairs intersect, by less than a unit in the last place.
   Generator g(9);
   int meeting = 0;
   int apart = 0;
@@ -365,8 +369,8 @@ TEST(TriangleDistance, IsZeroExactlyWhereTrianglesMeetUpToTheLastBit) {
   EXPECT_GT(apart, 4000);
 }
 
-TEST(TriangleDistance, ATriangleInsideAnotherInItsPlaneMeetsIt) {
-  // On a grid of powers of two, in planes along and across the axes; no edge of the one comes near one of the other.
+TEST(TriangleDistance, IsZeroForATriangleInsideAnotherInItsPlane) {
+  // Coordinates are sums of powers of two, planes are parallel or oblique to the axes; no edges are near each other.
   Generator g(10);
   for (int i = 0; i < 60; ++i) {
     const auto number = [&g] { return static_cast<double>(static_cast<int>(g() % 9) - 4); };
@@ -384,7 +388,7 @@ TEST(TriangleDistance, ATriangleInsideAnotherInItsPlaneMeetsIt) {
   }
 }
 
-TEST(SegmentDistance, MatchesHighPrecision) {
+TEST(TriangleDistance, MatchesHighPrecisionOnSegments) {
   Generator g(10);
   double worst = 0.0;
   for (int i = 0; i < 2000; ++i) {
@@ -399,8 +403,8 @@ TEST(SegmentDistance, MatchesHighPrecision) {
     Truth truth;
     truth.segment_segment(exact(p0), exact(p1), exact(q0), exact(q1));
     const double size = std::max((p0 - p1).norm(), (q0 - q1).norm()) + root(truth);
-    const ClosestPoints forth = segment_segment_distance(p0, p1, q0, q1);
-    const ClosestPoints back = segment_segment_distance(q0, q1, p0, p1);
+    const ClosestPoints forth = triangle_triangle_distance(segment(p0, p1), segment(q0, q1));
+    const ClosestPoints back = triangle_triangle_distance(segment(q0, q1), segment(p0, p1));
     for (const ClosestPoints& c : {forth, back}) {
       const double error = std::abs(c.distance - root(truth)) / size;
       worst = std::max(worst, error);
@@ -411,7 +415,7 @@ TEST(SegmentDistance, MatchesHighPrecision) {
   RecordProperty("worst_error_e17", static_cast<int>(worst * 1e17));
 }
 
-TEST(PointTriangleDistance, MatchesHighPrecision) {
+TEST(TriangleDistance, MatchesHighPrecisionOnAPointAndATriangle) {
   Generator g(11);
   double worst = 0.0;
   for (int i = 0; i < 2000; ++i) {
@@ -422,7 +426,7 @@ TEST(PointTriangleDistance, MatchesHighPrecision) {
                          std::pow(10.0, uniform(g, -15.0, 0.0)) * shapes::unit_vector(g));
     Truth truth;
     truth.point_triangle(exact(p), {exact(t[0]), exact(t[1]), exact(t[2])});
-    const ClosestPoints c = point_triangle_distance(p, t);
+    const ClosestPoints c = triangle_triangle_distance(point(p), t);
     const double error = std::abs(c.distance - root(truth)) / (longest_edge(t) + root(truth));
     worst = std::max(worst, error);
     ASSERT_LE(error, k_triangle_distance_error) << "case " << i;

@@ -13,7 +13,7 @@ namespace {
 constexpr double k_rounding_degrees = 1e-13;  // some units in the last place of 180 degrees
 
 TEST(Direction, AnglesAreAccurateNearZeroAndNear180) {
-  // An arc cosine would give 0 or 8.5e-7 for the first one.
+  // An arc cosine gives 0 or 8.5e-7 for the first angle.
   const double tiny = 1e-9;
   const double tiny_degrees = tiny * 180.0 / std::numbers::pi;
   EXPECT_NEAR(angle_degrees({1, 0, 0}, {1, tiny, 0}), tiny_degrees, 1e-6 * tiny_degrees);
@@ -25,19 +25,19 @@ TEST(Direction, AnglesAreAccurateNearZeroAndNear180) {
   EXPECT_EQ(angle_degrees({0, 0, 0}, {3, 0, 0}), 0.0);
 }
 
-TEST(Direction, EveryStampIsCountedOnce) {
+TEST(Direction, EveryStepIsCountedOnce) {
   const std::vector<Eigen::Vector3d> ideal{{1, 0, 0}, {0, 5, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 2}, {0.1, 0, 0}};
   const std::vector<Eigen::Vector3d> measured{{0, 2, 0}, {0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {0, 3, 3}, {1e-13, 0, 0}};
   const DirectionError error = direction_error(ideal, measured);
   EXPECT_EQ(error.compared, 2u);
-  EXPECT_EQ(error.misses, 2u);  // the last one is zero next to its series' peak
+  EXPECT_EQ(error.misses, 2u);  // the last one is zero against its series' peak
   EXPECT_EQ(error.false_contacts, 1u);
   EXPECT_EQ(error.skipped, 1u);
   EXPECT_NEAR(*error.gamma_degrees, (90.0 + 45.0) / 2.0, k_rounding_degrees);
   EXPECT_NEAR(error.largest_degrees, 90.0, k_rounding_degrees);
 }
 
-TEST(Direction, NoCommonStampGivesNoAngle) {
+TEST(Direction, NoCommonStepGivesNoAngle) {
   const std::vector<Eigen::Vector3d> ideal{{1, 0, 0}, {2, 0, 0}};
   const std::vector<Eigen::Vector3d> zero(2, Eigen::Vector3d::Zero());
   const DirectionError error = direction_error(ideal, zero);

@@ -22,7 +22,7 @@ TEST(Magnitude, SigmaIsTheRootMeanSquareOfNormalisedDifferences) {
   EXPECT_NEAR(*sigma(k_ideal, k_measured), std::sqrt(mean_square), k_rounding);
 }
 
-TEST(Magnitude, PrintedFormulaDependsOnTheSampling) {
+TEST(Magnitude, PrintedFormulaDependsOnTheNumberOfSteps) {
   EXPECT_NEAR(*sigma_paper(k_ideal, k_measured), std::sqrt(0.25 + 0.16 + 0.5625) / 3.0, k_rounding);
   std::vector<Eigen::Vector3d> ideal_twice;
   std::vector<Eigen::Vector3d> measured_twice;
@@ -35,7 +35,7 @@ TEST(Magnitude, PrintedFormulaDependsOnTheSampling) {
               k_rounding);
 }
 
-TEST(Magnitude, SigmaDoesNotSeeAGainButTheFitDoes) {
+TEST(Magnitude, AGainShowsInTheFitButNotInSigma) {
   std::vector<Eigen::Vector3d> louder = k_ideal;
   for (Eigen::Vector3d& v : louder) v *= -1.7;
   EXPECT_NEAR(*sigma(k_ideal, louder), 0.0, k_rounding);
@@ -43,12 +43,12 @@ TEST(Magnitude, SigmaDoesNotSeeAGainButTheFitDoes) {
   EXPECT_NEAR(fit_gain(k_ideal, louder)->sigma, 0.0, k_rounding);
 }
 
-TEST(Magnitude, FitLeavesTheRestOfLeastSquares) {
-  // Ideal magnitudes (5, 3, 0), measured (2, 4, 3): gain (10 + 12) / 34, rest 2 - 5g, 4 - 3g, 3.
+TEST(Magnitude, FitLeavesTheResidualOfLeastSquares) {
+  // Ideal magnitudes (5, 3, 0), measured (2, 4, 3): gain (10 + 12) / 34, residuals 2 - 5g, 4 - 3g, 3.
   const double gain = 22.0 / 34.0;
-  const double rest = std::pow(2 - 5 * gain, 2) + std::pow(4 - 3 * gain, 2) + 9.0;
+  const double squares = std::pow(2 - 5 * gain, 2) + std::pow(4 - 3 * gain, 2) + 9.0;
   EXPECT_NEAR(fit_gain(k_ideal, k_measured)->gain, gain, k_rounding);
-  EXPECT_NEAR(fit_gain(k_ideal, k_measured)->sigma, std::sqrt(rest / 3.0) / (5.0 * gain), k_rounding);
+  EXPECT_NEAR(fit_gain(k_ideal, k_measured)->sigma, std::sqrt(squares / 3.0) / (5.0 * gain), k_rounding);
 }
 
 TEST(Magnitude, ZeroSeriesHaveNoCurve) {

@@ -15,12 +15,12 @@ namespace sixdof {
 namespace {
 
 constexpr double k_rounding = 1e-12;  // of sums of some hundred terms of order one
-constexpr double k_turn = 2.0 * std::numbers::pi;
+constexpr double k_full_angle = 2.0 * std::numbers::pi;
 
 std::vector<double> tone(std::size_t count, double cycles, double amplitude, double offset = 0.0) {
   std::vector<double> signal;
   for (std::size_t k = 0; k < count; ++k) {
-    const double phase = k_turn * cycles * static_cast<double>(k) / static_cast<double>(count);
+    const double phase = k_full_angle * cycles * static_cast<double>(k) / static_cast<double>(count);
     signal.push_back(offset + amplitude * std::cos(phase + 0.4));
   }
   return signal;
@@ -40,7 +40,7 @@ TEST(EnergySpectrum, ObeysParsevalForEvenAndOddLengths) {
   EXPECT_TRUE(energy_spectrum({}).empty());
 }
 
-TEST(EnergySpectrum, PutsAToneInItsPlace) {
+TEST(EnergySpectrum, PutsAToneAtItsFrequency) {
   const std::vector<double> energy = energy_spectrum(tone(240, 17.0, 3.0, 0.5));
   EXPECT_NEAR(energy[0], 240 * 0.25, k_rounding * 240);
   EXPECT_NEAR(energy[17], 240 * 9.0 / 2.0, k_rounding * 1000);
@@ -72,25 +72,25 @@ TEST(ResidualNoise, SeesOnlyWhatIsAboveTheCutoff) {
   for (std::size_t k = 0; k < count; ++k) measured[k] = 2.5 * ideal[k] + Eigen::Vector3d(0.0, noise[k], 0.0);
   EXPECT_NEAR(*residual_noise(ideal, measured, 1000.0, 50.0), 0.02 / 100.0, k_rounding);
   EXPECT_NEAR(*residual_noise(ideal, measured, 1000.0, 130.0), 0.0, k_rounding);
-  // The same stamps at half the rate: the tone is at 60 Hz.
+  // The same steps at half the rate: the tone is at 60 Hz.
   EXPECT_NEAR(*residual_noise(ideal, measured, 500.0, 70.0), 0.0, k_rounding);
 }
 
-TEST(ResidualNoise, ASmallGainIsNoNoise) {
+TEST(ResidualNoise, ASmallGainIsNotNoise) {
   const std::vector<Eigen::Vector3d> ideal = along_x(tone(1000, 120.0, 2.0));
   const std::vector<Eigen::Vector3d> faint = along_x(tone(1000, 120.0, 0.1));
   EXPECT_NEAR(*residual_noise(ideal, faint, 1000.0, 50.0), 0.0, k_rounding);
 }
 
-TEST(ResidualNoise, ASlowErrorIsNoNoise) {
+TEST(ResidualNoise, ASlowErrorIsNotNoise) {
   const std::vector<Eigen::Vector3d> ideal = along_x(std::vector<double>(1000, 1.0));
   std::vector<double> ramp(1000);
   for (std::size_t k = 0; k < ramp.size(); ++k) ramp[k] = 0.8 + 0.0004 * static_cast<double>(k);
-  constexpr double k_window_leak = 1e-9;  // what the Hann window lets through of a ramp at 50 bins from the mean
+  constexpr double k_window_leak = 1e-9;  // leakage of a ramp through the Hann window at 50 bins from the mean
   EXPECT_LT(*residual_noise(ideal, along_x(ramp), 1000.0, 50.0), k_window_leak);
 }
 
-TEST(ResidualNoise, AnOppositeForceIsJudgedByItself) {
+TEST(ResidualNoise, AnOppositeForceIsComparedWithItself) {
   const std::vector<Eigen::Vector3d> ideal = along_x(std::vector<double>(500, 1.0));
   EXPECT_NEAR(*residual_noise(ideal, along_x(std::vector<double>(500, -3.0)), 1000.0, 50.0), 0.0, k_rounding);
   EXPECT_FALSE(residual_noise(ideal, along_x(std::vector<double>(500, 0.0)), 1000.0, 50.0));
@@ -123,22 +123,22 @@ TEST(ShortTimeSpectrum, ShowsWhenAToneStarts) {
 
 TEST(ShortTimeSpectrum, FollowsAChirp) {
   // Frequency rising from 40 Hz by 300 Hz a second: phase 2 pi (40 t + 150 t^2).
-  constexpr double k_rate = 1000.0;
+  constexpr double k_rate_hz = 1000.0;
   std::vector<double> signal;
   for (int k = 0; k < 1000; ++k) {
-    const double t = k / k_rate;
-    signal.push_back(0.7 * std::sin(k_turn * (40.0 * t + 150.0 * t * t)));
+    const double t = k / k_rate_hz;
+    signal.push_back(0.7 * std::sin(k_full_angle * (40.0 * t + 150.0 * t * t)));
   }
-  const Spectrogram diagram = short_time_spectrum(signal, k_rate, 64, 8);
+  const Spectrogram diagram = short_time_spectrum(signal, k_rate_hz, 64, 8);
   const std::size_t bins = diagram.frequencies.size();
   const double bin_width = diagram.frequencies[1];
-  EXPECT_NEAR(bin_width, k_rate / 64.0, k_rounding);
+  EXPECT_NEAR(bin_width, k_rate_hz / 64.0, k_rounding);
   for (std::size_t row = 0; row < diagram.times.size(); ++row) {
     const auto from = diagram.intensity.begin() + static_cast<std::ptrdiff_t>(row * bins);
     const auto strongest = std::max_element(from, from + static_cast<std::ptrdiff_t>(bins)) - from;
     const double expected = 40.0 + 300.0 * diagram.times[row];
     EXPECT_LE(std::abs(diagram.frequencies[static_cast<std::size_t>(strongest)] - expected), 0.75 * bin_width) << row;
-    // The chirp keeps its strength: a piece of amplitude a under a Hann window has energy (3/8) a^2 / 2 per sample.
+    // The chirp keeps its strength: a piece of amplitude a under a Hann window has energy (3/8) a^2 / 2 per step.
     EXPECT_NEAR(std::accumulate(from, from + static_cast<std::ptrdiff_t>(bins), 0.0), 64.0 * 0.375 * 0.49 / 2.0,
                 0.1 * 64.0 * 0.375 * 0.49 / 2.0);
   }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests models/fetch without a network, on packages made for the purpose. Usage: fetch_test.py PATH-OF-FETCH"""
+"""Tests models/fetch without a network, on a package made here. Usage: fetch_test.py PATH-OF-FETCH"""
 
 import gzip
 import hashlib
@@ -40,7 +40,8 @@ class Fetch(unittest.TestCase):
         tree = self.root / "tree"
         (tree / "DEBIAN").mkdir(parents=True)
         (tree / "DEBIAN" / "control").write_text(
-            "Package: test-shapes\nVersion: 1\nArchitecture: all\nMaintainer: nobody <nobody@invalid>\nDescription: shapes\n")
+            "Package: test-shapes\nVersion: 1\nArchitecture: all\n"
+            "Maintainer: nobody <nobody@invalid>\nDescription: shapes\n")
         data = tree / "usr" / "share"
         data.mkdir(parents=True)
         (data / "plain.off").write_bytes(PLAIN)
@@ -49,14 +50,16 @@ class Fetch(unittest.TestCase):
             entry = tarfile.TarInfo("meshes/member.off")
             entry.size = len(MEMBER)
             archive.addfile(entry, io.BytesIO(MEMBER))
-        subprocess.run(["dpkg-deb", "--root-owner-group", "-b", str(tree), str(self.packages / "test-shapes_1_all.deb")],
+        package = self.packages / "test-shapes_1_all.deb"
+        subprocess.run(["dpkg-deb", "--root-owner-group", "-b", str(tree), str(package)],
                        check=True, capture_output=True)
 
     def write_manifest(self, plain_digest):
         entry = {"package": "test-shapes"}
         self.manifest.write_text(json.dumps({"models": [
             {**entry, "name": "plain", "path": "usr/share/plain.off", "file": "plain.off", "sha256": plain_digest},
-            {**entry, "name": "packed", "path": "usr/share/packed.off.gz", "file": "packed.off", "sha256": sha256(PACKED)},
+            {**entry, "name": "packed", "path": "usr/share/packed.off.gz", "file": "packed.off",
+             "sha256": sha256(PACKED)},
             {**entry, "name": "member", "path": "usr/share/many.tar.gz", "member": "meshes/member.off",
              "file": "member.off", "sha256": sha256(MEMBER)}]}))
 
@@ -69,7 +72,7 @@ class Fetch(unittest.TestCase):
     def files(self):
         return sorted(path.name for path in self.cache.iterdir() if path.name != ".lock")
 
-    def test_takes_files_out_of_packages_whatever_their_wrapping(self):
+    def test_fetches_plain_compressed_and_archived_files(self):
         result = self.fetch()
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(self.files(), ["member.off", "packed.off", "plain.off"])
@@ -81,7 +84,7 @@ class Fetch(unittest.TestCase):
         self.assertEqual(self.fetch("packed").returncode, 0)
         self.assertEqual(self.files(), ["packed.off"])
 
-    def test_leaves_alone_what_is_there_and_needs_no_package_then(self):
+    def test_keeps_valid_files_and_needs_no_package_for_them(self):
         self.assertEqual(self.fetch().returncode, 0)
         before = (self.cache / "plain.off").stat()
         (self.packages / "test-shapes_1_all.deb").unlink()
@@ -100,7 +103,7 @@ class Fetch(unittest.TestCase):
         self.assertIn(f"{self.cache / 'plain.off'} is damaged", result.stdout)
         self.assertEqual((self.cache / "plain.off").read_bytes(), PLAIN)
 
-    def test_stores_nothing_of_another_version_but_the_rest(self):
+    def test_does_not_store_a_file_of_another_version(self):
         self.write_manifest("0" * 64)
         result = self.fetch()
         self.assertEqual(result.returncode, 1)
@@ -128,17 +131,25 @@ class Fetch(unittest.TestCase):
         self.assertIn("no model is called plane; known: plain, packed, member", result.stderr)
         self.assertFalse(self.cache.exists())
 
-    def test_two_at_once_do_not_disturb_each_other(self):
+    def test_runs_at_the_same_time_wait_for_each_other(self):
         command = [str(FETCH), "--manifest", str(self.manifest), "--cache", str(self.cache),
                    "--packages", str(self.packages)]
-        running = [subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(4)]
+        running = [subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                   for _ in range(4)]
         outputs = [process.communicate() for process in running]
         self.assertEqual([process.returncode for process in running], [0] * 4, outputs)
         self.assertEqual(sum(out.count(": fetched ") for out, _ in outputs), 3)
         self.assertEqual(self.files(), ["member.off", "packed.off", "plain.off"])
 
+    def test_a_closed_pipe_ends_the_list_without_a_message(self):
+        command = [str(FETCH), "--manifest", str(self.manifest), "--cache", str(self.cache), "--list"]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            process.stdout.close()
+            self.assertEqual(process.stderr.read(), b"")
+            self.assertEqual(process.wait(), 141)
+
     def test_a_cache_that_cannot_be_made_is_named(self):
-        self.cache.write_text("in the way")
+        self.cache.write_text("not a folder")
         result = self.fetch()
         self.assertEqual(result.returncode, 1)
         self.assertIn(str(self.cache), result.stderr)

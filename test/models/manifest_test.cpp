@@ -11,9 +11,9 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/save.h>
+#include <sixdof/models/model_catalogue.h>
 #include <sixdof/models/recipe.h>
 #include <sixdof/models/tube.h>
-#include <sixdof/models/model_catalogue.h>
 
 namespace sixdof {
 namespace {
@@ -21,14 +21,14 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// An empty cache for one test.
-class Cache : public ::testing::Test {
+/// An empty folder of fetched models.
+class FetchedModels : public ::testing::Test {
  protected:
-  Cache() : folder_(std::filesystem::temp_directory_path() / ("sixdof-models-" + std::to_string(::getpid()))) {
+  FetchedModels() : folder_(std::filesystem::temp_directory_path() / ("sixdof-models-" + std::to_string(::getpid()))) {
     std::filesystem::create_directories(folder_);
     ::setenv("SIXDOF_MODELS", folder_.c_str(), 1);
   }
-  ~Cache() override {
+  ~FetchedModels() override {
     ::unsetenv("SIXDOF_MODELS");
     std::filesystem::remove_all(folder_);
   }
@@ -45,7 +45,7 @@ class Cache : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST(Manifest, EntriesAreWholeAndNamesUnique) {
+TEST(Manifest, EntriesAreCompleteAndNamesUnique) {
   EXPECT_GE(fetched_models().size(), 12U);
   for (const FetchedModel& model : fetched_models()) {
     EXPECT_EQ(find_fetched_model(model.name), &model);
@@ -59,24 +59,25 @@ TEST(Manifest, EntriesAreWholeAndNamesUnique) {
   }
 }
 
-TEST_F(Cache, AModelThatIsNotThereSaysHowToGetIt) {
+TEST_F(FetchedModels, MissingFileIsReportedWithItsCommand) {
   EXPECT_THAT(message_for("bear"), AllOf(HasSubstr((folder_ / "bear.off").string()), HasSubstr("models/fetch bear")));
 }
 
-TEST_F(Cache, ADamagedFileIsRefusedByName) {
+TEST_F(FetchedModels, DamagedFileIsRefused) {
   std::ofstream(folder_ / "bear.off") << "OFF\n3 1 0\n0 0 0\n1 0";
   EXPECT_THAT(message_for("bear"), AllOf(HasSubstr("bear.off"), HasSubstr("models/fetch bear")));
 }
 
-TEST_F(Cache, AnotherMeshUnderTheNameIsRefused) {
+TEST_F(FetchedModels, AnotherMeshIsRefused) {
   const Mesh torus = make_torus({}, 27648);  // as many triangles as the bear
   save_mesh(torus, folder_ / "bear.off");
   EXPECT_THAT(message_for("bear"),
               AllOf(HasSubstr("bear.off"), HasSubstr(torus.hash()), HasSubstr("models/fetch bear")));
-  EXPECT_EQ(load_model((folder_ / "bear.off").string()).hash(), torus.hash()) << "as a file it is what it is";
+  EXPECT_EQ(load_model((folder_ / "bear.off").string()).hash(), torus.hash())
+      << "a file by its path is not compared with the manifest";
 }
 
-TEST_F(Cache, RealObjectsAreOnlyCutFiner) {
+TEST_F(FetchedModels, AreNotCoarsened) {
   try {
     load_model("bear-1k");
     FAIL() << "a bear of 1,000 triangles was made";
@@ -85,7 +86,7 @@ TEST_F(Cache, RealObjectsAreOnlyCutFiner) {
   }
 }
 
-TEST(FetchedModels, ThatAreHereAreThoseOfTheManifest) {
+TEST(Manifest, DescribesTheFetchedModels) {
   std::size_t seen = 0;
   for (const FetchedModel& model : fetched_models()) {
     if (!std::filesystem::exists(model_cache() / model.file)) continue;
@@ -100,7 +101,7 @@ TEST(FetchedModels, ThatAreHereAreThoseOfTheManifest) {
     EXPECT_LT((mesh.box().sizes() - model.size).norm(), 1e-3 * model.size.norm());  // four digits
     ++seen;
   }
-  if (seen == 0) GTEST_SKIP() << "no fetched model is here; run models/fetch";
+  if (seen == 0) GTEST_SKIP() << "no model is fetched; run models/fetch";
 }
 
 }  // namespace

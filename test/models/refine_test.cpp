@@ -50,7 +50,7 @@ TEST(Subdivide, SplitsTheLongestEdgesFirst) {
 }
 
 TEST(Subdivide, HandlesBordersAndEdgesOfManyTriangles) {
-  // Three leaves on one spine: its edge has three triangles, all others one.
+  // Three triangles at one edge; all other edges have one.
   const Mesh leaves = Mesh::build({{0, 0, 0.1}, {0, 0, 2.7}, {1.1, 0, 1}, {-0.6, 0.9, 1}, {-0.5, -0.8, 1}},
                                   {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
   const Mesh fine = subdivide(leaves, 50, "leaves");
@@ -59,7 +59,7 @@ TEST(Subdivide, HandlesBordersAndEdgesOfManyTriangles) {
   EXPECT_NEAR(fine.area(), leaves.area(), k_rounding);
   EXPECT_EQ(fine.topology().components, 1U);
   EXPECT_GE(fine.topology().nonmanifold_edges, 2U);
-  // No vertex hangs on an edge that is not split: border edges make up the leaves' outline and nothing else.
+  // No vertex lies on an edge that is not split: the border edges are the outline of the three and nothing else.
   double outline = 0.0;
   for (const Eigen::Vector3d& tip :
        {Eigen::Vector3d(1.1, 0, 1), Eigen::Vector3d(-0.6, 0.9, 1), Eigen::Vector3d(-0.5, -0.8, 1)}) {

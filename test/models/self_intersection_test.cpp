@@ -5,13 +5,13 @@
 #include <sixdof/models/recipe.h>
 #include <sixdof/models/refine.h>
 
-/// No model's surface passes through itself, by CGAL's exact predicates: an inside that is one would not be defined.
+/// No model's surface intersects itself, by CGAL's exact predicates.
 namespace sixdof {
 namespace {
 
 std::size_t crossings(const Mesh& mesh) { return reference::count_self_intersections(reference::to_cgal(mesh)); }
 
-TEST(SelfIntersection, IsNowhereInARecipe) {
+TEST(SelfIntersection, NotInRecipes) {
   for (const Recipe& recipe : recipes()) {
     for (const std::size_t triangles : {recipe.minimum, std::size_t{1000}, std::size_t{10'000}}) {
       EXPECT_EQ(crossings(recipe.make(triangles)), 0U) << recipe.name << ' ' << triangles;
@@ -19,15 +19,14 @@ TEST(SelfIntersection, IsNowhereInARecipe) {
   }
 }
 
-/// Edges are cut in the middle, where rounding moves them: not so far that neighbours cross.
-TEST(SelfIntersection, ComesWithNoSubdivision) {
+/// Midpoints of edges are rounded, which could make neighbours cross.
+TEST(SelfIntersection, NotInSubdivisions) {
   for (const Recipe& recipe : recipes()) {
     EXPECT_EQ(crossings(subdivide(recipe.make(1000), 5000, "finer")), 0U) << recipe.name;
   }
 }
 
-/// Two blocks in one mesh that cross: the count is not always zero.
-TEST(SelfIntersection, OfCrossingBlocksIsSeen) {
+TEST(SelfIntersection, IsFoundInCrossingBoxes) {
   const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 12);
   std::vector<Eigen::Vector3d> vertices = block.vertices();
   std::vector<Triangle> triangles = block.triangles();

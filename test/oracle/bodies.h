@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,7 +16,7 @@
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/overlap.h>
 
-/// Bodies and poses shared by the tests of the overlap oracle.
+/// Bodies and poses shared by the tests of the oracle.
 namespace sixdof::bodies {
 
 /// A mesh with everything a query needs.
@@ -29,8 +32,8 @@ inline Overlap overlap(const Body& a, const Body& b, const Pose& X_AB) {
   return OverlapQuery(a.solid, b.solid).evaluate(X_AB);
 }
 
-/// Axis-parallel box; `turned` picks the other diagonal of every face.
-inline Mesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, bool turned = false) {
+/// Axis-parallel box; `other_diagonals` splits every face along the other diagonal.
+inline Mesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, bool other_diagonals = false) {
   std::vector<Eigen::Vector3d> v;
   for (int i = 0; i < 8; ++i) {
     v.emplace_back(i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(), i & 4 ? high.z() : low.z());
@@ -39,7 +42,7 @@ inline Mesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, bool tu
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
   std::vector<Triangle> t;
   for (const auto& f : faces) {
-    if (turned) {
+    if (other_diagonals) {
       t.push_back({f[1], f[2], f[3]});
       t.push_back({f[1], f[3], f[0]});
     } else {
@@ -111,6 +114,12 @@ inline Mesh together(const Mesh& a, const Mesh& b) {
   const auto n = static_cast<std::uint32_t>(a.vertices().size());
   for (const Triangle& f : b.triangles()) t.push_back({f[0] + n, f[1] + n, f[2] + n});
   return Mesh::build(std::move(p), std::move(t), a.name() + " and " + b.name());
+}
+
+inline Mesh inside_out(const Mesh& mesh) {
+  std::vector<Triangle> t = mesh.triangles();
+  for (Triangle& x : t) std::swap(x[1], x[2]);
+  return Mesh::build(mesh.vertices(), std::move(t), mesh.name() + " inside out");
 }
 
 inline Pose random_pose(std::mt19937_64& random, double reach) {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <boost/multiprecision/cpp_int.hpp>
 
-/// The crossing of two triangles against rational arithmetic with B really translated, by a tiny rational vector.
+/// The crossing of two triangles against rational arithmetic, with B translated by a small rational vector.
 namespace sixdof {
 namespace {
 
@@ -56,11 +56,11 @@ OrderedTriangle lattice_triangle(std::mt19937_64& random, int top) {
   return t;
 }
 
-TEST(crossing, ties_are_those_of_a_really_translated_body) {
+TEST(Crossing, TiesAreThoseOfATranslatedBody) {
   // Determinants of lattice points are whole numbers below 1000, so this translation changes signs of zeros only.
   const Rational eps = Rational(1) / (1 << 24);
   const Point e{eps, eps * eps, eps * eps * eps};
-  const double reach = 1e-6;  // how far the translation moves a piercing point: eps times the steepness, below 10
+  const double tolerance = 1e-6;  // a piercing point moves by eps times the steepness, below 10
   std::mt19937_64 random(17);
   int crossings = 0;
   for (int i = 0; i < 5000; ++i) {
@@ -84,7 +84,7 @@ TEST(crossing, ties_are_those_of_a_really_translated_body) {
     EXPECT_EQ(segment->start_side, start.side);
     EXPECT_EQ(segment->end_side, end.side);
     const auto expect_near = [&](const Vector3d& x, const Point& y) {
-      for (int k = 0; k < 3; ++k) EXPECT_NEAR(x[k], static_cast<double>(y[static_cast<std::size_t>(k)]), reach);
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(x[k], static_cast<double>(y[static_cast<std::size_t>(k)]), tolerance);
     };
     expect_near(segment->start, start.at);
     expect_near(segment->end, end.at);
@@ -96,15 +96,15 @@ TEST(crossing, ties_are_those_of_a_really_translated_body) {
   EXPECT_GT(crossings, 250);
 }
 
-TEST(crossing, segments_pierce_what_their_ends_say) {
+TEST(Crossing, EdgesPierceWhereSegmentsEnd) {
   std::mt19937_64 random(18);
   for (int i = 0; i < 20000; ++i) {
     const OrderedTriangle a = lattice_triangle(random, 3), b = lattice_triangle(random, 3);
     const std::optional<Segment> segment = cross(a, b);
     int down = 0, up = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const int of_a = pierce_moved_triangle(a.corner[k], a.corner[(k + 1) % 3], b.corner);
-      const int of_b = moved_edge_pierces(b.corner[k], b.corner[(k + 1) % 3], a.corner);
+      const int of_a = pierce(a.corner[k], a.corner[(k + 1) % 3], b.corner, Perturbed::triangle);
+      const int of_b = pierce(b.corner[k], b.corner[(k + 1) % 3], a.corner, Perturbed::edge);
       const int side = static_cast<int>(k);
       for (const auto& [sign, number] : {std::pair(of_a, side), std::pair(-of_b, side + 3)}) {
         // A's sides leave the segment downwards, B's upwards.

@@ -1,17 +1,16 @@
 #include <sixdof/oracle/distance.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include <sixdof/oracle/winding_rays.h>
-
 #include "../geometry/shapes.h"
+#include "bodies.h"
 #include "distance_truth.h"
 
 namespace sixdof {
@@ -19,28 +18,25 @@ namespace {
 
 using distance_truth::brute_force;
 using distance_truth::corners_of;
-using distance_truth::turned_inside_out;
 using Eigen::Vector3d;
 using shapes::Generator;
 using shapes::uniform;
 
-/// Corners of B are rounded once when they are moved, and the closed forms below round a few times.
+/// Rounding of the transformed corners of B and of the closed forms below, relative.
 constexpr double k_pose_rounding = 1e-14;
-/// The bound of the task: against brute force.
-constexpr double k_brute_force = 1e-13;
 
-/// Moves B along u from far until its distance is `target`: advancing by the difference never jumps over it.
+/// Moves B along -u from far until its distance is `target`: steps by the difference never pass it.
 Pose approach(const Mesh& a, const Mesh& b, Pose pose, const Vector3d& u, double target) {
   const DistanceOracle oracle(a, b);
   DistanceQuery query(oracle);
   const double far = 1.1 * (a.diagonal() + b.diagonal()) + target;
   const Vector3d start = a.center() - pose.R * b.center();
-  double translations = far;
+  double translation = far;
   for (int i = 0; i < 300; ++i) {
-    pose.t = start + translations * u;
+    pose.t = start + translation * u;
     const double excess = query.distance(pose).distance - target;
     if (excess < 1e-9 * far) break;
-    translations -= excess;
+    translation -= excess;
   }
   return pose;
 }
@@ -48,8 +44,11 @@ Pose approach(const Mesh& a, const Mesh& b, Pose pose, const Vector3d& u, double
 void check_witnesses(const Mesh& a, const Mesh& b, const Pose& X_AB, const Separation& d) {
   const double offset = a.center().norm() + X_AB.t.norm() + b.center().norm();
   const double tolerance = 8.0 * k_triangle_distance_error * (a.diagonal() + b.diagonal() + d.distance + offset);
-  EXPECT_LE(point_triangle_distance(d.witness_a, corners_of(a, d.triangle_a)).distance, tolerance);
-  EXPECT_LE(point_triangle_distance(d.witness_b, corners_of(b, d.triangle_b, X_AB)).distance, tolerance);
+  EXPECT_LE(triangle_triangle_distance({d.witness_a, d.witness_a, d.witness_a}, corners_of(a, d.triangle_a)).distance,
+            tolerance);
+  EXPECT_LE(
+      triangle_triangle_distance({d.witness_b, d.witness_b, d.witness_b}, corners_of(b, d.triangle_b, X_AB)).distance,
+      tolerance);
   EXPECT_NEAR((d.witness_a - d.witness_b).norm(), d.distance, tolerance);
 }
 
@@ -57,8 +56,8 @@ TEST(DistanceOracle, EqualsBruteForce) {
   Generator generator(1);
   std::vector<Mesh> meshes{shapes::bumpy_sphere(1, 0.3, 1.0, {0.2, 0.1, -0.3}), shapes::bumpy_sphere(1, 0.3, 0.6),
                            shapes::box({0.4, 0.9, 0.5}), shapes::soup(generator, 90, 1.0, 0.3)};
-  // Surfaces seen from behind: slabs face the other way.
-  meshes.push_back(turned_inside_out(shapes::bumpy_sphere(2, 0.1, 1.4, {0.1, -0.3, 0.2})));
+  // Inside out: the slabs' normals point inwards.
+  meshes.push_back(bodies::inside_out(shapes::bumpy_sphere(2, 0.1, 1.4, {0.1, -0.3, 0.2})));
   int apart = 0;
   int meeting = 0;
   for (const Mesh& a : meshes) {
@@ -70,7 +69,6 @@ TEST(DistanceOracle, EqualsBruteForce) {
         const Separation truth = brute_force(a, b, pose);
         const Separation d = query.distance(pose);
         ASSERT_TRUE(d.has_witnesses);
-        ASSERT_NEAR(d.distance, truth.distance, k_brute_force * truth.distance);
         EXPECT_EQ(d.distance, truth.distance);
         if (truth.distance > 0.0) {
           ++apart;
@@ -107,7 +105,7 @@ TEST(DistanceOracle, IsSymmetric) {
   }
 }
 
-TEST(DistanceOracle, SpheresByTheirVertices) {
+TEST(DistanceOracle, DistanceOfSpheresVertexToVertex) {
   // Polyhedra inscribed in spheres, a vertex of each on the line of the centres: the distance is that of the spheres.
   Generator generator(3);
   const double r = 0.8;
@@ -138,27 +136,25 @@ TEST(DistanceOracle, BoxesAtAnyRotation) {
   DistanceQuery query(oracle);
   for (int i = 0; i < 60; ++i) {
     const double gap = std::pow(10.0, uniform(generator, -12.0, 1.0));
-    // Corner over face: B's lowest corner above the middle of A's top.
+    // Vertex over face: B's lower vertex above the middle of A's upper face.
     Pose pose = shapes::random_pose(generator, 0.2);
-    const double lowest = -(pose.R.row(2).cwiseAbs() * half_b).value();
-    pose.t.z() = half_a.z() + gap - lowest;
+    pose.t.z() = half_a.z() + gap + (pose.R.row(2).cwiseAbs() * half_b).value();
     EXPECT_NEAR(query.distance(pose).distance, gap, k_pose_rounding * (2.0 + gap));
     EXPECT_FALSE(query.collide(pose));
 
-    // Edge over edge: A's edge along x (y = +, z = +), B's edge along its own x turned by a small or large angle.
+    // Edge over edge: A's edge along x (y = +, z = +), B's edge along its own x rotated by a small or large angle.
     const double angle = std::pow(10.0, uniform(generator, -15.0, 0.0));
-    const Eigen::AngleAxisd lean(0.785 + uniform(generator, -0.2, 0.2), Vector3d::UnitX());
+    const Eigen::AngleAxisd tilt(0.785 + uniform(generator, -0.2, 0.2), Vector3d::UnitX());
     const Vector3d up = Vector3d(0.0, 1.0, 1.0).normalized();
-    const Eigen::AngleAxisd turn(angle, up);
-    const Eigen::Matrix3d R = (turn * lean).toRotationMatrix();
-    // B's edge that is lowest along `up`, through its middle; placed over a point of A's edge.
+    const Eigen::Matrix3d R = (Eigen::AngleAxisd(angle, up) * tilt).toRotationMatrix();
+    // The middle of B's edge that is least along `up`; it is moved over a point of A's edge.
     Vector3d low = Vector3d::Zero();
-    double lowest_along = 0.0;
+    double least_along = 0.0;
     for (const double y : {-half_b.y(), half_b.y()}) {
       for (const double z : {-half_b.z(), half_b.z()}) {
         const Vector3d middle = R * Vector3d(0.0, y, z);
-        if (middle.dot(up) < lowest_along) {
-          lowest_along = middle.dot(up);
+        if (middle.dot(up) < least_along) {
+          least_along = middle.dot(up);
           low = middle;
         }
       }
@@ -197,7 +193,7 @@ TEST(DistanceOracle, ErrorGrowsWithTheOffsetOnlyAsCoordinatesRound) {
   }
 }
 
-TEST(DistanceOracle, FarApartItStillPrunes) {
+TEST(DistanceOracle, PrunesBodiesFarApart) {
   const Mesh a = shapes::bumpy_sphere(4, 0.2);
   const DistanceOracle oracle(a, a);
   DistanceQuery query(oracle);
@@ -207,7 +203,7 @@ TEST(DistanceOracle, FarApartItStillPrunes) {
     pose.t = far * shapes::unit_vector(generator);
     const Separation d = query.distance(pose);
     EXPECT_NEAR(d.distance, far, 3.0);
-    // Of 26 million pairs. Leaves are compared in floats, which lets more through as the distance grows.
+    // Of 26 million pairs. Leaves are compared in floats, which prune less as the distance grows.
     EXPECT_LT(query.counts().triangles, 30000u) << "far " << far;
     EXPECT_LT(query.counts().nodes, 30000u) << "far " << far;
   }
@@ -283,7 +279,7 @@ TEST(DistanceOracle, IsTheSameBitsOnEveryInstructionSet) {
   EXPECT_GE(tried, 2);  // at least a SIMD and a scalar path
 }
 
-TEST(DistanceOracle, UpperBoundCutsAndKeeps) {
+TEST(DistanceOracle, UpperBoundIsInclusive) {
   const Mesh a = shapes::bumpy_sphere(4, 0.25);
   const DistanceOracle oracle(a, a);
   DistanceQuery query(oracle);
@@ -299,7 +295,9 @@ TEST(DistanceOracle, UpperBoundCutsAndKeeps) {
       EXPECT_EQ(x.witness_b, d.witness_b);
     }
     for (const double factor : {0.0, 0.5, 1.0 - 1e-15}) {
-      EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = false}).has_witnesses);
+      const Separation x = query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = false});
+      EXPECT_FALSE(x.has_witnesses);
+      EXPECT_EQ(x.distance, std::numeric_limits<double>::infinity());
       ASSERT_TRUE(query.distance(pose).has_witnesses);  // a pair to begin with, farther than the bound
       EXPECT_FALSE(query.distance(pose, {.upper_bound = factor * d.distance, .warm_start = true}).has_witnesses);
     }
@@ -307,16 +305,16 @@ TEST(DistanceOracle, UpperBoundCutsAndKeeps) {
 }
 
 TEST(DistanceOracle, WarmStartsAreMeasuredBeforeTheyCount) {
-  // One triangle each: the remembered pair is the only one, and what it was at the last pose says nothing of this one.
+  // One triangle each: the pair of the last answer is the only one; its distance has changed.
   Generator generator(27);
   for (int i = 0; i < 20; ++i) {
     const Mesh a = shapes::soup(generator, 1, 0.5, 0.4);
     const Mesh b = shapes::soup(generator, 1, 0.5, 0.4);
     const DistanceOracle oracle(a, b);
-    const Pose turn = shapes::random_pose(generator, 0.0);
+    const Eigen::Matrix3d R = shapes::random_pose(generator, 0.0).R;
     const Vector3d line = shapes::unit_vector(generator);
-    const Pose near{turn.R, 3.0 * line};
-    const Pose far{turn.R, 9.0 * line};
+    const Pose near{R, 3.0 * line};
+    const Pose far{R, 9.0 * line};
     DistanceQuery query(oracle);
     const double bound = 6.0;
     const double near_distance = query.distance(near, {.upper_bound = bound}).distance;
@@ -328,8 +326,8 @@ TEST(DistanceOracle, WarmStartsAreMeasuredBeforeTheyCount) {
 }
 
 TEST(DistanceOracle, WarmStartsReachABoundThatIsTheDistance) {
-  // Steps that keep the closest triangles, towards each other and apart, and jumps to where others are closest: the
-  // bound is reached exactly, so nothing is smaller than it, and what was closest before must not stand in.
+  // The bound is the distance itself, so no pair is closer than the bound. Steps towards each other and apart keep the
+  // closest triangles; jumps do not.
   const Mesh a = shapes::bumpy_sphere(3, 0.25);
   const Mesh b = shapes::bumpy_sphere(2, 0.3, 0.6);
   const DistanceOracle oracle(a, b);
@@ -364,7 +362,7 @@ TEST(DistanceOracle, WarmStartsReachABoundThatIsTheDistance) {
 }
 
 TEST(DistanceOracle, CloseApproachesAreSeenOnBothSides) {
-  // B at a hair's breadth, then moved on along the witnesses' line by a little more and a little less than the gap.
+  // B at a small distance, then moved along the witnesses' line by a little more and a little less than the gap.
   const Mesh a = shapes::bumpy_sphere(4, 0.2);
   const Mesh b = shapes::bumpy_sphere(3, 0.2, 0.5);
   const DistanceOracle oracle(a, b);
@@ -386,7 +384,7 @@ TEST(DistanceOracle, CloseApproachesAreSeenOnBothSides) {
   }
 }
 
-TEST(DistanceOracle, TouchingIsMeeting) {
+TEST(DistanceOracle, TouchingIsIntersecting) {
   const Mesh a = shapes::box({1.0, 1.0, 1.0});
   const DistanceOracle oracle(a, a);
   DistanceQuery query(oracle);
@@ -408,22 +406,14 @@ TEST(DistanceOracle, TouchingIsMeeting) {
   }
 }
 
-Mesh joined(const Mesh& x, const Mesh& y) {
-  std::vector<Vector3d> v = x.vertices();
-  std::vector<Triangle> t = x.triangles();
-  const auto shift = static_cast<std::uint32_t>(v.size());
-  v.insert(v.end(), y.vertices().begin(), y.vertices().end());
-  for (const Triangle& s : y.triangles()) t.push_back({s[0] + shift, s[1] + shift, s[2] + shift});
-  return Mesh::build(v, t);
-}
-
 TEST(DistanceOracle, ContainmentIsCollision) {
   Generator generator(11);
   const Mesh big = shapes::bumpy_sphere(3, 0.2, 1.0, {0.5, 0.2, -0.1});
   const Mesh small = shapes::bumpy_sphere(2, 0.2, 0.2, {-3.0, 0.4, 1.0});
   const Mesh open = Mesh::build(big.vertices(), {big.triangles().begin() + 1, big.triangles().end()});
-  const Mesh hollow = joined(big, turned_inside_out(shapes::bumpy_sphere(3, 0.2, 0.6, {0.5, 0.2, -0.1})));
-  const Mesh two = joined(small, shapes::moved(small, {Eigen::Matrix3d::Identity(), Vector3d(5.0, 0.0, 0.0)}));
+  const Mesh hollow = bodies::together(big, bodies::inside_out(shapes::bumpy_sphere(3, 0.2, 0.6, {0.5, 0.2, -0.1})));
+  const Mesh two =
+      bodies::together(small, shapes::moved(small, {Eigen::Matrix3d::Identity(), Vector3d(5.0, 0.0, 0.0)}));
   ASSERT_TRUE(hollow.solid());
   ASSERT_FALSE(open.solid());
   for (int i = 0; i < 20; ++i) {
@@ -443,80 +433,13 @@ TEST(DistanceOracle, ContainmentIsCollision) {
     EXPECT_FALSE(collide(small, hollow, inside.inverse()));
     EXPECT_TRUE(collide(big, two, inside));  // the first piece inside, the second far away
     EXPECT_TRUE(collide(two, big, inside.inverse()));
-    Pose second = inside;  // the other way round
+    Pose second = inside;  // the other piece
     second.t -= inside.R * Vector3d(5.0, 0.0, 0.0);
     EXPECT_TRUE(collide(big, two, second));
     EXPECT_TRUE(collide(two, big, second.inverse()));
     Pose outside = inside;
     outside.t += 4.0 * shapes::unit_vector(generator);
     EXPECT_FALSE(collide(big, small, outside));
-  }
-}
-
-TEST(DistanceOracle, WindingTellsSidesApart) {
-  Generator generator(12);
-  const Mesh mesh = shapes::bumpy_sphere(3, 0.2, 1.0, {10.0, 20.0, -5.0});
-  const DistanceOracle oracle(mesh, mesh);
-  DistanceQuery query(oracle);
-  const Pose pose = shapes::random_pose(generator, 3.0);
-  int inside = 0;
-  for (int i = 0; i < 500; ++i) {
-    // Star-shaped about its centre: inside up to the surface's radius, which is between 0.78 and 1.2 minus the
-    // flatness of the triangles; both surely met.
-    const double r = uniform(generator, 0.0, 1.5);
-    const Vector3d p = Vector3d(10.0, 20.0, -5.0) + r * shapes::unit_vector(generator);
-    const int winding = query.winding_a(p);
-    EXPECT_EQ(query.winding_b(pose, pose * p), winding);
-    EXPECT_TRUE(winding == 0 || winding == 1);
-    if (r < 0.75) {
-      EXPECT_EQ(winding, 1);
-    }
-    if (r > 1.21) {
-      EXPECT_EQ(winding, 0);
-    }
-    inside += winding;
-  }
-  EXPECT_GT(inside, 200);
-}
-
-TEST(DistanceOracle, RaysAlongAxesOfBFindTheirWay) {
-  // Two blocks in a row as one mesh, turned so that the row lies along a ray: what leads outwards best is tried first,
-  // and in B's frame the way of this ray has no width.
-  Generator generator(29);
-  const Vector3d half(1.1, 0.9, 1.3);
-  const Vector3d aside(0.3, -0.2, 0.4);
-  const Mesh small = shapes::box({0.03, 0.02, 0.04});
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Vector3d row = Vector3d::Unit(axis);
-    const Mesh blocks = joined(shapes::box(half, -2.5 * row), shapes::box(half, 2.5 * row));
-    const DistanceOracle forth(small, blocks);
-    const DistanceOracle back(blocks, small);
-    DistanceQuery query(forth);
-    DistanceQuery query_back(back);
-    for (const std::array<double, 3>& ray : detail::k_winding_rays) {
-      for (const double sign : {-1.0, 1.0}) {
-        const Vector3d along = sign * row;
-        const Vector3d u = Vector3d(ray[0], ray[1], ray[2]).normalized();
-        const Eigen::AngleAxisd spin(uniform(generator, 0.0, 6.0), u);
-        Pose pose;
-        pose.R = (spin * Eigen::Quaterniond::FromTwoVectors(along, u)).toRotationMatrix();
-        pose.t = shapes::uniform_vector(generator, 3.0);
-        ASSERT_NEAR((pose.R.transpose() * u - along).norm(), 0.0, k_pose_rounding);
-        const auto check = [&](const Vector3d& p, int winding) {
-          EXPECT_EQ(query.winding_b(pose, pose * p), winding) << "p " << p.transpose();
-          const Pose around{pose.R, pose.t - pose * p};  // p, and with it the small box, at A's origin
-          EXPECT_FALSE(query.surfaces_intersect(around));
-          EXPECT_EQ(query.collide(around), winding == 1) << "p " << p.transpose();
-          EXPECT_EQ(query_back.collide(around.inverse()), winding == 1) << "p " << p.transpose();
-        };
-        // In the outer block, and between the two, with the block to cross; in the middle a face's diagonal is met.
-        for (const Vector3d& off : {Vector3d(Vector3d::Zero()), aside}) {
-          check(2.5 * along + off, 1);
-          check(2.5 * along + 0.6 * half.cwiseProduct(along) + off, 1);
-          check(0.7 * along + off, 0);
-        }
-      }
-    }
   }
 }
 

@@ -12,7 +12,7 @@
 #include "../geometry/shapes.h"
 #include "distance_truth.h"
 
-// Flat parts that face each other: pairs of triangles that tie by the thousand.
+// Coplanar patches that face each other: thousands of pairs of triangles tie.
 
 namespace sixdof {
 namespace {
@@ -28,7 +28,7 @@ Mesh shuffled(const Mesh& mesh, Generator& generator) {
   return Mesh::build(mesh.vertices(), t);
 }
 
-/// The answer is that of all pairs by the rule of ties, in every bit.
+/// The answers have the same bits.
 void expect_same(const Separation& answer, const Separation& truth) {
   ASSERT_TRUE(answer.has_witnesses);
   EXPECT_EQ(answer.distance, truth.distance);
@@ -38,8 +38,8 @@ void expect_same(const Separation& answer, const Separation& truth) {
   EXPECT_EQ(answer.witness_b, truth.witness_b);
 }
 
-/// A pose that lays face `b_down` of B (a unit normal in B's frame) over face `a_up` of A, turned at will; `over` is
-/// the middle of A's face, `under` that of B's.
+/// A pose at which face `b_down` of B (its unit normal in B's frame) is parallel to face `a_up` of A at distance `gap`,
+/// rotated at random about the normal; `over` is the middle of A's face, `under` that of B's.
 Pose face_to_face(Generator& generator, const Vector3d& a_up, const Vector3d& over, const Vector3d& b_down,
                   const Vector3d& under, double gap) {
   Pose pose;
@@ -49,7 +49,7 @@ Pose face_to_face(Generator& generator, const Vector3d& a_up, const Vector3d& ov
   return pose;
 }
 
-/// A block with its frame anywhere, one of its faces known.
+/// A block at a random pose in its frame, with the normal and the middle of one face.
 struct Block {
   Mesh mesh;
   Vector3d normal;
@@ -86,7 +86,7 @@ TEST(DistanceTies, BlocksFaceToFaceAnywhere) {
   Generator generator(23);
   int tied = 0;
   for (int i = 0; i < 24; ++i) {
-    // Frames at the blocks, and a few sizes away.
+    // The frame's origin is at the block, or a few sizes away.
     const double offset = i % 3 == 0 ? 5.0 : 0.3;
     const Block a = Block::make(generator, {1.7, 1.3, 0.9}, 400, offset);
     const Block b = Block::make(generator, {0.8, 1.1, 0.6}, 300, offset);
@@ -157,41 +157,41 @@ void add_square(std::vector<Vector3d>& v, std::vector<Triangle>& t, const Vector
   }
 }
 
-TEST(DistanceTies, HeightsAtTheLimitOfATieAreToldApart) {
-  // Small plates over a large one, at heights that climb in steps of a tenth of what counts as a tie: bounds cannot say
-  // which of them tie, and what may be left alone depends on it.
+TEST(DistanceTies, DistancesAtTheLimitOfATieAreDistinguished) {
+  // Small plates over a large one, at distances in steps of a tenth of the tie width: bounds cannot decide which of
+  // them tie.
   Generator generator(25);
   constexpr std::uint32_t k_plates = 8;  // in a row; squared
   for (int i = 0; i < 40; ++i) {
     std::vector<Vector3d> v;
     std::vector<Triangle> t;
     add_square(v, t, {-1.0, -1.0, 0.0}, 2.0, 6);
-    const Pose turn = shapes::random_pose(generator, 0.0);
-    const Mesh ground = shuffled(shapes::moved(Mesh::build(v, t), turn), generator);
+    const Pose rotation = shapes::random_pose(generator, 0.0);
+    const Mesh ground = shuffled(shapes::moved(Mesh::build(v, t), rotation), generator);
     v.clear();
     t.clear();
     const double gap = i % 2 == 0 ? 0.37 : 3e-7;
     const double step = 1e-14;  // about a third of the width
     for (std::uint32_t x = 0; x < k_plates; ++x) {
       for (std::uint32_t y = 0; y < k_plates; ++y) {
-        const double height = gap + 0.3 * step * static_cast<double>(generator() % 40);
-        add_square(v, t, {0.2 * x - 0.8, 0.2 * y - 0.8, height}, 0.15, 1);
+        const double z = gap + 0.3 * step * static_cast<double>(generator() % 40);
+        add_square(v, t, {0.2 * x - 0.8, 0.2 * y - 0.8, z}, 0.15, 1);
       }
     }
-    add_square(v, t, {-0.8, -0.8, 1.4}, 1.6, 5);  // a roof: what makes this a mesh with flat parts
-    const Mesh plates = shuffled(shapes::moved(Mesh::build(v, t), turn), generator);
+    add_square(v, t, {-0.8, -0.8, 1.4}, 1.6, 5);  // a large patch: without one ties do not count
+    const Mesh plates = shuffled(shapes::moved(Mesh::build(v, t), rotation), generator);
 
     const DistanceOracle oracle(ground, plates);
     DistanceQuery query(oracle);
     Pose pose;  // a little beside where the plates were made
-    pose.t = 0.01 * turn.R.col(0);
+    pose.t = 0.01 * rotation.R.col(0);
     const double width = oracle.tie_width(pose);
     const Separation truth = brute_force(ground, plates, pose, width);
     ASSERT_NEAR(truth.distance, gap, 13.0 * step);
     expect_same(query.distance(pose, {.warm_start = false}), truth);
     for (int k = 0; k < 5; ++k) {
       Pose before = pose;
-      before.t += 0.1 * turn.R * Vector3d(uniform(generator, -1.0, 1.0), uniform(generator, -1.0, 1.0), 0.1);
+      before.t += 0.1 * rotation.R * Vector3d(uniform(generator, -1.0, 1.0), uniform(generator, -1.0, 1.0), 0.1);
       query.distance(before);
       expect_same(query.distance(pose), truth);
     }
@@ -201,10 +201,10 @@ TEST(DistanceTies, HeightsAtTheLimitOfATieAreToldApart) {
   }
 }
 
-TEST(DistanceTies, LowestOfWholeFlatPartsLeftAlone) {
-  // A fine plate over a fine one, and over eight large triangles that come last in their mesh: whole volumes are left
-  // alone, and the lowest pair in them is settled at the end; over a large triangle the index in the fine plate
-  // decides.
+TEST(DistanceTies, SmallestRankInPrunedPatches) {
+  // A fine plate over a fine one, and over eight large triangles that come last in their mesh: whole volumes are pruned
+  // as ties, and the pair of smallest rank in them is resolved at the end. Over a large triangle the index in the fine
+  // plate decides.
   Generator generator(30);
   constexpr std::uint32_t k_fine = 16;  // squares along a side
   const auto fine = [&](const Pose& frame) {
@@ -226,7 +226,7 @@ TEST(DistanceTies, LowestOfWholeFlatPartsLeftAlone) {
     ASSERT_GT(truth.distance, 0.0);
     DistanceQuery query(oracle);
     expect_same(query.distance(pose, {.warm_start = false}), truth);
-    for (int i = 0; i < 4; ++i) {  // begun with other pairs of the plates
+    for (int i = 0; i < 4; ++i) {  // warm, from other pairs of the plates
       Pose aside = before;
       aside.t += 0.1 * i * (before.t - pose.t);
       query.distance(aside);
@@ -248,7 +248,7 @@ TEST(DistanceTies, LowestOfWholeFlatPartsLeftAlone) {
 }
 
 TEST(DistanceTies, FacesThatTouchUpToRounding) {
-  // Gaps around nothing: the distance is 0 if and only if two triangles meet, whatever the ties.
+  // Gaps near rounding: the distance is 0 if and only if two triangles intersect, whatever the ties.
   Generator generator(26);
   int apart = 0;
   int meeting = 0;
@@ -275,14 +275,14 @@ TEST(DistanceTies, FacesThatTouchUpToRounding) {
 }
 
 TEST(DistanceTies, CostLittle) {
-  // Faces with thousands of ties are cut whole, and what was cut is opened along one path to its lowest triangles.
+  // Faces with thousands of ties are pruned whole, then expanded along one path to the triangles of smallest rank.
   constexpr double k_pairs_per_triangle = 0.1;
   constexpr double k_volumes_per_triangle = 0.5;
   const auto check = [](const Mesh& mesh) {
     const DistanceOracle oracle(mesh, mesh);
     DistanceQuery query(oracle);
     const auto triangles = static_cast<double>(mesh.triangles().size());
-    const double height = mesh.box().sizes().z();
+    const double size_z = mesh.box().sizes().z();
     const auto check_counts = [&] {
       EXPECT_LT(static_cast<double>(query.counts().triangles), k_pairs_per_triangle * triangles);
       EXPECT_LT(static_cast<double>(query.counts().nodes), k_volumes_per_triangle * triangles);
@@ -291,8 +291,8 @@ TEST(DistanceTies, CostLittle) {
     for (const double gap : {1e-6, 0.3}) {
       for (int quarter = 0; quarter < 4; ++quarter) {
         SCOPED_TRACE(testing::Message() << mesh.name() << " gap " << gap << " quarter " << quarter);
-        const Eigen::AngleAxisd turn(1.5707963267948966 * quarter, Vector3d::UnitZ());
-        const Pose pose{turn.toRotationMatrix(), {0.0137, -0.0211, height + gap}};
+        const Eigen::AngleAxisd rotation(1.5707963267948966 * quarter, Vector3d::UnitZ());
+        const Pose pose{rotation.toRotationMatrix(), {0.0137, -0.0211, size_z + gap}};
         EXPECT_NEAR(query.distance(pose, {.warm_start = false}).distance, gap, oracle.tie_width(pose));
         check_counts();
         EXPECT_FALSE(query.collide(pose, false));
@@ -305,9 +305,9 @@ TEST(DistanceTies, CostLittle) {
   check(make_circular_box({}, 10000));
 }
 
-TEST(DistanceTies, AreSettledFromTheLowestOn) {
-  // Triangles in no order: of the thousands of pairs that tie, those that hold the lowest are opened first. The answer
-  // would be the same in any order, after hundreds of pairs.
+TEST(DistanceTies, AreResolvedInTheOrderOfRanks) {
+  // Triangles in random order: of the thousands of pairs that tie, those with the smallest rank are expanded first. In
+  // any other order the same answer would take hundreds of pairs.
   constexpr double k_pairs_per_query = 40.0;
   Generator generator(31);
   double pairs = 0.0;

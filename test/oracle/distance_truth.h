@@ -15,20 +15,19 @@
 /// Distances by brute force, shared by the tests of the distance oracle.
 namespace sixdof::distance_truth {
 
-inline TriangleCorners corners_of(const Mesh& mesh, std::size_t i, const Pose& pose) {
-  TriangleCorners t;
-  for (std::size_t k = 0; k < 3; ++k) t[k] = pose * mesh.vertices()[mesh.triangles()[i][k]];
-  return t;
-}
-
 inline TriangleCorners corners_of(const Mesh& mesh, std::size_t i) {
   TriangleCorners t;
   for (std::size_t k = 0; k < 3; ++k) t[k] = mesh.vertices()[mesh.triangles()[i][k]];
   return t;
 }
 
-/// All pairs. Of those that exceed the smallest distance by no more than `tie_width` the first, in the order of the
-/// documented rule.
+inline TriangleCorners corners_of(const Mesh& mesh, std::size_t i, const Pose& pose) {
+  TriangleCorners t = corners_of(mesh, i);
+  for (Eigen::Vector3d& corner : t) corner = pose * corner;
+  return t;
+}
+
+/// The closest pair of all; ties as documented in distance.h.
 inline Separation brute_force(const Mesh& a, const Mesh& b, const Pose& X_AB, double tie_width = 0.0) {
   double smallest = std::numeric_limits<double>::infinity();
   std::vector<Separation> close;
@@ -42,12 +41,6 @@ inline Separation brute_force(const Mesh& a, const Mesh& b, const Pose& X_AB, do
   }
   return *std::find_if(close.begin(), close.end(),
                        [&](const Separation& x) { return x.distance <= smallest + tie_width; });
-}
-
-inline Mesh turned_inside_out(const Mesh& mesh) {
-  std::vector<Triangle> t = mesh.triangles();
-  for (Triangle& x : t) std::swap(x[1], x[2]);
-  return Mesh::build(mesh.vertices(), t);
 }
 
 }  // namespace sixdof::distance_truth

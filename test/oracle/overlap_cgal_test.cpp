@@ -6,6 +6,7 @@
 
 #include <sixdof/models/manifest.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/oracle/candidates.h>
 #include <sixdof/oracle/overlap.h>
 
 #include "bodies.h"
@@ -17,19 +18,19 @@ namespace {
 using bodies::Body;
 using Eigen::Vector3d;
 
-std::vector<std::array<double, 3>> placed(const Mesh& mesh, const Pose& X_AB) {
+std::vector<std::array<double, 3>> transformed_vertices(const Mesh& mesh, const Pose& X_AB) {
   std::vector<std::array<double, 3>> result;
   for (const Vector3d& p : mesh.vertices()) {
-    const Vector3d q = place(X_AB, p);
+    const Vector3d q = transform_point(X_AB, p);
     result.push_back({q.x(), q.y(), q.z()});
   }
   return result;
 }
 
 /// CGAL rounds the points of the intersection and sums a hundred thousand tetrahedra about the origin.
-constexpr double k_share_of_volume = 1e-12;
+constexpr double k_relative_rounding = 1e-12;
 
-/// B turned at random, its box centre within `reach` of A's.
+/// B rotated at random, its box centre within `reach` of A's.
 void expect_agreement(const Mesh& a, const Mesh& b, int poses, unsigned seed, double reach = 0.25) {
   const Body body_a(a), body_b(b);
   const reference::CgalOverlap ab(reference::to_cgal(a), reference::to_cgal(b)),
@@ -41,28 +42,28 @@ void expect_agreement(const Mesh& a, const Mesh& b, int poses, unsigned seed, do
     X_AB.t += a.center() - X_AB.R * b.center();
     const Overlap o = bodies::overlap(body_a, body_b, X_AB);
     met += o.crossings > 0;
-    EXPECT_NEAR(o.volume, ab.volume(placed(b, X_AB)), k_share_of_volume * a.volume());
+    EXPECT_NEAR(o.volume, ab.volume(transformed_vertices(b, X_AB)), k_relative_rounding * a.volume());
     const Pose X_BA = X_AB.inverse();
-    EXPECT_NEAR(bodies::overlap(body_b, body_a, X_BA).volume, ba.volume(placed(a, X_BA)),
-                k_share_of_volume * b.volume());
+    EXPECT_NEAR(bodies::overlap(body_b, body_a, X_BA).volume, ba.volume(transformed_vertices(a, X_BA)),
+                k_relative_rounding * b.volume());
   }
   EXPECT_GE(met, 1);
 }
 
-TEST(overlap_against_corefinement, a_thousand_triangles) {
+TEST(OverlapAgainstCorefinement, AThousandTriangles) {
   expect_agreement(bodies::bumpy_torus(32, 16), bodies::bumpy_sphere(3), 10, 41);
 }
 
-TEST(overlap_against_corefinement, ten_thousand_triangles) {
+TEST(OverlapAgainstCorefinement, TenThousandTriangles) {
   expect_agreement(bodies::bumpy_torus(100, 50), bodies::bumpy_sphere(5), 4, 42);
 }
 
-TEST(overlap_against_corefinement, a_hundred_thousand_triangles) {
+TEST(OverlapAgainstCorefinement, AHundredThousandTriangles) {
   expect_agreement(bodies::bumpy_torus(320, 160), bodies::bumpy_torus(319, 157, 0.2), 1, 43);
 }
 
-/// Scans: triangles of all sizes and shapes, folds, ears. The second is brought to the size of the first.
-TEST(overlap_against_corefinement, scanned_objects) {
+/// Scans: triangles of all sizes and shapes. The second is scaled to the size of the first.
+TEST(OverlapAgainstCorefinement, ScannedObjects) {
   const auto is_here = [](const char* name) {
     return std::ranges::any_of(fetched_models(), [&](const FetchedModel& model) {
       return model.name == name && std::filesystem::exists(model_cache() / model.file);

@@ -7,8 +7,7 @@
 
 #include "bodies.h"
 
-/// Positions in which predicates tie: equal faces, shared vertices, touching, slivers, duplicates; and numbers far
-/// from 1.
+/// Poses at which predicates tie: equal faces, shared vertices, touching, slivers, duplicates; and lengths far from 1.
 namespace sixdof {
 namespace {
 
@@ -47,15 +46,14 @@ double interval_overlap(double a0, double a1, double b0, double b1) {
 
 /// Of axis-parallel boxes, in closed form.
 double box_overlap(const Mesh& a, const Mesh& b, const Pose& X_AB) {
-  Eigen::AlignedBox3d placed(Vector3d(X_AB * b.box().min()));
-  placed.extend(X_AB * b.box().max());
+  Eigen::AlignedBox3d moved(Vector3d(X_AB * b.box().min()));
+  moved.extend(X_AB * b.box().max());
   double v = 1.0;
-  for (int k = 0; k < 3; ++k)
-    v *= interval_overlap(a.box().min()[k], a.box().max()[k], placed.min()[k], placed.max()[k]);
+  for (int k = 0; k < 3; ++k) v *= interval_overlap(a.box().min()[k], a.box().max()[k], moved.min()[k], moved.max()[k]);
   return v;
 }
 
-TEST(overlap_degenerate, a_body_and_itself) {
+TEST(OverlapDegenerate, ABodyAndItself) {
   const Body box(bodies::box({-0.51, -0.32, -0.43}, {0.37, 0.61, 0.29}));
   const Body sphere(bodies::bumpy_sphere(3)), torus(bodies::bumpy_torus(24, 12));
   std::mt19937_64 random(8);
@@ -76,14 +74,14 @@ TEST(overlap_degenerate, a_body_and_itself) {
     // The same body under another rotation of both: equal vertices up to rounding.
     for (int i = 0; i < 5; ++i) {
       const Pose X_AB = bodies::random_pose(random, 0.5);
-      const Body turned(bodies::moved(body->mesh, X_AB));
-      EXPECT_NEAR(bodies::overlap(turned, *body, X_AB).volume, whole, k_rounding);
-      EXPECT_NEAR(bodies::overlap(*body, turned, X_AB.inverse()).volume, whole, k_rounding);
+      const Body moved(bodies::moved(body->mesh, X_AB));
+      EXPECT_NEAR(bodies::overlap(moved, *body, X_AB).volume, whole, k_rounding);
+      EXPECT_NEAR(bodies::overlap(*body, moved, X_AB.inverse()).volume, whole, k_rounding);
     }
   }
 }
 
-TEST(overlap_degenerate, boxes_at_right_angles) {
+TEST(OverlapDegenerate, BoxesAtRightAngles) {
   const Body a(bodies::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   const Body same(bodies::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, true));
   const Body flat(bodies::box({-0.5, -0.25, -0.125}, {0.5, 0.25, 0.375}, true));
@@ -101,7 +99,7 @@ TEST(overlap_degenerate, boxes_at_right_angles) {
   }
 }
 
-TEST(overlap_degenerate, a_mesh_turned_by_right_angles_into_itself) {
+TEST(OverlapDegenerate, AMeshRotatedByRightAnglesIntoItself) {
   // The octahedron's sphere without bumps maps to itself, triangles to triangles.
   const Body sphere(bodies::bumpy_sphere(3, 0.0));
   for (const Matrix3d& R : right_angles()) {
@@ -109,7 +107,7 @@ TEST(overlap_degenerate, a_mesh_turned_by_right_angles_into_itself) {
   }
 }
 
-TEST(overlap_degenerate, bodies_that_touch_have_nothing_in_common) {
+TEST(OverlapDegenerate, BodiesThatTouchHaveNothingInCommon) {
   const Body a(bodies::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   const Body b(bodies::box({-0.25, -0.25, -0.25}, {0.25, 0.25, 0.25}));
   for (const double sign : {-1.0, 1.0}) {
@@ -133,7 +131,7 @@ TEST(overlap_degenerate, bodies_that_touch_have_nothing_in_common) {
   EXPECT_NEAR(bodies::overlap(a, b, {on_edge, {0.0, 0.0, 0.5 + 0.25 * std::sqrt(2.0)}}).volume, 0.0, k_rounding);
 }
 
-TEST(overlap_degenerate, nested_bodies) {
+TEST(OverlapDegenerate, NestedBodies) {
   const Body outer(bodies::bumpy_torus(40, 20)), inner(bodies::bumpy_sphere(3, 0.1, 0.1));
   const Body box(bodies::box({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}));
   const Pose X_AB = shift({0.49, 0.03, 0.02});
@@ -150,7 +148,7 @@ TEST(overlap_degenerate, nested_bodies) {
   EXPECT_NEAR(bodies::overlap(half, box, Pose{}).volume, half.mesh.volume(), k_rounding);
 }
 
-TEST(overlap_degenerate, slivers_and_flat_triangles) {
+TEST(OverlapDegenerate, SliversAndFlatTriangles) {
   // A box whose top carries a vertex in the middle of an edge (a triangle with collinear corners) and needles.
   const Mesh plain = bodies::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
   std::vector<Vector3d> p = plain.vertices();
@@ -181,7 +179,7 @@ TEST(overlap_degenerate, slivers_and_flat_triangles) {
   }
 }
 
-TEST(overlap_degenerate, duplicate_triangles_and_bodies_that_share_an_edge) {
+TEST(OverlapDegenerate, DuplicateTrianglesAndBodiesThatShareAnEdge) {
   const Mesh plain = bodies::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
   // A triangle twice more, once each way: a pocket without volume. Its edges have four triangles.
   std::vector<Triangle> t = plain.triangles();
@@ -211,7 +209,7 @@ TEST(overlap_degenerate, duplicate_triangles_and_bodies_that_share_an_edge) {
   EXPECT_NEAR(bodies::overlap(twins, twins, shift({1.0, 1.0, 0.0})).volume, 1.0, k_rounding);
 }
 
-TEST(overlap_degenerate, any_scale) {
+TEST(OverlapDegenerate, AnyScale) {
   std::mt19937_64 random(21);
   const Mesh sphere = bodies::bumpy_sphere(3), torus = bodies::bumpy_torus(24, 12);
   const Body a(sphere), b(torus);
@@ -235,7 +233,7 @@ TEST(overlap_degenerate, any_scale) {
   }
 }
 
-TEST(overlap_degenerate, error_grows_with_the_offset_and_no_faster) {
+TEST(OverlapDegenerate, ErrorGrowsLinearlyWithTheOffset) {
   // Vertices at distance D are rounded to D * 1e-16, which moves the surfaces by as much.
   std::mt19937_64 random(22);
   const Mesh sphere = bodies::bumpy_sphere(3), torus = bodies::bumpy_torus(24, 12);

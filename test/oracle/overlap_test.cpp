@@ -8,7 +8,7 @@
 #include <hwy/targets.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/oracle/overlap_global.h>
+#include <sixdof/oracle/overlap_by_columns.h>
 
 #include "bodies.h"
 #include "convex.h"
@@ -44,7 +44,7 @@ void expect_closed_form(const Body& a, const Body& b, const Pose& X_AB) {
   }
 }
 
-TEST(overlap, boxes_equal_clipping_in_closed_form) {
+TEST(Overlap, BoxesEqualClippingInClosedForm) {
   std::mt19937_64 random(20261121);
   const Body a(bodies::box({-0.51, -0.32, -0.43}, {0.37, 0.61, 0.29}));
   const Body b(bodies::box({-0.33, -0.42, -0.23}, {0.47, 0.31, 0.39}, true));
@@ -55,7 +55,7 @@ TEST(overlap, boxes_equal_clipping_in_closed_form) {
   }
 }
 
-TEST(overlap, tetrahedra_equal_clipping_in_closed_form) {
+TEST(Overlap, TetrahedraEqualClippingInClosedForm) {
   std::mt19937_64 random(4);
   int met = 0;
   for (int i = 0; i < 300; ++i) {
@@ -67,14 +67,14 @@ TEST(overlap, tetrahedra_equal_clipping_in_closed_form) {
   EXPECT_GT(met, 100);
 }
 
-class pairs_of_meshes : public testing::Test {
+class OverlapOfMeshes : public testing::Test {
  protected:
   Body sphere{bodies::bumpy_sphere(4)};
   Body torus{bodies::bumpy_torus(48, 20)};
   std::mt19937_64 random{99};
 };
 
-TEST_F(pairs_of_meshes, volume_equals_the_method_of_columns) {
+TEST_F(OverlapOfMeshes, VolumeEqualsTheMethodOfColumns) {
   for (int i = 0; i < 12; ++i) {
     const Pose X_AB = bodies::random_pose(random, 0.5);
     EXPECT_NEAR(bodies::overlap(sphere, torus, X_AB).volume, overlap_volume_by_columns(sphere.mesh, torus.mesh, X_AB),
@@ -84,7 +84,7 @@ TEST_F(pairs_of_meshes, volume_equals_the_method_of_columns) {
   }
 }
 
-TEST_F(pairs_of_meshes, exchange_of_the_bodies) {
+TEST_F(OverlapOfMeshes, ExchangeOfTheBodies) {
   for (int i = 0; i < 50; ++i) {
     const Pose X_AB = bodies::random_pose(random, 0.5);
     const Pose X_BA = X_AB.inverse();
@@ -102,7 +102,7 @@ TEST_F(pairs_of_meshes, exchange_of_the_bodies) {
   }
 }
 
-TEST_F(pairs_of_meshes, a_body_of_two_parts_overlaps_as_its_parts_do) {
+TEST_F(OverlapOfMeshes, ABodyOfTwoPartsOverlapsAsItsPartsDo) {
   // Split along a plane into two boxes that share a face, and two pieces of one mesh far apart.
   const Body left(bodies::box({-0.41, -0.23, -0.31}, {0.07, 0.37, 0.29}));
   const Body right(bodies::box({0.07, -0.23, -0.31}, {0.53, 0.37, 0.29}, true));
@@ -128,14 +128,14 @@ TEST_F(pairs_of_meshes, a_body_of_two_parts_overlaps_as_its_parts_do) {
   }
 }
 
-TEST_F(pairs_of_meshes, answers_do_not_depend_on_the_vertex_order_but_in_rounding) {
+TEST_F(OverlapOfMeshes, VertexOrderChangesAnswersByRoundingOnly) {
   std::vector<Vector3d> vertices = torus.mesh.vertices();
   std::vector<Triangle> triangles = torus.mesh.triangles();
-  std::vector<std::uint32_t> new_place(vertices.size());
-  for (std::uint32_t i = 0; i < new_place.size(); ++i) new_place[i] = i;
-  std::shuffle(new_place.begin(), new_place.end(), random);
-  for (std::uint32_t i = 0; i < new_place.size(); ++i) vertices[new_place[i]] = torus.mesh.vertices()[i];
-  for (Triangle& t : triangles) t = {new_place[t[1]], new_place[t[2]], new_place[t[0]]};
+  std::vector<std::uint32_t> new_index(vertices.size());
+  for (std::uint32_t i = 0; i < new_index.size(); ++i) new_index[i] = i;
+  std::shuffle(new_index.begin(), new_index.end(), random);
+  for (std::uint32_t i = 0; i < new_index.size(); ++i) vertices[new_index[i]] = torus.mesh.vertices()[i];
+  for (Triangle& t : triangles) t = {new_index[t[1]], new_index[t[2]], new_index[t[0]]};
   std::shuffle(triangles.begin(), triangles.end(), random);
   const Body shuffled(Mesh::build(vertices, triangles, "shuffled torus"));
   for (int i = 0; i < 30; ++i) {
@@ -198,41 +198,41 @@ void expect_gradient(const Body& a, const Body& b, unsigned seed) {
   expect_second_order(of_moment);
 }
 
-TEST(overlap, area_and_moment_are_the_gradient_of_volume) {
+TEST(Overlap, AreaAndMomentAreTheGradientOfVolume) {
   const Body a(bodies::box({-0.51, -0.32, -0.43}, {0.37, 0.61, 0.29}));
   const Body b(bodies::box({-0.33, -0.42, -0.23}, {0.47, 0.31, 0.39}, true));
   expect_gradient(a, b, 11);
 }
 
-TEST_F(pairs_of_meshes, area_and_moment_are_the_gradient_of_volume) {
+TEST_F(OverlapOfMeshes, AreaAndMomentAreTheGradientOfVolume) {
   expect_gradient(sphere, torus, 12);
   expect_gradient(torus, sphere, 13);
 }
 
-TEST(overlap, small_overlaps_are_as_accurate_as_the_faces_that_meet_are_large) {
-  // A corner dips into a face. The error is that of fluxes through the triangles that are cut, which have size 1 here,
-  // and it stays there however small the volume is.
-  constexpr double k_cut_area_rounding = 2e-16;
+TEST(Overlap, ErrorIsRelativeToTheTrianglesThatAreCrossed) {
+  // A vertex inside a face. The error is that of fluxes through the triangles that are crossed, which have size 1 here,
+  // however small the volume is.
+  constexpr double k_crossed_area_rounding = 2e-16;
   const Body a(bodies::box({-0.51, -0.32, -0.43}, {0.37, 0.61, 0.29}));
   const Body b(bodies::box({-0.33, -0.42, -0.23}, {0.47, 0.31, 0.39}, true));
   std::mt19937_64 random(77);
   for (int i = 0; i < 40; ++i) {
     Pose X_AB = bodies::random_pose(random, 0.0);
-    // B's lowest corner just below the middle of A's upper face.
-    Vector3d lowest = Vector3d::Constant(1e9);
+    // B's vertex of least z just below the middle of A's upper face.
+    Vector3d low = Vector3d::Constant(1e9);
     for (const Vector3d& v : b.mesh.vertices()) {
-      if ((X_AB.R * v).z() < lowest.z()) lowest = X_AB.R * v;
+      if ((X_AB.R * v).z() < low.z()) low = X_AB.R * v;
     }
     for (const double depth : {1e-2, 1e-4, 1e-6}) {
-      X_AB.t = Vector3d(0.031, 0.077, 0.29 - depth) - lowest;
+      X_AB.t = Vector3d(0.031, 0.077, 0.29 - depth) - low;
       const double truth = convex::intersect(a.mesh, b.mesh, X_AB).volume;
-      EXPECT_NEAR(bodies::overlap(a, b, X_AB).volume, truth, k_cut_area_rounding) << depth;
-      EXPECT_NEAR(bodies::overlap(b, a, X_AB.inverse()).volume, truth, k_cut_area_rounding) << depth;
+      EXPECT_NEAR(bodies::overlap(a, b, X_AB).volume, truth, k_crossed_area_rounding) << depth;
+      EXPECT_NEAR(bodies::overlap(b, a, X_AB.inverse()).volume, truth, k_crossed_area_rounding) << depth;
     }
   }
 }
 
-TEST_F(pairs_of_meshes, solids_are_shared_by_threads) {
+TEST_F(OverlapOfMeshes, SolidsAreSharedByThreads) {
   std::vector<Pose> poses;
   for (int i = 0; i < 10; ++i) poses.push_back(bodies::random_pose(random, 0.5));
   std::vector<double> truth;
@@ -250,7 +250,7 @@ TEST_F(pairs_of_meshes, solids_are_shared_by_threads) {
   for (const std::vector<double>& mine : found) EXPECT_EQ(mine, truth);
 }
 
-TEST_F(pairs_of_meshes, queries_keep_their_scratch) {
+TEST_F(OverlapOfMeshes, QueriesReuseTheirScratch) {
   OverlapQuery query(sphere.solid, torus.solid);
   std::vector<Pose> poses;
   for (int i = 0; i < 10; ++i) poses.push_back(bodies::random_pose(random, 0.5));
@@ -261,21 +261,11 @@ TEST_F(pairs_of_meshes, queries_keep_their_scratch) {
   EXPECT_GT(bytes, 0u);
 }
 
-TEST(overlap, a_part_inside_pushes_only_where_the_surfaces_meet) {
-  // A cavity: a small sphere inside out within a big one. A body that floats in the cavity touches nothing; one that
-  // fills it has the material outside the cavity in common.
+TEST(Overlap, SurfacesThatDoNotIntersectHaveNoGradient) {
+  // A cavity: a small sphere inside out within a big one. A body inside the cavity has nothing in common with the
+  // shell; one around the cavity has all but the cavity.
   const Mesh inner = bodies::bumpy_sphere(2, 0.1, 0.3);
-  std::vector<Triangle> reversed = inner.triangles();
-  for (Triangle& t : reversed) std::swap(t[0], t[1]);
-  const Mesh outer = bodies::bumpy_sphere(3, 0.05, 1.0);
-  std::vector<Vector3d> p = outer.vertices();
-  p.insert(p.end(), inner.vertices().begin(), inner.vertices().end());
-  std::vector<Triangle> t = outer.triangles();
-  for (const Triangle& f : reversed) {
-    const auto n = static_cast<std::uint32_t>(outer.vertices().size());
-    t.push_back({f[0] + n, f[1] + n, f[2] + n});
-  }
-  const Body shell(Mesh::build(p, t, "shell"));
+  const Body shell(bodies::together(bodies::bumpy_sphere(3, 0.05, 1.0), bodies::inside_out(inner)));
   const Body mote(bodies::bumpy_sphere(2, 0.1, 0.1));
   const Body filler(bodies::bumpy_sphere(3, 0.1, 0.6));
   std::mt19937_64 random(3);
@@ -296,7 +286,7 @@ TEST(overlap, a_part_inside_pushes_only_where_the_surfaces_meet) {
   }
 }
 
-TEST_F(pairs_of_meshes, answers_are_the_same_bits_on_every_instruction_set_and_in_every_order) {
+TEST_F(OverlapOfMeshes, AnswersAreTheSameBitsOnEveryInstructionSetAndInEveryOrder) {
   std::vector<Pose> poses;
   for (int i = 0; i < 20; ++i) poses.push_back(bodies::random_pose(random, 0.5));
   OverlapQuery query(sphere.solid, torus.solid);
@@ -321,7 +311,7 @@ TEST_F(pairs_of_meshes, answers_are_the_same_bits_on_every_instruction_set_and_i
   EXPECT_GE(sets, 1);
 }
 
-TEST(overlap, meshes_that_bound_no_body_are_refused) {
+TEST(Overlap, MeshesThatAreNotSolidAreRefused) {
   Mesh open = bodies::bumpy_sphere(2);
   std::vector<Triangle> t = open.triangles();
   t.pop_back();
@@ -329,18 +319,18 @@ TEST(overlap, meshes_that_bound_no_body_are_refused) {
   const Tree tree(with_hole);
   try {
     const Solid solid(with_hole, tree);
-    FAIL() << "an open mesh was taken";
+    FAIL() << "an open mesh was accepted";
   } catch (const BadMesh& e) {
     EXPECT_EQ(std::string(e.what()), "hole: " + with_hole.why_not_solid());
   }
   t = open.triangles();
   std::swap(t[5][0], t[5][1]);
-  const Mesh turned = Mesh::build(open.vertices(), t, "turned");
-  const Tree turned_tree(turned);
-  EXPECT_THROW(Solid(turned, turned_tree), BadMesh);
+  const Mesh flipped = Mesh::build(open.vertices(), t, "flipped");
+  const Tree flipped_tree(flipped);
+  EXPECT_THROW(Solid(flipped, flipped_tree), BadMesh);
 }
 
-TEST(overlap, poses_that_are_not_finite_are_refused) {
+TEST(Overlap, PosesThatAreNotFiniteAreRefused) {
   const Body a(bodies::bumpy_sphere(1));
   OverlapQuery query(a.solid, a.solid);
   Pose X_AB;

@@ -15,8 +15,8 @@ using Eigen::Vector3d;
 /// Relative rounding of a flux and of its sum over a mesh.
 constexpr double k_rounding = 1e-14;
 
-/// A side that is the rising side of both triangles beside it has one potential, stored twice.
-TEST(solid, triangles_agree_on_the_potential_of_a_common_side) {
+/// A side from lowest to middle index in both triangles at it has one potential, stored twice.
+TEST(Solid, TrianglesAgreeOnThePotentialOfACommonSide) {
   const Body body(bodies::bumpy_sphere(4));
   const std::vector<Triangle>& triangles = body.mesh.triangles();
   std::vector<std::vector<std::uint32_t>> fan(body.mesh.vertices().size());
@@ -48,7 +48,7 @@ TEST(solid, triangles_agree_on_the_potential_of_a_common_side) {
   EXPECT_GT(compared, 0u);
 }
 
-TEST(solid, pieces_have_their_volume_and_centroid) {
+TEST(Solid, PiecesHaveTheirVolumeAndCentroid) {
   const Mesh sphere = bodies::bumpy_sphere(3), torus = bodies::bumpy_torus(20, 10);
   const Mesh far = bodies::moved(torus, {Eigen::Matrix3d::Identity(), {2.0, 0.3, -0.4}}, 0.5);
   const Body both(bodies::together(sphere, far));
@@ -66,7 +66,7 @@ TEST(solid, pieces_have_their_volume_and_centroid) {
   }
 }
 
-TEST(solid, moments_of_a_triangle_are_those_of_its_tetrahedron) {
+TEST(Solid, MomentsOfATriangleAreThoseOfItsTetrahedron) {
   std::mt19937_64 random(2);
   for (int i = 0; i < 100; ++i) {
     const auto point = [&] { return bodies::random_pose(random, 1.0).t; };
@@ -81,7 +81,7 @@ TEST(solid, moments_of_a_triangle_are_those_of_its_tetrahedron) {
   }
 }
 
-TEST(solid, memory_is_bounded_per_triangle) {
+TEST(Solid, MemoryIsBoundedPerTriangle) {
   const Body body(bodies::bumpy_torus(100, 50));
   // Four 16-byte potentials and the order of the corners.
   EXPECT_LE(body.solid.bytes(), 67 * body.mesh.triangles().size());

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <sixdof/oracle/candidates.h>
 #include <sixdof/oracle/overlap.h>
 
 #include "bodies.h"
@@ -20,24 +21,25 @@ using Eigen::Vector3d;
 
 Pose moved(const Pose& X_AB, const Vector3d& by) { return {X_AB.R, X_AB.t + by}; }
 
-/// On many shares of the way: the selected pairs give the same bits as those that are found at that place. Returns how
-/// many crossings there were.
-std::size_t expect_same_overlap(const bodies::Body& a, const bodies::Body& b, const Pose& X_AB, const Vector3d& way) {
+/// At many fractions of the displacement: the selected pairs give the same bits as the pairs found at that pose.
+/// Returns the number of crossings.
+std::size_t expect_same_overlap(const bodies::Body& a, const bodies::Body& b, const Pose& X_AB,
+                                const Vector3d& displacement) {
   SweptCandidates swept;
-  find_swept_candidates(a.tree, b.tree, X_AB, way, swept);
+  find_swept_candidates(a.tree, b.tree, X_AB, displacement, swept);
   EXPECT_EQ(swept.first.size(), swept.pairs.size());
   EXPECT_EQ(swept.last.size(), swept.pairs.size());
   OverlapQuery query(a.solid, b.solid);
-  std::vector<CandidatePair> pairs;
+  std::vector<TrianglePair> pairs;
   std::size_t crossings = 0;
-  constexpr int k_places = 23;
-  for (int i = 0; i <= k_places; ++i) {
-    const double x = static_cast<double>(i) / k_places;
-    const Pose place = moved(X_AB, x * way);
+  constexpr int k_fractions = 23;
+  for (int i = 0; i <= k_fractions; ++i) {
+    const double x = static_cast<double>(i) / k_fractions;
+    const Pose pose = moved(X_AB, x * displacement);
     const Vector3d reference(0.1, -0.4, 0.2);
-    const Overlap expected = query.evaluate(place, reference);
+    const Overlap expected = query.evaluate(pose, reference);
     select_candidates(swept, x, pairs);
-    const Overlap selected = query.evaluate(place, reference, pairs);
+    const Overlap selected = query.evaluate(pose, reference, pairs);
     EXPECT_EQ(selected.crossings, expected.crossings) << x;
     EXPECT_EQ(selected.volume, expected.volume) << x;
     EXPECT_EQ(selected.area, expected.area) << x;
@@ -55,14 +57,14 @@ void expect_same_overlap_of_tori() {
     std::size_t crossings = 0;
     for (int i = 0; i < 8; ++i) {
       const Pose X_AB = bodies::random_pose(random, 0.5);
-      const Vector3d way = 0.4 * bodies::random_pose(random, 1.0).R.col(0);
-      crossings += expect_same_overlap(*a, *b, X_AB, way);
+      const Vector3d displacement = 0.4 * bodies::random_pose(random, 1.0).R.col(0);
+      crossings += expect_same_overlap(*a, *b, X_AB, displacement);
     }
     EXPECT_GT(crossings, 0u);
   }
 }
 
-TEST(SweptCandidates, HoldThePairsOfEveryPlaceOnEveryInstructionSet) {
+TEST(SweptCandidates, ContainThePairsOfEveryFractionOnEveryInstructionSet) {
   for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
     hwy::SetSupportedTargetsForTest(targets & -targets);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
@@ -73,28 +75,28 @@ TEST(SweptCandidates, HoldThePairsOfEveryPlaceOnEveryInstructionSet) {
   }
 }
 
-TEST(SweptCandidates, HoldThemForFlatFacesAndWaysAlongThem) {
+TEST(SweptCandidates, ContainThemForDisplacementsAlongFaces) {
   const bodies::Body box(bodies::box({-0.5, -0.3, -0.4}, {0.5, 0.3, 0.4}));
   const bodies::Body other(bodies::box({-0.2, -0.6, -0.1}, {0.3, 0.2, 0.5}, true));
   const Pose X_AB{Eigen::Matrix3d::Identity(), Vector3d(0.25, 0.125, 0.0)};
-  for (const Vector3d& way : {Vector3d(0.4, 0, 0), Vector3d(0, -0.3, 0), Vector3d(0, 0, 0.2), Vector3d(-0.2, 0.1, 0),
-                              Vector3d(1e-9, 0, 0), Vector3d(0, 0, 0)}) {
-    EXPECT_GT(expect_same_overlap(box, other, X_AB, way), 0u);
-    EXPECT_GT(expect_same_overlap(other, box, X_AB, way), 0u);
+  for (const Vector3d& displacement : {Vector3d(0.4, 0, 0), Vector3d(0, -0.3, 0), Vector3d(0, 0, 0.2),
+                                       Vector3d(-0.2, 0.1, 0), Vector3d(1e-9, 0, 0), Vector3d(0, 0, 0)}) {
+    EXPECT_GT(expect_same_overlap(box, other, X_AB, displacement), 0u);
+    EXPECT_GT(expect_same_overlap(other, box, X_AB, displacement), 0u);
   }
 }
 
-TEST(SweptCandidates, AreFewAtOnePlace) {
+TEST(SweptCandidates, AreFewAtOneFraction) {
   const bodies::Body torus(bodies::bumpy_torus(61, 31));
   std::mt19937_64 random(5);
   const Pose X_AB = bodies::random_pose(random, 0.5);
-  const Vector3d way = 0.3 * Vector3d(2, -1, 1).normalized();
+  const Vector3d displacement = 0.3 * Vector3d(2, -1, 1).normalized();
   SweptCandidates swept;
-  find_swept_candidates(torus.tree, torus.tree, X_AB, way, swept);
-  std::vector<CandidatePair> selected, found;
+  find_swept_candidates(torus.tree, torus.tree, X_AB, displacement, swept);
+  std::vector<TrianglePair> selected, found;
   for (const double x : {0.1, 0.4, 0.9}) {
     select_candidates(swept, x, selected);
-    find_candidates(torus.tree, torus.tree, moved(X_AB, x * way), found);
+    find_candidates(torus.tree, torus.tree, moved(X_AB, x * displacement), found);
     EXPECT_LT(static_cast<double>(selected.size()), 1.2 * static_cast<double>(found.size())) << x;
     EXPECT_LT(selected.size(), swept.pairs.size());
   }

@@ -10,11 +10,11 @@
 namespace sixdof {
 
 enum class Kind {
-  gate,     ///< Not worse than the bound, and not better than half of it (that asks for the table to be tightened).
-  records,  ///< A known weakness, as bad as the measure can tell: the value is recorded, and a change either way fails.
+  gate,     ///< Not above the bound, and not below half of it (then the table is to be tightened).
+  records,  ///< A known weakness: the value is recorded, and a change in either direction fails.
 };
 
-/// What is recorded: an algorithm with its default settings, or with some parameters changed.
+/// An algorithm with its default settings, or with some parameters changed.
 struct Subject {
   std::string algorithm;
   std::vector<std::string> parameters;  ///< "name=value"
@@ -23,14 +23,14 @@ struct Subject {
 /// By the name in the table: that of an algorithm, or of a variant.
 Subject subject(std::string_view name);
 
-/// One gate: a measure of an algorithm on a scenario may not be worse than this.
+/// The bound of one measure of an algorithm on a scenario.
 struct Bound {
   std::string_view scenario;
   std::string_view algorithm;  ///< See subject().
   IdealLaw law;
-  std::string_view measure;  ///< As in lib/measure/metrics.h; absolute values are compared.
+  std::string_view measure;  ///< As in lib/sixdof/measure/metrics.h; absolute values are compared.
   double bound;              ///< 0 means exactly zero.
-  std::string_view reason;   ///< What limits the value.
+  std::string_view reason;   ///< Why the value is not better.
   Kind kind = Kind::gate;
 };
 
@@ -38,13 +38,13 @@ struct Bound {
 /// k_rounding_bound.
 std::span<const Bound> bounds();
 
-/// Bounds up to here say "nothing but rounding", and how far below it rounding stays is no merit.
+/// Up to here a bound means "rounding only", and a value far below it is not reported.
 inline constexpr double k_rounding_bound = 1e-6;
 
-/// Stamps of every gate's recording: a multiple of four (Scenario::stamps), and 5 ms apart at one second for a path.
-inline constexpr std::size_t k_gate_stamps = 200;
+/// Steps of every gate's recording: a multiple of four (Scenario::steps), 5 ms apart at one second for a path.
+inline constexpr std::size_t k_gate_steps = 200;
 
-/// Relative change of a recorded value that is none: the table gives four digits.
+/// Relative change of a recorded value that is accepted: the table has four digits.
 inline constexpr double k_record_tolerance = 1e-3;
 
 enum class Verdict {

@@ -7,15 +7,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "bench/algorithms.h"
 #include <sixdof/scenario/evaluation.h>
+#include "bench/common/all_algorithms.h"
 
 #include "bounds.h"
 
 namespace sixdof {
 namespace {
 
-/// An algorithm prepared once per scenario and recorded once, for all bounds of this process.
+/// An algorithm prepared and recorded once per scenario, for all bounds of this process.
 struct Recorded {
   std::unique_ptr<Scenario> scenario;
   std::unique_ptr<Query> query;
@@ -24,8 +24,8 @@ struct Recorded {
 
 const Recorded& recorded(const std::string& scenario, const std::string& algorithm) {
   static std::map<std::pair<std::string, std::string>, Recorded> cache;
-  const auto [where, is_new] = cache.try_emplace({scenario, algorithm});
-  Recorded& r = where->second;
+  const auto [entry, is_new] = cache.try_emplace({scenario, algorithm});
+  Recorded& r = entry->second;
   if (is_new) {
     Registry registry;
     register_all_algorithms(registry);
@@ -35,7 +35,7 @@ const Recorded& recorded(const std::string& scenario, const std::string& algorit
     settings.set_all(parameters);
     r.scenario = make_scenario(scenario);
     r.query = found.prepare(r.scenario->a(), r.scenario->b(), settings);
-    r.recording = record(*r.scenario, *r.query, k_gate_stamps);
+    r.recording = record(*r.scenario, *r.query, k_gate_steps);
   }
   return r;
 }
@@ -64,13 +64,13 @@ TEST_P(Gate, Holds) {
     case Verdict::holds:
       break;
     case Verdict::worse:
-      ADD_FAILURE() << what << ": WORSE than the table allows";
+      ADD_FAILURE() << what << ": worse than the table allows";
       break;
     case Verdict::too_loose:
-      ADD_FAILURE() << what << ": better than half the bound, tighten test/quality/bounds.cpp";
+      ADD_FAILURE() << what << ": below half of the bound, tighten test/quality/bounds.cpp";
       break;
     case Verdict::changed:
-      ADD_FAILURE() << what << ": not what test/quality/bounds.cpp records; if it got better, make it a gate";
+      ADD_FAILURE() << what << ": not the value in test/quality/bounds.cpp; if it is better now, make it a gate";
   }
 }
 

@@ -1,5 +1,5 @@
-// What is left of `exact` in Scenario II is the tessellation alone: its answer is that of the tessellated solids, and
-// theirs tends to the round ones'.
+// The error of `exact` in scenario II is that of the tessellation alone: its answer is that of the tessellated solids,
+// which converges to that of the round solids.
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +10,11 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/algorithms.h"
 #include <sixdof/measure/direction.h>
 #include <sixdof/measure/magnitude.h>
 #include <sixdof/scenario/evaluation.h>
 #include <sixdof/scenario/solids.h>
+#include "bench/common/all_algorithms.h"
 
 namespace sixdof {
 namespace {
@@ -25,11 +25,11 @@ std::unique_ptr<Scenario> orbit_of(int facets) {
   return make_scenario("II", shape);
 }
 
-Recording record_exact(const Scenario& scenario, std::size_t stamps) {
+Recording record_exact(const Scenario& scenario, std::size_t steps) {
   Registry registry;
   register_all_algorithms(registry);
   const Algorithm& exact = registry.find("exact");
-  return record(scenario, *exact.prepare(scenario.a(), scenario.b(), exact.settings()), stamps);
+  return record(scenario, *exact.prepare(scenario.a(), scenario.b(), exact.settings()), steps);
 }
 
 struct Error {
@@ -103,12 +103,13 @@ class Slices {
       const double least = sphere_ * std::sin(upper);
       const double growth = sphere_ * std::sin(lower) - least;
       if (center.norm() - least - growth > cylinder_.front().norm()) continue;
-      // Outlines have parallel edges. Where two of them pass through each other, the slice's force jumps.
+      // Outlines have parallel edges. Where two of them coincide, the slice's force jumps.
       std::vector<double> cuts{0.0, 1.0};
       for (std::size_t j = 0; j < unit_.size(); ++j) {
         const Eigen::Vector2d normal = (unit_[j] + unit_[(j + 1) % unit_.size()]).normalized();
-        const double share = ((center.dot(normal) - cylinder_[j].dot(normal)) / unit_[j].dot(normal) - least) / growth;
-        if (share > 0.0 && share < 1.0) cuts.push_back(share);
+        const double fraction =
+            ((center.dot(normal) - cylinder_[j].dot(normal)) / unit_[j].dot(normal) - least) / growth;
+        if (fraction > 0.0 && fraction < 1.0) cuts.push_back(fraction);
       }
       std::sort(cuts.begin(), cuts.end());
       for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {

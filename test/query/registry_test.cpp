@@ -1,31 +1,50 @@
-#include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/query/registry.h>
+
+#include <memory>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/algorithm/null.h>
 #include <sixdof/base/error.h>
 
 namespace sixdof {
 namespace {
 
-TEST(Registry, FindsByNameAndNamesTheRest) {
+class EmptyQuery final : public Query {
+ public:
+  EmptyQuery(const Mesh&, const Mesh&, const Settings&) {}
+};
+
+std::unique_ptr<Algorithm> named(const std::string& name) { return make_algorithm<EmptyQuery>({.name = name}); }
+
+TEST(Registry, FindsByNameAndListsTheOthers) {
   Registry registry;
-  register_core_algorithms(registry);
-  EXPECT_EQ(registry.find("null").traits().name, "null");
-  try {
-    registry.find("nul");
-    FAIL();
-  } catch (const BadArgument& e) {
-    EXPECT_THAT(e.what(), ::testing::HasSubstr("there are null"));
-  }
+  registry.add(named("first"));
+  registry.add(named("second-2"));
+  EXPECT_EQ(registry.find("second-2").traits().name, "second-2");
+  EXPECT_THAT([&] { registry.find("third"); },
+              ::testing::ThrowsMessage<BadArgument>(::testing::HasSubstr("there are first, second-2")));
 }
 
-TEST(Registry, RefusesTheSameNameTwice) {
+TEST(Registry, RefusesANameTwiceAndInvalidNames) {
   Registry registry;
-  registry.add(make_null_algorithm());
-  EXPECT_THROW(registry.add(make_null_algorithm()), BadArgument);
+  registry.add(named("first"));
+  for (const char* name : {"first", "", "First", "a/b", "a b"}) {
+    EXPECT_THROW(registry.add(named(name)), BadArgument) << name;
+  }
+  EXPECT_EQ(registry.all().size(), 1u);
+}
+
+/// What an algorithm does not override.
+TEST(Query, AnswersNothingByDefault) {
+  const Mesh mesh = Mesh::build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  const auto algorithm = named("empty");
+  const auto query = algorithm->prepare(mesh, mesh, algorithm->settings());
+  EXPECT_EQ(query->collide(Pose{}).status, Status::unsupported);
+  EXPECT_EQ(query->distance(Pose{}).status, Status::unsupported);
+  EXPECT_EQ(query->respond(Pose{}).status, Status::unsupported);
+  EXPECT_TRUE(query->work().empty());
 }
 
 TEST(Response, MovesItsTorqueWithTheReferencePoint) {

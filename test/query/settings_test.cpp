@@ -10,22 +10,26 @@ namespace {
 
 std::vector<Parameter> parameters() {
   return {
-      {.name = "voxel", .meaning = "edge of a voxel", .unit = "diagonal", .standard = "0.01", .low = 1e-4, .high = 0.5},
-      {.name = "layers", .meaning = "layers", .unit = "1", .standard = "3", .low = 1, .high = 9, .integer = true},
-      {.name = "depth", .meaning = "how", .unit = "", .standard = "local", .choices = {"local", "field"}}};
+      {.name = "voxel",
+       .meaning = "edge of a voxel",
+       .unit = "diagonal",
+       .default_value = "0.01",
+       .low = 1e-4,
+       .high = 0.5},
+      {.name = "layers", .meaning = "layers", .unit = "1", .default_value = "3", .low = 1, .high = 9, .integer = true},
+      {.name = "depth", .meaning = "how", .unit = "", .default_value = "local", .choices = {"local", "field"}}};
 }
 
 TEST(Settings, AreCompleteAndPrintInOrder) {
   Settings settings(parameters());
   EXPECT_EQ(settings.to_string(), "voxel=0.01,layers=3,depth=local");
-  EXPECT_EQ(settings.differences(), "");
   settings.set_all({"depth=field", "voxel=0.02"});
   EXPECT_EQ(settings.number("voxel"), 0.02);
   EXPECT_EQ(settings.choice("depth"), "field");
-  EXPECT_EQ(settings.differences(), "voxel=0.02,depth=field");
+  EXPECT_EQ(settings.to_string(), "voxel=0.02,layers=3,depth=field");
 }
 
-TEST(Settings, RefuseWhatIsNotAllowed) {
+TEST(Settings, RefuseInvalidValuesAndNames) {
   Settings settings(parameters());
   for (const char* bad : {"voxel=0", "voxel=nan", "voxel=1,5", "voxel=", "voxel=0.01x", "layers=2.5", "depth=none",
                           "voxels=0.1", "voxel", "voxel=inf"}) {

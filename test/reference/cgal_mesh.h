@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-/// What goes to CGAL: its code is compiled apart, see CMakeLists.txt, and knows nothing of this project's types.
+/// A mesh for CGAL, whose code is compiled without this project's headers, see CMakeLists.txt.
 namespace sixdof::reference {
 
 struct CgalMesh {
@@ -12,7 +12,7 @@ struct CgalMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Of any type with vertices() and triangles(), as Mesh has them.
+/// @tparam M has vertices() and triangles() as Mesh.
 template <class M>
 CgalMesh to_cgal(const M& mesh) {
   CgalMesh result;

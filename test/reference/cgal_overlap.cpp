@@ -35,12 +35,12 @@ CgalOverlap::CgalOverlap(const CgalMesh& a, const CgalMesh& b)
     : meshes_(std::make_unique<Meshes>(Meshes{convert(a), convert(b)})) {}
 CgalOverlap::~CgalOverlap() = default;
 
-double CgalOverlap::volume(const std::vector<std::array<double, 3>>& placed_b) const {
+double CgalOverlap::volume(const std::vector<std::array<double, 3>>& vertices_b) const {
   Surface a = meshes_->a;
   Surface b = meshes_->b;
   std::size_t i = 0;
   for (const Vertex v : b.vertices()) {
-    b.point(v) = {placed_b[i][0], placed_b[i][1], placed_b[i][2]};
+    b.point(v) = {vertices_b[i][0], vertices_b[i][1], vertices_b[i][2]};
     ++i;
   }
   Surface common;

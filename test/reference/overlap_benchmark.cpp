@@ -6,11 +6,13 @@
 #include <benchmark/benchmark.h>
 #include <cgal_overlap.h>
 
+#include <sixdof/oracle/candidates.h>
+
 #include "../oracle/bodies.h"
 
-/// The exact overlap against CGAL's corefinement: the same meshes, the same poses, the same volumes (checked before
-/// they are timed). Prepared structures are built outside the timed region for both; corefinement's copies of its
-/// arguments, which it changes, are part of its price.
+/// The time of the exact overlap and of CGAL's corefinement at the same poses of the same meshes. Their volumes are
+/// compared first. Structures are prepared outside the timed region; corefinement's copies of its arguments, which it
+/// changes, are inside.
 namespace sixdof {
 namespace {
 
@@ -22,10 +24,10 @@ struct Pair {
   bodies::Body body;
   std::vector<Pose> poses;
   reference::CgalOverlap cgal;
-  std::vector<std::vector<std::array<double, 3>>> placed;
+  std::vector<std::vector<std::array<double, 3>>> vertices_b;  // in A's frame, per pose
 
-  /// Rotations at random; B comes in along a random direction until the overlap is `share` of A's volume.
-  Pair(Mesh mesh, double share)
+  /// Random rotations and directions; B is translated until the overlap is `fraction` of A's volume.
+  Pair(Mesh mesh, double fraction)
       : body(std::move(mesh)), cgal(reference::to_cgal(body.mesh), reference::to_cgal(body.mesh)) {
     std::mt19937_64 random(20261121);
     OverlapQuery query(body.solid, body.solid);
@@ -37,18 +39,18 @@ struct Pair {
       for (int i = 0; i < k_bisections; ++i) {
         const double middle = 0.5 * (inner + outer);
         X_AB.t = body.mesh.center() + middle * u - X_AB.R * body.mesh.center();
-        (query.evaluate(X_AB).volume > share * body.mesh.volume() ? inner : outer) = middle;
+        (query.evaluate(X_AB).volume > fraction * body.mesh.volume() ? inner : outer) = middle;
       }
       if (query.evaluate(X_AB).crossings > 0) poses.push_back(X_AB);
     }
     for (const Pose& X_AB : poses) {
-      auto& points = placed.emplace_back();
+      auto& points = vertices_b.emplace_back();
       for (const Eigen::Vector3d& p : body.mesh.vertices()) {
-        const Eigen::Vector3d q = place(X_AB, p);
+        const Eigen::Vector3d q = transform_point(X_AB, p);
         points.push_back({q.x(), q.y(), q.z()});
       }
     }
-    if (std::abs(query.evaluate(poses[0]).volume - cgal.volume(placed[0])) > k_agreement * body.mesh.volume()) {
+    if (std::abs(query.evaluate(poses[0]).volume - cgal.volume(vertices_b[0])) > k_agreement * body.mesh.volume()) {
       throw std::runtime_error("the exact overlap and corefinement disagree");
     }
   }
@@ -80,7 +82,7 @@ void exact(benchmark::State& state) {
 void corefinement(benchmark::State& state) {
   const Pair& pair = pair_of(state.range(0), state.range(1));
   std::size_t i = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(pair.cgal.volume(pair.placed[i++ % k_poses]));
+  for (auto _ : state) benchmark::DoNotOptimize(pair.cgal.volume(pair.vertices_b[i++ % k_poses]));
 }
 
 void sizes(benchmark::internal::Benchmark* b) {

@@ -18,7 +18,7 @@ std::unique_ptr<Scenario> with(const char* name, int facets, const char* round) 
   return make_scenario(name, settings);
 }
 
-/// The oracle of a scenario's pair with all it stands on.
+/// The oracle of a scenario's pair with its trees and solids.
 struct Oracle {
   explicit Oracle(const Scenario& scenario)
       : tree_a(scenario.a()), tree_b(scenario.b()), a(scenario.a(), tree_a), b(scenario.b(), tree_b), query(a, b) {}
@@ -36,12 +36,12 @@ struct Errors {
   double torque = 0.0;
 };
 
-Errors largest_errors(const Scenario& scenario, int stamps) {
+Errors largest_errors(const Scenario& scenario, int steps) {
   Oracle oracle(scenario);
   Errors errors;
   double volume = 0.0;
   double force = 0.0;
-  for (const double progress : scenario.stamps(static_cast<std::size_t>(stamps))) {
+  for (const double progress : scenario.steps(static_cast<std::size_t>(steps))) {
     const Pose pose = scenario.pose(progress);
     const Overlap overlap = oracle.evaluate(pose, pose * scenario.reference_b());
     const auto ideal = scenario.ideal(IdealLaw::gradient, progress);
@@ -58,7 +58,7 @@ Errors largest_errors(const Scenario& scenario, int stamps) {
 double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
 TEST(IdealAgainstOracle, InscribedRoundPartsConvergeWithTheSquareOfTheFacets) {
-  // Away from the ends of the block nothing but the polygon is wrong; at the ends, and for the sphere, it still leads.
+  // Away from the ends of the block the polygon is the only error; at the ends, and for the sphere, it dominates.
   for (const char* name : {"Ia", "Ib", "II"}) {
     const Errors coarse = largest_errors(*with(name, 48, "inscribed"), 61);
     const Errors fine = largest_errors(*with(name, 96, "inscribed"), 61);
@@ -68,7 +68,7 @@ TEST(IdealAgainstOracle, InscribedRoundPartsConvergeWithTheSquareOfTheFacets) {
   }
 }
 
-TEST(IdealAgainstOracle, EqualAreasAreMuchNearer) {
+TEST(IdealAgainstOracle, EqualAreasHaveSmallerErrors) {
   for (const char* name : {"Ia", "Ib", "II"}) {
     const Errors inscribed = largest_errors(*with(name, 96, "inscribed"), 61);
     const Errors equal = largest_errors(*with(name, 96, "equal_area"), 61);
@@ -83,7 +83,7 @@ TEST(IdealAgainstOracle, ConeIsExactWhereItsTipIsOverTheBlock) {
   const auto scenario = make_scenario("Ia");
   Oracle oracle(*scenario);
   constexpr double k_rounding = 1e-12;
-  for (const double progress : scenario->stamps(37)) {
+  for (const double progress : scenario->steps(37)) {
     if (!scenario->in_window(progress)) continue;
     const Pose pose = scenario->pose(progress);
     const Overlap overlap = oracle.evaluate(pose, pose * scenario->reference_b());
@@ -96,18 +96,18 @@ TEST(IdealAgainstOracle, ConeIsExactWhereItsTipIsOverTheBlock) {
 
 // III has no round part in contact: exact. At phi = 0 the gradient is a set.
 TEST(IdealAgainstOracle, PinsHaveFlatWalls) {
-  const auto turn = make_scenario("III");
-  Oracle oracle(*turn);
+  const auto scenario = make_scenario("III");
+  Oracle oracle(*scenario);
   constexpr double k_rounding = 1e-12;  // of integrals of about 1e4
-  for (const double progress : turn->stamps(23)) {
-    if (!turn->in_window(progress)) continue;
-    const Pose pose = turn->pose(progress);
-    const Overlap overlap = oracle.evaluate(pose, pose * turn->reference_b());
-    const auto ideal = turn->ideal(IdealLaw::gradient, progress);
+  for (const double progress : scenario->steps(23)) {
+    if (!scenario->in_window(progress)) continue;
+    const Pose pose = scenario->pose(progress);
+    const Overlap overlap = oracle.evaluate(pose, pose * scenario->reference_b());
+    const auto ideal = scenario->ideal(IdealLaw::gradient, progress);
     EXPECT_NEAR(overlap.volume, ideal->penalty, k_rounding * 1e4) << progress;
     EXPECT_LT((overlap.area + ideal->force).norm(), k_rounding * 1e4) << progress;
     EXPECT_LT((overlap.moment + ideal->torque).norm(), k_rounding * 1e4) << progress;
-    const auto energy = turn->ideal(IdealLaw::energy, progress);
+    const auto energy = scenario->ideal(IdealLaw::energy, progress);
     EXPECT_LT((overlap.volume * overlap.area + energy->force).norm(), k_rounding * 1e8) << progress;
     EXPECT_LT((overlap.volume * overlap.moment + energy->torque).norm(), k_rounding * 1e8) << progress;
   }
@@ -118,7 +118,7 @@ TEST(IdealAgainstOracle, OrbitingPinsConvergeWithTheirRoundPin) {
     const auto scenario = with("IV", facets, "equal_area");
     Oracle oracle(*scenario);
     Errors errors;
-    for (const double progress : scenario->stamps(28)) {
+    for (const double progress : scenario->steps(28)) {
       const Pose pose = scenario->pose(progress);
       const Overlap overlap = oracle.evaluate(pose, pose * scenario->reference_b());
       const auto ideal = scenario->ideal(IdealLaw::gradient, progress);
@@ -136,8 +136,8 @@ TEST(IdealAgainstOracle, OrbitingPinsConvergeWithTheirRoundPin) {
   EXPECT_LT(fine.torque, 2e-4);
 }
 
-/// The superfluous contact is really there: sinking B by a little adds the plate's whole contact area times that
-/// little to V, lifting it takes away only what the ideal says.
+/// The superfluous contact exists: moving B down by a small step adds the plate's whole contact area times the step to
+/// V, moving it up subtracts only what the ideal says.
 TEST(IdealAgainstOracle, ThePlateLiesOnTheBlock) {
   constexpr double k_step = 1e-4;
   for (const char* name : {"III", "IV"}) {

@@ -1,4 +1,4 @@
-// Ideal models of III and IV against planar polygons that are clipped and turned with no formula of theirs.
+// Ideal models of III and IV against planar polygons that are clipped and rotated without their formulas.
 
 #include <cmath>
 #include <functional>
@@ -54,15 +54,15 @@ Loop square(double side) {
   return {{-h, -h}, {h, -h}, {h, h}, {-h, h}};
 }
 
-Loop moved(Loop loop, double turn, const Eigen::Vector2d& shift) {
-  const Eigen::Rotation2Dd rotation(turn);
+Loop transformed(Loop loop, double angle, const Eigen::Vector2d& shift) {
+  const Eigen::Rotation2Dd rotation(angle);
   for (Eigen::Vector2d& p : loop) p = rotation * p + shift;
   return loop;
 }
 
 /// Volume of a pin of this outline outside a hole of the same outline.
-double outside(const Loop& outline, double turn, const Eigen::Vector2d& shift) {
-  return 40.0 * (area(outline) - area(clip(moved(outline, turn, shift), outline)));
+double outside(const Loop& outline, double angle, const Eigen::Vector2d& shift) {
+  return 40.0 * (area(outline) - area(clip(transformed(outline, angle, shift), outline)));
 }
 
 double slope(const std::function<double(double)>& f, double at) {
@@ -70,7 +70,7 @@ double slope(const std::function<double(double)>& f, double at) {
   return (f(at + step) - f(at - step)) / (2.0 * step);
 }
 
-TEST(TurningPin, VolumeIsWhatClippingLeaves) {
+TEST(RotatingPin, VolumeAgreesWithClipping) {
   const auto scenario = make_scenario("III");
   for (const double s : {0.0, 0.013, 0.2, 0.5, 0.77, 1.0}) {
     const double phi = s * k_pi / 6.0;
@@ -85,18 +85,18 @@ TEST(TurningPin, VolumeIsWhatClippingLeaves) {
   }
 }
 
-TEST(TurningPin, DepthIsThatOfTheCorner) {
+TEST(RotatingPin, DepthIsThatOfTheCorner) {
   const auto scenario = make_scenario("III");
   for (const double s : {0.0, 0.2, 0.6, 1.0}) {
     double highest = 0.0;
-    for (const Eigen::Vector2d& p : moved(square(20.0), s * k_pi / 6.0, Eigen::Vector2d::Zero())) {
+    for (const Eigen::Vector2d& p : transformed(square(20.0), s * k_pi / 6.0, Eigen::Vector2d::Zero())) {
       highest = std::max(highest, p.y());
     }
     EXPECT_NEAR(scenario->ideal(IdealLaw::depth, s)->penalty, highest - 10.0, 1e-13);
   }
 }
 
-TEST(TurningPin, NothingActsWhereThePinJustFits) {
+TEST(RotatingPin, ResponseIsZeroWhereThePinExactlyFits) {
   const auto scenario = make_scenario("III");
   for (const IdealLaw law : all_ideal_laws()) {
     if (law == IdealLaw::paper_depth) continue;
@@ -108,19 +108,19 @@ TEST(TurningPin, NothingActsWhereThePinJustFits) {
   EXPECT_TRUE(scenario->in_window(1e-6));
 }
 
-TEST(TurningPin, TractionIsThatOfTheTurnedSquare) {
+TEST(RotatingPin, TractionIsThatOfTheRotatedSquare) {
   const auto scenario = make_scenario("III");
   for (const bool along_wall : {false, true}) {
     const auto ideal = scenario->ideal(along_wall ? IdealLaw::wall_traction : IdealLaw::traction, 0.7);
-    const double turn = -0.7 * k_pi / 6.0;
-    const PinTraction t = square_pin_traction(20.0, 40.0, turn, Eigen::Vector2d::Zero(), along_wall);
+    const double angle = -0.7 * k_pi / 6.0;
+    const PlaneWrench t = square_pin_traction(20.0, 40.0, angle, Eigen::Vector2d::Zero(), along_wall);
     EXPECT_GT(t.torque, 0.0);
     EXPECT_TRUE(ideal->torque.isApprox(Eigen::Vector3d(0.0, 0.0, t.torque), 1e-14));
     EXPECT_EQ(ideal->force, Eigen::Vector3d::Zero());
   }
 }
 
-TEST(TurningPin, PoseTurnsTheSquarePinAboutItsHole) {
+TEST(RotatingPin, PoseRotatesTheSquarePinAboutItsHole) {
   const auto scenario = make_scenario("III");
   for (const double s : {0.0, 0.4, 1.0}) {
     const Pose pose = scenario->pose(s);
@@ -128,13 +128,13 @@ TEST(TurningPin, PoseTurnsTheSquarePinAboutItsHole) {
     // The round pin is outside the block's outline, and the plate on its top.
     EXPECT_LT((pose * Eigen::Vector3d(20, 0, -20)).x() + 10.1, -40.0);
     EXPECT_EQ((pose * Eigen::Vector3d(7, 3, 0)).z(), 0.0);
-    // Clockwise by phi from half a turn.
+    // Clockwise by phi from 180 degrees.
     const Eigen::Vector3d x = pose.R * Eigen::Vector3d::UnitX();
     EXPECT_NEAR(std::atan2(x.y(), x.x()), k_pi - s * k_pi / 6.0, 1e-14);
   }
 }
 
-TEST(TurningPin, PaperFormulasAreLiteral) {
+TEST(RotatingPin, PaperFormulasAreAsPrinted) {
   const auto scenario = make_scenario("III");
   const double phi = 0.6 * k_pi / 6.0;
   EXPECT_NEAR(scenario->ideal(IdealLaw::paper_depth, 0.6)->penalty, std::sin(phi / 2.0) - 1.0, 1e-15);
@@ -154,18 +154,18 @@ struct Sum {
   Eigen::Vector3d wall = Eigen::Vector3d::Zero();
 };
 
-Sum sum_over_wall(const Loop& outline, double turn, const Eigen::Vector2d& shift,
+Sum sum_over_wall(const Loop& outline, double angle, const Eigen::Vector2d& shift,
                   const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& nearest_on_hole) {
   const int count = 8000;
   const int layers = 400;
   Sum sum;
-  const Loop placed = moved(outline, turn, shift);
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    const Eigen::Vector2d side = placed[(i + 1) % placed.size()] - placed[i];
+  const Loop rotated = transformed(outline, angle, shift);
+  for (std::size_t i = 0; i < rotated.size(); ++i) {
+    const Eigen::Vector2d side = rotated[(i + 1) % rotated.size()] - rotated[i];
     const Eigen::Vector2d inward = Eigen::Vector2d(-side.y(), side.x()).normalized();
-    const int pieces = std::max(4, count / static_cast<int>(placed.size()));
+    const int pieces = std::max(4, count / static_cast<int>(rotated.size()));
     for (int j = 0; j < pieces; ++j) {
-      const Eigen::Vector2d p = placed[i] + side * ((j + 0.5) / pieces);
+      const Eigen::Vector2d p = rotated[i] + side * ((j + 0.5) / pieces);
       const Eigen::Vector2d to_hole = nearest_on_hole(p) - p;
       const double planar = to_hole.norm();
       if (planar == 0.0) continue;
@@ -185,21 +185,22 @@ Sum sum_over_wall(const Loop& outline, double turn, const Eigen::Vector2d& shift
   return sum;
 }
 
-void expect_traction(const PinTraction& t, const Eigen::Vector3d& sum, double scale, double grid) {
-  EXPECT_NEAR(t.force.x(), sum.x(), grid * scale);
-  EXPECT_NEAR(t.force.y(), sum.y(), grid * scale);
+void expect_traction(const PlaneWrench& t, const Eigen::Vector3d& sum, double scale, double grid) {
+  EXPECT_NEAR(t.x, sum.x(), grid * scale);
+  EXPECT_NEAR(t.y, sum.y(), grid * scale);
   EXPECT_NEAR(t.torque, sum.z(), grid * scale * 10.0);
 }
 
 TEST(PinTractionOfASquare, IsTheSumOverTheWall) {
   constexpr double k_grid = 1e-3;
   const auto nearest = [](const Eigen::Vector2d& p) { return Eigen::Vector2d(p.cwiseMax(-10.0).cwiseMin(10.0)); };
-  for (const auto& [turn, shift] : {std::pair(-0.31, Eigen::Vector2d(0, 0)), std::pair(0.0, Eigen::Vector2d(1.3, -1.9)),
-                                    std::pair(0.2, Eigen::Vector2d(-0.7, 0.9))}) {
-    const Sum sum = sum_over_wall(square(20.0), turn, shift, nearest);
+  for (const auto& [angle, shift] :
+       {std::pair(-0.31, Eigen::Vector2d(0, 0)), std::pair(0.0, Eigen::Vector2d(1.3, -1.9)),
+        std::pair(0.2, Eigen::Vector2d(-0.7, 0.9))}) {
+    const Sum sum = sum_over_wall(square(20.0), angle, shift, nearest);
     const double scale = std::max(sum.pin.head<2>().norm(), std::abs(sum.pin.z()) / 10.0);
-    expect_traction(square_pin_traction(20.0, 40.0, turn, shift, false), sum.pin, scale, k_grid);
-    expect_traction(square_pin_traction(20.0, 40.0, turn, shift, true), sum.wall, scale, k_grid);
+    expect_traction(square_pin_traction(20.0, 40.0, angle, shift, false), sum.pin, scale, k_grid);
+    expect_traction(square_pin_traction(20.0, 40.0, angle, shift, true), sum.wall, scale, k_grid);
   }
 }
 
@@ -212,18 +213,18 @@ TEST(PinTractionOfACircle, IsTheSumOverTheWall) {
   const Sum sum = sum_over_wall(polygon(10.0, 1000, RoundParts::equal_area), 0.0, shift, nearest);
   expect_traction(round_pin_traction(10.0, 40.0, shift, false), sum.pin, sum.pin.head<2>().norm(), k_grid);
   expect_traction(round_pin_traction(10.0, 40.0, shift, true), sum.wall, sum.wall.head<2>().norm(), k_grid);
-  EXPECT_EQ(round_pin_traction(10.0, 40.0, Eigen::Vector2d::Zero(), true).force.norm(), 0.0);
+  EXPECT_EQ(round_pin_traction(10.0, 40.0, Eigen::Vector2d::Zero(), true).force().norm(), 0.0);
 }
 
-TEST(PinTraction, UndoesTheTurnWithoutAForce) {
+TEST(PinTraction, OpposesTheRotationWithoutAForce) {
   for (const bool along_wall : {false, true}) {
-    const PinTraction t = square_pin_traction(20.0, 40.0, -0.4, Eigen::Vector2d::Zero(), along_wall);
+    const PlaneWrench t = square_pin_traction(20.0, 40.0, -0.4, Eigen::Vector2d::Zero(), along_wall);
     EXPECT_GT(t.torque, 0.0);
-    EXPECT_LT(t.force.norm(), 1e-12 * t.torque);
+    EXPECT_LT(t.force().norm(), 1e-12 * t.torque);
   }
 }
 
-TEST(OrbitingPins, VolumeIsWhatClippingLeaves) {
+TEST(OrbitingPins, VolumeAgreesWithClipping) {
   const auto scenario = make_scenario("IV");
   const Loop circle = polygon(10.0, 1200, RoundParts::equal_area);
   for (const double s : {0.01, 0.17, 0.36, 0.55, 0.81}) {
@@ -243,10 +244,11 @@ TEST(OrbitingPins, GradientIsTheSlopeOfClippedVolumes) {
   for (const double s : {0.01, 0.17, 0.36, 0.55, 0.81}) {
     const Eigen::Vector2d d = scenario->pose(s).t.head<2>();
     const Eigen::Vector2d arm(20.0, 0.0);
-    // The pins turned by `turn` about the point between them, then shifted.
-    const auto volume = [&](const Eigen::Vector2d& more, double turn) {
-      const Eigen::Vector2d turned = Eigen::Rotation2Dd(turn) * arm;
-      return outside(square(20.0), turn, d + more - (turned - arm)) + outside(circle, turn, d + more + (turned - arm));
+    // The pins rotated by `angle` about the point between them, then shifted.
+    const auto volume = [&](const Eigen::Vector2d& more, double angle) {
+      const Eigen::Vector2d rotated = Eigen::Rotation2Dd(angle) * arm;
+      return outside(square(20.0), angle, d + more - (rotated - arm)) +
+             outside(circle, angle, d + more + (rotated - arm));
     };
     const auto gradient = scenario->ideal(IdealLaw::gradient, s);
     const double scale = gradient->force.norm();
@@ -256,7 +258,7 @@ TEST(OrbitingPins, GradientIsTheSlopeOfClippedVolumes) {
   }
 }
 
-TEST(OrbitingPins, ForceLeadsBackToTheFit) {
+TEST(OrbitingPins, ForcePointsBackToTheFit) {
   const auto scenario = make_scenario("IV");
   for (const double s : {0.03, 0.2, 0.44, 0.71, 0.9}) {
     const Eigen::Vector3d inwards = -scenario->pose(s).t.normalized();
@@ -281,7 +283,7 @@ TEST(OrbitingPins, ForceLeadsBackToTheFit) {
     const auto energy = scenario->ideal(IdealLaw::energy, s);
     EXPECT_TRUE(energy->force.isApprox(volume->penalty * gradient->force, 1e-12));
     EXPECT_TRUE(energy->torque.isApprox(volume->penalty * gradient->torque, 1e-12));
-    // Literal: no length, an empty integral, the whole disc instead of what sticks out.
+    // As printed: no length, an empty integral, the whole disc instead of the part outside.
     const Eigen::Vector2d d = scenario->pose(s).t.head<2>().cwiseAbs();
     EXPECT_NEAR(scenario->ideal(IdealLaw::paper_volume, s)->penalty,
                 400.0 - (20.0 - d.x()) * (20.0 - d.y()) + k_pi * 100.0, 1e-10);
@@ -289,7 +291,7 @@ TEST(OrbitingPins, ForceLeadsBackToTheFit) {
 }
 
 /// With c other than 2 r the printed integral, from c/2 to r of r^2 - t^2, is not empty.
-TEST(OrbitingPins, PaperIntegralIsLiteral) {
+TEST(OrbitingPins, PaperIntegralIsAsPrinted) {
   Settings settings = scenario_settings("IV");
   settings.set("square_side", "14");
   const auto scenario = make_scenario("IV", settings);
@@ -304,16 +306,16 @@ TEST(OrbitingPins, PaperIntegralIsLiteral) {
               196.0 - (14.0 - d.x()) * (14.0 - d.y()) + k_pi * 100.0 - 4.0 * integral, 1e-5);
 }
 
-/// Tractions of the scenario are those of its pins, at their places.
+/// Tractions of the scenario are those of its pins, at their positions.
 TEST(OrbitingPins, TractionIsThatOfItsPins) {
   const auto scenario = make_scenario("IV");
   const Eigen::Vector2d d = scenario->pose(0.17).t.head<2>();
   for (const bool along_wall : {false, true}) {
     const auto ideal = scenario->ideal(along_wall ? IdealLaw::wall_traction : IdealLaw::traction, 0.17);
-    const PinTraction square = square_pin_traction(20.0, 40.0, 0.0, d, along_wall);
-    const PinTraction round = round_pin_traction(10.0, 40.0, d, along_wall);
-    EXPECT_TRUE(ideal->force.head<2>().isApprox(square.force + round.force, 1e-12));
-    EXPECT_NEAR(ideal->torque.z(), square.torque + 20.0 * (round.force.y() - square.force.y()), 1e-9);
+    const PlaneWrench square = square_pin_traction(20.0, 40.0, 0.0, d, along_wall);
+    const PlaneWrench round = round_pin_traction(10.0, 40.0, d, along_wall);
+    EXPECT_TRUE(ideal->force.head<2>().isApprox(square.force() + round.force(), 1e-12));
+    EXPECT_NEAR(ideal->torque.z(), square.torque + 20.0 * (round.y - square.y), 1e-9);
     EXPECT_NEAR(round.torque, 0.0, 1e-9);
     EXPECT_EQ(ideal->penalty, 2.0);
   }

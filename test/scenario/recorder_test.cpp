@@ -14,7 +14,7 @@ namespace {
 
 constexpr double k_rounding = 1e-12;
 
-/// Answers by the number of the query.
+/// An answer that depends on the number of the query.
 class Scripted final : public Query {
  public:
   Outcome<Response> respond(const Pose& X_AB) override {
@@ -25,9 +25,9 @@ class Scripted final : public Query {
     response.reference = X_AB.t;  // B's origin
     switch (calls_++) {
       case 2:
-        return fail(Status::failed, "gave up");
+        return fail(Status::failed, "no convergence");
       case 3:
-        throw std::runtime_error("fell over");
+        throw std::runtime_error("out of bounds");
       case 4:
         response.torque.y() = std::numeric_limits<double>::quiet_NaN();
         return response;
@@ -42,7 +42,7 @@ class Scripted final : public Query {
   int calls_ = 0;
 };
 
-TEST(Recorder, FailuresAreStampsToo) {
+TEST(Recorder, EveryStepIsRecordedWhateverTheQueryDoes) {
   const auto scenario = make_scenario("IV");
   Scripted query;
   const Recording recording = record(*scenario, query, 8);
@@ -50,17 +50,17 @@ TEST(Recorder, FailuresAreStampsToo) {
   const std::vector<Status> expected{Status::ok,     Status::failed, Status::failed, Status::non_finite,
                                      Status::failed, Status::ok,     Status::ok,     Status::ok};
   EXPECT_EQ(recording.status, expected);
-  EXPECT_EQ(recording.first_failure, "failed: gave up");
+  EXPECT_EQ(recording.first_failure, "failed: no convergence");
   EXPECT_EQ(recording.size(), 8u);
   for (std::size_t k = 0; k < 8; ++k) {
     EXPECT_GT(recording.times_ns[k], 0.0);
-    EXPECT_EQ(recording.progress[k], scenario->stamps(8)[k]);
+    EXPECT_EQ(recording.progress[k], scenario->steps(8)[k]);
     EXPECT_EQ(recording.forces[k].norm() > 0.0, expected[k] == Status::ok);
     EXPECT_EQ(recording.penalties[k], expected[k] == Status::ok ? 0.5 : 0.0);
   }
 }
 
-/// Works, or waits, for some milliseconds a query.
+/// Computes, or sleeps, for some milliseconds per query.
 class Busy final : public Query {
  public:
   explicit Busy(bool works) : works_(works) {}
@@ -80,7 +80,7 @@ class Busy final : public Query {
   bool works_;
 };
 
-TEST(Recorder, ProcessorTimeLeavesWaitingOut) {
+TEST(Recorder, ProcessorTimeExcludesWaiting) {
   const auto scenario = make_scenario("II");
   Busy working(true);
   Busy waiting(false);
@@ -94,12 +94,12 @@ TEST(Recorder, TorqueIsAboutTheScenariosReference) {
   const auto scenario = make_scenario("IV");
   Scripted query;
   const Recording recording = record(*scenario, query, 8);
-  // Given about B's origin, wanted 20 below it: T + (0, 0, 20) x F.
+  // Answered about B's origin, recorded about the point 20 below it: T + (0, 0, 20) x F.
   const Eigen::Vector3d expected(-1.0 - 20.0 * 2.0, 0.5 + 20.0 * 1.0, 0.25);
   EXPECT_TRUE(recording.torques[0].isApprox(expected, k_rounding));
-  std::string words;
+  std::string diagnosis;
   Scripted fresh;
-  EXPECT_TRUE(respond_at(*scenario, fresh, 0.3, words).value.torque.isApprox(expected, k_rounding));
+  EXPECT_TRUE(respond_at(*scenario, fresh, 0.3, diagnosis).value.torque.isApprox(expected, k_rounding));
 }
 
 TEST(Recorder, ReportsAnAlgorithmWithoutResponses) {

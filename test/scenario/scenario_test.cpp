@@ -44,12 +44,12 @@ TEST(Scenario, EveryOneIsComplete) {
   }
 }
 
-TEST(Scenario, StampsCoverThePath) {
+TEST(Scenario, StepsCoverThePath) {
   const auto open = make_scenario("Ia");
-  EXPECT_EQ(open->stamps(5), (std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0}));
+  EXPECT_EQ(open->steps(5), (std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0}));
   const auto closed = make_scenario("II");
-  EXPECT_EQ(closed->stamps(4), (std::vector<double>{0.125, 0.375, 0.625, 0.875}));
-  EXPECT_THROW(open->stamps(1), BadArgument);
+  EXPECT_EQ(closed->steps(4), (std::vector<double>{0.125, 0.375, 0.625, 0.875}));
+  EXPECT_THROW(open->steps(1), BadArgument);
   for (const std::string& name : scenario_names()) {
     const auto scenario = make_scenario(name);
     const double gap = (scenario->pose(0.0).t - scenario->pose(1.0).t).norm();
@@ -73,7 +73,7 @@ TEST(Scenario, RefusesUnknownNames) {
   EXPECT_THROW(scenario_settings("i"), BadArgument);
 }
 
-/// Every limit on lengths from both sides. With the defaults the cone's tip has radius 10 and a flank of sqrt(1.25).
+/// Every limit on lengths, from both sides. With the defaults the cone's tip has radius 10 and a flank of sqrt(1.25).
 TEST(Scenario, RefusesContradictionsAndNothingElse) {
   struct Limit {
     const char* scenario;
@@ -94,9 +94,9 @@ TEST(Scenario, RefusesContradictionsAndNothingElse) {
       {"II", {}, "cylinder_length", 64.8, 64.6},         // 2 (sqrt(500) + 10)
       {"III", {}, "square_side", 28.2, 28.4},            // its diagonal in the block's depth
       {"III", {"width=70"}, "square_side", 24.6, 24.9},  // and in half of its width
-      {"III", {"width=100", "turn_degrees=1"}, "round_radius", 19.9, 20.1},
-      {"III", {}, "round_radius", 14.5, 14.7},  // turns into the block's side
-      {"III", {}, "turn_degrees", 41.3, 41.5},
+      {"III", {"width=100", "rotation_degrees=1"}, "round_radius", 19.9, 20.1},
+      {"III", {}, "round_radius", 14.5, 14.7},  // rotates into the block's side
+      {"III", {}, "rotation_degrees", 41.3, 41.5},
       {"IV", {"square_side=12"}, "orbit_radius", 5.9, 6.1},    // half the side
       {"IV", {"round_radius=2.5"}, "orbit_radius", 4.9, 5.1},  // the diameter
       {"IV", {"square_side=24"}, "orbit_radius", 7.9, 8.1},    // walls beside the square hole
@@ -105,7 +105,7 @@ TEST(Scenario, RefusesContradictionsAndNothingElse) {
   };
   for (const Limit& limit : limits) {
     Settings settings = scenario_settings(limit.scenario);
-    settings.set("facets", "256");  // polygons stick out of their circles by a ten-thousandth
+    settings.set("facets", "256");  // vertices of equal-area polygons are 1e-4 outside their circles
     settings.set_all(limit.others);
     settings.set(limit.length, std::to_string(limit.accepted));
     EXPECT_NO_THROW(make_scenario(limit.scenario, settings)) << limit.scenario << ' ' << limit.length;
@@ -114,7 +114,7 @@ TEST(Scenario, RefusesContradictionsAndNothingElse) {
   }
 }
 
-TEST(Scenario, ConeStandsWhereTheDocumentationSays) {
+TEST(Scenario, ConeIsWhereTheDocumentationSays) {
   const auto thick = make_scenario("Ia");
   EXPECT_EQ(thick->a().box().min(), Eigen::Vector3d(0.0, -30.0, -187.5));
   EXPECT_EQ(thick->a().box().max(), Eigen::Vector3d(900.0, 0.0, 187.5));
@@ -124,7 +124,8 @@ TEST(Scenario, ConeStandsWhereTheDocumentationSays) {
   EXPECT_EQ(make_scenario("Ib")->a().box().min().y(), -0.2);
 }
 
-/// Past an end the way out is square to the flank: the tip's radius over the block times the cosine of the half angle.
+/// Past an end the shortest displacement is perpendicular to the flank: the part of the tip's radius over the block
+/// times the cosine of the half angle.
 TEST(Scenario, ConeGetsShallowerAtTheEnds) {
   const auto scenario = make_scenario("Ia");
   const auto depth_at = [&](double x) { return scenario->ideal(IdealLaw::depth, (x + 30.0) / 960.0)->penalty; };
@@ -137,12 +138,12 @@ TEST(Scenario, ConeGetsShallowerAtTheEnds) {
   EXPECT_EQ(depth_at(-10.1), 0.0);
 }
 
-/// In the window the whole tip is over the block, and up is the shortest way out, whichever comes last.
+/// In the window the whole tip is over the block, and the shortest displacement out of it is upwards.
 TEST(Scenario, WindowOfTheConeEndsWhereItsTipLeaves) {
   const auto inside = [](const Scenario& scenario, double x) { return scenario.in_window((x + 30.0) / 960.0); };
-  const auto slender = make_scenario("Ia");  // up is the shorter way from x = 20 sqrt(1.25) - 10 = 12.36 on
+  const auto slender = make_scenario("Ia");  // upwards is shorter from x = 20 sqrt(1.25) - 10 = 12.36 on
   Settings settings = scenario_settings("Ia");
-  settings.set("cone_radius", "60");  // tip of radius 20; up is the shorter way from 8.28 on
+  settings.set("cone_radius", "60");  // tip of radius 20; upwards is shorter from 8.28 on
   const auto wide = make_scenario("Ia", settings);
   for (const auto& [scenario, end] : {std::pair(slender.get(), 12.36), std::pair(wide.get(), 20.0)}) {
     EXPECT_FALSE(inside(*scenario, end - 0.1));
@@ -152,7 +153,7 @@ TEST(Scenario, WindowOfTheConeEndsWhereItsTipLeaves) {
   }
 }
 
-TEST(Scenario, PaperFormulasOfTheConeAreLiteral) {
+TEST(Scenario, PaperFormulasOfTheConeAreAsPrinted) {
   const auto thick = make_scenario("Ia");
   EXPECT_EQ(thick->ideal(IdealLaw::paper_depth, 0.4)->force, Eigen::Vector3d(0.0, 20.0, 0.0));
   EXPECT_EQ(thick->ideal(IdealLaw::paper_volume, 0.4)->force, Eigen::Vector3d(0.0, 8000.0, 0.0));
@@ -203,7 +204,7 @@ TEST(Scenario, ConeLeavesTheBlockOnBothSidesAlike) {
   }
 }
 
-/// The force along the path is minus the slope of V, whatever formula gives it.
+/// The force along the path is minus the slope of V.
 TEST(Scenario, GradientIsTheSlopeOfTheVolumeAlongThePath) {
   for (const char* name : {"Ia", "Ib", "IV"}) {
     const auto scenario = make_scenario(name);
@@ -261,7 +262,7 @@ TEST(Scenario, SphereHasTheKnownVolume) {
   }
 }
 
-/// Traction of smooth bodies by adding up a fine grid of surface elements: shares only the definition.
+/// Traction of smooth bodies as the sum over a fine grid of surface elements, an independent computation.
 TEST(Scenario, TractionIsTheSumOverTheSurface) {
   const auto scenario = make_scenario("II");
   const int count = 800;

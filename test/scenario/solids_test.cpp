@@ -100,14 +100,14 @@ TEST(Solids, SphereIsMadeOfEqualBands) {
   EXPECT_NEAR(sphere.box().max().x(), 3.0 * std::cos(k_pi / 24), k_rounding);
 }
 
-/// No vertex on the axes, so that flat walls of other solids do not meet one exactly.
+/// No vertex is on an axis, so flat walls of other solids do not touch one exactly.
 TEST(Solids, PolygonsStartHalfAFacetFromTheAxis) {
   const auto loop = polygon(2.0, 10, RoundParts::inscribed);
   EXPECT_NEAR(std::atan2(loop[0].y(), loop[0].x()), k_pi / 10, k_rounding);
   EXPECT_NEAR(std::atan2(loop[1].y(), loop[1].x()), 3.0 * k_pi / 10, k_rounding);
 }
 
-TEST(Solids, BoxesLieWhereTheDocumentationSays) {
+TEST(Solids, BoxesAreWhereTheDocumentationSays) {
   const Mesh cone = cone_solid(3.0, 6.1, 16, RoundParts::inscribed, "");
   EXPECT_EQ(cone.box().min().y(), 0.0);
   EXPECT_EQ(cone.box().max().y(), 6.1);

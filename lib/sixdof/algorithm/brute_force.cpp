@@ -10,15 +10,16 @@ namespace {
 
 class BruteForceQuery final : public Query {
  public:
-  BruteForceQuery(const Mesh& a, const Mesh& b) : b_(b), vertices_b_A_(b.vertices().size()) {
+  BruteForceQuery(const Mesh& a, const Mesh& b, const Settings&) : b_(b), vertices_b_A_(b.vertices().size()) {
     for (const Triangle& t : a.triangles()) {
       triangles_a_.push_back({a.vertices()[t[0]], a.vertices()[t[1]], a.vertices()[t[2]]});
     }
   }
 
   Outcome<bool> collide(const Pose& X_AB) override {
-    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
-    return closest(X_AB).distance == 0.0;
+    const Outcome<Separation> closest = distance(X_AB);
+    if (!closest.ok()) return closest.status;
+    return closest.value.distance == 0.0;
   }
 
   Outcome<Separation> distance(const Pose& X_AB) override {
@@ -27,8 +28,6 @@ class BruteForceQuery final : public Query {
   }
 
  private:
-  static bool is_finite(const Pose& X_AB) { return X_AB.R.allFinite() && X_AB.t.allFinite(); }
-
   Separation closest(const Pose& X_AB) {
     for (std::size_t i = 0; i < vertices_b_A_.size(); ++i) vertices_b_A_[i] = X_AB * b_.vertices()[i];
     Separation best{.distance = std::numeric_limits<double>::infinity(), .has_witnesses = true};
@@ -51,23 +50,14 @@ class BruteForceQuery final : public Query {
   std::vector<Eigen::Vector3d> vertices_b_A_;  ///< B's, in A's frame.
 };
 
-class BruteForceAlgorithm final : public Algorithm {
- public:
-  const Traits& traits() const override { return traits_; }
-  std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& /*settings*/) const override {
-    return std::make_unique<BruteForceQuery>(a, b);
-  }
-
- private:
-  const Traits traits_{.name = "brute-force",
-                       .version = SIXDOF_VERSION,
-                       .summary = "every pair of triangles: an independent check, not a rival",
-                       .answers = {.collide = true, .distance = true},
-                       .timed = false};
-};
-
 }  // namespace
 
-std::unique_ptr<Algorithm> make_brute_force_algorithm() { return std::make_unique<BruteForceAlgorithm>(); }
+std::unique_ptr<Algorithm> make_brute_force_algorithm() {
+  return make_algorithm<BruteForceQuery>({.name = "brute-force",
+                                          .version = SIXDOF_VERSION,
+                                          .summary = "all pairs of triangles: an independent check for small meshes",
+                                          .answers = {.collide = true, .distance = true},
+                                          .timed = false});
+}
 
 }  // namespace sixdof

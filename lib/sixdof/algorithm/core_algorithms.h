@@ -4,7 +4,7 @@
 
 namespace sixdof {
 
-/// Adds the algorithms of the core library: those that need no third-party collision library.
+/// Adds the algorithms that need no third-party collision library.
 void register_core_algorithms(Registry& registry);
 
 }  // namespace sixdof

@@ -13,16 +13,16 @@ constexpr double k_rotation_tolerance = 1e-9;
 
 class ExactQuery final : public Query {
  public:
-  ExactQuery(const Mesh& a, const Mesh& b, bool warm_start)
-      : oracle_(a, b), distance_query_(oracle_), warm_start_(warm_start) {
+  ExactQuery(const Mesh& a, const Mesh& b, const Settings& settings)
+      : oracle_(a, b), distance_query_(oracle_), warm_start_(settings.choice("warm_start") == "on") {
     for (const Mesh* mesh : {&a, &b}) {
       if (!mesh->solid()) {
         why_no_response_ = mesh->name() + ": " + mesh->why_not_solid();
         return;
       }
     }
-    solid_a_.emplace(a, *oracle_.tree_a());
-    if (&a != &b) solid_b_.emplace(b, *oracle_.tree_b());
+    solid_a_.emplace(a, oracle_.tree_a());
+    if (&a != &b) solid_b_.emplace(b, oracle_.tree_b());
     overlap_query_.emplace(*solid_a_, solid_b_ ? *solid_b_ : *solid_a_);
   }
 
@@ -36,7 +36,6 @@ class ExactQuery final : public Query {
     return distance_query_.distance(X_AB, {.warm_start = warm_start_});
   }
 
-  /// The volume law with stiffness 1: the wrench is minus the gradient of the intersection's volume.
   Outcome<Response> respond(const Pose& X_AB) override {
     if (const Status status = check(X_AB); status != Status::ok) return status;
     if (!overlap_query_) return fail(Status::failed, why_no_response_);
@@ -53,12 +52,12 @@ class ExactQuery final : public Query {
     std::size_t bytes = oracle_.bytes();
     for (const auto* solid : {&solid_a_, &solid_b_}) bytes += *solid ? (*solid)->bytes() : 0;
     if (overlap_query_) bytes += overlap_query_->bytes();
-    return {bytes, {{"nodes_a", nodes(*oracle_.tree_a())}, {"nodes_b", nodes(*oracle_.tree_b())}}};
+    return {bytes, {{"nodes_a", nodes(oracle_.tree_a())}, {"nodes_b", nodes(oracle_.tree_b())}}};
   }
 
  private:
   Status check(const Pose& X_AB) {
-    if (!X_AB.R.allFinite() || !X_AB.t.allFinite()) return fail(Status::failed, "the pose is not finite");
+    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
     if (!(X_AB.R.transpose() * X_AB.R).isIdentity(k_rotation_tolerance) || X_AB.R.determinant() < 0.0) {
       return fail(Status::failed, "the pose's matrix is not a rotation");
     }
@@ -69,34 +68,25 @@ class ExactQuery final : public Query {
   DistanceQuery distance_query_;
   bool warm_start_;
   std::optional<Solid> solid_a_;
-  std::optional<Solid> solid_b_;  // none if both meshes are the same object
+  std::optional<Solid> solid_b_;  ///< None if both meshes are the same object.
   std::optional<OverlapQuery> overlap_query_;
   std::string why_no_response_;
 };
 
-class ExactAlgorithm final : public Algorithm {
- public:
-  const Traits& traits() const override { return traits_; }
-  std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& settings) const override {
-    return std::make_unique<ExactQuery>(a, b, settings.choice("warm_start") == "on");
-  }
-
- private:
-  Traits traits_{.name = "exact",
-                 .version = SIXDOF_VERSION,
-                 .summary = "exact distance, yes/no and overlap volume with its gradient: truth, and its price",
-                 .answers = {.collide = true, .distance = true, .respond = true},
-                 .law = ResponseLaw::volume,
-                 .parameters = {{.name = "warm_start",
-                            .meaning = "begin each query with the closest triangles of the last one; never changes a "
-                                       "distance",
-                            .unit = "1",
-                            .standard = "off",
-                            .choices = {"off", "on"}}}};
-};
-
 }  // namespace
 
-std::unique_ptr<Algorithm> make_exact_algorithm() { return std::make_unique<ExactAlgorithm>(); }
+std::unique_ptr<Algorithm> make_exact_algorithm() {
+  return make_algorithm<ExactQuery>(
+      {.name = "exact",
+       .version = SIXDOF_VERSION,
+       .summary = "exact distance, yes/no and overlap volume with its gradient: the reference for the others",
+       .answers = {.collide = true, .distance = true, .respond = true},
+       .law = ResponseLaw::volume,
+       .parameters = {{.name = "warm_start",
+                       .meaning = "start each query from the closest triangles of the last one; changes no distance",
+                       .unit = "",
+                       .default_value = "off",
+                       .choices = {"off", "on"}}}});
+}
 
 }  // namespace sixdof

@@ -6,12 +6,12 @@
 
 namespace sixdof {
 
-/// `exact`: the answers that define truth in this suite, given as an algorithm like any other. Distances are those of
-/// DistanceQuery; yes/no tells bodies, not only surfaces, apart where the meshes are solid.
+/// `exact`: the oracles that define truth in this suite, behind the interface of an algorithm. Distances are those of
+/// DistanceQuery. Where the meshes are solid, collide tests the bodies and not only their surfaces.
 ///
 /// The response follows the volume law with stiffness 1: penalty = volume of the intersection, force = -(gradient of
 /// the volume with respect to translating B), torque = -(gradient with respect to rotating B about the centre of its
-/// box), so it derives from a potential. It needs solids: for other meshes it fails and says why.
+/// box), so it derives from a potential. It needs solids: respond() fails with the reason for other meshes.
 std::unique_ptr<Algorithm> make_exact_algorithm();
 
 }  // namespace sixdof

@@ -6,8 +6,8 @@
 
 namespace sixdof {
 
-/// `null`: answers every query at once with a constant (apart, no force). Its time is the harness's own overhead; its
-/// answers are wrong on purpose wherever the bodies touch.
+/// `null`: answers every query with a constant (no collision, distance 0, no force). Its time is the overhead of the
+/// benchmarks; its answers are wrong on purpose.
 std::unique_ptr<Algorithm> make_null_algorithm();
 
 }  // namespace sixdof

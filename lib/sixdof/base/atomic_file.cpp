@@ -23,13 +23,17 @@ constexpr std::string_view k_partial = ".partial";
 
 std::string temporary_prefix(const std::filesystem::path& target) { return "." + target.filename().string() + "."; }
 
-/// Flushes a file or directory to the disk; returns errno, 0 on success.
+/// Flushes a file or directory to the disk. @return errno, 0 on success
 int flush_to_disk(const std::filesystem::path& path, int flags) {
   const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
   if (descriptor < 0) return errno;
   const int failure = ::fsync(descriptor) == 0 ? 0 : errno;
   ::close(descriptor);
   return failure;
+}
+
+[[noreturn]] void throw_not_writable(const std::filesystem::path& file, int failure) {
+  throw BadFile(file.string(), "cannot be written: " + std::string(std::strerror(failure)));
 }
 
 }  // namespace
@@ -40,9 +44,7 @@ AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)
   if (!std::filesystem::is_directory(directory)) {
     throw BadFile(target_.string(), "cannot be written: " + directory.string() + " is not a directory");
   }
-  if (::access(directory.c_str(), W_OK) != 0) {
-    throw BadFile(target_.string(), "cannot be written: " + std::string(std::strerror(errno)));
-  }
+  if (::access(directory.c_str(), W_OK) != 0) throw_not_writable(target_, errno);
   temporary_ = directory / (temporary_prefix(target_) + std::to_string(::getpid()) + "." + std::to_string(counter++) +
                             std::string(k_partial));
 }
@@ -54,14 +56,10 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
-  if (const int failure = flush_to_disk(temporary_, O_RDONLY)) {
-    throw BadFile(target_.string(), "cannot be written: " + std::string(std::strerror(failure)));
-  }
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
-    throw BadFile(target_.string(), "cannot be written: " + std::string(std::strerror(errno)));
-  }
+  if (const int failure = flush_to_disk(temporary_, O_RDONLY)) throw_not_writable(target_, failure);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw_not_writable(target_, errno);
   committed_ = true;
-  // The rename is durable once the directory is; a file system that cannot flush a directory still has the whole file.
+  // Makes the rename durable. Where a file system cannot flush a directory, the file is complete all the same.
   flush_to_disk(directory_of(target_), O_RDONLY | O_DIRECTORY);
 }
 

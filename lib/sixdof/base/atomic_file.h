@@ -5,12 +5,12 @@
 
 namespace sixdof {
 
-/// A file that appears whole or not at all.
+/// A file that appears complete or not at all.
 ///
-/// Write to temporary_path(), then call commit(): the data is flushed to the disk (fsync), renamed over the target, and
-/// the directory entry is flushed. Without commit() the destructor removes the temporary file and the target stays as
-/// it was. The temporary name lies in the target's directory, is unique to this process and object, and ends in
-/// ".partial".
+/// Write to temporary_path(), then call commit(): it flushes the data to the disk (fsync), renames the file to the
+/// target and flushes the directory. Without commit() the destructor removes the temporary file and the target stays as
+/// it was. The temporary file lies in the target's directory, has a name that is unique to this process and object, and
+/// ends in ".partial".
 class AtomicFile {
  public:
   /// @throws BadFile if the target's directory does not exist or is not writable.
@@ -21,7 +21,7 @@ class AtomicFile {
 
   const std::filesystem::path& temporary_path() const { return temporary_; }
 
-  /// @throws BadFile if flushing or renaming fails (disk full, permission); the temporary file is removed then.
+  /// @throws BadFile if flushing or renaming fails (disk full, permission).
   void commit();
 
  private:
@@ -30,11 +30,11 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Removes temporary files that writers of `target` left when they were killed. Those of processes that live on this
-/// machine stay; a writer on another machine would lose its file and fail in commit(), so a target has one writer.
+/// Removes temporary files of `target` whose writers were killed. Files of processes that run on this machine stay. A
+/// writer on another machine would lose its file and fail in commit(): a target must have one writer at a time.
 void remove_stale_partials(const std::filesystem::path& target);
 
-/// Writes `content` to `target`, whole or not at all. @throws BadFile
+/// Writes `content` to `target` by an AtomicFile. @throws BadFile
 void write_file_atomically(const std::filesystem::path& target, std::string_view content);
 
 }  // namespace sixdof

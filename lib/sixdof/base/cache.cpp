@@ -14,13 +14,12 @@ constexpr std::string_view k_format = "sixdof cache 1";
 
 std::filesystem::path cache_directory() {
   const auto variable = [](const char* name) -> std::string {
-    const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nobody sets variables meanwhile
+    const char* const value = std::getenv(name);
     return value == nullptr ? "" : value;
   };
-  if (const std::string own = variable("SIXDOF_CACHE"); own == "off")
-    return {};
-  else if (!own.empty())
-    return own;
+  if (const std::string own = variable("SIXDOF_CACHE"); !own.empty()) {
+    return own == "off" ? std::filesystem::path() : std::filesystem::path(own);
+  }
   if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return std::filesystem::path(xdg) / "sixdof";
   if (const std::string home = variable("HOME"); !home.empty()) return std::filesystem::path(home) / ".cache/sixdof";
   return {};
@@ -49,22 +48,20 @@ std::string content_hash(const CacheEntry& entry) {
   return hash.hex();
 }
 
-template <class T>
-constexpr char k_type_letter = '?';
-template <>
-constexpr char k_type_letter<std::int32_t> = 'i';
-template <>
-constexpr char k_type_letter<std::uint32_t> = 'u';
-template <>
-constexpr char k_type_letter<std::uint64_t> = 'w';
-template <>
-constexpr char k_type_letter<float> = 'f';
-template <>
-constexpr char k_type_letter<double> = 'd';
+/// Names the types of arrays in a file, in the order of CacheEntry::Values.
+constexpr std::string_view k_type_letters = "iuwfd";
 
-template <class T>
-void read_array(const hdf5::File& file, const std::string& name, CacheEntry& entry) {
-  entry.put(name, file.read_values<T>("/" + name));
+/// @return whether `letter` names a type
+template <std::size_t type = 0>
+bool read_array(const hdf5::File& file, const std::string& name, char letter, CacheEntry& entry) {
+  if constexpr (type == k_type_letters.size()) {
+    return false;
+  } else {
+    if (letter != k_type_letters[type]) return read_array<type + 1>(file, name, letter, entry);
+    using Array = std::variant_alternative_t<type, CacheEntry::Values>;
+    entry.put(name, file.read_values<typename Array::value_type>("/" + name));
+    return true;
+  }
 }
 
 }  // namespace
@@ -97,26 +94,7 @@ std::optional<CacheEntry> load_cached(std::string_view kind, std::string_view ke
       for (std::size_t begin = 0; begin < list.size();) {
         const std::size_t colon = list.find(':', begin);
         if (colon == std::string::npos || colon + 2 >= list.size()) return std::nullopt;
-        const std::string name = list.substr(begin, colon - begin);
-        switch (list[colon + 1]) {
-          case k_type_letter<std::int32_t>:
-            read_array<std::int32_t>(file, name, entry);
-            break;
-          case k_type_letter<std::uint32_t>:
-            read_array<std::uint32_t>(file, name, entry);
-            break;
-          case k_type_letter<std::uint64_t>:
-            read_array<std::uint64_t>(file, name, entry);
-            break;
-          case k_type_letter<float>:
-            read_array<float>(file, name, entry);
-            break;
-          case k_type_letter<double>:
-            read_array<double>(file, name, entry);
-            break;
-          default:
-            return std::nullopt;
-        }
+        if (!read_array(file, list.substr(begin, colon - begin), list[colon + 1], entry)) return std::nullopt;
         begin = colon + 3;
       }
     }
@@ -140,13 +118,10 @@ bool store_cached(std::string_view kind, std::string_view key, const CacheEntry&
       hdf5::File file = hdf5::File::create(target.temporary_path(), path);
       std::string list;
       for (const auto& [name, values] : entry.arrays()) {
-        std::visit(
-            [&, &array = name](const auto& v) {
-              using T = typename std::decay_t<decltype(v)>::value_type;
-              file.write_values<T>("/" + array, v);
-              list += array + ":" + k_type_letter<T> + " ";
-            },
-            values);
+        const std::string object = "/" + name;
+        std::visit([&](const auto& v) { file.write_values<typename std::decay_t<decltype(v)>::value_type>(object, v); },
+                   values);
+        list += name + ":" + k_type_letters[values.index()] + " ";
       }
       file.write_attribute("/", "format", std::string(k_format));
       file.write_attribute("/", "key", std::string(key));

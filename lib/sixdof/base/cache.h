@@ -12,21 +12,22 @@
 
 namespace sixdof {
 
-/// Prepared structures kept on disk, so that what was built once is not built again.
+/// Arrays of numbers by name: the content of one file of the cache.
 ///
-/// An entry is found by its kind ("vps-voxelmap") and its key: a text that names everything the content depends on
-/// (content hash of the mesh, settings, version of the format and of the algorithm that builds it). Entries are HDF5
-/// files in one directory: environment SIXDOF_CACHE; else $XDG_CACHE_HOME/sixdof; else $HOME/.cache/sixdof. With
-/// SIXDOF_CACHE=off, or no such variable at all, nothing is kept. Deleting the directory is always safe.
+/// The cache keeps prepared structures on disk. An entry is found by its kind ("vps-voxelmap") and its key: a text that
+/// names everything the content depends on (content hash of the mesh, parameters, version of the format and of the
+/// algorithm that builds it). Entries are HDF5 files in one directory: that of environment variable SIXDOF_CACHE; else
+/// $XDG_CACHE_HOME/sixdof; else $HOME/.cache/sixdof. Nothing is kept if SIXDOF_CACHE is "off" or none of the three is
+/// set. The directory may be deleted at any time, and processes may share it.
 ///
-/// The cache never fails: an entry that is missing, damaged or of another key is not found, and one that cannot be
-/// written is not kept. Files appear whole or not at all, so processes may share the directory.
+/// The cache does not throw. An entry that is missing, damaged or of another key is not found; one that cannot be
+/// written is not kept.
 class CacheEntry {
  public:
   using Values = std::variant<std::vector<std::int32_t>, std::vector<std::uint32_t>, std::vector<std::uint64_t>,
                               std::vector<float>, std::vector<double>>;
 
-  /// @param name a-z, 0-9 and '_'
+  /// @param name consists of a-z, 0-9 and '_'
   template <class T>
   void put(const std::string& name, std::vector<T> values) {
     arrays_[name] = std::move(values);
@@ -50,10 +51,10 @@ class CacheEntry {
 /// The file of an entry; empty if nothing is kept.
 std::filesystem::path cache_file(std::string_view kind, std::string_view key);
 
-/// The entry as it was stored, every byte checked against its content hash; nothing if there is none.
+/// The entry as it was stored, checked against its content hash; nothing if there is none.
 std::optional<CacheEntry> load_cached(std::string_view kind, std::string_view key);
 
-/// Keeps an entry, replacing what was there; makes the directory if needed. @return whether it was kept
+/// Stores an entry, replacing an older one; makes the directory if needed. @return whether it was stored
 bool store_cached(std::string_view kind, std::string_view key, const CacheEntry& entry);
 
 }  // namespace sixdof

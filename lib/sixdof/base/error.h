@@ -5,7 +5,7 @@
 
 namespace sixdof {
 
-/// Root of everything this library throws at its boundary. Queries do not throw; they return an Outcome.
+/// Root of all exceptions of this library. Queries do not throw: they return an Outcome.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -17,23 +17,23 @@ class BadArgument : public Error {
   using Error::Error;
 };
 
-/// Geometry that cannot be honoured: an index out of range, a vertex that is not finite, an open mesh where a closed
-/// one is needed.
+/// Geometry that cannot be used: an index out of range, a vertex that is not finite, a surface with a border where a
+/// closed one is needed.
 class BadMesh : public Error {
  public:
   using Error::Error;
 };
 
-/// A file that cannot be read, is malformed, damaged or foreign, or cannot be written. The message reads
-/// "FILE: PLACE: CAUSE" (PLACE may be absent), e.g. "hull.off: face 7: vertex index 12 of 9".
+/// A file that cannot be read, is malformed, damaged or of another kind, or cannot be written. The message reads
+/// "FILE: LOCATION: CAUSE" or "FILE: CAUSE", e.g. "hull.off: face 7: vertex index 12 of 9".
 class BadFile : public Error {
  public:
   BadFile(const std::string& file, const std::string& cause) : Error(file + ": " + cause) {}
-  BadFile(const std::string& file, const std::string& place, const std::string& cause)
-      : Error(file + ": " + place + ": " + cause) {}
+  BadFile(const std::string& file, const std::string& location, const std::string& cause)
+      : Error(file + ": " + location + ": " + cause) {}
 };
 
-/// Work stopped because the user asked for it (Ctrl-C). Nothing half-written is left behind.
+/// Work ended because the user asked for it (Ctrl-C). No file is left half written.
 class Interrupted : public Error {
  public:
   using Error::Error;

@@ -3,11 +3,13 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <type_traits>
+
+struct XXH3_state_s;
 
 namespace sixdof {
 
-/// Incremental 128-bit content hash (XXH3), the same on every machine of the same byte order.
-/// Not cryptographic: it tells apart contents, it does not withstand forgery.
+/// Incremental 128-bit content hash (XXH3), the same on every machine of the same byte order. Not cryptographic.
 class ContentHash {
  public:
   ContentHash();
@@ -27,8 +29,7 @@ class ContentHash {
   std::string hex() const;
 
  private:
-  struct State;
-  State* state_;
+  XXH3_state_s* state_;
 };
 
 }  // namespace sixdof

@@ -1,7 +1,8 @@
 #include <sixdof/base/hdf5.h>
 
+#include <algorithm>
 #include <array>
-#include <limits>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -10,9 +11,9 @@
 namespace sixdof::hdf5 {
 namespace {
 
-/// All attributes stay inside the object's header, which carries one checksum for all.
+/// Up to this many attributes stay inside the object's header, which has a checksum.
 constexpr unsigned k_compact_attributes = 64;
-constexpr unsigned k_deflate_level = 6;  ///< zlib's own default; 9 takes three times as long for 1 % less.
+constexpr unsigned k_deflate_level = 6;  ///< zlib's default.
 
 std::mutex& library_mutex() {
   static std::mutex mutex;
@@ -27,7 +28,7 @@ herr_t keep_first(unsigned /*depth*/, const H5E_error2_t* entry, void* out) {
 
 Handle property_list(hid_t property_class) { return {H5Pcreate(property_class), H5Pclose}; }
 
-/// Objects with no times, since the same input must give the same bytes.
+/// Without times of creation: the same content gives the same bytes.
 Handle object_properties(hid_t property_class) {
   Handle list = property_list(property_class);
   H5Pset_obj_track_times(list.id(), false);
@@ -45,14 +46,14 @@ std::pair<hid_t, hid_t> number_types() {
   if constexpr (std::is_same_v<T, double>) return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE};
 }
 
-/// A forged size would otherwise ask for all memory there is; no honest file comes near.
+/// A stated size above this is an error, not a request for memory.
 constexpr std::size_t k_most_values = std::size_t{1} << 36;
 
 }  // namespace
 
 Session::Session() : lock_(library_mutex()) {
-  // After a damaged file HDF5 1.10 may fail to close itself at exit and print "infinite loop closing library". Nothing
-  // is left to be closed then: handles close themselves. Without effect if the library is in use already.
+  // After a damaged file, HDF5 1.10 may fail to close itself at exit and print "infinite loop closing library". Handles
+  // close themselves, so it need not. Without effect if the library is in use already.
   H5dont_atexit();
   H5open();
   H5Eget_auto2(H5E_DEFAULT, &old_handler_, &old_data_);
@@ -186,47 +187,56 @@ std::uint64_t File::read_count(const std::string& object, const char* name) cons
   return value;
 }
 
-void File::write_matrix(const std::string& object, const double* values, std::size_t rows, std::size_t columns,
-                        std::size_t chunk_rows) {
-  const std::array<hsize_t, 2> size{rows, columns};
-  const Handle space(H5Screate_simple(2, size.data(), nullptr), H5Sclose);
-  const Handle creation = object_properties(H5P_DATASET_CREATE);
-  if (chunk_rows != 0) {
-    const std::array<hsize_t, 2> chunk{std::min(chunk_rows, rows), columns};
-    H5Pset_chunk(creation.id(), 2, chunk.data());
-    H5Pset_shuffle(creation.id());
-    H5Pset_deflate(creation.id(), k_deflate_level);
-    H5Pset_fletcher32(creation.id());
-  }
+void File::write_dataset(const std::string& object, std::span<const hsize_t> size, hid_t stored_type, hid_t native_type,
+                         const Handle& properties, const void* values) {
+  const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
   const Handle dataset(
-      H5Dcreate2(file_.id(), object.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+      H5Dcreate2(file_.id(), object.c_str(), stored_type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
       H5Dclose);
   check(dataset.valid() ? 0 : -1, object, "cannot be written");
-  check(H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), object, "cannot be written");
+  check(H5Dwrite(dataset.id(), native_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), object, "cannot be written");
 }
 
-Handle File::open_matrix(const std::string& object) const {
+Handle File::open_dataset(const std::string& object, hid_t stored_type) const {
   Handle dataset(H5Dopen2(file_.id(), object.c_str(), H5P_DEFAULT), H5Dclose);
   check(dataset.valid() ? 0 : -1, object, "cannot be opened");
   const Handle type(H5Dget_type(dataset.id()), H5Tclose);
-  if (H5Tequal(type.id(), H5T_IEEE_F64LE) <= 0) refuse(object, "is not of type float64, little-endian");
-  const Handle space(H5Dget_space(dataset.id()), H5Sclose);
-  if (H5Sget_simple_extent_ndims(space.id()) != 2) refuse(object, "does not have two dimensions");
+  if (H5Tequal(type.id(), stored_type) <= 0) refuse(object, "is not of the expected type");
   return dataset;
 }
 
-std::pair<std::size_t, std::size_t> File::matrix_size(const std::string& object) const {
-  const Handle dataset = open_matrix(object);
+void File::read_size(const Handle& dataset, const std::string& object, std::span<hsize_t> size) const {
   const Handle space(H5Dget_space(dataset.id()), H5Sclose);
-  std::array<hsize_t, 2> size{};
+  if (H5Sget_simple_extent_ndims(space.id()) != static_cast<int>(size.size())) {
+    refuse(object, fmt::format("does not have {} dimensions", size.size()));
+  }
   check(H5Sget_simple_extent_dims(space.id(), size.data(), nullptr), object, "has no size");
+}
+
+void File::write_matrix(const std::string& object, const double* values, std::size_t rows, std::size_t columns,
+                        std::size_t chunk_rows) {
+  const std::array<hsize_t, 2> size{rows, columns};
+  const Handle properties = object_properties(H5P_DATASET_CREATE);
+  if (chunk_rows != 0) {
+    const std::array<hsize_t, 2> chunk{std::min(chunk_rows, rows), columns};
+    H5Pset_chunk(properties.id(), 2, chunk.data());
+    H5Pset_shuffle(properties.id());
+    H5Pset_deflate(properties.id(), k_deflate_level);
+    H5Pset_fletcher32(properties.id());
+  }
+  write_dataset(object, size, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, properties, values);
+}
+
+std::pair<std::size_t, std::size_t> File::matrix_size(const std::string& object) const {
+  std::array<hsize_t, 2> size{};
+  read_size(open_dataset(object, H5T_IEEE_F64LE), object, size);
   return {size[0], size[1]};
 }
 
 std::vector<double> File::read_matrix(const std::string& object) const {
   const auto [rows, columns] = matrix_size(object);
   if (columns != 0 && rows > k_most_values / columns) refuse(object, fmt::format("{} x {} values?", rows, columns));
-  const Handle dataset = open_matrix(object);
+  const Handle dataset = open_dataset(object, H5T_IEEE_F64LE);
   std::vector<double> values(rows * columns);
   check(H5Dread(dataset.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), object,
         "cannot be read");
@@ -236,28 +246,18 @@ std::vector<double> File::read_matrix(const std::string& object) const {
 template <class T>
 void File::write_values(const std::string& object, std::span<const T> values) {
   const auto [stored, native] = number_types<T>();
-  const hsize_t size = values.size();
-  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  const Handle creation = object_properties(H5P_DATASET_CREATE);
-  const Handle dataset(
-      H5Dcreate2(file_.id(), object.c_str(), stored, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Dclose);
-  check(dataset.valid() ? 0 : -1, object, "cannot be written");
-  check(H5Dwrite(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), object, "cannot be written");
+  const std::array<hsize_t, 1> size{values.size()};
+  write_dataset(object, size, stored, native, object_properties(H5P_DATASET_CREATE), values.data());
 }
 
 template <class T>
 std::vector<T> File::read_values(const std::string& object) const {
   const auto [stored, native] = number_types<T>();
-  const Handle dataset(H5Dopen2(file_.id(), object.c_str(), H5P_DEFAULT), H5Dclose);
-  check(dataset.valid() ? 0 : -1, object, "cannot be opened");
-  const Handle type(H5Dget_type(dataset.id()), H5Tclose);
-  if (H5Tequal(type.id(), stored) <= 0) refuse(object, "is not of the expected type");
-  const Handle space(H5Dget_space(dataset.id()), H5Sclose);
-  if (H5Sget_simple_extent_ndims(space.id()) != 1) refuse(object, "does not have one dimension");
-  hsize_t size = 0;
-  check(H5Sget_simple_extent_dims(space.id(), &size, nullptr), object, "has no size");
-  if (size > k_most_values) refuse(object, fmt::format("{} values?", size));
-  std::vector<T> values(size);
+  const Handle dataset = open_dataset(object, stored);
+  std::array<hsize_t, 1> size{};
+  read_size(dataset, object, size);
+  if (size[0] > k_most_values) refuse(object, fmt::format("{} values?", size[0]));
+  std::vector<T> values(size[0]);
   check(H5Dread(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), object, "cannot be read");
   return values;
 }

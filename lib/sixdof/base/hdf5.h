@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-/// A thin layer over HDF5's C interface for this project's own sources: handles that close themselves, errors in words.
+/// HDF5's C interface with handles that close themselves and errors as exceptions. For this project's own sources.
 
 namespace sixdof::hdf5 {
 
-/// Everything that calls HDF5 lives inside one of these: Debian's library is not thread-safe, so there is one at a time
-/// in the process, and HDF5's habit of printing its error stack is off meanwhile (and back on as it was afterwards).
+/// Every call of HDF5 needs a Session. Debian's library is not thread-safe: there is one Session at a time in the
+/// process. While it lives, HDF5 does not print its error stack.
 class Session {
  public:
   Session();
@@ -49,18 +49,18 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// An open file that knows its name for messages. Objects are named by their path inside the file, "/" for the root.
-/// Every method throws BadFile "FILE: OBJECT: CAUSE" for what it cannot do.
+/// An HDF5 file. Objects are named by their path inside the file, "/" for the root. Every method throws BadFile
+/// "FILE: OBJECT: CAUSE" if it fails.
 ///
-/// Written files are a function of what is written: no time stamps, and only structures that HDF5 guards by checksums
-/// (format of HDF5 1.10, strings of fixed length), so that a damaged byte is found instead of believed.
+/// The bytes of a file depend on what is written alone: it holds no times of creation. All structures have checksums
+/// (format of HDF5 1.10, strings of fixed length), so that a damaged byte is an error.
 class File {
  public:
   static File open(const std::filesystem::path& path);  ///< For reading.
-  /// For writing; replaces what is at `path`. Messages call the file `shown_as`.
+  /// For writing; replaces a file at `path`. Messages call the file `shown_as`.
   static File create(const std::filesystem::path& path, const std::filesystem::path& shown_as);
 
-  /// Flushes and closes; finds out whether everything could be written (full disk).
+  /// Flushes and closes. Without it, a failure to write (full disk) is not reported.
   void close();
 
   bool exists(const std::string& object) const;
@@ -78,12 +78,12 @@ class File {
   void write_matrix(const std::string& object, const double* values, std::size_t rows, std::size_t columns,
                     std::size_t chunk_rows);
 
-  /// Rows x columns of a two-dimensional float64 dataset, without reading its values.
+  /// (rows, columns) of a two-dimensional float64 dataset.
   std::pair<std::size_t, std::size_t> matrix_size(const std::string& object) const;
   std::vector<double> read_matrix(const std::string& object) const;
 
   /// A one-dimensional dataset in one piece, without filters. T: std::int32_t, std::uint32_t, std::uint64_t, float or
-  /// double, stored little-endian; read_values() refuses any other type than the stored one.
+  /// double, stored little-endian; read_values() throws if another type is stored.
   template <class T>
   void write_values(const std::string& object, std::span<const T> values);
   template <class T>
@@ -98,7 +98,11 @@ class File {
   Handle open_attribute(const std::string& object, const char* name) const;
   void read_attribute(const std::string& object, const char* name, H5T_class_t type_class, hid_t memory_type,
                       void* value) const;
-  Handle open_matrix(const std::string& object) const;
+  void write_dataset(const std::string& object, std::span<const hsize_t> size, hid_t stored_type, hid_t native_type,
+                     const Handle& properties, const void* values);
+  Handle open_dataset(const std::string& object, hid_t stored_type) const;
+  /// @param size has one element for each dimension that the dataset must have
+  void read_size(const Handle& dataset, const std::string& object, std::span<hsize_t> size) const;
 
   Handle file_;
   std::string name_;

@@ -1,43 +1,148 @@
 #pragma once
 
-/// Loops, tasks and per-thread state on all cores: the only door to oneTBB, so that every room shares one meaning of a
-/// parallel step and the thread sanitizer can watch it.
-///
-/// `parallel` is `parallel_tbb`, except in builds with the thread sanitizer: Debian's oneTBB is not instrumented, so
-/// each of its forks and joins would be reported as a race. There `parallel_threads` stands in, on std::thread, whose
-/// forks and joins the sanitizer knows; it checks what our loop bodies share, which is what can be wrong.
-///
-/// Common to both:
-/// - `for_each(n, body)`: body(i) for i in [0, n), in any order.
-/// - `for_ranges(n, grain, body)`: body(begin, end) over disjoint ranges that cover [0, n); none is split below
-/// `grain`.
-/// - `reduce(n, grain, fold, join)`: fold(begin, end, T{}) of consecutive ranges, joined from left to right. Where the
-///   ranges begin is not fixed: for bits that do not depend on the thread count, fold and join must be exact.
-/// - `invoke(f, g)`: both.
-/// - `Tasks`: run(f) starts f, wait() waits for all started; waits in the destructor too. One thread owns it.
-/// - `sort(values)`: by operator<; equal elements in no fixed order.
-/// - `PerThread<T>(make)`: local() is this thread's T, made on first use; iterate when no thread uses it.
-/// - `isolated(f)`: f, during which this thread takes on no other part of an outer parallel step.
-/// - `with_threads(n, f)`: f, whose parallel steps use at most n threads; 0 means all cores.
-/// - `ThreadLimit(n)`: while alive, at most n threads in the whole process.
-/// The first exception of a body reaches the caller of the step, of a task the caller of wait(), after all have ended.
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
 
-#if defined(__SANITIZE_THREAD__)
-#define SIXDOF_PARALLEL_THREADS 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define SIXDOF_PARALLEL_THREADS 1
-#endif
-#endif
+/// Loops, tasks and per-thread values on all cores. Nothing else in this project uses oneTBB, and only parallel.cpp
+/// includes it.
+///
+/// An exception that leaves a body reaches the caller of the step after all bodies have ended; of several, one does.
+///
+/// Thread sanitizer: Debian's oneTBB is not instrumented, so the sanitizer does not see its forks and joins. In builds
+/// with the sanitizer, parallel.cpp is compiled without instrumentation, which hides oneTBB's own data, and states
+/// every fork and join by __tsan_release and __tsan_acquire. This relies on two conditions: no part of a body or of a
+/// per-thread value lies in oneTBB's memory, and a body does all its work between the two calls. No suppressions are
+/// needed. The sanitizer finds a race between two bodies if they run on different threads, so it needs two cores.
+namespace sixdof::parallel {
 
-#if defined(SIXDOF_PARALLEL_THREADS)
-#include <sixdof/base/parallel_threads.h>
-namespace sixdof {
-namespace parallel = parallel_threads;
+namespace detail {
+
+using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
+
+/// The value of each thread as an untyped pointer, null at first.
+class ThreadSlots {
+ public:
+  ThreadSlots();
+  void* get() const;
+  void set(void* value);
+
+ private:
+  std::shared_ptr<void> slots_;
+};
+
+}  // namespace detail
+
+/// body(begin, end) over disjoint ranges that cover [0, n), in any order. A range of more than `grain` may be halved.
+void for_ranges(std::size_t n, std::size_t grain, const detail::RangeBody& body);
+
+/// body(i) for i in [0, n), in any order.
+template <class Body>
+void for_each(std::size_t n, const Body& body) {
+  for_ranges(n, 1, [&body](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
 }
-#else
-#include <sixdof/base/parallel_tbb.h>
-namespace sixdof {
-namespace parallel = parallel_tbb;
+
+/// fold(begin, end) of consecutive ranges of about `grain`, joined from left to right. The ranges depend on n and
+/// `grain` only: the result is the same for every number of threads.
+template <class T, class Fold, class Join>
+T reduce(std::size_t n, std::size_t grain, const Fold& fold, const Join& join) {
+  const std::size_t count = std::max<std::size_t>(1, n / std::max<std::size_t>(1, grain));
+  std::vector<T> parts(count);
+  for_each(count, [&](std::size_t k) { parts[k] = fold(n * k / count, n * (k + 1) / count); });
+  T sum = std::move(parts[0]);
+  for (std::size_t k = 1; k < count; ++k) sum = join(std::move(sum), parts[k]);
+  return sum;
 }
-#endif
+
+/// f() and g(), in any order.
+void invoke(const std::function<void()>& f, const std::function<void()>& g);
+
+namespace detail {
+
+template <class Iterator>
+void sort_range(Iterator begin, Iterator end) {
+  constexpr auto k_sorted_by_one_thread = 1 << 16;
+  if (end - begin <= k_sorted_by_one_thread) {
+    std::sort(begin, end);
+    return;
+  }
+  const Iterator middle = begin + (end - begin) / 2;
+  invoke([=] { sort_range(begin, middle); }, [=] { sort_range(middle, end); });
+  std::inplace_merge(begin, middle, end);
+}
+
+}  // namespace detail
+
+/// Sorts by operator<. Equal elements come in no particular order.
+template <class T>
+void sort(std::vector<T>& values) {
+  detail::sort_range(values.begin(), values.end());
+}
+
+/// f(), during which this thread runs no body of another step, so that a lock may be held.
+void isolated(const std::function<void()>& f);
+
+/// f(), whose steps use at most `threads` threads; 0 means all cores.
+void with_threads(unsigned threads, const std::function<void()>& f);
+
+/// While alive, at most `threads` threads work in the whole process.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(std::size_t threads);
+
+ private:
+  std::shared_ptr<void> limit_;
+};
+
+/// Tasks started one by one. One thread owns the object, starts tasks and waits for them.
+class Tasks {
+ public:
+  Tasks();
+  Tasks(const Tasks&) = delete;
+  Tasks& operator=(const Tasks&) = delete;
+  ~Tasks();  ///< Waits for all started tasks; those that have not begun are dropped.
+
+  void run(std::function<void()> task);
+  void wait();  ///< @throws what a task threw
+
+ private:
+  struct Group;
+  std::unique_ptr<Group> group_;  ///< Made by the first task.
+};
+
+/// A value for each thread that asks for one.
+template <class T>
+class PerThread {
+ public:
+  /// @param make makes the value of a thread on its first use, in that thread.
+  explicit PerThread(std::function<T()> make = [] { return T(); }) : make_(std::move(make)) {}
+
+  /// This thread's value.
+  T& local() {
+    if (void* const mine = slots_.get()) return *static_cast<T*>(mine);
+    T made = make_();
+    const std::scoped_lock lock(mutex_);
+    values_.push_back(std::move(made));
+    slots_.set(&values_.back());
+    return values_.back();
+  }
+
+  /// All values, in the order in which they were made; while no thread calls local().
+  auto begin() { return values_.begin(); }
+  auto end() { return values_.end(); }
+
+ private:
+  std::function<T()> make_;
+  std::mutex mutex_;
+  std::deque<T> values_;
+  detail::ThreadSlots slots_;
+};
+
+}  // namespace sixdof::parallel

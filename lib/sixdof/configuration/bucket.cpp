@@ -7,6 +7,14 @@
 #include <sixdof/base/error.h>
 
 namespace sixdof {
+namespace {
+
+void check_percent(BucketKind kind, int percent) {
+  if (percent >= 0 && percent <= BucketKey::k_max_percent) return;
+  throw BadArgument(fmt::format("{} {} %: not in 0 .. {}", to_string(kind), percent, BucketKey::k_max_percent));
+}
+
+}  // namespace
 
 std::string to_string(BucketKind kind) { return kind == BucketKind::distance ? "distance" : "volume"; }
 
@@ -25,13 +33,11 @@ BucketKey BucketKey::parse(std::string_view name) {
     }
   }
   throw BadArgument(
-      fmt::format("bucket '{}': it reads distance/NN or volume/NN, NN from 00 to {}", name, k_max_percent));
+      fmt::format("bucket '{}': not of the form distance/NN or volume/NN, NN from 00 to {}", name, k_max_percent));
 }
 
 BucketSummary distance_bucket(const Mesh& a, int percent) {
-  if (percent < 0 || percent > BucketKey::k_max_percent) {
-    throw BadArgument(fmt::format("distance {} %: not in 0 .. {}", percent, BucketKey::k_max_percent));
-  }
+  check_percent(BucketKind::distance, percent);
   const double diagonal = a.diagonal();
   BucketSummary bucket;
   bucket.key = {BucketKind::distance, percent};
@@ -42,9 +48,7 @@ BucketSummary distance_bucket(const Mesh& a, int percent) {
 }
 
 BucketSummary volume_bucket(const Mesh& a, int percent) {
-  if (percent < 0 || percent > BucketKey::k_max_percent) {
-    throw BadArgument(fmt::format("volume {} %: not in 0 .. {}", percent, BucketKey::k_max_percent));
-  }
+  check_percent(BucketKind::volume, percent);
   BucketSummary bucket;
   bucket.key = {BucketKind::volume, percent};
   bucket.nominal = a.volume() * static_cast<double>(percent) / 100.0;

@@ -8,14 +8,14 @@
 
 #include <sixdof/geometry/mesh.h>
 
-/// A bucket: the configurations of a set that share one distance or one overlap volume.
+/// A bucket: the configurations of a set that have one distance or one overlap volume in common.
 
 namespace sixdof {
 
-/// What a bucket holds fixed: the distance (percent of A's box diagonal) or the overlap (percent of A's volume).
+/// The quantity that a bucket holds fixed.
 enum class BucketKind {
-  distance,
-  volume
+  distance,  ///< Of the surfaces, in percent of the diagonal of A's box.
+  volume     ///< Of the overlap, in percent of A's volume.
 };
 
 std::string to_string(BucketKind kind);
@@ -26,27 +26,27 @@ struct BucketKey {
 
   auto operator<=>(const BucketKey&) const = default;
 
-  /// Its dataset, and its part of a benchmark's name with ':' for '/': "distance/05", "volume/10".
+  /// Name of the bucket's dataset: "distance/05", "volume/10". Names of benchmarks have it with ':' for '/'.
   std::string name() const;
   /// The inverse of name(). @throws BadArgument
   static BucketKey parse(std::string_view name);
 
-  /// Largest percentage a bucket may have.
   static constexpr int k_max_percent = 100;
 };
 
-/// All of a bucket but its values. Lengths in the meshes' unit, volumes in its cube.
+/// Everything about a bucket but its values. Distances in the meshes' length unit, volumes in its cube.
 struct BucketSummary {
   BucketKey key;
   double nominal = 0.0;  ///< The percentage as a distance or a volume.
-  /// What the configurations are solved for: `nominal`, but in bucket 0 a distance just outside contact.
+  /// The distance or volume that the configurations have: `nominal`, but a distance just outside contact in
+  /// distance bucket 0.
   double target = 0.0;
-  double tolerance = 0.0;         ///< |measured - target| is at most this in every reachable configuration.
-  double largest_residual = 0.0;  ///< The largest |measured - target| when the set was made.
-  std::uint64_t reachable = 0;    ///< Configurations whose translation is a number; filled by the writer.
-  std::string oracle;             ///< What measured, e.g. "fcl-rss".
+  double tolerance = 0.0;         ///< Upper bound of |measured - target| of every reachable configuration.
+  double largest_residual = 0.0;  ///< Largest |measured - target| when the set was made.
+  std::uint64_t reachable = 0;    ///< Configurations whose translation is not NaN. The writer fills it in.
+  std::string oracle;             ///< The method that measured, e.g. "fcl-rss".
   std::string oracle_version;
-  std::string hash;  ///< Content hash of the values; filled by the writer.
+  std::string hash;  ///< Content hash of the values. The writer fills it in.
 };
 
 /// A bucket with its values, in memory.
@@ -56,21 +56,21 @@ struct Bucket {
   std::vector<double> translations;
 };
 
-/// |distance - target| allowed in a set, in units of A's box diagonal.
+/// |distance - target| allowed in a set, in units of the diagonal of A's box.
 constexpr double k_distance_tolerance = 1e-9;
 
-/// Target of distance bucket 0, in units of A's box diagonal: far above the rounding of a distance (1e-16) and far below
-/// the tolerance, so that the surfaces are about to touch and do not intersect.
+/// Target of distance bucket 0, in units of the diagonal of A's box: far above the rounding of a distance (1e-16) and
+/// far below the tolerance, so that the surfaces are about to touch and do not intersect.
 constexpr double k_contact_target = 1e-11;
 
 /// |volume - target| allowed in a set, in units of A's volume.
 constexpr double k_volume_tolerance = 1e-9;
 
-/// The distance bucket of a percentage of A's box diagonal: key, nominal, target and tolerance filled.
+/// The distance bucket of a percentage of the diagonal of A's box, with key, nominal, target and tolerance.
 /// @throws BadArgument unless 0 <= percent <= BucketKey::k_max_percent
 BucketSummary distance_bucket(const Mesh& a, int percent);
 
-/// The volume bucket of a percentage of A's volume: key, nominal, target and tolerance filled. Bucket 0 is contact.
+/// The volume bucket of a percentage of A's volume, with key, nominal, target and tolerance. Bucket 0 is contact.
 /// @throws BadArgument unless 0 <= percent <= BucketKey::k_max_percent
 BucketSummary volume_bucket(const Mesh& a, int percent);
 

@@ -8,8 +8,8 @@
 namespace sixdof {
 namespace {
 
-/// Fisher-Yates with plain modulo: std::shuffle may differ from one standard library to the next, and the bias of the
-/// modulo (at most length / 2^64) is nothing.
+/// Fisher-Yates. Not std::shuffle, whose order may differ from one standard library to the next. The bias of the
+/// modulo is at most length / 2^64.
 template <class T>
 void shuffle(std::vector<T>& list, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -18,7 +18,7 @@ void shuffle(std::vector<T>& list, std::uint64_t seed) {
 
 }  // namespace
 
-BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mesh& a, const Mesh& b, std::size_t most,
+BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mesh& a, const Mesh& b, std::size_t count,
                            std::uint64_t seed) {
   const BucketSummary& summary = set.summary(key);
   const Grid& grid = set.grid(key.kind);
@@ -29,7 +29,7 @@ BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mes
                       .diagonal = a.diagonal(),
                       .volume = a.volume(),
                       .reachable = summary.reachable};
-  const bool all = most == 0 || summary.reachable <= most;
+  const bool all = count == 0 || summary.reachable <= count;
 
   const std::size_t directions = grid.directions.size();
   const std::size_t runs_per_rotation = (directions + BucketSample::k_run - 1) / BucketSample::k_run;
@@ -37,12 +37,12 @@ BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mes
   std::iota(runs.begin(), runs.end(), std::uint64_t{0});
   if (!all) shuffle(runs, seed);
   for (const std::uint64_t run : runs) {
-    if (!all && sample.poses.size() >= most) break;
+    if (!all && sample.poses.size() >= count) break;
     const std::size_t r = run / runs_per_rotation;
     const std::size_t first = run % runs_per_rotation * BucketSample::k_run;
     for (std::size_t u = first; u < std::min(first + BucketSample::k_run, directions); ++u) {
       const double s = translations[r * directions + u];
-      if (std::isnan(s)) continue;  // Out of reach on this ray: there is no such configuration.
+      if (std::isnan(s)) continue;  // The target is not met on this ray.
       sample.poses.push_back(configuration_pose(a, b, grid.directions[u], grid.rotations[r], s));
     }
   }

@@ -10,28 +10,28 @@
 
 namespace sixdof {
 
-/// The configurations of one bucket that a benchmark asks, and what their answers have to be.
+/// Configurations drawn from one bucket, with what their answers are compared with.
 struct BucketSample {
   BucketKey key;
-  /// In runs of up to k_run neighbours (one rotation, consecutive directions of the grid); the runs stand in random
-  /// order, so that the first few of them are a fair sample too.
+  /// In runs of up to k_run neighbours (one rotation, consecutive directions of the grid). The runs stand in random
+  /// order, so every prefix of whole runs is a random sample too.
   std::vector<Pose> poses;
-  double target = 0.0;             ///< Distance (length) or overlap volume (length^3) of every configuration.
-  double tolerance = 0.0;       ///< How far the set's own truth may be from `target`, same unit.
-  double diagonal = 0.0;        ///< Of A's box: the scale that tolerances of distances refer to.
-  double volume = 0.0;          ///< Of A: the scale that tolerances of overlap volumes refer to.
-  std::uint64_t reachable = 0;  ///< Configurations in the whole bucket.
+  double target = 0.0;          ///< Distance (length) or overlap volume (length^3) of every configuration.
+  double tolerance = 0.0;       ///< Upper bound of the set's own |measured - target|, same unit.
+  double diagonal = 0.0;        ///< Of A's box: the scale of tolerances of distances.
+  double volume = 0.0;          ///< Of A: the scale of tolerances of overlap volumes.
+  std::uint64_t reachable = 0;  ///< Reachable configurations of the whole bucket.
 
   static constexpr std::size_t k_run = 32;
 };
 
-/// Reads a bucket and draws at least `most` of its configurations, in whole runs (all of them, in the set's own order,
-/// if there are no more or `most` is 0). The same seed draws the same ones.
+/// Reads a bucket and draws at least `count` of its reachable configurations, in whole runs. Draws all of them, in the
+/// order of the set, if there are no more or `count` is 0. The same seed draws the same ones.
 /// @throws BadFile, BadArgument as ConfigurationSet does
-BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mesh& a, const Mesh& b, std::size_t most,
+BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mesh& a, const Mesh& b, std::size_t count,
                            std::uint64_t seed);
 
-/// The first `count` poses in a random order that depends only on `seed` and `count`.
+/// The first `count` poses in a random order that depends on `seed` and `count` alone.
 std::vector<Pose> shuffled(const std::vector<Pose>& poses, std::size_t count, std::uint64_t seed);
 
 }  // namespace sixdof

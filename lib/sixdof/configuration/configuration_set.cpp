@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/hdf5.h>
 #include <sixdof/configuration/set_fields.h>
@@ -16,12 +17,8 @@ namespace sixdof {
 namespace {
 
 constexpr const char* k_format = "sixdof-configuration-set";
-/// Version 2 is version 1 plus a grid of their own for volumes. Sets with one grid stay version 1.
-constexpr std::uint64_t k_one_grid = 1;
-constexpr std::uint64_t k_two_grids = 2;
-constexpr const char* k_volume_grid = "volume_grid";
-
-std::uint64_t format_version(const SetDescription& set) { return set.volume_grid ? k_two_grids : k_one_grid; }
+constexpr std::uint64_t k_format_version = 3;
+constexpr const char* k_volume_grid = "volume_grid";  ///< A group that is there if volumes have a grid of their own.
 
 void check_grid(const Grid& grid) {
   if (grid.directions.empty() || grid.rotations.empty()) throw BadArgument("a configuration set needs a grid");
@@ -30,21 +27,22 @@ void check_grid(const Grid& grid) {
 std::string hash_of(const SetDescription& set, const std::vector<BucketSummary>& buckets) {
   detail::FieldHash hash;
   hash.add(k_format);
-  hash.add(format_version(set));
+  hash.add(k_format_version);
   hash.add(set.generator_version);
   hash.add(set.a);
   hash.add(set.b);
   hash.add(set.grid);
+  hash.add(std::uint64_t{set.volume_grid ? 1u : 0u});
   if (set.volume_grid) hash.add(*set.volume_grid);
   for (const BucketSummary& bucket : buckets) hash.add(bucket);
   return hash.hex();
 }
 
-void check_mesh(const std::filesystem::path& file, char which, const MeshIdentity& stamp, const Mesh& mesh) {
-  if (stamp.hash == mesh.hash()) return;
+void check_mesh(const std::filesystem::path& file, char which, const MeshIdentity& expected, const Mesh& mesh) {
+  if (expected.hash == mesh.hash()) return;
   throw BadArgument(fmt::format(
       "{}: the set was made for another mesh {}: {} ({} triangles, content hash {}), not {} ({} triangles, {})",
-      file.string(), which, stamp.name, stamp.triangles, stamp.hash, mesh.name(), mesh.triangles().size(),
+      file.string(), which, expected.name, expected.triangles, expected.hash, mesh.name(), mesh.triangles().size(),
       mesh.hash()));
 }
 
@@ -70,7 +68,7 @@ ConfigurationSetWriter::ConfigurationSetWriter(std::filesystem::path path, SetDe
   state_->file = std::make_unique<hdf5::File>(hdf5::File::create(state_->atomic.temporary_path(), state_->path));
   hdf5::File& file = *state_->file;
   file.write_attribute("/", "format", std::string(k_format));
-  file.write_attribute("/", "format_version", format_version(set));
+  file.write_attribute("/", "format_version", k_format_version);
   file.write_attribute("/", "generator_version", set.generator_version);
   detail::write_grid(file, "/", set.grid);
   if (set.volume_grid) {
@@ -101,15 +99,11 @@ void ConfigurationSetWriter::write(BucketSummary summary, std::span<const double
         fmt::format("bucket {}: {} values for {} configurations", name, translations.size(), grid.configurations()));
   }
   for (const double s : translations) {
-    if (std::isinf(s) || s < 0.0) throw BadArgument(fmt::format("bucket {}: translations {}", name, s));
+    if (std::isinf(s) || s < 0.0) throw BadArgument(fmt::format("bucket {}: translation {}", name, s));
   }
-  summary.reachable = detail::count_reachable(translations);
-  summary.hash = detail::hash_of(translations);
   const hdf5::Session session;
-  state_->file->write_matrix(name, translations.data(), grid.rotations.size(), grid.directions.size(),
-                             detail::chunk_rows(grid.directions.size()));
-  detail::write_summary(*state_->file, summary);
-  state_->buckets.push_back(std::move(summary));
+  state_->buckets.push_back(
+      detail::write_bucket(*state_->file, std::move(summary), translations, grid.directions.size()));
 }
 
 void ConfigurationSetWriter::commit() {
@@ -125,18 +119,12 @@ ConfigurationSet::ConfigurationSet(std::filesystem::path path) : path_(std::move
   const std::string name = path_.string();
   const hdf5::Session session;
   const hdf5::File file = hdf5::File::open(path_);
-  if (file.read_string("/", "format") != k_format) throw BadFile(name, "root", "is not a sixdof configuration set");
-  const std::uint64_t version = file.read_count("/", "format_version");
-  if (version != k_one_grid && version != k_two_grids) {
-    throw BadFile(
-        name, "root",
-        fmt::format("is of format version {}; this build reads versions {} and {}", version, k_one_grid, k_two_grids));
-  }
+  detail::check_format(file, path_, k_format, k_format_version, "a sixdof configuration set");
   description_.generator_version = file.read_string("/", "generator_version");
   description_.a = detail::read_identity(file, path_, "mesh_a");
   description_.b = detail::read_identity(file, path_, "mesh_b");
   description_.grid = detail::read_grid(file, path_, "/");
-  if (version == k_two_grids) description_.volume_grid = detail::read_grid(file, path_, k_volume_grid);
+  if (file.exists(k_volume_grid)) description_.volume_grid = detail::read_grid(file, path_, k_volume_grid);
   for (const BucketKey key : detail::bucket_keys(file)) {
     const Grid& grid = description_.grid_of(key.kind);
     const auto [rows, columns] = file.matrix_size(key.name());
@@ -153,10 +141,6 @@ ConfigurationSet::ConfigurationSet(std::filesystem::path path) : path_(std::move
   }
 }
 
-bool ConfigurationSet::has(BucketKey key) const {
-  return std::ranges::find(buckets_, key, &BucketSummary::key) != buckets_.end();
-}
-
 const BucketSummary& ConfigurationSet::summary(BucketKey key) const {
   const auto found = std::ranges::find(buckets_, key, &BucketSummary::key);
   if (found != buckets_.end()) return *found;
@@ -166,24 +150,7 @@ const BucketSummary& ConfigurationSet::summary(BucketKey key) const {
 }
 
 std::vector<double> ConfigurationSet::read(BucketKey key) const {
-  const BucketSummary& bucket = summary(key);
-  const std::string name = key.name();
-  std::vector<double> translations;
-  {
-    const hdf5::Session session;
-    translations = hdf5::File::open(path_).read_matrix(name);
-  }
-  ++buckets_read_;
-  if (detail::hash_of(translations) != bucket.hash || translations.size() != grid(key.kind).configurations()) {
-    throw BadFile(path_.string(), name,
-                  "values do not have the hash that was stored with them: damaged, edited or replaced since opening");
-  }
-  if (detail::count_reachable(translations) != bucket.reachable) {
-    throw BadFile(path_.string(), name,
-                  fmt::format("{} values are numbers, but {} are said to be reachable", detail::count_reachable(translations),
-                              bucket.reachable));
-  }
-  return translations;
+  return detail::read_translations(path_, summary(key));
 }
 
 void ConfigurationSet::check_meshes(const Mesh& a, const Mesh& b) const {

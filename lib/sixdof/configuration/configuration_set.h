@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -8,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <sixdof/base/atomic_file.h>
 #include <sixdof/configuration/bucket.h>
 #include <sixdof/configuration/set_description.h>
 #include <sixdof/geometry/mesh.h>
@@ -25,7 +23,7 @@ class ConfigurationSetWriter {
   ConfigurationSetWriter& operator=(const ConfigurationSetWriter&) = delete;
 
   /// Adds a bucket.
-  /// @param translation s of rotation r and direction u at [r * directions + u], NaN where unreachable.
+  /// @param translations s of rotation r and direction u at [r * directions + u], NaN where unreachable
   /// @throws BadArgument if the bucket is there already, the size is wrong, or a value is infinite or negative.
   void write(BucketSummary summary, std::span<const double> translations);
 
@@ -37,11 +35,11 @@ class ConfigurationSetWriter {
   std::unique_ptr<State> state_;
 };
 
-/// A set on disk. Opening reads the description, the grid and the summaries; values are read bucket by bucket.
-/// May be used from several threads (reading is one at a time in the process).
+/// A set on disk. Opening reads the description, the grids and the summaries; values are read bucket by bucket.
+/// May be used from several threads (reads are serialized in the process).
 class ConfigurationSet {
  public:
-  /// @throws BadFile if the file is no configuration set, of a version this build does not know, truncated or damaged.
+  /// @throws BadFile if the file is not a configuration set, is of another format version, truncated or damaged.
   explicit ConfigurationSet(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
@@ -49,21 +47,17 @@ class ConfigurationSet {
   const Grid& grid(BucketKind kind) const { return description_.grid_of(kind); }
   /// Distances before volumes, each by percentage.
   const std::vector<BucketSummary>& buckets() const { return buckets_; }
-  /// Content hash of everything in the set: description, grid, summaries and (by their own hashes) values. It does not
+  /// Content hash of everything in the set: description, grids, summaries and (by their own hashes) values. It does not
   /// depend on compression.
   const std::string& hash() const { return hash_; }
 
-  bool has(BucketKey key) const;
-  /// @throws BadArgument naming the buckets there are.
+  /// @throws BadArgument naming the buckets of the set if this is none of them.
   const BucketSummary& summary(BucketKey key) const;
 
-  /// The translation s of rotation r and direction u at [r * directions + u], in the meshes' unit, NaN where unreachable.
-  /// Touches no other bucket.
+  /// The translation s of rotation r and direction u at [r * directions + u], in the meshes' length unit, NaN where
+  /// unreachable. Reads no other bucket.
   /// @throws BadArgument if there is no such bucket; BadFile if it is damaged or the file has changed since opening.
   std::vector<double> read(BucketKey key) const;
-
-  /// How many times read() has read values: shows that a benchmark reads only what it needs.
-  std::size_t buckets_read() const { return buckets_read_; }
 
   /// @throws BadArgument if the set was made for other meshes, saying which.
   void check_meshes(const Mesh& a, const Mesh& b) const;
@@ -73,10 +67,9 @@ class ConfigurationSet {
   SetDescription description_;
   std::vector<BucketSummary> buckets_;
   std::string hash_;
-  mutable std::atomic<std::size_t> buckets_read_{0};
 };
 
-/// True if the file begins as HDF5 files do; how commands tell a set from a mesh.
+/// True if the file begins with HDF5's signature. Commands tell a set from a mesh by it.
 bool looks_like_configuration_set(const std::filesystem::path& path);
 
 }  // namespace sixdof

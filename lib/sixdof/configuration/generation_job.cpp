@@ -38,10 +38,11 @@ std::string words(const std::vector<BucketSummary>& buckets) {
   return fmt::format("{}", fmt::join(list, ", "));
 }
 
-Grid make_again(const GridIdentity& stamp) {
-  Grid grid = make_grid(stamp.spec);
-  if (GridIdentity::of(grid) == stamp) return grid;
-  throw BadArgument(fmt::format("grid {}: this build makes another one of that name than the shards have", stamp.spec));
+Grid make_again(const GridIdentity& identity) {
+  Grid grid = make_grid(identity.spec);
+  if (GridIdentity::of(grid) == identity) return grid;
+  throw BadArgument(
+      fmt::format("grid {}: this build makes another grid of that name than the shards have", identity.spec));
 }
 
 }  // namespace
@@ -122,7 +123,7 @@ void check_shard_number(ShardNumber shard, const SetDescription& set, const Gene
     if (!job.has(kind)) continue;
     const std::size_t distinct = DistinctRotations(set.grid_of(kind).rotations).first.size();
     if (shard.count > distinct) {
-      throw BadArgument(fmt::format("{} shards: grid {} of the {}s has {} distinct rotations to share", shard.count,
+      throw BadArgument(fmt::format("{} shards: grid {} of the {}s has only {} distinct rotations", shard.count,
                                     set.grid_of(kind).spec, to_string(kind), distinct));
     }
   }

@@ -14,7 +14,7 @@
 
 namespace sixdof {
 
-/// What a job remembers of a grid: make_grid(spec) makes it again.
+/// Identifies a grid in a shard: make_grid(spec) makes it again.
 struct GridIdentity {
   std::string spec;
   std::string hash;  ///< Of the directions and rotations.
@@ -23,38 +23,38 @@ struct GridIdentity {
   bool operator==(const GridIdentity&) const = default;
 };
 
-/// Everything that the values of a configuration set depend on: equal jobs give equal bits, on one machine or many.
+/// Everything that the values of a configuration set depend on. Equal jobs give equal bits, on one machine or many.
 struct GenerationJob {
-  std::string program;  ///< The build that computes.
+  std::string program;  ///< Version and commit of the build that computes. Shards of two builds are not merged.
   std::string generator_version;
-  std::string oracle, oracle_version;  ///< Of the distances (and of contact).
+  std::string oracle, oracle_version;  ///< The method that measures distances (and contact).
   MeshIdentity a, b;
   GridIdentity grid;
   std::optional<GridIdentity> volume_grid;
-  std::vector<BucketSummary> buckets;  ///< Ascending by key: key, target, target and tolerance, nothing measured.
+  std::vector<BucketSummary> buckets;  ///< Ascending by key, with key, nominal, target and tolerance.
 
-  /// @param program names the build that computes, version and commit: bits of two builds are not mixed
-  /// @param oracle, oracle_version what measures distances (and contact)
   /// @param distances, volumes percentages, each once
   /// @throws BadArgument
   static GenerationJob of(std::string program, const std::string& oracle, const std::string& oracle_version,
-                          const Mesh& a, const Mesh& b, const SetDescription& set, std::span<const int> distances, std::span<const int> volumes);
+                          const Mesh& a, const Mesh& b, const SetDescription& set, std::span<const int> distances,
+                          std::span<const int> volumes);
 
   bool has(BucketKind kind) const;
   std::string hash() const;
-  /// What sets this job apart from another, in words; empty if nothing does.
+  /// The differences from another job in words; empty if there are none.
   std::string difference(const GenerationJob& other) const;
-  /// The head of the set that the job makes. @throws BadArgument if this build makes other grids of the same names
+  /// The description of the set that the job makes.
+  /// @throws BadArgument if this build makes other grids from the same descriptions
   SetDescription describe() const;
 };
 
-/// One of `count` shards, from 1.
+/// One of `count` shards; the first has number 1.
 struct ShardNumber {
   std::size_t number = 1, count = 1;
   bool operator==(const ShardNumber&) const = default;
 };
 
-/// A shard's part of a grid's distinct rotations; sizes of shards differ by one at most.
+/// A shard's part of a grid's distinct rotations. Sizes of shards differ by one at most.
 std::span<const std::uint32_t> rotations_of(ShardNumber shard, const DistinctRotations& distinct);
 
 /// @throws BadArgument unless 1 <= number <= count and every shard has a rotation of every grid of the set.

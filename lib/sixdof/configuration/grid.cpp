@@ -16,34 +16,34 @@
 namespace sixdof {
 namespace {
 
-/// 180 / step may miss a whole number by the rounding of a step typed with many digits (e.g. 180/7 as 25.714285714286).
+/// 180 / step may differ from a whole number by the rounding of a decimal step (e.g. 180/7 typed as 25.714285714286).
 constexpr double k_step_tolerance = 1e-9;
 
 struct CosSin {
   double cos, sin;
 };
 
-/// Cosine and sine rounded from extended precision: the C library picks its double versions by the processor's
-/// features, and their last bits differ.
+/// Cosine and sine rounded from extended precision. The C library's functions of doubles come in several versions,
+/// selected by the processor's features, whose last bits differ.
 CosSin cos_sin(long double radians) {
   return {static_cast<double>(std::cos(radians)), static_cast<double>(std::sin(radians))};
 }
 
-/// Of the angle of k / n turns. Folded by whole numbers to [0, 45] degrees, so that multiples of 30 and 45 degrees are
-/// the best doubles and symmetric angles have symmetric bits.
-CosSin cos_sin_of_turn(std::int64_t k, std::int64_t n) {
+/// Of the angle 2 pi k / n. Reduced in whole numbers to [0, 45] degrees, so that multiples of 30 and 45 degrees are
+/// rounded correctly and symmetric angles have symmetric bits.
+CosSin cos_sin_of(std::int64_t k, std::int64_t n) {
   k = (k % n + n) % n;
   const std::int64_t quadrant = 4 * k / n;
-  const std::int64_t r = 4 * k - quadrant * n;  // r / n of a quarter turn
+  const std::int64_t r = 4 * k - quadrant * n;  // The rest is r / n of a right angle.
   const bool beyond_45 = 2 * r > n;
-  const std::int64_t folded = beyond_45 ? n - r : r;
+  const std::int64_t reduced = beyond_45 ? n - r : r;
   CosSin p{1.0, 0.0};
-  if (2 * folded == n) {
+  if (2 * reduced == n) {
     p = {std::sqrt(0.5), std::sqrt(0.5)};
-  } else if (3 * folded == n) {
+  } else if (3 * reduced == n) {
     p = {std::sqrt(0.75), 0.5};
-  } else if (folded != 0) {
-    p = cos_sin(std::numbers::pi_v<long double> * static_cast<long double>(folded) / static_cast<long double>(2 * n));
+  } else if (reduced != 0) {
+    p = cos_sin(std::numbers::pi_v<long double> * static_cast<long double>(reduced) / static_cast<long double>(2 * n));
   }
   if (beyond_45) std::swap(p.cos, p.sin);
   switch (quadrant) {
@@ -67,8 +67,8 @@ Eigen::Vector4d canonical(const Eigen::Vector4d& q) {
   return q;
 }
 
-/// Fractional part of x in [0, 1).
-long double fraction(long double x) { return x - std::floor(x); }
+/// In [0, 1).
+long double fractional_part(long double x) { return x - std::floor(x); }
 
 template <class T>
 std::optional<T> parse_number(std::string_view text) {
@@ -80,7 +80,7 @@ std::optional<T> parse_number(std::string_view text) {
 
 [[noreturn]] void refuse(std::string_view spec, const std::string& why) {
   throw BadArgument(fmt::format(
-      "grid '{}': {}; it reads paper, paper-volume, STEP, STEP/STEP (degrees, dividing 180), so3:N or so3:N:M", spec,
+      "grid '{}': {}; a grid is paper, paper-volume, STEP, STEP/STEP (degrees, dividing 180), so3:N or so3:N:M", spec,
       why));
 }
 
@@ -94,7 +94,7 @@ std::size_t parse_step(std::string_view spec, std::string_view text) {
   if (std::abs(steps - whole) > k_step_tolerance * whole) {
     refuse(spec, fmt::format("180 degrees are not a whole number of steps of {}", text));
   }
-  if (whole > static_cast<double>(k_max_grid_samples)) refuse(spec, fmt::format("step {} is too fine", text));
+  if (whole > static_cast<double>(k_max_grid_size)) refuse(spec, fmt::format("step {} is too fine", text));
   return static_cast<std::size_t>(whole);
 }
 
@@ -105,10 +105,10 @@ std::size_t parse_count(std::string_view spec, std::string_view text) {
 }
 
 void check_size(std::string_view spec, double directions, double rotations) {
-  const auto limit = static_cast<double>(k_max_grid_samples);
+  const auto limit = static_cast<double>(k_max_grid_size);
   if (directions > limit || rotations > limit) {
     refuse(spec, fmt::format("{:.0f} directions and {:.0f} rotations are more than {}", directions, rotations,
-                             k_max_grid_samples));
+                             k_max_grid_size));
   }
 }
 
@@ -126,8 +126,8 @@ Grid make_zyz_grid(std::string_view spec, std::size_t n_directions, std::size_t 
   return grid;
 }
 
-/// Rotations have the volume 8 pi^2 when measured by the rotation angle (as axis times angle near the identity),
-/// directions the area 4 pi: the count of directions whose cells have the same edge.
+/// The count of directions whose cells have the same edge as those of the rotations. SO(3) has the volume 8 pi^2 if
+/// lengths are rotation angles; the sphere of directions has the area 4 pi.
 std::size_t matching_direction_count(std::size_t rotations) {
   constexpr double pi = std::numbers::pi;
   const double edge = std::cbrt(8.0 * pi * pi / static_cast<double>(rotations));
@@ -171,14 +171,14 @@ struct QuaternionBitsHash {
 }  // namespace
 
 std::vector<Eigen::Vector3d> latitude_directions(std::size_t n) {
-  const auto turn = static_cast<std::int64_t>(2 * n);
+  const auto circle = static_cast<std::int64_t>(2 * n);  // Steps in 360 degrees.
   std::vector<Eigen::Vector3d> directions;
   directions.reserve(2 * n * (n - 1) + 2);
   directions.emplace_back(0.0, 0.0, 1.0);
-  for (std::int64_t k = 1; 2 * k < turn; ++k) {
-    const CosSin theta = cos_sin_of_turn(k, turn);
-    for (std::int64_t i = 0; i < turn; ++i) {
-      const CosSin phi = cos_sin_of_turn(i, turn);
+  for (std::int64_t k = 1; 2 * k < circle; ++k) {
+    const CosSin theta = cos_sin_of(k, circle);
+    for (std::int64_t i = 0; i < circle; ++i) {
+      const CosSin phi = cos_sin_of(i, circle);
       directions.emplace_back(theta.sin * phi.cos, theta.sin * phi.sin, theta.cos);
     }
   }
@@ -187,16 +187,17 @@ std::vector<Eigen::Vector3d> latitude_directions(std::size_t n) {
 }
 
 std::vector<Eigen::Vector4d> zyz_rotations(std::size_t n) {
-  const auto half_turn = static_cast<std::int64_t>(n);
-  const std::int64_t turn = 2 * half_turn;
+  const auto half_circle = static_cast<std::int64_t>(n);  // Steps in 180 degrees.
+  const std::int64_t circle = 2 * half_circle;
   std::vector<Eigen::Vector4d> rotations;
   rotations.reserve(4 * n * n * (n + 1));
-  for (std::int64_t alpha = 0; alpha < turn; ++alpha) {
-    for (std::int64_t beta = 0; beta <= half_turn; ++beta) {
-      const CosSin b = cos_sin_of_turn(beta, 2 * turn);  // of half the angle
-      for (std::int64_t gamma = 0; gamma < turn; ++gamma) {
-        const CosSin sum = cos_sin_of_turn(alpha + gamma, 2 * turn);
-        const CosSin difference = cos_sin_of_turn(alpha - gamma, 2 * turn);
+  // Quaternions have the cosines and sines of half the angles.
+  for (std::int64_t alpha = 0; alpha < circle; ++alpha) {
+    for (std::int64_t beta = 0; beta <= half_circle; ++beta) {
+      const CosSin b = cos_sin_of(beta, 2 * circle);
+      for (std::int64_t gamma = 0; gamma < circle; ++gamma) {
+        const CosSin sum = cos_sin_of(alpha + gamma, 2 * circle);
+        const CosSin difference = cos_sin_of(alpha - gamma, 2 * circle);
         rotations.push_back(
             canonical({b.cos * sum.cos, -b.sin * difference.sin, b.sin * difference.cos, b.cos * sum.sin}));
       }
@@ -206,7 +207,7 @@ std::vector<Eigen::Vector4d> zyz_rotations(std::size_t n) {
 }
 
 std::vector<Eigen::Vector4d> super_fibonacci_rotations(std::size_t count) {
-  constexpr auto turn = 2.0L * std::numbers::pi_v<long double>;
+  constexpr auto two_pi = 2.0L * std::numbers::pi_v<long double>;
   constexpr auto phi = std::numbers::sqrt2_v<long double>;
   constexpr long double psi = 1.533751168755204288118041L;
   std::vector<Eigen::Vector4d> rotations;
@@ -216,22 +217,22 @@ std::vector<Eigen::Vector4d> super_fibonacci_rotations(std::size_t count) {
     const long double t = s / static_cast<long double>(count);
     const auto r = static_cast<double>(std::sqrt(t));
     const auto rest = static_cast<double>(std::sqrt(1.0L - t));
-    const CosSin alpha = cos_sin(turn * fraction(s / phi));
-    const CosSin beta = cos_sin(turn * fraction(s / psi));
+    const CosSin alpha = cos_sin(two_pi * fractional_part(s / phi));
+    const CosSin beta = cos_sin(two_pi * fractional_part(s / psi));
     rotations.push_back(canonical({r * alpha.sin, r * alpha.cos, rest * beta.sin, rest * beta.cos}));
   }
   return rotations;
 }
 
 std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count) {
-  constexpr auto turn = 2.0L * std::numbers::pi_v<long double>;
+  constexpr auto two_pi = 2.0L * std::numbers::pi_v<long double>;
   std::vector<Eigen::Vector3d> directions;
   directions.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const auto index = static_cast<long double>(i);
     const long double z = 1.0L - (2.0L * index + 1.0L) / static_cast<long double>(count);
     const auto parallel = static_cast<double>(std::sqrt((1.0L - z) * (1.0L + z)));
-    const CosSin longitude = cos_sin(turn * fraction(index / std::numbers::phi_v<long double>));
+    const CosSin longitude = cos_sin(two_pi * fractional_part(index / std::numbers::phi_v<long double>));
     directions.emplace_back(parallel * longitude.cos, parallel * longitude.sin, static_cast<double>(z));
   }
   return directions;
@@ -273,7 +274,7 @@ void DistinctRotations::copy_to_repeats(std::span<double> values, std::size_t ro
 ConfigurationRay::ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation)
     : R(Pose::from_quaternion(rotation[0], rotation[1], rotation[2], rotation[3], Eigen::Vector3d::Zero()).R),
       center_a(a.center()),
-      turned_center_b(R * b.center()) {}
+      rotated_center_b(R * b.center()) {}
 
 Pose configuration_pose(const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction, const Eigen::Vector4d& rotation,
                         double s) {

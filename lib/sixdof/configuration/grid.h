@@ -12,23 +12,23 @@
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
 
-/// Which configurations a set samples: directions in which B stands as seen from A, times rotations of B.
+/// The grid of a set: directions from A to B, times rotations of B.
 
 namespace sixdof {
 
-/// Buckets of the paper: distances of 0..30 % of A's box diagonal, volumes of 0..10 % of A's volume.
+/// Number of buckets in the paper: distances of 0..30 % of the diagonal of A's box, volumes of 0..10 % of A's volume.
 constexpr std::size_t k_paper_distance_buckets = 31;
 constexpr std::size_t k_paper_volume_buckets = 11;
 
-/// A grid of directions and rotations, with the words it was made from.
+/// A grid of directions and rotations, with its description.
 struct Grid {
-  std::string spec;     ///< As given to make_grid(), in its canonical spelling: "paper", "45", "15/30", "so3:1000:68".
+  std::string spec;     ///< The canonical spelling of make_grid()'s argument: "paper", "45", "15/30", "so3:1000:68".
   std::string sampler;  ///< "zyz-euler" or "super-fibonacci".
   double direction_step_degrees = 0.0;  ///< 0 for samplers without a step.
   double rotation_step_degrees = 0.0;   ///< 0 for samplers without a step.
-  /// Unit vectors in A's frame, pointing from A's box centre to B's.
+  /// Unit vectors in A's frame, pointing from the centre of A's box to that of B's.
   std::vector<Eigen::Vector3d> directions;
-  /// Unit quaternions (w, x, y, z) of R_AB with the first component that is not zero positive, so that equal rotations
+  /// Unit quaternions (w, x, y, z) of R_AB. The first component that is not zero is positive, so that equal rotations
   /// have equal bits.
   std::vector<Eigen::Vector4d> rotations;
 
@@ -39,20 +39,21 @@ struct Grid {
 /// - `paper`: the paper's grid for distances, directions and Euler angles every 15 degrees: 266 x 7,488 = 1,991,808;
 /// - `paper-volume`: the paper's grid for volumes, rotations every 30 degrees: 266 x 1,008 = 268,128;
 /// - `D` or `D/R`: directions every D and Euler angles every R degrees (R = D if absent), each dividing 180;
-/// - `so3:N` or `so3:N:M`: N uniform rotations and M uniform directions; without M as many directions as give the two
-///   the same angular spacing.
-/// @throws BadArgument for anything else, and for more than k_max_grid_samples directions or rotations.
+/// - `so3:N` or `so3:N:M`: N uniform rotations and M uniform directions. Without M, the number of directions with the
+///   angular spacing of the rotations.
+/// @throws BadArgument for anything else, and for more than k_max_grid_size directions or rotations.
 Grid make_grid(std::string_view spec);
 
-constexpr std::size_t k_max_grid_samples = 20'000'000;  ///< A set beyond it would have terabytes per bucket.
+/// Greatest number of directions or rotations. A larger set would have terabytes per bucket.
+constexpr std::size_t k_max_grid_size = 20'000'000;
 
-/// Longitudes and latitudes every 180 / n degrees: 2 n longitudes x (n - 1) interior latitudes + 2 poles. z is the
+/// Longitudes and latitudes every 180 / n degrees: 2 n longitudes x (n - 1) interior latitudes + 2 poles, with z as the
 /// polar axis. Order: the pole +z, then parallel after parallel, each from longitude 0, then the pole -z.
 std::vector<Eigen::Vector3d> latitude_directions(std::size_t n);
 
 /// R = Rz(alpha) Ry(beta) Rz(gamma), every 180 / n degrees: 2 n x (n + 1) x 2 n, with alpha the slowest and gamma the
-/// fastest index. At both poles of beta alpha and gamma turn about the same axis, so rotations repeat there; equal
-/// rotations have equal bits. As the paper has it: poles included, not uniform on SO(3).
+/// fastest index. At beta = 0 and 180 degrees alpha and gamma rotate about the same axis, so rotations repeat there;
+/// equal rotations have equal bits. This is the paper's sampling, poles included. It is not uniform on SO(3).
 std::vector<Eigen::Vector4d> zyz_rotations(std::size_t n);
 
 /// `count` low-discrepancy rotations, uniform on SO(3) for every count: super-Fibonacci spirals (Alexa,
@@ -62,10 +63,10 @@ std::vector<Eigen::Vector4d> super_fibonacci_rotations(std::size_t count);
 /// `count` directions on a spherical Fibonacci lattice (equal-area in z, golden angle in longitude), from +z to -z.
 std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count);
 
-/// Which rotations of a list have the same bits: work is done once for each distinct rotation and copied to its repeats.
+/// Which rotations of a list have the same bits. Each distinct rotation is solved once and copied to its repeats.
 struct DistinctRotations {
-  std::vector<std::uint32_t> first;           ///< Of each distinct rotation: its first index in the list.
-  std::vector<std::uint32_t> representative;  ///< Of each rotation of the list: the first index of its like.
+  std::vector<std::uint32_t> first;           ///< First index in the list of each distinct rotation, ascending.
+  std::vector<std::uint32_t> representative;  ///< For each rotation of the list, the first index of an equal one.
 
   explicit DistinctRotations(std::span<const Eigen::Vector4d> rotations);
 
@@ -74,21 +75,21 @@ struct DistinctRotations {
   void copy_to_repeats(std::span<double> values, std::size_t row_size) const;
 };
 
-/// The sphere method's poses of one rotation. B is rotated by R, and the centre of B's box (in B's frame, turned with
-/// B) stands at distance s from the centre of A's box in direction u: t = (c_A + s u) - R c_B. Whoever makes a pose
-/// makes it here, so that it is the same bits everywhere.
+/// The poses of the sphere method for one rotation. B is rotated by R, and the centre of B's box is at distance s from
+/// the centre of A's box in direction u: t = (c_A + s u) - R c_B. All poses of configurations are computed here, so
+/// that they have the same bits everywhere.
 struct ConfigurationRay {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();            ///< R_AB
-  Eigen::Vector3d center_a = Eigen::Vector3d::Zero();         ///< c_A in A's frame.
-  Eigen::Vector3d turned_center_b = Eigen::Vector3d::Zero();  ///< R c_B, in A's axes.
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();        ///< u, unit vector in A's frame.
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();             ///< R_AB
+  Eigen::Vector3d center_a = Eigen::Vector3d::Zero();          ///< c_A in A's frame.
+  Eigen::Vector3d rotated_center_b = Eigen::Vector3d::Zero();  ///< R c_B, in A's axes.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();         ///< u, unit vector in A's frame.
 
   ConfigurationRay() = default;
   /// @param rotation (w, x, y, z)
   ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation);
 
-  /// @param s translation, in the meshes' length unit
-  Pose pose(double s) const { return {R, (center_a + s * direction) - turned_center_b}; }
+  /// @param s translation along u, in the meshes' length unit
+  Pose pose(double s) const { return {R, (center_a + s * direction) - rotated_center_b}; }
 };
 
 /// The pose of one configuration.

@@ -6,11 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/configuration/configuration_set.h>
 
 namespace sixdof {
 namespace {
 
-/// Characters of benchmark names must mean nothing in a regular expression.
+/// Lower case, with '-' for every character that may have a meaning in a regular expression: benchmarks are selected by
+/// regular expressions on their names.
 std::string as_name(std::string text) {
   for (char& c : text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -31,9 +33,9 @@ SetCatalogue SetCatalogue::read(const std::filesystem::path& manifest) {
     const auto json = nlohmann::json::parse(file);
     for (const auto& entry : json.at("sets")) {
       CatalogueEntry set{.pair = entry.at("pair").get<std::string>(),
-                       .a = entry.at("a").at("name").get<std::string>(),
-                       .b = entry.at("b").at("name").get<std::string>(),
-                       .file = manifest.parent_path() / entry.at("file").get<std::string>()};
+                         .a = entry.at("a").at("name").get<std::string>(),
+                         .b = entry.at("b").at("name").get<std::string>(),
+                         .file = manifest.parent_path() / entry.at("file").get<std::string>()};
       for (const auto& bucket : entry.at("buckets")) set.buckets.push_back(BucketKey::parse(bucket.get<std::string>()));
       catalogue.add(std::move(set));
       ++index;

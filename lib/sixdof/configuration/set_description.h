@@ -12,7 +12,7 @@
 
 namespace sixdof {
 
-/// What a set remembers of a mesh, so that it is never used with another.
+/// Identifies a mesh in a set, so that the set is never used with another one.
 struct MeshIdentity {
   std::string name;
   std::string hash;  ///< Mesh::hash()
@@ -25,12 +25,12 @@ struct MeshIdentity {
   double diagonal() const { return (box_max - box_min).norm(); }
 };
 
-/// Everything that defines a set's configurations but their translation.
+/// Everything that defines the configurations of a set but their translations.
 struct SetDescription {
-  std::string generator_version;  ///< Of the program that made the set.
+  std::string generator_version;  ///< Version of the program that made the set.
   MeshIdentity a, b;
   Grid grid;
-  std::optional<Grid> volume_grid;  ///< Of the volume buckets, where they have another; the paper's is coarser.
+  std::optional<Grid> volume_grid;  ///< Grid of the volume buckets, if it is not `grid`; the paper's is coarser.
 
   const Grid& grid_of(BucketKind kind) const { return kind == BucketKind::volume && volume_grid ? *volume_grid : grid; }
 };

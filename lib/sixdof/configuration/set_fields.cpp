@@ -12,7 +12,19 @@
 namespace sixdof::detail {
 namespace {
 
+/// Size of a chunk of a matrix of translations; it fits HDF5's chunk cache.
 constexpr std::size_t k_chunk_bytes = std::size_t{1} << 20;
+
+std::string hash_of(std::span<const double> translations) {
+  FieldHash hash;
+  hash.add(translations);
+  return hash.hex();
+}
+
+/// Number of values that are not NaN.
+std::uint64_t count_reachable(std::span<const double> translations) {
+  return static_cast<std::uint64_t>(std::ranges::count_if(translations, [](double s) { return !std::isnan(s); }));
+}
 
 std::span<const double> values_of(const std::vector<Eigen::Vector3d>& directions) {
   return {directions.front().data(), 3 * directions.size()};
@@ -31,7 +43,7 @@ template <int size>
 std::vector<Eigen::Matrix<double, size, 1>> read_vectors(const hdf5::File& file, const std::filesystem::path& path,
                                                          const std::string& object) {
   const auto [rows, columns] = file.matrix_size(object);
-  if (columns != size || rows == 0 || rows > k_max_grid_samples) {
+  if (columns != size || rows == 0 || rows > k_max_grid_size) {
     throw BadFile(path.string(), object, fmt::format("is {} x {}, not n x {}", rows, columns, size));
   }
   const std::vector<double> values = file.read_matrix(object);
@@ -84,25 +96,23 @@ void FieldHash::add(const BucketSummary& bucket) {
   add(bucket.hash);
 }
 
-std::string hash_of(std::span<const double> values) {
-  FieldHash hash;
-  hash.add(values);
-  return hash.hex();
-}
-
 std::string hash_of(const Grid& grid) {
   FieldHash hash;
   hash.add(grid);
   return hash.hex();
 }
 
-std::uint64_t count_reachable(std::span<const double> translations) {
-  return static_cast<std::uint64_t>(
-      std::count_if(translations.begin(), translations.end(), [](double s) { return !std::isnan(s); }));
-}
-
-std::size_t chunk_rows(std::size_t directions) {
-  return std::max<std::size_t>(1, k_chunk_bytes / (sizeof(double) * directions));
+void check_format(const hdf5::File& file, const std::filesystem::path& path, std::string_view format,
+                  std::uint64_t version, std::string_view what) {
+  if (file.read_string("/", "format") != format) {
+    throw BadFile(path.string(), "root", fmt::format("is not {}", what));
+  }
+  if (const std::uint64_t found = file.read_count("/", "format_version"); found != version) {
+    throw BadFile(path.string(), "root",
+                  fmt::format("has format version {}, but this build reads version {}; make it again with "
+                              "`sixdof generate`",
+                              found, version));
+  }
 }
 
 void write_identity(hdf5::File& file, const std::string& group, const MeshIdentity& mesh) {
@@ -155,17 +165,23 @@ Grid read_grid(const hdf5::File& file, const std::filesystem::path& path, const 
   return grid;
 }
 
-void write_summary(hdf5::File& file, const BucketSummary& bucket) {
-  const std::string object = bucket.key.name();
-  file.write_attribute(object, "target_percent", static_cast<std::uint64_t>(bucket.key.percent));
-  file.write_attribute(object, "nominal", bucket.nominal);
-  file.write_attribute(object, "target", bucket.target);
-  file.write_attribute(object, "tolerance", bucket.tolerance);
-  file.write_attribute(object, "largest_residual", bucket.largest_residual);
-  file.write_attribute(object, "reachable", bucket.reachable);
-  file.write_attribute(object, "oracle", bucket.oracle);
-  file.write_attribute(object, "oracle_version", bucket.oracle_version);
-  file.write_attribute(object, "content_hash", bucket.hash);
+BucketSummary write_bucket(hdf5::File& file, BucketSummary summary, std::span<const double> translations,
+                           std::size_t directions) {
+  summary.reachable = count_reachable(translations);
+  summary.hash = hash_of(translations);
+  const std::string object = summary.key.name();
+  const std::size_t chunk_rows = std::max<std::size_t>(1, k_chunk_bytes / (sizeof(double) * directions));
+  file.write_matrix(object, translations.data(), translations.size() / directions, directions, chunk_rows);
+  file.write_attribute(object, "target_percent", static_cast<std::uint64_t>(summary.key.percent));
+  file.write_attribute(object, "nominal", summary.nominal);
+  file.write_attribute(object, "target", summary.target);
+  file.write_attribute(object, "tolerance", summary.tolerance);
+  file.write_attribute(object, "largest_residual", summary.largest_residual);
+  file.write_attribute(object, "reachable", summary.reachable);
+  file.write_attribute(object, "oracle", summary.oracle);
+  file.write_attribute(object, "oracle_version", summary.oracle_version);
+  file.write_attribute(object, "content_hash", summary.hash);
+  return summary;
 }
 
 BucketSummary read_summary(const hdf5::File& file, BucketKey key) {
@@ -179,6 +195,19 @@ BucketSummary read_summary(const hdf5::File& file, BucketKey key) {
           .oracle = file.read_string(object, "oracle"),
           .oracle_version = file.read_string(object, "oracle_version"),
           .hash = file.read_string(object, "content_hash")};
+}
+
+std::vector<double> read_translations(const std::filesystem::path& path, const BucketSummary& summary) {
+  std::vector<double> translations;
+  {
+    const hdf5::Session session;
+    translations = hdf5::File::open(path).read_matrix(summary.key.name());
+  }
+  if (hash_of(translations) != summary.hash || count_reachable(translations) != summary.reachable) {
+    throw BadFile(path.string(), summary.key.name(),
+                  "values do not have the hash that was stored with them: damaged, edited or replaced since opening");
+  }
+  return translations;
 }
 
 std::vector<BucketKey> bucket_keys(const hdf5::File& file) {

@@ -1,20 +1,24 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <sixdof/base/hash.h>
 #include <sixdof/base/hdf5.h>
-#include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/bucket.h>
+#include <sixdof/configuration/grid.h>
+#include <sixdof/configuration/set_description.h>
 
-/// The pieces of which files of sets and of shards consist, and their content hashes. Internal: use configuration_set.h
-/// or shard_file.h. All that touch a file do so inside a Session of the caller's.
+/// The parts that files of sets and of shards have in common, and their content hashes. Internal: use
+/// configuration_set.h or shard_file.h. A caller of a function that takes an hdf5::File holds an hdf5::Session.
 namespace sixdof::detail {
 
-/// Hash of a sequence of named fields; lengths are part of it, so that no two sequences run into one another.
+/// Hash of a sequence of fields. Lengths are part of it, so that different sequences never give the same input.
 class FieldHash {
  public:
   void add(std::string_view text);
@@ -30,27 +34,30 @@ class FieldHash {
   ContentHash hash_;
 };
 
-/// Content hash of a bucket's translation.
-std::string hash_of(std::span<const double> values);
 std::string hash_of(const Grid& grid);
 
-std::uint64_t count_reachable(std::span<const double> translations);
-
-/// Rows of rotations in one chunk of a matrix of translation: HDF5's chunk cache of 1 MiB holds one chunk.
-std::size_t chunk_rows(std::size_t directions);
+/// Checks the attributes `format` and `format_version` of a file.
+/// @param what the kind of file in words, for messages
+/// @throws BadFile, for another version with the versions and how the file is made again
+void check_format(const hdf5::File& file, const std::filesystem::path& path, std::string_view format,
+                  std::uint64_t version, std::string_view what);
 
 void write_identity(hdf5::File& file, const std::string& group, const MeshIdentity& mesh);
 MeshIdentity read_identity(const hdf5::File& file, const std::filesystem::path& path, const std::string& group);
 
-/// Attributes at `group` and, in it, /directions and /rotations.
+/// Attributes at `group` and, in it, the datasets `directions` and `rotations`.
 void write_grid(hdf5::File& file, const std::string& group, const Grid& grid);
 Grid read_grid(const hdf5::File& file, const std::filesystem::path& path, const std::string& group);
 
-/// Attributes at the bucket's dataset.
-void write_summary(hdf5::File& file, const BucketSummary& bucket);
+/// Writes a bucket's dataset of [rotation][direction] with its summary as attributes.
+/// @return the summary with the number of reachable configurations and the content hash
+BucketSummary write_bucket(hdf5::File& file, BucketSummary summary, std::span<const double> translations,
+                           std::size_t directions);
 BucketSummary read_summary(const hdf5::File& file, BucketKey key);
+/// Opens a session of its own. @throws BadFile if the values do not fit the summary
+std::vector<double> read_translations(const std::filesystem::path& path, const BucketSummary& summary);
 
-/// Every key that the format allows and the file has, distances before volumes, each by percentage.
+/// The keys of all buckets in the file, distances before volumes, each by percentage.
 std::vector<BucketKey> bucket_keys(const hdf5::File& file);
 
 }  // namespace sixdof::detail

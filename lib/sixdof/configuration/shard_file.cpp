@@ -14,9 +14,9 @@ namespace sixdof {
 namespace {
 
 constexpr const char* k_format = "sixdof-shard";
-constexpr std::uint64_t k_format_version = 1;
+constexpr std::uint64_t k_format_version = 2;
 
-/// Hash of all but the values, which the buckets' own hashes stand for.
+/// Hash of everything; the summaries of the buckets contain the hashes of their values.
 std::string hash_of(const GenerationJob& job, ShardNumber shard, const std::vector<BucketSummary>& buckets) {
   detail::FieldHash hash;
   hash.add(k_format);
@@ -50,7 +50,7 @@ void write_job(hdf5::File& file, const GenerationJob& job) {
   if (job.volume_grid) write_identity(file, "volume_grid", *job.volume_grid);
 }
 
-/// All but the buckets.
+/// The job without its buckets.
 GenerationJob read_job(const hdf5::File& file, const std::filesystem::path& path) {
   GenerationJob job{.program = file.read_string("/", "program"),
                     .generator_version = file.read_string("/", "generator_version"),
@@ -65,14 +65,9 @@ GenerationJob read_job(const hdf5::File& file, const std::filesystem::path& path
   return job;
 }
 
-/// What was to be made, without what was measured.
-BucketSummary as_planned(const BucketSummary& bucket) {
-  BucketSummary planned;
-  planned.key = bucket.key;
-  planned.nominal = bucket.nominal;
-  planned.target = bucket.target;
-  planned.tolerance = bucket.tolerance;
-  return planned;
+/// The fields of a summary that a job has.
+BucketSummary job_fields(const BucketSummary& bucket) {
+  return {.key = bucket.key, .nominal = bucket.nominal, .target = bucket.target, .tolerance = bucket.tolerance};
 }
 
 }  // namespace
@@ -95,15 +90,9 @@ void write_shard(const std::filesystem::path& path, const GenerationJob& job, co
     file.make_group("distance");
     file.make_group("volume");
     std::vector<BucketSummary> buckets;
-    for (const auto& [generated, translations] : values) {
-      const std::size_t directions = set.grid_of(generated.key.kind).directions.size();
-      BucketSummary summary = generated;
-      summary.reachable = detail::count_reachable(translations);
-      summary.hash = detail::hash_of(translations);
-      file.write_matrix(summary.key.name(), translations.data(), translations.size() / directions, directions,
-                        detail::chunk_rows(directions));
-      detail::write_summary(file, summary);
-      buckets.push_back(std::move(summary));
+    for (const auto& [summary, translations] : values) {
+      const std::size_t directions = set.grid_of(summary.key.kind).directions.size();
+      buckets.push_back(detail::write_bucket(file, summary, translations, directions));
     }
     file.write_attribute("/", "content_hash", hash_of(job, shard, buckets));
     file.close();
@@ -115,17 +104,12 @@ ShardFile::ShardFile(std::filesystem::path path) : path_(std::move(path)) {
   const std::string name = path_.string();
   const hdf5::Session session;
   const hdf5::File file = hdf5::File::open(path_);
-  if (file.read_string("/", "format") != k_format) throw BadFile(name, "root", "is not a shard of a set");
-  const std::uint64_t version = file.read_count("/", "format_version");
-  if (version != k_format_version) {
-    throw BadFile(name, "root",
-                  fmt::format("is of format version {}; this build reads version {}", version, k_format_version));
-  }
+  detail::check_format(file, path_, k_format, k_format_version, "a shard of a configuration set");
   number_ = {.number = file.read_count("/", "shard"), .count = file.read_count("/", "shards")};
   job_ = read_job(file, path_);
   for (const BucketKey key : detail::bucket_keys(file)) {
     buckets_.push_back(detail::read_summary(file, key));
-    job_.buckets.push_back(as_planned(buckets_.back()));
+    job_.buckets.push_back(job_fields(buckets_.back()));
   }
   if (hash_of(job_, number_, buckets_) != file.read_string("/", "content_hash")) {
     throw BadFile(name, "root", "content does not have the hash that was stored with it: damaged or edited");
@@ -135,16 +119,7 @@ ShardFile::ShardFile(std::filesystem::path path) : path_(std::move(path)) {
 Bucket ShardFile::read(BucketKey key) const {
   const auto summary = std::ranges::find(buckets_, key, &BucketSummary::key);
   if (summary == buckets_.end()) throw BadFile(path_.string(), key.name(), "no such bucket");
-  Bucket bucket{.summary = *summary, .translations = {}};
-  {
-    const hdf5::Session session;
-    bucket.translations = hdf5::File::open(path_).read_matrix(key.name());
-  }
-  if (detail::hash_of(bucket.translations) != summary->hash) {
-    throw BadFile(path_.string(), key.name(),
-                  "values do not have the hash that was stored with them: damaged, edited or replaced since opening");
-  }
-  return bucket;
+  return {.summary = *summary, .translations = detail::read_translations(path_, *summary)};
 }
 
 void ShardFile::check_values() const {

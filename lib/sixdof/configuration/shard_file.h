@@ -5,25 +5,26 @@
 #include <string>
 #include <vector>
 
-#include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/bucket.h>
 #include <sixdof/configuration/generation_job.h>
+#include <sixdof/configuration/set_description.h>
 
 namespace sixdof {
 
 /// "shard-0007-of-0064.h5": sorts by number.
 std::string shard_file_name(ShardNumber shard);
 
-/// Writes a shard, whole or not at all: the job in full, the shard's number, and per bucket the rows of its distinct
-/// rotations. The same input gives the same bytes.
-/// @param set the job's, with its grids
+/// Writes a shard, whole or not at all: the job, the shard's number, and for each bucket the rows of the shard's
+/// distinct rotations. The same input gives the same bytes.
+/// @param set the job's description, with its grids
 /// @throws BadFile
 void write_shard(const std::filesystem::path& path, const GenerationJob& job, const SetDescription& set,
                  ShardNumber shard, std::span<const Bucket> values);
 
-/// A shard on disk. Opening reads all but the values and checks it against its content hash.
+/// A shard on disk. Opening reads everything but the values and checks it against its content hash.
 class ShardFile {
  public:
-  /// @throws BadFile if the file is no shard, of another version, truncated or damaged.
+  /// @throws BadFile if the file is not a shard, is of another format version, truncated or damaged.
   explicit ShardFile(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }

@@ -2,21 +2,21 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/shard_file.h>
 
 namespace sixdof {
 namespace {
 
-void check_interrupt(const AssembleOptions& options) {
-  if (options.cancelled && options.cancelled()) throw Interrupted("interrupted");
-}
-
-/// Collects what is wrong with the shards of a folder.
+/// Collects the problems of the shards of a folder, so that one message names them all.
 class Problems {
  public:
   explicit Problems(const std::filesystem::path& folder) : folder_(folder) {}
@@ -47,12 +47,11 @@ std::vector<std::filesystem::path> shard_paths(const std::filesystem::path& fold
   return paths;
 }
 
-/// The shards that are sound. Values are checked too: a merge that ends half-way has told of one damaged file only.
-std::vector<ShardFile> read_all(const std::filesystem::path& folder, const AssembleOptions& options,
-                                Problems& problems) {
+/// The valid shards. Checks values too, so that all damaged files are known before the merge begins.
+std::vector<ShardFile> read_all(const std::filesystem::path& folder, const RunOptions& run, Problems& problems) {
   std::vector<ShardFile> shards;
   for (const auto& path : shard_paths(folder)) {
-    check_interrupt(options);
+    run.check_cancelled();
     try {
       ShardFile shard(path);
       shard.check_values();
@@ -64,57 +63,23 @@ std::vector<ShardFile> read_all(const std::filesystem::path& folder, const Assem
   return shards;
 }
 
-/// The job and number of shards that most of the files are of, so that a stray one is called foreign and not the rest.
-const ShardFile& typical(const std::vector<ShardFile>& shards) {
-  const auto kind = [](const ShardFile& shard) { return std::pair(shard.job().hash(), shard.number().count); };
+/// A shard of the job and the number of shards that most files have, so that a stray file is reported and not the rest.
+const ShardFile& most_common(const std::vector<ShardFile>& shards) {
+  const auto split = [](const ShardFile& shard) { return std::pair(shard.job().hash(), shard.number().count); };
   std::map<std::pair<std::string, std::size_t>, std::size_t> counts;
-  for (const ShardFile& shard : shards) ++counts[kind(shard)];
-  return *std::ranges::max_element(shards, {}, [&](const ShardFile& shard) { return counts[kind(shard)]; });
+  for (const ShardFile& shard : shards) ++counts[split(shard)];
+  return *std::ranges::max_element(shards, {}, [&](const ShardFile& shard) { return counts[split(shard)]; });
 }
 
-}  // namespace
-
-void assemble_set(const std::filesystem::path& output, const GenerationJob& job, const SetDescription& set,
-                  std::size_t shards, const ShardSource& source, const AssembleOptions& options) {
-  ConfigurationSetWriter writer(output, set);
-  std::uint64_t done = 0;
-  for (const BucketSummary& planned : job.buckets) {
-    const Grid& grid = set.grid_of(planned.key.kind);
-    const std::size_t directions = grid.directions.size();
-    const DistinctRotations distinct(grid.rotations);
-    std::vector<double> translations(grid.configurations());
-    BucketSummary summary;
-    for (std::size_t number = 1; number <= shards; ++number) {
-      check_interrupt(options);
-      const ShardNumber shard{.number = number, .count = shards};
-      Bucket part = source(shard, planned.key);
-      const auto rotations = rotations_of(shard, distinct);
-      if (part.translations.size() != rotations.size() * directions) {
-        throw BadArgument(fmt::format("shard {} of {}, {}: {} values for {} rotations x {} directions", number, shards,
-                                      planned.key.name(), part.translations.size(), rotations.size(), directions));
-      }
-      for (std::size_t i = 0; i < rotations.size(); ++i) {
-        std::copy_n(&part.translations[i * directions], directions, &translations[rotations[i] * directions]);
-      }
-      const double largest = std::max(summary.largest_residual, part.summary.largest_residual);
-      summary = std::move(part.summary);
-      summary.largest_residual = largest;
-      if (options.progress) options.progress(++done, job.buckets.size() * shards);
-    }
-    distinct.copy_to_repeats(translations, directions);
-    writer.write(std::move(summary), translations);
-  }
-  writer.commit();
-}
-
-std::vector<ShardFile> open_shards(const std::filesystem::path& folder, const AssembleOptions& options) {
+/// All shards of a folder, by number, of one job and with every value checked.
+std::vector<ShardFile> read_shards(const std::filesystem::path& folder, const RunOptions& run) {
   Problems problems(folder);
-  std::vector<ShardFile> shards = read_all(folder, options, problems);
+  std::vector<ShardFile> shards = read_all(folder, run, problems);
   if (shards.empty()) {
-    problems.add("no sound shard in it");
+    problems.add("no valid shard in it");
     problems.throw_if_any();
   }
-  const ShardFile expected = typical(shards);
+  const ShardFile expected = most_common(shards);
   std::map<std::size_t, ShardFile> by_number;
   for (ShardFile& shard : shards) {
     const auto [number, count] = shard.number();
@@ -124,9 +89,9 @@ std::vector<ShardFile> open_shards(const std::filesystem::path& folder, const As
     } else if (count != expected.number().count || number < 1 || number > count) {
       problems.add(fmt::format("{}: is shard {} of {}, not one of {}", shard.path().string(), number, count,
                                expected.number().count));
-    } else if (const auto [place, fresh] = by_number.try_emplace(number, shard); !fresh) {
+    } else if (const auto [known, is_new] = by_number.try_emplace(number, shard); !is_new) {
       problems.add(fmt::format("{}: is shard {} again, which {} is", shard.path().string(), number,
-                               place->second.path().string()));
+                               known->second.path().string()));
     }
   }
   for (std::size_t number = 1; number <= expected.number().count; ++number) {
@@ -142,13 +107,47 @@ std::vector<ShardFile> open_shards(const std::filesystem::path& folder, const As
   return sorted;
 }
 
-void merge_shards(const std::filesystem::path& folder, const std::filesystem::path& output,
-                  const AssembleOptions& options) {
-  const std::vector<ShardFile> shards = open_shards(folder, options);
+}  // namespace
+
+void assemble_set(const std::filesystem::path& output, const GenerationJob& job, const SetDescription& set,
+                  std::size_t shards, const ShardSource& source, const RunOptions& run) {
+  ConfigurationSetWriter writer(output, set);
+  std::uint64_t done = 0;
+  for (const BucketSummary& planned : job.buckets) {
+    const Grid& grid = set.grid_of(planned.key.kind);
+    const std::size_t directions = grid.directions.size();
+    const DistinctRotations distinct(grid.rotations);
+    std::vector<double> translations(grid.configurations());
+    BucketSummary summary;
+    for (std::size_t number = 1; number <= shards; ++number) {
+      run.check_cancelled();
+      const ShardNumber shard{.number = number, .count = shards};
+      Bucket part = source(shard, planned.key);
+      const auto rotations = rotations_of(shard, distinct);
+      if (part.translations.size() != rotations.size() * directions) {
+        throw BadArgument(fmt::format("shard {} of {}, {}: {} values for {} rotations x {} directions", number, shards,
+                                      planned.key.name(), part.translations.size(), rotations.size(), directions));
+      }
+      for (std::size_t i = 0; i < rotations.size(); ++i) {
+        std::copy_n(&part.translations[i * directions], directions, &translations[rotations[i] * directions]);
+      }
+      const double largest = std::max(summary.largest_residual, part.summary.largest_residual);
+      summary = std::move(part.summary);
+      summary.largest_residual = largest;
+      if (run.progress) run.progress(++done, job.buckets.size() * shards);
+    }
+    distinct.copy_to_repeats(translations, directions);
+    writer.write(std::move(summary), translations);
+  }
+  writer.commit();
+}
+
+void merge_shards(const std::filesystem::path& folder, const std::filesystem::path& output, const RunOptions& run) {
+  const std::vector<ShardFile> shards = read_shards(folder, run);
   const GenerationJob& job = shards.front().job();
   assemble_set(
       output, job, job.describe(), shards.size(),
-      [&](ShardNumber shard, BucketKey key) { return shards[shard.number - 1].read(key); }, options);
+      [&](ShardNumber shard, BucketKey key) { return shards[shard.number - 1].read(key); }, run);
 }
 
 }  // namespace sixdof

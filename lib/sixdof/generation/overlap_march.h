@@ -10,49 +10,51 @@ namespace sixdof {
 
 /// Lengths and volumes in the meshes' unit.
 struct MarchLimits {
-  double resolution = 0.0;    ///< Gaps no longer than this are not looked into.
-  double tolerance = 0.0;     ///< |volume - target| allowed in a hit; the search ends at k_content of it.
-  double first_stride = 0.0;  ///< Where to measure first, behind contact.
+  double resolution = 0.0;  ///< Intervals no longer than this are not divided.
+  double tolerance = 0.0;   ///< |volume - target| allowed in a hit. The search ends at k_converged times it.
+  double first_step = 0.0;  ///< Displacement from contact to the first measurement.
 };
 
-/// Walks inwards along one ray from contact, and meets targets for the first time; see VolumeGenerator.
+/// Searches one ray inwards from contact for the first translations at which volumes are met; see VolumeGenerator.
 class OverlapMarch {
  public:
-  /// @param s where to measure
-  /// @param outer no measurement or peak will be asked for further out
-  using Measure = std::function<OverlapSample(double s, double outer)>;
-  /// The largest volume possible in a gap between two measurements.
-  using Peak = std::function<VolumePeak(const OverlapSample& outer, const OverlapSample& inner)>;
+  /// @param s translation to measure at
+  /// @param outer neither a measurement nor a peak will be asked for at a greater translation
+  using Measure = std::function<OverlapMeasurement(double s, double outer)>;
+  /// The largest volume possible between two measurements.
+  using Peak = std::function<VolumePeak(const OverlapMeasurement& outer, const OverlapMeasurement& inner)>;
 
+  /// @param contact translation at which the surfaces meet first
   OverlapMarch(Measure measure, Peak peak, double contact, const MarchLimits& limits);
 
-  /// The first hit of a target. Targets ascend from call to call. Nothing if the volume stays below down to s = 0.
-  /// @throws Error if the measurements are those of no continuous function
-  std::optional<OverlapSample> advance(double target);
+  /// The first hit of a target; nothing if the volume stays below it down to s = 0. Targets ascend from call to call.
+  /// @throws Error if the measurements are not those of a continuous function
+  std::optional<OverlapMeasurement> advance(double target);
 
   int measurements() const { return measurements_; }
 
-  /// Share of the tolerance with which the search is content: room for oracles that round differently.
-  static constexpr double k_content = 0.1;
+  /// |volume - target| at which the search ends, as a fraction of the tolerance: leaves room for oracles that round
+  /// differently.
+  static constexpr double k_converged = 0.1;
 
  private:
-  void insert(double s);
-  OverlapSample pass();
-  double next(double target);
-  double expected(double target) const;
-  std::optional<double> doubt(const OverlapSample& inner, double target) const;
-  std::optional<double> refine(const OverlapSample& inner, double target);
+  void measure_at(double s);
+  OverlapMeasurement pass();
+  double next_translation(double target);
+  double predicted_step(double target) const;
+  std::optional<double> division(const OverlapMeasurement& inner, double target) const;
+  std::optional<double> refine(const OverlapMeasurement& inner, double target);
 
   Measure measure_;
   Peak peak_;
   const double contact_;
   const MarchLimits limits_;
-  const double content_;
-  std::vector<OverlapSample> passed_;  ///< From contact on; no hit of the current target up to the last.
-  std::vector<OverlapSample> inner_;   ///< Samples further in, the outermost last.
+  const double converged_;
+  std::vector<OverlapMeasurement> passed_;  ///< From contact inwards; the current target is not met up to the last.
+  std::vector<OverlapMeasurement> inner_;   ///< Further inwards, the outermost last.
   int measurements_ = 0;
-  int refinements_ = 0;  ///< Of the current target.
-  int approaches_ = 0;   ///< Steps shorter than the resolution towards the current target.
+  int refinements_ = 0;  ///< For the current target.
+  int short_steps_ = 0;  ///< Steps shorter than the resolution towards the current target.
 };
 
 }  // namespace sixdof

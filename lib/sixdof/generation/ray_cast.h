@@ -6,19 +6,17 @@
 
 namespace sixdof {
 
-/// The sphere method without an outer iteration: B's path is a ray that is cast against all differences of a point of B
-/// and a point of A, grown by the target. The largest translation s with dist(A, B + s u) = target is the largest over all pairs
-/// of triangles, so one branch and bound over two trees finds it, whatever the surfaces do in between. It is the first
-/// hit from outside: no resolution limits how narrow a hit may be. A ray's targets share that work: each goes on from what
-/// the wider one before it could not cull.
+/// The sphere method by one ray cast per configuration instead of an iteration. A ray is cast against the Minkowski
+/// difference of B and A, grown by the target distance. The largest translation s with dist(A, B + s u) = target is the
+/// largest over all pairs of triangles, which one branch and bound over two trees finds. It is the first hit from
+/// outside, however short the interval in which the distance is below the target. The search for each target of a ray
+/// starts from the pairs that the search for the larger target before it did not cull.
 ///
-/// A hit that lies outside another by less than k_ray_cast_tie, in units of the meshes' radii and the target, may give way
-/// to it; of faces that touch along their whole extent only one is looked into.
+/// A hit is not replaced by one that is farther out by less than 1e-14, in units of the sum of the meshes' radii and
+/// the target (k_cast_tie).
 ///
-/// Results depend on the rotation and the directions since set_rotation() alone: the same bits for every number of
-/// threads and on every instruction set.
+/// Results depend on the rotation and on the directions since set_rotation() only. They have the same bits for every
+/// number of threads and on every instruction set.
 std::unique_ptr<DistanceGenerator> make_ray_cast();
-
-constexpr double k_ray_cast_tie = 1e-14;
 
 }  // namespace sixdof

@@ -5,52 +5,55 @@
 
 #include <sixdof/geometry/tree.h>
 
-/// What one target of a ray teaches the next. Internal: use ray_cast.h.
 namespace sixdof::ray_cast {
 
-/// All pairs of triangles of two trees, covered by the children of nodes that were bounded against volumes of the other
-/// tree ("visits"). A child that was culled keeps the reason as a line: at translation t the pair is surely
-///   low + slope * t
-/// apart, up to the translation at which the line was made, and at larger ones surely as far as there. The slope, of an axis
-/// that separates along the ray, is 0 to 1. The line knows no target. So a narrower target, whose translation is smaller, opens
-/// only what lines no longer cull.
+/// The front of a dual-tree traversal: what the search for one target of a ray leaves for the next. Notation: see
+/// ray_cast_traversal.h. Internal: use ray_cast.h.
+///
+/// To expand a pair of volumes is to bound the children of one of them against the other. The pairs of a child and the
+/// other volume that were not expanded themselves are the front: each pair of triangles is below exactly one of
+/// them. A pair of the front has a separating-axis bound: at translation t its distance is at least
+///   offset + slope * t
+/// for t up to that at which the bound was made, and at least the value there for larger t. The slope n . u of a
+/// separating axis n is 0 to 1. Bounds do not depend on the target. A smaller target, which is met at a smaller
+/// translation, expands only pairs whose bounds no longer reach it.
 struct CastFront {
-  static constexpr float k_never = -1e30f;  ///< `low` of a child that no line culls.
-  static constexpr float k_always =
-      1e30f;  ///< `low` of a lane without a child, and of a child with a visit of its own.
+  static constexpr float k_no_bound = -1e30f;     ///< Offset of a pair that no axis is known to separate.
+  static constexpr float k_not_in_front = 1e30f;  ///< Offset of a lane without a child, or whose pair was expanded.
 
-  /// The whole tree, where volumes are named by 8 * node + lane.
+  /// Stands for the whole tree where volumes are given by their slots.
   static constexpr std::uint32_t k_root = 0xffffffffu;
 
-  struct Visit {
-    std::uint32_t node;   ///< Its children were bounded.
-    std::uint32_t other;  ///< Volume of the other tree that they were bounded against, by 8 * node + lane.
-    bool opens_a;         ///< Whose node it is.
+  struct Expansion {
+    std::uint32_t node;   ///< Its children were bounded
+    std::uint32_t other;  ///< against this volume of the other tree (a slot).
+    bool expands_a;       ///< Whether the node is of tree A.
   };
 
-  struct alignas(64) Lines {
-    float low[Tree::k_width];
+  /// Separating-axis bounds of the children of one expansion, [lane].
+  struct alignas(64) AxisBounds {
+    float offset[Tree::k_width];
     float slope[Tree::k_width];
   };
 
-  /// A child still to be looked into.
-  struct Open {
-    std::uint32_t visit;
+  /// A pair of volumes still to be expanded: a child of an expansion's node, and its other volume.
+  struct Pending {
+    std::uint32_t expansion;
     std::uint32_t lane;
-    float height;  ///< Of what hits first, most likely the lowest.
+    float projection;  ///< Of the difference of the balls' centres on the axis of the best hit: the least first.
   };
 
-  std::vector<Visit> visits;
-  std::vector<Lines> lines;  ///< Of each visit.
-  std::size_t fresh = 0;     ///< Visits of the cast that began it.
-  double target = 0.0;          ///< The last one.
+  std::vector<Expansion> expansions;
+  std::vector<AxisBounds> bounds;  ///< Of each expansion.
+  std::size_t initial_size = 0;    ///< Number of expansions after the first target.
+  double target = 0.0;             ///< The last one.
 
-  std::vector<Open> open;                ///< Scratch.
-  std::vector<std::uint32_t> uncovered;  ///< Scratch: visits of which a child is no longer culled.
+  std::vector<Pending> pending;          ///< Scratch: a stack.
+  std::vector<std::uint32_t> uncovered;  ///< Scratch: expansions with a child whose bound no longer reaches the target.
 
   void clear() {
-    visits.clear();
-    lines.clear();
+    expansions.clear();
+    bounds.clear();
   }
 };
 

@@ -2,24 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 
-// Loops over pairs of edges and over corners are plain, without branches, so that the compiler treats two at once.
-// Where edges are nearly parallel the place of the closest points along them is uncertain, but not the distance there:
-// any two points of the edges that are used are points of the triangles.
+// The distance of two triangles that do not intersect is the least of the distances of 3 x 3 pairs of edges and of 6
+// corners from the faces that they lie over. The loops over both have no branches, so that the compiler vectorizes
+// them. Where edges are nearly parallel, the positions of the closest points along them are ill-conditioned, but their
+// distance is not: whatever the parameters s and r in 0 .. 1, both are points of the triangles.
 
 namespace sixdof::ray_cast {
 namespace {
 
 using Eigen::Vector3d;
 
-/// Triangles whose edges meet at a smaller sine than this are left to triangle_triangle_distance(): rounding would turn
-/// the normal by more than 1e-10.
+/// Triangles whose edges meet at a smaller sine are left to triangle_triangle_distance(): rounding may rotate their
+/// normal by more than 1e-10.
 constexpr double k_least_sine = 1e-6;
-/// Error of a corner's height over a face that its triangle may pierce, in units of the longest edge: ten times that.
-constexpr double k_blur = 1e-9;
+/// Error of a corner's signed distance from a plane, in units of the longest edge: ten times that of the normal.
+constexpr double k_plane_error = 1e-9;
 
 double inverse(double x) { return x > 0.0 ? 1.0 / x : 0.0; }
 double clamp(double x) {
@@ -51,7 +51,8 @@ MovingPair::MovingPair(const TriangleCorners& a, const TriangleCorners& b, const
     per_vv_[n] = inverse(vv_[n]);
     per_nn_[n] = inverse(uu_[n] * vv_[n] - uv_[n] * uv_[n]);
   }
-  blur_ = k_blur * std::sqrt(std::max(*std::max_element(uu_, uu_ + k_edges), *std::max_element(vv_, vv_ + k_edges)));
+  plane_error_ =
+      k_plane_error * std::sqrt(std::max(*std::max_element(uu_, uu_ + k_edges), *std::max_element(vv_, vv_ + k_edges)));
   for (std::size_t n = 0; n < k_corners; ++n) {
     const bool of_a = n < 3;
     const TriangleCorners& face = of_a ? b : a;
@@ -60,24 +61,24 @@ MovingPair::MovingPair(const TriangleCorners& a, const TriangleCorners& b, const
     const Vector3d second = face[2] - face[0];
     const Vector3d normal = first.cross(second);
     const double length2 = normal.squaredNorm();
-    thin_ = thin_ || length2 <= k_least_sine * k_least_sine * first.squaredNorm() * second.squaredNorm();
+    degenerate_ = degenerate_ || length2 <= k_least_sine * k_least_sine * first.squaredNorm() * second.squaredNorm();
     const double per_length2 = inverse(length2);
     const Vector3d unit = normal * std::sqrt(per_length2);
-    const Vector3d to_first = second.cross(normal) * per_length2;
-    const Vector3d to_second = normal.cross(first) * per_length2;
-    const Vector3d over = corner - face[0];
+    const Vector3d dual_1 = second.cross(normal) * per_length2;
+    const Vector3d dual_2 = normal.cross(first) * per_length2;
+    const Vector3d offset = corner - face[0];
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
-      over_[k][n] = over[axis];
+      offset_[k][n] = offset[axis];
       normal_[k][n] = unit[axis];
-      first_[k][n] = to_first[axis];
-      second_[k][n] = to_second[axis];
-      drift_[k][n] = of_a ? -direction[axis] : direction[axis];
+      dual_1_[k][n] = dual_1[axis];
+      dual_2_[k][n] = dual_2[axis];
+      velocity_[k][n] = of_a ? -direction[axis] : direction[axis];
     }
   }
 }
 
-MovingPair::Sample MovingPair::at(double t) const {
+MovingPair::Distance MovingPair::distance_at(double t) const {
   const double shift[3] = {t * direction_[0], t * direction_[1], t * direction_[2]};
   double squared[k_edges];
   double w[3][k_edges];
@@ -96,46 +97,47 @@ MovingPair::Sample MovingPair::at(double t) const {
     w[2][n] = z + r * v_[2][n] - s * u_[2][n];
     squared[n] = w[0][n] * w[0][n] + w[1][n] * w[1][n] + w[2][n] * w[2][n];
   }
-  double height[k_corners];
-  double outside[k_corners];  // at most 0 over the face
+  double signed_distance[k_corners];  // of the corner from the face's plane
+  double outside[k_corners];          // at most 0 where the corner's projection onto the plane lies in the face
   for (std::size_t n = 0; n < k_corners; ++n) {
-    const double x = over_[0][n] + t * drift_[0][n];
-    const double y = over_[1][n] + t * drift_[1][n];
-    const double z = over_[2][n] + t * drift_[2][n];
-    height[n] = normal_[0][n] * x + normal_[1][n] * y + normal_[2][n] * z;
-    const double first = first_[0][n] * x + first_[1][n] * y + first_[2][n] * z;
-    const double second = second_[0][n] * x + second_[1][n] * y + second_[2][n] * z;
+    const double x = offset_[0][n] + t * velocity_[0][n];
+    const double y = offset_[1][n] + t * velocity_[1][n];
+    const double z = offset_[2][n] + t * velocity_[2][n];
+    signed_distance[n] = normal_[0][n] * x + normal_[1][n] * y + normal_[2][n] * z;
+    const double first = dual_1_[0][n] * x + dual_1_[1][n] * y + dual_1_[2][n] * z;
+    const double second = dual_2_[0][n] * x + dual_2_[1][n] * y + dual_2_[2][n] * z;
     outside[n] = std::max(std::max(-first, -second), first + second - 1.0);
   }
 
-  Sample sample{.distance = 0.0, .axis = Vector3d::Zero(), .slope = 0.0};
-  const auto split = [&](std::size_t n) {
-    const auto [low, high] = std::minmax({height[n], height[n + 1], height[n + 2]});
-    return low <= blur_ && high >= -blur_;
+  Distance closest{.value = 0.0, .axis = Vector3d::Zero(), .slope = 0.0};
+  // Whether corners n .. n + 2 may lie on both sides of the other triangle's plane.
+  const auto straddles = [&](std::size_t n) {
+    const auto [low, high] = std::minmax({signed_distance[n], signed_distance[n + 1], signed_distance[n + 2]});
+    return low <= plane_error_ && high >= -plane_error_;
   };
-  if (thin_ || (split(0) && split(3))) {  // they may intersect
+  if (degenerate_ || (straddles(0) && straddles(3))) {  // they may intersect
     const Vector3d move = t * direction_;
-    const ClosestPoints closest = triangle_triangle_distance(a_, {b_[0] + move, b_[1] + move, b_[2] + move});
-    sample.distance = closest.distance;
-    sample.axis = closest.on_b - closest.on_a;
+    const ClosestPoints points = triangle_triangle_distance(a_, {b_[0] + move, b_[1] + move, b_[2] + move});
+    closest.value = points.distance;
+    closest.axis = points.on_b - points.on_a;
   } else {
     std::size_t best = 0;
     for (std::size_t n = 1; n < k_edges; ++n) best = squared[n] < squared[best] ? n : best;
-    sample.axis = Vector3d(w[0][best], w[1][best], w[2][best]);
-    sample.distance = std::sqrt(squared[best]);
+    closest.axis = Vector3d(w[0][best], w[1][best], w[2][best]);
+    closest.value = std::sqrt(squared[best]);
     for (std::size_t n = 0; n < k_corners; ++n) {
-      const double over = std::abs(height[n]);
-      if (outside[n] > 0.0 || !(over < sample.distance)) continue;
-      const double sign = n < 3 ? -height[n] : height[n];
+      const double distance = std::abs(signed_distance[n]);
+      if (outside[n] > 0.0 || !(distance < closest.value)) continue;
+      const double from_a_to_b = n < 3 ? -signed_distance[n] : signed_distance[n];
       const Vector3d normal(normal_[0][n], normal_[1][n], normal_[2][n]);
-      sample.distance = over;
-      sample.axis = sign * normal;
+      closest.value = distance;
+      closest.axis = from_a_to_b * normal;
     }
   }
-  const double length = sample.axis.norm();
-  if (length > 0.0) sample.axis /= length;
-  sample.slope = sample.axis.dot(direction_);
-  return sample;
+  const double length = closest.axis.norm();
+  if (length > 0.0) closest.axis /= length;
+  closest.slope = closest.axis.dot(direction_);
+  return closest;
 }
 
 }  // namespace sixdof::ray_cast

@@ -8,47 +8,48 @@
 
 namespace sixdof::ray_cast {
 
-/// Distance of two triangles while one moves along a line: many times faster than triangle_triangle_distance(), and as
-/// exact but for edges that are nearly parallel and nearly touching (an error of 1e-32 L^2 / (distance angle^2) for
-/// edges of length L). Internal: use ray_cast.h.
+/// Distance of two triangles while one of them is translated along a line. It agrees with triangle_triangle_distance()
+/// but for pairs of edges that are nearly parallel and nearly touch: for edges of length L at an angle, their distance
+/// is off by up to 1e-32 L^2 / (distance angle^2). Internal: use ray_cast.h.
 class MovingPair {
  public:
-  /// @param b moves to b + t * direction
+  /// @param b is translated by t * direction
+  /// @param direction unit vector
   MovingPair(const TriangleCorners& a, const TriangleCorners& b, const Eigen::Vector3d& direction);
 
-  struct Sample {
-    double distance;       ///< 0 where the triangles intersect.
+  struct Distance {
+    double value;          ///< 0 where the triangles intersect.
     Eigen::Vector3d axis;  ///< Unit vector from A's closest point to B's; zero where the distance is.
-    double slope;          ///< d distance / d t.
+    double slope;          ///< d value / d t.
   };
-  Sample at(double t) const;
+  Distance distance_at(double t) const;
 
  private:
-  static constexpr std::size_t k_edges = 10;   // 3 x 3 pairs of edges, to an even number
-  static constexpr std::size_t k_corners = 6;  // A's corners over B, B's over A
+  static constexpr std::size_t k_edges = 10;   // 3 x 3 pairs of edges, padded to an even number
+  static constexpr std::size_t k_corners = 6;  // A's corners against B's face, then B's against A's
 
   TriangleCorners a_;
   TriangleCorners b_;
   Eigen::Vector3d direction_;
 
-  // Pairs of edges, [axis][pair]: points p + s u of A, q + r v of B.
+  // Pairs of edges, [axis][pair]: points p + s u of A, q + r v of B, with s and r in 0 .. 1.
   double from_[3][k_edges];  // q - p at t = 0
   double u_[3][k_edges];
   double v_[3][k_edges];
-  double uv_[k_edges];
-  double uu_[k_edges];
+  double uv_[k_edges];  // u . v
+  double uu_[k_edges];  // u . u
   double vv_[k_edges];
-  double per_uu_[k_edges];  // 1 / u^2
-  double per_vv_[k_edges];  // 1 / v^2
-  double per_nn_[k_edges];  // 1 / (u^2 v^2 - (u . v)^2); 0 for parallel edges
-  // Corners over faces: b - a for the corner and the face's first corner.
-  double over_[3][k_corners];
-  double normal_[3][k_corners];  // unit
-  double first_[3][k_corners];   // barycentric coordinates are these . (corner - the face's first corner)
-  double second_[3][k_corners];
-  bool thin_ = false;           // a triangle without a normal
-  double blur_ = 0.0;           // heights over faces may be off by this
-  double drift_[3][k_corners];  // of (corner - face) with t
+  double per_uu_[k_edges];  // 1 / (u . u); 0 if u is zero
+  double per_vv_[k_edges];
+  double per_nn_[k_edges];  // 1 / |u x v|^2; 0 for parallel edges
+  // Corners against faces, [axis][corner].
+  double offset_[3][k_corners];    // corner - the face's first corner, at t = 0
+  double velocity_[3][k_corners];  // d offset / d t
+  double normal_[3][k_corners];    // the face's; unit vector
+  double dual_1_[3][k_corners];    // barycentric coordinates are dual . (corner - the face's first corner)
+  double dual_2_[3][k_corners];
+  bool degenerate_ = false;   // one of the triangles has no normal
+  double plane_error_ = 0.0;  // error of a corner's signed distance from a face's plane
 };
 
 }  // namespace sixdof::ray_cast

@@ -8,131 +8,124 @@
 #include <Eigen/Core>
 
 #include <sixdof/generation/ray_cast_tree.h>
-#include <sixdof/geometry/triangle_distance.h>
 
-/// Ties of whole subtrees, told in double precision. Internal: use ray_cast.h.
+/// Tests in double precision of pairs of subtrees that tie. Notation: see ray_cast_traversal.h. Internal: use
+/// ray_cast.h.
+///
+/// A pair of triangles ties with the best hit if its distance at the hit's translation is less than the target by no
+/// more than k_cast_tie. Where faces lie over parallel faces, edges along edges or corners over corners, thousands of
+/// pairs of volumes tie. Bounds in single precision cannot tell whether such a pair hits earlier, so that all of them
+/// would be expanded. In double precision they are culled: the best hit stands for all of them. The test is a
+/// separating axis n, for which the support values of both subtrees and the translation add up to the target:
+///   min over A's points p of n . (-p) + min over B's points q of n . q + t n . u >= d.
+/// The support value of a set along n is the least n . p of its points p.
 namespace sixdof::ray_cast {
 
-/// How high the differences b - a of two triangles lie along an axis, at least.
-/// @param mirrored A's corners, mirrored
-/// @param b B's corners where it stands
-double lowest_difference(const TriangleCorners& mirrored, const TriangleCorners& b, const Eigen::Vector3d& axis);
-
-/// The axis between the closest points of two triangles that are nearly in touch, without the rounding of the points.
-/// At a distance d the difference of two points of size L is off by an angle of 1e-16 L / d, so that ties along it are
-/// not seen. Normals and directions across two edges have no such error.
-/// @param axis unit vector between the points
-/// @param room the triangles may be apart by this much less along the new axis
-/// @return the normal or direction across two edges beside `axis` along which they are farthest apart; `axis` if there
-/// is none
-Eigen::Vector3d sharp_axis(const TriangleCorners& mirrored, const TriangleCorners& b, const Eigen::Vector3d& axis,
-                           double room);
-
-/// The normal of a face that lies over another. Where coordinates were rounded, a face's triangles are turned by their
-/// roughness over their size, and so are the axes between them, each by something else: along none of them are
-/// triangles apart that lie farther off. Along the mean normal of the largest flat patch that was met they are, up to
-/// the roughness itself, and it stays the same while directions and targets change, so that heights along it are known.
-class CastFace {
+/// The largest coplanar patch of A or B that was met face to face with the other body. If the coordinates of a flat
+/// face are rounded, its triangles are tilted by the rounding over their size, and so are the axes between closest
+/// points. Such an axis does not separate triangles that lie farther away. The mean normal of a large patch does, up to
+/// the rounding of the coordinates. It is the same for many directions and targets, so that support values along it are
+/// computed once.
+class CoplanarPatch {
  public:
   void clear() { size_ = 0.0f; }
 
-  /// Takes a patch's normal, unless it is off `axis`.
+  /// Replaces the patch if the new one is_facing().
   /// @param normal unit vector, of either side
   /// @param size of the patch, CastVolume::size
-  /// @param axis unit vector from A to B along which they were found to be apart
-  void note(const Eigen::Vector3d& normal, float size, const Eigen::Vector3d& axis, const Eigen::Vector3d& direction);
+  void replace(const Eigen::Vector3d& normal, float size, const Eigen::Vector3d& axis,
+               const Eigen::Vector3d& direction);
 
-  /// Whether there is a face, and `axis` stands on it, whose normal does not point against the direction.
-  bool faces(const Eigen::Vector3d& axis, const Eigen::Vector3d& direction) const;
+  /// Whether there is a patch, its normal is nearly parallel to `axis` and does not point against `direction`.
+  /// @param axis unit vector from A to B between closest points
+  bool is_facing(const Eigen::Vector3d& axis, const Eigen::Vector3d& direction) const;
 
   const Eigen::Vector3d& normal() const { return normal_; }  ///< Unit vector.
-  float size() const { return size_; }                       ///< Of the patch; 0 if there is none.
+  float size() const { return size_; }                       ///< 0 if there is no patch.
 
  private:
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();
   float size_ = 0.0f;
 };
 
-/// Heights of subtrees along one axis, found by branch and bound.
-class CastSupports {
+/// Support values of the subtrees of one tree along one axis, by branch and bound. Values once found are kept until the
+/// axis changes.
+class TreeSupport {
  public:
-  explicit CastSupports(const CastTree& tree);
+  explicit TreeSupport(const CastTree& tree);
 
-  /// Forgets all heights.
   /// @param axis unit vector in the common frame
   void set_axis(const Eigen::Vector3d& axis);
 
   static constexpr double k_unknown = -std::numeric_limits<double>::infinity();
 
-  /// How low the triangles of a child lie along the axis: the least axis . p, or less by at most a few roundings of the
-  /// tree's radius (k_height_room, k_height_rounding), or by more where credit ran out.
-  /// @param node_and_lane of the child, Tree::k_width * node + lane
-  /// @param credit triangles and volumes that may be looked at; those that were are taken off it
-  /// @return k_unknown if there is too little credit to begin
-  double lowest(std::size_t node_and_lane, std::uint64_t& credit);
+  /// The support value of a child: exact, or too small by at most a few roundings of the tree's radius
+  /// (k_support_tolerance, k_support_rounding), or by more where the budget ran out.
+  /// @param slot of the child
+  /// @param budget triangles and volumes that may be evaluated; those that were are subtracted
+  /// @return k_unknown if the budget is too small to begin
+  double support_value(std::size_t slot, std::uint64_t& budget);
 
-  std::uint64_t looked_at() const { return looked_at_; }  ///< Triangles and volumes, so far.
+  std::uint64_t evaluations() const { return evaluations_; }  ///< Of triangles and volumes so far.
 
  private:
-  /// Of axis . p over a subtree.
+  static constexpr double k_infinity = -k_unknown;
+
+  /// Result of the search of a subtree.
   struct Found {
-    double low = -k_unknown;    ///< Not above any of what was not looked at.
-    double least = -k_unknown;  ///< The least of what was.
+    double bound = k_infinity;  ///< Lower bound on all that was not evaluated.
+    double least = k_infinity;  ///< The least axis . p of what was.
   };
   struct Limits {
-    double least;        ///< What was found elsewhere: what is not lower need not be looked at.
-    std::uint64_t most;  ///< looked_at_ at which bounds have to do.
+    double least;               ///< Found elsewhere: what is not less need not be evaluated.
+    std::uint64_t evaluations;  ///< The search ends with bounds when evaluations_ reaches this.
   };
-  struct Height {
+  struct Known {
     double value;
-    std::uint64_t round;
+    std::uint64_t axis_number;
   };
 
-  CastChild child(std::size_t node_and_lane) const {
-    return tree_->nodes()[node_and_lane / Tree::k_width].child[node_and_lane % Tree::k_width];
-  }
-  /// @param low for each child, surely not above any axis . p of its triangles
-  void bound_children(const CastPatches& patches, double* low) const;
-  Found look_into(CastChild child, Limits limits);
+  /// @param bounds for each child, a lower bound on axis . p of its points
+  void bound_children(const PreciseVolumes& volumes, double* bounds) const;
+  Found search(CastChild child, Limits limits);
 
   const CastTree* tree_;
-  double room_;                                     // k_height_room of the radius
-  double rounding_;                                 // k_height_rounding of it
+  double tolerance_;                                // k_support_tolerance of the radius
+  double rounding_;                                 // k_support_rounding of it
   Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();  // in the mesh's frame
-  std::vector<Height> heights_;                     // of each child of each node; empty until needed
-  std::uint64_t round_ = 0;                         // heights of other rounds are of other axes
-  std::uint64_t looked_at_ = 0;
+  std::uint64_t axis_number_ = 0;
+  std::vector<Known> known_;  // of each slot, valid if its axis_number is axis_number_; empty until needed
+  std::uint64_t evaluations_ = 0;
 };
 
-/// How low the differences of two subtrees lie along an axis along which pairs of their triangles were found to be
-/// apart. Where faces lie over each other, edges along edges or corners beside corners, thousands of pairs of volumes
-/// are as far apart as the target asks. Bounds in floats cannot say whether they are a little nearer; in double precision
-/// they are not, and the pair found already stands for all. The same helps where a few large triangles face thousands
-/// of small ones, and wherever volumes reach below their triangles.
+/// Support values of the differences of two subtrees along one axis.
 ///
-/// Heights are paid for by tries: they take at most a multiple of the time of what was left open.
-class CastTies {
+/// Each query adds to a budget of evaluations, and does nothing if the budget is too small. So all queries together
+/// evaluate no more than the sum of what they add.
+class DifferenceSupport {
  public:
-  CastTies(const CastTree& a, const CastTree& b) : a_(a), b_(b) {}
+  DifferenceSupport(const CastTree& a, const CastTree& b) : a_(a), b_(b) {}
 
-  /// After a tree was turned: nothing is known, nothing is paid for.
+  /// After a tree was transformed.
   void clear() {
-    known_ = false;
-    credit_ = 0;
+    has_axis_ = false;
+    budget_ = 0;
   }
 
-  /// How low the differences b - a of two children, given as Tree::k_width * node + lane, lie along `axis` (unit
-  /// vector), as CastSupports::lowest(); k_unknown if it would take too long to find out.
-  /// @param pay triangles and volumes that this try adds to those that may be looked at
-  double lowest(std::size_t child_a, std::size_t child_b, const Eigen::Vector3d& axis, std::uint64_t pay);
+  /// Support value of the differences b - a of two children, as TreeSupport::support_value().
+  /// @param slot_a, slot_b of the children
+  /// @param axis unit vector
+  /// @param budget is added to what may be evaluated, in triangles and volumes
+  /// @return TreeSupport::k_unknown if the budget is too small
+  double support_value(std::size_t slot_a, std::size_t slot_b, const Eigen::Vector3d& axis, std::uint64_t budget);
 
-  std::uint64_t supports() const { return a_.looked_at() + b_.looked_at(); }
+  std::uint64_t evaluations() const { return a_.evaluations() + b_.evaluations(); }  ///< Of triangles and volumes.
 
  private:
-  CastSupports a_, b_;
+  TreeSupport a_, b_;
   Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
-  bool known_ = false;
-  std::uint64_t credit_ = 0;  // triangles and volumes that may be looked at
+  bool has_axis_ = false;
+  std::uint64_t budget_ = 0;
 };
 
 }  // namespace sixdof::ray_cast

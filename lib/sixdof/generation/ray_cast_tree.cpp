@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -13,9 +14,17 @@ namespace {
 constexpr std::size_t k_width = Tree::k_width;
 constexpr std::size_t k_leaf_triangles = Tree::k_leaf_triangles;
 
-/// The thinnest slab along the mean normal of triangles first .. first + count - 1.
-CastSlab fit_slab(const Tree& tree, std::uint32_t first, std::uint32_t count) {
-  const auto triangles = tree.corners().subspan(first, count);
+using Triangles = std::span<const Tree::Corners>;
+
+/// The triangles below a child.
+Triangles triangles_of(const Tree& tree, Tree::Child child) {
+  if (child.is_leaf()) return tree.corners().subspan(child.first(), child.count());
+  const Tree::Node& node = tree.nodes()[child.node()];
+  return tree.corners().subspan(node.first_triangle, node.triangle_count);
+}
+
+/// The thinnest slab along the mean normal of the triangles, relative to `origin`.
+CastSlab fit_slab(Triangles triangles, const Eigen::Vector3d& origin) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Tree::Corners& t : triangles) sum += (t[1] - t[0]).cross(t[2] - t[0]);
   const double scale = sum.cwiseAbs().maxCoeff();
@@ -24,9 +33,9 @@ CastSlab fit_slab(const Tree& tree, std::uint32_t first, std::uint32_t count) {
   double high = -low;
   for (const Tree::Corners& t : triangles) {
     for (const Eigen::Vector3d& corner : t) {
-      const double height = slab.normal.dot(corner - tree.center());
-      low = std::min(low, height);
-      high = std::max(high, height);
+      const double projection = slab.normal.dot(corner - origin);
+      low = std::min(low, projection);
+      high = std::max(high, projection);
     }
   }
   slab.middle = 0.5 * (low + high);
@@ -34,20 +43,20 @@ CastSlab fit_slab(const Tree& tree, std::uint32_t first, std::uint32_t count) {
   return slab;
 }
 
-/// Slab and box of triangles first .. first + count - 1.
-void fit_patch(const Tree& tree, std::uint32_t first, std::uint32_t count, CastPatches& patches, std::size_t lane) {
-  const CastSlab slab = fit_slab(tree, first, count);
+/// Sets slab and box of one lane, relative to `origin`.
+void fit_precise_volume(Triangles triangles, const Eigen::Vector3d& origin, PreciseVolumes& volumes, std::size_t lane) {
+  const CastSlab slab = fit_slab(triangles, origin);
   Eigen::AlignedBox3d box;
-  for (const Tree::Corners& t : tree.corners().subspan(first, count)) {
-    for (const Eigen::Vector3d& corner : t) box.extend(corner - tree.center());
+  for (const Tree::Corners& t : triangles) {
+    for (const Eigen::Vector3d& corner : t) box.extend(corner - origin);
   }
-  patches.middle[lane] = slab.middle;
-  patches.half[lane] = slab.half;
+  volumes.middle[lane] = slab.middle;
+  volumes.half[lane] = slab.half;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
-    patches.normal[k][lane] = slab.normal[axis];
-    patches.box_center[k][lane] = 0.5 * (box.min()[axis] + box.max()[axis]);
-    patches.box_half[k][lane] = 0.5 * (box.max()[axis] - box.min()[axis]);
+    volumes.normal[k][lane] = slab.normal[axis];
+    volumes.box_center[k][lane] = 0.5 * (box.min()[axis] + box.max()[axis]);
+    volumes.box_half[k][lane] = 0.5 * (box.max()[axis] - box.min()[axis]);
   }
 }
 
@@ -56,19 +65,18 @@ struct Ball {
   double radius;
 };
 
-/// A small ball around triangles first .. first + count - 1: from the centre of their box a few steps towards the
-/// farthest corner (Badoiu and Clarkson, "Smaller core-sets for balls", SODA 2003). Relative to the tree's centre.
-Ball fit_ball(const Tree& tree, std::uint32_t first, std::uint32_t count) {
-  constexpr std::uint32_t k_large = 512;  // above it, balls are too far from the surface for steps to matter
+/// A small ball around the triangles, in the mesh's frame: from the centre of their box a few steps towards the
+/// farthest corner (Badoiu and Clarkson, "Smaller core-sets for balls", SODA 2003).
+Ball fit_ball(Triangles triangles) {
+  constexpr std::size_t k_large = 512;  // triangles; the ball of more is far from the surface anyway
   constexpr int k_steps = 10;
-  const auto triangles = tree.corners().subspan(first, count);
   Eigen::AlignedBox3d box;
   for (const Tree::Corners& t : triangles) {
     for (const Eigen::Vector3d& corner : t) box.extend(corner);
   }
   Ball best{box.center(), std::numeric_limits<double>::infinity()};
   Eigen::Vector3d center = best.center;
-  for (int step = 0; step <= (count > k_large ? 0 : k_steps); ++step) {
+  for (int step = 0; step <= (triangles.size() > k_large ? 0 : k_steps); ++step) {
     double squared = -1.0;
     Eigen::Vector3d farthest = center;
     for (const Tree::Corners& t : triangles) {
@@ -83,7 +91,6 @@ Ball fit_ball(const Tree& tree, std::uint32_t first, std::uint32_t count) {
     if (std::sqrt(squared) < best.radius) best = {center, std::sqrt(squared)};
     center += (farthest - center) / (step + 3.0);
   }
-  best.center -= tree.center();
   return best;
 }
 
@@ -108,7 +115,7 @@ CastVolume volume_of(const CastNode& node, std::size_t lane) {
 
 CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
   nodes_.resize(tree_->nodes().size());
-  patches_.resize(nodes_.size());
+  precise_volumes_.resize(nodes_.size());
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const Tree::Node& from = tree_->nodes()[n];
     CastNode& to = nodes_[n];
@@ -130,18 +137,16 @@ CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
       if (child.is_leaf()) {
         to.child[lane] = CastChild::leaf(static_cast<std::uint32_t>(leaf_children_.size()));
         leaf_children_.push_back(child);
-        fit_patch(*tree_, child.first(), child.count(), patches_[n], lane);
       } else {
         to.child[lane] = CastChild::node(child.node());
-        const Tree::Node& below = tree_->nodes()[child.node()];
-        fit_patch(*tree_, below.first_triangle, below.triangle_count, patches_[n], lane);
       }
-      const Ball ball = child.is_leaf() ? fit_ball(*tree_, child.first(), child.count())
-                                        : fit_ball(*tree_, tree_->nodes()[child.node()].first_triangle,
-                                                   tree_->nodes()[child.node()].triangle_count);
+      const Triangles triangles = triangles_of(*tree_, child);
+      fit_precise_volume(triangles, tree_->center(), precise_volumes_[n], lane);
+      const Ball ball = fit_ball(triangles);
+      const Eigen::Vector3d ball_center = ball.center - tree_->center();
       to.ball_radius[lane] = static_cast<float>(ball.radius);
       for (std::size_t k = 0; k < 3; ++k) {
-        to.ball_center[k][lane] = static_cast<float>(ball.center[static_cast<Eigen::Index>(k)]);
+        to.ball_center[k][lane] = static_cast<float>(ball_center[static_cast<Eigen::Index>(k)]);
         to.slab_offset[lane] -= to.normal[k][lane] * to.ball_center[k][lane];
       }
     }
@@ -166,7 +171,7 @@ CastTree::CastTree(std::shared_ptr<const CastMesh> mesh)
       leaves_(mesh_->leaves().size()),
       bounds_(nodes_.size()) {}
 
-CastTree::Bounds CastTree::turn_leaf(std::uint32_t leaf, const float (&m)[3][3]) {
+CastTree::Bounds CastTree::transform_leaf(std::uint32_t leaf, const float (&m)[3][3]) {
   const CastLeaf& from = mesh_->leaves()[leaf];
   CastLeaf& to = leaves_[leaf];
   Bounds box;
@@ -188,7 +193,7 @@ CastTree::Bounds CastTree::turn_leaf(std::uint32_t leaf, const float (&m)[3][3])
   return box;
 }
 
-void CastTree::turn(const Eigen::Matrix3d& M) {
+void CastTree::transform(const Eigen::Matrix3d& M) {
   matrix_ = M;
   float m[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
@@ -202,7 +207,7 @@ void CastTree::turn(const Eigen::Matrix3d& M) {
     Bounds all{};
     for (std::size_t lane = 0; lane < from.child_count; ++lane) {
       const CastChild child = from.child[lane];
-      const Bounds box = child.is_leaf() ? turn_leaf(child.index(), m) : bounds_[child.index()];
+      const Bounds box = child.is_leaf() ? transform_leaf(child.index(), m) : bounds_[child.index()];
       for (std::size_t k = 0; k < 3; ++k) {
         to.center[k][lane] = 0.5f * (box.lower[k] + box.upper[k]);
         to.half[k][lane] = 0.5f * (box.upper[k] - box.lower[k]);

@@ -11,10 +11,13 @@
 #include <sixdof/geometry/tree.h>
 #include <sixdof/geometry/triangle_distance.h>
 
-/// Trees turned into one common frame, for the ray cast. Internal: use ray_cast.h.
+/// Both meshes' trees in one common frame, for the ray cast. Internal: use ray_cast.h.
+///
+/// The volume of a subtree is the intersection of a box, a ball and a slab (the points between two parallel planes).
+/// The slot Tree::k_width * node + lane stands for the child `lane` of node `node`, and for that child's volume.
 namespace sixdof::ray_cast {
 
-/// A child of a CastNode: a node, or a leaf.
+/// What a slot refers to: a node, or a leaf.
 class CastChild {
  public:
   CastChild() = default;
@@ -29,20 +32,20 @@ class CastChild {
   std::uint32_t bits_ = 0;
 };
 
-/// Volumes of up to eight children, [axis][child]; lanes without a child repeat the first.
+/// Volumes of up to eight children, [axis][lane]; lanes without a child repeat the first.
 struct alignas(64) CastNode {
   float center[3][Tree::k_width];  ///< Boxes.
   float half[3][Tree::k_width];    ///< Boxes: half extents.
   float normal[3][Tree::k_width];  ///< Slabs: a little shorter than unit vectors, as in Tree.
   float ball_center[3][Tree::k_width];
   float ball_radius[Tree::k_width];
-  float slab_offset[Tree::k_width];  ///< Slabs: height of the middle above the ball's centre, along the normal.
+  float slab_offset[Tree::k_width];  ///< Slabs: signed distance of the middle plane from the ball's centre.
   float slab_half[Tree::k_width];    ///< Slabs: half the thickness.
   CastChild child[Tree::k_width];
   std::uint32_t child_count;
 };
 
-/// The volumes of one child by themselves, as in CastNode: one cache line.
+/// The volume of one child by itself, as in CastNode: one cache line.
 struct alignas(64) CastVolume {
   float center[3];
   float half[3];
@@ -66,9 +69,9 @@ struct CastSlab {
   double half = 0.0;
 };
 
-/// Slabs and boxes of a node's children in double precision, [axis][child], in the mesh's axes: |normal . p - middle|
+/// Slabs and boxes of a node's children in double precision, [axis][lane], in the mesh's axes: |normal . p - middle|
 /// <= half, |p - box_center| <= box_half. Lanes without a child are zero.
-struct alignas(64) CastPatches {
+struct alignas(64) PreciseVolumes {
   double normal[3][Tree::k_width];  ///< Unit vectors.
   double middle[Tree::k_width];
   double half[Tree::k_width];
@@ -88,53 +91,54 @@ class CastMesh {
   const Tree& tree() const { return *tree_; }
   std::span<const CastNode> nodes() const { return nodes_; }  ///< Without boxes.
   std::span<const CastLeaf> leaves() const { return leaves_; }
-  std::span<const Tree::Child> leaf_children() const { return leaf_children_; }  ///< Of each leaf, in the tree.
-  std::span<const CastPatches> patches() const { return patches_; }              ///< Of each node.
+  std::span<const Tree::Child> leaf_children() const { return leaf_children_; }         ///< Of each leaf, in the tree.
+  std::span<const PreciseVolumes> precise_volumes() const { return precise_volumes_; }  ///< Of each node's children.
 
  private:
   std::shared_ptr<const Tree> tree_;
   std::vector<CastNode> nodes_;
   std::vector<CastLeaf> leaves_;
   std::vector<Tree::Child> leaf_children_;
-  std::vector<CastPatches> patches_;
+  std::vector<PreciseVolumes> precise_volumes_;
 };
 
-/// A mesh seen from another frame: p -> M (p - centre), where M is a rotation or minus the identity. Its boxes are
-/// fitted anew to the triangles, axis-aligned in the new frame.
+/// A mesh in the common frame: p -> M (p - centre), where M is a rotation or minus the identity. Its boxes are fitted
+/// to the transformed triangles, axis-aligned in the common frame.
 ///
-/// Floats are off by a few roundings of the tree's radius; whoever tests with them allows for it.
+/// Floats are off by a few roundings of the tree's radius; tests that use them allow for it.
 class CastTree {
  public:
   explicit CastTree(std::shared_ptr<const CastMesh> mesh);
 
-  /// Takes 20 ns per triangle.
-  void turn(const Eigen::Matrix3d& M);
+  /// Sets M and transforms all volumes and leaves.
+  void transform(const Eigen::Matrix3d& M);
 
   const CastMesh& mesh() const { return *mesh_; }
   const Eigen::Matrix3d& matrix() const { return matrix_; }
   std::span<const CastNode> nodes() const { return nodes_; }
   std::span<const CastLeaf> leaves() const { return leaves_; }
-  /// Of child `lane` of node `node`: at [Tree::k_width * node + lane].
-  const CastVolume& volume(std::size_t node_and_lane) const { return volumes_[node_and_lane]; }
-  /// The whole tree's: no slab.
+  const CastVolume& volume(std::size_t slot) const { return volumes_[slot]; }
+  /// The whole tree's: its slab is empty, with the normal 0.
   const CastVolume& root_volume() const { return root_volume_; }
   double radius() const { return mesh_->tree().radius(); }
 
-  /// Triangle `t` in tree order, in double precision.
-  TriangleCorners triangle(std::uint32_t t) const;
+  CastChild child(std::size_t slot) const { return nodes_[slot / Tree::k_width].child[slot % Tree::k_width]; }
 
-  /// The slab of a child in double precision.
-  CastSlab slab(std::size_t node_and_lane) const {
-    const CastSlab s = mesh_->patches()[node_and_lane / Tree::k_width].slab(node_and_lane % Tree::k_width);
+  /// The slab of a child in double precision, in the common frame.
+  CastSlab slab(std::size_t slot) const {
+    const CastSlab s = mesh_->precise_volumes()[slot / Tree::k_width].slab(slot % Tree::k_width);
     return {matrix_ * s.normal, s.middle, s.half};
   }
+
+  /// Triangle `t` in tree order, in double precision.
+  TriangleCorners triangle(std::uint32_t t) const;
 
  private:
   struct Bounds {
     float lower[3];
     float upper[3];
   };
-  Bounds turn_leaf(std::uint32_t leaf, const float (&m)[3][3]);
+  Bounds transform_leaf(std::uint32_t leaf, const float (&m)[3][3]);
 
   std::shared_ptr<const CastMesh> mesh_;
   Eigen::Matrix3d matrix_ = Eigen::Matrix3d::Identity();

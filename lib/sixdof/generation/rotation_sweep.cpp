@@ -1,8 +1,8 @@
 #include <sixdof/generation/rotation_sweep.h>
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -12,29 +12,50 @@
 namespace sixdof::detail {
 namespace {
 
-std::vector<Eigen::Vector4d> rotations_of(const Grid& grid, const GenerateOptions& options) {
-  if (options.rotations.empty()) return grid.rotations;
-  std::vector<Eigen::Vector4d> rotations;
-  for (const std::uint32_t r : options.rotations) rotations.push_back(grid.rotations[r]);
-  return rotations;
+std::vector<std::uint32_t> all_or(std::span<const std::uint32_t> rotations, const Grid& grid) {
+  for (const std::uint32_t r : rotations) {
+    if (r >= grid.rotations.size()) {
+      throw BadArgument(fmt::format("rotation {}: the grid has {}", r, grid.rotations.size()));
+    }
+  }
+  if (!rotations.empty()) return {rotations.begin(), rotations.end()};
+  std::vector<std::uint32_t> all(grid.rotations.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
 }
 
-/// Counts rays and tells the user, one call at a time.
+/// Indices of the buckets in the order in which a ray meets them: from far to near, or from small to large overlap.
+std::vector<std::size_t> along_ray(const std::vector<BucketSummary>& summaries) {
+  if (summaries.empty()) throw BadArgument("no bucket to generate");
+  std::vector<std::size_t> order(summaries.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto percent = [&](std::size_t k) { return summaries[k].key.percent; };
+  const bool inwards_descends = summaries.front().key.kind == BucketKind::distance;
+  std::ranges::sort(order, {}, [&](std::size_t k) { return inwards_descends ? -percent(k) : percent(k); });
+  const auto repeated = std::ranges::adjacent_find(order, {}, percent);
+  if (repeated != order.end()) {
+    const BucketKey key = summaries[*repeated].key;
+    throw BadArgument(fmt::format("{} {} %: asked for twice", to_string(key.kind), key.percent));
+  }
+  return order;
+}
+
+/// Reports configurations to RunOptions::progress, one call at a time.
 class Progress {
  public:
-  Progress(const GenerateOptions& options, std::uint64_t configurations_per_rotation, std::size_t rotations)
-      : options_(options), step_(configurations_per_rotation), total_(configurations_per_rotation * rotations) {
-    if (options_.progress) options_.progress(0, total_);
+  Progress(const RunOptions& run, std::uint64_t configurations_per_rotation, std::size_t rotations)
+      : run_(run), step_(configurations_per_rotation), total_(configurations_per_rotation * rotations) {
+    if (run_.progress) run_.progress(0, total_);
   }
   void rotation_done() {
-    if (!options_.progress) return;
+    if (!run_.progress) return;
     const std::scoped_lock lock(mutex_);
     done_ += step_;
-    options_.progress(done_, total_);
+    run_.progress(done_, total_);
   }
 
  private:
-  const GenerateOptions& options_;
+  const RunOptions& run_;
   std::mutex mutex_;
   const std::uint64_t step_, total_;
   std::uint64_t done_ = 0;
@@ -42,72 +63,58 @@ class Progress {
 
 }  // namespace
 
-std::size_t rotations_asked(const Grid& grid, const GenerateOptions& options) {
-  for (const std::uint32_t r : options.rotations) {
-    if (r >= grid.rotations.size()) {
-      throw BadArgument(fmt::format("rotation {}: the grid has {}", r, grid.rotations.size()));
-    }
-  }
-  return options.rotations.empty() ? grid.rotations.size() : options.rotations.size();
-}
-
-void order_buckets(std::vector<Bucket>& buckets, bool descending, std::size_t configurations) {
-  if (buckets.empty()) throw BadArgument("no bucket to generate");
-  const auto percent = [](const Bucket& bucket) { return bucket.summary.key.percent; };
-  std::ranges::sort(buckets, {}, [&](const Bucket& b) { return descending ? -percent(b) : percent(b); });
-  const auto repeated = std::ranges::adjacent_find(buckets, {}, percent);
-  if (repeated != buckets.end()) {
-    const std::string name = repeated->summary.key.name();
-    throw BadArgument(
-        fmt::format("{} {} %: asked for twice", name.substr(0, name.find('/')), repeated->summary.key.percent));
-  }
-  for (Bucket& bucket : buckets) bucket.translations.resize(configurations);
-}
-
-std::uint64_t sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>& prepare, const Grid& grid,
-                              std::vector<Bucket>& buckets, const GenerateOptions& options) {
+Generated sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>& prepare, const Grid& grid,
+                          const std::vector<BucketSummary>& summaries, const RunOptions& run,
+                          std::span<const std::uint32_t> rotations) {
+  const std::vector<std::size_t> order = along_ray(summaries);
+  const std::vector<std::uint32_t> in_grid = all_or(rotations, grid);
+  std::vector<Eigen::Vector4d> quaternions;
+  for (const std::uint32_t r : in_grid) quaternions.push_back(grid.rotations[r]);
+  const DistinctRotations distinct(quaternions);
   const std::size_t n_directions = grid.directions.size();
-  const std::vector<Eigen::Vector4d> rotations = rotations_of(grid, options);
-  const DistinctRotations distinct(rotations);
-  std::vector<double> targets;
-  for (const Bucket& bucket : buckets) targets.push_back(bucket.summary.target);
 
-  std::vector<std::vector<double>> residuals(distinct.first.size(), std::vector<double>(targets.size()));
-  Progress progress(options, n_directions * targets.size(), distinct.first.size());
+  Generated result;
+  for (const BucketSummary& summary : summaries) {
+    result.buckets.push_back({.summary = summary, .translations = std::vector<double>(in_grid.size() * n_directions)});
+  }
+  std::vector<double> targets;
+  for (const std::size_t k : order) targets.push_back(summaries[k].target);
+
+  std::vector<std::vector<double>> largest_residuals(distinct.first.size(), std::vector<double>(targets.size()));
+  Progress progress(run, n_directions * targets.size(), distinct.first.size());
   parallel::PerThread<std::unique_ptr<RaySolver>> solvers(prepare);
 
   const auto solve_rotation = [&](std::size_t i) {
     const std::uint32_t r = distinct.first[i];
     RaySolver& solver = *solvers.local();
-    solver.set_rotation(rotations[r]);
+    solver.set_rotation(quaternions[r]);
     std::vector<double> translations(targets.size());
-    std::vector<double> residual(targets.size());
+    std::vector<double> residuals(targets.size());
     for (std::size_t u = 0; u < n_directions; ++u) {
-      if (options.cancelled && options.cancelled()) throw Interrupted("interrupted");
+      run.check_cancelled();
       try {
-        solver.solve(grid.directions[u], targets, translations, residual);
+        solver.solve(grid.directions[u], targets, translations, residuals);
       } catch (const Error& e) {
-        const std::uint32_t in_grid = options.rotations.empty() ? r : options.rotations[r];
-        throw Error(fmt::format("rotation {}, direction {}: {}", in_grid, u, e.what()));
+        throw Error(fmt::format("rotation {}, direction {}: {}", in_grid[r], u, e.what()));
       }
       for (std::size_t k = 0; k < targets.size(); ++k) {
-        buckets[k].translations[r * n_directions + u] = translations[k];
-        residuals[i][k] = std::max(residuals[i][k], residual[k]);
+        result.buckets[order[k]].translations[r * n_directions + u] = translations[k];
+        largest_residuals[i][k] = std::max(largest_residuals[i][k], residuals[k]);
       }
     }
     progress.rotation_done();
   };
-  parallel::with_threads(options.threads, [&] { parallel::for_each(distinct.first.size(), solve_rotation); });
+  parallel::with_threads(run.threads, [&] { parallel::for_each(distinct.first.size(), solve_rotation); });
 
-  for (std::size_t k = 0; k < buckets.size(); ++k) {
-    distinct.copy_to_repeats(buckets[k].translations, n_directions);
-    for (const auto& of_rotation : residuals) {
-      buckets[k].summary.largest_residual = std::max(buckets[k].summary.largest_residual, of_rotation[k]);
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    Bucket& bucket = result.buckets[order[k]];
+    distinct.copy_to_repeats(bucket.translations, n_directions);
+    for (const auto& of_rotation : largest_residuals) {
+      bucket.summary.largest_residual = std::max(bucket.summary.largest_residual, of_rotation[k]);
     }
   }
-  std::uint64_t measurements = 0;
-  for (const auto& solver : solvers) measurements += solver->measurements();
-  return measurements;
+  for (const auto& solver : solvers) result.measurements += solver->measurements();
+  return result;
 }
 
 }  // namespace sixdof::detail

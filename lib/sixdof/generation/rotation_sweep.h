@@ -1,30 +1,30 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
+#include <span>
 #include <vector>
 
-#include <sixdof/generation/distance_generator.h>
+#include <sixdof/base/run_options.h>
+#include <sixdof/configuration/bucket.h>
 #include <sixdof/configuration/grid.h>
+#include <sixdof/generation/distance_generator.h>
 
-/// The loop over rotations and directions that makes buckets of either kind. Internal: use distance_generator.h or
+/// The loop over rotations and directions that fills buckets of either kind. Internal: use distance_generator.h or
 /// volume_generator.h.
 namespace sixdof::detail {
 
-/// Number of rotations that options ask for. @throws BadArgument if the grid does not have one of them
-std::size_t rotations_asked(const Grid& grid, const GenerateOptions& options);
-
-/// Puts buckets into the order in which a ray meets them (by percentage), and makes room for their translations.
-/// @throws BadArgument if there is none or a percentage stands twice
-void order_buckets(std::vector<Bucket>& buckets, bool descending, std::size_t configurations);
-
-/// Fills in translation and largest residual of all buckets: every distinct rotation once, spread over threads; copies for
-/// the others. The result is the same bits for every number of threads.
-/// @param prepare makes one solver per thread; its targets are those of `buckets`, in their order
-/// @return measurements of all solvers
-std::uint64_t sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>& prepare, const Grid& grid,
-                              std::vector<Bucket>& buckets, const GenerateOptions& options);
+/// Solves every distinct rotation once, on several threads, and copies its rows to its repeats. The result has the same
+/// bits for every number of threads.
+/// @param prepare makes the solver of a thread
+/// @param summaries of buckets of one kind; their largest residuals are filled in
+/// @param rotations indices into the grid; empty: all rotations of the grid
+/// @return the buckets in the order of `summaries`
+/// @throws BadArgument if there is no bucket, one is asked for twice, or the grid does not have one of the rotations;
+/// Interrupted; Error from the solver naming the configuration
+Generated sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>& prepare, const Grid& grid,
+                          const std::vector<BucketSummary>& summaries, const RunOptions& run,
+                          std::span<const std::uint32_t> rotations);
 
 }  // namespace sixdof::detail

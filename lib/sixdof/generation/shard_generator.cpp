@@ -1,6 +1,7 @@
 #include <sixdof/generation/shard_generator.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include <sixdof/generation/volume_generator.h>
@@ -8,36 +9,45 @@
 namespace sixdof {
 namespace {
 
-std::vector<int> percents(const GenerationJob& job, BucketKind kind) {
-  std::vector<int> list;
-  for (const BucketSummary& bucket : job.buckets) {
-    if (bucket.key.kind == kind) list.push_back(bucket.key.percent);
+/// What a shard solves of one kind of bucket.
+struct Part {
+  Part(const GenerationJob& job, const SetDescription& set, ShardNumber shard, BucketKind which)
+      : kind(which), grid(set.grid_of(kind)) {
+    const DistinctRotations distinct(grid.rotations);
+    const auto of_shard = rotations_of(shard, distinct);
+    rotations.assign(of_shard.begin(), of_shard.end());
+    for (const BucketSummary& bucket : job.buckets) {
+      if (bucket.key.kind == kind) percents.push_back(bucket.key.percent);
+    }
   }
-  return list;
-}
+  std::uint64_t configurations() const { return percents.size() * rotations.size() * grid.directions.size(); }
+
+  BucketKind kind;
+  const Grid& grid;
+  std::vector<std::uint32_t> rotations;
+  std::vector<int> percents;
+};
 
 }  // namespace
 
 Generated generate_shard(const GenerationJob& job, const SetDescription& set, ShardNumber shard,
-                         const DistanceGenerator& generator, const Mesh& a, const Mesh& b,
-                         const ShardOptions& options) {
+                         const DistanceGenerator& generator, const Mesh& a, const Mesh& b, const RunOptions& run) {
+  const std::array parts{Part(job, set, shard, BucketKind::distance), Part(job, set, shard, BucketKind::volume)};
+  const std::uint64_t total = parts[0].configurations() + parts[1].configurations();
+  std::uint64_t before = 0;
   Generated result;
-  const auto generate = [&](BucketKind kind, auto generate_buckets) {
-    if (!job.has(kind)) return;
-    const Grid& grid = set.grid_of(kind);
-    const DistinctRotations distinct(grid.rotations);
-    const auto part = rotations_of(shard, distinct);
-    GenerateOptions part_options{.threads = options.threads, .progress = nullptr, .cancelled = options.cancelled};
-    part_options.rotations.assign(part.begin(), part.end());
-    if (options.progress) {
-      part_options.progress = [&](std::uint64_t done, std::uint64_t /*total*/) { options.progress(kind, done); };
+  for (const Part& part : parts) {
+    if (part.percents.empty()) continue;
+    RunOptions part_run = run;
+    if (run.progress) {
+      part_run.progress = [&](std::uint64_t done, std::uint64_t /*total*/) { run.progress(before + done, total); };
     }
-    Generated made = generate_buckets(generator, a, b, grid, percents(job, kind), part_options);
+    const auto generate = part.kind == BucketKind::distance ? generate_distances : generate_volumes;
+    Generated made = generate(generator, a, b, part.grid, part.percents, part_run, part.rotations);
     std::ranges::move(made.buckets, std::back_inserter(result.buckets));
     result.measurements += made.measurements;
-  };
-  generate(BucketKind::distance, generate_distances);
-  generate(BucketKind::volume, generate_volumes);
+    before += part.configurations();
+  }
   return result;
 }
 

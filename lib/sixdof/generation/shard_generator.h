@@ -1,26 +1,19 @@
 #pragma once
 
-#include <cstdint>
-#include <functional>
-
+#include <sixdof/base/run_options.h>
 #include <sixdof/configuration/generation_job.h>
+#include <sixdof/configuration/set_description.h>
 #include <sixdof/generation/distance_generator.h>
+#include <sixdof/geometry/mesh.h>
 
 namespace sixdof {
 
-struct ShardOptions {
-  unsigned threads = 0;  ///< 0: as many as the machine has.
-  /// Called now and then, one call at a time, with the configurations of a kind that this shard has so far.
-  std::function<void(BucketKind kind, std::uint64_t done)> progress;
-  std::function<bool()> cancelled;  ///< True ends the work with Interrupted.
-};
-
-/// Computes one shard: buckets in the job's order, with one row per distinct rotation of the shard. The bits of a row
-/// depend on neither shards nor threads.
-/// @param set the job's, with its grids
+/// Computes one shard: the job's buckets in their order, with one row per distinct rotation of the shard. The bits of a
+/// row depend neither on the number of shards nor on that of threads.
+/// @param set the job's description, with its grids
+/// @param run a step is one configuration that is solved, those of all distances before those of the volumes
 /// @throws what generate_distances() and generate_volumes() throw
 Generated generate_shard(const GenerationJob& job, const SetDescription& set, ShardNumber shard,
-                         const DistanceGenerator& generator, const Mesh& a, const Mesh& b,
-                         const ShardOptions& options = {});
+                         const DistanceGenerator& generator, const Mesh& a, const Mesh& b, const RunOptions& run = {});
 
 }  // namespace sixdof

@@ -3,37 +3,39 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 namespace sixdof {
 namespace {
 
-/// Areas as floats, their sums and slopes are rounded by far less than this share of the areas.
+/// Upper bound on the rounding of areas in single precision, their sums and slopes, as a fraction of the areas.
 constexpr double k_rounding = 1e-6;
 
-/// Triangles closer than this sine to the line of motion are as good as along it: nothing comes in or goes out through
-/// them but strips this share of the way wide. Within a gap that changes the volume by less than 1e-12 way^2 times the
-/// length of their edges, far below what hits are certified to (k_volume_tolerance).
+/// A triangle whose plane makes an angle with the ray of a sine below this counts as parallel to the ray: through it
+/// only strips of this fraction of the displacement in width enter or leave. In an interval of length d that changes
+/// the volume by less than 1e-12 d^2 times the length of the triangle's edges, far below the tolerance of hits
+/// (k_volume_tolerance).
 constexpr double k_least_sine = 1e-12;
 
-/// The largest of two lines, rising from the begin and falling to the end of a way, and where they meet.
-struct Meeting {
+/// The upper bound on a function on [0, length], and where it is attained.
+struct UpperBound {
   double value;
   double at;
 };
 
-Meeting meet(double begin, double rise, double end, double fall, double way) {
-  if (!(rise + fall > 0.0)) return begin > end ? Meeting{begin, 0.0} : Meeting{end, way};
-  const double at = std::clamp((end + fall * way - begin) / (rise + fall), 0.0, way);
+/// For a function with the values `begin` and `end` that rises by at most `rise` and falls by at most `fall` per
+/// length.
+UpperBound upper_bound(double begin, double rise, double end, double fall, double length) {
+  if (!(rise + fall > 0.0)) return begin > end ? UpperBound{begin, 0.0} : UpperBound{end, length};
+  const double at = std::clamp((end + fall * length - begin) / (rise + fall), 0.0, length);
   return {std::max({begin + rise * at, begin, end}), at};
 }
 
 }  // namespace
 
-VolumePeak volume_peak(const OverlapSample& outer, const OverlapSample& inner, std::span<const SlopeRange> ranges) {
+VolumePeak volume_peak(const OverlapMeasurement& outer, const OverlapMeasurement& inner,
+                       std::span<const SlopeRange> ranges) {
   const std::size_t n = ranges.size();
   const double part = (outer.s - inner.s) / static_cast<double>(n);
-  // Bounds at the parts' ends, from the inner sample and then from both.
+  // Upper bounds on the volume at the ends of the parts: from the inner measurement, then from both.
   double to_inner = 0.0;
   for (const SlopeRange& range : ranges) to_inner += part * range.low;
   double begin = outer.volume;
@@ -42,14 +44,14 @@ VolumePeak volume_peak(const OverlapSample& outer, const OverlapSample& inner, s
     to_inner -= part * ranges[j].low;
     const double from_inner = j + 1 == n ? inner.volume : inner.volume - to_inner;
     const double end = std::min(begin + part * ranges[j].high, from_inner);
-    const Meeting top = meet(begin, ranges[j].high, end, -ranges[j].low, part);
+    const UpperBound top = upper_bound(begin, ranges[j].high, end, -ranges[j].low, part);
     if (top.value > peak.volume) peak = {top.value, outer.s - part * static_cast<double>(j) - top.at};
     begin = end;
   }
   return peak;
 }
 
-void SlopeBounds::Change::accumulate() {
+void SlopeBounds::SlopeChange::accumulate() {
   for (std::size_t j = 1; j < k_parts; ++j) {
     raised_since_outer[j] += raised_since_outer[j - 1];
     lowered_since_outer[j] += lowered_since_outer[j - 1];
@@ -58,36 +60,37 @@ void SlopeBounds::Change::accumulate() {
   }
 }
 
-void SlopeBounds::Body::clear() {
+void SlopeBounds::Contacts::clear() {
   ++round_;
-  marked_.clear();
+  touched_.clear();
 }
 
-SlopeBounds::Mark& SlopeBounds::Body::mark(std::uint32_t triangle, std::span<const Eigen::Vector3d> areas,
-                                           const Eigen::Vector3d& outwards) {
-  Mark& mark = marks_[triangle];
-  if (mark.round != round_) {
+SlopeBounds::TriangleContacts& SlopeBounds::Contacts::of(std::uint32_t triangle, std::span<const Eigen::Vector3d> areas,
+                                                         const Eigen::Vector3d& outwards) {
+  TriangleContacts& contacts = contacts_[triangle];
+  if (contacts.round != round_) {
     const double area = areas[triangle].dot(outwards);
     const double least = k_least_sine * areas[triangle].lpNorm<1>();
     const int side = area > least ? 1 : area < -least ? -1 : 0;
-    mark = {static_cast<float>(std::abs(area)), round_, Stay::none(), Stay::none(), static_cast<std::int8_t>(side)};
-    marked_.push_back(triangle);
+    contacts = {static_cast<float>(std::abs(area)), round_, PartRange::none(), PartRange::none(),
+                static_cast<std::int8_t>(side)};
+    touched_.push_back(triangle);
   }
-  return mark;
+  return contacts;
 }
 
-SlopeBounds::Change SlopeBounds::Body::change() const {
-  Change change;
-  for (const std::uint32_t t : marked_) {
-    const Mark& mark = marks_[t];
-    const auto area = static_cast<double>(mark.area);
-    if (mark.raising.any()) {
-      change.raised_since_outer[mark.raising.first] += area;
-      change.raised_until_inner[mark.raising.last] += area;
+SlopeBounds::SlopeChange SlopeBounds::Contacts::change() const {
+  SlopeChange change;
+  for (const std::uint32_t t : touched_) {
+    const TriangleContacts& contacts = contacts_[t];
+    const auto area = static_cast<double>(contacts.area);
+    if (contacts.raising.any()) {
+      change.raised_since_outer[contacts.raising.first] += area;
+      change.raised_until_inner[contacts.raising.last] += area;
     }
-    if (mark.lowering.any()) {
-      change.lowered_since_outer[mark.lowering.first] += area;
-      change.lowered_until_inner[mark.lowering.last] += area;
+    if (contacts.lowering.any()) {
+      change.lowered_since_outer[contacts.lowering.first] += area;
+      change.lowered_until_inner[contacts.lowering.last] += area;
     }
   }
   change.accumulate();
@@ -102,18 +105,18 @@ std::array<SlopeRange, SlopeBounds::k_parts> SlopeBounds::bound(const SweptCandi
                                                                 double last, double outer_slope, double inner_slope) {
   a_.clear();
   b_.clear();
-  const double parts_per_share = static_cast<double>(k_parts) / (last - first);
-  const auto part = [&](float share) {
-    const double at = (static_cast<double>(share) - first) * parts_per_share;
+  const double parts_per_fraction = static_cast<double>(k_parts) / (last - first);
+  const auto part = [&](float fraction) {
+    const double at = (static_cast<double>(fraction) - first) * parts_per_fraction;
     return static_cast<std::uint8_t>(std::clamp(at, 0.0, static_cast<double>(k_parts - 1)));
   };
   for (std::size_t i = 0; i < swept.pairs.size(); ++i) {
     if (swept.first[i] > last || swept.last[i] < first) continue;
-    Mark& a = a_.mark(swept.pairs[i].a, areas_a, outwards_A);
-    Mark& b = b_.mark(swept.pairs[i].b, areas_b, outwards_B);
-    const Stay stay{part(swept.first[i]), part(swept.last[i])};
-    const auto extend = [&](Stay& known) {
-      known = {std::min(known.first, stay.first), std::max(known.last, stay.last)};
+    TriangleContacts& a = a_.of(swept.pairs[i].a, areas_a, outwards_A);
+    TriangleContacts& b = b_.of(swept.pairs[i].b, areas_b, outwards_B);
+    const PartRange parts{part(swept.first[i]), part(swept.last[i])};
+    const auto extend = [&](PartRange& known) {
+      known = {std::min(known.first, parts.first), std::max(known.last, parts.last)};
     };
     const int both = a.side * b.side;
     if (both < 0) {
@@ -124,7 +127,7 @@ std::array<SlopeRange, SlopeBounds::k_parts> SlopeBounds::bound(const SweptCandi
       extend(b.lowering);
     }
   }
-  const Change of_a = a_.change(), of_b = b_.change();
+  const SlopeChange of_a = a_.change(), of_b = b_.change();
   const auto least = [](double x, double y) { return (1.0 + k_rounding) * std::min(x, y); };
   std::array<SlopeRange, k_parts> ranges;
   for (std::size_t j = 0; j < k_parts; ++j) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -13,20 +12,19 @@
 namespace sixdof {
 namespace {
 
-/// |f - target| at which the search is content, in units of A's box diagonal: rounding of a distance between meshes whose
-/// coordinates are about as large as the diagonal is 1e-16 to 1e-15, and a thousandth of k_distance_tolerance leaves
-/// room for oracles that round differently.
-constexpr double k_content = 1e-12;
+/// |f - target| at which the search has converged, in units of the diagonal of A's box: the rounding of a distance
+/// between meshes whose coordinates are about as large as the diagonal is 1e-16 to 1e-15, and a thousandth of
+/// k_distance_tolerance leaves room for oracles that round differently.
+constexpr double k_converged = 1e-12;
 
-/// Measurements on one ray after which the oracle is taken to be no distance function. Smooth cases need ten; a channel
-/// as narrow as the resolution needs one per resolution.
+/// Measurements on one ray after which the oracle is taken not to be a distance function. Smooth cases need ten; a
+/// channel as narrow as the resolution needs one per resolution.
 constexpr int k_most_measurements = 2'000'000;
 
-/// A measurement at translation s.
-struct Sample {
-  double s = 0.0;
+struct Measurement {
+  double s = 0.0;      ///< Translation.
   double f = 0.0;      ///< Distance.
-  double slope = 0.0;  ///< df/ds of the closest pair of points; 0 if not known.
+  double slope = 0.0;  ///< df/ds of the closest pair of points; 0 if it is not known.
 };
 
 class RayMarch {
@@ -36,63 +34,65 @@ class RayMarch {
 
   int measurements() const { return measurements_; }
 
-  Sample measure(double s) {
+  Measurement measure(double s) {
     if (++measurements_ > k_most_measurements) {
       throw Error(fmt::format("no end after {} measurements of the distance", k_most_measurements));
     }
     const Separation d = require_distance(query_, algorithm_, ray_.pose(s));
-    Sample sample{.s = s, .f = d.distance};
-    if (d.has_witnesses && d.distance > 0.0) sample.slope = (d.witness_b - d.witness_a).dot(ray_.direction) / d.distance;
-    return sample;
+    Measurement measured{.s = s, .f = d.distance};
+    if (d.has_witnesses && d.distance > 0.0) {
+      measured.slope = (d.witness_b - d.witness_a).dot(ray_.direction) / d.distance;
+    }
+    return measured;
   }
 
-  /// The first hit at or below `outer.s`, given that there is none above. Nothing if the target is not met down to s = 0;
-  /// then `outer` is at s = 0. Otherwise `outer` is the hit.
-  bool advance(double target, Sample& outer) {
+  /// Moves `outer` to the first hit at or below `outer.s`, given that there is none above.
+  /// @return false if the target is not met down to s = 0; `outer` is at s = 0 then
+  bool advance(double target, Measurement& outer) {
     for (;;) {
-      if (outer.f <= target + content()) return true;
+      if (outer.f <= target + converged()) return true;
       if (outer.s == 0.0) return false;
-      const Sample inner = measure(std::max(0.0, outer.s - step(outer, target)));
+      const Measurement inner = measure(std::max(0.0, outer.s - step(outer, target)));
       const double clear = clear_above(inner, outer, target);
-      const bool gap_closed = clear - inner.s <= resolution();
-      if (gap_closed && inner.f >= target - content()) {
+      const bool closed = clear - inner.s <= resolution();
+      if (closed && inner.f >= target - converged()) {
         outer = inner;
-      } else if (gap_closed) {
+      } else if (closed) {
         outer = bisect(inner, outer, target);
         return true;
       } else {
         outer = measure(clear);
-        // Rounding of a crossing at `clear` itself.
-        if (outer.f < target - content()) throw_lost(target, outer);
+        // A crossing at `clear` itself may be rounded to slightly below the target, not to more than that.
+        if (outer.f < target - converged()) throw_jump(target, outer);
       }
     }
   }
 
-  /// The same by conservative steps.
-  bool advance_conservatively(double target, Sample& outer) {
-    while (outer.f > target + content()) {
+  /// The same by conservative advancement.
+  bool advance_conservatively(double target, Measurement& outer) {
+    while (outer.f > target + converged()) {
       if (outer.s == 0.0) return false;
       outer = measure(std::max(0.0, outer.s - (outer.f - target)));
     }
-    if (outer.f < target - content()) throw_lost(target, outer);
+    if (outer.f < target - converged()) throw_jump(target, outer);
     return true;
   }
 
  private:
-  double content() const { return k_content * diagonal_; }
+  double converged() const { return k_converged * diagonal_; }
   double resolution() const { return k_first_hit_resolution * diagonal_; }
 
-  /// Length of the next step inwards: Newton's where it can be certified, otherwise as far as it could be if the
-  /// distance fell no faster than to the target.
-  double step(const Sample& outer, double target) const {
+  /// Length of the next step inwards: a Newton step, but no longer than can be certified if the distance at its end is
+  /// the target.
+  double step(const Measurement& outer, double target) const {
     const double above = outer.f - target;
     const double certain = std::max(std::sqrt(above * (outer.f + target)), above + resolution());
     if (outer.slope <= 0.0) return certain;
     return std::clamp(above / outer.slope, above, certain);
   }
 
-  /// The least t in [inner.s, outer.s] such that f > target is certain on (t, outer.s].
-  double clear_above(const Sample& inner, const Sample& outer, double target) const {
+  /// The smallest t in [inner.s, outer.s] such that f > target is certain on (t, outer.s].
+  double clear_above(const Measurement& inner, const Measurement& outer, double target) const {
     const double from_outer = outer.s - (outer.f - target);
     const double from_inner = inner.s + std::max(0.0, inner.f - target);
     // The parabola y^2 + m y + c of f^2 - target^2, y = s - inner.s.
@@ -102,14 +102,14 @@ class RayMarch {
     const double discriminant = 0.25 * m * m - c;
     if (discriminant < 0.0) return inner.s;
     const double root = m > 0.0 ? -c / (0.5 * m + std::sqrt(discriminant)) : std::sqrt(discriminant) - 0.5 * m;
-    if (root >= width) return inner.s;  // f^2 > target^2 at both ends: then the other root is beyond, too
+    if (root >= width) return inner.s;  // f^2 > target^2 at both ends, so the other root is beyond as well.
     const double clear = std::min(from_outer, inner.s + root);
     return clear <= from_inner ? inner.s : clear;
   }
 
-  /// A crossing between two samples, f(inner) < target < f(outer).
-  Sample bisect(Sample inner, Sample outer, double target) {
-    // Illinois: false position that halves the weight of an end that stays; plain halving when that is slow.
+  /// A crossing between two measurements, f(inner) < target < f(outer).
+  Measurement bisect(Measurement inner, Measurement outer, double target) {
+    // Illinois method: false position that halves the weight of an end that is kept. Bisection where that is slow.
     double inner_weight = 1.0, outer_weight = 1.0;
     double width_before = outer.s - inner.s;
     for (int i = 0;; ++i) {
@@ -123,8 +123,8 @@ class RayMarch {
       }
       if (!(s > inner.s && s < outer.s)) s = 0.5 * (inner.s + outer.s);
       if (!(s > inner.s && s < outer.s)) return best(inner, outer, target);
-      const Sample middle = measure(s);
-      if (std::abs(middle.f - target) <= content()) return middle;
+      const Measurement middle = measure(s);
+      if (std::abs(middle.f - target) <= converged()) return middle;
       if (middle.f > target) {
         outer = middle;
         outer_weight = 1.0;
@@ -137,16 +137,16 @@ class RayMarch {
     }
   }
 
-  /// Two neighbouring doubles of s: the better one has to do.
-  Sample best(const Sample& inner, const Sample& outer, double target) const {
-    const Sample& chosen = std::abs(inner.f - target) < std::abs(outer.f - target) ? inner : outer;
-    if (std::abs(chosen.f - target) > k_distance_tolerance * diagonal_) throw_lost(target, chosen);
+  /// The better one of two measurements at neighbouring doubles of s.
+  Measurement best(const Measurement& inner, const Measurement& outer, double target) const {
+    const Measurement& chosen = std::abs(inner.f - target) < std::abs(outer.f - target) ? inner : outer;
+    if (std::abs(chosen.f - target) > k_distance_tolerance * diagonal_) throw_jump(target, chosen);
     return chosen;
   }
 
-  [[noreturn]] void throw_lost(double target, const Sample& sample) const {
-    throw Error(fmt::format("the oracle's distance jumps: {} at s = {}, where {} was bound to be met", sample.f,
-                            sample.s, target));
+  [[noreturn]] void throw_jump(double target, const Measurement& measured) const {
+    throw Error(
+        fmt::format("the oracle's distance jumps: {} at s = {}, past the target {}", measured.f, measured.s, target));
   }
 
   Query& query_;
@@ -171,16 +171,14 @@ class SphereMethodSolver final : public RaySolver {
              std::span<double> residuals) override {
     ray_.direction = direction;
     RayMarch march(*query_, name_, ray_, a_.diagonal());
-    // Each mesh lies in the ball of half a diagonal about its centre.
+    // Each mesh lies in the ball of half a diagonal about the centre of its box.
     const double reach = 0.5 * (a_.diagonal() + b_.diagonal());
-    const bool alone = march_ == SphereMarch::conservative;
-    Sample outer;
-    work_.assign(targets.size(), 0);
+    const bool conservative = march_ == SphereMarch::conservative;
+    Measurement outer;
     for (std::size_t k = 0; k < targets.size(); ++k) {
-      const int before = march.measurements();
-      if (alone || k == 0) outer = march.measure(reach + targets[k]);
-      const bool hit = alone ? march.advance_conservatively(targets[k], outer) : march.advance(targets[k], outer);
-      work_[k] = static_cast<std::uint64_t>(march.measurements() - before);
+      if (conservative || k == 0) outer = march.measure(reach + targets[k]);
+      const bool hit =
+          conservative ? march.advance_conservatively(targets[k], outer) : march.advance(targets[k], outer);
       translations[k] = hit ? outer.s : std::numeric_limits<double>::quiet_NaN();
       residuals[k] = hit ? std::abs(outer.f - targets[k]) : 0.0;
     }
@@ -188,7 +186,6 @@ class SphereMethodSolver final : public RaySolver {
   }
 
   std::uint64_t measurements() const override { return measurements_; }
-  std::span<const std::uint64_t> work() const override { return work_; }
 
  private:
   const Mesh& a_;
@@ -198,7 +195,6 @@ class SphereMethodSolver final : public RaySolver {
   std::unique_ptr<Query> query_;
   ConfigurationRay ray_;
   std::uint64_t measurements_ = 0;
-  std::vector<std::uint64_t> work_;  // measurements for each target
 };
 
 class SphereMethod final : public DistanceGenerator {

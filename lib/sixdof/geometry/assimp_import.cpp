@@ -1,99 +1,198 @@
 #include <sixdof/geometry/assimp_import.h>
 
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
 #include <set>
-#include <string>
 
 #include <assimp/BaseImporter.h>
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include <sixdof/geometry/bytes.h>
 
 namespace sixdof::loading {
 namespace {
 
-/// Leaves the importer of one format registered. Who unregisters an importer owns it.
-void keep_only(Assimp::Importer& importer, const char* format) {
-  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
-    Assimp::BaseImporter* one = importer.GetImporter(i);
-    std::set<std::string> extensions;
-    one->GetExtensionList(extensions);
-    if (extensions.contains(format)) continue;
-    importer.UnregisterLoader(one);
-    delete one;
+using Eigen::Matrix4d;
+using nlohmann::json;
+
+/// Assimp drops or changes a face with an index out of range, and says so only in its log.
+struct DamageLog final : Assimp::Logger {
+  static inline thread_local std::string first;  ///< The first such message of the import on this thread.
+
+  bool attachStream(Assimp::LogStream*, unsigned) override { return false; }
+  bool detachStream(Assimp::LogStream*, unsigned) override { return false; }
+  void OnDebug(const char*) override {}
+  void OnVerboseDebug(const char*) override {}
+  void OnInfo(const char*) override {}
+  void OnWarn(const char* message) override {
+    for (const char* words : {"out of range", "out-of-range", "out of bounds", "overflow", "nvalid index", "dropped"}) {
+      if (first.empty() && std::string_view(message).find(words) != std::string_view::npos) first = message;
+    }
+  }
+  void OnError(const char* message) override { OnWarn(message); }
+};
+
+/// Gives assimp the bytes of the file, and the files that it names, whose names may hold %20 and the like.
+struct Files final : Assimp::DefaultIOSystem {
+  const Source& source;
+  explicit Files(const Source& s) : source(s) {}
+
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    if (name == source.path.string()) {
+      return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(source.bytes.data()),
+                                        source.bytes.size());
+    }
+    std::string decoded = name;
+    for (std::size_t at = 0; !Exists(name) && (at = decoded.find('%', at)) != std::string::npos; ++at) {
+      unsigned code = 0;
+      if (std::sscanf(decoded.c_str() + at, "%%%2x", &code) == 1) decoded.replace(at, 3, 1, static_cast<char>(code));
+    }
+    return DefaultIOSystem::Open(decoded.c_str(), mode);
+  }
+};
+
+/// Refuses what assimp does not check in a glTF file: the size of sparse accessors, positions that are not floats, and
+/// a graph of nodes that is very deep (assimp recurses) or no tree (copies of a node may double at every level).
+void check_gltf(const Source& source) {
+  std::string_view text = source.bytes;
+  constexpr std::size_t k_header = 20;  // magic, version, size of the file, size and type of the JSON chunk
+  constexpr int k_gltf_float = 5126;
+  if (text.starts_with("glTF") && text.size() > k_header) {
+    if (load_little_endian<std::uint32_t>(text.data() + 8) != text.size()) source.fail("byte 8", "not the file's size");
+    text = text.substr(k_header, load_little_endian<std::uint32_t>(text.data() + 12));
+  }
+  const json document = json::parse(text);
+  if (!document.at("asset").at("version").get<std::string>().starts_with("2.")) source.fail("version 2 is expected");
+  const json accessors = document.value("accessors", json::array());
+  for (const json& accessor : accessors) {
+    if (accessor.contains("sparse")) source.fail("sparse accessors are not supported");
+  }
+  for (const json& mesh : document.value("meshes", json::array())) {
+    for (const json& primitive : mesh.at("primitives")) {
+      const json& accessor = accessors.at(primitive.at("attributes").at("POSITION").get<std::size_t>());
+      if (accessor.at("componentType") != k_gltf_float || accessor.at("type") != "VEC3") {
+        source.fail("positions other than vectors of three floats are not supported");
+      }
+    }
+  }
+  constexpr std::size_t k_deepest_node = 500;
+  constexpr auto k_none = static_cast<std::size_t>(-1);
+  const json nodes = document.value("nodes", json::array());
+  std::vector<std::size_t> parent(nodes.size(), k_none);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (const json& child : nodes[i].value("children", json::array())) {
+      const auto c = child.get<std::size_t>();
+      if (c >= nodes.size() || parent[c] != k_none) source.fail(fmt::format("nodes[{}]", c), "is missing or shared");
+      parent[c] = i;
+    }
+  }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (std::size_t at = i, depth = 0; parent[at] != k_none; at = parent[at]) {
+      if (++depth > k_deepest_node) source.fail(fmt::format("nodes[{}]", i), "lies deeper than 500 levels");
+    }
   }
 }
 
-class Collector {
- public:
-  Collector(const Source& source, const aiScene& scene) : source_(source), scene_(scene) {}
-
-  void add_node(const aiNode& node, const Eigen::Matrix4d& parent) {
-    Eigen::Matrix4d local;
-    for (unsigned row = 0; row < 4; ++row) {
-      for (unsigned column = 0; column < 4; ++column) local(row, column) = node.mTransformation[row][column];
+/// Renames the chunks of a 3DS file that make assimp move vertices (the key framer) or reorder triangles (materials).
+/// A chunk is a number (2 bytes), a length (4 bytes, these 6 included), then data or chunks.
+void hide_3ds_scene(Source& source, std::size_t begin, std::size_t end) {
+  constexpr std::size_t k_header = 6;
+  constexpr std::uint16_t k_file = 0x4D4D, k_editor = 0x3D3D, k_materials = 0xAFFF, k_key_framer = 0xB000;
+  for (std::size_t at = begin; at < end;) {
+    char* const chunk = source.bytes.data() + at;
+    const std::size_t length = end - at < k_header ? 0 : load_little_endian<std::uint32_t>(chunk + 2);
+    if (length < k_header || length > end - at) {
+      source.fail(fmt::format("byte {}", at), fmt::format("a chunk of {} bytes where {} are left", length, end - at));
     }
-    const Eigen::Matrix4d transform = parent * local;
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(node.mMeshes[i], transform);
-    for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(*node.mChildren[i], transform);
+    const auto id = load_little_endian<std::uint16_t>(chunk);
+    if (id == k_file || id == k_editor) hide_3ds_scene(source, at + k_header, at + length);
+    if (id == k_materials || id == k_key_framer) chunk[0] = chunk[1] = '\xFF';
+    at += length;
   }
+}
 
-  void add_mesh(unsigned number, const Eigen::Matrix4d& transform) {
-    const std::string place = fmt::format("mesh {}", number);
-    if (number >= scene_.mNumMeshes) source_.fail(place, "does not exist");
-    const aiMesh& mesh = *scene_.mMeshes[number];
-    const auto first = static_cast<std::uint32_t>(surface_.vertices.size());
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-      const aiVector3D& p = mesh.mVertices[i];
-      const Eigen::Vector4d stored(p.x, p.y, p.z, 1.0);
-      const Eigen::Vector3d placed = (transform * stored).head<3>();
-      if (!placed.allFinite()) source_.fail(place, fmt::format("the coordinates of vertex {} are not finite", i));
-      surface_.vertices.push_back(placed);
-    }
-    const bool mirrored = transform.topLeftCorner<3, 3>().determinant() < 0.0;
-    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
-      const aiFace& face = mesh.mFaces[i];
-      if (face.mNumIndices != 3) source_.fail(place, fmt::format("face {} has {} corners", i, face.mNumIndices));
-      Triangle triangle;
-      for (unsigned k = 0; k < 3; ++k) {
-        const unsigned v = face.mIndices[k];
-        if (v >= mesh.mNumVertices) {
-          source_.fail(place, fmt::format("face {}: vertex index {} of {}", i, v, mesh.mNumVertices));
-        }
-        triangle[mirrored ? 2 - k : k] = first + v;
-      }
-      surface_.triangles.push_back(triangle);
-    }
+void add_mesh(const Source& source, const aiScene& scene, unsigned number, const Matrix4d& transform,
+              Surface& surface) {
+  const aiMesh& mesh = *scene.mMeshes[number];
+  const auto first = static_cast<std::uint32_t>(surface.vertices.size());
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const Eigen::Vector4d stored(mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z, 1.0);
+    surface.vertices.push_back((transform * stored).head<3>());
+    if (!surface.vertices.back().allFinite()) source.fail(fmt::format("mesh {}: vertex {}", number, i), "not finite");
   }
+  const bool mirrored = transform.topLeftCorner<3, 3>().determinant() < 0.0;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    const auto place = [&] { return fmt::format("mesh {}: face {}", number, i); };
+    if (face.mNumIndices < 3) continue;  // a point or a line
+    std::vector<std::uint32_t> corners(face.mIndices, face.mIndices + face.mNumIndices);
+    for (std::uint32_t& v : corners) {
+      if (v >= mesh.mNumVertices) source.fail(place(), fmt::format("vertex index {} of {}", v, mesh.mNumVertices));
+      v += first;
+    }
+    if (mirrored) std::reverse(corners.begin(), corners.end());
+    const PolygonShape shape = triangulate(corners, surface.vertices, surface.triangles);
+    if (shape != PolygonShape::simple) count_polygon(source, shape, place(), surface.repairs);
+  }
+}
 
-  Surface take() { return std::move(surface_); }
+void add_node(const Source& source, const aiScene& scene, const aiNode& node, const Matrix4d& parent,
+              Surface& surface) {
+  const Eigen::Map<const Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>> local(&node.mTransformation.a1);
+  const Matrix4d transform = parent * local.cast<double>();
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(source, scene, node.mMeshes[i], transform, surface);
+  for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(source, scene, *node.mChildren[i], transform, surface);
+}
 
- private:
-  const Source& source_;
-  const aiScene& scene_;
-  Surface surface_;
-};
+/// Leaves the importers of one extension registered: others would read the file by its content.
+void keep_only(Assimp::Importer& importer, const std::string& extension) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    Assimp::BaseImporter* const one = importer.GetImporter(i);
+    std::set<std::string> extensions;
+    one->GetExtensionList(extensions);
+    if (extensions.contains(extension)) continue;
+    importer.UnregisterLoader(one);
+    delete one;  // owned by who unregisters it
+  }
+}
 
 }  // namespace
 
-Surface import_by_assimp(const Source& source, const AssimpRequest& request) {
+Surface read_by_assimp(const std::filesystem::path& file) {
+  const std::string extension = lower_case_extension(file);
   Assimp::Importer importer;
-  keep_only(importer, request.format);
-  const aiScene* scene = importer.ReadFileFromMemory(request.bytes.data(), request.bytes.size(),
-                                                     aiProcess_ValidateDataStructure, request.format);
-  if (scene == nullptr || scene->mRootNode == nullptr) {
-    source.fail(fmt::format("assimp cannot read it: {}", importer.GetErrorString()));
+  keep_only(importer, extension.empty() ? "" : extension.substr(1));
+  if (importer.GetImporterCount() == 0) throw BadFile(file.string(), "'" + extension + "' is no mesh format");
+  Source source = read_source(file);
+  try {
+    if (extension == ".3ds") hide_3ds_scene(source, 0, source.bytes.size());
+    if (extension == ".gltf" || extension == ".glb") check_gltf(source);
+  } catch (const json::exception& e) {
+    source.fail(fmt::format("the JSON is malformed: {}", e.what()));
   }
-  Collector collector(source, *scene);
-  if (request.apply_transforms) {
-    collector.add_node(*scene->mRootNode, Eigen::Matrix4d::Identity());
+  static std::once_flag once;
+  std::call_once(once, [] {
+    if (Assimp::DefaultLogger::isNullLogger()) Assimp::DefaultLogger::set(new DamageLog);
+  });
+  DamageLog::first.clear();
+  importer.SetIOHandler(new Files(source));  // deleted by the importer
+  const aiScene* const scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+  if (scene == nullptr) source.fail(fmt::format("assimp cannot read it: {}", importer.GetErrorString()));
+  if (!DamageLog::first.empty()) source.fail("assimp finds it damaged: " + DamageLog::first);
+  Surface surface;
+  if (extension == ".3ds") {
+    for (unsigned i = 0; i < scene->mNumMeshes; ++i) add_mesh(source, *scene, i, Matrix4d::Identity(), surface);
   } else {
-    for (unsigned i = 0; i < scene->mNumMeshes; ++i) collector.add_mesh(i, Eigen::Matrix4d::Identity());
-  }
-  Surface surface = collector.take();
-  if (surface.triangles.size() != request.triangles) {
-    source.fail(
-        fmt::format("assimp read {} triangles where the file has {}", surface.triangles.size(), request.triangles));
+    add_node(source, *scene, *scene->mRootNode, Matrix4d::Identity(), surface);
   }
   return surface;
 }

@@ -14,8 +14,8 @@ namespace sixdof {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Squared distances of a point (relative to the tree's centre) to the node's eight boxes; huge for empty lanes.
-HWY_ATTR void box_distances(const Tree::Node& node, const std::array<float, 3>& p, float* squared) {
+/// Squared distances of a point (relative to the tree's centre) to the node's eight boxes; infinite for empty lanes.
+void box_distances(const Tree::Node& node, const std::array<float, 3>& p, float* squared) {
   const hn::CappedTag<float, Tree::k_width> d;
   for (std::size_t l = 0; l < Tree::k_width; l += hn::Lanes(d)) {
     auto sum = hn::Zero(d);
@@ -30,8 +30,8 @@ HWY_ATTR void box_distances(const Tree::Node& node, const std::array<float, 3>& 
   }
 }
 
-/// Bound on the rounding of a squared box distance in single precision, relative to (|p| + radius)^2: the point's own
-/// rounding and some ten operations.
+/// Error of a box distance in single precision, relative to |p| + radius: the rounding of the point and of about ten
+/// operations.
 constexpr double k_float_slack = 4e-7;
 
 struct Candidate {
@@ -39,24 +39,24 @@ struct Candidate {
   Tree::Child child;
 };
 
-HWY_ATTR bool FindClosest(const Tree& tree, const Eigen::Vector3d& p, double within, SurfacePoint& best) {
+bool find_closest_point(const Tree& tree, const Eigen::Vector3d& p, double within, SurfacePoint& best) {
   const Eigen::Vector3d local = p - tree.center();
   const std::array<float, 3> q{static_cast<float>(local.x()), static_cast<float>(local.y()),
                                static_cast<float>(local.z())};
-  // |p - q|_float costs up to slack in length; a box nearer than best + slack has to be opened.
+  // A box is expanded unless its computed distance exceeds the best distance by more than this: a length.
   const double slack = k_float_slack * (local.norm() + tree.radius());
   double best_squared = within * within;
   bool found = false;
   std::uint32_t best_position = 0;
 
-  constexpr std::size_t k_depth = 64 * Tree::k_width;
-  std::array<Candidate, k_depth> stack;
+  constexpr std::size_t k_deepest_tree = 64;
+  std::array<Candidate, k_deepest_tree * Tree::k_width> stack;
   std::size_t size = 0;
   stack[size++] = {0.0, Tree::Child::node(0)};
   while (size > 0) {
     const Candidate next = stack[--size];
-    const double reach = std::sqrt(best_squared) + slack;
-    if (next.squared > reach * reach) continue;
+    const double cutoff = std::sqrt(best_squared) + slack;
+    if (next.squared > cutoff * cutoff) continue;
     if (next.child.is_leaf()) {
       for (std::uint32_t i = next.child.first(); i < next.child.first() + next.child.count(); ++i) {
         const Eigen::Vector3d on = closest_point_on_triangle(p, tree.corners()[i]);
@@ -76,7 +76,7 @@ HWY_ATTR bool FindClosest(const Tree& tree, const Eigen::Vector3d& p, double wit
     // Insertion sort, farthest first, so that the nearest is on top of the stack.
     const std::size_t begin = size;
     for (std::size_t i = 0; i < node.child_count; ++i) {
-      if (squared[i] > reach * reach) continue;
+      if (squared[i] > cutoff * cutoff) continue;
       std::size_t at = size++;
       for (; at > begin && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {squared[i], node.child[i]};
@@ -95,7 +95,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sixdof {
 
-HWY_EXPORT(FindClosest);
+HWY_EXPORT(find_closest_point);
 
 Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& p, const Tree::Corners& corners) {
   const auto& [a, b, c] = corners;
@@ -115,13 +115,13 @@ Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& p, const Tree::
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
   const double sum = va + vb + vc;
-  if (!(sum > 0.0)) return a;  // collinear corners: the three edges were looked at above
+  if (!(sum > 0.0)) return a;  // collinear corners
   return a + ab * (vb / sum) + ac * (vc / sum);
 }
 
 std::optional<SurfacePoint> closest_point(const Tree& tree, const Eigen::Vector3d& p, double within) {
   SurfacePoint best;
-  if (!HWY_DYNAMIC_DISPATCH(FindClosest)(tree, p, within, best)) return std::nullopt;
+  if (!HWY_DYNAMIC_DISPATCH(find_closest_point)(tree, p, within, best)) return std::nullopt;
   return best;
 }
 

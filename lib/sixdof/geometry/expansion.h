@@ -3,12 +3,12 @@
 #include <cmath>
 
 /// Multi-term floating-point arithmetic: a number is the exact, unevaluated sum of doubles of increasing magnitude that
-/// do not overlap. After J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric
-/// predicates", Discrete & Computational Geometry 18 (1997).
+/// do not overlap. Source, with the theorems cited below: J. R. Shewchuk, "Adaptive precision floating-point arithmetic
+/// and fast robust geometric predicates", Discrete & Computational Geometry 18 (1997).
 ///
 /// Valid in round-to-nearest with plain doubles (no extended precision, no contraction; the build forbids both), as
-/// long as no intermediate product overflows and every exact product is a multiple of the smallest subnormal.
-/// predicates.h turns that into a range of coordinates.
+/// long as no intermediate product overflows and every exact product is a multiple of the smallest subnormal: for the
+/// coordinates that predicates.h allows.
 namespace sixdof::expansion {
 
 /// high + low == the exact result; high is the result rounded.
@@ -16,7 +16,7 @@ struct Two {
   double high, low;
 };
 
-/// Exact a + b (Shewchuk, theorem 7).
+/// Exact a + b (theorem 7).
 inline Two two_sum(double a, double b) {
   const double high = a + b;
   const double b_part = high - a;
@@ -29,9 +29,6 @@ inline Two fast_two_sum(double a, double b) {
   const double high = a + b;
   return {high, b - (high - a)};
 }
-
-/// Exact a - b.
-inline Two two_difference(double a, double b) { return two_sum(a, -b); }
 
 /// Halves of 26 bits whose products are exact (theorem 17).
 inline Two split(double a) {
@@ -60,7 +57,7 @@ struct Expansion {
   }
   int sign() const { return size == 0 ? 0 : (term[size - 1] > 0.0 ? 1 : -1); }
 
-  /// The number rounded, to a relative error of a few units in the last place.
+  /// The number with a relative rounding error of a few units in the last place.
   double estimate() const {
     double sum = 0.0;
     for (int i = 0; i < size; ++i) sum += term[i];
@@ -70,7 +67,7 @@ struct Expansion {
 
 /// Exact a - b.
 inline Expansion<2> difference(double a, double b) {
-  const Two d = two_difference(a, b);
+  const Two d = two_sum(a, -b);
   Expansion<2> e;
   e.push(d.low);
   e.push(d.high);
@@ -130,7 +127,7 @@ Expansion<2 * N> scale(const Expansion<N>& e, double b) {
   return product;
 }
 
-/// Exact e * f of a factor with at most two terms.
+/// Exact e * f.
 template <int N>
 Expansion<4 * N> operator*(const Expansion<N>& e, const Expansion<2>& f) {
   Expansion<4 * N> product;

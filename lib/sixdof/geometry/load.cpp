@@ -8,11 +8,21 @@
 #include <fstream>
 #include <new>
 
+#include <fmt/format.h>
+
 #include <sixdof/base/error.h>
+#include <sixdof/geometry/assimp_import.h>
 #include <sixdof/geometry/load_formats.h>
 
 namespace sixdof {
 namespace loading {
+
+std::string lower_case_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension;
+}
 
 void Source::fail(const std::string& cause) const { throw BadFile(path.string(), cause); }
 
@@ -24,7 +34,7 @@ Source read_source(const std::filesystem::path& file) {
   Source source{file, {}};
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) source.fail("cannot be read: " + std::string(std::strerror(errno)));
-  // A pipe or a device could keep us waiting forever.
+  // Reading a pipe or a device might never end.
   if (!S_ISREG(status.st_mode)) source.fail("cannot be read: not a regular file");
   std::ifstream in(file, std::ios::binary);
   if (!in) source.fail("cannot be read: " + std::string(std::strerror(errno)));
@@ -35,30 +45,27 @@ Source read_source(const std::filesystem::path& file) {
   return source;
 }
 
+void count_repair(FileRepairs& repairs, const std::string& place) {
+  if (repairs.count++ == 0) repairs.first_place = place;
+}
+
+void count_polygon(const Source& source, PolygonShape shape, const std::string& place, MeshRepairs& repairs) {
+  if (shape == PolygonShape::too_large) {
+    source.fail(place, fmt::format("a concave polygon of more than {} corners", k_most_corners_of_a_concave_polygon));
+  }
+  if (shape == PolygonShape::crossing) count_repair(repairs.crossing_polygons, place);
+  if (shape == PolygonShape::not_flat) count_repair(repairs.nonplanar_polygons, place);
+}
+
 namespace {
 
-using Reader = Surface (*)(const Source&);
-
-struct Format {
-  const char* extension;
-  Reader read;
-};
-
-constexpr Format k_formats[] = {
-    {".ply", read_ply},   {".off", read_off},  {".obj", read_obj}, {".stl", read_stl},
-    {".gltf", read_gltf}, {".glb", read_gltf}, {".3ds", read_3ds},
-};
-
-Reader reader_for(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  std::string known;
-  for (const Format& format : k_formats) {
-    if (extension == format.extension) return format.read;
-    known += std::string(known.empty() ? "" : ", ") + format.extension;
-  }
-  throw BadFile(file.string(), "'" + extension + "' is no mesh format this can read (" + known + ")");
+Surface read_surface(const std::filesystem::path& file) {
+  const std::string extension = lower_case_extension(file);
+  if (extension == ".ply") return read_ply(read_source(file));
+  if (extension == ".off") return read_off(read_source(file));
+  if (extension == ".obj") return read_obj(read_source(file));
+  if (extension == ".stl") return read_stl(read_source(file));
+  return read_by_assimp(file);
 }
 
 }  // namespace
@@ -66,9 +73,9 @@ Reader reader_for(const std::filesystem::path& file) {
 
 Mesh load_mesh(const std::filesystem::path& file) {
   try {
-    const loading::Reader read = loading::reader_for(file);
-    loading::Surface surface = read(loading::read_source(file));
-    return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), file.stem().string());
+    loading::Surface surface = loading::read_surface(file);
+    return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), file.stem().string(),
+                       std::move(surface.repairs));
   } catch (const BadMesh& e) {
     throw BadFile(file.string(), e.what());
   } catch (const std::bad_alloc&) {

@@ -5,13 +5,12 @@
 
 #include <sixdof/geometry/load_formats.h>
 #include <sixdof/geometry/text_lines.h>
-#include <sixdof/geometry/triangulate.h>
 
 namespace sixdof::loading {
 namespace {
 
-// Points, lines, normals, texture coordinates, groups, materials and display attributes hold no surface. Free-form
-// curves and surfaces do, and are not among these.
+// Statements that hold no surface: points, lines, normals, texture coordinates, groups, materials, display attributes.
+// Others, among them free-form curves and surfaces, are skipped as well, but counted.
 constexpr std::array<std::string_view, 19> k_ignored{
     "vn",     "vt",     "p",     "l",   "g",        "o",        "s",          "mg",        "mtllib", "usemtl",
     "maplib", "usemap", "bevel", "lod", "c_interp", "d_interp", "shadow_obj", "trace_obj", "vp"};
@@ -59,11 +58,17 @@ Surface read_obj(const Source& source) {
       for (std::size_t i = 1; i < lines.size(); ++i) {
         corners.push_back(read_corner(lines, lines.words()[i], surface.vertices.size()));
       }
-      const std::string cause = triangulate(corners, surface.vertices, surface.triangles);
-      if (!cause.empty()) lines.fail("the face is " + cause);
+      const PolygonShape shape = triangulate(corners, surface.vertices, surface.triangles);
+      if (shape != PolygonShape::simple) count_polygon(source, shape, lines.place(), surface.repairs);
     } else if (std::find(k_ignored.begin(), k_ignored.end(), keyword) == k_ignored.end()) {
-      lines.fail(fmt::format("'{:.20}' is not supported", keyword));
+      count_repair(surface.repairs.skipped_statements, lines.place());
     }
+  }
+  const FileRepairs& skipped = surface.repairs.skipped_statements;
+  if (surface.triangles.empty() && skipped.count > 0) {
+    source.fail(skipped.first_place, fmt::format("no triangles: the file has no faces; {} statements that are no part "
+                                                 "of a polygon mesh begin here",
+                                                 skipped.count));
   }
   return surface;
 }

@@ -1,15 +1,12 @@
-#include <limits>
-
 #include <fmt/format.h>
 
 #include <sixdof/geometry/load_formats.h>
 #include <sixdof/geometry/text_lines.h>
-#include <sixdof/geometry/triangulate.h>
 
 namespace sixdof::loading {
 namespace {
 
-/// The keyword may be followed by the counts on the same line; returns how many words it took (1 or 0).
+/// Reads the line of the keyword; the counts may follow on the same line.
 /// @param extras set if vertex lines hold more than a point.
 void read_keyword(TextLines& lines, bool& extras) {
   if (!lines.next()) lines.fail("no data");
@@ -45,7 +42,7 @@ Surface read_off(const Source& source) {
     if (!lines.next()) lines.fail("the counts are missing");
     first = 0;
   }
-  // The number of edges is there by convention, often 0, and nobody's truth.
+  // The number of edges is often 0 or missing, and not used.
   if (lines.size() != first + 3 && lines.size() != first + 2) {
     lines.fail("the counts of vertices, faces and edges are expected");
   }
@@ -80,8 +77,8 @@ Surface read_off(const Source& source) {
       lines.fail(fmt::format("face {} has {} corners, but {} values", i, count, lines.size() - 1));
     }
     for (std::size_t k = static_cast<std::size_t>(count) + 1; k < lines.size(); ++k) lines.number(k);
-    const std::string cause = triangulate(corners, surface.vertices, surface.triangles);
-    if (!cause.empty()) lines.fail(fmt::format("face {} is {}", i, cause));
+    const PolygonShape shape = triangulate(corners, surface.vertices, surface.triangles);
+    if (shape != PolygonShape::simple) count_polygon(source, shape, lines.place(), surface.repairs);
   }
   lines.expect_end();
   return surface;

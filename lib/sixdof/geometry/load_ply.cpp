@@ -1,159 +1,47 @@
+#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <limits>
+#include <cstdint>
 #include <memory>
-#include <optional>
 
 #include <fmt/format.h>
 
 #include <sixdof/geometry/bytes.h>
-#include <sixdof/geometry/load_formats.h>
+#include <sixdof/geometry/load_ply_header.h>
 #include <sixdof/geometry/text_lines.h>
-#include <sixdof/geometry/triangulate.h>
 
 namespace sixdof::loading {
+namespace ply {
 namespace {
 
-enum class Type {
-  i8,
-  u8,
-  i16,
-  u16,
-  i32,
-  u32,
-  f32,
-  f64
-};
-
-std::size_t size_of(Type type) {
-  constexpr std::size_t k_sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-  return k_sizes[static_cast<std::size_t>(type)];
-}
-
-std::optional<Type> type_named(std::string_view name) {
-  constexpr std::pair<std::string_view, Type> k_names[] = {
-      {"char", Type::i8},   {"uchar", Type::u8},   {"short", Type::i16},   {"ushort", Type::u16},
-      {"int", Type::i32},   {"uint", Type::u32},   {"float", Type::f32},   {"double", Type::f64},
-      {"int8", Type::i8},   {"uint8", Type::u8},   {"int16", Type::i16},   {"uint16", Type::u16},
-      {"int32", Type::i32}, {"uint32", Type::u32}, {"float32", Type::f32}, {"float64", Type::f64},
-  };
-  for (const auto& [known, type] : k_names) {
-    if (known == name) return type;
-  }
-  return std::nullopt;
-}
-
-struct Property {
-  std::string name;
-  Type type;                       // of the value, or of the list's items
-  std::optional<Type> count_type;  // set: this is a list
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count;
-  std::vector<Property> properties;
-};
-
-enum class Format {
-  text,
-  little_endian,
-  big_endian
-};
-
-struct Header {
-  Format format = Format::text;
-  std::vector<Element> elements;
-  std::size_t end = 0;   // byte behind the header
-  std::size_t line = 1;  // of that byte, from 1
-};
-
-Property read_property(const TextLines& lines) {
-  const auto& words = lines.words();
-  const bool list = words.size() == 5 && words[1] == "list";
-  if (!list && words.size() != 3) lines.fail("a property is 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
-  const auto type = [&](std::string_view word) {
-    const auto known = type_named(word);
-    if (!known) lines.fail(fmt::format("'{:.20}' is no type", word));
-    return *known;
-  };
-  Property property{std::string(words.back()), type(words[words.size() - 2]), std::nullopt};
-  if (list) {
-    property.count_type = type(words[2]);
-    if (*property.count_type == Type::f32 || *property.count_type == Type::f64) {
-      lines.fail("a list's count must be an integer");
-    }
-  }
-  return property;
-}
-
-Header read_header(const Source& source) {
-  // The search bounds the walk: without its end the header would be looked for in the data.
-  if (!source.bytes.starts_with("ply\n") && !source.bytes.starts_with("ply\r\n")) {
-    source.fail("line 1", "does not begin with 'ply'");
-  }
-  if (source.bytes.find("\nend_header") == std::string::npos) source.fail("the header has no 'end_header'");
-  Header header;
-  bool has_format = false;
-  TextLines lines(source, {});
-  lines.next();
-  while (true) {
-    if (!lines.next()) lines.fail("the header has no 'end_header'");
-    const auto& words = lines.words();
-    if (words[0] == "end_header") break;
-    if (words[0] == "comment" || words[0] == "obj_info") continue;
-    if (words[0] == "format") {
-      if (words.size() != 3 || words[2] != "1.0") lines.fail("version 1.0 is expected");
-      if (words[1] == "ascii") {
-        header.format = Format::text;
-      } else if (words[1] == "binary_little_endian") {
-        header.format = Format::little_endian;
-      } else if (words[1] == "binary_big_endian") {
-        header.format = Format::big_endian;
-      } else {
-        lines.fail(fmt::format("'{:.30}' is no format", words[1]));
-      }
-      has_format = true;
-    } else if (words[0] == "element") {
-      if (words.size() != 3) lines.fail("an element is 'element NAME COUNT'");
-      const std::int64_t count = lines.integer(std::size_t{2});
-      if (count < 0) lines.fail(fmt::format("the count {} is negative", count));
-      header.elements.push_back({std::string(words[1]), static_cast<std::uint64_t>(count), {}});
-    } else if (words[0] == "property") {
-      if (header.elements.empty()) lines.fail("a property before the first element");
-      header.elements.back().properties.push_back(read_property(lines));
-    } else {
-      lines.fail(fmt::format("'{:.20}' is unknown in a header", words[0]));
-    }
-  }
-  if (!has_format) lines.fail("the header names no format");
-  header.end = lines.position();
-  header.line = lines.line() + 1;
-  return header;
-}
-
-/// Values of the elements one after the other. Integers of all types and floats are exact in a double.
+/// The values of the elements in the file's order. A double holds integers of all types and floats exactly.
 class Values {
  public:
   virtual ~Values() = default;
-  /// Called before the values of element `number` of `element`, and after its last one.
+  /// Called before the first value of element `number` of `element`.
   virtual void begin(const Element& element, std::uint64_t number) = 0;
+  /// Called after the last value of an element.
   virtual void end() = 0;
   virtual double value(Type type) = 0;
   /// Bytes that are left in the file.
   virtual std::size_t remaining() const = 0;
-  /// The fewest bytes a value can take.
+  /// The smallest number of bytes that a value takes in the file.
   virtual std::size_t least_bytes(Type type) const = 0;
-  /// Fails if a list of `count` values of a type cannot follow.
+  /// Throws a BadFile if the rest of the file, or of the line, is too short for a list of `count` values.
   virtual void check_list(double count, Type type) const = 0;
   virtual void expect_end() = 0;
-  [[noreturn]] virtual void fail(const std::string& cause) const = 0;
+  /// Where in the file the current element is: "face 3", in a text "line 17: face 3".
+  virtual std::string place() const = 0;
+  [[noreturn]] void fail(const std::string& cause) const { source_.fail(place(), cause); }
+
+ protected:
+  explicit Values(const Source& source) : source_(source) {}
+  const Source& source_;
 };
 
 class BinaryValues final : public Values {
  public:
   BinaryValues(const Source& source, const Header& header)
-      : source_(source),
+      : Values(source),
         at_(header.end),
         order_(header.format == Format::big_endian ? std::endian::big : std::endian::little) {}
 
@@ -198,9 +86,7 @@ class BinaryValues final : public Values {
     if (remaining() != 0) source_.fail(fmt::format("{} bytes behind the last element", remaining()));
   }
 
-  [[noreturn]] void fail(const std::string& cause) const override {
-    source_.fail(fmt::format("{} {}", element_->name, number_), cause);
-  }
+  std::string place() const override { return fmt::format("{} {}", element_->name, number_); }
 
  private:
   template <class T>
@@ -211,7 +97,6 @@ class BinaryValues final : public Values {
     return value;
   }
 
-  const Source& source_;
   std::size_t at_;
   std::endian order_;
   const Element* element_ = nullptr;
@@ -221,7 +106,8 @@ class BinaryValues final : public Values {
 /// One element per line.
 class TextValues final : public Values {
  public:
-  TextValues(const Source& source, const Header& header) : lines_(source, {}, header.end, header.line) {}
+  TextValues(const Source& source, const Header& header)
+      : Values(source), lines_(source, {}, header.end, header.line) {}
 
   void begin(const Element& element, std::uint64_t number) override {
     if (!lines_.next()) {
@@ -237,7 +123,7 @@ class TextValues final : public Values {
 
   double value(Type type) override {
     if (word_ >= lines_.size()) fail(fmt::format("{} values are too few", lines_.size()));
-    if (type == Type::f32 || type == Type::f64) return lines_.number(word_++);
+    if (is_float(type)) return lines_.number(word_++);
     const std::int64_t value = lines_.integer(word_++);
     const auto bits = static_cast<int>(8 * size_of(type));
     const bool is_signed = type == Type::i8 || type == Type::i16 || type == Type::i32;
@@ -257,9 +143,7 @@ class TextValues final : public Values {
 
   void expect_end() override { lines_.expect_end(); }
 
-  [[noreturn]] void fail(const std::string& cause) const override {
-    lines_.fail(fmt::format("{} {}: {}", element_->name, number_, cause));
-  }
+  std::string place() const override { return fmt::format("{}: {} {}", lines_.place(), element_->name, number_); }
 
  private:
   TextLines lines_;
@@ -380,7 +264,7 @@ class Reader {
         indices = &property;
       }
     }
-    if (indices == nullptr || !indices->count_type || indices->type == Type::f32 || indices->type == Type::f64) {
+    if (indices == nullptr || !indices->count_type || is_float(indices->type)) {
       source_.fail("element face", "has no list of integers called vertex_indices");
     }
     surface_.triangles.reserve(element.count);
@@ -395,8 +279,8 @@ class Reader {
         }
       }
       values_->end();
-      const std::string cause = triangulate(corners, surface_.vertices, surface_.triangles);
-      if (!cause.empty()) values_->fail("is " + cause);
+      const PolygonShape shape = triangulate(corners, surface_.vertices, surface_.triangles);
+      if (shape != PolygonShape::simple) count_polygon(source_, shape, values_->place(), surface_.repairs);
     }
   }
 
@@ -420,10 +304,11 @@ class Reader {
 };
 
 }  // namespace
+}  // namespace ply
 
 Surface read_ply(const Source& source) {
-  const Header header = read_header(source);
-  return Reader(source, header).read();
+  const ply::Header header = ply::read_header(source);
+  return ply::Reader(source, header).read();
 }
 
 }  // namespace sixdof::loading

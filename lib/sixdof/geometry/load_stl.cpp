@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include <fmt/format.h>
 
@@ -65,7 +63,7 @@ Surface read_text(const Source& source) {
     if (!is_word(lines.words()[0], "solid")) lines.fail("'solid' is expected");
     any = true;
     for (advance(); !is_word(lines.words()[0], "endsolid"); advance()) {
-      // Normals are often rubbish ("nan nan nan"); the order of the corners decides.
+      // Normals are often not numbers ("nan nan nan"); the order of the corners says which side is outside.
       if (lines.size() != 5 || !is_word(lines.words()[0], "facet") || !is_word(lines.words()[1], "normal")) {
         lines.fail("'facet normal' with 3 numbers, or 'endsolid', is expected");
       }
@@ -99,7 +97,7 @@ Surface read_stl(const Source& source) {
     count = load_little_endian<std::uint32_t>(bytes.data() + k_header_bytes);
     if (bytes.size() == k_header_bytes + k_count_bytes + k_triangle_bytes * count) return read_binary(source, count);
   }
-  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n", text_begin(bytes));
   const bool text = first != std::string::npos && is_word(std::string_view(bytes).substr(first, 5), "solid") &&
                     bytes.find('\0') == std::string::npos;
   if (text) return read_text(source);

@@ -20,7 +20,7 @@ constexpr std::uint32_t k_unset = std::numeric_limits<std::uint32_t>::max();
 
 void check_input(const std::vector<Eigen::Vector3d>& vertices, const std::vector<Triangle>& triangles) {
   if (triangles.empty()) throw BadMesh("no triangles");
-  // Corner numbers (3 per triangle) must fit 32 bits as well.
+  // Numbers of corners (3 per triangle) must fit 32 bits as well.
   if (vertices.size() >= k_unset || triangles.size() >= k_unset / 3) {
     throw BadMesh(fmt::format("{} vertices and {} triangles are more than 32-bit indices can tell apart",
                               vertices.size(), triangles.size()));
@@ -44,7 +44,7 @@ struct VertexBits {
   std::array<std::uint64_t, 3> bits;
   explicit VertexBits(const Eigen::Vector3d& p) {
     for (std::size_t i = 0; i < 3; ++i) {
-      bits[i] = std::bit_cast<std::uint64_t>(p[static_cast<Eigen::Index>(i)] + 0.0);  // -0 becomes +0
+      bits[i] = std::bit_cast<std::uint64_t>(p[static_cast<Eigen::Index>(i)]);
     }
   }
   bool operator==(const VertexBits&) const = default;
@@ -61,61 +61,48 @@ struct VertexBitsHash {
   }
 };
 
-/// Welds, drops what is unused, rewrites indices; the order of first appearance is kept.
-void weld(std::vector<Eigen::Vector3d>& vertices, std::vector<Triangle>& triangles, MeshRepairs& repairs) {
-  std::vector<bool> used(vertices.size(), false);
+/// Drops vertices that no triangle uses. @return their number
+std::size_t drop_unreferenced(std::vector<Eigen::Vector3d>& vertices, std::vector<Triangle>& triangles) {
+  std::vector<std::uint32_t> renumbered(vertices.size(), k_unset);
   for (const Triangle& t : triangles) {
-    for (const std::uint32_t v : t) used[v] = true;
+    for (const std::uint32_t v : t) renumbered[v] = 0;
   }
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (renumbered[i] == k_unset) continue;
+    vertices[kept] = vertices[i];
+    renumbered[i] = kept++;
+  }
+  for (Triangle& t : triangles) {
+    for (std::uint32_t& v : t) v = renumbered[v];
+  }
+  const std::size_t dropped = vertices.size() - kept;
+  vertices.resize(kept);
+  vertices.shrink_to_fit();
+  return dropped;
+}
+
+/// The repairs of Mesh::build.
+void weld(std::vector<Eigen::Vector3d>& vertices, std::vector<Triangle>& triangles, MeshRepairs& repairs) {
+  repairs.unreferenced_vertices = drop_unreferenced(vertices, triangles);
   std::unordered_map<VertexBits, std::uint32_t, VertexBitsHash> first;
   first.reserve(vertices.size());
-  std::vector<std::uint32_t> renumbered(vertices.size(), k_unset);
-  std::vector<Eigen::Vector3d> kept;
-  kept.reserve(vertices.size());
+  std::vector<std::uint32_t> first_equal(vertices.size());
+  repairs.welded_vertices = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (!used[i]) {
-      ++repairs.unreferenced_vertices;
-      continue;
-    }
-    const auto [where, is_new] = first.try_emplace(VertexBits(vertices[i]), static_cast<std::uint32_t>(kept.size()));
-    if (is_new) {
-      kept.push_back(vertices[i] + Eigen::Vector3d::Zero());
-    } else {
-      ++repairs.welded_vertices;
-    }
-    renumbered[i] = where->second;
+    vertices[i] += Eigen::Vector3d::Zero();  // -0 becomes +0
+    first_equal[i] = first.try_emplace(VertexBits(vertices[i]), static_cast<std::uint32_t>(i)).first->second;
+    if (first_equal[i] != i) ++repairs.welded_vertices;
   }
-  std::vector<Triangle> kept_triangles;
-  kept_triangles.reserve(triangles.size());
-  for (const Triangle& t : triangles) {
-    const Triangle r{renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]};
-    if (r[0] == r[1] || r[1] == r[2] || r[2] == r[0]) {
-      ++repairs.collapsed_triangles;
-    } else {
-      kept_triangles.push_back(r);
-    }
+  for (Triangle& t : triangles) {
+    for (std::uint32_t& v : t) v = first_equal[v];
   }
-  if (kept_triangles.empty()) throw BadMesh("every triangle collapses to an edge or a point");
-  // A vertex may have lost its last triangle to a collapse.
-  std::vector<std::uint32_t> final_number(kept.size(), k_unset);
-  for (const Triangle& t : kept_triangles) {
-    for (const std::uint32_t v : t) final_number[v] = 0;
-  }
-  std::vector<Eigen::Vector3d> final_vertices;
-  final_vertices.reserve(kept.size());
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    if (final_number[i] == k_unset) {
-      ++repairs.unreferenced_vertices;
-      continue;
-    }
-    final_number[i] = static_cast<std::uint32_t>(final_vertices.size());
-    final_vertices.push_back(kept[i]);
-  }
-  for (Triangle& t : kept_triangles) {
-    for (std::uint32_t& v : t) v = final_number[v];
-  }
-  vertices = std::move(final_vertices);
-  triangles = std::move(kept_triangles);
+  repairs.collapsed_triangles =
+      std::erase_if(triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  if (triangles.empty()) throw BadMesh("every triangle collapses to an edge or a point");
+  triangles.shrink_to_fit();
+  // Now unreferenced: the welded vertices, and those whose triangles have all collapsed.
+  repairs.unreferenced_vertices += drop_unreferenced(vertices, triangles) - repairs.welded_vertices;
 }
 
 class UnionFind {
@@ -134,11 +121,11 @@ class UnionFind {
   std::vector<std::uint32_t> parent_;
 };
 
-/// One side of a triangle, as an undirected edge with the direction it is run through.
+/// One side of a triangle: an undirected edge and the direction in which the triangle uses it.
 struct Side {
   std::uint32_t low, high;
   std::uint32_t corner;  ///< 3 * triangle + k: the side from corner k to corner k + 1.
-  bool forward;          ///< Runs from low to high.
+  bool forward;          ///< From low to high.
 };
 
 std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
@@ -159,16 +146,20 @@ std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
   return sides;
 }
 
+/// Corners of a side at its lower and its higher vertex.
+std::uint32_t corner_at_low(const Side& s) { return s.forward ? s.corner : next_corner(s.corner); }
+std::uint32_t corner_at_high(const Side& s) { return s.forward ? next_corner(s.corner) : s.corner; }
+
 MeshTopology analyse_topology(std::size_t vertex_count, const std::vector<Triangle>& triangles) {
   MeshTopology result;
   const std::vector<Side> sides = sorted_sides(triangles);
-  UnionFind pieces(triangles.size());
-  UnionFind fans(3 * triangles.size());  // corners joined across edges with two triangles
+  UnionFind components(triangles.size());
+  UnionFind fans(3 * triangles.size());  // corners, joined across edges with two triangles
   for (std::size_t begin = 0; begin < sides.size();) {
     std::size_t end = begin + 1;
     while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
     ++result.edges;
-    for (std::size_t i = begin + 1; i < end; ++i) pieces.join(sides[begin].corner / 3, sides[i].corner / 3);
+    for (std::size_t i = begin + 1; i < end; ++i) components.join(sides[begin].corner / 3, sides[i].corner / 3);
     const std::size_t count = end - begin;
     const auto forward = static_cast<std::size_t>(
         std::count_if(&sides[begin], &sides[begin] + count, [](const Side& s) { return s.forward; }));
@@ -176,20 +167,14 @@ MeshTopology analyse_topology(std::size_t vertex_count, const std::vector<Triang
     if (count > 2) ++result.nonmanifold_edges;
     if (count > 1 && 2 * forward != count) ++result.misoriented_edges;
     if (count == 2) {
-      const Side& s = sides[begin];
-      const Side& o = sides[begin + 1];
-      const std::uint32_t s_low = s.forward ? s.corner : next_corner(s.corner);
-      const std::uint32_t s_high = s.forward ? next_corner(s.corner) : s.corner;
-      const std::uint32_t o_low = o.forward ? o.corner : next_corner(o.corner);
-      const std::uint32_t o_high = o.forward ? next_corner(o.corner) : o.corner;
-      fans.join(s_low, o_low);
-      fans.join(s_high, o_high);
+      fans.join(corner_at_low(sides[begin]), corner_at_low(sides[begin + 1]));
+      fans.join(corner_at_high(sides[begin]), corner_at_high(sides[begin + 1]));
     }
     begin = end;
   }
   std::vector<std::uint32_t> fans_at_vertex(vertex_count, 0);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (pieces.find(t) == t) ++result.components;
+    if (components.find(t) == t) ++result.components;
     for (std::uint32_t k = 0; k < 3; ++k) {
       if (fans.find(3 * t + k) == 3 * t + k) ++fans_at_vertex[triangles[t][k]];
     }
@@ -210,7 +195,7 @@ struct MassProperties {
   std::vector<std::uint32_t> zero_area;
 };
 
-/// Area, signed volume and centroid by the divergence theorem: each triangle spans a tetrahedron with `origin`.
+/// Area, signed volume and centroid, by the tetrahedra of all triangles with `origin` (divergence theorem).
 MassProperties integrate(const std::vector<Eigen::Vector3d>& vertices, const std::vector<Triangle>& triangles,
                          const Eigen::Vector3d& origin) {
   MassProperties result;
@@ -257,10 +242,12 @@ std::string content_hash(const std::vector<Eigen::Vector3d>& vertices, const std
 
 }  // namespace
 
-Mesh Mesh::build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> triangles, std::string name) {
+Mesh Mesh::build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> triangles, std::string name,
+                 MeshRepairs repairs) {
   check_input(vertices, triangles);
   Mesh mesh;
   mesh.name_ = std::move(name);
+  mesh.repairs_ = std::move(repairs);
   weld(vertices, triangles, mesh.repairs_);
   mesh.vertices_ = std::move(vertices);
   mesh.triangles_ = std::move(triangles);
@@ -278,8 +265,9 @@ Mesh Mesh::build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> tr
 
 std::string Mesh::why_not_solid() const {
   if (!topology_.closed) return fmt::format("not closed: {} border edges", topology_.border_edges);
-  if (!topology_.oriented)
+  if (!topology_.oriented) {
     return fmt::format("not consistently oriented: {} edges disagree", topology_.misoriented_edges);
+  }
   if (volume_ < 0.0) return "inside out: triangles face inwards";
   if (volume_ == 0.0) return "encloses no volume";
   return {};

@@ -16,8 +16,8 @@ Pose Pose::from_quaternion(double w, double x, double y, double z, const Eigen::
   if (std::abs(norm - 1.0) > k_unit_norm_tolerance) {
     throw BadArgument(fmt::format("pose: quaternion ({}, {}, {}, {}) has norm {}, not 1", w, x, y, z, norm));
   }
-  // Every entry is a ratio of two sums of the same products, so rotations that only permute and flip axes, whose
-  // quaternions need sqrt(1/2), have entries of exactly 0 and 1: parallel faces of technical models stay parallel.
+  // Every entry is a ratio of two sums of the same products. So rotations that permute and flip axes, whose quaternions
+  // contain sqrt(1/2), have entries of exactly 0 and 1, and parallel faces stay parallel.
   const double ww = w * w, xx = x * x, yy = y * y, zz = z * z;
   const double square = (ww + zz) + (xx + yy);
   Pose pose;

@@ -10,11 +10,11 @@ struct Pose {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
 
-  /// How far a quaternion's norm may be from 1 to count as rounding: seven printed digits per component.
+  /// Largest difference of a quaternion's norm from 1: the rounding of components printed with seven digits.
   static constexpr double k_unit_norm_tolerance = 1e-6;
 
-  /// From a unit quaternion (w, x, y, z) and a translation; the quaternion is normalised to the last bit. Rotations by
-  /// multiples of 90 degrees about the axes have entries of exactly 0, 1 and -1.
+  /// From a unit quaternion (w, x, y, z), normalised here, and a translation. The matrices of rotations by multiples of
+  /// 90 degrees about the axes have entries of exactly 0, 1 and -1.
   /// @throws BadArgument if a value is not finite or the norm differs from 1 by more than k_unit_norm_tolerance.
   static Pose from_quaternion(double w, double x, double y, double z, const Eigen::Vector3d& t);
 

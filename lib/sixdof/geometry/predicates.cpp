@@ -15,7 +15,7 @@ struct Row {
         z(expansion::difference(p.z(), origin.z())) {}
 };
 
-/// Two rows of the determinant are equal or one is zero: coincident points, the commonest tie by far.
+/// Whether two points are equal: the determinant is zero. By far the most frequent tie.
 bool coincident(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                 const Eigen::Vector3d& d) {
   return d == a || d == b || d == c || a == b || b == c || a == c;
@@ -37,7 +37,7 @@ int sign_of_difference_of_products(double a, double b, double c, double d, doubl
   const double left = (b - a) * (d - c);
   const double right = (f - e) * (h - g);
   const double value = left - right;
-  // Three roundings per product, one for the difference: (3 + 16 u) u (|left| + |right|), Shewchuk's ccwerrboundA.
+  // Shewchuk's bound ccwerrboundA: three roundings per product, one for the difference.
   constexpr double k_bound = (3.0 + 16.0 * detail::k_unit_roundoff) * detail::k_unit_roundoff;
   const double bound = k_bound * (std::abs(left) + std::abs(right)) + detail::k_underflow_bound;
   if (value > bound) return 1;

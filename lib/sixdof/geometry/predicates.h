@@ -1,30 +1,27 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Core>
 
-/// Exact signs of geometric determinants of double coordinates, and the one rule that breaks their ties.
+/// Exact signs of geometric determinants of double coordinates, and the rule that breaks their ties.
 ///
-/// **Exact.** A floating-point filter answers almost always; where its error bound does not decide, expansion
-/// arithmetic (expansion.h) gives the exact value. Answers are exact, and the same bits everywhere, if every coordinate
-/// is zero or lies in magnitude between k_smallest_exact_coordinate and k_largest_exact_coordinate. Below, products of
-/// three differences would underflow; above, they would overflow.
+/// **Exact.** A floating-point filter decides most cases; where its error bound does not decide, expansion arithmetic
+/// (expansion.h) gives the exact value. Signs are exact and the same on every machine if every coordinate is zero or
+/// has a magnitude between k_smallest_exact_coordinate and k_largest_exact_coordinate: products of three differences
+/// neither underflow nor overflow there.
 ///
-/// **Ties.** Two bodies A and B meet in general position except by accident or by design (equal faces, shared
-/// vertices). All ties between A and B are broken by one rule: B is thought of as translated by e = (eps, eps^2, eps^3)
-/// with an infinitesimal eps > 0. Each determinant that mixes points of A and B is linear in e, so its sign at a tie is
-/// the sign of the first non-zero component of its gradient. Because e is a real translation, answers given by the
-/// functions on "moved" points are those of one real placement of B: they can never contradict each other. What remains
-/// zero is harmless: a triangle with collinear vertices (nothing pierces it), and an edge of A parallel to an edge of B
-/// (then neither edge crosses the plane of a triangle beside the other).
+/// **Ties** between two bodies A and B are broken by symbolic perturbation: B is translated by e = (eps, eps^2, eps^3)
+/// with an infinitesimal eps > 0. Each determinant of points of A and B is linear in e, so its sign at a tie is the
+/// sign of the first non-zero component of its gradient. All functions on "perturbed" points of B use the same e, so
+/// their answers are consistent. A sign stays zero only for a triangle with collinear vertices, which no edge crosses,
+/// and for an edge of A parallel to an edge of B; then neither edge crosses the plane of a triangle at the other.
 namespace sixdof {
 
 inline constexpr double k_smallest_exact_coordinate = 0x1p-300;
 inline constexpr double k_largest_exact_coordinate = 0x1p+300;
 
-/// Sign of det(b - a, c - a) in the plane: +1 if a, b, c turn counter-clockwise, 0 if they are collinear.
+/// Sign of det(b - a, c - a) in the plane: +1 if a, b, c are counter-clockwise, 0 if they are collinear.
 int orient2d(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
 
 /// Six times the signed volume of the tetrahedron, det(b - a, c - a, d - a): positive if d lies on the side to which
@@ -51,8 +48,8 @@ int lexicographic_cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b, cons
 /// Shewchuk's bound for the first stage: |error| <= (7 + 56 u) u * permanent, u = 2^-53.
 inline constexpr double k_unit_roundoff = 0x1p-53;
 inline constexpr double k_orient3d_bound = (7.0 + 56.0 * k_unit_roundoff) * k_unit_roundoff;
-/// Covers what gradual underflow adds to the bound: fewer than 32 roundings of at most 2^-1074, each multiplied by at
-/// most two differences (below 2^301); smaller determinants go the exact way.
+/// Added to the bound for gradual underflow: fewer than 32 roundings of at most 2^-1074, each multiplied by at most two
+/// differences below 2^301.
 inline constexpr double k_underflow_bound = 0x1p-460;
 
 struct Filtered {
@@ -77,11 +74,11 @@ inline Filtered orient3d_filter(const Eigen::Vector3d& a, const Eigen::Vector3d&
 
 }  // namespace detail
 
-/// Plane of the triangle a, b, c against which several points are compared: orient3d with the triangle's part of the
-/// filter computed once. Refers to its corners.
-class ComparedPlane {
+/// The plane of triangle a, b, c: orient3d() of several points, with the triangle's part of the filter computed once.
+/// Keeps references to the corners.
+class TrianglePlane {
  public:
-  ComparedPlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) : a_(a), b_(b), c_(c) {
+  TrianglePlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) : a_(a), b_(b), c_(c) {
     const Eigen::Vector3d u = b - a, v = c - a;
     for (int k = 0; k < 3; ++k) {
       const int l = (k + 1) % 3, m = (k + 2) % 3;
@@ -91,16 +88,16 @@ class ComparedPlane {
     }
   }
 
-  struct Height {
+  struct Orientation {
     int sign;      ///< Of det(b - a, c - a, d - a), exact.
     double value;  ///< The determinant, as accurate as orient3d_value().
   };
 
-  Height height(const Eigen::Vector3d& d) const {
+  Orientation orientation(const Eigen::Vector3d& d) const {
     const double x = d.x() - a_.x(), y = d.y() - a_.y(), z = d.z() - a_.z();
     const double value = x * minor_[0] + y * minor_[1] + z * minor_[2];
     const double permanent = std::abs(x) * magnitude_[0] + std::abs(y) * magnitude_[1] + std::abs(z) * magnitude_[2];
-    // The same sums of products as in orient3d_filter, expanded along another row: the same bound.
+    // The sums of products of orient3d_filter(), expanded along another row: the same bound holds.
     const double bound = detail::k_orient3d_bound * permanent + detail::k_underflow_bound;
     if (std::abs(value) * k_orient3d_relative_error > bound) return {value > 0.0 ? 1 : -1, value};
     const double exact = detail::orient3d_exact_value(a_, b_, c_, d);
@@ -121,26 +118,26 @@ inline int orient3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Ei
   return detail::orient3d_exact(a, b, c, d);
 }
 
-/// Side of the plane of triangle (a, b, c) of A on which the moved vertex `d` of B lies: +1 where the normal points.
-/// 0 only if a, b, c are collinear.
-inline int side_of_moved_point(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                               const Eigen::Vector3d& d) {
+/// Side of the plane of triangle (a, b, c) of A on which the perturbed vertex `d` of B lies: +1 where the normal
+/// points. 0 only if a, b, c are collinear.
+inline int side_of_perturbed_point(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                                   const Eigen::Vector3d& d) {
   const int sign = orient3d(a, b, c, d);
   return sign != 0 ? sign : detail::lexicographic_cross(a, b, a, c);
 }
 
-/// Side of the plane of the moved triangle (a, b, c) of B on which vertex `d` of A lies: +1 where the normal points.
-/// 0 only if a, b, c are collinear.
-inline int side_of_moved_plane(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                               const Eigen::Vector3d& d) {
+/// Side of the plane of the perturbed triangle (a, b, c) of B on which vertex `d` of A lies: +1 where the normal
+/// points. 0 only if a, b, c are collinear.
+inline int side_of_perturbed_plane(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                                   const Eigen::Vector3d& d) {
   const int sign = orient3d(a, b, c, d);
   return sign != 0 ? sign : -detail::lexicographic_cross(a, b, a, c);
 }
 
-/// Sign of det(q - p, r - p, s - p) for an edge p, q of A and a moved edge r, s of B: how the lines pass each other.
-/// 0 only if they are parallel.
-inline int passing_of_moved_edge(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
-                                 const Eigen::Vector3d& s) {
+/// Sign of det(q - p, r - p, s - p) for an edge p, q of A and a perturbed edge r, s of B: the side on which one line
+/// passes the other (Plücker's side operator). 0 only if they are parallel.
+inline int side_of_perturbed_edge(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
+                                  const Eigen::Vector3d& s) {
   const int sign = orient3d(p, q, r, s);
   return sign != 0 ? sign : detail::lexicographic_cross(r, s, p, q);
 }

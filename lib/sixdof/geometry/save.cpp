@@ -9,11 +9,12 @@
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/bytes.h>
+#include <sixdof/geometry/load_formats.h>
 
 namespace sixdof {
 namespace {
 
-// fmt's "{}" writes the shortest decimal that reads back to the same double, whatever the locale.
+// The format "{}" of fmt writes the shortest decimal that reads back to the same double, in every locale.
 void save_obj(const Mesh& mesh, const std::filesystem::path& file) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
@@ -42,7 +43,7 @@ void append_float_point(std::string& bytes, const Eigen::Vector3d& p) {
 Eigen::Vector3d unit_normal(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d u = b - a;
   const Eigen::Vector3d v = c - a;
-  // Scaled first: the product of lengths of 1e-200 would vanish.
+  // Scaled first: the product of lengths of 1e-200 would underflow.
   const double size = std::max(u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
   if (!(size > 0.0) || !std::isfinite(size)) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d normal = (u / size).cross(v / size);
@@ -59,7 +60,7 @@ void save_stl(const Mesh& mesh, const std::filesystem::path& file) {
       throw BadFile(file.string(), fmt::format("vertex {}", i), "a coordinate is too large for STL's single precision");
     }
   }
-  // Must not begin with "solid": readers would take it for text.
+  // A header that begins with "solid" would make readers read the file as text.
   std::string bytes = "binary STL written by sixdof";
   bytes.resize(k_header_bytes, ' ');
   bytes.reserve(k_header_bytes + 4 + k_triangle_bytes * mesh.triangles().size());
@@ -105,7 +106,7 @@ void save_ply(const PlyContent& content, const std::filesystem::path& file) {
       if (v >= count) throw BadArgument(fmt::format("triangle {}: vertex index {} of {}", i, v, count));
     }
   }
-  // Most programs know signed indices best; the type matters only beyond 2^31 vertices.
+  // Signed indices are read by more programs; the type matters only beyond 2^31 vertices.
   const bool is_signed = count <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment written by sixdof\nelement vertex {}\n"
@@ -135,9 +136,7 @@ void save_ply(const PlyContent& content, const std::filesystem::path& file) {
 }
 
 void save_mesh(const Mesh& mesh, const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string extension = loading::lower_case_extension(file);
   std::string known;
   for (const Format& format : k_formats) {
     if (extension == format.extension) return format.save(mesh, file);

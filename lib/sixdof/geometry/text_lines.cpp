@@ -1,5 +1,6 @@
 #include <sixdof/geometry/text_lines.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -10,7 +11,7 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-/// A word as it may be shown in a message: printable and short.
+/// A word for a message: printable and short.
 std::string shown(std::string_view word) {
   constexpr std::size_t k_longest = 40;
   std::string result;
@@ -19,15 +20,25 @@ std::string shown(std::string_view word) {
   return result;
 }
 
-/// from_chars knows no leading plus sign; text files do.
+/// Text files may write a leading plus sign, which from_chars does not read.
 std::string_view without_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
 }
 
 }  // namespace
 
+std::size_t text_begin(std::string_view bytes) {
+  constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
+  return bytes.starts_with(k_byte_order_mark) ? k_byte_order_mark.size() : 0;
+}
+
 TextLines::TextLines(const Source& source, Syntax syntax, std::size_t begin, std::size_t line)
-    : source_(source), text_(source.bytes), syntax_(syntax), next_(begin), line_(line), next_line_(line) {}
+    : source_(source),
+      text_(source.bytes),
+      syntax_(syntax),
+      next_(std::max(begin, text_begin(source.bytes))),
+      line_(line),
+      next_line_(line) {}
 
 bool TextLines::next() {
   words_.clear();
@@ -41,7 +52,7 @@ bool TextLines::next() {
   return false;
 }
 
-/// Adds one line's words; true if the line goes on on the next one.
+/// Adds one line's words; true if the next line continues it.
 bool TextLines::read_line() {
   const std::size_t newline = text_.find('\n', next_);
   const bool ended = newline != std::string_view::npos;
@@ -50,8 +61,8 @@ bool TextLines::read_line() {
   ++next_line_;
   if (syntax_.comment != '\0') line = line.substr(0, line.find(syntax_.comment));
   while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
-  const bool goes_on = syntax_.continuation && ended && !line.empty() && line.back() == '\\';
-  if (goes_on) line.remove_suffix(1);
+  const bool continues = syntax_.continuation && ended && !line.empty() && line.back() == '\\';
+  if (continues) line.remove_suffix(1);
   for (std::size_t i = 0; i < line.size();) {
     if (is_blank(line[i])) {
       ++i;
@@ -64,7 +75,7 @@ bool TextLines::read_line() {
   if (!ended && !words_.empty() && syntax_.newline_at_end) {
     fail("the last line is not ended by a line break; the file may be cut off");
   }
-  return goes_on;
+  return continues;
 }
 
 double TextLines::number(std::size_t i) const {
@@ -102,7 +113,9 @@ std::uint32_t TextLines::index(std::size_t i, std::size_t count) const {
   return static_cast<std::uint32_t>(value);
 }
 
-void TextLines::fail(const std::string& cause) const { source_.fail(fmt::format("line {}", line_), cause); }
+std::string TextLines::place() const { return fmt::format("line {}", line_); }
+
+void TextLines::fail(const std::string& cause) const { source_.fail(place(), cause); }
 
 void TextLines::expect_end() {
   if (next()) fail(fmt::format("'{}' behind the last element", shown(words_[0])));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,12 +11,15 @@
 
 namespace sixdof::loading {
 
-/// Walks through the lines of a text file that hold data, as words separated by blanks. Numbers are read by
-/// std::from_chars, so no locale has a say. Lines end in LF or CR LF.
+/// The first byte of a text: behind a UTF-8 byte order mark if there is one.
+std::size_t text_begin(std::string_view bytes);
+
+/// Reads the lines of a text file that hold data, as words separated by blanks. Numbers are read by std::from_chars,
+/// which no locale changes. Lines end in LF or CR LF; a UTF-8 byte order mark at the file's start is skipped.
 class TextLines {
  public:
   struct Syntax {
-    char comment = '\0';         ///< Starts a comment that runs to the end of the line; 0: there are none.
+    char comment = '\0';         ///< Starts a comment that lasts to the end of the line; 0: there are none.
     bool continuation = false;   ///< A backslash at the end of a line joins the next one to it.
     bool newline_at_end = true;  ///< Refuse data on a last line without a line break: it may be cut off.
   };
@@ -29,17 +33,20 @@ class TextLines {
   const std::vector<std::string_view>& words() const { return words_; }
   std::size_t size() const { return words_.size(); }
 
-  /// Word i as a finite number. Fails naming the line.
+  // Each of these throws a BadFile that names the line if a word is not what it reads.
+
+  /// Word i as a finite number.
   double number(std::size_t i) const;
   /// Words first .. first + 2 as a point.
   Eigen::Vector3d point(std::size_t first) const { return {number(first), number(first + 1), number(first + 2)}; }
-  /// A word as a signed integer. Fails naming the line.
+  /// A word as a signed integer.
   std::int64_t integer(std::string_view word) const;
   std::int64_t integer(std::size_t i) const { return integer(words_[i]); }
-  /// Word i as a vertex index (from 0) below count. Fails naming the line.
+  /// Word i as a vertex index (from 0) below count.
   std::uint32_t index(std::size_t i, std::size_t count) const;
 
   std::size_t line() const { return line_; }
+  std::string place() const;  ///< The current line, for messages: "line 7".
   /// Bytes behind the current line.
   std::size_t remaining() const { return text_.size() - next_; }
   /// Byte behind the current line.
@@ -47,7 +54,7 @@ class TextLines {
 
   [[noreturn]] void fail(const std::string& cause) const;
 
-  /// Fails if data follow.
+  /// Fails unless the file ends here.
   void expect_end();
 
  private:

@@ -3,281 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/geometry/tree_builder.h>
 
 namespace sixdof {
-namespace {
-
-constexpr std::size_t k_bins = 16;
-constexpr std::size_t k_full_node = Tree::k_width * Tree::k_leaf_triangles;  // triangles of a node with full leaves
-constexpr std::size_t k_full_two_levels = Tree::k_width * k_full_node;       // of a node with full nodes
-constexpr std::size_t k_parallel_subtree = 4096;                             // smaller subtrees are built by one task
-constexpr std::size_t k_parallel_bins = 1 << 17;                             // larger ranges are binned by several
-
-/// Strictly below x: also covers the rounding of a difference of doubles of which x is the result.
-float round_down(double x) { return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity()); }
-float round_up(double x) { return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity()); }
-
-struct Box {
-  std::array<float, 3> lower{Tree::k_empty, Tree::k_empty, Tree::k_empty};
-  std::array<float, 3> upper{-Tree::k_empty, -Tree::k_empty, -Tree::k_empty};
-
-  void add(const Box& other) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      lower[k] = std::min(lower[k], other.lower[k]);
-      upper[k] = std::max(upper[k], other.upper[k]);
-    }
-  }
-  void add(const std::array<float, 3>& p) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      lower[k] = std::min(lower[k], p[k]);
-      upper[k] = std::max(upper[k], p[k]);
-    }
-  }
-  float half_area() const {
-    const float x = upper[0] - lower[0];
-    const float y = upper[1] - lower[1];
-    const float z = upper[2] - lower[2];
-    return x * y + y * z + z * x;
-  }
-};
-
-/// A triangle while the tree is built.
-struct Primitive {
-  Box box;
-  std::uint32_t triangle = 0;
-  std::array<float, 3> twice_center() const {
-    return {box.lower[0] + box.upper[0], box.lower[1] + box.upper[1], box.lower[2] + box.upper[2]};
-  }
-};
-
-/// Minima, maxima and counts: exact and associative, so that the sum over parts is the same for every partition.
-struct Bins {
-  std::array<std::array<Box, k_bins>, 3> box;
-  std::array<std::array<std::uint32_t, k_bins>, 3> count{};
-
-  void add(const Bins& other) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = 0; i < k_bins; ++i) {
-        box[k][i].add(other.box[k][i]);
-        count[k][i] += other.count[k][i];
-      }
-    }
-  }
-};
-
-struct Binning {
-  std::array<float, 3> lower{};
-  std::array<float, 3> scale{};  // bins per length; 0 where all centres agree
-
-  explicit Binning(const Box& centers) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      lower[k] = centers.lower[k];
-      const float extent = centers.upper[k] - centers.lower[k];
-      const float bins_per_length = static_cast<float>(k_bins) * (1.0f - 1e-6f) / extent;
-      scale[k] = extent > 0.0f && std::isfinite(bins_per_length) ? bins_per_length : 0.0f;
-    }
-  }
-  std::size_t bin(float twice_center, std::size_t axis) const {
-    const auto i = static_cast<std::size_t>((twice_center - lower[axis]) * scale[axis]);
-    return std::min(i, k_bins - 1);
-  }
-};
-
-template <class T, class Fold>
-T fold_parallel(std::size_t first, std::size_t last, const Fold& fold) {
-  if (last - first < k_parallel_bins) return fold(first, last, T{});
-  return parallel::reduce<T>(
-      last - first, k_parallel_bins / 8,
-      [&](std::size_t begin, std::size_t end, T sum) { return fold(first + begin, first + end, std::move(sum)); },
-      [](T x, const T& y) {
-        x.add(y);
-        return x;
-      });
-}
-
-struct Range {
-  std::size_t first = 0;
-  std::size_t last = 0;
-  Box box;
-  std::size_t count() const { return last - first; }
-};
-
-struct Subtree {
-  std::vector<Range> children;
-  std::vector<std::unique_ptr<Subtree>> nodes;  // null where the child is a leaf
-  std::size_t total = 1;                        // nodes in this subtree
-};
-
-}  // namespace
-
-struct TreeBuilder {
-  std::vector<Primitive> primitives;
-  std::unique_ptr<Subtree> root;
-
-  Box bounds(std::size_t first, std::size_t last) const {
-    return fold_parallel<Box>(first, last, [this](std::size_t i, std::size_t end, Box box) {
-      for (; i < end; ++i) box.add(primitives[i].box);
-      return box;
-    });
-  }
-
-  /// Leaves hold up to four triangles, so a side costs its area times the leaves it needs.
-  static float cost(float half_area, std::size_t count) {
-    const std::size_t leaves = (count + Tree::k_leaf_triangles - 1) / Tree::k_leaf_triangles;
-    return half_area * static_cast<float>(leaves);
-  }
-
-  std::array<Range, 2> split(const Range& range) {
-    const Box centers = fold_parallel<Box>(range.first, range.last, [this](std::size_t i, std::size_t end, Box box) {
-      for (; i < end; ++i) box.add(primitives[i].twice_center());
-      return box;
-    });
-    const Binning binning(centers);
-    const Bins bins = fold_parallel<Bins>(range.first, range.last, [&](std::size_t i, std::size_t end, Bins sum) {
-      for (; i < end; ++i) {
-        const std::array<float, 3> center = primitives[i].twice_center();
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::size_t bin = binning.bin(center[k], k);
-          sum.box[k][bin].add(primitives[i].box);
-          ++sum.count[k][bin];
-        }
-      }
-      return sum;
-    });
-
-    std::size_t best_axis = 3;
-    std::size_t best_bin = 0;
-    float best_cost = std::numeric_limits<float>::infinity();
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (binning.scale[k] == 0.0f) continue;
-      std::array<float, k_bins> right_cost{};
-      Box right;
-      std::size_t right_count = 0;
-      for (std::size_t i = k_bins - 1; i > 0; --i) {
-        right.add(bins.box[k][i]);
-        right_count += bins.count[k][i];
-        right_cost[i] =
-            right_count == 0 ? std::numeric_limits<float>::infinity() : cost(right.half_area(), right_count);
-      }
-      Box left;
-      std::size_t left_count = 0;
-      for (std::size_t i = 1; i < k_bins; ++i) {
-        left.add(bins.box[k][i - 1]);
-        left_count += bins.count[k][i - 1];
-        if (left_count == 0) continue;
-        const float sum = cost(left.half_area(), left_count) + right_cost[i];
-        if (sum < best_cost) {
-          best_cost = sum;
-          best_axis = k;
-          best_bin = i;
-        }
-      }
-    }
-
-    std::size_t middle = range.first + range.count() / 2;  // all centres agree: any halves will do
-    if (best_axis < 3) {
-      const auto begin = primitives.begin();
-      const auto boundary = std::partition(
-          begin + static_cast<std::ptrdiff_t>(range.first), begin + static_cast<std::ptrdiff_t>(range.last),
-          [&](const Primitive& p) { return binning.bin(p.twice_center()[best_axis], best_axis) < best_bin; });
-      middle = static_cast<std::size_t>(boundary - begin);
-    }
-    return {Range{range.first, middle, bounds(range.first, middle)},
-            Range{middle, range.last, bounds(middle, range.last)}};
-  }
-
-  /// The best of all cuts at multiples of `block`, for ranges of up to k_full_two_levels.
-  std::array<Range, 2> split_aligned(const Range& range, std::size_t block) {
-    const std::size_t n = range.count();
-    const auto begin = primitives.begin() + static_cast<std::ptrdiff_t>(range.first);
-    std::array<Primitive, k_full_two_levels> sorted;
-    std::array<Primitive, k_full_two_levels> best;
-    float best_cost = std::numeric_limits<float>::infinity();
-    Range left{range.first, range.first, {}};
-    Range right{range.last, range.last, {}};
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::array<std::pair<float, std::uint32_t>, k_full_two_levels> order;
-      for (std::size_t i = 0; i < n; ++i) {
-        order[i] = {begin[static_cast<std::ptrdiff_t>(i)].twice_center()[k], static_cast<std::uint32_t>(i)};
-      }
-      std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
-      for (std::size_t i = 0; i < n; ++i) sorted[i] = begin[static_cast<std::ptrdiff_t>(order[i].second)];
-
-      constexpr std::size_t k_cuts = k_full_two_levels / k_full_node;
-      std::array<Box, k_cuts + 1> tail;  // boxes of what lies right of each cut
-      const std::size_t last_cut = (n - 1) / block;
-      std::size_t end = n;
-      for (std::size_t cut = last_cut; cut > 0; --cut) {
-        if (cut < last_cut) tail[cut] = tail[cut + 1];
-        for (std::size_t i = cut * block; i < end; ++i) tail[cut].add(sorted[i].box);
-        end = cut * block;
-      }
-      Box head;
-      bool improved = false;
-      for (std::size_t cut = 1; cut <= last_cut; ++cut) {
-        for (std::size_t i = (cut - 1) * block; i < cut * block; ++i) head.add(sorted[i].box);
-        const float sum =
-            head.half_area() * static_cast<float>(cut) + tail[cut].half_area() * static_cast<float>(last_cut + 1 - cut);
-        if (sum < best_cost) {
-          best_cost = sum;
-          improved = true;
-          left = {range.first, range.first + cut * block, head};
-          right = {range.first + cut * block, range.last, tail[cut]};
-        }
-      }
-      if (improved) std::copy_n(sorted.begin(), n, best.begin());
-    }
-    std::copy_n(best.begin(), n, begin);
-    return {left, right};
-  }
-
-  std::unique_ptr<Subtree> build(const Range& range) {
-    auto subtree = std::make_unique<Subtree>();
-    std::vector<Range>& children = subtree->children;
-    children.push_back(range);
-    // The two lowest levels, nearly all of the tree, are cut at multiples of full leaves and full nodes. Above them a
-    // range that fits one node stays whole.
-    const std::size_t block = range.count() <= k_full_node ? Tree::k_leaf_triangles : k_full_node;
-    const bool aligned = range.count() <= k_full_two_levels;
-    while (children.size() < Tree::k_width) {
-      std::size_t widest = children.size();
-      float widest_area = -1.0f;
-      for (std::size_t i = 0; i < children.size(); ++i) {
-        if (children[i].count() > block && children[i].box.half_area() > widest_area) {
-          widest = i;
-          widest_area = children[i].box.half_area();
-        }
-      }
-      if (widest == children.size()) break;
-      const std::array<Range, 2> halves = aligned ? split_aligned(children[widest], block) : split(children[widest]);
-      children[widest] = halves[0];
-      children.push_back(halves[1]);
-    }
-    // Triangle order follows the lanes, so that a subtree's triangles are consecutive.
-    std::sort(children.begin(), children.end(), [](const Range& x, const Range& y) { return x.first < y.first; });
-
-    subtree->nodes.resize(children.size());
-    parallel::Tasks tasks;
-    for (std::size_t i = 0; i < children.size(); ++i) {
-      if (children[i].count() <= Tree::k_leaf_triangles) continue;
-      const auto grow = [this, &subtree, i] { subtree->nodes[i] = build(subtree->children[i]); };
-      if (children[i].count() > k_parallel_subtree) {
-        tasks.run(grow);
-      } else {
-        grow();
-      }
-    }
-    tasks.wait();
-    for (const auto& node : subtree->nodes) subtree->total += node ? node->total : 0;
-    return subtree;
-  }
-};
 
 Tree::Tree(const Mesh& mesh) : center_(mesh.center()) {
   const std::size_t n = mesh.triangles().size();
@@ -291,59 +25,41 @@ Tree::Tree(const Mesh& mesh) : center_(mesh.center()) {
   for (const Eigen::Vector3d& v : mesh.vertices()) radius_ = std::max(radius_, (v - center_).squaredNorm());
   radius_ = std::sqrt(radius_) * (1.0 + 1e-15);
 
-  TreeBuilder builder;
-  builder.primitives.resize(n);
-  parallel::for_ranges(n, k_parallel_subtree, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      Eigen::AlignedBox3d box;
-      for (const std::uint32_t v : mesh.triangles()[i]) box.extend(mesh.vertices()[v]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto axis = static_cast<Eigen::Index>(k);
-        builder.primitives[i].box.lower[k] = round_down(box.min()[axis] - center_[axis]);
-        builder.primitives[i].box.upper[k] = round_up(box.max()[axis] - center_[axis]);
-      }
-      builder.primitives[i].triangle = static_cast<std::uint32_t>(i);
-    }
-  });
-  builder.root = builder.build(Range{0, n, builder.bounds(0, n)});
-
-  mesh_triangle_.resize(n);
+  tree_builder::Partition partition = tree_builder::build(mesh, center_);
+  mesh_triangle_ = std::move(partition.mesh_triangle);
   corners_.resize(n);
-  parallel::for_ranges(n, k_parallel_subtree, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      mesh_triangle_[i] = builder.primitives[i].triangle;
-      const Triangle& triangle = mesh.triangles()[mesh_triangle_[i]];
-      for (std::size_t k = 0; k < 3; ++k) corners_[i][k] = mesh.vertices()[triangle[k]];
-    }
+  parallel::for_each(n, [&](std::size_t i) {
+    const Triangle& triangle = mesh.triangles()[mesh_triangle_[i]];
+    for (std::size_t k = 0; k < 3; ++k) corners_[i][k] = mesh.vertices()[triangle[k]];
   });
 
-  flatten(builder);
+  store_nodes(*partition.root);
   parallel::for_each(nodes_.size(), [this](std::size_t i) { fit_slabs(nodes_[i]); });
-  copy_volumes();
+  store_volumes();
 }
 
-void Tree::flatten(const TreeBuilder& builder) {
-  struct Open {
-    const Subtree* subtree;
+void Tree::store_nodes(const tree_builder::Subtree& root) {
+  struct Pending {
+    const tree_builder::Subtree* subtree;
     std::uint32_t parent;
-    std::size_t lane;
+    std::size_t lane;  ///< Of the parent; k_width for the root.
   };
-  nodes_.reserve(builder.root->total);
+  nodes_.reserve(root.total);
   std::size_t leaf_count = 0;
-  std::vector<Open> open{{builder.root.get(), 0, k_width}};
-  while (!open.empty()) {
-    const Open top = open.back();
-    open.pop_back();
+  std::vector<Pending> stack{{&root, 0, k_width}};
+  while (!stack.empty()) {
+    const Pending top = stack.back();
+    stack.pop_back();
     const auto index = static_cast<std::uint32_t>(nodes_.size());
     if (top.lane < k_width) nodes_[top.parent].child[top.lane] = Child::node(index);
     Node& node = nodes_.emplace_back();
-    const std::vector<Range>& children = top.subtree->children;
+    const std::vector<tree_builder::Range>& children = top.subtree->children;
     node.child_count = static_cast<std::uint32_t>(children.size());
     node.first_triangle = static_cast<std::uint32_t>(children.front().first);
     node.triangle_count = static_cast<std::uint32_t>(children.back().last - children.front().first);
     node.parent = top.parent;
     for (std::size_t i = 0; i < k_width; ++i) {
-      const Box box = i < children.size() ? children[i].box : Box{};
+      const tree_builder::Box box = i < children.size() ? children[i].box : tree_builder::Box{};
       for (std::size_t k = 0; k < 3; ++k) {
         node.lower[k][i] = box.lower[k];
         node.upper[k][i] = box.upper[k];
@@ -355,28 +71,23 @@ void Tree::flatten(const TreeBuilder& builder) {
       }
     }
     for (std::size_t i = children.size(); i-- > 0;) {  // the first child is popped first
-      if (top.subtree->nodes[i]) open.push_back({top.subtree->nodes[i].get(), index, i});
+      if (top.subtree->nodes[i]) stack.push_back({top.subtree->nodes[i].get(), index, i});
     }
   }
   leaves_.resize(leaf_count);
 }
 
 void Tree::fit_slabs(Node& node) const {
-  // Shorter than a unit vector by a float's rounding, so that a gap along it never exceeds the distance.
+  // Less than 1 by more than the rounding to floats, so that a gap along the normal is at most the distance.
   constexpr double k_length = 1.0 - 4e-7;
   std::uint32_t first = node.first_triangle;
-  const std::uint32_t end_of_node = node.first_triangle + node.triangle_count;
   for (std::size_t i = 0; i < k_width; ++i) {
     std::array<float, 3> normal{static_cast<float>(k_length), 0.0f, 0.0f};
     double low = k_empty;
     double high = -k_empty;
     if (i < node.child_count) {
-      std::uint32_t end = end_of_node;
-      if (node.child[i].is_leaf()) {
-        end = first + node.child[i].count();
-      } else {
-        end = first + nodes_[node.child[i].node()].triangle_count;
-      }
+      const Child child = node.child[i];
+      const std::uint32_t end = first + (child.is_leaf() ? child.count() : nodes_[child.node()].triangle_count);
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (std::uint32_t t = first; t < end; ++t) {
         sum += (corners_[t][1] - corners_[t][0]).cross(corners_[t][2] - corners_[t][0]);
@@ -390,9 +101,9 @@ void Tree::fit_slabs(Node& node) const {
       high = -low;
       for (std::uint32_t t = first; t < end; ++t) {
         for (const Eigen::Vector3d& corner : corners_[t]) {
-          const double height = n.dot(corner - center_);
-          low = std::min(low, height);
-          high = std::max(high, height);
+          const double offset = n.dot(corner - center_);
+          low = std::min(low, offset);
+          high = std::max(high, offset);
         }
       }
       first = end;
@@ -402,12 +113,12 @@ void Tree::fit_slabs(Node& node) const {
       high += slack;
     }
     for (std::size_t k = 0; k < 3; ++k) node.normal[k][i] = normal[k];
-    node.slab_lower[i] = i < node.child_count ? round_down(low) : k_empty;
-    node.slab_upper[i] = i < node.child_count ? round_up(high) : -k_empty;
+    node.slab_lower[i] = i < node.child_count ? tree_builder::round_down(low) : k_empty;
+    node.slab_upper[i] = i < node.child_count ? tree_builder::round_up(high) : -k_empty;
   }
 }
 
-void Tree::copy_volumes() {
+void Tree::store_volumes() {
   static_assert(sizeof(Node) == 512 && sizeof(Leaf) == 192);
   Node& root = nodes_[0];
   for (std::size_t k = 0; k < 3; ++k) {

@@ -12,30 +12,30 @@
 
 namespace sixdof {
 
-/// Bounding-volume tree over the triangles of one mesh: immutable, shared by every query and thread.
+namespace tree_builder {
+struct Subtree;
+}
+
+/// Bounding-volume tree over the triangles of one mesh: immutable, shared by all queries and threads.
 ///
-/// A node holds the volumes of up to eight children as arrays over the children, so that one SIMD instruction treats
-/// all of them. A child's volume is the intersection of an axis-aligned box with a slab along the mean normal of its
-/// triangles: on a smooth surface the slab's thickness shrinks with the square of the patch's size, the box's only
-/// linearly.
+/// A node holds the volumes of up to eight children as arrays over the children, for SIMD. A child's volume is the
+/// intersection of an axis-aligned box with a slab along the mean normal of its triangles. On a smooth surface the
+/// thickness of the slab shrinks with the square of the patch's size, that of the box linearly.
 ///
-/// Volumes are floats relative to center(), rounded outwards: they contain the double-precision triangles whatever the
-/// mesh's offset from its origin. Triangles are stored in the order of the leaves, so that those of any subtree are
-/// consecutive. Children that exist fill the first lanes; the other lanes hold empty boxes (lower = +k_empty,
-/// upper = -k_empty).
+/// Volumes are floats relative to center(), rounded outwards: they contain the double-precision triangles at any
+/// distance of the mesh from its origin. Triangles are stored in the order of the leaves, so that those of any subtree
+/// are consecutive. Existing children fill the first lanes; the other lanes hold empty boxes (lower = k_empty, upper =
+/// -k_empty). Leaves also hold their corners as floats, for tests that come before the exact ones.
 ///
-/// Leaves also hold their corners as floats, arranged for SIMD, for tests that come before the exact ones.
-///
-/// Built by binned surface-area splits; the result is the same bits for every number of threads. A node takes 512
-/// bytes, a leaf 192, a triangle 76; together 151 MB per million triangles (bytes() of torus-knot-1m, and 148 MB by the
-/// growth of the process).
+/// Built by the surface-area heuristic (tree_builder.h); the same bits for every number of threads. A node takes 512
+/// bytes, a leaf 192, a triangle 76: about 150 MB per million triangles.
 class Tree {
  public:
   static constexpr std::size_t k_width = 8;           ///< Children per node, at most.
   static constexpr std::size_t k_leaf_triangles = 4;  ///< Triangles per leaf, at most.
   static constexpr float k_empty = 1e30f;             ///< Bound of the empty boxes in lanes without a child.
 
-  /// Coordinates between which floats have room for squares and products, as the mesh's diagonal: a length.
+  /// Limits of the mesh's diagonal (length): squares and products of floats neither underflow nor overflow.
   static constexpr double k_smallest_diagonal = 1e-15;
   static constexpr double k_largest_diagonal = 1e15;
 
@@ -58,7 +58,7 @@ class Tree {
     std::uint32_t bits_ = 0;
   };
 
-  /// One child's volume by itself.
+  /// The volume of one child.
   struct Volume {
     float lower[3];
     float upper[3];
@@ -68,14 +68,14 @@ class Tree {
   };
 
   struct alignas(64) Node {
-    float lower[3][k_width];    ///< Boxes, [axis][child], relative to center().
-    float upper[3][k_width];    ///< Boxes, [axis][child], relative to center().
+    float lower[3][k_width];  ///< Boxes, [axis][child], relative to center().
+    float upper[3][k_width];
     float normal[3][k_width];   ///< Slabs: direction, of length 1 - 1e-6 .. 1.
     float slab_lower[k_width];  ///< Slabs: lower <= normal . (p - center) <= upper for every point p of the child.
     float slab_upper[k_width];
     Child child[k_width];
     std::uint32_t leaf[k_width];   ///< Index into leaves() of the children that are leaves.
-    Volume volume;                 ///< This node's own; the root's has an empty normal and no slab (0 <= 0 <= 0).
+    Volume volume;                 ///< Of this node; the root's has normal zero and a slab from 0 to 0.
     std::uint32_t child_count;     ///< 1 .. 8 (1 only in the root of a mesh of up to four triangles).
     std::uint32_t first_triangle;  ///< The subtree's triangles in tree order: first_triangle + 0 .. triangle_count - 1.
     std::uint32_t triangle_count;
@@ -116,9 +116,9 @@ class Tree {
   std::size_t bytes() const;
 
  private:
-  void flatten(const struct TreeBuilder& builder);
+  void store_nodes(const tree_builder::Subtree& root);
   void fit_slabs(Node& node) const;
-  void copy_volumes();
+  void store_volumes();
 
   std::vector<Node> nodes_;
   std::vector<Leaf> leaves_;

@@ -8,16 +8,18 @@
 
 #include <sixdof/geometry/predicates.h>
 
-// Every function works on differences to one corner, so that the figures' offset from the origin plays no part.
+// Every function works on differences to one corner, so that the distance from the origin has no effect.
 //
-// The minimum of a convex quadratic over a product of simplices is attained in the interior of a pair of faces of the
-// two figures: vertex-vertex, vertex-edge, edge-edge, vertex-face. Vertex-edge (clamped: with vertex-vertex) is well
-// conditioned. The other two ask for the point where w = w0 + s u - t v is normal to u and v. With n = u x v that is
+// The closest points of two triangles lie in the interiors of a pair of faces: vertex-vertex, vertex-edge, edge-edge or
+// vertex-face. Vertex-edge with clamping includes vertex-vertex and is well conditioned. The other two need the point
+// where w = w0 + s u - t v is normal to u and v. With n = u x v that is
 //   s = -(w0 x v) . n / n^2,  t = -(w0 x u) . n / n^2,
-// which loses digits as u and v become parallel. Applying the same formula again to the w that was reached (iterative
-// refinement) brings w back to the accuracy of its own rounding, whatever the angle: each step multiplies the error by
-// about (unit roundoff / angle). Below an angle of a few roundings the interior is no closer than the border by more
-// than a rounding of the length.
+// which loses digits as u and v become parallel. Iterative refinement applies the same formula to the w that was
+// reached and brings w to the accuracy of its own rounding at any angle: each step multiplies the error by about (unit
+// roundoff / angle). At an angle of a few roundings the interior is closer than the border by at most a rounding of the
+// length.
+//
+// Zero is decided by exact predicates, and only where the computed distance is in doubt.
 
 namespace sixdof {
 namespace {
@@ -27,26 +29,29 @@ using Eigen::Vector3d;
 constexpr double k_roundoff = 0x1p-53;
 /// Below this sine of the angle between two edges they count as parallel: the error is the sine times the edge.
 constexpr double k_parallel_sine = 2.0 * k_roundoff;
-/// At the smallest angles a step gains little, but there little is to be gained; at 1e-12 a step gains four digits.
+/// A step gains four digits at an angle of 1e-12. It gains little at the smallest angles, where the interior gains
+/// little over the border.
 constexpr int k_refinements = 3;
-/// Above this sine one refinement is enough: the first solution is off by about roundoff / sine^2 = 1e-10 times
+/// Above this sine one refinement is enough: the error of the first solution is about roundoff / sine^2 = 1e-10 times
 /// (distance / edge).
 constexpr double k_wide_sine = 1e-3;
-/// Solutions farther outside the unit interval than this are no error: they could be only where the distance is 1e9
-/// edges, and there the interior gains nothing over the border.
+/// A first solution farther than this outside of [0, 1] is not brought back by refinement: that would take a distance
+/// of 1e9 edges, where the interior gains nothing over the border.
 constexpr double k_margin = 0.125;
-/// A gap of the projections on the line through the closest points that is larger than this times the size cannot come
-/// from rounding: a dot product of differences rounds by less than 8 units.
+/// Triangles are disjoint if their projections on the line through the closest points have a gap of more than this
+/// times the size: the rounding of a dot product of differences is less than 8 units.
 constexpr double k_safe_gap = 16.0 * k_roundoff;
+/// Error of triangle_gap() per size: three products, their sum, and the error of the distance that it bounds.
+constexpr double k_gap_error = 5e-15;
 
-/// Closest so far. `difference` is on_a - on_b, computed without going through rounded points.
+/// The closest points so far. `difference` is on_a - on_b, computed without the rounded points.
 struct Best {
   double squared = std::numeric_limits<double>::infinity();
   Vector3d difference = Vector3d::Zero();
   Vector3d on_a = Vector3d::Zero();
   Vector3d on_b = Vector3d::Zero();
 
-  void offer(const Vector3d& w, const Vector3d& a, const Vector3d& b) {
+  void try_update(const Vector3d& w, const Vector3d& a, const Vector3d& b) {
     const double d = w.squaredNorm();
     if (d < squared) {
       squared = d;
@@ -57,9 +62,6 @@ struct Best {
   }
 };
 
-/// Rounding of triangle_gap(), per size: three products, their sum, and as much as the distance that it bounds is off.
-constexpr double k_gap_error = 5e-15;
-
 struct Edge {
   Vector3d from;
   Vector3d to;
@@ -68,9 +70,9 @@ struct Edge {
   Edge(const Vector3d& p, const Vector3d& q) : from(p), to(q), along(q - p), squared(along.squaredNorm()) {}
 };
 
-/// Closest point of a segment; `sign` tells which of the two sets the point is: +1 for a.
+/// A point and an edge. sign = 1: the point is of a; -1: of b.
 template <int sign>
-void offer_point_edge(const Vector3d& p, const Edge& edge, Best& best) {
+void try_point_edge(const Vector3d& p, const Edge& edge, Best& best) {
   const Vector3d from = p - edge.from;
   const double along = from.dot(edge.along);
   Vector3d w = from;
@@ -84,9 +86,9 @@ void offer_point_edge(const Vector3d& p, const Edge& edge, Best& best) {
     q = edge.from + t * edge.along;
   }
   if constexpr (sign > 0) {
-    best.offer(w, p, q);
+    best.try_update(w, p, q);
   } else {
-    best.offer(-w, q, p);
+    best.try_update(-w, q, p);
   }
 }
 
@@ -97,7 +99,7 @@ struct Solution {
   bool found = false;
 };
 
-/// s, t that make w = w0 + s u - t v normal to u and v.
+/// The s and t for which w = w0 + s u - t v is normal to u and v.
 Solution solve_normal(const Vector3d& w0, const Vector3d& u, double uu, const Vector3d& v, double vv) {
   Solution x;
   const Vector3d n = u.cross(v);
@@ -108,7 +110,7 @@ Solution solve_normal(const Vector3d& w0, const Vector3d& u, double uu, const Ve
   for (int i = 0; i <= refinements; ++i) {
     x.s -= x.w.cross(v).dot(n) / nn;
     x.t -= x.w.cross(u).dot(n) / nn;
-    // Far outside, and too wide an angle for that to be an error: not in the interior.
+    // At such an angle, a solution this far outside is not in the interior.
     if (i == 0 && refinements == 1 &&
         !(x.s > -k_margin && x.s < 1.0 + k_margin && x.t > -k_margin && x.t < 1.0 + k_margin)) {
       return x;
@@ -119,25 +121,25 @@ Solution solve_normal(const Vector3d& w0, const Vector3d& u, double uu, const Ve
   return x;
 }
 
-void offer_edge_edge(const Edge& a, const Edge& b, Best& best) {
+void try_edge_edge(const Edge& a, const Edge& b, Best& best) {
   const Solution x = solve_normal(a.from - b.from, a.along, a.squared, b.along, b.squared);
   if (!x.found || !(x.s > 0.0 && x.s < 1.0 && x.t > 0.0 && x.t < 1.0)) return;
-  best.offer(x.w, a.from + x.s * a.along, b.from + x.t * b.along);
+  best.try_update(x.w, a.from + x.s * a.along, b.from + x.t * b.along);
 }
 
-/// Point against the inside of a triangle given by two edges from one corner.
+/// A point and the interior of a triangle, which is given by two edges from one corner.
 template <int sign>
-void offer_point_face(const Vector3d& p, const Edge& first, const Edge& second, Best& best) {
+void try_point_face(const Vector3d& p, const Edge& first, const Edge& second, Best& best) {
   const Vector3d from = p - first.from;
-  // w = from - s first + t (-second): `second` enters with the opposite sign to that of solve_normal().
+  // The point first.from + s first + t second of the triangle, whose difference to p is w = from + s u - t second.
   const Vector3d u = -first.along;
   const Solution x = solve_normal(from, u, first.squared, second.along, second.squared);
   if (!x.found || !(x.s > 0.0 && x.t > 0.0 && x.s + x.t < 1.0)) return;
   const Vector3d q = first.from + x.s * first.along + x.t * second.along;
   if constexpr (sign > 0) {
-    best.offer(x.w, p, q);
+    best.try_update(x.w, p, q);
   } else {
-    best.offer(-x.w, q, p);
+    best.try_update(-x.w, q, p);
   }
 }
 
@@ -149,9 +151,9 @@ struct Edges {
 };
 
 template <int sign>
-void offer_point_triangle(const Vector3d& p, const Edges& t, Best& best) {
-  for (const Edge& edge : t.edge) offer_point_edge<sign>(p, edge, best);
-  offer_point_face<sign>(p, t.edge[0], t.second, best);
+void try_point_triangle(const Vector3d& p, const Edges& t, Best& best) {
+  for (const Edge& edge : t.edge) try_point_edge<sign>(p, edge, best);
+  try_point_face<sign>(p, t.edge[0], t.second, best);
 }
 
 ClosestPoints finish(const Best& best, const Vector3d& origin) {
@@ -188,8 +190,8 @@ bool on_segment(const Vector3d& p, const Vector3d& q, const Vector3d& x) {
 bool segments_intersect(const Vector3d& p, const Vector3d& q, const Vector3d& r, const Vector3d& s) {
   if (on_segment(p, q, r) || on_segment(p, q, s) || on_segment(r, s, p) || on_segment(r, s, q)) return true;
   if (orient3d(p, q, r, s) != 0) return false;
-  // In one plane and no end on the other segment: they cross properly, or not at all. If p, q, r are collinear they
-  // cannot cross properly.
+  // In one plane, with no end on the other segment: their interiors cross, or they are disjoint. If p, q, r are
+  // collinear, they are disjoint.
   for (int axis = 0; axis < 3; ++axis) {
     if (orient(p, q, r, axis) == 0) continue;
     return orient(p, q, r, axis) * orient(p, q, s, axis) < 0 && orient(r, s, p, axis) * orient(r, s, q, axis) < 0;
@@ -197,7 +199,7 @@ bool segments_intersect(const Vector3d& p, const Vector3d& q, const Vector3d& r,
   return false;
 }
 
-/// Point in the plane of a triangle that is not degenerate in the projection along `axis`.
+/// Whether a point in the triangle's plane is in the triangle, whose projection along `axis` is not degenerate.
 bool inside_projected(const TriangleCorners& t, const Vector3d& p, int axis) {
   const int o0 = orient(t[0], t[1], p, axis);
   const int o1 = orient(t[1], t[2], p, axis);
@@ -205,10 +207,11 @@ bool inside_projected(const TriangleCorners& t, const Vector3d& p, int axis) {
   return (o0 >= 0 && o1 >= 0 && o2 >= 0) || (o0 <= 0 && o1 <= 0 && o2 <= 0);
 }
 
-/// Whether closed segment p q and closed triangle t meet; `op`, `oq`: sides of t's plane on which p and q lie.
-bool edge_meets_triangle(const Vector3d& p, const Vector3d& q, int op, int oq, const TriangleCorners& t) {
-  if (op * oq > 0) return false;
-  if (op != 0 || oq != 0) {  // the line meets t's plane in one point
+/// Whether closed segment p q and closed triangle t meet.
+/// @param side_p, side_q sides of t's plane on which p and q lie
+bool edge_meets_triangle(const Vector3d& p, const Vector3d& q, int side_p, int side_q, const TriangleCorners& t) {
+  if (side_p * side_q > 0) return false;
+  if (side_p != 0 || side_q != 0) {  // the line meets t's plane in one point
     const int o0 = orient3d(p, q, t[0], t[1]);
     const int o1 = orient3d(p, q, t[1], t[2]);
     if (o0 * o1 < 0) return false;
@@ -220,12 +223,12 @@ bool edge_meets_triangle(const Vector3d& p, const Vector3d& q, int op, int oq, c
   }
   for (int axis = 0; axis < 3; ++axis) {
     if (orient(t[0], t[1], t[2], axis) == 0) continue;
-    return inside_projected(t, p, axis);  // else it would cross the border
+    return inside_projected(t, p, axis);  // p q does not cross t's border: it is inside or outside as a whole
   }
   return false;  // t is a segment or a point
 }
 
-/// Which edge pierces which triangle.
+/// An edge of one triangle that meets the other triangle.
 struct Meeting {
   bool found = false;
   bool edge_of_a = false;
@@ -247,8 +250,7 @@ Meeting find_meeting(const TriangleCorners& a, const TriangleCorners& b) {
   return {};
 }
 
-/// A common point: where the edge crosses the other's plane. Where it lies in that plane, the closest features already
-/// meet there up to rounding.
+/// A common point: where the edge crosses the other's plane; `otherwise` if it lies in that plane.
 Vector3d common_point(const Meeting& meeting, const TriangleCorners& a, const TriangleCorners& b,
                       const Vector3d& otherwise) {
   const TriangleCorners& from = meeting.edge_of_a ? a : b;
@@ -262,24 +264,6 @@ Vector3d common_point(const Meeting& meeting, const TriangleCorners& a, const Tr
 }
 
 }  // namespace
-
-ClosestPoints point_triangle_distance(const Vector3d& p, const TriangleCorners& t) {
-  Best best;
-  offer_point_triangle<1>(p - t[0], Edges(relative(t, t[0])), best);
-  return finish(best, t[0]);
-}
-
-ClosestPoints segment_segment_distance(const Vector3d& p0, const Vector3d& p1, const Vector3d& q0, const Vector3d& q1) {
-  Best best;
-  const Edge a(Vector3d::Zero(), p1 - p0);
-  const Edge b(q0 - p0, q1 - p0);
-  offer_point_edge<1>(a.from, b, best);
-  offer_point_edge<1>(a.to, b, best);
-  offer_point_edge<-1>(b.from, a, best);
-  offer_point_edge<-1>(b.to, a, best);
-  offer_edge_edge(a, b, best);
-  return finish(best, p0);
-}
 
 double triangle_gap(const TriangleCorners& a, const TriangleCorners& b) {
   const TriangleCorners local_a = relative(a, a[0]);
@@ -306,13 +290,13 @@ ClosestPoints triangle_triangle_distance(const TriangleCorners& a, const Triangl
   const Edges edges_a(local_a);
   const Edges edges_b(local_b);
   Best best;
-  for (const Vector3d& p : local_a) offer_point_triangle<1>(p, edges_b, best);
-  for (const Vector3d& p : local_b) offer_point_triangle<-1>(p, edges_a, best);
+  for (const Vector3d& p : local_a) try_point_triangle<1>(p, edges_b, best);
+  for (const Vector3d& p : local_b) try_point_triangle<-1>(p, edges_a, best);
   for (const Edge& edge_a : edges_a.edge) {
-    for (const Edge& edge_b : edges_b.edge) offer_edge_edge(edge_a, edge_b, best);
+    for (const Edge& edge_b : edges_b.edge) try_edge_edge(edge_a, edge_b, best);
   }
 
-  // Apart for certain if the projections on the line through the closest points are.
+  // The triangles are disjoint if their projections on the line through the closest points are.
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   double size = 0.0;
@@ -328,6 +312,7 @@ ClosestPoints triangle_triangle_distance(const TriangleCorners& a, const Triangl
     apart.distance = std::max(apart.distance, k_least_distance);
     return apart;
   }
+  // Where an edge lies in the other's plane, the closest points are common points up to rounding.
   const Vector3d point = common_point(meeting, a, b, a[0] + best.on_a);
   return {0.0, point, point};
 }

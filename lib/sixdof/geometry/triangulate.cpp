@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include <sixdof/geometry/predicates.h>
 
 namespace sixdof {
@@ -11,28 +9,51 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// The polygon seen against its Newell normal, along the coordinate axis nearest to it; empty if it has no area.
-Points project(std::span<const std::uint32_t> corners, const std::vector<Eigen::Vector3d>& vertices) {
+struct Projection {
+  Points points;          ///< Empty if the polygon has no area.
+  bool flat = true;       ///< Within k_flatness.
+  bool crossing = false;  ///< Parts of the polygon have opposite areas that add up to zero.
+};
+
+/// Area below which a polygon's normal is not known to k_flatness, and above the rounding of a zero area, for
+/// coordinates scaled to magnitude 1.
+constexpr double k_least_area = 1e-9;
+
+/// The polygon projected against its Newell normal, along the coordinate axis nearest to it.
+Projection project(std::span<const std::uint32_t> corners, const std::vector<Eigen::Vector3d>& vertices) {
   const std::size_t n = corners.size();
   double largest = 0.0;
   for (const std::uint32_t c : corners) largest = std::max(largest, vertices[c].cwiseAbs().maxCoeff());
   if (largest == 0.0) return {};
-  // Scaled by a power of two, which is exact, or products of tiny lengths would vanish and of huge ones overflow.
+  // Scaling by a power of two is exact and keeps products of lengths from underflow and overflow.
   const int exponent = -std::ilogb(largest);
   std::vector<Eigen::Vector3d> scaled(n);
   for (std::size_t i = 0; i < n; ++i) {
     scaled[i] = vertices[corners[i]].unaryExpr([exponent](double x) { return std::ldexp(x, exponent); });
   }
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  for (std::size_t i = 1; i + 1 < n; ++i) normal += (scaled[i] - scaled[0]).cross(scaled[i + 1] - scaled[0]);
+  double largest_part = 0.0;
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const Eigen::Vector3d part = (scaled[i] - scaled[0]).cross(scaled[i + 1] - scaled[0]);
+    normal += part;
+    largest_part = std::max(largest_part, part.norm());
+  }
   Eigen::Index axis = 0;
-  if (normal.cwiseAbs().maxCoeff(&axis) == 0.0) return {};
+  if (normal.cwiseAbs().maxCoeff(&axis) == 0.0) return {.points = {}, .crossing = largest_part > k_least_area};
   const bool towards = normal[axis] > 0.0;
   const Eigen::Index u = (axis + (towards ? 1 : 2)) % 3;
   const Eigen::Index v = (axis + (towards ? 2 : 1)) % 3;
-  Points points(n);
-  for (std::size_t i = 0; i < n; ++i) points[i] = {scaled[i][u], scaled[i][v]};
-  return points;
+  Projection result{.points = Points(n)};
+  for (std::size_t i = 0; i < n; ++i) result.points[i] = {scaled[i][u], scaled[i][v]};
+  if (normal.norm() > k_least_area) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& p : scaled) mean += p / static_cast<double>(n);
+    const double tolerance = k_flatness * std::ldexp(largest, exponent) * normal.norm();
+    for (const Eigen::Vector3d& p : scaled) {
+      if (std::abs((p - mean).dot(normal)) > tolerance) result.flat = false;
+    }
+  }
+  return result;
 }
 
 bool strictly_convex(const Points& p) {
@@ -47,11 +68,11 @@ bool strictly_convex(const Points& p) {
   return true;
 }
 
-/// Cuts ears off a ring of corners. Whether a corner is an ear is kept, and found anew only for the neighbours of a
-/// cut.
-class EarCutter {
+/// Clips ears off a ring of corners. Whether a corner is an ear is stored, and updated only for the neighbours of a
+/// clipped corner.
+class EarClipper {
  public:
-  explicit EarCutter(const Points& points) : p_(points), left_(points.size()) {
+  explicit EarClipper(const Points& points) : p_(points), left_(points.size()) {
     const std::size_t n = points.size();
     before_.resize(n);
     after_.resize(n);
@@ -63,13 +84,14 @@ class EarCutter {
     find_ears(0);
   }
 
-  /// Corner numbers of the triangles; false if the polygon crosses itself.
-  bool cut(std::vector<std::array<std::size_t, 3>>& triangles) {
+  /// Appends the corner numbers of the n - 2 triangles; false if the polygon crosses itself.
+  bool clip(std::vector<std::array<std::size_t, 3>>& triangles) {
+    bool crosses = false;
     std::size_t at = 0;
     while (left_ > 3) {
-      if (!next_ear(at)) {
+      if (!next_ear(at) && !crosses) {
         find_ears(at);
-        if (!next_ear(at) && !next_flat(at)) return false;
+        crosses = !next_ear(at) && !next_flat(at);
       }
       triangles.push_back({before_[at], at, after_[at]});
       const std::size_t previous = before_[at];
@@ -81,9 +103,8 @@ class EarCutter {
       ear_[following] = is_ear(following);
       at = following;
     }
-    if (orient2d(p_[before_[at]], p_[at], p_[after_[at]]) < 0) return false;
     triangles.push_back({before_[at], at, after_[at]});
-    return true;
+    return !crosses && orient2d(p_[before_[at]], p_[at], p_[after_[at]]) >= 0;
   }
 
  private:
@@ -98,7 +119,7 @@ class EarCutter {
     return false;
   }
 
-  /// What is left may be corners on a line, or a corner that repeats its neighbour: triangles without area.
+  /// A corner on a straight line or one that repeats its neighbour: a triangle without area.
   bool next_flat(std::size_t& at) const {
     for (std::size_t i = 0; i < left_; ++i, at = after_[at]) {
       if (orient2d(p_[before_[at]], p_[at], p_[after_[at]]) == 0) return true;
@@ -127,25 +148,29 @@ class EarCutter {
 
 }  // namespace
 
-std::string triangulate(std::span<const std::uint32_t> corners, const std::vector<Eigen::Vector3d>& vertices,
-                        std::vector<Triangle>& triangles) {
-  const auto fan = [&] {
+PolygonShape triangulate(std::span<const std::uint32_t> corners, const std::vector<Eigen::Vector3d>& vertices,
+                         std::vector<Triangle>& triangles) {
+  const auto add_fan = [&] {
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
       triangles.push_back({corners[0], corners[i], corners[i + 1]});
     }
-    return std::string();
   };
-  if (corners.size() == 3) return fan();
-  const Points points = project(corners, vertices);
-  if (points.empty() || strictly_convex(points)) return fan();
-  if (corners.size() > k_most_corners_of_a_concave_polygon) {
-    return fmt::format("a concave polygon of {} corners, more than the {} this can triangulate", corners.size(),
-                       k_most_corners_of_a_concave_polygon);
+  if (corners.size() == 3) {
+    add_fan();
+    return PolygonShape::simple;
   }
-  std::vector<std::array<std::size_t, 3>> ears;
-  if (!EarCutter(points).cut(ears)) return fmt::format("a polygon of {} corners that crosses itself", corners.size());
-  for (const auto& [a, b, c] : ears) triangles.push_back({corners[a], corners[b], corners[c]});
-  return {};
+  const Projection polygon = project(corners, vertices);
+  bool crossing = polygon.crossing;
+  if (polygon.points.empty() || strictly_convex(polygon.points)) {
+    add_fan();
+  } else {
+    if (corners.size() > k_most_corners_of_a_concave_polygon) return PolygonShape::too_large;
+    std::vector<std::array<std::size_t, 3>> ears;
+    crossing = !EarClipper(polygon.points).clip(ears);
+    for (const auto& [a, b, c] : ears) triangles.push_back({corners[a], corners[b], corners[c]});
+  }
+  if (crossing) return PolygonShape::crossing;
+  return polygon.flat ? PolygonShape::simple : PolygonShape::not_flat;
 }
 
 }  // namespace sixdof

@@ -9,7 +9,7 @@
 namespace sixdof {
 
 double angle_degrees(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  // Normalised first, so that squares of tiny or huge forces neither vanish nor overflow.
+  // Without this the squares of tiny or huge vectors would underflow or overflow.
   const Eigen::Vector3d u = a.stableNormalized();
   const Eigen::Vector3d v = b.stableNormalized();
   return std::atan2(u.cross(v).norm(), u.dot(v)) * (180.0 / std::numbers::pi);
@@ -17,19 +17,19 @@ double angle_degrees(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 DirectionError direction_error(Vectors ideal, Vectors measured) {
   check_same_length(ideal, measured);
-  const std::vector<bool> ideal_acts = acting(ideal);
-  const std::vector<bool> measured_acts = acting(measured);
+  const std::vector<bool> ideal_nonzero = nonzero(ideal);
+  const std::vector<bool> measured_nonzero = nonzero(measured);
   DirectionError error;
   double sum = 0.0;
   for (std::size_t k = 0; k < ideal.size(); ++k) {
-    if (ideal_acts[k] && measured_acts[k]) {
+    if (ideal_nonzero[k] && measured_nonzero[k]) {
       const double angle = angle_degrees(ideal[k], measured[k]);
       sum += angle;
       error.largest_degrees = std::max(error.largest_degrees, angle);
       ++error.compared;
-    } else if (ideal_acts[k]) {
+    } else if (ideal_nonzero[k]) {
       ++error.misses;
-    } else if (measured_acts[k]) {
+    } else if (measured_nonzero[k]) {
       ++error.false_contacts;
     } else {
       ++error.skipped;

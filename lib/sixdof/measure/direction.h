@@ -12,17 +12,17 @@ namespace sixdof {
 double angle_degrees(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
 struct DirectionError {
-  /// Mean angle over the stamps where both act; empty if there is none.
-  /// Source: Weller et al. 2010, formula (2), in degrees as the paper's values are (7.64 is more than pi).
+  /// Mean angle over the steps where both vectors are nonzero; empty if there is no such step.
+  /// Source: Weller et al. 2010, formula (2), in degrees: the paper's values exceed pi.
   std::optional<double> gamma_degrees;
   double largest_degrees = 0.0;
-  std::size_t compared = 0;        ///< Both act.
-  std::size_t misses = 0;          ///< The ideal acts, the measured one is zero: tunnelling.
-  std::size_t false_contacts = 0;  ///< The measured one acts where the ideal is zero.
+  std::size_t compared = 0;        ///< Both are nonzero.
+  std::size_t misses = 0;          ///< The ideal is nonzero, the measured one is zero: tunnelling.
+  std::size_t false_contacts = 0;  ///< The ideal is zero, the measured one is nonzero.
   std::size_t skipped = 0;         ///< Both are zero.
 };
 
-/// Zero is what acting() calls zero. Every stamp is counted in exactly one of the four counts.
+/// Zero as nonzero() (signal.h) decides it. Every step is in exactly one of the four counts.
 DirectionError direction_error(Vectors ideal, Vectors measured);
 
 }  // namespace sixdof

@@ -9,27 +9,24 @@
 
 namespace sixdof {
 
-Latency latency(std::span<const double> times, double deadline) {
+Latency latency(std::span<const double> times_ns) {
   Latency result;
-  if (times.empty()) return result;
-  std::vector<double> sorted(times.begin(), times.end());
+  if (times_ns.empty()) return result;
+  std::vector<double> sorted(times_ns.begin(), times_ns.end());
   if (!std::all_of(sorted.begin(), sorted.end(), [](double t) { return std::isfinite(t); })) {
     throw BadArgument("latency: a time is not finite");
   }
   std::sort(sorted.begin(), sorted.end());
   const auto count = static_cast<double>(sorted.size());
-  // permille of the times lie at or below; integers, because 0.99 * 100 is not 99 in binary.
-  const auto quantile = [&](std::size_t permille) {
-    const std::size_t rank = (sorted.size() * permille + 999) / 1000;
-    return sorted[std::max<std::size_t>(rank, 1) - 1];
-  };
+  // In permille and integers, because 0.99 * 100 is not 99 in binary.
+  const auto quantile = [&](std::size_t permille) { return sorted[(sorted.size() * permille + 999) / 1000 - 1]; };
   result.count = sorted.size();
   result.mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / count;
   result.p50 = quantile(500);
   result.p99 = quantile(990);
   result.p999 = quantile(999);
   result.max = sorted.back();
-  const auto first_late = std::upper_bound(sorted.begin(), sorted.end(), deadline);
+  const auto first_late = std::upper_bound(sorted.begin(), sorted.end(), k_haptic_deadline_ns);
   result.over_deadline = static_cast<double>(sorted.end() - first_late) / count;
   return result;
 }

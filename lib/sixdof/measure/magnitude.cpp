@@ -39,9 +39,9 @@ std::optional<GainFit> fit_gain(Vectors ideal, Vectors measured) {
   if (squares == 0.0 || products == 0.0) return std::nullopt;
   GainFit fit;
   fit.gain = products / squares;
-  double rest = 0.0;
-  for (std::size_t k = 0; k < ideal.size(); ++k) rest += square(measured[k].norm() - fit.gain * ideal[k].norm());
-  fit.sigma = std::sqrt(rest / static_cast<double>(ideal.size())) / (fit.gain * peak(ideal));
+  double residual = 0.0;
+  for (std::size_t k = 0; k < ideal.size(); ++k) residual += square(measured[k].norm() - fit.gain * ideal[k].norm());
+  fit.sigma = std::sqrt(residual / static_cast<double>(ideal.size())) / (fit.gain * peak(ideal));
   return fit;
 }
 

@@ -2,90 +2,155 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
-
-#include <sixdof/base/error.h>
+#include <cmath>
 
 namespace sixdof {
 namespace {
 
 constexpr std::string_view k_paper = "Weller et al. 2010";
+constexpr std::string_view k_paper_sigma = "Weller et al. 2010 (1), read as RMS";
+constexpr std::string_view k_paper_sigma_printed = "Weller et al. 2010 (1), as printed";
+constexpr std::string_view k_paper_gamma = "Weller et al. 2010 (2)";
+constexpr std::string_view k_paper_nu = "Weller et al. 2010 (3)";
+constexpr std::string_view k_google = "Google Benchmark";
+constexpr std::string_view k_magnitude = "lib/sixdof/measure/magnitude.h";
+constexpr std::string_view k_direction = "lib/sixdof/measure/direction.h";
+constexpr std::string_view k_spectrum = "lib/sixdof/measure/spectrum.h";
+constexpr std::string_view k_path = "lib/sixdof/measure/path.h";
+constexpr std::string_view k_latency = "lib/sixdof/measure/latency.h";
+constexpr std::string_view k_recorder = "lib/sixdof/scenario/recorder.h";
+constexpr std::string_view k_check = "bench/harness/check.h";
+constexpr std::string_view k_guarded = "bench/harness/guarded_query.h";
+constexpr std::string_view k_work = "bench/harness/work.h";
+constexpr std::string_view k_footprint = "lib/sixdof/query/algorithm.h (Footprint)";
+constexpr std::string_view k_query_row = "bench/rows/query.cpp";
+constexpr std::string_view k_generate_row = "bench/rows/generate.cpp";
+constexpr std::string_view k_scenario_row = "bench/rows/scenario.cpp";
 
+using enum Better;
+
+/// Names with a '*' come last: find_metric() takes the first match.
+// clang-format off
 constexpr std::array k_metrics{
-    Metric{"sigma_F", "1", Better::lower, "RMS difference of force magnitudes, each normalised by its maximum",
-           "Weller et al. 2010 (1), read as RMS"},
-    Metric{"sigma_T", "1", Better::lower, "the same for torques", "Weller et al. 2010 (1), read as RMS"},
-    Metric{"sigma_paper_F", "1", Better::lower, "sigma_F as printed, (1/N) sqrt(sum): depends on the sampling",
-           "Weller et al. 2010 (1), literally"},
-    Metric{"sigma_paper_T", "1", Better::lower, "the same for torques", "Weller et al. 2010 (1), literally"},
-    Metric{"gain_F", "measured/ideal", Better::neither, "least-squares factor from ideal to measured magnitudes",
-           "lib/measure/magnitude.h"},
-    Metric{"gain_T", "measured/ideal", Better::neither, "the same for torques", "lib/measure/magnitude.h"},
-    Metric{"sigma_gain_F", "1", Better::lower, "RMS difference after the gain, over gain times the ideal's maximum",
-           "lib/measure/magnitude.h"},
-    Metric{"sigma_gain_T", "1", Better::lower, "the same for torques", "lib/measure/magnitude.h"},
-    Metric{"gamma_F_deg", "degree", Better::lower, "mean angle between ideal and measured force",
-           "Weller et al. 2010 (2)"},
-    Metric{"gamma_T_deg", "degree", Better::lower, "the same for torques", "Weller et al. 2010 (2)"},
-    Metric{"gamma_max_F_deg", "degree", Better::lower, "largest such angle of forces", "lib/measure/direction.h"},
-    Metric{"gamma_max_T_deg", "degree", Better::lower, "largest such angle of torques", "lib/measure/direction.h"},
-    Metric{"misses", "stamps", Better::lower, "ideal acts, measured is zero: tunnelling", "lib/measure/direction.h"},
-    Metric{"false_contacts", "stamps", Better::lower, "measured acts, ideal is zero", "lib/measure/direction.h"},
-    Metric{"skipped", "stamps", Better::neither, "both are zero", "lib/measure/direction.h"},
-    Metric{"failed", "stamps", Better::lower, "no answer; left out of sigma and gamma, zero in the spectra",
-           "lib/scenario/evaluation.h"},
-    Metric{"nu_F", "1", Better::nearer_one, "energy of the normalised force magnitude over the ideal's",
-           "Weller et al. 2010 (3)"},
-    Metric{"nu_T", "1", Better::nearer_one, "the same for torques", "Weller et al. 2010 (3)"},
-    Metric{"noise_F", "1", Better::lower, "energy of the force's residual above the cut-off over the ideal's energy",
-           "lib/measure/spectrum.h"},
-    Metric{"noise_T", "1", Better::lower, "the same for torques", "lib/measure/spectrum.h"},
-    Metric{"leakage", "1", Better::lower, "unwanted part over wanted part, scaled by the reference length",
-           "lib/measure/path.h"},
-    Metric{"lag", "stamps", Better::lower, "shift of the measured wrench against the ideal, positive if late",
-           "lib/measure/path.h"},
-    Metric{"jump_F", "1", Better::lower, "largest jump of the force left after refinement, over its peak",
-           "lib/measure/path.h"},
-    Metric{"jump_T", "1", Better::lower, "the same for torques", "lib/measure/path.h"},
-    Metric{"loop_work", "1", Better::lower, "work on the closed path over peak force times length",
-           "lib/measure/path.h"},
-    Metric{"mean_ns", "ns", Better::lower, "mean time of a query", k_paper},
-    Metric{"processor_ns", "ns", Better::lower, "mean processor time of a query, whatever else the machine does",
-           "lib/scenario/recorder.h"},
-    Metric{"p50_ns", "ns", Better::lower, "median time of a query", "lib/measure/latency.h"},
-    Metric{"p99_ns", "ns", Better::lower, "99 % of the queries take no longer", "lib/measure/latency.h"},
-    Metric{"p999_ns", "ns", Better::lower, "99.9 % of the queries take no longer", "lib/measure/latency.h"},
-    Metric{"max_ns", "ns", Better::lower, "longest query", k_paper},
-    Metric{"over_1ms", "1", Better::lower, "share of the queries over 1 ms, the haptic deadline",
-           "lib/measure/latency.h"},
+    // Quality of responses. In scenarios the truth is an ideal model, in overlap buckets the exact response.
+    Metric{"sigma_F", "1", lower, "RMS difference of force magnitudes, each normalised by its maximum", k_paper_sigma},
+    Metric{"sigma_T", "1", lower, "the same for torques", k_paper_sigma},
+    Metric{"sigma_paper_F", "1", lower, "sigma_F as printed, (1/N) sqrt(sum): falls with N", k_paper_sigma_printed},
+    Metric{"sigma_paper_T", "1", lower, "the same for torques", k_paper_sigma_printed},
+    Metric{"gain_F", "measured/ideal", neither, "least-squares factor from ideal to measured magnitudes", k_magnitude},
+    Metric{"gain_T", "measured/ideal", neither, "the same for torques", k_magnitude},
+    Metric{"sigma_gain_F", "1", lower, "RMS difference after the gain, over gain times max|ideal|", k_magnitude},
+    Metric{"sigma_gain_T", "1", lower, "the same for torques", k_magnitude},
+    Metric{"gamma_F_deg", "degree", lower, "mean angle between true and measured force", k_paper_gamma},
+    Metric{"gamma_T_deg", "degree", lower, "the same for torques", k_paper_gamma},
+    Metric{"gamma_max_F_deg", "degree", lower, "largest such angle of forces", k_direction},
+    Metric{"gamma_max_T_deg", "degree", lower, "largest such angle of torques", k_direction},
+    Metric{"misses", "queries", lower, "truth is not zero, measured force (or torque) is: tunnelling", k_direction},
+    Metric{"false_contacts", "queries", lower, "ideal is zero, measured is not", k_direction},
+    Metric{"skipped", "queries", neither, "ideal and measured are both zero", k_direction},
+    Metric{"compared", "queries", neither, "true and measured force are both nonzero: those in gamma", k_direction},
+    Metric{"nu_F", "1", nearer_one, "energy of the normalised force magnitude over the ideal's", k_paper_nu},
+    Metric{"nu_T", "1", nearer_one, "the same for torques", k_paper_nu},
+    Metric{"noise_F", "1", lower, "energy of the residual force above the cut-off, over the ideal's", k_spectrum},
+    Metric{"noise_T", "1", lower, "the same for torques", k_spectrum},
+    Metric{"leakage", "1", lower, "unwanted part over wanted part, scaled by the reference length", k_path},
+    Metric{"lag", "steps", lower, "shift of the measured wrench against the ideal, positive if late", k_path},
+    Metric{"jump_F", "1", lower, "largest jump of the force that refinement leaves, over its peak", k_path},
+    Metric{"jump_T", "1", lower, "the same for torques", k_path},
+    Metric{"loop_work", "1", lower, "work on the closed path over peak force times length", k_path},
+    Metric{"volume_error_mean", "1", lower, "mean |volume - bucket's volume| over the bucket's volume", k_check},
+    Metric{"volume_error_max", "1", lower, "largest of the same", k_check},
+    // Correctness of other answers.
+    Metric{"failed", "queries", lower, "no answer: refused, thrown, or not finite", k_guarded},
+    Metric{"judged", "queries", neither, "answers for which the truth is known", k_check},
+    Metric{"mismatch", "queries", lower, "wrong answers among the judged ones", k_check},
+    Metric{"error_rms", "diagonal", lower, "RMS of |distance - truth| over A's box diagonal", k_check},
+    Metric{"error_max", "diagonal", lower, "largest of the same", k_check},
+    // Times.
+    Metric{"real_time", "time_unit", lower, "mean wall-clock time of one iteration", k_google},
+    Metric{"cpu_time", "time_unit", lower, "mean processor time of one iteration", k_google},
+    Metric{"mean_ns", "ns", lower, "mean time of a query", k_paper},
+    Metric{"processor_ns", "ns", lower, "mean processor time of a query", k_recorder},
+    Metric{"p50_ns", "ns", lower, "median time of a query", k_latency},
+    Metric{"p99_ns", "ns", lower, "99 % of the queries take no longer", k_latency},
+    Metric{"p999_ns", "ns", lower, "99.9 % of the queries take no longer", k_latency},
+    Metric{"max_ns", "ns", lower, "longest query", k_paper},
+    Metric{"over_1ms", "1", lower, "fraction of the queries over 1 ms, the haptic deadline", k_latency},
+    Metric{"ns_per_configuration", "ns", lower, "processor time to make one configuration of a set", k_generate_row},
+    // What a row was measured on.
+    Metric{"iterations", "1", neither, "iterations of the timed loop", k_google},
+    Metric{"configurations", "configurations", neither, "configurations that were asked or made", k_query_row},
+    Metric{"reachable", "configurations", neither, "configurations of the whole bucket that exist", k_query_row},
+    Metric{"steps", "steps", neither, "steps along the scenario's path", k_scenario_row},
+    // Size of a prepared structure.
+    Metric{"bytes", "byte", lower, "memory of the prepared structure", k_footprint},
+    Metric{"triangles", "triangles", neither, "triangles of both meshes", k_footprint},
+    Metric{"nodes", "nodes", neither, "nodes of the hierarchies", k_footprint},
+    Metric{"voxels", "voxels", neither, "voxels of the grid, stored or not", k_footprint},
+    Metric{"surface_voxels", "voxels", neither, "voxels that the surface passes through", k_footprint},
+    Metric{"inside_voxels", "voxels", neither, "voxels wholly inside the body", k_footprint},
+    Metric{"bricks", "bricks", neither, "stored bricks of the voxel map", k_footprint},
+    Metric{"field_bricks", "bricks", neither, "stored bricks of the distance field", k_footprint},
+    Metric{"points", "points", neither, "points of the point shell", k_footprint},
+    Metric{"spheres", "spheres", neither, "spheres of both bodies", k_footprint},
+    Metric{"spheres_a", "spheres", neither, "spheres packed into A", k_footprint},
+    Metric{"spheres_b", "spheres", neither, "spheres packed into B", k_footprint},
+    Metric{"fill_a", "1", higher, "fraction of A's volume inside its spheres", k_footprint},
+    Metric{"fill_b", "1", higher, "fraction of B's volume inside its spheres", k_footprint},
+    // Work of a query, by its unit.
+    Metric{"*_tested", "1", lower, "units of work that a query looks at, on average", k_work},
+    Metric{"*_total", "1", neither, "units of work that a query without culling would look at", k_work},
+    Metric{"ns_per_*", "ns", lower, "mean time of a query over the units it looks at", k_work},
 };
+// clang-format on
+
+bool matches(std::string_view pattern, std::string_view name) {
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return name == pattern;
+  return name.size() >= pattern.size() && name.starts_with(pattern.substr(0, star)) &&
+         name.ends_with(pattern.substr(star + 1));
+}
 
 }  // namespace
 
 std::string_view to_string(Better better) {
   switch (better) {
-    case Better::lower:
+    case lower:
       return "lower";
-    case Better::higher:
+    case higher:
       return "higher";
-    case Better::nearer_one:
+    case nearer_one:
       return "nearer 1";
-    case Better::neither:
+    case neither:
       return "neither";
   }
   return "neither";
 }
 
+bool is_better(Better better, double value, double other) {
+  switch (better) {
+    case lower:
+      return std::abs(value) < std::abs(other);
+    case higher:
+      return value > other;
+    case nearer_one:
+      return std::abs(value - 1.0) < std::abs(other - 1.0);
+    case neither:
+      return false;
+  }
+  return false;
+}
+
 std::span<const Metric> metrics() { return k_metrics; }
 
-const Metric& metric(std::string_view name) {
+const Metric* find_metric(std::string_view counter) {
   constexpr std::string_view k_whole_path = "_all";
   constexpr std::string_view k_other_law = "_by_";
-  std::string_view stem = name.substr(0, name.find(k_other_law));
-  if (stem.ends_with(k_whole_path)) stem.remove_suffix(k_whole_path.size());
-  const auto* found = std::find_if(k_metrics.begin(), k_metrics.end(), [&](const Metric& m) { return m.name == stem; });
-  if (found == k_metrics.end()) throw BadArgument("no measure is called \"" + std::string(name) + "\"");
-  return *found;
+  std::string_view name = counter.substr(0, counter.find(k_other_law));
+  if (name.ends_with(k_whole_path)) name.remove_suffix(k_whole_path.size());
+  const auto* const found =
+      std::find_if(k_metrics.begin(), k_metrics.end(), [&](const Metric& m) { return matches(m.name, name); });
+  return found == k_metrics.end() ? nullptr : &*found;
 }
 
 }  // namespace sixdof

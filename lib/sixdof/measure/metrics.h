@@ -5,31 +5,36 @@
 
 namespace sixdof {
 
-/// Which way a measure gets better.
+/// Which values of a metric are better.
 enum class Better {
   lower,       ///< The nearer to zero the better.
   higher,      ///< The larger the better.
   nearer_one,  ///< A ratio that should be 1.
-  neither,     ///< Describes, does not judge.
+  neither,     ///< Describes the row, does not rate it.
 };
 
 std::string_view to_string(Better better);
 
-/// One measure of a response benchmark's row. `_F` and `_T` mean force and torque; the suffix "_all", not listed here,
-/// means the whole path where the plain name is over the scenario's window, and "_by_" with a law's name that the ideal
-/// is that law's and not the one the algorithm declares.
+/// Whether `value` is strictly better than `other`; false for Better::neither.
+bool is_better(Better better, double value, double other);
+
+/// One column of the results: a counter of a row of `sixdof-bench`, a measure of `sixdof quality`, or a time that
+/// Google Benchmark itself adds to every row.
 struct Metric {
-  std::string_view name;  ///< Counter in the results, API.
+  std::string_view
+      name;  ///< As in the results. A '*' stands for a unit of work: "*_tested" is points_tested and so on.
   std::string_view unit;  ///< "1" for pure numbers.
   Better better;
   std::string_view meaning;  ///< One sentence.
-  std::string_view source;   ///< Where the formula is from.
+  std::string_view source;   ///< Where the formula is from, or the file that computes it.
 };
 
-/// The one table of measures, read by recorder, benchmark rows, command line and report.
+/// The one table of metrics, read by rows, command line, tests and documentation.
 std::span<const Metric> metrics();
 
-/// @throws BadArgument if there is no measure of that name; suffixes "_all" and "_by_LAW" are looked through.
-const Metric& metric(std::string_view name);
+/// The metric of a counter, or nullptr if the table has none. Two suffixes are part of a counter's name but not of the
+/// table: "_all" (over the whole path of a scenario instead of its window) and "_by_LAW" (against the ideal of that law
+/// instead of the law the algorithm declares), e.g. "sigma_T_all_by_wall_traction".
+const Metric* find_metric(std::string_view counter);
 
 }  // namespace sixdof

@@ -15,7 +15,7 @@ double sum_of_squares(Vectors vectors) {
   return sum;
 }
 
-/// Normalised correlation of the ideal, delayed by `shift` stamps, with the measured series, over the common part.
+/// Normalised correlation of the ideal, delayed by `shift` steps, with the measured series, over the common part.
 double correlation(Vectors ideal, Vectors measured, std::ptrdiff_t shift) {
   const auto count = static_cast<std::ptrdiff_t>(ideal.size());
   const std::ptrdiff_t from = std::max<std::ptrdiff_t>(0, shift);
@@ -66,26 +66,24 @@ std::optional<double> lag(Vectors ideal, Vectors measured, std::size_t reach) {
   return static_cast<double>(best) + std::clamp(offset, -0.5, 0.5);
 }
 
-Jump largest_jump(std::span<const double> progress, Vectors values, const std::function<Eigen::Vector3d(double)>& f,
-                  std::size_t candidates, std::size_t halvings) {
-  if (progress.size() != values.size()) throw BadArgument("largest_jump: one value per stamp is needed");
-  Jump jump;
-  if (values.size() < 2) return jump;
+double largest_jump(std::span<const double> progress, Vectors values, const std::function<Eigen::Vector3d(double)>& f,
+                    std::size_t candidates, std::size_t halvings) {
+  if (progress.size() != values.size()) throw BadArgument("largest_jump: one value per step is needed");
+  if (values.size() < 2) return 0.0;
   const auto difference = [&](std::size_t k) { return (values[k + 1] - values[k]).norm(); };
   std::vector<std::size_t> order(values.size() - 1);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto take = static_cast<std::ptrdiff_t>(std::min(candidates, order.size()));
-  std::partial_sort(order.begin(), order.begin() + take, order.end(),
+  const auto count = static_cast<std::ptrdiff_t>(std::min(candidates, order.size()));
+  std::partial_sort(order.begin(), order.begin() + count, order.end(),
                     [&](std::size_t a, std::size_t b) { return difference(a) > difference(b); });
-  jump.coarse = difference(order.front());
-  jump.where = 0.5 * (progress[order.front()] + progress[order.front() + 1]);
-  for (std::ptrdiff_t c = 0; c < take; ++c) {
-    const std::size_t k = order[static_cast<std::size_t>(c)];
+  order.resize(static_cast<std::size_t>(count));
+  double largest = 0.0;
+  for (const std::size_t k : order) {
     double from = progress[k];
     double to = progress[k + 1];
     Eigen::Vector3d f_from = values[k];
     Eigen::Vector3d f_to = values[k + 1];
-    for (std::size_t step = 0; step < halvings; ++step) {
+    for (std::size_t i = 0; i < halvings; ++i) {
       const double middle = 0.5 * (from + to);
       const Eigen::Vector3d f_middle = f(middle);
       if ((f_middle - f_from).norm() >= (f_to - f_middle).norm()) {
@@ -96,30 +94,26 @@ Jump largest_jump(std::span<const double> progress, Vectors values, const std::f
         f_from = f_middle;
       }
     }
-    const double left = (f_to - f_from).norm();
-    if (left > jump.refined) {
-      jump.refined = left;
-      jump.where = 0.5 * (from + to);
-    }
+    largest = std::max(largest, (f_to - f_from).norm());
   }
-  return jump;
+  return largest;
 }
 
 std::optional<double> loop_work(Vectors forces, Vectors torques, std::span<const Pose> poses,
                                 const Eigen::Vector3d& reference_b) {
   check_same_length(forces, torques);
-  if (forces.size() != poses.size()) throw BadArgument("loop_work: one pose per stamp is needed");
+  if (forces.size() != poses.size()) throw BadArgument("loop_work: one pose per step is needed");
   double work = 0.0;
   double length = 0.0;
   double angle = 0.0;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const std::size_t next = (k + 1) % poses.size();
     const Eigen::Vector3d step = poses[next] * reference_b - poses[k] * reference_b;
-    const Eigen::AngleAxisd turn(Eigen::Matrix3d(poses[next].R * poses[k].R.transpose()));
+    const Eigen::AngleAxisd rotation(Eigen::Matrix3d(poses[next].R * poses[k].R.transpose()));
     work += 0.5 * (forces[k] + forces[next]).dot(step);
-    work += 0.5 * (torques[k] + torques[next]).dot(turn.angle() * turn.axis());
+    work += 0.5 * (torques[k] + torques[next]).dot(rotation.angle() * rotation.axis());
     length += step.norm();
-    angle += turn.angle();
+    angle += rotation.angle();
   }
   const double scale = peak(forces) * length + peak(torques) * angle;
   if (scale == 0.0) return std::nullopt;

@@ -20,8 +20,8 @@ double peak(Vectors vectors) {
   return largest;
 }
 
-std::vector<bool> acting(Vectors vectors) {
-  const double threshold = k_zero_share * peak(vectors);
+std::vector<bool> nonzero(Vectors vectors) {
+  const double threshold = k_zero_fraction * peak(vectors);
   std::vector<bool> result(vectors.size());
   for (std::size_t k = 0; k < vectors.size(); ++k) result[k] = vectors[k].norm() > threshold;
   return result;
@@ -30,7 +30,7 @@ std::vector<bool> acting(Vectors vectors) {
 void check_same_length(Vectors ideal, Vectors measured) {
   if (ideal.size() != measured.size()) {
     throw BadArgument(
-        fmt::format("{} ideal stamps cannot be compared with {} measured ones", ideal.size(), measured.size()));
+        fmt::format("{} ideal steps cannot be compared with {} measured ones", ideal.size(), measured.size()));
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,20 +7,20 @@
 
 namespace sixdof {
 
-/// One vector per time stamp: forces or torques, any consistent unit.
+/// One vector per step of a path: forces or torques, in any consistent unit.
 using Vectors = std::span<const Eigen::Vector3d>;
 
-/// A vector shorter than this share of its series' longest one is zero: accumulated rounding of some thousand terms of
-/// the peak's size, and far below what any device can show.
-inline constexpr double k_zero_share = 1e-12;
+/// A vector shorter than this fraction of the longest one of its series counts as zero. Rounding accumulated over some
+/// thousand terms of the peak's size stays below it.
+inline constexpr double k_zero_fraction = 1e-12;
 
 std::vector<double> magnitudes(Vectors vectors);
 
 /// Largest magnitude; 0 for an empty series.
 double peak(Vectors vectors);
 
-/// Per stamp, whether the magnitude exceeds k_zero_share of the series' peak. A series of zeros is zero everywhere.
-std::vector<bool> acting(Vectors vectors);
+/// Per step, whether the magnitude exceeds k_zero_fraction of the series' peak. All false for a series of zeros.
+std::vector<bool> nonzero(Vectors vectors);
 
 /// @throws BadArgument unless both series have the same length. Every measure of two series calls this first.
 void check_same_length(Vectors ideal, Vectors measured);

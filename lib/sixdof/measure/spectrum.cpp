@@ -1,5 +1,6 @@
 #include <sixdof/measure/spectrum.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -13,27 +14,27 @@
 namespace sixdof {
 namespace {
 
-/// FFTW's planner keeps global state; only executing a plan is safe in several threads.
+/// FFTW's planner has global state; only the execution of a plan is thread-safe.
 std::mutex& planner_mutex() {
   static std::mutex mutex;
   return mutex;
 }
 
-/// Real-to-complex transform of a fixed length, with its own buffers.
-class Transform {
+/// Real-to-complex Fourier transform of a fixed length, with its own buffers.
+class FourierTransform {
  public:
-  explicit Transform(std::size_t length)
+  explicit FourierTransform(std::size_t length)
       : length_(length), in_(fftw_alloc_real(length)), out_(fftw_alloc_complex(length / 2 + 1)) {
     const std::lock_guard lock(planner_mutex());
-    // FFTW_ESTIMATE: no timing, so the same plan and the same bits in every run.
+    // FFTW_ESTIMATE plans without timing, so every run has the same plan and the same bits.
     plan_ = fftw_plan_dft_r2c_1d(static_cast<int>(length), in_.get(), out_.get(), FFTW_ESTIMATE);
   }
-  ~Transform() {
+  ~FourierTransform() {
     const std::lock_guard lock(planner_mutex());
     fftw_destroy_plan(plan_);
   }
-  Transform(const Transform&) = delete;
-  Transform& operator=(const Transform&) = delete;
+  FourierTransform(const FourierTransform&) = delete;
+  FourierTransform& operator=(const FourierTransform&) = delete;
 
   std::span<double> input() { return {in_.get(), length_}; }
 
@@ -42,9 +43,9 @@ class Transform {
     fftw_execute(plan_);
     const double n = static_cast<double>(length_);
     for (std::size_t j = 0; j < sum.size(); ++j) {
-      const bool its_own_mirror = j == 0 || 2 * j == length_;
+      const bool mirrored = j != 0 && 2 * j != length_;  // also has the bin of the negative frequency
       const auto& x = out_.get()[j];
-      sum[j] += (its_own_mirror ? 1.0 : 2.0) * (x[0] * x[0] + x[1] * x[1]) / n;
+      sum[j] += (mirrored ? 2.0 : 1.0) * (x[0] * x[0] + x[1] * x[1]) / n;
     }
   }
 
@@ -71,7 +72,7 @@ std::vector<double> hann(std::size_t length) {
 
 std::vector<double> energy_spectrum(std::span<const double> signal) {
   if (signal.empty()) return {};
-  Transform transform(signal.size());
+  FourierTransform transform(signal.size());
   std::copy(signal.begin(), signal.end(), transform.input().begin());
   std::vector<double> energy(signal.size() / 2 + 1, 0.0);
   transform.add_energy(energy);
@@ -94,11 +95,10 @@ std::optional<double> nu(Vectors ideal, Vectors measured) {
   return energy(measured) / ideal_energy;
 }
 
-std::optional<double> residual_noise(Vectors ideal, Vectors measured, double sample_rate, double cutoff) {
+std::optional<double> residual_noise(Vectors ideal, Vectors measured, double rate_hz, double cutoff_hz) {
   check_same_length(ideal, measured);
-  if (!(cutoff >= 0.0 && cutoff < 0.5 * sample_rate)) {
-    throw BadArgument(
-        fmt::format("cut-off {} Hz is not between 0 and half of the sample rate {} Hz", cutoff, sample_rate));
+  if (!(cutoff_hz >= 0.0 && cutoff_hz < 0.5 * rate_hz)) {
+    throw BadArgument(fmt::format("cut-off {} Hz is not between 0 and half of the rate {} Hz", cutoff_hz, rate_hz));
   }
   double products = 0.0;
   double squares = 0.0;
@@ -110,7 +110,7 @@ std::optional<double> residual_noise(Vectors ideal, Vectors measured, double sam
   const double gain = std::max(0.0, products / squares);
 
   const std::vector<double> window = hann(ideal.size());
-  Transform transform(ideal.size());
+  FourierTransform transform(ideal.size());
   std::vector<double> residual_energy(ideal.size() / 2 + 1, 0.0);
   double reference_energy = 0.0;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -125,27 +125,26 @@ std::optional<double> residual_noise(Vectors ideal, Vectors measured, double sam
   if (reference_energy == 0.0) return std::nullopt;
   double above = 0.0;
   for (std::size_t j = 0; j < residual_energy.size(); ++j) {
-    const double frequency = static_cast<double>(j) * sample_rate / static_cast<double>(ideal.size());
-    if (frequency > cutoff) above += residual_energy[j];
+    const double frequency = static_cast<double>(j) * rate_hz / static_cast<double>(ideal.size());
+    if (frequency > cutoff_hz) above += residual_energy[j];
   }
   return above / reference_energy;
 }
 
-Spectrogram short_time_spectrum(std::span<const double> signal, double sample_rate, std::size_t window,
-                                std::size_t hop) {
+Spectrogram short_time_spectrum(std::span<const double> signal, double rate_hz, std::size_t window, std::size_t hop) {
   if (window == 0 || hop == 0 || signal.size() < window) {
-    throw BadArgument(
-        fmt::format("window of {} samples every {} samples does not fit a signal of {}", window, hop, signal.size()));
+    throw BadArgument(fmt::format("a window of {} steps every {} steps does not fit a signal of {} steps", window, hop,
+                                  signal.size()));
   }
-  Transform transform(window);
+  FourierTransform transform(window);
   const std::vector<double> weight = hann(window);
   const std::size_t bins = window / 2 + 1;
   Spectrogram result;
   for (std::size_t j = 0; j < bins; ++j) {
-    result.frequencies.push_back(static_cast<double>(j) * sample_rate / static_cast<double>(window));
+    result.frequencies.push_back(static_cast<double>(j) * rate_hz / static_cast<double>(window));
   }
   for (std::size_t start = 0; start + window <= signal.size(); start += hop) {
-    result.times.push_back((static_cast<double>(start) + 0.5 * static_cast<double>(window)) / sample_rate);
+    result.times.push_back((static_cast<double>(start) + 0.5 * static_cast<double>(window)) / rate_hz);
     for (std::size_t k = 0; k < window; ++k) transform.input()[k] = weight[k] * signal[start + k];
     result.intensity.resize(result.intensity.size() + bins, 0.0);
     transform.add_energy(std::span(result.intensity).last(bins));

@@ -12,7 +12,7 @@
 namespace sixdof {
 namespace {
 
-using HalfEdge = std::uint32_t;  // 3 * triangle + corner: runs from that corner to the next
+using HalfEdge = std::uint32_t;  // 3 * triangle + corner: from that corner to the next
 constexpr std::uint32_t k_none = ~0U;
 
 HalfEdge next_of(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -39,11 +39,11 @@ double quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::
   return 2.0 * std::sqrt(3.0) * norm_in_order(ab.cross(ca)) / edges;
 }
 
-/// How much a collapse may worsen things; tried from strict to lax.
+/// What the triangles changed by a collapse must fulfil; from strict to lax.
 struct Limits {
-  double quality;        ///< Of every triangle changed.
-  double turn;           ///< Cosine of the angle by which a triangle may turn.
-  std::uint32_t degree;  ///< Most edges at the vertex left.
+  double quality;        ///< Least quality of a triangle, unless it is that low already.
+  double cosine;         ///< Least cosine of the angle between a triangle's normals before and after.
+  std::uint32_t degree;  ///< Most edges at the remaining vertex.
 };
 constexpr std::array<Limits, 3> k_limits{{{0.5, 0.7, 8}, {0.3, 0.5, 10}, {0.05, 0.3, 16}}};
 
@@ -68,7 +68,7 @@ class Coarsener {
         if (is_current(candidate)) try_collapse(candidate.half_edge, limits);
       }
     }
-    if (alive_ > triangles) throw BadMesh("so few triangles cannot hold the topology of the surface");
+    if (alive_ > triangles) throw BadMesh("the topology of the surface needs more triangles");
   }
 
   void smooth(int rounds) {
@@ -78,12 +78,12 @@ class Coarsener {
     }
     for (int round = 0; round < rounds; ++round) {
       for (const HalfEdge h : leaving) {
-        if (h != k_none) better(h);
+        if (h != k_none) smooth_vertex(h);
       }
     }
   }
 
-  /// Drops dead triangles and unused vertices; the order of the others stays.
+  /// Drops collapsed triangles and unused vertices; the order of the others stays.
   void compact() {
     Surface kept;
     std::vector<std::uint32_t> number(surface_.vertices.size(), k_none);
@@ -108,7 +108,7 @@ class Coarsener {
   const Eigen::Vector3d& point(std::uint32_t v) const { return surface_.vertices[v]; }
   bool is_alive(HalfEdge h) { return surface_.triangles[h / 3][0] != k_none; }
   /// The next half-edge that leaves the same vertex.
-  HalfEdge turn(HalfEdge h) const { return twin_[previous_of(h)]; }
+  HalfEdge next_around_origin(HalfEdge h) const { return twin_[previous_of(h)]; }
 
   void link_twins() {
     std::vector<Candidate> edges;
@@ -151,22 +151,23 @@ class Coarsener {
     return now.low == c.low && now.high == c.high && now.length_squared == c.length_squared;
   }
 
-  /// Would the triangles around the origin of `start`, but those on `skip`, stay good with that vertex at `place`?
-  bool stays_good(HalfEdge start, std::uint32_t skip, const Eigen::Vector3d& place, const Limits& limits) {
+  /// Whether the triangles around the origin of `start`, but those at vertex `skip`, stay within the limits if that
+  /// origin moves to `position`.
+  bool keeps_limits(HalfEdge start, std::uint32_t skip, const Eigen::Vector3d& position, const Limits& limits) {
     HalfEdge h = start;
     do {
       const std::uint32_t b = target(h);
       const std::uint32_t c = opposite(h);
       if (b != skip && c != skip) {
         const Eigen::Vector3d before = (point(b) - point(origin(h))).cross(point(c) - point(origin(h)));
-        const Eigen::Vector3d after = (point(b) - place).cross(point(c) - place);
-        if (dot_in_order(before, after) <= limits.turn * norm_in_order(before) * norm_in_order(after)) return false;
-        if (quality(place, point(b), point(c)) <
+        const Eigen::Vector3d after = (point(b) - position).cross(point(c) - position);
+        if (dot_in_order(before, after) <= limits.cosine * norm_in_order(before) * norm_in_order(after)) return false;
+        if (quality(position, point(b), point(c)) <
             std::min(limits.quality, quality(point(origin(h)), point(b), point(c)))) {
           return false;
         }
       }
-      h = turn(h);
+      h = next_around_origin(h);
     } while (h != start);
     return true;
   }
@@ -176,7 +177,7 @@ class Coarsener {
     HalfEdge h = start;
     do {
       out.push_back(target(h));
-      h = turn(h);
+      h = next_around_origin(h);
     } while (h != start);
   }
 
@@ -185,7 +186,7 @@ class Coarsener {
     HalfEdge h = start;
     do {
       ++count;
-      h = turn(h);
+      h = next_around_origin(h);
     } while (h != start);
     return count;
   }
@@ -208,15 +209,15 @@ class Coarsener {
     const std::uint32_t a = origin(h);
     const std::uint32_t b = target(h);
     if (!keeps_topology(h, limits)) return;
-    const Eigen::Vector3d place = project_(0.5 * (point(a) + point(b)));
-    if (!stays_good(h, b, place, limits) || !stays_good(other, a, place, limits)) return;
+    const Eigen::Vector3d position = project_(0.5 * (point(a) + point(b)));
+    if (!keeps_limits(h, b, position, limits) || !keeps_limits(other, a, position, limits)) return;
 
     HalfEdge g = other;
     do {
       origin(g) = a;
-      g = turn(g);
+      g = next_around_origin(g);
     } while (g != other);
-    surface_.vertices[a] = place;
+    surface_.vertices[a] = position;
     HalfEdge leaving_a = k_none;
     for (const HalfEdge gone : {h, other}) {
       const HalfEdge left = twin_[next_of(gone)];
@@ -231,7 +232,7 @@ class Coarsener {
     do {
       push(g);
       push(next_of(g));
-      g = turn(g);
+      g = next_around_origin(g);
     } while (g != leaving_a);
   }
 
@@ -240,30 +241,33 @@ class Coarsener {
     std::push_heap(queue_.begin(), queue_.end(), collapses_later);
   }
 
-  double worst_around(HalfEdge start, const Eigen::Vector3d& place) {
+  /// Quality of the worst triangle at the origin of `start` if that origin moves to `position`.
+  double worst_quality(HalfEdge start, const Eigen::Vector3d& position) {
     double worst = 1.0;
     HalfEdge h = start;
     do {
-      worst = std::min(worst, quality(place, point(target(h)), point(opposite(h))));
-      h = turn(h);
+      worst = std::min(worst, quality(position, point(target(h)), point(opposite(h))));
+      h = next_around_origin(h);
     } while (h != start);
     return worst;
   }
 
-  void better(HalfEdge start) {
+  /// Moves the origin of `start` to the mean of its neighbours if that improves its worst triangle.
+  void smooth_vertex(HalfEdge start) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double count = 0.0;
     HalfEdge h = start;
     do {
       sum += point(target(h));
       count += 1.0;
-      h = turn(h);
+      h = next_around_origin(h);
     } while (h != start);
-    const Eigen::Vector3d place = project_(sum / count);
+    const Eigen::Vector3d position = project_(sum / count);
     constexpr Limits k_any_quality{0.0, 0.7, 0};
     const Eigen::Vector3d& old = point(origin(start));
-    if (worst_around(start, place) > worst_around(start, old) && stays_good(start, k_none, place, k_any_quality)) {
-      surface_.vertices[origin(start)] = place;
+    if (worst_quality(start, position) > worst_quality(start, old) &&
+        keeps_limits(start, k_none, position, k_any_quality)) {
+      surface_.vertices[origin(start)] = position;
     }
   }
 
@@ -278,7 +282,7 @@ class Coarsener {
 }  // namespace
 
 void coarsen_to(Surface& surface, std::size_t triangles, const Project& project) {
-  constexpr int k_rounds = 8;  // of smoothing; more change little
+  constexpr int k_rounds = 8;  // of smoothing; more have little effect
   Coarsener coarsener(surface, project);
   coarsener.collapse_until(triangles);
   coarsener.smooth(k_rounds);

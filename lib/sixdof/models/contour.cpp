@@ -9,18 +9,18 @@
 namespace sixdof {
 namespace {
 
-constexpr std::uint32_t k_block = 8;  // cells along an edge of a block that is skipped or visited as a whole
+constexpr std::uint32_t k_block = 8;  // cells along an edge of a block that can be skipped
 
 struct Node {
   std::array<std::uint32_t, 3> at;
   double value;
 };
 
-/// The six tetrahedra of a cell run from its first to its last corner, one axis after another; axes in this order, and
-/// whether that makes the corners right-handed.
+/// A tetrahedron of a cell: its corners are on the path from the cell's first to its last corner along the axes in this
+/// order.
 struct Path {
   std::array<std::size_t, 3> axes;
-  bool right_handed;
+  bool right_handed;  ///< Orientation of the four corners.
 };
 constexpr std::array<Path, 6> k_paths{{{{0, 1, 2}, true},
                                        {{1, 2, 0}, true},
@@ -37,18 +37,18 @@ class Marcher {
     const std::uint32_t blocks = field_.cells / k_block;
     for (std::uint32_t i = 0; i < blocks; ++i) {
       for (std::uint32_t j = 0; j < blocks; ++j) {
-        for (std::uint32_t k = 0; k < blocks; ++k) visit_block({i * k_block, j * k_block, k * k_block});
+        for (std::uint32_t k = 0; k < blocks; ++k) contour_block({i * k_block, j * k_block, k * k_block});
       }
     }
     return std::move(surface_);
   }
 
  private:
-  void visit_block(const std::array<std::uint32_t, 3>& first) {
+  void contour_block(const std::array<std::uint32_t, 3>& first) {
     constexpr std::uint32_t k_half = k_block / 2;
     const double middle = field_.value(first[0] + k_half, first[1] + k_half, first[2] + k_half);
-    const double reach = std::sqrt(3.0) * k_half * field_.step;
-    if (std::abs(middle) > field_.steepest * reach) return;
+    const double radius = std::sqrt(3.0) * k_half * field_.step;
+    if (std::abs(middle) > field_.lipschitz * radius) return;
     for (std::uint32_t i = 0; i <= k_block; ++i) {
       for (std::uint32_t j = 0; j <= k_block; ++j) {
         for (std::uint32_t k = 0; k <= k_block; ++k) {
@@ -58,12 +58,12 @@ class Marcher {
     }
     for (std::uint32_t i = 0; i < k_block; ++i) {
       for (std::uint32_t j = 0; j < k_block; ++j) {
-        for (std::uint32_t k = 0; k < k_block; ++k) visit_cell(first, {i, j, k});
+        for (std::uint32_t k = 0; k < k_block; ++k) contour_cell(first, {i, j, k});
       }
     }
   }
 
-  void visit_cell(const std::array<std::uint32_t, 3>& first, const std::array<std::uint32_t, 3>& cell) {
+  void contour_cell(const std::array<std::uint32_t, 3>& first, const std::array<std::uint32_t, 3>& cell) {
     for (const Path& path : k_paths) {
       std::array<std::uint32_t, 3> local = cell;
       std::array<Node, 4> corners;
@@ -72,12 +72,12 @@ class Marcher {
         corners[c] = {{first[0] + local[0], first[1] + local[1], first[2] + local[2]},
                       values_[local[0]][local[1]][local[2]]};
       }
-      visit_tetrahedron(corners, path.right_handed);
+      contour_tetrahedron(corners, path.right_handed);
     }
   }
 
-  void visit_tetrahedron(std::array<Node, 4> corners, bool right_handed) {
-    // Corners inside go first; every exchange of two corners changes the hand.
+  void contour_tetrahedron(std::array<Node, 4> corners, bool right_handed) {
+    // Corners inside go first; every exchange of two corners changes the orientation.
     std::size_t inside = 0;
     for (std::size_t c = 0; c < 4; ++c) {
       if (corners[c].value >= 0.0) continue;
@@ -96,7 +96,7 @@ class Marcher {
       add(right_handed, ac, cut(a, d), bd);
       add(right_handed, ac, bd, cut(b, c));
     } else if (inside == 3) {
-      // Seen from d, the only corner outside, the other three have the opposite hand to that in the case of one inside.
+      // The one corner that differs from the others is the last here, the first above: the orientation is the opposite.
       add(right_handed, cut(a, d), cut(b, d), cut(c, d));
     }
   }
@@ -105,9 +105,9 @@ class Marcher {
     surface_.triangles.push_back(right_handed ? Triangle{x, y, z} : Triangle{x, z, y});
   }
 
-  /// The vertex on the edge between two nodes, made when first asked for.
+  /// The vertex on the edge between two nodes, made on first use.
   std::uint32_t cut(const Node& p, const Node& q) {
-    const bool in_order = p.at <= q.at;  // the path only goes up, so that the order by coordinates is one by axes, too
+    const bool in_order = p.at <= q.at;  // paths go upwards: no coordinate of `high` is less than that of `low`
     const Node& low = in_order ? p : q;
     const Node& high = in_order ? q : p;
     const std::uint64_t width = field_.cells + 1ULL;
@@ -116,10 +116,10 @@ class Marcher {
     const auto [entry, fresh] = numbers_.try_emplace(key, static_cast<std::uint32_t>(surface_.vertices.size()));
     if (fresh) {
       constexpr double k_clear = 0.05;
-      const double share = std::clamp(low.value / (low.value - high.value), k_clear, 1.0 - k_clear);
+      const double fraction = std::clamp(low.value / (low.value - high.value), k_clear, 1.0 - k_clear);
       Eigen::Vector3d position;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double steps = low.at[axis] + share * (high.at[axis] - low.at[axis]);
+        const double steps = low.at[axis] + fraction * (high.at[axis] - low.at[axis]);
         position[static_cast<Eigen::Index>(axis)] = field_.low + field_.step * steps;
       }
       surface_.vertices.push_back(position);

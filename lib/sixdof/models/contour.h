@@ -14,17 +14,15 @@ struct GridField {
   double step = 1.0;
   /// Value at a node; negative inside the solid. Must be positive on the grid's border.
   std::function<double(std::uint32_t i, std::uint32_t j, std::uint32_t k)> value;
-  double steepest =
-      1.0;  ///< Bound on the field's change per length, in units of value: blocks without zero are skipped.
+  double lipschitz = 1.0;  ///< Bound on the change of the value per length: blocks without a zero are skipped by it.
 };
 
-/// The surface value = 0 by marching tetrahedra: each cell is cut into six tetrahedra along its diagonal, all cells
-/// alike. Closed, manifold and facing outwards for any values, since a node counts as inside or outside and never as
-/// both; vertices stay off the nodes by a twentieth of an edge. Triangles may be slim. Work and memory grow with the
-/// surface.
+/// The surface value = 0 by marching tetrahedra: each cell is divided into six tetrahedra about its diagonal. Closed,
+/// manifold and facing outwards for any values, since each node is either inside or outside; vertices are at least 1/20
+/// of an edge away from the nodes. Triangles may be slim. Cost and memory grow with the area of the surface.
 Surface contour(const GridField& field);
 
-/// Leaves only the component of the surface with the most triangles.
+/// Keeps the component of the surface with the most triangles only.
 void keep_largest_component(Surface& surface);
 
 }  // namespace sixdof

@@ -6,8 +6,7 @@
 
 namespace sixdof {
 
-/// Sums in a fixed order. Eigen's own reductions may sum in another order on another processor, and a model's content
-/// hash must not depend on that.
+/// Sums in a fixed order: Eigen's reductions depend on the processor, which a model's content hash must not.
 inline double dot_in_order(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
 }

@@ -7,9 +7,9 @@
 
 #include <sixdof/models/coarsen.h>
 #include <sixdof/models/contour.h>
+#include <sixdof/models/cos_sin.h>
 #include <sixdof/models/fixed_order.h>
-#include <sixdof/models/lengths.h>
-#include <sixdof/models/turn.h>
+#include <sixdof/models/sizing.h>
 
 namespace sixdof {
 namespace {
@@ -19,15 +19,15 @@ struct Waves {
   Eigen::Vector2d x, y, z;
 };
 
-/// The gyroid's field over its wave number, so that it grows about as fast as a distance, and the ball's, joined by a
-/// smooth maximum: (a + b + sqrt((a - b)^2 + rounding^2)) / 2.
-struct Joined {
+/// The field whose zeros are the surface: the smooth maximum (a + b + root) / 2, root = sqrt((a - b)^2 + rounding^2),
+/// of the gyroid's field a, divided by its wave number to grow about as a distance does, and the ball's field b.
+struct Field {
   double gyroid, ball, root, value;
 };
 
 double wave_number(const GyroidBallShape& shape) { return 2.0 * std::numbers::pi / shape.period; }
 
-Joined join(const GyroidBallShape& shape, const Eigen::Vector3d& p, const Waves& w) {
+Field field_at(const GyroidBallShape& shape, const Eigen::Vector3d& p, const Waves& w) {
   const double gyroid = (w.x.y() * w.y.x() + w.y.y() * w.z.x() + w.z.y() * w.x.x()) / wave_number(shape);
   const double ball = 0.5 * (dot_in_order(p, p) - 1.0);
   const double root = std::sqrt((gyroid - ball) * (gyroid - ball) + shape.rounding * shape.rounding);
@@ -35,21 +35,21 @@ Joined join(const GyroidBallShape& shape, const Eigen::Vector3d& p, const Waves&
 }
 
 Waves waves_at(const GyroidBallShape& shape, const Eigen::Vector3d& p) {
-  return {unit_at(p.x() / shape.period), unit_at(p.y() / shape.period), unit_at(p.z() / shape.period)};
+  return {cos_sin(p.x() / shape.period), cos_sin(p.y() / shape.period), cos_sin(p.z() / shape.period)};
 }
 
-/// Newton's method along the gradient.
+/// Onto the surface, by Newton's method along the gradient.
 Eigen::Vector3d project(const GyroidBallShape& shape, Eigen::Vector3d p) {
   constexpr int k_most_steps = 20;
-  constexpr double k_on_surface = 1e-14;  // of the radius: a hundred last places
+  constexpr double k_on_surface = 1e-14;  // of the radius: a hundred units in the last place
   for (int step = 0; step < k_most_steps; ++step) {
     const Waves w = waves_at(shape, p);
-    const Joined f = join(shape, p, w);
+    const Field f = field_at(shape, p, w);
     if (std::abs(f.value) < k_on_surface) break;
     const Eigen::Vector3d slope(w.x.x() * w.y.x() - w.z.y() * w.x.y(), w.y.x() * w.z.x() - w.x.y() * w.y.y(),
                                 w.z.x() * w.x.x() - w.y.y() * w.z.y());
-    const double share = 0.5 * (1.0 + (f.gyroid - f.ball) / f.root);
-    const Eigen::Vector3d gradient = share * slope + (1.0 - share) * p;
+    const double weight = 0.5 * (1.0 + (f.gyroid - f.ball) / f.root);
+    const Eigen::Vector3d gradient = weight * slope + (1.0 - weight) * p;
     p -= f.value / dot_in_order(gradient, gradient) * gradient;
   }
   return p;
@@ -61,26 +61,22 @@ Surface contour_of(const GyroidBallShape& shape, std::uint32_t cells) {
   field.cells = cells;
   field.low = -k_half;
   field.step = 2.0 * k_half / cells;
-  // Each component of the gyroid's gradient is below sqrt(2); the ball's gradient is the radius, at most sqrt(3) half
-  // widths.
-  field.steepest = std::sqrt(6.0);
-  std::vector<double> place(cells + 1);
+  // Each component of the gyroid's gradient is below sqrt(2); the ball's gradient is the distance from the origin, at
+  // most sqrt(3) * k_half.
+  field.lipschitz = std::sqrt(6.0);
+  std::vector<double> coordinate(cells + 1);
   std::vector<Eigen::Vector2d> wave(cells + 1);
   for (std::uint32_t i = 0; i <= cells; ++i) {
-    place[i] = field.low + field.step * i;
-    wave[i] = unit_at(place[i] / shape.period);
+    coordinate[i] = field.low + field.step * i;
+    wave[i] = cos_sin(coordinate[i] / shape.period);
   }
   field.value = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
-    return join(shape, {place[i], place[j], place[k]}, {wave[i], wave[j], wave[k]}).value;
+    return field_at(shape, {coordinate[i], coordinate[j], coordinate[k]}, {wave[i], wave[j], wave[k]}).value;
   };
   return contour(field);
 }
 
 }  // namespace
-
-double gyroid_field(const GyroidBallShape& shape, const Eigen::Vector3d& p) {
-  return join(shape, p, waves_at(shape, p)).value;
-}
 
 Mesh make_gyroid_ball(const GyroidBallShape& shape, std::size_t triangles) {
   check_length("gyroid-ball", "radius", shape.radius);
@@ -88,14 +84,12 @@ Mesh make_gyroid_ball(const GyroidBallShape& shape, std::size_t triangles) {
   check_shape(shape.rounding >= 0.02 && shape.rounding <= 0.2, "gyroid-ball",
               "rounding must be from 0.02 to 0.2 radii");
   const std::size_t budget = triangle_budget("gyroid-ball", triangles, k_minimum_gyroid_ball);
-  // The grid resolves handles and rounded edges, and gives more triangles than wanted: the surplus is what the slim
-  // ones among them are spent on.
-  constexpr double k_surplus = 2.5;
-  constexpr std::uint32_t k_coarsest = 64;
-  constexpr double k_triangles_per_square =
-      40.0;  // of cells: the surface's area is about 16, six triangles a cell face
+  constexpr double k_surplus = 2.5;         // triangles before and after coarsening, which removes the slim ones
+  constexpr std::uint32_t k_coarsest = 64;  // cells that resolve handles and rounded edges
+  constexpr double k_triangles_per_square_of_cells = 40.0;  // of a contour, about
   const double wanted = k_surplus * static_cast<double>(budget);
-  auto cells = std::max(k_coarsest, static_cast<std::uint32_t>(std::sqrt(wanted / k_triangles_per_square)) / 8 * 8);
+  auto cells =
+      std::max(k_coarsest, static_cast<std::uint32_t>(std::sqrt(wanted / k_triangles_per_square_of_cells)) / 8 * 8);
   Surface surface;
   while (true) {
     surface = contour_of(shape, cells);
@@ -107,7 +101,7 @@ Mesh make_gyroid_ball(const GyroidBallShape& shape, std::size_t triangles) {
   for (Eigen::Vector3d& p : surface.vertices) p = onto(p);
   coarsen_to(surface, budget, onto);
   for (Eigen::Vector3d& p : surface.vertices) p *= shape.radius;
-  return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), "gyroid-ball");
+  return to_mesh(std::move(surface), "gyroid-ball");
 }
 
 }  // namespace sixdof

@@ -7,15 +7,15 @@
 namespace sixdof {
 namespace {
 
-/// One wall element block: all elements of the wall of `cell` towards lower or higher numbers on `axis`.
+/// The wall of a solid cell towards lower or higher numbers on `axis`.
 struct Wall {
   Lattice::Node cell;
   std::size_t axis;
   bool towards_higher;
 };
 
-template <class Visit>
-void visit_walls(const Lattice& lattice, Visit visit) {
+template <class Body>
+void for_each_wall(const Lattice& lattice, Body body) {
   const std::array<std::uint32_t, 3> size{static_cast<std::uint32_t>(lattice.steps[0].size()),
                                           static_cast<std::uint32_t>(lattice.steps[1].size()),
                                           static_cast<std::uint32_t>(lattice.steps[2].size())};
@@ -26,15 +26,11 @@ void visit_walls(const Lattice& lattice, Visit visit) {
         if (!lattice.solid(cell)) continue;
         for (std::size_t axis = 0; axis < 3; ++axis) {
           for (const bool towards_higher : {false, true}) {
-            Lattice::Node beyond = cell;
             const bool closes = lattice.ring && axis == 1;
             const bool at_end = towards_higher ? cell[axis] + 1 == size[axis] : cell[axis] == 0;
-            if (at_end && !closes) {
-              visit(Wall{cell, axis, towards_higher});
-              continue;
-            }
+            Lattice::Node beyond = cell;
             beyond[axis] = (cell[axis] + (towards_higher ? 1 : size[axis] - 1)) % size[axis];
-            if (!lattice.solid(beyond)) visit(Wall{cell, axis, towards_higher});
+            if ((at_end && !closes) || !lattice.solid(beyond)) body(Wall{cell, axis, towards_higher});
           }
         }
       }
@@ -110,7 +106,7 @@ class Builder {
 
 std::size_t count_triangles(const Lattice& lattice) {
   std::size_t sum = 0;
-  visit_walls(lattice, [&](const Wall& wall) {
+  for_each_wall(lattice, [&](const Wall& wall) {
     const std::size_t u = (wall.axis + 1) % 3;
     const std::size_t v = (wall.axis + 2) % 3;
     sum += 2ULL * lattice.steps[u][wall.cell[u]] * lattice.steps[v][wall.cell[v]];
@@ -120,7 +116,7 @@ std::size_t count_triangles(const Lattice& lattice) {
 
 Surface surface_of(const Lattice& lattice) {
   Builder builder(lattice);
-  visit_walls(lattice, [&](const Wall& wall) { builder.add(wall); });
+  for_each_wall(lattice, [&](const Wall& wall) { builder.add(wall); });
   return builder.take();
 }
 

@@ -4,7 +4,7 @@
 
 namespace sixdof {
 
-/// models/models.json as it was when the library was built, so that an installed program needs no data file.
+/// The content of models/models.json: a part of the library, so that an installed program needs no data file.
 std::string_view manifest_text();
 
 }  // namespace sixdof

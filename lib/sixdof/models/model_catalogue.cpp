@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,9 +10,9 @@
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/load.h>
 #include <sixdof/models/manifest.h>
-#include <sixdof/models/suggestions.h>
 #include <sixdof/models/recipe.h>
 #include <sixdof/models/refine.h>
+#include <sixdof/models/suggestions.h>
 #include <sixdof/models/surface.h>
 
 namespace sixdof {
@@ -29,6 +30,13 @@ std::optional<std::size_t> parse_count(std::string_view text) {
   return value * factor;
 }
 
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const Recipe& recipe : recipes()) names.emplace_back(recipe.name);
+  for (const FetchedModel& model : fetched_models()) names.push_back(model.name);
+  return names;
+}
+
 [[noreturn]] void throw_unknown(std::string_view name) {
   const std::vector<std::string> near = suggestions(name, model_names());
   throw BadArgument(near.empty()
@@ -41,7 +49,7 @@ std::optional<std::size_t> parse_count(std::string_view text) {
 ModelName parse_model_name(std::string_view name) {
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; };
   if (name.empty() || !std::all_of(name.begin(), name.end(), allowed)) {
-    throw BadArgument(fmt::format("\"{}\" is no model's name: those consist of a to z, 0 to 9 and -", name));
+    throw BadArgument(fmt::format("\"{}\" is no model's name: names consist of a to z, 0 to 9 and -", name));
   }
   const std::size_t dash = name.rfind('-');
   if (dash != std::string_view::npos) {
@@ -50,14 +58,12 @@ ModelName parse_model_name(std::string_view name) {
   return {std::string(name), std::nullopt};
 }
 
-bool is_file_name(std::string_view name_or_file) { return name_or_file.find_first_of("./") != std::string_view::npos; }
-
 Mesh load_model(const std::string& name_or_file) {
-  if (is_file_name(name_or_file)) return load_mesh(name_or_file);
+  if (name_or_file.find_first_of("./") != std::string::npos) return load_mesh(name_or_file);
   const ModelName parts = parse_model_name(name_or_file);
   if (const Recipe* const recipe = find_recipe(parts.base)) {
     if (!parts.triangles) {
-      throw BadArgument(fmt::format("{0} is made to measure: say how many triangles, as in {0}-10k", parts.base));
+      throw BadArgument(fmt::format("{0} is a recipe: say how many triangles, as in {0}-10k", parts.base));
     }
     return recipe->make(*parts.triangles).renamed(name_or_file);
   }
@@ -65,19 +71,12 @@ Mesh load_model(const std::string& name_or_file) {
   if (fetched == nullptr) throw_unknown(parts.base);
   const std::size_t triangles = parts.triangles.value_or(fetched->triangles);
   if (triangles < fetched->triangles) {
-    throw BadArgument(fmt::format("{} has {} triangles and can be cut finer, not coarser; {} were asked for",
+    throw BadArgument(fmt::format("{} has {} triangles and can be subdivided, not coarsened; {} were asked for",
                                   parts.base, fetched->triangles, triangles));
   }
   Mesh mesh = load_fetched_model(*fetched);
   if (triangles == fetched->triangles) return std::move(mesh).renamed(name_or_file);
   return subdivide(mesh, triangles, name_or_file);
-}
-
-std::vector<std::string> model_names() {
-  std::vector<std::string> names;
-  for (const Recipe& recipe : recipes()) names.emplace_back(recipe.name);
-  for (const FetchedModel& model : fetched_models()) names.push_back(model.name);
-  return names;
 }
 
 }  // namespace sixdof

@@ -4,36 +4,28 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <sixdof/geometry/mesh.h>
 
 namespace sixdof {
 
-/// A model's name taken apart: "torus-knot-100k" is "torus-knot" with 100,000 triangles.
+/// The parts of a model's name: "torus-knot-100k" is "torus-knot" with 100,000 triangles.
 struct ModelName {
-  std::string base;                      ///< What comes before the count.
+  std::string base;                      ///< The name without the count.
   std::optional<std::size_t> triangles;  ///< A count is digits, or digits with k (thousand) or m (million).
 };
 
-/// Splits off the last part of the name if it is a count. @throws BadArgument unless the name consists of a to z, 0 to
-/// 9 and '-' alone.
+/// The last part of the name is a count if it has the form of one. @throws BadArgument unless the name consists of a-z,
+/// 0-9 and '-'.
 ModelName parse_model_name(std::string_view name);
 
-/// True if load_model takes the word for a file: it holds a '.' or a '/', which no model's name does.
-bool is_file_name(std::string_view name_or_file);
-
-/// One mesh by its name or out of a file:
-/// - RECIPE-COUNT makes a recipe's model: "torus-100k", "sphere-12500" (recipe.h);
-/// - NAME reads a fetched model: "elephant" (manifest.h), and NAME-COUNT cuts it finer without changing its shape:
-///   "elephant-1m" (refine.h);
-/// - a path is read by load_mesh: "hull.stl", "./parts/hull.off".
-/// The mesh's own name is the name asked for, or the file's.
+/// A mesh by its name or from a file:
+/// - RECIPE-COUNT is made by a recipe: "torus-100k", "sphere-12500" (recipe.h);
+/// - NAME is a fetched model: "elephant" (manifest.h); NAME-COUNT is its subdivision: "elephant-1m" (refine.h);
+/// - a word with a '.' or a '/' is a file for load_mesh(): "hull.stl", "./parts/hull".
+/// The mesh has the given name, or the file's.
 /// @throws BadArgument for a name that does not exist (the message lists similar ones) or a count out of range; BadFile
-/// for a file that cannot be read or a fetched model that is not there.
+/// for a file that cannot be read or a model that is not fetched.
 Mesh load_model(const std::string& name_or_file);
-
-/// Every base name that load_model knows.
-std::vector<std::string> model_names();
 
 }  // namespace sixdof

@@ -9,17 +9,17 @@
 
 namespace sixdof {
 
-/// A model that is made, not read: closed, manifold, facing outwards, at any triangle count in
-/// its range, and the same bits on every machine.
+/// A model made by this library: closed, manifold, facing outwards, at any triangle count in its range, the same bits
+/// on every machine.
 struct Recipe {
-  std::string_view name;     ///< Letters a to z and '-'.
-  std::string_view summary;  ///< What it is, its size in its own length unit and where its frame lies.
+  std::string_view name;     ///< a-z and '-'.
+  std::string_view summary;  ///< Shape, size in the model's length unit, and frame.
   std::size_t minimum;       ///< Fewest triangles.
   unsigned genus;            ///< Number of handles.
   Mesh (*make)(std::size_t triangles);
 };
 
-/// All recipes, in the order in which they are listed.
+/// All recipes.
 std::span<const Recipe> recipes();
 
 /// The recipe of that name, or null.

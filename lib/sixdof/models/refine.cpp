@@ -1,8 +1,6 @@
 #include <sixdof/models/refine.h>
 
 #include <algorithm>
-#include <limits>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -12,7 +10,7 @@
 namespace sixdof {
 namespace {
 
-using HalfEdge = std::uint32_t;  // 3 * triangle + corner: runs from that corner to the next
+using HalfEdge = std::uint32_t;  // 3 * triangle + corner: from that corner to the next
 
 HalfEdge next_in_triangle(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
 HalfEdge previous_in_triangle(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1; }
@@ -26,7 +24,7 @@ struct Edge {
   bool joins_same(const Edge& other) const { return low == other.low && high == other.high; }
 };
 
-/// Order of splitting: a total order of edges that depends on the surface alone. "Less" is "later".
+/// Order of splitting: a total order of the edges. "Less" is "later".
 bool splits_later(const Edge& x, const Edge& y) {
   if (x.length_squared != y.length_squared) return x.length_squared < y.length_squared;
   if (x.low != y.low) return x.low > y.low;
@@ -35,7 +33,7 @@ bool splits_later(const Edge& x, const Edge& y) {
 
 class Refiner {
  public:
-  Refiner(Surface& surface, const PlaceOnEdge& place) : surface_(surface), place_(place) {
+  Refiner(Surface& surface, const SplitPosition& position) : surface_(surface), position_(position) {
     const std::size_t half_edges = 3 * surface.triangles.size();
     queue_.reserve(half_edges);
     for (std::size_t h = 0; h < half_edges; ++h) queue_.push_back(edge_of(static_cast<HalfEdge>(h)));
@@ -48,7 +46,7 @@ class Refiner {
       std::pop_heap(queue_.begin(), queue_.end(), splits_later);
       const Edge edge = queue_.back();
       queue_.pop_back();
-      // Entries of edges that have been split, or moved to another half-edge, are left in the queue and skipped here.
+      // The queue keeps entries of edges that have been split or belong to another half-edge now.
       if (!edge.joins_same(edge_of(edge.half_edge))) continue;
       split(edge);
       return;
@@ -61,13 +59,13 @@ class Refiner {
   Edge edge_of(HalfEdge h) {
     const std::uint32_t a = origin(h);
     const std::uint32_t b = origin(next_in_triangle(h));
-    // The lower number first, so that the length has the same bits from both sides.
+    // From the lower number to the higher: the length has the same bits on both sides.
     const auto [low, high] = std::minmax(a, b);
     const Eigen::Vector3d along = surface_.vertices[high] - surface_.vertices[low];
     return {dot_in_order(along, along), low, high, h};
   }
 
-  /// Joins the half-edges of each edge in a ring, whatever their number, and keeps one queue entry an edge.
+  /// Links the half-edges of each edge, of any number, in a ring, and keeps one queue entry per edge.
   void link_half_edges() {
     std::sort(queue_.begin(), queue_.end(), [](const Edge& x, const Edge& y) {
       if (x.low != y.low) return x.low < y.low;
@@ -89,7 +87,7 @@ class Refiner {
     queue_.resize(kept);
   }
 
-  /// Puts `fresh` into the place of `old` in the old one's ring.
+  /// Replaces `old` by `fresh` in its ring.
   void replace_in_ring(HalfEdge old, HalfEdge fresh) {
     if (ring_[old] == old) {
       ring_[fresh] = fresh;
@@ -113,7 +111,7 @@ class Refiner {
 
   void split(const Edge& edge) {
     const auto middle = static_cast<std::uint32_t>(surface_.vertices.size());
-    surface_.vertices.push_back(place_(surface_, edge.low, edge.high));
+    surface_.vertices.push_back(position_(surface_, edge.low, edge.high));
 
     around_.clear();
     HalfEdge h = edge.half_edge;
@@ -125,7 +123,7 @@ class Refiner {
     at_low_.clear();
     at_high_.clear();
     for (const HalfEdge cut : around_) {
-      // Triangle (a, b, c), cut on a-b, becomes (a, middle, c) in its place and (middle, b, c) at the end.
+      // Triangle (a, b, c), split on a-b, becomes (a, middle, c); triangle (middle, b, c) is added.
       const HalfEdge after = next_in_triangle(cut);
       const HalfEdge before = previous_in_triangle(cut);
       const std::uint32_t a = origin(cut);
@@ -148,7 +146,7 @@ class Refiner {
   }
 
   Surface& surface_;
-  const PlaceOnEdge& place_;
+  const SplitPosition& position_;
   std::vector<Edge> queue_;     ///< Heap, longest first; may hold stale entries.
   std::vector<HalfEdge> ring_;  ///< Next half-edge of the same edge.
   std::vector<HalfEdge> around_, at_low_, at_high_;
@@ -160,10 +158,10 @@ Eigen::Vector3d midpoint_of_edge(const Surface& surface, std::uint32_t a, std::u
   return 0.5 * (surface.vertices[a] + surface.vertices[b]);
 }
 
-void refine_to(Surface& surface, std::size_t triangles, const PlaceOnEdge& place) {
+void refine_to(Surface& surface, std::size_t triangles, const SplitPosition& position) {
   if (surface.triangles.size() >= triangles) return;
   surface.triangles.reserve(triangles + 2);
-  Refiner refiner(surface, place);
+  Refiner refiner(surface, position);
   while (surface.triangles.size() < triangles) refiner.split_longest();
 }
 
@@ -174,7 +172,7 @@ Mesh subdivide(const Mesh& mesh, std::size_t triangles, std::string name) {
   }
   Surface surface{mesh.vertices(), mesh.triangles()};
   refine_to(surface, triangles);
-  return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), std::move(name));
+  return to_mesh(std::move(surface), std::move(name));
 }
 
 }  // namespace sixdof

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include <sixdof/models/lengths.h>
+#include <sixdof/models/cos_sin.h>
 #include <sixdof/models/refine.h>
 #include <sixdof/models/rings.h>
-#include <sixdof/models/turn.h>
+#include <sixdof/models/sizing.h>
 
 namespace sixdof {
 namespace {
@@ -17,23 +17,23 @@ struct ProfilePoint {
   double radius, z;
 };
 
-/// Height of an equilateral triangle over its edge: rows of rings stand this far apart.
+/// Distance of rings over edge length: sqrt(3) / 2, for equilateral triangles.
 constexpr double k_row = 0.8660254037844386;
 constexpr std::uint32_t k_fewest_around = 6;
 
-struct RingPlace {
+struct ProfileRing {
   double radius, z;
   std::uint32_t count;
-  bool on_side;  ///< On the slanted or upright side or its rim, not inside a flat disc.
+  bool on_side;  ///< On the side or its rim, not inside a flat disc.
 };
 
-/// Rings along a profile that runs from the axis to the axis, for edges of length h. Flat parts (of constant z) are
-/// discs, all others are side.
-std::vector<RingPlace> rings_along(std::span<const ProfilePoint> profile, double h) {
+/// Rings along a profile from the axis to the axis, for edges of length h. Parts of constant z are discs, all others
+/// are the side.
+std::vector<ProfileRing> rings_along(std::span<const ProfilePoint> profile, double h) {
   const auto count_at = [&](double radius) {
     return radius == 0.0 ? 1U : whole_steps(2.0 * std::numbers::pi * radius, h, k_fewest_around);
   };
-  std::vector<RingPlace> rings{{profile[0].radius, profile[0].z, count_at(profile[0].radius), false}};
+  std::vector<ProfileRing> rings{{profile[0].radius, profile[0].z, count_at(profile[0].radius), false}};
   for (std::size_t i = 1; i < profile.size(); ++i) {
     const ProfilePoint& from = profile[i - 1];
     const ProfilePoint& to = profile[i];
@@ -52,7 +52,7 @@ std::vector<RingPlace> rings_along(std::span<const ProfilePoint> profile, double
   return rings;
 }
 
-std::size_t count_triangles(std::span<const RingPlace> rings) {
+std::size_t count_triangles(std::span<const ProfileRing> rings) {
   std::size_t sum = 0;
   for (std::size_t i = 1; i < rings.size(); ++i) sum += strip_size(rings[i - 1].count, rings[i].count);
   return sum;
@@ -70,12 +70,12 @@ Mesh revolve(std::span<const ProfilePoint> profile, double area, std::size_t bud
   Ring before;
   bool first = true;
   std::uint32_t shift = 0;
-  for (const RingPlace& place : rings_along(profile, h)) {
-    const Ring ring{static_cast<std::uint32_t>(surface.vertices.size()), place.count, shift};
+  for (const ProfileRing& at : rings_along(profile, h)) {
+    const Ring ring{static_cast<std::uint32_t>(surface.vertices.size()), at.count, shift};
     for (std::uint32_t j = 0; j < ring.count; ++j) {
-      const Eigen::Vector2d u = place.radius * unit_at(2ULL * j + shift, 2ULL * ring.count);
-      surface.vertices.emplace_back(u.x(), u.y(), place.z);
-      on_side.push_back(place.on_side ? 1 : 0);
+      const Eigen::Vector2d u = at.radius * cos_sin(2ULL * j + shift, 2ULL * ring.count);
+      surface.vertices.emplace_back(u.x(), u.y(), at.z);
+      on_side.push_back(at.on_side ? 1 : 0);
     }
     if (!first) stitch(surface, before, ring);
     before = ring;
@@ -90,7 +90,7 @@ Mesh revolve(std::span<const ProfilePoint> profile, double area, std::size_t bud
     if (side && distance > 0.0) p.head<2>() *= radius_at(p.z()) / distance;
     return p;
   });
-  return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), name);
+  return to_mesh(std::move(surface), name);
 }
 
 }  // namespace

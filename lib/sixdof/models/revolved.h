@@ -22,9 +22,8 @@ struct ConeShape {
 constexpr std::size_t k_minimum_cylinder = 24;
 constexpr std::size_t k_minimum_cone = 12;
 
-/// Inscribed in the ideal solid: every vertex lies on it, rims included. Exactly `triangles` triangles, or one more if
-/// that is odd. Edges are about equally long everywhere. @throws BadArgument if a length is not positive and finite or
-/// the count is out of range (triangle_budget).
+/// Every vertex lies on the ideal surface; edges are about equally long. Exactly `triangles` triangles, or one more if
+/// that is odd. @throws BadArgument if a length is not positive and finite or the count is out of range.
 Mesh make_cylinder(const CylinderShape& shape, std::size_t triangles);
 Mesh make_cone(const ConeShape& shape, std::size_t triangles);
 

@@ -5,7 +5,7 @@ namespace {
 
 std::uint32_t vertex_of(const Ring& ring, std::uint32_t j) { return ring.first + j % ring.count; }
 
-/// Is the middle of edge i of one ring before the middle of edge j of the other? In integers: exact.
+/// Whether the middle of edge i of one ring is before the middle of edge j of the other, by exact integers.
 bool comes_first(const Ring& lower, std::uint32_t i, const Ring& upper, std::uint32_t j) {
   const std::uint64_t left = (2ULL * i + lower.shift + 1) * upper.count;
   const std::uint64_t right = (2ULL * j + upper.shift + 1) * lower.count;

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include <sixdof/models/cos_sin.h>
 #include <sixdof/models/fixed_order.h>
-#include <sixdof/models/lengths.h>
 #include <sixdof/models/refine.h>
-#include <sixdof/models/turn.h>
+#include <sixdof/models/sizing.h>
 
 namespace sixdof {
 namespace {
@@ -34,8 +34,8 @@ Surface icosahedron() {
            {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
 }
 
-/// Cuts every triangle into n^2 alike ones. Points of a shared edge are made once, from its lower to its higher corner.
-Surface cut_faces(const Surface& coarse, std::uint32_t n) {
+/// Divides every triangle into n^2 equal ones. Points of an edge are made once, from its lower to its higher corner.
+Surface divide_faces(const Surface& coarse, std::uint32_t n) {
   Surface fine{coarse.vertices, {}};
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first_on_edge;
   const auto between = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, std::uint32_t k, std::uint32_t parts) {
@@ -57,7 +57,7 @@ Surface cut_faces(const Surface& coarse, std::uint32_t n) {
   };
   std::vector<std::uint32_t> row, above;
   for (const Triangle& t : coarse.triangles) {
-    // Row r runs from a point of edge t0-t1 to one of edge t0-t2, r steps away from t0.
+    // Row r goes from edge t0-t1 to edge t0-t2, r steps away from t0.
     above.assign(1, t[0]);
     for (std::uint32_t r = 1; r <= n; ++r) {
       row.clear();
@@ -84,17 +84,17 @@ Surface cut_faces(const Surface& coarse, std::uint32_t n) {
   return fine;
 }
 
-/// @param place maps any point but the origin to the surface along its ray
-template <class Place>
-Mesh make_geodesic(const char* name, std::size_t triangles, Place place) {
+/// @param project maps any point but the origin to the surface along its ray
+template <class Project>
+Mesh make_geodesic(const char* name, std::size_t triangles, Project project) {
   const std::size_t budget = triangle_budget(name, triangles, k_minimum_sphere);
   std::uint32_t n = 1;
   while (20ULL * (n + 1) * (n + 1) <= budget) ++n;
-  Surface surface = cut_faces(icosahedron(), n);
-  for (Eigen::Vector3d& p : surface.vertices) p = place(p);
+  Surface surface = divide_faces(icosahedron(), n);
+  for (Eigen::Vector3d& p : surface.vertices) p = project(p);
   refine_to(surface, budget,
-            [&](const Surface& s, std::uint32_t a, std::uint32_t b) { return place(midpoint_of_edge(s, a, b)); });
-  return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), name);
+            [&](const Surface& s, std::uint32_t a, std::uint32_t b) { return project(midpoint_of_edge(s, a, b)); });
+  return to_mesh(std::move(surface), name);
 }
 
 Eigen::Vector3d direction_of(const Eigen::Vector3d& p) { return p / norm_in_order(p); }
@@ -102,8 +102,8 @@ Eigen::Vector3d direction_of(const Eigen::Vector3d& p) { return p / norm_in_orde
 }  // namespace
 
 double bumpy_radius(const BumpySphereShape& shape, const Eigen::Vector3d& direction) {
-  const double wave = unit_at(shape.waves * direction.x()).x() * unit_at(shape.waves * direction.y()).x() *
-                      unit_at(shape.waves * direction.z()).x();
+  const double wave = cos_sin(shape.waves * direction.x()).x() * cos_sin(shape.waves * direction.y()).x() *
+                      cos_sin(shape.waves * direction.z()).x();
   return shape.radius * (1.0 + shape.amplitude * wave);
 }
 

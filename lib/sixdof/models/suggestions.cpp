@@ -5,7 +5,9 @@
 #include <utility>
 
 namespace sixdof {
+namespace {
 
+/// Letters to insert, delete or exchange to get from one word to the other (Levenshtein).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -20,6 +22,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   }
   return row.back();
 }
+
+}  // namespace
 
 std::vector<std::string> suggestions(std::string_view word, const std::vector<std::string>& names) {
   constexpr std::size_t k_most_edits = 3;

@@ -8,19 +8,20 @@
 
 #include <Eigen/Geometry>
 
+#include <sixdof/models/cos_sin.h>
 #include <sixdof/models/fixed_order.h>
-#include <sixdof/models/lengths.h>
 #include <sixdof/models/refine.h>
 #include <sixdof/models/rings.h>
-#include <sixdof/models/turn.h>
+#include <sixdof/models/sizing.h>
 
 namespace sixdof {
 namespace {
 
 constexpr double k_two_pi = 2.0 * std::numbers::pi;
-constexpr double k_row = 0.8660254037844386;  // rows of equilateral triangles stand this share of an edge apart
+constexpr std::uint32_t k_core_points = 1024;  // beyond twice the bandwidth of the speed of any knot that is allowed
+constexpr double k_row = 0.8660254037844386;   // distance of rows of equilateral triangles over edge length
 
-/// A closed curve: position, first and second derivative by t, period 1.
+/// A point of the core: position, first and second derivative by t.
 struct CorePoint {
   Eigen::Vector3d position, first, second;
 };
@@ -30,10 +31,10 @@ struct Frame {
 };
 
 CorePoint core_at(const TorusKnotShape& shape, double t) {
-  const double p = k_two_pi * shape.turns;
+  const double p = k_two_pi * shape.revolutions;
   const double q = k_two_pi * shape.windings;
-  const Eigen::Vector2d around = unit_at(shape.turns * t);
-  const Eigen::Vector2d about = unit_at(shape.windings * t);
+  const Eigen::Vector2d around = cos_sin(shape.revolutions * t);
+  const Eigen::Vector2d about = cos_sin(shape.windings * t);
   const double r = shape.minor_radius;
   const double rho = shape.major_radius + r * about.x();
   const double rho1 = -r * q * about.y();
@@ -45,12 +46,12 @@ CorePoint core_at(const TorusKnotShape& shape, double t) {
           (rho2 - rho * p * p) * radial + 2.0 * rho1 * p * sideways - r * q * q * about.y() * up};
 }
 
-/// The frame leans on the direction away from the z axis, which is never along the tangent: it closes after one period
-/// and twists little.
+/// From the tangent and the direction away from the z axis, which is never parallel to it: the frame is periodic and
+/// has little twist.
 Frame frame_at(const TorusKnotShape& shape, double t) {
   const CorePoint core = core_at(shape, t);
   const Eigen::Vector3d tangent = core.first / norm_in_order(core.first);
-  const Eigen::Vector2d around = unit_at(shape.turns * t);
+  const Eigen::Vector2d around = cos_sin(shape.revolutions * t);
   const Eigen::Vector3d radial(around.x(), around.y(), 0.0);
   Eigen::Vector3d outward = radial - dot_in_order(radial, tangent) * tangent;
   outward /= norm_in_order(outward);
@@ -61,39 +62,39 @@ Frame frame_at(const TorusKnotShape& shape, double t) {
 /// of arc lengths; the first is 0.
 std::vector<double> equal_parts(const TorusKnotShape& shape, std::uint32_t count) {
   constexpr std::uint32_t k_finer = 4;
-  const std::uint32_t samples = k_finer * count;
-  std::vector<double> length(samples + 1, 0.0);
-  for (std::uint32_t i = 0; i < samples; ++i) {
-    const double middle = (i + 0.5) / samples;
-    length[i + 1] = length[i] + norm_in_order(core_at(shape, middle).first) / samples;
+  const std::uint32_t pieces = k_finer * count;
+  std::vector<double> length(pieces + 1, 0.0);
+  for (std::uint32_t i = 0; i < pieces; ++i) {
+    const double middle = (i + 0.5) / pieces;
+    length[i + 1] = length[i] + norm_in_order(core_at(shape, middle).first) / pieces;
   }
   std::vector<double> parameters(count, 0.0);
   std::uint32_t i = 0;
   for (std::uint32_t k = 1; k < count; ++k) {
-    const double wanted = length[samples] * k / count;
+    const double wanted = length[pieces] * k / count;
     while (length[i + 1] < wanted) ++i;
-    parameters[k] = (i + (wanted - length[i]) / (length[i + 1] - length[i])) / samples;
+    parameters[k] = (i + (wanted - length[i]) / (length[i + 1] - length[i])) / pieces;
   }
   return parameters;
 }
 
-/// Refuses tubes that meet themselves. Where the core's curvature is at most 1 / tube_radius, two points less than half
-/// a circle of that radius apart along the core cannot be nearer than on the circle (Schur); all others are compared.
+/// @throws BadArgument if the tube intersects itself. Where the core's curvature is at most 1 / tube_radius, two points
+/// that are less than half a circle of that radius apart along the core are no nearer than on the circle (Schur); all
+/// other pairs are compared.
 void check_clearance(const TorusKnotShape& shape) {
-  constexpr std::uint32_t k_samples = 1024;
-  std::vector<CorePoint> core(k_samples);
-  std::vector<double> along(k_samples + 1, 0.0);
-  for (std::uint32_t i = 0; i < k_samples; ++i) {
-    core[i] = core_at(shape, static_cast<double>(i) / k_samples);
+  std::vector<CorePoint> core(k_core_points);
+  std::vector<double> along(k_core_points + 1, 0.0);
+  for (std::uint32_t i = 0; i < k_core_points; ++i) {
+    core[i] = core_at(shape, static_cast<double>(i) / k_core_points);
     const double speed = norm_in_order(core[i].first);
-    along[i + 1] = along[i] + speed / k_samples;
+    along[i + 1] = along[i] + speed / k_core_points;
     const double curvature = norm_in_order(core[i].first.cross(core[i].second)) / (speed * speed * speed);
     check_shape(curvature * shape.tube_radius < 1.0, "torus-knot",
                 "the tube is thicker than the core's curvature allows");
   }
-  for (std::uint32_t i = 0; i < k_samples; ++i) {
-    for (std::uint32_t j = i + 1; j < k_samples; ++j) {
-      const double apart = std::min(along[j] - along[i], along[k_samples] - along[j] + along[i]);
+  for (std::uint32_t i = 0; i < k_core_points; ++i) {
+    for (std::uint32_t j = i + 1; j < k_core_points; ++j) {
+      const double apart = std::min(along[j] - along[i], along[k_core_points] - along[j] + along[i]);
       if (apart < std::numbers::pi * shape.tube_radius) continue;
       check_shape(norm_in_order(core[i].position - core[j].position) > 2.0 * shape.tube_radius, "torus-knot",
                   "strands of the tube meet");
@@ -105,7 +106,7 @@ struct Counts {
   std::uint32_t along, around;
 };
 
-/// Rows along the core and vertices around the tube for edges of length h; rows are staggered, so their number is even.
+/// Rows along the core and vertices around the tube for edges of length h. Rows are staggered: their number is even.
 Counts counts_for(double core, double tube_radius, double h, Counts fewest) {
   return {2 * whole_steps(core, 2.0 * k_row * h, fewest.along / 2),
           whole_steps(k_two_pi * tube_radius, h, fewest.around)};
@@ -128,11 +129,11 @@ static_assert(2 * k_fewest_torus_knot.along * k_fewest_torus_knot.around == k_mi
 }  // namespace
 
 double core_length(const TorusKnotShape& shape) {
-  constexpr std::uint32_t k_samples = 1024;  // far beyond the bandwidth of the speed of any knot that passes the checks
   double sum = 0.0;
-  for (std::uint32_t i = 0; i < k_samples; ++i)
-    sum += norm_in_order(core_at(shape, static_cast<double>(i) / k_samples).first);
-  return sum / k_samples;
+  for (std::uint32_t i = 0; i < k_core_points; ++i) {
+    sum += norm_in_order(core_at(shape, static_cast<double>(i) / k_core_points).first);
+  }
+  return sum / k_core_points;
 }
 
 Mesh make_torus(const TorusShape& shape, std::size_t triangles) {
@@ -148,10 +149,10 @@ Mesh make_torus(const TorusShape& shape, std::size_t triangles) {
   const Counts counts = counts_for(core, r, h, k_fewest_torus);
   Surface surface;
   for (std::uint32_t i = 0; i < counts.along; ++i) {
-    const Eigen::Vector2d around = unit_at(i, counts.along);
+    const Eigen::Vector2d around = cos_sin(i, counts.along);
     for (std::uint32_t j = 0; j < counts.around; ++j) {
-      // About the core's direction of translation, counter-clockwise from the outside: up is backwards.
-      const Eigen::Vector2d about = unit_at(2ULL * j + i % 2, 2ULL * counts.around);
+      // Counter-clockwise seen against the core's direction, as stitch() needs: first outwards, then downwards.
+      const Eigen::Vector2d about = cos_sin(2ULL * j + i % 2, 2ULL * counts.around);
       const double rho = shape.major_radius + r * about.x();
       surface.vertices.emplace_back(rho * around.x(), rho * around.y(), -r * about.y());
     }
@@ -164,16 +165,16 @@ Mesh make_torus(const TorusShape& shape, std::size_t triangles) {
     const Eigen::Vector3d out = p - core_point;
     return Eigen::Vector3d(core_point + r / norm_in_order(out) * out);
   });
-  return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), "torus");
+  return to_mesh(std::move(surface), "torus");
 }
 
 Mesh make_torus_knot(const TorusKnotShape& shape, std::size_t triangles) {
   check_length("torus-knot", "major_radius", shape.major_radius);
   check_length("torus-knot", "minor_radius", shape.minor_radius);
   check_length("torus-knot", "tube_radius", shape.tube_radius);
-  check_shape(shape.turns >= 1 && shape.windings >= 1 && shape.turns <= 20 && shape.windings <= 20 &&
-                  std::gcd(shape.turns, shape.windings) == 1,
-              "torus-knot", "turns and windings must be from 1 to 20 without a common divisor");
+  check_shape(shape.revolutions >= 1 && shape.windings >= 1 && shape.revolutions <= 20 && shape.windings <= 20 &&
+                  std::gcd(shape.revolutions, shape.windings) == 1,
+              "torus-knot", "revolutions and windings must be from 1 to 20 without a common divisor");
   check_shape(shape.minor_radius < shape.major_radius, "torus-knot", "minor_radius must be less than major_radius");
   check_clearance(shape);
   const std::size_t budget = triangle_budget("torus-knot", triangles, k_minimum_torus_knot);
@@ -189,7 +190,7 @@ Mesh make_torus_knot(const TorusKnotShape& shape, std::size_t triangles) {
   for (std::uint32_t i = 0; i < counts.along; ++i) {
     const Frame frame = frame_at(shape, rows[i]);
     for (std::uint32_t j = 0; j < counts.around; ++j) {
-      const Eigen::Vector2d about = unit_at(2ULL * j + i % 2, 2ULL * counts.around);
+      const Eigen::Vector2d about = cos_sin(2ULL * j + i % 2, 2ULL * counts.around);
       surface.vertices.emplace_back(frame.position + radius * (about.x() * frame.outward + about.y() * frame.across));
       parameter.push_back(rows[i]);
     }
@@ -204,7 +205,7 @@ Mesh make_torus_knot(const TorusKnotShape& shape, std::size_t triangles) {
     out -= dot_in_order(out, frame.tangent) * frame.tangent;
     return Eigen::Vector3d(frame.position + radius / norm_in_order(out) * out);
   });
-  return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), "torus-knot");
+  return to_mesh(std::move(surface), "torus-knot");
 }
 
 }  // namespace sixdof

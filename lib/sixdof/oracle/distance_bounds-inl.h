@@ -18,17 +18,20 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 
-// Lower bounds on the distances of one volume from the eight children of a node, one child per SIMD lane.
+// Lower bounds on the distances of one volume (the fixed one) from the eight children of a node (the expanded one),
+// one child per SIMD lane.
 //
-// Every bound is the gap between projections on an axis, or the distance of two axis-aligned boxes:
-//   - the direction of the closest points so far: where surfaces are smooth it is close to the normal of every pair
-//     that matters, and the children's slabs make it tight;
-//   - boxes in the frame of the one tree, and in that of the other;
+// N is the frame of the expanded node's tree, F that of the fixed volume's tree, both with the origin at the tree's
+// centre. w is a unit vector from the body of N to the body of F. Each bound is a separating-axis bound, the gap
+// between the projections on an axis, or the distance of two axis-aligned boxes:
+//   - axis w, the direction between the closest points so far: on smooth surfaces it is close to the normals of all
+//     pairs that are nearly as close, so the children's slabs make the bound tight;
+//   - boxes in N, and boxes in F;
 //   - the normals of the slabs;
 //   - the line through the centres.
-// Bounds are floats and rounded; k_slack lowers them so far that they stay bounds. Hence which instruction set computed
-// them, and in what order pairs are met, has no influence on the result: it is the smallest of the distances that
-// triangle_triangle_distance() gives for all pairs.
+// Bounds are floats; Slack lowers them by more than their rounding, so they are bounds on every instruction set. The
+// answer does not depend on which bounds were computed: it is the smallest of triangle_triangle_distance() over all
+// pairs.
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {
@@ -41,76 +44,77 @@ using V = hn::Vec<Lanes>;
 constexpr Lanes k_lanes;
 constexpr std::size_t k_width = Tree::k_width;
 
-/// A bound is made of fewer than 30 roundings (6e-8 each) of numbers not larger than the sizes that it is scaled by.
+/// Rounding of a bound, relative to the lengths that enter it: fewer than 30 roundings of 6e-8 each.
 constexpr float k_slack = 4e-6f;
 
 struct Frame {
-  float rotation[3][3];  // p_N = R p_F + t: from the fixed tree's frame to that of the opened one
+  float rotation[3][3];  // p_N = rotation p_F + translation
   float translation[3];
-  double translation_along;  // t . w
-  float toward[3];           // w: unit vector from the opened tree's body to the fixed one's, in N
-  float toward_fixed[3];     // the same in F
+  double translation_along;  // translation . w
+  float direction[3];        // w in N
+  float direction_fixed[3];  // w in F
 };
 
+/// By how much a bound is lowered (lengths).
 struct Slack {
-  float sizes;  // where only coordinates relative to the centres enter
-  float far;    // where the translation enters as well
+  float local;  // where only coordinates relative to the centres enter
+  float all;    // where the translation enters as well
 };
 
-/// One query seen from both trees.
+/// The pose of one query between the frames of both trees.
 struct Frames {
-  Eigen::Vector3d shift;  // B's centre from A's, in A's frame
+  Eigen::Vector3d shift;  // from A's centre to B's, in A's frame
   Eigen::Matrix3d R;
-  Frame open_a;  // N = A, F = B
-  Frame open_b;  // N = B, F = A
+  Frame expand_a;  // N = A, F = B
+  Frame expand_b;  // N = B, F = A
   Slack slack;
 
   Frames(const Tree& a, const Tree& b, const Pose& X_AB) : shift(X_AB * b.center() - a.center()), R(X_AB.R) {
     const Eigen::Vector3d back = -(R.transpose() * shift);
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
-        open_a.rotation[i][k] = static_cast<float>(R(i, k));
-        open_b.rotation[i][k] = static_cast<float>(R(k, i));
+        expand_a.rotation[i][k] = static_cast<float>(R(i, k));
+        expand_b.rotation[i][k] = static_cast<float>(R(k, i));
       }
-      open_a.translation[i] = static_cast<float>(shift[i]);
-      open_b.translation[i] = static_cast<float>(back[i]);
+      expand_a.translation[i] = static_cast<float>(shift[i]);
+      expand_b.translation[i] = static_cast<float>(back[i]);
     }
     const double sizes = a.radius() + b.radius();
-    // Poses and vertices far from the origins round in double before they come here.
+    // Rounding of the doubles, which matters where poses or vertices are far from the origins.
     const double offsets = 1e-14 * (a.center().norm() + b.center().norm() + X_AB.t.norm());
-    slack.sizes = static_cast<float>(k_slack * sizes + offsets);
-    slack.far = static_cast<float>(k_slack * (sizes + shift.norm()) + offsets);
+    slack.local = static_cast<float>(k_slack * sizes + offsets);
+    slack.all = static_cast<float>(k_slack * (sizes + shift.norm()) + offsets);
   }
 
-  /// Sets w from a vector of any length, in A's frame, from A to B.
-  void look_along(const Eigen::Vector3d& direction) {
+  /// Sets w to the direction from A to B given by a vector of any length in A's frame.
+  void set_direction(const Eigen::Vector3d& direction) {
     const double length = direction.norm();
     const Eigen::Vector3d w = length > 0.0 ? Eigen::Vector3d(direction / length) : Eigen::Vector3d::UnitX();
     const Eigen::Vector3d in_b = R.transpose() * w;
     for (int i = 0; i < 3; ++i) {
-      open_a.toward[i] = static_cast<float>(w[i]);
-      open_a.toward_fixed[i] = static_cast<float>(in_b[i]);
-      open_b.toward[i] = static_cast<float>(-in_b[i]);
-      open_b.toward_fixed[i] = static_cast<float>(-w[i]);
+      expand_a.direction[i] = static_cast<float>(w[i]);
+      expand_a.direction_fixed[i] = static_cast<float>(in_b[i]);
+      expand_b.direction[i] = static_cast<float>(-in_b[i]);
+      expand_b.direction_fixed[i] = static_cast<float>(-w[i]);
     }
-    open_a.translation_along = w.dot(shift);
-    open_b.translation_along = w.dot(shift);  // (-R^T w) . (-R^T shift)
+    expand_a.translation_along = w.dot(shift);
+    expand_b.translation_along = w.dot(shift);  // (-R^T w) . (-R^T shift)
   }
 };
 
-/// The fixed volume, seen from the opened tree's frame N.
-struct Fixed {
-  float center[3];
+/// The fixed volume in both frames.
+struct FixedVolume {
+  float center[3];        // of the box, in N
   float axis[3][3];       // axis[k]: half extent along F's axis k, in N
-  float half[3];          // of the box around it in N
+  float half[3];          // half extents of the axis-aligned box around it in N
   float center_fixed[3];  // in F
   float half_fixed[3];    // in F
-  float normal[3];
+  float normal[3];        // of the slab, in N
   float slab_lower;
   float slab_upper;
-  float lowest;  // smallest p . w over the volume, without the translation's part
+  float least_along;  // smallest p . w over the volume, p in F
 
-  Fixed(const Tree::Volume& v, const Frame& f) {
+  FixedVolume(const Tree::Volume& v, const Frame& f) {
     for (std::size_t k = 0; k < 3; ++k) {
       center_fixed[k] = 0.5f * (v.lower[k] + v.upper[k]);
       half_fixed[k] = 0.5f * (v.upper[k] - v.lower[k]);
@@ -130,8 +134,9 @@ struct Fixed {
     slab_lower = v.slab_lower + normal_shift;
     slab_upper = v.slab_upper + normal_shift;
 
-    // Smallest p . w over the box, and over the slab with the rest of w over the box.
-    const float* w = f.toward_fixed;
+    // The larger of two bounds: p . w over the box; and its part along the slab's normal over the slab, the rest over
+    // the box.
+    const float* w = f.direction_fixed;
     const float along = w[0] * v.normal[0] + w[1] * v.normal[1] + w[2] * v.normal[2];
     float over_box = 0.0f;
     float over_rest = 0.0f;
@@ -141,13 +146,13 @@ struct Fixed {
       over_rest += rest * center_fixed[k] - std::abs(rest) * half_fixed[k];
     }
     over_rest += std::min(along * v.slab_lower, along * v.slab_upper);
-    lowest = std::max(over_box, over_rest);
+    least_along = std::max(over_box, over_rest);
   }
 };
 
-/// Bounds on the distance of each child of `node` from `fixed`: a gap where positive. Returns a bit for each child
-/// whose bound is not above `best`.
-HWY_INLINE unsigned bound_children(const Tree::Node& node, const Fixed& fixed, const Frame& f, const Slack& slack,
+/// Lower bounds on the distances of the children of `node` from `fixed`; negative where they may overlap. Returns a bit
+/// for each child whose bound is not above `best`.
+HWY_INLINE unsigned bound_children(const Tree::Node& node, const FixedVolume& fixed, const Frame& f, const Slack& slack,
                                    float best, float* HWY_RESTRICT bounds) {
   unsigned kept = 0;
   const V half = hn::Set(k_lanes, 0.5f);
@@ -165,22 +170,23 @@ HWY_INLINE unsigned bound_children(const Tree::Node& node, const Fixed& fixed, c
     const V slab_lower = hn::Load(k_lanes, node.slab_lower + i);
     const V slab_upper = hn::Load(k_lanes, node.slab_upper + i);
 
-    // Along w: the children's largest p . w, over the box, and over the slab with the rest of w over the box.
+    // Axis w: the children's largest p . w, bounded as in FixedVolume.
     V along = zero;
     V over_box = zero;
     for (std::size_t k = 0; k < 3; ++k) {
-      const V w = hn::Set(k_lanes, f.toward[k]);
+      const V w = hn::Set(k_lanes, f.direction[k]);
       along = hn::MulAdd(w, n[k], along);
       over_box = hn::MulAdd(w, c[k], hn::MulAdd(hn::Abs(w), e[k], over_box));
     }
     V over_rest = hn::Max(hn::Mul(along, slab_lower), hn::Mul(along, slab_upper));
     for (std::size_t k = 0; k < 3; ++k) {
-      const V rest = hn::NegMulAdd(along, n[k], hn::Set(k_lanes, f.toward[k]));
+      const V rest = hn::NegMulAdd(along, n[k], hn::Set(k_lanes, f.direction[k]));
       over_rest = hn::MulAdd(rest, c[k], hn::MulAdd(hn::Abs(rest), e[k], over_rest));
     }
-    const V gap_toward = hn::Sub(
-        hn::Set(k_lanes, static_cast<float>(static_cast<double>(fixed.lowest) + f.translation_along) - slack.sizes),
-        hn::Min(over_box, over_rest));
+    const V gap_along =
+        hn::Sub(hn::Set(k_lanes,
+                        static_cast<float>(static_cast<double>(fixed.least_along) + f.translation_along) - slack.local),
+                hn::Min(over_box, over_rest));
 
     // Boxes in N.
     V m[3];
@@ -193,7 +199,7 @@ HWY_INLINE unsigned bound_children(const Tree::Node& node, const Fixed& fixed, c
       const V positive = hn::Max(gap, zero);
       squared = hn::MulAdd(positive, positive, squared);
     }
-    // Boxes in F: m and e turned by the transposed rotation.
+    // Boxes in F: m and e rotated back.
     V widest_fixed = hn::Set(k_lanes, -Tree::k_empty);
     V squared_fixed = zero;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -252,7 +258,7 @@ HWY_INLINE unsigned bound_children(const Tree::Node& node, const Fixed& fixed, c
     const V length = hn::Sqrt(hn::Max(length2, hn::Set(k_lanes, 1e-36f)));
     gap = hn::Max(gap, hn::Sub(length, hn::Div(reach, length)));
 
-    const V bound = hn::Max(gap_toward, hn::Sub(gap, hn::Set(k_lanes, slack.far)));
+    const V bound = hn::Max(gap_along, hn::Sub(gap, hn::Set(k_lanes, slack.all)));
     hn::Store(bound, k_lanes, bounds + i);
     std::uint8_t bits[8];  // as many as StoreMaskBits may write
     hn::StoreMaskBits(k_lanes, hn::Le(bound, hn::Set(k_lanes, best)), bits);

@@ -14,6 +14,7 @@
 
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/distance_bounds-inl.h>
+#include <sixdof/oracle/frank_wolfe-inl.h>
 
 // Lower bounds on the distances of all pairs of triangles of two leaves, one pair per SIMD lane.
 
@@ -28,46 +29,46 @@ struct LeafPair {
   static constexpr std::size_t k_pairs = k_leaf * k_leaf;
   HWY_ALIGN float a[3][3][k_pairs];  // [corner][axis][pair]
   HWY_ALIGN float b[3][3][k_pairs];
-  HWY_ALIGN float bounds[k_pairs];
-  HWY_ALIGN float reached[k_pairs];  // distance of some points of the two: an upper bound, but for rounding
+  HWY_ALIGN float lower[k_pairs];  // bounds on the distance
+  HWY_ALIGN float upper[k_pairs];  // but for rounding; set for pairs whose lower bound is not above the best
 };
 
-/// Bounds along w alone; the corners stay in their own frames. Returns whether any pair is left.
-HWY_INLINE bool bound_toward(const Tree::Leaf& a, const Tree::Leaf& b, const Frame& f, const Slack& slack, float best,
-                             float* HWY_RESTRICT bounds) {
+/// Lower bounds by the axis w alone. Returns false if all are above `best`.
+HWY_INLINE bool bound_along_direction(const Tree::Leaf& a, const Tree::Leaf& b, const Frame& f, const Slack& slack,
+                                      float best, float* HWY_RESTRICT lower) {
   const hn::CappedTag<float, k_leaf> d;
-  HWY_ALIGN float far_a[k_leaf];
-  HWY_ALIGN float near_b[k_leaf];
+  HWY_ALIGN float greatest_a[k_leaf];
+  HWY_ALIGN float least_b[k_leaf];
   for (std::size_t i = 0; i < k_leaf; i += hn::Lanes(d)) {
-    auto most = hn::Set(d, -Tree::k_empty);
+    auto greatest = hn::Set(d, -Tree::k_empty);
     auto least = hn::Set(d, Tree::k_empty);
     for (std::size_t corner = 0; corner < 3; ++corner) {
       auto along_a = hn::Zero(d);
       auto along_b = hn::Zero(d);
       for (std::size_t k = 0; k < 3; ++k) {
-        along_a = hn::MulAdd(hn::Set(d, f.toward[k]), hn::Load(d, a.corner[corner][k] + i), along_a);
-        along_b = hn::MulAdd(hn::Set(d, f.toward_fixed[k]), hn::Load(d, b.corner[corner][k] + i), along_b);
+        along_a = hn::MulAdd(hn::Set(d, f.direction[k]), hn::Load(d, a.corner[corner][k] + i), along_a);
+        along_b = hn::MulAdd(hn::Set(d, f.direction_fixed[k]), hn::Load(d, b.corner[corner][k] + i), along_b);
       }
-      most = hn::Max(most, along_a);
+      greatest = hn::Max(greatest, along_a);
       least = hn::Min(least, along_b);
     }
-    hn::Store(most, d, far_a + i);
-    hn::Store(least, d, near_b + i);
+    hn::Store(greatest, d, greatest_a + i);
+    hn::Store(least, d, least_b + i);
   }
-  const double shift = f.translation_along - static_cast<double>(slack.sizes);
-  const float nearest = std::min(std::min(near_b[0], near_b[1]), std::min(near_b[2], near_b[3]));
-  const float farthest = std::max(std::max(far_a[0], far_a[1]), std::max(far_a[2], far_a[3]));
-  if (static_cast<float>(static_cast<double>(nearest - farthest) + shift) > best) return false;
+  const double shift = f.translation_along - static_cast<double>(slack.local);
+  const float least = std::min(std::min(least_b[0], least_b[1]), std::min(least_b[2], least_b[3]));
+  const float greatest = std::max(std::max(greatest_a[0], greatest_a[1]), std::max(greatest_a[2], greatest_a[3]));
+  if (static_cast<float>(static_cast<double>(least - greatest) + shift) > best) return false;
   for (std::size_t i = 0; i < k_leaf; ++i) {
     for (std::size_t j = 0; j < k_leaf; ++j) {
-      bounds[k_leaf * i + j] = static_cast<float>(static_cast<double>(near_b[j] - far_a[i]) + shift);
+      lower[k_leaf * i + j] = static_cast<float>(static_cast<double>(least_b[j] - greatest_a[i]) + shift);
     }
   }
   return true;
 }
 
-/// Lays out all pairs; B's corners are turned into A's frame.
-HWY_INLINE void lay_out(const Tree::Leaf& a, const Tree::Leaf& b, const Frame& f, LeafPair& pairs) {
+/// Writes the corners of all pairs; those of B are transformed to A's frame.
+HWY_INLINE void load_pairs(const Tree::Leaf& a, const Tree::Leaf& b, const Frame& f, LeafPair& pairs) {
   const hn::CappedTag<float, k_leaf> d;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -85,15 +86,16 @@ HWY_INLINE void lay_out(const Tree::Leaf& a, const Tree::Leaf& b, const Frame& f
   }
 }
 
-/// Raises the bounds by Frank-Wolfe steps towards the closest points of the triangles' difference.
+/// Raises the lower bounds by Frank-Wolfe steps, until they are above `enough` or k_steps are done.
 HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough) {
+  namespace fw = frank_wolfe::HWY_NAMESPACE;
   constexpr int k_steps = 5;
   const V goal = hn::Set(k_lanes, enough);
   for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
     const auto load = [i](const float* p) { return hn::Load(k_lanes, p + i); };
-    V best = load(pairs.bounds);
-    if (hn::AllTrue(k_lanes, hn::Gt(best, goal))) {
-      hn::Store(hn::Set(k_lanes, Tree::k_empty), k_lanes, pairs.reached + i);
+    V lower = load(pairs.lower);
+    if (hn::AllTrue(k_lanes, hn::Gt(lower, goal))) {
+      hn::Store(hn::Set(k_lanes, Tree::k_empty), k_lanes, pairs.upper + i);
       continue;
     }
     V x[3];  // a difference b - a of points of the triangles: first of the centroids, then ever shorter
@@ -104,52 +106,17 @@ HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough) {
     }
     V length;
     for (int step = 0;; ++step) {
-      // The corners of a farthest and of b least far along x.
-      V far_a, far_b;
-      V p[3], q[3];
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        V along_a = hn::Mul(x[0], load(pairs.a[corner][0]));
-        V along_b = hn::Mul(x[0], load(pairs.b[corner][0]));
-        for (std::size_t k = 1; k < 3; ++k) {
-          along_a = hn::MulAdd(x[k], load(pairs.a[corner][k]), along_a);
-          along_b = hn::MulAdd(x[k], load(pairs.b[corner][k]), along_b);
-        }
-        if (corner == 0) {
-          far_a = along_a;
-          far_b = along_b;
-          for (std::size_t k = 0; k < 3; ++k) {
-            p[k] = load(pairs.a[0][k]);
-            q[k] = load(pairs.b[0][k]);
-          }
-        } else {
-          const auto farther = hn::Gt(along_a, far_a);
-          const auto nearer = hn::Lt(along_b, far_b);
-          far_a = hn::Max(along_a, far_a);
-          far_b = hn::Min(along_b, far_b);
-          for (std::size_t k = 0; k < 3; ++k) {
-            p[k] = hn::IfThenElse(farther, load(pairs.a[corner][k]), p[k]);
-            q[k] = hn::IfThenElse(nearer, load(pairs.b[corner][k]), q[k]);
-          }
-        }
-      }
-      V length2 = hn::Mul(x[0], x[0]);
-      for (std::size_t k = 1; k < 3; ++k) length2 = hn::MulAdd(x[k], x[k], length2);
-      length = hn::Sqrt(hn::Max(length2, hn::Set(k_lanes, 1e-36f)));
-      best = hn::Max(best, hn::Sub(hn::Div(hn::Sub(far_b, far_a), length), hn::Set(k_lanes, slack)));
-      if (step == k_steps || hn::AllTrue(k_lanes, hn::Gt(best, goal))) break;
-      V d[3];
-      V down = hn::Zero(k_lanes);
-      V norm = hn::Set(k_lanes, 1e-36f);
-      for (std::size_t k = 0; k < 3; ++k) {
-        d[k] = hn::Sub(hn::Sub(q[k], p[k]), x[k]);
-        down = hn::NegMulAdd(x[k], d[k], down);
-        norm = hn::MulAdd(d[k], d[k], norm);
-      }
-      const V t = hn::Min(hn::Max(hn::Div(down, norm), hn::Zero(k_lanes)), hn::Set(k_lanes, 1.0f));
-      for (std::size_t k = 0; k < 3; ++k) x[k] = hn::MulAdd(t, d[k], x[k]);
+      const auto of_a = fw::support<fw::Fused, fw::Extreme::greatest>(k_lanes, x, pairs.a, i);
+      const auto of_b = fw::support<fw::Fused, fw::Extreme::least>(k_lanes, x, pairs.b, i);
+      length = fw::length<fw::Fused>(k_lanes, x);
+      lower = hn::Max(lower, hn::Sub(hn::Div(hn::Sub(of_b.value, of_a.value), length), hn::Set(k_lanes, slack)));
+      if (step == k_steps || hn::AllTrue(k_lanes, hn::Gt(lower, goal))) break;
+      const V s[3] = {hn::Sub(of_b.point[0], of_a.point[0]), hn::Sub(of_b.point[1], of_a.point[1]),
+                      hn::Sub(of_b.point[2], of_a.point[2])};
+      fw::step<fw::Fused>(k_lanes, x, s);
     }
-    hn::Store(best, k_lanes, pairs.bounds + i);
-    hn::Store(length, k_lanes, pairs.reached + i);
+    hn::Store(lower, k_lanes, pairs.lower + i);
+    hn::Store(length, k_lanes, pairs.upper + i);
   }
 }
 

@@ -17,16 +17,15 @@
 
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/distance_bounds-inl.h>
-#include <sixdof/oracle/distance_traversal.h>
+#include <sixdof/oracle/distance_search.h>
 
-// Where a search begins: a pair of triangles that is probably close. A good one makes the cut-off tight from the start;
-// which one it is has no influence on the result.
+// The first pair of triangles of a search. A close pair prunes much from the start; the answer does not depend on it.
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {
 namespace HWY_NAMESPACE {
 
-/// A corner of a tree, the closest to some point so far.
+/// A corner of a tree and its squared distance from some point.
 struct Corner {
   float squared;
   std::uint32_t leaf;
@@ -34,21 +33,20 @@ struct Corner {
   float point[3];          // relative to the tree's centre
 };
 
-/// Finds a corner closer to p than `best.squared`, nearly the closest. Returns whether there is one. Of corners that
-/// differ by less than a few leaves' width sideways any will do: to look for the very closest of many nearly equal ones
-/// would cost more than it saves. So will any whose square is less than `tolerance` times that of the closest.
-bool find_corner(const Tree& tree, const float* p, float tolerance, Corner& best, std::vector<OpenPair>& open) {
-  constexpr double k_leaves_wide = 32.0;  // square of it; r^2 / leaves is about a leaf's area
+/// Finds a corner that is closer to p than `best.squared`. Returns whether there is one. It need not be the closest:
+/// squared distances that differ by about 32 times a leaf's area, or by the factor `tolerance`, count as equal.
+bool find_corner(const Tree& tree, const float* p, float tolerance, Corner& best, std::vector<NodePair>& stack) {
+  constexpr double k_leaf_areas = 32.0;  // a leaf's area is about radius^2 / leaves
   const auto equal =
-      static_cast<float>(k_leaves_wide * tree.radius() * tree.radius() / static_cast<double>(tree.leaves().size()));
+      static_cast<float>(k_leaf_areas * tree.radius() * tree.radius() / static_cast<double>(tree.leaves().size()));
   bool found = false;
-  open.assign(1, {0, 0, 0.0f});
-  while (!open.empty()) {
-    const OpenPair top = open.back();
-    open.pop_back();
+  stack.assign(1, {0, 0, 0.0f});  // `a` names the volume, `lower` bounds the squared distance
+  while (!stack.empty()) {
+    const NodePair top = stack.back();
+    stack.pop_back();
     if (tolerance * top.lower + equal >= best.squared) continue;
-    if ((top.a & OpenPair::k_leaf) != 0) {
-      const Tree::Leaf& leaf = tree.leaves()[top.a - OpenPair::k_leaf];
+    if ((top.a & NodePair::k_leaf) != 0) {
+      const Tree::Leaf& leaf = tree.leaves()[top.a - NodePair::k_leaf];
       for (std::size_t corner = 0; corner < 3; ++corner) {
         for (std::uint32_t t = 0; t < leaf.child.count(); ++t) {
           float squared = 0.0f;
@@ -58,7 +56,7 @@ bool find_corner(const Tree& tree, const float* p, float tolerance, Corner& best
           }
           if (squared >= best.squared) continue;
           best = {squared,
-                  top.a - OpenPair::k_leaf,
+                  top.a - NodePair::k_leaf,
                   t,
                   {leaf.corner[corner][0][t], leaf.corner[corner][1][t], leaf.corner[corner][2][t]}};
           found = true;
@@ -79,90 +77,93 @@ bool find_corner(const Tree& tree, const float* p, float tolerance, Corner& best
       }
       hn::Store(squared, k_lanes, bounds + i);
     }
-    const std::size_t first = open.size();
+    const std::size_t first = stack.size();
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
       if (tolerance * bounds[i] + equal >= best.squared) continue;
-      const OpenPair next{node.child[i].is_leaf() ? OpenPair::k_leaf + node.leaf[i] : node.child[i].node(), 0,
-                          bounds[i]};
-      std::size_t at = open.size();
-      open.push_back(next);
-      for (; at > first && open[at - 1].lower < next.lower; --at) open[at] = open[at - 1];
-      open[at] = next;
+      const Tree::Child child = node.child[i];
+      push_sorted(stack, first, {child.is_leaf() ? NodePair::k_leaf + node.leaf[i] : child.node(), 0, bounds[i]});
     }
   }
   return found;
 }
 
-void turn(const Frame& f, const float* p, float* out) {
+/// p_N of p_F.
+void transform(const Frame& f, const float* p, float* out) {
   for (std::size_t k = 0; k < 3; ++k) {
     out[k] = f.translation[k] + f.rotation[k][0] * p[0] + f.rotation[k][1] * p[1] + f.rotation[k][2] * p[2];
   }
 }
 
-void offer_seed(Traversal& traversal, const Samples& samples_a, const Samples& samples_b) {
-  const Frames frames(*traversal.a, *traversal.b, traversal.X_AB);
-  const Frame& to_a = frames.open_a;
-  const Frame& to_b = frames.open_b;
+/// Indices of the closest pair of seed corners, and their squared distance.
+struct ClosestSeeds {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  float squared = std::numeric_limits<float>::infinity();
 
-  HWY_ALIGN float least[k_width];
-  HWY_ALIGN float pairs[k_width];  // which: an exact small integer
-  float best = std::numeric_limits<float>::infinity();
-  std::size_t best_a = 0;
-  std::size_t best_b = 0;
-  for (std::size_t i = 0; i < Samples::k_count; i += hn::Lanes(k_lanes)) {
-    V b[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      b[k] = hn::Set(k_lanes, to_a.translation[k]);
-      for (std::size_t m = 0; m < 3; ++m) {
-        b[k] = hn::MulAdd(hn::Set(k_lanes, to_a.rotation[k][m]), hn::Load(k_lanes, samples_b.point[m] + i), b[k]);
-      }
-    }
-    V closest = hn::Set(k_lanes, std::numeric_limits<float>::infinity());
-    V which = hn::Zero(k_lanes);
-    for (std::size_t j = 0; j < Samples::k_count; ++j) {
-      V squared = hn::Zero(k_lanes);
+  /// @param f from B's frame to A's
+  ClosestSeeds(const SeedCorners& seeds_a, const SeedCorners& seeds_b, const Frame& f) {
+    HWY_ALIGN float least[k_width];
+    HWY_ALIGN float index[k_width];  // of the corner of A: an exact small integer
+    for (std::size_t i = 0; i < SeedCorners::k_count; i += hn::Lanes(k_lanes)) {
+      V p[3];
       for (std::size_t k = 0; k < 3; ++k) {
-        const V d = hn::Sub(b[k], hn::Set(k_lanes, samples_a.point[k][j]));
-        squared = hn::MulAdd(d, d, squared);
+        p[k] = hn::Set(k_lanes, f.translation[k]);
+        for (std::size_t m = 0; m < 3; ++m) {
+          p[k] = hn::MulAdd(hn::Set(k_lanes, f.rotation[k][m]), hn::Load(k_lanes, seeds_b.point[m] + i), p[k]);
+        }
       }
-      which = hn::IfThenElse(hn::Lt(squared, closest), hn::Set(k_lanes, static_cast<float>(j)), which);
-      closest = hn::Min(closest, squared);
-    }
-    hn::Store(closest, k_lanes, least);
-    hn::Store(which, k_lanes, pairs);
-    for (std::size_t lane = 0; lane < hn::Lanes(k_lanes); ++lane) {
-      if (least[lane] < best) {
-        best = least[lane];
-        best_a = static_cast<std::size_t>(pairs[lane]);
-        best_b = i + lane;
+      V closest = hn::Set(k_lanes, std::numeric_limits<float>::infinity());
+      V which = hn::Zero(k_lanes);
+      for (std::size_t j = 0; j < SeedCorners::k_count; ++j) {
+        V sum = hn::Zero(k_lanes);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const V d = hn::Sub(p[k], hn::Set(k_lanes, seeds_a.point[k][j]));
+          sum = hn::MulAdd(d, d, sum);
+        }
+        which = hn::IfThenElse(hn::Lt(sum, closest), hn::Set(k_lanes, static_cast<float>(j)), which);
+        closest = hn::Min(closest, sum);
+      }
+      hn::Store(closest, k_lanes, least);
+      hn::Store(which, k_lanes, index);
+      for (std::size_t lane = 0; lane < hn::Lanes(k_lanes); ++lane) {
+        if (least[lane] < squared) {
+          squared = least[lane];
+          a = static_cast<std::size_t>(index[lane]);
+          b = i + lane;
+        }
       }
     }
   }
+};
 
-  // What is known already may be closer: the answer to the last query on a path.
-  if (traversal.found && traversal.best * traversal.best <= static_cast<double>(best)) return;
+void seed_search(DistanceSearch& search, const SeedCorners& seeds_a, const SeedCorners& seeds_b) {
+  const Frames frames(*search.a, *search.b, search.X_AB);
+  const ClosestSeeds closest(seeds_a, seeds_b, frames.expand_a);
+  // A pair of the last query may be closer.
+  if (search.found && search.best * search.best <= static_cast<double>(closest.squared)) return;
 
-  Corner a{best, samples_a.leaf[best_a], 0, {}};
-  Corner b{best, samples_b.leaf[best_b], 0, {}};
+  float best = closest.squared;
+  Corner a{best, seeds_a.leaf[closest.a], 0, {}};
+  Corner b{best, seeds_b.leaf[closest.b], 0, {}};
   for (std::size_t k = 0; k < 3; ++k) {
-    a.point[k] = samples_a.point[k][best_a];
-    b.point[k] = samples_b.point[k][best_b];
+    a.point[k] = seeds_a.point[k][closest.a];
+    b.point[k] = seeds_b.point[k][closest.b];
   }
   float from[3];
   bool search_b = true;
-  for (const auto& [tolerance, turns] : {std::pair(1.1f, 6), std::pair(1.0f, 4)}) {  // most settle after fewer
+  for (const auto& [tolerance, steps] : {std::pair(1.1f, 6), std::pair(1.0f, 4)}) {  // at most; few need as many
     int misses = 0;
-    for (int i = 0; i < turns && misses < 2; ++i, search_b = !search_b) {
-      turn(search_b ? to_b : to_a, search_b ? a.point : b.point, from);
-      Corner& moved = search_b ? b : a;
-      moved.squared = best;
-      if (!find_corner(search_b ? *traversal.b : *traversal.a, from, tolerance, moved, traversal.open)) ++misses;
-      best = moved.squared;
+    for (int i = 0; i < steps && misses < 2; ++i, search_b = !search_b) {
+      transform(search_b ? frames.expand_b : frames.expand_a, search_b ? a.point : b.point, from);
+      Corner& corner = search_b ? b : a;
+      corner.squared = best;
+      if (!find_corner(search_b ? *search.b : *search.a, from, tolerance, corner, search.stack)) ++misses;
+      best = corner.squared;
     }
   }
-  const TrianglePair pair{traversal.a->leaves()[a.leaf].child.first() + a.triangle,
-                          traversal.b->leaves()[b.leaf].child.first() + b.triangle};
-  if (offer_pair(traversal, pair)) traversal.direction = traversal.closest.on_b - traversal.closest.on_a;
+  const TrianglePair pair{search.a->leaves()[a.leaf].child.first() + a.triangle,
+                          search.b->leaves()[b.leaf].child.first() + b.triangle};
+  if (try_update(search, pair)) search.direction = search.closest.on_b - search.closest.on_a;
 }
 
 }  // namespace HWY_NAMESPACE

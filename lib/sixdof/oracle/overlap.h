@@ -8,10 +8,33 @@
 #include <Eigen/Core>
 
 #include <sixdof/geometry/pose.h>
-#include <sixdof/oracle/candidates.h>
-#include <sixdof/oracle/crossing.h>
+#include <sixdof/geometry/triangle_pair.h>
 #include <sixdof/oracle/solid.h>
 
+/// Exact overlap of two solids: volume of the intersection, its centroid, and the volume's gradient.
+///
+/// Notation: body A is fixed, body B is moved by X_AB; vectors are in A's frame. The overlap is computed for B's
+/// vertices rounded to doubles in A's frame (transform_point()). The surfaces intersect in closed curves, which consist
+/// of one segment per pair of triangles that intersect (a crossing, crossing.h).
+///
+/// Idea: every integral over the intersection is a sum over the pieces of its boundary, and each piece is a part of A's
+/// or of B's surface that is bounded by the curves.
+///   - By the divergence theorem, volume and first moment are fluxes through these parts. On a closed surface, the flux
+///     through a region is a sum of potentials along the region's border (solid.h), so it takes the curves alone, not
+///     the triangles inside. Which side of a curve belongs to the intersection follows from the normals of the two
+///     triangles. The total flux of each connected piece of a surface is added as often as the other body winds around
+///     one vertex of it (winding.h).
+///   - By Stokes' theorem, area and moment (integrals of n and p x n) are integrals along the curves.
+/// Each crossing adds its terms by itself, without its neighbours: the intersection is never built. On each of its two
+/// triangles a segment adds the fluxes through the triangle (lowest corner, start, end); an end on the side opposite
+/// the lowest corner adds a potential and the flux through the triangle (lowest corner, middle corner, end).
+///
+/// Robustness: every decision is exact, and ties (equal faces, shared vertices, touching) are decided as if B were
+/// translated by an infinitesimal vector (predicates.h). This is symbolic perturbation in the sense of Edelsbrunner and
+/// Muecke, "Simulation of simplicity", 1990, with a perturbation that is a motion, so all decisions agree with one
+/// position of B.
+///
+/// overlap_by_columns.h computes the volume by another method, for verification.
 namespace sixdof {
 
 /// What two solid bodies have in common at a pose. All vectors are in A's frame.
@@ -19,7 +42,7 @@ namespace sixdof {
 /// Where a mesh overlaps itself a point counts as often as the meshes wind around it: volume is the integral of the
 /// product of both winding numbers.
 struct Overlap {
-  /// Volume of the intersection (length^3). Rounding may leave a trace of either sign where bodies only touch.
+  /// Volume of the intersection (length^3). Rounding may leave a small value of either sign where bodies only touch.
   double volume = 0.0;
   /// Integral of B's outward normal over the part of B's surface inside A (length^2): the gradient of volume with
   /// respect to translating B. The force of the volume law is its negative.
@@ -30,40 +53,30 @@ struct Overlap {
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();
   /// Centre of mass of the intersection (length); NaN where volume is not positive.
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-  std::size_t crossings = 0;  ///< Pairs of triangles that meet: the segments of the curve in which the surfaces meet.
+  std::size_t crossings = 0;  ///< Pairs of triangles that intersect: segments of the curves.
 };
 
-/// Exact overlap of two solids at a pose, without building the intersection, at a cost that follows the length of the
-/// curve in which the surfaces meet.
+/// Overlap queries of two solids.
 ///
-/// Every decision is exact (predicates.h) for B's vertices rounded to doubles in A's frame, so equal faces, shared
-/// vertices and slivers are no special cases; what is left is the rounding of the integrals. Error of volume: a small
-/// multiple of 1e-16 * (size + distance of the bodies from the origin of A's frame) * (area of the triangles that are
-/// cut), whatever the volume.
+/// Error of volume: a small multiple of 1e-16 * (size + distance of the bodies from the origin of A's frame) * (area of
+/// the triangles that are crossed), however small the volume is.
 ///
-/// Method: area and moment are integrals along the curve (Stokes). Volume and first moment are fluxes through the parts
-/// of both surfaces that the curve bounds, by the potentials of Solid. Per segment of the curve each of the two
-/// triangles adds the flux of the triangle (lowest corner, start, end); a segment that ends on the side opposite the
-/// lowest corner adds a potential and the flux of the triangle (lowest corner, middle corner, end). Crossings neither
-/// know nor need their neighbours.
+/// Cost: finding the crossings in the trees, then a constant per crossing. It follows the length of the curves, not the
+/// number of triangles.
 ///
-/// Cost: with the curve, not the surface. A bumpy torus on itself at 10 % of its volume, 1e3, 1e4, 1e5, 1e6 triangles:
-/// 145, 453, 1436, 4537 crossings and 0.04, 0.17, 0.74, 3.2 ms of processor time (overlap_benchmark
-/// --benchmark_filter=by:exact/.*/volume:10, in test/reference, AMD EPYC). At 1e5, by perf: 35 % finding candidates in
-/// the trees, 30 % crossing points, 26 % sums over crossings.
-///
-/// One thread at a time; any number of objects may share the solids. No allocation once the scratch has grown.
+/// One object per thread; any number of objects may share the solids. No allocation once the scratch has grown.
 class OverlapQuery {
  public:
   /// Both solids outlive this object.
   OverlapQuery(const Solid& a, const Solid& b) : a_(&a), b_(&b) {}
 
   /// @param reference the point (A's frame) about which the moment is taken.
-  /// @throws BadArgument if the pose is not finite.
+  /// @throws BadArgument if the pose or the reference is not finite.
   Overlap evaluate(const Pose& X_AB, const Eigen::Vector3d& reference);
 
-  /// The same bits from the pairs of triangles that may meet, in the order of find_candidates() and any more of them.
-  Overlap evaluate(const Pose& X_AB, const Eigen::Vector3d& reference, std::span<const CandidatePair> pairs);
+  /// The same bits from known candidates: in the order of find_candidates(), all pairs of triangles that intersect, and
+  /// any others.
+  Overlap evaluate(const Pose& X_AB, const Eigen::Vector3d& reference, std::span<const TrianglePair> pairs);
 
   /// About the centre of B's bounding box.
   Overlap evaluate(const Pose& X_AB) { return evaluate(X_AB, X_AB * b_->mesh().center()); }
@@ -71,13 +84,10 @@ class OverlapQuery {
   std::size_t bytes() const;
 
  private:
-  int winding_of_b(const Pose& X_AB, const Eigen::Vector3d& p_A);
-  int winding_of_a(const Pose& X_AB, const Eigen::Vector3d& p_B);
-
   const Solid* a_;
   const Solid* b_;
-  std::vector<CandidatePair> pairs_;
-  std::vector<std::uint32_t> triangles_;
+  std::vector<TrianglePair> pairs_;       // scratch
+  std::vector<std::uint32_t> triangles_;  // scratch
 };
 
 }  // namespace sixdof

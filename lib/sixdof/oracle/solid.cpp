@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 
-/// Bits of a potential of the size of all fluxes together; the rest of the 127 is room for curves that pass an edge
-/// many times.
+/// Bits of a potential as large as the sum of all fluxes' magnitudes. The rest of the 127 is for curves that cross an
+/// edge many times.
 constexpr int k_potential_bits = 96;
 
 void check(const Mesh& mesh) {
@@ -30,8 +30,8 @@ void check(const Mesh& mesh) {
   }
 }
 
-/// For each half-edge 3 t + k (corner k to the next) the half-edge that runs back along it. Edges with more than two
-/// triangles are paired in order: any pairing of opposite directions makes a closed surface.
+/// For each half-edge 3 t + k (from corner k to the next) the opposite half-edge. At edges with more than two triangles
+/// half-edges are paired in order: any pairing of opposite directions makes a closed surface.
 std::vector<std::uint32_t> pair_half_edges(const Mesh& mesh) {
   const std::vector<Triangle>& triangles = mesh.triangles();
   struct HalfEdge {
@@ -75,124 +75,145 @@ std::vector<std::uint32_t> pair_half_edges(const Mesh& mesh) {
 
 std::uint32_t highest_vertex(const Triangle& t) { return std::max({t[0], t[1], t[2]}); }
 
+/// Appends the triangle `root` to `queue`, then, breadth first, each neighbour for which enter(the half-edge from the
+/// neighbour back) is true.
+template <class Enter>
+void flood(std::uint32_t root, const std::vector<std::uint32_t>& twin, std::vector<std::uint32_t>& queue,
+           const Enter& enter) {
+  std::size_t next = queue.size();
+  queue.push_back(root);
+  for (; next < queue.size(); ++next) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t back = twin[3 * queue[next] + k];
+      if (enter(back)) queue.push_back(back / 3);
+    }
+  }
+}
+
+/// Of each connected piece the triangle with the pole, its vertex of highest index. The pole is far from the centre:
+/// then it most often lies outside the other body's box, where the winding number is 0.
+std::vector<std::uint32_t> find_pole_triangles(const Mesh& mesh, const Eigen::Vector3d& center,
+                                               const std::vector<std::uint32_t>& twin) {
+  const std::vector<Triangle>& triangles = mesh.triangles();
+  const auto distance = [&](std::uint32_t t) {
+    return (mesh.vertices()[highest_vertex(triangles[t])] - center).squaredNorm();
+  };
+  std::vector<std::uint32_t> poles;
+  std::vector<std::uint32_t> piece;
+  std::vector<bool> seen(triangles.size(), false);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (seen[t]) continue;
+    seen[t] = true;
+    piece.clear();
+    flood(t, twin, piece, [&](std::uint32_t back) {
+      if (seen[back / 3]) return false;
+      seen[back / 3] = true;
+      return true;
+    });
+    poles.push_back(*std::max_element(piece.begin(), piece.end(),
+                                      [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); }));
+  }
+  return poles;
+}
+
+/// A spanning tree of the triangles of each piece.
+struct SpanningTrees {
+  std::vector<std::uint32_t> triangles;  ///< Parents before children.
+  std::vector<std::uint32_t> to_parent;  ///< Per triangle: its half-edge beside the parent; k_none for roots.
+
+  SpanningTrees(const std::vector<std::uint32_t>& roots, const std::vector<std::uint32_t>& twin)
+      : to_parent(twin.size() / 3, k_none) {
+    triangles.reserve(to_parent.size());
+    for (const std::uint32_t root : roots) {
+      flood(root, twin, triangles, [&](std::uint32_t back) {
+        const std::uint32_t t = back / 3;
+        if (t == root || to_parent[t] != k_none) return false;
+        to_parent[t] = back;
+        return true;
+      });
+    }
+  }
+};
+
 Solid::Integer to_fixed(double x, int exponent) { return static_cast<Solid::Integer>(std::ldexp(x, exponent)); }
 
-/// Exponent e such that total * 2^e just needs k_potential_bits.
+/// Exponent e such that total * 2^e has k_potential_bits bits.
 int fixed_exponent(double total) {
   int exponent = 0;
   std::frexp(total, &exponent);
   return k_potential_bits - exponent;
 }
 
+void add(Solid::Potential& sum, const Solid::Potential& x) {
+  sum.volume += x.volume;
+  for (std::size_t k = 0; k < 3; ++k) sum.first[k] += x.first[k];
+}
+
+Solid::Potential negative(const Solid::Potential& p) { return {-p.volume, {-p.first[0], -p.first[1], -p.first[2]}}; }
+
 }  // namespace
 
 Solid::Solid(const Mesh& mesh, const Tree& tree) : mesh_(&mesh), tree_(&tree) {
   check(mesh);
-  const std::vector<Triangle>& triangles = mesh.triangles();
-  const std::size_t n = triangles.size();
-  const auto moments = [&](std::uint32_t t) {
-    const auto corner = [&](std::size_t k) -> Eigen::Vector3d {
-      return mesh.vertices()[triangles[t][k]] - tree.center();
-    };
+  const std::vector<std::uint32_t> twin = pair_half_edges(mesh);
+  const std::vector<std::uint32_t> poles = find_pole_triangles(mesh, tree.center(), twin);
+  const SpanningTrees spanning(poles, twin);
+  // Fluxes are summed from the leaves of the spanning trees to their roots, the poles. The sum at a triangle is the
+  // potential of its edge to the parent; edges outside the spanning trees have potential 0.
+  std::vector<Potential> sums = triangle_fluxes();
+  for (std::size_t i = sums.size(); i-- > 0;) {
+    const std::uint32_t t = spanning.triangles[i];
+    if (spanning.to_parent[t] != k_none) add(sums[twin[spanning.to_parent[t]] / 3], sums[t]);
+  }
+  pieces_.reserve(poles.size());
+  for (const std::uint32_t t : poles) {
+    pieces_.push_back({mesh.vertices()[highest_vertex(mesh.triangles()[t])], sums[t]});
+  }
+
+  potentials_.resize(sums.size());
+  orders_.resize(sums.size());
+  for (std::uint32_t i = 0; i < sums.size(); ++i) {
+    const std::uint32_t t = tree.mesh_triangle()[i];
+    const Triangle& v = mesh.triangles()[t];
+    const auto lowest = static_cast<std::uint8_t>(std::min_element(v.begin(), v.end()) - v.begin());
+    const bool rises = v[(lowest + 1u) % 3] < v[(lowest + 2u) % 3];
+    orders_[i] = {lowest, rises};
+    // The side from lowest to middle index: half-edge h, or its reverse if the middle corner comes last.
+    const std::uint32_t h = 3 * t + (rises ? lowest : (lowest + 2u) % 3);
+    Potential p;
+    if (spanning.to_parent[t] == h) {
+      p = sums[t];
+    } else if (spanning.to_parent[twin[h] / 3] == twin[h]) {
+      p = negative(sums[twin[h] / 3]);
+    }
+    potentials_[i] = rises ? p : negative(p);
+  }
+}
+
+std::vector<Solid::Potential> Solid::triangle_fluxes() {
+  const std::vector<Triangle>& triangles = mesh_->triangles();
+  const auto moments = [&](const Triangle& t) {
+    const auto corner = [&](std::size_t k) -> Eigen::Vector3d { return mesh_->vertices()[t[k]] - tree_->center(); };
     return triangle_moments(corner(0), corner(1), corner(2));
   };
   double volume_sum = 0.0;
   double first_sum = 0.0;
-  for (std::uint32_t t = 0; t < n; ++t) {
+  for (const Triangle& t : triangles) {
     const Moments m = moments(t);
     volume_sum += std::abs(m.volume);
     first_sum += m.first.lpNorm<1>();
   }
   volume_exponent_ = fixed_exponent(volume_sum);
   first_exponent_ = fixed_exponent(first_sum);
-
-  // Poles: far from the centre, so that most often they lie outside the other body's box and no ray is needed.
-  std::vector<std::uint32_t> piece_of(n, k_none);
-  const std::vector<std::uint32_t> twin = pair_half_edges(mesh);
-  std::vector<std::uint32_t> queue;
-  queue.reserve(n);
-  std::vector<std::uint32_t> roots;
-  const auto flood = [&](std::uint32_t root, auto&& enter) {
-    const std::size_t first = queue.size();
-    queue.push_back(root);
-    for (std::size_t i = first; i < queue.size(); ++i) {
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t back = twin[3 * queue[i] + k];
-        if (enter(back)) queue.push_back(back / 3);
-      }
-    }
-    return first;
-  };
-  for (std::uint32_t t = 0; t < n; ++t) {
-    if (piece_of[t] != k_none) continue;
-    const auto number = static_cast<std::uint32_t>(roots.size());
-    piece_of[t] = number;
-    const std::size_t first = flood(t, [&](std::uint32_t back) {
-      if (piece_of[back / 3] != k_none) return false;
-      piece_of[back / 3] = number;
-      return true;
-    });
-    const auto distance = [&](std::uint32_t triangle) {
-      return (mesh.vertices()[highest_vertex(triangles[triangle])] - tree.center()).squaredNorm();
-    };
-    roots.push_back(*std::max_element(queue.begin() + static_cast<std::ptrdiff_t>(first), queue.end(),
-                                      [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); }));
-  }
-
-  // Fluxes sum from the leaves of a spanning tree of the triangles to its root, the pole; the sum at each triangle is
-  // the potential of the edge to its parent. Edges outside the spanning tree have potential 0.
-  const auto add = [](Potential& sum, const Potential& x) {
-    sum.volume += x.volume;
-    for (std::size_t k = 0; k < 3; ++k) sum.first[k] += x.first[k];
-  };
-  std::vector<Potential> sums(n);
-  for (std::uint32_t t = 0; t < n; ++t) {
-    const Moments m = moments(t);
-    sums[t].volume = to_fixed(m.volume, volume_exponent_);
+  std::vector<Potential> fluxes(triangles.size());
+  for (std::size_t t = 0; t < fluxes.size(); ++t) {
+    const Moments m = moments(triangles[t]);
+    fluxes[t].volume = to_fixed(m.volume, volume_exponent_);
     for (std::size_t k = 0; k < 3; ++k) {
-      sums[t].first[k] = to_fixed(m.first[static_cast<Eigen::Index>(k)], first_exponent_);
+      fluxes[t].first[k] = to_fixed(m.first[static_cast<Eigen::Index>(k)], first_exponent_);
     }
   }
-  std::vector<std::uint32_t> to_parent(n, k_none);  // half-edge of the child
-  queue.clear();
-  for (const std::uint32_t root : roots) {
-    flood(root, [&, root](std::uint32_t back) {
-      const std::uint32_t t = back / 3;
-      if (t == root || to_parent[t] != k_none) return false;
-      to_parent[t] = back;
-      return true;
-    });
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    const std::uint32_t t = queue[i];
-    if (to_parent[t] != k_none) add(sums[twin[to_parent[t]] / 3], sums[t]);
-  }
-  pieces_.resize(roots.size());
-  for (std::size_t i = 0; i < roots.size(); ++i) {
-    pieces_[i].pole = mesh.vertices()[highest_vertex(triangles[roots[i]])];
-    pieces_[i].total = sums[roots[i]];
-  }
-
-  potentials_.resize(n);
-  orders_.resize(n);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t t = tree.mesh_triangle()[i];
-    const Triangle& v = triangles[t];
-    const auto lowest = static_cast<std::uint8_t>(std::min_element(v.begin(), v.end()) - v.begin());
-    const bool rises = v[(lowest + 1u) % 3] < v[(lowest + 2u) % 3];
-    orders_[i] = {lowest, rises};
-    // The rising side leaves the lowest corner, or, run through backwards, arrives there.
-    const std::uint32_t h = 3 * t + (rises ? lowest : (lowest + 2u) % 3);
-    Potential p;
-    if (to_parent[t] == h) {
-      p = sums[t];
-    } else if (to_parent[twin[h] / 3] == twin[h]) {
-      const Potential& s = sums[twin[h] / 3];
-      p = {-s.volume, {-s.first[0], -s.first[1], -s.first[2]}};
-    }
-    if (!rises) p = {-p.volume, {-p.first[0], -p.first[1], -p.first[2]}};
-    potentials_[i] = p;
-  }
+  return fluxes;
 }
 
 Solid::Moments Solid::to_moments(const Potential& sum) const {

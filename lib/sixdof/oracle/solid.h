@@ -21,23 +21,22 @@ namespace sixdof {
 /// potential except for its total: give every directed edge h a number alpha(h) = -alpha(twin of h) such that the three
 /// numbers around every triangle sum to its flux, except at one triangle per connected piece, the pole, whose sum lacks
 /// the piece's total flux. Then (Stokes) the flux through any region of triangles is the sum of alpha along its border,
-/// plus the piece's total if the pole lies inside. No triangle of the interior is touched, so a query's cost depends on
-/// the length of the curve in which two surfaces meet, not on how much surface lies inside.
+/// plus the piece's total if the pole lies inside. No triangle of the interior is visited, so a query's cost depends on
+/// the length of the curve in which two surfaces intersect, not on how much surface lies inside.
 ///
 /// **Numbers.** alpha is the flux through the subtree beyond the edge in a spanning tree of the triangles. It may be as
 /// large as the whole flux where the answer is tiny, so potentials are 128-bit integers (fixed point): sums of them are
-/// exact in any order. Four fluxes are kept: of (p - m) / 3, which gives the volume, and the three components of
+/// exact in any order. There are four fluxes: that of (p - m) / 3, which gives the volume, and the three components of
 /// |p - m|^2 n / 2, which give the first moment; m is the tree's centre.
 ///
-/// **What a query needs.** A curve that enters a triangle through one side and leaves it through another is deformed to
-/// run through vertices: each crossing of a side slides to the side's vertex of lowest index. Sides that meet the
-/// triangle's lowest vertex need no more; for a crossing of the opposite side the deformed curve runs along the
-/// triangle's side from the lowest to the middle index. So one potential per triangle, that of its rising side, is all
-/// that is stored. Corners of highest index are never passed, which is where the pole sits: its winding number is that
-/// of a vertex.
+/// **Curves between vertices.** A curve that enters a triangle through one side and leaves it through another is
+/// deformed to run through vertices: each crossing of a side moves to the side's vertex of lowest index. The two sides
+/// at the triangle's lowest vertex need no more; for a crossing of the opposite side the deformed curve runs along the
+/// triangle's side from the lowest to the middle index. So one potential per triangle, that of this side, is stored. No
+/// curve runs through a triangle's corner of highest index. There the pole is: whether it lies inside is decided for a
+/// vertex.
 ///
-/// Memory: 66 bytes per triangle, besides the tree's. Preparation is linear but for sorting, about 0.3 s per million
-/// triangles. A query casts one ray per piece whose pole lies in the other body's box.
+/// Memory: 66 bytes per triangle, besides the tree's. Preparation: linear, but for sorting.
 class Solid {
  public:
   using Integer = __int128;
@@ -84,6 +83,9 @@ class Solid {
   std::size_t bytes() const;
 
  private:
+  /// Flux through each triangle of the mesh; sets the exponents.
+  std::vector<Potential> triangle_fluxes();
+
   const Mesh* mesh_;
   const Tree* tree_;
   std::vector<Potential> potentials_;

@@ -10,21 +10,37 @@
 
 #include <Eigen/Core>
 
-#include <sixdof/query/outcome.h>
-#include <sixdof/query/settings.h>
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
+#include <sixdof/query/outcome.h>
+#include <sixdof/query/settings.h>
+
+/// The interface of every algorithm under test. To add one, derive from Query, prepare in its constructor, and describe
+/// the algorithm by its traits:
+///
+///     class MyQuery final : public Query {
+///      public:
+///       MyQuery(const Mesh& a, const Mesh& b, const Settings& settings);
+///       Outcome<Separation> distance(const Pose& X_AB) override { return Separation{.distance = ...}; }
+///     };
+///
+///     make_algorithm<MyQuery>({.name = "mine", .version = "1.0", .summary = "...", .answers = {.distance = true}});
+///
+/// Register it in a program of your own with Registrar (registrar.h), in this library with Registry::add().
+///
+/// Conventions: body A is fixed and body B moves. A pose X_AB maps points of B's mesh frame to A's mesh frame. Every
+/// point, force and torque of an answer is in A's frame, every length in the meshes' length unit.
 
 namespace sixdof {
 
-/// Answer of a distance query: the smallest distance between the two surfaces, in the meshes' length unit.
+/// Answer of a distance query: the smallest distance between the two surfaces, >= 0 (length).
 struct Separation {
   static constexpr std::uint32_t k_no_triangle = std::numeric_limits<std::uint32_t>::max();
   double distance = 0.0;
-  bool has_witnesses = false;
+  bool has_witnesses = false;                           ///< Whether the witness points are set.
   Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();  ///< Closest point on A, in A's frame.
   Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();  ///< Closest point on B, in A's frame.
-  /// Triangles of the witnesses, indices into the meshes' triangles(); k_no_triangle where the algorithm does not tell.
+  /// Triangles of the witnesses, indices into Mesh::triangles(); k_no_triangle where the algorithm gives none.
   std::uint32_t triangle_a = k_no_triangle;
   std::uint32_t triangle_b = k_no_triangle;
 };
@@ -32,13 +48,13 @@ struct Separation {
 /// Answer of a response query: the penalty wrench that pushes B out of A, in A's frame.
 struct Response {
   static constexpr double k_absent = std::numeric_limits<double>::quiet_NaN();
-  double penalty = 0.0;      ///< What the algorithm's law measures: a depth (length) or a volume (length^3).
-  double volume = k_absent;  ///< Intersection volume (length^3), NaN where the algorithm gives none.
+  double penalty = 0.0;      ///< By Traits::law: a penetration depth (length) or an intersection volume (length^3).
+  double volume = k_absent;  ///< Intersection volume (length^3); k_absent where the algorithm gives none.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();      ///< On B, in A's frame.
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();     ///< On B about `reference`, in A's frame.
-  Eigen::Vector3d reference = Eigen::Vector3d::Zero();  ///< In A's frame. The default: centre of B's bounding box.
+  Eigen::Vector3d reference = Eigen::Vector3d::Zero();  ///< In A's frame; by convention the centre of B's bounding box.
 
-  /// The same wrench about another point (in A's frame).
+  /// The same wrench with its torque about another point (A's frame).
   Response about(const Eigen::Vector3d& point) const {
     Response moved = *this;
     moved.torque = torque + (reference - point).cross(force);
@@ -54,7 +70,7 @@ struct QuerySet {
   bool respond = false;
 };
 
-/// What a response's magnitude is proportional to; decides the ideal model it is judged against.
+/// What the magnitude of a response is proportional to. It selects the ideal model that scenarios compare with.
 enum class ResponseLaw {
   none,
   depth,
@@ -67,32 +83,47 @@ struct Footprint {
   std::vector<std::pair<std::string, double>> counts;
 };
 
-/// How much a query looked at, in units that explain its time.
+/// How many elements a query tested, in a unit that explains its time. Rows report `<unit>_tested`, `<unit>_total` and
+/// the time per tested element.
 struct Work {
-  std::string unit;      ///< What is counted, plural, as in names of counters: "points", "sphere_pairs".
-  double visited = 0.0;  ///< By the last query, of any kind.
-  double present = 0.0;  ///< What it would visit if it left out nothing.
+  std::string unit;     ///< Plural, as in names of counters: "points", "sphere_pairs".
+  double tested = 0.0;  ///< Elements that the last query tested, of any kind of query.
+  double total = 0.0;   ///< Elements that it would test without any culling.
 };
 
+/// What is known of an algorithm before it is prepared. Constant while the algorithm lives.
 struct Traits {
-  std::string name;     ///< As typed and as in benchmark names: lower case, digits, '-'.
+  std::string name;     ///< Unique; as typed and as in benchmark names: a-z, 0-9 and '-'.
   std::string version;  ///< Of the library behind it; this project's own version for its own algorithms.
-  std::string summary;  ///< One line.
-  QuerySet answers;
-  ResponseLaw law = ResponseLaw::none;
-  std::vector<Parameter> parameters;
-  bool timed = true;  ///< False: a check for small meshes that benchmarks leave out.
+  std::string summary;  ///< One line, for lists.
+  QuerySet answers;     ///< Benchmarks ask these kinds of query only; the others return Status::unsupported.
+  ResponseLaw law = ResponseLaw::none;  ///< Of respond().
+  std::vector<Parameter> parameters;    ///< What a user may set; empty if nothing.
+  /// Whether benchmarks have rows of its queries. False for a reference that is too slow to be compared, such as
+  /// brute force: it is still found by name, by tests, the generator and the command line.
+  bool timed = true;
 };
 
-/// An algorithm prepared for one pair of meshes. One thread at a time; it may keep what it learnt from the last query
-/// (warm starts), so answers may depend on the order only in their rounding.
+/// An algorithm prepared for one pair of meshes.
 ///
-/// No method throws: whatever goes wrong becomes a Status, with words in diagnosis().
+/// **Threads.** One thread at a time uses a Query. Different queries of one algorithm may run at the same time, so they
+/// share nothing that changes.
+///
+/// **State.** A query may start from the result of the last one (warm start). The order of the poses may then change
+/// the rounding of the answers, but nothing else.
+///
+/// **Errors.** An implementation should not throw: what goes wrong is returned as a Status other than ok, by fail()
+/// with words. A caller counts whatever is thrown all the same, like a status that is not ok, as one failed
+/// configuration and goes on with the next one. It does the same with an answer that is ok but holds a NaN or an
+/// infinity (other than Response::volume = k_absent).
+///
+/// **Time.** Only the three queries are timed, one call at a time. Memory that they need is best kept between calls.
 class Query {
  public:
   virtual ~Query() = default;
 
-  /// Do the two bodies, or for algorithms that know only surfaces the two surfaces, have a point in common?
+  /// Do the two bodies, or for algorithms that know only surfaces the two surfaces, have a point in common? Contact
+  /// counts.
   virtual Outcome<bool> collide(const Pose& /*X_AB*/) { return Status::unsupported; }
 
   /// Distance of the two surfaces; 0 where they touch or intersect.
@@ -101,36 +132,61 @@ class Query {
   /// Penalty wrench on B; zero where the bodies are apart.
   virtual Outcome<Response> respond(const Pose& /*X_AB*/) { return Status::unsupported; }
 
+  /// Of the prepared structures of both meshes; what A and B share counts once.
   virtual Footprint footprint() const { return {}; }
 
-  /// Of the last query; empty where nothing is counted.
+  /// Of the last query, always the same units in the same order; empty where nothing is counted.
   virtual std::vector<Work> work() const { return {}; }
 
   /// Words for the last outcome that was neither ok nor unsupported.
   const std::string& diagnosis() const { return diagnosis_; }
 
  protected:
+  /// Keeps the words for diagnosis(). @return `status`
   Status fail(Status status, std::string words) {
     diagnosis_ = std::move(words);
     return status;
   }
 
+  /// Poses of configuration sets always are; those of other callers may hold a NaN or an infinity.
+  static bool is_finite(const Pose& X_AB) { return X_AB.R.allFinite() && X_AB.t.allFinite(); }
+
  private:
   std::string diagnosis_;
 };
 
-/// What is under test: prepared once per pair, then queried. Immutable; prepare() may be called from several threads.
+/// What is under test: prepared once per pair of meshes, then queried. Immutable.
 class Algorithm {
  public:
   virtual ~Algorithm() = default;
   virtual const Traits& traits() const = 0;
 
-  /// Builds all structures for A (fixed) and B (moving). Both meshes outlive the query.
-  /// @throws BadMesh if the algorithm cannot honour a mesh (e.g. it needs a solid); BadArgument for settings.
+  /// Builds all structures for A (fixed) and B (moving); `a` and `b` may be the same object. Several threads may call
+  /// it at once. Both meshes outlive the query, `settings` does not.
+  /// @param settings has a valid value for each of Traits::parameters
+  /// @return never null
+  /// @throws BadMesh if a mesh cannot be used (e.g. it is not solid), BadArgument for a combination of settings
   virtual std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& settings) const = 0;
 
   /// Default settings.
   Settings settings() const { return Settings(traits().parameters); }
 };
+
+/// An algorithm whose prepare() returns a QueryType(a, b, settings).
+template <class QueryType>
+std::unique_ptr<Algorithm> make_algorithm(Traits traits) {
+  class Made final : public Algorithm {
+   public:
+    explicit Made(Traits traits) : traits_(std::move(traits)) {}
+    const Traits& traits() const override { return traits_; }
+    std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& settings) const override {
+      return std::make_unique<QueryType>(a, b, settings);
+    }
+
+   private:
+    const Traits traits_;
+  };
+  return std::make_unique<Made>(std::move(traits));
+}
 
 }  // namespace sixdof

@@ -4,18 +4,17 @@
 
 namespace sixdof {
 
-/// Why a query gave no value. Every query ends as exactly one of these; none is ever dropped.
+/// How a query ended. Every query ends as exactly one of these, and each is counted.
 enum class Status {
   ok,
   unsupported,  ///< The algorithm does not answer this kind of query.
   failed,       ///< The algorithm gave up, threw, or returned something that is no answer.
-  non_finite,   ///< The algorithm returned a NaN or an infinity.
+  non_finite,   ///< The algorithm returned, or was given, a NaN or an infinity.
 };
 
 std::string_view to_string(Status status);
 
-/// A value, or why there is none. `value` is meaningful only if ok(). The words behind a failure are
-/// Query::diagnosis().
+/// A value, or why there is none. `value` is meaningful only if ok(); Query::diagnosis() has the words for a failure.
 template <class T>
 struct Outcome {
   Status status = Status::unsupported;

@@ -2,18 +2,19 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <sixdof/query/algorithm.h>
 
-namespace sixdof::bench {
+namespace sixdof {
 
-/// How a program of yours adds its algorithm to the suite. Link sixdof::bench_main and write at namespace scope
+/// Adds an external algorithm to the benchmarks. Link sixdof::bench_main and write at namespace scope
 ///
-///     const sixdof::bench::Registrar mine([] { return std::make_unique<MyAlgorithm>(); });
+///     const sixdof::Registrar mine([] { return sixdof::make_algorithm<MyQuery>({.name = "mine", ...}); });
 ///
 /// in a source file of the program itself (a linker drops unreferenced objects of static libraries). The program then
-/// is a sixdof-bench with one algorithm more.
+/// is sixdof-bench with that algorithm added.
 class Registrar {
  public:
   using Maker = std::function<std::unique_ptr<Algorithm>()>;
@@ -25,4 +26,4 @@ class Registrar {
   }
 };
 
-}  // namespace sixdof::bench
+}  // namespace sixdof

@@ -1,5 +1,7 @@
 #include <sixdof/query/registry.h>
 
+#include <string>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,7 +15,7 @@ void Registry::add(std::unique_ptr<Algorithm> algorithm) {
     throw BadArgument(fmt::format("algorithm name '{}': only a-z, 0-9 and '-'", name));
   }
   for (const auto& other : algorithms_) {
-    if (other->traits().name == name) throw BadArgument(fmt::format("algorithm {}: registered already", name));
+    if (other->traits().name == name) throw BadArgument(fmt::format("algorithm {}: already registered", name));
   }
   algorithms_.push_back(std::move(algorithm));
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -9,14 +8,14 @@
 
 namespace sixdof {
 
-/// The list of algorithms that benchmarks, tests, command line and report read. Filled explicitly: a static library
-/// would drop objects that register themselves.
+/// The algorithms that a program knows. Filled explicitly: a linker drops the objects of a static library that would
+/// register themselves.
 class Registry {
  public:
   /// @throws BadArgument if the name is taken or has characters other than a-z 0-9 '-'.
   void add(std::unique_ptr<Algorithm> algorithm);
 
-  /// @throws BadArgument that lists the names there are.
+  /// @throws BadArgument that lists the registered names.
   const Algorithm& find(std::string_view name) const;
 
   /// In the order of registration.

@@ -12,7 +12,7 @@
 namespace sixdof {
 namespace {
 
-/// Whole-text parse, independent of the locale; NaN if it is no number.
+/// Whole-text parse, independent of the locale; NaN if it is not a number.
 double parse_number(const std::string& text) {
   double value = 0.0;
   const char* const end = text.data() + text.size();
@@ -23,13 +23,15 @@ double parse_number(const std::string& text) {
 void check(const Parameter& parameter, const std::string& text) {
   if (!parameter.choices.empty()) {
     if (std::find(parameter.choices.begin(), parameter.choices.end(), text) == parameter.choices.end()) {
-      throw BadArgument(fmt::format("{}={}: must be one of {}", parameter.name, text, fmt::join(parameter.choices, ", ")));
+      throw BadArgument(
+          fmt::format("{}={}: must be one of {}", parameter.name, text, fmt::join(parameter.choices, ", ")));
     }
     return;
   }
   const double value = parse_number(text);
   if (!(value >= parameter.low && value <= parameter.high)) {
-    throw BadArgument(fmt::format("{}={}: must be a number from {} to {}", parameter.name, text, parameter.low, parameter.high));
+    throw BadArgument(
+        fmt::format("{}={}: must be a number from {} to {}", parameter.name, text, parameter.low, parameter.high));
   }
   if (parameter.integer && value != std::floor(value)) {
     throw BadArgument(fmt::format("{}={}: must be a whole number", parameter.name, text));
@@ -40,18 +42,20 @@ void check(const Parameter& parameter, const std::string& text) {
 
 Settings::Settings(std::vector<Parameter> parameters) : parameters_(std::move(parameters)) {
   for (const Parameter& parameter : parameters_) {
-    check(parameter, parameter.standard);
-    values_[parameter.name] = parameter.standard;
+    check(parameter, parameter.default_value);
+    values_[parameter.name] = parameter.default_value;
   }
 }
 
 const Parameter& Settings::find(const std::string& parameter) const {
-  const auto found = std::find_if(parameters_.begin(), parameters_.end(), [&](const Parameter& k) { return k.name == parameter; });
+  const auto found =
+      std::find_if(parameters_.begin(), parameters_.end(), [&](const Parameter& p) { return p.name == parameter; });
   if (found != parameters_.end()) return *found;
   std::vector<std::string> names;
-  for (const Parameter& k : parameters_) names.push_back(k.name);
-  throw BadArgument(names.empty() ? fmt::format("{}: this algorithm has no parameters", parameter)
-                                  : fmt::format("{}: no such parameter; there are {}", parameter, fmt::join(names, ", ")));
+  for (const Parameter& p : parameters_) names.push_back(p.name);
+  throw BadArgument(names.empty()
+                        ? fmt::format("{}: this algorithm has no parameters", parameter)
+                        : fmt::format("{}: no such parameter; there are {}", parameter, fmt::join(names, ", ")));
 }
 
 void Settings::set(const std::string& parameter, const std::string& text) {
@@ -80,14 +84,6 @@ const std::string& Settings::choice(const std::string& parameter) const {
 std::string Settings::to_string() const {
   std::vector<std::string> parts;
   for (const Parameter& parameter : parameters_) parts.push_back(parameter.name + "=" + values_.at(parameter.name));
-  return fmt::format("{}", fmt::join(parts, ","));
-}
-
-std::string Settings::differences() const {
-  std::vector<std::string> parts;
-  for (const Parameter& parameter : parameters_) {
-    if (values_.at(parameter.name) != parameter.standard) parts.push_back(parameter.name + "=" + values_.at(parameter.name));
-  }
   return fmt::format("{}", fmt::join(parts, ","));
 }
 

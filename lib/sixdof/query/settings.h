@@ -2,21 +2,20 @@
 
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace sixdof {
 
-/// One accuracy or speed parameter of an algorithm, as data.
+/// One parameter of an algorithm that a user may set, for accuracy or speed.
 struct Parameter {
-  std::string name;      ///< As typed on the command line: lower case, digits, '_'.
-  std::string meaning;   ///< One sentence.
-  std::string unit;      ///< "1" for pure numbers, "diagonal" for fractions of A's box diagonal, "ns", ...
-  std::string standard;  ///< Default value, as text.
-  double low = 0.0;      ///< Smallest allowed number.
-  double high = 0.0;     ///< Largest allowed number.
-  bool integer = false;  ///< Only whole numbers.
-  std::vector<std::string> choices = {};  ///< Non-empty: a word out of these instead of a number.
+  std::string name;           ///< As typed on the command line: lower case, digits, '_'.
+  std::string meaning;        ///< What it does, in a phrase.
+  std::string unit;           ///< "1": a pure number; "diagonal": a fraction of a box's diagonal; empty with `choices`.
+  std::string default_value;  ///< As text.
+  double low = 0.0;           ///< Smallest allowed number.
+  double high = 0.0;          ///< Largest allowed number.
+  bool integer = false;       ///< Only whole numbers.
+  std::vector<std::string> choices = {};  ///< If not empty, the value is one of these words instead of a number.
 };
 
 /// A value for every parameter of one algorithm; always complete and valid.
@@ -35,13 +34,9 @@ class Settings {
   double number(const std::string& parameter) const;              ///< Value of a numeric parameter.
   const std::string& choice(const std::string& parameter) const;  ///< Value of a parameter with choices.
 
-  const std::vector<Parameter>& parameters() const { return parameters_; }
-
-  /// "parameter=value,parameter=value" of all parameters in their declared order: printed beside every result, key of caches.
+  /// "parameter=value,parameter=value" of all parameters in their declared order: recorded with every result, and part
+  /// of the keys of caches.
   std::string to_string() const;
-
-  /// The same for parameters that differ from their default; empty when none does.
-  std::string differences() const;
 
  private:
   const Parameter& find(const std::string& parameter) const;

@@ -1,7 +1,6 @@
 #include <sixdof/scenario/cone_block.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -10,7 +9,7 @@
 
 #include <sixdof/scenario/circles.h>
 #include <sixdof/scenario/parameters.h>
-#include <sixdof/scenario/quadrature.h>
+#include <sixdof/scenario/plane_wrench.h>
 
 namespace sixdof {
 namespace {
@@ -34,7 +33,7 @@ struct Shape {
     const double tip = depth * radius / height;
     require(depth < height, "the cone sinks in completely: depth must be below cone_height");
     require(overshoot > tip, "the path must start beside the block: overshoot must exceed the tip's radius");
-    // Also not so near an end that leaving over the end is shorter than leaving upwards.
+    // Somewhere leaving upwards must be shorter than leaving over an end.
     const double flank = std::sqrt(1.0 + std::pow(radius / height, 2));
     require(block_length > 2.0 * std::max(tip, depth * flank - tip),
             "the tip is never wholly over the block: block_length is too small");
@@ -43,30 +42,10 @@ struct Shape {
   }
 };
 
-/// Sums the wrench of surface elements. Everything is symmetric in z, so only x, y and the torque's z remain.
-struct PlaneWrench {
-  double x = 0.0, y = 0.0, torque = 0.0;
-
-  PlaneWrench& operator+=(const PlaneWrench& other) {
-    x += other.x;
-    y += other.y;
-    torque += other.torque;
-    return *this;
-  }
-  friend PlaneWrench operator*(double factor, const PlaneWrench& w) {
-    return {factor * w.x, factor * w.y, factor * w.torque};
-  }
-  friend PlaneWrench operator+(PlaneWrench a, const PlaneWrench& b) { return a += b; }
-};
-
-PlaneWrench at(double arm_x, double arm_y, double force_x, double force_y) {
-  return {force_x, force_y, arm_x * force_y - arm_y * force_x};
-}
-
 class ConeBlock final : public Scenario {
  public:
-  ConeBlock(About about, const Shape& shape)
-      : Scenario(std::move(about),
+  ConeBlock(Description description, const Shape& shape)
+      : Scenario(std::move(description),
                  box_solid({0.0, -shape.block_height, -0.5 * shape.block_width},
                            {shape.block_length, 0.0, 0.5 * shape.block_width}, "block"),
                  cone_solid(shape.radius, shape.height, shape.facets, shape.round, "cone")),
@@ -81,8 +60,8 @@ class ConeBlock final : public Scenario {
 
   bool in_window(double progress) const override {
     const double x = apex_x(progress);
-    const double inside = std::min(x, shape_.block_length - x);
-    return inside >= tip_ && depth(x) == shape_.depth;
+    const double to_end = std::min(x, shape_.block_length - x);
+    return to_end >= tip_ && depth(x) == shape_.depth;
   }
 
   std::optional<IdealWrench> ideal(IdealLaw law, double progress) const override {
@@ -100,7 +79,7 @@ class ConeBlock final : public Scenario {
         return wrench(depth(x), traction(x, false));
       case IdealLaw::wall_traction:
         return wrench(depth(x), traction(x, true));
-      // "p ~ delta" and "V ~ delta^3": constant as long as the bodies meet.
+      // "p ~ delta" and "V ~ delta^3": constant while the bodies overlap.
       case IdealLaw::paper_depth:
         return upwards(depth(x) > 0.0 ? shape_.depth : 0.0);
       case IdealLaw::paper_volume:
@@ -111,13 +90,13 @@ class ConeBlock final : public Scenario {
   }
 
   Sketch sketch() const override {
-    // The start of the path; the block goes on to the right.
+    // The start of the path; the block continues to the right.
     const double x = 1.5 * shape_.radius;
     const double low = -shape_.depth;
     Sketch sketch;
     sketch.progress = (x + shape_.overshoot) / (shape_.block_length + 2.0 * shape_.overshoot);
-    sketch.part = {Eigen::Vector2d(-1.5 * shape_.overshoot, -std::max(shape_.block_height, 1.2 * shape_.depth)),
-                   Eigen::Vector2d(x + 2.0 * shape_.radius, shape_.height - 0.8 * shape_.depth)};
+    sketch.region = {Eigen::Vector2d(-1.5 * shape_.overshoot, -std::max(shape_.block_height, 1.2 * shape_.depth)),
+                     Eigen::Vector2d(x + 2.0 * shape_.radius, shape_.height - 0.8 * shape_.depth)};
     sketch.up = Eigen::Vector3d::UnitY();
     const double rim = x + shape_.radius;
     const double top = low + shape_.height;
@@ -140,27 +119,28 @@ class ConeBlock final : public Scenario {
 
   static IdealWrench upwards(double magnitude) { return {magnitude, {0.0, magnitude, 0.0}, Eigen::Vector3d::Zero()}; }
 
+  /// Everything is symmetric in z: force z and torque x, y are zero.
   static IdealWrench wrench(double penalty, const PlaneWrench& w) {
     return {penalty, {w.x, w.y, 0.0}, {0.0, 0.0, w.torque}};
   }
 
-  /// Translational penetration depth: out of the top (delta), or past an end edge, square to the cone's flank: the part
-  /// of the tip's radius that is over the block, times the cosine of the half angle.
+  /// Translational penetration depth: delta, out of the top, or the displacement past an end edge perpendicular to the
+  /// cone's flank, which is the part of the tip's radius over the block times the cosine of the half angle.
   double depth(double x) const {
     const double over = std::min(x, shape_.block_length - x) + tip_;
     const double cosine = 1.0 / std::sqrt(1.0 + slope_ * slope_);
     return std::clamp(over * cosine, 0.0, shape_.depth);
   }
 
-  /// Disc of the cone at height s above the apex, cut to the block's length. Moment about the axis.
+  /// Disc of the cone at height s above the apex, cut to the block's length. Moment about the cone's axis.
   DiscPart section(double s, double x) const {
     const DiscPart from_start = disc_part(slope_ * s, -x);
     const DiscPart past_end = disc_part(slope_ * s, shape_.block_length - x);
     return {from_start.area - past_end.area, from_start.moment_x - past_end.moment_x};
   }
 
-  /// Heights above the apex between which sections change smoothly: where the disc first reaches an end.
-  std::vector<double> pieces(double x) const {
+  /// Limits of the smooth pieces of section(s): a piece ends at the height s where the disc first reaches an end.
+  std::vector<double> smooth_pieces(double x) const {
     std::vector<double> cuts{bottom_, shape_.depth};
     for (const double reach : {std::abs(x) / slope_, std::abs(shape_.block_length - x) / slope_}) {
       if (reach > bottom_ && reach < shape_.depth) cuts.push_back(reach);
@@ -171,7 +151,7 @@ class ConeBlock final : public Scenario {
 
   double volume(double x) const {
     double sum = 0.0;
-    const std::vector<double> cuts = pieces(x);
+    const std::vector<double> cuts = smooth_pieces(x);
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       sum += integrate_chords([&](double s) { return section(s, x).area; }, cuts[i], cuts[i + 1]);
     }
@@ -180,7 +160,7 @@ class ConeBlock final : public Scenario {
 
   /// -grad V = integral of A's normal over the part of A's surface inside B: top, bottom and both ends.
   PlaneWrench gradient(double x) const {
-    const double middle = 0.5 * shape_.height;  // of the cone, where the reference point is
+    const double reference = 0.5 * shape_.height;  // above the apex
     const DiscPart top = section(shape_.depth, x);
     const DiscPart bottom = section(bottom_, x);
     PlaneWrench sum{0.0, top.area - bottom.area, top.moment_x - bottom.moment_x};
@@ -193,39 +173,36 @@ class ConeBlock final : public Scenario {
         return 2.0 * std::sqrt(std::max(0.0, (r - offset) * (r + offset)));
       };
       sum.x += normal * integrate_chords(chord, from, shape_.depth);
-      sum.torque -= normal * integrate_chords([&](double s) { return (s - middle) * chord(s); }, from, shape_.depth);
+      sum.torque -= normal * integrate_chords([&](double s) { return (s - reference) * chord(s); }, from, shape_.depth);
     }
     return sum;
   }
 
   /// Integral over the cone's flank inside the block of the depth below the nearest face.
   PlaneWrench traction(double x, bool along_wall) const {
-    // Beyond these panels nothing is gained: the integrand's remaining kinks sit at the panels' scale.
+    // The inner integral has kinks at heights that are not known in closed form; more panels do not lower the error.
     constexpr int k_panels = 8;
-    std::vector<double> cuts = pieces(x);
-    const double turning = shape_.depth - 0.5 * shape_.block_height;  // as deep below the top as above the bottom
-    if (turning > bottom_) cuts.push_back(turning);
+    std::vector<double> cuts = smooth_pieces(x);
+    const double half_way = shape_.depth - 0.5 * shape_.block_height;  // between the block's bottom and top
+    if (half_way > bottom_) cuts.push_back(half_way);
     for (int i = 1; i < k_panels; ++i) cuts.push_back(bottom_ + (shape_.depth - bottom_) * i / k_panels);
     std::sort(cuts.begin(), cuts.end());
     PlaneWrench sum;
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-      const auto component = [&](double PlaneWrench::*which) {
-        return integrate([&](double s) { return ring(s, x, along_wall).*which; }, cuts[i], cuts[i + 1]);
-      };
-      sum += {component(&PlaneWrench::x), component(&PlaneWrench::y), component(&PlaneWrench::torque)};
+      sum += integrate_wrench([&](double s) { return ring_traction(s, x, along_wall); }, cuts[i], cuts[i + 1]);
     }
     return sum;
   }
 
   /// Traction of the flank's ring at height s above the apex, per unit of s.
-  PlaneWrench ring(double s, double x, bool along_wall) const {
+  PlaneWrench ring_traction(double s, double x, bool along_wall) const {
     const double below_top = shape_.depth - s;
     const double above_bottom = shape_.block_height - below_top;
     const double vertical = std::min(below_top, above_bottom);
     const double r = slope_ * s;
     const double flank = std::sqrt(1.0 + slope_ * slope_);
     const double arm_y = s - 0.5 * shape_.height;
-    // Angles at which the distance to an end face takes over from the vertical one, or ends.
+    // Angles at which an end face becomes the nearest face, or at which the block ends.
     std::vector<double> angles{0.0, std::numbers::pi};
     for (const double at_x : {0.0, vertical, shape_.block_length - vertical, shape_.block_length}) {
       const double cosine = r > 0.0 ? (at_x - x) / r : 2.0;
@@ -238,7 +215,7 @@ class ConeBlock final : public Scenario {
       const double to = angles[i + 1];
       const double middle = x + r * std::cos(0.5 * (from + to));
       if (middle <= 0.0 || middle >= shape_.block_length) continue;
-      // On the whole piece one face is the nearest.
+      // One face is the nearest on the whole piece.
       const double to_start = middle;
       const double to_end = shape_.block_length - middle;
       const bool start = to_start < std::min(vertical, to_end);
@@ -252,21 +229,18 @@ class ConeBlock final : public Scenario {
           nx = start ? -1.0 : end ? 1.0 : 0.0;
           ny = start || end ? 0.0 : below_top <= above_bottom ? 1.0 : -1.0;
         }
-        return at(arm_x, arm_y, d * nx, d * ny);
+        return PlaneWrench::of({arm_x, arm_y}, {d * nx, d * ny});
       };
-      const auto component = [&](double PlaneWrench::*which) {
-        return integrate([&](double angle) { return element(angle).*which; }, from, to);
-      };
-      sum += {component(&PlaneWrench::x), component(&PlaneWrench::y), component(&PlaneWrench::torque)};
+      sum += integrate_wrench(element, from, to);
     }
     // Both sides of the plane z = 0; area element r flank dangle ds.
     return 2.0 * r * flank * sum;
   }
 
   Shape shape_;
-  double slope_;   ///< radius / height
+  double slope_;   ///< radius / height of the cone
   double tip_;     ///< radius of the cone in the plane of the block's top
-  double bottom_;  ///< height above the apex of the block's bottom; 0 if the apex is above it
+  double bottom_;  ///< lowest s inside the block, s: height above the apex
 };
 
 }  // namespace
@@ -291,7 +265,7 @@ std::unique_ptr<Scenario> make_cone_block(const Settings& settings, bool thin) {
       "The block is a closed solid; an algorithm may not be told which face the cone came through.",
       "Force and torque are those on the cone, about the middle of its bounding box.",
       "Plain measures are taken where the whole tip is over the block; the suffix _all means the whole path."};
-  ConeBlock::About about{
+  ConeBlock::Description description{
       thin ? "Ib" : "Ia",
       thin ? "Does a plate far thinner than the penetration still push back, or does the cone tunnel through it?"
            : "Does a sharp tip that slides over a flat face feel a constant force along the face's normal?",
@@ -299,7 +273,7 @@ std::unique_ptr<Scenario> make_cone_block(const Settings& settings, bool thin) {
       {0.0, 0.5 * shape.height, 0.0},
       shape.reference_length,
       false};
-  return std::make_unique<ConeBlock>(std::move(about), shape);
+  return std::make_unique<ConeBlock>(std::move(description), shape);
 }
 
 }  // namespace sixdof

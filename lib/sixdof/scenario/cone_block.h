@@ -13,7 +13,7 @@ namespace sixdof {
 /// the cone's bounding box. README.md derives the ideal models.
 Settings cone_block_settings(bool thin);
 
-/// @param thin only selects the name, the purpose and the default height. @throws BadArgument
+/// @param thin selects the name and the purpose only. @throws BadArgument
 std::unique_ptr<Scenario> make_cone_block(const Settings& settings, bool thin);
 
 }  // namespace sixdof

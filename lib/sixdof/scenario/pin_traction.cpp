@@ -5,38 +5,21 @@
 #include <cmath>
 #include <vector>
 
-#include <sixdof/scenario/quadrature.h>
-
 namespace sixdof {
 namespace {
 
+/// Load of a vertical line of the wall at depth d.
 double line_load(double d, double length, bool along_wall) { return d * (along_wall ? length - 2.0 * d : length - d); }
-
-/// Force on a point of the pin, times what it stands for; `arm` from the pin's axis.
-struct Load {
-  double x = 0.0, y = 0.0, torque = 0.0;
-};
-
-Load load(const Eigen::Vector2d& arm, const Eigen::Vector2d& force) {
-  return {force.x(), force.y(), arm.x() * force.y() - arm.y() * force.x()};
-}
-
-template <class F>
-void add(PinTraction& sum, const F& f, double from, double to) {
-  sum.force.x() += integrate([&](double t) { return f(t).x; }, from, to);
-  sum.force.y() += integrate([&](double t) { return f(t).y; }, from, to);
-  sum.torque += integrate([&](double t) { return f(t).torque; }, from, to);
-}
 
 }  // namespace
 
-PinTraction square_pin_traction(double side, double length, double turn, const Eigen::Vector2d& shift,
+PlaneWrench square_pin_traction(double side, double length, double angle, const Eigen::Vector2d& shift,
                                 bool along_wall) {
   const double half = 0.5 * side;
-  PinTraction sum;
+  PlaneWrench sum;
   for (int quarter = 0; quarter < 4; ++quarter) {
-    // Quarter turns by exact exchange of sine and cosine.
-    const std::array<double, 4> cosines{std::cos(turn), -std::sin(turn), -std::cos(turn), std::sin(turn)};
+    // Rotation by quarters by exact exchange of sine and cosine.
+    const std::array<double, 4> cosines{std::cos(angle), -std::sin(angle), -std::cos(angle), std::sin(angle)};
     const Eigen::Vector2d normal(cosines[static_cast<std::size_t>(quarter)],
                                  cosines[static_cast<std::size_t>((quarter + 3) % 4)]);
     const Eigen::Vector2d along(-normal.y(), normal.x());
@@ -45,12 +28,12 @@ PinTraction square_pin_traction(double side, double length, double turn, const E
       const Eigen::Vector2d p = shift + arm(t);
       const Eigen::Vector2d excess = (p.cwiseAbs().array() - half).max(0.0);
       const double d = excess.norm();
-      if (d == 0.0) return Load{};
+      if (d == 0.0) return PlaneWrench{};
       const Eigen::Vector2d wall = -(excess.array() * p.array().sign()).matrix() / d;
       const Eigen::Vector2d direction = along_wall ? wall : Eigen::Vector2d(-normal);
-      return load(arm(t), line_load(d, length, along_wall) * direction);
+      return PlaneWrench::of(arm(t), line_load(d, length, along_wall) * direction);
     };
-    // The depth's kinks lie where this side crosses the lines of the hole's walls.
+    // The depth has kinks where this side crosses the lines of the hole's walls.
     std::vector<double> cuts{-half, half};
     for (int axis = 0; axis < 2; ++axis) {
       for (const double line : {-half, half}) {
@@ -60,13 +43,15 @@ PinTraction square_pin_traction(double side, double length, double turn, const E
       }
     }
     std::sort(cuts.begin(), cuts.end());
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) add(sum, element, cuts[i], cuts[i + 1]);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      sum += integrate_wrench(element, cuts[i], cuts[i + 1]);
+    }
   }
   return sum;
 }
 
-PinTraction round_pin_traction(double r, double length, const Eigen::Vector2d& shift, bool along_wall) {
-  PinTraction sum;
+PlaneWrench round_pin_traction(double r, double length, const Eigen::Vector2d& shift, bool along_wall) {
+  PlaneWrench sum;
   const double distance = shift.norm();
   if (distance == 0.0) return sum;
   const double middle = std::atan2(shift.y(), shift.x());
@@ -75,11 +60,11 @@ PinTraction round_pin_traction(double r, double length, const Eigen::Vector2d& s
     const Eigen::Vector2d p = shift + r * normal;
     const double d = p.norm() - r;
     const Eigen::Vector2d direction = along_wall ? Eigen::Vector2d(-p / p.norm()) : Eigen::Vector2d(-normal);
-    return load(r * normal, r * line_load(d, length, along_wall) * direction);
+    return PlaneWrench::of(r * normal, r * line_load(d, length, along_wall) * direction);
   };
-  // |shift + r normal| > r.
+  // The part of the wall outside the hole: |shift + r normal| > r.
   const double reach = std::acos(std::clamp(-0.5 * distance / r, -1.0, 1.0));
-  add(sum, element, middle - reach, middle + reach);
+  sum += integrate_wrench(element, middle - reach, middle + reach);
   return sum;
 }
 

@@ -14,53 +14,53 @@ bool finite(const Response& r) {
   return std::isfinite(r.penalty) && r.force.allFinite() && r.torque.allFinite() && r.reference.allFinite();
 }
 
-/// The query alone, with everything it may do wrong turned into a status.
-Outcome<Response> guarded(Query& query, const Pose& X_AB, std::string& words) {
+/// The query alone; exceptions and values that are not finite become a status.
+Outcome<Response> respond_guarded(Query& query, const Pose& X_AB, std::string& diagnosis) {
   try {
     const Outcome<Response> outcome = query.respond(X_AB);
     if (!outcome.ok()) {
-      words = outcome.status == Status::unsupported ? "the algorithm gives no response" : query.diagnosis();
+      diagnosis = outcome.status == Status::unsupported ? "the algorithm gives no response" : query.diagnosis();
       return outcome;
     }
     if (!finite(outcome.value)) {
-      words = "the response is not finite";
+      diagnosis = "the response is not finite";
       return Status::non_finite;
     }
     return outcome;
   } catch (const std::exception& e) {
-    words = e.what();
+    diagnosis = e.what();
     return Status::failed;
   } catch (...) {
-    words = "something that is no exception was thrown";
+    diagnosis = "the algorithm threw something that is not a std::exception";
     return Status::failed;
   }
 }
 
 }  // namespace
 
-Outcome<Response> respond_at(const Scenario& scenario, Query& query, double progress, std::string& words) {
+Outcome<Response> respond_at(const Scenario& scenario, Query& query, double progress, std::string& diagnosis) {
   const Pose X_AB = scenario.pose(progress);
-  Outcome<Response> outcome = guarded(query, X_AB, words);
+  Outcome<Response> outcome = respond_guarded(query, X_AB, diagnosis);
   if (outcome.ok()) outcome.value = outcome.value.about(X_AB * scenario.reference_b());
   return outcome;
 }
 
 Recording record(const Scenario& scenario, Query& query, std::size_t count) {
   Recording recording;
-  recording.progress = scenario.stamps(count);
+  recording.progress = scenario.steps(count);
   for (const double progress : recording.progress) recording.poses.push_back(scenario.pose(progress));
-  std::string words;
-  guarded(query, recording.poses.front(), words);
+  std::string diagnosis;
+  respond_guarded(query, recording.poses.front(), diagnosis);
   const std::clock_t processor_start = std::clock();
   for (const Pose& X_AB : recording.poses) {
     const auto start = std::chrono::steady_clock::now();
-    Outcome<Response> outcome = guarded(query, X_AB, words);
+    Outcome<Response> outcome = respond_guarded(query, X_AB, diagnosis);
     const auto stop = std::chrono::steady_clock::now();
     Response response;
     if (outcome.ok()) {
       response = outcome.value.about(X_AB * scenario.reference_b());
     } else if (recording.first_failure.empty()) {
-      recording.first_failure = fmt::format("{}: {}", to_string(outcome.status), words);
+      recording.first_failure = fmt::format("{}: {}", to_string(outcome.status), diagnosis);
     }
     recording.status.push_back(outcome.status);
     recording.forces.push_back(response.force);

@@ -1,6 +1,7 @@
 #include <sixdof/scenario/scenario.h>
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,60 +14,60 @@
 namespace sixdof {
 namespace {
 
-void check_name(std::string_view name) {
-  const auto& names = scenario_names();
-  if (std::find(names.begin(), names.end(), name) == names.end()) {
-    throw BadArgument(fmt::format("no scenario is called \"{}\"; there are {}", name, fmt::join(names, ", ")));
+/// In the order of IdealLaw.
+constexpr std::array<std::string_view, 8> k_law_words{"depth",    "volume",        "gradient",    "energy",
+                                                      "traction", "wall-traction", "paper-depth", "paper-volume"};
+
+struct Kind {
+  const char* name;
+  Settings (*settings)();
+  std::unique_ptr<Scenario> (*make)(const Settings&);
+};
+
+constexpr std::array k_kinds{
+    Kind{"Ia", [] { return cone_block_settings(false); }, [](const Settings& s) { return make_cone_block(s, false); }},
+    Kind{"Ib", [] { return cone_block_settings(true); }, [](const Settings& s) { return make_cone_block(s, true); }},
+    Kind{"II", sphere_cylinder_settings, make_sphere_cylinder},
+    Kind{"III", rotating_pin_settings, make_rotating_pin},
+    Kind{"IV", orbiting_pins_settings, make_orbiting_pins},
+};
+
+const Kind& find_kind(std::string_view name) {
+  const auto* const found = std::find_if(k_kinds.begin(), k_kinds.end(), [&](const Kind& k) { return k.name == name; });
+  if (found == k_kinds.end()) {
+    throw BadArgument(
+        fmt::format("no scenario is called \"{}\"; there are {}", name, fmt::join(scenario_names(), ", ")));
   }
+  return *found;
 }
 
 }  // namespace
 
-std::string_view to_string(IdealLaw law) {
-  switch (law) {
-    case IdealLaw::depth:
-      return "depth";
-    case IdealLaw::volume:
-      return "volume";
-    case IdealLaw::gradient:
-      return "gradient";
-    case IdealLaw::energy:
-      return "energy";
-    case IdealLaw::traction:
-      return "traction";
-    case IdealLaw::wall_traction:
-      return "wall-traction";
-    case IdealLaw::paper_depth:
-      return "paper-depth";
-    case IdealLaw::paper_volume:
-      return "paper-volume";
-  }
-  return "unknown";
-}
+std::string_view to_string(IdealLaw law) { return k_law_words.at(static_cast<std::size_t>(law)); }
 
 std::vector<IdealLaw> all_ideal_laws() {
-  return {IdealLaw::depth,    IdealLaw::volume,        IdealLaw::gradient,    IdealLaw::energy,
-          IdealLaw::traction, IdealLaw::wall_traction, IdealLaw::paper_depth, IdealLaw::paper_volume};
+  std::vector<IdealLaw> laws;
+  for (std::size_t i = 0; i < k_law_words.size(); ++i) laws.push_back(static_cast<IdealLaw>(i));
+  return laws;
 }
 
 IdealLaw parse_ideal_law(std::string_view word, ResponseLaw own) {
   if (word == "paper" || word == "own") {
     if (own == ResponseLaw::none) {
-      throw BadArgument(fmt::format("the algorithm declares no law, so \"{}\" means none; name one", word));
+      throw BadArgument(fmt::format("the algorithm declares no law, so \"{}\" has no meaning; name a law", word));
     }
     if (word == "own") return own == ResponseLaw::depth ? IdealLaw::depth : IdealLaw::volume;
     return own == ResponseLaw::depth ? IdealLaw::paper_depth : IdealLaw::paper_volume;
   }
-  std::vector<std::string_view> words{"own", "paper"};
   for (const IdealLaw law : all_ideal_laws()) {
     if (to_string(law) == word) return law;
-    words.push_back(to_string(law));
   }
-  throw BadArgument(fmt::format("no ideal law is called \"{}\"; there are {}", word, fmt::join(words, ", ")));
+  throw BadArgument(
+      fmt::format("no ideal law is called \"{}\"; there are own, paper, {}", word, fmt::join(k_law_words, ", ")));
 }
 
-std::vector<double> Scenario::stamps(std::size_t count) const {
-  if (count < 2) throw BadArgument(fmt::format("{} time stamps are too few; 2 or more are needed", count));
+std::vector<double> Scenario::steps(std::size_t count) const {
+  if (count < 2) throw BadArgument(fmt::format("{} steps are too few; 2 or more are needed", count));
   std::vector<double> progress(count);
   for (std::size_t k = 0; k < count; ++k) {
     const auto index = static_cast<double>(k);
@@ -77,22 +78,18 @@ std::vector<double> Scenario::stamps(std::size_t count) const {
 }
 
 const std::vector<std::string>& scenario_names() {
-  static const std::vector<std::string> names{"Ia", "Ib", "II", "III", "IV"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const Kind& kind : k_kinds) list.emplace_back(kind.name);
+    return list;
+  }();
   return names;
 }
 
-Settings scenario_settings(std::string_view name) {
-  check_name(name);
-  if (name == "Ia" || name == "Ib") return cone_block_settings(name == "Ib");
-  if (name == "II") return sphere_cylinder_settings();
-  return pins_settings(name == "III" ? PinsPath::turn : PinsPath::orbit);
-}
+Settings scenario_settings(std::string_view name) { return find_kind(name).settings(); }
 
 std::unique_ptr<Scenario> make_scenario(std::string_view name, const Settings& settings) {
-  check_name(name);
-  if (name == "Ia" || name == "Ib") return make_cone_block(settings, name == "Ib");
-  if (name == "II") return make_sphere_cylinder(settings);
-  return make_pins(settings, name == "III" ? PinsPath::turn : PinsPath::orbit);
+  return find_kind(name).make(settings);
 }
 
 std::unique_ptr<Scenario> make_scenario(std::string_view name) { return make_scenario(name, scenario_settings(name)); }

@@ -36,7 +36,7 @@ void write_poses(hdf5::File& file, const std::vector<Pose>& poses) {
   file.write_matrix("/pose", rows.data(), poses.size(), 7, k_chunk_rows);
 }
 
-/// Signal and residual of one of the two kinds of vectors.
+/// Signal and residual of the forces or of the torques.
 void write_spectra(hdf5::File& file, const std::string& kind, Vectors ideal, Vectors measured) {
   const std::vector<double> signal = magnitudes(measured);
   std::vector<double> residual = signal;
@@ -51,7 +51,7 @@ void write_spectra(hdf5::File& file, const std::string& kind, Vectors ideal, Vec
   };
   write("signal", signal);
   const Spectrogram axes = write("residual", residual);
-  if (kind != "force") return;  // the axes are the same
+  if (kind != "force") return;  // both kinds have the same axes
   write_column(file, "/spectrum/times", axes.times);
   write_column(file, "/spectrum/frequencies", axes.frequencies);
 }
@@ -59,7 +59,7 @@ void write_spectra(hdf5::File& file, const std::string& kind, Vectors ideal, Vec
 }  // namespace
 
 void write_series(const std::filesystem::path& path, const Scenario& scenario, const Recording& recording, IdealLaw law,
-                  const SeriesStamp& stamp, const Measures& measures) {
+                  const SeriesSource& source, const Measures& measures) {
   std::vector<Eigen::Vector3d> forces;
   std::vector<Eigen::Vector3d> torques;
   std::vector<double> penalties;
@@ -71,17 +71,17 @@ void write_series(const std::filesystem::path& path, const Scenario& scenario, c
   std::vector<std::int32_t> status;
   for (const Status s : recording.status) status.push_back(static_cast<std::int32_t>(s));
 
-  AtomicFile target(path);
+  AtomicFile output(path);
   const hdf5::Session session;
-  hdf5::File file = hdf5::File::create(target.temporary_path(), path);
+  hdf5::File file = hdf5::File::create(output.temporary_path(), path);
   file.write_attribute("/", "format", std::string(k_format));
   file.write_attribute("/", "format_version", k_format_version);
   file.write_attribute("/", "scenario", scenario.name());
   file.write_attribute("/", "law", std::string(to_string(law)));
-  file.write_attribute("/", "algorithm", stamp.algorithm);
-  file.write_attribute("/", "version", stamp.version);
-  file.write_attribute("/", "settings", stamp.settings);
-  file.write_attribute("/", "shape", stamp.shape);
+  file.write_attribute("/", "algorithm", source.algorithm);
+  file.write_attribute("/", "version", source.version);
+  file.write_attribute("/", "settings", source.settings);
+  file.write_attribute("/", "shape", source.shape);
   file.write_attribute("/", "rate_hz", k_haptic_rate_hz);
   for (const auto& [name, value] : measures) file.write_attribute("/", name.c_str(), value);
   write_column(file, "/progress", recording.progress);
@@ -100,7 +100,7 @@ void write_series(const std::filesystem::path& path, const Scenario& scenario, c
     write_spectra(file, "torque", torques, recording.torques);
   }
   file.close();
-  target.commit();
+  output.commit();
 }
 
 }  // namespace sixdof

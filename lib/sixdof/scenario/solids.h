@@ -7,13 +7,15 @@
 
 #include <sixdof/geometry/mesh.h>
 
+/// The solids of the scenarios: closed manifold meshes with exact coordinates.
+
 namespace sixdof {
 
-/// How a round cross-section becomes a regular polygon.
+/// The regular polygon that stands for a circle.
 enum class RoundParts {
   inscribed,   ///< Vertices on the circle: the solid is too small, by O(1 / facets^2).
-  equal_area,  ///< The polygon has the circle's area, so that cross-sections (cylinder, cone) and volumes (sphere) are
-               ///< exact.
+  equal_area,  ///< The polygon has the circle's area: areas of cross-sections (cylinder, cone) and the volume of a
+               ///< sphere are exact.
 };
 
 /// Radius of the polygon's vertices for a circle of radius `r`.
@@ -25,15 +27,15 @@ std::vector<Eigen::Vector2d> polygon(double r, int facets, RoundParts round);
 /// Axis-aligned box: 12 triangles with exactly these corners.
 Mesh box_solid(const Eigen::Vector3d& low, const Eigen::Vector3d& high, std::string name);
 
-/// Cone with its apex at the origin, opening along +y up to `height`, where its radius is `radius`. Flanks are one
-/// triangle per facet, so every cross-section is the same polygon, scaled.
+/// Cone with its apex at the origin, opening along +y up to `height`, where its radius is `radius`. Its flank has one
+/// triangle per facet, so all cross-sections are similar polygons.
 Mesh cone_solid(double radius, double height, int facets, RoundParts round, std::string name);
 
 /// Cylinder about the z axis, centred at the origin.
 Mesh cylinder_solid(double radius, double length, int facets, RoundParts round, std::string name);
 
 /// Sphere about the origin by meridians (`facets`) and parallels (`facets` / 2 bands), poles on the z axis. With
-/// equal_area the mesh's VOLUME is the ball's.
+/// equal_area the VOLUME of the mesh is the ball's.
 Mesh sphere_solid(double radius, int facets, RoundParts round, std::string name);
 
 /// Geometry of the pins and holes: a rectangle of width b (along x) and depth a (along y) centred at the z axis, with a
@@ -51,8 +53,8 @@ struct PinsShape {
 /// Block from z = -a to z = 0 with both holes through it. Genus 2.
 Mesh holes_solid(const PinsShape& shape, std::string name);
 
-/// Plate from z = 0 to z = plate_thickness with both pins hanging from it down to z = -a. The pins' walls have the very
-/// coordinates of the holes' walls: nothing is between them.
+/// Plate from z = 0 to z = plate_thickness with both pins below it down to z = -a. The pins' walls have exactly the
+/// coordinates of the holes' walls.
 Mesh pins_solid(const PinsShape& shape, std::string name);
 
 }  // namespace sixdof

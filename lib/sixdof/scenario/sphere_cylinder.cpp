@@ -27,12 +27,12 @@ struct Shape {
     require(orbit < sphere_radius + cylinder_radius, "the sphere never touches: orbit_radius is too large");
     require(orbit > cylinder_radius && orbit > sphere_radius,
             "one centre is inside the other body: orbit_radius must exceed both radii");
-    // The nearest surface is then never a flat end: the part inside stays further from the ends than from the wall.
+    // With this the nearest face is never a flat end: the part inside is nearer to the wall than to the ends.
     require(0.5 * cylinder_length > half_height() + sphere_radius + cylinder_radius - orbit,
             "the sphere meets the cylinder's ends: cylinder_length is too small");
   }
 
-  /// Half height of the common part, where the sphere's horizontal circle only touches the cylinder.
+  /// Half height of the common part: there the sphere's horizontal circle touches the cylinder.
   double half_height() const {
     const double reach = orbit - cylinder_radius;
     return std::sqrt((sphere_radius - reach) * (sphere_radius + reach));
@@ -41,8 +41,8 @@ struct Shape {
 
 class SphereCylinder final : public Scenario {
  public:
-  SphereCylinder(About about, const Shape& shape)
-      : Scenario(std::move(about),
+  SphereCylinder(Description description, const Shape& shape)
+      : Scenario(std::move(description),
                  cylinder_solid(shape.cylinder_radius, shape.cylinder_length, shape.facets, shape.round, "cylinder"),
                  sphere_solid(shape.sphere_radius, shape.facets, shape.round, "sphere")),
         shape_(shape) {
@@ -87,7 +87,7 @@ class SphereCylinder final : public Scenario {
     const Eigen::Vector2d center = shape_.orbit * outwards(sketch.progress).head<2>();
     const Eigen::Vector2d across(-center.y() / shape_.orbit, center.x() / shape_.orbit);
     const double reach = 1.1 * (shape_.orbit + shape_.sphere_radius);
-    sketch.part = {Eigen::Vector2d(-1.3 * shape_.orbit, -1.3 * shape_.orbit), Eigen::Vector2d(reach, reach)};
+    sketch.region = {Eigen::Vector2d(-1.3 * shape_.orbit, -1.3 * shape_.orbit), Eigen::Vector2d(reach, reach)};
     sketch.up = Eigen::Vector3d::UnitZ();
     const Eigen::Vector2d left(-shape_.cylinder_radius, 0.0);
     sketch.dimensions = {
@@ -156,15 +156,16 @@ Settings sphere_cylinder_settings() {
 
 std::unique_ptr<Scenario> make_sphere_cylinder(const Settings& settings) {
   const Shape shape(settings);
-  SphereCylinder::About about{
+  SphereCylinder::Description description{
       "II",
-      "Does a constant contact of two smooth round bodies give a constant force that turns with "
+      "Does a constant contact of two smooth round bodies give a constant force that rotates with "
       "the contact, and no torque?",
-      {"The sphere is carried round without turning.", "Force and torque are those on the sphere, about its centre."},
+      {"The sphere moves around the cylinder without rotation.",
+       "Force and torque are those on the sphere, about its centre."},
       Eigen::Vector3d::Zero(),
       shape.sphere_radius,
       true};
-  return std::make_unique<SphereCylinder>(std::move(about), shape);
+  return std::make_unique<SphereCylinder>(std::move(description), shape);
 }
 
 }  // namespace sixdof

@@ -6,7 +6,7 @@
 
 namespace sixdof {
 
-/// Scenario II: a sphere is carried around a cylinder at a constant depth, without turning.
+/// Scenario II: a sphere moves around a cylinder at a constant depth, without rotation.
 ///
 /// A's frame: the cylinder's axis is z, its middle the origin. B's frame: the sphere's centre is the origin, which is
 /// also the reference point. Pose: translation by orbit * (cos 2 pi s, sin 2 pi s, 0). README.md derives the ideal

@@ -10,8 +10,8 @@
 namespace sixdof {
 namespace {
 
-/// A cone's tip 4 deep in a block whose top is tilted by a generic rotation.
-struct Tilted {
+/// The tip of a cone at a depth of 4 in a block.
+struct ConeInBlock {
   Mesh block = box_solid({-50.0, -30.0, -40.0}, {45.0, 0.0, 43.0}, "block");
   Mesh cone = cone_solid(10.0, 20.0, 24, RoundParts::inscribed, "cone");
   Pose X_AB{Eigen::Matrix3d::Identity(), {3.1, -4.0, 2.2}};
@@ -27,7 +27,7 @@ Response respond(const Mesh& a, const Mesh& b, const Pose& X_AB, const char* com
 }
 
 TEST(FclContacts, PushesTheTipOut) {
-  const Tilted t;
+  const ConeInBlock t;
   for (const char* combine : {"mean", "sum", "deepest"}) {
     const Response r = respond(t.block, t.cone, t.X_AB, combine);
     EXPECT_GT(r.force.normalized().y(), 0.99) << combine;
@@ -40,7 +40,7 @@ TEST(FclContacts, PushesTheTipOut) {
 }
 
 TEST(FclContacts, ActsEquallyOnBothBodies) {
-  const Tilted t;
+  const ConeInBlock t;
   const Response on_cone = respond(t.block, t.cone, t.X_AB, "mean");
   const Pose X_BA = t.X_AB.inverse();
   const Response on_block = respond(t.cone, t.block, X_BA, "mean");  // in the cone's frame
@@ -49,21 +49,21 @@ TEST(FclContacts, ActsEquallyOnBothBodies) {
   EXPECT_TRUE((t.X_AB.R * on_block.torque).isApprox(-moved.torque, 1e-9));
 }
 
-TEST(FclContacts, IsSilentApartAndInside) {
-  const Tilted t;
+TEST(FclContacts, GivesNoForceApartAndInside) {
+  const ConeInBlock t;
   Pose apart = t.X_AB;
   apart.t.y() = 0.7;
   EXPECT_EQ(respond(t.block, t.cone, apart, "mean").force.norm(), 0.0);
-  // Known limit: FCL knows surfaces only.
+  // Known limit: FCL has surfaces only.
   const Mesh small = cone_solid(3.0, 5.0, 12, RoundParts::inscribed, "small");
   EXPECT_EQ(respond(t.block, small, {Eigen::Matrix3d::Identity(), {3.1, -20.0, 2.2}}, "mean").force.norm(), 0.0);
 }
 
-TEST(FclContacts, FailsInWordsWhenContactsAreDropped) {
-  const Tilted t;
+TEST(FclContacts, FailsWhenFclDropsContacts) {
+  const ConeInBlock t;
   const auto algorithm = make_fcl_contacts_algorithm();
   Settings settings = algorithm->settings();
-  settings.set("most_contacts", "3");
+  settings.set("max_contacts", "3");
   const auto query = algorithm->prepare(t.block, t.cone, settings);
   EXPECT_EQ(query->respond(t.X_AB).status, Status::failed);
   EXPECT_THAT(query->diagnosis(), ::testing::HasSubstr("more contacts than 3"));

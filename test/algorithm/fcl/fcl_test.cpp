@@ -8,14 +8,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/brute_force.h>
+#include <sixdof/geometry/closest_point.h>
+#include <sixdof/geometry/tree.h>
 
 namespace sixdof {
 namespace {
 
 using Eigen::Vector3d;
 
-/// Both sides compute the same few products of numbers of size 1 in another order; a hundred roundings are generous.
+/// Both sides compute a few products of numbers of the order of 1, in different orders: less than a hundred roundings.
 constexpr double k_rounding = 100 * std::numeric_limits<double>::epsilon();
 
 Pose generic_pose(std::mt19937_64& random, double reach) {
@@ -25,8 +27,8 @@ Pose generic_pose(std::mt19937_64& random, double reach) {
   return {q.toRotationMatrix(), reach * Vector3d(normal(random), normal(random), normal(random)).normalized()};
 }
 
-/// A closed star-shaped body: a globe of rings x sectors whose radius varies, so that closest features are of all
-/// kinds.
+/// A closed star-shaped body: a globe of rings x sectors whose radius varies, so that all kinds of closest features
+/// occur.
 Mesh lumpy_globe(int rings, int sectors, double lump, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> radius(1.0 - lump, 1.0);
@@ -52,77 +54,6 @@ Mesh lumpy_globe(int rings, int sectors, double lump, std::uint64_t seed) {
   return Mesh::build(std::move(vertices), std::move(triangles), "lumpy-globe");
 }
 
-// Brute force, written from the definition and without FCL: two triangles are nearest in a vertex of one and a point of
-// the other, or in two points of edges, unless an edge of one pierces the other.
-
-double point_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
-  const double s = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (p - a - s * (b - a)).norm();
-}
-
-double segment_segment(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
-  double best =
-      std::min({point_segment(a, c, d), point_segment(b, c, d), point_segment(c, a, b), point_segment(d, a, b)});
-  const Vector3d n = (b - a).cross(d - c);
-  if (n.squaredNorm() > 0.0) {
-    const double s = (c - a).cross(d - c).dot(n) / n.squaredNorm();
-    const double t = (c - a).cross(b - a).dot(n) / n.squaredNorm();
-    if (s > 0 && s < 1 && t > 0 && t < 1) best = std::min(best, std::abs((c - a).dot(n.normalized())));
-  }
-  return best;
-}
-
-using Corners = std::array<Vector3d, 3>;
-
-/// Does the line of the plane's normal through p meet the triangle?
-bool over(const Vector3d& p, const Corners& t) {
-  const Vector3d n = (t[1] - t[0]).cross(t[2] - t[0]);
-  for (int i = 0; i < 3; ++i) {
-    if ((t[(i + 1) % 3] - t[i]).cross(p - t[i]).dot(n) < 0) return false;
-  }
-  return true;
-}
-
-double triangle_triangle(const Corners& s, const Corners& t) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const auto& [u, v] : {std::pair(s, t), std::pair(t, s)}) {
-    const Vector3d n = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
-    for (int i = 0; i < 3; ++i) {
-      if (over(u[i], v)) best = std::min(best, std::abs((u[i] - v[0]).dot(n)));
-      const Vector3d p = u[i], q = u[(i + 1) % 3];
-      const double h = (p - v[0]).dot(n), k = (q - v[0]).dot(n);
-      if (h * k < 0 && over(p + h / (h - k) * (q - p), v)) return 0.0;
-    }
-  }
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) best = std::min(best, segment_segment(s[i], s[(i + 1) % 3], t[j], t[(j + 1) % 3]));
-  }
-  return best;
-}
-
-double brute_force_distance(const Mesh& a, const Mesh& b, const Pose& X_AB) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const Triangle& s : a.triangles()) {
-    for (const Triangle& t : b.triangles()) {
-      best = std::min(
-          best, triangle_triangle({a.vertices()[s[0]], a.vertices()[s[1]], a.vertices()[s[2]]},
-                                  {X_AB * b.vertices()[t[0]], X_AB * b.vertices()[t[1]], X_AB * b.vertices()[t[2]]}));
-    }
-  }
-  return best;
-}
-
-double surface_distance(const Vector3d& p, const Mesh& mesh) {
-  double best = std::numeric_limits<double>::infinity();
-  for (const Triangle& t : mesh.triangles()) {
-    const Corners c = {mesh.vertices()[t[0]], mesh.vertices()[t[1]], mesh.vertices()[t[2]]};
-    const Vector3d n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
-    if (over(p, c)) best = std::min(best, std::abs((p - c[0]).dot(n)));
-    for (int i = 0; i < 3; ++i) best = std::min(best, point_segment(p, c[i], c[(i + 1) % 3]));
-  }
-  return best;
-}
-
 std::vector<std::unique_ptr<Algorithm>> both() {
   std::vector<std::unique_ptr<Algorithm>> list;
   list.push_back(make_fcl_obbrss_algorithm());
@@ -130,12 +61,19 @@ std::vector<std::unique_ptr<Algorithm>> both() {
   return list;
 }
 
-struct BruteForce : ::testing::Test {
+double brute_force_distance(const Mesh& a, const Mesh& b, const Pose& X_AB) {
+  const auto algorithm = make_brute_force_algorithm();
+  return algorithm->prepare(a, b, algorithm->settings())->distance(X_AB).value.distance;
+}
+
+class FclAgainstBruteForce : public ::testing::Test {
+ protected:
   const Mesh a = lumpy_globe(5, 7, 0.4, 11);
   const Mesh b = lumpy_globe(4, 6, 0.3, 12);
 };
 
-TEST_F(BruteForce, AgreesOnDistanceYesNoAndWitnesses) {
+TEST_F(FclAgainstBruteForce, AgreesOnDistanceCollisionAndWitnesses) {
+  const Tree tree_a(a), tree_b(b);
   std::mt19937_64 random(2026);
   std::uniform_real_distribution<double> reach(1.2, 2.6);
   int touching = 0;
@@ -155,8 +93,8 @@ TEST_F(BruteForce, AgreesOnDistanceYesNoAndWitnesses) {
       EXPECT_EQ(forth.value.has_witnesses, truth > 0.0);
       if (truth > 0.0) {
         EXPECT_NEAR((forth.value.witness_a - forth.value.witness_b).norm(), truth, k_rounding);
-        EXPECT_NEAR(surface_distance(forth.value.witness_a, a), 0.0, k_rounding);
-        EXPECT_NEAR(surface_distance(X_AB.inverse() * forth.value.witness_b, b), 0.0, k_rounding);
+        EXPECT_NEAR(closest_point(tree_a, forth.value.witness_a)->distance, 0.0, k_rounding);
+        EXPECT_NEAR(closest_point(tree_b, X_AB.inverse() * forth.value.witness_b)->distance, 0.0, k_rounding);
       }
       const auto yes = ab->collide(X_AB);
       const auto yes_back = ba->collide(X_AB.inverse());
@@ -169,12 +107,12 @@ TEST_F(BruteForce, AgreesOnDistanceYesNoAndWitnesses) {
       }
     }
   }
-  // Both answers occur often, or the test says little.
+  // Both answers must occur often.
   EXPECT_GT(touching, poses / 3);
   EXPECT_LT(touching, 2 * poses - poses / 3);
 }
 
-TEST_F(BruteForce, BoundsTheApproximateDistance) {
+TEST_F(FclAgainstBruteForce, BoundsTheApproximateDistance) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> reach(2.1, 3.0);
   for (const auto& algorithm : both()) {
@@ -191,7 +129,7 @@ TEST_F(BruteForce, BoundsTheApproximateDistance) {
       EXPECT_LE(answer.value.distance, 1.25 * truth + k_rounding);
       inexact += answer.value.distance > truth + k_rounding;
     }
-    // The parameter must do something.
+    // The parameter must have an effect.
     EXPECT_GT(inexact, 0) << algorithm->traits().name;
   }
 }

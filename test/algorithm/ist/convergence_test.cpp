@@ -1,4 +1,4 @@
-// What sphere packings approach as spheres grow in number, on detailed bodies against the exact overlap.
+// Convergence of volume and force with the number of spheres, on detailed bodies, to the exact overlap.
 
 #include <cmath>
 #include <memory>
@@ -21,7 +21,7 @@ struct Packed {
 };
 
 Packed pack(const Mesh& mesh, std::size_t spheres) {
-  Packing packing = pack_spheres(mesh, Tree(mesh), {.spheres = spheres});
+  Packing packing = pack_spheres(mesh, {.spheres = spheres});
   return {build_sphere_tree(std::move(packing.spheres)), packing.fill};
 }
 
@@ -34,17 +34,17 @@ Measured measure(const Packed& a, const Packed& b, const test::ExactResponses& t
   TraversalScratch scratch;
   std::vector<Response> by_gradient, by_volume;
   double error = 0.0;
-  const double gain = 1.0 / (a.fill * b.fill);
+  const double correction = 1.0 / (a.fill * b.fill);
   for (std::size_t i = 0; i < truth.poses.size(); ++i) {
     const Eigen::Vector3d& reference = truth.responses[i].reference;
     for (const PairForce law : {PairForce::gradient, PairForce::volume}) {
       const PenetrationSum sum = penetration(a.tree, b.tree, truth.poses[i], law, reference, scratch);
       auto& responses = law == PairForce::gradient ? by_gradient : by_volume;
-      responses.push_back({.force = gain * sum.force, .torque = gain * sum.moment, .reference = reference});
+      responses.push_back({.force = correction * sum.force, .torque = correction * sum.moment, .reference = reference});
       if (law == PairForce::gradient) {
-        // Sums of spheres never see more than there is.
+        // The spheres are inside the bodies, so their overlap is smaller.
         EXPECT_LT(sum.volume, truth.responses[i].volume);
-        error += std::abs(gain * sum.volume / truth.responses[i].volume - 1.0);
+        error += std::abs(correction * sum.volume / truth.responses[i].volume - 1.0);
       }
     }
   }
@@ -54,7 +54,7 @@ Measured measure(const Packed& a, const Packed& b, const test::ExactResponses& t
 
 class IstConvergence : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
 
-TEST_P(IstConvergence, VolumeAndItsGradientApproachTheExactOnes) {
+TEST_P(IstConvergence, VolumeAndItsGradientConvergeToTheExactOnes) {
   const Mesh a = load_model(GetParam().first), b = load_model(GetParam().second);
   constexpr std::size_t k_poses = 24;
   const test::ExactResponses truth(a, b, k_poses, 0.3 * a.diagonal(), 0.01 * b.volume());
@@ -67,7 +67,7 @@ TEST_P(IstConvergence, VolumeAndItsGradientApproachTheExactOnes) {
     EXPECT_LT(found[i].gradient.residual, found[i - 1].gradient.residual);
     EXPECT_LT(std::abs(found[i].gradient.gain - 1.0), std::abs(found[i - 1].gradient.gain - 1.0));
   }
-  // The unfilled shell is about as thick as the last spheres: errors fall about with the spheres' spacing, N^(-1/3).
+  // The gap at the surface is about as thick as the smallest spheres: errors decrease about as N^(-1/3).
   const double order = std::log(found.front().volume_error / found.back().volume_error) / std::log(2000.0 / 125.0);
   RecordProperty("order", std::to_string(order));
   EXPECT_GT(order, 0.2);
@@ -76,7 +76,7 @@ TEST_P(IstConvergence, VolumeAndItsGradientApproachTheExactOnes) {
   EXPECT_NEAR(found.back().gradient.gain, 1.0, 0.2);
   EXPECT_LT(found.back().gradient.force_degrees, 0.6 * found.front().gradient.force_degrees);
   EXPECT_LT(found.back().gradient.torque_degrees, 0.6 * found.front().gradient.torque_degrees);
-  // The paper's force weighs each pair by its volume. It does not have the exact direction as its limit.
+  // The paper's force has each pair's volume as magnitude. Its direction does not converge to the exact one.
   EXPECT_GT(found.back().volume_law.force_degrees, 2.0 * found.back().gradient.force_degrees);
 }
 

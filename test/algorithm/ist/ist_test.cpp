@@ -31,20 +31,20 @@ class IstTest : public ::testing::Test {
   std::unique_ptr<Algorithm> algorithm_ = make_ist_algorithm();
 };
 
-/// Two blocks without rotation: overlap volume and its gradient are a box and its face.
-TEST_F(IstTest, VolumeAndForceApproachTheBlocksAsSpheresGrowInNumber) {
+/// Two blocks without rotation: the overlap is a box, and the gradient of its volume has the areas of its faces.
+TEST_F(IstTest, VolumeAndForceConvergeForTwoBlocks) {
   const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 100);
-  const Eigen::Vector3d shift(0.4, 0.15, 1.0);  // overlap 1.6 x 1.45 x 0.2: the way out is along z
+  const Eigen::Vector3d shift(0.4, 0.15, 1.0);  // overlap 1.6 x 1.45 x 0.2
   const Pose X{Eigen::Matrix3d::Identity(), shift};
   const double volume = (2.0 - 0.4) * (1.6 - 0.15) * (1.2 - 1.0);
-  const Eigen::Vector3d push =
+  const Eigen::Vector3d direction =
       Eigen::Vector3d(1.45 * 0.2, 1.6 * 0.2, 1.6 * 1.45).normalized();  // -grad V: areas of the faces
   double last_volume_error = 1.0, last_angle = 180.0;
   for (const char* spheres : {"spheres=100", "spheres=500", "spheres=2500"}) {
     const auto response = prepare(block, block, {spheres, "force=gradient", "correct_fill=on"})->respond(X);
     ASSERT_TRUE(response.ok());
     const double volume_error = std::abs(response.value.volume / volume - 1.0);
-    const double angle = std::acos(response.value.force.normalized().dot(push)) * 180.0 / std::numbers::pi;
+    const double angle = std::acos(response.value.force.normalized().dot(direction)) * 180.0 / std::numbers::pi;
     EXPECT_LT(volume_error, last_volume_error) << spheres;
     EXPECT_LT(angle, last_angle) << spheres;
     last_volume_error = volume_error;
@@ -59,7 +59,7 @@ TEST_F(IstTest, VolumeAndForceApproachTheBlocksAsSpheresGrowInNumber) {
 TEST_F(IstTest, ReactionIsOppositeToAction) {
   const Mesh a = load_model("torus-knot-1k"), b = load_model("bumpy-sphere-1k");
   for (const std::vector<std::string>& parameters :
-       {std::vector<std::string>{"spheres=300"}, {"spheres=300", "force=descent", "correct_fill=cells"}}) {
+       {std::vector<std::string>{"spheres=300"}, {"spheres=300", "force=steepest_descent", "correct_fill=cells"}}) {
     const auto forward = prepare(a, b, parameters), backward = prepare(b, a, parameters);
     std::mt19937_64 random(41);
     int touching = 0;
@@ -78,8 +78,7 @@ TEST_F(IstTest, ReactionIsOppositeToAction) {
   }
 }
 
-/// Blocks again: the overlap is a box, so its volume, its gradient and its place are known.
-TEST_F(IstTest, DescentPushesWithTheVolumeAndTheGradientsDirection) {
+TEST_F(IstTest, SteepestDescentHasTheVolumeAsMagnitudeAndTheGradientsDirection) {
   const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 100);
   const std::vector<std::string> parameters{"spheres=3000", "correct_fill=cells"};
   const auto with = [&](const char* force) {
@@ -87,23 +86,23 @@ TEST_F(IstTest, DescentPushesWithTheVolumeAndTheGradientsDirection) {
     all.emplace_back(force);
     return prepare(block, block, all);
   };
-  const auto descent = with("force=descent"), gradient = with("force=gradient");
+  const auto descent = with("force=steepest_descent"), gradient = with("force=gradient");
   std::mt19937_64 random(43);
   std::uniform_real_distribution<double> overlap(0.2, 0.6);
   for (int i = 0; i < 6; ++i) {
     const double x = overlap(random), y = overlap(random), z = overlap(random);
     const Pose X{Eigen::Matrix3d::Identity(), {2.0 - x, 1.6 - y, 1.2 - z}};
-    const Response push = descent->respond(X).value, slope = gradient->respond(X).value;
+    const Response steepest = descent->respond(X).value, slope = gradient->respond(X).value;
     const double volume = x * y * z;
-    EXPECT_NEAR(push.volume, volume, 0.1 * volume);
-    EXPECT_EQ(push.volume, slope.volume);
-    // The gradient acts through the box's middle, nearly: hardly any of the magnitude goes into a torque.
-    EXPECT_LE(push.force.norm(), push.volume * (1.0 + k_rounding));
-    EXPECT_GT(push.force.norm(), 0.97 * push.volume);
-    EXPECT_LE((push.force.normalized() - slope.force.normalized()).norm(), k_rounding);
-    EXPECT_LE((push.torque / push.force.norm() - slope.torque / slope.force.norm()).norm(), k_rounding);
-    const double angle = std::acos(push.force.normalized().dot(Eigen::Vector3d(y * z, x * z, x * y).normalized()));
-    EXPECT_LT(angle, 10.0 * std::numbers::pi / 180.0);  // with 3,000 spheres; the paper's law: up to 40
+    EXPECT_NEAR(steepest.volume, volume, 0.1 * volume);
+    EXPECT_EQ(steepest.volume, slope.volume);
+    // The gradient acts nearly through the centroid of the overlap, so its moment about it is small.
+    EXPECT_LE(steepest.force.norm(), steepest.volume * (1.0 + k_rounding));
+    EXPECT_GT(steepest.force.norm(), 0.97 * steepest.volume);
+    EXPECT_LE((steepest.force.normalized() - slope.force.normalized()).norm(), k_rounding);
+    EXPECT_LE((steepest.torque / steepest.force.norm() - slope.torque / slope.force.norm()).norm(), k_rounding);
+    const double angle = std::acos(steepest.force.normalized().dot(Eigen::Vector3d(y * z, x * z, x * y).normalized()));
+    EXPECT_LT(angle, 10.0 * std::numbers::pi / 180.0);  // with 3,000 spheres; force=volume: up to 40
   }
 }
 
@@ -125,8 +124,8 @@ TEST_F(IstTest, CellsMeasureVolumesBetterThanFillRates) {
   EXPECT_LT(cells_error, 0.2);
 }
 
-/// Every pair's force is along the line of centres and depends on their distance alone, so both laws derive from an
-/// energy: a closed loop of translations and turns costs nothing.
+/// A pair's force acts along the line of centres and depends on their distance only, so both laws derive from an
+/// energy.
 TEST_F(IstTest, IsConservativeOnAClosedLoop) {
   const Mesh a = load_model("torus-knot-1k"), b = load_model("bumpy-sphere-1k");
   for (const char* law : {"force=gradient", "force=volume"}) {
@@ -147,19 +146,19 @@ TEST_F(IstTest, CorrectionDividesByBothFillRatesAndStiffnessIsAFactor) {
   const auto counts = plain->footprint().counts;
   ASSERT_EQ(counts[2].first, "fill_a");
   ASSERT_EQ(counts[3].first, "fill_b");
-  EXPECT_GT(std::abs(counts[2].second - counts[3].second), 0.01);  // else the two could be mistaken
-  const double gain = 1.0 / (counts[2].second * counts[3].second);
+  EXPECT_GT(std::abs(counts[2].second - counts[3].second), 0.01);  // else the test could not tell them apart
+  const double correction = 1.0 / (counts[2].second * counts[3].second);
   const Response corrected = prepare(a, b, {"spheres=200", "correct_fill=on"})->respond(X).value;
-  EXPECT_NEAR(corrected.volume, gain * response.volume, k_rounding * corrected.volume);
-  EXPECT_LE((corrected.force - gain * response.force).norm(), k_rounding * corrected.force.norm());
-  EXPECT_LE((corrected.torque - gain * response.torque).norm(), k_rounding * corrected.torque.norm());
+  EXPECT_NEAR(corrected.volume, correction * response.volume, k_rounding * corrected.volume);
+  EXPECT_LE((corrected.force - correction * response.force).norm(), k_rounding * corrected.force.norm());
+  EXPECT_LE((corrected.torque - correction * response.torque).norm(), k_rounding * corrected.torque.norm());
   const Response stiff = prepare(a, b, {"spheres=200", "stiffness=2.5"})->respond(X).value;
   EXPECT_LE((stiff.force - 2.5 * response.force).norm(), k_rounding * stiff.force.norm());
   EXPECT_LE((stiff.torque - 2.5 * response.torque).norm(), k_rounding * stiff.torque.norm());
   EXPECT_EQ(stiff.volume, response.volume);
 }
 
-/// Two spheres, whose overlap, force and torque are known in closed form.
+/// Two spheres: overlap, force and torque are known in closed form.
 TEST_F(IstTest, TwoBallsPushEachOtherAlongTheirCentres) {
   const Mesh ball = load_model("sphere-2k");
   const auto query = prepare(ball, ball, {"spheres=1"});
@@ -173,7 +172,7 @@ TEST_F(IstTest, TwoBallsPushEachOtherAlongTheirCentres) {
   EXPECT_LT(response.torque.norm(), 0.02 * response.force.norm());
 }
 
-TEST_F(IstTest, DistanceIsFromAboveAndWitnessesRealiseIt) {
+TEST_F(IstTest, DistanceIsAnUpperBoundAndThatOfTheWitnesses) {
   const Mesh block = make_box({.size = {2.0, 1.6, 1.2}}, 100);
   const auto query = prepare(block, block, {"spheres=3000"});
   const Pose X{Eigen::Matrix3d::Identity(), {0.1, 0.2, 1.5}};  // true gap 0.3
@@ -186,7 +185,7 @@ TEST_F(IstTest, DistanceIsFromAboveAndWitnessesRealiseIt) {
   EXPECT_TRUE(query->collide({Eigen::Matrix3d::Identity(), {0.1, 0.2, 1.0}}).value);
 }
 
-TEST_F(IstTest, FarApartThereIsNothingAndAPoseThatIsNotFiniteIsAFailure) {
+TEST_F(IstTest, GivesNoForceFarApartAndFailsForAPoseThatIsNotFinite) {
   const Mesh mesh = load_model("torus-knot-1k");
   const auto query = prepare(mesh, mesh, {"spheres=100"});
   for (const double reach : {3.0, 1e9, 1e300}) {
@@ -205,35 +204,35 @@ TEST_F(IstTest, FarApartThereIsNothingAndAPoseThatIsNotFiniteIsAFailure) {
   EXPECT_FALSE(query->diagnosis().empty());
 }
 
-TEST_F(IstTest, KeptPackingGivesTheSameAnswer) {
+TEST_F(IstTest, CachedPackingGivesTheSameAnswer) {
   const std::string cache = ::testing::TempDir() + "/sixdof_ist_cache";
   std::filesystem::remove_all(cache);
   ::setenv("SIXDOF_CACHE", cache.c_str(), 1);
   const Mesh mesh = load_model("torus-knot-1k");
   const Pose X = Pose::from_quaternion(0.8, 0.36, 0.0, 0.48, {0.3, 0.4, 0.2});
-  const Response made = prepare(mesh, mesh, {"spheres=150"})->respond(X).value;
-  const std::vector<std::string> shared{"spheres=150", "correct_fill=cells"};
-  const Response weighed = prepare(mesh, mesh, shared)->respond(X).value;
-  EXPECT_GT(weighed.volume, made.volume);
-  EXPECT_EQ(prepare(mesh, mesh, shared)->respond(X).value.force, weighed.force);
+  const Response built = prepare(mesh, mesh, {"spheres=150"})->respond(X).value;
+  const std::vector<std::string> cells{"spheres=150", "correct_fill=cells"};
+  const Response weighted = prepare(mesh, mesh, cells)->respond(X).value;
+  EXPECT_GT(weighted.volume, built.volume);
+  EXPECT_EQ(prepare(mesh, mesh, cells)->respond(X).value.force, weighted.force);
   ASSERT_FALSE(std::filesystem::is_empty(cache));
-  const Response kept = prepare(mesh, mesh, {"spheres=150"})->respond(X).value;
-  EXPECT_EQ(made.volume, kept.volume);
-  EXPECT_EQ(made.force, kept.force);
-  EXPECT_EQ(made.torque, kept.torque);
-  EXPECT_GT(made.volume, 0.0);
-  // A damaged file is no entry: the packing is made again, and kept.
+  const Response cached = prepare(mesh, mesh, {"spheres=150"})->respond(X).value;
+  EXPECT_EQ(built.volume, cached.volume);
+  EXPECT_EQ(built.force, cached.force);
+  EXPECT_EQ(built.torque, cached.torque);
+  EXPECT_GT(built.volume, 0.0);
+  // A damaged entry is built and stored again.
   for (const auto& file : std::filesystem::directory_iterator(cache)) {
     std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) - 500);
   }
-  EXPECT_EQ(prepare(mesh, mesh, {"spheres=150"})->respond(X).value.force, made.force);
+  EXPECT_EQ(prepare(mesh, mesh, {"spheres=150"})->respond(X).value.force, built.force);
   for (const auto& file : std::filesystem::directory_iterator(cache)) {
     std::fstream bytes(file.path(), std::ios::in | std::ios::out | std::ios::binary);
     bytes.seekp(static_cast<std::streamoff>(std::filesystem::file_size(file.path()) / 2));
     bytes.put('\x5a');
   }
-  EXPECT_EQ(prepare(mesh, mesh, shared)->respond(X).value.force, weighed.force);
-  EXPECT_EQ(prepare(mesh, mesh, {"spheres=150"})->respond(X).value.force, made.force);
+  EXPECT_EQ(prepare(mesh, mesh, cells)->respond(X).value.force, weighted.force);
+  EXPECT_EQ(prepare(mesh, mesh, {"spheres=150"})->respond(X).value.force, built.force);
   EXPECT_EQ(prepare(mesh, mesh, {"spheres=151"})->footprint().counts.front().second, 151.0);  // another key
   std::filesystem::remove_all(cache);
 }

@@ -15,7 +15,7 @@
 namespace sixdof::ist {
 namespace {
 
-PackingGoal goal(std::size_t spheres) { return {.spheres = spheres}; }
+PackingOptions at_most(std::size_t spheres) { return {.spheres = spheres}; }
 
 /// Solid angle of the surface seen from p, over 4 pi: 1 inside, 0 outside (van Oosterom and Strackee 1983).
 double winding_number(const Mesh& mesh, const Eigen::Vector3d& p) {
@@ -32,7 +32,7 @@ TEST(Packing, SpheresAreInsideAndDisjoint) {
   for (const char* name : {"torus-knot-2k", "circular-box-2k", "bumpy-sphere-1k"}) {
     const Mesh mesh = load_model(name);
     const Tree tree(mesh);
-    const Packing packing = pack_spheres(mesh, tree, goal(400));
+    const Packing packing = pack_spheres(mesh, at_most(400));
     ASSERT_EQ(packing.spheres.size(), 400u) << name;
     double worst_surface = 1.0, worst_pair = 1.0;
     for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
@@ -53,13 +53,13 @@ TEST(Packing, SpheresAreInsideAndDisjoint) {
 
 TEST(Packing, FindsTheLargestSphereAndFillsWell) {
   const Mesh ball = load_model("sphere-2k");
-  const Packing one = pack_spheres(ball, Tree(ball), goal(1));
+  const Packing one = pack_spheres(ball, at_most(1));
   EXPECT_GT(one.spheres.front().radius, 0.97);  // the tessellated ball's inscribed radius is just below 1
   EXPECT_LT(one.spheres.front().radius, 1.0);
 
-  // The largest spheres come first, up to what one round inserts together and what the climbs miss.
+  // The largest spheres come first, but for those of one round and for maxima that are missed.
   const Mesh knot = load_model("torus-knot-2k");
-  const Packing many = pack_spheres(knot, Tree(knot), goal(2000));
+  const Packing many = pack_spheres(knot, at_most(2000));
   double smallest = many.spheres.front().radius;
   for (std::size_t i = 1; i < many.spheres.size(); ++i) {
     EXPECT_LT(many.spheres[i].radius, 1.5 * smallest) << i;
@@ -67,16 +67,15 @@ TEST(Packing, FindsTheLargestSphereAndFillsWell) {
   }
   EXPECT_GT(many.fill, 0.7);
   EXPECT_LT(many.fill, 1.0);
-  EXPECT_GT(many.fill, pack_spheres(knot, Tree(knot), goal(200)).fill + 0.05);
+  EXPECT_GT(many.fill, pack_spheres(knot, at_most(200)).fill + 0.05);
 }
 
-/// Weller and Zachmann (2010) and later ProtoSphere papers fill detailed closed bodies with 10,000 spheres to about 83
-/// %.
+/// Fill rate of detailed closed bodies with 10,000 spheres in Weller and Zachmann (2010) and later ProtoSphere papers.
 constexpr double k_published_fill = 0.83;
 
 TEST(Packing, FillsAsMuchAsPublishedPackings) {
   const Mesh mesh = load_model("torus-knot-2k");
-  const Packing packing = pack_spheres(mesh, Tree(mesh), goal(10'000));
+  const Packing packing = pack_spheres(mesh, at_most(10'000));
   EXPECT_EQ(packing.spheres.size(), 10'000u);
   EXPECT_GT(packing.fill, k_published_fill);
   EXPECT_LT(packing.fill, k_published_fill + 0.05);
@@ -91,12 +90,12 @@ Mesh scaled(const Mesh& mesh, double factor) {
   return Mesh::build(vertices, mesh.triangles(), mesh.name());
 }
 
-TEST(Packing, TinyAndHugeBodiesPackAlike) {
+TEST(Packing, DoesNotDependOnTheUnitOfLength) {
   const Mesh mesh = load_model("torus-knot-1k");
-  const Packing plain = pack_spheres(mesh, Tree(mesh), goal(200));
+  const Packing plain = pack_spheres(mesh, at_most(200));
   for (const double factor : {0x1p-40, 0x1p40}) {  // powers of two: the same roundings
     const Mesh other = scaled(mesh, factor);
-    const Packing packing = pack_spheres(other, Tree(other), goal(200));
+    const Packing packing = pack_spheres(other, at_most(200));
     EXPECT_NEAR(packing.fill, plain.fill, 0.01) << factor;
     EXPECT_NEAR(packing.spheres.front().radius / factor, plain.spheres.front().radius, 1e-2) << factor;
   }
@@ -105,7 +104,7 @@ TEST(Packing, TinyAndHugeBodiesPackAlike) {
 TEST(Packing, AThinPlateIsFilledFromWallToWall) {
   const double thickness = 0.002;
   const Mesh plate = make_box({.size = {1.0, 0.8, thickness}}, 12);
-  const Packing packing = pack_spheres(plate, Tree(plate), goal(300));
+  const Packing packing = pack_spheres(plate, at_most(300));
   ASSERT_EQ(packing.spheres.size(), 300u);
   for (const Sphere& s : packing.spheres) {
     EXPECT_LE(std::abs(s.center.z()) + s.radius, 0.5 * thickness);
@@ -113,13 +112,13 @@ TEST(Packing, AThinPlateIsFilledFromWallToWall) {
   }
 }
 
-/// Below a cone's inscribed sphere the next largest stands in the tip, where a climb has to follow a narrow wedge.
+/// The second largest sphere is between the inscribed sphere and the tip, where a prototype has to follow a wedge.
 TEST(Packing, FollowsAConeIntoItsTip) {
   const Mesh cone = load_model("cone-1k");  // base radius 1, height 2, apex up
   const double sine = 1.0 / std::sqrt(5.0), inscribed = 2.0 / (1.0 + std::sqrt(5.0));
   const double ratio = (1.0 - sine) / (1.0 + sine);
-  const Packing packing = pack_spheres(cone, Tree(cone), goal(3));
-  constexpr double k_near = 0.02;  // flat sides, and climbs that end within a hundredth of the top
+  const Packing packing = pack_spheres(cone, at_most(3));
+  constexpr double k_near = 0.02;  // flat sides, and k_min_gain of the optimisation
   EXPECT_NEAR(packing.spheres[0].radius, inscribed, k_near);
   EXPECT_NEAR(packing.spheres[1].radius, ratio * inscribed, k_near);
   EXPECT_NEAR(packing.spheres[1].center.z(), 2.0 - ratio * inscribed / sine, k_near);
@@ -127,14 +126,14 @@ TEST(Packing, FollowsAConeIntoItsTip) {
 
 TEST(Packing, StopsAtTheFillRateAndTheSmallestRadius) {
   const Mesh mesh = load_model("box-1k");
-  PackingGoal until = goal(5000);
-  until.fill = 0.6;
-  const Packing filled = pack_spheres(mesh, Tree(mesh), until);
+  PackingOptions options = at_most(5000);
+  options.fill = 0.6;
+  const Packing filled = pack_spheres(mesh, options);
   EXPECT_GE(filled.fill, 0.6);
   EXPECT_LT(filled.fill, 0.7);
-  until = goal(5000);
-  until.smallest_radius = 0.04;
-  const Packing coarse = pack_spheres(mesh, Tree(mesh), until);
+  options = at_most(5000);
+  options.smallest_radius = 0.04;
+  const Packing coarse = pack_spheres(mesh, options);
   EXPECT_LT(coarse.spheres.size(), 5000u);
   for (const Sphere& s : coarse.spheres) EXPECT_GE(s.radius, 0.04 * mesh.diagonal() * (1.0 - 1e-8));
 }
@@ -144,7 +143,7 @@ TEST(Packing, SameBitsForAnyNumberOfThreads) {
   const Tree tree(mesh);
   const auto pack_with = [&](std::size_t threads) {
     const parallel::ThreadLimit limit(threads);
-    return pack_spheres(mesh, tree, goal(300)).spheres;
+    return pack_spheres(mesh, at_most(300)).spheres;
   };
   const auto one = pack_with(1), two = pack_with(2);
   ASSERT_EQ(one.size(), two.size());
@@ -154,20 +153,20 @@ TEST(Packing, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(Packing, RefusesWhatHasNoInside) {
+TEST(Packing, RefusesMeshesThatAreNotSolidOrTooThin) {
   const Mesh open =
       Mesh::build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}}, "open");
-  EXPECT_THROW(pack_spheres(open, Tree(open), goal(10)), BadMesh);
+  EXPECT_THROW(pack_spheres(open, at_most(10)), BadMesh);
   std::vector<Triangle> inwards = load_model("torus-1k").triangles();
   for (Triangle& t : inwards) std::swap(t[1], t[2]);
   const Mesh inside_out = Mesh::build(load_model("torus-1k").vertices(), inwards, "inside-out");
-  EXPECT_THAT([&] { pack_spheres(inside_out, Tree(inside_out), goal(10)); },
+  EXPECT_THAT([&] { pack_spheres(inside_out, at_most(10)); },
               ::testing::ThrowsMessage<BadMesh>(::testing::HasSubstr("inside out")));
   // A plate a thousand times thinner than the smallest sphere.
   const Mesh plate = Mesh::build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 1e-7}},
                                  {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, "plate");
   try {
-    pack_spheres(plate, Tree(plate), goal(10));
+    pack_spheres(plate, at_most(10));
     FAIL();
   } catch (const BadMesh& e) {
     EXPECT_THAT(e.what(), ::testing::HasSubstr("too thin"));

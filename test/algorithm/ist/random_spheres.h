@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -8,14 +9,14 @@
 
 namespace sixdof::ist {
 
-/// Spheres scattered in a box of edge 2, not disjoint: traversals must not care.
+/// Spheres in a box of edge 2 that may overlap, which traversals allow.
 inline std::vector<Sphere> random_spheres(std::size_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> place(-1.0, 1.0), size(-4.0, -1.2);
+  std::uniform_real_distribution<double> coordinate(-1.0, 1.0), log_radius(-4.0, -1.2);
   std::vector<Sphere> spheres;
   for (std::size_t i = 0; i < count; ++i) {
-    const double x = place(random), y = place(random), z = place(random);
-    spheres.push_back({{x, y, z}, std::exp(size(random))});
+    const double x = coordinate(random), y = coordinate(random), z = coordinate(random);
+    spheres.push_back({{x, y, z}, std::exp(log_radius(random))});
   }
   return spheres;
 }

@@ -9,7 +9,8 @@
 namespace sixdof::ist {
 namespace {
 
-/// Volume common to two balls by slices across the line of centres: each slice is the smaller of two concentric discs.
+/// Intersection volume of two spheres by slices across the line of centres: each is the smaller of two concentric
+/// discs.
 double overlap_by_slices(double r1, double r2, double d) {
   constexpr int n = 200'000;
   const double low = std::max(-r1, d - r2), high = std::min(r1, d + r2);
@@ -38,16 +39,6 @@ TEST(Sphere, OverlapVolumeIsContinuousAtContainmentAndAtTouching) {
   EXPECT_DOUBLE_EQ(overlap_volume(1.0, 0.4, 1.4), 0.0);
   EXPECT_NEAR(overlap_volume(1.0, 0.4, 1.4 - 1e-7), 0.0, 1e-13);
   EXPECT_DOUBLE_EQ(overlap_volume(1.0, 1.0, 0.0), (Sphere{{}, 1.0}.volume()));
-}
-
-TEST(Sphere, DiscAreaIsTheVolumesDerivative) {
-  constexpr double h = 1e-5;
-  for (const double d : {0.45, 0.8, 1.1, 1.5}) {
-    const double slope = (overlap_volume(1.0, 0.7, d + h) - overlap_volume(1.0, 0.7, d - h)) / (2.0 * h);
-    EXPECT_NEAR(overlap_disc_area(1.0, 0.7, d), -slope, 1e-8) << d;
-  }
-  EXPECT_EQ(overlap_disc_area(1.0, 0.7, 0.2), 0.0);
-  EXPECT_EQ(overlap_disc_area(1.0, 0.7, 1.8), 0.0);
 }
 
 TEST(Sphere, EnclosingSphereEnclosesAndIsNearlySmallest) {

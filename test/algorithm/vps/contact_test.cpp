@@ -16,14 +16,14 @@ namespace {
 using vps_test::generic_pose;
 using vps_test::moved;
 
-/// One lane after the other in plain C++, in the order of additions that contact.h promises.
+/// Scalar code, one lane after the other, in the order of additions that contact.h states.
 class PlainSums {
  public:
   explicit PlainSums(const PointTree& tree) : tree_(tree) {}
 
-  /// visit(position, normal, weight, force, torque, contact, depth) sets the last four.
-  template <class Visit>
-  ContactSums over_all_leaves(const Visit& visit) {
+  /// evaluate(position, normal, weight, term, depth) sets the last two; false: no contact.
+  template <class Evaluate>
+  ContactSums over_all_leaves(const Evaluate& evaluate) {
     for (std::uint32_t leaf = 0; leaf < tree_.leaves(); ++leaf) {
       if (leaf % k_batch_leaves == 0) flush();
       for (std::size_t lane = 0; lane < PointTree::k_leaf_points; ++lane) {
@@ -32,7 +32,7 @@ class PlainSums {
         };
         float term[7] = {};
         float depth = 0.0f;
-        if (!visit({row(0), row(1), row(2)}, {row(4), row(5), row(6)}, row(3), term, depth)) continue;
+        if (!evaluate({row(0), row(1), row(2)}, {row(4), row(5), row(6)}, row(3), term, depth)) continue;
         for (std::size_t s = 0; s < 7; ++s) batch_[s][lane] += term[s];
         depth_ = std::max(depth_, depth);
       }
@@ -74,14 +74,15 @@ void cross(const float (&a)[3], const float (&b)[3], float (&out)[3]) {
   }
 }
 
-ContactSums plain_layers(const VoxelMap& map, const PointTree& tree, const Placement& placement, LayerDepth kind) {
+ContactSums plain_layers(const VoxelMap& map, const PointTree& tree, const VoxelTransform& voxel_transform,
+                         LayerDepth kind) {
   return PlainSums(tree).over_all_leaves(
       [&](const float(&p)[3], const float(&n)[3], float w, float(&term)[7], float& depth) {
         float q[3], low[3], rotated[3], arm[3];
         int voxel[3];
-        transform(placement.scaled, p, q);
+        transform(voxel_transform.scaled, p, q);
         for (int axis = 0; axis < 3; ++axis) {
-          q[axis] += placement.center[axis];
+          q[axis] += voxel_transform.center[axis];
           low[axis] = std::min(std::max(std::floor(q[axis]), 0.0f), static_cast<float>(map.grid.voxels()[axis] - 1));
           voxel[axis] = static_cast<int>(low[axis]);
         }
@@ -90,7 +91,7 @@ ContactSums plain_layers(const VoxelMap& map, const PointTree& tree, const Place
         depth = static_cast<float>(v);
         if (kind == LayerDepth::layers_and_local) {
           const float eps[3] = {low[0] + 0.5f - q[0], low[1] + 0.5f - q[1], low[2] + 0.5f - q[2]};
-          transform(placement.rotation, n, rotated);
+          transform(voxel_transform.rotation, n, rotated);
           depth = std::max(depth + dot(rotated, eps), 0.0f);
         }
         cross(p, n, arm);
@@ -103,14 +104,14 @@ ContactSums plain_layers(const VoxelMap& map, const PointTree& tree, const Place
       });
 }
 
-ContactSums plain_field(const DistanceField& field, const PointTree& tree, const Placement& placement) {
+ContactSums plain_field(const DistanceField& field, const PointTree& tree, const VoxelTransform& voxel_transform) {
   return PlainSums(tree).over_all_leaves(
       [&](const float(&p)[3], const float(&)[3], float w, float(&term)[7], float& depth) {
-        float arm[3], weight[3][3], slope[3][3], push[3], turn[3];
+        float arm[3], weight[3][3], slope[3][3], force[3], torque[3];
         int voxel[3];
-        transform(placement.scaled, p, arm);
+        transform(voxel_transform.scaled, p, arm);
         for (int axis = 0; axis < 3; ++axis) {
-          const float q = arm[axis] + placement.center[axis];
+          const float q = arm[axis] + voxel_transform.center[axis];
           const float low = std::min(std::max(std::floor(q), 0.0f), static_cast<float>(field.grid.voxels()[axis] - 1));
           voxel[axis] = static_cast<int>(low);
           const float u = std::min(std::max(q - low, 0.0f), 1.0f) - 0.5f;
@@ -124,31 +125,31 @@ ContactSums plain_field(const DistanceField& field, const PointTree& tree, const
         }
         const std::int32_t brick = field.table[field.grid.brick_of(voxel[0], voxel[1], voxel[2])];
         if (brick == 0 || w == 0.0f) return false;
-        constexpr int k = DistanceField::k_samples;
-        const float* const corner = field.samples.data() + brick * DistanceField::k_brick_samples +
+        constexpr int k = DistanceField::k_brick_edge;
+        const float* const corner = field.coefficients.data() + brick * DistanceField::k_brick_coefficients +
                                     ((voxel[2] % 8) * k + voxel[1] % 8) * k + voxel[0] % 8;
-        float value[3] = {}, along_y[3] = {}, along_z[3] = {};  // by column x
+        float value[3] = {}, value_dy[3] = {}, value_dz[3] = {};  // by column x
         for (int x = 0; x < 3; ++x) {
           for (int z = 0; z < 3; ++z) {
-            float line = 0.0f, line_y = 0.0f;
+            float sum_y = 0.0f, sum_dy = 0.0f;
             for (int y = 0; y < 3; ++y) {
-              line += weight[1][y] * corner[(z * k + y) * k + x];
-              line_y += slope[1][y] * corner[(z * k + y) * k + x];
+              sum_y += weight[1][y] * corner[(z * k + y) * k + x];
+              sum_dy += slope[1][y] * corner[(z * k + y) * k + x];
             }
-            value[x] += weight[2][z] * line;
-            along_y[x] += weight[2][z] * line_y;
-            along_z[x] += slope[2][z] * line;
+            value[x] += weight[2][z] * sum_y;
+            value_dy[x] += weight[2][z] * sum_dy;
+            value_dz[x] += slope[2][z] * sum_y;
           }
         }
         const float distance = dot(weight[0], value);
         if (!(distance < 0.0f)) return false;
-        const float gradient[3] = {dot(slope[0], value), dot(weight[0], along_y), dot(weight[0], along_z)};
+        const float gradient[3] = {dot(slope[0], value), dot(weight[0], value_dy), dot(weight[0], value_dz)};
         depth = -distance;
-        for (std::size_t i = 0; i < 3; ++i) push[i] = w * depth * gradient[i];
-        cross(arm, push, turn);
+        for (std::size_t i = 0; i < 3; ++i) force[i] = w * depth * gradient[i];
+        cross(arm, force, torque);
         for (std::size_t i = 0; i < 3; ++i) {
-          term[i] = push[i];
-          term[3 + i] = turn[i];
+          term[i] = force[i];
+          term[3 + i] = torque[i];
         }
         term[6] = 1.0f;
         return true;
@@ -170,10 +171,10 @@ class Contact : public ::testing::Test {
   }
   ~Contact() override { hwy::SetSupportedTargetsForTest(0); }
 
-  Placement placement(const VoxelMap& map, std::uint64_t seed, double reach) const {
+  VoxelTransform transform_to(const VoxelMap& map, std::uint64_t seed, double reach) const {
     Pose X = generic_pose(seed, reach);
     X.t += a_.center() - X.R * b_.center();
-    return Placement::of(X, tree_.center(), map.grid);
+    return VoxelTransform::of(X, tree_.center(), map.grid);
   }
 
   /// From deep overlap to far beyond the grid.
@@ -188,7 +189,7 @@ class Contact : public ::testing::Test {
   std::vector<std::uint32_t> all_;
 };
 
-TEST_F(Contact, EveryInstructionSetGivesTheBitsOfPlainArithmetic) {
+TEST_F(Contact, EveryInstructionSetGivesTheBitsOfScalarCode) {
   ASSERT_EQ(wide_.layer_bits, 16);
   ASSERT_NE(tree_.points() % PointTree::k_leaf_points, 0u);  // the last leaf has padding
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
@@ -197,40 +198,39 @@ TEST_F(Contact, EveryInstructionSetGivesTheBitsOfPlainArithmetic) {
     double contacts = 0.0;
     std::uint64_t seed = 100;
     for (const double reach : k_reaches) {
-      const Placement place = placement(map_, ++seed, reach), place_wide = placement(wide_, seed, reach);
+      const VoxelTransform x = transform_to(map_, ++seed, reach), x_wide = transform_to(wide_, seed, reach);
       for (const LayerDepth kind : {LayerDepth::layers, LayerDepth::layers_and_local}) {
-        const ContactSums expected = plain_layers(map_, tree_, place, kind);
-        expect_same_bits(sum_layers(map_, tree_, place, kind, all_), expected);
-        expect_same_bits(sum_layers(wide_, tree_, place_wide, kind, all_),
-                         plain_layers(wide_, tree_, place_wide, kind));
-        EXPECT_EQ(touches_layers(map_, tree_, place, all_), expected.contacts > 0.0);
+        const ContactSums expected = plain_layers(map_, tree_, x, kind);
+        expect_same_bits(sum_layers(map_, tree_, x, kind, all_), expected);
+        expect_same_bits(sum_layers(wide_, tree_, x_wide, kind, all_), plain_layers(wide_, tree_, x_wide, kind));
+        EXPECT_EQ(touches_layers(map_, tree_, x, all_), expected.contacts > 0.0);
         contacts += expected.contacts;
       }
-      const ContactSums expected = plain_field(field_, tree_, place);
-      expect_same_bits(sum_field(field_, tree_, place, all_), expected);
-      EXPECT_EQ(touches_field(field_, tree_, place, all_), expected.contacts > 0.0);
+      const ContactSums expected = plain_field(field_, tree_, x);
+      expect_same_bits(sum_field(field_, tree_, x, all_), expected);
+      EXPECT_EQ(touches_field(field_, tree_, x, all_), expected.contacts > 0.0);
       contacts += expected.contacts;
     }
     EXPECT_GT(contacts, 1000.0);
   }
 }
 
-TEST_F(Contact, CullingChangesNoBitAndLeavesOutMuch) {
+TEST_F(Contact, CullingChangesNoBitAndSkipsManyLeaves) {
   PointTree::Scratch scratch;
   std::size_t left_out = 0, taken = 0;
   for (std::uint64_t seed = 200; seed < 400; ++seed) {
     const double reach = k_reaches[seed % std::size(k_reaches)];
-    const Placement place = placement(map_, seed, reach);
-    std::span<const std::uint32_t> some = tree_.cull(map_, place, 0.0, scratch);
+    const VoxelTransform x = transform_to(map_, seed, reach);
+    std::span<const std::uint32_t> some = tree_.cull(map_, x, 0.0, scratch);
     ASSERT_TRUE(std::is_sorted(some.begin(), some.end()));
-    expect_same_bits(sum_layers(map_, tree_, place, LayerDepth::layers_and_local, some),
-                     sum_layers(map_, tree_, place, LayerDepth::layers_and_local, all_));
+    expect_same_bits(sum_layers(map_, tree_, x, LayerDepth::layers_and_local, some),
+                     sum_layers(map_, tree_, x, LayerDepth::layers_and_local, all_));
     left_out += all_.size() - some.size();
     taken += some.size();
-    some = tree_.cull(map_, place, DistanceField::k_reach, scratch);
-    expect_same_bits(sum_field(field_, tree_, place, some), sum_field(field_, tree_, place, all_));
+    some = tree_.cull(map_, x, DistanceField::k_reach, scratch);
+    expect_same_bits(sum_field(field_, tree_, x, some), sum_field(field_, tree_, x, all_));
   }
-  // Two poses out of nine overlap so deeply that nearly all points are in contact.
+  // In two poses out of nine nearly all points are in contact.
   EXPECT_GT(2 * left_out, taken);
   EXPECT_GT(taken, 0u);
 }
@@ -255,8 +255,8 @@ Eigen::Vector3d nearest_in_contact(const VoxelMap& map, const Eigen::Vector3d& m
   return nearest;
 }
 
-/// Nodes that reach just as far as the nearest voxel in contact: a bound on its distance that is too large by little
-/// loses them.
+/// Nodes whose sphere just reaches the nearest voxel in contact: they are lost if the bound on its distance is slightly
+/// too large.
 TEST_F(Contact, CullingKeepsANodeThatJustReachesAContact) {
   std::mt19937_64 random(77);
   std::uniform_real_distribution<double> uniform;
@@ -267,8 +267,8 @@ TEST_F(Contact, CullingKeepsANodeThatJustReachesAContact) {
   for (int i = 0; i < 4000; ++i) {
     const Eigen::Array3d n = map_.grid.voxels().cast<double>();
     constexpr double k_outside = 4.0;  // voxels around the grid
-    const Eigen::Array3d place(uniform(random), uniform(random), uniform(random));
-    const Eigen::Vector3d middle = place * (n + 2.0 * k_outside) - k_outside;
+    const Eigen::Array3d fraction(uniform(random), uniform(random), uniform(random));
+    const Eigen::Vector3d middle = fraction * (n + 2.0 * k_outside) - k_outside;
     const bool in_grid = (middle.array() >= 0.0).all() && (middle.array() < n).all();
     const Eigen::Array3i cell = middle.array().floor().cast<int>();
     if (in_grid && map_.layer(cell.x(), cell.y(), cell.z()) >= 0) continue;
@@ -276,23 +276,23 @@ TEST_F(Contact, CullingKeepsANodeThatJustReachesAContact) {
     if ((contact - middle).norm() > k_reach) continue;
     (!in_grid ? beyond : map_.table[map_.grid.brick_of(cell.x(), cell.y(), cell.z())] < 0 ? unstored : stored)++;
     // A point and its mirror image, so that their sphere is about `middle`: from before the contact to within the body.
-    const double way = (contact - middle).norm();
-    bool felt = false;
-    for (double beyond_contact = -0.5; beyond_contact < 2.5 && !felt; beyond_contact += 0.1) {
+    const double distance = (contact - middle).norm();
+    bool touched = false;
+    for (double beyond_contact = -0.5; beyond_contact < 2.5 && !touched; beyond_contact += 0.1) {
       PointShell shell;
       for (const double side : {1.0, -1.0}) {
-        const Eigen::Vector3d point = middle + side * (1.0 + beyond_contact / way) * (contact - middle);
+        const Eigen::Vector3d point = middle + side * (1.0 + beyond_contact / distance) * (contact - middle);
         shell.points.push_back(map_.grid.origin + map_.grid.size * point);
         shell.normals.push_back(Eigen::Vector3d::UnitZ());
         shell.areas.push_back(1.0);
       }
       const PointTree tree(shell, a_.center(), true);
-      const Placement at = Placement::of(Pose{}, tree.center(), map_.grid);
+      const VoxelTransform at = VoxelTransform::of(Pose{}, tree.center(), map_.grid);
       if (touches_layers(map_, tree, at, std::span(&leaf, 1))) {
         ASSERT_EQ(tree.cull(map_, at, 0.0, scratch).size(), 1u) << middle.transpose();
       }
-      felt = touches_field(field_, tree, at, std::span(&leaf, 1));
-      if (felt) {
+      touched = touches_field(field_, tree, at, std::span(&leaf, 1));
+      if (touched) {
         ++field_contacts;
         ASSERT_EQ(tree.cull(map_, at, DistanceField::k_reach, scratch).size(), 1u) << middle.transpose();
       }
@@ -304,9 +304,9 @@ TEST_F(Contact, CullingKeepsANodeThatJustReachesAContact) {
   EXPECT_GT(field_contacts, 100);
 }
 
-TEST_F(Contact, OneSphereTellsApartWhatIsFar) {
+TEST_F(Contact, CullingSkipsAllLeavesFarApart) {
   PointTree::Scratch scratch;
-  EXPECT_TRUE(tree_.cull(map_, placement(map_, 500, 3.5), 0.0, scratch).empty());
+  EXPECT_TRUE(tree_.cull(map_, transform_to(map_, 500, 3.5), 0.0, scratch).empty());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What voxmap-pointshell approaches as voxels and points get finer, on detailed bodies: the integrals over B's surface
-// that its laws stand for, by quadrature with exact distances.
+// Convergence of voxmap-pointshell with the voxel size and the point spacing, on detailed bodies, to the integrals over
+// B's surface that its laws approximate. These are computed by quadrature with exact distances.
 
 #include <cmath>
 #include <cstdlib>
@@ -16,8 +16,8 @@
 namespace sixdof {
 namespace {
 
-/// The wrench that the law of `vps` or `vps-field` gives for depths known exactly, by one quadrature point in each of
-/// B's triangles: their edges are to be short against the depths.
+/// The wrench of the law of `vps` or `vps-field` with exact depths, by one quadrature point in each of B's triangles,
+/// whose edges must be short compared with the depths.
 class SurfaceIntegral {
  public:
   SurfaceIntegral(const Mesh& a, const Mesh& b, bool along_gradient)
@@ -57,7 +57,7 @@ struct Case {
 
 class VpsConvergence : public ::testing::TestWithParam<Case> {};
 
-TEST_P(VpsConvergence, WrenchApproachesItsLawsIntegral) {
+TEST_P(VpsConvergence, WrenchConvergesToTheIntegralOfItsLaw) {
   ::setenv("SIXDOF_CACHE", "off", 1);
   const Mesh a = load_model(GetParam().a), b = load_model(GetParam().coarse_b), fine = load_model(GetParam().fine_b);
   const bool field = std::string(GetParam().algorithm) == "vps-field";
@@ -86,7 +86,7 @@ TEST_P(VpsConvergence, WrenchApproachesItsLawsIntegral) {
   EXPECT_LT(last.torque_degrees, 0.5 * coarse.torque_degrees);
   EXPECT_LT(last.force_degrees, 10.0);
   EXPECT_LT(last.residual, 0.1);
-  // One gain for all poses. Layers on slanted faces read short, and edges of the field are rounded off over a voxel.
+  // One gain for all poses. Layers on slanted faces are too small, and edges of the field are rounded off over a voxel.
   EXPECT_GT(last.gain, 0.75);
   EXPECT_LT(last.gain, 1.05);
   ::unsetenv("SIXDOF_CACHE");

@@ -22,7 +22,7 @@ using vps_test::inside_out;
 using vps_test::moved;
 
 constexpr double k_rounding = 1e-12;  // of coordinates and areas of the order of 1, thousands of terms
-constexpr double k_sliver = 1e-11;    // the same divided by the height of triangles a thousand times as long as high
+constexpr double k_sliver = 1e-11;    // the same for triangles a thousand times as long as high
 
 double total_area(const PointShell& shell) { return std::accumulate(shell.areas.begin(), shell.areas.end(), 0.0); }
 
@@ -37,7 +37,7 @@ void expect_points_on(const Mesh& body, const PointShell& shell) {
   EXPECT_NEAR(total_area(shell), body.area(), k_rounding * body.area());
 }
 
-TEST(PointShell, OfABoxHasTheFacesNormalsInwards) {
+TEST(PointShell, HasInwardNormalsOfTheFacesOfABox) {
   const Pose X = generic_pose(31, 0.7);
   const Eigen::Vector3d size(1.0, 0.8, 0.6);
   const Mesh body = moved(box(size), X);
@@ -52,13 +52,13 @@ TEST(PointShell, OfABoxHasTheFacesNormalsInwards) {
   }
 }
 
-TEST(PointShell, OfABallHasRadialNormals) {
+TEST(PointShell, HasRadialNormalsOnABall) {
   const Mesh body = ball(0.9, 2000);
   const double spacing = 0.06;
   const PointShell shell = PointShell::build(body, spacing);
   expect_points_on(body, shell);
-  // A cell's middle is within half a spacing of its point; this mesh's triangles stand up to half an edge (0.10) over
-  // the radius away from the radial direction.
+  // A cell's middle is within half a spacing of its point; this mesh's normals differ from the radial direction by up
+  // to half an edge (0.10) over the radius.
   const double largest_angle = 0.5 * spacing / 0.9 + 0.055;
   for (std::size_t i = 0; i < shell.points.size(); ++i) {
     const Eigen::Vector3d inwards = -shell.points[i].normalized();
@@ -66,7 +66,7 @@ TEST(PointShell, OfABallHasRadialNormals) {
   }
 }
 
-TEST(PointShell, IsNearUniformAndLeavesNoGap) {
+TEST(PointShell, IsNearUniformWithoutGaps) {
   const Mesh body =
       moved(make_bumpy_sphere({.radius = 0.8, .amplitude = 0.2, .waves = 1.0}, 1200), generic_pose(33, 0.2));
   const double spacing = 0.06;
@@ -88,12 +88,12 @@ TEST(PointShell, IsNearUniformAndLeavesNoGap) {
     crowded += gap < 0.5 * spacing ? 1.0 : 0.0;
     ASSERT_LT(gap, 2.0 * spacing);
   }
-  // Thinning leaves 3/4 of a spacing; moving to the middle of cells may close up a few.
+  // Thinning leaves 3/4 of a spacing; moving to the middle of cells brings a few points closer together.
   EXPECT_LT(crowded, 0.01 * static_cast<double>(shell.points.size()));
   for (const Eigen::Vector3d& v : body.vertices()) ASSERT_LT(nearest(v, shell.points.size()), 1.5 * spacing);
 }
 
-TEST(PointShell, BothSidesOfAThinPlateHaveTheirPoints) {
+TEST(PointShell, HasPointsOnBothSidesOfAThinPlate) {
   const Pose X = generic_pose(34, 0.3);
   const Mesh plate = moved(box({1.0, 0.8, 0.001}), X);
   const PointShell shell = PointShell::build(plate, 0.05);
@@ -120,7 +120,7 @@ TEST(PointShell, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.areas, four.areas);
 }
 
-TEST(PointShell, RefusesWhatIsNoSolid) {
+TEST(PointShell, RefusesMeshesThatAreNotSolid) {
   EXPECT_THROW(PointShell::build(inside_out(box({1.0, 2.0, 3.0})), 0.1), BadMesh);
 }
 

@@ -40,7 +40,7 @@ std::unique_ptr<Query> prepare(const std::string& name, const Mesh& a, const Mes
 
 double angle(const Eigen::Vector3d& u, const Eigen::Vector3d& v) { return std::atan2(u.cross(v).norm(), u.dot(v)); }
 
-/// Nothing is kept on disk unless the test says so.
+/// Without the cache on disk, unless a test sets it.
 class Vps : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override { ::setenv("SIXDOF_CACHE", "off", 1); }
@@ -73,7 +73,7 @@ double depth_error(const std::string& algorithm) { return algorithm == "vps" ? v
 TEST_P(Vps, ABoxPressedIntoAFaceFeelsAreaTimesDepth) {
   const double depth = 0.12, area = 0.8 * 0.6, perimeter = 2.8;
   const Pressed scene(box({2.0, 1.6, 1.2}), box({0.8, 0.6, 0.7}), -0.35, 0.6, depth);
-  // In the layers' law the walls push level and cancel; in the field's law they are pushed up, like all that is deep.
+  // With layers the walls' forces are horizontal and cancel; with the field they are vertical, along its gradient.
   const double force = area * depth + (GetParam() == "vps" ? 0.0 : 0.5 * perimeter * depth * depth);
   std::vector<double> errors;
   for (const double voxel : {0.02, 0.01, 0.005}) {
@@ -88,16 +88,16 @@ TEST_P(Vps, ABoxPressedIntoAFaceFeelsAreaTimesDepth) {
     EXPECT_TRUE(query->collide(scene.X).value);
     errors.push_back((response.force - force * scene.up).norm());
   }
-  constexpr double k_quadrature = 1e-3;  // points stand for cells that the faces' borders cut
+  constexpr double k_quadrature = 1e-3;  // the cells of points at the borders of faces are cut off
   EXPECT_LT(errors.back(), std::max(0.5 * errors.front(), k_quadrature * force));
 }
 
 TEST_P(Vps, ABallAndAFaceFollowTheirClosedFormsInBothRoles) {
   const double R = 0.7, h = 0.25, c = R - h, pi = std::numbers::pi;
   const Pressed scene(box({2.4, 2.0, 1.4}), ball(R, 3000), -R, 0.7, h);
-  // Points on the ball: depth below the face. Layers push along the ball's normals: the volume of the cap; the field
-  // pushes along the face's: the integral of depth over the cap's surface.
-  // Points on the face: depth R - r below the ball's surface. Layers push along the face's normal, the field radially.
+  // Points on the ball: depth below the face. Layers act along the ball's normals: the volume of the cap; the field
+  // acts along the face's: the integral of depth over the cap's surface. Points on the face: depth R - r below the
+  // ball's surface. Layers act along the face's normal, the field radially.
   const double cap = pi * h * h * (3.0 * R - h) / 3.0,
                disc = pi * (R * (R * R - c * c) - 2.0 / 3.0 * (R * R * R - c * c * c));
   const bool layers = GetParam() == "vps";
@@ -120,7 +120,7 @@ TEST_P(Vps, ABallAndAFaceFollowTheirClosedFormsInBothRoles) {
   }
 }
 
-TEST_P(Vps, TheSameSceneToldTheOtherWayRoundGivesTheReaction) {
+TEST_P(Vps, SwappedBodiesWithTheSamePointsGiveTheReaction) {
   const Pressed scene(box({2.0, 1.6, 1.2}), make_bumpy_sphere({.radius = 0.5}, 300), -0.4, 0.6, 0.1);
   auto parameters = resolution(0.02, 0.02);
   const Response on_a = prepare(GetParam(), *scene.b, *scene.a, parameters)->respond(scene.X.inverse()).value;
@@ -133,9 +133,9 @@ TEST_P(Vps, TheSameSceneToldTheOtherWayRoundGivesTheReaction) {
   EXPECT_LT((on_b.torque + scene.X.R * about_same.torque).norm(), k_rounding);
 }
 
-/// With the points on the other body the law is another, but on a face pressed into a face by little both feel area
-/// times depth: action and reaction agree within what the voxels of both resolve.
-TEST_P(Vps, ActionIsMinusReactionWithinTheResolutionWhenRolesAreSwapped) {
+/// With the points on the other body the law is different, but for a face pressed slightly into a face both give area
+/// times depth.
+TEST_P(Vps, SwappedBodiesGiveTheReactionWithinTheResolution) {
   const double depth = 0.05, area = 0.8 * 0.6, perimeter = 2.8;
   const Pressed scene(box({2.0, 1.6, 1.2}), box({0.8, 0.6, 0.7}), -0.35, 0.6, depth);
   for (const double voxel : {0.01, 0.005}) {
@@ -143,7 +143,7 @@ TEST_P(Vps, ActionIsMinusReactionWithinTheResolutionWhenRolesAreSwapped) {
     const Response on_b = prepare(GetParam(), *scene.a, *scene.b, parameters)->respond(scene.X).value;
     const Response on_a = prepare(GetParam(), *scene.b, *scene.a, parameters)->respond(scene.X.inverse()).value;
     const double size = voxel * (scene.a->diagonal() + scene.b->diagonal());
-    // Points beside B's walls are nearest to the walls, which push level or count less: a rim of the depth's width.
+    // Points near B's walls are closest to the walls, with horizontal or smaller forces: a rim as wide as the depth.
     const double declared = depth_error(GetParam()) * size * area + perimeter * depth * depth;
     EXPECT_LT((on_b.force + scene.X.R * on_a.force).norm(), declared) << voxel;
     EXPECT_GT(on_b.force.norm(), 0.5 * area * depth) << voxel;
@@ -152,7 +152,7 @@ TEST_P(Vps, ActionIsMinusReactionWithinTheResolutionWhenRolesAreSwapped) {
   }
 }
 
-TEST_P(Vps, TinyBodiesAnswerAsLargeOnesDo) {
+TEST_P(Vps, DoesNotDependOnTheUnitOfLength) {
   const double factor = 1e-6;
   const auto scaled = [&](const Mesh& mesh) {
     std::vector<Eigen::Vector3d> vertices = mesh.vertices();
@@ -165,22 +165,22 @@ TEST_P(Vps, TinyBodiesAnswerAsLargeOnesDo) {
   const Response large = prepare(GetParam(), a, b, parameters)->respond(X).value;
   const Response tiny = prepare(GetParam(), scaled(a), scaled(b), parameters)->respond(small).value;
   ASSERT_GT(large.force.norm(), 0.0);
-  constexpr double k_single = 5e-3;  // single points may fall across a voxel's face by rounding
+  constexpr double k_single = 5e-3;  // rounding may move single points across a voxel's face
   // Area times depth, and once more a length for the torque.
   EXPECT_TRUE((tiny.force / std::pow(factor, 3)).isApprox(large.force, k_single));
   EXPECT_TRUE((tiny.torque / std::pow(factor, 4)).isApprox(large.torque, 10 * k_single));
   EXPECT_NEAR(tiny.penalty / factor, large.penalty, k_single * large.penalty);
 }
 
-TEST_P(Vps, DoesNotDependOnWhereTheMeshesFramesAre) {
+TEST_P(Vps, DoesNotDependOnTheFrames) {
   const Mesh a = moved(make_bumpy_sphere({}, 500), generic_pose(61, 0.3));
   const Mesh b = moved(make_bumpy_sphere({.radius = 0.8}, 400), generic_pose(62, 0.2));
   const Pose X = generic_pose(63, 1.3);
   const auto parameters = resolution(0.02, 0.02);
   const Response plain = prepare(GetParam(), a, b, parameters)->respond(X).value;
   ASSERT_GT(plain.force.norm(), 0.01);
-  // Coordinates in single precision: a part in 2^24 of some hundred voxels. `vps` may count single points otherwise,
-  // whose rounding falls across a voxel's face: each one part of some hundred contacts.
+  // Coordinates in single precision: a relative error of 2^-24 of some hundred voxels. With `vps` rounding may move
+  // single points of some hundred contacts across a voxel's face.
   const double tolerance = GetParam() == "vps" ? 5e-3 : 1e-4;
 
   const Pose shift_a{Eigen::Matrix3d::Identity(), {17.3, -5.1, 0.77}},
@@ -192,22 +192,22 @@ TEST_P(Vps, DoesNotDependOnWhereTheMeshesFramesAre) {
   EXPECT_LT((shifted.force - plain.force).norm(), force);
   EXPECT_LT((shifted.torque - plain.torque).norm(), torque);
 
-  // A turned by a quarter, which maps its voxels to voxels.
-  Pose turn;
-  turn.R << 0, 0, 1, 1, 0, 0, 0, 1, 0;
-  const Mesh a_turned = moved(a, turn);
-  const Response turned = prepare(GetParam(), a_turned, b, parameters)->respond(turn * X).value;
-  EXPECT_LT((turned.force - turn.R * plain.force).norm(), force);
-  EXPECT_LT((turned.torque - turn.R * plain.torque).norm(), torque);
+  // A rotation by 90 degrees maps A's voxels to voxels.
+  Pose quarter;
+  quarter.R << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  const Mesh a_rotated = moved(a, quarter);
+  const Response rotated = prepare(GetParam(), a_rotated, b, parameters)->respond(quarter * X).value;
+  EXPECT_LT((rotated.force - quarter.R * plain.force).norm(), force);
+  EXPECT_LT((rotated.torque - quarter.R * plain.torque).norm(), torque);
 
-  // Turned by a general angle the voxels are others: the same within the resolution, here a voxel over the depth.
+  // After a general rotation the voxels differ: the same within the resolution, here a voxel over the depth.
   const Pose any = generic_pose(64, 0.5);
   const Mesh a_any = moved(a, any);
   const Response other = prepare(GetParam(), a_any, b, parameters)->respond(any * X).value;
   EXPECT_TRUE(other.force.isApprox(any.R * plain.force, 0.02 * a.diagonal() / plain.penalty));
 }
 
-TEST_P(Vps, BodiesApartFeelNothing) {
+TEST_P(Vps, GivesNoForceApart) {
   const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
   const auto query = prepare(GetParam(), a, b, resolution(0.02, 0.02));
   for (const double reach : {2.3, 10.0, 1e9, 1e300}) {
@@ -227,7 +227,7 @@ TEST_P(Vps, BodiesApartFeelNothing) {
   EXPECT_EQ(query->distance(generic_pose(73, 1.0)).status, Status::unsupported);
 }
 
-TEST_P(Vps, CullingAndStiffnessAreOnlyThat) {
+TEST_P(Vps, CullingChangesNoBitAndStiffnessIsAFactor) {
   const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
   auto parameters = resolution(0.02, 0.02);
   const auto culled = prepare(GetParam(), a, b, parameters);
@@ -246,17 +246,17 @@ TEST_P(Vps, CullingAndStiffnessAreOnlyThat) {
   }
 }
 
-TEST_P(Vps, OldNormalisationBoundsTheForceByTenPoints) {
+TEST_P(Vps, WeightByContactsBoundsTheForceByTenPoints) {
   const Mesh a = make_bumpy_sphere({}, 300), b = make_bumpy_sphere({.radius = 0.7}, 200);
   auto parameters = resolution(0.02, 0.02);
   parameters.push_back("weight=contacts");
   const Response response = prepare(GetParam(), a, b, parameters)->respond(generic_pose(91, 1.2)).value;
   EXPECT_GT(response.penalty, 0.1);
   EXPECT_LT(response.force.norm(), 10.0 * response.penalty * 1.1);  // gradients may pass 1 by rounding of edges
-  EXPECT_GT(response.force.norm(), response.penalty);               // thousands of points would give far more, one less
+  EXPECT_GT(response.force.norm(), response.penalty);               // more than one point
 }
 
-TEST_P(Vps, RefusesMeshesThatAreNoSolidsInWords) {
+TEST_P(Vps, RefusesMeshesThatAreNotSolidWithTheReason) {
   const Mesh good = box({1.0, 0.8, 0.6}), bad = inside_out(good);
   const auto words = [&](const Mesh& a, const Mesh& b) -> std::string {
     try {
@@ -270,7 +270,7 @@ TEST_P(Vps, RefusesMeshesThatAreNoSolidsInWords) {
   EXPECT_THAT(words(bad, good), ::testing::HasSubstr("inside out"));
 }
 
-TEST_P(Vps, TakesFromDiskWhatItBuiltBeforeBitForBit) {
+TEST_P(Vps, CachedStructuresGiveTheSameBits) {
   std::string directory = (fs::temp_directory_path() / "sixdof-vps-XXXXXX").string();
   ASSERT_NE(::mkdtemp(directory.data()), nullptr);
   ::setenv("SIXDOF_CACHE", directory.c_str(), 1);
@@ -282,24 +282,24 @@ TEST_P(Vps, TakesFromDiskWhatItBuiltBeforeBitForBit) {
     EXPECT_EQ(x.torque, y.torque);
     EXPECT_EQ(x.penalty, y.penalty);
   };
-  const auto stamps = [&] {
+  const auto write_times = [&] {
     std::map<std::string, fs::file_time_type> times;
     for (const auto& file : fs::directory_iterator(directory)) times[file.path()] = file.last_write_time();
     return times;
   };
   const Response built = respond();
   ASSERT_GT(built.force.norm(), 0.0);
-  const auto first = stamps();
+  const auto first = write_times();
   EXPECT_EQ(first.size(), GetParam() == "vps" ? 2u : 3u);
   expect_same(respond(), built);
-  EXPECT_EQ(stamps(), first);  // nothing was built again
+  EXPECT_EQ(write_times(), first);  // nothing was built
 
   for (const auto& [path, time] : first) {
     fs::resize_file(path, fs::file_size(path) - 1000);
   }
-  const auto damaged = stamps();
+  const auto damaged = write_times();
   expect_same(respond(), built);
-  for (const auto& [path, time] : stamps()) EXPECT_NE(time, damaged.at(path)) << path;
+  for (const auto& [path, time] : write_times()) EXPECT_NE(time, damaged.at(path)) << path;
   fs::remove_all(directory);
 }
 
@@ -307,17 +307,17 @@ INSTANTIATE_TEST_SUITE_P(Algorithms, Vps, ::testing::Values("vps", "vps-field"),
   return each.param == "vps" ? std::string("Layers") : std::string("Field");
 });
 
-TEST(VpsDepth, LayersAloneAreWholeVoxelsAndMissThinPlates) {
+TEST(VpsDepth, LayersAreWholeVoxelsAndGiveNoForceOnThinPlates) {
   ::setenv("SIXDOF_CACHE", "off", 1);
   const Mesh plate = moved(box({2.0, 1.6, 0.004}), generic_pose(96, 0.2)), b = box({0.8, 0.6, 0.7});
   const Pose X = generic_pose(96, 0.2) *
                  Pose{Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix(), {0.0, 0.0, 0.348}};
   auto parameters = resolution(0.01, 0.01);
-  const Response with_place = prepare("vps", plate, b, parameters)->respond(X).value;
+  const Response with_local = prepare("vps", plate, b, parameters)->respond(X).value;
   parameters.push_back("depth=layers");
   const auto by_layers = prepare("vps", plate, b, parameters);
-  // A plate of a sixth of a voxel is layer 0: felt through the place in the voxel only.
-  EXPECT_GT(with_place.force.dot(generic_pose(96, 0.2).R.col(2)), 0.0);
+  // A plate of a sixth of a voxel is layer 0: only the position in the voxel gives a penetration.
+  EXPECT_GT(with_local.force.dot(generic_pose(96, 0.2).R.col(2)), 0.0);
   EXPECT_EQ(by_layers->respond(X).value.force, Eigen::Vector3d::Zero());
   EXPECT_TRUE(by_layers->collide(X).value);
 
@@ -335,7 +335,7 @@ TEST(VpsField, DoesNoWorkOnAClosedLoop) {
   const auto query = prepare("vps-field", a, b, resolution(0.03, 0.03));
   const auto work = [&](int steps) { return test::loop_work(*query, b, {1.25, 0.0, 0.1}, 0.2, steps); };
   const double coarse = work(16), fine = work(256);
-  EXPECT_LT(fine, 1e-5);  // single-precision sums leave a part in 10^6
+  EXPECT_LT(fine, 1e-5);  // relative rounding of sums in single precision: 10^-6
   EXPECT_LT(fine, 0.1 * coarse);
   ::unsetenv("SIXDOF_CACHE");
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <string>
 
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
@@ -17,7 +18,7 @@ namespace {
 using Model = fcl_backend::Model<fcl::OBBRSSd>;
 
 constexpr const char* k_combine = "combine";
-constexpr const char* k_most_contacts = "most_contacts";
+constexpr const char* k_max_contacts = "max_contacts";
 
 enum class Combine {
   mean,
@@ -25,19 +26,23 @@ enum class Combine {
   deepest
 };
 
+Combine combine_of(const std::string& choice) {
+  return choice == "sum" ? Combine::sum : choice == "deepest" ? Combine::deepest : Combine::mean;
+}
+
 class ContactsQuery final : public Query {
  public:
-  ContactsQuery(const Mesh& a, const Mesh& b, Combine combine, std::size_t most_contacts)
+  ContactsQuery(const Mesh& a, const Mesh& b, const Settings& settings)
       : a_(fcl_backend::build_model<fcl::OBBRSSd>(a)),
         b_(fcl_backend::build_model<fcl::OBBRSSd>(b)),
         center_b_(b.center()),
-        combine_(combine) {
+        combine_(combine_of(settings.choice(k_combine))) {
     request_.enable_contact = true;
-    request_.num_max_contacts = most_contacts;
+    request_.num_max_contacts = static_cast<std::size_t>(settings.number(k_max_contacts));
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {
-    if (!X_AB.R.allFinite() || !X_AB.t.allFinite()) return fail(Status::failed, "the pose is not finite");
+    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
     fcl::Transform3d X = fcl::Transform3d::Identity();
     X.linear() = X_AB.R;
     X.translation() = X_AB.t;
@@ -97,38 +102,27 @@ class ContactsQuery final : public Query {
   fcl::CollisionRequestd request_;
 };
 
-class ContactsAlgorithm final : public Algorithm {
- public:
-  const Traits& traits() const override { return traits_; }
-
-  std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& settings) const override {
-    const std::string& word = settings.choice(k_combine);
-    const Combine combine = word == "sum" ? Combine::sum : word == "deepest" ? Combine::deepest : Combine::mean;
-    return std::make_unique<ContactsQuery>(a, b, combine, static_cast<std::size_t>(settings.number(k_most_contacts)));
-  }
-
- private:
-  const Traits traits_{.name = "fcl-contacts",
-                       .version = FCL_VERSION,
-                       .summary = "FCL's contacts of triangle pairs as a penalty wrench",
-                       .answers = {.respond = true},
-                       .law = ResponseLaw::depth,
-                       .parameters = {{.name = k_combine,
-                                  .meaning = "how the contacts' depth * normal become one force",
-                                  .unit = "1",
-                                  .standard = "mean",
-                                  .choices = {"mean", "sum", "deepest"}},
-                                 {.name = k_most_contacts,
-                                  .meaning = "a query with as many contacts fails, because FCL drops the rest",
-                                  .unit = "1",
-                                  .standard = "1000000",
-                                  .low = 1,
-                                  .high = 1e9,
-                                  .integer = true}}};
-};
-
 }  // namespace
 
-std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() { return std::make_unique<ContactsAlgorithm>(); }
+std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() {
+  return make_algorithm<ContactsQuery>(
+      {.name = "fcl-contacts",
+       .version = FCL_VERSION,
+       .summary = "FCL's contacts of triangle pairs as a penalty wrench",
+       .answers = {.respond = true},
+       .law = ResponseLaw::depth,
+       .parameters = {{.name = k_combine,
+                       .meaning = "how depth * normal of all contacts become one force",
+                       .unit = "",
+                       .default_value = "mean",
+                       .choices = {"mean", "sum", "deepest"}},
+                      {.name = k_max_contacts,
+                       .meaning = "a query with this many contacts fails, because FCL drops the rest",
+                       .unit = "1",
+                       .default_value = "1000000",
+                       .low = 1,
+                       .high = 1e9,
+                       .integer = true}}});
+}
 
 }  // namespace sixdof

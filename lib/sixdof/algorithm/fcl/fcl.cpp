@@ -5,8 +5,9 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <string>
 #include <type_traits>
-#include <vector>
+#include <utility>
 
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/math/bv/RSS.h>
@@ -32,8 +33,11 @@ constexpr const char* k_relative_error = "relative_error";
 template <class BV>
 class FclQuery final : public Query {
  public:
-  FclQuery(std::shared_ptr<const Model<BV>> a, std::shared_ptr<const Model<BV>> b, double relative_error)
-      : a_(std::move(a)), b_(std::move(b)), relative_error_(relative_error) {
+  /// Equal meshes share one tree.
+  FclQuery(const Mesh& a, const Mesh& b, const Settings& settings)
+      : a_(build_model<BV>(a)),
+        b_(a.hash() == b.hash() ? a_ : build_model<BV>(b)),
+        relative_error_(settings.number(k_relative_error)) {
     first_contact_.num_max_contacts = 1;
     first_contact_.enable_contact = false;
     nearest_points_.enable_nearest_points = true;
@@ -43,7 +47,7 @@ class FclQuery final : public Query {
     if constexpr (!std::is_same_v<BV, fcl::OBBRSSd>) {
       return Status::unsupported;
     } else {
-      if (!place(X_AB)) return bad_pose();
+      if (!set_pose(X_AB)) return bad_pose();
       try {
         fcl::CollisionResultd result;
         fcl::collide<double>(a_.get(), X_AA_, b_.get(), X_AB_, first_contact_, result);
@@ -55,7 +59,7 @@ class FclQuery final : public Query {
   }
 
   Outcome<Separation> distance(const Pose& X_AB) override {
-    if (!place(X_AB)) return bad_pose();
+    if (!set_pose(X_AB)) return bad_pose();
     try {
       fcl::DistanceResultd result;
       if (relative_error_ == 0.0) {
@@ -85,9 +89,9 @@ class FclQuery final : public Query {
   }
 
  private:
-  /// False if the pose is not finite: FCL would find no pair of volumes apart and visit all of them.
-  bool place(const Pose& X_AB) {
-    if (!X_AB.R.allFinite() || !X_AB.t.allFinite()) return false;
+  /// False if the pose is not finite: FCL would find no two volumes apart and expand the whole tree.
+  bool set_pose(const Pose& X_AB) {
+    if (!is_finite(X_AB)) return false;
     X_AB_.linear() = X_AB.R;
     X_AB_.translation() = X_AB.t;
     return true;
@@ -95,8 +99,8 @@ class FclQuery final : public Query {
 
   Status bad_pose() { return fail(Status::failed, "the pose is not finite"); }
 
-  /// FCL 0.7 takes error bounds in the request but never hands them to the traversal, so the traversal is run by hand.
-  /// Its two bounds must BOTH hold for a node to be skipped; an infinite absolute one leaves the relative one alone.
+  /// FCL 0.7 ignores the error bounds of a request, so they are set on the traversal node here. FCL skips a pair of
+  /// volumes if BOTH bounds hold; with an infinite absolute bound the relative one decides.
   void approximate_distance(fcl::DistanceResultd& result) {
     using Node = std::conditional_t<std::is_same_v<BV, fcl::OBBRSSd>, fcl::detail::MeshDistanceTraversalNodeOBBRSSd,
                                     fcl::detail::MeshDistanceTraversalNodeRSSd>;
@@ -111,7 +115,7 @@ class FclQuery final : public Query {
     if (!std::isfinite(result.min_distance)) return fail(Status::non_finite, "the distance is not finite");
     if (result.min_distance == std::numeric_limits<double>::max()) return fail(Status::failed, "no distance was found");
     Separation separation;
-    // FCL says "intersecting" with any value that is not positive.
+    // Where surfaces intersect, FCL returns a value that is not positive.
     if (result.min_distance <= 0.0) return separation;
     separation.distance = result.min_distance;
     separation.has_witnesses = true;
@@ -133,46 +137,29 @@ class FclQuery final : public Query {
   fcl::Transform3d X_AB_ = fcl::Transform3d::Identity();
 };
 
-template <class BV>
-class FclAlgorithm final : public Algorithm {
- public:
-  FclAlgorithm(std::string name, std::string summary, QuerySet answers)
-      : traits_{.name = std::move(name),
-                .version = FCL_VERSION,
-                .summary = std::move(summary),
-                .answers = answers,
-                .law = ResponseLaw::none,
-                .parameters = {{.name = k_relative_error,
-                           .meaning = "a distance may be too large by this share of the true one; 0 is exact",
-                           .unit = "1",
-                           .standard = "0",
-                           .low = 0.0,
-                           .high = 1.0}}} {}
-
-  const Traits& traits() const override { return traits_; }
-
-  std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& settings) const override {
-    const auto model_a = build_model<BV>(a);
-    // Two copies of one body share one tree, as a program with many of them would.
-    const auto model_b = a.hash() == b.hash() ? model_a : build_model<BV>(b);
-    return std::make_unique<FclQuery<BV>>(model_a, model_b, settings.number(k_relative_error));
-  }
-
- private:
-  Traits traits_;
-};
+Traits traits(std::string name, std::string summary, QuerySet answers) {
+  return {.name = std::move(name),
+          .version = FCL_VERSION,
+          .summary = std::move(summary),
+          .answers = answers,
+          .parameters = {{.name = k_relative_error,
+                          .meaning = "a distance may be too large by this fraction of the true one; 0 is exact",
+                          .unit = "1",
+                          .default_value = "0",
+                          .low = 0.0,
+                          .high = 1.0}}};
+}
 
 }  // namespace
 
 std::unique_ptr<Algorithm> make_fcl_obbrss_algorithm() {
-  return std::make_unique<FclAlgorithm<fcl::OBBRSSd>>("fcl-obbrss",
-                                                      "FCL, tree of oriented boxes with rectangle-swept spheres",
-                                                      QuerySet{.collide = true, .distance = true});
+  return make_algorithm<FclQuery<fcl::OBBRSSd>>(traits(
+      "fcl-obbrss", "FCL, tree of oriented boxes with rectangle-swept spheres", {.collide = true, .distance = true}));
 }
 
 std::unique_ptr<Algorithm> make_fcl_rss_algorithm() {
-  return std::make_unique<FclAlgorithm<fcl::RSSd>>("fcl-rss", "FCL, tree of rectangle-swept spheres as in PQP",
-                                                   QuerySet{.distance = true});
+  return make_algorithm<FclQuery<fcl::RSSd>>(
+      traits("fcl-rss", "FCL, tree of rectangle-swept spheres as in PQP", {.distance = true}));
 }
 
 void register_fcl_algorithms(Registry& registry) {

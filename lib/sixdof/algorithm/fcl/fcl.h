@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include <sixdof/query/algorithm.h>
 #include <sixdof/query/registry.h>
 
 namespace sixdof {
@@ -10,11 +9,11 @@ namespace sixdof {
 /// `fcl-obbrss`: FCL's bounding-volume trees with an oriented box and a rectangle-swept sphere in every node. Answers
 /// collide (FCL tests boxes and stops at the first pair of triangles that intersect) and distance (swept spheres).
 ///
-/// It knows surfaces only: a body wholly inside the other is apart from it, at the distance of the surfaces.
+/// Surfaces only: a body wholly inside the other does not collide, and its distance is that of the surfaces.
 std::unique_ptr<Algorithm> make_fcl_obbrss_algorithm();
 
-/// `fcl-rss`: rectangle-swept spheres only, the bounding volume of PQP. Answers distance. It gives no yes/no answer:
-/// FCL 0.7 copies and refits the whole model for every collide on this volume, which says nothing about the tree.
+/// `fcl-rss`: rectangle-swept spheres only, the bounding volume of PQP. Answers distance. It does not answer collide:
+/// FCL 0.7 copies and refits the whole model in every collide() on this volume, which would be all that is measured.
 std::unique_ptr<Algorithm> make_fcl_rss_algorithm();
 
 /// Adds both and `fcl-contacts` (contacts.h).

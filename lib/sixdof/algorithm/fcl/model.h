@@ -10,7 +10,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/mesh.h>
 
-/// What the sources of this backend share; nobody else includes it.
+/// Shared by the sources of this folder only, which keeps FCL's headers out of the interface.
 namespace sixdof::fcl_backend {
 
 template <class BV>
@@ -20,8 +20,8 @@ using Model = fcl::BVHModel<BV>;
 template <class BV>
 std::shared_ptr<const Model<BV>> build_model(const Mesh& mesh) {
   // FCL counts in int.
-  constexpr auto k_most = static_cast<std::size_t>(std::numeric_limits<int>::max()) / 2;
-  if (mesh.triangles().size() > k_most || mesh.vertices().size() > k_most) {
+  constexpr auto k_max_count = static_cast<std::size_t>(std::numeric_limits<int>::max()) / 2;
+  if (mesh.triangles().size() > k_max_count || mesh.vertices().size() > k_max_count) {
     throw BadMesh(fmt::format("{}: more triangles or vertices than FCL can count", mesh.name()));
   }
   std::vector<fcl::Triangle> triangles;

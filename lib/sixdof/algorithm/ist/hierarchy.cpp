@@ -5,6 +5,8 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -15,11 +17,11 @@ namespace sixdof::ist {
 namespace {
 
 constexpr std::size_t k_branching = 4;
-constexpr int k_epochs = 20;  // T: beyond it clusters no longer change visibly
+constexpr int k_epochs = 20;  // T in the formula of build_sphere_tree()
 constexpr double k_lambda_start = k_branching / 2.0;
 constexpr double k_lambda_end = 0.01;
-constexpr std::size_t k_evenly_to = k_branching * k_branching;  // spheres that are shared out evenly
-constexpr std::size_t k_parallel_from = 2000;                   // spheres below which a subtree is not worth a task
+constexpr std::size_t k_max_even_split = k_branching * k_branching;  // spheres that are split evenly, at most
+constexpr std::size_t k_min_task = 2000;                             // spheres of a subtree that is built as a task
 
 using Prototypes = std::array<Eigen::Vector3d, k_branching>;
 
@@ -41,7 +43,7 @@ struct Ranking {
   }
 };
 
-/// Start: volume-weighted centre, pushed apart towards the four alternating corners of the spheres' box.
+/// Half-way from the centre of the box of the spheres' centres to four alternating corners of it.
 Prototypes initial_prototypes(std::span<const Sphere> spheres) {
   Eigen::AlignedBox3d box;
   for (const Sphere& s : spheres) box.extend(s.center);
@@ -77,7 +79,8 @@ Prototypes batch_neural_gas(std::span<const Sphere> spheres) {
   return prototypes;
 }
 
-/// Sorts `spheres` into `parts` of nearly equal number, by halves across the longest axis, and appends their ends.
+/// Sorts `spheres` into `parts` ranges of nearly equal size, by halving across the longest axis, and appends their
+/// ends.
 void split_evenly(std::span<Sphere> spheres, std::size_t parts, std::size_t begin, std::vector<std::size_t>& ends) {
   if (parts == 1) {
     ends.push_back(begin + spheres.size());
@@ -94,16 +97,16 @@ void split_evenly(std::span<Sphere> spheres, std::size_t parts, std::size_t begi
   split_evenly(spheres.subspan(middle), parts - low, begin + middle, ends);
 }
 
-/// Sorts `spheres` into up to four clusters and returns their ends. A few spheres are shared out evenly, so that nodes
-/// of leaves are nearly full: clusters would leave two leaves in a node of four. Falls back to equal parts along the
-/// longest axis where the clusters do not separate the spheres (all centres equal).
+/// Sorts `spheres` into up to four clusters and returns their ends. Few spheres are split evenly, so that nodes of
+/// leaves are nearly full. Falls back to four parts in the present order if one cluster takes all spheres (equal
+/// centres).
 std::vector<std::size_t> split(std::span<Sphere> spheres) {
   std::vector<std::size_t> ends;
   if (spheres.size() <= k_branching) {
     for (std::size_t i = 1; i <= spheres.size(); ++i) ends.push_back(i);
     return ends;
   }
-  if (spheres.size() <= k_evenly_to) {
+  if (spheres.size() <= k_max_even_split) {
     split_evenly(spheres, (spheres.size() + k_branching - 1) / k_branching, 0, ends);
     return ends;
   }
@@ -124,77 +127,77 @@ std::vector<std::size_t> split(std::span<Sphere> spheres) {
   return ends;
 }
 
-/// A subtree under construction; flattened when all tasks are done.
-struct Draft {
+/// A node under construction. Tasks build subtrees in any order; flatten() then appends them to the tree.
+struct BuildNode {
   struct Child {
     Sphere ball;
     double volume = 0.0;
-    std::unique_ptr<Draft> below;  ///< None if this node's children are leaves.
+    std::unique_ptr<BuildNode> node;  ///< None if this node's children are leaves.
   };
   std::vector<Child> children;
   std::size_t first_leaf = 0;
 };
 
-std::unique_ptr<Draft> build(std::span<Sphere> spheres, std::size_t first_leaf) {
-  auto draft = std::make_unique<Draft>();
-  draft->first_leaf = first_leaf;
+std::unique_ptr<BuildNode> build(std::span<Sphere> spheres, std::size_t first_leaf) {
+  auto result = std::make_unique<BuildNode>();
+  result->first_leaf = first_leaf;
   const bool of_leaves = spheres.size() <= k_branching;
   const std::vector<std::size_t> ends = split(spheres);
-  draft->children.resize(ends.size());
+  result->children.resize(ends.size());
   parallel::Tasks tasks;
   std::size_t begin = 0;
   for (std::size_t slot = 0; slot < ends.size(); ++slot) {
     const std::span<Sphere> part = spheres.subspan(begin, ends[slot] - begin);
-    Draft::Child& child = draft->children[slot];
+    BuildNode::Child& child = result->children[slot];
     child.ball = enclosing_sphere(part);
     for (const Sphere& s : part) child.volume += s.volume();
     if (!of_leaves) {
       const std::size_t leaf = first_leaf + begin;
-      if (part.size() >= k_parallel_from) {
-        tasks.run([&child, part, leaf] { child.below = build(part, leaf); });
+      if (part.size() >= k_min_task) {
+        tasks.run([&child, part, leaf] { child.node = build(part, leaf); });
       } else {
-        child.below = build(part, leaf);
+        child.node = build(part, leaf);
       }
     }
     begin = ends[slot];
   }
   tasks.wait();
-  return draft;
+  return result;
 }
 
-/// Rounded to single precision, relative to `bound`; the radius makes up for all rounding.
+/// Rounded to single precision, relative to `bound`; the radius is enlarged by all rounding errors.
 void set_ball(SphereNode& node, std::size_t slot, const Sphere& ball, const Sphere& bound) {
-  // Coordinates and radii are at most about 1: each is rounded by 2^-25 at most, the place by sqrt(3) times that.
+  // Coordinates and radii are at most about 1: each is rounded by 2^-25 at most, a position by sqrt(3) times that.
   constexpr double k_rounding_up = 2.0 / (1 << 23);
-  const Eigen::Vector3f place = ((ball.center - bound.center) / bound.radius).cast<float>();
-  node.x[slot] = place.x();
-  node.y[slot] = place.y();
-  node.z[slot] = place.z();
+  const Eigen::Vector3f center = ((ball.center - bound.center) / bound.radius).cast<float>();
+  node.x[slot] = center.x();
+  node.y[slot] = center.y();
+  node.z[slot] = center.z();
   node.r[slot] = static_cast<float>(ball.radius / bound.radius + k_rounding_up);
 }
 
-/// Writes the subtree's root to `index`, which is there already, and all below it behind the last node.
-void flatten(const Draft& draft, std::size_t index, SphereTree& tree) {
+/// Writes `from` to the existing node `index` and appends the nodes below it.
+void flatten(const BuildNode& from, std::size_t index, SphereTree& tree) {
   SphereNode node{};
   node.r.fill(-std::numeric_limits<float>::infinity());
   std::array<double, SphereNode::k_slots> volumes{};
-  for (std::size_t slot = 0; slot < draft.children.size(); ++slot) {
-    set_ball(node, slot, draft.children[slot].ball, tree.bound);
-    volumes[slot] = draft.children[slot].volume;
+  for (std::size_t slot = 0; slot < from.children.size(); ++slot) {
+    set_ball(node, slot, from.children[slot].ball, tree.bound);
+    volumes[slot] = from.children[slot].volume;
   }
   tree.nodes[index] = node;
   tree.volumes[index] = volumes;
-  if (!draft.children.front().below) {
-    tree.below[index] = ~static_cast<std::int32_t>(draft.first_leaf);
+  if (!from.children.front().node) {
+    tree.first_child[index] = ~static_cast<std::int32_t>(from.first_leaf);
     return;
   }
-  const std::size_t first = tree.nodes.size(), after = first + draft.children.size();
-  tree.below[index] = static_cast<std::int32_t>(first);
+  const std::size_t first = tree.nodes.size(), after = first + from.children.size();
+  tree.first_child[index] = static_cast<std::int32_t>(first);
   tree.nodes.resize(after);
-  tree.below.resize(after);
+  tree.first_child.resize(after);
   tree.volumes.resize(after);
-  for (std::size_t slot = 0; slot < draft.children.size(); ++slot) {
-    flatten(*draft.children[slot].below, first + slot, tree);
+  for (std::size_t slot = 0; slot < from.children.size(); ++slot) {
+    flatten(*from.children[slot].node, first + slot, tree);
   }
 }
 
@@ -204,9 +207,9 @@ SphereTree build_sphere_tree(std::vector<Sphere> spheres) {
   if (spheres.empty()) throw BadArgument("inner sphere tree: no spheres");
   SphereTree tree;
   tree.bound = enclosing_sphere(spheres);
-  const std::unique_ptr<Draft> root = build(spheres, 0);
+  const std::unique_ptr<BuildNode> root = build(spheres, 0);
   tree.nodes.resize(1);
-  tree.below.resize(1);
+  tree.first_child.resize(1);
   tree.volumes.resize(1);
   flatten(*root, 0, tree);
   tree.leaves = std::move(spheres);
@@ -214,19 +217,19 @@ SphereTree build_sphere_tree(std::vector<Sphere> spheres) {
   return tree;
 }
 
-void set_shares(SphereTree& tree, std::vector<double> shares) {
-  tree.shares = std::move(shares);
+void set_weights(SphereTree& tree, std::vector<double> weights) {
+  tree.weights = std::move(weights);
   tree.volume = 0.0;
-  // Children come after their parents, so backwards all sums below a node are there before its own.
+  // Children come after their parents, so in reverse order the sums below a node are computed before its own.
   for (std::size_t node = tree.nodes.size(); node-- > 0;) {
-    const std::int32_t below = tree.below[node];
+    const std::int32_t first = tree.first_child[node];
     for (std::size_t slot = 0; slot < tree.children(node); ++slot) {
       double& volume = tree.volumes[node][slot];
-      if (below < 0) {
-        const std::size_t leaf = static_cast<std::size_t>(~below) + slot;
-        volume = tree.shares[leaf] * tree.leaves[leaf].volume();
+      if (first < 0) {
+        const std::size_t leaf = static_cast<std::size_t>(~first) + slot;
+        volume = tree.weights[leaf] * tree.leaves[leaf].volume();
       } else {
-        const auto& sums = tree.volumes[static_cast<std::size_t>(below) + slot];
+        const auto& sums = tree.volumes[static_cast<std::size_t>(first) + slot];
         volume = std::accumulate(sums.begin(), sums.end(), 0.0);
       }
     }

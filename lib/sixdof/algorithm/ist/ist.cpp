@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <sixdof/algorithm/ist/cells.h>
-#include <sixdof/algorithm/ist/descent.h>
 #include <sixdof/algorithm/ist/packing.h>
+#include <sixdof/algorithm/ist/steepest_descent.h>
 #include <sixdof/algorithm/ist/traversal.h>
 
 namespace sixdof {
@@ -14,53 +17,53 @@ namespace {
 
 std::vector<Parameter> parameters() {
   return {{.name = "spheres",
-           .meaning = "spheres per object, at most",
+           .meaning = "spheres per body, at most",
            .unit = "1",
-           .standard = "10000",
+           .default_value = "10000",
            .low = 1,
            .high = 5e6,
            .integer = true},
           {.name = "fill",
-           .meaning = "stop packing at this share of the solid's volume",
+           .meaning = "stop packing at this fraction of the solid's volume",
            .unit = "1",
-           .standard = "1",
+           .default_value = "1",
            .low = 0.01,
            .high = 1},
           {.name = "smallest_radius",
-           .meaning = "smallest sphere",
+           .meaning = "smallest radius of a sphere",
            .unit = "diagonal",
-           .standard = "0.0001",
+           .default_value = "0.0001",
            .low = 1e-6,
            .high = 0.5},
           {.name = "force",
-           .meaning = "pairs of spheres push with their overlap's volume, or minus its gradient; descent: all of the "
-                      "volume along the sum of the gradients",
+           .meaning = "volume: each pair's force is its overlap volume; gradient: minus the gradient of that volume; "
+                      "steepest_descent: the total volume, in the direction of the summed gradients",
            .unit = "",
-           .standard = "volume",
-           .choices = {"volume", "gradient", "descent"}},
+           .default_value = "volume",
+           .choices = {"volume", "gradient", "steepest_descent"}},
           {.name = "correct_fill",
-           .meaning = "divide volume and force by both fill rates; cells: each sphere counts for the part of the solid "
-                      "nearest to it",
+           .meaning = "on: divide volume and force by both fill rates; cells: weight each sphere with the part of the "
+                      "solid that is nearest to it",
            .unit = "",
-           .standard = "off",
+           .default_value = "off",
            .choices = {"off", "on", "cells"}},
           {.name = "budget",
-           .meaning = "sphere tests per response, the rest is estimated; 0: no limit",
+           .meaning = "sphere tests per response, beyond which the rest is estimated; 0: no limit",
            .unit = "1",
-           .standard = "0",
+           .default_value = "0",
            .low = 0,
            .high = 1e9,
            .integer = true},
           {.name = "stiffness",
-           .meaning = "force per volume (force=volume, descent) or per area (force=gradient)",
+           .meaning = "force per volume (force=volume, steepest_descent) or per area (force=gradient)",
            .unit = "1",
-           .standard = "1",
+           .default_value = "1",
            .low = 1e-12,
            .high = 1e12},
           {.name = "seed",
-           .meaning = "of the packing's starting points",
+           .meaning = "of the packing's start points",
            .unit = "1",
-           .standard = "1",
+           .default_value = "1",
            .low = 0,
            .high = 1e9,
            .integer = true}};
@@ -68,26 +71,26 @@ std::vector<Parameter> parameters() {
 
 class IstQuery final : public Query {
  public:
-  IstQuery(std::shared_ptr<const InnerSphereTree> a, std::shared_ptr<const InnerSphereTree> b, const Mesh& mesh_b,
-           const Settings& settings)
-      : a_(std::move(a)),
-        b_(std::move(b)),
-        center_b_(mesh_b.center()),
+  /// Equal meshes share one tree.
+  IstQuery(const Mesh& a, const Mesh& b, const Settings& settings)
+      : a_(std::make_shared<const InnerSphereTree>(build_inner_sphere_tree(a, settings))),
+        b_(a.hash() == b.hash() ? a_ : std::make_shared<const InnerSphereTree>(build_inner_sphere_tree(b, settings))),
+        center_b_(b.center()),
         law_(settings.choice("force") == "volume" ? PairForce::volume : PairForce::gradient),
-        descends_(settings.choice("force") == "descent"),
+        steepest_descent_(settings.choice("force") == "steepest_descent"),
         budget_(static_cast<std::uint64_t>(settings.number("budget"))),
-        gain_(settings.choice("correct_fill") == "on" ? 1.0 / (a_->fill * b_->fill) : 1.0),
+        fill_correction_(settings.choice("correct_fill") == "on" ? 1.0 / (a_->fill * b_->fill) : 1.0),
         stiffness_(settings.number("stiffness")) {}
 
   Outcome<bool> collide(const Pose& X_AB) override {
-    if (!finite(X_AB)) return bad_pose();
+    if (!is_finite(X_AB)) return bad_pose();
     const SphereContact contact = overlaps(a_->tree, b_->tree, X_AB, scratch_);
     count_ = contact.count;
     return contact.any;
   }
 
   Outcome<Separation> distance(const Pose& X_AB) override {
-    if (!finite(X_AB)) return bad_pose();
+    if (!is_finite(X_AB)) return bad_pose();
     const SphereSeparation gap = separation(a_->tree, b_->tree, X_AB);
     count_ = gap.count;
     const Sphere& in_a = a_->tree.leaves[static_cast<std::size_t>(gap.leaf_a)];
@@ -95,27 +98,28 @@ class IstQuery final : public Query {
     Separation result;
     result.distance = std::max(0.0, gap.distance);
     const Eigen::Vector3d center_b = X_AB * in_b.center;
-    const Eigen::Vector3d across = center_b - in_a.center;
-    if (const double d = across.norm(); d > 0.0 && gap.distance >= 0.0) {
+    const Eigen::Vector3d offset = center_b - in_a.center;
+    if (const double d = offset.norm(); d > 0.0 && gap.distance >= 0.0) {
       result.has_witnesses = true;
-      result.witness_a = in_a.center + across * (in_a.radius / d);
-      result.witness_b = center_b - across * (in_b.radius / d);
+      result.witness_a = in_a.center + offset * (in_a.radius / d);
+      result.witness_b = center_b - offset * (in_b.radius / d);
     }
     return result;
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {
-    if (!finite(X_AB)) return bad_pose();
+    if (!is_finite(X_AB)) return bad_pose();
     const Eigen::Vector3d reference = X_AB * center_b_;
-    const PenetrationSum sum = budget_ == 0 ? penetration(a_->tree, b_->tree, X_AB, law_, reference, scratch_)
-                                            : penetration_within(a_->tree, b_->tree, X_AB, law_, reference, budget_);
+    const PenetrationSum sum = budget_ == 0
+                                   ? penetration(a_->tree, b_->tree, X_AB, law_, reference, scratch_)
+                                   : penetration_within_budget(a_->tree, b_->tree, X_AB, law_, reference, budget_);
     count_ = sum.count;
     Response response;
-    response.volume = gain_ * sum.volume;
+    response.volume = fill_correction_ * sum.volume;
     response.penalty = response.volume;
-    const PushSum push = descends_ ? steepest_descent(sum) : PushSum{sum.force, sum.moment};
-    response.force = gain_ * stiffness_ * push.force;
-    response.torque = gain_ * stiffness_ * push.moment;
+    const Wrench wrench = steepest_descent_ ? steepest_descent(sum) : Wrench{sum.force, sum.moment};
+    response.force = fill_correction_ * stiffness_ * wrench.force;
+    response.torque = fill_correction_ * stiffness_ * wrench.moment;
     response.reference = reference;
     if (!response.force.allFinite() || !response.torque.allFinite() || !std::isfinite(response.volume)) {
       return fail(Status::non_finite, "force, torque or volume is not finite");
@@ -132,63 +136,50 @@ class IstQuery final : public Query {
              {"fill_b", b_->fill}}};
   }
 
-  /// Visited are pairs of balls, those of inner nodes and empty lanes included; present are pairs of packed spheres.
+  /// Tests are of pairs of balls, inner nodes and empty slots included; the total is of pairs of packed spheres.
   std::vector<Work> work() const override {
     const auto spheres = [](const InnerSphereTree& tree) { return static_cast<double>(tree.tree.leaves.size()); };
     return {{"sphere_pairs", static_cast<double>(count_.sphere_tests), spheres(*a_) * spheres(*b_)}};
   }
 
  private:
-  static bool finite(const Pose& X) { return X.R.allFinite() && X.t.allFinite(); }
   Status bad_pose() { return fail(Status::non_finite, "the pose is not finite"); }
 
   std::shared_ptr<const InnerSphereTree> a_, b_;
   Eigen::Vector3d center_b_;
   PairForce law_;
-  bool descends_;
+  bool steepest_descent_;
   std::uint64_t budget_;
-  double gain_;
+  double fill_correction_;
   double stiffness_;
   TraversalScratch scratch_;
   TraversalCount count_;  ///< Of the last query.
 };
 
-class IstAlgorithm final : public Algorithm {
- public:
-  const Traits& traits() const override { return traits_; }
-
-  std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& settings) const override {
-    const auto tree_a = std::make_shared<const InnerSphereTree>(build_inner_sphere_tree(a, settings));
-    const auto tree_b =
-        a.hash() == b.hash() ? tree_a : std::make_shared<const InnerSphereTree>(build_inner_sphere_tree(b, settings));
-    return std::make_unique<IstQuery>(tree_a, tree_b, b, settings);
-  }
-
- private:
-  Traits traits_{.name = "ist",
-                 .version = SIXDOF_VERSION,
-                 .summary = "inner sphere trees (Weller and Zachmann 2009): overlap volume of packed spheres",
-                 .answers = {.collide = true, .distance = true, .respond = true},
-                 .law = ResponseLaw::volume,
-                 .parameters = parameters()};
-};
-
 }  // namespace
 
 InnerSphereTree build_inner_sphere_tree(const Mesh& mesh, const Settings& settings) {
-  Packing packing = pack_spheres_cached(mesh, {.spheres = static_cast<std::size_t>(settings.number("spheres")),
-                                               .fill = settings.number("fill"),
-                                               .smallest_radius = settings.number("smallest_radius"),
-                                               .seed = static_cast<std::uint64_t>(settings.number("seed"))});
+  Packing packing = cached_packing(mesh, {.spheres = static_cast<std::size_t>(settings.number("spheres")),
+                                          .fill = settings.number("fill"),
+                                          .smallest_radius = settings.number("smallest_radius"),
+                                          .seed = static_cast<std::uint64_t>(settings.number("seed"))});
   InnerSphereTree result{build_sphere_tree(std::move(packing.spheres)), packing.fill};
   if (settings.choice("correct_fill") == "cells") {
-    set_shares(result.tree, cell_shares_cached(mesh, result.tree.leaves));
+    set_weights(result.tree, cached_cell_weights(mesh, result.tree.leaves));
   }
   return result;
 }
 
 }  // namespace ist
 
-std::unique_ptr<Algorithm> make_ist_algorithm() { return std::make_unique<ist::IstAlgorithm>(); }
+std::unique_ptr<Algorithm> make_ist_algorithm() {
+  return make_algorithm<ist::IstQuery>(
+      {.name = "ist",
+       .version = SIXDOF_VERSION,
+       .summary = "inner sphere trees (Weller and Zachmann 2009): overlap volume of packed spheres",
+       .answers = {.collide = true, .distance = true, .respond = true},
+       .law = ResponseLaw::volume,
+       .parameters = ist::parameters()});
+}
 
 }  // namespace sixdof

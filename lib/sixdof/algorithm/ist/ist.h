@@ -2,23 +2,25 @@
 
 #include <memory>
 
-#include <sixdof/query/algorithm.h>
 #include <sixdof/algorithm/ist/hierarchy.h>
+#include <sixdof/query/algorithm.h>
 
 namespace sixdof {
 
-/// `ist`: inner sphere trees (Weller and Zachmann 2009). Both solids are filled with disjoint spheres; the penalty is
-/// the summed volume of the overlaps of spheres of A with spheres of B, the force acts along the lines of their
+/// `ist`: inner sphere trees (Weller and Zachmann 2009). Both solids are packed with disjoint spheres. The penalty is
+/// the sum of the overlap volumes of spheres of A with spheres of B; each pair's force acts along the line of its
 /// centres.
 ///
-/// The spheres fill only a part of each solid (the fill rate, a count of the footprint), so volume and force are biased
-/// low and distances high. Parameter `correct_fill=on` divides volume and force by both fill rates; `correct_fill=cells` lets
-/// each sphere count for the part of the solid that is nearest to it (cells.h), so that a volume is right wherever it
-/// is, not on average over the body. `collide` and `distance` answer for the spheres, not the surfaces.
+/// The spheres fill only a fraction of each solid (the fill rate, a count of the footprint), so volume and force are
+/// too small and distances too large. `correct_fill=on` divides volume and force by both fill rates.
+/// `correct_fill=cells` weights each sphere with the part of the solid that is nearest to it (cells.h), which corrects
+/// the volume locally. `collide` and `distance` answer for the spheres, not for the surfaces.
 ///
-/// With `force=gradient` the force is minus the gradient of that volume and approaches the exact one as spheres grow in
-/// number, in direction and (corrected) in magnitude; with `force=volume`, the paper's, the direction keeps an error.
-/// `force=descent` has the volume as magnitude, as the paper's law asks, and the gradient's direction (descent.h).
+/// Parameter `force`:
+/// - `volume` (the paper's): each pair's force has the magnitude of its overlap volume.
+/// - `gradient`: the force is minus the gradient of the summed volume. With more spheres its direction and, with
+///   correct_fill, its magnitude converge to the exact ones; the direction of `volume` does not.
+/// - `steepest_descent`: magnitude of the summed volume, direction of the gradient (steepest_descent.h).
 std::unique_ptr<Algorithm> make_ist_algorithm();
 
 namespace ist {
@@ -26,7 +28,7 @@ namespace ist {
 /// A packed solid with its hierarchy.
 struct InnerSphereTree {
   SphereTree tree;
-  double fill = 0.0;  ///< Share of the solid's volume that the spheres fill.
+  double fill = 0.0;  ///< Fraction of the solid's volume that the spheres fill.
 };
 
 /// Packs and builds with the settings of `ist`. @throws BadMesh if the mesh is not solid or too thin.

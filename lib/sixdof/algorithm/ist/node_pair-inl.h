@@ -7,6 +7,7 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -15,8 +16,8 @@
 
 #include <sixdof/algorithm/ist/node_pair.h>
 
-// The 4 x 4 balls of a node of A and a node of B against each other, in lanes 4 i + j. No fused multiply-add is used,
-// so every instruction set gives the same bits.
+// Tests a node of A against a node of B: their 4 x 4 pairs of balls in lanes 4 i + j, i a slot of A's node and j one of
+// B's. Products and sums are separate operations (no fused multiply-add), so all instruction sets round alike.
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::ist {
@@ -33,51 +34,45 @@ using I = hn::Vec<Ints>;
 constexpr Floats k_floats;
 constexpr Ints k_ints;
 
-/// Tests balls of A's and B's nodes.
+/// Overlap test of the balls of two nodes, in single precision.
 class NodePairTest {
  public:
-  explicit HWY_INLINE NodePairTest(const NodePlacement& placement) {
+  explicit HWY_INLINE NodePairTest(const NodeTransform& transform) {
     for (Eigen::Index k = 0; k < 3; ++k) {
-      for (Eigen::Index l = 0; l < 3; ++l) turn_[k][l] = hn::Set(k_floats, placement.turn(k, l));
-      shift_[k] = hn::Set(k_floats, placement.shift[k]);
+      for (Eigen::Index l = 0; l < 3; ++l) rotation_[k][l] = hn::Set(k_floats, transform.rotation(k, l));
+      translation_[k] = hn::Set(k_floats, transform.translation[k]);
     }
-    ratio_ = hn::Set(k_floats, placement.ratio);
-    slack_ = hn::Set(k_floats, placement.slack);
+    ratio_ = hn::Set(k_floats, transform.ratio);
+    slack_ = hn::Set(k_floats, transform.slack);
   }
 
-  /// Bit 4 i + j is set if ball i of `a` may overlap ball j of `b`; it is if they do.
+  /// Sets bit 4 i + j if ball i of `a` overlaps ball j of `b`, and possibly where their gap is within the rounding.
   HWY_INLINE unsigned overlapping(const SphereNode& a, const SphereNode& b) const {
     unsigned bits = 0;
-    for_each_part(a, b, [&](std::size_t l, F squared, F radii) HWY_ATTR {
-      // Where a slot is empty, the sum of radii and its square with this sign are -infinity.
+    for (std::size_t l = 0; l < k_pairs; l += hn::Lanes(k_floats)) {
+      const F x = of_b(b.x, l), y = of_b(b.y, l), z = of_b(b.z, l);
+      const auto transformed = [&](std::size_t k) HWY_ATTR {
+        const F rotated =
+            hn::Add(hn::Add(hn::Mul(rotation_[k][0], x), hn::Mul(rotation_[k][1], y)), hn::Mul(rotation_[k][2], z));
+        return hn::Add(rotated, translation_[k]);
+      };
+      const F dx = hn::Sub(transformed(0), of_a(a.x, l)), dy = hn::Sub(transformed(1), of_a(a.y, l)),
+              dz = hn::Sub(transformed(2), of_a(a.z, l));
+      const F squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
+      const F radius_b = hn::Add(hn::Mul(of_b(b.r, l), ratio_), slack_);
+      const F radii = hn::Add(radius_b, of_a(a.r, l));
+      // In an empty slot the sum of radii, and its square with this sign, is -infinity.
       const auto hit = hn::Le(squared, hn::Mul(radii, hn::Abs(radii)));
       std::uint8_t bytes[8] = {};
       hn::StoreMaskBits(k_floats, hit, bytes);
       std::uint16_t part;
       std::memcpy(&part, bytes, sizeof part);
       bits |= (part & ((1u << hn::Lanes(k_floats)) - 1u)) << l;
-    });
+    }
     return bits;
   }
 
  private:
-  /// Calls part(lane, squared distances of the centres, sums of the radii and the slack) for the lanes from `lane` on.
-  template <class Part>
-  HWY_INLINE void for_each_part(const SphereNode& a, const SphereNode& b, const Part& part) const {
-    for (std::size_t l = 0; l < k_pairs; l += hn::Lanes(k_floats)) {
-      const F x = of_b(b.x, l), y = of_b(b.y, l), z = of_b(b.z, l);
-      const auto moved = [&](std::size_t k) HWY_ATTR {
-        const F turned = hn::Add(hn::Add(hn::Mul(turn_[k][0], x), hn::Mul(turn_[k][1], y)), hn::Mul(turn_[k][2], z));
-        return hn::Add(turned, shift_[k]);
-      };
-      const F dx = hn::Sub(moved(0), of_a(a.x, l)), dy = hn::Sub(moved(1), of_a(a.y, l)),
-              dz = hn::Sub(moved(2), of_a(a.z, l));
-      const F squared = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-      const F radius_b = hn::Add(hn::Mul(of_b(b.r, l), ratio_), slack_);
-      part(l, squared, hn::Add(radius_b, of_a(a.r, l)));
-    }
-  }
-
   using Row = std::array<float, k_slots>;
   static constexpr bool k_whole_rows = hn::MaxLanes(k_floats) >= k_slots;  // else one lane at a time
   /// Slot (lane / 4) for the lanes from l on.
@@ -98,21 +93,22 @@ class NodePairTest {
     }
   }
 
-  F turn_[3][3], shift_[3], ratio_, slack_;
+  F rotation_[3][3], translation_[3], ratio_, slack_;
 };
 
-/// Gaps between balls of A's and B's nodes, in double precision: far apart, single precision could not tell them apart.
+/// Gaps between the balls of two nodes. In double precision: the rounding errors of single precision grow with the
+/// distance and would exceed the differences between the gaps.
 class NodePairGaps {
  public:
   NodePairGaps(const SphereTree& a, const SphereTree& b, const Pose& X_AB)
       : unit_a_(a.bound.radius),
         unit_b_(b.bound.radius),
-        turn_(b.bound.radius * X_AB.R),
-        shift_(X_AB * b.bound.center - a.bound.center) {}
+        rotation_(b.bound.radius * X_AB.R),
+        translation_(X_AB * b.bound.center - a.bound.center) {}
 
   /// Writes the gap (distance of centres minus both radii) of ball i of `a` to ball j of `b` to out[4 i + j], in the
-  /// meshes' length unit; +infinity where a slot is empty. A lower bound of the gaps of the leaves below: balls are
-  /// rounded up by far more than what is rounded here.
+  /// meshes' length unit; +infinity where a slot is empty. It is a lower bound of the gaps of the leaves below: balls
+  /// are rounded up by far more than the rounding errors here.
   /// @return bit 4 i + j is set if the gap is smaller than `within`.
   HWY_INLINE unsigned measure(const SphereNode& a, const SphereNode& b, double within, double* out) const {
     const Doubles d;
@@ -122,12 +118,13 @@ class NodePairGaps {
         return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, Doubles>(), values.data() + l));
       };
       const auto x = row(b.x), y = row(b.y), z = row(b.z), r = hn::Mul(row(b.r), hn::Set(d, unit_b_));
-      const auto moved = [&](Eigen::Index k) HWY_ATTR {
-        const auto turned = hn::Add(hn::Add(hn::Mul(hn::Set(d, turn_(k, 0)), x), hn::Mul(hn::Set(d, turn_(k, 1)), y)),
-                                    hn::Mul(hn::Set(d, turn_(k, 2)), z));
-        return hn::Add(turned, hn::Set(d, shift_[k]));
+      const auto transformed = [&](Eigen::Index k) HWY_ATTR {
+        const auto rotated =
+            hn::Add(hn::Add(hn::Mul(hn::Set(d, rotation_(k, 0)), x), hn::Mul(hn::Set(d, rotation_(k, 1)), y)),
+                    hn::Mul(hn::Set(d, rotation_(k, 2)), z));
+        return hn::Add(rotated, hn::Set(d, translation_[k]));
       };
-      const auto bx = moved(0), by = moved(1), bz = moved(2);
+      const auto bx = transformed(0), by = transformed(1), bz = transformed(2);
       for (std::size_t i = 0; i < k_slots; ++i) {
         const auto of_a = [&](float value) HWY_ATTR { return hn::Set(d, unit_a_ * static_cast<double>(value)); };
         const auto dx = hn::Sub(bx, of_a(a.x[i])), dy = hn::Sub(by, of_a(a.y[i])), dz = hn::Sub(bz, of_a(a.z[i]));
@@ -145,30 +142,31 @@ class NodePairGaps {
  private:
   using Doubles = hn::CappedTag<double, k_slots>;
   double unit_a_, unit_b_;
-  Eigen::Matrix3d turn_;
-  Eigen::Vector3d shift_;
+  Eigen::Matrix3d rotation_;
+  Eigen::Vector3d translation_;
 };
 
-/// What lies below a pair of nodes: pairs of nodes, or of leaves if both are nodes of leaves. Where only one of them
-/// is, it is met again with each child of the other that one of its leaves may overlap.
+/// The pairs that replace an expanded pair of nodes. If both are nodes of inner nodes, or both nodes of leaves, these
+/// are pairs of their children. If only one is a node of leaves, that node stays in the pair and the other one is
+/// replaced by each of its children that overlaps one of the leaves.
 ///
-/// Written without branches, which would be as unforeseeable as the shapes of the trees.
-struct Descent {
-  std::int32_t first_a, first_b;    ///< Node or leaf of the first slot.
-  std::int32_t others_a, others_b;  ///< All bits: the other slots' follow; 0: it is the node itself, for all slots.
-  unsigned pairs;                   ///< Bits 4 i + j as NodePairTest's.
-  bool leaves;                      ///< Pairs of leaves.
+/// Branchless, since the branches would be unpredictable: all bits of a mask are set, or none.
+struct ChildPairs {
+  std::int32_t first_a, first_b;          ///< Node or leaf of the first slot.
+  std::int32_t slot_mask_a, slot_mask_b;  ///< 0 where the node stays in the pair: all slots are the node itself.
+  unsigned pairs;                         ///< Bits 4 i + j as NodePairTest's.
+  bool leaves;                            ///< Pairs of leaves.
 
-  /// @param below_a, below_b SphereTree::below of the two nodes
-  HWY_INLINE Descent(std::int32_t node_a, std::int32_t below_a, std::int32_t node_b, std::int32_t below_b,
-                     unsigned overlapping) {
-    const std::int32_t leaves_a = below_a >> 31, leaves_b = below_b >> 31;  // all bits or none
+  /// @param child_a, child_b SphereTree::first_child of the two nodes
+  HWY_INLINE ChildPairs(std::int32_t node_a, std::int32_t child_a, std::int32_t node_b, std::int32_t child_b,
+                        unsigned overlapping) {
+    const std::int32_t leaves_a = child_a >> 31, leaves_b = child_b >> 31;  // masks
     const std::int32_t stays_a = leaves_a & ~leaves_b, stays_b = leaves_b & ~leaves_a;
     leaves = (leaves_a & leaves_b) != 0;
-    first_a = (node_a & stays_a) | ((below_a ^ leaves_a) & ~stays_a);
-    first_b = (node_b & stays_b) | ((below_b ^ leaves_b) & ~stays_b);
-    others_a = ~stays_a;
-    others_b = ~stays_b;
+    first_a = (node_a & stays_a) | ((child_a ^ leaves_a) & ~stays_a);
+    first_b = (node_b & stays_b) | ((child_b ^ leaves_b) & ~stays_b);
+    slot_mask_a = ~stays_a;
+    slot_mask_b = ~stays_b;
     const unsigned o = overlapping;
     const unsigned any_of_a = (o | o >> 4 | o >> 8 | o >> 12) & 0x000fu,
                    any_of_b = (o | o >> 1 | o >> 2 | o >> 3) & 0x1111u;
@@ -176,23 +174,23 @@ struct Descent {
             (o & static_cast<unsigned>(~(stays_a | stays_b)));
   }
 
-  std::int32_t in_a(unsigned pair) const { return first_a + (others_a & static_cast<std::int32_t>(pair / k_slots)); }
-  std::int32_t in_b(unsigned pair) const { return first_b + (others_b & static_cast<std::int32_t>(pair % k_slots)); }
+  std::int32_t in_a(unsigned pair) const { return first_a + (slot_mask_a & static_cast<std::int32_t>(pair / k_slots)); }
+  std::int32_t in_b(unsigned pair) const { return first_b + (slot_mask_b & static_cast<std::int32_t>(pair % k_slots)); }
+  bool a_stays() const { return slot_mask_a == 0; }
+  bool b_stays() const { return slot_mask_b == 0; }
 
-  /// The least of the gaps (of NodePairGaps) that this pair stands for: its own, or those of all leaves of a node that
-  /// is met again.
-  double least(const double* gap, unsigned pair) const {
-    const unsigned step = others_a == 0 ? k_slots : 1,
-                   end = others_a != 0 && others_b != 0 ? pair + 1 : pair + 4 * step;
+  /// The smallest of NodePairGaps' gaps that belong to this pair: its own, or those of all leaves of the node that
+  /// stays.
+  double smallest_gap(const double* gap, unsigned pair) const {
+    const unsigned step = a_stays() ? k_slots : 1, end = !a_stays() && !b_stays() ? pair + 1 : pair + 4 * step;
     double result = gap[pair];
     for (unsigned i = pair; i < end; i += step) result = std::min(result, gap[i]);
     return result;
   }
 
-  /// Writes the pairs' members, and up to k_pairs numbers without meaning behind them. @return how many pairs there
-  /// are.
+  /// Writes the members of the pairs, followed by up to k_pairs undefined values. @return the number of pairs
   HWY_INLINE std::size_t write(std::int32_t* out_a, std::int32_t* out_b) const {
-    const I mask_a = hn::Set(k_ints, others_a), mask_b = hn::Set(k_ints, others_b);
+    const I mask_a = hn::Set(k_ints, slot_mask_a), mask_b = hn::Set(k_ints, slot_mask_b);
     const I from_a = hn::Set(k_ints, first_a), from_b = hn::Set(k_ints, first_b);
     std::size_t count = 0;
     for (std::size_t l = 0; l < k_pairs; l += hn::Lanes(k_ints)) {
@@ -211,29 +209,29 @@ struct Descent {
   }
 };
 
-/// The end of a list, where pairs are appended.
+/// A list and the number of pairs in it, for appending.
 struct ListEnd {
   PairList& list;
   std::size_t& size;
 };
 
-/// Tests pairs of nodes of two trees.
-class NodePairs {
+/// Expands pairs of nodes of two trees into the pairs of children that overlap.
+class NodePairExpansion {
  public:
-  HWY_INLINE NodePairs(const SphereTree& a, const SphereTree& b, const NodePlacement& placement)
-      : a_(a), b_(b), test_(placement) {}
+  HWY_INLINE NodePairExpansion(const SphereTree& a, const SphereTree& b, const NodeTransform& transform)
+      : a_(a), b_(b), test_(transform) {}
 
-  HWY_INLINE Descent descend(std::int32_t a, std::int32_t b) const {
-    return {a, a_.below[a], b, b_.below[b], test_.overlapping(a_.nodes[a], b_.nodes[b])};
+  HWY_INLINE ChildPairs expand(std::int32_t a, std::int32_t b) const {
+    return {a, a_.first_child[a], b, b_.first_child[b], test_.overlapping(a_.nodes[a], b_.nodes[b])};
   }
 
-  /// Appends what lies below `count` pairs of nodes, which both lists must have room for.
-  /// @tparam k_ahead pairs between asking for nodes and testing them; 0: not at all. What stands in the columns that
-  /// far behind the last pair is asked for too, whatever it is.
+  /// Expands `count` pairs and appends the results. Both lists must have room for them.
+  /// @tparam k_ahead distance, in pairs, at which nodes are prefetched; 0: no prefetching. The columns must be readable
+  /// that far beyond the last pair; any values will do there.
   template <std::size_t k_ahead>
-  HWY_INLINE void descend_all(const std::int32_t* a, const std::int32_t* b, std::size_t count, ListEnd of_nodes,
-                              ListEnd of_leaves) const {
-    // Where the next pairs go, of nodes and of leaves: chosen by an index, since a branch could not be foreseen.
+  HWY_INLINE void expand_all(const std::int32_t* a, const std::int32_t* b, std::size_t count, ListEnd of_nodes,
+                             ListEnd of_leaves) const {
+    // Ends of the two lists, selected by an index instead of an unpredictable branch.
     std::int32_t* out_a[2] = {of_nodes.list.a.data() + of_nodes.size, of_leaves.list.a.data() + of_leaves.size};
     std::int32_t* out_b[2] = {of_nodes.list.b.data() + of_nodes.size, of_leaves.list.b.data() + of_leaves.size};
     for (std::size_t i = 0; i < count; ++i) {
@@ -241,8 +239,8 @@ class NodePairs {
         a_.prefetch(a[i + k_ahead]);
         b_.prefetch(b[i + k_ahead]);
       }
-      const Descent below = descend(a[i], b[i]);
-      const std::size_t kind = below.leaves ? 1 : 0, pairs = below.write(out_a[kind], out_b[kind]);
+      const ChildPairs children = expand(a[i], b[i]);
+      const std::size_t kind = children.leaves ? 1 : 0, pairs = children.write(out_a[kind], out_b[kind]);
       out_a[kind] += pairs;
       out_b[kind] += pairs;
     }
@@ -253,11 +251,11 @@ class NodePairs {
  private:
   struct Arrays {
     const SphereNode* nodes;
-    const std::int32_t* below;
-    explicit Arrays(const SphereTree& tree) : nodes(tree.nodes.data()), below(tree.below.data()) {}
+    const std::int32_t* first_child;
+    explicit Arrays(const SphereTree& tree) : nodes(tree.nodes.data()), first_child(tree.first_child.data()) {}
     HWY_INLINE void prefetch(std::int32_t node) const {
       __builtin_prefetch(nodes + node);
-      __builtin_prefetch(below + node);
+      __builtin_prefetch(first_child + node);
     }
   };
   Arrays a_, b_;

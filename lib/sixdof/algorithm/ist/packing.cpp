@@ -3,30 +3,41 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <queue>
 #include <random>
+#include <span>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <sixdof/algorithm/ist/sphere_index.h>
+#include <sixdof/algorithm/load_or_build.h>
+#include <sixdof/algorithm/require_solid.h>
 #include <sixdof/base/cache.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>
+#include <sixdof/geometry/tree.h>
+
+// Packer keeps a queue of prototypes ordered by clearance. Each round inserts the largest ones as spheres and optimises
+// new prototypes around them. maximise_clearance() moves a prototype to a local maximum of its clearance.
 
 namespace sixdof::ist {
 namespace {
 
-constexpr double k_margin = 1e-9;          // relative gap kept around every sphere, far above rounding
-constexpr double k_start_depth = 1e-7;     // of a prototype below its surface point, in diagonals
-constexpr double k_depth_rounding = 1e-6;  // of that depth: rounding of coordinates, 1e-16 / 1e-7, with room
-constexpr int k_escape_steps = 40;         // doublings of the clearance, at most, before the zigzag
-constexpr int k_climb_steps = 64;          // measured clearances per climb after the escape, at most: wedges need many
-constexpr std::size_t k_memory = 8;        // obstacles a climbing prototype remembers
-constexpr double k_good_enough = 1e-2;     // a climb ends when its model promises less than this relative gain
-constexpr double k_together = 0.9;         // spheres of at least this share of the largest are inserted in one round
-constexpr std::size_t k_starts_per_sphere = 2;  // surface prototypes per sphere asked for
-constexpr std::size_t k_least_starts = 2'000;
+constexpr double k_margin = 1e-9;          // relative gap between a sphere and its obstacles, far above rounding
+constexpr double k_start_depth = 1e-7;     // of a start point below the surface, in diagonals
+constexpr double k_depth_rounding = 1e-6;  // relative rounding of that depth: coordinates have 1e-16 / 1e-7, with slack
+constexpr int k_max_doublings = 40;        // of the clearance, in the first phase
+constexpr int k_max_model_steps = 64;      // measured clearances in the second phase; narrow wedges need many
+constexpr std::size_t k_model_obstacles = 8;    // latest obstacles in the model of the clearance
+constexpr double k_min_gain = 1e-2;             // converged when the model promises a smaller relative gain than this
+constexpr double k_round_ratio = 0.9;           // a round inserts spheres of at least this fraction of the largest
+constexpr std::size_t k_starts_per_sphere = 2;  // start points on the surface per sphere asked for
+constexpr std::size_t k_min_starts = 2'000;
 
 struct Prototype {
   Eigen::Vector3d position;
@@ -37,8 +48,8 @@ struct Prototype {
   }
 };
 
-/// What limits the clearance of a prototype, as seen from where it was met: a placed sphere, or the surface's tangent
-/// plane at the closest point.
+/// What limits the clearance of a prototype: an inserted sphere, or the tangent plane of the surface at the closest
+/// point.
 struct Obstacle {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< Centre of the sphere, or point on the surface.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Plane: unit normal towards the prototype. Sphere: unused.
@@ -52,20 +63,20 @@ struct Obstacle {
   }
 };
 
-/// The free space left: inside the mesh, outside the placed spheres.
+/// The space inside the mesh and outside the inserted spheres.
 class FreeSpace {
  public:
-  FreeSpace(const Tree& tree, double largest) : tree_(tree), placed_(largest) {}
+  FreeSpace(const Tree& tree, double largest) : tree_(tree), spheres_(largest) {}
 
   struct Clearance {
     double value = 0.0;  ///< Distance to the closest obstacle; `bound` if none is nearer than that.
     Obstacle obstacle;   ///< The closest one.
   };
 
-  /// `bound` is an upper bound on the answer: clearance changes by at most the length of a step.
+  /// @param bound upper bound on the clearance; it changes by at most the length of a step
   Clearance clearance(const Eigen::Vector3d& p, double bound) const {
     constexpr double k_bound_slack = 1.0 + 1e-12;
-    const auto sphere = placed_.nearest(p, bound * k_bound_slack);
+    const auto sphere = spheres_.nearest(p, bound * k_bound_slack);
     const auto surface = closest_point(tree_, p, std::max(0.0, std::min(bound * k_bound_slack, sphere.clearance)));
     if (surface) {
       const Eigen::Vector3d offset = p - surface->point;
@@ -74,45 +85,33 @@ class FreeSpace {
       return {surface->distance, {surface->point, away, 0.0}};
     }
     if (sphere.sphere < 0) return {bound, {}};
-    const Sphere& nearest = placed_.spheres()[static_cast<std::size_t>(sphere.sphere)];
+    const Sphere& nearest = spheres_.spheres()[static_cast<std::size_t>(sphere.sphere)];
     return {sphere.clearance, {nearest.center, Eigen::Vector3d::Zero(), nearest.radius}};
   }
 
   double clearance_of_spheres(const Eigen::Vector3d& p, double within) const {
-    return placed_.nearest(p, within).clearance;
+    return spheres_.nearest(p, within).clearance;
   }
 
-  void place(const Sphere& sphere) { placed_.insert(sphere); }
-  std::span<const Sphere> placed() const { return placed_.spheres(); }
+  void insert(const Sphere& sphere) { spheres_.insert(sphere); }
+  std::span<const Sphere> spheres() const { return spheres_.spheres(); }
 
  private:
   const Tree& tree_;
-  SphereIndex placed_;
+  SphereIndex spheres_;
 };
 
-/// The last few obstacles met: a model of the clearance near a prototype, free to evaluate.
-class ObstacleMemory {
+/// Model of the clearance near a prototype: the distance to the nearest of the obstacles met last.
+class ClearanceModel {
  public:
   void add(const Obstacle& obstacle) {
-    obstacles_[next_ % k_memory] = obstacle;
+    obstacles_[next_ % k_model_obstacles] = obstacle;
     ++next_;
   }
 
-  struct Nearest {
-    double distance = std::numeric_limits<double>::infinity();
-    const Obstacle* obstacle = nullptr;
-  };
-  Nearest nearest(const Eigen::Vector3d& p) const {
-    Nearest best;
-    for (std::size_t i = 0; i < std::min(next_, k_memory); ++i) {
-      const double distance = obstacles_[i].distance(p);
-      if (distance < best.distance) best = {distance, &obstacles_[i]};
-    }
-    return best;
-  }
-
-  /// Best point of the model within `trust` of `start`: moves away from the closest obstacle with shrinking steps.
-  std::pair<Eigen::Vector3d, double> ascend(const Eigen::Vector3d& start, double trust) const {
+  /// The point within `trust` of `start` with the largest modelled clearance, and that clearance: moves away from the
+  /// nearest obstacle in shrinking steps.
+  std::pair<Eigen::Vector3d, double> maximise(const Eigen::Vector3d& start, double trust) const {
     constexpr int k_steps = 40;
     constexpr double k_decay = 0.88;  // 0.88^40 = 0.6 %
     Eigen::Vector3d p = start, best = start;
@@ -132,40 +131,54 @@ class ObstacleMemory {
   }
 
  private:
-  std::array<Obstacle, k_memory> obstacles_;
+  struct Nearest {
+    double distance = std::numeric_limits<double>::infinity();
+    const Obstacle* obstacle = nullptr;
+  };
+  Nearest nearest(const Eigen::Vector3d& p) const {
+    Nearest best;
+    for (std::size_t i = 0; i < std::min(next_, k_model_obstacles); ++i) {
+      const double distance = obstacles_[i].distance(p);
+      if (distance < best.distance) best = {distance, &obstacles_[i]};
+    }
+    return best;
+  }
+
+  std::array<Obstacle, k_model_obstacles> obstacles_;
   std::size_t next_ = 0;
 };
 
 struct Start {
   Eigen::Vector3d position;
-  double bound;        ///< Upper bound on the clearance here.
-  double least = 0.0;  ///< With less clearance the start is not where it should be, and is given up.
+  double bound;                ///< Upper bound on the clearance here.
+  double min_clearance = 0.0;  ///< With less clearance than this the start is discarded.
 };
 
-/// Lets a prototype climb from `start` (inside the free space) to a place of locally largest clearance.
+/// Moves a prototype from `start`, in the free space, to a local maximum of the clearance.
 ///
-/// First it doubles its clearance away from what it starts at; then it climbs by cutting planes: every measured
-/// clearance adds an obstacle to the model, the model's best point within a trusted distance is measured next.
-Prototype climb(const FreeSpace& space, const Start& start, std::uint64_t order) {
-  ObstacleMemory memory;
+/// First phase: move away from the closest obstacle while that doubles the clearance. Second phase, by cutting planes:
+/// every measured clearance adds an obstacle to the model, and the maximum of the model within a trust region is
+/// measured next.
+Prototype maximise_clearance(const FreeSpace& space, const Start& start, std::uint64_t order) {
+  ClearanceModel model;
   auto here = space.clearance(start.position, start.bound);
-  if (here.value < start.least) return {start.position, 0.0, order};
+  if (here.value < start.min_clearance) return {start.position, 0.0, order};
   Prototype best{start.position, here.value, order};
-  for (int i = 0; i < k_escape_steps && here.value > 0.0; ++i) {
-    memory.add(here.obstacle);
+  for (int i = 0; i < k_max_doublings && here.value > 0.0; ++i) {
+    model.add(here.obstacle);
     const Eigen::Vector3d next = best.position + here.obstacle.away(best.position) * (0.99 * best.clearance);
     here = space.clearance(next, 2.0 * best.clearance);
     const bool slowing = here.value < 1.5 * best.clearance;
     if (here.value > best.clearance) best = {next, here.value, order};
     if (slowing) break;
   }
-  memory.add(here.obstacle);
+  model.add(here.obstacle);
   double trust = 0.9 * best.clearance;
-  for (int i = 0; i < k_climb_steps && best.clearance > 0.0; ++i) {
-    const auto [next, promise] = memory.ascend(best.position, trust);
-    if (promise < best.clearance * (1.0 + k_good_enough)) break;
+  for (int i = 0; i < k_max_model_steps && best.clearance > 0.0; ++i) {
+    const auto [next, promise] = model.maximise(best.position, trust);
+    if (promise < best.clearance * (1.0 + k_min_gain)) break;
     here = space.clearance(next, best.clearance + trust);
-    memory.add(here.obstacle);
+    model.add(here.obstacle);
     if (here.value > best.clearance) {
       best = {next, here.value, order};
       trust = std::min(1.5 * trust, 0.9 * best.clearance);
@@ -176,24 +189,25 @@ Prototype climb(const FreeSpace& space, const Start& start, std::uint64_t order)
   return best;
 }
 
-/// Starting points just below the surface, at equal shares of its area in the triangles' order (stratified). One whose
-/// own surface point is not the closest has another wall nearer by, and may even be beyond it: it does not start.
+/// Start points just below the surface, one per equal part of its area in the order of the triangles (stratified
+/// sampling). Where another wall is nearer than the point's own surface point, the point may be beyond that wall:
+/// min_clearance discards it.
 std::vector<Start> surface_starts(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1.0p-53; };
   std::vector<Start> starts;
   starts.reserve(count);
   const double depth = k_start_depth * mesh.diagonal();
-  const double share = mesh.area() / static_cast<double>(count);
+  const double area_per_start = mesh.area() / static_cast<double>(count);
   double passed = 0.0;
-  double next = share * uniform();
+  double next = area_per_start * uniform();
   for (const Triangle& t : mesh.triangles()) {
     const Eigen::Vector3d& a = mesh.vertices()[t[0]];
     const Eigen::Vector3d& b = mesh.vertices()[t[1]];
     const Eigen::Vector3d& c = mesh.vertices()[t[2]];
     const Eigen::Vector3d cross = (b - a).cross(c - a);
     const double area = 0.5 * cross.norm();
-    for (passed += area; next < passed; next += share) {
+    for (passed += area; next < passed; next += area_per_start) {
       double u = uniform(), v = uniform();
       if (u + v > 1.0) {
         u = 1.0 - u;
@@ -206,9 +220,9 @@ std::vector<Start> surface_starts(const Mesh& mesh, std::size_t count, std::uint
   return starts;
 }
 
-/// Starting points on the surface of a placed sphere, in the directions of a cube's corners.
-void starts_around(const Sphere& sphere, std::vector<Start>& starts) {
-  // Half-way into the gap that the sphere keeps: outside the sphere, yet not through a surface it touches.
+/// Appends start points on the surface of an inserted sphere, in the directions of a cube's corners.
+void add_starts_around(const Sphere& sphere, std::vector<Start>& starts) {
+  // Half-way into the sphere's margin: outside the sphere, but inside a surface that it touches.
   const double reach = sphere.radius * (1.0 + 0.5 * k_margin) / std::sqrt(3.0);
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d direction((corner & 1) != 0 ? reach : -reach, (corner & 2) != 0 ? reach : -reach,
@@ -225,99 +239,106 @@ double total_volume(std::span<const Sphere> spheres) {
 
 class Packer {
  public:
-  Packer(const Mesh& mesh, const Tree& tree, const PackingGoal& goal)
-      : mesh_(mesh), goal_(goal), least_(goal.smallest_radius * mesh.diagonal()), space_(tree, mesh.diagonal()) {}
+  Packer(const Mesh& mesh, const Tree& tree, const PackingOptions& options)
+      : mesh_(mesh),
+        options_(options),
+        min_radius_(options.smallest_radius * mesh.diagonal()),
+        space_(tree, mesh.diagonal()) {}
 
   Packing run() {
-    send(surface_starts(mesh_, std::max(k_least_starts, k_starts_per_sphere * goal_.spheres), goal_.seed));
-    while (!waiting_.empty() && !done()) round();
-    Packing result{{space_.placed().begin(), space_.placed().end()}, total_volume(space_.placed()) / mesh_.volume()};
+    add_prototypes(
+        surface_starts(mesh_, std::max(k_min_starts, k_starts_per_sphere * options_.spheres), options_.seed));
+    while (!queue_.empty() && !done()) insert_largest();
+    Packing result{{space_.spheres().begin(), space_.spheres().end()}, total_volume(space_.spheres()) / mesh_.volume()};
     if (result.spheres.empty()) {
-      throw BadMesh(fmt::format("{}: too thin for a sphere of radius {}", mesh_.name(), least_));
+      throw BadMesh(fmt::format("{}: too thin for a sphere of radius {}", mesh_.name(), min_radius_));
     }
     return result;
   }
 
  private:
-  bool done() const { return space_.placed().size() >= goal_.spheres || filled_ >= goal_.fill * mesh_.volume(); }
+  bool done() const { return space_.spheres().size() >= options_.spheres || filled_ >= options_.fill * mesh_.volume(); }
 
-  /// Lets prototypes climb from all starts, in parallel, and queues those that found room.
-  void send(const std::vector<Start>& starts) {
-    std::vector<Prototype> arrived(starts.size());
+  /// Optimises one prototype per start, in parallel, and queues those that are large enough.
+  void add_prototypes(const std::vector<Start>& starts) {
+    std::vector<Prototype> prototypes(starts.size());
     const std::uint64_t first = order_;
     order_ += starts.size();
-    parallel::for_each(starts.size(), [&](std::size_t i) { arrived[i] = climb(space_, starts[i], first + i); });
-    for (const Prototype& prototype : arrived) {
-      if (prototype.clearance >= least_) waiting_.push(prototype);
+    parallel::for_each(starts.size(),
+                       [&](std::size_t i) { prototypes[i] = maximise_clearance(space_, starts[i], first + i); });
+    for (const Prototype& prototype : prototypes) {
+      if (prototype.clearance >= min_radius_) queue_.push(prototype);
     }
   }
 
-  /// Inserts the largest that still fit; those that no longer do climb again from where they stand.
-  void round() {
-    std::vector<Prototype> front;
-    const double enough = k_together * waiting_.top().clearance;
-    while (!waiting_.empty() && waiting_.top().clearance >= enough) {
-      front.push_back(waiting_.top());
-      waiting_.pop();
+  /// Inserts the largest prototypes that still fit; those that do not start again from their position.
+  void insert_largest() {
+    std::vector<Prototype> largest;
+    const double enough = k_round_ratio * queue_.top().clearance;
+    while (!queue_.empty() && queue_.top().clearance >= enough) {
+      largest.push_back(queue_.top());
+      queue_.pop();
     }
     std::vector<Start> starts;
-    for (const Prototype& p : front) {
+    for (const Prototype& p : largest) {
       if (done()) return;
       const double clearance = space_.clearance_of_spheres(p.position, p.clearance);
       if (clearance < p.clearance) {
-        // Inside a sphere there is nothing to climb from; outside, the bound is what was just measured.
+        // A position inside a sphere is discarded.
         if (clearance > 0.0) starts.push_back({p.position, clearance});
         continue;
       }
       const Sphere sphere{p.position, p.clearance * (1.0 - k_margin)};
-      space_.place(sphere);
+      space_.insert(sphere);
       filled_ += sphere.volume();
-      starts_around(sphere, starts);
+      add_starts_around(sphere, starts);
     }
-    send(starts);
+    add_prototypes(starts);
   }
 
   const Mesh& mesh_;
-  const PackingGoal goal_;
-  const double least_;
+  const PackingOptions options_;
+  const double min_radius_;
   FreeSpace space_;
-  std::priority_queue<Prototype> waiting_;
+  std::priority_queue<Prototype> queue_;
   std::uint64_t order_ = 0;
   double filled_ = 0.0;
 };
 
 }  // namespace
 
-Packing pack_spheres(const Mesh& mesh, const Tree& tree, const PackingGoal& goal) {
-  if (!mesh.solid()) throw BadMesh(mesh.name() + ": " + mesh.why_not_solid());
-  return Packer(mesh, tree, goal).run();
+Packing pack_spheres(const Mesh& mesh, const PackingOptions& options) {
+  require_solid(mesh, "a sphere packing");
+  const Tree tree(mesh);
+  return Packer(mesh, tree, options).run();
 }
 
-Packing pack_spheres_cached(const Mesh& mesh, const PackingGoal& goal) {
-  if (!mesh.solid()) throw BadMesh(mesh.name() + ": " + mesh.why_not_solid());
-  constexpr const char* k_kind = "ist-packing";
-  // Raise the number whenever the packing of the same mesh and goal changes.
-  const std::string key = fmt::format("2 {} spheres={} fill={} smallest_radius={} seed={}", mesh.hash(), goal.spheres,
-                                      goal.fill, goal.smallest_radius, goal.seed);
-  if (auto entry = load_cached(k_kind, key)) {
-    const auto values = entry->take<double>("spheres");
+Packing cached_packing(const Mesh& mesh, const PackingOptions& options) {
+  // Increase the version whenever the packing of the same mesh and options changes.
+  const std::string key = fmt::format("2 {} spheres={} fill={} smallest_radius={} seed={}", mesh.hash(),
+                                      options.spheres, options.fill, options.smallest_radius, options.seed);
+  const auto pack = [](const Packing& packing) {
+    std::vector<double> values;
+    values.reserve(4 * packing.spheres.size());
+    for (const Sphere& s : packing.spheres) {
+      values.insert(values.end(), {s.center.x(), s.center.y(), s.center.z(), s.radius});
+    }
+    CacheEntry entry;
+    entry.put("spheres", std::move(values));
+    return entry;
+  };
+  const auto unpack = [&](CacheEntry entry) -> std::optional<Packing> {
+    const auto values = entry.take<double>("spheres");
     Packing packing;
     for (std::size_t i = 0; i + 3 < values.size(); i += 4) {
       packing.spheres.push_back({{values[i], values[i + 1], values[i + 2]}, values[i + 3]});
     }
+    if (packing.spheres.empty()) return std::nullopt;
     packing.fill = total_volume(packing.spheres) / mesh.volume();
-    if (!packing.spheres.empty()) return packing;
-  }
-  Packing packing = pack_spheres(mesh, Tree(mesh), goal);
-  std::vector<double> values;
-  values.reserve(4 * packing.spheres.size());
-  for (const Sphere& s : packing.spheres) {
-    values.insert(values.end(), {s.center.x(), s.center.y(), s.center.z(), s.radius});
-  }
-  CacheEntry entry;
-  entry.put("spheres", std::move(values));
-  store_cached(k_kind, key, entry);
-  return packing;
+    return packing;
+  };
+  return load_or_build(
+      "ist-packing", key, [&] { return pack_spheres(mesh, options); }, pack, unpack);
 }
 
 }  // namespace sixdof::ist

@@ -15,16 +15,10 @@ double overlap_volume(double r1, double r2, double d) {
   return std::numbers::pi * depth * depth * (d * d + 2.0 * d * (r1 + r2) - 3.0 * difference * difference) / (12.0 * d);
 }
 
-double overlap_disc_area(double r1, double r2, double d) {
-  if (d >= r1 + r2 || d <= std::abs(r1 - r2)) return 0.0;
-  const double to_plane = (d * d + r1 * r1 - r2 * r2) / (2.0 * d);  // from the first centre
-  return std::numbers::pi * std::max(0.0, r1 * r1 - to_plane * to_plane);
-}
-
 Sphere enclosing_sphere(std::span<const Sphere> spheres) {
   // Steps of 1/(k+1) towards the farthest point bring the radius within about 1/k of the smallest.
   constexpr int k_steps = 40;
-  constexpr double k_rounding_up = 1.0 + 1e-14;  // a few operations
+  constexpr double k_rounding_up = 1.0 + 1e-14;  // more than the rounding of a norm and a sum
   if (spheres.size() == 1) return spheres.front();
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double weight = 0.0;
@@ -47,7 +41,7 @@ Sphere enclosing_sphere(std::span<const Sphere> spheres) {
     if (radius < best.radius) best = {center, radius};
     const Eigen::Vector3d offset = farthest->center - center;
     const double distance = offset.norm();
-    if (distance == 0.0) break;  // concentric with the sphere that decides: this is the smallest ball
+    if (distance == 0.0) break;  // concentric with the farthest sphere: nothing smaller contains it
     center += offset * (radius / distance / (step + 1.0));
   }
   best.radius *= k_rounding_up;

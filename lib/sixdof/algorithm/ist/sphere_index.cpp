@@ -7,7 +7,7 @@
 namespace sixdof::ist {
 namespace {
 
-constexpr std::size_t k_size_classes = 40;  // radii down to largest / 2^40; smaller ones share the last class
+constexpr std::size_t k_size_classes = 40;  // radii down to largest / 2^40; smaller ones are in the last class
 constexpr double k_cell_radii = 4.0;        // cell width in largest radii of the class
 
 double class_radius(double largest, std::size_t size_class) {
@@ -23,7 +23,7 @@ std::int64_t cell_of(double coordinate, double width) {
 SphereIndex::SphereIndex(double largest) : largest_(largest), class_members_(k_size_classes), cells_(1024) {}
 
 std::uint64_t SphereIndex::key(std::size_t size_class, std::int64_t x, std::int64_t y, std::int64_t z) const {
-  // 19 bits per coordinate and 6 for the class; coordinates that wrap share a chain, which costs time, not truth.
+  // 19 bits per coordinate and 6 for the class; cells whose coordinates wrap to the same bits share a list.
   constexpr std::uint64_t mask = (1u << 19) - 1u;
   return 1u + ((static_cast<std::uint64_t>(size_class) << 57) | ((static_cast<std::uint64_t>(x) & mask) << 38) |
                ((static_cast<std::uint64_t>(y) & mask) << 19) | (static_cast<std::uint64_t>(z) & mask));
@@ -51,11 +51,11 @@ void SphereIndex::insert(const Sphere& sphere) {
   const auto size_class = static_cast<std::size_t>(std::clamp(exponent - 1, 0, static_cast<int>(k_size_classes) - 1));
   const double width = k_cell_radii * class_radius(largest_, size_class);
   if (2 * (used_ + 1) > cells_.size()) grow();
-  Cell& cell = cells_[slot(key(size_class, cell_of(sphere.center.x(), width), cell_of(sphere.center.y(), width),
-                               cell_of(sphere.center.z(), width)))];
+  const std::uint64_t wanted = key(size_class, cell_of(sphere.center.x(), width), cell_of(sphere.center.y(), width),
+                                   cell_of(sphere.center.z(), width));
+  Cell& cell = cells_[slot(wanted)];
   if (cell.key == 0) {
-    cell.key = key(size_class, cell_of(sphere.center.x(), width), cell_of(sphere.center.y(), width),
-                   cell_of(sphere.center.z(), width));
+    cell.key = wanted;
     ++used_;
   }
   next_.push_back(cell.first);
@@ -71,7 +71,7 @@ SphereIndex::Nearest SphereIndex::nearest(const Eigen::Vector3d& p, double withi
     if (members.empty()) continue;
     const double radius = class_radius(largest_, size_class);
     const double width = k_cell_radii * radius;
-    const double reach = best.clearance + radius;  // centres farther away cannot matter
+    const double reach = best.clearance + radius;  // a closer sphere's centre is within this
     if (reach <= 0.0) continue;
     std::array<std::int64_t, 3> low, high;
     double cell_count = 1.0;
@@ -87,7 +87,7 @@ SphereIndex::Nearest SphereIndex::nearest(const Eigen::Vector3d& p, double withi
         best = {clearance, s};
       }
     };
-    // Far away from small spheres there are more cells in reach than spheres in the class.
+    // Far away from small spheres more cells are in reach than the class has spheres.
     if (cell_count > static_cast<double>(members.size())) {
       for (const std::int32_t s : members) consider(s);
       continue;

@@ -2,40 +2,41 @@
 
 #include <cstdint>
 
+#include <Eigen/Core>
+
 #include <sixdof/algorithm/ist/hierarchy.h>
 #include <sixdof/algorithm/ist/node_pair.h>
 #include <sixdof/geometry/pose.h>
 
 namespace sixdof::ist {
 
-/// Magnitude of the force between two overlapping leaf spheres; it always acts along the line of their centres.
+/// Magnitude of the force between two overlapping leaf spheres; it acts along the line of their centres.
 enum class PairForce {
   volume,    ///< The overlap's volume (Weller and Zachmann 2009).
-  gradient,  ///< The overlap's disc area, i.e. minus the derivative of the volume: the sum is -grad of the summed
-             ///< volume.
+  gradient,  ///< The area of the disc bounded by the circle in which the spheres meet, which is minus the derivative of
+             ///< the volume by the distance of the centres: the sum is minus the gradient of the summed volume.
 };
 
-/// Memory that a traversal reuses from query to query.
+/// Memory that traversals reuse.
 struct TraversalScratch {
-  PairList waiting;  ///< Pairs of nodes to be opened.
-  PairList leaves;   ///< Pairs of leaves that may overlap.
+  PairList node_pairs;  ///< To be expanded.
+  PairList leaf_pairs;  ///< That may overlap.
 };
 
 struct TraversalCount {
-  std::uint64_t sphere_tests = 0;  ///< Pairs of balls tested, inner and leaf.
-  std::uint64_t leaf_pairs = 0;    ///< Overlapping pairs of leaf spheres summed.
+  std::uint64_t sphere_tests = 0;  ///< Pairs of balls tested: of inner nodes and of leaves, empty slots included.
+  std::uint64_t leaf_pairs = 0;    ///< Pairs of leaf spheres that overlap.
 };
 
-/// Sums over pairs of leaf spheres, or their estimate where a budget ran out. Vectors in A's frame, acting on B.
+/// Sums over pairs of overlapping leaf spheres. Vectors are in A's frame; the force acts on B, with unit stiffness.
 struct PenetrationSum {
-  double volume = 0.0;                               ///< Sum of the pairwise overlap volumes.
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< Sum of the pair forces, unit stiffness.
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< Their moment about the point `about`.
-  /// Sums of V (p - about) and of V |p - about|^2, p the middle of a pair's overlap and V its volume: where the overlap
-  /// is, and how far it spreads. Of PairForce::gradient only.
-  Eigen::Vector3d first = Eigen::Vector3d::Zero();
-  double second = 0.0;
-  bool complete = true;  ///< False if a budget cut the traversal short.
+  double volume = 0.0;                               ///< Of the pairs' overlaps (length^3).
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< Of the pairs' forces.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< Of the pairs' moments about the point `about`.
+  /// Of V (p - about) and V |p - about|^2, where V is the volume and p the middle of a pair's overlap. Only with
+  /// PairForce::gradient.
+  Eigen::Vector3d first_moment = Eigen::Vector3d::Zero();
+  double second_moment = 0.0;
   TraversalCount count;
 };
 
@@ -45,27 +46,28 @@ struct SphereContact {
 };
 
 struct SphereSeparation {
-  /// Smallest gap between two leaf spheres; negative where they overlap (then any overlap found).
+  /// Smallest gap between two leaf spheres; where spheres overlap, some negative gap.
   double distance = 0.0;
   std::int32_t leaf_a = 0, leaf_b = 0;
   TraversalCount count;
 };
 
-/// Penetration volume, force, and moment about `about` (A's frame). Complete and exact for the two sphere sets.
+/// Sums over all pairs of overlapping leaf spheres.
+/// @param about reference point of the moments, in A's frame
 PenetrationSum penetration(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
                            const Eigen::Vector3d& about, TraversalScratch& scratch);
 
-/// The same within a budget of sphere tests (time-critical variant, Weller and Zachmann 2009): pairs of nodes are
-/// opened in the order of their expected overlap; those not opened when the budget is spent count with it. Expected
-/// overlap of two balls: the volume of their lens times both balls' leaf density, acting along their centres. A count
-/// instead of a clock keeps the answer reproducible.
-PenetrationSum penetration_within(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
-                                  const Eigen::Vector3d& about, std::uint64_t budget);
+/// Estimate of the same sums within a budget of sphere tests (time-critical variant, Weller and Zachmann 2009). Pairs
+/// of nodes are expanded in the order of their expected overlap; those that the budget does not cover are added with
+/// it. The expected overlap of two balls is the overlap volume of the balls times the density of the leaves in both,
+/// with a force along the line of centres. A budget of tests, unlike one of time, gives reproducible answers.
+PenetrationSum penetration_within_budget(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
+                                         const Eigen::Vector3d& about, std::uint64_t budget);
 
 /// Stops at the first two leaf spheres that overlap.
 SphereContact overlaps(const SphereTree& a, const SphereTree& b, const Pose& X_AB, TraversalScratch& scratch);
 
-/// Smallest gap of two leaf spheres by branch and bound.
+/// Smallest gap of two leaf spheres, by branch and bound.
 SphereSeparation separation(const SphereTree& a, const SphereTree& b, const Pose& X_AB);
 
 }  // namespace sixdof::ist

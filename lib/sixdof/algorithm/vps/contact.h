@@ -11,41 +11,42 @@
 
 namespace sixdof::vps {
 
-/// Sums over the colliding points. Leaves have eight points; each of the eight lanes has its own sum, rounded to
-/// single precision within a batch of k_batch_leaves leaves and to double precision beyond, and lanes are added last:
-/// the same bits on every instruction set, and whether or not leaves without contact are left out.
+/// Sums over the points in contact. Each of the eight lanes of a leaf has its own sum: in single precision within a
+/// batch of k_batch_leaves leaves, in double precision over the batches; lanes are added at the end. So the bits depend
+/// neither on the instruction set nor on whether leaves without contact are left out.
 struct ContactSums {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< Weight x voxels.
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< About the tree's center; see the functions for its unit.
-  double contacts = 0.0;                             ///< Number of colliding points.
+  double contacts = 0.0;                             ///< Number of points in contact.
   double depth = 0.0;                                ///< Greatest penetration of a point, in voxels.
 };
 
 constexpr std::uint32_t k_batch_leaves = 16;
 
-/// How a point's penetration p is read from the layer v of its voxel (v >= 0), in voxels.
+/// The penetration p of a point, in voxels, from the layer v >= 0 of its voxel.
 enum class LayerDepth {
   layers,            ///< p = v
   layers_and_local,  ///< p = max(0, n . (voxel centre - point) + v), n the point's inward normal
 };
 
-/// Sum of w p n and of w p (P - C) x n over the points with v >= 0, in the POINTS' frame; torque in weight x voxels x
+/// Sums of w p n and of w p (P - C) x n over the points with v >= 0, in the POINTS' frame; torque in weight x voxels x
 /// length.
 /// @param leaves ascending
-ContactSums sum_layers(const VoxelMap& map, const PointTree& tree, const Placement& placement, LayerDepth depth,
+ContactSums sum_layers(const VoxelMap& map, const PointTree& tree, const VoxelTransform& transform, LayerDepth depth,
                        std::span<const std::uint32_t> leaves);
 
 /// Does one of these leaves hold a point with v >= 0?
-bool touches_layers(const VoxelMap& map, const PointTree& tree, const Placement& placement,
+bool touches_layers(const VoxelMap& map, const PointTree& tree, const VoxelTransform& transform,
                     std::span<const std::uint32_t> leaves);
 
-/// Sum of -w f grad f and of (P - C) x (-w f grad f) over the points where the field f is negative, in the VOXELMAP's
-/// frame and all in voxels: minus the gradient of the energy sum w f^2 / 2 by translation and rotation of the points.
-ContactSums sum_field(const DistanceField& field, const PointTree& tree, const Placement& placement,
+/// Sums of -w f grad f and of (P - C) x (-w f grad f) over the points where the field f is negative, in the VOXELMAP's
+/// frame, all in voxels: minus the gradient of the energy sum w f^2 / 2 by translation and rotation of the points.
+/// @param leaves ascending
+ContactSums sum_field(const DistanceField& field, const PointTree& tree, const VoxelTransform& transform,
                       std::span<const std::uint32_t> leaves);
 
 /// Does one of these leaves hold a point where the field is negative?
-bool touches_field(const DistanceField& field, const PointTree& tree, const Placement& placement,
+bool touches_field(const DistanceField& field, const PointTree& tree, const VoxelTransform& transform,
                    std::span<const std::uint32_t> leaves);
 
 }  // namespace sixdof::vps

@@ -10,13 +10,14 @@ namespace {
 
 constexpr std::int32_t k_infinite = std::numeric_limits<std::int32_t>::max();
 
-/// output[i] = min over j of (i - j)^2 + values[j]; values of k_infinite take no part. All integers: no rounding.
+/// s.output[i] = min over j of (i - j)^2 + s.values[j], without the j where the value is k_infinite. Exact, in
+/// integers.
 void lower_envelope(int n, DistanceTransform::Scratch& s) {
   const auto at = [](std::vector<std::int32_t>& v, int i) -> std::int32_t& { return v[static_cast<std::size_t>(i)]; };
   int top = -1;
   for (int j = 0; j < n; ++j) {
     if (at(s.values, j) == k_infinite) continue;
-    std::int32_t from = 0;  // parabola j is the lowest from here on
+    std::int32_t from = 0;  // parabola j is the lowest at i >= from
     while (top >= 0) {
       const std::int32_t i = at(s.centers, top);
       // Parabola j lies below parabola i at x > (j^2 - i^2 + values[j] - values[i]) / (2 (j - i)).

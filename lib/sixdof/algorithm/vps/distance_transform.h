@@ -9,8 +9,8 @@ namespace sixdof::vps {
 
 /// Exact squared Euclidean distances between voxel centres and the nearest surface voxel's centre, one slice of
 /// constant z at a time: lower envelopes of parabolas, axis by axis (Felzenszwalb and Huttenlocher, Distance transforms
-/// of sampled functions, 2012). The pass along z is done at once and kept, 2 bytes per voxel; the two others are done
-/// per slice.
+/// of sampled functions, 2012). The constructor does the pass along z and stores it, 2 bytes per voxel; slice() does
+/// the other two.
 class DistanceTransform {
  public:
   explicit DistanceTransform(const SurfaceVoxels& surface);
@@ -20,7 +20,7 @@ class DistanceTransform {
     std::vector<std::int32_t> values, centers, bounds, output;
   };
 
-  /// @param squared receives nx * ny squared distances in voxels, x fastest
+  /// @param squared output: nx * ny squared distances in voxels, x fastest
   void slice(int z, Scratch& scratch, std::vector<std::int32_t>& squared) const;
 
  private:

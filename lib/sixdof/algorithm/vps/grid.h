@@ -15,11 +15,12 @@ struct VoxelGrid {
   static constexpr int k_brick_voxels = k_edge * k_edge * k_edge;
 
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  double size = 1.0;  ///< Edge of a voxel, in the mesh's length unit.
-  Eigen::Array3i bricks = Eigen::Array3i::Zero();
+  double size = 1.0;                               ///< Edge of a voxel, in the mesh's length unit.
+  Eigen::Array3i bricks = Eigen::Array3i::Zero();  ///< Count along each axis.
 
   /// A grid with at least `margin` whole voxels between the box and the grid's border on every side. The box begins in
-  /// the middle of a voxel: faces of axis-aligned bodies then do not fall on voxel faces, where rounding would decide.
+  /// the middle of a voxel, so that faces of axis-aligned bodies do not coincide with voxel faces, where rounding would
+  /// decide.
   static VoxelGrid around(const Eigen::AlignedBox3d& box, double voxel_size, int margin) {
     VoxelGrid grid;
     grid.size = voxel_size;
@@ -49,8 +50,8 @@ struct VoxelGrid {
     return (bz * static_cast<std::size_t>(bricks.y()) + by) * static_cast<std::size_t>(bricks.x()) + bx;
   }
 
-  /// Place of a voxel inside its brick, 0 .. 511; x runs fastest.
-  static int place_in_brick(int x, int y, int z) {
+  /// Index of a voxel inside its brick, 0 .. 511; x runs fastest.
+  static int index_in_brick(int x, int y, int z) {
     constexpr int k_last = k_edge - 1;
     return ((z & k_last) * k_edge + (y & k_last)) * k_edge + (x & k_last);
   }

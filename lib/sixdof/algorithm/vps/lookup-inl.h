@@ -16,8 +16,8 @@
 #include <sixdof/algorithm/vps/point_tree.h>
 #include <sixdof/algorithm/vps/voxelmap.h>
 
-// Points in voxels, up to eight at a time. Products and sums are separate operations (no fused multiply-add), so all
-// instruction sets round alike.
+// Looks up the voxels of up to eight points at once. Products and sums are separate operations (no fused multiply-add),
+// so all instruction sets round alike.
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::vps {
@@ -53,7 +53,6 @@ HWY_INLINE Vec3 scale(F s, const Vec3& a) { return {hn::Mul(s, a.x), hn::Mul(s, 
 HWY_INLINE Vec3 minus(const Vec3& a, const Vec3& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
-
 HWY_INLINE Vec3 plus(const Vec3& a, const Vec3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
 
 struct Matrix {
@@ -65,11 +64,11 @@ struct Matrix {
   HWY_INLINE Vec3 operator*(const Vec3& v) const { return {dot(row[0], v), dot(row[1], v), dot(row[2], v)}; }
 };
 
-/// The voxels that points stand in, moved into the grid: its outermost voxels are as far outside as all beyond.
+/// The voxels of points, one per lane. For a point outside the grid: the nearest voxel of the grid.
 struct Cell {
-  Vec3 low;   ///< Least corner, in voxel coordinates.
+  Vec3 low;   ///< Lowest corner, in voxel coordinates.
   I brick;    ///< Index into the table of bricks.
-  I x, y, z;  ///< Place inside the brick, 0 .. 7.
+  I x, y, z;  ///< Coordinates inside the brick, 0 .. 7.
 };
 
 class GridLookup {
@@ -100,12 +99,17 @@ class GridLookup {
   I row_, slice_;
 };
 
-HWY_INLINE Vec3 transform(const Matrix& m, const Vec3& offset, const Vec3& p) {
-  const Vec3 v = m * p;
-  return {hn::Add(v.x, offset.x), hn::Add(v.y, offset.y), hn::Add(v.z, offset.z)};
-}
+/// A VoxelTransform in all lanes.
+struct TransformLanes {
+  Matrix scaled;
+  Vec3 center;
+  explicit HWY_INLINE TransformLanes(const VoxelTransform& transform)
+      : scaled(transform.scaled),
+        center{splat(transform.center.x()), splat(transform.center.y()), splat(transform.center.z())} {}
+  HWY_INLINE Vec3 operator*(const Vec3& p) const { return plus(scaled * p, center); }
+};
 
-/// Layers of the voxels of a map.
+/// Layers of voxels, one per lane.
 class LayerLookup {
  public:
   explicit LayerLookup(const VoxelMap& map)
@@ -113,14 +117,14 @@ class LayerLookup {
         words_(reinterpret_cast<const std::int32_t*>(map.words.data())),
         layer_bits_(map.layer_bits) {}
 
-  /// Entries of the table of bricks, one per lane: negative where a brick is not stored, see VoxelMap::table.
+  /// Entries of VoxelMap::table: negative where a brick is not stored.
   HWY_INLINE I entries(const Cell& cell) const { return hn::GatherIndex(k_ints, table_, cell.brick); }
 
-  /// Layers of the voxels, one per lane; the least in bricks that are not stored.
+  /// Layers of the voxels; VoxelMap::min_layer() in bricks that are not stored.
   HWY_INLINE I layers(const Cell& cell, I entry) const {
     const I stored = hn::Max(entry, hn::Zero(k_ints));
-    const I place = hn::Or(hn::Or(cell.x, hn::ShiftLeft<3>(cell.y)), hn::ShiftLeft<6>(cell.z));
-    const I index = hn::Or(hn::ShiftLeft<9>(stored), place);
+    const I in_brick = hn::Or(hn::Or(cell.x, hn::ShiftLeft<3>(cell.y)), hn::ShiftLeft<6>(cell.z));
+    const I index = hn::Or(hn::ShiftLeft<9>(stored), in_brick);
     if (layer_bits_ == 8) {
       const I word = hn::GatherIndex(k_ints, words_, hn::ShiftRight<2>(index));
       const I up = hn::Sub(splat_int(24), hn::ShiftLeft<3>(hn::And(index, splat_int(3))));
@@ -131,7 +135,8 @@ class LayerLookup {
     return hn::ShiftRight<16>(hn::Shl(word, up));
   }
 
-  /// As VoxelMap::outside_distance().
+  /// Lower bound, in voxels, of the distance from the centre of a voxel outside to the nearest surface voxel's centre;
+  /// 0 where v >= 0. The squares of such distances are integers d^2 >= (|v| - 1/2)^2, so d^2 >= v^2 - |v| + 1.
   HWY_INLINE F outside_distance(const Cell& cell) const {
     const I entry = entries(cell);
     const F v = hn::ConvertTo(k_floats, layers(cell, entry)), one = splat(1.0f), zero = hn::Zero(k_floats);

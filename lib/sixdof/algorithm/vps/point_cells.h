@@ -10,7 +10,7 @@
 
 namespace sixdof::vps {
 
-/// Points sorted into the voxels of a grid, for finding neighbours: a list per row of voxels along x, sorted by x.
+/// Points sorted into the voxels of a grid, to find neighbours. Each row of voxels along x has a list sorted by x.
 class PointCells {
  public:
   PointCells(const VoxelGrid& grid, std::span<const Eigen::Vector3d> points) : grid_(grid), n_(grid.voxels()) {
@@ -32,17 +32,17 @@ class PointCells {
     }
   }
 
-  /// Calls visit(index) for every point whose voxel is at most `reach` voxels away from that of `point` along each
+  /// Calls callback(index) for every point whose voxel is at most `reach` voxels away from that of `point` along each
   /// axis. All points nearer than reach * voxel size are among them.
-  template <class Visit>
-  void for_each_near(const Eigen::Vector3d& point, int reach, const Visit& visit) const {
+  template <class Callback>
+  void for_each_near(const Eigen::Vector3d& point, int reach, const Callback& callback) const {
     const Eigen::Array3i cell = cell_of(point);
     const Eigen::Array3i low = (cell - reach).max(0), high = (cell + reach).min(n_ - 1);
     for (int z = low.z(); z <= high.z(); ++z) {
       for (int y = low.y(); y <= high.y(); ++y) {
         const auto end = entries_.begin() + first_[row(y, z) + 1];
         auto entry = std::lower_bound(entries_.begin() + first_[row(y, z)], end, std::pair{low.x(), std::uint32_t{0}});
-        for (; entry != end && entry->first <= high.x(); ++entry) visit(entry->second);
+        for (; entry != end && entry->first <= high.x(); ++entry) callback(entry->second);
       }
     }
   }

@@ -1,41 +1,47 @@
-// The spheres of a node's eight children are told apart at once, compiled once per instruction set and chosen at run
-// time.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)  // as in contact.cpp
+#include <sixdof/algorithm/vps/point_tree.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+// SIMD vectors are members of structures here, which targets of unknown vector length (SVE, RVV) do not allow.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/algorithm/vps/point_tree.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
 
-#include <algorithm>
-#include <utility>
-
 #include <hwy/highway.h>
 
 #include <sixdof/algorithm/vps/lookup-inl.h>
-#include <sixdof/algorithm/vps/point_tree.h>
+
+// A node's bounding spheres are compared with the voxelmap: a sphere that is farther from the nearest surface voxel
+// than its radius, and not inside, holds no point in contact.
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::vps {
 namespace HWY_NAMESPACE {
 
-/// Slack for the rounding of single-precision voxel coordinates, in voxels: coordinates below 2^12 round to 2^-12.
+/// Slack for the rounding of voxel coordinates, in voxels: in single precision those below 2^12 round to 2^-12.
 constexpr float k_rounding = 1e-3f;
 constexpr float k_half_diagonal = 0.8660254f;  // of a voxel
 
 /// Which of a node's children may hold points in contact.
 class NodeTest {
  public:
-  HWY_INLINE NodeTest(const VoxelMap& map, const Placement& placement, double reach)
+  HWY_INLINE NodeTest(const VoxelMap& map, const VoxelTransform& transform, double reach)
       : lookup_(map.grid),
         layers_(map),
-        scaled_(placement.scaled),
-        offset_{splat(placement.center.x()), splat(placement.center.y()), splat(placement.center.z())},
+        transform_(transform),
         end_{splat(static_cast<float>(map.grid.voxels().x())), splat(static_cast<float>(map.grid.voxels().y())),
              splat(static_cast<float>(map.grid.voxels().z()))},
         per_size_(splat(static_cast<float>(1.0 / map.grid.size))),
         reach_(splat(k_rounding + static_cast<float>(reach))) {}
 
-  /// Writes first + i for every such child i, ascending, and up to k_width numbers without meaning behind them.
-  /// @return how many there are.
+  /// Writes first + i for every such child i, ascending, followed by up to k_width undefined values.
+  /// @return the number of such children
   HWY_INLINE std::size_t write_near(const PointTree::Node& node, std::uint32_t first, std::uint32_t* out) const {
     std::size_t count = 0;
     for (std::size_t l = 0; l < PointTree::k_width; l += hn::Lanes(k_floats)) {
@@ -51,78 +57,80 @@ class NodeTest {
  private:
   HWY_INLINE hn::Mask<Floats> is_near(const Vec3& center, F radius) const {
     const F zero = hn::Zero(k_floats);
-    const Vec3 q = transform(scaled_, offset_, center);
+    const Vec3 q = transform_ * center;
     const F reach = hn::Add(hn::Mul(radius, per_size_), reach_);  // negative where there is no child
-    // A centre beyond the grid is moved to its border; the way there counts as one leg of a right angle, since all of
-    // the surface lies on the other side of that border.
-    const Vec3 moved{hn::Min(hn::Max(q.x, zero), end_.x), hn::Min(hn::Max(q.y, zero), end_.y),
-                     hn::Min(hn::Max(q.z, zero), end_.z)};
-    const Vec3 beyond = minus(q, moved);
+    // A centre outside the grid is projected to the grid's border. The surface is on the other side of that border, so
+    // its distance is at least the hypotenuse of the distances to and from the projection.
+    const Vec3 projected{hn::Min(hn::Max(q.x, zero), end_.x), hn::Min(hn::Max(q.y, zero), end_.y),
+                         hn::Min(hn::Max(q.z, zero), end_.z)};
+    const Vec3 outside = minus(q, projected);
     const Cell cell = lookup_.cell(q);
     const F half = splat(0.5f);
-    const Vec3 off = minus(moved, plus(cell.low, {half, half, half}));
-    // A straight way from here to a voxel with v >= 0 first enters such a voxel where it is a surface voxel: half a
-    // diagonal from that voxel's centre at most. Distances of voxels are known from the centre of this one.
-    const F out = hn::Max(
+    const Vec3 off = minus(projected, plus(cell.low, {half, half, half}));
+    // A line from here to a voxel with v >= 0 enters the first such voxel at a surface voxel, within half a diagonal of
+    // its centre. outside_distance() is between the centres of voxels.
+    const F distance = hn::Max(
         hn::Sub(hn::Sub(layers_.outside_distance(cell), splat(k_half_diagonal)), hn::Sqrt(dot(off, off))), zero);
-    const F least = hn::Add(dot(beyond, beyond), hn::Mul(out, out));
-    return hn::And(hn::Ge(reach, zero), hn::Le(least, hn::Mul(reach, reach)));
+    const F squared = hn::Add(dot(outside, outside), hn::Mul(distance, distance));
+    return hn::And(hn::Ge(reach, zero), hn::Le(squared, hn::Mul(reach, reach)));
   }
 
   GridLookup lookup_;
   LayerLookup layers_;
-  Matrix scaled_;
-  Vec3 offset_, end_;
+  TransformLanes transform_;
+  Vec3 end_;
   F per_size_, reach_;
 };
 
-/// Level by level, so that one node need not wait for another. @return the number of leaves, which are in scratch.here.
-std::size_t cull_simd(const PointTree::Node* nodes, const std::uint32_t* first, std::uint32_t last_level,
-                      const VoxelMap& map, const Placement& placement, double reach, PointTree::Scratch& scratch) {
-  const NodeTest test(map, placement, reach);
-  if (scratch.here.empty()) scratch.here.resize(1);
-  scratch.here[0] = 0;
+/// Breadth first. @return the number of leaves; they are in scratch.current
+std::size_t cull(const PointTree::Node* nodes, const std::uint32_t* first_child, std::uint32_t last_level,
+                 const VoxelMap& map, const VoxelTransform& transform, double reach, PointTree::Scratch& scratch) {
+  const NodeTest test(map, transform, reach);
+  if (scratch.current.empty()) scratch.current.resize(1);
+  scratch.current[0] = 0;
   std::size_t count = 1;
   for (bool last = false; !last && count > 0;) {
-    last = scratch.here[0] >= last_level;
-    if (scratch.below.size() < (count + 1) * PointTree::k_width)
-      scratch.below.resize(2 * (count + 1) * PointTree::k_width);
-    const std::uint32_t* const here = scratch.here.data();
-    std::uint32_t* const below = scratch.below.data();
+    last = scratch.current[0] >= last_level;
+    if (scratch.next.size() < (count + 1) * PointTree::k_width) {
+      scratch.next.resize(2 * (count + 1) * PointTree::k_width);
+    }
+    const std::uint32_t* const current = scratch.current.data();
+    std::uint32_t* const next = scratch.next.data();
     std::size_t found = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      found += test.write_near(nodes[here[i]], first[here[i]], below + found);
+      found += test.write_near(nodes[current[i]], first_child[current[i]], next + found);
     }
     count = found;
-    std::swap(scratch.here, scratch.below);
+    std::swap(scratch.current, scratch.next);
   }
   return count;
 }
 
-/// Some nodes at a time, the deepest first.
-bool any_leaves_simd(const PointTree::Node* nodes, const std::uint32_t* first, std::uint32_t last_level,
-                     const VoxelMap& map, const Placement& placement, double reach, PointTree::Scratch& scratch,
-                     const PointTree::Visit& visit) {
-  constexpr std::size_t k_some = 8;  // enough that one node need not wait for another
-  constexpr std::size_t k_room = (k_some + 1) * PointTree::k_width;
-  const NodeTest test(map, placement, reach);
-  if (scratch.here.size() < k_room) scratch.here.resize(k_room);
-  scratch.here[0] = 0;
+/// Depth first, some nodes at a time.
+bool any_leaves(const PointTree::Node* nodes, const std::uint32_t* first_child, std::uint32_t last_level,
+                const VoxelMap& map, const VoxelTransform& transform, double reach, PointTree::Scratch& scratch,
+                const PointTree::LeafTest& accept) {
+  constexpr std::size_t k_batch = 8;  // nodes whose tests the processor can overlap
+  constexpr std::size_t k_room = (k_batch + 1) * PointTree::k_width;
+  const NodeTest test(map, transform, reach);
+  std::vector<std::uint32_t>& stack = scratch.current;
+  if (stack.size() < k_room) stack.resize(k_room);
+  stack[0] = 0;
   std::uint32_t leaves[k_room];
-  for (std::size_t waiting = 1; waiting > 0;) {
-    std::uint32_t now[k_some];
-    const std::size_t count = std::min(waiting, k_some);
-    waiting -= count;
-    std::copy_n(scratch.here.data() + waiting, count, now);
-    if (scratch.here.size() < waiting + k_room) scratch.here.resize(2 * (waiting + k_room));
+  for (std::size_t size = 1; size > 0;) {
+    std::uint32_t batch[k_batch];
+    const std::size_t count = std::min(size, k_batch);
+    size -= count;
+    std::copy_n(stack.data() + size, count, batch);
+    if (stack.size() < size + k_room) stack.resize(2 * (size + k_room));
     std::size_t found = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const bool last = now[i] >= last_level;
+      const bool last = batch[i] >= last_level;
       const std::size_t near =
-          test.write_near(nodes[now[i]], first[now[i]], last ? leaves + found : scratch.here.data() + waiting);
-      (last ? found : waiting) += near;
+          test.write_near(nodes[batch[i]], first_child[batch[i]], last ? leaves + found : stack.data() + size);
+      (last ? found : size) += near;
     }
-    if (found > 0 && visit(std::span(leaves, found))) return true;
+    if (found > 0 && accept(std::span(leaves, found))) return true;
   }
   return false;
 }
@@ -133,16 +141,12 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
-#include <cmath>
-#include <limits>
-#include <numeric>
-
 namespace sixdof::vps {
 
-HWY_EXPORT(cull_simd);
-HWY_EXPORT(any_leaves_simd);
+HWY_EXPORT(cull);
+HWY_EXPORT(any_leaves);
 
-Placement Placement::of(const Pose& X, const Eigen::Vector3d& center, const VoxelGrid& grid) {
+VoxelTransform VoxelTransform::of(const Pose& X, const Eigen::Vector3d& center, const VoxelGrid& grid) {
   return {.rotation = X.R.cast<float>(),
           .scaled = (X.R / grid.size).cast<float>(),
           .center = grid.coordinates(X * center).cast<float>()};
@@ -154,19 +158,19 @@ PointTree::PointTree(const PointShell& shell, const Eigen::Vector3d& center, boo
   std::iota(order.begin(), order.end(), 0u);
   std::vector<Range> level{{0, points_}};
   leaves_ = static_cast<std::uint32_t>(level.front().leaves());
-  std::size_t child_leaves = 1;  // most that a child on this level may have
+  std::size_t child_leaves = 1;  // most leaves of a child on this level
   while (child_leaves * k_width < leaves_) child_leaves *= k_width;
   for (; child_leaves > 0; child_leaves /= k_width) {
     last_level_ = static_cast<std::uint32_t>(nodes_.size());
     const auto next_level = static_cast<std::uint32_t>(child_leaves > 1 ? nodes_.size() + level.size() : 0);
-    std::vector<Range> below;
+    std::vector<Range> next;
     for (const Range& range : level) {
-      const std::size_t first = below.size();
-      split(shell, order, range, (range.leaves() + child_leaves - 1) / child_leaves, below);
-      first_.push_back(next_level + static_cast<std::uint32_t>(first));
-      nodes_.push_back(enclose(shell, order, std::span(below).subspan(first)));
+      const std::size_t first = next.size();
+      split(shell, order, range, (range.leaves() + child_leaves - 1) / child_leaves, next);
+      first_child_.push_back(next_level + static_cast<std::uint32_t>(first));
+      nodes_.push_back(enclose(shell, order, std::span(next).subspan(first)));
     }
-    level = std::move(below);
+    level = std::move(next);
   }
   blocks_.resize(leaves_ * k_rows * k_leaf_points);
   for (std::size_t i = 0; i < leaves_ * k_leaf_points; ++i) {
@@ -220,17 +224,17 @@ PointTree::Node PointTree::enclose(const PointShell& shell, const std::vector<st
   return node;
 }
 
-std::span<const std::uint32_t> PointTree::cull(const VoxelMap& map, const Placement& placement, double reach,
+std::span<const std::uint32_t> PointTree::cull(const VoxelMap& map, const VoxelTransform& transform, double reach,
                                                Scratch& scratch) const {
   const std::size_t count =
-      HWY_DYNAMIC_DISPATCH(cull_simd)(nodes_.data(), first_.data(), last_level_, map, placement, reach, scratch);
-  return std::span(scratch.here).first(count);
+      HWY_DYNAMIC_DISPATCH(cull)(nodes_.data(), first_child_.data(), last_level_, map, transform, reach, scratch);
+  return std::span(scratch.current).first(count);
 }
 
-bool PointTree::any_leaves(const VoxelMap& map, const Placement& placement, double reach, Scratch& scratch,
-                           const Visit& visit) const {
-  return HWY_DYNAMIC_DISPATCH(any_leaves_simd)(nodes_.data(), first_.data(), last_level_, map, placement, reach,
-                                               scratch, visit);
+bool PointTree::any_leaves(const VoxelMap& map, const VoxelTransform& transform, double reach, Scratch& scratch,
+                           const LeafTest& accept) const {
+  return HWY_DYNAMIC_DISPATCH(any_leaves)(nodes_.data(), first_child_.data(), last_level_, map, transform, reach,
+                                          scratch, accept);
 }
 
 }  // namespace sixdof::vps

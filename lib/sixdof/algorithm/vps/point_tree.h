@@ -6,74 +6,76 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <sixdof/algorithm/vps/pointshell.h>
 #include <sixdof/algorithm/vps/voxelmap.h>
 #include <sixdof/geometry/pose.h>
 
 namespace sixdof::vps {
 
-/// Where a body's points stand in a voxelmap: maps a point (relative to PointTree::center) to voxel coordinates.
-struct Placement {
+/// Maps a point p of a PointTree (relative to its center()) to voxel coordinates: p -> scaled p + center.
+struct VoxelTransform {
   Eigen::Matrix3f rotation;  ///< From the points' frame to the voxelmap's.
-  Eigen::Matrix3f scaled;    ///< The same over the voxel size.
-  Eigen::Vector3f center;    ///< Voxel coordinates of PointTree::center.
+  Eigen::Matrix3f scaled;    ///< `rotation` over the voxel size.
+  Eigen::Vector3f center;    ///< Voxel coordinates of PointTree::center().
 
   /// @param X pose of the points' body in the frame of the voxelmap's body
-  static Placement of(const Pose& X, const Eigen::Vector3d& center, const VoxelGrid& grid);
+  static VoxelTransform of(const Pose& X, const Eigen::Vector3d& center, const VoxelGrid& grid);
 };
 
-/// A pointshell in leaves of eight points, which are computed at once, under a tree of spheres with eight children a
-/// node, which are told apart at once too. All leaves are equally deep.
+/// A pointshell as a tree of bounding spheres. A leaf has eight points and a node up to eight children, so that one
+/// SIMD instruction treats all of them. All leaves have the same depth.
 class PointTree {
  public:
   static constexpr std::size_t k_leaf_points = 8;
-  static constexpr std::size_t k_rows = 7;  ///< x, y, z, weight, normal x, y, z: 8 floats each.
+  static constexpr std::size_t k_rows = 7;   ///< x, y, z, weight, normal x, y, z: 8 floats each.
+  static constexpr std::size_t k_width = 8;  ///< Children per node, at most.
 
-  /// @param center points are kept relative to it; the reference point of torques
-  /// @param by_area weights are areas; otherwise 1
+  /// @param center points are stored relative to it; the reference point of torques
+  /// @param by_area whether a point's weight is its area; otherwise it is 1
   PointTree(const PointShell& shell, const Eigen::Vector3d& center, bool by_area);
 
   const Eigen::Vector3d& center() const { return center_; }
   std::size_t points() const { return points_; }
   std::uint32_t leaves() const { return leaves_; }
   std::size_t nodes() const { return nodes_.size(); }
-  /// Blocks of k_rows * k_leaf_points floats, one per leaf. Missing points of the last leaf repeat its last point with
+  /// One block of k_rows * k_leaf_points floats per leaf. The last leaf is filled up with copies of its last point of
   /// weight 0.
   const float* blocks() const { return blocks_.data(); }
   std::size_t bytes() const {
-    return nodes_.size() * (sizeof(Node) + sizeof(first_[0])) + blocks_.size() * sizeof(float);
+    return nodes_.size() * (sizeof(Node) + sizeof(first_child_[0])) + blocks_.size() * sizeof(float);
   }
 
-  /// Memory that culling reuses from query to query.
+  /// Memory that culling reuses.
   struct Scratch {
-    std::vector<std::uint32_t> here, below;
+    std::vector<std::uint32_t> current, next;
   };
 
-  /// The leaves, ascending, that may hold a point in a voxel with v >= 0, or within `reach` (in voxels) of one; all
-  /// others surely hold none. Valid until the scratch is used again.
-  std::span<const std::uint32_t> cull(const VoxelMap& map, const Placement& placement, double reach,
+  /// Finds the leaves, in ascending order, that may hold a point in a voxel with v >= 0, or within `reach` (in voxels)
+  /// of one. The other leaves hold none. Valid until the scratch is used again.
+  std::span<const std::uint32_t> cull(const VoxelMap& map, const VoxelTransform& transform, double reach,
                                       Scratch& scratch) const;
 
-  /// The same in any order and in parts, until visit(leaves) returns true; says whether it did.
-  using Visit = std::function<bool(std::span<const std::uint32_t>)>;
-  bool any_leaves(const VoxelMap& map, const Placement& placement, double reach, Scratch& scratch,
-                  const Visit& visit) const;
+  /// Finds the same leaves in any order, in parts, until accept(leaves) returns true. @return whether it did
+  using LeafTest = std::function<bool(std::span<const std::uint32_t>)>;
+  bool any_leaves(const VoxelMap& map, const VoxelTransform& transform, double reach, Scratch& scratch,
+                  const LeafTest& accept) const;
 
-  static constexpr std::size_t k_width = 8;  ///< Children per node, at most.
-
-  /// Spheres around the points of up to eight children: rows x, y, z (centres, relative to center()) and radius (of the
-  /// points only). Children fill the lanes from the first on; in the others the radius is -infinity.
+  /// Bounding spheres of the points of up to eight children: rows x, y, z (centres, relative to center()) and radius.
+  /// Children fill the first lanes; the other lanes have radius -infinity.
   struct alignas(64) Node {
     float sphere[4][k_width];
   };
 
  private:
+  /// Points `begin` to `end` - 1 of an ordering.
   struct Range {
-    std::size_t begin, end;  ///< Points.
+    std::size_t begin, end;
     std::size_t leaves() const { return (end - begin + k_leaf_points - 1) / k_leaf_points; }
   };
-  /// Sorts the points of a range into parts of whole leaves and nearly equal number, so that only the last leaf is not
-  /// full, and appends them.
+  /// Sorts the points of a range into `parts` of nearly equal size and whole leaves, so that only the last leaf of all
+  /// is not full, and appends them.
   static void split(const PointShell& shell, std::vector<std::uint32_t>& order, Range range, std::size_t parts,
                     std::vector<Range>& out);
   Node enclose(const PointShell& shell, const std::vector<std::uint32_t>& order, std::span<const Range> children) const;
@@ -81,9 +83,9 @@ class PointTree {
   Eigen::Vector3d center_;
   std::size_t points_;
   std::uint32_t leaves_ = 0;
-  std::vector<Node> nodes_;           ///< Level by level from the root; a node's children are neighbours.
-  std::vector<std::uint32_t> first_;  ///< Per node: its first child, a node, or a leaf on the last level.
-  std::uint32_t last_level_ = 0;      ///< First node of the last level.
+  std::vector<Node> nodes_;                 ///< Level by level from the root; the children of a node are consecutive.
+  std::vector<std::uint32_t> first_child_;  ///< Per node: a node, or a leaf on the last level.
+  std::uint32_t last_level_ = 0;            ///< First node of the last level.
   std::vector<float> blocks_;
 };
 

@@ -3,29 +3,28 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 
-#include <fmt/format.h>
-
+#include <sixdof/algorithm/require_solid.h>
 #include <sixdof/algorithm/vps/grid.h>
 #include <sixdof/algorithm/vps/point_cells.h>
 #include <sixdof/algorithm/vps/triangle_voxels.h>
-#include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>
 
 namespace sixdof::vps {
 namespace {
 
-/// Points nearer than this many spacings are thinned out. Below 1 so that on an axis-aligned face all voxels keep their
-/// point; a random packing of this distance then has about one point per spacing^2 on slanted faces too.
+/// Smallest distance of two points with similar normals, in spacings. Below 1, so that on an axis-aligned face all
+/// voxels keep their point; on a slanted face it leaves about one point per spacing^2, too.
 constexpr double k_thinning = 0.75;
-/// Longest edge, in spacings, of the pieces that measure cells: about 14 pieces per cell.
+/// Longest edge of a piece, in spacings: about 14 pieces per cell.
 constexpr double k_piece = 0.5;
-/// Rounds of moving points to the middle of their cells: the spread of areas hardly changes after the second.
+/// Rounds of moving points to the middle of their cells; more hardly change the areas.
 constexpr int k_relaxations = 2;
-constexpr std::uint32_t k_nobody = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 
-/// A bit of one triangle, so small that it may belong to one cell as a whole.
+/// A part of a triangle that is small enough to belong to one cell as a whole.
 struct Piece {
   Eigen::Vector3d middle;
   double area;
@@ -84,7 +83,7 @@ class ShellBuilder {
   /// Halves the longest edge until it is short: slivers are cut along their length only.
   void cut(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, double area, std::uint32_t t) {
     const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
-    // Of edges equal but for rounding the first is halved, so that turned or shifted meshes are cut alike.
+    // Of edges that differ by rounding only the first is halved, so that rotated or translated meshes are cut alike.
     constexpr double k_longer = 1.0 + 1e-9;
     double longest = ab;
     if (bc > k_longer * longest) longest = bc;
@@ -106,8 +105,8 @@ class ShellBuilder {
     }
   }
 
-  /// For every surface voxel and every main direction that its triangles face, the point of these triangles closest to
-  /// the voxel's centre, in the order of the voxels.
+  /// For every surface voxel and every direction (see facing()) of its triangles, the point of these triangles that is
+  /// closest to the voxel's centre; in the order of the voxels.
   std::vector<Point> project_voxels() const {
     struct Touch {
       std::uint64_t voxel;
@@ -156,18 +155,18 @@ class ShellBuilder {
     return candidates;
   }
 
-  /// Keeps candidates, in their order, that no kept one facing the same way is too near to.
+  /// Keeps the candidates, in their order, that are not too near to a kept one with a similar normal.
   void thin_out(const std::vector<Point>& candidates) {
     std::vector<Eigen::Vector3d> positions;
     positions.reserve(candidates.size());
     for (const Point& candidate : candidates) positions.push_back(candidate.position);
     const PointCells cells(grid_, positions);
-    const double least = k_thinning * k_thinning * spacing_ * spacing_;
+    const double min_squared = k_thinning * k_thinning * spacing_ * spacing_;
     std::vector<bool> kept(candidates.size(), false);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       bool free = true;
       cells.for_each_near(positions[i], 1, [&](std::uint32_t j) {
-        free = free && !(kept[j] && (positions[j] - positions[i]).squaredNorm() < least &&
+        free = free && !(kept[j] && (positions[j] - positions[i]).squaredNorm() < min_squared &&
                          candidates[j].outward.dot(candidates[i].outward) > PointShell::k_same_side);
       });
       if (!free) continue;
@@ -176,9 +175,10 @@ class ShellBuilder {
     }
   }
 
-  /// Gives every piece to the nearest point facing its way; makes a point where there is none within two spacings.
+  /// Assigns every piece to the nearest point with a similar normal; adds a point where there is none within two
+  /// spacings.
   void assign() {
-    owner_.assign(pieces_.size(), k_nobody);
+    owner_.assign(pieces_.size(), k_none);
     for (bool complete = false; !complete;) {
       std::vector<Eigen::Vector3d> positions;
       positions.reserve(points_.size());
@@ -188,7 +188,7 @@ class ShellBuilder {
       complete = true;
       const std::size_t before = points_.size();
       for (std::size_t i = 0; i < pieces_.size(); ++i) {
-        if (owner_[i] != k_nobody) continue;
+        if (owner_[i] != k_none) continue;
         complete = false;
         const Eigen::Vector3d& outward = outward_[pieces_[i].triangle];
         const auto serves = [&](const Point& point) {
@@ -203,19 +203,19 @@ class ShellBuilder {
   }
 
   std::uint32_t nearest(const PointCells& cells, const Piece& piece) const {
-    std::uint32_t best = k_nobody;
-    double least = std::numeric_limits<double>::infinity();
+    std::uint32_t best = k_none;
+    double smallest = std::numeric_limits<double>::infinity();
     for (const int reach : {1, 2}) {
       cells.for_each_near(piece.middle, reach, [&](std::uint32_t j) {
         const double distance = (points_[j].position - piece.middle).squaredNorm();
         if (points_[j].outward.dot(outward_[piece.triangle]) <= PointShell::k_same_side) return;
-        if (distance < least || (distance == least && j < best)) {
-          least = distance;
+        if (distance < smallest || (distance == smallest && j < best)) {
+          smallest = distance;
           best = j;
         }
       });
-      // Whatever is nearer than `reach` spacings has been seen.
-      if (least <= reach * reach * spacing_ * spacing_) break;
+      // All points nearer than `reach` spacings have been tested.
+      if (smallest <= reach * reach * spacing_ * spacing_) break;
     }
     return best;
   }
@@ -237,22 +237,23 @@ class ShellBuilder {
     return cells;
   }
 
-  /// Moves every point to the point of its cell's triangles nearest to the cell's middle; drops points without a cell.
+  /// Moves every point to the point of its cell's triangles that is nearest to the cell's centroid; drops points
+  /// without a cell.
   void relax() {
     const std::vector<Cell> cells = measure();
-    std::vector<double> least(points_.size(), std::numeric_limits<double>::infinity());
-    std::vector<std::uint32_t> triangle(points_.size(), k_nobody);
+    std::vector<double> smallest(points_.size(), std::numeric_limits<double>::infinity());
+    std::vector<std::uint32_t> triangle(points_.size(), k_none);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const std::uint32_t j = owner_[i];
       const double distance = (cells[j].moment / cells[j].area - pieces_[i].middle).squaredNorm();
-      if (distance < least[j]) {
-        least[j] = distance;
+      if (distance < smallest[j]) {
+        smallest[j] = distance;
         triangle[j] = pieces_[i].triangle;
       }
     }
     std::vector<Point> moved;
     for (std::size_t j = 0; j < points_.size(); ++j) {
-      if (triangle[j] == k_nobody) continue;
+      if (triangle[j] == k_none) continue;
       moved.push_back({closest_point_on_triangle(cells[j].moment / cells[j].area, corners(triangle[j])),
                        direction(cells[j], points_[j])});
     }
@@ -267,7 +268,6 @@ class ShellBuilder {
   PointShell finish() const {
     const std::vector<Cell> cells = measure();
     PointShell shell;
-    shell.spacing = spacing_;
     for (std::size_t j = 0; j < points_.size(); ++j) {
       if (!(cells[j].area > 0.0)) continue;
       shell.points.push_back(points_[j].position);
@@ -289,9 +289,7 @@ class ShellBuilder {
 }  // namespace
 
 PointShell PointShell::build(const Mesh& mesh, double spacing) {
-  if (!mesh.solid()) {
-    throw BadMesh(fmt::format("{}: a pointshell needs a solid: {}", mesh.name(), mesh.why_not_solid()));
-  }
+  require_solid(mesh, "a pointshell");
   return ShellBuilder(mesh, spacing).build();
 }
 

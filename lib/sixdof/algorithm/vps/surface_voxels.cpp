@@ -1,5 +1,7 @@
 #include <sixdof/algorithm/vps/surface_voxels.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <numeric>
@@ -25,7 +27,7 @@ int find_bit(std::span<const std::uint64_t> row, int from, int end, bool wanted)
   return end;
 }
 
-/// Disjoint sets of runs. The smaller index becomes the root, so that roots do not depend on the order of unions.
+/// Union-find over runs. The smaller index becomes the root, so that roots do not depend on the order of unions.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -78,11 +80,11 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding)
     return surface.row(static_cast<int>(r % rows_per_slice_), static_cast<int>(r / rows_per_slice_));
   };
 
-  // Runs of every row: count, then fill.
-  const auto for_each_run = [&](std::size_t r, const auto& visit) {
+  // The runs of every row: first count them, then write them.
+  const auto for_each_run = [&](std::size_t r, const auto& callback) {
     for (int x = find_bit(row_of(r), 0, n.x(), false); x < n.x();) {
       const int end = find_bit(row_of(r), x, n.x(), true);
-      visit(x, end);
+      callback(x, end);
       x = find_bit(row_of(r), end, n.x(), false);
     }
   };
@@ -95,7 +97,7 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding)
     for_each_run(r, [&](int begin, int end) { runs_[i++] = {begin, end, false}; });
   });
 
-  // Runs of neighbouring rows that share a face of a voxel belong together.
+  // Connect runs of neighbouring rows that share a face of a voxel.
   DisjointSets sets(runs_.size());
   const auto join = [&](std::size_t r, std::size_t s) {
     for (std::size_t i = first_[r], j = first_[s]; i < first_[r + 1] && j < first_[s + 1];) {
@@ -110,7 +112,7 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding)
     if (r >= rows_per_slice_) join(r, r - rows_per_slice_);
   }
 
-  // The longest run stands for its region: its middle is well away from where regions meet the surface.
+  // The winding number is taken at the middle of a region's longest run, which is far from the surface.
   struct Region {
     std::size_t row = 0, run = 0;
     int length = 0;
@@ -132,7 +134,7 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding)
       }
     }
   }
-  // Region 0 holds the first run, which lies on the grid's border: the outside.
+  // Region 0 has the first run, which is on the grid's border: the outside.
   parallel::for_each(regions.size(), [&](std::size_t k) {
     if (k == 0) return;
     Region& region = regions[k];
@@ -140,8 +142,6 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding)
     const auto y = static_cast<int>(region.row % rows_per_slice_), z = static_cast<int>(region.row / rows_per_slice_);
     region.inside = winding.at(surface.grid().center(x, y, z)) > 0.5;
   });
-  regions_ = regions.size();
-  for (std::size_t k = 1; k < regions.size(); ++k) voids_ += regions[k].inside ? 0 : 1;
   for (std::size_t i = 0; i < runs_.size(); ++i) runs_[i].inside = regions[region_of[i]].inside;
 }
 

@@ -19,10 +19,7 @@ class SurfaceVoxels {
   SurfaceVoxels(const Mesh& mesh, const VoxelGrid& grid);
 
   const VoxelGrid& grid() const { return grid_; }
-  bool touched(int x, int y, int z) const {
-    return (row(y, z)[static_cast<std::size_t>(x) / 64] >> (static_cast<unsigned>(x) % 64) & 1u) != 0;
-  }
-  /// Bit x % 64 of word x / 64 tells voxel (x, y, z).
+  /// Bit x % 64 of word x / 64 is set if the surface touches voxel (x, y, z).
   std::span<const std::uint64_t> row(int y, int z) const {
     return {bits_.data() + row_index(y, z) * words_per_row_, words_per_row_};
   }
@@ -38,11 +35,13 @@ class SurfaceVoxels {
   std::vector<std::uint64_t> bits_;
 };
 
-/// What lies between the surface voxels: maximal runs of untouched voxels along x, each wholly inside or outside.
+/// The voxels that the surface does not touch, as maximal runs along x, each wholly inside or outside the body.
 ///
-/// Outside is what a flood from the grid's border reaches through faces of untouched voxels. Every other connected
-/// region is enclosed by surface voxels, and is inside if the mesh winds around it (winding number above 1/2 at one of
-/// its voxels), or else a void: a cavity bounded by an inner shell, or a passage narrower than a voxel leads to it.
+/// Runs are connected through faces of voxels. The region connected to the grid's border is outside. Every other region
+/// is enclosed by surface voxels: it is inside if the mesh's winding number at one of its voxels is above 1/2, else it
+/// is a void (a cavity bounded by an inner shell, or a pocket whose opening is narrower than a voxel).
+///
+/// The outermost voxels of the grid must be untouched.
 class FreeRuns {
  public:
   struct Run {
@@ -56,15 +55,11 @@ class FreeRuns {
     const std::size_t r = static_cast<std::size_t>(z) * rows_per_slice_ + static_cast<std::size_t>(y);
     return {runs_.data() + first_[r], first_[r + 1] - first_[r]};
   }
-  std::size_t regions() const { return regions_; }  ///< Connected regions, the outside included.
-  std::size_t voids() const { return voids_; }      ///< Enclosed regions that are not inside.
 
  private:
   std::size_t rows_per_slice_;
   std::vector<std::size_t> first_;
   std::vector<Run> runs_;
-  std::size_t regions_ = 0;
-  std::size_t voids_ = 0;
 };
 
 }  // namespace sixdof::vps

@@ -11,12 +11,12 @@
 namespace sixdof::vps {
 
 /// A triangle, in voxel coordinates, prepared for the separating-axis test against axis-aligned boxes: 3 box axes, the
-/// triangle's normal and 9 products of edges (Akenine-Moeller, Fast 3D triangle-box overlap testing, 2001). Sets that
-/// touch count as overlapping. A triangle of zero area is tested as the segment or point that it is.
+/// triangle's normal and 9 cross products of edges (Akenine-Moeller, Fast 3D triangle-box overlap testing, 2001).
+/// Contact counts as overlap. A triangle of zero area is tested as the segment or point that it is.
 class SeparatingAxes {
  public:
-  /// Widening of every box, in voxels: far above the rounding of a separating-axis test (coordinates below 2^12 voxels:
-  /// 1e-12), far below anything geometric. Contact decided by rounding counts as contact.
+  /// Margin added to every box, in voxels, so that rounding never hides a contact: far above the rounding of the test
+  /// (1e-12 for coordinates below 2^12 voxels).
   static constexpr double k_touch = 1e-9;
 
   explicit SeparatingAxes(const std::array<Eigen::Vector3d, 3>& corners) : corners_(corners) {
@@ -31,9 +31,9 @@ class SeparatingAxes {
   }
 
   bool overlaps(const Eigen::Vector3d& center, const Eigen::Vector3d& half) const {
-    const Eigen::Vector3d widened = half.array() + k_touch;
+    const Eigen::Vector3d enlarged = half.array() + k_touch;
     for (const Axis& axis : axes_) {
-      const double middle = axis.direction.dot(center), reach = axis.magnitude.dot(widened);
+      const double middle = axis.direction.dot(center), reach = axis.magnitude.dot(enlarged);
       if (middle + reach < axis.low || middle - reach > axis.high) return false;
     }
     return true;
@@ -65,19 +65,19 @@ struct VoxelRange {
 
 namespace detail {
 
-/// Ranges at least this big are halved on two threads: a triangle that spans the grid must not hold up the others.
+/// Ranges of at least this many voxels are halved in parallel, since one triangle may span the whole grid.
 constexpr double k_parallel_range = 32.0 * 32.0 * 32.0;
-/// Ranges up to this size are tested voxel by voxel; halving would cost more tests than it saves.
+/// Ranges of up to this many voxels are tested voxel by voxel; halving them would cost more tests than it saves.
 constexpr double k_direct_range = 4.0;
 
-template <class Visit>
-void visit_range(const SeparatingAxes& triangle, const VoxelRange& range, bool parallel, const Visit& visit) {
+template <class Callback>
+void test_range(const SeparatingAxes& triangle, const VoxelRange& range, bool parallel, const Callback& callback) {
   const double count = range.count();
   if (count <= k_direct_range) {
     for (int z = range.low.z(); z <= range.high.z(); ++z) {
       for (int y = range.low.y(); y <= range.high.y(); ++y) {
         for (int x = range.low.x(); x <= range.high.x(); ++x) {
-          if (triangle.overlaps({x + 0.5, y + 0.5, z + 0.5}, Eigen::Vector3d::Constant(0.5))) visit(x, y, z);
+          if (triangle.overlaps({x + 0.5, y + 0.5, z + 0.5}, Eigen::Vector3d::Constant(0.5))) callback(x, y, z);
         }
       }
     }
@@ -91,22 +91,22 @@ void visit_range(const SeparatingAxes& triangle, const VoxelRange& range, bool p
   first.high[axis] = range.low[axis] + range.extent()[axis] / 2 - 1;
   second.low[axis] = first.high[axis] + 1;
   if (parallel && count >= k_parallel_range) {
-    parallel::invoke([&] { visit_range(triangle, first, parallel, visit); },
-                     [&] { visit_range(triangle, second, parallel, visit); });
+    parallel::invoke([&] { test_range(triangle, first, parallel, callback); },
+                     [&] { test_range(triangle, second, parallel, callback); });
   } else {
-    visit_range(triangle, first, parallel, visit);
-    visit_range(triangle, second, parallel, visit);
+    test_range(triangle, first, parallel, callback);
+    test_range(triangle, second, parallel, callback);
   }
 }
 
 }  // namespace detail
 
-/// Calls visit(x, y, z) once for every voxel that the triangle touches, voxel boundaries included, at a cost that grows
-/// with the number of these voxels rather than with the triangle's box. With `parallel`, big triangles are visited from
-/// several threads at once, in no particular order.
+/// Calls callback(x, y, z) once for every voxel that the triangle touches, voxel boundaries included. The cost grows
+/// with the number of these voxels, not with the triangle's box. With `parallel`, the callback runs on several threads
+/// at once for large triangles, in no fixed order.
 /// @param triangle in voxel coordinates, inside the grid
-template <class Visit>
-void for_each_touched_voxel(const SeparatingAxes& triangle, bool parallel, const Visit& visit) {
+template <class Callback>
+void for_each_touched_voxel(const SeparatingAxes& triangle, bool parallel, const Callback& callback) {
   VoxelRange range;
   for (int axis = 0; axis < 3; ++axis) {
     const double a = triangle.corners()[0][axis], b = triangle.corners()[1][axis], c = triangle.corners()[2][axis];
@@ -114,7 +114,7 @@ void for_each_touched_voxel(const SeparatingAxes& triangle, bool parallel, const
     range.low[axis] = static_cast<int>(std::floor(std::min({a, b, c}) - SeparatingAxes::k_touch));
     range.high[axis] = static_cast<int>(std::floor(std::max({a, b, c}) + SeparatingAxes::k_touch));
   }
-  detail::visit_range(triangle, range, parallel, visit);
+  detail::test_range(triangle, range, parallel, callback);
 }
 
 }  // namespace sixdof::vps

@@ -2,39 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include <sixdof/algorithm/require_solid.h>
 #include <sixdof/algorithm/vps/distance_transform.h>
 #include <sixdof/algorithm/vps/surface_voxels.h>
 #include <sixdof/algorithm/vps/winding_number.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/geometry/tree.h>
 
 namespace sixdof::vps {
 namespace {
 
 constexpr int k_edge = VoxelGrid::k_edge;
-constexpr int k_margin = 2;  // the outermost voxels stay empty: the flood starts there
+constexpr int k_margin = 2;  // keeps the outermost voxels empty, as FreeRuns requires
 
-/// One layer of bricks, composed by one thread.
+/// One layer of bricks along z, built by one thread.
 struct Slab {
   std::vector<std::int32_t> table;   ///< As VoxelMap::table, stored bricks counted from 0 within the slab.
   std::vector<std::int16_t> layers;  ///< 512 per stored brick.
   std::uint64_t inside = 0;
 };
 
-class SlabComposer {
+class SlabBuilder {
  public:
-  SlabComposer(const VoxelMap& map, const DistanceTransform& distances, const FreeRuns& runs)
+  SlabBuilder(const VoxelMap& map, const DistanceTransform& distances, const FreeRuns& runs)
       : map_(map), distances_(distances), runs_(runs), n_(map.grid.voxels()) {}
 
-  Slab compose(int bz) const {
+  Slab build(int bz) const {
     const auto nx = static_cast<std::size_t>(n_.x()), ny = static_cast<std::size_t>(n_.y());
     std::vector<std::int16_t> layers(nx * ny * k_edge);
     const std::size_t bricks =
         static_cast<std::size_t>(map_.grid.bricks.x()) * static_cast<std::size_t>(map_.grid.bricks.y());
-    std::vector<std::int32_t> nearest(bricks, INT32_MAX);  // least squared distance in the brick
+    std::vector<std::int32_t> nearest(bricks, INT32_MAX);  // smallest squared distance in the brick
     std::vector<std::int16_t> greatest(bricks, INT16_MIN);
     Slab slab;
     DistanceTransform::Scratch scratch;
@@ -43,18 +47,18 @@ class SlabComposer {
       distances_.slice(bz * k_edge + z, scratch, squared);
       for (int y = 0; y < n_.y(); ++y) {
         const std::size_t row = static_cast<std::size_t>(y) * nx;
-        std::int16_t* const line = layers.data() + static_cast<std::size_t>(z) * nx * ny + row;
+        std::int16_t* const layer = layers.data() + static_cast<std::size_t>(z) * nx * ny + row;
         for (const FreeRuns::Run& run : runs_.row(y, bz * k_edge + z)) {
           if (run.inside) slab.inside += static_cast<std::uint64_t>(run.end - run.begin);
           const int sign = run.inside ? 1 : -1;
           for (std::int32_t x = run.begin; x < run.end; ++x) {
-            line[x] = signed_layer(squared[row + static_cast<std::size_t>(x)], sign);
+            layer[x] = signed_layer(squared[row + static_cast<std::size_t>(x)], sign);
           }
         }
         for (std::size_t x = 0; x < nx; ++x) {
           const std::size_t brick = map_.grid.brick_of(static_cast<int>(x), y, 0);
           nearest[brick] = std::min(nearest[brick], squared[row + x]);
-          greatest[brick] = std::max(greatest[brick], line[x]);
+          greatest[brick] = std::max(greatest[brick], layer[x]);
         }
       }
     }
@@ -69,8 +73,9 @@ class SlabComposer {
                         by = brick / static_cast<std::size_t>(map_.grid.bricks.x());
       for (std::size_t z = 0; z < k_edge; ++z) {
         for (std::size_t y = 0; y < k_edge; ++y) {
-          const auto line = layers.begin() + static_cast<std::ptrdiff_t>((z * ny + by * k_edge + y) * nx + bx * k_edge);
-          slab.layers.insert(slab.layers.end(), line, line + k_edge);
+          const auto first =
+              layers.begin() + static_cast<std::ptrdiff_t>((z * ny + by * k_edge + y) * nx + bx * k_edge);
+          slab.layers.insert(slab.layers.end(), first, first + k_edge);
         }
       }
     }
@@ -80,7 +85,7 @@ class SlabComposer {
  private:
   std::int16_t signed_layer(std::int32_t squared, int sign) const {
     const auto layer = static_cast<std::int32_t>(std::lround(std::sqrt(static_cast<double>(squared))));
-    return static_cast<std::int16_t>(std::max(sign * layer, map_.least_layer()));
+    return static_cast<std::int16_t>(std::max(sign * layer, map_.min_layer()));
   }
 
   const VoxelMap& map_;
@@ -92,17 +97,15 @@ class SlabComposer {
 }  // namespace
 
 VoxelMap VoxelMap::build(const Mesh& mesh, double voxel_size, int border) {
-  if (!mesh.solid()) {
-    throw BadMesh(fmt::format("{}: a voxelmap needs a solid: {}", mesh.name(), mesh.why_not_solid()));
-  }
+  require_solid(mesh, "a voxelmap");
   VoxelMap map;
   map.grid = VoxelGrid::around(mesh.box(), voxel_size, k_margin);
   map.border = border;
-  if (map.grid.voxel_count() > k_most_voxels) {
+  if (map.grid.voxel_count() > k_max_voxels) {
     throw BadArgument(fmt::format("{}: {:.3g} voxels of size {} are more than {:.0e}", mesh.name(),
-                                  map.grid.voxel_count(), voxel_size, k_most_voxels));
+                                  map.grid.voxel_count(), voxel_size, k_max_voxels));
   }
-  // No voxel lies deeper than half the body's least extent.
+  // No voxel lies deeper than half the body's smallest extent.
   map.layer_bits = 0.5 * mesh.box().sizes().minCoeff() / voxel_size + 1.0 < INT8_MAX && border < INT8_MAX ? 8 : 16;
 
   const Tree tree(mesh);
@@ -110,13 +113,12 @@ VoxelMap VoxelMap::build(const Mesh& mesh, double voxel_size, int border) {
   const FreeRuns runs(surface, WindingNumber(tree));
   const DistanceTransform distances(surface);
   map.surface_voxels = surface.count();
-  map.voids = runs.voids();
 
-  const SlabComposer composer(map, distances, runs);
+  const SlabBuilder builder(map, distances, runs);
   std::vector<Slab> slabs(static_cast<std::size_t>(map.grid.bricks.z()));
-  parallel::for_each(slabs.size(), [&](std::size_t bz) { slabs[bz] = composer.compose(static_cast<int>(bz)); });
+  parallel::for_each(slabs.size(), [&](std::size_t bz) { slabs[bz] = builder.build(static_cast<int>(bz)); });
 
-  // Brick 0 is "far outside"; the slabs' bricks follow in their order.
+  // Brick 0 represents the bricks that are not stored; the slabs' bricks follow in their order.
   const auto per_word = static_cast<std::size_t>(32 / map.layer_bits);
   const std::size_t words_per_brick = VoxelGrid::k_brick_voxels / per_word;
   const std::uint32_t mask = map.layer_bits == 8 ? 0xffu : 0xffffu;
@@ -131,12 +133,12 @@ VoxelMap VoxelMap::build(const Mesh& mesh, double voxel_size, int border) {
   };
   std::size_t stored = 1;
   for (const Slab& slab : slabs) stored += slab.layers.size() / VoxelGrid::k_brick_voxels;
-  if (stored >= k_most_bricks) {
+  if (stored >= k_max_bricks) {
     throw BadArgument(fmt::format("{}: voxels of size {} fill {} bricks, more than {}", mesh.name(), voxel_size, stored,
-                                  k_most_bricks - 1));
+                                  k_max_bricks - 1));
   }
   map.words.reserve(stored * words_per_brick);
-  pack(std::vector<std::int16_t>(VoxelGrid::k_brick_voxels, static_cast<std::int16_t>(map.least_layer())));
+  pack(std::vector<std::int16_t>(VoxelGrid::k_brick_voxels, static_cast<std::int16_t>(map.min_layer())));
   for (Slab& slab : slabs) {
     const auto offset = static_cast<std::int32_t>(map.words.size() / words_per_brick);
     for (const std::int32_t entry : slab.table) map.table.push_back(entry < 0 ? entry : entry + offset);

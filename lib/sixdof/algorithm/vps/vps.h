@@ -2,45 +2,45 @@
 
 #include <memory>
 
-#include <sixdof/query/algorithm.h>
 #include <sixdof/algorithm/vps/pointshell.h>
 #include <sixdof/algorithm/vps/voxelmap.h>
+#include <sixdof/query/algorithm.h>
 
 namespace sixdof {
 
-/// `vps`: voxmap-pointshell (McNeely et al. 1999, Sagardia et al. 2008). A is voxels with integer layers, B is points
-/// on its surface with inward normals and the area w that each stands for. Every point in a voxel of layer v >= 0
-/// pushes along its own normal:
+/// `vps`: voxmap-pointshell (McNeely et al. 1999, Sagardia et al. 2008). A is a voxelmap with integer layers v, B is
+/// points P on its surface with inward normals n and weights w, the area of each point's cell. Every point in a voxel
+/// of layer v >= 0 adds a force along its own normal:
 ///
 ///   F = k sum w p n        T = k sum w p (P - C) x n        p = max(0, n . eps + v s)
 ///
-/// with s the voxel size, eps = voxel centre - point, C the centre of B's box. F and T act on B. B's inward normals
-/// point out of A where the surfaces meet face to face, which is what makes F push B out. Penalty: the greatest p.
+/// with s the voxel size, eps = voxel centre - P, C the centre of B's box. F and T act on B. B's inward normals point
+/// out of A where the surfaces meet face to face, so F pushes B out. Penalty: the greatest p.
 ///
-/// `vps-field`: the same points against a smooth signed distance f. The wrench is minus the gradient of one energy,
-/// k sum w min(f, 0)^2 / 2, by B's translation and rotation about C: it is conservative and continuous. Penalty: the
+/// `vps-field`: the same points in a smooth signed distance f to A. The wrench is minus the gradient of the energy
+/// k sum w min(f, 0)^2 / 2 by B's translation and rotation about C: it is conservative and continuous. Penalty: the
 /// greatest -f.
 ///
-/// A point's p is off by up to VoxelMap::k_layer_error voxels: half a voxel on a face along the axes; on a slanted face
-/// surface voxels reach deeper and layers read short. `vps-field` is off by a fraction of a voxel at edges only.
+/// Errors of p: for `vps` up to VoxelMap::k_layer_error voxels, namely half a voxel on a face along the axes, more on a
+/// slanted face, where surface voxels reach deeper and layers are too small. For `vps-field` a fraction of a voxel, at
+/// edges only.
 ///
-/// What both cannot see:
-/// - A is known at B's points only. Where A lies wholly inside B, or pokes through B between two points, nothing is
-/// felt;
-///   `pointshell=a` sees it.
-/// - Where B swallows a thin part of A, `vps-field` pushes each point out of that part the nearest way, which is
-/// sideways;
-///   `vps` still pushes along B's normals.
-/// - Anything smaller than a voxel is a surface voxel. A plate thinner than a voxel is felt by `vps` (layer 0: p counts
-///   from the voxel's centre, so a point on either side is pushed along its own normal), not with `depth=layers`, and
-///   hardly by `vps-field`.
-/// - Both bodies must be solids; prepare() throws BadMesh otherwise, inside-out meshes included. Inner walls of a mesh
+/// Limits of both:
+/// - A is sampled at B's points only. Where A lies wholly inside B, or penetrates B between two points, there is no
+///   force; `pointshell=a` finds such contacts.
+/// - Where B encloses a thin part of A, `vps-field` pushes each point out of that part the shortest way, which is
+///   sideways; `vps` pushes along B's normals.
+/// - Parts smaller than a voxel are surface voxels. On a plate thinner than a voxel `vps` acts with layer 0: p is
+/// counted
+///   from the voxel's centre, so a point on either side is pushed along its own normal. With `depth=layers` there is no
+///   force, with `vps-field` hardly any.
+/// - Both bodies must be solid; prepare() throws BadMesh otherwise, also for inside-out meshes. Inner walls of a mesh
 ///   that intersects itself count as surface.
 std::unique_ptr<Algorithm> make_vps_algorithm();
 std::unique_ptr<Algorithm> make_vps_field_algorithm();
 
-/// What queries are made of, from the algorithm's settings, kept on disk between runs (cache.h).
-/// @throws BadMesh, BadArgument as the structures' build() does
+/// The structures that the queries use, built with the algorithms' settings or taken from the cache on disk.
+/// @throws BadMesh, BadArgument as VoxelMap::build() and PointShell::build() do
 namespace vps {
 
 VoxelMap prepare_voxelmap(const Mesh& mesh, const Settings& settings);

@@ -10,7 +10,7 @@
 namespace sixdof::vps {
 namespace {
 
-/// Solid angle of a triangle seen from p (van Oosterom and Strackee 1983), positive if it turns its back.
+/// Signed solid angle of a triangle seen from p (van Oosterom and Strackee 1983), positive if p is behind it.
 double solid_angle(const Tree::Corners& corners, const Eigen::Vector3d& p) {
   const Eigen::Vector3d a = corners[0] - p, b = corners[1] - p, c = corners[2] - p;
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
@@ -41,9 +41,9 @@ WindingNumber::WindingNumber(const Tree& tree) : tree_(&tree) {
 }
 
 double WindingNumber::at(const Eigen::Vector3d& p) const {
-  constexpr std::size_t k_depth = 64;  // of the tree, at most
+  constexpr std::size_t k_max_depth = 64;  // of the tree
   double angle = 0.0;
-  std::array<std::uint32_t, k_depth * Tree::k_width> stack;
+  std::array<std::uint32_t, k_max_depth * Tree::k_width> stack;
   std::size_t size = 0;
   stack[size++] = 0;
   while (size > 0) {

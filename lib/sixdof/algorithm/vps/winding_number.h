@@ -6,11 +6,12 @@
 
 namespace sixdof::vps {
 
-/// How often a mesh's surface winds around a point: 1 inside a body, 0 outside, 2 where two bodies of one mesh overlap.
+/// Approximate winding number of a mesh's surface around a point: 1 inside a body, 0 outside, 2 where two bodies of one
+/// mesh overlap.
 ///
-/// The solid angles of near triangles are exact; nodes of the tree further away than k_far_ratio of their radii count
-/// as one dipole (Barill et al., Fast winding numbers for soups and clouds, 2018), which leaves an error of a few
-/// hundredths. Immutable: any number of threads may ask. The tree outlives it. 56 bytes per node of the tree.
+/// The sum of the triangles' solid angles. Nodes of the tree farther away than k_far_ratio of their radii are
+/// approximated by one dipole (Barill et al., Fast winding numbers for soups and clouds, 2018), with a total error of a
+/// few hundredths. Any number of threads may use it at once. The tree outlives it. 56 bytes per node of the tree.
 class WindingNumber {
  public:
   explicit WindingNumber(const Tree& tree);
@@ -21,7 +22,7 @@ class WindingNumber {
  private:
   static constexpr double k_far_ratio = 3.0;
 
-  /// A node's triangles as seen from far away.
+  /// Far-field approximation of a node's triangles.
   struct Dipole {
     Eigen::Vector3d area_vector = Eigen::Vector3d::Zero();  ///< Sum of the triangles' area vectors.
     Eigen::Vector3d center = Eigen::Vector3d::Zero();       ///< Area-weighted.

@@ -1,0 +1,17 @@
+#include "bench/common/all_algorithms.h"
+
+#include <sixdof/algorithm/core_algorithms.h>
+#ifdef SIXDOF_WITH_FCL
+#include <sixdof/algorithm/fcl/fcl.h>
+#endif
+
+namespace sixdof {
+
+void register_all_algorithms(Registry& registry) {
+  register_core_algorithms(registry);
+#ifdef SIXDOF_WITH_FCL
+  register_fcl_algorithms(registry);
+#endif
+}
+
+}  // namespace sixdof

@@ -1,0 +1,47 @@
+#include "bench/common/build_info.h"
+
+#include <cstddef>
+#include <fstream>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <Eigen/Core>
+
+#include "sixdof_commit.h"
+
+namespace sixdof {
+namespace {
+
+/// Model name of the first processor in /proc/cpuinfo; "unknown" where there is none.
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const auto colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+std::string program_version() {
+  constexpr std::size_t k_digits = 12;
+  return fmt::format("{} {}{}", SIXDOF_VERSION, std::string_view(k_commit).substr(0, k_digits),
+                     k_commit_dirty ? " (modified)" : "");
+}
+
+std::vector<std::pair<std::string, std::string>> build_info() {
+  return {
+      {"sixdof_version", SIXDOF_VERSION},
+      {"commit", k_commit},
+      {"commit_dirty", k_commit_dirty ? "true" : "false"},
+      {"compiler", SIXDOF_COMPILER},
+      {"flags", SIXDOF_FLAGS},
+      {"build_type", SIXDOF_BUILD_TYPE},
+      {"cpu_model", processor()},
+      {"version:eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+      {"version:benchmark", SIXDOF_BENCHMARK_VERSION},
+  };
+}
+
+}  // namespace sixdof

@@ -1,0 +1,118 @@
+#include "bench/harness/pair_cache.h"
+
+#include <chrono>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include <sixdof/algorithm/exact.h>
+#include <sixdof/models/model_catalogue.h>
+
+namespace sixdof::bench {
+
+void require_solids(const Mesh& a, const Mesh& b) {
+  for (const Mesh* mesh : {&a, &b}) {
+    if (!mesh->solid()) throw NeedsSolid(fmt::format("{} ({})", mesh->name(), mesh->why_not_solid()));
+  }
+}
+
+const Mesh& PairCache::mesh(const std::string& model) {
+  auto& entry = meshes_[model];
+  if (!entry) {
+    entry = std::make_unique<const Mesh>(load_model(model));
+    ++counts_.meshes_loaded;
+  }
+  return *entry;
+}
+
+const ConfigurationSet& PairCache::set(const CatalogueEntry& entry) {
+  auto& opened = sets_[entry.pair];
+  if (!opened) {
+    opened = std::make_unique<const ConfigurationSet>(entry.file);
+    ++counts_.sets_opened;
+  }
+  return *opened;
+}
+
+const BucketSample& PairCache::bucket(const CatalogueEntry& entry, BucketKey key) {
+  const PairBucket name(entry.pair, key);
+  if (const auto found = buckets_.find(name); found != buckets_.end()) return found->second;
+  const Mesh& a = mesh(entry.a);
+  const Mesh& b = mesh(entry.b);
+  const ConfigurationSet& opened = set(entry);
+  opened.check_meshes(a, b);
+  BucketSample sample = sample_bucket(opened, key, a, b, sample_, seed_);
+  ++counts_.buckets_read;
+  if (poses_ + sample.poses.size() > k_most_poses) {
+    buckets_.clear();
+    poses_ = 0;
+  }
+  poses_ += sample.poses.size();
+  return buckets_.emplace(name, std::move(sample)).first->second;
+}
+
+const std::vector<Response>& PairCache::exact_responses(const CatalogueEntry& entry, BucketKey key, double seconds) {
+  std::vector<Response>& responses = exact_responses_[{entry.pair, key}];
+  if (!responses.empty()) return responses;
+  require_solids(mesh(entry.a), mesh(entry.b));
+  const BucketSample& sample = bucket(entry, key);
+  const auto exact = make_exact_algorithm();
+  Query& exact_query = query(*exact, exact->settings(), entry.a, entry.b);
+  const auto start = std::chrono::steady_clock::now();
+  for (const Pose& pose : sample.poses) {
+    const bool late = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds;
+    if (responses.size() == k_most_exact || (late && responses.size() >= BucketSample::k_run)) break;
+    const Outcome<Response> answer = exact_query.respond(pose);
+    if (!answer.ok()) {
+      throw Error(fmt::format("{}: exact gives no response: {}", entry.pair, exact_query.diagnosis()));
+    }
+    responses.push_back(answer.value);
+  }
+  return responses;
+}
+
+std::unique_ptr<Query> PairCache::prepare(const Algorithm& algorithm, const Settings& settings, const Mesh& a,
+                                          const Mesh& b) {
+  ++counts_.structures_prepared;
+  std::unique_ptr<Query> query;
+  try {
+    query = algorithm.prepare(a, b, settings);
+  } catch (const BadMesh&) {
+    require_solids(a, b);
+    throw;
+  }
+  if (!query) throw Error(fmt::format("algorithm {}: prepare() returned a null pointer", algorithm.traits().name));
+  return query;
+}
+
+Query& PairCache::query(const Algorithm& algorithm, const Settings& settings, const std::string& a,
+                        const std::string& b) {
+  const std::string key = algorithm.traits().name + "|" + settings.to_string() + "|" + a + "|" + b;
+  for (auto it = prepared_.begin(); it != prepared_.end(); ++it) {
+    if (it->key != key) continue;
+    prepared_.splice(prepared_.begin(), prepared_, it);
+    return *prepared_.front().query;
+  }
+  Prepared fresh{.key = key, .query = prepare(algorithm, settings, mesh(a), mesh(b))};
+  fresh.bytes = fresh.query->footprint().bytes;
+  prepared_.push_front(std::move(fresh));
+  std::size_t bytes = 0;
+  for (auto it = prepared_.begin(); it != prepared_.end();) {
+    bytes += it->bytes;
+    it = bytes > k_most_prepared_bytes && it != prepared_.begin() ? prepared_.erase(it) : std::next(it);
+  }
+  return *prepared_.front().query;
+}
+
+std::vector<std::pair<std::string, std::string>> PairCache::hashes() const {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const auto& [name, mesh] : meshes_) {
+    if (mesh) list.emplace_back("mesh:" + name, mesh->hash());
+  }
+  for (const auto& [name, set] : sets_) {
+    if (set) list.emplace_back("set:" + name, set->hash());
+  }
+  return list;
+}
+
+}  // namespace sixdof::bench

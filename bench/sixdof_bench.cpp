@@ -1,0 +1,61 @@
+// The program sixdof-bench: every algorithm of this build and every Registrar, every family of rows.
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <sixdof/configuration/set_catalogue.h>
+#include <sixdof/query/registrar.h>
+#include "bench/common/all_algorithms.h"
+#include "bench/common/run_guarded.h"
+#include "bench/harness/options.h"
+#include "bench/harness/run_rows.h"
+#include "bench/harness/suite.h"
+#include "bench/rows/families.h"
+
+namespace sixdof::bench {
+namespace {
+
+std::vector<Row> all_rows(const Resources& resources) {
+  std::vector<Row> rows;
+  for (const auto family : {prepare_rows, query_rows, scenario_rows, kernel_rows, generate_rows}) {
+    std::ranges::move(family(resources), std::back_inserter(rows));
+  }
+  return rows;
+}
+
+void run(const Options& options) {
+  Registry registry;
+  register_all_algorithms(registry);
+  std::vector<std::string> external;
+  for (const auto& make : Registrar::makers()) {
+    registry.add(make());
+    external.push_back(registry.all().back()->traits().name);
+  }
+  SetCatalogue catalogue;
+  if (!options.manifest.empty()) catalogue = SetCatalogue::read(options.manifest);
+  for (const auto& set : options.sets) catalogue.add_file(set);
+  PairCache cache(options.sample, options.seed);
+  const Resources resources{.registry = registry,
+                            .catalogue = catalogue,
+                            .settings = parse_parameters(options.parameters, registry),
+                            .cache = cache,
+                            .seed = options.seed};
+
+  std::vector<Row> rows = all_rows(resources);
+  if (!options.suite.empty()) {
+    const Suite suite = Suite::read(options.suite, external);
+    std::erase_if(rows, [&](const Row& row) { return !suite.contains(row.name); });
+  }
+  run_rows(rows, options, resources);
+}
+
+}  // namespace
+}  // namespace sixdof::bench
+
+int main(int argc, char** argv) {
+  sixdof::bench::Options options;
+  if (const int code = sixdof::bench::parse_options(argc, argv, options); code >= 0) return code;
+  return sixdof::run_guarded("sixdof-bench", [&] { sixdof::bench::run(options); });
+}

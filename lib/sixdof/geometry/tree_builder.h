@@ -1,0 +1,72 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <sixdof/geometry/mesh.h>
+#include <sixdof/geometry/tree.h>
+
+/// How the triangles of a mesh are partitioned into the nodes of a Tree: the first half of its construction.
+///
+/// A range of triangles is split in two again and again, always the part with the largest box, until a node has eight
+/// children. Large ranges are split at one of 16 bins along an axis, by the surface-area heuristic. The two levels next
+/// to the leaves are split exactly, at multiples of full leaves and full nodes, so that most leaves and nodes are full.
+namespace sixdof::tree_builder {
+
+/// Axis-aligned box in single precision, relative to the tree's centre; contains its triangles.
+struct Box {
+  std::array<float, 3> lower{Tree::k_empty, Tree::k_empty, Tree::k_empty};
+  std::array<float, 3> upper{-Tree::k_empty, -Tree::k_empty, -Tree::k_empty};
+
+  void add(const Box& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower[k] = std::min(lower[k], other.lower[k]);
+      upper[k] = std::max(upper[k], other.upper[k]);
+    }
+  }
+  void add(const std::array<float, 3>& p) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower[k] = std::min(lower[k], p[k]);
+      upper[k] = std::max(upper[k], p[k]);
+    }
+  }
+  float half_area() const {
+    const float x = upper[0] - lower[0];
+    const float y = upper[1] - lower[1];
+    const float z = upper[2] - lower[2];
+    return x * y + y * z + z * x;
+  }
+};
+
+/// Triangles first .. last - 1 in tree order.
+struct Range {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  Box box;
+  std::size_t count() const { return last - first; }
+};
+
+/// A node with all nodes below it.
+struct Subtree {
+  std::vector<Range> children;                  ///< In tree order.
+  std::vector<std::unique_ptr<Subtree>> nodes;  ///< Of each child; null if it is a leaf.
+  std::size_t total = 1;                        ///< Nodes in this subtree.
+};
+
+struct Partition {
+  std::vector<std::uint32_t> mesh_triangle;  ///< The mesh's triangle of each triangle in tree order.
+  std::unique_ptr<Subtree> root;
+};
+
+/// The same for every number of threads.
+Partition build(const Mesh& mesh, const Eigen::Vector3d& center);
+
+/// Strictly below x: also below any double that rounds to x in a difference.
+float round_down(double x);
+float round_up(double x);
+
+}  // namespace sixdof::tree_builder

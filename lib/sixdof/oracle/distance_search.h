@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <sixdof/geometry/pose.h>
+#include <sixdof/geometry/tree.h>
+#include <sixdof/geometry/triangle_distance.h>
+#include <sixdof/geometry/triangle_pair.h>
+#include <sixdof/oracle/coplanar_patches.h>
+
+/// The state of one distance query. Internal: use distance.h.
+namespace sixdof::detail {
+
+/// A node, leaf or triangle of each tree: an index into nodes(), k_leaf plus an index into leaves(), or k_triangle plus
+/// an index into corners(). Either both are triangles or none is.
+struct NodePair {
+  static constexpr std::uint32_t k_leaf = 1u << 31;
+  static constexpr std::uint32_t k_triangle = 1u << 30;
+  std::uint32_t a;
+  std::uint32_t b;
+  float lower;  ///< Lower bound on the distance; negative where the volumes may overlap.
+};
+
+/// Inserts a pair into stack[first], stack[first + 1], ..., which is sorted: the smallest lower bound is on top.
+inline void push_sorted(std::vector<NodePair>& stack, std::size_t first, const NodePair& pair) {
+  std::size_t at = stack.size();
+  stack.push_back(pair);
+  for (; at > first && stack[at - 1].lower < pair.lower; --at) stack[at] = stack[at - 1];
+  stack[at] = pair;
+}
+
+/// A pair of triangles whose exact distance is computed last, if its lower bound is still small enough by then.
+struct DeferredPair {
+  TrianglePair pair;
+  float lower;
+};
+
+/// A pair of triangles and its exact distance.
+struct MeasuredPair {
+  TrianglePair pair;
+  double distance;
+};
+
+/// Decides ties: indices into A's and into B's Mesh::triangles(), in lexicographic order.
+using Rank = std::pair<std::uint32_t, std::uint32_t>;
+inline constexpr Rank k_no_rank{~std::uint32_t{0}, ~std::uint32_t{0}};
+
+/// A pair that was pruned although it may tie with the closest pair; it is not closer.
+struct TiedPair {
+  NodePair pair;
+  double lower;  ///< Lower bound on the distance.
+};
+
+/// A tied pair and the smallest rank that a pair of its triangles can have.
+struct RankedPair {
+  Rank smallest;
+  NodePair pair;
+};
+
+/// Rounding of the distances between coplanar patches (lengths); all 0 where a mesh has no patches.
+struct TieWindow {
+  double error = 0.0;   ///< Of plane_gap() against triangle_triangle_distance().
+  double margin = 0.0;  ///< A gap above the smallest distance less this is a tie.
+  double width = 0.0;   ///< Distances that exceed the smallest one by no more count as equal to it.
+  static TieWindow of(const Tree& a, const CoplanarPatches& patches_a, const Tree& b, const CoplanarPatches& patches_b,
+                      const Pose& X_AB);
+};
+
+/// Work of one query.
+struct TraversalCounts {
+  std::uint64_t nodes = 0;       ///< Nodes expanded.
+  std::uint64_t leaf_pairs = 0;  ///< Pairs of leaves whose triangles were bounded.
+  std::uint64_t triangles = 0;   ///< Pairs of triangles tested exactly.
+};
+
+/// Corners spread over a surface: where a search may start.
+struct SeedCorners {
+  static constexpr std::size_t k_count = 64;
+  explicit SeedCorners(const Tree& tree);
+  alignas(64) float point[3][k_count];  ///< [axis][corner], relative to the tree's centre.
+  std::uint32_t leaf[k_count];          ///< The corner is the first one of the first triangle of this leaf.
+};
+
+/// Input, output and scratch of one search.
+struct DistanceSearch {
+  const Tree* a = nullptr;
+  const Tree* b = nullptr;
+  const CoplanarPatches* patches_a = nullptr;
+  const CoplanarPatches* patches_b = nullptr;
+  Pose X_AB;
+  TieWindow ties;
+  double best = std::numeric_limits<double>::infinity();  ///< The upper bound, then the smallest distance found.
+  bool found = false;                                     ///< `pair` and `closest` are set.
+  TrianglePair pair;
+  ClosestPoints closest;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< Guess of the direction from A to B at the closest points.
+  TraversalCounts counts;
+  std::vector<MeasuredPair> measured;  ///< Those not above best + ties.width, as best was then.
+  std::vector<NodePair> stack;         ///< Scratch.
+  std::vector<DeferredPair> deferred;  ///< Scratch.
+  std::vector<TiedPair> tied;          ///< Scratch.
+  std::vector<RankedPair> ranked;      ///< Scratch.
+};
+
+/// Measures one pair exactly and keeps it if it is closer. Returns whether the distance decreased.
+bool try_update(DistanceSearch& search, TrianglePair pair);
+
+/// Exact distance of one pair, a lower bound on it (triangle_gap()), the exact intersection test, and the pair's rank.
+ClosestPoints distance_of(const DistanceSearch& search, TrianglePair pair);
+double gap_of(const DistanceSearch& search, TrianglePair pair);
+bool intersects(const DistanceSearch& search, TrianglePair pair);
+Rank rank_of(const DistanceSearch& search, TrianglePair pair);
+
+}  // namespace sixdof::detail

@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""Checks that the code keeps to the map of the rooms in lib/README.md.
+
+usage: test/architecture/architecture.py [--root FOLDER] [--build FOLDER]
+
+Reads the table of rooms (first column: a folder; a row may use the rows below it) and every #include, and reports
+- an include of a room above, or of a file that does not exist;
+- a folder with code that the table does not name, and a row of the table without code;
+- files that include each other in a circle;
+- with --build, a header that does not compile alone, with the flags in FOLDER/compile_commands.json (files *-inl.h are
+  parts of others and are left out).
+Exits with 1 if anything is reported.
+"""
+
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+CODE = {".h", ".cpp"}
+INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]')
+ROOM_ROW = re.compile(r"^\|\s*`([\w/.]+/)`\s*\|")
+GENERATED = {"sixdof_commit.h"}  # made by the build
+EVERYWHERE = "test/"  # tests may use every room, nobody may use tests
+
+
+class Problem(Exception):
+    """The map itself cannot be read."""
+
+
+def read_rooms(readme):
+    """Folders of the table of rooms, from the top down."""
+    rooms = [match.group(1) for line in readme.read_text().splitlines() if (match := ROOM_ROW.match(line))]
+    if not rooms:
+        raise Problem(f"{readme}: no table of rooms: rows read | `folder/` | what lives there |")
+    return rooms
+
+
+def code_files(root):
+    """Every source and header under lib, bench and test, relative to the root."""
+    found = []
+    for top in ("lib", "bench", "test"):
+        for path in sorted((root / top).rglob("*")):
+            if path.suffix in CODE and path.is_file():
+                found.append(path.relative_to(root).as_posix())
+    return found
+
+
+def includes_of(root, file):
+    """(line, quote, name) of every include."""
+    for number, line in enumerate((root / file).read_text(errors="replace").splitlines(), 1):
+        if match := INCLUDE.match(line):
+            yield number, match.group(1), match.group(2)
+
+
+def resolve(root, file, quote, name):
+    """The included file of this project relative to the root, or None for another library's."""
+    if name.startswith("sixdof/"):
+        return f"lib/{name}"
+    if quote == '"' and name not in GENERATED:
+        beside = os.path.normpath(os.path.join(os.path.dirname(file), name))
+        return beside if (root / beside).exists() else name
+    return None
+
+
+def room_of(rooms, file):
+    """The longest folder of the table that holds the file."""
+    holding = [room for room in rooms if file.startswith(room)]
+    return max(holding, key=len) if holding else None
+
+
+def check_includes(root, rooms, files):
+    """Problems of single includes, and the graph of files."""
+    problems, graph = [], {}
+    for file in files:
+        room = room_of(rooms, file)
+        if room is None:
+            problems.append(f"{file}: lies in no room of the table")
+        graph[file] = []
+        for line, quote, name in includes_of(root, file):
+            target = resolve(root, file, quote, name)
+            if target is None:
+                continue
+            if not (root / target).is_file():
+                problems.append(f"{file}:{line}: includes {name}, which is not there")
+                continue
+            graph[file].append(target)
+            target_room = room_of(rooms, target)
+            if room is None or target_room is None or room == EVERYWHERE:
+                continue
+            if target_room == EVERYWHERE or rooms.index(target_room) < rooms.index(room):
+                problems.append(f"{file}:{line}: room {room} includes {target} of room {target_room}, which is above it")
+    return problems, graph
+
+
+def check_rooms(rooms, files):
+    """Every row of the table has code."""
+    return [f"lib/README.md: room {room} has no code" for room in rooms if not any(f.startswith(room) for f in files)]
+
+
+def find_circles(graph):
+    """One message per circle between files. A source that includes itself (SIMD targets) is none."""
+    problems, state, trail = [], {}, []
+
+    def visit(file):
+        state[file] = "open"
+        trail.append(file)
+        for target in graph.get(file, []):
+            if target == file:
+                continue
+            if state.get(target) == "open":
+                problems.append("circle: " + " -> ".join(trail[trail.index(target):] + [target]))
+            elif target not in state:
+                visit(target)
+        trail.pop()
+        state[file] = "done"
+
+    sys.setrecursionlimit(10000)
+    for file in graph:
+        if file not in state:
+            visit(file)
+    return problems
+
+
+def compile_command(root, build):
+    """The build's compiler with every include path and definition that its library and programs are compiled with."""
+    command = []
+    for entry in json.loads((build / "compile_commands.json").read_text()):
+        file = os.path.relpath(entry["file"], root)
+        if not file.startswith(("lib/", "bench/")):
+            continue
+        words = shlex.split(entry["command"])
+        if not command:
+            first_flag = next(i for i, word in enumerate(words) if word.startswith("-"))
+            command = words[:first_flag] + ["-std=c++20"]
+        for i, word in enumerate(words):
+            if word == "-isystem" and words[i + 1] not in command:
+                command += [word, words[i + 1]]
+            elif word.startswith("-I") and word not in command:
+                command.append(word)
+    if not command:
+        raise Problem(f"{build}/compile_commands.json: no file of lib/ or bench/")
+    return command
+
+
+def compile_alone(root, header, command, work):
+    """What the compiler says of a header that is all of a source, or None."""
+    stem = re.sub(r"\W", "_", header)
+    source = work / f"{stem}.cpp"
+    include = f"<{header.removeprefix('lib/')}>" if header.startswith("lib/") else f'"{header}"'
+    text = f"#include {include}\n"
+    if not source.exists() or source.read_text() != text:  # an unchanged file keeps its time, for compiler caches
+        source.write_text(text)
+    words = [*command, f"-I{root / 'lib'}", f"-I{root}", "-c", str(source), "-o", str(work / f"{stem}.o")]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode == 0:
+        return None
+    errors = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines() or ["no words"]
+    return f"{header}: does not compile alone: {errors[0]}"
+
+
+def check_headers(root, files, command, work):
+    """Headers of rooms and programs, each compiled alone."""
+    headers = [f for f in files if f.endswith(".h") and not f.endswith("-inl.h") and not f.startswith(EVERYWHERE)]
+    work.mkdir(parents=True, exist_ok=True)
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = pool.map(lambda header: compile_alone(root, header, command, work), headers)
+        return [problem for problem in found if problem]
+
+
+def check(root, command=None, work=None):
+    """All problems of a tree, in words."""
+    rooms = read_rooms(root / "lib" / "README.md")
+    files = code_files(root)
+    problems, graph = check_includes(root, rooms, files)
+    problems += check_rooms(rooms, files)
+    problems += find_circles(graph)
+    if command:
+        problems += check_headers(root, files, command, work)
+    return problems
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[2])
+    parser.add_argument("--build", type=pathlib.Path, help="build folder: headers are compiled alone, too")
+    arguments = parser.parse_args()
+    root = arguments.root.resolve()
+    try:
+        command = compile_command(root, arguments.build) if arguments.build else None
+        problems = check(root, command, arguments.build / "headers" if arguments.build else None)
+    except Problem as problem:
+        problems = [str(problem)]
+    for problem in problems:
+        print(problem)
+    print(f"{len(problems)} problems")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,136 @@
+// What rows report of algorithms that throw, or return NaN, infinity, 1e308 or a wrong answer at one pose in 20.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/configuration/bucket_sample.h>
+#include <sixdof/models/model_catalogue.h>
+#include <sixdof/scenario/recorder.h>
+#include "bench/common/run_guarded.h"
+
+#include "../cli/run_program.h"
+#include "../configuration/small_suite.h"
+#include "faulty_pose.h"
+
+namespace sixdof {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+constexpr const char* k_pair = "torus-1k";
+
+using test::k_fault_delay_ns;
+
+struct Faulty : ::testing::Test {
+  static json run(const std::string& arguments, int exit_code = 0) {
+    const auto run =
+        test::run_program(std::string(FAULTY_PROGRAM) + " --manifest " SIXDOF_SMALL_SUITE "/manifest.json " +
+                          "--sample 0 --benchmark_min_time=0.000001 --benchmark_format=json " + arguments);
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    return json::parse(run.out);
+  }
+
+  static std::size_t count_faulty(BucketKey key) {
+    const Mesh mesh = load_model(k_pair);
+    const ConfigurationSet set(SIXDOF_SMALL_SUITE "/torus-1k.h5");
+    std::size_t count = 0;
+    for (const Pose& pose : sample_bucket(set, key, mesh, mesh, 0, 1).poses) count += test::is_faulty(pose);
+    return count;
+  }
+
+  /// The row of an algorithm in random order.
+  static json row(const json& document, const std::string& query, const std::string& algorithm,
+                  const std::string& bucket) {
+    const std::string name = query + "/algorithm:" + algorithm + "/pair:" + k_pair + "/" + bucket;
+    for (const json& entry : document.at("benchmarks")) {
+      if (entry.at("name") == name) return entry;
+    }
+    ADD_FAILURE() << name << " is missing";
+    return {};
+  }
+
+  static std::string filter(const std::string& algorithms) {
+    return "'--benchmark_filter=^[a-z]+/algorithm:(" + algorithms + ")/pair:torus-1k/(distance:05|volume:03)$'";
+  }
+};
+
+TEST_F(Faulty, PosesAreOneInTwenty) {
+  const std::size_t faulty = count_faulty({BucketKind::distance, 5});
+  EXPECT_GT(faulty, test::SmallSuite::k_configurations / 40);
+  EXPECT_LT(faulty, test::SmallSuite::k_configurations / 10);
+}
+
+TEST_F(Faulty, QueriesWithoutAnAnswerAreCountedAndNotTimed) {
+  const auto apart = count_faulty({BucketKind::distance, 5});
+  const auto overlapping = count_faulty({BucketKind::volume, 3});
+  const json document = run(filter("exact|throws-exception|throws-int|returns-nan|returns-infinity"));
+  for (const auto& [algorithm, words] :
+       {std::pair("throws-exception", "stack of nodes is full"), std::pair("throws-int", "unknown type"),
+        std::pair("returns-nan", "not finite"), std::pair("returns-infinity", "not finite")}) {
+    for (const auto& [query, bucket] : {std::pair("collide", "distance:05"), std::pair("distance", "distance:05"),
+                                        std::pair("respond", "volume:03")}) {
+      const bool yes_no = query == std::string("collide");
+      if (yes_no && std::string(algorithm).starts_with("returns")) continue;
+      const json entry = row(document, query, algorithm, bucket);
+      const std::string name = entry.at("name");
+      EXPECT_EQ(entry.at("failed"), query == std::string("respond") ? overlapping : apart) << name;
+      EXPECT_EQ(entry.at("mismatch"), 0) << name;
+      EXPECT_THAT(entry.at("label").get<std::string>(), HasSubstr(words)) << name;
+      EXPECT_EQ(entry.at("configurations"), entry.at("reachable")) << name;
+      // With one faulty query in 20 timed, the mean would rise by a twentieth of the delay.
+      const json exact = row(document, query, "exact", bucket);
+      EXPECT_LT(entry.at("max_ns").get<double>(), exact.at("max_ns").get<double>() + 0.5 * k_fault_delay_ns) << name;
+      EXPECT_LT(entry.at("cpu_time").get<double>(), exact.at("cpu_time").get<double>() + 0.02 * k_fault_delay_ns)
+          << name;
+    }
+    const json response = row(document, "respond", algorithm, "volume:03");
+    EXPECT_LT(response.at("gamma_F_deg"), 1e-6) << "the answers are exact";
+  }
+}
+
+TEST_F(Faulty, WrongAnswersAreMismatchesAndTimed) {
+  const auto faulty = count_faulty({BucketKind::distance, 5});
+  const json document = run(filter("wrong|returns-1e308"));
+  for (const char* const algorithm : {"wrong", "returns-1e308"}) {
+    const json entry = row(document, "distance", algorithm, "distance:05");
+    EXPECT_EQ(entry.at("failed"), 0) << algorithm;
+    EXPECT_EQ(entry.at("mismatch"), faulty) << algorithm;
+    EXPECT_EQ(entry.at("judged"), entry.at("reachable")) << algorithm;
+    EXPECT_GT(entry.at("max_ns"), k_fault_delay_ns) << algorithm;
+    EXPECT_GT(entry.at("error_rms"), 0.0) << algorithm;
+  }
+  EXPECT_EQ(row(document, "collide", "wrong", "distance:05").at("mismatch"), faulty);
+  EXPECT_NEAR(row(document, "distance", "wrong", "distance:05").at("error_max"), 0.005, 1e-6);
+  const json large = row(document, "respond", "returns-1e308", "volume:03");
+  EXPECT_EQ(large.at("failed"), 0);
+  EXPECT_GT(large.at("gamma_max_F_deg"), 1.0);
+}
+
+TEST_F(Faulty, ScenariosCountFailedStepsAndGoOn) {
+  const auto scenario = make_scenario("II");
+  std::size_t faulty = 0;
+  for (const double progress : scenario->steps(k_default_steps)) {
+    faulty += scenario->in_window(progress) && test::is_faulty(scenario->pose(progress)) ? 1 : 0;
+  }
+  const json document = run("'--benchmark_filter=^scenario/II/algorithm:(throws-int|returns-nan)$'");
+  ASSERT_EQ(document.at("benchmarks").size(), 2u);
+  for (const json& entry : document.at("benchmarks")) {
+    EXPECT_EQ(entry.at("steps"), k_default_steps) << entry;
+    EXPECT_EQ(entry.at("failed"), faulty) << entry;
+    EXPECT_LT(entry.at("cpu_time"), 0.02 * k_fault_delay_ns) << entry;
+    EXPECT_THAT(entry.at("label").get<std::string>(), HasSubstr("first failure")) << entry;
+  }
+}
+
+TEST_F(Faulty, NullPointersAreErrorsWithWords) {
+  const json document = run(filter("null-pointer|throws-int"), k_exit_error);
+  const json refused = row(document, "distance", "null-pointer", "distance:05");
+  EXPECT_EQ(refused.at("error_occurred"), true);
+  EXPECT_THAT(refused.at("error_message").get<std::string>(), HasSubstr("null-pointer: prepare() returned a null"));
+  EXPECT_FALSE(row(document, "distance", "throws-int", "distance:05").contains("error_occurred"));
+}
+
+}  // namespace
+}  // namespace sixdof

@@ -1,0 +1,71 @@
+#include "bench/harness/guarded_query.h"
+
+#include <limits>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace sixdof::bench {
+namespace {
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+
+class GivesUp final : public Query {
+ public:
+  Outcome<bool> collide(const Pose&) override { return fail(Status::failed, "gave up"); }
+};
+
+struct Guarded : ::testing::Test {
+  /// The status of one question and, in `failures`, what was counted.
+  Status ask(auto question) {
+    failures = {};
+    GuardedQuery guarded(query, question, failures);
+    return guarded.ask(Pose()).status;
+  }
+
+  GivesUp query;
+  Failures failures;
+};
+
+TEST_F(Guarded, LetsAnswersPass) {
+  EXPECT_EQ(ask([](const Pose&) { return Outcome<bool>(true); }), Status::ok);
+  EXPECT_EQ(ask([](const Pose&) { return Outcome<Separation>(Separation{.distance = 1e308}); }), Status::ok);
+  EXPECT_EQ(ask([](const Pose&) { return Outcome<Response>(Response{}); }), Status::ok) << "a volume may be absent";
+  EXPECT_EQ(failures.count(), 0u);
+}
+
+TEST_F(Guarded, TurnsExceptionsIntoFailures) {
+  EXPECT_EQ(ask([](const Pose&) -> Outcome<bool> { throw std::runtime_error("stack of nodes is full"); }),
+            Status::failed);
+  EXPECT_EQ(failures.first(), "stack of nodes is full");
+  EXPECT_EQ(ask([](const Pose&) -> Outcome<bool> { throw 7; }), Status::failed);
+  EXPECT_EQ(failures.first(), "an exception of unknown type was thrown");
+  EXPECT_EQ(failures.count(), 1u);
+}
+
+TEST_F(Guarded, KeepsTheWordsOfAFailure) {
+  EXPECT_EQ(ask([this](const Pose& pose) { return query.collide(pose); }), Status::failed);
+  EXPECT_EQ(failures.first(), "gave up");
+  EXPECT_EQ(ask([this](const Pose& pose) { return query.distance(pose); }), Status::unsupported);
+  EXPECT_EQ(failures.first(), "unsupported");
+}
+
+TEST_F(Guarded, RefusesAnswersThatAreNotFinite) {
+  for (const double bad : {k_nan, k_infinity, -k_infinity}) {
+    EXPECT_EQ(ask([&](const Pose&) { return Outcome<Separation>(Separation{.distance = bad}); }), Status::non_finite);
+    EXPECT_EQ(failures.first(), "the answer is not finite");
+    for (const auto spoil :
+         {+[](Response&r, double x) { r.penalty = x; }, +[](Response&r, double x) { r.force.z() = x; },
+          +[](Response&r, double x) { r.torque.x() = x; }, +[](Response&r, double x) { r.reference.y() = x; }}) {
+      Response response;
+      spoil(response, bad);
+      EXPECT_EQ(ask([&](const Pose&) { return Outcome<Response>(response); }), Status::non_finite);
+    }
+  }
+  EXPECT_EQ(ask([](const Pose&) { return Outcome<Response>(Response{.volume = k_infinity}); }), Status::non_finite);
+  EXPECT_EQ(failures.count(), 1u);
+}
+
+}  // namespace
+}  // namespace sixdof::bench

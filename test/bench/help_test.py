@@ -1,0 +1,81 @@
+"""Every --help of sixdof-bench and of the scripts in bench/ ends with two examples, and they run.
+
+usage: help_test.py SIXDOF_BENCH SIXDOF
+"""
+
+import importlib.machinery
+import importlib.util
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
+SIXDOF_BENCH, SIXDOF = sys.argv.pop(1), sys.argv.pop(1)
+QUICK = ["--benchmark_min_time=0.000001"]
+
+
+def run(command, **options):
+    return subprocess.run(command, capture_output=True, text=True, check=False, **options)
+
+
+class Help(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def succeed(self, command):
+        done = run(command, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def examples(self, command):
+        """The words of both example command lines."""
+        done = run(command + ["--help"], timeout=30)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        *_, title, first, second = done.stdout.rstrip().splitlines()
+        self.assertEqual(title.lower(), "examples:")
+        return [shlex.split(first), shlex.split(second)]
+
+    def test_sixdof_bench(self):
+        measure, show_list = self.examples([SIXDOF_BENCH])
+        self.assertIn("fcl-rss", self.succeed([SIXDOF_BENCH, *measure[1:], *QUICK]))
+        self.assertIn("scenario/II/algorithm:exact", self.succeed([SIXDOF_BENCH, *show_list[1:]]))
+
+    def test_run(self):
+        # Its options go to sixdof-bench; setting up and building the tree is no part of this test.
+        for words in self.examples([str(BENCH / "run")]):
+            self.assertEqual(words[0], "bench/run")
+            self.assertIn("torus-knot-10k", self.succeed([SIXDOF_BENCH, *words[1:], "--benchmark_list_tests"]))
+
+    def test_run_prints_its_help_without_a_build(self):
+        (self.folder / "bench").mkdir()
+        shutil.copy(BENCH / "run", self.folder / "bench")
+        self.assertEqual(self.succeed([str(self.folder / "bench" / "run"), "-h"]), self.succeed([str(BENCH / "run"), "--help"]))
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["bench"])
+
+    def test_compare(self):
+        loader = importlib.machinery.SourceFileLoader("compare", str(BENCH / "compare"))
+        compare = importlib.util.module_from_spec(importlib.util.spec_from_loader("compare", loader))
+        loader.exec_module(compare)
+        for words in self.examples([str(BENCH / "compare")]):
+            self.assertEqual(words[0], "bench/compare")
+            self.assertTrue(compare.parse_arguments(words[1:]).base)
+
+    def test_generate_ratios(self):
+        measure, ratios = self.examples([str(BENCH / "generate-ratios")])
+        self.succeed([SIXDOF_BENCH, *measure[1:], *QUICK])
+        self.assertIn("`torus-knot-10k`", self.succeed([str(BENCH / "generate-ratios"), *ratios[1:]]))
+
+    def test_response_table(self):
+        both, one = self.examples([str(BENCH / "response-table")])
+        self.assertEqual(both, ["bench/response-table"], "takes minutes; the other one prints a part of it")
+        self.assertIn("| Ia | sigma_F |", self.succeed([str(BENCH / "response-table"), "--program", SIXDOF, *one[1:]]))
+
+
+if __name__ == "__main__":
+    unittest.main()
