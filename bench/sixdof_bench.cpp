@@ -36,7 +36,7 @@ void run(const Options& options) {
   SetCatalogue catalogue;
   if (!options.manifest.empty()) catalogue = SetCatalogue::read(options.manifest);
   for (const auto& set : options.sets) catalogue.add_file(set);
-  PairCache cache(options.sample, options.seed);
+  PairCache cache(options.sample, options.seed, options.meshes);
   const Resources resources{.registry = registry,
                             .catalogue = catalogue,
                             .settings = parse_parameters(options.parameters, registry),

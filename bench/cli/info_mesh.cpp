@@ -83,10 +83,10 @@ void print_text(const Mesh& mesh) {
                   repairs.welded_vertices, repairs.unreferenced_vertices, repairs.collapsed_triangles,
                   repairs.zero_area_triangles.size()));
   const auto file_row = [&](const FileRepairs& of_kind, const char* what) {
-    if (of_kind.count > 0) row("", fmt::format("{} {}, first at {}", of_kind.count, what, of_kind.first_place));
+    if (of_kind.count > 0) row("", fmt::format("{}: {}, the first at {}", what, of_kind.count, of_kind.first_place));
   };
-  file_row(repairs.crossing_polygons, "polygons that cross themselves triangulated");
-  file_row(repairs.nonplanar_polygons, "polygons that are not flat triangulated");
+  file_row(repairs.crossing_polygons, "polygons that cross themselves, triangulated");
+  file_row(repairs.nonplanar_polygons, "polygons that are not flat, triangulated");
   file_row(repairs.skipped_statements, "unknown statements skipped");
 }
 

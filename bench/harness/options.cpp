@@ -28,7 +28,7 @@ bool has_flag(const std::vector<std::string>& flags, const std::string& name) {
 }
 
 std::string refuse_csv(const std::string& format) {
-  return format == "csv" ? "csv needs the same counters in every row, and rows differ: use json" : std::string();
+  return format == "csv" ? "csv needs the same counters in every row, and rows differ; use json" : std::string();
 }
 
 void print_help(const CLI::App& app) {
@@ -70,6 +70,9 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   app.add_option("--set", options.sets, "A configuration set of your own (sixdof generate); may be repeated")
       ->allow_extra_args(false)
       ->check(CLI::ExistingFile);
+  app.add_option("--mesh", options.meshes, "The file of a mesh that is in a set (tray.off for tray); may be repeated")
+      ->allow_extra_args(false)
+      ->check(CLI::ExistingFile);
   app.add_option("--suite", suite,
                  "Rows to run: default (bench/default_suite.json), all, or a file of the same form. Without this "
                  "option: default, but all with a --benchmark_filter or sets of your own");
@@ -85,8 +88,13 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   app.add_option("--seed", options.seed, "Of samples and orders")->capture_default_str();
   app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were used");
   app.add_option("--benchmark_out,--out", options.out, "Result file (JSON); appears whole or not at all");
-  app.add_option("--benchmark_out_format", out_format)->check(CLI::IsMember({"json"}))->group("");
-  app.add_option("--benchmark_format", format)->check(refuse_csv)->check(CLI::IsMember({"console", "json"}))->group("");
+  app.add_option("--benchmark_out_format", out_format, "Of the result file")
+      ->check(CLI::IsMember({"json"}))
+      ->capture_default_str();
+  app.add_option("--benchmark_format", format, "Of standard output")
+      ->check(refuse_csv)
+      ->check(CLI::IsMember({"console", "json"}))
+      ->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

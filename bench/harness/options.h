@@ -13,15 +13,16 @@ namespace sixdof::bench {
 
 /// What sixdof-bench understands besides Google Benchmark's own flags.
 struct Options {
-  std::filesystem::path manifest;           ///< Catalogue of configuration sets; empty for none.
-  std::vector<std::filesystem::path> sets;  ///< Further sets of the user's.
-  std::filesystem::path suite;              ///< List of rows (harness/suite.h); empty for all rows.
-  std::vector<std::string> parameters;      ///< "ALGORITHM:NAME=VALUE".
-  std::size_t sample = 1024;                ///< Configurations per bucket; 0 for all.
-  double budget_s = 0.0;                    ///< Wall time for all rows together; 0 for no limit.
-  std::uint64_t seed = 1;                   ///< Of samples and orders.
-  bool stats = false;                       ///< Print how much was opened, read, loaded and prepared.
-  std::filesystem::path out;                ///< Result file; empty for none.
+  std::filesystem::path manifest;             ///< Catalogue of configuration sets; empty for none.
+  std::vector<std::filesystem::path> sets;    ///< Further sets of the user's.
+  std::vector<std::filesystem::path> meshes;  ///< Mesh files that these sets name.
+  std::filesystem::path suite;                ///< List of rows (harness/suite.h); empty for all rows.
+  std::vector<std::string> parameters;        ///< "ALGORITHM:NAME=VALUE".
+  std::size_t sample = 1024;                  ///< Configurations per bucket; 0 for all.
+  double budget_s = 0.0;                      ///< Wall time for all rows together; 0 for no limit.
+  std::uint64_t seed = 1;                     ///< Of samples and orders.
+  bool stats = false;                         ///< Print how much was opened, read, loaded and prepared.
+  std::filesystem::path out;                  ///< Result file; empty for none.
   bool json_on_stdout = false;
   bool list_only = false;
 };

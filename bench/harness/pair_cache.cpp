@@ -1,11 +1,13 @@
 #include "bench/harness/pair_cache.h"
 
+#include <algorithm>
 #include <chrono>
 #include <iterator>
 
 #include <fmt/format.h>
 
 #include <sixdof/algorithm/exact.h>
+#include <sixdof/geometry/load.h>
 #include <sixdof/models/model_catalogue.h>
 
 namespace sixdof::bench {
@@ -19,7 +21,8 @@ void require_solids(const Mesh& a, const Mesh& b) {
 const Mesh& PairCache::mesh(const std::string& model) {
   auto& entry = meshes_[model];
   if (!entry) {
-    entry = std::make_unique<const Mesh>(load_model(model));
+    const auto file = std::ranges::find(mesh_files_, model, [](const auto& path) { return path.stem().string(); });
+    entry = std::make_unique<const Mesh>(file == mesh_files_.end() ? load_model(model) : load_mesh(*file));
     ++counts_.meshes_loaded;
   }
   return *entry;

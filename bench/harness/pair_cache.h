@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <list>
 #include <map>
 #include <memory>
@@ -32,7 +33,9 @@ void require_solids(const Mesh& a, const Mesh& b);
 class PairCache {
  public:
   /// @param sample configurations per bucket, 0 for all; @param seed of the samples
-  PairCache(std::size_t sample, std::uint64_t seed) : sample_(sample), seed_(seed) {}
+  /// @param mesh_files stand for the models of the same names, without their endings
+  PairCache(std::size_t sample, std::uint64_t seed, std::vector<std::filesystem::path> mesh_files = {})
+      : sample_(sample), seed_(seed), mesh_files_(std::move(mesh_files)) {}
 
   /// @throws what load_model() throws
   const Mesh& mesh(const std::string& model);
@@ -83,6 +86,7 @@ class PairCache {
 
   std::size_t sample_;
   std::uint64_t seed_;
+  std::vector<std::filesystem::path> mesh_files_;
   Counts counts_;
   std::map<std::string, std::unique_ptr<const Mesh>> meshes_;            ///< By name of the model.
   std::map<std::string, std::unique_ptr<const ConfigurationSet>> sets_;  ///< By name of the pair.

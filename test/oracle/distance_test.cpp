@@ -7,11 +7,11 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include "../geometry/shapes.h"
 #include "bodies.h"
 #include "distance_truth.h"
+#include "instruction_sets.h"
 
 namespace sixdof {
 namespace {
@@ -261,22 +261,16 @@ TEST(DistanceOracle, IsTheSameBitsOnEveryInstructionSet) {
     return all;
   };
   const std::vector<Separation> standard = run();
-  int tried = 0;
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    hwy::SetSupportedTargetsForTest(targets & -targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  const int sets = for_each_instruction_set([&] {
     const std::vector<Separation> here = run();
     for (std::size_t i = 0; i < here.size(); ++i) {
-      EXPECT_EQ(here[i].distance, standard[i].distance) << hwy::TargetName(targets & -targets);
+      EXPECT_EQ(here[i].distance, standard[i].distance);
       if (here[i].distance == 0.0) continue;
       EXPECT_EQ(here[i].witness_a, standard[i].witness_a);
       EXPECT_EQ(here[i].triangle_b, standard[i].triangle_b);
     }
-    ++tried;
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  EXPECT_GE(tried, 2);  // at least a SIMD and a scalar path
+  });
+  EXPECT_GE(sets, 2);  // at least a SIMD and a scalar path
 }
 
 TEST(DistanceOracle, UpperBoundIsInclusive) {

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <sixdof/models/boxes.h>
 #include <sixdof/oracle/distance.h>
 
 #include "../geometry/shapes.h"
 #include "distance_truth.h"
+#include "instruction_sets.h"
 
 // Coplanar patches that face each other: thousands of pairs of triangles tie.
 
@@ -131,13 +131,7 @@ TEST(DistanceTies, AreTheSameBitsOnEveryInstructionSet) {
     const DistanceOracle oracle(a.mesh, b.mesh);
     const Pose pose = face_to_face(generator, a.normal, a.middle, b.normal, b.middle, i == 0 ? 1e-9 : 0.1);
     const Separation standard = DistanceQuery(oracle).distance(pose);
-    for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-      hwy::SetSupportedTargetsForTest(targets & -targets);
-      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-      expect_same(DistanceQuery(oracle).distance(pose), standard);
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    for_each_instruction_set([&] { expect_same(DistanceQuery(oracle).distance(pose), standard); });
   }
 }
 

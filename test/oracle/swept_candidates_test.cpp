@@ -5,14 +5,13 @@
 #include <utility>
 #include <vector>
 
-#include <hwy/targets.h>
-
 #include <gtest/gtest.h>
 
 #include <sixdof/oracle/candidates.h>
 #include <sixdof/oracle/overlap.h>
 
 #include "bodies.h"
+#include "instruction_sets.h"
 
 namespace sixdof {
 namespace {
@@ -65,14 +64,7 @@ void expect_same_overlap_of_tori() {
 }
 
 TEST(SweptCandidates, ContainThePairsOfEveryFractionOnEveryInstructionSet) {
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    hwy::SetSupportedTargetsForTest(targets & -targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    SCOPED_TRACE(hwy::TargetName(targets & -targets));
-    expect_same_overlap_of_tori();
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
+  for_each_instruction_set(expect_same_overlap_of_tori);
 }
 
 TEST(SweptCandidates, ContainThemForDisplacementsAlongFaces) {

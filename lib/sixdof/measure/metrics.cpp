@@ -86,6 +86,8 @@ constexpr std::array k_metrics{
     Metric{"bytes", "byte", lower, "memory of the prepared structure", k_footprint},
     Metric{"triangles", "triangles", neither, "triangles of both meshes", k_footprint},
     Metric{"nodes", "nodes", neither, "nodes of the hierarchies", k_footprint},
+    Metric{"nodes_a", "nodes", neither, "nodes of the tree of A", k_footprint},
+    Metric{"nodes_b", "nodes", neither, "nodes of the tree of B", k_footprint},
     Metric{"voxels", "voxels", neither, "voxels of the grid, stored or not", k_footprint},
     Metric{"surface_voxels", "voxels", neither, "voxels that the surface passes through", k_footprint},
     Metric{"inside_voxels", "voxels", neither, "voxels wholly inside the body", k_footprint},

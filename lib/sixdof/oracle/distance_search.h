@@ -51,7 +51,7 @@ struct MeasuredPair {
 using Rank = std::pair<std::uint32_t, std::uint32_t>;
 inline constexpr Rank k_no_rank{~std::uint32_t{0}, ~std::uint32_t{0}};
 
-/// A pair that was pruned although it may tie with the closest pair; it is not closer.
+/// A pair that was pruned as a tie: its distance is above the smallest one found less ties.margin.
 struct TiedPair {
   NodePair pair;
   double lower;  ///< Lower bound on the distance.
