@@ -1,5 +1,6 @@
 #include "bench/cli/commands.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -78,12 +79,22 @@ std::optional<UnknownWord> find_unknown_word(const CLI::App& app) {
   return std::nullopt;
 }
 
-/// "no such option; did you mean --grid?", with the nearest of `names`.
+/// The one of `names` that `word` probably means; empty if none is similar.
+std::string nearest(const std::string& word, const std::vector<std::string>& names) {
+  if (const std::vector<std::string> near = suggestions(word, names); !near.empty()) return near.front();
+  // Exchanged letters, which are too many edits for a short word.
+  const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+    return std::is_permutation(word.begin(), word.end(), name.begin(), name.end());
+  });
+  return found == names.end() ? std::string() : *found;
+}
+
+/// "no such option; did you mean --grid?"
 std::string no_such(const char* what, const std::string& word, const std::vector<std::string>& names,
                     const std::string& prefix, const std::string& command) {
-  const std::vector<std::string> near = suggestions(word, names);
-  if (near.empty()) return fmt::format("no such {} ({} --help lists them)", what, command);
-  return fmt::format("no such {}; did you mean {}{}?", what, prefix, near.front());
+  const std::string meant = nearest(word, names);
+  if (meant.empty()) return fmt::format("no such {} ({} --help lists them)", what, command);
+  return fmt::format("no such {}; did you mean {}{}?", what, prefix, meant);
 }
 
 std::string explain(const UnknownWord& unknown) {

@@ -166,9 +166,7 @@ struct LeafBounds {
   std::uint32_t pairs[k_leaf_triangles * k_leaf_triangles];  ///< 4 i + j each, the smallest gap first.
 };
 
-/// @param count_a, count_b triangles of the leaves
-HWY_INLINE LeafBounds bound_leaves(const CastLeaf& a, std::uint32_t count_a, const CastLeaf& b, std::uint32_t count_b,
-                                   const Ray& ray) {
+HWY_INLINE LeafBounds bound_leaves(const CastLeaf& a, const CastLeaf& b, const Ray& ray) {
   LeafBounds result;
   // The axis of the best hit, for all pairs at once.
   float support_a[k_leaf_triangles], support_b[k_leaf_triangles];
@@ -184,8 +182,8 @@ HWY_INLINE LeafBounds bound_leaves(const CastLeaf& a, std::uint32_t count_a, con
   result.gap = CastFront::k_not_in_front;
   std::uint32_t left[k_leaf_triangles * k_leaf_triangles];  // 4 i + j for pair (i, j)
   std::size_t left_count = 0;
-  for (std::uint32_t i = 0; i < count_a; ++i) {
-    for (std::uint32_t j = 0; j < count_b; ++j) {
+  for (std::uint32_t i = 0; i < a.child.count(); ++i) {
+    for (std::uint32_t j = 0; j < b.child.count(); ++j) {
       left[left_count] = static_cast<std::uint32_t>(k_leaf_triangles) * i + j;
       const float gap = along + support_a[i] + support_b[j];
       left_count += gap > ray.slack ? 0 : 1;

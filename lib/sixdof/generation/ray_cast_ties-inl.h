@@ -23,14 +23,14 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
 namespace HWY_NAMESPACE {
 
-/// What one query of a DifferenceSupport adds to its budget: for pairs that may tie, and for others. Support values cull
-/// some of the others because volumes reach beyond their triangles: on smooth surfaces they halve the number of expanded
-/// nodes. Of 1, 2, 4 .. 64, 8 is the fastest for the others.
+/// What one query of a DifferenceSupport adds to its budget: for pairs that may tie, and for others. Support values
+/// cull some of the others because volumes reach beyond their triangles: on smooth surfaces they halve the number of
+/// expanded nodes. Of 1, 2, 4 .. 64, 8 is the fastest for the others.
 constexpr std::uint64_t k_budget_near = 16;
 constexpr std::uint64_t k_budget_far = 8;
 
-/// Decides when a test is due: after ever more pairs while it fails, for each pair while it succeeds. `now` is the number
-/// of pairs that single-precision bounds did not cull.
+/// Decides when a test is due: after ever more pairs while it fails, for each pair while it succeeds. `now` is the
+/// number of pairs that single-precision bounds did not cull.
 struct Backoff {
   static constexpr std::uint64_t k_first = 8;
   std::uint64_t last_success = 0;

@@ -54,7 +54,7 @@ double TreeSupport::support_value(std::size_t slot, std::uint64_t& budget) {
   Known& known = known_[slot];
   if (known.axis_number == axis_number_) return known.value;
   const CastChild child = tree_->child(slot);
-  const std::uint64_t triangles = child.is_leaf() ? tree_->mesh().leaf_children()[child.index()].count()
+  const std::uint64_t triangles = child.is_leaf() ? tree_->leaves()[child.index()].child.count()
                                                   : tree_->mesh().tree().nodes()[child.index()].triangle_count;
   if (budget < std::min(triangles, k_smallest_budget)) return k_unknown;
   const std::uint64_t before = evaluations_;
@@ -83,7 +83,7 @@ void TreeSupport::bound_children(const PreciseVolumes& volumes, double* bounds) 
 TreeSupport::Found TreeSupport::search(CastChild child, Limits limits) {
   Found found;
   if (child.is_leaf()) {
-    const Tree::Child leaf = tree_->mesh().leaf_children()[child.index()];
+    const Tree::Child leaf = tree_->leaves()[child.index()].child;
     const Tree& tree = tree_->mesh().tree();
     for (std::uint32_t t = leaf.first(); t < leaf.first() + leaf.count(); ++t) {
       for (const Eigen::Vector3d& corner : tree.corners()[t]) {

@@ -204,17 +204,16 @@ class DualTreeTraversal {
   }
 
   /// Sets the bound of two leaves, and updates the best hit by those of their pairs of triangles that it does not cull.
-  void expand_leaves(std::uint32_t leaf_a, std::uint32_t leaf_b, const CastFront::Pending& pending) {
+  void expand_leaves(std::uint32_t a, std::uint32_t b, const CastFront::Pending& pending) {
     ++cast_.counts.leaf_pairs;
-    const Tree::Child child_a = tree_a_.mesh().leaf_children()[leaf_a];
-    const Tree::Child child_b = tree_b_.mesh().leaf_children()[leaf_b];
-    const LeafBounds bounds =
-        bound_leaves(tree_a_.leaves()[leaf_a], child_a.count(), tree_b_.leaves()[leaf_b], child_b.count(), ray_);
+    const CastLeaf& leaf_a = tree_a_.leaves()[a];
+    const CastLeaf& leaf_b = tree_b_.leaves()[b];
+    const LeafBounds bounds = bound_leaves(leaf_a, leaf_b, ray_);
     set_bound(pending, bounds.gap, bounds.slope);
     for (std::size_t n = 0; n < bounds.count; ++n) {
       const std::uint32_t i = bounds.pairs[n] / k_leaf_triangles;
       const std::uint32_t j = bounds.pairs[n] % k_leaf_triangles;
-      if (try_update(cast_, {child_a.first() + i, child_b.first() + j})) {
+      if (try_update(cast_, {leaf_a.child.first() + i, leaf_b.child.first() + j})) {
         ray_.set_best(cast_);
       } else {
         ties_.count_pair();

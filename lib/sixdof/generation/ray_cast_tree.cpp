@@ -121,44 +121,30 @@ CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
     CastNode& to = nodes_[n];
     to = {};
     to.child_count = from.child_count;
-    for (std::size_t lane = 0; lane < k_width; ++lane) {
-      const std::size_t i = lane < from.child_count ? lane : 0;
-      for (std::size_t k = 0; k < 3; ++k) to.normal[k][lane] = from.normal[k][i];
-      to.slab_offset[lane] = 0.5f * (from.slab_lower[i] + from.slab_upper[i]);
-      to.slab_half[lane] = 0.5f * (from.slab_upper[i] - from.slab_lower[i]);
-      if (lane >= from.child_count) {
-        to.child[lane] = to.child[0];
-        for (std::size_t k = 0; k < 3; ++k) to.ball_center[k][lane] = to.ball_center[k][0];
-        to.ball_radius[lane] = to.ball_radius[0];
-        to.slab_offset[lane] = to.slab_offset[0];
-        continue;
-      }
-      const Tree::Child child = from.child[i];
-      if (child.is_leaf()) {
-        to.child[lane] = CastChild::leaf(static_cast<std::uint32_t>(leaf_children_.size()));
-        leaf_children_.push_back(child);
-      } else {
-        to.child[lane] = CastChild::node(child.node());
-      }
+    for (std::size_t lane = 0; lane < from.child_count; ++lane) {
+      const Tree::Child child = from.child[lane];
+      to.child[lane] = child.is_leaf() ? CastChild::leaf(from.leaf[lane]) : CastChild::node(child.node());
       const Triangles triangles = triangles_of(*tree_, child);
       fit_precise_volume(triangles, tree_->center(), precise_volumes_[n], lane);
       const Ball ball = fit_ball(triangles);
       const Eigen::Vector3d ball_center = ball.center - tree_->center();
       to.ball_radius[lane] = static_cast<float>(ball.radius);
+      to.slab_offset[lane] = 0.5f * (from.slab_lower[lane] + from.slab_upper[lane]);
+      to.slab_half[lane] = 0.5f * (from.slab_upper[lane] - from.slab_lower[lane]);
       for (std::size_t k = 0; k < 3; ++k) {
+        to.normal[k][lane] = from.normal[k][lane];
         to.ball_center[k][lane] = static_cast<float>(ball_center[static_cast<Eigen::Index>(k)]);
         to.slab_offset[lane] -= to.normal[k][lane] * to.ball_center[k][lane];
       }
     }
-  }
-  leaves_.resize(leaf_children_.size());
-  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) {
-    const Tree::Child child = leaf_children_[leaf];
-    for (std::uint32_t i = 0; i < k_leaf_triangles; ++i) {
-      const Tree::Corners& t = tree_->corners()[child.first() + (i < child.count() ? i : 0)];
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const Eigen::Vector3f p = (t[corner] - tree_->center()).cast<float>();
-        for (std::size_t k = 0; k < 3; ++k) leaves_[leaf].corner[corner][k][i] = p[static_cast<Eigen::Index>(k)];
+    for (std::size_t lane = from.child_count; lane < k_width; ++lane) {
+      to.child[lane] = to.child[0];
+      to.ball_radius[lane] = to.ball_radius[0];
+      to.slab_offset[lane] = to.slab_offset[0];
+      to.slab_half[lane] = to.slab_half[0];
+      for (std::size_t k = 0; k < 3; ++k) {
+        to.normal[k][lane] = to.normal[k][0];
+        to.ball_center[k][lane] = to.ball_center[k][0];
       }
     }
   }
@@ -168,11 +154,13 @@ CastTree::CastTree(std::shared_ptr<const CastMesh> mesh)
     : mesh_(std::move(mesh)),
       nodes_(mesh_->nodes().begin(), mesh_->nodes().end()),
       volumes_(k_width * nodes_.size()),
-      leaves_(mesh_->leaves().size()),
-      bounds_(nodes_.size()) {}
+      leaves_(mesh_->tree().leaves().size()),
+      bounds_(nodes_.size()) {
+  for (std::size_t leaf = 0; leaf < leaves_.size(); ++leaf) leaves_[leaf].child = mesh_->tree().leaves()[leaf].child;
+}
 
 CastTree::Bounds CastTree::transform_leaf(std::uint32_t leaf, const float (&m)[3][3]) {
-  const CastLeaf& from = mesh_->leaves()[leaf];
+  const Tree::Leaf& from = mesh_->tree().leaves()[leaf];
   CastLeaf& to = leaves_[leaf];
   Bounds box;
   for (std::size_t i = 0; i < 3; ++i) {

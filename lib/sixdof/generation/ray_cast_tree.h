@@ -57,9 +57,10 @@ struct alignas(64) CastVolume {
   float size;  ///< Square of half the box's diagonal.
 };
 
-/// Corners of a leaf's triangles, [corner][axis][triangle]; places without a triangle repeat the first.
+/// A leaf's corners, [corner][axis][triangle], and its triangles; lanes without a triangle are as in Tree::Leaf.
 struct CastLeaf {
   float corner[3][3][Tree::k_leaf_triangles];
+  Tree::Child child;
 };
 
 /// A slab in double precision: |normal . p - middle| <= half.
@@ -89,16 +90,12 @@ class CastMesh {
   explicit CastMesh(std::shared_ptr<const Tree> tree);
 
   const Tree& tree() const { return *tree_; }
-  std::span<const CastNode> nodes() const { return nodes_; }  ///< Without boxes.
-  std::span<const CastLeaf> leaves() const { return leaves_; }
-  std::span<const Tree::Child> leaf_children() const { return leaf_children_; }         ///< Of each leaf, in the tree.
+  std::span<const CastNode> nodes() const { return nodes_; }                            ///< Without boxes.
   std::span<const PreciseVolumes> precise_volumes() const { return precise_volumes_; }  ///< Of each node's children.
 
  private:
   std::shared_ptr<const Tree> tree_;
   std::vector<CastNode> nodes_;
-  std::vector<CastLeaf> leaves_;
-  std::vector<Tree::Child> leaf_children_;
   std::vector<PreciseVolumes> precise_volumes_;
 };
 
