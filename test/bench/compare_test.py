@@ -1,4 +1,4 @@
-"""The verdict of bench/compare on synthetic times: a slowdown is found, noise is not taken for one; the rows it runs."""
+"""bench/compare: the verdict on synthetic times (a slowdown is found, noise is not taken for one), and the rows."""
 
 import importlib.machinery
 import importlib.util

@@ -1,4 +1,4 @@
-"""The table of bench/generate-ratios on made-up rows."""
+"""The table of bench/generate-ratios on synthetic rows."""
 
 import json
 import pathlib
@@ -12,7 +12,8 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench" / "generate-ratio
 
 def row(method, pair, ns, **more):
     name = f"generate/distance/algorithm:{method}/pair:{pair}"
-    return {"name": name, "run_name": name, "run_type": "iteration", "ns_per_configuration": ns, "triangles": 2e4} | more
+    result = {"name": name, "run_name": name, "run_type": "iteration", "ns_per_configuration": ns, "triangles": 2e4}
+    return result | more
 
 
 def ratios(rows):
@@ -23,7 +24,7 @@ def ratios(rows):
 
 
 class Ratios(unittest.TestCase):
-    def test_divides_the_least_of_each(self):
+    def test_divides_the_smallest_of_each(self):
         done = ratios([
             row("raycast", "knot", 25e3), row("raycast", "knot", 20e3),
             row("raycast", "knot", 1.0, run_type="aggregate"),

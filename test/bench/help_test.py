@@ -55,7 +55,8 @@ class Help(unittest.TestCase):
     def test_run_prints_its_help_without_a_build(self):
         (self.folder / "bench").mkdir()
         shutil.copy(BENCH / "run", self.folder / "bench")
-        self.assertEqual(self.succeed([str(self.folder / "bench" / "run"), "-h"]), self.succeed([str(BENCH / "run"), "--help"]))
+        copy = self.folder / "bench" / "run"
+        self.assertEqual(self.succeed([str(copy), "-h"]), self.succeed([str(BENCH / "run"), "--help"]))
         self.assertEqual([path.name for path in self.folder.iterdir()], ["bench"])
 
     def test_compare(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""bench/response-table: its numbers are those of `sixdof quality`, and it says what is wrong instead of printing half a table.
+"""bench/response-table prints the numbers of `sixdof quality`, and a message instead of half a table.
 
 usage: response_table_test.py SIXDOF RESPONSE_TABLE
 """
@@ -37,7 +37,8 @@ def main():
         measures = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)["measures"]
         for name in ("sigma_F", "gamma_F_deg", "leakage"):
             shown = float(rows["II", name][column])
-            assert abs(shown - measures[name]) <= 0.06 * abs(measures[name]), (name_of_column, name, shown, measures[name])
+            value = measures[name]
+            assert abs(shown - value) <= 0.06 * abs(value), (name_of_column, name, shown, value)
 
     missing = table("--program", sixdof + "-is-not-there")
     assert missing.returncode == 1 and "is-not-there" in missing.stderr and not missing.stdout, missing
