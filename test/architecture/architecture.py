@@ -7,13 +7,15 @@ Reads the table of rooms (first column: a folder; a row may use the rows below i
 - an include of a room above, or of a file that does not exist;
 - a folder with code that the table does not name, and a row of the table without code;
 - files that include each other in a circle;
-- with --build, a header that does not compile alone, with the flags in FOLDER/compile_commands.json (files *-inl.h are
-  parts of others and are left out).
+- with --build, a header that does not compile alone. A header that is the first include of a source in
+  FOLDER/compile_commands.json was compiled alone by the build; the others are compiled here with the flags of that file
+  (files *-inl.h are parts of others and are left out).
 Exits with 1 if anything is reported.
 """
 
 import argparse
 import concurrent.futures
+import dataclasses
 import json
 import os
 import pathlib
@@ -31,6 +33,14 @@ EVERYWHERE = "test/"  # tests may use every room, nobody may use tests
 
 class Problem(Exception):
     """The map itself cannot be read."""
+
+
+@dataclasses.dataclass
+class Build:
+    """How headers are compiled: the compiler with its flags, and the sources (relative to the root) the build compiles."""
+
+    command: list
+    sources: set
 
 
 def read_rooms(readme):
@@ -127,11 +137,15 @@ def find_circles(graph):
     return problems
 
 
-def compile_command(root, build):
-    """The build's compiler with every include path and definition that its library and programs are compiled with."""
-    command = []
-    for entry in json.loads((build / "compile_commands.json").read_text()):
+def read_build(root, folder):
+    """The compiler with every include path that the library and the programs are compiled with, and the sources."""
+    commands = folder / "compile_commands.json"
+    if not commands.is_file():
+        raise Problem(f"{commands}: not there; configure with CMAKE_EXPORT_COMPILE_COMMANDS")
+    command, sources = [], set()
+    for entry in json.loads(commands.read_text()):
         file = os.path.relpath(entry["file"], root)
+        sources.add(file)
         if not file.startswith(("lib/", "bench/")):
             continue
         words = shlex.split(entry["command"])
@@ -144,44 +158,47 @@ def compile_command(root, build):
             elif word.startswith("-I") and word not in command:
                 command.append(word)
     if not command:
-        raise Problem(f"{build}/compile_commands.json: no file of lib/ or bench/")
-    return command
+        raise Problem(f"{commands}: no file of lib/ or bench/")
+    return Build(command, sources)
 
 
-def compile_alone(root, header, command, work):
-    """What the compiler says of a header that is all of a source, or None."""
-    stem = re.sub(r"\W", "_", header)
-    source = work / f"{stem}.cpp"
+def compile_alone(root, header, command):
+    """What the compiler says of a source that is nothing but an include of the header, or None."""
     include = f"<{header.removeprefix('lib/')}>" if header.startswith("lib/") else f'"{header}"'
-    text = f"#include {include}\n"
-    if not source.exists() or source.read_text() != text:  # an unchanged file keeps its time, for compiler caches
-        source.write_text(text)
-    words = [*command, f"-I{root / 'lib'}", f"-I{root}", "-c", str(source), "-o", str(work / f"{stem}.o")]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    words = [*command, f"-I{root / 'lib'}", f"-I{root}", "-fsyntax-only", "-xc++", "-"]
+    done = subprocess.run(words, input=f"#include {include}\n", capture_output=True, text=True, check=False)
     if done.returncode == 0:
         return None
     errors = [line for line in done.stderr.splitlines() if "error" in line] or done.stderr.splitlines() or ["no words"]
     return f"{header}: does not compile alone: {errors[0]}"
 
 
-def check_headers(root, files, command, work):
-    """Headers of rooms and programs, each compiled alone."""
+def first_include(root, file):
+    """The file that a source includes first, relative to the root, or None."""
+    for _, quote, name in includes_of(root, file):
+        return resolve(root, file, quote, name)
+    return None
+
+
+def check_headers(root, files, build):
+    """Headers of rooms and programs, each compiled alone: by the build, or else here."""
+    compiled = {first_include(root, file) for file in files if file in build.sources}
     headers = [f for f in files if f.endswith(".h") and not f.endswith("-inl.h") and not f.startswith(EVERYWHERE)]
-    work.mkdir(parents=True, exist_ok=True)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = pool.map(lambda header: compile_alone(root, header, command, work), headers)
+        found = pool.map(lambda header: compile_alone(root, header, build.command),
+                         [header for header in headers if header not in compiled])
         return [problem for problem in found if problem]
 
 
-def check(root, command=None, work=None):
+def check(root, build=None):
     """All problems of a tree, in words."""
     rooms = read_rooms(root / "lib" / "README.md")
     files = code_files(root)
     problems, graph = check_includes(root, rooms, files)
     problems += check_rooms(rooms, files)
     problems += find_circles(graph)
-    if command:
-        problems += check_headers(root, files, command, work)
+    if build:
+        problems += check_headers(root, files, build)
     return problems
 
 
@@ -192,8 +209,7 @@ def main():
     arguments = parser.parse_args()
     root = arguments.root.resolve()
     try:
-        command = compile_command(root, arguments.build) if arguments.build else None
-        problems = check(root, command, arguments.build / "headers" if arguments.build else None)
+        problems = check(root, read_build(root, arguments.build.resolve()) if arguments.build else None)
     except Problem as problem:
         problems = [str(problem)]
     for problem in problems:

@@ -36,8 +36,8 @@ COMPILER = "c++"
 
 
 class Architecture(unittest.TestCase):
-    def check(self, changes, compile_headers=False):
-        """Problems of the sound tree with some files changed (None: removed)."""
+    def check(self, changes, build=None):
+        """Problems of the valid tree with some files changed (None: removed)."""
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
             for name, text in {**TREE, **changes}.items():
@@ -45,16 +45,16 @@ class Architecture(unittest.TestCase):
                     continue
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(text)
-            return architecture.check(root, [COMPILER] if compile_headers else None, root / "work")
+            return architecture.check(root, build)
 
-    def expect(self, changes, *words, compile_headers=False):
-        problems = self.check(changes, compile_headers)
+    def expect(self, changes, *words, build=None):
+        problems = self.check(changes, build)
         self.assertEqual(len(problems), 1, problems)
         for word in words:
             self.assertIn(word, problems[0])
 
     def test_a_tree_without_faults(self):
-        self.assertEqual(self.check({}, compile_headers=True), [])
+        self.assertEqual(self.check({}, architecture.Build([COMPILER], set())), [])
 
     def test_a_room_above(self):
         self.expect({"lib/sixdof/lower/c.h": "#pragma once\n#include <sixdof/upper/d.h>\n",
@@ -83,7 +83,28 @@ class Architecture(unittest.TestCase):
 
     def test_a_header_that_needs_another(self):
         self.expect({"lib/sixdof/upper/c.h": "#pragma once\ninline A none() { return {0}; }\n"},
-                    "lib/sixdof/upper/c.h", "does not compile alone", compile_headers=True)
+                    "lib/sixdof/upper/c.h", "does not compile alone", build=architecture.Build([COMPILER], set()))
+
+    def test_a_header_that_its_source_includes_second(self):
+        self.expect({"lib/sixdof/upper/c.h": "#pragma once\ninline A none() { return {0}; }\n",
+                     "lib/sixdof/upper/c.cpp": "#include <sixdof/lower/a.h>\n#include <sixdof/upper/c.h>\n"},
+                    "lib/sixdof/upper/c.h", "does not compile alone",
+                    build=architecture.Build([COMPILER], {"lib/sixdof/upper/c.cpp"}))
+
+    def test_a_header_whose_source_is_not_built(self):
+        self.expect({"lib/sixdof/upper/c.h": "#pragma once\ninline A none() { return {0}; }\n",
+                     "lib/sixdof/upper/c.cpp": "#include <sixdof/upper/c.h>\n"},
+                    "lib/sixdof/upper/c.h", "does not compile alone", build=architecture.Build([COMPILER], set()))
+
+    def test_a_header_that_the_build_has_compiled_is_not_compiled_again(self):
+        sources = {file for file in TREE if file.endswith(".cpp")} | {"lib/sixdof/lower/a.cpp", "bench/words.cpp"}
+        changes = {"lib/sixdof/lower/a.cpp": "#include <sixdof/lower/a.h>\n",
+                   "bench/words.cpp": '#include "bench/words.h"\n'}
+        self.assertEqual(self.check(changes, architecture.Build(["/no/such/compiler"], sources)), [])
+
+    def test_a_build_without_commands(self):
+        with tempfile.TemporaryDirectory() as folder, self.assertRaises(architecture.Problem):
+            architecture.read_build(pathlib.Path(folder), pathlib.Path(folder))
 
     def test_a_map_without_a_table(self):
         with self.assertRaises(architecture.Problem):
