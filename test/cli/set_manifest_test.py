@@ -51,6 +51,14 @@ def main():
         for words in ("both.h5: is not the file", "volumes.h5: missing", "renamed.h5: not in the manifest"):
             assert words in checked.stderr, checked.stderr
 
+        # Files that are none of ours end in one line that names them.
+        (folder / "foreign.h5").write_text("no set")
+        foreign = manifest()
+        (folder / "manifest.json").write_text('{"sets": [{}]}')
+        damaged = manifest("--check")
+        for done, words in ((foreign, "foreign.h5"), (damaged, "manifest.json")):
+            assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1, done
+
 
 if __name__ == "__main__":
     main()
