@@ -52,11 +52,11 @@ def main():
             assert words in checked.stderr, checked.stderr
 
         # Files that are none of ours end in one line that names them.
-        (folder / "foreign.h5").write_text("no set")
+        file.write_text("no set")
         foreign = manifest()
         (folder / "manifest.json").write_text('{"sets": [{}]}')
         damaged = manifest("--check")
-        for done, words in ((foreign, "foreign.h5"), (damaged, "manifest.json")):
+        for done, words in ((foreign, "both.h5"), (damaged, "manifest.json")):
             assert done.returncode == 1 and words in done.stderr and done.stderr.count("\n") == 1, done
 
 
