@@ -17,14 +17,6 @@
 namespace sixdof::bench {
 namespace {
 
-std::vector<Row> all_rows(const Resources& resources) {
-  std::vector<Row> rows;
-  for (const auto family : {prepare_rows, query_rows, scenario_rows, kernel_rows, generate_rows}) {
-    std::ranges::move(family(resources), std::back_inserter(rows));
-  }
-  return rows;
-}
-
 void run(const Options& options) {
   Registry registry;
   register_all_algorithms(registry);
@@ -43,10 +35,13 @@ void run(const Options& options) {
                             .cache = cache,
                             .seed = options.seed};
 
-  std::vector<Row> rows = all_rows(resources);
+  std::vector<Row> rows;
+  for (const auto family : {prepare_rows, query_rows, scenario_rows, kernel_rows, generate_rows}) {
+    std::ranges::move(family(resources), std::back_inserter(rows));
+  }
   if (!options.suite.empty()) {
-    const Suite suite = Suite::read(options.suite, external);
-    std::erase_if(rows, [&](const Row& row) { return !suite.contains(row.name); });
+    const Suite suite = read_suite(options.suite, external);
+    std::erase_if(rows, [&](const Row& row) { return !suite(row.name); });
   }
   run_rows(rows, options, resources);
 }

@@ -1,4 +1,4 @@
-#include "bench/cli/algorithms.h"
+#include "bench/cli/commands.h"
 
 #include <memory>
 #include <string>
@@ -8,22 +8,14 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/common/all_algorithms.h"
-#include "bench/common/examples.h"
+#include "bench/cli/shared.h"
 
 namespace sixdof::cli {
 namespace {
 
-std::string_view to_string(ResponseLaw law) {
-  switch (law) {
-    case ResponseLaw::none:
-      return "none";
-    case ResponseLaw::depth:
-      return "depth";
-    case ResponseLaw::volume:
-      return "volume";
-  }
-  return "unknown";
+const char* to_string(ResponseLaw law) {
+  constexpr const char* k_laws[] = {"none", "depth", "volume"};
+  return k_laws[static_cast<std::size_t>(law)];
 }
 
 std::vector<std::string> names_of(const QuerySet& answers) {

@@ -1,6 +1,7 @@
 #include "bench/cli/commands.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,17 +13,7 @@
 
 #include <sixdof/models/suggestions.h>
 
-#include "bench/cli/algorithms.h"
-#include "bench/cli/generate.h"
-#include "bench/cli/info.h"
-#include "bench/cli/merge.h"
-#include "bench/cli/models.h"
-#include "bench/cli/quality.h"
-#include "bench/cli/query.h"
-#include "bench/cli/show.h"
-#include "bench/cli/table.h"
-#include "bench/cli/verify.h"
-#include "bench/common/examples.h"
+#include "bench/cli/shared.h"
 #include "bench/common/run_guarded.h"
 
 namespace sixdof::cli {
@@ -38,20 +29,6 @@ constexpr const char* k_first_steps =
   sixdof generate --help   how to make a configuration set, which sixdof-bench runs on
   sixdof --help            all commands
 )";
-
-void add_commands(CLI::App& app) {
-  add_models_command(app);
-  add_info_command(app);
-  add_algorithms_command(app);
-  add_query_command(app);
-  add_show_command(app);
-  add_quality_command(app);
-  add_generate_command(app);
-  add_merge_command(app);
-  add_verify_command(app);
-  add_table_command(app);
-  add_examples(app, "sixdof models list", k_first_query);
-}
 
 /// "sixdof models make".
 std::string full_name(const CLI::App& command) {
@@ -89,30 +66,24 @@ std::string nearest(const std::string& word, const std::vector<std::string>& nam
   return found == names.end() ? std::string() : *found;
 }
 
-/// "no such option; did you mean --grid?"
-std::string no_such(const char* what, const std::string& word, const std::vector<std::string>& names,
-                    const std::string& prefix, const std::string& command) {
-  const std::string meant = nearest(word, names);
-  if (meant.empty()) return fmt::format("no such {} ({} --help lists them)", what, command);
-  return fmt::format("no such {}; did you mean {}{}?", what, prefix, meant);
-}
-
+/// "--gird: no such option; did you mean --grid?"
 std::string explain(const UnknownWord& unknown) {
   const auto& [command, word] = unknown;
   const std::string name = full_name(command);
+  const bool is_option = word.starts_with('-');
   std::vector<std::string> names;
-  if (word.starts_with('-')) {
-    for (const CLI::Option* option : command.get_options()) {
-      const auto& long_names = option->get_lnames();
-      names.insert(names.end(), long_names.begin(), long_names.end());
-    }
-    const std::string option = word.substr(0, word.find('='));
-    const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
-    return fmt::format("{}: {}", option, no_such("option", bare, names, "--", name));
+  for (const CLI::Option* option : command.get_options()) {
+    if (is_option) std::ranges::copy(option->get_lnames(), std::back_inserter(names));
   }
-  for (const CLI::App* each : command.get_subcommands({})) names.push_back(each->get_name());
-  if (names.empty()) return fmt::format("{}: unexpected argument ({} --help)", word, name);
-  return fmt::format("{}: {}", word, no_such("command", word, names, "", name));
+  for (const CLI::App* each : command.get_subcommands({})) {
+    if (!is_option) names.push_back(each->get_name());
+  }
+  if (!is_option && names.empty()) return fmt::format("{}: unexpected argument ({} --help)", word, name);
+  const std::string typed = is_option ? word.substr(0, word.find('=')) : word;
+  const std::string meant = nearest(typed.substr(std::min(typed.find_first_not_of('-'), typed.size())), names);
+  const std::string hint = meant.empty() ? fmt::format(" ({} --help lists them)", name)
+                                         : fmt::format("; did you mean {}{}?", is_option ? "--" : "", meant);
+  return fmt::format("{}: no such {}{}", typed, is_option ? "option" : "command", hint);
 }
 
 }  // namespace
@@ -125,7 +96,12 @@ int run(int argc, const char* const* argv) {
   CLI::App app("sixdof: speed and correctness of collision queries in six degrees of freedom", "sixdof");
   app.set_version_flag("--version", std::string("sixdof ") + SIXDOF_VERSION);
   app.require_subcommand(1);
-  add_commands(app);
+  for (const auto add :
+       {add_models_command, add_info_command, add_algorithms_command, add_query_command, add_show_command,
+        add_quality_command, add_generate_command, add_merge_command, add_verify_command, add_table_command}) {
+    add(app);
+  }
+  add_examples(app, "sixdof models list", k_first_query);
   try {
     return run_guarded("sixdof", [&] { app.parse(argc, argv); });
   } catch (const CLI::Success& e) {

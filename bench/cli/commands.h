@@ -1,9 +1,45 @@
 #pragma once
 
+#include <string>
+
+#include <CLI/App.hpp>
+
 namespace sixdof::cli {
 
 /// The program `sixdof`: parses the command line and runs one command. @returns the exit code (common/run_guarded.h);
 /// without arguments it prints what to do first on stderr and returns k_exit_usage, since no command was given
 int run(int argc, const char* const* argv);
+
+/// `sixdof models list [--json]`: every model with its triangle counts and size, and whether a fetched one is here.
+/// `sixdof models make NAME [--triangles N] -o FILE`: writes a model to a mesh file, which appears whole or not at all.
+void add_models_command(CLI::App& app);
+/// `sixdof info FILE_OR_NAME [--json]`: what a configuration set, a mesh file or a model holds.
+void add_info_command(CLI::App& app);
+/// `sixdof algorithms [--json]`: what every algorithm of this build answers, its law, version and parameters, and
+/// whether benchmarks time it.
+void add_algorithms_command(CLI::App& app);
+/// `sixdof query --a MESH --b MESH --pose POSE [--algorithm NAME] [--json]`: the answers of one algorithm at one pose.
+void add_query_command(CLI::App& app);
+/// `sixdof show --algorithm NAME --model M -o FILE.ply`: what `ist`, `vps` or `vps-field` prepares of a mesh, as a
+/// coloured PLY (structure_drawing.h defines the colours).
+void add_show_command(CLI::App& app);
+/// `sixdof quality --scenario II --algorithm NAME`: the response of one algorithm along one scenario against the ideal,
+/// as measures (text or JSON) and as a series (HDF5); `--draw FILE.svg` draws the scenario instead.
+void add_quality_command(CLI::App& app);
+/// `sixdof generate --a A [--b B] --grid GRID [--distances LIST] [--volumes LIST] -o FILE`: makes a configuration set.
+/// With `--shards N [--shard I] -o FOLDER` in parts; with `--plan` it only prints what would be made and at what cost.
+void add_generate_command(CLI::App& app);
+/// `sixdof merge DIR -o FILE`: one configuration set of the shards in a folder.
+void add_merge_command(CLI::App& app);
+/// `sixdof verify FILE [--sample N] [--seed S] [--oracle NAME]`: measures a sample of every bucket of a configuration
+/// set again and prints a table; fails if anything is wrong.
+void add_verify_command(CLI::App& app);
+/// `sixdof table FILE.json`: the results of sixdof-bench as one table per pair and kind of bucket.
+void add_table_command(CLI::App& app);
+
+/// The tables from the text of a result file: one line per kind of query and algorithm, one column per bucket. Times
+/// are in microseconds. '!' marks a row with wrong answers, '?' one with queries that failed.
+/// @param file named in messages. @throws BadFile if the text is no result file
+std::string results_table(const std::string& text, const std::string& file);
 
 }  // namespace sixdof::cli

@@ -1,8 +1,6 @@
 #include "bench/cli/generate.h"
 
 #include <charconv>
-#include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -11,17 +9,12 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/configuration/generation_job.h>
-#include <sixdof/configuration/set_description.h>
-#include <sixdof/generation/distance_generator.h>
 #include <sixdof/generation/ray_cast.h>
 #include <sixdof/generation/sphere_method.h>
 #include <sixdof/models/model_catalogue.h>
-#include "bench/cli/generate_plan.h"
-#include "bench/cli/generate_shards.h"
-#include "bench/common/all_algorithms.h"
+#include "bench/cli/commands.h"
+#include "bench/cli/shared.h"
 #include "bench/common/build_info.h"
-#include "bench/common/examples.h"
 
 namespace sixdof::cli {
 namespace {
@@ -123,13 +116,10 @@ void generate(const Arguments& arguments) {
                             .progress = arguments.progress};
   if (arguments.plan) {
     if (arguments.shards != 0) check_shard_number({.number = 1, .count = arguments.shards}, set, job);
-    return print_estimate(work,
-                          {.shards = arguments.shards, .seconds = arguments.plan_seconds, .seed = arguments.seed});
+    return print_estimate(work, arguments.shards, arguments.plan_seconds, arguments.seed);
   }
   if (arguments.shards == 0) return generate_set(work, arguments.output);
-  generate_shards(
-      work,
-      {.folder = arguments.output, .count = arguments.shards, .only = arguments.shard, .resume = arguments.resume});
+  generate_shards(work, arguments.output, {.number = arguments.shard, .count = arguments.shards}, arguments.resume);
 }
 
 }  // namespace

@@ -1,11 +1,46 @@
 #pragma once
 
-#include <CLI/App.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+#include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/generation_job.h>
+#include <sixdof/generation/distance_generator.h>
+#include <sixdof/geometry/mesh.h>
+
+/// What `sixdof generate` does: plan a set (generate_plan.cpp) or make it (generate_shards.cpp).
 
 namespace sixdof::cli {
 
-/// `sixdof generate --a A [--b B] --grid GRID [--distances LIST] [--volumes LIST] -o FILE`: makes a configuration set.
-/// With `--shards N [--shard I] -o FOLDER` in parts; with `--plan` it only prints what would be made and at what cost.
-void add_generate_command(CLI::App& app);
+/// A job, and what it takes to do it.
+struct GenerationWork {
+  const DistanceGenerator& generator;
+  const Mesh& a;
+  const Mesh& b;
+  const SetDescription& set;
+  const GenerationJob& job;
+  unsigned threads = 0;   ///< 0: as many as the machine has.
+  bool progress = false;  ///< Show it where stderr is not a terminal, too.
+};
+
+/// Prints the size of a set: grids, distinct rotations, buckets, configurations, bytes.
+/// @param distances, volumes numbers of buckets
+void print_counts(const SetDescription& set, std::size_t distances, std::size_t volumes);
+
+/// Times a seeded sample of the job's rays. Prints the estimated processor time, time and memory of the job, and the
+/// sample's median, p99 and greatest processor time of a ray and its unreachable configurations.
+/// @param shards 0 for a whole set in one process
+/// @param seconds wall time for the sample
+void print_estimate(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed);
+
+/// Makes the whole set in memory, writes it to `output` and prints a summary.
+void generate_set(const GenerationWork& work, const std::filesystem::path& output);
+
+/// Makes shards in a folder, which is made if missing, and prints a summary.
+/// @param shards how many, and the number of the one to make; 0: all
+/// @param resume keep valid shards that are there; replace damaged ones, remove stale temporary files
+/// @throws BadArgument for a shard of another job; BadFile, without `resume`, for any shard that is there
+void generate_shards(const GenerationWork& work, const std::filesystem::path& folder, ShardNumber shards, bool resume);
 
 }  // namespace sixdof::cli

@@ -1,10 +1,10 @@
-#include "bench/cli/generate_plan.h"
+#include "bench/cli/generate.h"
 
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -31,49 +31,38 @@ double peak_bytes() {
 /// The buckets of one kind, and what they were measured to cost.
 struct Kind {
   BucketKind kind;
-  std::vector<double> targets;  ///< In the order in which a ray meets them.
-  std::size_t directions = 0, rotations = 0, distinct = 0;
-  double prepare_s = 0.0;     ///< Wall time.
-  double solver_bytes = 0.0;  ///< Of each thread beyond the first.
-  WorkCost cost;
+  const Grid& grid;
+  std::size_t distinct = DistinctRotations(grid.rotations).first.size();
+  std::vector<double> targets = {};  ///< In the order in which a ray meets them.
+  double prepare_s = 0.0;            ///< Wall time.
+  double solver_bytes = 0.0;         ///< Of each thread beyond the first.
+  WorkCost cost = {};
 
-  double configurations() const { return static_cast<double>(distinct * directions * targets.size()); }
-  double cpu_s() const { return cost.total_s(distinct, directions); }
+  double configurations() const { return static_cast<double>(distinct * grid.directions.size() * targets.size()); }
+  double cpu_s() const { return cost.total_s(distinct, grid.directions.size()); }
 };
 
-Kind describe(const GenerationWork& work, BucketKind which) {
-  const Grid& grid = work.set.grid_of(which);
-  Kind kind{.kind = which,
-            .targets = {},
-            .directions = grid.directions.size(),
-            .rotations = grid.rotations.size(),
-            .distinct = DistinctRotations(grid.rotations).first.size(),
-            .cost = {}};
+/// Samples the rays of one kind for `seconds`.
+Kind measure(const GenerationWork& work, BucketKind which, double seconds, std::uint64_t seed) {
+  Kind kind{.kind = which, .grid = work.set.grid_of(which)};
   for (const BucketSummary& bucket : work.job.buckets) {
     if (bucket.key.kind == which) kind.targets.push_back(bucket.target);
   }
   // The job has them ascending; a ray comes from far.
   if (which == BucketKind::distance) std::ranges::reverse(kind.targets);
-  return kind;
-}
-
-/// Fills in the costs.
-void measure(const GenerationWork& work, const EstimateRequest& request, double seconds, Kind& kind) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  std::optional<VolumeGenerator> volumes;
-  if (kind.kind == BucketKind::volume) volumes.emplace(work.generator, work.a, work.b);
-  const auto prepare = [&] { return volumes ? volumes->prepare() : work.generator.prepare(work.a, work.b); };
+  std::function<std::unique_ptr<RaySolver>()> prepare = [&] { return work.generator.prepare(work.a, work.b); };
+  if (which == BucketKind::volume) prepare = volume_solvers(work.generator, work.a, work.b);
   const auto solver = prepare();
   kind.prepare_s = std::chrono::duration<double>(Clock::now() - start).count();
-  RunOptions run;
-  run.cancelled = InterruptGuard::requested;
-  kind.cost = sample_work(*solver, work.set.grid_of(kind.kind), kind.targets, seconds, request.seed, run);
+  kind.cost = sample_work(*solver, kind.grid, kind.targets, seconds, seed, {.cancelled = InterruptGuard::requested});
   // Every further thread adds the memory of a second solver that has solved a ray.
   const double before = peak_bytes();
   const auto second = prepare();
-  sample_work(*second, work.set.grid_of(kind.kind), kind.targets, 0.0, request.seed);
+  sample_work(*second, kind.grid, kind.targets, 0.0, seed);
   kind.solver_bytes = std::max(0.0, peak_bytes() - before);
+  return kind;
 }
 
 void print_line(const std::string& what, const std::string& text) { fmt::print("{:<26} {}\n", what, text); }
@@ -111,38 +100,37 @@ void print_counts(const SetDescription& set, std::size_t distances, std::size_t 
   print_line("bytes of the set", fmt::format("{} before compression", all * sizeof(double)));
 }
 
-void print_estimate(const GenerationWork& work, const EstimateRequest& request) {
+void print_estimate(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed) {
   const InterruptGuard interruptible;
+  const bool both = work.job.has(BucketKind::distance) && work.job.has(BucketKind::volume);
   std::vector<Kind> kinds;
   for (const BucketKind kind : {BucketKind::distance, BucketKind::volume}) {
-    if (work.job.has(kind)) kinds.push_back(describe(work, kind));
+    if (work.job.has(kind)) kinds.push_back(measure(work, kind, seconds / (both ? 2.0 : 1.0), seed));
   }
-  for (Kind& kind : kinds) measure(work, request, request.seconds / static_cast<double>(kinds.size()), kind);
-
   double cpu_s = 0.0, prepare_s = 0.0, solver_bytes = 0.0, rows_bytes = 0.0, bucket_bytes = 0.0;
   for (const Kind& kind : kinds) {
     cpu_s += kind.cpu_s();
     prepare_s += kind.prepare_s;
     solver_bytes = std::max(solver_bytes, kind.solver_bytes);
     rows_bytes += sizeof(double) * kind.configurations();
-    bucket_bytes = std::max(bucket_bytes, static_cast<double>(sizeof(double) * kind.rotations * kind.directions));
-    print_cost(kind, request.seed);
+    bucket_bytes = std::max(bucket_bytes, static_cast<double>(sizeof(double) * kind.grid.configurations()));
+    print_cost(kind, seed);
   }
   const unsigned threads = work.threads != 0 ? work.threads : std::max(1u, std::thread::hardware_concurrency());
-  const double shards = static_cast<double>(std::max<std::size_t>(1, request.shards));
-  const double shard_s = prepare_s + cpu_s / shards / threads;
-  print_line("time", fmt::format("{} with {} threads{}", as_clock(prepare_s * shards + cpu_s / threads), threads,
-                                 request.shards == 0 ? "" : ", all shards in sequence"));
-  if (request.shards != 0) {
+  const auto parts = static_cast<double>(std::max<std::size_t>(1, shards));
+  const double shard_s = prepare_s + cpu_s / parts / threads;
+  print_line("time", fmt::format("{} with {} threads{}", as_clock(prepare_s * parts + cpu_s / threads), threads,
+                                 shards == 0 ? "" : ", all shards in sequence"));
+  if (shards != 0) {
     print_line("time of one shard", fmt::format("{:.1f} s, of which {:.2f} s preparation", shard_s, prepare_s));
   }
   // Without shards all rows stay in memory until the buckets are put together.
-  const double values = request.shards == 0 ? rows_bytes + bucket_bytes : rows_bytes / shards;
+  const double values = shards == 0 ? rows_bytes + bucket_bytes : rows_bytes / parts;
   print_line("memory of a process",
              fmt::format("{:.0f} MiB, of which values {:.0f} MiB",
                          (peak_bytes() + (threads - 1) * solver_bytes + values) / k_mebibyte, values / k_mebibyte));
-  if (request.shards != 0) {
-    print_line("files", fmt::format("{} shards of {:.1f} MiB before compression", request.shards, values / k_mebibyte));
+  if (shards != 0) {
+    print_line("files", fmt::format("{} shards of {:.1f} MiB before compression", shards, values / k_mebibyte));
   }
 }
 

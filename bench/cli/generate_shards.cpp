@@ -1,7 +1,9 @@
-#include "bench/cli/generate_shards.h"
+#include "bench/cli/generate.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <span>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -11,16 +13,92 @@
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
 #include <sixdof/configuration/shard_file.h>
-#include <sixdof/configuration/shard_merge.h>
 #include <sixdof/generation/shard_generator.h>
-#include "bench/cli/generation_progress.h"
 #include "bench/common/interrupt.h"
+#include "bench/common/progress_line.h"
 #include "bench/common/run_guarded.h"
 
 namespace sixdof::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::array k_kinds{BucketKind::distance, BucketKind::volume};
+
+std::size_t index(BucketKind kind) { return static_cast<std::size_t>(kind); }
+
+/// The status line of a run that makes shards: configurations of each kind, their rate, and the time left. Distances
+/// and volumes have rates of their own.
+class GenerationProgress {
+ public:
+  /// @param shards those that will be made, in this order
+  GenerationProgress(const GenerationWork& work, std::span<const ShardNumber> shards) : line_(work.progress) {
+    for (const BucketKind kind : k_kinds) {
+      const auto buckets = static_cast<std::uint64_t>(
+          std::ranges::count(work.job.buckets, kind, [](const BucketSummary& bucket) { return bucket.key.kind; }));
+      const Grid& grid = work.set.grid_of(kind);
+      const DistinctRotations distinct(grid.rotations);
+      for (const ShardNumber shard : shards) {
+        kinds_[index(kind)].of_shard.push_back(buckets * rotations_of(shard, distinct).size() * grid.directions.size());
+        kinds_[index(kind)].total += kinds_[index(kind)].of_shard.back();
+      }
+    }
+  }
+
+  /// @param done configurations of the current shard, distances before volumes
+  void show(std::uint64_t done) {
+    const std::uint64_t step = done - done_in_shard_;
+    // A call without a step comes when a kind begins.
+    const std::uint64_t configuration = step == 0 ? done : done - 1;
+    const bool distance = configuration < kinds_[index(BucketKind::distance)].of_shard[shard_];
+    Kind& current = kinds_[index(distance ? BucketKind::distance : BucketKind::volume)];
+    const Clock::time_point now = Clock::now();
+    current.seconds += std::chrono::duration<double>(now - last_).count();
+    current.done += step;
+    done_in_shard_ = done;
+    last_ = now;
+    if (!line_.due()) return;
+
+    std::string text;
+    double left = 0.0;
+    std::string untimed;
+    for (const BucketKind each : k_kinds) {
+      const Kind& k = kinds_[index(each)];
+      if (k.total == 0) continue;
+      text += fmt::format("{}s {}/{} ({} %), ", to_string(each), k.done, k.total, 100 * k.done / k.total);
+      if (k.done > 0) {
+        left += k.seconds * static_cast<double>(k.total - k.done) / static_cast<double>(k.done);
+      } else {
+        untimed += fmt::format(" and the {}s", to_string(each));
+      }
+    }
+    if (current.done > 0 && current.seconds > 0.0) {
+      text += fmt::format("{:.1f}/s, ", static_cast<double>(current.done) / current.seconds);
+    }
+    text += left > 0.0 ? fmt::format("{}{} left", as_clock(left), untimed) : "not timed yet";
+    line_.show(text);
+  }
+
+  void shard_done() {
+    ++shard_;
+    done_in_shard_ = 0;
+  }
+
+ private:
+  /// Configurations of one kind of bucket.
+  struct Kind {
+    std::vector<std::uint64_t> of_shard;
+    std::uint64_t total = 0;
+    std::uint64_t done = 0;
+    double seconds = 0.0;
+  };
+
+  StatusLine line_;
+  std::array<Kind, 2> kinds_;  ///< By BucketKind.
+  std::size_t shard_ = 0;
+  std::uint64_t done_in_shard_ = 0;
+  Clock::time_point last_ = Clock::now();
+};
 
 std::string seconds_since(Clock::time_point start) {
   return as_clock(std::chrono::duration<double>(Clock::now() - start).count());
@@ -60,15 +138,16 @@ bool is_valid(const GenerationWork& work, ShardNumber shard, const std::filesyst
 }
 
 /// The shards that are asked for and not there, or damaged.
-std::vector<ShardNumber> missing_shards(const GenerationWork& work, const ShardRequest& request) {
+std::vector<ShardNumber> missing_shards(const GenerationWork& work, const std::filesystem::path& folder,
+                                        ShardNumber shards, bool resume) {
   std::vector<ShardNumber> missing;
-  for (std::size_t number = 1; number <= request.count; ++number) {
-    const ShardNumber shard{.number = number, .count = request.count};
-    if (request.only != 0 && number != request.only) continue;
-    const auto path = request.folder / shard_file_name(shard);
-    if (request.resume) remove_stale_partials(path);
+  for (std::size_t number = 1; number <= shards.count; ++number) {
+    const ShardNumber shard{.number = number, .count = shards.count};
+    if (shards.number != 0 && number != shards.number) continue;
+    const auto path = folder / shard_file_name(shard);
+    if (resume) remove_stale_partials(path);
     const bool there = std::filesystem::exists(path);
-    if (there && !request.resume) {
+    if (there && !resume) {
       throw BadFile(path.string(), "is there already (--resume keeps valid shards)");
     }
     if (!there || !is_valid(work, shard, path)) missing.push_back(shard);
@@ -85,16 +164,14 @@ void generate_set(const GenerationWork& work, const std::filesystem::path& outpu
   constexpr ShardNumber k_whole{};
   Generated values;
   {
-    GenerationProgress progress(work.job, work.set, {&k_whole, 1}, work.progress);
+    GenerationProgress progress(work, {&k_whole, 1});
     values = generate_one(work, k_whole, progress);
   }
   const auto take = [&](ShardNumber, BucketKey key) {
     const auto of_key = [](const Bucket& bucket) { return bucket.summary.key; };
     return std::move(*std::ranges::find(values.buckets, key, of_key));
   };
-  RunOptions run;
-  run.cancelled = InterruptGuard::requested;
-  assemble_set(output, work.job, work.set, k_whole.count, take, run);
+  assemble_set(output, work.job, work.set, k_whole.count, take, {.cancelled = InterruptGuard::requested});
   std::size_t configurations = 0;
   for (const BucketSummary& bucket : work.job.buckets) {
     configurations += work.set.grid_of(bucket.key.kind).configurations();
@@ -104,23 +181,23 @@ void generate_set(const GenerationWork& work, const std::filesystem::path& outpu
              work.job.oracle_version);
 }
 
-void generate_shards(const GenerationWork& work, const ShardRequest& request) {
-  check_shard_number({.number = request.only == 0 ? 1 : request.only, .count = request.count}, work.set, work.job);
+void generate_shards(const GenerationWork& work, const std::filesystem::path& folder, ShardNumber shards, bool resume) {
+  check_shard_number({.number = shards.number == 0 ? 1 : shards.number, .count = shards.count}, work.set, work.job);
   const InterruptGuard interruptible;
-  make_folder(request.folder);
-  const AtomicFile writable(request.folder / shard_file_name({.number = 1, .count = request.count}));
+  make_folder(folder);
+  const AtomicFile writable(folder / shard_file_name({.number = 1, .count = shards.count}));
   const auto start = Clock::now();
-  const std::vector<ShardNumber> missing = missing_shards(work, request);
-  GenerationProgress progress(work.job, work.set, missing, work.progress);
+  const std::vector<ShardNumber> missing = missing_shards(work, folder, shards, resume);
+  GenerationProgress progress(work, missing);
   for (const ShardNumber shard : missing) {
     const Generated values = generate_one(work, shard, progress);
     InterruptGuard::check();
-    write_shard(request.folder / shard_file_name(shard), work.job, work.set, shard, values.buckets);
+    write_shard(folder / shard_file_name(shard), work.job, work.set, shard, values.buckets);
   }
-  const std::size_t asked = request.only == 0 ? request.count : 1;
+  const std::size_t asked = shards.number == 0 ? shards.count : 1;
   fmt::print("{}: {} of {} shards of {} with {} made in {}, {} kept; merge all {}: sixdof merge {} -o SET\n",
-             request.folder.string(), missing.size(), asked, work.a.name(), work.b.name(), seconds_since(start),
-             asked - missing.size(), request.count, request.folder.string());
+             folder.string(), missing.size(), asked, work.a.name(), work.b.name(), seconds_since(start),
+             asked - missing.size(), shards.count, folder.string());
 }
 
 }  // namespace sixdof::cli

@@ -1,15 +1,166 @@
-#include "bench/cli/info.h"
+#include "bench/cli/commands.h"
 
 #include <memory>
 #include <string>
 
-#include <sixdof/configuration/configuration_set.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "bench/cli/info_mesh.h"
-#include "bench/cli/set_info.h"
-#include "bench/common/examples.h"
+#include <sixdof/configuration/configuration_set.h>
+#include <sixdof/models/model_catalogue.h>
+#include "bench/cli/shared.h"
 
 namespace sixdof::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json as_json(const FileRepairs& repairs) { return {{"count", repairs.count}, {"first_place", repairs.first_place}}; }
+
+Json as_json(const Mesh& mesh) {
+  const MeshTopology& topology = mesh.topology();
+  const MeshRepairs& repairs = mesh.repairs();
+  return {{"kind", "mesh"},
+          {"name", mesh.name()},
+          {"triangles", mesh.triangles().size()},
+          {"vertices", mesh.vertices().size()},
+          {"edges", topology.edges},
+          {"solid", mesh.solid()},
+          {"closed", topology.closed},
+          {"manifold", topology.manifold},
+          {"oriented", topology.oriented},
+          {"border_edges", topology.border_edges},
+          {"nonmanifold_edges", topology.nonmanifold_edges},
+          {"nonmanifold_vertices", topology.nonmanifold_vertices},
+          {"misoriented_edges", topology.misoriented_edges},
+          {"components", topology.components},
+          {"euler_characteristic", topology.euler_characteristic},
+          {"volume", mesh.volume()},
+          {"area", mesh.area()},
+          {"centroid", coordinates(mesh.centroid())},
+          {"box", {{"min", coordinates(mesh.box().min())}, {"max", coordinates(mesh.box().max())}}},
+          {"diagonal", mesh.diagonal()},
+          {"hash", mesh.hash()},
+          {"repairs",
+           {{"crossing_polygons", as_json(repairs.crossing_polygons)},
+            {"nonplanar_polygons", as_json(repairs.nonplanar_polygons)},
+            {"skipped_statements", as_json(repairs.skipped_statements)},
+            {"welded_vertices", repairs.welded_vertices},
+            {"unreferenced_vertices", repairs.unreferenced_vertices},
+            {"collapsed_triangles", repairs.collapsed_triangles},
+            {"zero_area_triangles", repairs.zero_area_triangles.size()}}}};
+}
+
+std::string as_text(const Eigen::Vector3d& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x(), p.y(), p.z()); }
+
+const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
+
+void print_text(const Mesh& mesh) {
+  const MeshTopology& topology = mesh.topology();
+  const MeshRepairs& repairs = mesh.repairs();
+  const auto row = [](const char* label, const std::string& value) { fmt::print("{:<12} {}\n", label, value); };
+  row("name", mesh.name());
+  row("triangles", fmt::format("{}", mesh.triangles().size()));
+  row("vertices", fmt::format("{}", mesh.vertices().size()));
+  row("edges", fmt::format("{}", topology.edges));
+  row("solid", mesh.solid() ? "yes" : "no: " + mesh.why_not_solid());
+  row("closed", fmt::format("{} ({} border edges)", yes_or_no(topology.closed), topology.border_edges));
+  row("manifold", fmt::format("{} ({} bad edges, {} bad vertices)", yes_or_no(topology.manifold),
+                              topology.nonmanifold_edges, topology.nonmanifold_vertices));
+  row("oriented", fmt::format("{} ({} bad edges)", yes_or_no(topology.oriented), topology.misoriented_edges));
+  row("components", fmt::format("{}", topology.components));
+  row("Euler number", fmt::format("{}", topology.euler_characteristic));
+  row("volume", fmt::format("{:.9g}", mesh.volume()));
+  row("area", fmt::format("{:.9g}", mesh.area()));
+  row("centroid", as_text(mesh.centroid()));
+  row("box", fmt::format("{} .. {}", as_text(mesh.box().min()), as_text(mesh.box().max())));
+  row("diagonal", fmt::format("{:.9g}", mesh.diagonal()));
+  row("hash", mesh.hash());
+  row("repairs",
+      fmt::format("{} vertices welded, {} unused dropped; {} collapsed triangles dropped, {} of zero area kept",
+                  repairs.welded_vertices, repairs.unreferenced_vertices, repairs.collapsed_triangles,
+                  repairs.zero_area_triangles.size()));
+  const auto file_row = [&](const FileRepairs& of_kind, const char* what) {
+    if (of_kind.count > 0) row("", fmt::format("{}: {}, the first at {}", what, of_kind.count, of_kind.first_place));
+  };
+  file_row(repairs.crossing_polygons, "polygons that cross themselves, triangulated");
+  file_row(repairs.nonplanar_polygons, "polygons that are not flat, triangulated");
+  file_row(repairs.skipped_statements, "unknown statements skipped");
+}
+
+Json as_json(const MeshIdentity& mesh) {
+  return {{"name", mesh.name},
+          {"content_hash", mesh.hash},
+          {"triangles", mesh.triangles},
+          {"box_min", coordinates(mesh.box_min)},
+          {"box_max", coordinates(mesh.box_max)},
+          {"volume", mesh.volume}};
+}
+
+Json as_json(const ConfigurationSet& set) {
+  const SetDescription& d = set.description();
+  Json json = {{"file", set.path().string()},
+               {"content_hash", set.hash()},
+               {"generator_version", d.generator_version},
+               {"grid", d.grid.spec},
+               {"sampler", d.grid.sampler},
+               {"directions", d.grid.directions.size()},
+               {"rotations", d.grid.rotations.size()},
+               {"configurations_per_bucket", d.grid.configurations()},
+               {"a", as_json(d.a)},
+               {"b", as_json(d.b)}};
+  if (d.volume_grid) {
+    json["volume_grid"] = {{"grid", d.volume_grid->spec},
+                           {"directions", d.volume_grid->directions.size()},
+                           {"rotations", d.volume_grid->rotations.size()},
+                           {"configurations_per_bucket", d.volume_grid->configurations()}};
+  }
+  auto buckets = Json::array();
+  for (const BucketSummary& bucket : set.buckets()) {
+    buckets.push_back({{"bucket", bucket.key.name()},
+                       {"nominal", bucket.nominal},
+                       {"target", bucket.target},
+                       {"tolerance", bucket.tolerance},
+                       {"largest_residual", bucket.largest_residual},
+                       {"reachable", bucket.reachable},
+                       {"oracle", bucket.oracle},
+                       {"oracle_version", bucket.oracle_version},
+                       {"content_hash", bucket.hash}});
+  }
+  json["buckets"] = std::move(buckets);
+  return json;
+}
+
+void print_grid(const char* label, const Grid& grid) {
+  fmt::print("{:<18} {} ({}): {} directions x {} rotations = {} configurations per bucket\n", label, grid.spec,
+             grid.sampler, grid.directions.size(), grid.rotations.size(), grid.configurations());
+}
+
+void print_text(const ConfigurationSet& set) {
+  const SetDescription& d = set.description();
+  fmt::print("configuration set  {}\n", set.path().string());
+  fmt::print("content hash       {}\n", set.hash());
+  fmt::print("made by            sixdof {}\n", d.generator_version);
+  for (const auto& [label, mesh] : {std::pair("A (fixed)", &d.a), std::pair("B (moving)", &d.b)}) {
+    fmt::print("{:<18} {}: {} triangles, box diagonal {:.6g}, volume {:.6g}, content hash {}\n", label, mesh->name,
+               mesh->triangles, mesh->diagonal(), mesh->volume, mesh->hash);
+  }
+  print_grid(d.volume_grid ? "grid of distances" : "grid", d.grid);
+  if (d.volume_grid) print_grid("grid of volumes", *d.volume_grid);
+  fmt::print("\n{:<13} {:>14} {:>10} {:>14} {:>10}  {}\n", "bucket", "nominal", "tolerance", "largest resid.",
+             "reachable", "oracle");
+  for (const BucketSummary& bucket : set.buckets()) {
+    fmt::print("{:<13} {:>14.6g} {:>10.1e} {:>14.1e} {:>10}  {} {}\n", bucket.key.name(), bucket.nominal,
+               bucket.tolerance, bucket.largest_residual, bucket.reachable, bucket.oracle, bucket.oracle_version);
+  }
+}
+
+/// Lengths are in the meshes' own unit and frame; numbers in JSON have up to 17 significant digits.
+void print(const auto& content, bool json) {
+  json ? fmt::print("{}\n", as_json(content).dump(2)) : print_text(content);
+}
+
+}  // namespace
 
 void add_info_command(CLI::App& app) {
   auto* const command = app.add_subcommand("info", "Print what a mesh or a configuration set holds");
@@ -18,7 +169,7 @@ void add_info_command(CLI::App& app) {
   command->add_option("file", *name, "File, or name of a model (sixdof models list)")->required();
   command->add_flag("--json", *json, "As JSON");
   command->callback([name, json] {
-    looks_like_configuration_set(*name) ? print_set_info(*name, *json) : print_mesh_info(*name, *json);
+    looks_like_configuration_set(*name) ? print(ConfigurationSet(*name), *json) : print(load_model(*name), *json);
   });
   add_examples(*command, "sixdof info cone.ply", "sixdof info torus-knot-10k --json");
 }

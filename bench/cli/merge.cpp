@@ -1,4 +1,4 @@
-#include "bench/cli/merge.h"
+#include "bench/cli/commands.h"
 
 #include <memory>
 #include <string>
@@ -7,8 +7,8 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/configuration/configuration_set.h>
-#include <sixdof/configuration/shard_merge.h>
-#include "bench/common/examples.h"
+#include <sixdof/configuration/shard_file.h>
+#include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/progress_line.h"
 

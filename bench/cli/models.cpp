@@ -1,4 +1,4 @@
-#include "bench/cli/models.h"
+#include "bench/cli/commands.h"
 
 #include <filesystem>
 #include <memory>
@@ -14,8 +14,7 @@
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/models/recipe.h>
 #include <sixdof/models/surface.h>
-
-#include "bench/common/examples.h"
+#include "bench/cli/shared.h"
 
 namespace sixdof::cli {
 namespace {
@@ -40,7 +39,7 @@ void list_as_json() {
                                {"here", is_here(model)},
                                {"file", model.file},
                                {"triangles", model.triangles},
-                               {"size", {model.size.x(), model.size.y(), model.size.z()}},
+                               {"size", coordinates(model.size)},
                                {"genus", model.genus},
                                {"package", model.package},
                                {"licence", model.licence},

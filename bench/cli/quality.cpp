@@ -1,4 +1,4 @@
-#include "bench/cli/quality.h"
+#include "bench/cli/commands.h"
 
 #include <memory>
 #include <string>
@@ -10,12 +10,10 @@
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
 #include <sixdof/measure/metrics.h>
-#include <sixdof/scenario/drawing.h>
 #include <sixdof/scenario/evaluation.h>
+#include <sixdof/scenario/scenario.h>
 #include <sixdof/scenario/series_file.h>
-
-#include "bench/cli/algorithm_options.h"
-#include "bench/common/examples.h"
+#include "bench/cli/shared.h"
 
 namespace sixdof::cli {
 namespace {
@@ -81,11 +79,8 @@ void run(const Options& options) {
   for (const auto& measure : evaluate_jumps(*scenario, *query, recording, law)) measures.push_back(measure);
   const SeriesSource source{traits.name, traits.version, settings.to_string(), shape.to_string()};
   if (!options.series.empty()) write_series(options.series, *scenario, recording, law, source, measures);
-  if (options.json) {
-    print_json(options, law, source, recording, measures);
-  } else {
-    print_text(*scenario, law, source, recording, measures);
-  }
+  options.json ? print_json(options, law, source, recording, measures)
+               : print_text(*scenario, law, source, recording, measures);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
-#include "bench/cli/query.h"
+#include "bench/cli/commands.h"
 
-#include <array>
 #include <charconv>
 #include <chrono>
 #include <cstdint>
@@ -13,9 +12,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/models/model_catalogue.h>
-
-#include "bench/cli/algorithm_options.h"
-#include "bench/common/examples.h"
+#include "bench/cli/shared.h"
 
 namespace sixdof::cli {
 namespace {
@@ -60,88 +57,69 @@ std::int64_t nanoseconds_since(Clock::time_point begin) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
 }
 
-/// One kind of query: its outcome and the time of this one call, with cold caches.
-template <class T>
-struct Timed {
-  bool asked = false;  ///< The algorithm answers this kind of query.
-  Outcome<T> outcome;
-  std::string diagnosis;
-  std::int64_t nanoseconds = 0;
-};
+using Json = nlohmann::ordered_json;
 
-template <class T, class Ask>
-Timed<T> timed(Query& query, bool answers, const Ask& ask) {
-  Timed<T> result;
-  result.asked = answers;
-  if (!answers) return result;
-  const auto begin = Clock::now();
-  result.outcome = ask();
-  result.nanoseconds = nanoseconds_since(begin);
-  if (!result.outcome.ok()) result.diagnosis = query.diagnosis();
-  return result;
-}
-
+/// Outcomes, and times in ns of these single calls, with cold caches.
 struct Answers {
-  Timed<bool> collide;
-  Timed<Separation> distance;
-  Timed<Response> respond;
-  std::int64_t prepare_ns = 0;
-
-  /// ok, or the status of the first query that was asked and gave no answer, with its diagnosis.
-  std::pair<Status, std::string> status() const {
-    if (collide.asked && !collide.outcome.ok()) return {collide.outcome.status, collide.diagnosis};
-    if (distance.asked && !distance.outcome.ok()) return {distance.outcome.status, distance.diagnosis};
-    if (respond.asked && !respond.outcome.ok()) return {respond.outcome.status, respond.diagnosis};
-    return {Status::ok, {}};
-  }
+  Outcome<bool> collide;
+  Outcome<Separation> distance;
+  Outcome<Response> respond;
+  Json times_ns;  ///< By kind of call, null for queries that the algorithm does not answer.
+  std::int64_t query_ns = 0;
+  Status status = Status::ok;  ///< Of the first query that was asked and gave no answer,
+  std::string diagnosis;       ///< with its words.
 };
+
+template <class T>
+void ask_one(Query& query, const char* kind, bool asked, Outcome<T> (Query::*question)(const Pose&), const Pose& X_AB,
+             Outcome<T>& outcome, Answers& answers) {
+  answers.times_ns[kind] = nullptr;
+  if (!asked) return;
+  const auto begin = Clock::now();
+  outcome = (query.*question)(X_AB);
+  const std::int64_t took = nanoseconds_since(begin);
+  answers.times_ns[kind] = took;
+  answers.query_ns += took;
+  if (outcome.ok() || answers.status != Status::ok) return;
+  answers.status = outcome.status;
+  answers.diagnosis = query.diagnosis();
+}
 
 Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Settings& settings, const Pose& X_AB) {
   Answers answers;
   const auto begin = Clock::now();
   const std::unique_ptr<Query> query = algorithm.prepare(a, b, settings);
-  answers.prepare_ns = nanoseconds_since(begin);
+  answers.times_ns["prepare"] = nanoseconds_since(begin);
   const QuerySet kinds = algorithm.traits().answers;
-  answers.collide = timed<bool>(*query, kinds.collide, [&] { return query->collide(X_AB); });
-  answers.distance = timed<Separation>(*query, kinds.distance, [&] { return query->distance(X_AB); });
-  answers.respond = timed<Response>(*query, kinds.respond, [&] { return query->respond(X_AB); });
+  ask_one(*query, "collide", kinds.collide, &Query::collide, X_AB, answers.collide, answers);
+  ask_one(*query, "distance", kinds.distance, &Query::distance, X_AB, answers.distance, answers);
+  ask_one(*query, "respond", kinds.respond, &Query::respond, X_AB, answers.respond, answers);
   return answers;
 }
 
-using Json = nlohmann::ordered_json;
-
-Json as_json(const Eigen::Vector3d& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; }
-
 /// nlohmann::json prints numbers with as few digits as identify the double, and NaN as null.
 Json describe(const Traits& traits, const Settings& settings, const Answers& answers) {
-  const auto [status, diagnosis] = answers.status();
-  const bool separated = answers.distance.outcome.ok();
-  const Separation& gap = answers.distance.outcome.value;
+  const bool separated = answers.distance.ok(), responded = answers.respond.ok();
+  const Separation& gap = answers.distance.value;
   const bool witnesses = separated && gap.has_witnesses;
-  const bool responded = answers.respond.outcome.ok();
-  const Response& response = answers.respond.outcome.value;
+  const Response& response = answers.respond.value;
   const auto or_null = [](bool given, const Json& value) { return given ? value : Json(nullptr); };
-  const auto time = [](const auto& t) { return t.asked ? Json(t.nanoseconds) : Json(nullptr); };
   return {{"algorithm", traits.name},
           {"version", traits.version},
           {"settings", settings.to_string()},
-          {"status", to_string(status)},
-          {"diagnosis", or_null(!diagnosis.empty(), diagnosis)},
-          {"colliding", or_null(answers.collide.outcome.ok(), answers.collide.outcome.value)},
+          {"status", to_string(answers.status)},
+          {"diagnosis", or_null(!answers.diagnosis.empty(), answers.diagnosis)},
+          {"colliding", or_null(answers.collide.ok(), answers.collide.value)},
           {"distance", or_null(separated, gap.distance)},
-          {"witness_a", or_null(witnesses, as_json(gap.witness_a))},
-          {"witness_b", or_null(witnesses, as_json(gap.witness_b))},
+          {"witness_a", or_null(witnesses, coordinates(gap.witness_a))},
+          {"witness_b", or_null(witnesses, coordinates(gap.witness_b))},
           {"penalty", or_null(responded, response.penalty)},
           {"volume", or_null(responded, response.volume)},
-          {"force", or_null(responded, as_json(response.force))},
-          {"torque", or_null(responded, as_json(response.torque))},
-          {"reference_point", or_null(responded, as_json(response.reference))},
-          {"time_ns", answers.collide.nanoseconds + answers.distance.nanoseconds + answers.respond.nanoseconds},
-          {"times_ns",
-           {{"prepare", answers.prepare_ns},
-            {"collide", time(answers.collide)},
-            {"distance", time(answers.distance)},
-            {"respond", time(answers.respond)}}}};
+          {"force", or_null(responded, coordinates(response.force))},
+          {"torque", or_null(responded, coordinates(response.torque))},
+          {"reference_point", or_null(responded, coordinates(response.reference))},
+          {"time_ns", answers.query_ns},
+          {"times_ns", answers.times_ns}};
 }
 
 void print_text(const Json& answers) {
@@ -160,13 +138,13 @@ void run_query(const Arguments& arguments) {
   const Mesh a = load_model(arguments.a);
   const Mesh b = arguments.b == arguments.a ? a : load_model(arguments.b);
   Answers answers = ask(*algorithm, a, b, settings, X_AB);
-  if (!about.empty() && answers.respond.outcome.ok()) {
-    answers.respond.outcome.value = answers.respond.outcome.value.about({about[0], about[1], about[2]});
+  if (!about.empty() && answers.respond.ok()) {
+    answers.respond.value = answers.respond.value.about({about[0], about[1], about[2]});
   }
   const Json json = describe(algorithm->traits(), settings, answers);
   arguments.json ? fmt::print("{}\n", json.dump(2)) : print_text(json);
-  if (const auto [status, diagnosis] = answers.status(); status != Status::ok) {
-    throw Error(fmt::format("{}: {}: {}", arguments.algorithm.name, to_string(status), diagnosis));
+  if (answers.status != Status::ok) {
+    throw Error(fmt::format("{}: {}: {}", arguments.algorithm.name, to_string(answers.status), answers.diagnosis));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "bench/cli/show.h"
+#include "bench/cli/commands.h"
 
 #include <memory>
 #include <string>
@@ -6,14 +6,12 @@
 #include <fmt/format.h>
 
 #include <sixdof/algorithm/ist/ist.h>
-#include <sixdof/algorithm/vps/cached_structures.h>
 #include <sixdof/algorithm/vps/vps.h>
 #include <sixdof/base/error.h>
 #include <sixdof/models/model_catalogue.h>
 
-#include "bench/cli/algorithm_options.h"
+#include "bench/cli/shared.h"
 #include "bench/cli/structure_drawing.h"
-#include "bench/common/examples.h"
 
 namespace sixdof::cli {
 namespace {
@@ -33,17 +31,14 @@ struct Subject {
   double cut_x;
 };
 
-Drawing spheres(const Subject& s) {
-  return draw_spheres(ist::build_inner_sphere_tree(s.mesh, s.settings).tree, s.cut_x);
-}
-Drawing balls(const Subject& s) {
-  return draw_balls(ist::build_inner_sphere_tree(s.mesh, s.settings).tree, s.level, s.cut_x);
-}
+ist::SphereTree tree_of(const Subject& s) { return ist::build_inner_sphere_tree(s.mesh, s.settings).tree; }
+Drawing points(const Subject& s) { return draw_points(vps::prepare_pointshell(s.mesh, s.settings), s.cut_x); }
 Drawing voxels(const Subject& s) { return draw_voxels(vps::prepare_voxelmap(s.mesh, s.settings), s.cut_x); }
 Drawing field(const Subject& s) {
-  return draw_field(vps::cached_field(s.mesh, vps::prepare_voxelmap(s.mesh, s.settings)), s.cut_x);
+  return draw_field(vps::prepare_field(s.mesh, vps::prepare_voxelmap(s.mesh, s.settings)), s.cut_x);
 }
-Drawing points(const Subject& s) { return draw_points(vps::prepare_pointshell(s.mesh, s.settings), s.cut_x); }
+Drawing spheres(const Subject& s) { return draw_spheres(tree_of(s), s.cut_x); }
+Drawing balls(const Subject& s) { return draw_balls(tree_of(s), s.level, s.cut_x); }
 
 struct Part {
   const char* algorithm;

@@ -5,41 +5,36 @@
 #include <cmath>
 #include <numeric>
 
-#include <sixdof/models/round.h>
+#include <sixdof/models/recipe.h>
 
 namespace sixdof::cli {
 namespace {
 
 using vps::VoxelGrid;
 
-Colour scaled(const Colour& colour, double factor) {
-  Colour result;
-  for (std::size_t i = 0; i < 3; ++i) result[i] = static_cast<std::uint8_t>(std::lround(colour[i] * factor));
-  return result;
+/// Of two colours, `part` of the way from one to the other.
+Colour between(const Colour& from, const Colour& to, double part) {
+  Colour colour;
+  for (std::size_t i = 0; i < 3; ++i) {
+    colour[i] = static_cast<std::uint8_t>(std::lround((1.0 - part) * from[i] + part * to[i]));
+  }
+  return colour;
 }
 
 /// Adds tessellated balls.
-class BallPainter {
- public:
-  explicit BallPainter(double cut_x) : unit_(make_sphere({}, k_ball_triangles)), cut_x_(cut_x) {}
+struct BallPainter {
+  double cut_x;
+  Drawing drawing = {};
+  Mesh unit = make_sphere({}, k_ball_triangles);
 
   void add(const ist::Sphere& ball, const Colour& colour) {
-    if (!(ball.center.x() <= cut_x_)) return;
-    const auto first = static_cast<std::uint32_t>(drawing_.vertices.size());
-    for (const Eigen::Vector3d& v : unit_.vertices()) drawing_.vertices.push_back(ball.center + ball.radius * v);
-    drawing_.colours.insert(drawing_.colours.end(), unit_.vertices().size(), colour);
-    for (const Triangle& t : unit_.triangles()) {
-      drawing_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    }
-    ++drawing_.elements;
+    if (!(ball.center.x() <= cut_x)) return;
+    const auto first = static_cast<std::uint32_t>(drawing.vertices.size());
+    for (const Eigen::Vector3d& v : unit.vertices()) drawing.vertices.push_back(ball.center + ball.radius * v);
+    drawing.colours.insert(drawing.colours.end(), unit.vertices().size(), colour);
+    for (const Triangle& t : unit.triangles()) drawing.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    ++drawing.elements;
   }
-
-  Drawing take() { return std::move(drawing_); }
-
- private:
-  Mesh unit_;
-  double cut_x_;
-  Drawing drawing_;
 };
 
 /// Adds the balls below `node`, whose children are at `level`, down to `last`.
@@ -54,80 +49,57 @@ void add_level(const ist::SphereTree& tree, std::size_t node, int level, int las
   }
 }
 
-/// Draws the faces between the voxels of a body and all others. `depth(x, y, z)` is the voxel's depth in voxels,
-/// negative outside the body; `stored(brick)` is false for bricks without a voxel of the body.
-template <class Stored, class Depth>
-class VoxelPainter {
- public:
-  VoxelPainter(const VoxelGrid& grid, double cut_x, const Stored& stored, const Depth& depth)
-      : grid_(grid), cut_x_(cut_x), stored_(stored), depth_(depth) {}
-
-  Drawing draw() {
-    for_each([&](int x, int y, int z) { deepest_ = std::max(deepest_, depth_(x, y, z)); });
-    for_each([&](int x, int y, int z) { add(x, y, z); });
-    return std::move(drawing_);
+/// Counter-clockwise seen from outside. Neighbouring voxels compute equal coordinates for common corners.
+void add_face(const VoxelGrid& grid, const Eigen::Array3i& voxel, int axis, int side, const Colour& colour,
+              Drawing& drawing) {
+  const auto first = static_cast<std::uint32_t>(drawing.vertices.size());
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  constexpr std::array<std::pair<int, int>, 4> k_corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  for (const auto& [along_u, along_v] : k_corners) {
+    Eigen::Array3i corner = voxel;
+    corner[axis] += side > 0 ? 1 : 0;
+    corner[u] += side > 0 ? along_u : 1 - along_u;  // mirrored, so that both sides are counter-clockwise
+    corner[v] += along_v;
+    drawing.vertices.push_back(grid.origin + grid.size * corner.cast<double>().matrix());
   }
+  drawing.colours.insert(drawing.colours.end(), k_corners.size(), colour);
+  drawing.triangles.push_back({first, first + 1, first + 2});
+  drawing.triangles.push_back({first, first + 2, first + 3});
+}
 
- private:
-  bool drawn(int x, int y, int z) const { return grid_.center(x, y, z).x() <= cut_x_ && depth_(x, y, z) >= 0.0; }
-
-  /// Calls action(x, y, z) for the body's voxels. None is at the grid's border (VoxelGrid::around).
-  template <class Action>
-  void for_each(const Action& action) const {
-    constexpr int k_edge = VoxelGrid::k_edge;
-    for (int z = 0; z < grid_.voxels().z(); ++z) {
-      for (int y = 0; y < grid_.voxels().y(); ++y) {
-        for (int brick_x = 0; brick_x < grid_.voxels().x(); brick_x += k_edge) {
-          if (!stored_(grid_.brick_of(brick_x, y, z))) continue;
-          for (int x = brick_x; x < brick_x + k_edge; ++x) {
-            if (depth_(x, y, z) >= 0.0) action(x, y, z);
-          }
-        }
+/// Draws the faces between the voxels of a body and all others. `depth_of(x, y, z)` is the voxel's depth in voxels,
+/// negative outside the body; `stored(brick)` is false for bricks without a voxel of the body.
+Drawing draw_body(const VoxelGrid& grid, double cut_x, const auto& stored, const auto& depth_of) {
+  const auto depth = [&](const Eigen::Array3i& v) { return depth_of(v.x(), v.y(), v.z()); };
+  const auto drawn = [&](const Eigen::Array3i& v) {
+    return grid.center(v.x(), v.y(), v.z()).x() <= cut_x && depth(v) >= 0.0;
+  };
+  // The body's voxels; none is at the grid's border (VoxelGrid::around).
+  std::vector<Eigen::Array3i> voxels;
+  double deepest = 0.0;
+  for (int z = 0; z < grid.voxels().z(); ++z) {
+    for (int y = 0; y < grid.voxels().y(); ++y) {
+      for (int x = 0; x < grid.voxels().x(); ++x) {
+        if (!stored(grid.brick_of(x, y, z)) || !(depth_of(x, y, z) >= 0.0)) continue;
+        voxels.emplace_back(x, y, z);
+        deepest = std::max(deepest, depth_of(x, y, z));
       }
     }
   }
-
-  void add(int x, int y, int z) {
-    if (!drawn(x, y, z)) return;
-    ++drawing_.elements;
-    const Colour colour = depth_colour(depth_(x, y, z), deepest_);
+  Drawing drawing;
+  for (const Eigen::Array3i& voxel : voxels) {
+    if (!drawn(voxel)) continue;
+    ++drawing.elements;
+    const Colour colour = depth_colour(depth(voxel), deepest);
     for (int axis = 0; axis < 3; ++axis) {
       for (const int side : {-1, 1}) {
-        Eigen::Array3i next(x, y, z);
+        Eigen::Array3i next = voxel;
         next[axis] += side;
-        if (!drawn(next.x(), next.y(), next.z())) add_face({x, y, z}, axis, side, colour);
+        if (!drawn(next)) add_face(grid, voxel, axis, side, colour, drawing);
       }
     }
   }
-
-  /// Counter-clockwise seen from outside. Neighbouring voxels compute equal coordinates for common corners.
-  void add_face(const Eigen::Array3i& voxel, int axis, int side, const Colour& colour) {
-    const auto first = static_cast<std::uint32_t>(drawing_.vertices.size());
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    constexpr std::array<std::pair<int, int>, 4> k_corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-    for (const auto& [along_u, along_v] : k_corners) {
-      Eigen::Array3i corner = voxel;
-      corner[axis] += side > 0 ? 1 : 0;
-      corner[u] += side > 0 ? along_u : 1 - along_u;  // mirrored, so that both sides are counter-clockwise
-      corner[v] += along_v;
-      drawing_.vertices.push_back(grid_.origin + grid_.size * corner.cast<double>().matrix());
-    }
-    drawing_.colours.insert(drawing_.colours.end(), k_corners.size(), colour);
-    drawing_.triangles.push_back({first, first + 1, first + 2});
-    drawing_.triangles.push_back({first, first + 2, first + 3});
-  }
-
-  const VoxelGrid& grid_;
-  double cut_x_;
-  const Stored& stored_;
-  const Depth& depth_;
-  double deepest_ = 0.0;
-  Drawing drawing_;
-};
-
-template <class Stored, class Depth>
-Drawing draw_body(const VoxelGrid& grid, double cut_x, const Stored& stored, const Depth& depth) {
-  return VoxelPainter<Stored, Depth>(grid, cut_x, stored, depth).draw();
+  return drawing;
 }
 
 }  // namespace
@@ -137,33 +109,27 @@ Colour ramp_colour(double fraction) {
   constexpr std::array<Colour, 5> k_points{{{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
   const double at = std::clamp(fraction, 0.0, 1.0) * (k_points.size() - 1);
   const std::size_t below = std::min(static_cast<std::size_t>(at), k_points.size() - 2);
-  const double part = at - static_cast<double>(below);
-  Colour colour;
-  for (std::size_t i = 0; i < 3; ++i) {
-    colour[i] =
-        static_cast<std::uint8_t>(std::lround((1.0 - part) * k_points[below][i] + part * k_points[below + 1][i]));
-  }
-  return colour;
+  return between(k_points[below], k_points[below + 1], at - static_cast<double>(below));
 }
 
 Colour depth_colour(double depth, double deepest) {
-  constexpr double k_darker = 0.7;
+  constexpr double k_darkening = 0.3;
   const Colour colour = ramp_colour(deepest > 0.0 ? depth / deepest : 0.0);
-  return std::lround(depth) % 2 == 0 ? colour : scaled(colour, k_darker);
+  return std::lround(depth) % 2 == 0 ? colour : between(colour, {}, k_darkening);
 }
 
 Drawing draw_spheres(const ist::SphereTree& tree, double cut_x) {
   double largest = 0.0;
   for (const ist::Sphere& sphere : tree.leaves) largest = std::max(largest, sphere.radius);
-  BallPainter painter(cut_x);
+  BallPainter painter{cut_x};
   for (const ist::Sphere& sphere : tree.leaves) painter.add(sphere, ramp_colour(sphere.radius / largest));
-  return painter.take();
+  return painter.drawing;
 }
 
 Drawing draw_balls(const ist::SphereTree& tree, int level, double cut_x) {
-  BallPainter painter(cut_x);
+  BallPainter painter{cut_x};
   add_level(tree, 0, 1, level, painter);
-  return painter.take();
+  return painter.drawing;
 }
 
 Drawing draw_voxels(const vps::VoxelMap& map, double cut_x) {

@@ -1,10 +1,11 @@
-#include "bench/cli/table.h"
+#include "bench/cli/commands.h"
 
 #include <algorithm>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -14,30 +15,13 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/measure/metrics.h>
-
-#include "bench/common/examples.h"
+#include "bench/cli/shared.h"
+#include "bench/common/row_name.h"
 
 namespace sixdof::cli {
 namespace {
 
 using nlohmann::json;
-
-/// "collide/algorithm:fcl-rss/pair:elephant/distance:05/order:path" in parts.
-struct RowName {
-  std::string question;
-  std::map<std::string, std::string> parts;
-};
-
-RowName parse_row_name(const std::string& name) {
-  RowName result;
-  std::istringstream words(name);
-  std::getline(words, result.question, '/');
-  for (std::string word; std::getline(words, word, '/');) {
-    const auto colon = word.find(':');
-    if (colon != std::string::npos) result.parts[word.substr(0, colon)] = word.substr(colon + 1);
-  }
-  return result;
-}
 
 /// Metrics of one unit that a cell shows side by side, with names for the title.
 struct Group {
@@ -66,17 +50,13 @@ std::string title_of(const std::vector<Group>& groups) {
   return fmt::format("{}", fmt::join(titles, ", "));
 }
 
-double nanoseconds_per(const std::string& unit) {
-  if (unit == "us") return 1e3;
-  if (unit == "ms") return 1e6;
-  return unit == "s" ? 1e9 : 1.0;
-}
-
 /// In microseconds for times, in the metric's own unit otherwise; empty where the row has no such value.
 std::optional<double> value_of(const json& row, const Metric& metric) {
   const auto found = row.find(metric.name);
   if (found == row.end()) return std::nullopt;
-  const double factor = metric.unit == "time_unit" ? nanoseconds_per(row.value("time_unit", "ns")) : 1.0;
+  static const std::map<std::string, double> nanoseconds{{"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
+  const auto unit = nanoseconds.find(metric.unit == "time_unit" ? row.value("time_unit", "ns") : "ns");
+  const double factor = unit == nanoseconds.end() ? 1.0 : unit->second;
   return is_time(metric) ? found->get<double>() * factor / 1e3 : found->get<double>();
 }
 
@@ -114,36 +94,23 @@ Cell cell_of(const json& row, const std::vector<Group>& groups) {
 
 using Line = std::map<std::string, Cell>;  ///< By bucket.
 
-struct Block {
-  std::vector<std::string> names;  ///< Of the lines, in order of appearance.
-  std::map<std::string, Line> lines;
-
-  /// Rows of the same name are repetitions, of which the one with the best mean is shown.
-  void add(const std::string& name, const std::string& bucket, const Cell& cell) {
-    if (!lines.contains(name)) names.push_back(name);
-    Cell& shown = lines[name].try_emplace(bucket, cell).first->second;
-    const Better better = find_metric("cpu_time")->better;
-    if (cell.mean && (!shown.mean || is_better(better, *cell.mean, *shown.mean))) shown = cell;
-  }
-};
+using Block = nlohmann::ordered_map<std::string, Line>;  ///< By name of the line, in order of appearance.
 
 void print(std::string& out, const std::string& title, const Block& block) {
-  std::vector<std::string> buckets;
+  std::set<std::string> buckets;
   std::size_t first_width = 0, width = 0;
-  for (const auto& [name, line] : block.lines) {
+  for (const auto& [name, line] : block) {
     first_width = std::max(first_width, name.size());
     for (const auto& [bucket, cell] : line) {
-      if (std::find(buckets.begin(), buckets.end(), bucket) == buckets.end()) buckets.push_back(bucket);
+      buckets.insert(bucket);
       width = std::max(width, cell.text.size());
     }
   }
-  std::sort(buckets.begin(), buckets.end());
   out += title + "\n" + fmt::format("{:<{}}", "", first_width);
   for (const std::string& bucket : buckets) out += fmt::format("  {:>{}}", bucket + " %", width);
   out += "\n";
-  for (const std::string& name : block.names) {
+  for (const auto& [name, line] : block) {
     out += fmt::format("{:<{}}", name, first_width);
-    const Line& line = block.lines.at(name);
     for (const std::string& bucket : buckets) {
       const auto found = line.find(bucket);
       out += fmt::format("  {:>{}}", found == line.end() ? "-" : found->second.text, width);
@@ -158,29 +125,31 @@ void print(std::string& out, const std::string& title, const Block& block) {
 std::string results_table(const std::string& text, const std::string& file) {
   const std::pair<const char*, const char*> kinds[] = {{"distance", "distances in percent of A's box diagonal"},
                                                        {"volume", "overlaps in percent of A's volume"}};
-  std::vector<std::string> order;
-  std::map<std::string, Block> blocks;
+  const Better better = find_metric("cpu_time")->better;
+  nlohmann::ordered_map<std::string, Block> blocks;  // by title
   try {
     const json document = json::parse(text);
     for (const json& row : document.at("benchmarks")) {
       if (row.value("run_type", "iteration") != "iteration") continue;
-      const RowName name = parse_row_name(row.at("name").get<std::string>());
-      if (!name.parts.contains("algorithm") || !name.parts.contains("pair")) continue;
+      const auto name = row_name_parts(row.at("name").get<std::string>());
+      if (!name.contains("algorithm") || !name.contains("pair")) continue;
       for (const auto& [kind, buckets] : kinds) {
-        if (!name.parts.contains(kind)) continue;
-        const std::vector<Group>& groups = groups_of(name.question);
-        const std::string title = fmt::format("{}: {}, at {}", name.parts.at("pair"), title_of(groups), buckets);
-        if (!blocks.contains(title)) order.push_back(title);
-        std::string line = name.question + " " + name.parts.at("algorithm");
-        if (name.parts.contains("order")) line += " (" + name.parts.at("order") + ")";
-        blocks[title].add(line, name.parts.at(kind), cell_of(row, groups));
+        if (!name.contains(kind)) continue;
+        const std::vector<Group>& groups = groups_of(name.at("query"));
+        const std::string title = fmt::format("{}: {}, at {}", name.at("pair"), title_of(groups), buckets);
+        std::string line = name.at("query") + " " + name.at("algorithm");
+        if (name.contains("order")) line += " (" + name.at("order") + ")";
+        // Rows of the same name are repetitions, of which the one with the best mean is shown.
+        const Cell cell = cell_of(row, groups);
+        Cell& shown = blocks[title][line].try_emplace(name.at(kind), cell).first->second;
+        if (cell.mean && (!shown.mean || is_better(better, *cell.mean, *shown.mean))) shown = cell;
       }
     }
   } catch (const json::exception& e) {
     throw BadFile(file, std::string("not a result file of sixdof-bench: ") + e.what());
   }
   std::string out;
-  for (const std::string& title : order) print(out, title, blocks.at(title));
+  for (const auto& [title, block] : blocks) print(out, title, block);
   if (out.empty()) return "no query rows\n";
   return out + "! some answers were wrong   ? some queries gave no answer\n";
 }

@@ -1,4 +1,4 @@
-#include "bench/cli/verify.h"
+#include "bench/cli/commands.h"
 
 #include <memory>
 #include <string>
@@ -9,8 +9,7 @@
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/verification.h>
 #include <sixdof/models/model_catalogue.h>
-#include "bench/common/all_algorithms.h"
-#include "bench/common/examples.h"
+#include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/progress_line.h"
 
@@ -38,9 +37,8 @@ void print_table(const Verdict& verdict) {
 
 void verify(const Arguments& arguments) {
   const ConfigurationSet set(arguments.file);
-  Registry registry;
-  register_all_algorithms(registry);
-  const Algorithm& oracle = registry.find(arguments.oracle);
+  const SelectedAlgorithm selected = select_algorithm({.name = arguments.oracle, .parameters = {}});
+  const Traits& oracle = selected.algorithm->traits();
   const std::string& a_name = arguments.a.empty() ? set.description().a.name : arguments.a;
   const std::string& b_name = arguments.b.empty() ? set.description().b.name : arguments.b;
   const Mesh a = load_model(a_name);
@@ -49,13 +47,13 @@ void verify(const Arguments& arguments) {
   Verdict verdict;
   {
     ProgressLine line("verified");
-    verdict = verify_set(set, a, b, oracle, {.size = arguments.sample, .seed = arguments.seed},
+    verdict = verify_set(set, a, b, *selected.algorithm, {.size = arguments.sample, .seed = arguments.seed},
                          {.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
                           .cancelled = InterruptGuard::requested});
   }
   fmt::print("{}: {} with {}, grid {}, distances by {} {}, seed {}\n", arguments.file, set.description().a.name,
-             set.description().b.name, set.grid(BucketKind::distance).spec, oracle.traits().name,
-             oracle.traits().version, arguments.seed);
+             set.description().b.name, set.grid(BucketKind::distance).spec, oracle.name, oracle.version,
+             arguments.seed);
   print_table(verdict);
   for (const std::string& problem : verdict.problems) fmt::print("{}\n", problem);
   if (!verdict.ok()) throw Error(fmt::format("{}: verification failed", arguments.file));

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -64,8 +63,6 @@ void StatusLine::clear() {
   fmt::print(stderr, "{}", k_erase_line);
   std::fflush(stderr);
 }
-
-ProgressLine::ProgressLine(std::string what, bool always) : line_(always), what_(std::move(what)) {}
 
 void ProgressLine::show(std::uint64_t done, std::uint64_t total, std::string_view detail) {
   if (!line_.due()) return;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace sixdof {
 
@@ -35,7 +36,7 @@ class StatusLine {
 /// "WHAT 1234/5678 (21 %), 3200.0/s, 0:07:31 left: DETAIL" as a StatusLine.
 class ProgressLine {
  public:
-  explicit ProgressLine(std::string what, bool always = false);
+  explicit ProgressLine(std::string what, bool always = false) : line_(always), what_(std::move(what)) {}
 
   void show(std::uint64_t done, std::uint64_t total, std::string_view detail = {});
   void clear() { line_.clear(); }

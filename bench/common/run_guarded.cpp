@@ -13,36 +13,31 @@
 #include <sixdof/base/error.h>
 
 namespace sixdof {
-namespace {
-
-int report(std::string_view program, std::string_view message, int exit_code) {
-  print_message(program, message);
-  return exit_code;
-}
-
-}  // namespace
-
 void print_message(std::string_view program, std::string_view message) {
   fmt::print(stderr, "{}: {}\n", program, message);
 }
 
 int run_guarded(std::string_view program, const std::function<void()>& work) {
+  const auto report = [&](std::string_view message, int exit_code) {
+    print_message(program, message);
+    return exit_code;
+  };
   try {
     work();
   } catch (const CLI::Error&) {
     throw;
   } catch (const Interrupted& e) {
-    return report(program, e.what(), k_exit_interrupted);
+    return report(e.what(), k_exit_interrupted);
   } catch (const std::bad_alloc&) {
-    return report(program, "out of memory", k_exit_error);
+    return report("out of memory", k_exit_error);
   } catch (const std::exception& e) {
     const std::string prefix = std::ferror(stdout) != 0 ? "standard output: " : "";
-    return report(program, prefix + e.what(), k_exit_error);
+    return report(prefix + e.what(), k_exit_error);
   } catch (...) {
-    return report(program, "an exception of unknown type was thrown", k_exit_error);
+    return report("an exception of unknown type was thrown", k_exit_error);
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    return report(program, fmt::format("standard output: {}", std::strerror(errno)), k_exit_error);
+    return report(fmt::format("standard output: {}", std::strerror(errno)), k_exit_error);
   }
   return 0;
 }

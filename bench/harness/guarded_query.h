@@ -1,25 +1,13 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
-#include <exception>
 #include <set>
 #include <string>
 #include <utility>
 
-#include <sixdof/query/algorithm.h>
-
-/// Whatever a query does wrong is one failed configuration with its words, and the row goes on.
+#include <sixdof/query/ask.h>
 
 namespace sixdof::bench {
-
-inline bool is_finite(bool) { return true; }
-inline bool is_finite(const Separation& answer) { return std::isfinite(answer.distance); }
-/// A volume may be absent, which is NaN.
-inline bool is_finite(const Response& answer) {
-  return std::isfinite(answer.penalty) && !std::isinf(answer.volume) && answer.force.allFinite() &&
-         answer.torque.allFinite() && answer.reference.allFinite();
-}
 
 /// Configurations without an answer.
 class Failures {
@@ -52,30 +40,22 @@ class GuardedQuery {
 
   /// For timed loops: an exception becomes Status::failed and counts as a failure. Costs nothing where none is thrown.
   auto ask_timed(const Pose& X_AB) -> decltype(std::declval<Ask&>()(X_AB)) {
-    try {
-      return ask_(X_AB);
-    } catch (const std::exception& e) {
-      failures_.add(X_AB, e.what());
-    } catch (...) {
-      failures_.add(X_AB, "an exception of unknown type was thrown");
-    }
-    return Status::failed;
+    return ask_guarded([&] { return ask_(X_AB); }, counted(X_AB));
   }
 
   /// Turns an answer that holds a NaN or an infinity into Status::non_finite, and counts one that is not ok.
   template <class T>
   void examine(const Pose& X_AB, Outcome<T>& answer) {
-    if (answer.ok() && !is_finite(answer.value)) {
-      answer = Status::non_finite;
-      failures_.add(X_AB, "the answer is not finite");
-    } else if (!answer.ok()) {
-      failures_.add(X_AB, answer.status == Status::unsupported ? "unsupported" : query_.diagnosis());
-    }
+    sixdof::examine(query_, answer, counted(X_AB));
   }
 
   const Query& query() const { return query_; }
 
  private:
+  auto counted(const Pose& X_AB) {
+    return [this, &X_AB](std::string words) { failures_.add(X_AB, std::move(words)); };
+  }
+
   const Query& query_;
   Ask ask_;
   Failures& failures_;

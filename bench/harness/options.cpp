@@ -31,12 +31,6 @@ std::string refuse_csv(const std::string& format) {
   return format == "csv" ? "csv needs the same counters in every row, and rows differ; use json" : std::string();
 }
 
-void print_help(const CLI::App& app) {
-  fmt::print("{}\nGoogle Benchmark's own flags:\n", app.help());
-  benchmark::PrintDefaultHelp();
-  fmt::print("{}", k_examples);
-}
-
 /// Google Benchmark reads its flags from a command line, and keeps a pointer to the program's name.
 /// @returns the first word that it does not know; empty if it knows all
 std::string initialize_benchmark(const std::vector<std::string>& flags) {
@@ -98,7 +92,9 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
-    print_help(app);
+    fmt::print("{}\nGoogle Benchmark's own flags:\n", app.help());
+    benchmark::PrintDefaultHelp();
+    fmt::print("{}", k_examples);
     return 0;
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : k_exit_usage;

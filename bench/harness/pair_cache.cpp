@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/exact.h>
+#include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/geometry/load.h>
 #include <sixdof/models/model_catalogue.h>
 
@@ -28,23 +28,18 @@ const Mesh& PairCache::mesh(const std::string& model) {
   return *entry;
 }
 
-const ConfigurationSet& PairCache::set(const CatalogueEntry& entry) {
-  auto& opened = sets_[entry.pair];
-  if (!opened) {
-    opened = std::make_unique<const ConfigurationSet>(entry.file);
-    ++counts_.sets_opened;
-  }
-  return *opened;
-}
-
 const BucketSample& PairCache::bucket(const CatalogueEntry& entry, BucketKey key) {
   const PairBucket name(entry.pair, key);
   if (const auto found = buckets_.find(name); found != buckets_.end()) return found->second;
   const Mesh& a = mesh(entry.a);
   const Mesh& b = mesh(entry.b);
-  const ConfigurationSet& opened = set(entry);
-  opened.check_meshes(a, b);
-  BucketSample sample = sample_bucket(opened, key, a, b, sample_, seed_);
+  auto& set = sets_[entry.pair];
+  if (!set) {
+    set = std::make_unique<const ConfigurationSet>(entry.file);
+    ++counts_.sets_opened;
+  }
+  set->check_meshes(a, b);
+  BucketSample sample = sample_bucket(*set, key, a, b, sample_, seed_);
   ++counts_.buckets_read;
   if (poses_ + sample.poses.size() > k_most_poses) {
     buckets_.clear();
@@ -91,10 +86,9 @@ std::unique_ptr<Query> PairCache::prepare(const Algorithm& algorithm, const Sett
 Query& PairCache::query(const Algorithm& algorithm, const Settings& settings, const std::string& a,
                         const std::string& b) {
   const std::string key = algorithm.traits().name + "|" + settings.to_string() + "|" + a + "|" + b;
-  for (auto it = prepared_.begin(); it != prepared_.end(); ++it) {
-    if (it->key != key) continue;
-    prepared_.splice(prepared_.begin(), prepared_, it);
-    return *prepared_.front().query;
+  if (const auto found = std::ranges::find(prepared_, key, &Prepared::key); found != prepared_.end()) {
+    prepared_.splice(prepared_.begin(), prepared_, found);
+    return *found->query;
   }
   Prepared fresh{.key = key, .query = prepare(algorithm, settings, mesh(a), mesh(b))};
   fresh.bytes = fresh.query->footprint().bytes;

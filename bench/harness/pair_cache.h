@@ -75,8 +75,6 @@ class PairCache {
   static constexpr std::size_t k_most_poses = 4'000'000;
 
  private:
-  const ConfigurationSet& set(const CatalogueEntry& entry);
-
   struct Prepared {
     std::string key;  ///< Algorithm, settings and meshes.
     std::unique_ptr<Query> query;

@@ -23,9 +23,11 @@ class RowReporter : public benchmark::BenchmarkReporter {
   RowReporter(benchmark::BenchmarkReporter* next, const std::set<std::string>& left_out)
       : next_(next), left_out_(left_out) {}
 
-  bool ReportContext(const Context& context) override;
+  bool ReportContext(const Context& context) override { return next_ == nullptr || next_->ReportContext(context); }
   void ReportRuns(const std::vector<Run>& runs) override;
-  void Finalize() override;
+  void Finalize() override {
+    if (next_ != nullptr) next_->Finalize();
+  }
 
   int failed() const { return failed_; }  ///< Rows that could not be run.
 
@@ -38,10 +40,9 @@ class RowReporter : public benchmark::BenchmarkReporter {
 /// Collects Google Benchmark's JSON in memory, so that a file appears whole or not at all.
 class ResultCollector final : public RowReporter {
  public:
-  explicit ResultCollector(const std::set<std::string>& left_out) : RowReporter(&json_, left_out) {}
-
-  bool ReportContext(const Context& context) override;
-  void Finalize() override;
+  explicit ResultCollector(const std::set<std::string>& left_out) : RowReporter(&json_, left_out) {
+    json_.SetOutputStream(&text_);
+  }
 
   /// The whole document after Finalize(), or after a run that was broken off. Keys are added to "context".
   /// @throws Error if the text is not valid JSON
@@ -50,7 +51,6 @@ class ResultCollector final : public RowReporter {
  private:
   benchmark::JSONReporter json_;
   std::ostringstream text_;
-  bool started_ = false;
 };
 
 }  // namespace sixdof::bench

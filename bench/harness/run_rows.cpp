@@ -57,8 +57,8 @@ class RowCaller {
     } catch (const Interrupted&) {
       throw;  // through the library, which ends the run with the rows that are finished
     } catch (const NeedsSolid& e) {
-      left_out_.insert(row.name);
-      not_solid_.insert(e.what());
+      left_out.insert(row.name);
+      not_solid.insert(e.what());
       state.SkipWithError(e.what());
     } catch (const std::exception& e) {
       state.SkipWithError(e.what());
@@ -69,14 +69,8 @@ class RowCaller {
     InterruptGuard::check();
   }
 
-  /// Names of the rows that are left out because they need solids.
-  const std::set<std::string>& left_out() const { return left_out_; }
-
-  void print_left_out() const {
-    if (left_out_.empty()) return;
-    print_message("sixdof-bench",
-                  fmt::format("left out {} rows that need solids: {}", left_out_.size(), fmt::join(not_solid_, ", ")));
-  }
+  std::set<std::string> left_out;   ///< Names of the rows that are left out because they need solids.
+  std::set<std::string> not_solid;  ///< Meshes, with the reason.
 
  private:
   /// Equal parts of the time that is left.
@@ -93,8 +87,6 @@ class RowCaller {
   ProgressLine progress_{"rows"};
   std::string current_;
   std::size_t begun_ = 0;
-  std::set<std::string> left_out_;
-  std::set<std::string> not_solid_;  ///< Meshes, with the reason.
 };
 
 /// What the "context" of a result file says besides Google Benchmark's own keys.
@@ -115,19 +107,14 @@ ContextKeys context_of(const Options& options, const Resources& resources) {
   return context;
 }
 
-void print_stats(const PairCache::Counts& counts) {
-  fmt::print(stderr, "stats: sets_opened={} buckets_read={} meshes_loaded={} structures_prepared={}\n",
-             counts.sets_opened, counts.buckets_read, counts.meshes_loaded, counts.structures_prepared);
-}
-
 void run_registered(RowCaller& caller, const Options& options, const Resources& resources) {
   // Before the rows run, so that a file that cannot be written is refused at once.
   std::optional<AtomicFile> file;
   if (!options.out.empty()) file.emplace(options.out);
 
   const std::unique_ptr<benchmark::BenchmarkReporter> console(benchmark::CreateDefaultDisplayReporter());
-  RowReporter display(options.json_on_stdout ? nullptr : console.get(), caller.left_out());
-  ResultCollector collector(caller.left_out());
+  RowReporter display(options.json_on_stdout ? nullptr : console.get(), caller.left_out);
+  ResultCollector collector(caller.left_out);
   const InterruptGuard guard;
   try {
     benchmark::RunSpecifiedBenchmarks(&display, &collector);
@@ -135,8 +122,15 @@ void run_registered(RowCaller& caller, const Options& options, const Resources& 
     collector.Finalize();  // the library skips it
   }
 
-  caller.print_left_out();
-  if (options.stats) print_stats(resources.cache.counts());
+  if (!caller.left_out.empty()) {
+    print_message("sixdof-bench", fmt::format("left out {} rows that need solids: {}", caller.left_out.size(),
+                                              fmt::join(caller.not_solid, ", ")));
+  }
+  if (options.stats) {
+    const PairCache::Counts& counts = resources.cache.counts();
+    fmt::print(stderr, "stats: sets_opened={} buckets_read={} meshes_loaded={} structures_prepared={}\n",
+               counts.sets_opened, counts.buckets_read, counts.meshes_loaded, counts.structures_prepared);
+  }
   if (file || options.json_on_stdout) {
     const std::string document = collector.document(context_of(options, resources));
     if (options.json_on_stdout) fmt::print("{}", document);

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -24,71 +24,45 @@ constexpr const char* k_recipes[] = {"torus-knot-10k",   "torus-knot-100k",   "t
                                      "bumpy-sphere-10k", "bumpy-sphere-100k", "bumpy-sphere-1m",
                                      "gyroid-ball-10k",  "gyroid-ball-100k",  "gyroid-ball-1m"};
 
-enum class Method {
-  raycast,
-  fcl,        ///< Plain conservative advancement.
-  fcl_sweep,  ///< Certified steps that go on from bucket to bucket.
-  overlap
-};
-constexpr Method k_methods[] = {Method::raycast, Method::fcl, Method::fcl_sweep, Method::overlap};
-
-bool is_fcl(Method method) { return method == Method::fcl || method == Method::fcl_sweep; }
-
-struct MethodWords {
+struct Method {
   BucketKind kind;
   const char* name;  ///< In the row's name.
   const char* grid;
+  std::optional<SphereMarch> march;  ///< With FCL's distances; none: a ray cast.
 };
-
-MethodWords words(Method method) {
-  switch (method) {
-    case Method::raycast:
-      return {BucketKind::distance, "raycast", "paper"};
-    case Method::fcl:
-      return {BucketKind::distance, "fcl", "paper"};
-    case Method::fcl_sweep:
-      return {BucketKind::distance, "fcl-sweep", "paper"};
-    case Method::overlap:
-      break;
-  }
-  return {BucketKind::volume, "overlap", "paper-volume"};
-}
+constexpr Method k_methods[] = {{BucketKind::distance, "raycast", "paper", {}},
+                                {BucketKind::distance, "fcl", "paper", SphereMarch::conservative},
+                                {BucketKind::distance, "fcl-sweep", "paper", SphereMarch::certified},
+                                {BucketKind::volume, "overlap", "paper-volume", {}}};
 
 /// A generator with one solver. Both are large for large meshes, so all rows share one object of this type.
 struct Generator {
   std::string row;
   std::unique_ptr<DistanceGenerator> distances;
-  std::unique_ptr<VolumeGenerator> volumes;
   std::unique_ptr<RaySolver> solver;  // declared last: it refers to the others
 };
 
-class GenerateRow {
- public:
-  GenerateRow(const Resources& resources, Method method, std::string pair, std::string a, std::string b,
-              std::shared_ptr<Generator> generator)
-      : resources_(resources),
-        method_(method),
-        pair_(std::move(pair)),
-        a_(std::move(a)),
-        b_(std::move(b)),
-        generator_(std::move(generator)) {}
-
-  std::string name() const {
-    return fmt::format("generate/{}/algorithm:{}/pair:{}", to_string(words(method_).kind), words(method_).name, pair_);
-  }
+struct GenerateRow {
+  const Resources& resources;
+  const Method& method;
+  std::string pair, a_name, b_name;
+  std::shared_ptr<Generator> generator;
+  std::string name = fmt::format("generate/{}/algorithm:{}/pair:{}", to_string(method.kind), method.name, pair);
 
   /// One iteration is one pass over the rays. The row's own time contains more than the counter: the rays that warm up,
   /// and the cost of setting a rotation for a few rays instead of all.
-  void run(benchmark::State& state) {
-    RaySolver& solver = prepare();
-    const Grid grid = make_grid(words(method_).grid);
-    const std::vector<double> targets = bucket_targets();
+  void run(benchmark::State& state) const {
+    const Mesh& a = resources.cache.mesh(a_name);
+    const Mesh& b = resources.cache.mesh(b_name);
+    if (generator->row != name) prepare(a, b);
+    const Grid grid = make_grid(method.grid);
+    const std::vector<double> targets = bucket_targets(a);
     double seconds = 0.0;
     std::size_t rays = 0;
     for ([[maybe_unused]] auto _ : state) {
-      RayRuns runs(grid, resources_.seed);
+      RayRuns runs(grid, resources.seed);
       for (std::size_t i = 0; i < k_runs; ++i) {
-        const RunCost cost = time_run(solver, grid, runs.next(), targets);
+        const RunCost cost = time_run(*generator->solver, grid, runs.next(), targets);
         const double fraction = static_cast<double>(cost.ray_s.size()) / static_cast<double>(grid.directions.size());
         seconds += cost.rays_s + fraction * cost.set_rotation_s;
         rays += cost.ray_s.size();
@@ -97,16 +71,13 @@ class GenerateRow {
     const auto configurations = static_cast<double>(rays * targets.size());
     state.counters["ns_per_configuration"] = 1e9 * seconds / configurations;
     state.counters["configurations"] = configurations / static_cast<double>(state.iterations());
-    const Mesh& a = resources_.cache.mesh(a_);
-    const Mesh& b = resources_.cache.mesh(b_);
     state.counters["triangles"] = static_cast<double>(a.triangles().size() + b.triangles().size());
   }
 
- private:
-  std::vector<double> bucket_targets() const {
-    const Mesh& a = resources_.cache.mesh(a_);
+  /// The paper's buckets, in the order in which a ray meets them.
+  std::vector<double> bucket_targets(const Mesh& a) const {
     std::vector<double> targets;
-    if (words(method_).kind == BucketKind::volume) {
+    if (method.kind == BucketKind::volume) {
       for (int percent = 0; percent < static_cast<int>(k_paper_volume_buckets); ++percent) {
         targets.push_back(volume_bucket(a, percent).target);
       }
@@ -118,49 +89,31 @@ class GenerateRow {
     return targets;
   }
 
-  std::unique_ptr<DistanceGenerator> make_distances() const {
-    if (!is_fcl(method_)) return make_ray_cast();
-    return make_sphere_method(resources_.registry.find(k_fcl),
-                              method_ == Method::fcl ? SphereMarch::conservative : SphereMarch::certified);
+  void prepare(const Mesh& a, const Mesh& b) const {
+    if (method.kind == BucketKind::volume) require_solids(a, b);
+    generator->row.clear();
+    generator->solver.reset();
+    generator->distances =
+        method.march ? make_sphere_method(resources.registry.find(k_fcl), *method.march) : make_ray_cast();
+    generator->solver = method.kind == BucketKind::volume ? volume_solvers(*generator->distances, a, b)()
+                                                          : generator->distances->prepare(a, b);
+    generator->row = name;
   }
-
-  RaySolver& prepare() {
-    Generator& generator = *generator_;
-    if (generator.row == name()) return *generator.solver;
-    const Mesh& a = resources_.cache.mesh(a_);
-    const Mesh& b = resources_.cache.mesh(b_);
-    if (method_ == Method::overlap) require_solids(a, b);
-    generator.row.clear();
-    generator.solver.reset();
-    generator.volumes.reset();
-    generator.distances = make_distances();
-    if (method_ == Method::overlap) generator.volumes = std::make_unique<VolumeGenerator>(*generator.distances, a, b);
-    generator.solver = generator.volumes ? generator.volumes->prepare() : generator.distances->prepare(a, b);
-    generator.row = name();
-    return *generator.solver;
-  }
-
-  const Resources& resources_;
-  const Method method_;
-  const std::string pair_, a_, b_;
-  std::shared_ptr<Generator> generator_;
 };
-
-bool has_fcl(const Registry& registry) {
-  return std::ranges::any_of(registry.all(), [](const auto& algorithm) { return algorithm->traits().name == k_fcl; });
-}
 
 }  // namespace
 
 std::vector<Row> generate_rows(const Resources& resources) {
   std::vector<Row> rows;
   const auto generator = std::make_shared<Generator>();
+  const bool has_fcl = std::ranges::any_of(resources.registry.all(),
+                                           [](const auto& algorithm) { return algorithm->traits().name == k_fcl; });
   const auto add = [&](const std::string& pair, const std::string& a, const std::string& b) {
-    for (const Method method : k_methods) {
-      if (is_fcl(method) && !has_fcl(resources.registry)) continue;
-      const auto row = std::make_shared<GenerateRow>(resources, method, pair, a, b, generator);
-      rows.push_back({.name = row->name(),
-                      .run = [row](benchmark::State& state, double) { row->run(state); },
+    for (const Method& method : k_methods) {
+      if (method.march && !has_fcl) continue;
+      const GenerateRow row{resources, method, pair, a, b, generator};
+      rows.push_back({.name = row.name,
+                      .run = [row](benchmark::State& state, double) { row.run(state); },
                       .unit = benchmark::kMillisecond});
     }
   };

@@ -25,20 +25,18 @@ struct Kernel {
   double centers_apart;  ///< Distance of the two centres, in box diagonals.
 };
 
+constexpr double k_overlap = 0.15, k_apart = 1.2;
+
 /// Sizes are those of caches: the small map and its points take 300 kilobytes, the large ones 50 megabytes.
-const std::vector<Kernel>& kernels() {
-  constexpr double k_overlap = 0.15, k_apart = 1.2;
-  static const std::vector<Kernel> list{
-      {"map-in-cache", "vps", {"culling=off", "voxel_size=0.02", "point_spacing=0.01"}, k_overlap},
-      {"map-in-memory", "vps", {"culling=off", "voxel_size=0.0017", "point_spacing=0.0017"}, k_overlap},
-      {"apart", "vps", {}, k_apart},
-      {"map-in-cache", "vps-field", {"culling=off", "voxel_size=0.04", "point_spacing=0.01"}, k_overlap},
-      {"apart", "vps-field", {}, k_apart},
-      {"spheres-10k", "ist", {"spheres=10000"}, k_overlap},
-      {"apart", "ist", {"spheres=10000"}, k_apart},
-  };
-  return list;
-}
+const std::vector<Kernel> k_kernels{
+    {"map-in-cache", "vps", {"culling=off", "voxel_size=0.02", "point_spacing=0.01"}, k_overlap},
+    {"map-in-memory", "vps", {"culling=off", "voxel_size=0.0017", "point_spacing=0.0017"}, k_overlap},
+    {"apart", "vps", {}, k_apart},
+    {"map-in-cache", "vps-field", {"culling=off", "voxel_size=0.04", "point_spacing=0.01"}, k_overlap},
+    {"apart", "vps-field", {}, k_apart},
+    {"spheres-10k", "ist", {"spheres=10000"}, k_overlap},
+    {"apart", "ist", {"spheres=10000"}, k_apart},
+};
 
 /// Random rotations in random directions, the same ones in every run.
 std::vector<Pose> kernel_poses(const Mesh& mesh, double centers_apart) {
@@ -83,7 +81,7 @@ void run(const Resources& resources, const Kernel& kernel, benchmark::State& sta
 
 std::vector<Row> kernel_rows(const Resources& resources) {
   std::vector<Row> rows;
-  for (const Kernel& kernel : kernels()) {
+  for (const Kernel& kernel : k_kernels) {
     rows.push_back({.name = fmt::format("kernel/{}/algorithm:{}", kernel.name, kernel.algorithm),
                     .run = [&resources, &kernel](benchmark::State& state, double) { run(resources, kernel, state); }});
   }

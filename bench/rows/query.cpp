@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,23 +23,7 @@ enum class Question {
   distance,
   respond
 };
-
-const char* to_string(Question question) {
-  switch (question) {
-    case Question::collide:
-      return "collide";
-    case Question::distance:
-      return "distance";
-    case Question::respond:
-      return "respond";
-  }
-  return "";
-}
-
-enum class Order {
-  shuffled,
-  path
-};
+constexpr const char* k_questions[] = {"collide", "distance", "respond"};
 
 /// A row asks each configuration about six times: once in the check, in one or two timed rounds, and in the passes that
 /// time single queries. The check gets this part of the row's time.
@@ -57,53 +43,59 @@ Response about(Response response, const Eigen::Vector3d& point) {
 }
 
 /// One row, and what its first call measured.
-class QueryRow {
- public:
-  QueryRow(const Resources& resources, const Algorithm& algorithm, const CatalogueEntry& pair, BucketKey key,
-           Question question, Order order)
-      : resources_(resources), algorithm_(algorithm), pair_(pair), key_(key), question_(question), order_(order) {}
+struct QueryRow {
+  const Resources& resources;
+  const Algorithm& algorithm;
+  const CatalogueEntry& pair;
+  BucketKey key;
+  Question question;
+  bool path;  ///< In the grid's own order instead of a random one.
+  Failures failures = {};
+  std::optional<Check> check = {};
+  std::vector<Pose> poses = {};  ///< Those with an answer, in this row's order.
+  Latency latency = {};
+  /// Of the force and of the torque about the centre of B's box, to the exact responses.
+  std::optional<std::array<DirectionError, 2>> directions = {};
 
   std::string name() const {
-    std::string bucket = key_.name();
+    std::string bucket = key.name();
     bucket.at(bucket.find('/')) = ':';
-    return fmt::format("{}/algorithm:{}/pair:{}/{}{}", to_string(question_), algorithm_.traits().name, pair_.pair,
-                       bucket, order_ == Order::path ? "/order:path" : "");
+    return fmt::format("{}/algorithm:{}/pair:{}/{}{}", k_questions[static_cast<std::size_t>(question)],
+                       algorithm.traits().name, pair.pair, bucket, path ? "/order:path" : "");
   }
 
   void run(benchmark::State& state, double seconds) {
-    PairCache& cache = resources_.cache;
-    const BucketSample& bucket = cache.bucket(pair_, key_);
-    if (bucket.poses.empty()) throw BadArgument(key_.name() + ": no configuration of this bucket can be reached");
-    if (key_.kind == BucketKind::volume) require_solids(cache.mesh(pair_.a), cache.mesh(pair_.b));
+    PairCache& cache = resources.cache;
+    const BucketSample& bucket = cache.bucket(pair, key);
+    if (bucket.poses.empty()) throw BadArgument(key.name() + ": no configuration of this bucket can be reached");
+    if (key.kind == BucketKind::volume) require_solids(cache.mesh(pair.a), cache.mesh(pair.b));
     const std::vector<Response>* const exact =
-        question_ == Question::respond ? &cache.exact_responses(pair_, key_, k_exact_time * seconds) : nullptr;
-    Query& query = cache.query(algorithm_, resources_.settings_of(algorithm_), pair_.a, pair_.b);
-    if (question_ == Question::collide) {
+        question == Question::respond ? &cache.exact_responses(pair, key, k_exact_time * seconds) : nullptr;
+    Query& query = cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
+    if (question == Question::collide) {
       const auto ask = [&query](const Pose& pose) { return query.collide(pose); };
-      run(state, bucket, GuardedQuery(query, ask, failures_), seconds);
-    } else if (question_ == Question::distance) {
+      run(state, bucket, GuardedQuery(query, ask, failures), seconds);
+    } else if (question == Question::distance) {
       const auto ask = [&query](const Pose& pose) { return query.distance(pose); };
-      run(state, bucket, GuardedQuery(query, ask, failures_), seconds);
+      run(state, bucket, GuardedQuery(query, ask, failures), seconds);
     } else {
       const auto ask = [&query](const Pose& pose) { return query.respond(pose); };
-      GuardedQuery guarded(query, ask, failures_);
-      if (!directions_) compare_directions(bucket, *exact, guarded);
+      GuardedQuery guarded(query, ask, failures);
+      if (!directions) compare_directions(bucket, *exact, guarded);
       run(state, bucket, guarded, seconds);
     }
   }
 
- private:
   template <class Ask>
   void run(benchmark::State& state, const BucketSample& bucket, GuardedQuery<Ask> query, double seconds) {
-    if (!check_) {
-      check_ = check_answers(bucket, query, seconds / k_passes);
-      poses_ = order_ == Order::path ? check_->answered
-                                     : shuffled(check_->answered, check_->answered.size(), resources_.seed);
-      check_->answered.clear();
-      latency_ = time_each(poses_, query);
+    if (!check) {
+      check = check_answers(bucket, query, seconds / k_passes);
+      poses = path ? check->answered : shuffled(check->answered, check->answered.size(), resources.seed);
+      check->answered.clear();
+      latency = time_each(poses, query);
     }
-    if (poses_.empty()) throw Error(fmt::format("no configuration has an answer: {}", failures_.first()));
-    time_mean(state, poses_, query);
+    if (poses.empty()) throw Error(fmt::format("no configuration has an answer: {}", failures.first()));
+    time_mean(state, poses, query);
     report(state, bucket);
   }
 
@@ -119,74 +111,48 @@ class QueryRow {
       forces.push_back(response.force);
       torques.push_back(response.torque);
     }
-    directions_ = {direction_error(exact_forces, forces), direction_error(exact_torques, torques)};
+    directions = {direction_error(exact_forces, forces), direction_error(exact_torques, torques)};
   }
 
   void report(benchmark::State& state, const BucketSample& bucket) const {
-    const auto count = [&](const char* name, auto value) { state.counters[name] = static_cast<double>(value); };
-    count("p50_ns", latency_.p50);
-    count("p99_ns", latency_.p99);
-    count("p999_ns", latency_.p999);
-    count("max_ns", latency_.max);
-    count("over_1ms", latency_.over_deadline);
-    count("configurations", check_->asked);
+    const auto count = [&](const std::string& counter, auto value) {
+      state.counters[counter] = static_cast<double>(value);
+    };
+    count("p50_ns", latency.p50);
+    count("p99_ns", latency.p99);
+    count("p999_ns", latency.p999);
+    count("max_ns", latency.max);
+    count("over_1ms", latency.over_deadline);
+    count("configurations", check->asked);
     count("reachable", bucket.reachable);
-    count("failed", failures_.count());
-    count("judged", check_->judged);
-    count("mismatch", check_->mismatch);
-    check_->work.report(state.counters);
-    if (question_ == Question::distance) {
-      count("error_rms", check_->errors.rms());
-      count("error_max", check_->errors.largest());
+    count("failed", failures.count());
+    count("judged", check->judged);
+    count("mismatch", check->mismatch);
+    check->work.report(state.counters);
+    if (question == Question::distance) {
+      count("error_rms", check->errors.rms());
+      count("error_max", check->errors.largest());
     }
-    if (question_ == Question::respond) {
-      count("misses", check_->misses);
-      if (check_->judged > 0) {
-        count("volume_error_mean", check_->errors.mean());
-        count("volume_error_max", check_->errors.largest());
+    if (question == Question::respond) {
+      count("misses", check->misses);
+      if (check->judged > 0) {
+        count("volume_error_mean", check->errors.mean());
+        count("volume_error_max", check->errors.largest());
       }
-      const auto& [force, torque] = *directions_;
-      if (force.gamma_degrees) {
-        count("gamma_F_deg", *force.gamma_degrees);
-        count("gamma_max_F_deg", force.largest_degrees);
+      for (const auto& [error, suffix] : {std::pair(&directions->at(0), "F_deg"), {&directions->at(1), "T_deg"}}) {
+        if (!error->gamma_degrees) continue;
+        count(fmt::format("gamma_{}", suffix), *error->gamma_degrees);
+        count(fmt::format("gamma_max_{}", suffix), error->largest_degrees);
       }
-      if (torque.gamma_degrees) {
-        count("gamma_T_deg", *torque.gamma_degrees);
-        count("gamma_max_T_deg", torque.largest_degrees);
-      }
-      count("compared", force.compared);
+      count("compared", directions->at(0).compared);
     }
-    std::string label = resources_.settings_of(algorithm_).to_string();
-    if (failures_.count() > 0) {
-      label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures_.first());
+    std::string label = resources.settings_of(algorithm).to_string();
+    if (failures.count() > 0) {
+      label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures.first());
     }
     state.SetLabel(label);
   }
-
-  const Resources& resources_;
-  const Algorithm& algorithm_;
-  const CatalogueEntry& pair_;
-  const BucketKey key_;
-  const Question question_;
-  const Order order_;
-  Failures failures_;
-  std::optional<Check> check_;
-  std::vector<Pose> poses_;  ///< Those with an answer, in this row's order.
-  Latency latency_;
-  struct Directions {
-    DirectionError force, torque;
-  };
-  std::optional<Directions> directions_;  ///< To the exact responses; torques about the centre of B's box.
 };
-
-void add_rows(const Resources& resources, const Algorithm& algorithm, const CatalogueEntry& pair, BucketKey key,
-              Question question, std::vector<Row>& rows) {
-  for (const Order order : {Order::shuffled, Order::path}) {
-    const auto row = std::make_shared<QueryRow>(resources, algorithm, pair, key, question, order);
-    rows.push_back(
-        {.name = row->name(), .run = [row](benchmark::State& state, double seconds) { row->run(state, seconds); }});
-  }
-}
 
 }  // namespace
 
@@ -195,17 +161,20 @@ std::vector<Row> query_rows(const Resources& resources) {
   for (const CatalogueEntry& pair : resources.catalogue.sets()) {
     for (const auto& algorithm : resources.registry.all()) {
       if (!algorithm->traits().timed) continue;
+      const auto add = [&](BucketKey key, Question question) {
+        for (const bool path : {false, true}) {
+          const auto row = std::make_shared<QueryRow>(resources, *algorithm, pair, key, question, path);
+          rows.push_back({.name = row->name(),
+                          .run = [row](benchmark::State& state, double seconds) { row->run(state, seconds); }});
+        }
+      };
       const QuerySet& answers = algorithm->traits().answers;
       for (const BucketKey key : pair.buckets) {
-        if (answers.collide) add_rows(resources, *algorithm, pair, key, Question::collide, rows);
+        if (answers.collide) add(key, Question::collide);
         // The distance of overlapping bodies is 0 by definition: nothing to measure.
-        if (answers.distance && key.kind == BucketKind::distance) {
-          add_rows(resources, *algorithm, pair, key, Question::distance, rows);
-        }
+        if (answers.distance && key.kind == BucketKind::distance) add(key, Question::distance);
         // Bodies that only touch have no force.
-        if (answers.respond && key.kind == BucketKind::volume && key.percent > 0) {
-          add_rows(resources, *algorithm, pair, key, Question::respond, rows);
-        }
+        if (answers.respond && key.kind == BucketKind::volume && key.percent > 0) add(key, Question::respond);
       }
     }
   }

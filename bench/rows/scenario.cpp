@@ -20,82 +20,74 @@ constexpr double k_passes = 3.0;
 constexpr std::size_t k_fewest_steps = 100;
 
 /// One row, and what its first call measured.
-class ScenarioRow {
- public:
-  ScenarioRow(const Resources& resources, const Algorithm& algorithm, std::string scenario)
-      : resources_(resources), algorithm_(algorithm), name_(std::move(scenario)) {}
+struct ScenarioRow {
+  const Resources& resources;
+  const Algorithm& algorithm;
+  std::string name;  ///< Of the scenario.
+  IdealLaw law = IdealLaw::volume;
+  std::unique_ptr<Scenario> scenario = {};
+  std::unique_ptr<Query> query = {};
+  Recording recording = {};
+  std::vector<Pose> poses = {};  ///< Those of the recording that have an answer.
+  Failures failures = {};        ///< In the timed loop.
+  Measures measures = {};
 
   void run(benchmark::State& state, double seconds) {
-    if (!query_) prepare(seconds);
-    const auto ask = [this](const Pose& pose) { return query_->respond(pose); };
-    time_mean(state, poses_, GuardedQuery(*query_, ask, failures_));
-    for (const auto& [name, value] : measures_) {
-      if (name != "mean_ns" && name != "processor_ns") state.counters[name] = value;  // the row has its own times
+    if (!query) prepare(seconds);
+    const auto ask = [this](const Pose& pose) { return query->respond(pose); };
+    time_mean(state, poses, GuardedQuery(*query, ask, failures));
+    for (const auto& [measure, value] : measures) {
+      if (measure != "mean_ns" && measure != "processor_ns")
+        state.counters[measure] = value;  // the row has its own times
     }
-    state.counters["failed"].value += static_cast<double>(failures_.count());
-    state.counters["steps"] = static_cast<double>(recording_.size());
-    state.SetLabel(label());
+    state.counters["failed"].value += static_cast<double>(failures.count());
+    state.counters["steps"] = static_cast<double>(recording.size());
+    std::string label = fmt::format("law={} {}", to_string(law), resources.settings_of(algorithm).to_string());
+    const std::string& failure = recording.first_failure.empty() ? failures.first() : recording.first_failure;
+    if (!failure.empty()) label += fmt::format("; first failure: {}", failure);
+    state.SetLabel(label);
   }
 
- private:
   void prepare(double seconds) {
-    const ResponseLaw own = algorithm_.traits().law;
-    law_ = parse_ideal_law("own", own == ResponseLaw::none ? ResponseLaw::volume : own);
-    scenario_ = make_scenario(name_);
-    auto query =
-        resources_.cache.prepare(algorithm_, resources_.settings_of(algorithm_), scenario_->a(), scenario_->b());
+    const ResponseLaw own = algorithm.traits().law;
+    law = parse_ideal_law("own", own == ResponseLaw::none ? ResponseLaw::volume : own);
+    scenario = make_scenario(name);
+    auto prepared = resources.cache.prepare(algorithm, resources.settings_of(algorithm), scenario->a(), scenario->b());
     // The time of a few steps tells how many the row can afford; a multiple of four keeps closed paths symmetric.
     constexpr std::size_t k_trial = 12;
-    const Recording trial = record(*scenario_, *query, k_trial);
+    const Recording trial = record(*scenario, *prepared, k_trial);
     double step_ns = 0.0;
     for (const double t : trial.times_ns) step_ns += t / static_cast<double>(k_trial);
     const double affordable = seconds * 1e9 / (k_passes * std::max(1.0, step_ns));
     const std::size_t steps = affordable >= static_cast<double>(k_default_steps)
                                   ? k_default_steps
                                   : std::max(k_fewest_steps, static_cast<std::size_t>(affordable) / 4 * 4);
-    recording_ = record(*scenario_, *query, steps);
-    for (std::size_t k = 0; k < recording_.size(); ++k) {
-      if (recording_.status[k] == Status::ok) poses_.push_back(recording_.poses[k]);
+    recording = record(*scenario, *prepared, steps);
+    for (std::size_t k = 0; k < recording.size(); ++k) {
+      if (recording.status[k] == Status::ok) poses.push_back(recording.poses[k]);
     }
-    if (poses_.empty()) throw Error(fmt::format("no step has an answer: {}", recording_.first_failure));
-    measures_ = evaluate(*scenario_, recording_, law_);
-    for (const auto& measure : evaluate_jumps(*scenario_, *query, recording_, law_)) measures_.push_back(measure);
+    if (poses.empty()) throw Error(fmt::format("no step has an answer: {}", recording.first_failure));
+    measures = evaluate(*scenario, recording, law);
+    for (const auto& measure : evaluate_jumps(*scenario, *prepared, recording, law)) measures.push_back(measure);
     add_other_laws();
-    query_ = std::move(query);
+    query = std::move(prepared);
   }
 
   /// Magnitude and direction by every law but the declared one: in III and IV the ideal wrench of an algorithm is not
   /// that of its penalty's law.
   void add_other_laws() {
-    for (const IdealLaw law :
+    for (const IdealLaw other :
          {IdealLaw::depth, IdealLaw::volume, IdealLaw::gradient, IdealLaw::traction, IdealLaw::wall_traction}) {
-      if (law == law_) continue;
-      std::string suffix = fmt::format("_by_{}", to_string(law));
+      if (other == law) continue;
+      std::string suffix = fmt::format("_by_{}", to_string(other));
       std::replace(suffix.begin(), suffix.end(), '-', '_');
-      for (const auto& [name, value] : evaluate(*scenario_, recording_, law)) {
-        const bool wanted = name == "sigma_F" || name == "sigma_T" || name == "gamma_F_deg" || name == "gamma_T_deg";
-        if (wanted) measures_.emplace_back(name + suffix, value);
+      for (const auto& [measure, value] : evaluate(*scenario, recording, other)) {
+        for (const char* const wanted : {"sigma_F", "sigma_T", "gamma_F_deg", "gamma_T_deg"}) {
+          if (measure == wanted) measures.emplace_back(measure + suffix, value);
+        }
       }
     }
   }
-
-  std::string label() const {
-    std::string text = fmt::format("law={} {}", to_string(law_), resources_.settings_of(algorithm_).to_string());
-    const std::string& failure = recording_.first_failure.empty() ? failures_.first() : recording_.first_failure;
-    if (!failure.empty()) text += fmt::format("; first failure: {}", failure);
-    return text;
-  }
-
-  const Resources& resources_;
-  const Algorithm& algorithm_;
-  std::string name_;
-  IdealLaw law_ = IdealLaw::volume;
-  std::unique_ptr<Scenario> scenario_;
-  std::unique_ptr<Query> query_;
-  Recording recording_;
-  std::vector<Pose> poses_;  ///< Those of the recording that have an answer.
-  Failures failures_;        ///< In the timed loop.
-  Measures measures_;
 };
 
 }  // namespace

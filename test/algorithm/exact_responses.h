@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include <sixdof/algorithm/exact.h>
+#include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/measure/direction.h>
 
 /// Poses of two bodies that overlap, with exact responses, and how far other responses are from given ones.

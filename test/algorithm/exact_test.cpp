@@ -1,4 +1,4 @@
-#include <sixdof/algorithm/exact.h>
+#include <sixdof/algorithm/core_algorithms.h>
 
 #include <limits>
 #include <random>

@@ -118,11 +118,12 @@ TEST(CheckAnswers, CountsFailuresAndStopsAtTheEndOfARun) {
   EXPECT_EQ(all.mismatch, 98u);
   ASSERT_EQ(all.answered.size(), 98u);
   EXPECT_EQ(all.answered.front().t.x(), 2.0);
-  const std::vector<Work> work = all.work.mean();
-  ASSERT_EQ(work.size(), 1u);
-  EXPECT_EQ(work[0].unit, "nodes");
-  EXPECT_DOUBLE_EQ(work[0].tested, 0.5 * (2 + 99)) << "over the answers, without the two failures";
-  EXPECT_DOUBLE_EQ(work[0].total, 7.0);
+  benchmark::UserCounters counters;
+  all.work.report(counters);
+  ASSERT_EQ(counters.size(), 3u);
+  EXPECT_DOUBLE_EQ(counters.at("nodes_tested"), 0.5 * (2 + 99)) << "over the answers, without the two failures";
+  EXPECT_DOUBLE_EQ(counters.at("nodes_total"), 7.0);
+  EXPECT_DOUBLE_EQ(counters.at("ns_per_nodes"), 1e-9 * 0.5 * (2 + 99)) << "inverted and timed by Google Benchmark";
   EXPECT_EQ(check_answers(sample, guarded, 0.0).asked, BucketSample::k_run);
 }
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <sixdof/algorithm/exact.h>
+#include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/query/registrar.h>
 
 #include "faulty_pose.h"

@@ -26,7 +26,8 @@ TEST(TimeEach, AsksEveryPoseInEveryPassInOrder) {
   const Latency latency = time_each(poses, GuardedQuery(query, ask, failures));
   ASSERT_EQ(asked.size(), poses.size() * k_latency_passes);
   for (std::size_t i = 0; i < asked.size(); ++i) EXPECT_EQ(asked[i], static_cast<int>(i % poses.size()));
-  EXPECT_EQ(latency.count, 5u);
+  EXPECT_EQ(poses.size(), 5u);
+  EXPECT_GE(latency.max, latency.p50);
   EXPECT_EQ(failures.count(), 0u);
 }
 
@@ -41,8 +42,7 @@ TEST(TimeEach, RemovesPosesThatFailInOnePass) {
   };
   const Query query;
   Failures failures;
-  const Latency latency = time_each(poses, GuardedQuery(query, ask, failures));
-  EXPECT_EQ(latency.count, 8u);
+  time_each(poses, GuardedQuery(query, ask, failures));
   ASSERT_EQ(poses.size(), 8u);
   EXPECT_EQ(poses[3].t.x(), 4.0);
   EXPECT_EQ(poses[7].t.x(), 9.0);

@@ -1,5 +1,3 @@
-#include "bench/cli/generate.h"
-
 #include <algorithm>
 #include <chrono>
 #include <csignal>

@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/models/boxes.h>
-#include <sixdof/models/round.h>
+#include <sixdof/models/recipe.h>
 
 namespace sixdof::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "bench/cli/table.h"
+#include "bench/cli/commands.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -44,8 +44,9 @@ TEST_F(SampledBucket, HoldsEveryReachableConfigurationInTheSetsOrder) {
   for (std::size_t i = 0; i < translations.size(); ++i) {
     const Grid& grid = set.grid(key.kind);
     if (std::isnan(translations[i])) continue;
-    expected.push_back(configuration_pose(torus, torus, grid.directions[i % grid.directions.size()],
-                                          grid.rotations[i / grid.directions.size()], translations[i]));
+    expected.push_back(ConfigurationRay(torus, torus, grid.rotations[i / grid.directions.size()],
+                                        grid.directions[i % grid.directions.size()])
+                           .pose(translations[i]));
   }
   EXPECT_EQ(keys_of(all.poses), keys_of(expected));
   EXPECT_EQ(keys_of(sample(all.poses.size(), 5).poses), keys_of(expected));

@@ -97,7 +97,7 @@ TEST(Grid, RefusesWhatIsNoGrid) {
 }
 
 TEST(Grid, DirectionsAreDistinctUnitVectorsAtTheirAngles) {
-  const auto directions = latitude_directions(12);
+  const auto directions = make_grid("15").directions;
   EXPECT_EQ(directions.front(), Eigen::Vector3d(0, 0, 1));
   EXPECT_EQ(directions.back(), Eigen::Vector3d(0, 0, -1));
   std::set<std::array<double, 3>> seen;
@@ -113,7 +113,7 @@ TEST(Grid, DirectionsAreDistinctUnitVectorsAtTheirAngles) {
 }
 
 TEST(Grid, RotationsAreTheEulerAnglesProduct) {
-  const auto rotations = zyz_rotations(12);
+  const auto rotations = make_grid("15").rotations;
   std::mt19937_64 random(7);
   for (int repeat = 0; repeat < 200; ++repeat) {
     const std::size_t alpha = random() % 24, beta = random() % 13, gamma = random() % 24;
@@ -127,7 +127,7 @@ TEST(Grid, RotationsAreTheEulerAnglesProduct) {
 }
 
 TEST(Grid, RepresentativesAreTheSameRotationAndNoOtherRotationIs) {
-  const auto rotations = zyz_rotations(6);
+  const auto rotations = make_grid("30").rotations;
   const auto map = DistinctRotations(rotations).representative;
   // Two rotations that differ on this grid do so by an angle of whole degrees, far above this.
   constexpr double k_same = 1e-9;
@@ -143,7 +143,7 @@ TEST(Grid, RepresentativesAreTheSameRotationAndNoOtherRotationIs) {
 
 TEST(Grid, RotationsByRightAnglesAreExact) {
   std::size_t exact = 0;
-  for (const auto& q : zyz_rotations(12)) {
+  for (const auto& q : make_grid("15").rotations) {
     const Eigen::Matrix3d R = matrix(q);
     const Eigen::Matrix3d rounded = R.array().round();
     if (!R.isApprox(rounded, 1e-9)) continue;
@@ -176,8 +176,8 @@ Covering covering(const std::vector<Eigen::Vector4d>& rotations) {
 }
 
 TEST(Grid, UniformRotationsCoverSO3BetterThanRandomOnesAndThanEulerAngles) {
-  const auto euler = zyz_rotations(6);  // 1,008, of which 744 are distinct
-  const auto uniform = super_fibonacci_rotations(744);
+  const auto euler = make_grid("30").rotations;  // 1,008, of which 744 are distinct
+  const auto uniform = make_grid("so3:744:1").rotations;
   std::vector<Eigen::Vector4d> random_rotations;
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -236,7 +236,7 @@ TEST(ConfigurationPose, PutsTheCentreOfBsBoxAtDistanceSInDirectionU) {
       const Eigen::Vector3d& u = grid.directions[random() % grid.directions.size()];
       const Eigen::Vector4d& q = grid.rotations[random() % grid.rotations.size()];
       const double s = translations(random);
-      const Pose X_AB = configuration_pose(*a, *b, u, q, s);
+      const Pose X_AB = ConfigurationRay(*a, *b, q, u).pose(s);
       EXPECT_TRUE((X_AB * b->center()).isApprox(a->center() + s * u, 20 * k_rounding));
       EXPECT_NEAR(std::abs(X_AB.quaternion().dot(q)), 1.0, 4 * k_rounding);
       EXPECT_NEAR(X_AB.R.determinant(), 1.0, 8 * k_rounding);

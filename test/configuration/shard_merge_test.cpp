@@ -1,4 +1,4 @@
-#include <sixdof/configuration/shard_merge.h>
+#include <sixdof/configuration/shard_file.h>
 
 #include <sys/resource.h>
 

@@ -27,7 +27,7 @@ double solve(Query& query, const Mesh& a, const Mesh& b, const Eigen::Vector3d& 
              double target) {
   double s = a.diagonal() + b.diagonal();
   for (int step = 0; step < k_most_steps; ++step) {
-    const double remaining = query.distance(configuration_pose(a, b, u, q, s)).value.distance - target;
+    const double remaining = query.distance(ConfigurationRay(a, b, q, u).pose(s)).value.distance - target;
     if (std::abs(remaining) <= k_tolerance * a.diagonal()) return s;
     s -= remaining;
     if (s < 0.0) break;

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/algorithm/brute_force.h>
+#include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/error.h>
 #include <sixdof/generation/sphere_method.h>
 
@@ -53,7 +53,7 @@ TEST(DistanceGenerator, EveryConfigurationHasItsDistance) {
           if (std::isnan(s)) continue;
           ++reachable;
           const double d =
-              query->distance(configuration_pose(*a, *b, grid.directions[u], grid.rotations[r], s)).value.distance;
+              query->distance(ConfigurationRay(*a, *b, grid.rotations[r], grid.directions[u]).pose(s)).value.distance;
           largest = std::max(largest, std::abs(d - summary.target));
         }
       }

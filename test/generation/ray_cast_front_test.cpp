@@ -1,4 +1,4 @@
-#include <sixdof/generation/ray_cast_front.h>
+#include <sixdof/generation/ray_cast_search.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/generation/distance_generator.h>
-#include <sixdof/generation/ray_cast_traversal.h>
 #include <sixdof/models/model_catalogue.h>
 
 #include "../configuration/shapes.h"

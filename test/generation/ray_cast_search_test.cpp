@@ -106,8 +106,8 @@ TEST(RaySearch, FacesThatTieTakeLittleForASingleTarget) {
       generic.push_back(search.solve(random_direction(random), target)[0]);
       EXPECT_TRUE(search.cast().best.pair.has_value());
     }
-    for (const Eigen::Vector4d& q : zyz_rotations(2)) {
-      for (const Eigen::Vector3d& u : latitude_directions(4)) {
+    for (const Eigen::Vector4d& q : make_grid("90").rotations) {
+      for (const Eigen::Vector3d& u : make_grid("45").directions) {
         search.set_rotation(q);
         aligned.push_back(search.solve(u, target)[0]);
         EXPECT_TRUE(search.cast().best.pair.has_value());

@@ -10,8 +10,7 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include <sixdof/algorithm/brute_force.h>
-#include <sixdof/algorithm/exact.h>
+#include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/configuration/bucket.h>
 #include <sixdof/configuration/grid.h>
 #include <sixdof/generation/distance_generator.h>
@@ -111,14 +110,14 @@ TEST(RayCast, IsExactForBoxesFaceToFace) {
   const Eigen::Vector3d half_a(1.1, 0.7, 0.4), half_b(0.3, 0.55, 0.8);
   const Mesh first = boxes_mesh({{{0.9, -2.0, 0.3}, half_a}});
   const Mesh second = boxes_mesh({{{-1.0, 0.1, 1.7}, half_b}});
-  const auto rotations = zyz_rotations(2);
+  const auto rotations = make_grid("90").rotations;
   const auto generator = make_ray_cast();
   for (const auto& [a, b, ha, hb] :
        {std::tuple(&first, &second, half_a, half_b), std::tuple(&second, &first, half_b, half_a)}) {
     const std::vector<double> targets = some_targets(*a);
     for (const Eigen::Vector4d& q : rotations) {
-      const Eigen::Vector3d half_in_a = (configuration_pose(*a, *b, {0, 0, 0}, q, 0.0).R * hb).cwiseAbs();
-      for (const Eigen::Vector3d& u : latitude_directions(2)) {
+      const Eigen::Vector3d half_in_a = (ConfigurationRay(*a, *b, q).R * hb).cwiseAbs();
+      for (const Eigen::Vector3d& u : make_grid("90").directions) {
         const double reach = u.cwiseAbs().dot(ha + half_in_a);
         const Ray ray = cast_ray(*generator, *a, *b, u, q, targets);
         for (std::size_t k = 0; k < targets.size(); ++k) {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/generation/ray_cast_traversal.h>
+#include <sixdof/generation/ray_cast_search.h>
 #include <sixdof/models/model_catalogue.h>
 
 #include "../configuration/shapes.h"

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/algorithm/brute_force.h>
+#include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/error.h>
 
 #include "../configuration/shapes.h"
@@ -121,7 +121,7 @@ void check_ray(const std::vector<Ball>& balls_a, const std::vector<Ball>& balls_
                const Eigen::Vector3d& u, const Eigen::Vector4d& q, const std::vector<double>& targets, const Ray& ray,
                std::array<int, 2>& count) {
   for (std::size_t k = 0; k < targets.size(); ++k) {
-    const double expected = first_hit(balls_a, balls_b, configuration_pose(a, b, u, q, 0.0), u, targets[k]);
+    const double expected = first_hit(balls_a, balls_b, ConfigurationRay(a, b, q, u).pose(0.0), u, targets[k]);
     ++count[std::isnan(expected) ? 1 : 0];
     if (std::isnan(expected)) {
       EXPECT_TRUE(std::isnan(ray.translations[k])) << "target " << targets[k] << ": " << ray.translations[k];
@@ -129,7 +129,7 @@ void check_ray(const std::vector<Ball>& balls_a, const std::vector<Ball>& balls_
       continue;
     }
     const auto distance_at = [&](double s) {
-      return balls_distance(balls_a, balls_b, configuration_pose(a, b, u, q, s), false).distance;
+      return balls_distance(balls_a, balls_b, ConfigurationRay(a, b, q, u).pose(s), false).distance;
     };
     EXPECT_LE(std::abs(distance_at(ray.translations[k]) - targets[k]), k_found * a.diagonal());
     EXPECT_LE(ray.residuals[k], k_found * a.diagonal());
@@ -234,7 +234,7 @@ TEST(SphereMethod, IsExactForBoxesFaceToFace) {
   const Eigen::Vector3d half_a(1.1, 0.7, 0.4), half_b(0.3, 0.55, 0.8);
   const Mesh first = boxes_mesh({{{0.9, -2.0, 0.3}, half_a}});
   const Mesh second = boxes_mesh({{{-4.0, 0.1, 7.7}, half_b}});
-  const auto rotations = zyz_rotations(2);
+  const auto rotations = make_grid("90").rotations;
   const auto distinct = DistinctRotations(rotations).representative;
   for (const auto& [a, b, ha, hb] :
        {std::tuple(&first, &second, half_a, half_b), std::tuple(&second, &first, half_b, half_a)}) {
@@ -242,9 +242,9 @@ TEST(SphereMethod, IsExactForBoxesFaceToFace) {
     for (std::size_t r = 0; r < rotations.size(); ++r) {
       if (distinct[r] != r) continue;
       const Eigen::Vector4d& q = rotations[r];
-      const Eigen::Matrix3d R = configuration_pose(*a, *b, {0, 0, 0}, q, 0.0).R;
+      const Eigen::Matrix3d R = ConfigurationRay(*a, *b, q).R;
       const Eigen::Vector3d rotated = (R * hb).cwiseAbs();
-      for (const Eigen::Vector3d& u : latitude_directions(2)) {
+      for (const Eigen::Vector3d& u : make_grid("90").directions) {
         const double reach = u.cwiseAbs().dot(ha + rotated);
         const Ray ray = shoot(*k_brute_force, *a, *b, u, q, targets);
         for (std::size_t k = 0; k < targets.size(); ++k) {
@@ -311,14 +311,14 @@ TEST(SphereMethod, AgreesWithFineMarchingOnMeshes) {
       for (std::size_t k = 0; k < targets.size(); ++k) {
         // The bodies overlap at s = 0.
         ASSERT_FALSE(std::isnan(ray.translations[k]));
-        const double found = query->distance(configuration_pose(*a, *b, u, q, ray.translations[k])).value.distance;
+        const double found = query->distance(ConfigurationRay(*a, *b, q, u).pose(ray.translations[k])).value.distance;
         EXPECT_NEAR(found, targets[k], k_found * a->diagonal());
         // The distance is greater before.
         constexpr int k_steps = 20;
         const double start = 0.5 * (a->diagonal() + b->diagonal()) + targets[k];
         for (int i = 0; i < k_steps; ++i) {
           const double s = ray.translations[k] + (start - ray.translations[k]) * (i + 0.5) / k_steps;
-          EXPECT_GT(query->distance(configuration_pose(*a, *b, u, q, s)).value.distance, targets[k]);
+          EXPECT_GT(query->distance(ConfigurationRay(*a, *b, q, u).pose(s)).value.distance, targets[k]);
         }
       }
     }

@@ -19,7 +19,6 @@ TEST(LatencyOf, QuantilesAreNearestRanks) {
   std::mt19937_64 random(7);
   std::shuffle(times.begin(), times.end(), random);
   const Latency all = latency(times);
-  EXPECT_EQ(all.count, 1000u);
   EXPECT_EQ(all.mean, 500500.0);
   EXPECT_EQ(all.p50, 500000.0);
   EXPECT_EQ(all.p99, 990000.0);
@@ -35,7 +34,7 @@ TEST(LatencyOf, FewTimes) {
   EXPECT_EQ(latency(three).p50, 5.0);
   EXPECT_EQ(latency(three).p99, 9.0);
   EXPECT_EQ(latency(three).mean, 6.0);
-  EXPECT_EQ(latency({}).count, 0u);
+  EXPECT_EQ(latency({}).mean, 0.0);
   EXPECT_EQ(latency({}).max, 0.0);
   const std::vector<double> broken{1.0, std::numeric_limits<double>::quiet_NaN()};
   EXPECT_THROW(latency(broken), BadArgument);

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/models/recipe.h>
 #include <sixdof/models/suggestions.h>
-#include <sixdof/models/tube.h>
 
 namespace sixdof {
 namespace {

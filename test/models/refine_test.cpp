@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/models/tube.h>
+#include <sixdof/models/recipe.h>
 
 #include "quality.h"
 

@@ -1,7 +1,6 @@
 #include <cgal_overlap.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/models/boxes.h>
 #include <sixdof/models/recipe.h>
 #include <sixdof/models/refine.h>
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/models/boxes.h>
+#include <sixdof/models/recipe.h>
 
 #include "../geometry/shapes.h"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/models/boxes.h>
+#include <sixdof/models/recipe.h>
 #include <sixdof/oracle/distance.h>
 
 #include "../geometry/shapes.h"

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <map>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/hdf5.h>
 #include <sixdof/measure/metrics.h>
 #include <sixdof/measure/spectrum.h>
-#include <sixdof/scenario/drawing.h>
+#include <sixdof/scenario/scenario.h>
 #include <sixdof/scenario/series_file.h>
 
 #include "ideal_query.h"
@@ -166,7 +167,7 @@ TEST(Drawing, IsTheSameEveryTimeAndShowsBothBodies) {
     EXPECT_NE(svg.find("Scenario " + name + "<"), std::string::npos);
     EXPECT_EQ(svg.find("nan"), std::string::npos);
     for (const Dimension& dimension : scenario->sketch().dimensions) {
-      EXPECT_NE(svg.find(dimension.label), std::string::npos) << dimension.label;
+      EXPECT_NE(svg.find(fmt::format("{} = {:g}", dimension.symbol, dimension.length)), std::string::npos);
     }
     EXPECT_NE(svg.find("url(#wrench)"), std::string::npos) << name;
   }

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/scenario/pin_traction.h>
+#include <sixdof/scenario/kinds.h>
 #include <sixdof/scenario/scenario.h>
 #include <sixdof/scenario/solids.h>
 

@@ -107,7 +107,7 @@ TEST(Recorder, ReportsAnAlgorithmWithoutResponses) {
   Query mute;
   const Recording recording = record(*scenario, mute, 3);
   EXPECT_EQ(recording.status, std::vector<Status>(3, Status::unsupported));
-  EXPECT_EQ(recording.first_failure, "unsupported: the algorithm gives no response");
+  EXPECT_EQ(recording.first_failure, "unsupported: the algorithm gives no such answer");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include <sixdof/algorithm/brute_force.h>
+#include <sixdof/algorithm/core_algorithms.h>
 
 #include <limits>
 #include <vector>
@@ -24,11 +24,6 @@ class BruteForceQuery final : public Query {
 
   Outcome<Separation> distance(const Pose& X_AB) override {
     if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
-    return closest(X_AB);
-  }
-
- private:
-  Separation closest(const Pose& X_AB) {
     for (std::size_t i = 0; i < vertices_b_A_.size(); ++i) vertices_b_A_[i] = X_AB * b_.vertices()[i];
     Separation best{.distance = std::numeric_limits<double>::infinity(), .has_witnesses = true};
     for (const Triangle& t : b_.triangles()) {
@@ -45,6 +40,7 @@ class BruteForceQuery final : public Query {
     return best;
   }
 
+ private:
   const Mesh& b_;
   std::vector<TriangleCorners> triangles_a_;
   std::vector<Eigen::Vector3d> vertices_b_A_;  ///< B's, in A's frame.

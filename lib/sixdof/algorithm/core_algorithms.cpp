@@ -1,15 +1,28 @@
 #include <sixdof/algorithm/core_algorithms.h>
 
-#include <sixdof/algorithm/brute_force.h>
-#include <sixdof/algorithm/exact.h>
 #include <sixdof/algorithm/ist/ist.h>
-#include <sixdof/algorithm/null.h>
 #include <sixdof/algorithm/vps/vps.h>
 
 namespace sixdof {
+namespace {
+
+/// `null`: its answers are wrong on purpose.
+class NullQuery final : public Query {
+ public:
+  NullQuery(const Mesh&, const Mesh&, const Settings&) {}
+  Outcome<bool> collide(const Pose&) override { return false; }
+  Outcome<Separation> distance(const Pose&) override { return Separation{}; }
+  Outcome<Response> respond(const Pose&) override { return Response{}; }
+};
+
+}  // namespace
 
 void register_core_algorithms(Registry& registry) {
-  registry.add(make_null_algorithm());
+  registry.add(
+      make_algorithm<NullQuery>({.name = "null",
+                                 .version = SIXDOF_VERSION,
+                                 .summary = "answers with constants: its time is the overhead of the benchmarks",
+                                 .answers = {.collide = true, .distance = true, .respond = true}}));
   registry.add(make_brute_force_algorithm());
   registry.add(make_exact_algorithm());
   registry.add(make_ist_algorithm());

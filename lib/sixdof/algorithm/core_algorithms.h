@@ -1,10 +1,25 @@
 #pragma once
 
+#include <memory>
+
 #include <sixdof/query/registry.h>
 
 namespace sixdof {
 
-/// Adds the algorithms that need no third-party collision library.
+/// `exact`: the oracles that define truth in this suite, behind the interface of an algorithm. Distances are those of
+/// DistanceQuery. Where the meshes are solid, collide tests the bodies and not only their surfaces.
+///
+/// The response follows the volume law with stiffness 1: penalty = volume of the intersection, force = -(gradient of
+/// the volume with respect to translating B), torque = -(gradient with respect to rotating B about the centre of its
+/// box), so it derives from a potential. It needs solids: respond() fails with the reason for other meshes.
+std::unique_ptr<Algorithm> make_exact_algorithm();
+
+/// `brute-force`: the smallest distance over all pairs of triangles; collide where it is 0. It has no tree and shares
+/// no code with the other algorithms, so it checks them where meshes are small. Surfaces only.
+std::unique_ptr<Algorithm> make_brute_force_algorithm();
+
+/// Adds the algorithms that need no third-party collision library: these two, `null`, which answers with constants,
+/// `ist`, `vps` and `vps-field`.
 void register_core_algorithms(Registry& registry);
 
 }  // namespace sixdof

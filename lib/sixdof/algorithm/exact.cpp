@@ -1,4 +1,4 @@
-#include <sixdof/algorithm/exact.h>
+#include <sixdof/algorithm/core_algorithms.h>
 
 #include <optional>
 
@@ -82,11 +82,9 @@ std::unique_ptr<Algorithm> make_exact_algorithm() {
        .summary = "exact distance, yes/no and overlap volume with its gradient: the reference for the others",
        .answers = {.collide = true, .distance = true, .respond = true},
        .law = ResponseLaw::volume,
-       .parameters = {{.name = "warm_start",
-                       .meaning = "start each query from the closest triangles of the last one; changes no distance",
-                       .unit = "",
-                       .default_value = "off",
-                       .choices = {"off", "on"}}}});
+       .parameters = {Parameter::choice(
+           "warm_start", "start each query from the closest triangles of the last one; changes no distance", "off",
+           {"off", "on"})}});
 }
 
 }  // namespace sixdof

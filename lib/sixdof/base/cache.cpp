@@ -25,25 +25,21 @@ std::filesystem::path cache_directory() {
   return {};
 }
 
-void add_text(ContentHash& hash, std::string_view text) {
-  const std::uint64_t length = text.size();
+/// Adds the number of values before them.
+template <class T>
+void add_sized(ContentHash& hash, std::span<const T> values) {
+  const std::uint64_t length = values.size();
   hash.add_values(std::span(&length, 1));
-  hash.add_values(std::span(text.data(), text.size()));
+  hash.add_values(values);
 }
 
 std::string content_hash(const CacheEntry& entry) {
   ContentHash hash;
   for (const auto& [name, values] : entry.arrays()) {
-    add_text(hash, name);
+    add_sized(hash, std::span(name));
     const std::uint64_t type = values.index();
     hash.add_values(std::span(&type, 1));
-    std::visit(
-        [&](const auto& v) {
-          const std::uint64_t length = v.size();
-          hash.add_values(std::span(&length, 1));
-          hash.add(std::as_bytes(std::span(v)));
-        },
-        values);
+    std::visit([&](const auto& v) { add_sized(hash, std::span(v)); }, values);
   }
   return hash.hex();
 }
@@ -72,8 +68,8 @@ std::filesystem::path cache_file(std::string_view kind, std::string_view key) {
   const std::filesystem::path directory = cache_directory();
   if (directory.empty()) return {};
   ContentHash hash;
-  add_text(hash, k_format);
-  add_text(hash, key);
+  add_sized(hash, std::span(k_format));
+  add_sized(hash, std::span(key));
   return directory / (std::string(kind) + "-" + hash.hex() + ".h5");
 }
 

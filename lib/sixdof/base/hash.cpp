@@ -8,17 +8,17 @@
 
 namespace sixdof {
 
-ContentHash::ContentHash() : state_(XXH3_createState()) {
+ContentHash::ContentHash() : state_(XXH3_createState(), [](XXH3_state_s* state) { XXH3_freeState(state); }) {
   if (state_ == nullptr) throw std::bad_alloc();
-  XXH3_128bits_reset(state_);
+  XXH3_128bits_reset(state_.get());
 }
 
-ContentHash::~ContentHash() { XXH3_freeState(state_); }
-
-void ContentHash::add(std::span<const std::byte> bytes) { XXH3_128bits_update(state_, bytes.data(), bytes.size()); }
+void ContentHash::add(std::span<const std::byte> bytes) {
+  XXH3_128bits_update(state_.get(), bytes.data(), bytes.size());
+}
 
 std::string ContentHash::hex() const {
-  const XXH128_hash_t digest = XXH3_128bits_digest(state_);
+  const XXH128_hash_t digest = XXH3_128bits_digest(state_.get());
   return fmt::format("{:016x}{:016x}", digest.high64, digest.low64);
 }
 

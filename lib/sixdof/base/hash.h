@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -13,9 +14,6 @@ namespace sixdof {
 class ContentHash {
  public:
   ContentHash();
-  ~ContentHash();
-  ContentHash(const ContentHash&) = delete;
-  ContentHash& operator=(const ContentHash&) = delete;
 
   void add(std::span<const std::byte> bytes);
 
@@ -29,7 +27,7 @@ class ContentHash {
   std::string hex() const;
 
  private:
-  XXH3_state_s* state_;
+  std::unique_ptr<XXH3_state_s, void (*)(XXH3_state_s*)> state_;
 };
 
 }  // namespace sixdof

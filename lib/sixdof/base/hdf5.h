@@ -2,11 +2,13 @@
 
 #include <hdf5.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,9 +31,6 @@ class Session {
   void* old_data_ = nullptr;
 };
 
-/// The innermost entry of HDF5's error stack, e.g. "data error detected by Fletcher32 checksum"; clears the stack.
-std::string last_error();
-
 /// An identifier with the function that closes it.
 class Handle {
  public:
@@ -42,12 +41,25 @@ class Handle {
     if (id_ >= 0) close_(id_);
   }
   hid_t id() const { return id_; }
-  bool valid() const { return id_ >= 0; }
 
  private:
   hid_t id_;
   herr_t (*close_)(hid_t);
 };
+
+/// How HDF5 calls a type of number in a file and in memory.
+struct NumberType {
+  hid_t stored, native;
+};
+
+template <class T>
+NumberType number_type() {
+  if constexpr (std::is_same_v<T, std::int32_t>) return {H5T_STD_I32LE, H5T_NATIVE_INT32};
+  if constexpr (std::is_same_v<T, std::uint32_t>) return {H5T_STD_U32LE, H5T_NATIVE_UINT32};
+  if constexpr (std::is_same_v<T, std::uint64_t>) return {H5T_STD_U64LE, H5T_NATIVE_UINT64};
+  if constexpr (std::is_same_v<T, float>) return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT};
+  if constexpr (std::is_same_v<T, double>) return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE};
+}
 
 /// An HDF5 file. Objects are named by their path inside the file, "/" for the root. Every method throws BadFile
 /// "FILE: OBJECT: CAUSE" if it fails.
@@ -67,8 +79,11 @@ class File {
   void make_group(const std::string& object);
 
   void write_attribute(const std::string& object, const char* name, const std::string& value);
-  void write_attribute(const std::string& object, const char* name, double value);
-  void write_attribute(const std::string& object, const char* name, std::uint64_t value);
+  /// T: double or std::uint64_t.
+  template <class T>
+  void write_attribute(const std::string& object, const char* name, T value) {
+    write_attribute(object, name, number_type<T>().stored, &value);
+  }
   std::string read_string(const std::string& object, const char* name) const;
   double read_number(const std::string& object, const char* name) const;
   std::uint64_t read_count(const std::string& object, const char* name) const;
@@ -80,29 +95,46 @@ class File {
 
   /// (rows, columns) of a two-dimensional float64 dataset.
   std::pair<std::size_t, std::size_t> matrix_size(const std::string& object) const;
-  std::vector<double> read_matrix(const std::string& object) const;
+  std::vector<double> read_matrix(const std::string& object) const { return read_dataset<double, 2>(object); }
 
   /// A one-dimensional dataset in one piece, without filters. T: std::int32_t, std::uint32_t, std::uint64_t, float or
   /// double, stored little-endian; read_values() throws if another type is stored.
   template <class T>
-  void write_values(const std::string& object, std::span<const T> values);
+  void write_values(const std::string& object, std::span<const T> values) {
+    write_dataset(object, std::array<hsize_t, 1>{values.size()}, number_type<T>(), 0, values.data());
+  }
   template <class T>
-  std::vector<T> read_values(const std::string& object) const;
+  std::vector<T> read_values(const std::string& object) const {
+    return read_dataset<T, 1>(object);
+  }
 
  private:
   File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
   [[noreturn]] void refuse(const std::string& object, const std::string& cause) const;
-  /// Throws with HDF5's own reason if `result` is negative.
-  void check(herr_t result, const std::string& object, const std::string& what) const;
+  /// Throws with HDF5's own reason if `result`, an identifier or a status, is negative.
+  void check(hid_t result, const std::string& object, const std::string& what) const;
+  Handle checked(Handle handle, const std::string& object, const std::string& what) const;
   void write_attribute(const std::string& object, const char* name, hid_t type, const void* value);
-  Handle open_attribute(const std::string& object, const char* name) const;
-  void read_attribute(const std::string& object, const char* name, H5T_class_t type_class, hid_t memory_type,
-                      void* value) const;
-  void write_dataset(const std::string& object, std::span<const hsize_t> size, hid_t stored_type, hid_t native_type,
-                     const Handle& properties, const void* values);
-  Handle open_dataset(const std::string& object, hid_t stored_type) const;
-  /// @param size has one element for each dimension that the dataset must have
-  void read_size(const Handle& dataset, const std::string& object, std::span<hsize_t> size) const;
+  /// The attribute and its type.
+  std::pair<Handle, Handle> open_attribute(const std::string& object, const char* name) const;
+  template <class T>
+  T read_attribute(const std::string& object, const char* name) const;
+  void write_dataset(const std::string& object, std::span<const hsize_t> size, NumberType type, std::size_t chunk_rows,
+                     const void* values);
+  /// @param size filled with one element for each dimension that the dataset must have
+  Handle open_dataset(const std::string& object, hid_t stored_type, std::span<hsize_t> size) const;
+  /// The product of the dimensions. Throws if it is too large to be more than an error.
+  std::size_t value_count(const std::string& object, std::span<const hsize_t> size) const;
+
+  template <class T, std::size_t dimensions>
+  std::vector<T> read_dataset(const std::string& object) const {
+    const NumberType type = number_type<T>();
+    std::array<hsize_t, dimensions> size{};
+    const Handle dataset = open_dataset(object, type.stored, size);
+    std::vector<T> values(value_count(object, size));
+    check(H5Dread(dataset.id(), type.native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), object, "cannot be read");
+    return values;
+  }
 
   Handle file_;
   std::string name_;

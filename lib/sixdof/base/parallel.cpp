@@ -2,11 +2,8 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
-#include <tbb/task_group.h>
 
 #ifdef SIXDOF_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
@@ -54,21 +51,12 @@ void ThreadSlots::set(void* value) { static_cast<Slots*>(slots_.get())->local() 
 
 }  // namespace detail
 
-void for_ranges(std::size_t n, std::size_t grain, const detail::RangeBody& body) {
+void for_ranges(std::size_t n, const std::function<void(std::size_t, std::size_t)>& body) {
   Step step;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain), [&](const tbb::blocked_range<std::size_t>& range) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](const tbb::blocked_range<std::size_t>& range) {
     const Step::Body part(step);
     body(range.begin(), range.end());
   });
-}
-
-void invoke(const std::function<void()>& f, const std::function<void()>& g) {
-  Step step;
-  const auto run = [&step](const std::function<void()>& body) {
-    const Step::Body part(step);
-    body();
-  };
-  tbb::parallel_invoke([&] { run(f); }, [&] { run(g); });
 }
 
 void isolated(const std::function<void()>& f) { tbb::this_task_arena::isolate(f); }
@@ -79,46 +67,6 @@ void with_threads(unsigned threads, const std::function<void()>& f) {
     const Step::Body part(step);
     f();
   });
-}
-
-ThreadLimit::ThreadLimit(std::size_t threads)
-    : limit_(std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads)) {}
-
-struct Tasks::Group {
-  struct Task {
-    std::function<void()> body;
-    Step step;
-  };
-  std::deque<Task> tasks;  ///< Outlive their runs, so that oneTBB's memory holds no part of a body.
-  tbb::task_group group;
-};
-
-Tasks::Tasks() = default;
-
-Tasks::~Tasks() {
-  if (!group_) return;
-  // Only an exception in the owner leads here. Tasks that run use what it is about to destroy.
-  group_->group.cancel();
-  try {
-    group_->group.wait();
-  } catch (...) {  // The owner's exception is under way.
-  }
-}
-
-void Tasks::run(std::function<void()> task) {
-  if (!group_) group_ = std::make_unique<Group>();
-  Group::Task& added = group_->tasks.emplace_back(std::move(task));
-  group_->group.run([&added] {
-    const Step::Body part(added.step);
-    added.body();
-  });
-}
-
-void Tasks::wait() {
-  if (!group_) return;
-  // Destroyed on both ways out of here, which joins their steps.
-  const std::unique_ptr<Group> ended = std::move(group_);
-  ended->group.wait();
 }
 
 }  // namespace sixdof::parallel

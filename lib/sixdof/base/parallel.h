@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-/// Loops, tasks and per-thread values on all cores. Nothing else in this project uses oneTBB, and only parallel.cpp
+/// Loops and per-thread values on all cores. Nothing else in this project uses oneTBB, and only parallel.cpp
 /// includes it.
 ///
 /// An exception that leaves a body reaches the caller of the step after all bodies have ended; of several, one does.
@@ -22,8 +22,6 @@
 namespace sixdof::parallel {
 
 namespace detail {
-
-using RangeBody = std::function<void(std::size_t begin, std::size_t end)>;
 
 /// The value of each thread as an untyped pointer, null at first.
 class ThreadSlots {
@@ -38,13 +36,13 @@ class ThreadSlots {
 
 }  // namespace detail
 
-/// body(begin, end) over disjoint ranges that cover [0, n), in any order. A range of more than `grain` may be halved.
-void for_ranges(std::size_t n, std::size_t grain, const detail::RangeBody& body);
+/// body(begin, end) over disjoint ranges that cover [0, n), in any order.
+void for_ranges(std::size_t n, const std::function<void(std::size_t begin, std::size_t end)>& body);
 
 /// body(i) for i in [0, n), in any order.
 template <class Body>
 void for_each(std::size_t n, const Body& body) {
-  for_ranges(n, 1, [&body](std::size_t begin, std::size_t end) {
+  for_ranges(n, [&body](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
@@ -62,7 +60,10 @@ T reduce(std::size_t n, std::size_t grain, const Fold& fold, const Join& join) {
 }
 
 /// f() and g(), in any order.
-void invoke(const std::function<void()>& f, const std::function<void()>& g);
+template <class F, class G>
+void invoke(const F& f, const G& g) {
+  for_each(2, [&](std::size_t i) { i == 0 ? f() : g(); });
+}
 
 namespace detail {
 
@@ -91,31 +92,6 @@ void isolated(const std::function<void()>& f);
 
 /// f(), whose steps use at most `threads` threads; 0 means all cores.
 void with_threads(unsigned threads, const std::function<void()>& f);
-
-/// While alive, at most `threads` threads work in the whole process.
-class ThreadLimit {
- public:
-  explicit ThreadLimit(std::size_t threads);
-
- private:
-  std::shared_ptr<void> limit_;
-};
-
-/// Tasks started one by one. One thread owns the object, starts tasks and waits for them.
-class Tasks {
- public:
-  Tasks();
-  Tasks(const Tasks&) = delete;
-  Tasks& operator=(const Tasks&) = delete;
-  ~Tasks();  ///< Waits for all started tasks; those that have not begun are dropped.
-
-  void run(std::function<void()> task);
-  void wait();  ///< @throws what a task threw
-
- private:
-  struct Group;
-  std::unique_ptr<Group> group_;  ///< Made by the first task.
-};
 
 /// A value for each thread that asks for one.
 template <class T>

@@ -9,9 +9,14 @@
 namespace sixdof {
 namespace {
 
-void check_percent(BucketKind kind, int percent) {
-  if (percent >= 0 && percent <= BucketKey::k_max_percent) return;
-  throw BadArgument(fmt::format("{} {} %: not in 0 .. {}", to_string(kind), percent, BucketKey::k_max_percent));
+/// @param scale,tolerance the quantity of 100 percent, and the allowed error in units of it
+BucketSummary bucket_of(BucketKey key, double scale, double tolerance) {
+  if (key.percent < 0 || key.percent > BucketKey::k_max_percent) {
+    throw BadArgument(
+        fmt::format("{} {} %: not in 0 .. {}", to_string(key.kind), key.percent, BucketKey::k_max_percent));
+  }
+  const double nominal = scale * static_cast<double>(key.percent) / 100.0;
+  return {.key = key, .nominal = nominal, .target = nominal, .tolerance = tolerance * scale};
 }
 
 }  // namespace
@@ -37,24 +42,13 @@ BucketKey BucketKey::parse(std::string_view name) {
 }
 
 BucketSummary distance_bucket(const Mesh& a, int percent) {
-  check_percent(BucketKind::distance, percent);
-  const double diagonal = a.diagonal();
-  BucketSummary bucket;
-  bucket.key = {BucketKind::distance, percent};
-  bucket.nominal = diagonal * static_cast<double>(percent) / 100.0;
-  bucket.target = percent == 0 ? k_contact_target * diagonal : bucket.nominal;
-  bucket.tolerance = k_distance_tolerance * diagonal;
+  BucketSummary bucket = bucket_of({BucketKind::distance, percent}, a.diagonal(), k_distance_tolerance);
+  if (percent == 0) bucket.target = k_contact_target * a.diagonal();
   return bucket;
 }
 
 BucketSummary volume_bucket(const Mesh& a, int percent) {
-  check_percent(BucketKind::volume, percent);
-  BucketSummary bucket;
-  bucket.key = {BucketKind::volume, percent};
-  bucket.nominal = a.volume() * static_cast<double>(percent) / 100.0;
-  bucket.target = bucket.nominal;
-  bucket.tolerance = k_volume_tolerance * a.volume();
-  return bucket;
+  return bucket_of({BucketKind::volume, percent}, a.volume(), k_volume_tolerance);
 }
 
 }  // namespace sixdof

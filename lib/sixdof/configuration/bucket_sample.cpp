@@ -43,7 +43,7 @@ BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mes
     for (std::size_t u = first; u < std::min(first + BucketSample::k_run, directions); ++u) {
       const double s = translations[r * directions + u];
       if (std::isnan(s)) continue;  // The target is not met on this ray.
-      sample.poses.push_back(configuration_pose(a, b, grid.directions[u], grid.rotations[r], s));
+      sample.poses.push_back(ConfigurationRay(a, b, grid.rotations[r], grid.directions[u]).pose(s));
     }
   }
   return sample;

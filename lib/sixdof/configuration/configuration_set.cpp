@@ -20,22 +20,9 @@ constexpr const char* k_format = "sixdof-configuration-set";
 constexpr std::uint64_t k_format_version = 3;
 constexpr const char* k_volume_grid = "volume_grid";  ///< A group that is there if volumes have a grid of their own.
 
-void check_grid(const Grid& grid) {
-  if (grid.directions.empty() || grid.rotations.empty()) throw BadArgument("a configuration set needs a grid");
-}
-
 std::string hash_of(const SetDescription& set, const std::vector<BucketSummary>& buckets) {
-  detail::FieldHash hash;
-  hash.add(k_format);
-  hash.add(k_format_version);
-  hash.add(set.generator_version);
-  hash.add(set.a);
-  hash.add(set.b);
-  hash.add(set.grid);
-  hash.add(std::uint64_t{set.volume_grid ? 1u : 0u});
-  if (set.volume_grid) hash.add(*set.volume_grid);
-  for (const BucketSummary& bucket : buckets) hash.add(bucket);
-  return hash.hex();
+  return detail::hash_of(k_format, k_format_version, set.generator_version, set.a, set.b, set.grid, set.volume_grid,
+                         buckets);
 }
 
 void check_mesh(const std::filesystem::path& file, char which, const MeshIdentity& expected, const Mesh& mesh) {
@@ -48,25 +35,32 @@ void check_mesh(const std::filesystem::path& file, char which, const MeshIdentit
 
 }  // namespace
 
-struct ConfigurationSetWriter::State {
-  State(std::filesystem::path target, SetDescription set)
-      : path(std::move(target)), description(std::move(set)), atomic(path) {}
+MeshIdentity MeshIdentity::of(const Mesh& mesh) {
+  return {.name = mesh.name(),
+          .hash = mesh.hash(),
+          .triangles = mesh.triangles().size(),
+          .box_min = mesh.box().min(),
+          .box_max = mesh.box().max(),
+          .volume = mesh.volume()};
+}
 
-  std::filesystem::path path;
+struct ConfigurationSetWriter::State {
+  State(const std::filesystem::path& path, SetDescription set) : description(std::move(set)), atomic(path) {}
+
   SetDescription description;
   AtomicFile atomic;
-  std::unique_ptr<hdf5::File> file;
+  std::optional<hdf5::File> file;
   std::vector<BucketSummary> buckets;
 };
 
 ConfigurationSetWriter::ConfigurationSetWriter(std::filesystem::path path, SetDescription description) {
-  check_grid(description.grid);
-  if (description.volume_grid) check_grid(*description.volume_grid);
-  state_ = std::make_unique<State>(std::move(path), std::move(description));
+  for (const BucketKind kind : {BucketKind::distance, BucketKind::volume}) {
+    if (description.grid_of(kind).configurations() == 0) throw BadArgument("a configuration set needs a grid");
+  }
+  state_ = std::make_unique<State>(path, std::move(description));
   const SetDescription& set = state_->description;
   const hdf5::Session session;
-  state_->file = std::make_unique<hdf5::File>(hdf5::File::create(state_->atomic.temporary_path(), state_->path));
-  hdf5::File& file = *state_->file;
+  hdf5::File& file = state_->file.emplace(hdf5::File::create(state_->atomic.temporary_path(), path));
   file.write_attribute("/", "format", std::string(k_format));
   file.write_attribute("/", "format_version", k_format_version);
   file.write_attribute("/", "generator_version", set.generator_version);
@@ -82,7 +76,6 @@ ConfigurationSetWriter::ConfigurationSetWriter(std::filesystem::path path, SetDe
 }
 
 ConfigurationSetWriter::~ConfigurationSetWriter() {
-  if (!state_ || !state_->file) return;
   const hdf5::Session session;
   state_->file.reset();
 }
@@ -116,29 +109,24 @@ void ConfigurationSetWriter::commit() {
 }
 
 ConfigurationSet::ConfigurationSet(std::filesystem::path path) : path_(std::move(path)) {
-  const std::string name = path_.string();
   const hdf5::Session session;
-  const hdf5::File file = hdf5::File::open(path_);
-  detail::check_format(file, path_, k_format, k_format_version, "a sixdof configuration set");
+  const hdf5::File file = detail::open_format(path_, k_format, k_format_version, "a sixdof configuration set");
   description_.generator_version = file.read_string("/", "generator_version");
   description_.a = detail::read_identity(file, path_, "mesh_a");
   description_.b = detail::read_identity(file, path_, "mesh_b");
   description_.grid = detail::read_grid(file, path_, "/");
   if (file.exists(k_volume_grid)) description_.volume_grid = detail::read_grid(file, path_, k_volume_grid);
-  for (const BucketKey key : detail::bucket_keys(file)) {
-    const Grid& grid = description_.grid_of(key.kind);
-    const auto [rows, columns] = file.matrix_size(key.name());
+  buckets_ = detail::read_summaries(file);
+  for (const BucketSummary& bucket : buckets_) {
+    const Grid& grid = description_.grid_of(bucket.key.kind);
+    const auto [rows, columns] = file.matrix_size(bucket.key.name());
     if (rows != grid.rotations.size() || columns != grid.directions.size()) {
-      throw BadFile(name, key.name(),
+      throw BadFile(path_.string(), bucket.key.name(),
                     fmt::format("is {} x {}, not {} rotations x {} directions", rows, columns, grid.rotations.size(),
                                 grid.directions.size()));
     }
-    buckets_.push_back(detail::read_summary(file, key));
   }
-  hash_ = file.read_string("/", "content_hash");
-  if (hash_of(description_, buckets_) != hash_) {
-    throw BadFile(name, "root", "content does not have the hash that was stored with it: damaged or edited");
-  }
+  hash_ = detail::check_content_hash(file, path_, hash_of(description_, buckets_));
 }
 
 const BucketSummary& ConfigurationSet::summary(BucketKey key) const {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <sixdof/configuration/bucket.h>
+#include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/grid.h>
-#include <sixdof/configuration/set_description.h>
 #include <sixdof/geometry/mesh.h>
 
 namespace sixdof {

@@ -1,8 +1,6 @@
 #include <sixdof/configuration/grid.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -46,16 +44,8 @@ CosSin cos_sin_of(std::int64_t k, std::int64_t n) {
     p = cos_sin(std::numbers::pi_v<long double> * static_cast<long double>(reduced) / static_cast<long double>(2 * n));
   }
   if (beyond_45) std::swap(p.cos, p.sin);
-  switch (quadrant) {
-    case 0:
-      return p;
-    case 1:
-      return {-p.sin, p.cos};
-    case 2:
-      return {-p.cos, -p.sin};
-    default:
-      return {p.sin, -p.cos};
-  }
+  for (std::int64_t i = 0; i < quadrant; ++i) p = {-p.sin, p.cos};
+  return p;
 }
 
 /// q and -q are one rotation: makes the first component that is not zero positive, and every zero +0.
@@ -69,6 +59,82 @@ Eigen::Vector4d canonical(const Eigen::Vector4d& q) {
 
 /// In [0, 1).
 long double fractional_part(long double x) { return x - std::floor(x); }
+
+/// Longitudes and latitudes every 180 / n degrees: 2 n longitudes x (n - 1) interior latitudes + 2 poles, with z as the
+/// polar axis. Order: the pole +z, then parallel after parallel, each from longitude 0, then the pole -z.
+std::vector<Eigen::Vector3d> latitude_directions(std::size_t n) {
+  const auto circle = static_cast<std::int64_t>(2 * n);  // Steps in 360 degrees.
+  std::vector<Eigen::Vector3d> directions;
+  directions.reserve(2 * n * (n - 1) + 2);
+  directions.emplace_back(0.0, 0.0, 1.0);
+  for (std::int64_t k = 1; 2 * k < circle; ++k) {
+    const CosSin theta = cos_sin_of(k, circle);
+    for (std::int64_t i = 0; i < circle; ++i) {
+      const CosSin phi = cos_sin_of(i, circle);
+      directions.emplace_back(theta.sin * phi.cos, theta.sin * phi.sin, theta.cos);
+    }
+  }
+  directions.emplace_back(0.0, 0.0, -1.0);
+  return directions;
+}
+
+/// R = Rz(alpha) Ry(beta) Rz(gamma), every 180 / n degrees: 2 n x (n + 1) x 2 n, with alpha the slowest and gamma the
+/// fastest index. At beta = 0 and 180 degrees alpha and gamma rotate about the same axis, so rotations repeat there;
+/// equal rotations have equal bits. This is the paper's sampling, poles included. It is not uniform on SO(3).
+std::vector<Eigen::Vector4d> zyz_rotations(std::size_t n) {
+  const auto half_circle = static_cast<std::int64_t>(n);  // Steps in 180 degrees.
+  const std::int64_t circle = 2 * half_circle;
+  std::vector<Eigen::Vector4d> rotations;
+  rotations.reserve(4 * n * n * (n + 1));
+  // Quaternions have the cosines and sines of half the angles.
+  for (std::int64_t alpha = 0; alpha < circle; ++alpha) {
+    for (std::int64_t beta = 0; beta <= half_circle; ++beta) {
+      const CosSin b = cos_sin_of(beta, 2 * circle);
+      for (std::int64_t gamma = 0; gamma < circle; ++gamma) {
+        const CosSin sum = cos_sin_of(alpha + gamma, 2 * circle);
+        const CosSin difference = cos_sin_of(alpha - gamma, 2 * circle);
+        rotations.push_back(
+            canonical({b.cos * sum.cos, -b.sin * difference.sin, b.sin * difference.cos, b.cos * sum.sin}));
+      }
+    }
+  }
+  return rotations;
+}
+
+/// `count` low-discrepancy rotations, uniform on SO(3) for every count: super-Fibonacci spirals (Alexa,
+/// "Super-Fibonacci Spirals: Fast, Low-Discrepancy Sampling of SO(3)", CVPR 2022), phi = sqrt(2), psi^4 = psi + 4.
+std::vector<Eigen::Vector4d> super_fibonacci_rotations(std::size_t count) {
+  constexpr auto two_pi = 2.0L * std::numbers::pi_v<long double>;
+  constexpr auto phi = std::numbers::sqrt2_v<long double>;
+  constexpr long double psi = 1.533751168755204288118041L;
+  std::vector<Eigen::Vector4d> rotations;
+  rotations.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const long double s = static_cast<long double>(i) + 0.5L;
+    const long double t = s / static_cast<long double>(count);
+    const auto r = static_cast<double>(std::sqrt(t));
+    const auto rest = static_cast<double>(std::sqrt(1.0L - t));
+    const CosSin alpha = cos_sin(two_pi * fractional_part(s / phi));
+    const CosSin beta = cos_sin(two_pi * fractional_part(s / psi));
+    rotations.push_back(canonical({r * alpha.sin, r * alpha.cos, rest * beta.sin, rest * beta.cos}));
+  }
+  return rotations;
+}
+
+/// `count` directions on a spherical Fibonacci lattice (equal-area in z, golden angle in longitude), from +z to -z.
+std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count) {
+  constexpr auto two_pi = 2.0L * std::numbers::pi_v<long double>;
+  std::vector<Eigen::Vector3d> directions;
+  directions.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto index = static_cast<long double>(i);
+    const long double z = 1.0L - (2.0L * index + 1.0L) / static_cast<long double>(count);
+    const auto parallel = static_cast<double>(std::sqrt((1.0L - z) * (1.0L + z)));
+    const CosSin longitude = cos_sin(two_pi * fractional_part(index / std::numbers::phi_v<long double>));
+    directions.emplace_back(parallel * longitude.cos, parallel * longitude.sin, static_cast<double>(z));
+  }
+  return directions;
+}
 
 template <class T>
 std::optional<T> parse_number(std::string_view text) {
@@ -116,14 +182,12 @@ Grid make_zyz_grid(std::string_view spec, std::size_t n_directions, std::size_t 
   const auto d = static_cast<double>(n_directions);
   const auto r = static_cast<double>(n_rotations);
   check_size(spec, 2.0 * d * (d - 1.0) + 2.0, 4.0 * r * r * (r + 1.0));
-  Grid grid;
-  grid.spec = spec;
-  grid.sampler = "zyz-euler";
-  grid.direction_step_degrees = 180.0 / d;
-  grid.rotation_step_degrees = 180.0 / r;
-  grid.directions = latitude_directions(n_directions);
-  grid.rotations = zyz_rotations(n_rotations);
-  return grid;
+  return {.spec = std::string(spec),
+          .sampler = "zyz-euler",
+          .direction_step_degrees = 180.0 / d,
+          .rotation_step_degrees = 180.0 / r,
+          .directions = latitude_directions(n_directions),
+          .rotations = zyz_rotations(n_rotations)};
 }
 
 /// The count of directions whose cells have the same edge as those of the rotations. SO(3) has the volume 8 pi^2 if
@@ -141,102 +205,13 @@ Grid make_uniform_grid(std::string_view spec, std::string_view counts) {
   const std::size_t directions = colon == std::string_view::npos ? matching_direction_count(rotations)
                                                                  : parse_count(spec, counts.substr(colon + 1));
   check_size(spec, static_cast<double>(directions), static_cast<double>(rotations));
-  Grid grid;
-  grid.spec = fmt::format("so3:{}:{}", rotations, directions);
-  grid.sampler = "super-fibonacci";
-  grid.directions = fibonacci_directions(directions);
-  grid.rotations = super_fibonacci_rotations(rotations);
-  return grid;
+  return {.spec = fmt::format("so3:{}:{}", rotations, directions),
+          .sampler = "super-fibonacci",
+          .directions = fibonacci_directions(directions),
+          .rotations = super_fibonacci_rotations(rotations)};
 }
-
-struct QuaternionBits {
-  std::array<std::uint64_t, 4> bits;
-  explicit QuaternionBits(const Eigen::Vector4d& q) {
-    for (std::size_t i = 0; i < 4; ++i) bits[i] = std::bit_cast<std::uint64_t>(q[static_cast<Eigen::Index>(i)]);
-  }
-  bool operator==(const QuaternionBits&) const = default;
-};
-
-struct QuaternionBitsHash {
-  std::size_t operator()(const QuaternionBits& q) const {
-    std::uint64_t h = 0;
-    for (const std::uint64_t word : q.bits) {
-      h = (h ^ word) * 0xBF58476D1CE4E5B9ull;
-      h ^= h >> 31;
-    }
-    return h;
-  }
-};
 
 }  // namespace
-
-std::vector<Eigen::Vector3d> latitude_directions(std::size_t n) {
-  const auto circle = static_cast<std::int64_t>(2 * n);  // Steps in 360 degrees.
-  std::vector<Eigen::Vector3d> directions;
-  directions.reserve(2 * n * (n - 1) + 2);
-  directions.emplace_back(0.0, 0.0, 1.0);
-  for (std::int64_t k = 1; 2 * k < circle; ++k) {
-    const CosSin theta = cos_sin_of(k, circle);
-    for (std::int64_t i = 0; i < circle; ++i) {
-      const CosSin phi = cos_sin_of(i, circle);
-      directions.emplace_back(theta.sin * phi.cos, theta.sin * phi.sin, theta.cos);
-    }
-  }
-  directions.emplace_back(0.0, 0.0, -1.0);
-  return directions;
-}
-
-std::vector<Eigen::Vector4d> zyz_rotations(std::size_t n) {
-  const auto half_circle = static_cast<std::int64_t>(n);  // Steps in 180 degrees.
-  const std::int64_t circle = 2 * half_circle;
-  std::vector<Eigen::Vector4d> rotations;
-  rotations.reserve(4 * n * n * (n + 1));
-  // Quaternions have the cosines and sines of half the angles.
-  for (std::int64_t alpha = 0; alpha < circle; ++alpha) {
-    for (std::int64_t beta = 0; beta <= half_circle; ++beta) {
-      const CosSin b = cos_sin_of(beta, 2 * circle);
-      for (std::int64_t gamma = 0; gamma < circle; ++gamma) {
-        const CosSin sum = cos_sin_of(alpha + gamma, 2 * circle);
-        const CosSin difference = cos_sin_of(alpha - gamma, 2 * circle);
-        rotations.push_back(
-            canonical({b.cos * sum.cos, -b.sin * difference.sin, b.sin * difference.cos, b.cos * sum.sin}));
-      }
-    }
-  }
-  return rotations;
-}
-
-std::vector<Eigen::Vector4d> super_fibonacci_rotations(std::size_t count) {
-  constexpr auto two_pi = 2.0L * std::numbers::pi_v<long double>;
-  constexpr auto phi = std::numbers::sqrt2_v<long double>;
-  constexpr long double psi = 1.533751168755204288118041L;
-  std::vector<Eigen::Vector4d> rotations;
-  rotations.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const long double s = static_cast<long double>(i) + 0.5L;
-    const long double t = s / static_cast<long double>(count);
-    const auto r = static_cast<double>(std::sqrt(t));
-    const auto rest = static_cast<double>(std::sqrt(1.0L - t));
-    const CosSin alpha = cos_sin(two_pi * fractional_part(s / phi));
-    const CosSin beta = cos_sin(two_pi * fractional_part(s / psi));
-    rotations.push_back(canonical({r * alpha.sin, r * alpha.cos, rest * beta.sin, rest * beta.cos}));
-  }
-  return rotations;
-}
-
-std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count) {
-  constexpr auto two_pi = 2.0L * std::numbers::pi_v<long double>;
-  std::vector<Eigen::Vector3d> directions;
-  directions.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto index = static_cast<long double>(i);
-    const long double z = 1.0L - (2.0L * index + 1.0L) / static_cast<long double>(count);
-    const auto parallel = static_cast<double>(std::sqrt((1.0L - z) * (1.0L + z)));
-    const CosSin longitude = cos_sin(two_pi * fractional_part(index / std::numbers::phi_v<long double>));
-    directions.emplace_back(parallel * longitude.cos, parallel * longitude.sin, static_cast<double>(z));
-  }
-  return directions;
-}
 
 Grid make_grid(std::string_view spec) {
   // 12 steps of 15 degrees and 6 of 30 make 180.
@@ -254,11 +229,12 @@ Grid make_grid(std::string_view spec) {
 }
 
 DistinctRotations::DistinctRotations(std::span<const Eigen::Vector4d> rotations) {
-  std::unordered_map<QuaternionBits, std::uint32_t, QuaternionBitsHash> index_of;
+  std::unordered_map<std::string_view, std::uint32_t> index_of;  // by the bytes of the four components
   index_of.reserve(rotations.size());
   representative.reserve(rotations.size());
   for (std::uint32_t r = 0; r < rotations.size(); ++r) {
-    const auto [entry, is_new] = index_of.try_emplace(QuaternionBits(rotations[r]), r);
+    const std::string_view bits(reinterpret_cast<const char*>(rotations[r].data()), sizeof(Eigen::Vector4d));
+    const auto [entry, is_new] = index_of.try_emplace(bits, r);
     if (is_new) first.push_back(r);
     representative.push_back(entry->second);
   }
@@ -271,16 +247,11 @@ void DistinctRotations::copy_to_repeats(std::span<double> values, std::size_t ro
   }
 }
 
-ConfigurationRay::ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation)
+ConfigurationRay::ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation,
+                                   const Eigen::Vector3d& along)
     : R(Pose::from_quaternion(rotation[0], rotation[1], rotation[2], rotation[3], Eigen::Vector3d::Zero()).R),
       center_a(a.center()),
-      rotated_center_b(R * b.center()) {}
-
-Pose configuration_pose(const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction, const Eigen::Vector4d& rotation,
-                        double s) {
-  ConfigurationRay ray(a, b, rotation);
-  ray.direction = direction;
-  return ray.pose(s);
-}
+      rotated_center_b(R * b.center()),
+      direction(along) {}
 
 }  // namespace sixdof

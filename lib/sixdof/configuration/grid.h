@@ -47,22 +47,6 @@ Grid make_grid(std::string_view spec);
 /// Greatest number of directions or rotations. A larger set would have terabytes per bucket.
 constexpr std::size_t k_max_grid_size = 20'000'000;
 
-/// Longitudes and latitudes every 180 / n degrees: 2 n longitudes x (n - 1) interior latitudes + 2 poles, with z as the
-/// polar axis. Order: the pole +z, then parallel after parallel, each from longitude 0, then the pole -z.
-std::vector<Eigen::Vector3d> latitude_directions(std::size_t n);
-
-/// R = Rz(alpha) Ry(beta) Rz(gamma), every 180 / n degrees: 2 n x (n + 1) x 2 n, with alpha the slowest and gamma the
-/// fastest index. At beta = 0 and 180 degrees alpha and gamma rotate about the same axis, so rotations repeat there;
-/// equal rotations have equal bits. This is the paper's sampling, poles included. It is not uniform on SO(3).
-std::vector<Eigen::Vector4d> zyz_rotations(std::size_t n);
-
-/// `count` low-discrepancy rotations, uniform on SO(3) for every count: super-Fibonacci spirals (Alexa,
-/// "Super-Fibonacci Spirals: Fast, Low-Discrepancy Sampling of SO(3)", CVPR 2022), phi = sqrt(2), psi^4 = psi + 4.
-std::vector<Eigen::Vector4d> super_fibonacci_rotations(std::size_t count);
-
-/// `count` directions on a spherical Fibonacci lattice (equal-area in z, golden angle in longitude), from +z to -z.
-std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count);
-
 /// Which rotations of a list have the same bits. Each distinct rotation is solved once and copied to its repeats.
 struct DistinctRotations {
   std::vector<std::uint32_t> first;           ///< First index in the list of each distinct rotation, ascending.
@@ -85,15 +69,12 @@ struct ConfigurationRay {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();         ///< u, unit vector in A's frame.
 
   ConfigurationRay() = default;
-  /// @param rotation (w, x, y, z)
-  ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation);
+  /// @param rotation (w, x, y, z); @param along the direction
+  ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation,
+                   const Eigen::Vector3d& along = Eigen::Vector3d::Zero());
 
   /// @param s translation along u, in the meshes' length unit
   Pose pose(double s) const { return {R, (center_a + s * direction) - rotated_center_b}; }
 };
-
-/// The pose of one configuration.
-Pose configuration_pose(const Mesh& a, const Mesh& b, const Eigen::Vector3d& direction, const Eigen::Vector4d& rotation,
-                        double s);
 
 }  // namespace sixdof

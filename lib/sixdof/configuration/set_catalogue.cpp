@@ -28,7 +28,6 @@ SetCatalogue SetCatalogue::read(const std::filesystem::path& manifest) {
   std::ifstream file(manifest);
   if (!file) throw BadFile(manifest.string(), "cannot be opened");
   SetCatalogue catalogue;
-  std::size_t index = 0;
   try {
     const auto json = nlohmann::json::parse(file);
     for (const auto& entry : json.at("sets")) {
@@ -38,12 +37,9 @@ SetCatalogue SetCatalogue::read(const std::filesystem::path& manifest) {
                          .file = manifest.parent_path() / entry.at("file").get<std::string>()};
       for (const auto& bucket : entry.at("buckets")) set.buckets.push_back(BucketKey::parse(bucket.get<std::string>()));
       catalogue.add(std::move(set));
-      ++index;
     }
-  } catch (const nlohmann::json::exception& e) {
-    throw BadFile(manifest.string(), fmt::format("set {}", index), e.what());
-  } catch (const BadArgument& e) {
-    throw BadFile(manifest.string(), fmt::format("set {}", index), e.what());
+  } catch (const std::exception& e) {  // of JSON, or BadArgument
+    throw BadFile(manifest.string(), fmt::format("set {}", catalogue.sets_.size()), e.what());
   }
   return catalogue;
 }

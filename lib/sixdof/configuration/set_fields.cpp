@@ -1,9 +1,9 @@
 #include <sixdof/configuration/set_fields.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <vector>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,26 +12,50 @@
 namespace sixdof::detail {
 namespace {
 
-/// Size of a chunk of a matrix of translations; it fits HDF5's chunk cache.
-constexpr std::size_t k_chunk_bytes = std::size_t{1} << 20;
+// Attributes by name, in the order of the file.
+constexpr std::tuple k_mesh_attributes{
+    std::pair{"name", &MeshIdentity::name}, std::pair{"content_hash", &MeshIdentity::hash},
+    std::pair{"triangles", &MeshIdentity::triangles}, std::pair{"volume", &MeshIdentity::volume}};
+constexpr std::tuple k_grid_attributes{std::pair{"grid", &Grid::spec}, std::pair{"sampler", &Grid::sampler},
+                                       std::pair{"direction_step_degrees", &Grid::direction_step_degrees},
+                                       std::pair{"rotation_step_degrees", &Grid::rotation_step_degrees}};
+constexpr std::tuple k_bucket_attributes{std::pair{"nominal", &BucketSummary::nominal},
+                                         std::pair{"target", &BucketSummary::target},
+                                         std::pair{"tolerance", &BucketSummary::tolerance},
+                                         std::pair{"largest_residual", &BucketSummary::largest_residual},
+                                         std::pair{"reachable", &BucketSummary::reachable},
+                                         std::pair{"oracle", &BucketSummary::oracle},
+                                         std::pair{"oracle_version", &BucketSummary::oracle_version},
+                                         std::pair{"content_hash", &BucketSummary::hash}};
 
-std::string hash_of(std::span<const double> translations) {
-  FieldHash hash;
-  hash.add(translations);
-  return hash.hex();
+/// Calls f(name, member) for every attribute of a table.
+template <class Object, class... Attributes, class F>
+void for_each_attribute(Object& object, const std::tuple<Attributes...>& table, const F& f) {
+  std::apply([&](const auto&... one) { (f(one.first, object.*one.second), ...); }, table);
 }
+
+struct AttributeWriter {
+  hdf5::File& file;
+  const std::string& at;
+  void operator()(const char* name, const auto& value) const { file.write_attribute(at, name, value); }
+};
+
+struct AttributeReader {
+  const hdf5::File& file;
+  const std::string& at;
+  void operator()(const char* name, std::string& value) const { value = file.read_string(at, name); }
+  void operator()(const char* name, double& value) const { value = file.read_number(at, name); }
+  void operator()(const char* name, std::uint64_t& value) const { value = file.read_count(at, name); }
+};
 
 /// Number of values that are not NaN.
 std::uint64_t count_reachable(std::span<const double> translations) {
   return static_cast<std::uint64_t>(std::ranges::count_if(translations, [](double s) { return !std::isnan(s); }));
 }
 
-std::span<const double> values_of(const std::vector<Eigen::Vector3d>& directions) {
-  return {directions.front().data(), 3 * directions.size()};
-}
-
-std::span<const double> values_of(const std::vector<Eigen::Vector4d>& rotations) {
-  return {rotations.front().data(), 4 * rotations.size()};
+template <int size>
+std::span<const double> values_of(const std::vector<Eigen::Matrix<double, size, 1>>& vectors) {
+  return {vectors.front().data(), size * vectors.size()};
 }
 
 /// The path of an object in a group.
@@ -40,18 +64,14 @@ std::string in_group(const std::string& group, const char* object) {
 }
 
 template <int size>
-std::vector<Eigen::Matrix<double, size, 1>> read_vectors(const hdf5::File& file, const std::filesystem::path& path,
-                                                         const std::string& object) {
+void read_vectors(const hdf5::File& file, const std::filesystem::path& path, const std::string& object,
+                  std::vector<Eigen::Matrix<double, size, 1>>& vectors) {
   const auto [rows, columns] = file.matrix_size(object);
   if (columns != size || rows == 0 || rows > k_max_grid_size) {
     throw BadFile(path.string(), object, fmt::format("is {} x {}, not n x {}", rows, columns, size));
   }
   const std::vector<double> values = file.read_matrix(object);
-  std::vector<Eigen::Matrix<double, size, 1>> vectors(rows);
-  for (std::size_t i = 0; i < rows; ++i) {
-    vectors[i] = Eigen::Map<const Eigen::Matrix<double, size, 1>>(&values[i * size]);
-  }
-  return vectors;
+  for (std::size_t i = 0; i < rows; ++i) vectors.emplace_back(&values[i * size]);
 }
 
 }  // namespace
@@ -70,40 +90,31 @@ void FieldHash::add(const MeshIdentity& mesh) {
   add(mesh.name);
   add(mesh.hash);
   add(mesh.triangles);
-  add(std::span<const double>(mesh.box_min.data(), 3));
-  add(std::span<const double>(mesh.box_max.data(), 3));
+  for (const Eigen::Vector3d& corner : {mesh.box_min, mesh.box_max}) add(std::span<const double>(corner.data(), 3));
   add(mesh.volume);
 }
 
 void FieldHash::add(const Grid& grid) {
-  add(grid.spec);
-  add(grid.sampler);
-  add(grid.direction_step_degrees);
-  add(grid.rotation_step_degrees);
+  for_each_attribute(grid, k_grid_attributes, [this](const char*, const auto& value) { add(value); });
   add(values_of(grid.directions));
   add(values_of(grid.rotations));
 }
 
-void FieldHash::add(const BucketSummary& bucket) {
-  add(bucket.key.name());
-  add(bucket.nominal);
-  add(bucket.target);
-  add(bucket.tolerance);
-  add(bucket.largest_residual);
-  add(bucket.reachable);
-  add(bucket.oracle);
-  add(bucket.oracle_version);
-  add(bucket.hash);
+void FieldHash::add(const std::optional<Grid>& grid) {
+  add(std::uint64_t{grid ? 1u : 0u});
+  if (grid) add(*grid);
 }
 
-std::string hash_of(const Grid& grid) {
-  FieldHash hash;
-  hash.add(grid);
-  return hash.hex();
+void FieldHash::add(const std::vector<BucketSummary>& buckets) {
+  for (const BucketSummary& bucket : buckets) {
+    add(bucket.key.name());
+    for_each_attribute(bucket, k_bucket_attributes, [this](const char*, const auto& value) { add(value); });
+  }
 }
 
-void check_format(const hdf5::File& file, const std::filesystem::path& path, std::string_view format,
-                  std::uint64_t version, std::string_view what) {
+hdf5::File open_format(const std::filesystem::path& path, std::string_view format, std::uint64_t version,
+                       std::string_view what) {
+  hdf5::File file = hdf5::File::open(path);
   if (file.read_string("/", "format") != format) {
     throw BadFile(path.string(), "root", fmt::format("is not {}", what));
   }
@@ -113,88 +124,75 @@ void check_format(const hdf5::File& file, const std::filesystem::path& path, std
                               "`sixdof generate`",
                               found, version));
   }
+  return file;
+}
+
+std::string check_content_hash(const hdf5::File& file, const std::filesystem::path& path, const std::string& hash) {
+  if (file.read_string("/", "content_hash") == hash) return hash;
+  throw BadFile(path.string(), "root", "content does not have the hash that was stored with it: damaged or edited");
 }
 
 void write_identity(hdf5::File& file, const std::string& group, const MeshIdentity& mesh) {
   file.make_group(group);
-  file.write_attribute(group, "name", mesh.name);
-  file.write_attribute(group, "content_hash", mesh.hash);
-  file.write_attribute(group, "triangles", mesh.triangles);
-  file.write_attribute(group, "volume", mesh.volume);
-  std::array<double, 6> box{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    box[i] = mesh.box_min[static_cast<Eigen::Index>(i)];
-    box[3 + i] = mesh.box_max[static_cast<Eigen::Index>(i)];
-  }
+  for_each_attribute(mesh, k_mesh_attributes, AttributeWriter{file, group});
+  Eigen::Matrix<double, 3, 2> box;
+  box << mesh.box_min, mesh.box_max;
   file.write_matrix(group + "/box", box.data(), 2, 3, 0);
 }
 
 MeshIdentity read_identity(const hdf5::File& file, const std::filesystem::path& path, const std::string& group) {
   MeshIdentity mesh;
-  mesh.name = file.read_string(group, "name");
-  mesh.hash = file.read_string(group, "content_hash");
-  mesh.triangles = file.read_count(group, "triangles");
-  mesh.volume = file.read_number(group, "volume");
+  for_each_attribute(mesh, k_mesh_attributes, AttributeReader{file, group});
   const std::string box_name = group + "/box";
   if (file.matrix_size(box_name) != std::pair<std::size_t, std::size_t>(2, 3)) {
     throw BadFile(path.string(), box_name, "is not 2 x 3");
   }
   const std::vector<double> box = file.read_matrix(box_name);
-  mesh.box_min = {box[0], box[1], box[2]};
-  mesh.box_max = {box[3], box[4], box[5]};
+  mesh.box_min = Eigen::Vector3d(&box[0]);
+  mesh.box_max = Eigen::Vector3d(&box[3]);
   return mesh;
 }
 
 void write_grid(hdf5::File& file, const std::string& group, const Grid& grid) {
-  file.write_attribute(group, "grid", grid.spec);
-  file.write_attribute(group, "sampler", grid.sampler);
-  file.write_attribute(group, "direction_step_degrees", grid.direction_step_degrees);
-  file.write_attribute(group, "rotation_step_degrees", grid.rotation_step_degrees);
+  for_each_attribute(grid, k_grid_attributes, AttributeWriter{file, group});
   file.write_matrix(in_group(group, "directions"), values_of(grid.directions).data(), grid.directions.size(), 3, 0);
   file.write_matrix(in_group(group, "rotations"), values_of(grid.rotations).data(), grid.rotations.size(), 4, 0);
 }
 
 Grid read_grid(const hdf5::File& file, const std::filesystem::path& path, const std::string& group) {
   Grid grid;
-  grid.spec = file.read_string(group, "grid");
-  grid.sampler = file.read_string(group, "sampler");
-  grid.direction_step_degrees = file.read_number(group, "direction_step_degrees");
-  grid.rotation_step_degrees = file.read_number(group, "rotation_step_degrees");
-  grid.directions = read_vectors<3>(file, path, in_group(group, "directions"));
-  grid.rotations = read_vectors<4>(file, path, in_group(group, "rotations"));
+  for_each_attribute(grid, k_grid_attributes, AttributeReader{file, group});
+  read_vectors(file, path, in_group(group, "directions"), grid.directions);
+  read_vectors(file, path, in_group(group, "rotations"), grid.rotations);
   return grid;
 }
 
 BucketSummary write_bucket(hdf5::File& file, BucketSummary summary, std::span<const double> translations,
                            std::size_t directions) {
+  constexpr std::size_t k_chunk_bytes = std::size_t{1} << 20;  // fits HDF5's chunk cache
   summary.reachable = count_reachable(translations);
   summary.hash = hash_of(translations);
   const std::string object = summary.key.name();
   const std::size_t chunk_rows = std::max<std::size_t>(1, k_chunk_bytes / (sizeof(double) * directions));
   file.write_matrix(object, translations.data(), translations.size() / directions, directions, chunk_rows);
   file.write_attribute(object, "target_percent", static_cast<std::uint64_t>(summary.key.percent));
-  file.write_attribute(object, "nominal", summary.nominal);
-  file.write_attribute(object, "target", summary.target);
-  file.write_attribute(object, "tolerance", summary.tolerance);
-  file.write_attribute(object, "largest_residual", summary.largest_residual);
-  file.write_attribute(object, "reachable", summary.reachable);
-  file.write_attribute(object, "oracle", summary.oracle);
-  file.write_attribute(object, "oracle_version", summary.oracle_version);
-  file.write_attribute(object, "content_hash", summary.hash);
+  for_each_attribute(summary, k_bucket_attributes, AttributeWriter{file, object});
   return summary;
 }
 
-BucketSummary read_summary(const hdf5::File& file, BucketKey key) {
-  const std::string object = key.name();
-  return {.key = key,
-          .nominal = file.read_number(object, "nominal"),
-          .target = file.read_number(object, "target"),
-          .tolerance = file.read_number(object, "tolerance"),
-          .largest_residual = file.read_number(object, "largest_residual"),
-          .reachable = file.read_count(object, "reachable"),
-          .oracle = file.read_string(object, "oracle"),
-          .oracle_version = file.read_string(object, "oracle_version"),
-          .hash = file.read_string(object, "content_hash")};
+std::vector<BucketSummary> read_summaries(const hdf5::File& file) {
+  std::vector<BucketSummary> buckets;
+  for (const BucketKind kind : {BucketKind::distance, BucketKind::volume}) {
+    if (!file.exists(to_string(kind))) continue;
+    for (int percent = 0; percent <= BucketKey::k_max_percent; ++percent) {
+      BucketSummary bucket{.key = {kind, percent}};
+      const std::string object = bucket.key.name();
+      if (!file.exists(object)) continue;
+      for_each_attribute(bucket, k_bucket_attributes, AttributeReader{file, object});
+      buckets.push_back(std::move(bucket));
+    }
+  }
+  return buckets;
 }
 
 std::vector<double> read_translations(const std::filesystem::path& path, const BucketSummary& summary) {
@@ -203,23 +201,12 @@ std::vector<double> read_translations(const std::filesystem::path& path, const B
     const hdf5::Session session;
     translations = hdf5::File::open(path).read_matrix(summary.key.name());
   }
-  if (hash_of(translations) != summary.hash || count_reachable(translations) != summary.reachable) {
+  if (hash_of(std::span<const double>(translations)) != summary.hash ||
+      count_reachable(translations) != summary.reachable) {
     throw BadFile(path.string(), summary.key.name(),
                   "values do not have the hash that was stored with them: damaged, edited or replaced since opening");
   }
   return translations;
-}
-
-std::vector<BucketKey> bucket_keys(const hdf5::File& file) {
-  std::vector<BucketKey> keys;
-  for (const BucketKind kind : {BucketKind::distance, BucketKind::volume}) {
-    if (!file.exists(to_string(kind))) continue;
-    for (int percent = 0; percent <= BucketKey::k_max_percent; ++percent) {
-      const BucketKey key{kind, percent};
-      if (file.exists(key.name())) keys.push_back(key);
-    }
-  }
-  return keys;
 }
 
 }  // namespace sixdof::detail

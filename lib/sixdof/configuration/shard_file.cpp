@@ -1,9 +1,13 @@
 #include <sixdof/configuration/shard_file.h>
 
 #include <algorithm>
-#include <memory>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
@@ -18,56 +22,99 @@ constexpr std::uint64_t k_format_version = 2;
 
 /// Hash of everything; the summaries of the buckets contain the hashes of their values.
 std::string hash_of(const GenerationJob& job, ShardNumber shard, const std::vector<BucketSummary>& buckets) {
-  detail::FieldHash hash;
-  hash.add(k_format);
-  hash.add(k_format_version);
-  hash.add(job.hash());
-  hash.add(std::uint64_t{shard.number});
-  hash.add(std::uint64_t{shard.count});
-  for (const BucketSummary& bucket : buckets) hash.add(bucket);
-  return hash.hex();
+  return detail::hash_of(k_format, k_format_version, job.hash(), std::uint64_t{shard.number},
+                         std::uint64_t{shard.count}, buckets);
 }
 
-void write_identity(hdf5::File& file, const std::string& group, const GridIdentity& grid) {
+void write_grid(hdf5::File& file, const std::string& group, const GridIdentity& grid) {
   file.make_group(group);
   file.write_attribute(group, "grid", grid.spec);
   file.write_attribute(group, "content_hash", grid.hash);
 }
 
-GridIdentity read_identity(const hdf5::File& file, const std::string& group) {
+GridIdentity read_grid(const hdf5::File& file, const std::string& group) {
   return {.spec = file.read_string(group, "grid"), .hash = file.read_string(group, "content_hash")};
 }
 
-void write_job(hdf5::File& file, const GenerationJob& job) {
-  file.write_attribute("/", "job", job.hash());
-  file.write_attribute("/", "program", job.program);
-  file.write_attribute("/", "generator_version", job.generator_version);
-  file.write_attribute("/", "oracle", job.oracle);
-  file.write_attribute("/", "oracle_version", job.oracle_version);
-  detail::write_identity(file, "mesh_a", job.a);
-  detail::write_identity(file, "mesh_b", job.b);
-  write_identity(file, "grid", job.grid);
-  if (job.volume_grid) write_identity(file, "volume_grid", *job.volume_grid);
+/// The texts of a job by the names of their attributes.
+constexpr std::array k_job_attributes{
+    std::pair{"program", &GenerationJob::program}, std::pair{"generator_version", &GenerationJob::generator_version},
+    std::pair{"oracle", &GenerationJob::oracle}, std::pair{"oracle_version", &GenerationJob::oracle_version}};
+
+/// One message for all problems of the shards of a folder.
+[[noreturn]] void refuse(const std::filesystem::path& folder, std::vector<std::string> problems) {
+  constexpr std::size_t k_most_lines = 50;
+  if (problems.size() > k_most_lines) {
+    const std::string more = fmt::format("and {} more", problems.size() - k_most_lines);
+    problems.resize(k_most_lines);
+    problems.push_back(more);
+  }
+  throw BadFile(folder.string(), fmt::format("cannot be merged\n  {}", fmt::join(problems, "\n  ")));
 }
 
-/// The job without its buckets.
-GenerationJob read_job(const hdf5::File& file, const std::filesystem::path& path) {
-  GenerationJob job{.program = file.read_string("/", "program"),
-                    .generator_version = file.read_string("/", "generator_version"),
-                    .oracle = file.read_string("/", "oracle"),
-                    .oracle_version = file.read_string("/", "oracle_version"),
-                    .a = detail::read_identity(file, path, "mesh_a"),
-                    .b = detail::read_identity(file, path, "mesh_b"),
-                    .grid = read_identity(file, "grid"),
-                    .volume_grid = std::nullopt,
-                    .buckets = {}};
-  if (file.exists("volume_grid")) job.volume_grid = read_identity(file, "volume_grid");
-  return job;
+/// The valid shards. Checks values too, so that all damaged files are known before the merge begins.
+std::vector<ShardFile> read_all(const std::filesystem::path& folder, const RunOptions& run,
+                                std::vector<std::string>& problems) {
+  if (!std::filesystem::is_directory(folder)) throw BadFile(folder.string(), "is not a directory");
+  std::set<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("shard-") && name.ends_with(".h5")) paths.insert(entry.path());
+  }
+  std::vector<ShardFile> shards;
+  for (const auto& path : paths) {
+    run.check_cancelled();
+    try {
+      const ShardFile shard(path);
+      shard.check_values();
+      shards.push_back(shard);
+    } catch (const BadFile& e) {
+      problems.emplace_back(e.what());
+    }
+  }
+  return shards;
 }
 
-/// The fields of a summary that a job has.
-BucketSummary job_fields(const BucketSummary& bucket) {
-  return {.key = bucket.key, .nominal = bucket.nominal, .target = bucket.target, .tolerance = bucket.tolerance};
+/// A shard of the job and the number of shards that most files have, so that a stray file is reported and not the rest.
+const ShardFile& most_common(const std::vector<ShardFile>& shards) {
+  const auto split = [](const ShardFile& shard) { return std::pair(shard.job().hash(), shard.number().count); };
+  std::map<std::pair<std::string, std::size_t>, std::size_t> counts;
+  for (const ShardFile& shard : shards) ++counts[split(shard)];
+  return *std::ranges::max_element(shards, {}, [&](const ShardFile& shard) { return counts[split(shard)]; });
+}
+
+/// All shards of a folder by number, of one job and with every value checked.
+std::map<std::size_t, ShardFile> read_shards(const std::filesystem::path& folder, const RunOptions& run) {
+  std::vector<std::string> problems;
+  const std::vector<ShardFile> shards = read_all(folder, run, problems);
+  if (shards.empty()) {
+    problems.emplace_back("no valid shard in it");
+    refuse(folder, problems);
+  }
+  const ShardFile& expected = most_common(shards);
+  std::map<std::size_t, ShardFile> by_number;
+  for (const ShardFile& shard : shards) {
+    const auto [number, count] = shard.number();
+    const std::string path = shard.path().string();
+    if (const std::string difference = shard.job().difference(expected.job()); !difference.empty()) {
+      problems.push_back(fmt::format("{}: of another job than {}: {}", path, expected.path().string(), difference));
+    } else if (count != expected.number().count || number < 1 || number > count) {
+      problems.push_back(
+          fmt::format("{}: is shard {} of {}, not one of {}", path, number, count, expected.number().count));
+    } else if (const auto [known, is_new] = by_number.try_emplace(number, shard); !is_new) {
+      problems.push_back(
+          fmt::format("{}: is shard {} again, which {} is", path, number, known->second.path().string()));
+    }
+  }
+  for (std::size_t number = 1; number <= expected.number().count; ++number) {
+    if (by_number.contains(number)) continue;
+    const auto path = folder / shard_file_name({.number = number, .count = expected.number().count});
+    problems.push_back(std::filesystem::exists(path)
+                           ? fmt::format("shard {} is missing: {} is not what its name says", number, path.string())
+                           : path.string() + ": missing");
+  }
+  if (!problems.empty()) refuse(folder, problems);
+  return by_number;
 }
 
 }  // namespace
@@ -86,7 +133,12 @@ void write_shard(const std::filesystem::path& path, const GenerationJob& job, co
     file.write_attribute("/", "format_version", k_format_version);
     file.write_attribute("/", "shard", std::uint64_t{shard.number});
     file.write_attribute("/", "shards", std::uint64_t{shard.count});
-    write_job(file, job);
+    file.write_attribute("/", "job", job.hash());
+    for (const auto& [name, text] : k_job_attributes) file.write_attribute("/", name, job.*text);
+    detail::write_identity(file, "mesh_a", job.a);
+    detail::write_identity(file, "mesh_b", job.b);
+    write_grid(file, "grid", job.grid);
+    if (job.volume_grid) write_grid(file, "volume_grid", *job.volume_grid);
     file.make_group("distance");
     file.make_group("volume");
     std::vector<BucketSummary> buckets;
@@ -101,19 +153,19 @@ void write_shard(const std::filesystem::path& path, const GenerationJob& job, co
 }
 
 ShardFile::ShardFile(std::filesystem::path path) : path_(std::move(path)) {
-  const std::string name = path_.string();
   const hdf5::Session session;
-  const hdf5::File file = hdf5::File::open(path_);
-  detail::check_format(file, path_, k_format, k_format_version, "a shard of a configuration set");
+  const hdf5::File file = detail::open_format(path_, k_format, k_format_version, "a shard of a configuration set");
   number_ = {.number = file.read_count("/", "shard"), .count = file.read_count("/", "shards")};
-  job_ = read_job(file, path_);
-  for (const BucketKey key : detail::bucket_keys(file)) {
-    buckets_.push_back(detail::read_summary(file, key));
-    job_.buckets.push_back(job_fields(buckets_.back()));
+  for (const auto& [name, text] : k_job_attributes) job_.*text = file.read_string("/", name);
+  job_.a = detail::read_identity(file, path_, "mesh_a");
+  job_.b = detail::read_identity(file, path_, "mesh_b");
+  job_.grid = read_grid(file, "grid");
+  if (file.exists("volume_grid")) job_.volume_grid = read_grid(file, "volume_grid");
+  buckets_ = detail::read_summaries(file);
+  for (const BucketSummary& b : buckets_) {
+    job_.buckets.push_back({.key = b.key, .nominal = b.nominal, .target = b.target, .tolerance = b.tolerance});
   }
-  if (hash_of(job_, number_, buckets_) != file.read_string("/", "content_hash")) {
-    throw BadFile(name, "root", "content does not have the hash that was stored with it: damaged or edited");
-  }
+  detail::check_content_hash(file, path_, hash_of(job_, number_, buckets_));
 }
 
 Bucket ShardFile::read(BucketKey key) const {
@@ -124,6 +176,46 @@ Bucket ShardFile::read(BucketKey key) const {
 
 void ShardFile::check_values() const {
   for (const BucketSummary& bucket : buckets_) static_cast<void>(read(bucket.key));
+}
+
+void assemble_set(const std::filesystem::path& output, const GenerationJob& job, const SetDescription& set,
+                  std::size_t shards, const ShardSource& source, const RunOptions& run) {
+  ConfigurationSetWriter writer(output, set);
+  std::uint64_t done = 0;
+  for (const BucketSummary& planned : job.buckets) {
+    const Grid& grid = set.grid_of(planned.key.kind);
+    const std::size_t directions = grid.directions.size();
+    const DistinctRotations distinct(grid.rotations);
+    std::vector<double> translations(grid.configurations());
+    BucketSummary summary;
+    for (std::size_t number = 1; number <= shards; ++number) {
+      run.check_cancelled();
+      const ShardNumber shard{.number = number, .count = shards};
+      Bucket part = source(shard, planned.key);
+      const auto rotations = rotations_of(shard, distinct);
+      if (part.translations.size() != rotations.size() * directions) {
+        throw BadArgument(fmt::format("shard {} of {}, {}: {} values for {} rotations x {} directions", number, shards,
+                                      planned.key.name(), part.translations.size(), rotations.size(), directions));
+      }
+      for (std::size_t i = 0; i < rotations.size(); ++i) {
+        std::copy_n(&part.translations[i * directions], directions, &translations[rotations[i] * directions]);
+      }
+      const double largest = std::max(summary.largest_residual, part.summary.largest_residual);
+      summary = std::move(part.summary);
+      summary.largest_residual = largest;
+      if (run.progress) run.progress(++done, job.buckets.size() * shards);
+    }
+    distinct.copy_to_repeats(translations, directions);
+    writer.write(std::move(summary), translations);
+  }
+  writer.commit();
+}
+
+void merge_shards(const std::filesystem::path& folder, const std::filesystem::path& output, const RunOptions& run) {
+  const std::map<std::size_t, ShardFile> shards = read_shards(folder, run);
+  const GenerationJob& job = shards.begin()->second.job();
+  const auto read = [&](ShardNumber shard, BucketKey key) { return shards.at(shard.number).read(key); };
+  assemble_set(output, job, job.describe(), shards.size(), read, run);
 }
 
 }  // namespace sixdof

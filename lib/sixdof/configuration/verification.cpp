@@ -13,7 +13,7 @@
 #include <sixdof/oracle/overlap.h>
 #include <sixdof/oracle/overlap_by_columns.h>
 #include <sixdof/oracle/solid.h>
-#include <sixdof/query/require_distance.h>
+#include <sixdof/query/ask.h>
 
 namespace sixdof {
 namespace {
@@ -22,38 +22,37 @@ namespace {
 /// another order than the writer of the set did.
 constexpr double k_target_rounding = 1e-14;
 
-/// A quantity that is measured along rays.
+/// A quantity that is measured along rays; by itself a distance.
 class Quantity {
  public:
+  explicit Quantity(std::string method) : name(std::move(method)) {}
   virtual ~Quantity() = default;
-  virtual std::string name() const = 0;
   virtual double measure(const ConfigurationRay& ray, double s) = 0;
   /// How far the target is from being met at s: positive outside of the hit, negative beyond it.
-  virtual double remaining(const ConfigurationRay& ray, double s, double target) = 0;
+  virtual double remaining(const ConfigurationRay& ray, double s, double target) { return measure(ray, s) - target; }
   /// A displacement inwards within which the target cannot be met.
-  virtual double safe_displacement(const ConfigurationRay& ray, double remaining) = 0;
+  virtual double safe_displacement(const ConfigurationRay& /*ray*/, double remaining) { return remaining; }
+
+  const std::string name;  ///< Of the method.
 };
 
 class DistanceQuantity final : public Quantity {
  public:
   DistanceQuantity(const Algorithm& oracle, const Mesh& a, const Mesh& b)
-      : name_(oracle.traits().name), query_(oracle.prepare(a, b, oracle.settings())) {}
-  std::string name() const override { return name_; }
+      : Quantity(oracle.traits().name), query_(oracle.prepare(a, b, oracle.settings())) {}
   double measure(const ConfigurationRay& ray, double s) override {
-    return require_distance(*query_, name_, ray.pose(s)).distance;
+    return require_distance(*query_, name, ray.pose(s)).distance;
   }
-  double remaining(const ConfigurationRay& ray, double s, double target) override { return measure(ray, s) - target; }
-  double safe_displacement(const ConfigurationRay& /*ray*/, double remaining) override { return remaining; }
 
  private:
-  std::string name_;
   std::unique_ptr<Query> query_;
 };
 
 class VolumeQuantity final : public Quantity {
  public:
   VolumeQuantity(const Mesh& a, const Mesh& b)
-      : a_(a),
+      : Quantity("columns"),
+        a_(a),
         b_(b),
         tree_a_(a),
         tree_b_(b),
@@ -62,7 +61,6 @@ class VolumeQuantity final : public Quantity {
         query_(solid_a_, solid_b_),
         areas_a_(area_vectors(tree_a_)),
         areas_b_(area_vectors(tree_b_)) {}
-  std::string name() const override { return "columns"; }
   double measure(const ConfigurationRay& ray, double s) override {
     return overlap_volume_by_columns(a_, b_, ray.pose(s));
   }
@@ -106,22 +104,19 @@ class Verifier {
   Verdict verify() {
     check_identity("A", set_.description().a, a_);
     check_identity("B", set_.description().b, b_);
-    std::vector<double> previous;
     total_ = set_.buckets().size() * sample_.size;
-    const BucketSummary* before = nullptr;
-    for (const BucketSummary& bucket : set_.buckets()) {
-      std::vector<double> translations = set_.read(bucket.key);
-      check_repeats(bucket, translations);
-      check_summary(bucket);
+    Bucket before;
+    for (const BucketSummary& summary : set_.buckets()) {
+      Bucket bucket{.summary = summary, .translations = set_.read(summary.key)};
+      check_repeats(bucket);
+      check_summary(summary);
       // Buckets ascend: distances from near to far, volumes from contact inwards.
-      if (before != nullptr && before->key.kind == bucket.key.kind) {
-        const bool inwards = bucket.key.kind == BucketKind::volume;
-        check_order(inwards ? bucket : *before, inwards ? translations : previous, inwards ? *before : bucket,
-                    inwards ? previous : translations);
+      if (!before.translations.empty() && before.summary.key.kind == summary.key.kind) {
+        const bool inwards = summary.key.kind == BucketKind::volume;
+        check_order(inwards ? bucket : before, inwards ? before : bucket);
       }
-      measure_sample(bucket, translations);
-      previous = std::move(translations);
-      before = &bucket;
+      measure_sample(bucket);
+      before = std::move(bucket);
     }
     return std::move(result_);
   }
@@ -141,13 +136,11 @@ class Verifier {
     }
   }
 
-  double scale(BucketKind kind) const { return kind == BucketKind::distance ? a_.diagonal() : a_.volume(); }
-
   void check_summary(const BucketSummary& bucket) {
     const bool distance = bucket.key.kind == BucketKind::distance;
     const BucketSummary expected =
         distance ? distance_bucket(a_, bucket.key.percent) : volume_bucket(a_, bucket.key.percent);
-    const double rounding = k_target_rounding * scale(bucket.key.kind);
+    const double rounding = k_target_rounding * (distance ? a_.diagonal() : a_.volume());
     if (!(std::abs(bucket.nominal - expected.nominal) <= rounding) ||
         !(std::abs(bucket.target - expected.target) <= rounding)) {
       add_problem(fmt::format("{}: nominal {} and target {} are not {} % of the {}", bucket.key.name(), bucket.nominal,
@@ -160,40 +153,44 @@ class Verifier {
   }
 
   /// Rows of equal rotations are equal.
-  void check_repeats(const BucketSummary& bucket, const std::vector<double>& translations) {
-    const std::size_t n = set_.grid(bucket.key.kind).directions.size();
-    const auto representative = DistinctRotations(set_.grid(bucket.key.kind).rotations).representative;
+  void check_repeats(const Bucket& bucket) {
+    const auto& [summary, translations] = bucket;
+    const Grid& grid = set_.grid(summary.key.kind);
+    const std::size_t n = grid.directions.size();
+    const auto representative = DistinctRotations(grid.rotations).representative;
     for (std::size_t r = 0; r < representative.size(); ++r) {
       if (std::memcmp(&translations[r * n], &translations[representative[r] * n], n * sizeof(double)) == 0) continue;
-      return add_problem(fmt::format("{}: rotations {} and {} are equal, their translations are not", bucket.key.name(),
-                                     representative[r], r));
+      return add_problem(fmt::format("{}: rotations {} and {} are equal, their translations are not",
+                                     summary.key.name(), representative[r], r));
     }
   }
 
   /// The inner target is met at no greater translation than the outer one, and nowhere if the outer one is not met.
-  void check_order(const BucketSummary& inner, const std::vector<double>& near, const BucketSummary& outer,
-                   const std::vector<double>& far) {
-    const std::size_t n = set_.grid(inner.key.kind).directions.size();
-    for (std::size_t i = 0; i < near.size(); ++i) {
-      if (std::isnan(near[i]) || near[i] <= far[i]) continue;
+  void check_order(const Bucket& inner, const Bucket& outer) {
+    const std::size_t n = set_.grid(inner.summary.key.kind).directions.size();
+    for (std::size_t i = 0; i < inner.translations.size(); ++i) {
+      const double near = inner.translations[i];
+      const double far = outer.translations[i];
+      if (std::isnan(near) || near <= far) continue;
       return add_problem(fmt::format("rotation {}, direction {}: {} is met at {}, {} at {}", i / n, i % n,
-                                     inner.key.name(), near[i], outer.key.name(), far[i]));
+                                     inner.summary.key.name(), near, outer.summary.key.name(), far));
     }
   }
 
-  void measure_sample(const BucketSummary& bucket, const std::vector<double>& translations) {
-    // Contact is measured as a distance.
-    const bool contact = bucket.key.percent == 0;
-    const bool distance = contact || bucket.key.kind == BucketKind::distance;
-    if (!distance && !volume_) volume_.emplace(a_, b_);
-    Quantity& quantity = distance ? static_cast<Quantity&>(distance_) : *volume_;
-    const bool volume_contact = contact && bucket.key.kind == BucketKind::volume;
-    const Target target{.kind = bucket.key.kind,
-                        .value = volume_contact ? distance_bucket(a_, 0).target : bucket.target,
-                        .tolerance = volume_contact ? distance_bucket(a_, 0).tolerance : bucket.tolerance};
+  void measure_sample(const Bucket& measured) {
+    const auto& [bucket, translations] = measured;
+    const bool volume = bucket.key.kind == BucketKind::volume;
+    const bool by_volume = volume && bucket.key.percent != 0;  // contact is measured as a distance
+    if (by_volume && !volume_) volume_.emplace(a_, b_);
+    Quantity& quantity = by_volume ? static_cast<Quantity&>(*volume_) : distance_;
+    BucketSummary target = bucket;
+    if (volume && !by_volume) {
+      target.target = distance_bucket(a_, 0).target;
+      target.tolerance = distance_bucket(a_, 0).tolerance;
+    }
     BucketVerdict verdict{.summary = bucket,
-                          .oracle = quantity.name(),
-                          .scale = scale(distance ? BucketKind::distance : BucketKind::volume),
+                          .oracle = quantity.name,
+                          .scale = by_volume ? a_.volume() : a_.diagonal(),
                           .tolerance = target.tolerance};
     for (std::size_t k = 0; k < sample_.size; ++k) {
       run_.check_cancelled();
@@ -204,18 +201,13 @@ class Verifier {
     result_.buckets.push_back(std::move(verdict));
   }
 
-  struct Target {
-    BucketKind kind;
-    double value = 0.0, tolerance = 0.0;
-  };
-
-  void measure_one(Quantity& quantity, const Target& target, std::size_t i, const std::vector<double>& translations,
-                   BucketVerdict& verdict) {
+  /// @param target its target and tolerance
+  void measure_one(Quantity& quantity, const BucketSummary& target, std::size_t i,
+                   const std::vector<double>& translations, BucketVerdict& verdict) {
     const BucketSummary& bucket = verdict.summary;
     const Grid& grid = set_.grid(bucket.key.kind);
     const std::size_t n = grid.directions.size();
-    ConfigurationRay ray(a_, b_, grid.rotations[i / n]);
-    ray.direction = grid.directions[i % n];
+    const ConfigurationRay ray(a_, b_, grid.rotations[i / n], grid.directions[i % n]);
     const double s = translations[i];
     if (std::isnan(s)) {
       const double hit = march(quantity, ray, target, 0.0);
@@ -227,10 +219,10 @@ class Verifier {
     }
     ++verdict.reachable;
     const double measured = quantity.measure(ray, s);
-    const double residual = std::abs(measured - target.value);
+    const double residual = std::abs(measured - target.target);
     verdict.largest_residual = std::max(verdict.largest_residual, residual);
     if (!(residual <= target.tolerance) && ++verdict.wrong_value == 1) {
-      add_problem(fmt::format("{}: {} instead of {}", configuration(bucket, i), measured, target.value));
+      add_problem(fmt::format("{}: {} instead of {}", configuration(bucket, i), measured, target.target));
     }
     const double hit = march(quantity, ray, target, s);
     if (!std::isnan(hit) && ++verdict.earlier_hit == 1) {
@@ -240,12 +232,12 @@ class Verifier {
   }
 
   /// Marches from outside to `end`. @return a translation at which the target has been passed; NaN if there is none
-  double march(Quantity& quantity, const ConfigurationRay& ray, const Target& target, double end) {
+  double march(Quantity& quantity, const ConfigurationRay& ray, const BucketSummary& target, double end) {
     const double step = k_march_step * a_.diagonal();
     double s = 0.5 * (a_.diagonal() + b_.diagonal());
-    if (target.kind == BucketKind::distance) s += target.value;
+    if (target.key.kind == BucketKind::distance) s += target.target;
     while (s > end) {
-      const double remaining = quantity.remaining(ray, s, target.value);
+      const double remaining = quantity.remaining(ray, s, target.target);
       if (remaining < -target.tolerance) return s;
       s -= std::max(quantity.safe_displacement(ray, remaining), step);
     }

@@ -31,8 +31,6 @@ struct BucketVerdict {
   std::uint64_t wrong_value = 0;  ///< |measured - target| is above `tolerance`.
   std::uint64_t earlier_hit = 0;  ///< The target is passed at a greater translation.
   std::uint64_t false_nan = 0;    ///< Unreachable in the set, but the target is passed.
-
-  std::uint64_t failures() const { return wrong_value + earlier_hit + false_nan; }
 };
 
 struct Verdict {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,8 +17,7 @@
 namespace sixdof {
 
 /// Finds the translations at which targets are met, for one pair of meshes. Used by one thread at a time. Results may
-/// depend on the rays solved since set_rotation() and their order, but on nothing before, so that rotations spread over
-/// threads and shards give the same bits.
+/// depend on the rays solved since set_rotation() and their order, but on nothing before.
 class RaySolver {
  public:
   virtual ~RaySolver() = default;
@@ -27,7 +27,7 @@ class RaySolver {
 
   /// Moves the centre of B's box along the ray from the centre of A's box in direction u (A's frame), inwards from far
   /// outside.
-  /// @param targets distances in the meshes' length unit, positive and descending (of VolumeGenerator's solvers:
+  /// @param targets distances in the meshes' length unit, positive and descending (of volume_solvers():
   /// volumes, ascending)
   /// @param translations one per target: the largest s >= 0 at which it is met, NaN if there is none
   /// @param residuals one per target: |measured - target| at that s, 0 if there is none
@@ -67,4 +67,19 @@ Generated generate_distances(const DistanceGenerator& generator, const Mesh& a, 
                              std::span<const int> percents, const RunOptions& run = {},
                              std::span<const std::uint32_t> rotations = {});
 
+namespace detail {
+
+/// The loop over rotations and directions that fills buckets of either kind: solves every distinct rotation once, on
+/// several threads, and copies its rows to its repeats. The result has the same bits for every number of threads.
+/// @param prepare makes the solver of a thread
+/// @param summaries of buckets of one kind; their largest residuals are filled in
+/// @param rotations indices into the grid; empty: all rotations of the grid
+/// @return the buckets in the order of `summaries`
+/// @throws BadArgument if there is no bucket, one is asked for twice, or the grid does not have one of the rotations;
+/// Interrupted; Error from the solver naming the configuration
+Generated sweep_rotations(const std::function<std::unique_ptr<RaySolver>()>& prepare, const Grid& grid,
+                          const std::vector<BucketSummary>& summaries, const RunOptions& run,
+                          std::span<const std::uint32_t> rotations);
+
+}  // namespace detail
 }  // namespace sixdof

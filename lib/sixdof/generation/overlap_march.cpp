@@ -14,8 +14,7 @@
 //   interval; else the measurement becomes the front.
 // - V above the target there: the interval brackets a hit. Refine it by the Hermite cubic through both ends.
 //
-// Only + - * / and square roots: library functions for powers round differently from one instruction set to the next,
-// and where V is measured decides the last bits of a hit.
+// Only + - * / and square roots, which round alike on every instruction set: where V is measured decides the last bits.
 
 namespace sixdof {
 namespace {

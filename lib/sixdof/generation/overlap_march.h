@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include <sixdof/generation/slope_bounds.h>
+#include <sixdof/generation/overlap_bounds.h>
 
 namespace sixdof {
 
@@ -15,11 +15,10 @@ struct MarchLimits {
   double first_step = 0.0;  ///< Displacement from contact to the first measurement.
 };
 
-/// Searches one ray inwards from contact for the first translations at which volumes are met; see VolumeGenerator.
+/// Searches one ray inwards from contact for the first translations at which volumes are met; see volume_generator.h.
 class OverlapMarch {
  public:
-  /// @param s translation to measure at
-  /// @param outer neither a measurement nor a peak will be asked for at a greater translation
+  /// Measures at `s`. Neither a measurement nor a peak will be asked for at a greater translation than `outer`.
   using Measure = std::function<OverlapMeasurement(double s, double outer)>;
   /// The largest volume possible between two measurements.
   using Peak = std::function<VolumePeak(const OverlapMeasurement& outer, const OverlapMeasurement& inner)>;

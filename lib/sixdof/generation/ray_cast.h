@@ -15,8 +15,7 @@ namespace sixdof {
 /// A hit is not replaced by one that is farther out by less than 1e-14, in units of the sum of the meshes' radii and
 /// the target (k_cast_tie).
 ///
-/// Results depend on the rotation and on the directions since set_rotation() only. They have the same bits for every
-/// number of threads and on every instruction set.
+/// Results have the same bits for every number of threads and on every instruction set.
 std::unique_ptr<DistanceGenerator> make_ray_cast();
 
 }  // namespace sixdof

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <sixdof/generation/ray_cast_search.h>
+#include <sixdof/geometry/tree.h>
 #include <sixdof/geometry/triangle_distance.h>
 
 namespace sixdof::ray_cast {
@@ -51,5 +53,9 @@ class MovingPair {
   bool degenerate_ = false;   // one of the triangles has no normal
   double plane_error_ = 0.0;  // error of a corner's signed distance from a face's plane
 };
+
+/// Replaces the best hit by that of a pair of triangles if it is larger by more than a tie.
+/// @return whether it did; if not, it may set best.separating_axis
+bool try_update(Cast& cast, TrianglePair pair);
 
 }  // namespace sixdof::ray_cast

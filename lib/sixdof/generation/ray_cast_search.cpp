@@ -1,10 +1,392 @@
 #include <sixdof/generation/ray_cast_search.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
-#include <sixdof/generation/ray_cast_update.h>
+#include <sixdof/generation/ray_cast_pair.h>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_search.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// After foreach_target.h: this is compiled once per instruction set, too.
+#include <sixdof/generation/ray_cast_bounds-inl.h>
+
+// Depth first: of the children of one expansion the one most likely to be hit first is next. Pairs of volumes wait on a
+// stack, front.pending. Of two volumes the larger is expanded.
+
+HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
+namespace HWY_NAMESPACE {
+
+/// A front that has grown beyond this, in units of its size after the first target, is discarded. Expansions near the
+/// hits of earlier targets are never undone otherwise.
+constexpr double k_largest_growth = 2.0;
+
+/// Error of single-precision bounds of flat patches that lie face to face, in units of their radii: 1.3e-3 for normals
+/// that are shorter than unit vectors, and as much again for the tilt of parts of a rough face.
+constexpr float k_flat_error = 2e-3f;
+
+/// What one query of a DifferenceSupport adds to its budget: for pairs that may tie, and for others. Support values
+/// cull some of the others because volumes reach beyond their triangles: on smooth surfaces they halve the number of
+/// expanded nodes. Of 1, 2, 4 .. 64, 8 is the fastest for the others.
+constexpr std::uint64_t k_budget_near = 16;
+constexpr std::uint64_t k_budget_far = 8;
+
+/// Decides when a test is due: after ever more pairs while it fails, for each pair while it succeeds. `now` is the
+/// number of pairs that single-precision bounds did not cull.
+struct Backoff {
+  static constexpr std::uint64_t k_first = 8;
+  std::uint64_t last_success = 0;
+  std::uint64_t next = k_first;
+
+  bool due(std::uint64_t now) const { return now >= next; }
+  void record(bool success, std::uint64_t now) {
+    if (success) last_success = now;
+    next = success ? now : now + 1 + (now - last_success) / 2;
+  }
+};
+
+/// Tests of the pairs of volumes of one search.
+class TieTests {
+ public:
+  TieTests(Cast& cast, const Ray& ray) : cast_(cast), ray_(ray), tie_(k_cast_tie * cast.size()) {}
+
+  /// Counts a pair that single-precision bounds did not cull.
+  void count_pair() { ++pairs_; }
+
+  /// Whether the slabs of two volumes, given by slots, tie with the best hit or are farther apart.
+  bool slabs_tie(std::uint32_t a, std::uint32_t b) const {
+    if (a == CastFront::k_root || b == CastFront::k_root) return false;
+    const CastSlab slab_a = cast_.a.slab(a);
+    const CastSlab slab_b = cast_.b.slab(b);
+    return slab_separates(slab_a, slab_b, cast_.b.volume(b)) || slab_separates(slab_b, slab_a, cast_.a.volume(a));
+  }
+
+  /// Takes the larger of two flat volumes for cast.patch if it is larger than that.
+  void note_patch(std::uint32_t a, std::uint32_t b) {
+    if (!cast_.best.pair || a == CastFront::k_root || b == CastFront::k_root) return;
+    const bool larger_a = cast_.a.volume(a).size >= cast_.b.volume(b).size;
+    const CastTree& tree = larger_a ? cast_.a : cast_.b;
+    const std::uint32_t larger = larger_a ? a : b;
+    const float size = tree.volume(larger).size;
+    if (size <= cast_.patch.size && cast_.patch.is_facing(cast_.best.axis, cast_.direction)) return;
+    const Eigen::Vector3d normal = tree.slab(larger).normal;
+    const CoplanarPatch patch{normal.dot(cast_.direction) < 0.0 ? Eigen::Vector3d(-normal) : normal, size};
+    if (patch.is_facing(cast_.best.axis, cast_.direction)) cast_.patch = patch;
+  }
+
+  /// Whether two subtrees are separated by the target along the patch's normal, or along best.separating_axis, up to
+  /// half a tie; each is tested only when it is due. Half a tie is more than the rounding of this test and of
+  /// try_update(), so that what is culled here is no hit that try_update() would take. While there is no hit to stand
+  /// for it, a tie is not culled.
+  /// @param near whether they may tie
+  /// @param set_bound called with gap and slope if the gap is more than the rounding of single precision; otherwise a
+  /// smaller target tests the pair again
+  template <class SetBound>
+  bool separated(std::uint32_t a, std::uint32_t b, bool near, const SetBound& set_bound) {
+    if (a == CastFront::k_root || b == CastFront::k_root) return false;
+    const auto separates = [&](DifferenceSupport& support, const Eigen::Vector3d& axis, Backoff& backoff) {
+      const double slope = axis.dot(cast_.direction);
+      if (slope < 0.0) return false;
+      const double gap = cast_.best.translation * slope +
+                         support.support_value(a, b, axis, near ? k_budget_near : k_budget_far) - cast_.target;
+      const bool culled = gap >= (cast_.best.pair ? -0.5 * tie_ : 0.0);
+      backoff.record(culled, pairs_);
+      if (gap > ray_.slack) set_bound(static_cast<float>(gap), static_cast<float>(slope));
+      return culled;
+    };
+    if (patch_backoff_.due(pairs_) && cast_.patch.is_facing(cast_.best.axis, cast_.direction) &&
+        separates(cast_.patch_support, cast_.patch.normal, patch_backoff_)) {
+      return true;
+    }
+    return axis_backoff_.due(pairs_) && separates(cast_.axis_support, cast_.best.separating_axis, axis_backoff_);
+  }
+
+ private:
+  /// Whether slab `x` is separated along its normal by the target, up to a tie, from slab `y` with a box around it.
+  bool slab_separates(const CastSlab& x, const CastSlab& y, const CastVolume& box) const {
+    const double rate = x.normal.dot(cast_.direction);
+    const double sign = rate < 0.0 ? -1.0 : 1.0;
+    const Eigen::Vector3d n = sign * x.normal;
+    const double along = n.dot(y.normal);
+    // n is `along` times y's normal plus a rest, for which the box is used.
+    double least = sign * x.middle - x.half + along * y.middle - std::abs(along) * y.half;
+    const Eigen::Vector3d rest = n - along * y.normal;
+    for (int k = 0; k < 3; ++k) {
+      const double half = static_cast<double>(box.half[k]) + static_cast<double>(ray_.slack);
+      least += rest[k] * static_cast<double>(box.center[k]) - std::abs(rest[k]) * half;
+    }
+    return least + cast_.best.translation * std::abs(rate) >= cast_.target - tie_;
+  }
+
+  Cast& cast_;
+  const Ray& ray_;
+  const double tie_;
+  std::uint64_t pairs_ = 0;
+  Backoff patch_backoff_, axis_backoff_;
+};
+
+class DualTreeTraversal {
+ public:
+  explicit DualTreeTraversal(Cast& cast)
+      : cast_(cast), front_(cast.front), tree_a_(cast.a), tree_b_(cast.b), ray_(cast), ties_(cast, ray_) {}
+
+  void run() {
+    if (cast_.target > front_.target) front_.clear();  // its bounds hold for translations up to that of its last target
+    const bool grown =
+        static_cast<double>(front_.expansions.size()) > k_largest_growth * static_cast<double>(front_.initial_size);
+    if (cast_.target != front_.target && grown) front_.clear();
+    front_.target = cast_.target;
+    front_.pending.clear();
+    if (front_.expansions.empty()) {
+      expand_larger({CastFront::k_root, CastFront::k_root});
+      process_pending();
+      front_.initial_size = front_.expansions.size();
+    } else {
+      find_uncovered();
+      expand_uncovered();
+    }
+  }
+
+ private:
+  /// Slots of a pair of volumes.
+  struct VolumePair {
+    std::uint32_t a, b;
+  };
+
+  static const CastVolume& volume_of(const CastTree& tree, std::uint32_t slot) {
+    return slot == CastFront::k_root ? tree.root_volume() : tree.volume(slot);
+  }
+
+  static CastChild child_of(const CastTree& tree, std::uint32_t slot) {
+    return slot == CastFront::k_root ? CastChild::node(0) : tree.child(slot);
+  }
+
+  static VolumePair pair_of(const CastFront::Expansion& expansion, std::uint32_t lane) {
+    const auto own = static_cast<std::uint32_t>(expansion.node * k_width + lane);
+    return expansion.expands_a ? VolumePair{own, expansion.other} : VolumePair{expansion.other, own};
+  }
+
+  void set_bound(const CastFront::Pending& child, float gap, float slope) {
+    CastFront::AxisBounds& bounds = front_.bounds[child.expansion];
+    bounds.offset[child.lane] = gap + ray_.target - slope * ray_.translation;
+    bounds.slope[child.lane] = slope;
+  }
+
+  /// By how much a child's bound exceeds the target.
+  float gap_of(const CastFront::Pending& child) const {
+    const CastFront::AxisBounds& bounds = front_.bounds[child.expansion];
+    return bounds.offset[child.lane] + bounds.slope[child.lane] * ray_.translation - ray_.target;
+  }
+
+  /// By how much the least of an expansion's bounds exceeds the target.
+  float least_gap(std::uint32_t expansion) const {
+    const CastFront::AxisBounds& bounds = front_.bounds[expansion];
+    V least = set(CastFront::k_not_in_front);
+    for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+      const V slope = load(bounds.slope + i);
+      least = hn::Min(least, unfused_mul_add(slope, set(ray_.translation), load(bounds.offset + i)));
+    }
+    return hn::GetLane(hn::MinOfLanes(k_lanes, least)) - ray_.target;
+  }
+
+  /// Whether a pair that single-precision bounds do not cull is separated in double precision.
+  /// @param near whether it may tie
+  bool separated(const CastFront::Pending& child, VolumePair pair, bool near) {
+    return ties_.separated(pair.a, pair.b, near, [&](float gap, float slope) { set_bound(child, gap, slope); });
+  }
+
+  /// Expands the larger of two volumes, or the one that is no leaf.
+  void expand_larger(VolumePair pair) {
+    const CastChild child_a = child_of(tree_a_, pair.a);
+    const CastChild child_b = child_of(tree_b_, pair.b);
+    const bool expands_a =
+        child_b.is_leaf() || (!child_a.is_leaf() && volume_of(tree_a_, pair.a).size >= volume_of(tree_b_, pair.b).size);
+    const std::uint32_t index = (expands_a ? child_a : child_b).index();
+    front_.expansions.push_back({index, expands_a ? pair.b : pair.a, expands_a});
+    CastFront::AxisBounds& bounds = front_.bounds.emplace_back();
+    const std::uint32_t count = (expands_a ? tree_a_ : tree_b_).nodes()[index].child_count;
+    for (std::uint32_t lane = 0; lane < k_width; ++lane) {
+      bounds.offset[lane] = lane < count ? CastFront::k_no_bound : CastFront::k_not_in_front;
+      bounds.slope[lane] = 0.0f;
+    }
+    expand(static_cast<std::uint32_t>(front_.expansions.size() - 1));
+  }
+
+  /// Bounds an expansion's children for the best hit. Children that are not culled become pending.
+  void expand(std::uint32_t expansion) {
+    ++cast_.counts.nodes;
+    const CastFront::Expansion from = front_.expansions[expansion];
+    const CastTree& tree = from.expands_a ? tree_a_ : tree_b_;
+    const CastNode& node = tree.nodes()[from.node];
+    const CastVolume& fixed = volume_of(from.expands_a ? tree_b_ : tree_a_, from.other);
+    HWY_ALIGN float gaps[k_width], slopes[k_width], projections[k_width];
+    bound_children(node, fixed, ray_, gaps, slopes, projections);
+    std::uint32_t left = raise_bounds(front_.bounds[expansion], gaps, slopes);
+    std::vector<CastFront::Pending>& pending = front_.pending;
+    const std::size_t first = pending.size();
+    const bool fixed_flat = fixed.slab_half <= ray_.slack;
+    for (; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
+      const bool flat = fixed_flat && node.slab_half[lane] <= ray_.slack;
+      const float error = flat ? k_flat_error * (node.ball_radius[lane] + fixed.ball_radius) : 0.0f;
+      const bool near = gaps[lane] > -ray_.slack - error;
+      ties_.count_pair();
+      const VolumePair pair = pair_of(from, lane);
+      if (near && flat) {
+        if (ties_.slabs_tie(pair.a, pair.b)) continue;
+        ties_.note_patch(pair.a, pair.b);
+      }
+      const CastFront::Pending next{expansion, lane, projections[lane]};
+      if (separated(next, pair, near)) continue;
+      const CastChild child = node.child[lane];
+      child.is_leaf() ? prefetch(tree.leaves()[child.index()]) : prefetch(tree.nodes()[child.index()]);
+      std::size_t at = pending.size();
+      pending.push_back(next);
+      for (; at > first && pending[at - 1].projection < next.projection; --at) pending[at] = pending[at - 1];
+      pending[at] = next;
+    }
+  }
+
+  /// Replaces bounds by those with the given gaps and slopes where these are larger.
+  /// @return bits of the lanes that no bound culls
+  std::uint32_t raise_bounds(CastFront::AxisBounds& bounds, const float* gaps, const float* slopes) const {
+    std::uint32_t left = 0;
+    for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+      const V offset = load(bounds.offset + i);
+      const V slope = load(bounds.slope + i);
+      const V known = hn::Sub(unfused_mul_add(slope, set(ray_.translation), offset), set(ray_.target));
+      const V gap = load(gaps + i);
+      const V new_slope = load(slopes + i);
+      const V new_offset = hn::Add(unfused_sub_mul(gap, new_slope, set(ray_.translation)), set(ray_.target));
+      const auto raises = hn::Gt(gap, known);
+      hn::Store(hn::IfThenElse(raises, new_offset, offset), k_lanes, bounds.offset + i);
+      hn::Store(hn::IfThenElse(raises, new_slope, slope), k_lanes, bounds.slope + i);
+      left |= bits_of(hn::Le(hn::Max(gap, known), set(ray_.slack)), i);
+    }
+    return left;
+  }
+
+  void process_pending() {
+    while (!front_.pending.empty()) {
+      const CastFront::Pending top = front_.pending.back();
+      front_.pending.pop_back();
+      const float gap = gap_of(top);
+      if (gap > ray_.slack) continue;  // the best hit may have changed since
+      const VolumePair pair = pair_of(front_.expansions[top.expansion], top.lane);
+      if (separated(top, pair, gap > -ray_.slack)) continue;
+      const CastChild child_a = child_of(tree_a_, pair.a);
+      const CastChild child_b = child_of(tree_b_, pair.b);
+      if (child_a.is_leaf() && child_b.is_leaf()) {
+        expand_leaves(child_a.index(), child_b.index(), top);
+      } else {
+        set_bound(top, CastFront::k_not_in_front, 0.0f);
+        expand_larger(pair);
+      }
+    }
+  }
+
+  /// Sets the bound of two leaves, and updates the best hit by those of their pairs of triangles that it does not cull.
+  void expand_leaves(std::uint32_t a, std::uint32_t b, const CastFront::Pending& pending) {
+    ++cast_.counts.leaf_pairs;
+    const CastLeaf& leaf_a = tree_a_.leaves()[a];
+    const CastLeaf& leaf_b = tree_b_.leaves()[b];
+    const LeafBounds bounds = bound_leaves(leaf_a, leaf_b, ray_);
+    set_bound(pending, bounds.gap, bounds.slope);
+    for (std::size_t n = 0; n < bounds.count; ++n) {
+      const std::uint32_t i = bounds.pairs[n] / k_leaf_triangles;
+      const std::uint32_t j = bounds.pairs[n] % k_leaf_triangles;
+      if (try_update(cast_, {leaf_a.child.first() + i, leaf_b.child.first() + j})) {
+        ray_.set_best(cast_);
+      } else {
+        ties_.count_pair();
+      }
+    }
+  }
+
+  void find_uncovered() {
+    front_.uncovered.clear();
+    const V enough = set(ray_.target + ray_.slack);
+    const V translation = set(ray_.translation);
+    const auto count = static_cast<std::uint32_t>(front_.expansions.size());
+    for (std::uint32_t expansion = 0; expansion < count; ++expansion) {
+      const CastFront::AxisBounds& bounds = front_.bounds[expansion];
+      bool culled = true;
+      for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+        const V value = unfused_mul_add(load(bounds.slope + i), translation, load(bounds.offset + i));
+        culled = culled && hn::AllTrue(k_lanes, hn::Gt(value, enough));
+      }
+      if (!culled) front_.uncovered.push_back(expansion);
+    }
+  }
+
+  /// Expands all that is uncovered: the few with the least gaps first, for as long as they improve the best hit.
+  void expand_uncovered() {
+    std::vector<std::uint32_t>& all = front_.uncovered;
+    double before = -1.0;
+    while (!all.empty()) {
+      if (cast_.best.translation != before) {
+        before = cast_.best.translation;
+        expand_few_uncovered();
+      } else {
+        const std::uint32_t expansion = all.back();
+        all.pop_back();
+        expand(expansion);
+        process_pending();
+      }
+    }
+  }
+
+  /// Expands the few that are uncovered by most, and drops those that no longer are uncovered.
+  void expand_few_uncovered() {
+    constexpr std::size_t k_few = 8;
+    struct {
+      float gap;
+      std::uint32_t expansion;
+    } least[k_few];  // ascending
+    std::size_t few = 0;
+    std::size_t left = 0;
+    std::vector<std::uint32_t>& all = front_.uncovered;
+    for (const std::uint32_t expansion : all) {
+      const float gap = least_gap(expansion);
+      if (gap > ray_.slack) continue;
+      if (few == k_few && gap >= least[k_few - 1].gap) {
+        all[left++] = expansion;
+        continue;
+      }
+      if (few == k_few) all[left++] = least[--few].expansion;
+      std::size_t at = few++;
+      for (; at > 0 && least[at - 1].gap > gap; --at) least[at] = least[at - 1];
+      least[at] = {gap, expansion};
+    }
+    all.resize(left);
+    for (std::size_t i = 0; i < few; ++i) {
+      if (i > 0 && least_gap(least[i].expansion) > ray_.slack) continue;
+      expand(least[i].expansion);
+      process_pending();
+    }
+  }
+
+  Cast& cast_;
+  CastFront& front_;
+  const CastTree& tree_a_;
+  const CastTree& tree_b_;
+  Ray ray_;
+  TieTests ties_;
+};
+
+void find_first_hit(Cast& cast) { DualTreeTraversal(cast).run(); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sixdof::ray_cast
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sixdof::ray_cast {
+
 namespace {
 
 /// Length of the first interval in which a hit is searched for behind that of a larger target, in units of what the
@@ -13,6 +395,10 @@ constexpr double k_first_interval = 2.0;
 constexpr double k_interval_growth = 2.0;
 
 }  // namespace
+
+HWY_EXPORT(find_first_hit);
+
+void find_first_hit(Cast& cast) { HWY_DYNAMIC_DISPATCH(find_first_hit)(cast); }
 
 void RaySearch::clear() {
   cast_.clear();
@@ -66,3 +452,4 @@ bool RaySearch::find_behind(const LastTarget& last) {
 }
 
 }  // namespace sixdof::ray_cast
+#endif  // HWY_ONCE

@@ -1,19 +1,140 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include <sixdof/generation/ray_cast_traversal.h>
+#include <sixdof/generation/ray_cast_ties.h>
 #include <sixdof/generation/ray_cast_tree.h>
-#include <sixdof/geometry/triangle_pair.h>
+#include <sixdof/geometry/tree.h>
 
+/// The branch and bound of the ray cast. Internal: use ray_cast.h.
+///
+/// Notation. B is translated by t u, where u is the ray's direction; at t = 0 the centres of both meshes' boxes
+/// coincide. For a pair of triangles, or of volumes around many of them, S is the Minkowski difference {q - p} of the
+/// points q of B at t = 0 and p of A. The pair's distance at t is that of the origin from S + t u: for triangles a
+/// convex function of t. A pair hits at the target distance d at t_ab(d), the largest t at which its distance is d. The
+/// first hit of the ray with the difference of the meshes, grown by d, is t(d) = max over all pairs of triangles of
+/// t_ab(d).
+///
+/// Trees are in A's axes, A's reflected in the centre of its box, so that S is a sum: a point of the one tree plus a
+/// point of the other.
+///
+/// Search. `best` holds the largest t_ab(d) found so far. A dual-tree traversal expands pairs of volumes, until a
+/// separating axis n with n . u >= 0 shows that the distance is at least d at that t, and so at every larger one:
+///   min over s in S of n . s + t n . u >= d.
+/// Then the pair is culled. Pairs of triangles that are left are measured by try_update(). The left side is a line in t
+/// which does not depend on d: the pair's separating-axis bound (CastFront), which culls it for smaller targets, too.
 namespace sixdof::ray_cast {
 
+/// Tolerance of distances, in units of Cast::size(): the error of exact distances and of their use. A pair of triangles
+/// whose distance at best.translation is less than d by no more than this ties with the best hit and does not replace
+/// it. So of many faces that tie only the first is expanded.
+constexpr double k_cast_tie = 1e-14;
+
+/// A hit. Before there is one, `pair` is empty, the translation is the least of interest, and the axes are guesses.
+struct Hit {
+  double translation = 0.0;  ///< t at which the pair's distance is the target.
+  std::optional<TrianglePair> pair;
+  /// Unit vector from A to B between the pair's closest points.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  /// Unit vector along which the pair of triangles that try_update() rejected last is separated by the target, up to a
+  /// tie; `axis` if it rejected none since.
+  Eigen::Vector3d separating_axis = Eigen::Vector3d::UnitX();
+};
+
+struct CastCounts {
+  std::uint64_t nodes = 0;       ///< Nodes whose children were bounded against a volume.
+  std::uint64_t leaf_pairs = 0;  ///< Pairs of leaves whose triangles were bounded.
+  std::uint64_t distances = 0;   ///< Exact distances of two triangles.
+};
+
+/// The front of a dual-tree traversal: what the search for one target of a ray leaves for the next.
+///
+/// To expand a pair of volumes is to bound the children of one of them against the other. The pairs of a child and the
+/// other volume that were not expanded themselves are the front: each pair of triangles is below exactly one of
+/// them. A pair of the front has a separating-axis bound: at translation t its distance is at least
+///   offset + slope * t
+/// for t up to that at which the bound was made, and at least the value there for larger t. The slope is 0 to 1. A
+/// smaller target, which is met at a smaller translation, expands only pairs whose bounds no longer reach it.
+struct CastFront {
+  static constexpr float k_no_bound = -1e30f;     ///< Offset of a pair that no axis is known to separate.
+  static constexpr float k_not_in_front = 1e30f;  ///< Offset of a lane without a child, or whose pair was expanded.
+
+  /// Stands for the whole tree where volumes are given by their slots.
+  static constexpr std::uint32_t k_root = 0xffffffffu;
+
+  struct Expansion {
+    std::uint32_t node;   ///< Its children were bounded
+    std::uint32_t other;  ///< against this volume of the other tree (a slot).
+    bool expands_a;       ///< Whether the node is of tree A.
+  };
+
+  /// Separating-axis bounds of the children of one expansion, [lane].
+  struct alignas(64) AxisBounds {
+    float offset[Tree::k_width];
+    float slope[Tree::k_width];
+  };
+
+  /// A pair of volumes still to be expanded: a child of an expansion's node, and its other volume.
+  struct Pending {
+    std::uint32_t expansion;
+    std::uint32_t lane;
+    float projection;  ///< Of the difference of the balls' centres on the axis of the best hit: the least first.
+  };
+
+  std::vector<Expansion> expansions;
+  std::vector<AxisBounds> bounds;  ///< Of each expansion.
+  std::size_t initial_size = 0;    ///< Number of expansions after the first target.
+  double target = 0.0;             ///< The last one.
+
+  std::vector<Pending> pending;          ///< Scratch: a stack.
+  std::vector<std::uint32_t> uncovered;  ///< Scratch: expansions with a child whose bound no longer reaches the target.
+
+  void clear() {
+    expansions.clear();
+    bounds.clear();
+  }
+};
+
+/// One ray, and what is known about it.
+struct Cast {
+  Cast(const CastTree& tree_a, const CastTree& tree_b)
+      : a(tree_a), b(tree_b), patch_support(tree_a, tree_b), axis_support(tree_a, tree_b) {}
+
+  /// After a tree was transformed.
+  void clear() {
+    patch.size = 0.0f;
+    patch_support.clear();
+    axis_support.clear();
+    front.clear();
+  }
+
+  const CastTree& a;
+  const CastTree& b;
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< u
+  double target = 0.0;                                   ///< d
+  Hit best;
+  CastCounts counts;
+  CastFront front;                  ///< Of this direction; to be cleared when it changes.
+  CoplanarPatch patch;              ///< Of A or B, over one of the other.
+  DifferenceSupport patch_support;  ///< Along its normal.
+  DifferenceSupport axis_support;   ///< Along best.separating_axis.
+
+  /// Length that errors are relative to.
+  double size() const { return a.radius() + b.radius() + target; }
+};
+
+/// Finds the pair of triangles with the largest t_ab(target) above best.translation, and sets `best`; leaves it
+/// unchanged if there is none. The front of a larger target on the same ray saves most of the work. Every instruction
+/// set does the same floating-point operations in the same order, so all find the same pair.
+void find_first_hit(Cast& cast);
+
 /// Finds the first hits of rays for descending targets. Each search starts from the hits of the target before it and of
-/// the ray before it. Notation: see ray_cast_traversal.h. Internal: use ray_cast.h.
+/// the ray before it.
 class RaySearch {
  public:
   /// Both trees outlive the search.

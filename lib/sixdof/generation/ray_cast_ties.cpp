@@ -29,16 +29,8 @@ constexpr double k_least_patch_cosine = 1.0 - 1e-6;
 
 }  // namespace
 
-void CoplanarPatch::replace(const Eigen::Vector3d& normal, float size, const Eigen::Vector3d& axis,
-                            const Eigen::Vector3d& direction) {
-  CoplanarPatch patch;
-  patch.normal_ = normal.dot(direction) < 0.0 ? Eigen::Vector3d(-normal) : normal;
-  patch.size_ = size;
-  if (patch.is_facing(axis, direction)) *this = patch;
-}
-
 bool CoplanarPatch::is_facing(const Eigen::Vector3d& axis, const Eigen::Vector3d& direction) const {
-  return size_ > 0.0f && normal_.dot(axis) >= k_least_patch_cosine && normal_.dot(direction) >= 0.0;
+  return size > 0.0f && normal.dot(axis) >= k_least_patch_cosine && normal.dot(direction) >= 0.0;
 }
 
 TreeSupport::TreeSupport(const CastTree& tree)
@@ -58,7 +50,7 @@ double TreeSupport::support_value(std::size_t slot, std::uint64_t& budget) {
                                                   : tree_->mesh().tree().nodes()[child.index()].triangle_count;
   if (budget < std::min(triangles, k_smallest_budget)) return k_unknown;
   const std::uint64_t before = evaluations_;
-  const Found found = search(child, {.least = k_infinity, .evaluations = before + budget});
+  const Found found = search(child, k_infinity, before + budget);
   budget -= std::min(budget, evaluations_ - before);
   known = {std::min(found.bound, found.least), axis_number_};
   return known.value;
@@ -80,7 +72,7 @@ void TreeSupport::bound_children(const PreciseVolumes& volumes, double* bounds) 
   }
 }
 
-TreeSupport::Found TreeSupport::search(CastChild child, Limits limits) {
+TreeSupport::Found TreeSupport::search(CastChild child, double least, std::uint64_t limit) {
   Found found;
   if (child.is_leaf()) {
     const Tree::Child leaf = tree_->leaves()[child.index()].child;
@@ -99,14 +91,14 @@ TreeSupport::Found TreeSupport::search(CastChild child, Limits limits) {
   evaluations_ += count;
   for (std::size_t i = 0; i < count; ++i) {
     const auto lane = static_cast<std::size_t>(std::min_element(bounds, bounds + count) - bounds);
-    limits.least = std::min(limits.least, found.least);
-    if (bounds[lane] >= limits.least - tolerance_ || evaluations_ >= limits.evaluations) {
+    least = std::min(least, found.least);
+    if (bounds[lane] >= least - tolerance_ || evaluations_ >= limit) {
       found.bound = std::min(found.bound, bounds[lane]);
       break;
     }
     bounds[lane] = k_infinity;
     const std::size_t slot = k_width * child.index() + lane;
-    const Found below = search(tree_->child(slot), limits);
+    const Found below = search(tree_->child(slot), least, limit);
     if (below.least <= below.bound + tolerance_) known_[slot] = {std::min(below.bound, below.least), axis_number_};
     found.bound = std::min(found.bound, below.bound);
     found.least = std::min(found.least, below.least);

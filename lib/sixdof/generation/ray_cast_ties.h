@@ -9,7 +9,7 @@
 
 #include <sixdof/generation/ray_cast_tree.h>
 
-/// Tests in double precision of pairs of subtrees that tie. Notation: see ray_cast_traversal.h. Internal: use
+/// Tests in double precision of pairs of subtrees that tie. Notation: see ray_cast_search.h. Internal: use
 /// ray_cast.h.
 ///
 /// A pair of triangles ties with the best hit if its distance at the hit's translation is less than the target by no
@@ -21,31 +21,17 @@
 /// The support value of a set along n is the least n . p of its points p.
 namespace sixdof::ray_cast {
 
-/// The largest coplanar patch of A or B that was met face to face with the other body. If the coordinates of a flat
-/// face are rounded, its triangles are tilted by the rounding over their size, and so are the axes between closest
-/// points. Such an axis does not separate triangles that lie farther away. The mean normal of a large patch does, up to
-/// the rounding of the coordinates. It is the same for many directions and targets, so that support values along it are
-/// computed once.
-class CoplanarPatch {
- public:
-  void clear() { size_ = 0.0f; }
-
-  /// Replaces the patch if the new one is_facing().
-  /// @param normal unit vector, of either side
-  /// @param size of the patch, CastVolume::size
-  void replace(const Eigen::Vector3d& normal, float size, const Eigen::Vector3d& axis,
-               const Eigen::Vector3d& direction);
+/// The largest coplanar patch of A or B that was met face to face with the other body. Rounded coordinates tilt the
+/// triangles of a flat face, and with them the axes between closest points, which then do not separate triangles
+/// farther away. The mean normal of a large patch does. It is the same for many directions and targets, so that support
+/// values along it are computed once.
+struct CoplanarPatch {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Unit vector.
+  float size = 0.0f;                                 ///< As CastVolume::size; 0 if there is no patch.
 
   /// Whether there is a patch, its normal is nearly parallel to `axis` and does not point against `direction`.
   /// @param axis unit vector from A to B between closest points
   bool is_facing(const Eigen::Vector3d& axis, const Eigen::Vector3d& direction) const;
-
-  const Eigen::Vector3d& normal() const { return normal_; }  ///< Unit vector.
-  float size() const { return size_; }                       ///< 0 if there is no patch.
-
- private:
-  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();
-  float size_ = 0.0f;
 };
 
 /// Support values of the subtrees of one tree along one axis, by branch and bound. Values once found are kept until the
@@ -76,10 +62,6 @@ class TreeSupport {
     double bound = k_infinity;  ///< Lower bound on all that was not evaluated.
     double least = k_infinity;  ///< The least axis . p of what was.
   };
-  struct Limits {
-    double least;               ///< Found elsewhere: what is not less need not be evaluated.
-    std::uint64_t evaluations;  ///< The search ends with bounds when evaluations_ reaches this.
-  };
   struct Known {
     double value;
     std::uint64_t axis_number;
@@ -87,7 +69,9 @@ class TreeSupport {
 
   /// @param bounds for each child, a lower bound on axis . p of its points
   void bound_children(const PreciseVolumes& volumes, double* bounds) const;
-  Found search(CastChild child, Limits limits);
+  /// @param least found elsewhere: what is not less need not be evaluated
+  /// @param limit ends the search with bounds when evaluations_ reaches it
+  Found search(CastChild child, double least, std::uint64_t limit);
 
   const CastTree* tree_;
   double tolerance_;                                // k_support_tolerance of the radius
@@ -113,10 +97,7 @@ class DifferenceSupport {
   }
 
   /// Support value of the differences b - a of two children, as TreeSupport::support_value().
-  /// @param slot_a, slot_b of the children
-  /// @param axis unit vector
   /// @param budget is added to what may be evaluated, in triangles and volumes
-  /// @return TreeSupport::k_unknown if the budget is too small
   double support_value(std::size_t slot_a, std::size_t slot_b, const Eigen::Vector3d& axis, std::uint64_t budget);
 
   std::uint64_t evaluations() const { return a_.evaluations() + b_.evaluations(); }  ///< Of triangles and volumes.

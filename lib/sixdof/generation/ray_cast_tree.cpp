@@ -23,38 +23,28 @@ Triangles triangles_of(const Tree& tree, Tree::Child child) {
   return tree.corners().subspan(node.first_triangle, node.triangle_count);
 }
 
-/// The thinnest slab along the mean normal of the triangles, relative to `origin`.
-CastSlab fit_slab(Triangles triangles, const Eigen::Vector3d& origin) {
+/// Sets slab and box of one lane, relative to `origin`. The slab is the thinnest along the triangles' mean normal.
+void fit_precise_volume(Triangles triangles, const Eigen::Vector3d& origin, PreciseVolumes& volumes, std::size_t lane) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Tree::Corners& t : triangles) sum += (t[1] - t[0]).cross(t[2] - t[0]);
   const double scale = sum.cwiseAbs().maxCoeff();
-  CastSlab slab{.normal = scale > 0.0 ? Eigen::Vector3d((sum / scale).normalized()) : Eigen::Vector3d::UnitX()};
+  const Eigen::Vector3d normal = scale > 0.0 ? Eigen::Vector3d((sum / scale).normalized()) : Eigen::Vector3d::UnitX();
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
-  for (const Tree::Corners& t : triangles) {
-    for (const Eigen::Vector3d& corner : t) {
-      const double projection = slab.normal.dot(corner - origin);
-      low = std::min(low, projection);
-      high = std::max(high, projection);
-    }
-  }
-  slab.middle = 0.5 * (low + high);
-  slab.half = 0.5 * (high - low);
-  return slab;
-}
-
-/// Sets slab and box of one lane, relative to `origin`.
-void fit_precise_volume(Triangles triangles, const Eigen::Vector3d& origin, PreciseVolumes& volumes, std::size_t lane) {
-  const CastSlab slab = fit_slab(triangles, origin);
   Eigen::AlignedBox3d box;
   for (const Tree::Corners& t : triangles) {
-    for (const Eigen::Vector3d& corner : t) box.extend(corner - origin);
+    for (const Eigen::Vector3d& corner : t) {
+      const Eigen::Vector3d p = corner - origin;
+      low = std::min(low, normal.dot(p));
+      high = std::max(high, normal.dot(p));
+      box.extend(p);
+    }
   }
-  volumes.middle[lane] = slab.middle;
-  volumes.half[lane] = slab.half;
+  volumes.middle[lane] = 0.5 * (low + high);
+  volumes.half[lane] = 0.5 * (high - low);
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
-    volumes.normal[k][lane] = slab.normal[axis];
+    volumes.normal[k][lane] = normal[axis];
     volumes.box_center[k][lane] = 0.5 * (box.min()[axis] + box.max()[axis]);
     volumes.box_half[k][lane] = 0.5 * (box.max()[axis] - box.min()[axis]);
   }
@@ -92,6 +82,18 @@ Ball fit_ball(Triangles triangles) {
     center += (farthest - center) / (step + 3.0);
   }
   return best;
+}
+
+/// In lanes without a child, arrays repeat the first.
+template <class... Array>
+void repeat_first(std::size_t count, Array&... array) {
+  (std::fill(array + count, array + k_width, array[0]), ...);
+}
+
+/// One coordinate of a matrix times the vector of a lane.
+template <std::size_t lanes>
+float row_times(const float (&row)[3], const float (&x)[3][lanes], std::size_t lane) {
+  return row[0] * x[0][lane] + row[1] * x[1][lane] + row[2] * x[2][lane];
 }
 
 float box_size(const CastVolume& v) { return v.half[0] * v.half[0] + v.half[1] * v.half[1] + v.half[2] * v.half[2]; }
@@ -137,16 +139,8 @@ CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
         to.slab_offset[lane] -= to.normal[k][lane] * to.ball_center[k][lane];
       }
     }
-    for (std::size_t lane = from.child_count; lane < k_width; ++lane) {
-      to.child[lane] = to.child[0];
-      to.ball_radius[lane] = to.ball_radius[0];
-      to.slab_offset[lane] = to.slab_offset[0];
-      to.slab_half[lane] = to.slab_half[0];
-      for (std::size_t k = 0; k < 3; ++k) {
-        to.normal[k][lane] = to.normal[k][0];
-        to.ball_center[k][lane] = to.ball_center[k][0];
-      }
-    }
+    repeat_first(to.child_count, to.child, to.ball_radius, to.slab_offset, to.slab_half);
+    for (std::size_t k = 0; k < 3; ++k) repeat_first(to.child_count, to.normal[k], to.ball_center[k]);
   }
 }
 
@@ -168,8 +162,7 @@ CastTree::Bounds CastTree::transform_leaf(std::uint32_t leaf, const float (&m)[3
     float high[k_leaf_triangles];
     for (std::size_t corner = 0; corner < 3; ++corner) {
       for (std::size_t t = 0; t < k_leaf_triangles; ++t) {
-        const float x = m[i][0] * from.corner[corner][0][t] + m[i][1] * from.corner[corner][1][t] +
-                        m[i][2] * from.corner[corner][2][t];
+        const float x = row_times(m[i], from.corner[corner], t);
         to.corner[corner][i][t] = x;
         low[t] = corner == 0 ? x : std::min(low[t], x);
         high[t] = corner == 0 ? x : std::max(high[t], x);
@@ -203,19 +196,12 @@ void CastTree::transform(const Eigen::Matrix3d& M) {
         all.upper[k] = lane == 0 ? box.upper[k] : std::max(all.upper[k], box.upper[k]);
       }
     }
-    for (std::size_t lane = from.child_count; lane < k_width; ++lane) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        to.center[k][lane] = to.center[k][0];
-        to.half[k][lane] = to.half[k][0];
-      }
-    }
+    for (std::size_t k = 0; k < 3; ++k) repeat_first(from.child_count, to.center[k], to.half[k]);
     bounds_[n] = all;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t lane = 0; lane < k_width; ++lane) {
-        to.normal[i][lane] =
-            m[i][0] * from.normal[0][lane] + m[i][1] * from.normal[1][lane] + m[i][2] * from.normal[2][lane];
-        to.ball_center[i][lane] = m[i][0] * from.ball_center[0][lane] + m[i][1] * from.ball_center[1][lane] +
-                                  m[i][2] * from.ball_center[2][lane];
+        to.normal[i][lane] = row_times(m[i], from.normal, lane);
+        to.ball_center[i][lane] = row_times(m[i], from.ball_center, lane);
       }
     }
     for (std::size_t lane = 0; lane < from.child_count; ++lane) volumes_[k_width * n + lane] = volume_of(to, lane);

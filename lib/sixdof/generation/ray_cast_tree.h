@@ -63,11 +63,11 @@ struct CastLeaf {
   Tree::Child child;
 };
 
-/// A slab in double precision: |normal . p - middle| <= half.
+/// |normal . p - middle| <= half
 struct CastSlab {
   Eigen::Vector3d normal;
-  double middle = 0.0;
-  double half = 0.0;
+  double middle;
+  double half;
 };
 
 /// Slabs and boxes of a node's children in double precision, [axis][lane], in the mesh's axes: |normal . p - middle|
@@ -78,10 +78,6 @@ struct alignas(64) PreciseVolumes {
   double half[Tree::k_width];
   double box_center[3][Tree::k_width];
   double box_half[3][Tree::k_width];
-
-  CastSlab slab(std::size_t lane) const {
-    return {{normal[0][lane], normal[1][lane], normal[2][lane]}, middle[lane], half[lane]};
-  }
 };
 
 /// What does not depend on the rotation. All coordinates are relative to the centre of the mesh's box. Immutable.
@@ -100,9 +96,7 @@ class CastMesh {
 };
 
 /// A mesh in the common frame: p -> M (p - centre), where M is a rotation or minus the identity. Its boxes are fitted
-/// to the transformed triangles, axis-aligned in the common frame.
-///
-/// Floats are off by a few roundings of the tree's radius; tests that use them allow for it.
+/// to the transformed triangles, axis-aligned in the common frame. Floats are off by a few roundings of the radius.
 class CastTree {
  public:
   explicit CastTree(std::shared_ptr<const CastMesh> mesh);
@@ -123,8 +117,10 @@ class CastTree {
 
   /// The slab of a child in double precision, in the common frame.
   CastSlab slab(std::size_t slot) const {
-    const CastSlab s = mesh_->precise_volumes()[slot / Tree::k_width].slab(slot % Tree::k_width);
-    return {matrix_ * s.normal, s.middle, s.half};
+    const PreciseVolumes& v = mesh_->precise_volumes()[slot / Tree::k_width];
+    const std::size_t lane = slot % Tree::k_width;
+    return {matrix_ * Eigen::Vector3d(v.normal[0][lane], v.normal[1][lane], v.normal[2][lane]), v.middle[lane],
+            v.half[lane]};
   }
 
   /// Triangle `t` in tree order, in double precision.

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <sixdof/base/run_options.h>
+#include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/generation_job.h>
-#include <sixdof/configuration/set_description.h>
 #include <sixdof/generation/distance_generator.h>
 #include <sixdof/geometry/mesh.h>
 

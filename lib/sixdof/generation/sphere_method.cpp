@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/query/require_distance.h>
+#include <sixdof/query/ask.h>
 
 namespace sixdof {
 namespace {
@@ -19,7 +19,7 @@ constexpr double k_converged = 1e-12;
 
 /// Measurements on one ray after which the oracle is taken not to be a distance function. Smooth cases need ten; a
 /// channel as narrow as the resolution needs one per resolution.
-constexpr int k_most_measurements = 2'000'000;
+constexpr std::uint64_t k_most_measurements = 2'000'000;
 
 struct Measurement {
   double s = 0.0;      ///< Translation.
@@ -27,18 +27,42 @@ struct Measurement {
   double slope = 0.0;  ///< df/ds of the closest pair of points; 0 if it is not known.
 };
 
-class RayMarch {
+class SphereMethodSolver final : public RaySolver {
  public:
-  RayMarch(Query& query, const std::string& algorithm, const ConfigurationRay& ray, double diagonal)
-      : query_(query), algorithm_(algorithm), ray_(ray), diagonal_(diagonal) {}
+  SphereMethodSolver(const Algorithm& algorithm, SphereMarch march, const Mesh& a, const Mesh& b)
+      : a_(a),
+        b_(b),
+        march_(march),
+        name_(algorithm.traits().name),
+        query_(algorithm.prepare(a, b, algorithm.settings())) {}
 
-  int measurements() const { return measurements_; }
+  void set_rotation(const Eigen::Vector4d& rotation) override { ray_ = ConfigurationRay(a_, b_, rotation); }
 
+  void solve(const Eigen::Vector3d& direction, std::span<const double> targets, std::span<double> translations,
+             std::span<double> residuals) override {
+    ray_.direction = direction;
+    of_ray_ = 0;
+    // Each mesh lies in the ball of half a diagonal about the centre of its box.
+    const double reach = 0.5 * (a_.diagonal() + b_.diagonal());
+    const bool conservative = march_ == SphereMarch::conservative;
+    Measurement outer;
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      if (conservative || k == 0) outer = measure(reach + targets[k]);
+      const bool hit = conservative ? advance_conservatively(targets[k], outer) : advance(targets[k], outer);
+      translations[k] = hit ? outer.s : std::numeric_limits<double>::quiet_NaN();
+      residuals[k] = hit ? std::abs(outer.f - targets[k]) : 0.0;
+    }
+    measurements_ += of_ray_;
+  }
+
+  std::uint64_t measurements() const override { return measurements_; }
+
+ private:
   Measurement measure(double s) {
-    if (++measurements_ > k_most_measurements) {
+    if (++of_ray_ > k_most_measurements) {
       throw Error(fmt::format("no end after {} measurements of the distance", k_most_measurements));
     }
-    const Separation d = require_distance(query_, algorithm_, ray_.pose(s));
+    const Separation d = require_distance(*query_, name_, ray_.pose(s));
     Measurement measured{.s = s, .f = d.distance};
     if (d.has_witnesses && d.distance > 0.0) {
       measured.slope = (d.witness_b - d.witness_a).dot(ray_.direction) / d.distance;
@@ -79,8 +103,8 @@ class RayMarch {
   }
 
  private:
-  double converged() const { return k_converged * diagonal_; }
-  double resolution() const { return k_first_hit_resolution * diagonal_; }
+  double converged() const { return k_converged * a_.diagonal(); }
+  double resolution() const { return k_first_hit_resolution * a_.diagonal(); }
 
   /// Length of the next step inwards: a Newton step, but no longer than can be certified if the distance at its end is
   /// the target.
@@ -140,7 +164,7 @@ class RayMarch {
   /// The better one of two measurements at neighbouring doubles of s.
   Measurement best(const Measurement& inner, const Measurement& outer, double target) const {
     const Measurement& chosen = std::abs(inner.f - target) < std::abs(outer.f - target) ? inner : outer;
-    if (std::abs(chosen.f - target) > k_distance_tolerance * diagonal_) throw_jump(target, chosen);
+    if (std::abs(chosen.f - target) > k_distance_tolerance * a_.diagonal()) throw_jump(target, chosen);
     return chosen;
   }
 
@@ -149,51 +173,13 @@ class RayMarch {
         fmt::format("the oracle's distance jumps: {} at s = {}, past the target {}", measured.f, measured.s, target));
   }
 
-  Query& query_;
-  const std::string& algorithm_;
-  const ConfigurationRay& ray_;
-  const double diagonal_;
-  int measurements_ = 0;
-};
-
-class SphereMethodSolver final : public RaySolver {
- public:
-  SphereMethodSolver(const Algorithm& algorithm, SphereMarch march, const Mesh& a, const Mesh& b)
-      : a_(a),
-        b_(b),
-        march_(march),
-        name_(algorithm.traits().name),
-        query_(algorithm.prepare(a, b, algorithm.settings())) {}
-
-  void set_rotation(const Eigen::Vector4d& rotation) override { ray_ = ConfigurationRay(a_, b_, rotation); }
-
-  void solve(const Eigen::Vector3d& direction, std::span<const double> targets, std::span<double> translations,
-             std::span<double> residuals) override {
-    ray_.direction = direction;
-    RayMarch march(*query_, name_, ray_, a_.diagonal());
-    // Each mesh lies in the ball of half a diagonal about the centre of its box.
-    const double reach = 0.5 * (a_.diagonal() + b_.diagonal());
-    const bool conservative = march_ == SphereMarch::conservative;
-    Measurement outer;
-    for (std::size_t k = 0; k < targets.size(); ++k) {
-      if (conservative || k == 0) outer = march.measure(reach + targets[k]);
-      const bool hit =
-          conservative ? march.advance_conservatively(targets[k], outer) : march.advance(targets[k], outer);
-      translations[k] = hit ? outer.s : std::numeric_limits<double>::quiet_NaN();
-      residuals[k] = hit ? std::abs(outer.f - targets[k]) : 0.0;
-    }
-    measurements_ += static_cast<std::uint64_t>(march.measurements());
-  }
-
-  std::uint64_t measurements() const override { return measurements_; }
-
- private:
   const Mesh& a_;
   const Mesh& b_;
   const SphereMarch march_;
   const std::string& name_;
   std::unique_ptr<Query> query_;
   ConfigurationRay ray_;
+  std::uint64_t of_ray_ = 0;  ///< Measurements.
   std::uint64_t measurements_ = 0;
 };
 

@@ -8,119 +8,61 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/generation/overlap_bound.h>
+#include <sixdof/generation/overlap_bounds.h>
 #include <sixdof/generation/overlap_march.h>
-#include <sixdof/generation/rotation_sweep.h>
-#include <sixdof/generation/slope_bounds.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/candidates.h>
 #include <sixdof/oracle/overlap.h>
 #include <sixdof/oracle/solid.h>
-#include <sixdof/oracle/swept_candidates.h>
 
 namespace sixdof {
 namespace {
 
-const Mesh& solid_mesh(const Mesh& mesh) {
-  if (mesh.solid()) return mesh;
-  throw BadMesh(fmt::format("{}: an overlap volume needs a solid: {}", mesh.name(), mesh.why_not_solid()));
-}
-
-}  // namespace
-
 /// The part of a prepared pair that all threads use.
-struct detail::VolumePair {
-  VolumePair(const Mesh& mesh_a, const Mesh& mesh_b)
-      : a(solid_mesh(mesh_a)), b(solid_mesh(mesh_b)), tree_a(a), solid_a(a, tree_a), areas_a(area_vectors(tree_a)) {
-    if (a.hash() == b.hash()) return;
-    tree_b.emplace(b);
-    solid_b.emplace(b, *tree_b);
-    areas_b = area_vectors(*tree_b);
-  }
+struct VolumePair {
+  struct Body {
+    explicit Body(const Mesh& mesh) : tree(checked(mesh)), solid(mesh, tree), areas(area_vectors(tree)) {}
 
-  const Tree& tree_of_b() const { return tree_b ? *tree_b : tree_a; }
-  const Solid& solid_of_b() const { return solid_b ? *solid_b : solid_a; }
-  std::span<const Eigen::Vector3d> areas_of_b() const { return tree_b ? areas_b : areas_a; }
+    static const Mesh& checked(const Mesh& mesh) {
+      if (mesh.solid()) return mesh;
+      throw BadMesh(fmt::format("{}: an overlap volume needs a solid: {}", mesh.name(), mesh.why_not_solid()));
+    }
 
-  const Mesh& a;
-  const Mesh& b;
-  Tree tree_a;
-  Solid solid_a;
-  std::vector<Eigen::Vector3d> areas_a;
-  // Empty for two copies of one mesh.
-  std::optional<Tree> tree_b;
-  std::optional<Solid> solid_b;
-  std::vector<Eigen::Vector3d> areas_b;
-};
+    Tree tree;
+    Solid solid;
+    std::vector<Eigen::Vector3d> areas;
+  };
 
-namespace {
+  VolumePair(const Mesh& a, const Mesh& b)
+      : mesh_a(a),
+        mesh_b(b),
+        body_a(std::make_shared<const Body>(a)),
+        body_b(a.hash() == b.hash() ? body_a : std::make_shared<const Body>(b)) {}
 
-using detail::VolumePair;
-
-/// The overlap along one ray. Pairs of triangles that may intersect are collected once for many measurements.
-class OverlapRay {
- public:
-  explicit OverlapRay(const VolumePair& pair)
-      : pair_(pair),
-        query_(pair.solid_a, pair.solid_of_b()),
-        bounds_(pair.tree_a.corners().size(), pair.tree_of_b().corners().size()) {}
-
-  void set(const ConfigurationRay& ray) {
-    ray_ = ray;
-    outer_ = inner_ = -1.0;  // Nothing is collected.
-  }
-
-  OverlapMeasurement measure(double s, double outer) {
-    if (s < inner_ || s > outer_) collect(std::max(0.0, s - k_margin * (outer - s)), outer);
-    select_candidates(swept_, fraction(s), pairs_);
-    const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a, pairs_);
-    return {.s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray_.direction)};
-  }
-
-  VolumePeak peak(const OverlapMeasurement& outer, const OverlapMeasurement& inner) {
-    if (inner.s < inner_ || outer.s > outer_) collect(inner.s, outer.s);
-    const auto ranges =
-        bounds_.bound(swept_, pair_.areas_a, pair_.areas_of_b(), ray_.direction, ray_.R.transpose() * ray_.direction,
-                      fraction(outer.s), fraction(inner.s), outer.slope, inner.slope);
-    return volume_peak(outer, inner, ranges);
-  }
-
- private:
-  /// Candidates are collected this much farther inwards than a measurement needs, for the next ones. A fraction of the
-  /// displacement to it.
-  static constexpr double k_margin = 0.03;
-
-  void collect(double inner, double outer) {
-    inner_ = inner;
-    outer_ = outer;
-    find_swept_candidates(pair_.tree_a, pair_.tree_of_b(), ray_.pose(outer), (inner - outer) * ray_.direction, swept_);
-  }
-  double fraction(double s) const { return outer_ > inner_ ? (outer_ - s) / (outer_ - inner_) : 0.0; }
-
-  const VolumePair& pair_;
-  OverlapQuery query_;
-  SlopeBounds bounds_;
-  ConfigurationRay ray_;
-  double outer_ = -1.0, inner_ = -1.0;  ///< Candidates are collected between these translations.
-  SweptCandidates swept_;
-  std::vector<TrianglePair> pairs_;
+  const Mesh& mesh_a;
+  const Mesh& mesh_b;
+  std::shared_ptr<const Body> body_a, body_b;  // one for two copies of one mesh
 };
 
 class VolumeSolver final : public RaySolver {
  public:
-  VolumeSolver(const VolumePair& pair, std::unique_ptr<RaySolver> touching)
-      : pair_(pair),
+  VolumeSolver(std::shared_ptr<const VolumePair> pair, std::unique_ptr<RaySolver> touching)
+      : shared_(std::move(pair)),
+        pair_(*shared_),
         touching_(std::move(touching)),
-        overlap_(pair),
-        touching_target_(distance_bucket(pair.a, 0).target) {}
+        touching_target_(distance_bucket(pair_.mesh_a, 0).target),
+        query_(pair_.body_a->solid, pair_.body_b->solid),
+        bounds_(pair_.body_a->areas, pair_.body_b->areas) {}
 
   void set_rotation(const Eigen::Vector4d& rotation) override {
-    ray_ = ConfigurationRay(pair_.a, pair_.b, rotation);
+    ray_ = ConfigurationRay(pair_.mesh_a, pair_.mesh_b, rotation);
     touching_->set_rotation(rotation);
-    first_step_ = k_first_step * std::min(pair_.a.diagonal(), pair_.b.diagonal());
+    first_step_ = k_first_step * std::min(pair_.mesh_a.diagonal(), pair_.mesh_b.diagonal());
     // The boxes exclude volumes for all directions. The margin covers the rounding of R.
-    constexpr double k_margin = 1.0 + 1e-9;
-    const double bound = overlap_upper_bound(pair_.a.box().sizes(), pair_.b.box().sizes(), ray_.R);
-    most_ = std::min({pair_.a.volume(), pair_.b.volume(), k_margin * bound + k_volume_tolerance * pair_.a.volume()});
+    constexpr double k_above_rounding = 1.0 + 1e-9;
+    const double bound = overlap_upper_bound(pair_.mesh_a.box().sizes(), pair_.mesh_b.box().sizes(), ray_.R);
+    most_ = std::min({pair_.mesh_a.volume(), pair_.mesh_b.volume(),
+                      k_above_rounding * bound + k_volume_tolerance * pair_.mesh_a.volume()});
   }
 
   void solve(const Eigen::Vector3d& direction, std::span<const double> targets, std::span<double> translations,
@@ -135,13 +77,12 @@ class VolumeSolver final : public RaySolver {
     for (; k < targets.size() && targets[k] == 0.0; ++k) translations[k] = contact;
     if (k == targets.size() || targets[k] > most_) return;
 
-    overlap_.set(ray_);
+    outer_ = inner_ = -1.0;  // nothing is collected
     OverlapMarch march(
-        [&](double s, double outer) { return overlap_.measure(s, outer); },
-        [&](const OverlapMeasurement& outer, const OverlapMeasurement& inner) { return overlap_.peak(outer, inner); },
-        contact,
-        {.resolution = k_first_overlap_resolution * std::min(pair_.a.diagonal(), pair_.b.diagonal()),
-         .tolerance = k_volume_tolerance * pair_.a.volume(),
+        [&](double s, double outer) { return measure(s, outer); },
+        [&](const OverlapMeasurement& outer, const OverlapMeasurement& inner) { return peak(outer, inner); }, contact,
+        {.resolution = k_first_overlap_resolution * std::min(pair_.mesh_a.diagonal(), pair_.mesh_b.diagonal()),
+         .tolerance = k_volume_tolerance * pair_.mesh_a.volume(),
          .first_step = first_step_});
     const std::size_t first = k;
     for (; k < targets.size() && targets[k] <= most_; ++k) {
@@ -157,29 +98,58 @@ class VolumeSolver final : public RaySolver {
   std::uint64_t measurements() const override { return measurements_; }
 
  private:
+  OverlapMeasurement measure(double s, double outer) {
+    if (s < inner_ || s > outer_) collect(std::max(0.0, s - k_margin * (outer - s)), outer);
+    select_candidates(swept_, fraction(s), pairs_);
+    const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a, pairs_);
+    return {.s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray_.direction)};
+  }
+
+  VolumePeak peak(const OverlapMeasurement& outer, const OverlapMeasurement& inner) {
+    if (inner.s < inner_ || outer.s > outer_) collect(inner.s, outer.s);
+    const auto ranges = bounds_.bound(swept_, ray_.direction, ray_.R.transpose() * ray_.direction, fraction(outer.s),
+                                      fraction(inner.s), outer.slope, inner.slope);
+    return volume_peak(outer, inner, ranges);
+  }
+
+  /// Candidates are collected this much farther inwards than a measurement needs, for the next ones. A fraction of the
+  /// displacement to it.
+  static constexpr double k_margin = 0.03;
+
+  void collect(double inner, double outer) {
+    inner_ = inner;
+    outer_ = outer;
+    find_swept_candidates(pair_.body_a->tree, pair_.body_b->tree, ray_.pose(outer), (inner - outer) * ray_.direction,
+                          swept_);
+  }
+  double fraction(double s) const { return outer_ > inner_ ? (outer_ - s) / (outer_ - inner_) : 0.0; }
+
   /// Displacement from contact to the first measurement in a rotation's first direction, in units of the smaller box's
   /// diagonal. Other directions take the displacement at which the direction before met its first target.
   static constexpr double k_first_step = 0.02;
 
+  const std::shared_ptr<const VolumePair> shared_;
   const VolumePair& pair_;
   std::unique_ptr<RaySolver> touching_;
-  OverlapRay overlap_;
   double touching_target_;
   ConfigurationRay ray_;
   double first_step_ = 0.0;
   double most_ = 0.0;  ///< Upper bound on the overlap in this rotation.
   std::uint64_t measurements_ = 0;
+  OverlapQuery query_;
+  SlopeBounds bounds_;
+  double outer_ = -1.0, inner_ = -1.0;  ///< Candidates are collected between these translations of the ray.
+  SweptCandidates swept_;
+  std::vector<TrianglePair> pairs_;
 };
 
 }  // namespace
 
-VolumeGenerator::VolumeGenerator(const DistanceGenerator& touching, const Mesh& a, const Mesh& b)
-    : touching_(touching), pair_(std::make_unique<const VolumePair>(a, b)) {}
-
-VolumeGenerator::~VolumeGenerator() = default;
-
-std::unique_ptr<RaySolver> VolumeGenerator::prepare() const {
-  return std::make_unique<VolumeSolver>(*pair_, touching_.prepare(pair_->a, pair_->b));
+std::function<std::unique_ptr<RaySolver>()> volume_solvers(const DistanceGenerator& touching, const Mesh& a,
+                                                           const Mesh& b) {
+  return [&touching, pair = std::make_shared<const VolumePair>(a, b)] {
+    return std::make_unique<VolumeSolver>(pair, touching.prepare(pair->mesh_a, pair->mesh_b));
+  };
 }
 
 Generated generate_volumes(const DistanceGenerator& touching, const Mesh& a, const Mesh& b, const Grid& grid,
@@ -193,8 +163,7 @@ Generated generate_volumes(const DistanceGenerator& touching, const Mesh& a, con
     summary.oracle_version = contact ? touching.oracle_version() : SIXDOF_VERSION;
     summaries.push_back(std::move(summary));
   }
-  const VolumeGenerator generator(touching, a, b);
-  return detail::sweep_rotations([&] { return generator.prepare(); }, grid, summaries, run, rotations);
+  return detail::sweep_rotations(volume_solvers(touching, a, b), grid, summaries, run, rotations);
 }
 
 }  // namespace sixdof

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
-#include <string>
 
 #include <sixdof/base/run_options.h>
 #include <sixdof/generation/distance_generator.h>
@@ -11,45 +11,29 @@
 
 namespace sixdof {
 
-namespace detail {
-struct VolumePair;
-}
-
 /// Finds the translations at which B, moving from outside towards A, overlaps A by given volumes for the first time.
 ///
-/// The volume V need not grow monotonically inwards. The search measures V where the last measurements predict the
-/// target and brackets it (overlap_march.h); the oracle's exact derivative makes both cubic. Measurements farther
-/// inwards serve the next targets. A target counts as met only if no interval between measurements before it can
-/// contain an earlier hit: V is bounded there by the changes of slope that the triangles intersecting in it can cause
-/// (slope_bounds.h). Where the bounds do not suffice, the interval is divided, down to k_first_overlap_resolution.
+/// The search measures the volume V where the last measurements predict the target and brackets it (overlap_march.h);
+/// the oracle's exact derivative makes both cubic. V need not grow monotonically inwards. A target counts as met only
+/// if no interval between measurements before it can contain an earlier hit: V is bounded there by the changes of slope
+/// that the triangles intersecting in it can cause (overlap_bounds.h). Where the bounds do not suffice, the interval is
+/// divided, down to k_first_overlap_resolution.
 ///
-/// The triangles that may intersect are collected once for a displacement (swept_candidates.h) and serve all
-/// measurements and bounds in it. A ray takes about three measurements per target.
+/// The triangles that may intersect are collected once for a displacement (candidates.h) and serve all measurements and
+/// bounds in it. A ray takes about three measurements per target.
 ///
 /// Not found are hits that begin and end within the resolution, where the bounds allow them at all; and, in meshes that
 /// intersect themselves, longer ones.
 ///
-/// Results depend on the rotation and the directions since set_rotation() alone: the first measurement on a ray is as
-/// far from contact as the first target was met on the ray before. The bits are the same for every number of threads
-/// and on every instruction set.
-class VolumeGenerator {
- public:
-  /// @param touching finds where the surfaces meet first
-  /// Both meshes and `touching` outlive this object.
-  /// @throws BadMesh naming the mesh that is not a solid and why.
-  VolumeGenerator(const DistanceGenerator& touching, const Mesh& a, const Mesh& b);
-  ~VolumeGenerator();
-  VolumeGenerator(const VolumeGenerator&) = delete;
-  VolumeGenerator& operator=(const VolumeGenerator&) = delete;
-
-  /// A solver whose targets are volumes in the cube of the meshes' unit, ascending; 0 stands for contact, which is
-  /// distance bucket 0. Its measurements are those of the volume. May be called from several threads.
-  std::unique_ptr<RaySolver> prepare() const;
-
- private:
-  const DistanceGenerator& touching_;
-  std::unique_ptr<const detail::VolumePair> pair_;
-};
+/// The first measurement on a ray is as far from contact as the first target was met on the ray before. The bits are
+/// the same for every number of threads and on every instruction set.
+/// @param touching finds where the surfaces meet first
+/// @return makes a solver for these meshes; may be called from several threads. Both meshes and `touching` outlive it
+/// and the solvers. Targets are volumes in the cube of the meshes' unit, ascending; 0 stands for contact, which is
+/// distance bucket 0. Measurements are those of the volume.
+/// @throws BadMesh naming the mesh that is not a solid and why.
+std::function<std::unique_ptr<RaySolver>()> volume_solvers(const DistanceGenerator& touching, const Mesh& a,
+                                                           const Mesh& b);
 
 /// In units of the diagonal of the smaller mesh's box.
 constexpr double k_first_overlap_resolution = 2e-3;

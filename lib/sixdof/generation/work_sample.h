@@ -12,7 +12,6 @@
 #include <sixdof/generation/distance_generator.h>
 
 /// The cost of making a set, estimated from a seeded sample of its rays. All times are processor times in seconds.
-
 namespace sixdof {
 
 /// Neighbouring directions under one rotation, as a solver meets them when it makes a set.

@@ -1,5 +1,3 @@
-#include <sixdof/geometry/assimp_import.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <mutex>
@@ -16,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-#include <sixdof/geometry/bytes.h>
+#include <sixdof/geometry/load_formats.h>
 
 namespace sixdof::loading {
 namespace {
@@ -67,8 +65,8 @@ void check_gltf(const Source& source) {
   constexpr std::size_t k_header = 20;  // magic, version, size of the file, size and type of the JSON chunk
   constexpr int k_gltf_float = 5126;
   if (text.starts_with("glTF") && text.size() > k_header) {
-    if (load_little_endian<std::uint32_t>(text.data() + 8) != text.size()) source.fail("byte 8", "not the file's size");
-    text = text.substr(k_header, load_little_endian<std::uint32_t>(text.data() + 12));
+    if (load_bytes<std::uint32_t>(text.data() + 8) != text.size()) source.fail("byte 8", "not the file's size");
+    text = text.substr(k_header, load_bytes<std::uint32_t>(text.data() + 12));
   }
   const json document = json::parse(text);
   if (!document.at("asset").at("version").get<std::string>().starts_with("2.")) source.fail("version 2 is expected");
@@ -109,11 +107,11 @@ void hide_3ds_scene(Source& source, std::size_t begin, std::size_t end) {
   constexpr std::uint16_t k_file = 0x4D4D, k_editor = 0x3D3D, k_materials = 0xAFFF, k_key_framer = 0xB000;
   for (std::size_t at = begin; at < end;) {
     char* const chunk = source.bytes.data() + at;
-    const std::size_t length = end - at < k_header ? 0 : load_little_endian<std::uint32_t>(chunk + 2);
+    const std::size_t length = end - at < k_header ? 0 : load_bytes<std::uint32_t>(chunk + 2);
     if (length < k_header || length > end - at) {
       source.fail(fmt::format("byte {}", at), fmt::format("a chunk of {} bytes where {} are left", length, end - at));
     }
-    const auto id = load_little_endian<std::uint16_t>(chunk);
+    const auto id = load_bytes<std::uint16_t>(chunk);
     if (id == k_file || id == k_editor) hide_3ds_scene(source, at + k_header, at + length);
     if (id == k_materials || id == k_key_framer) chunk[0] = chunk[1] = '\xFF';
     at += length;
@@ -140,8 +138,7 @@ void add_mesh(const Source& source, const aiScene& scene, unsigned number, const
       v += first;
     }
     if (mirrored) std::reverse(corners.begin(), corners.end());
-    const PolygonShape shape = triangulate(corners, surface.vertices, surface.triangles);
-    if (shape != PolygonShape::simple) count_polygon(source, shape, place(), surface.repairs);
+    add_polygon(source, corners, place, surface);
   }
 }
 

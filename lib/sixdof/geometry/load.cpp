@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <new>
@@ -11,11 +13,25 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/geometry/assimp_import.h>
 #include <sixdof/geometry/load_formats.h>
+#include <sixdof/geometry/triangulate.h>
 
 namespace sixdof {
 namespace loading {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+/// A word for a message: printable and short.
+std::string shown(std::string_view word) {
+  constexpr std::size_t k_longest = 40;
+  std::string result;
+  for (const char c : word.substr(0, k_longest)) result += c >= ' ' && c <= '~' ? c : '?';
+  if (word.size() > k_longest) result += "...";
+  return result;
+}
+
+}  // namespace
 
 std::string lower_case_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -49,12 +65,101 @@ void count_repair(FileRepairs& repairs, const std::string& place) {
   if (repairs.count++ == 0) repairs.first_place = place;
 }
 
-void count_polygon(const Source& source, PolygonShape shape, const std::string& place, MeshRepairs& repairs) {
-  if (shape == PolygonShape::too_large) {
-    source.fail(place, fmt::format("a concave polygon of more than {} corners", k_most_corners_of_a_concave_polygon));
+void add_polygon(const Source& source, std::span<const std::uint32_t> corners,
+                 const std::function<std::string()>& place, Surface& surface) {
+  switch (triangulate(corners, surface.vertices, surface.triangles)) {
+    case PolygonShape::simple:
+      return;
+    case PolygonShape::not_flat:
+      return count_repair(surface.repairs.nonplanar_polygons, place());
+    case PolygonShape::crossing:
+      return count_repair(surface.repairs.crossing_polygons, place());
+    case PolygonShape::too_large:
+      source.fail(place(),
+                  fmt::format("a concave polygon of more than {} corners", k_most_corners_of_a_concave_polygon));
   }
-  if (shape == PolygonShape::crossing) count_repair(repairs.crossing_polygons, place);
-  if (shape == PolygonShape::not_flat) count_repair(repairs.nonplanar_polygons, place);
+}
+
+std::size_t text_begin(std::string_view bytes) {
+  constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
+  return bytes.starts_with(k_byte_order_mark) ? k_byte_order_mark.size() : 0;
+}
+
+TextLines::TextLines(const Source& source, Syntax syntax, std::size_t begin, std::size_t line)
+    : source_(source),
+      text_(source.bytes),
+      syntax_(syntax),
+      next_(std::max(begin, text_begin(source.bytes))),
+      line_(line),
+      next_line_(line) {}
+
+bool TextLines::next() {
+  words_.clear();
+  while (next_ < text_.size()) {
+    line_ = next_line_;
+    while (read_line()) {
+    }
+    if (!words_.empty()) return true;
+  }
+  line_ = next_line_;
+  return false;
+}
+
+/// Adds one line's words; true if the next line continues it.
+bool TextLines::read_line() {
+  const std::size_t newline = text_.find('\n', next_);
+  const bool ended = newline != std::string_view::npos;
+  std::string_view line = text_.substr(next_, (ended ? newline : text_.size()) - next_);
+  next_ = ended ? newline + 1 : text_.size();
+  ++next_line_;
+  if (syntax_.comment != '\0') line = line.substr(0, line.find(syntax_.comment));
+  while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+  const bool continues = syntax_.continuation && ended && !line.empty() && line.back() == '\\';
+  if (continues) line.remove_suffix(1);
+  for (std::size_t i = 0; i < line.size();) {
+    if (is_blank(line[i])) {
+      ++i;
+      continue;
+    }
+    const std::size_t begin = i;
+    while (i < line.size() && !is_blank(line[i])) ++i;
+    words_.push_back(line.substr(begin, i - begin));
+  }
+  if (!ended && !words_.empty() && syntax_.newline_at_end) {
+    fail("the last line is not ended by a line break; the file may be cut off");
+  }
+  return continues;
+}
+
+template <class T>
+T TextLines::parse(std::string_view word, const char* range, const char* kind) const {
+  // Text files may write a leading plus sign, which from_chars does not read.
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  T value{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error == std::errc::result_out_of_range) fail(fmt::format("'{}' is {}", shown(word), range));
+  if (error != std::errc() || end != word.data() + word.size()) {
+    fail(fmt::format("'{}' is not {}", shown(word), kind));
+  }
+  if (!std::isfinite(static_cast<double>(value))) fail(fmt::format("'{}' is not finite", shown(word)));
+  return value;
+}
+
+double TextLines::number(std::size_t i) const {
+  if (i >= words_.size()) fail(fmt::format("{} values where at least {} are needed", words_.size(), i + 1));
+  return parse<double>(words_[i], "outside the range of double precision", "a number");
+}
+
+std::int64_t TextLines::integer(std::string_view word) const {
+  return parse<std::int64_t>(word, "out of range", "an integer");
+}
+
+std::string TextLines::place() const { return fmt::format("line {}", line_); }
+
+void TextLines::fail(const std::string& cause) const { source_.fail(place(), cause); }
+
+void TextLines::expect_end() {
+  if (next()) fail(fmt::format("'{}' behind the last element", shown(words_[0])));
 }
 
 namespace {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <sixdof/geometry/load_formats.h>
-#include <sixdof/geometry/text_lines.h>
 
 namespace sixdof::loading {
 namespace {
@@ -26,13 +25,8 @@ std::uint32_t read_corner(const TextLines& lines, std::string_view word, std::si
   if (slash != std::string_view::npos) {
     const std::string_view rest = word.substr(slash + 1);
     const std::size_t second = rest.find('/');
-    const std::string_view texture = rest.substr(0, second);
-    if (second != std::string_view::npos) {
-      lines.integer(rest.substr(second + 1));
-      if (!texture.empty()) lines.integer(texture);
-    } else {
-      lines.integer(texture);
-    }
+    if (second != std::string_view::npos) lines.integer(rest.substr(second + 1));
+    if (second != 0) lines.integer(rest.substr(0, second));
   }
   return static_cast<std::uint32_t>(number > 0 ? number - 1 : count + number);
 }
@@ -58,8 +52,8 @@ Surface read_obj(const Source& source) {
       for (std::size_t i = 1; i < lines.size(); ++i) {
         corners.push_back(read_corner(lines, lines.words()[i], surface.vertices.size()));
       }
-      const PolygonShape shape = triangulate(corners, surface.vertices, surface.triangles);
-      if (shape != PolygonShape::simple) count_polygon(source, shape, lines.place(), surface.repairs);
+      add_polygon(
+          source, corners, [&] { return lines.place(); }, surface);
     } else if (std::find(k_ignored.begin(), k_ignored.end(), keyword) == k_ignored.end()) {
       count_repair(surface.repairs.skipped_statements, lines.place());
     }

@@ -1,26 +1,22 @@
 #include <fmt/format.h>
 
 #include <sixdof/geometry/load_formats.h>
-#include <sixdof/geometry/text_lines.h>
 
 namespace sixdof::loading {
 namespace {
 
 /// Reads the line of the keyword; the counts may follow on the same line.
-/// @param extras set if vertex lines hold more than a point.
-void read_keyword(TextLines& lines, bool& extras) {
+/// @return whether vertex lines may hold more than a point
+bool read_keyword(TextLines& lines) {
   if (!lines.next()) lines.fail("no data");
   const std::string_view keyword = lines.words()[0];
-  if (keyword == "OFF") {
-    extras = false;
-  } else if (keyword == "COFF" || keyword == "NOFF" || keyword == "CNOFF" || keyword == "STOFF") {
-    extras = true;
-  } else if (keyword.starts_with("OFF")) {
-    lines.fail("a blank or line break is missing behind the keyword OFF");
-  } else {
-    lines.fail("begins with none of OFF, COFF, NOFF, CNOFF, STOFF");
+  const bool extras = keyword == "COFF" || keyword == "NOFF" || keyword == "CNOFF" || keyword == "STOFF";
+  if (!extras && keyword != "OFF") {
+    lines.fail(keyword.starts_with("OFF") ? "a blank or line break is missing behind the keyword OFF"
+                                          : "begins with none of OFF, COFF, NOFF, CNOFF, STOFF");
   }
   if (lines.size() > 1 && lines.words()[1] == "BINARY") lines.fail("binary OFF is not supported");
+  return extras;
 }
 
 std::size_t read_count(const TextLines& lines, std::size_t word, const char* what, std::size_t least_bytes) {
@@ -35,8 +31,7 @@ std::size_t read_count(const TextLines& lines, std::size_t word, const char* wha
 
 Surface read_off(const Source& source) {
   TextLines lines(source, {.comment = '#'});
-  bool extras = false;
-  read_keyword(lines, extras);
+  const bool extras = read_keyword(lines);
   std::size_t first = 1;
   if (lines.size() == 1) {
     if (!lines.next()) lines.fail("the counts are missing");
@@ -67,18 +62,22 @@ Surface read_off(const Source& source) {
     if (!lines.next()) lines.fail(fmt::format("the file ends after {} of {} faces", i, face_count));
     const std::int64_t count = lines.integer(std::size_t{0});
     if (count < 3) lines.fail(fmt::format("face {} has {} corners", i, count));
-    if (static_cast<std::uint64_t>(count) > lines.size() - 1) {
-      lines.fail(fmt::format("face {} has {} corners, but {} indices", i, count, lines.size() - 1));
-    }
+    const auto last = static_cast<std::size_t>(count);
+    const std::size_t values = lines.size() - 1;
+    if (last > values) lines.fail(fmt::format("face {} has {} corners, but {} indices", i, count, values));
     corners.clear();
-    for (std::size_t k = 1; k <= static_cast<std::size_t>(count); ++k) corners.push_back(lines.index(k, vertex_count));
-    // A colour may follow: an index into a colour map, or 3 or 4 components.
-    if (lines.size() > static_cast<std::size_t>(count) + 5) {
-      lines.fail(fmt::format("face {} has {} corners, but {} values", i, count, lines.size() - 1));
+    for (std::size_t k = 1; k <= last; ++k) {
+      const std::int64_t v = lines.integer(k);
+      if (v < 0 || static_cast<std::uint64_t>(v) >= vertex_count) {
+        lines.fail(fmt::format("vertex index {} of {}", v, vertex_count));
+      }
+      corners.push_back(static_cast<std::uint32_t>(v));
     }
-    for (std::size_t k = static_cast<std::size_t>(count) + 1; k < lines.size(); ++k) lines.number(k);
-    const PolygonShape shape = triangulate(corners, surface.vertices, surface.triangles);
-    if (shape != PolygonShape::simple) count_polygon(source, shape, lines.place(), surface.repairs);
+    // A colour may follow: an index into a colour map, or 3 or 4 components.
+    if (values > last + 4) lines.fail(fmt::format("face {} has {} corners, but {} values", i, count, values));
+    for (std::size_t k = last + 1; k <= values; ++k) lines.number(k);
+    add_polygon(
+        source, corners, [&] { return lines.place(); }, surface);
   }
   lines.expect_end();
   return surface;

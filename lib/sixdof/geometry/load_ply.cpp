@@ -1,185 +1,134 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
-#include <memory>
+#include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
-#include <sixdof/geometry/bytes.h>
-#include <sixdof/geometry/load_ply_header.h>
-#include <sixdof/geometry/text_lines.h>
+#include <sixdof/geometry/load_formats.h>
 
 namespace sixdof::loading {
-namespace ply {
 namespace {
 
-/// The values of the elements in the file's order. A double holds integers of all types and floats exactly.
-class Values {
- public:
-  virtual ~Values() = default;
-  /// Called before the first value of element `number` of `element`.
-  virtual void begin(const Element& element, std::uint64_t number) = 0;
-  /// Called after the last value of an element.
-  virtual void end() = 0;
-  virtual double value(Type type) = 0;
-  /// Bytes that are left in the file.
-  virtual std::size_t remaining() const = 0;
-  /// The smallest number of bytes that a value takes in the file.
-  virtual std::size_t least_bytes(Type type) const = 0;
-  /// Throws a BadFile if the rest of the file, or of the line, is too short for a list of `count` values.
-  virtual void check_list(double count, Type type) const = 0;
-  virtual void expect_end() = 0;
-  /// Where in the file the current element is: "face 3", in a text "line 17: face 3".
-  virtual std::string place() const = 0;
-  [[noreturn]] void fail(const std::string& cause) const { source_.fail(place(), cause); }
-
- protected:
-  explicit Values(const Source& source) : source_(source) {}
-  const Source& source_;
+/// A type of number. A double holds the integers and floats of all types exactly.
+struct Type {
+  std::string_view name, other_name;
+  std::size_t bytes;  ///< In a binary file.
+  bool is_float;
+  double least, most;
+  double (*load)(const char* at, std::endian order);
 };
 
-class BinaryValues final : public Values {
- public:
-  BinaryValues(const Source& source, const Header& header)
-      : Values(source),
-        at_(header.end),
-        order_(header.format == Format::big_endian ? std::endian::big : std::endian::little) {}
-
-  void begin(const Element& element, std::uint64_t number) override {
-    element_ = &element;
-    number_ = number;
-  }
-  void end() override {}
-
-  double value(Type type) override {
-    switch (type) {
-      case Type::i8:
-        return load<std::int8_t>();
-      case Type::u8:
-        return load<std::uint8_t>();
-      case Type::i16:
-        return load<std::int16_t>();
-      case Type::u16:
-        return load<std::uint16_t>();
-      case Type::i32:
-        return load<std::int32_t>();
-      case Type::u32:
-        return load<std::uint32_t>();
-      case Type::f32:
-        return static_cast<double>(load<float>());
-      case Type::f64:
-        return load<double>();
-    }
-    fail("unknown type");
-  }
-
-  std::size_t remaining() const override { return source_.bytes.size() - at_; }
-  std::size_t least_bytes(Type type) const override { return size_of(type); }
-
-  void check_list(double count, Type type) const override {
-    if (count > static_cast<double>(remaining() / size_of(type))) {
-      fail(fmt::format("a list of {} values, but {} bytes are left", count, remaining()));
-    }
-  }
-
-  void expect_end() override {
-    if (remaining() != 0) source_.fail(fmt::format("{} bytes behind the last element", remaining()));
-  }
-
-  std::string place() const override { return fmt::format("{} {}", element_->name, number_); }
-
- private:
-  template <class T>
-  T load() {
-    if (remaining() < sizeof(T)) fail("the file ends here");
-    const T value = load_bytes<T>(source_.bytes.data() + at_, order_);
-    at_ += sizeof(T);
-    return value;
-  }
-
-  std::size_t at_;
-  std::endian order_;
-  const Element* element_ = nullptr;
-  std::uint64_t number_ = 0;
-};
-
-/// One element per line.
-class TextValues final : public Values {
- public:
-  TextValues(const Source& source, const Header& header)
-      : Values(source), lines_(source, {}, header.end, header.line) {}
-
-  void begin(const Element& element, std::uint64_t number) override {
-    if (!lines_.next()) {
-      lines_.fail(fmt::format("the file ends before {} {} of {}", element.name, number, element.count));
-    }
-    element_ = &element;
-    number_ = number;
-    word_ = 0;
-  }
-  void end() override {
-    if (word_ != lines_.size()) fail(fmt::format("{} values where {} are expected", lines_.size(), word_));
-  }
-
-  double value(Type type) override {
-    if (word_ >= lines_.size()) fail(fmt::format("{} values are too few", lines_.size()));
-    if (is_float(type)) return lines_.number(word_++);
-    const std::int64_t value = lines_.integer(word_++);
-    const auto bits = static_cast<int>(8 * size_of(type));
-    const bool is_signed = type == Type::i8 || type == Type::i16 || type == Type::i32;
-    const std::int64_t least = is_signed ? -(std::int64_t{1} << (bits - 1)) : 0;
-    const std::int64_t most = (std::int64_t{1} << (is_signed ? bits - 1 : bits)) - 1;
-    if (value < least || value > most) fail(fmt::format("{} does not fit its type", value));
-    return static_cast<double>(value);
-  }
-
-  std::size_t remaining() const override { return lines_.remaining(); }
-  std::size_t least_bytes(Type) const override { return sizeof("0\n") - 1; }
-  void check_list(double count, Type) const override {
-    if (count > static_cast<double>(lines_.size() - word_)) {
-      fail(fmt::format("a list of {} values, but {} follow", count, lines_.size() - word_));
-    }
-  }
-
-  void expect_end() override { lines_.expect_end(); }
-
-  std::string place() const override { return fmt::format("{}: {} {}", lines_.place(), element_->name, number_); }
-
- private:
-  TextLines lines_;
-  const Element* element_ = nullptr;
-  std::uint64_t number_ = 0;
-  std::size_t word_ = 0;
-};
-
-/// The count of a list, which is not negative and fits into what is left.
-std::size_t read_list_count(Values& values, const Property& list) {
-  const double count = values.value(*list.count_type);
-  if (count < 0.0) values.fail(fmt::format("a list of {} values", count));
-  values.check_list(count, list.type);
-  return static_cast<std::size_t>(count);
+template <class T>
+constexpr Type type_of(std::string_view name, std::string_view other_name) {
+  using Limits = std::numeric_limits<T>;
+  return {name,
+          other_name,
+          sizeof(T),
+          !Limits::is_integer,
+          static_cast<double>(Limits::lowest()),
+          static_cast<double>(Limits::max()),
+          [](const char* at, std::endian order) { return static_cast<double>(load_bytes<T>(at, order)); }};
 }
 
-void skip(Values& values, const Property& property) {
-  std::size_t count = 1;
-  if (property.count_type) count = read_list_count(values, property);
-  for (std::size_t i = 0; i < count; ++i) values.value(property.type);
+constexpr std::array k_types{
+    type_of<std::int8_t>("char", "int8"),    type_of<std::uint8_t>("uchar", "uint8"),
+    type_of<std::int16_t>("short", "int16"), type_of<std::uint16_t>("ushort", "uint16"),
+    type_of<std::int32_t>("int", "int32"),   type_of<std::uint32_t>("uint", "uint32"),
+    type_of<float>("float", "float32"),      type_of<double>("double", "float64"),
+};
+
+struct Property {
+  std::string name;
+  const Type& type;                  ///< Of the value, or of the list's items.
+  const Type* count_type = nullptr;  ///< Set if this is a list.
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count;
+  std::vector<Property> properties;
+};
+
+struct Header {
+  bool text = false;
+  std::endian order = std::endian::little;  ///< Of a binary file.
+  std::vector<Element> elements;
+  std::size_t end = 0;   ///< Byte behind the header.
+  std::size_t line = 1;  ///< Line of that byte, from 1.
+};
+
+Property read_property(const TextLines& lines) {
+  const auto& words = lines.words();
+  const bool list = words.size() == 5 && words[1] == "list";
+  if (!list && words.size() != 3) lines.fail("a property is 'property TYPE NAME' or 'property list TYPE TYPE NAME'");
+  const auto type = [&](std::string_view word) -> const Type& {
+    for (const Type& known : k_types) {
+      if (word == known.name || word == known.other_name) return known;
+    }
+    lines.fail(fmt::format("'{:.20}' is no type", word));
+  };
+  Property property{std::string(words.back()), type(words[words.size() - 2])};
+  if (list) {
+    property.count_type = &type(words[2]);
+    if (property.count_type->is_float) lines.fail("a list's count must be an integer");
+  }
+  return property;
 }
 
+Header read_header(const Source& source) {
+  const std::string_view text = std::string_view(source.bytes).substr(text_begin(source.bytes));
+  if (!text.starts_with("ply\n") && !text.starts_with("ply\r\n")) source.fail("line 1", "does not begin with 'ply'");
+  // Without this test the data of a binary file would be read as lines of the header.
+  if (source.bytes.find("\nend_header") == std::string::npos) source.fail("the header has no 'end_header'");
+  Header header;
+  bool has_format = false;
+  TextLines lines(source, {});
+  lines.next();
+  while (true) {
+    if (!lines.next()) lines.fail("the header has no 'end_header'");
+    const auto& words = lines.words();
+    if (words[0] == "end_header") break;
+    if (words[0] == "comment" || words[0] == "obj_info") continue;
+    if (words[0] == "format") {
+      if (words.size() != 3 || words[2] != "1.0") lines.fail("version 1.0 is expected");
+      header.text = words[1] == "ascii";
+      header.order = words[1] == "binary_big_endian" ? std::endian::big : std::endian::little;
+      if (!header.text && words[1] != "binary_little_endian" && words[1] != "binary_big_endian") {
+        lines.fail(fmt::format("'{:.30}' is no format", words[1]));
+      }
+      has_format = true;
+    } else if (words[0] == "element") {
+      if (words.size() != 3) lines.fail("an element is 'element NAME COUNT'");
+      const std::int64_t count = lines.integer(std::size_t{2});
+      if (count < 0) lines.fail(fmt::format("the count {} is negative", count));
+      header.elements.push_back({std::string(words[1]), static_cast<std::uint64_t>(count), {}});
+    } else if (words[0] == "property") {
+      if (header.elements.empty()) lines.fail("a property before the first element");
+      header.elements.back().properties.push_back(read_property(lines));
+    } else {
+      lines.fail(fmt::format("'{:.20}' is unknown in a header", words[0]));
+    }
+  }
+  if (!has_format) lines.fail("the header names no format");
+  header.end = lines.position();
+  header.line = lines.line() + 1;
+  return header;
+}
+
+/// Reads the elements in the file's order. In a text, each is one line.
 class Reader {
  public:
-  Reader(const Source& source, const Header& header) : source_(source), header_(header) {
-    if (header.format == Format::text) {
-      values_ = std::make_unique<TextValues>(source, header);
-    } else {
-      values_ = std::make_unique<BinaryValues>(source, header);
-    }
+  Reader(const Source& source, const Header& header) : source_(source), at_(header.end), order_(header.order) {
+    if (header.text) lines_.emplace(source, TextLines::Syntax{}, header.end, header.line);
   }
 
-  Surface read() {
+  Surface read(const std::vector<Element>& elements) {
     bool has_vertices = false;
     bool has_faces = false;
-    for (const Element& element : header_.elements) {
+    for (const Element& element : elements) {
       check_count(element);
       if (element.name == "vertex") {
         if (has_vertices) source_.fail("element vertex appears twice");
@@ -192,68 +141,120 @@ class Reader {
       } else if (element.name == "tristrips") {
         source_.fail("triangle strips are not supported");
       } else {
-        for (std::uint64_t i = 0; i < element.count; ++i) {
-          values_->begin(element, i);
-          for (const Property& property : element.properties) skip(*values_, property);
-          values_->end();
-        }
+        for_each(element, [&] {
+          for (const Property& property : element.properties) skip(property);
+        });
       }
     }
     if (!has_vertices) source_.fail("the header has no element vertex");
     if (!has_faces) source_.fail("the header has no element face");
-    values_->expect_end();
+    if (lines_) lines_->expect_end();
+    if (remaining() != 0) source_.fail(fmt::format("{} bytes behind the last element", remaining()));
     return std::move(surface_);
   }
 
  private:
+  /// Bytes that are left in the file.
+  std::size_t remaining() const { return lines_ ? lines_->remaining() : source_.bytes.size() - at_; }
+
+  /// Where in the file the current element is: "face 3", in a text "line 17: face 3".
+  std::string place() const {
+    return fmt::format("{}{} {}", lines_ ? lines_->place() + ": " : "", element_->name, number_);
+  }
+
+  [[noreturn]] void fail(const std::string& cause) const { source_.fail(place(), cause); }
+
   /// Before anything is allocated for it: the count must fit into the bytes that are left.
   void check_count(const Element& element) {
     std::size_t least = 0;
-    for (const Property& p : element.properties) least += values_->least_bytes(p.count_type.value_or(p.type));
+    for (const Property& p : element.properties) {
+      least += lines_ ? sizeof("0\n") - 1 : (p.count_type != nullptr ? *p.count_type : p.type).bytes;
+    }
     if (least == 0) source_.fail("element " + element.name, "has no properties");
-    if (element.count > values_->remaining() / least) {
+    if (element.count > remaining() / least) {
       source_.fail("element " + element.name, fmt::format("{} of at least {} bytes each do not fit into the {} bytes "
                                                           "that are left",
-                                                          element.count, least, values_->remaining()));
+                                                          element.count, least, remaining()));
     }
   }
 
-  void read_vertices(const Element& element) {
-    constexpr std::string_view k_axes[] = {"x", "y", "z"};
-    std::vector<int> axis_of;
-    int found = 0;
-    for (const Property& property : element.properties) {
-      int axis = -1;
-      for (int k = 0; k < 3; ++k) {
-        if (property.name == k_axes[k]) axis = k;
+  /// read() for each element, which reads all of its values.
+  template <class Read>
+  void for_each(const Element& element, const Read& read) {
+    element_ = &element;
+    for (number_ = 0; number_ < element.count; ++number_) {
+      if (lines_ && !lines_->next()) {
+        lines_->fail(fmt::format("the file ends before {} {} of {}", element.name, number_, element.count));
       }
-      if (axis >= 0) {
-        if (property.count_type) source_.fail("element vertex", "property " + property.name + " is a list");
-        if (std::find(axis_of.begin(), axis_of.end(), axis) != axis_of.end()) {
-          source_.fail("element vertex", "property " + property.name + " appears twice");
-        }
-        ++found;
+      word_ = 0;
+      read();
+      if (lines_ && word_ != lines_->size()) {
+        fail(fmt::format("{} values where {} are expected", lines_->size(), word_));
+      }
+    }
+  }
+
+  double value(const Type& type) {
+    if (!lines_) {
+      if (remaining() < type.bytes) fail("the file ends here");
+      at_ += type.bytes;
+      return type.load(source_.bytes.data() + at_ - type.bytes, order_);
+    }
+    if (word_ >= lines_->size()) fail(fmt::format("{} values are too few", lines_->size()));
+    if (type.is_float) return lines_->number(word_++);
+    const std::int64_t integer = lines_->integer(word_++);
+    const auto result = static_cast<double>(integer);
+    if (result < type.least || result > type.most) fail(fmt::format("{} does not fit its type", integer));
+    return result;
+  }
+
+  /// The count of a list, which is not negative and fits into what is left of the file, or of the line.
+  std::size_t list_count(const Property& list) {
+    const double count = value(*list.count_type);
+    if (count < 0.0) fail(fmt::format("a list of {} values", count));
+    const std::size_t left = lines_ ? lines_->size() - word_ : remaining() / list.type.bytes;
+    if (count > static_cast<double>(left)) {
+      fail(fmt::format("a list of {} values, but {}", count,
+                       lines_ ? fmt::format("{} follow", left) : fmt::format("{} bytes are left", remaining())));
+    }
+    return static_cast<std::size_t>(count);
+  }
+
+  void skip(const Property& property) {
+    const std::size_t count = property.count_type != nullptr ? list_count(property) : 1;
+    for (std::size_t i = 0; i < count; ++i) value(property.type);
+  }
+
+  void read_vertices(const Element& element) {
+    std::vector<int> axis_of;
+    for (const Property& property : element.properties) {
+      const int axis = property.name == "x" ? 0 : property.name == "y" ? 1 : property.name == "z" ? 2 : -1;
+      if (axis >= 0 && property.count_type != nullptr) {
+        source_.fail("element vertex", "property " + property.name + " is a list");
+      }
+      if (axis >= 0 && std::find(axis_of.begin(), axis_of.end(), axis) != axis_of.end()) {
+        source_.fail("element vertex", "property " + property.name + " appears twice");
       }
       axis_of.push_back(axis);
     }
-    if (found != 3) source_.fail("element vertex", "has no properties x, y and z");
+    if (std::count_if(axis_of.begin(), axis_of.end(), [](int axis) { return axis >= 0; }) != 3) {
+      source_.fail("element vertex", "has no properties x, y and z");
+    }
     surface_.vertices.reserve(element.count);
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      values_->begin(element, i);
+    for_each(element, [&] {
       Eigen::Vector3d point;
       for (std::size_t k = 0; k < axis_of.size(); ++k) {
         if (axis_of[k] >= 0) {
-          point[axis_of[k]] = values_->value(element.properties[k].type);
+          point[axis_of[k]] = value(element.properties[k].type);
         } else {
-          skip(*values_, element.properties[k]);
+          skip(element.properties[k]);
         }
       }
       if (!point.allFinite()) {
-        values_->fail(fmt::format("coordinates ({}, {}, {}) are not finite", point.x(), point.y(), point.z()));
+        fail(fmt::format("coordinates ({}, {}, {}) are not finite", point.x(), point.y(), point.z()));
       }
-      values_->end();
       surface_.vertices.push_back(point);
-    }
+    });
   }
 
   void read_faces(const Element& element) {
@@ -264,51 +265,52 @@ class Reader {
         indices = &property;
       }
     }
-    if (indices == nullptr || !indices->count_type || is_float(indices->type)) {
+    if (indices == nullptr || indices->count_type == nullptr || indices->type.is_float) {
       source_.fail("element face", "has no list of integers called vertex_indices");
     }
     surface_.triangles.reserve(element.count);
     std::vector<std::uint32_t> corners;
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      values_->begin(element, i);
+    for_each(element, [&] {
       for (const Property& property : element.properties) {
         if (&property == indices) {
           read_corners(property, corners);
         } else {
-          skip(*values_, property);
+          skip(property);
         }
       }
-      values_->end();
-      const PolygonShape shape = triangulate(corners, surface_.vertices, surface_.triangles);
-      if (shape != PolygonShape::simple) count_polygon(source_, shape, values_->place(), surface_.repairs);
-    }
+      add_polygon(
+          source_, corners, [&] { return place(); }, surface_);
+    });
   }
 
   void read_corners(const Property& list, std::vector<std::uint32_t>& corners) {
-    const std::size_t count = read_list_count(*values_, list);
-    if (count < 3) values_->fail(fmt::format("has {} corners", count));
+    const std::size_t count = list_count(list);
+    if (count < 3) fail(fmt::format("has {} corners", count));
     corners.clear();
     for (std::size_t i = 0; i < count; ++i) {
-      const double index = values_->value(list.type);
+      const double index = value(list.type);
       if (index < 0.0 || index >= static_cast<double>(surface_.vertices.size())) {
-        values_->fail(fmt::format("vertex index {} of {}", index, surface_.vertices.size()));
+        fail(fmt::format("vertex index {} of {}", index, surface_.vertices.size()));
       }
       corners.push_back(static_cast<std::uint32_t>(index));
     }
   }
 
   const Source& source_;
-  const Header& header_;
-  std::unique_ptr<Values> values_;
+  std::size_t at_;     ///< Next byte of a binary file.
+  std::endian order_;  ///< Of a binary file.
+  std::optional<TextLines> lines_;
+  std::size_t word_ = 0;  ///< Next word of the line.
+  const Element* element_ = nullptr;
+  std::uint64_t number_ = 0;  ///< Of the element.
   Surface surface_;
 };
 
 }  // namespace
-}  // namespace ply
 
 Surface read_ply(const Source& source) {
-  const ply::Header header = ply::read_header(source);
-  return ply::Reader(source, header).read();
+  const Header header = read_header(source);
+  return Reader(source, header).read(header.elements);
 }
 
 }  // namespace sixdof::loading

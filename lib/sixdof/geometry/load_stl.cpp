@@ -2,10 +2,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <sixdof/geometry/bytes.h>
 #include <sixdof/geometry/load_formats.h>
-#include <sixdof/geometry/text_lines.h>
 
 namespace sixdof::loading {
 namespace {
@@ -29,7 +28,7 @@ Surface read_binary(const Source& source, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i, at += k_triangle_bytes) {
     Eigen::Vector3d corners[3];
     for (std::size_t k = 0; k < 9; ++k) {
-      const double value = load_little_endian<float>(at + k_normal_bytes + 4 * k);
+      const double value = load_bytes<float>(at + k_normal_bytes + 4 * k);
       if (!std::isfinite(value)) source.fail(fmt::format("triangle {}", i), "a coordinate is not finite");
       corners[k / 3][static_cast<Eigen::Index>(k % 3)] = value;
     }
@@ -43,12 +42,11 @@ bool is_word(std::string_view word, std::string_view lower_case) {
          std::equal(word.begin(), word.end(), lower_case.begin(), [](char c, char l) { return (c | 0x20) == l; });
 }
 
-void expect_words(const TextLines& lines, std::initializer_list<std::string_view> expected, std::size_t numbers) {
-  std::string text;
-  for (const std::string_view word : expected) text += std::string(text.empty() ? "" : " ") + std::string(word);
-  bool matches = lines.size() == expected.size() + numbers;
-  for (std::size_t i = 0; matches && i < expected.size(); ++i) matches = is_word(lines.words()[i], expected.begin()[i]);
-  if (!matches) lines.fail(fmt::format("'{}' with {} numbers is expected", text, numbers));
+/// Whether the line is these words and as many numbers.
+bool is_line(const TextLines& lines, std::initializer_list<std::string_view> words, std::size_t numbers) {
+  return lines.size() == words.size() + numbers &&
+         std::equal(words.begin(), words.end(), lines.words().begin(),
+                    [](std::string_view expected, std::string_view word) { return is_word(word, expected); });
 }
 
 Surface read_text(const Source& source) {
@@ -58,27 +56,28 @@ Surface read_text(const Source& source) {
   const auto advance = [&] {
     if (!lines.next()) lines.fail("the file ends within a solid");
   };
+  const auto expect = [&](std::initializer_list<std::string_view> words, std::size_t numbers) {
+    advance();
+    if (is_line(lines, words, numbers)) return;
+    lines.fail(fmt::format("'{}' with {} numbers is expected", fmt::join(words, " "), numbers));
+  };
   bool any = false;
   while (lines.next()) {
     if (!is_word(lines.words()[0], "solid")) lines.fail("'solid' is expected");
     any = true;
     for (advance(); !is_word(lines.words()[0], "endsolid"); advance()) {
       // Normals are often not numbers ("nan nan nan"); the order of the corners says which side is outside.
-      if (lines.size() != 5 || !is_word(lines.words()[0], "facet") || !is_word(lines.words()[1], "normal")) {
+      if (!is_line(lines, {"facet", "normal"}, 3)) {
         lines.fail("'facet normal' with 3 numbers, or 'endsolid', is expected");
       }
-      advance();
-      expect_words(lines, {"outer", "loop"}, 0);
+      expect({"outer", "loop"}, 0);
       Eigen::Vector3d corners[3];
       for (Eigen::Vector3d& corner : corners) {
-        advance();
-        expect_words(lines, {"vertex"}, 3);
+        expect({"vertex"}, 3);
         corner = lines.point(1);
       }
-      advance();
-      expect_words(lines, {"endloop"}, 0);
-      advance();
-      expect_words(lines, {"endfacet"}, 0);
+      expect({"endloop"}, 0);
+      expect({"endfacet"}, 0);
       add_triangle(surface, corners[0], corners[1], corners[2]);
     }
   }
@@ -94,7 +93,7 @@ Surface read_stl(const Source& source) {
   // right four bytes at the right place to be taken for binary, and its count would be above 500 million.
   std::size_t count = 0;
   if (bytes.size() >= k_header_bytes + k_count_bytes) {
-    count = load_little_endian<std::uint32_t>(bytes.data() + k_header_bytes);
+    count = load_bytes<std::uint32_t>(bytes.data() + k_header_bytes);
     if (bytes.size() == k_header_bytes + k_count_bytes + k_triangle_bytes * count) return read_binary(source, count);
   }
   const std::size_t first = bytes.find_first_not_of(" \t\r\n", text_begin(bytes));

@@ -1,10 +1,9 @@
 #include <sixdof/geometry/mesh.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <tuple>
+#include <string_view>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include <sixdof/base/compensated_sum.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/hash.h>
+#include <sixdof/geometry/sides.h>
 
 namespace sixdof {
 namespace {
@@ -40,28 +40,86 @@ void check_input(const std::vector<Eigen::Vector3d>& vertices, const std::vector
   }
 }
 
-struct VertexBits {
-  std::array<std::uint64_t, 3> bits;
-  explicit VertexBits(const Eigen::Vector3d& p) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      bits[i] = std::bit_cast<std::uint64_t>(p[static_cast<Eigen::Index>(i)]);
-    }
-  }
-  bool operator==(const VertexBits&) const = default;
-};
-
-struct VertexBitsHash {
-  std::size_t operator()(const VertexBits& v) const {
-    std::uint64_t h = 0x9E3779B97F4A7C15ull;
-    for (const std::uint64_t word : v.bits) {
-      h = (h ^ word) * 0xBF58476D1CE4E5B9ull;
-      h ^= h >> 29;
-    }
-    return h;
+struct BitsHash {
+  std::size_t operator()(const Eigen::Vector3d& p) const {
+    return std::hash<std::string_view>()({reinterpret_cast<const char*>(p.data()), sizeof(p)});
   }
 };
 
-/// Drops vertices that no triangle uses. @return their number
+/// The repairs of Mesh::build.
+void weld(std::vector<Eigen::Vector3d>& vertices, std::vector<Triangle>& triangles, MeshRepairs& repairs) {
+  repairs.unreferenced_vertices = drop_unreferenced(vertices, triangles);
+  std::unordered_map<Eigen::Vector3d, std::uint32_t, BitsHash> first;
+  first.reserve(vertices.size());
+  std::vector<std::uint32_t> first_equal(vertices.size());
+  repairs.welded_vertices = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i] += Eigen::Vector3d::Zero();  // -0 becomes +0
+    first_equal[i] = first.try_emplace(vertices[i], static_cast<std::uint32_t>(i)).first->second;
+    if (first_equal[i] != i) ++repairs.welded_vertices;
+  }
+  for (Triangle& t : triangles) {
+    for (std::uint32_t& v : t) v = first_equal[v];
+  }
+  repairs.collapsed_triangles =
+      std::erase_if(triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  if (triangles.empty()) throw BadMesh("every triangle collapses to an edge or a point");
+  triangles.shrink_to_fit();
+  // Now unreferenced: the welded vertices, and those whose triangles have all collapsed.
+  repairs.unreferenced_vertices += drop_unreferenced(vertices, triangles) - repairs.welded_vertices;
+}
+
+std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+
+/// Corners of a side at its lower and its higher vertex.
+std::uint32_t corner_at_low(const Side& s) { return s.forward ? s.corner : next_corner(s.corner); }
+std::uint32_t corner_at_high(const Side& s) { return s.forward ? next_corner(s.corner) : s.corner; }
+
+MeshTopology analyse_topology(std::size_t vertex_count, const std::vector<Triangle>& triangles) {
+  MeshTopology result;
+  UnionFind components(triangles.size());
+  UnionFind fans(3 * triangles.size());  // corners, joined across edges with two triangles
+  for_each_edge(sorted_sides(triangles), [&](std::span<const Side> sides) {
+    ++result.edges;
+    for (const Side& side : sides.subspan(1)) components.join(sides[0].triangle(), side.triangle());
+    const auto forward = std::count_if(sides.begin(), sides.end(), [](const Side& s) { return s.forward; });
+    if (sides.size() == 1) ++result.border_edges;
+    if (sides.size() > 2) ++result.nonmanifold_edges;
+    if (sides.size() > 1 && 2 * static_cast<std::size_t>(forward) != sides.size()) ++result.misoriented_edges;
+    if (sides.size() == 2) {
+      fans.join(corner_at_low(sides[0]), corner_at_low(sides[1]));
+      fans.join(corner_at_high(sides[0]), corner_at_high(sides[1]));
+    }
+  });
+  std::vector<std::uint32_t> fans_at_vertex(vertex_count, 0);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    if (components.find(t) == t) ++result.components;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (fans.find(3 * t + k) == 3 * t + k) ++fans_at_vertex[triangles[t][k]];
+    }
+  }
+  result.nonmanifold_vertices = static_cast<std::size_t>(
+      std::count_if(fans_at_vertex.begin(), fans_at_vertex.end(), [](std::uint32_t n) { return n > 1; }));
+  result.closed = result.border_edges == 0;
+  result.manifold = result.nonmanifold_edges == 0 && result.nonmanifold_vertices == 0;
+  result.oriented = result.misoriented_edges == 0;
+  result.euler_characteristic = static_cast<std::int64_t>(vertex_count) - static_cast<std::int64_t>(result.edges) +
+                                static_cast<std::int64_t>(triangles.size());
+  return result;
+}
+
+std::string content_hash(const std::vector<Eigen::Vector3d>& vertices, const std::vector<Triangle>& triangles) {
+  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
+  ContentHash hash;
+  const std::array<std::uint64_t, 2> counts{vertices.size(), triangles.size()};
+  hash.add_values(std::span<const std::uint64_t>(counts));
+  hash.add(std::as_bytes(std::span(vertices)));
+  hash.add(std::as_bytes(std::span(triangles)));
+  return hash.hex();
+}
+
+}  // namespace
+
 std::size_t drop_unreferenced(std::vector<Eigen::Vector3d>& vertices, std::vector<Triangle>& triangles) {
   std::vector<std::uint32_t> renumbered(vertices.size(), k_unset);
   for (const Triangle& t : triangles) {
@@ -82,166 +140,6 @@ std::size_t drop_unreferenced(std::vector<Eigen::Vector3d>& vertices, std::vecto
   return dropped;
 }
 
-/// The repairs of Mesh::build.
-void weld(std::vector<Eigen::Vector3d>& vertices, std::vector<Triangle>& triangles, MeshRepairs& repairs) {
-  repairs.unreferenced_vertices = drop_unreferenced(vertices, triangles);
-  std::unordered_map<VertexBits, std::uint32_t, VertexBitsHash> first;
-  first.reserve(vertices.size());
-  std::vector<std::uint32_t> first_equal(vertices.size());
-  repairs.welded_vertices = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    vertices[i] += Eigen::Vector3d::Zero();  // -0 becomes +0
-    first_equal[i] = first.try_emplace(VertexBits(vertices[i]), static_cast<std::uint32_t>(i)).first->second;
-    if (first_equal[i] != i) ++repairs.welded_vertices;
-  }
-  for (Triangle& t : triangles) {
-    for (std::uint32_t& v : t) v = first_equal[v];
-  }
-  repairs.collapsed_triangles =
-      std::erase_if(triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
-  if (triangles.empty()) throw BadMesh("every triangle collapses to an edge or a point");
-  triangles.shrink_to_fit();
-  // Now unreferenced: the welded vertices, and those whose triangles have all collapsed.
-  repairs.unreferenced_vertices += drop_unreferenced(vertices, triangles) - repairs.welded_vertices;
-}
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t n) {
-    parent_.reserve(n);
-    for (std::size_t i = 0; i < n; ++i) parent_.push_back(static_cast<std::uint32_t>(i));
-  }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t i, std::uint32_t j) { parent_[find(i)] = find(j); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-/// One side of a triangle: an undirected edge and the direction in which the triangle uses it.
-struct Side {
-  std::uint32_t low, high;
-  std::uint32_t corner;  ///< 3 * triangle + k: the side from corner k to corner k + 1.
-  bool forward;          ///< From low to high.
-};
-
-std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-
-std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(3 * triangles.size());
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = triangles[t][k];
-      const std::uint32_t to = triangles[t][(k + 1) % 3];
-      sides.push_back({std::min(from, to), std::max(from, to), 3 * t + k, from < to});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
-  });
-  return sides;
-}
-
-/// Corners of a side at its lower and its higher vertex.
-std::uint32_t corner_at_low(const Side& s) { return s.forward ? s.corner : next_corner(s.corner); }
-std::uint32_t corner_at_high(const Side& s) { return s.forward ? next_corner(s.corner) : s.corner; }
-
-MeshTopology analyse_topology(std::size_t vertex_count, const std::vector<Triangle>& triangles) {
-  MeshTopology result;
-  const std::vector<Side> sides = sorted_sides(triangles);
-  UnionFind components(triangles.size());
-  UnionFind fans(3 * triangles.size());  // corners, joined across edges with two triangles
-  for (std::size_t begin = 0; begin < sides.size();) {
-    std::size_t end = begin + 1;
-    while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
-    ++result.edges;
-    for (std::size_t i = begin + 1; i < end; ++i) components.join(sides[begin].corner / 3, sides[i].corner / 3);
-    const std::size_t count = end - begin;
-    const auto forward = static_cast<std::size_t>(
-        std::count_if(&sides[begin], &sides[begin] + count, [](const Side& s) { return s.forward; }));
-    if (count == 1) ++result.border_edges;
-    if (count > 2) ++result.nonmanifold_edges;
-    if (count > 1 && 2 * forward != count) ++result.misoriented_edges;
-    if (count == 2) {
-      fans.join(corner_at_low(sides[begin]), corner_at_low(sides[begin + 1]));
-      fans.join(corner_at_high(sides[begin]), corner_at_high(sides[begin + 1]));
-    }
-    begin = end;
-  }
-  std::vector<std::uint32_t> fans_at_vertex(vertex_count, 0);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    if (components.find(t) == t) ++result.components;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      if (fans.find(3 * t + k) == 3 * t + k) ++fans_at_vertex[triangles[t][k]];
-    }
-  }
-  result.nonmanifold_vertices = static_cast<std::size_t>(
-      std::count_if(fans_at_vertex.begin(), fans_at_vertex.end(), [](std::uint32_t n) { return n > 1; }));
-  result.closed = result.border_edges == 0;
-  result.manifold = result.nonmanifold_edges == 0 && result.nonmanifold_vertices == 0;
-  result.oriented = result.misoriented_edges == 0;
-  result.euler_characteristic = static_cast<std::int64_t>(vertex_count) - static_cast<std::int64_t>(result.edges) +
-                                static_cast<std::int64_t>(triangles.size());
-  return result;
-}
-
-struct MassProperties {
-  double area, volume;
-  Eigen::Vector3d centroid;
-  std::vector<std::uint32_t> zero_area;
-};
-
-/// Area, signed volume and centroid, by the tetrahedra of all triangles with `origin` (divergence theorem).
-MassProperties integrate(const std::vector<Eigen::Vector3d>& vertices, const std::vector<Triangle>& triangles,
-                         const Eigen::Vector3d& origin) {
-  MassProperties result;
-  CompensatedSum area, volume;
-  std::array<CompensatedSum, 3> first_moment, surface_moment;
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    const Eigen::Vector3d a = vertices[triangles[i][0]] - origin;
-    const Eigen::Vector3d b = vertices[triangles[i][1]] - origin;
-    const Eigen::Vector3d c = vertices[triangles[i][2]] - origin;
-    const Eigen::Vector3d cross = (b - a).cross(c - a);
-    const double triangle_area = 0.5 * cross.norm();
-    if (triangle_area == 0.0) result.zero_area.push_back(i);
-    const double tetrahedron = a.dot(b.cross(c)) / 6.0;
-    area += triangle_area;
-    volume += tetrahedron;
-    const Eigen::Vector3d sum = a + b + c;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double s = sum[static_cast<Eigen::Index>(k)];
-      first_moment[k] += tetrahedron * s / 4.0;
-      surface_moment[k] += triangle_area * s / 3.0;
-    }
-  }
-  result.area = area.value();
-  result.volume = volume.value();
-  const bool bounds_a_body = result.volume != 0.0;
-  const double mass = bounds_a_body ? result.volume : result.area;
-  const auto& moment = bounds_a_body ? first_moment : surface_moment;
-  result.centroid = origin;
-  if (mass != 0.0) {
-    result.centroid += Eigen::Vector3d(moment[0].value(), moment[1].value(), moment[2].value()) / mass;
-  }
-  return result;
-}
-
-std::string content_hash(const std::vector<Eigen::Vector3d>& vertices, const std::vector<Triangle>& triangles) {
-  static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double));
-  ContentHash hash;
-  const std::array<std::uint64_t, 2> counts{vertices.size(), triangles.size()};
-  hash.add_values(std::span<const std::uint64_t>(counts));
-  hash.add(std::as_bytes(std::span(vertices)));
-  hash.add(std::as_bytes(std::span(triangles)));
-  return hash.hex();
-}
-
-}  // namespace
-
 Mesh Mesh::build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> triangles, std::string name,
                  MeshRepairs repairs) {
   check_input(vertices, triangles);
@@ -254,13 +152,39 @@ Mesh Mesh::build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> tr
   for (const Eigen::Vector3d& p : mesh.vertices_) mesh.box_.extend(p);
   if (!std::isfinite(mesh.diagonal())) throw BadMesh("the bounding box is too large for double precision");
   mesh.topology_ = analyse_topology(mesh.vertices_.size(), mesh.triangles_);
-  MassProperties mass = integrate(mesh.vertices_, mesh.triangles_, mesh.center());
-  mesh.area_ = mass.area;
-  mesh.volume_ = mass.volume;
-  mesh.centroid_ = mass.centroid;
-  mesh.repairs_.zero_area_triangles = std::move(mass.zero_area);
+  mesh.integrate();
   mesh.hash_ = content_hash(mesh.vertices_, mesh.triangles_);
   return mesh;
+}
+
+void Mesh::integrate() {
+  const Eigen::Vector3d origin = center();
+  CompensatedSum area, volume;
+  std::array<CompensatedSum, 3> first_moment, surface_moment;
+  repairs_.zero_area_triangles.clear();
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+    const Eigen::Vector3d a = vertices_[triangles_[i][0]] - origin;
+    const Eigen::Vector3d b = vertices_[triangles_[i][1]] - origin;
+    const Eigen::Vector3d c = vertices_[triangles_[i][2]] - origin;
+    const Eigen::Vector3d cross = (b - a).cross(c - a);
+    const double triangle_area = 0.5 * cross.norm();
+    if (triangle_area == 0.0) repairs_.zero_area_triangles.push_back(i);
+    const double tetrahedron = a.dot(b.cross(c)) / 6.0;
+    area += triangle_area;
+    volume += tetrahedron;
+    const Eigen::Vector3d sum = a + b + c;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double s = sum[static_cast<Eigen::Index>(k)];
+      first_moment[k] += tetrahedron * s / 4.0;
+      surface_moment[k] += triangle_area * s / 3.0;
+    }
+  }
+  area_ = area.value();
+  volume_ = volume.value();
+  const double mass = volume_ != 0.0 ? volume_ : area_;
+  const auto& moment = volume_ != 0.0 ? first_moment : surface_moment;
+  centroid_ = origin;
+  if (mass != 0.0) centroid_ += Eigen::Vector3d(moment[0].value(), moment[1].value(), moment[2].value()) / mass;
 }
 
 std::string Mesh::why_not_solid() const {

@@ -47,6 +47,9 @@ struct MeshTopology {
   std::int64_t euler_characteristic = 0;
 };
 
+/// Drops vertices that no triangle uses; the others keep their order. @return how many
+std::size_t drop_unreferenced(std::vector<Eigen::Vector3d>& vertices, std::vector<Triangle>& triangles);
+
 /// A triangle mesh that has passed validation; immutable. Coordinates are in the mesh's own length unit and frame.
 class Mesh {
  public:
@@ -94,6 +97,9 @@ class Mesh {
 
  private:
   Mesh() = default;
+  /// Area, signed volume and centroid, by the tetrahedra of all triangles with the centre (divergence theorem).
+  void integrate();
+
   std::string name_;
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<Triangle> triangles_;

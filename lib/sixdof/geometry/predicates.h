@@ -7,7 +7,7 @@
 /// Exact signs of geometric determinants of double coordinates, and the rule that breaks their ties.
 ///
 /// **Exact.** A floating-point filter decides most cases; where its error bound does not decide, expansion arithmetic
-/// (expansion.h) gives the exact value. Signs are exact and the same on every machine if every coordinate is zero or
+/// gives the exact value. Signs are exact and the same on every machine if every coordinate is zero or
 /// has a magnitude between k_smallest_exact_coordinate and k_largest_exact_coordinate: products of three differences
 /// neither underflow nor overflow there.
 ///
@@ -33,10 +33,6 @@ inline constexpr double k_orient3d_relative_error = 0x1p-40;
 
 namespace detail {
 
-/// Sign of det(b - a, c - a, d - a) by expansions alone.
-int orient3d_exact(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                   const Eigen::Vector3d& d);
-
 /// The determinant by expansions alone, rounded; its sign is exact.
 double orient3d_exact_value(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                             const Eigen::Vector3d& d);
@@ -44,6 +40,8 @@ double orient3d_exact_value(const Eigen::Vector3d& a, const Eigen::Vector3d& b, 
 /// Sign of the first non-zero component of (b - a) x (d - c); 0 if all are zero.
 int lexicographic_cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                         const Eigen::Vector3d& d);
+
+inline int sign_of(double x) { return (x > 0.0 ? 1 : 0) - (x < 0.0 ? 1 : 0); }
 
 /// Shewchuk's bound for the first stage: |error| <= (7 + 56 u) u * permanent, u = 2^-53.
 inline constexpr double k_unit_roundoff = 0x1p-53;
@@ -101,7 +99,7 @@ class TrianglePlane {
     const double bound = detail::k_orient3d_bound * permanent + detail::k_underflow_bound;
     if (std::abs(value) * k_orient3d_relative_error > bound) return {value > 0.0 ? 1 : -1, value};
     const double exact = detail::orient3d_exact_value(a_, b_, c_, d);
-    return {exact > 0.0 ? 1 : exact < 0.0 ? -1 : 0, exact};
+    return {detail::sign_of(exact), exact};
   }
 
  private:
@@ -115,7 +113,7 @@ inline int orient3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Ei
   const detail::Filtered f = detail::orient3d_filter(a, b, c, d);
   if (f.value > f.bound) return 1;
   if (f.value < -f.bound) return -1;
-  return detail::orient3d_exact(a, b, c, d);
+  return detail::sign_of(detail::orient3d_exact_value(a, b, c, d));
 }
 
 /// Side of the plane of triangle (a, b, c) of A on which the perturbed vertex `d` of B lies: +1 where the normal

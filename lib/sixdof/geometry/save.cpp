@@ -8,7 +8,6 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
-#include <sixdof/geometry/bytes.h>
 #include <sixdof/geometry/load_formats.h>
 
 namespace sixdof {
@@ -35,8 +34,9 @@ void save_off(const Mesh& mesh, const std::filesystem::path& file) {
   write_file_atomically(file, {text.data(), text.size()});
 }
 
-void append_float_point(std::string& bytes, const Eigen::Vector3d& p) {
-  for (const double coordinate : p) append_little_endian(bytes, static_cast<float>(coordinate));
+template <class T>
+void append_point(std::string& bytes, const Eigen::Vector3d& p) {
+  for (const double coordinate : p) loading::append_little_endian(bytes, static_cast<T>(coordinate));
 }
 
 /// Unit normal, or zero where the triangle has no area, as the format's readers expect.
@@ -64,30 +64,14 @@ void save_stl(const Mesh& mesh, const std::filesystem::path& file) {
   std::string bytes = "binary STL written by sixdof";
   bytes.resize(k_header_bytes, ' ');
   bytes.reserve(k_header_bytes + 4 + k_triangle_bytes * mesh.triangles().size());
-  append_little_endian(bytes, static_cast<std::uint32_t>(mesh.triangles().size()));
+  loading::append_little_endian(bytes, static_cast<std::uint32_t>(mesh.triangles().size()));
   for (const Triangle& t : mesh.triangles()) {
-    append_float_point(bytes, unit_normal(vertices[t[0]], vertices[t[1]], vertices[t[2]]));
-    for (const std::uint32_t v : t) append_float_point(bytes, vertices[v]);
-    append_little_endian(bytes, std::uint16_t{0});
+    append_point<float>(bytes, unit_normal(vertices[t[0]], vertices[t[1]], vertices[t[2]]));
+    for (const std::uint32_t v : t) append_point<float>(bytes, vertices[v]);
+    loading::append_little_endian(bytes, std::uint16_t{0});
   }
   write_file_atomically(file, bytes);
 }
-
-void save_mesh_as_ply(const Mesh& mesh, const std::filesystem::path& file) {
-  save_ply({.vertices = mesh.vertices(), .triangles = mesh.triangles()}, file);
-}
-
-struct Format {
-  const char* extension;
-  void (*save)(const Mesh&, const std::filesystem::path&);
-};
-
-constexpr Format k_formats[] = {
-    {".ply", save_mesh_as_ply},
-    {".off", save_off},
-    {".obj", save_obj},
-    {".stl", save_stl},
-};
 
 }  // namespace
 
@@ -95,12 +79,11 @@ void save_ply(const PlyContent& content, const std::filesystem::path& file) {
   const std::size_t count = content.vertices.size();
   const bool coloured = !content.vertex_colours.empty();
   const bool normals = !content.vertex_normals.empty();
-  if (coloured && content.vertex_colours.size() != count) {
-    throw BadArgument(fmt::format("{} colours for {} vertices", content.vertex_colours.size(), count));
-  }
-  if (normals && content.vertex_normals.size() != count) {
-    throw BadArgument(fmt::format("{} normals for {} vertices", content.vertex_normals.size(), count));
-  }
+  const auto check_size = [count](std::size_t size, const char* what) {
+    if (size != 0 && size != count) throw BadArgument(fmt::format("{} {} for {} vertices", size, what, count));
+  };
+  check_size(content.vertex_colours.size(), "colours");
+  check_size(content.vertex_normals.size(), "normals");
   for (std::size_t i = 0; i < content.triangles.size(); ++i) {
     for (const std::uint32_t v : content.triangles[i]) {
       if (v >= count) throw BadArgument(fmt::format("triangle {}: vertex index {} of {}", i, v, count));
@@ -120,29 +103,26 @@ void save_ply(const PlyContent& content, const std::filesystem::path& file) {
   bytes.reserve(bytes.size() + (k_vertex_bytes * (normals ? 2 : 1) + (coloured ? 3 : 0)) * count +
                 k_triangle_bytes * content.triangles.size());
   for (std::size_t i = 0; i < count; ++i) {
-    for (const double coordinate : content.vertices[i]) append_little_endian(bytes, coordinate);
-    if (normals) {
-      for (const double coordinate : content.vertex_normals[i]) append_little_endian(bytes, coordinate);
-    }
+    append_point<double>(bytes, content.vertices[i]);
+    if (normals) append_point<double>(bytes, content.vertex_normals[i]);
     if (coloured) {
-      for (const std::uint8_t component : content.vertex_colours[i]) append_little_endian(bytes, component);
+      for (const std::uint8_t component : content.vertex_colours[i]) loading::append_little_endian(bytes, component);
     }
   }
   for (const Triangle& t : content.triangles) {
-    append_little_endian(bytes, std::uint8_t{3});
-    for (const std::uint32_t v : t) append_little_endian(bytes, v);
+    loading::append_little_endian(bytes, std::uint8_t{3});
+    for (const std::uint32_t v : t) loading::append_little_endian(bytes, v);
   }
   write_file_atomically(file, bytes);
 }
 
 void save_mesh(const Mesh& mesh, const std::filesystem::path& file) {
   const std::string extension = loading::lower_case_extension(file);
-  std::string known;
-  for (const Format& format : k_formats) {
-    if (extension == format.extension) return format.save(mesh, file);
-    known += std::string(known.empty() ? "" : ", ") + format.extension;
-  }
-  throw BadFile(file.string(), "'" + extension + "' is no mesh format this can write (" + known + ")");
+  if (extension == ".ply") return save_ply({.vertices = mesh.vertices(), .triangles = mesh.triangles()}, file);
+  if (extension == ".off") return save_off(mesh, file);
+  if (extension == ".obj") return save_obj(mesh, file);
+  if (extension == ".stl") return save_stl(mesh, file);
+  throw BadFile(file.string(), "'" + extension + "' is no mesh format this can write (.ply, .off, .obj, .stl)");
 }
 
 }  // namespace sixdof

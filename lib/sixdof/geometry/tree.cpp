@@ -33,48 +33,37 @@ Tree::Tree(const Mesh& mesh) : center_(mesh.center()) {
     for (std::size_t k = 0; k < 3; ++k) corners_[i][k] = mesh.vertices()[triangle[k]];
   });
 
+  nodes_.reserve(partition.root->total);
   store_nodes(*partition.root);
+  leaves_.shrink_to_fit();
   parallel::for_each(nodes_.size(), [this](std::size_t i) { fit_slabs(nodes_[i]); });
   store_volumes();
 }
 
-void Tree::store_nodes(const tree_builder::Subtree& root) {
-  struct Pending {
-    const tree_builder::Subtree* subtree;
-    std::uint32_t parent;
-    std::size_t lane;  ///< Of the parent; k_width for the root.
-  };
-  nodes_.reserve(root.total);
-  std::size_t leaf_count = 0;
-  std::vector<Pending> stack{{&root, 0, k_width}};
-  while (!stack.empty()) {
-    const Pending top = stack.back();
-    stack.pop_back();
-    const auto index = static_cast<std::uint32_t>(nodes_.size());
-    if (top.lane < k_width) nodes_[top.parent].child[top.lane] = Child::node(index);
-    Node& node = nodes_.emplace_back();
-    const std::vector<tree_builder::Range>& children = top.subtree->children;
-    node.child_count = static_cast<std::uint32_t>(children.size());
-    node.first_triangle = static_cast<std::uint32_t>(children.front().first);
-    node.triangle_count = static_cast<std::uint32_t>(children.back().last - children.front().first);
-    node.parent = top.parent;
-    for (std::size_t i = 0; i < k_width; ++i) {
-      const tree_builder::Box box = i < children.size() ? children[i].box : tree_builder::Box{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        node.lower[k][i] = box.lower[k];
-        node.upper[k][i] = box.upper[k];
-      }
-      if (i < children.size() && !top.subtree->nodes[i]) {
-        node.leaf[i] = static_cast<std::uint32_t>(leaf_count++);
-        node.child[i] =
-            Child::leaf(static_cast<std::uint32_t>(children[i].first), static_cast<std::uint32_t>(children[i].count()));
-      }
+std::uint32_t Tree::store_nodes(const tree_builder::Subtree& subtree) {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  Node& node = nodes_.emplace_back();
+  const std::vector<tree_builder::Range>& children = subtree.children;
+  node.child_count = static_cast<std::uint32_t>(children.size());
+  node.first_triangle = static_cast<std::uint32_t>(children.front().first);
+  node.triangle_count = static_cast<std::uint32_t>(children.back().last - children.front().first);
+  for (std::size_t i = 0; i < k_width; ++i) {
+    const tree_builder::Box box = i < children.size() ? children[i].box : tree_builder::Box{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      node.lower[k][i] = box.lower[k];
+      node.upper[k][i] = box.upper[k];
     }
-    for (std::size_t i = children.size(); i-- > 0;) {  // the first child is popped first
-      if (top.subtree->nodes[i]) stack.push_back({top.subtree->nodes[i].get(), index, i});
+    if (i < children.size() && !subtree.nodes[i]) {
+      node.leaf[i] = static_cast<std::uint32_t>(leaves_.size());
+      node.child[i] =
+          Child::leaf(static_cast<std::uint32_t>(children[i].first), static_cast<std::uint32_t>(children[i].count()));
+      leaves_.emplace_back();
     }
   }
-  leaves_.resize(leaf_count);
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    if (subtree.nodes[i]) nodes_[index].child[i] = Child::node(store_nodes(*subtree.nodes[i]));
+  }
+  return index;
 }
 
 void Tree::fit_slabs(Node& node) const {

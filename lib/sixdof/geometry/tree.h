@@ -79,7 +79,6 @@ class Tree {
     std::uint32_t child_count;     ///< 1 .. 8 (1 only in the root of a mesh of up to four triangles).
     std::uint32_t first_triangle;  ///< The subtree's triangles in tree order: first_triangle + 0 .. triangle_count - 1.
     std::uint32_t triangle_count;
-    std::uint32_t parent;  ///< Index of the parent node; the root's is 0.
   };
 
   /// A leaf's corners, rounded to floats relative to center(); lanes beyond the count repeat the last triangle.
@@ -116,7 +115,8 @@ class Tree {
   std::size_t bytes() const;
 
  private:
-  void store_nodes(const tree_builder::Subtree& root);
+  /// Appends the nodes of a subtree. @return the index of its root
+  std::uint32_t store_nodes(const tree_builder::Subtree& subtree);
   void fit_slabs(Node& node) const;
   void store_volumes();
 
@@ -126,6 +126,12 @@ class Tree {
   std::vector<Corners> corners_;
   Eigen::Vector3d center_;
   double radius_ = 0.0;
+};
+
+/// A triangle of mesh A and one of mesh B: indices in the order of each mesh's Tree unless stated otherwise.
+struct TrianglePair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
 };
 
 /// Area times normal of every triangle (length^2) in tree order, in the mesh's frame.

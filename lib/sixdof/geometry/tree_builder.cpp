@@ -80,29 +80,22 @@ float cost(float half_area, std::size_t count) {
 class Builder {
  public:
   Builder(const Mesh& mesh, const Eigen::Vector3d& center) : primitives_(mesh.triangles().size()) {
-    parallel::for_ranges(primitives_.size(), k_parallel_subtree, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Eigen::AlignedBox3d box;
-        for (const std::uint32_t v : mesh.triangles()[i]) box.extend(mesh.vertices()[v]);
-        for (std::size_t k = 0; k < 3; ++k) {
-          const auto axis = static_cast<Eigen::Index>(k);
-          primitives_[i].box.lower[k] = round_down(box.min()[axis] - center[axis]);
-          primitives_[i].box.upper[k] = round_up(box.max()[axis] - center[axis]);
-        }
-        primitives_[i].triangle = static_cast<std::uint32_t>(i);
+    parallel::for_each(primitives_.size(), [&](std::size_t i) {
+      Eigen::AlignedBox3d box;
+      for (const std::uint32_t v : mesh.triangles()[i]) box.extend(mesh.vertices()[v]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<Eigen::Index>(k);
+        primitives_[i].box.lower[k] = round_down(box.min()[axis] - center[axis]);
+        primitives_[i].box.upper[k] = round_up(box.max()[axis] - center[axis]);
       }
+      primitives_[i].triangle = static_cast<std::uint32_t>(i);
     });
   }
 
-  std::unique_ptr<Subtree> build() {
+  Partition build() {
     const std::size_t n = primitives_.size();
-    return build(Range{0, n, bounds(0, n)});
-  }
-
-  std::vector<std::uint32_t> triangles() const {
-    std::vector<std::uint32_t> result;
-    result.reserve(primitives_.size());
-    for (const Primitive& p : primitives_) result.push_back(p.triangle);
+    Partition result{{}, build(Range{0, n, bounds(0, n)})};
+    for (const Primitive& p : primitives_) result.mesh_triangle.push_back(p.triangle);
     return result;
   }
 
@@ -119,7 +112,7 @@ class Builder {
   std::array<Range, 2> split(const Range& range) {
     const Box centers = fold_in_parallel<Box>(range.first, range.last, [this](std::size_t i, std::size_t end) {
       Box box;
-      for (; i < end; ++i) box.add(primitives_[i].twice_center());
+      for (; i < end; ++i) box.add({primitives_[i].twice_center(), primitives_[i].twice_center()});
       return box;
     });
     const Binning binning(centers);
@@ -247,17 +240,14 @@ class Builder {
     std::sort(children.begin(), children.end(), [](const Range& x, const Range& y) { return x.first < y.first; });
 
     subtree->nodes.resize(children.size());
-    parallel::Tasks tasks;
-    for (std::size_t i = 0; i < children.size(); ++i) {
-      if (children[i].count() <= Tree::k_leaf_triangles) continue;
-      const auto build_child = [this, &subtree, i] { subtree->nodes[i] = build(subtree->children[i]); };
-      if (children[i].count() > k_parallel_subtree) {
-        tasks.run(build_child);
-      } else {
-        build_child();
-      }
+    const auto build_child = [&](std::size_t i) {
+      if (children[i].count() > Tree::k_leaf_triangles) subtree->nodes[i] = build(children[i]);
+    };
+    if (range.count() > k_parallel_subtree) {
+      parallel::for_each(children.size(), build_child);
+    } else {
+      for (std::size_t i = 0; i < children.size(); ++i) build_child(i);
     }
-    tasks.wait();
     for (const auto& node : subtree->nodes) subtree->total += node ? node->total : 0;
     return subtree;
   }
@@ -270,10 +260,6 @@ class Builder {
 float round_down(double x) { return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity()); }
 float round_up(double x) { return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity()); }
 
-Partition build(const Mesh& mesh, const Eigen::Vector3d& center) {
-  Builder builder(mesh, center);
-  std::unique_ptr<Subtree> root = builder.build();
-  return {builder.triangles(), std::move(root)};
-}
+Partition build(const Mesh& mesh, const Eigen::Vector3d& center) { return Builder(mesh, center).build(); }
 
 }  // namespace sixdof::tree_builder

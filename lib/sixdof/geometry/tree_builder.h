@@ -28,12 +28,6 @@ struct Box {
       upper[k] = std::max(upper[k], other.upper[k]);
     }
   }
-  void add(const std::array<float, 3>& p) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      lower[k] = std::min(lower[k], p[k]);
-      upper[k] = std::max(upper[k], p[k]);
-    }
-  }
   float half_area() const {
     const float x = upper[0] - lower[0];
     const float y = upper[1] - lower[1];

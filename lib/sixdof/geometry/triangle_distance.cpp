@@ -60,6 +60,16 @@ struct Best {
       on_b = b;
     }
   }
+
+  /// The same for a point p and a point q of the other triangle, w = p - q. sign = 1: p is of a; -1: of b.
+  template <int sign>
+  void try_update(const Vector3d& w, const Vector3d& p, const Vector3d& q) {
+    if constexpr (sign > 0) {
+      try_update(w, p, q);
+    } else {
+      try_update(-w, q, p);
+    }
+  }
 };
 
 struct Edge {
@@ -70,7 +80,6 @@ struct Edge {
   Edge(const Vector3d& p, const Vector3d& q) : from(p), to(q), along(q - p), squared(along.squaredNorm()) {}
 };
 
-/// A point and an edge. sign = 1: the point is of a; -1: of b.
 template <int sign>
 void try_point_edge(const Vector3d& p, const Edge& edge, Best& best) {
   const Vector3d from = p - edge.from;
@@ -85,11 +94,7 @@ void try_point_edge(const Vector3d& p, const Edge& edge, Best& best) {
     w = from - t * edge.along;
     q = edge.from + t * edge.along;
   }
-  if constexpr (sign > 0) {
-    best.try_update(w, p, q);
-  } else {
-    best.try_update(-w, q, p);
-  }
+  best.try_update<sign>(w, p, q);
 }
 
 struct Solution {
@@ -136,11 +141,7 @@ void try_point_face(const Vector3d& p, const Edge& first, const Edge& second, Be
   const Solution x = solve_normal(from, u, first.squared, second.along, second.squared);
   if (!x.found || !(x.s > 0.0 && x.t > 0.0 && x.s + x.t < 1.0)) return;
   const Vector3d q = first.from + x.s * first.along + x.t * second.along;
-  if constexpr (sign > 0) {
-    best.try_update(x.w, p, q);
-  } else {
-    best.try_update(-x.w, q, p);
-  }
+  best.try_update<sign>(x.w, p, q);
 }
 
 struct Edges {
@@ -164,6 +165,15 @@ TriangleCorners relative(const TriangleCorners& t, const Vector3d& origin) {
   return {t[0] - origin, t[1] - origin, t[2] - origin};
 }
 
+/// The largest sum of the magnitudes of a corner's coordinates.
+double size_of(const TriangleCorners& a, const TriangleCorners& b) {
+  double size = 0.0;
+  for (const TriangleCorners* t : {&a, &b}) {
+    for (const Vector3d& p : *t) size = std::max(size, p.cwiseAbs().sum());
+  }
+  return size;
+}
+
 Eigen::Vector2d drop(const Vector3d& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
 int orient(const Vector3d& a, const Vector3d& b, const Vector3d& c, int axis) {
@@ -178,12 +188,8 @@ bool between(const Vector3d& p, const Vector3d& q, const Vector3d& x) {
   return true;
 }
 
-bool collinear(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  return orient(a, b, c, 0) == 0 && orient(a, b, c, 1) == 0 && orient(a, b, c, 2) == 0;
-}
-
 bool on_segment(const Vector3d& p, const Vector3d& q, const Vector3d& x) {
-  return between(p, q, x) && collinear(p, q, x);
+  return between(p, q, x) && orient(p, q, x, 0) == 0 && orient(p, q, x, 1) == 0 && orient(p, q, x, 2) == 0;
 }
 
 /// Whether two closed segments meet. Either may be a point.
@@ -199,13 +205,8 @@ bool segments_intersect(const Vector3d& p, const Vector3d& q, const Vector3d& r,
   return false;
 }
 
-/// Whether a point in the triangle's plane is in the triangle, whose projection along `axis` is not degenerate.
-bool inside_projected(const TriangleCorners& t, const Vector3d& p, int axis) {
-  const int o0 = orient(t[0], t[1], p, axis);
-  const int o1 = orient(t[1], t[2], p, axis);
-  const int o2 = orient(t[2], t[0], p, axis);
-  return (o0 >= 0 && o1 >= 0 && o2 >= 0) || (o0 <= 0 && o1 <= 0 && o2 <= 0);
-}
+/// Whether none of three signs is opposite to another.
+bool agree(int x, int y, int z) { return (x >= 0 && y >= 0 && z >= 0) || (x <= 0 && y <= 0 && z <= 0); }
 
 /// Whether closed segment p q and closed triangle t meet.
 /// @param side_p, side_q sides of t's plane on which p and q lie
@@ -215,15 +216,15 @@ bool edge_meets_triangle(const Vector3d& p, const Vector3d& q, int side_p, int s
     const int o0 = orient3d(p, q, t[0], t[1]);
     const int o1 = orient3d(p, q, t[1], t[2]);
     if (o0 * o1 < 0) return false;
-    const int o2 = orient3d(p, q, t[2], t[0]);
-    return (o0 >= 0 && o1 >= 0 && o2 >= 0) || (o0 <= 0 && o1 <= 0 && o2 <= 0);
+    return agree(o0, o1, orient3d(p, q, t[2], t[0]));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     if (segments_intersect(p, q, t[i], t[(i + 1) % 3])) return true;
   }
   for (int axis = 0; axis < 3; ++axis) {
     if (orient(t[0], t[1], t[2], axis) == 0) continue;
-    return inside_projected(t, p, axis);  // p q does not cross t's border: it is inside or outside as a whole
+    // p q does not cross t's border: it is inside or outside as a whole.
+    return agree(orient(t[0], t[1], p, axis), orient(t[1], t[2], p, axis), orient(t[2], t[0], p, axis));
   }
   return false;  // t is a segment or a point
 }
@@ -277,11 +278,7 @@ double triangle_gap(const TriangleCorners& a, const TriangleCorners& b) {
     const auto [low_b, high_b] = std::minmax({normal.dot(local_b[0]), normal.dot(local_b[1]), normal.dot(local_b[2])});
     gap = std::max(gap, std::max(low_b - high_a, low_a - high_b) / length);
   }
-  double size = 0.0;
-  for (const TriangleCorners* t : {&local_a, &local_b}) {
-    for (const Vector3d& p : *t) size = std::max(size, p.cwiseAbs().sum());
-  }
-  return gap - k_gap_error * size;
+  return gap - k_gap_error * size_of(local_a, local_b);
 }
 
 ClosestPoints triangle_triangle_distance(const TriangleCorners& a, const TriangleCorners& b) {
@@ -299,12 +296,10 @@ ClosestPoints triangle_triangle_distance(const TriangleCorners& a, const Triangl
   // The triangles are disjoint if their projections on the line through the closest points are.
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
-  double size = 0.0;
   for (const Vector3d& p : local_a) low = std::min(low, best.difference.dot(p));
   for (const Vector3d& p : local_b) high = std::max(high, best.difference.dot(p));
-  for (const Vector3d& p : local_a) size = std::max(size, p.cwiseAbs().sum());
-  for (const Vector3d& p : local_b) size = std::max(size, p.cwiseAbs().sum());
-  if (low - high > k_safe_gap * size * best.difference.cwiseAbs().maxCoeff()) return finish(best, a[0]);
+  if (low - high > k_safe_gap * size_of(local_a, local_b) * best.difference.cwiseAbs().maxCoeff())
+    return finish(best, a[0]);
 
   const Meeting meeting = find_meeting(a, b);
   if (!meeting.found) {

@@ -17,19 +17,21 @@ double angle_degrees(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 DirectionError direction_error(Vectors ideal, Vectors measured) {
   check_same_length(ideal, measured);
-  const std::vector<bool> ideal_nonzero = nonzero(ideal);
-  const std::vector<bool> measured_nonzero = nonzero(measured);
+  const double ideal_zero = k_zero_fraction * peak(ideal);
+  const double measured_zero = k_zero_fraction * peak(measured);
   DirectionError error;
   double sum = 0.0;
   for (std::size_t k = 0; k < ideal.size(); ++k) {
-    if (ideal_nonzero[k] && measured_nonzero[k]) {
+    const bool ideal_acts = ideal[k].norm() > ideal_zero;
+    const bool measured_acts = measured[k].norm() > measured_zero;
+    if (ideal_acts && measured_acts) {
       const double angle = angle_degrees(ideal[k], measured[k]);
       sum += angle;
       error.largest_degrees = std::max(error.largest_degrees, angle);
       ++error.compared;
-    } else if (ideal_nonzero[k]) {
+    } else if (ideal_acts) {
       ++error.misses;
-    } else if (measured_nonzero[k]) {
+    } else if (measured_acts) {
       ++error.false_contacts;
     } else {
       ++error.skipped;

@@ -3,13 +3,16 @@
 #include <cstddef>
 #include <optional>
 
-#include <sixdof/measure/signal.h>
+#include <sixdof/measure/magnitude.h>
 
 namespace sixdof {
 
 /// Angle between two vectors in degrees, 0..180, by atan2(|a x b|, a.b): accurate near 0 and 180 degrees, where the
 /// arc cosine loses half of the digits. 0 if either vector is zero.
 double angle_degrees(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
+/// Rounding accumulated over some thousand terms of the peak's size stays below it.
+inline constexpr double k_zero_fraction = 1e-12;
 
 struct DirectionError {
   /// Mean angle over the steps where both vectors are nonzero; empty if there is no such step.
@@ -22,7 +25,7 @@ struct DirectionError {
   std::size_t skipped = 0;         ///< Both are zero.
 };
 
-/// Zero as nonzero() (signal.h) decides it. Every step is in exactly one of the four counts.
+/// A vector up to k_zero_fraction of the longest one of its series is zero. Every step is in exactly one of the counts.
 DirectionError direction_error(Vectors ideal, Vectors measured);
 
 }  // namespace sixdof

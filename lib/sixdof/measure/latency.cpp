@@ -20,7 +20,6 @@ Latency latency(std::span<const double> times_ns) {
   const auto count = static_cast<double>(sorted.size());
   // In permille and integers, because 0.99 * 100 is not 99 in binary.
   const auto quantile = [&](std::size_t permille) { return sorted[(sorted.size() * permille + 999) / 1000 - 1]; };
-  result.count = sorted.size();
   result.mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / count;
   result.p50 = quantile(500);
   result.p99 = quantile(990);

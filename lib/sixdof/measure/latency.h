@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
 
 namespace sixdof {
@@ -10,7 +9,6 @@ inline constexpr double k_haptic_deadline_ns = 1e6;
 
 /// Distribution of the times of single queries, in ns.
 struct Latency {
-  std::size_t count = 0;
   double mean = 0.0;
   double p50 = 0.0;
   double p99 = 0.0;

@@ -1,6 +1,11 @@
 #include <sixdof/measure/magnitude.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
 
 namespace sixdof {
 namespace {
@@ -8,6 +13,25 @@ namespace {
 double square(double x) { return x * x; }
 
 }  // namespace
+
+std::vector<double> magnitudes(Vectors vectors) {
+  std::vector<double> result(vectors.size());
+  std::transform(vectors.begin(), vectors.end(), result.begin(), [](const Eigen::Vector3d& v) { return v.norm(); });
+  return result;
+}
+
+double peak(Vectors vectors) {
+  double largest = 0.0;
+  for (const Eigen::Vector3d& v : vectors) largest = std::max(largest, v.norm());
+  return largest;
+}
+
+void check_same_length(Vectors ideal, Vectors measured) {
+  if (ideal.size() != measured.size()) {
+    throw BadArgument(
+        fmt::format("{} ideal steps cannot be compared with {} measured ones", ideal.size(), measured.size()));
+  }
+}
 
 std::optional<double> sigma(Vectors ideal, Vectors measured) {
   check_same_length(ideal, measured);

@@ -1,10 +1,23 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
-#include <sixdof/measure/signal.h>
+#include <Eigen/Core>
 
 namespace sixdof {
+
+/// One vector per step of a path: forces or torques, in any consistent unit.
+using Vectors = std::span<const Eigen::Vector3d>;
+
+std::vector<double> magnitudes(Vectors vectors);
+
+/// Largest magnitude; 0 for an empty series.
+double peak(Vectors vectors);
+
+/// @throws BadArgument unless both series have the same length. Every measure of two series calls this first.
+void check_same_length(Vectors ideal, Vectors measured);
 
 /// RMS difference of the magnitudes: sqrt(1/N sum (|i_k|/max|i| - |m_k|/max|m|)^2), a pure number. Each series is
 /// normalised by its own largest magnitude, so a gain error does not show and one spike sets the scale; see fit_gain().

@@ -18,14 +18,11 @@ constexpr std::string_view k_direction = "lib/sixdof/measure/direction.h";
 constexpr std::string_view k_spectrum = "lib/sixdof/measure/spectrum.h";
 constexpr std::string_view k_path = "lib/sixdof/measure/path.h";
 constexpr std::string_view k_latency = "lib/sixdof/measure/latency.h";
-constexpr std::string_view k_recorder = "lib/sixdof/scenario/recorder.h";
 constexpr std::string_view k_check = "bench/harness/check.h";
-constexpr std::string_view k_guarded = "bench/harness/guarded_query.h";
 constexpr std::string_view k_work = "bench/harness/work.h";
 constexpr std::string_view k_footprint = "lib/sixdof/query/algorithm.h (Footprint)";
-constexpr std::string_view k_query_row = "bench/rows/query.cpp";
 constexpr std::string_view k_generate_row = "bench/rows/generate.cpp";
-constexpr std::string_view k_scenario_row = "bench/rows/scenario.cpp";
+constexpr std::string_view k_query_row = "bench/rows/query.cpp";
 
 using enum Better;
 
@@ -61,7 +58,7 @@ constexpr std::array k_metrics{
     Metric{"volume_error_mean", "1", lower, "mean |volume - bucket's volume| over the bucket's volume", k_check},
     Metric{"volume_error_max", "1", lower, "largest |volume - bucket's volume| over the bucket's volume", k_check},
     // Correctness of other answers.
-    Metric{"failed", "queries", lower, "no answer: refused, thrown, or not finite", k_guarded},
+    Metric{"failed", "queries", lower, "no answer: refused, thrown, or not finite", "bench/harness/guarded_query.h"},
     Metric{"judged", "queries", neither, "answers for which the truth is known", k_check},
     Metric{"mismatch", "queries", lower, "wrong answers among the judged ones", k_check},
     Metric{"error_rms", "diagonal", lower, "RMS of |distance - truth| over A's box diagonal", k_check},
@@ -70,7 +67,7 @@ constexpr std::array k_metrics{
     Metric{"real_time", "time_unit", lower, "mean wall-clock time of one iteration", k_google},
     Metric{"cpu_time", "time_unit", lower, "mean processor time of one iteration", k_google},
     Metric{"mean_ns", "ns", lower, "mean time of a query", k_paper},
-    Metric{"processor_ns", "ns", lower, "mean processor time of a query", k_recorder},
+    Metric{"processor_ns", "ns", lower, "mean processor time of a query", "lib/sixdof/scenario/recorder.h"},
     Metric{"p50_ns", "ns", lower, "median time of a query", k_latency},
     Metric{"p99_ns", "ns", lower, "99 % of the queries take no longer", k_latency},
     Metric{"p999_ns", "ns", lower, "99.9 % of the queries take no longer", k_latency},
@@ -81,7 +78,7 @@ constexpr std::array k_metrics{
     Metric{"iterations", "1", neither, "iterations of the timed loop", k_google},
     Metric{"configurations", "configurations", neither, "configurations that were asked or made", k_query_row},
     Metric{"reachable", "configurations", neither, "configurations of the whole bucket that exist", k_query_row},
-    Metric{"steps", "steps", neither, "steps along the scenario's path", k_scenario_row},
+    Metric{"steps", "steps", neither, "steps along the scenario's path", "bench/rows/scenario.cpp"},
     // Size of a prepared structure.
     Metric{"bytes", "byte", lower, "memory of the prepared structure", k_footprint},
     Metric{"triangles", "triangles", neither, "triangles of both meshes", k_footprint},
@@ -116,31 +113,15 @@ bool matches(std::string_view pattern, std::string_view name) {
 }  // namespace
 
 std::string_view to_string(Better better) {
-  switch (better) {
-    case lower:
-      return "lower";
-    case higher:
-      return "higher";
-    case nearer_one:
-      return "nearer 1";
-    case neither:
-      return "neither";
-  }
-  return "neither";
+  constexpr std::array<std::string_view, 4> k_words{"lower", "higher", "nearer 1", "neither"};
+  return k_words.at(static_cast<std::size_t>(better));
 }
 
 bool is_better(Better better, double value, double other) {
-  switch (better) {
-    case lower:
-      return std::abs(value) < std::abs(other);
-    case higher:
-      return value > other;
-    case nearer_one:
-      return std::abs(value - 1.0) < std::abs(other - 1.0);
-    case neither:
-      return false;
-  }
-  return false;
+  if (better == neither) return false;
+  if (better == higher) return value > other;
+  const double ideal = better == nearer_one ? 1.0 : 0.0;
+  return std::abs(value - ideal) < std::abs(other - ideal);
 }
 
 std::span<const Metric> metrics() { return k_metrics; }

@@ -49,21 +49,13 @@ std::optional<double> lag(Vectors ideal, Vectors measured, std::size_t reach) {
   if (ideal.size() <= 2 * reach || peak(ideal) == 0.0 || peak(measured) == 0.0) return std::nullopt;
   const double contrast = 1.0 - std::min(correlation(ideal, ideal, limit), correlation(ideal, ideal, -limit));
   if (contrast < k_lag_contrast) return std::nullopt;
-  std::ptrdiff_t best = -limit;
-  double best_value = correlation(ideal, measured, best);
-  for (std::ptrdiff_t shift = -limit + 1; shift <= limit; ++shift) {
-    const double value = correlation(ideal, measured, shift);
-    if (value > best_value) {
-      best = shift;
-      best_value = value;
-    }
-  }
-  if (best == -limit || best == limit) return std::nullopt;
-  const double before = correlation(ideal, measured, best - 1);
-  const double after = correlation(ideal, measured, best + 1);
-  const double curvature = before - 2.0 * best_value + after;
-  const double offset = curvature < 0.0 ? 0.5 * (before - after) / curvature : 0.0;
-  return static_cast<double>(best) + std::clamp(offset, -0.5, 0.5);
+  std::vector<double> values;
+  for (std::ptrdiff_t shift = -limit; shift <= limit; ++shift) values.push_back(correlation(ideal, measured, shift));
+  const auto best = std::max_element(values.begin(), values.end());
+  if (best == values.begin() || best == values.end() - 1) return std::nullopt;
+  const double curvature = best[-1] - 2.0 * best[0] + best[1];
+  const double offset = curvature < 0.0 ? 0.5 * (best[-1] - best[1]) / curvature : 0.0;
+  return static_cast<double>(best - values.begin() - limit) + std::clamp(offset, -0.5, 0.5);
 }
 
 double largest_jump(std::span<const double> progress, Vectors values, const std::function<Eigen::Vector3d(double)>& f,

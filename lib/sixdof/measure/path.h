@@ -6,7 +6,7 @@
 #include <span>
 
 #include <sixdof/geometry/pose.h>
-#include <sixdof/measure/signal.h>
+#include <sixdof/measure/magnitude.h>
 
 /// Measures of a force or torque series along a path. A path is a sequence of steps; progress runs over it from 0 to 1.
 

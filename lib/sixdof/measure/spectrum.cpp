@@ -15,22 +15,19 @@ namespace sixdof {
 namespace {
 
 /// FFTW's planner has global state; only the execution of a plan is thread-safe.
-std::mutex& planner_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
+std::mutex planner_mutex;
 
 /// Real-to-complex Fourier transform of a fixed length, with its own buffers.
 class FourierTransform {
  public:
   explicit FourierTransform(std::size_t length)
       : length_(length), in_(fftw_alloc_real(length)), out_(fftw_alloc_complex(length / 2 + 1)) {
-    const std::lock_guard lock(planner_mutex());
+    const std::lock_guard lock(planner_mutex);
     // FFTW_ESTIMATE plans without timing, so every run has the same plan and the same bits.
     plan_ = fftw_plan_dft_r2c_1d(static_cast<int>(length), in_.get(), out_.get(), FFTW_ESTIMATE);
   }
   ~FourierTransform() {
-    const std::lock_guard lock(planner_mutex());
+    const std::lock_guard lock(planner_mutex);
     fftw_destroy_plan(plan_);
   }
   FourierTransform(const FourierTransform&) = delete;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <sixdof/measure/signal.h>
+#include <sixdof/measure/magnitude.h>
 
 namespace sixdof {
 

@@ -1,26 +1,153 @@
-#include <sixdof/models/boxes.h>
+#include <sixdof/models/recipe.h>
 
+#include <array>
 #include <cmath>
+#include <functional>
+#include <unordered_map>
+#include <vector>
 
 #include <sixdof/models/cos_sin.h>
-#include <sixdof/models/lattice.h>
 #include <sixdof/models/refine.h>
 #include <sixdof/models/sizing.h>
+#include <sixdof/models/surface.h>
 
 namespace sixdof {
 namespace {
 
+/// A block of cells, some of which are solid; it may be bent and closed to a ring. Along each axis cell i is divided
+/// into steps[axis][i] steps, in which the walls between solid and empty cells are tessellated.
+struct Lattice {
+  using Node = std::array<std::uint32_t, 3>;  ///< Cell numbers, or steps from the start along each axis.
+
+  std::array<std::vector<std::uint32_t>, 3> steps;
+  bool ring = false;  ///< Along axis 1 the last cell is followed by the first.
+  std::function<bool(const Node& cell)> solid;
+  /// Position of a node; axes 0, 1, 2 are right-handed. A wall is flat if the positions of its nodes are coplanar.
+  std::function<Eigen::Vector3d(const Node& node)> position;
+};
+
+/// The wall of a solid cell towards lower or higher numbers on `axis`.
+struct Wall {
+  Lattice::Node cell;
+  std::size_t axis;
+  bool towards_higher;
+};
+
+template <class Body>
+void for_each_wall(const Lattice& lattice, Body body) {
+  const std::array<std::uint32_t, 3> size{static_cast<std::uint32_t>(lattice.steps[0].size()),
+                                          static_cast<std::uint32_t>(lattice.steps[1].size()),
+                                          static_cast<std::uint32_t>(lattice.steps[2].size())};
+  Lattice::Node cell;
+  for (cell[0] = 0; cell[0] < size[0]; ++cell[0]) {
+    for (cell[1] = 0; cell[1] < size[1]; ++cell[1]) {
+      for (cell[2] = 0; cell[2] < size[2]; ++cell[2]) {
+        if (!lattice.solid(cell)) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          for (const bool towards_higher : {false, true}) {
+            const bool closes = lattice.ring && axis == 1;
+            const bool at_end = towards_higher ? cell[axis] + 1 == size[axis] : cell[axis] == 0;
+            Lattice::Node beyond = cell;
+            beyond[axis] = (cell[axis] + (towards_higher ? 1 : size[axis] - 1)) % size[axis];
+            if ((at_end && !closes) || !lattice.solid(beyond)) body(Wall{cell, axis, towards_higher});
+          }
+        }
+      }
+    }
+  }
+}
+
+double distance_squared(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d along = a - b;
+  return dot_in_order(along, along);
+}
+
+class Builder {
+ public:
+  explicit Builder(const Lattice& lattice) : lattice_(lattice) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      start_[axis].push_back(0);
+      for (const std::uint32_t s : lattice.steps[axis]) start_[axis].push_back(start_[axis].back() + s);
+    }
+  }
+
+  void add(const Wall& wall) {
+    const std::size_t u = (wall.axis + 1) % 3;
+    const std::size_t v = (wall.axis + 2) % 3;
+    Lattice::Node node;
+    node[wall.axis] = start_[wall.axis][wall.cell[wall.axis] + (wall.towards_higher ? 1 : 0)];
+    for (std::uint32_t i = start_[u][wall.cell[u]]; i < start_[u][wall.cell[u] + 1]; ++i) {
+      for (std::uint32_t j = start_[v][wall.cell[v]]; j < start_[v][wall.cell[v] + 1]; ++j) {
+        const auto corner = [&](std::uint32_t di, std::uint32_t dj) {
+          node[u] = i + di;
+          node[v] = j + dj;
+          return vertex(node);
+        };
+        const std::uint32_t a = corner(0, 0);
+        const std::uint32_t b = corner(1, 0);
+        const std::uint32_t c = corner(1, 1);
+        const std::uint32_t d = corner(0, 1);
+        wall.towards_higher ? add_quad(a, b, c, d) : add_quad(a, d, c, b);
+      }
+    }
+  }
+
+  Surface take() { return std::move(surface_); }
+
+ private:
+  std::uint32_t vertex(Lattice::Node node) {
+    if (lattice_.ring && node[1] == start_[1].back()) node[1] = 0;
+    const std::uint64_t width = start_[2].back() + 1ULL;
+    const std::uint64_t key = (node[0] * (start_[1].back() + 1ULL) + node[1]) * width + node[2];
+    const auto [entry, fresh] = numbers_.try_emplace(key, static_cast<std::uint32_t>(surface_.vertices.size()));
+    if (fresh) surface_.add(lattice_.position(node));
+    return entry->second;
+  }
+
+  void add_quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    const auto& p = surface_.vertices;
+    if (distance_squared(p[a], p[c]) <= distance_squared(p[b], p[d])) {
+      surface_.triangles.push_back({a, b, c});
+      surface_.triangles.push_back({a, c, d});
+    } else {
+      surface_.triangles.push_back({b, c, d});
+      surface_.triangles.push_back({b, d, a});
+    }
+  }
+
+  const Lattice& lattice_;
+  std::array<std::vector<std::uint32_t>, 3> start_;
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
+  Surface surface_;
+};
+
+std::size_t count_triangles(const Lattice& lattice) {
+  std::size_t sum = 0;
+  for_each_wall(lattice, [&](const Wall& wall) {
+    const std::size_t u = (wall.axis + 1) % 3;
+    const std::size_t v = (wall.axis + 2) % 3;
+    sum += 2ULL * lattice.steps[u][wall.cell[u]] * lattice.steps[v][wall.cell[v]];
+  });
+  return sum;
+}
+
+/// The surface between solid and empty cells, facing the empty ones: two triangles per wall element, divided along its
+/// shorter diagonal. It is manifold unless two solid cells touch in an edge or corner only.
+Surface surface_of(const Lattice& lattice) {
+  Builder builder(lattice);
+  for_each_wall(lattice, [&](const Wall& wall) { builder.add(wall); });
+  return builder.take();
+}
+
 Lattice lattice_of(const BoxShape& shape, double h) {
   Lattice lattice;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    lattice.steps[axis] = {whole_steps(shape.size[static_cast<Eigen::Index>(axis)], h, 1)};
-  }
+  for (int axis = 0; axis < 3; ++axis) lattice.steps[axis] = {whole_steps(shape.size[axis], h, 1)};
   lattice.solid = [](const Lattice::Node&) { return true; };
   lattice.position = [size = shape.size, steps = lattice.steps](const Lattice::Node& node) {
     Eigen::Vector3d p;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < 3; ++axis) {
       const double fraction = static_cast<double>(node[axis]) / static_cast<double>(steps[axis][0]);
-      p[static_cast<Eigen::Index>(axis)] = (fraction - 0.5) * size[static_cast<Eigen::Index>(axis)];
+      p[axis] = (fraction - 0.5) * size[axis];
     }
     return p;
   };
@@ -98,30 +225,29 @@ void check(const CircularBoxShape& shape) {
   check_shape(2.0 * shape.beam < shape.height, "circular-box", "two beams must be thinner than height");
 }
 
-}  // namespace
-
-std::size_t minimum_triangles(const CircularBoxShape& shape) { return 80ULL * shape.sectors; }
-
-Mesh make_box(const BoxShape& shape, std::size_t triangles) {
-  for (Eigen::Index axis = 0; axis < 3; ++axis) check_length("box", "size", shape.size[axis]);
-  const std::size_t budget = triangle_budget("box", triangles, k_minimum_box);
-  const Eigen::Vector3d& s = shape.size;
-  const double area = 2.0 * (s.x() * s.y() + s.y() * s.z() + s.z() * s.x());
+/// @param area of the surface, about: where the search for the edge length starts
+template <class Shape>
+Mesh tessellate(const Shape& shape, double area, std::size_t budget, const char* name) {
   const double h = fit_edge_length(area, budget, [&](double edge) { return count_triangles(lattice_of(shape, edge)); });
   Surface surface = surface_of(lattice_of(shape, h));
   refine_to(surface, budget);
-  return to_mesh(std::move(surface), "box");
+  return to_mesh(std::move(surface), name);
+}
+
+}  // namespace
+
+Mesh make_box(const BoxShape& shape, std::size_t triangles) {
+  for (const double length : shape.size) check_length("box", "size", length);
+  const Eigen::Vector3d& s = shape.size;
+  const double area = 2.0 * (s.x() * s.y() + s.y() * s.z() + s.z() * s.x());
+  return tessellate(shape, area, triangle_budget("box", triangles, k_minimum_box), "box");
 }
 
 Mesh make_circular_box(const CircularBoxShape& shape, std::size_t triangles) {
   check(shape);
   const std::size_t budget = triangle_budget("circular-box", triangles, minimum_triangles(shape));
-  // Approximate: the area gives only the start of the search for the edge length.
-  const double area = 8.0 * shape.sectors * shape.beam * (shape.outer_radius + shape.height);
-  const double h = fit_edge_length(area, budget, [&](double edge) { return count_triangles(lattice_of(shape, edge)); });
-  Surface surface = surface_of(lattice_of(shape, h));
-  refine_to(surface, budget);
-  return to_mesh(std::move(surface), "circular-box");
+  return tessellate(shape, 8.0 * shape.sectors * shape.beam * (shape.outer_radius + shape.height), budget,
+                    "circular-box");
 }
 
 }  // namespace sixdof

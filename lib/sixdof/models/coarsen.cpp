@@ -7,27 +7,15 @@
 #include <Eigen/Geometry>
 
 #include <sixdof/base/error.h>
-#include <sixdof/models/fixed_order.h>
+#include <sixdof/models/half_edge.h>
 
 namespace sixdof {
 namespace {
 
-using HalfEdge = std::uint32_t;  // 3 * triangle + corner: from that corner to the next
 constexpr std::uint32_t k_none = ~0U;
 
-HalfEdge next_of(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
-HalfEdge previous_of(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1; }
-
-struct Candidate {
-  double length_squared;
-  std::uint32_t low, high;
-  HalfEdge half_edge;
-};
-
-bool collapses_later(const Candidate& x, const Candidate& y) {
-  if (x.length_squared != y.length_squared) return x.length_squared > y.length_squared;
-  if (x.low != y.low) return x.low > y.low;
-  return x.high > y.high;
+bool collapses_later(const Edge& x, const Edge& y) {
+  return std::tie(x.length_squared, x.low, x.high) > std::tie(y.length_squared, y.low, y.high);
 }
 
 /// 1 for an equilateral triangle, 0 for a degenerate one: area over the sum of squared edges, scaled.
@@ -63,7 +51,7 @@ class Coarsener {
       fill_queue();
       while (alive_ > triangles && !queue_.empty()) {
         std::pop_heap(queue_.begin(), queue_.end(), collapses_later);
-        const Candidate candidate = queue_.back();
+        const Edge candidate = queue_.back();
         queue_.pop_back();
         if (is_current(candidate)) try_collapse(candidate.half_edge, limits);
       }
@@ -72,12 +60,12 @@ class Coarsener {
   }
 
   void smooth(int rounds) {
-    std::vector<HalfEdge> leaving(surface_.vertices.size(), k_none);
+    std::vector<HalfEdge> first(surface_.vertices.size(), k_none);
     for (HalfEdge h = 0; h < twin_.size(); ++h) {
-      if (is_alive(h)) leaving[origin(h)] = h;
+      if (is_alive(h)) first[origin(h)] = h;
     }
     for (int round = 0; round < rounds; ++round) {
-      for (const HalfEdge h : leaving) {
+      for (const HalfEdge h : first) {
         if (h != k_none) smooth_vertex(h);
       }
     }
@@ -85,123 +73,87 @@ class Coarsener {
 
   /// Drops collapsed triangles and unused vertices; the order of the others stays.
   void compact() {
-    Surface kept;
-    std::vector<std::uint32_t> number(surface_.vertices.size(), k_none);
-    for (HalfEdge h = 0; h < twin_.size(); ++h) {
-      if (is_alive(h)) number[origin(h)] = 0;
-    }
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      if (number[v] == k_none) continue;
-      number[v] = static_cast<std::uint32_t>(kept.vertices.size());
-      kept.vertices.push_back(surface_.vertices[v]);
-    }
-    for (const Triangle& t : surface_.triangles) {
-      if (t[0] != k_none) kept.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
-    }
-    surface_ = std::move(kept);
+    std::erase_if(surface_.triangles, [](const Triangle& t) { return t[0] == k_none; });
+    drop_unreferenced(surface_.vertices, surface_.triangles);
   }
 
  private:
   std::uint32_t& origin(HalfEdge h) { return surface_.triangles[h / 3][h % 3]; }
-  std::uint32_t target(HalfEdge h) { return origin(next_of(h)); }
-  std::uint32_t opposite(HalfEdge h) { return origin(previous_of(h)); }
+  std::uint32_t target(HalfEdge h) { return origin(next_in_triangle(h)); }
+  std::uint32_t opposite(HalfEdge h) { return origin(previous_in_triangle(h)); }
   const Eigen::Vector3d& point(std::uint32_t v) const { return surface_.vertices[v]; }
   bool is_alive(HalfEdge h) { return surface_.triangles[h / 3][0] != k_none; }
-  /// The next half-edge that leaves the same vertex.
-  HalfEdge next_around_origin(HalfEdge h) const { return twin_[previous_of(h)]; }
 
-  void link_twins() {
-    std::vector<Candidate> edges;
-    for (HalfEdge h = 0; h < twin_.size(); ++h) edges.push_back(candidate_of(h));
-    std::sort(edges.begin(), edges.end(), [](const Candidate& x, const Candidate& y) {
-      if (x.low != y.low) return x.low < y.low;
-      if (x.high != y.high) return x.high < y.high;
-      return x.half_edge < y.half_edge;
-    });
-    for (std::size_t i = 0; i < edges.size(); i += 2) {
-      if (i + 1 == edges.size() || edges[i].low != edges[i + 1].low || edges[i].high != edges[i + 1].high ||
-          origin(edges[i].half_edge) == origin(edges[i + 1].half_edge)) {
-        throw BadMesh("only closed, consistently oriented surfaces can be made coarser");
-      }
-      twin_[edges[i].half_edge] = edges[i + 1].half_edge;
-      twin_[edges[i + 1].half_edge] = edges[i].half_edge;
-    }
+  /// All half-edges that leave the same vertex, from `start` on.
+  const std::vector<HalfEdge>& leaving(HalfEdge start) {
+    around_.clear();
+    HalfEdge h = start;
+    do {
+      around_.push_back(h);
+      h = twin_[previous_in_triangle(h)];
+    } while (h != start);
+    return around_;
   }
 
-  Candidate candidate_of(HalfEdge h) {
-    const std::uint32_t a = origin(h);
-    const std::uint32_t b = target(h);
-    const std::uint32_t low = std::min(a, b);
-    const std::uint32_t high = std::max(a, b);
-    const Eigen::Vector3d along = point(high) - point(low);
-    return {dot_in_order(along, along), low, high, h};
+  void link_twins() {
+    for_each_edge(sorted_sides(surface_.triangles), [this](std::span<const Side> sides) {
+      if (sides.size() != 2 || sides[0].forward == sides[1].forward) {
+        throw BadMesh("only closed, consistently oriented surfaces can be made coarser");
+      }
+      twin_[sides[0].corner] = sides[1].corner;
+      twin_[sides[1].corner] = sides[0].corner;
+    });
   }
 
   void fill_queue() {
     queue_.clear();
     for (HalfEdge h = 0; h < twin_.size(); ++h) {
-      if (is_alive(h) && h < twin_[h]) queue_.push_back(candidate_of(h));
+      if (is_alive(h) && h < twin_[h]) queue_.push_back(edge_of(surface_, h));
     }
     std::make_heap(queue_.begin(), queue_.end(), collapses_later);
   }
 
-  bool is_current(const Candidate& c) {
+  bool is_current(const Edge& c) {
     if (!is_alive(c.half_edge)) return false;
-    const Candidate now = candidate_of(c.half_edge);
-    return now.low == c.low && now.high == c.high && now.length_squared == c.length_squared;
+    const Edge now = edge_of(surface_, c.half_edge);
+    return now.joins_same(c) && now.length_squared == c.length_squared;
   }
 
   /// Whether the triangles around the origin of `start`, but those at vertex `skip`, stay within the limits if that
   /// origin moves to `position`.
   bool keeps_limits(HalfEdge start, std::uint32_t skip, const Eigen::Vector3d& position, const Limits& limits) {
-    HalfEdge h = start;
-    do {
+    const Eigen::Vector3d& old = point(origin(start));
+    for (const HalfEdge h : leaving(start)) {
       const std::uint32_t b = target(h);
       const std::uint32_t c = opposite(h);
-      if (b != skip && c != skip) {
-        const Eigen::Vector3d before = (point(b) - point(origin(h))).cross(point(c) - point(origin(h)));
-        const Eigen::Vector3d after = (point(b) - position).cross(point(c) - position);
-        if (dot_in_order(before, after) <= limits.cosine * norm_in_order(before) * norm_in_order(after)) return false;
-        if (quality(position, point(b), point(c)) <
-            std::min(limits.quality, quality(point(origin(h)), point(b), point(c)))) {
-          return false;
-        }
+      if (b == skip || c == skip) continue;
+      const Eigen::Vector3d before = (point(b) - old).cross(point(c) - old);
+      const Eigen::Vector3d after = (point(b) - position).cross(point(c) - position);
+      if (dot_in_order(before, after) <= limits.cosine * norm_in_order(before) * norm_in_order(after)) return false;
+      if (quality(position, point(b), point(c)) < std::min(limits.quality, quality(old, point(b), point(c)))) {
+        return false;
       }
-      h = next_around_origin(h);
-    } while (h != start);
+    }
     return true;
   }
 
-  void neighbours_of(HalfEdge start, std::vector<std::uint32_t>& out) {
-    out.clear();
-    HalfEdge h = start;
-    do {
-      out.push_back(target(h));
-      h = next_around_origin(h);
-    } while (h != start);
-  }
-
-  std::uint32_t degree(HalfEdge start) const {
-    std::uint32_t count = 0;
-    HalfEdge h = start;
-    do {
-      ++count;
-      h = next_around_origin(h);
-    } while (h != start);
-    return count;
+  std::vector<std::uint32_t> neighbours_of(HalfEdge start) {
+    std::vector<std::uint32_t> result;
+    for (const HalfEdge h : leaving(start)) result.push_back(target(h));
+    return result;
   }
 
   bool keeps_topology(HalfEdge h, const Limits& limits) {
     const HalfEdge other = twin_[h];
-    neighbours_of(h, around_a_);
-    neighbours_of(other, around_b_);
-    if (around_a_.size() + around_b_.size() - 4 > limits.degree || around_a_.size() + around_b_.size() < 7)
-      return false;
+    const std::vector<std::uint32_t> around_a = neighbours_of(h), around_b = neighbours_of(other);
+    const std::size_t degree = around_a.size() + around_b.size() - 4;
+    if (degree > limits.degree || degree < 3) return false;
     std::size_t common = 0;
-    for (const std::uint32_t v : around_a_) {
-      common += static_cast<std::size_t>(std::count(around_b_.begin(), around_b_.end(), v));
+    for (const std::uint32_t v : around_a) {
+      common += static_cast<std::size_t>(std::count(around_b.begin(), around_b.end(), v));
     }
-    return common == 2 && degree(previous_of(h)) > 3 && degree(previous_of(other)) > 3;
+    return common == 2 && leaving(previous_in_triangle(h)).size() > 3 &&
+           leaving(previous_in_triangle(other)).size() > 3;
   }
 
   void try_collapse(HalfEdge h, const Limits& limits) {
@@ -212,57 +164,43 @@ class Coarsener {
     const Eigen::Vector3d position = project_(0.5 * (point(a) + point(b)));
     if (!keeps_limits(h, b, position, limits) || !keeps_limits(other, a, position, limits)) return;
 
-    HalfEdge g = other;
-    do {
-      origin(g) = a;
-      g = next_around_origin(g);
-    } while (g != other);
+    for (const HalfEdge g : leaving(other)) origin(g) = a;
     surface_.vertices[a] = position;
     HalfEdge leaving_a = k_none;
     for (const HalfEdge gone : {h, other}) {
-      const HalfEdge left = twin_[next_of(gone)];
-      const HalfEdge right = twin_[previous_of(gone)];
+      const HalfEdge left = twin_[next_in_triangle(gone)];
+      const HalfEdge right = twin_[previous_in_triangle(gone)];
       twin_[left] = right;
       twin_[right] = left;
       if (gone == h) leaving_a = right;
     }
     for (const HalfEdge gone : {h, other}) surface_.triangles[gone / 3] = {k_none, k_none, k_none};
     alive_ -= 2;
-    g = leaving_a;
-    do {
+    for (const HalfEdge g : leaving(leaving_a)) {
       push(g);
-      push(next_of(g));
-      g = next_around_origin(g);
-    } while (g != leaving_a);
+      push(next_in_triangle(g));
+    }
   }
 
   void push(HalfEdge h) {
-    queue_.push_back(candidate_of(h));
+    queue_.push_back(edge_of(surface_, h));
     std::push_heap(queue_.begin(), queue_.end(), collapses_later);
   }
 
   /// Quality of the worst triangle at the origin of `start` if that origin moves to `position`.
   double worst_quality(HalfEdge start, const Eigen::Vector3d& position) {
     double worst = 1.0;
-    HalfEdge h = start;
-    do {
+    for (const HalfEdge h : leaving(start)) {
       worst = std::min(worst, quality(position, point(target(h)), point(opposite(h))));
-      h = next_around_origin(h);
-    } while (h != start);
+    }
     return worst;
   }
 
   /// Moves the origin of `start` to the mean of its neighbours if that improves its worst triangle.
   void smooth_vertex(HalfEdge start) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    double count = 0.0;
-    HalfEdge h = start;
-    do {
-      sum += point(target(h));
-      count += 1.0;
-      h = next_around_origin(h);
-    } while (h != start);
-    const Eigen::Vector3d position = project_(sum / count);
+    for (const HalfEdge h : leaving(start)) sum += point(target(h));
+    const Eigen::Vector3d position = project_(sum / static_cast<double>(around_.size()));
     constexpr Limits k_any_quality{0.0, 0.7, 0};
     const Eigen::Vector3d& old = point(origin(start));
     if (worst_quality(start, position) > worst_quality(start, old) &&
@@ -275,8 +213,8 @@ class Coarsener {
   const Project& project_;
   std::size_t alive_;
   std::vector<HalfEdge> twin_;
-  std::vector<Candidate> queue_;  ///< Heap, shortest first; may hold stale entries.
-  std::vector<std::uint32_t> around_a_, around_b_;
+  std::vector<Edge> queue_;       ///< Heap, shortest first; may hold stale entries.
+  std::vector<HalfEdge> around_;  ///< Of leaving().
 };
 
 }  // namespace

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
+
+#include <sixdof/geometry/sides.h>
 
 namespace sixdof {
 namespace {
@@ -29,17 +30,24 @@ constexpr std::array<Path, 6> k_paths{{{{0, 1, 2}, true},
                                        {{1, 0, 2}, false},
                                        {{2, 1, 0}, false}}};
 
+/// body(i, j, k) for all numbers below n.
+template <class Body>
+void for_each_triple(std::uint32_t n, const Body& body) {
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t j = 0; j < n; ++j) {
+      for (std::uint32_t k = 0; k < n; ++k) body(i, j, k);
+    }
+  }
+}
+
 class Marcher {
  public:
   explicit Marcher(const GridField& field) : field_(field) {}
 
   Surface run() {
-    const std::uint32_t blocks = field_.cells / k_block;
-    for (std::uint32_t i = 0; i < blocks; ++i) {
-      for (std::uint32_t j = 0; j < blocks; ++j) {
-        for (std::uint32_t k = 0; k < blocks; ++k) contour_block({i * k_block, j * k_block, k * k_block});
-      }
-    }
+    for_each_triple(field_.cells / k_block, [this](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+      contour_block({i * k_block, j * k_block, k * k_block});
+    });
     return std::move(surface_);
   }
 
@@ -49,18 +57,12 @@ class Marcher {
     const double middle = field_.value(first[0] + k_half, first[1] + k_half, first[2] + k_half);
     const double radius = std::sqrt(3.0) * k_half * field_.step;
     if (std::abs(middle) > field_.lipschitz * radius) return;
-    for (std::uint32_t i = 0; i <= k_block; ++i) {
-      for (std::uint32_t j = 0; j <= k_block; ++j) {
-        for (std::uint32_t k = 0; k <= k_block; ++k) {
-          values_[i][j][k] = field_.value(first[0] + i, first[1] + j, first[2] + k);
-        }
-      }
-    }
-    for (std::uint32_t i = 0; i < k_block; ++i) {
-      for (std::uint32_t j = 0; j < k_block; ++j) {
-        for (std::uint32_t k = 0; k < k_block; ++k) contour_cell(first, {i, j, k});
-      }
-    }
+    for_each_triple(k_block + 1, [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+      values_[i][j][k] = field_.value(first[0] + i, first[1] + j, first[2] + k);
+    });
+    for_each_triple(k_block, [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+      contour_cell(first, {i, j, k});
+    });
   }
 
   void contour_cell(const std::array<std::uint32_t, 3>& first, const std::array<std::uint32_t, 3>& cell) {
@@ -138,33 +140,24 @@ class Marcher {
 Surface contour(const GridField& field) { return Marcher(field).run(); }
 
 void keep_largest_component(Surface& surface) {
-  std::vector<std::uint32_t> parent(surface.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0U);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  UnionFind parts(surface.vertices.size());
   for (const Triangle& t : surface.triangles) {
-    parent[root(t[1])] = root(t[0]);
-    parent[root(t[2])] = root(t[0]);
+    parts.join(t[1], t[0]);
+    parts.join(t[2], t[0]);
   }
   std::vector<std::size_t> size(surface.vertices.size(), 0);
-  for (const Triangle& t : surface.triangles) ++size[root(t[0])];
+  for (const Triangle& t : surface.triangles) ++size[parts.find(t[0])];
   const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
   Surface kept;
   constexpr std::uint32_t k_none = ~0U;
   std::vector<std::uint32_t> number(surface.vertices.size(), k_none);
   for (const Triangle& t : surface.triangles) {
-    if (root(t[0]) != largest) continue;
-    Triangle renumbered{};
+    if (parts.find(t[0]) != largest) continue;
+    Triangle& renumbered = kept.triangles.emplace_back();
     for (std::size_t c = 0; c < 3; ++c) {
-      if (number[t[c]] == k_none) {
-        number[t[c]] = static_cast<std::uint32_t>(kept.vertices.size());
-        kept.vertices.push_back(surface.vertices[t[c]]);
-      }
+      if (number[t[c]] == k_none) number[t[c]] = kept.add(surface.vertices[t[c]]);
       renumbered[c] = number[t[c]];
     }
-    kept.triangles.push_back(renumbered);
   }
   surface = std::move(kept);
 }

@@ -1,6 +1,5 @@
 #include <sixdof/models/cos_sin.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -20,17 +19,9 @@ Eigen::Vector2d cos_sin_near_zero(double x) {
   return {1.0 - cosine, x - x * sine};
 }
 
-Eigen::Vector2d rotate_by_quarters(const Eigen::Vector2d& u, unsigned quarters) {
-  switch (quarters % 4) {
-    case 0:
-      return u;
-    case 1:
-      return {-u.y(), u.x()};
-    case 2:
-      return {-u.x(), -u.y()};
-    default:
-      return {u.y(), -u.x()};
-  }
+Eigen::Vector2d rotate_by_quarters(Eigen::Vector2d u, unsigned quarters) {
+  for (unsigned i = 0; i < quarters % 4; ++i) u = Eigen::Vector2d(-u.y(), u.x());
+  return u;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include <sixdof/models/gyroid.h>
+#include <sixdof/models/recipe.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <sixdof/models/coarsen.h>
 #include <sixdof/models/contour.h>
 #include <sixdof/models/cos_sin.h>
-#include <sixdof/models/fixed_order.h>
 #include <sixdof/models/sizing.h>
+#include <sixdof/models/surface.h>
 
 namespace sixdof {
 namespace {

@@ -1,6 +1,5 @@
 #include <sixdof/models/manifest.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <vector>
 
@@ -9,7 +8,6 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/load.h>
-#include <sixdof/models/manifest_text.h>
 
 namespace sixdof {
 namespace {
@@ -25,7 +23,7 @@ std::vector<FetchedModel> parse_manifest() {
     model.licence = json.at("packages").at(model.package).at("licence");
     model.file = entry.at("file");
     model.triangles = entry.at("triangles");
-    for (std::size_t k = 0; k < 3; ++k) model.size[static_cast<Eigen::Index>(k)] = entry.at("size").at(k);
+    for (int k = 0; k < 3; ++k) model.size[k] = entry.at("size").at(static_cast<std::size_t>(k));
     model.genus = entry.at("genus");
     model.closed = entry.at("closed");
     model.manifold = entry.at("manifold");
@@ -38,10 +36,9 @@ std::vector<FetchedModel> parse_manifest() {
 /// The folder models/ of the source tree around `start`, empty if there is none.
 std::filesystem::path models_folder_above(std::filesystem::path start) {
   std::error_code ignored;
-  while (!start.empty()) {
+  for (; !start.empty(); start = start.parent_path()) {
     if (std::filesystem::exists(start / "models" / "models.json", ignored)) return start / "models";
     if (start == start.parent_path()) break;
-    start = start.parent_path();
   }
   return {};
 }
@@ -51,12 +48,6 @@ std::filesystem::path models_folder_above(std::filesystem::path start) {
 std::span<const FetchedModel> fetched_models() {
   static const std::vector<FetchedModel> models = parse_manifest();
   return models;
-}
-
-const FetchedModel* find_fetched_model(std::string_view name) {
-  const auto models = fetched_models();
-  const auto found = std::find_if(models.begin(), models.end(), [&](const FetchedModel& m) { return m.name == name; });
-  return found == models.end() ? nullptr : &*found;
 }
 
 std::filesystem::path model_cache() {
@@ -78,14 +69,13 @@ Mesh load_fetched_model(const FetchedModel& model) {
   if (!std::filesystem::exists(file)) {
     throw BadFile(file.string(), fmt::format("the model {} is not here yet: {}", model.name, remedy));
   }
-  const auto load = [&] {
+  Mesh mesh = [&] {
     try {
       return load_mesh(file);
     } catch (const Error& e) {
       throw BadFile(e.what(), remedy);
     }
-  };
-  Mesh mesh = load();
+  }();
   if (mesh.hash() != model.hash) {
     throw BadFile(file.string(), fmt::format("is not the model {}: its content hash is {}, not {}; {}", model.name,
                                              mesh.hash(), model.hash, remedy));

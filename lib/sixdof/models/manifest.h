@@ -26,11 +26,11 @@ struct FetchedModel {
   std::string hash;  ///< Mesh::hash() of the file.
 };
 
+/// The content of models/models.json: a part of the library, so that an installed program needs no data file.
+std::string_view manifest_text();
+
 /// All entries, in the manifest's order.
 std::span<const FetchedModel> fetched_models();
-
-/// The entry of that name, or null.
-const FetchedModel* find_fetched_model(std::string_view name);
 
 /// The folder of fetched models: that of environment variable SIXDOF_MODELS, else models/cache of the source tree that
 /// contains the running program or the current directory, else models/cache in the current directory.

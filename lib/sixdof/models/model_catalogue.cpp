@@ -37,6 +37,13 @@ std::vector<std::string> model_names() {
   return names;
 }
 
+/// The entry of that name, or null.
+template <class Entry>
+const Entry* find(std::span<const Entry> entries, std::string_view name) {
+  const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.name == name; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
 [[noreturn]] void throw_unknown(std::string_view name) {
   const std::vector<std::string> near = suggestions(name, model_names());
   throw BadArgument(near.empty()
@@ -61,13 +68,13 @@ ModelName parse_model_name(std::string_view name) {
 Mesh load_model(const std::string& name_or_file) {
   if (name_or_file.find_first_of("./") != std::string::npos) return load_mesh(name_or_file);
   const ModelName parts = parse_model_name(name_or_file);
-  if (const Recipe* const recipe = find_recipe(parts.base)) {
+  if (const Recipe* const recipe = find(recipes(), parts.base)) {
     if (!parts.triangles) {
       throw BadArgument(fmt::format("{0} is a recipe: say how many triangles, as in {0}-10k", parts.base));
     }
     return recipe->make(*parts.triangles).renamed(name_or_file);
   }
-  const FetchedModel* const fetched = find_fetched_model(parts.base);
+  const FetchedModel* const fetched = find(fetched_models(), parts.base);
   if (fetched == nullptr) throw_unknown(parts.base);
   const std::size_t triangles = parts.triangles.value_or(fetched->triangles);
   if (triangles < fetched->triangles) {

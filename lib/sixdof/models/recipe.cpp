@@ -1,13 +1,6 @@
 #include <sixdof/models/recipe.h>
 
-#include <algorithm>
 #include <array>
-
-#include <sixdof/models/boxes.h>
-#include <sixdof/models/gyroid.h>
-#include <sixdof/models/revolved.h>
-#include <sixdof/models/round.h>
-#include <sixdof/models/tube.h>
 
 namespace sixdof {
 namespace {
@@ -17,8 +10,6 @@ template <class Shape, Mesh (*make)(const Shape&, std::size_t)>
 Mesh standard(std::size_t triangles) {
   return make({}, triangles);
 }
-
-constexpr unsigned k_circular_box_sectors = CircularBoxShape{}.sectors;
 
 constexpr std::array k_recipes{
     Recipe{"sphere", "ball of radius 1 about the origin", k_minimum_sphere, 0, standard<SphereShape, make_sphere>},
@@ -39,7 +30,8 @@ constexpr std::array k_recipes{
     Recipe{"circular-box",
            "ring of 12 hollow box cells about the z axis, centred at the origin: outer radius 1, inner "
            "radius 0.5, height 0.5, beams 0.1; flat walls, sharp edges, open windows",
-           80 * k_circular_box_sectors, 4 * k_circular_box_sectors + 1, standard<CircularBoxShape, make_circular_box>},
+           minimum_triangles(CircularBoxShape{}), 4 * CircularBoxShape{}.sectors + 1,
+           standard<CircularBoxShape, make_circular_box>},
     Recipe{"gyroid-ball",
            "one labyrinth of a gyroid of period 1 in the ball of radius 1 about the origin, edges rounded",
            k_minimum_gyroid_ball, 13, standard<GyroidBallShape, make_gyroid_ball>},
@@ -48,11 +40,5 @@ constexpr std::array k_recipes{
 }  // namespace
 
 std::span<const Recipe> recipes() { return k_recipes; }
-
-const Recipe* find_recipe(std::string_view name) {
-  const auto* const found =
-      std::find_if(k_recipes.begin(), k_recipes.end(), [&](const Recipe& r) { return r.name == name; });
-  return found == k_recipes.end() ? nullptr : found;
-}
 
 }  // namespace sixdof

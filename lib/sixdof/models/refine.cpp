@@ -5,38 +5,19 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/models/fixed_order.h>
+#include <sixdof/models/half_edge.h>
 
 namespace sixdof {
 namespace {
 
-using HalfEdge = std::uint32_t;  // 3 * triangle + corner: from that corner to the next
-
-HalfEdge next_in_triangle(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
-HalfEdge previous_in_triangle(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1; }
-
-/// An edge by its end points, low < high, and one of its half-edges.
-struct Edge {
-  double length_squared;
-  std::uint32_t low, high;
-  HalfEdge half_edge;
-
-  bool joins_same(const Edge& other) const { return low == other.low && high == other.high; }
-};
-
 /// Order of splitting: a total order of the edges. "Less" is "later".
 bool splits_later(const Edge& x, const Edge& y) {
-  if (x.length_squared != y.length_squared) return x.length_squared < y.length_squared;
-  if (x.low != y.low) return x.low > y.low;
-  return x.high > y.high;
+  return std::tie(x.length_squared, y.low, y.high) < std::tie(y.length_squared, x.low, x.high);
 }
 
 class Refiner {
  public:
   Refiner(Surface& surface, const SplitPosition& position) : surface_(surface), position_(position) {
-    const std::size_t half_edges = 3 * surface.triangles.size();
-    queue_.reserve(half_edges);
-    for (std::size_t h = 0; h < half_edges; ++h) queue_.push_back(edge_of(static_cast<HalfEdge>(h)));
     link_half_edges();
     std::make_heap(queue_.begin(), queue_.end(), splits_later);
   }
@@ -47,7 +28,7 @@ class Refiner {
       const Edge edge = queue_.back();
       queue_.pop_back();
       // The queue keeps entries of edges that have been split or belong to another half-edge now.
-      if (!edge.joins_same(edge_of(edge.half_edge))) continue;
+      if (!edge.joins_same(edge_of(surface_, edge.half_edge))) continue;
       split(edge);
       return;
     }
@@ -56,35 +37,13 @@ class Refiner {
  private:
   std::uint32_t& origin(HalfEdge h) { return surface_.triangles[h / 3][h % 3]; }
 
-  Edge edge_of(HalfEdge h) {
-    const std::uint32_t a = origin(h);
-    const std::uint32_t b = origin(next_in_triangle(h));
-    // From the lower number to the higher: the length has the same bits on both sides.
-    const auto [low, high] = std::minmax(a, b);
-    const Eigen::Vector3d along = surface_.vertices[high] - surface_.vertices[low];
-    return {dot_in_order(along, along), low, high, h};
-  }
-
   /// Links the half-edges of each edge, of any number, in a ring, and keeps one queue entry per edge.
   void link_half_edges() {
-    std::sort(queue_.begin(), queue_.end(), [](const Edge& x, const Edge& y) {
-      if (x.low != y.low) return x.low < y.low;
-      if (x.high != y.high) return x.high < y.high;
-      return x.half_edge < y.half_edge;
+    ring_.resize(3 * surface_.triangles.size());
+    for_each_edge(sorted_sides(surface_.triangles), [this](std::span<const Side> sides) {
+      for (std::size_t i = 0; i < sides.size(); ++i) ring_[sides[i].corner] = sides[(i + 1) % sides.size()].corner;
+      queue_.push_back(edge_of(surface_, sides[0].corner));
     });
-    ring_.resize(queue_.size());
-    std::size_t kept = 0;
-    for (std::size_t first = 0; first < queue_.size();) {
-      std::size_t last = first;
-      while (last + 1 < queue_.size() && queue_[last + 1].joins_same(queue_[first])) {
-        ring_[queue_[last].half_edge] = queue_[last + 1].half_edge;
-        ++last;
-      }
-      ring_[queue_[last].half_edge] = queue_[first].half_edge;
-      queue_[kept++] = queue_[first];
-      first = last + 1;
-    }
-    queue_.resize(kept);
   }
 
   /// Replaces `old` by `fresh` in its ring.
@@ -105,13 +64,12 @@ class Refiner {
   }
 
   void push(HalfEdge h) {
-    queue_.push_back(edge_of(h));
+    queue_.push_back(edge_of(surface_, h));
     std::push_heap(queue_.begin(), queue_.end(), splits_later);
   }
 
   void split(const Edge& edge) {
-    const auto middle = static_cast<std::uint32_t>(surface_.vertices.size());
-    surface_.vertices.push_back(position_(surface_, edge.low, edge.high));
+    const std::uint32_t middle = surface_.add(position_(surface_, edge.low, edge.high));
 
     around_.clear();
     HalfEdge h = edge.half_edge;

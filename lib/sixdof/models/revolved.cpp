@@ -1,14 +1,15 @@
-#include <sixdof/models/revolved.h>
+#include <sixdof/models/recipe.h>
 
 #include <array>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <sixdof/models/cos_sin.h>
 #include <sixdof/models/refine.h>
-#include <sixdof/models/rings.h>
 #include <sixdof/models/sizing.h>
+#include <sixdof/models/surface.h>
 
 namespace sixdof {
 namespace {
@@ -17,8 +18,6 @@ struct ProfilePoint {
   double radius, z;
 };
 
-/// Distance of rings over edge length: sqrt(3) / 2, for equilateral triangles.
-constexpr double k_row = 0.8660254037844386;
 constexpr std::uint32_t k_fewest_around = 6;
 
 struct ProfileRing {
@@ -67,20 +66,16 @@ Mesh revolve(std::span<const ProfilePoint> profile, double area, std::size_t bud
       fit_edge_length(area, budget, [&](double edge) { return count_triangles(rings_along(profile, edge)); });
   Surface surface;
   std::vector<char> on_side;
-  Ring before;
-  bool first = true;
-  std::uint32_t shift = 0;
+  std::optional<Ring> before;
   for (const ProfileRing& at : rings_along(profile, h)) {
-    const Ring ring{static_cast<std::uint32_t>(surface.vertices.size()), at.count, shift};
+    const Ring ring{static_cast<std::uint32_t>(surface.vertices.size()), at.count, before ? 1 - before->shift : 0};
     for (std::uint32_t j = 0; j < ring.count; ++j) {
-      const Eigen::Vector2d u = at.radius * cos_sin(2ULL * j + shift, 2ULL * ring.count);
+      const Eigen::Vector2d u = at.radius * cos_sin(2ULL * j + ring.shift, 2ULL * ring.count);
       surface.vertices.emplace_back(u.x(), u.y(), at.z);
       on_side.push_back(at.on_side ? 1 : 0);
     }
-    if (!first) stitch(surface, before, ring);
+    if (before) stitch(surface, *before, ring);
     before = ring;
-    first = false;
-    shift = 1 - shift;
   }
   refine_to(surface, budget, [&](const Surface& s, std::uint32_t a, std::uint32_t b) {
     Eigen::Vector3d p = midpoint_of_edge(s, a, b);

@@ -1,4 +1,4 @@
-#include <sixdof/models/round.h>
+#include <sixdof/models/recipe.h>
 
 #include <array>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <sixdof/models/cos_sin.h>
-#include <sixdof/models/fixed_order.h>
 #include <sixdof/models/refine.h>
 #include <sixdof/models/sizing.h>
+#include <sixdof/models/surface.h>
 
 namespace sixdof {
 namespace {
@@ -48,10 +48,8 @@ Surface divide_faces(const Surface& coarse, std::uint32_t n) {
     const auto [low, high] = std::minmax(a, b);
     const auto [entry, fresh] =
         first_on_edge.try_emplace({low, high}, static_cast<std::uint32_t>(fine.vertices.size()));
-    if (fresh) {
-      for (std::uint32_t i = 1; i < n; ++i) {
-        fine.vertices.push_back(between(coarse.vertices[low], coarse.vertices[high], i, n));
-      }
+    for (std::uint32_t i = 1; fresh && i < n; ++i) {
+      fine.add(between(coarse.vertices[low], coarse.vertices[high], i, n));
     }
     return entry->second + (a == low ? k : n - k) - 1;
   };
@@ -69,9 +67,7 @@ Surface divide_faces(const Surface& coarse, std::uint32_t n) {
         } else if (k == 0 || k == r) {
           row.push_back(k == 0 ? left : right);
         } else {
-          row.push_back(static_cast<std::uint32_t>(fine.vertices.size()));
-          const Eigen::Vector3d inside = between(fine.vertices[left], fine.vertices[right], k, r);
-          fine.vertices.push_back(inside);
+          row.push_back(fine.add(between(fine.vertices[left], fine.vertices[right], k, r)));
         }
       }
       for (std::uint32_t k = 0; k < r; ++k) {
@@ -101,12 +97,6 @@ Eigen::Vector3d direction_of(const Eigen::Vector3d& p) { return p / norm_in_orde
 
 }  // namespace
 
-double bumpy_radius(const BumpySphereShape& shape, const Eigen::Vector3d& direction) {
-  const double wave = cos_sin(shape.waves * direction.x()).x() * cos_sin(shape.waves * direction.y()).x() *
-                      cos_sin(shape.waves * direction.z()).x();
-  return shape.radius * (1.0 + shape.amplitude * wave);
-}
-
 Mesh make_sphere(const SphereShape& shape, std::size_t triangles) {
   check_length("sphere", "radius", shape.radius);
   return make_geodesic("sphere", triangles,
@@ -119,7 +109,9 @@ Mesh make_bumpy_sphere(const BumpySphereShape& shape, std::size_t triangles) {
   check_shape(shape.waves >= 0.0 && shape.waves <= 20.0, "bumpy-sphere", "waves must be from 0 to 20");
   return make_geodesic("bumpy-sphere", triangles, [&](const Eigen::Vector3d& p) {
     const Eigen::Vector3d direction = direction_of(p);
-    return Eigen::Vector3d(bumpy_radius(shape, direction) * direction);
+    const double wave = cos_sin(shape.waves * direction.x()).x() * cos_sin(shape.waves * direction.y()).x() *
+                        cos_sin(shape.waves * direction.z()).x();
+    return Eigen::Vector3d(shape.radius * (1.0 + shape.amplitude * wave) * direction);
   });
 }
 

@@ -1,4 +1,4 @@
-#include <sixdof/models/tube.h>
+#include <sixdof/models/recipe.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,17 +9,15 @@
 #include <Eigen/Geometry>
 
 #include <sixdof/models/cos_sin.h>
-#include <sixdof/models/fixed_order.h>
 #include <sixdof/models/refine.h>
-#include <sixdof/models/rings.h>
 #include <sixdof/models/sizing.h>
+#include <sixdof/models/surface.h>
 
 namespace sixdof {
 namespace {
 
 constexpr double k_two_pi = 2.0 * std::numbers::pi;
 constexpr std::uint32_t k_core_points = 1024;  // beyond twice the bandwidth of the speed of any knot that is allowed
-constexpr double k_row = 0.8660254037844386;   // distance of rows of equilateral triangles over edge length
 
 /// A point of the core: position, first and second derivative by t.
 struct CorePoint {
@@ -102,17 +100,31 @@ void check_clearance(const TorusKnotShape& shape) {
   }
 }
 
+/// Length of the core, by the trapezium rule (exact to rounding for a periodic analytic curve).
+double core_length(const TorusKnotShape& shape) {
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < k_core_points; ++i) {
+    sum += norm_in_order(core_at(shape, static_cast<double>(i) / k_core_points).first);
+  }
+  return sum / k_core_points;
+}
+
 struct Counts {
   std::uint32_t along, around;
 };
 
-/// Rows along the core and vertices around the tube for edges of length h. Rows are staggered: their number is even.
-Counts counts_for(double core, double tube_radius, double h, Counts fewest) {
-  return {2 * whole_steps(core, 2.0 * k_row * h, fewest.along / 2),
-          whole_steps(k_two_pi * tube_radius, h, fewest.around)};
+/// Rows along the core and vertices around the tube within a budget of triangles. Rows are staggered: their number is
+/// even.
+Counts fit_counts(double core, double tube_radius, std::size_t budget, Counts fewest) {
+  const auto counts_for = [&](double h) -> Counts {
+    return {2 * whole_steps(core, 2.0 * k_row * h, fewest.along / 2),
+            whole_steps(k_two_pi * tube_radius, h, fewest.around)};
+  };
+  return counts_for(fit_edge_length(core * k_two_pi * tube_radius, budget, [&](double h) {
+    const Counts c = counts_for(h);
+    return std::size_t{2} * c.along * c.around;
+  }));
 }
-
-std::size_t count_triangles(const Counts& c) { return 2ULL * c.along * c.around; }
 
 void stitch_all(Surface& surface, const Counts& counts) {
   for (std::uint32_t i = 0; i < counts.along; ++i) {
@@ -128,14 +140,6 @@ static_assert(2 * k_fewest_torus_knot.along * k_fewest_torus_knot.around == k_mi
 
 }  // namespace
 
-double core_length(const TorusKnotShape& shape) {
-  double sum = 0.0;
-  for (std::uint32_t i = 0; i < k_core_points; ++i) {
-    sum += norm_in_order(core_at(shape, static_cast<double>(i) / k_core_points).first);
-  }
-  return sum / k_core_points;
-}
-
 Mesh make_torus(const TorusShape& shape, std::size_t triangles) {
   check_length("torus", "major_radius", shape.major_radius);
   check_length("torus", "minor_radius", shape.minor_radius);
@@ -143,10 +147,7 @@ Mesh make_torus(const TorusShape& shape, std::size_t triangles) {
   const std::size_t budget = triangle_budget("torus", triangles, k_minimum_torus);
   const double core = k_two_pi * shape.major_radius;
   const double r = shape.minor_radius;
-  const double h = fit_edge_length(core * k_two_pi * r, budget, [&](double edge) {
-    return count_triangles(counts_for(core, r, edge, k_fewest_torus));
-  });
-  const Counts counts = counts_for(core, r, h, k_fewest_torus);
+  const Counts counts = fit_counts(core, r, budget, k_fewest_torus);
   Surface surface;
   for (std::uint32_t i = 0; i < counts.along; ++i) {
     const Eigen::Vector2d around = cos_sin(i, counts.along);
@@ -180,10 +181,7 @@ Mesh make_torus_knot(const TorusKnotShape& shape, std::size_t triangles) {
   const std::size_t budget = triangle_budget("torus-knot", triangles, k_minimum_torus_knot);
   const double core = core_length(shape);
   const double radius = shape.tube_radius;
-  const auto counts_at = [&](double edge) { return counts_for(core, radius, edge, k_fewest_torus_knot); };
-  const double h =
-      fit_edge_length(core * k_two_pi * radius, budget, [&](double edge) { return count_triangles(counts_at(edge)); });
-  const Counts counts = counts_at(h);
+  const Counts counts = fit_counts(core, radius, budget, k_fewest_torus_knot);
   Surface surface;
   std::vector<double> parameter;  // of the ring that each vertex lies on
   const std::vector<double> rows = equal_parts(shape, counts.along);

@@ -6,11 +6,89 @@
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
-#include <sixdof/oracle/candidates-inl.h>
+#include <sixdof/oracle/candidates_bounds-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::candidates {
 namespace HWY_NAMESPACE {
+
+/// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. The order of
+/// the pairs found is that of the trees.
+/// @tparam moving the displacement is not zero
+/// @tparam Test called as test(leaf of A, its lanes, leaf of B, its lanes) for leaves that may intersect
+template <bool moving, class Test>
+class DualTreeTraversal {
+ public:
+  DualTreeTraversal(const Tree& a, const Tree& b, const TreeMotion& motion, Test test)
+      : a_(a), b_(b), motion_(motion), test_(test) {}
+
+  void run() { expand(0, 0, ~0u, ~0u); }
+
+ private:
+  /// Expands all pairs of the given children (bits) of two nodes.
+  void expand(std::uint32_t index_a, std::uint32_t index_b, std::uint32_t lanes_a, std::uint32_t lanes_b) {
+    const Tree::Node& node_a = a_.nodes()[index_a];
+    const Tree::Node& node_b = b_.nodes()[index_b];
+    std::uint32_t overlapping[k_width] = {};  // children of A, for each child of B
+    std::uint32_t leaves_a = 0;
+    {
+      Children children_a, children_b;
+      load_children<false>(node_a, motion_, children_a);
+      load_children<true>(node_b, motion_, children_b);
+      lanes_a &= (1u << node_a.child_count) - 1;
+      lanes_b &= (1u << node_b.child_count) - 1;
+      for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+        overlapping[j] = overlapping_children<moving>(children_a, node_a, children_b, j, motion_) & lanes_a;
+      }
+    }
+    for (std::size_t i = 0; i < node_a.child_count; ++i) {
+      if (node_a.child[i].is_leaf()) leaves_a |= 1u << i;
+    }
+    test_leaves(node_a, node_b, leaves_a, lanes_b, overlapping);
+    for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+      const Tree::Child child_b = node_b.child[j];
+      for (std::uint32_t m = child_b.is_leaf() ? overlapping[j] & ~leaves_a : overlapping[j]; m != 0; m &= m - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(m));
+        const Tree::Child child_a = node_a.child[i];
+        if (child_b.is_leaf()) {
+          expand(child_a.node(), index_b, ~0u, 1u << j);
+        } else if (child_a.is_leaf()) {
+          expand(index_a, child_b.node(), 1u << i, ~0u);
+        } else {
+          expand(child_a.node(), child_b.node(), ~0u, ~0u);
+        }
+      }
+    }
+  }
+
+  HWY_NOINLINE void test_leaves(const Tree::Node& node_a, const Tree::Node& node_b, std::uint32_t leaves_a,
+                                std::uint32_t lanes_b, const std::uint32_t* overlapping) {
+    LeafLanes of_a[k_width], of_b;
+    std::uint32_t loaded = 0;
+    for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+      const Tree::Child leaf_b = node_b.child[j];
+      if (!leaf_b.is_leaf() || (overlapping[j] & leaves_a) == 0) continue;
+      load_leaf_of_b(b_.leaves()[node_b.leaf[j]], motion_, of_b);
+      std::uint32_t left = overlapping[j] & leaves_a;
+      if constexpr (moving) left &= overlapping_boxes(node_a, of_b, motion_);
+      for (std::uint32_t m = left; m != 0; m &= m - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(m));
+        const Tree::Child leaf_a = node_a.child[i];
+        if ((loaded & 1u << i) == 0) load_leaf_of_a(a_.leaves()[node_a.leaf[i]], of_a[i]);
+        loaded |= 1u << i;
+        test_(leaf_a, of_a[i], leaf_b, of_b);
+      }
+    }
+  }
+
+  const Tree& a_;
+  const Tree& b_;
+  const TreeMotion& motion_;
+  Test test_;
+};
 
 /// Lanes in which all corners lie on one side of a plane, by more than `tolerance`.
 HWY_INLINE M on_one_side(const PlaneRange& range, V tolerance) {
@@ -44,20 +122,115 @@ void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector
   DualTreeTraversal<false, decltype(test)>(a, b, motion, test).run();
 }
 
+// A separating-axis test of two triangles (boxes along each axis, both planes) is linear in the displacement's
+// fraction, so each test gives the interval of fractions at which it does not separate the triangles. They may
+// intersect in the intersection of these intervals.
+
+/// Magnitude of a fraction that is not bounded.
+constexpr float k_unbounded = 1e9f;
+
+/// To the fractions x with low <= speed x <= high. Lanes with a speed so small that rounding loses speed x stay.
+HWY_INLINE void narrow_to_linear(V low, V high, V speed, FractionInterval& interval) {
+  constexpr float k_lost = 1e-30f;
+  const M still = hn::Le(hn::Abs(speed), set(k_lost));
+  const V inverse = hn::Div(set(1.0f), hn::IfThenElse(still, set(1.0f), speed));
+  const V x = hn::Mul(low, inverse), y = hn::Mul(high, inverse);
+  interval.first = hn::Max(interval.first, hn::IfThenElse(still, set(-k_unbounded), hn::Min(x, y)));
+  interval.last = hn::Min(interval.last, hn::IfThenElse(still, set(k_unbounded), hn::Max(x, y)));
+}
+
+/// Pairs of triangles (bits) that may intersect at a fraction in 0 .. 1, and the intervals of all pairs.
+HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLanes& b, const TreeMotion& x,
+                                               float* first, float* last) {
+  std::uint32_t bits = 0;
+  const V zero = hn::Zero(k_lanes);
+  const V one = set(1.0f);
+  const V displacement[3] = {set(x.displacement[0]), set(x.displacement[1]), set(x.displacement[2])};
+  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
+    const auto of_a = [i](const float* p) { return load_of_a(p, i); };
+    const auto of_b = [i](const float* p) { return load_of_b(p, i); };
+    FractionInterval interval{set(-k_unbounded), set(k_unbounded)};
+    for (std::size_t k = 0; k < 3; ++k) {  // B's boxes include the slack
+      interval.narrow_to_boxes(of_a(a.lower[k]), of_a(a.upper[k]), of_b(b.lower[k]), of_b(b.upper[k]), k, x);
+    }
+    const auto store = [&] {  // returns the lanes whose interval contains a fraction in 0 .. 1
+      const V pad = set(k_fraction_rounding);
+      const V low = hn::Sub(hn::Max(interval.first, hn::Neg(one)), pad);
+      const V high = hn::Add(hn::Min(interval.last, hn::Add(one, one)), pad);
+      hn::StoreU(low, k_lanes, first + i);
+      hn::StoreU(high, k_lanes, last + i);
+      return hn::And(hn::Le(low, high), hn::And(hn::Le(low, one), hn::Ge(high, zero)));
+    };
+    if (hn::AllFalse(k_lanes, store())) continue;
+    PairLanes p(a, b, i, x.slack);
+    // Rounding of the products of normals, of up to the square of a size, with differences as long as the displacement.
+    const V rounding = hn::Set(
+        k_lanes, 1e-6f * (std::abs(x.displacement[0]) + std::abs(x.displacement[1]) + std::abs(x.displacement[2])));
+    p.tolerance_a = unfused_mul_add(rounding, hn::Mul(of_a(a.size), of_a(a.size)), p.tolerance_a);
+    p.tolerance_b = unfused_mul_add(rounding, hn::Mul(of_b(b.size), of_b(b.size)), p.tolerance_b);
+    {  // B's corners and A's plane: distances increase by the displacement along the normal.
+      const PlaneRange range(p.normal_a, p.corner_a[0], p.corner_b);
+      narrow_to_linear(hn::Sub(hn::Neg(p.tolerance_a), range.high), hn::Sub(p.tolerance_a, range.low),
+                       dot(p.normal_a, displacement), interval);
+    }
+    {  // A's corners and B's plane: they decrease.
+      const PlaneRange range(p.normal_b, p.corner_b[0], p.corner_a);
+      narrow_to_linear(hn::Sub(range.low, p.tolerance_b), hn::Add(range.high, p.tolerance_b),
+                       dot(p.normal_b, displacement), interval);
+    }
+    bits |= bits_of(store(), i);
+  }
+  return bits;
+}
+
+void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+                           SweptCandidates& found) {
+  const TreeMotion motion(a, b, X_AB, displacement);
+  const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b) {
+    float first[k_pairs], last[k_pairs];
+    const std::uint32_t bits = test_moving_triangles(of_a, of_b, motion, first, last);
+    for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t lane, TrianglePair pair) {
+      found.pairs.push_back(pair);
+      found.first.push_back(first[lane]);
+      found.last.push_back(last[lane]);
+    });
+  };
+  DualTreeTraversal<true, decltype(test)>(a, b, motion, test).run();
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace sixdof::candidates
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sixdof {
-
 namespace candidates {
 HWY_EXPORT(find_candidates);
-}
+HWY_EXPORT(find_swept_candidates);
+}  // namespace candidates
 
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<TrianglePair>& pairs) {
   pairs.clear();
   HWY_DYNAMIC_DISPATCH(candidates::find_candidates)(a, b, X_AB, pairs);
+}
+
+void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+                           SweptCandidates& found) {
+  found.pairs.clear();
+  found.first.clear();
+  found.last.clear();
+  HWY_DYNAMIC_DISPATCH(candidates::find_swept_candidates)(a, b, X_AB, displacement, found);
+}
+
+void select_candidates(const SweptCandidates& swept, double x, std::vector<TrianglePair>& pairs) {
+  const auto fraction = static_cast<float>(x);  // intervals are padded by more than this rounds
+  pairs.resize(swept.pairs.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < swept.pairs.size(); ++i) {
+    pairs[count] = swept.pairs[i];
+    count += swept.first[i] <= fraction && fraction <= swept.last[i] ? 1 : 0;
+  }
+  pairs.resize(count);
 }
 
 }  // namespace sixdof

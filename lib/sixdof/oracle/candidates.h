@@ -8,7 +8,6 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/predicates.h>
 #include <sixdof/geometry/tree.h>
-#include <sixdof/geometry/triangle_pair.h>
 
 namespace sixdof {
 
@@ -27,5 +26,22 @@ inline Eigen::Vector3d transform_point(const Pose& X_AB, const Eigen::Vector3d& 
 /// Finds the pairs of triangles of A and of B at X_AB that may intersect: all that intersect in the sense of
 /// crossing.h, and few others. The same pairs in the same order on every instruction set.
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<TrianglePair>& pairs);
+
+/// Pairs of triangles that may intersect during a translation of B, in the order of find_candidates().
+struct SweptCandidates {
+  std::vector<TrianglePair> pairs;
+  /// Of each pair: the interval of the displacement's fraction in which it may intersect. Extends below 0 and above 1
+  /// where the pair does.
+  std::vector<float> first, last;
+};
+
+/// Finds the pairs of triangles of A and B that may intersect while B is translated from X_AB by x * displacement
+/// (A's frame), 0 <= x <= 1. Conservative as find_candidates(): every pair that intersects at x is found, and
+/// first <= x <= last.
+void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+                           SweptCandidates& found);
+
+/// The pairs that may intersect at the fraction x of the displacement.
+void select_candidates(const SweptCandidates& swept, double x, std::vector<TrianglePair>& pairs);
 
 }  // namespace sixdof

@@ -1,14 +1,11 @@
-// Compiled once per instruction set: part of candidates.cpp and swept_candidates.cpp, included by nothing else.
-#if defined(SIXDOF_ORACLE_CANDIDATES_BOUNDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIXDOF_ORACLE_CANDIDATES_BOUNDS_INL_H_
-#undef SIXDOF_ORACLE_CANDIDATES_BOUNDS_INL_H_
-#else
-#define SIXDOF_ORACLE_CANDIDATES_BOUNDS_INL_H_
-#endif
+// Part of candidates.cpp, which includes it once per instruction set: it has no include guard.
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include <Eigen/Core>
 
@@ -16,8 +13,11 @@
 
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/lanes-inl.h>
 
-// Separating-axis tests between the children of a node of A and those of a node of B, one child of A per SIMD lane.
+// Separating-axis tests between the children of a node of A and those of a node of B, one child of A per SIMD lane; and
+// what tests of triangles need: the 4 x 4 pairs of triangles of two leaves, one pair per lane. Lane 4 i + j is that of
+// triangle i of A's leaf and triangle j of B's.
 //
 // B may be translated by a displacement meanwhile; the tests then hold for all fractions x in 0 .. 1 of it. For that,
 // B's boxes are taken at x = 1/2 and enlarged by half of the displacement.
@@ -30,28 +30,9 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::candidates {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Lanes = hn::CappedTag<float, Tree::k_width>;
-using V = hn::Vec<Lanes>;
-using M = hn::Mask<Lanes>;
-
-constexpr Lanes k_lanes;
-constexpr std::size_t k_width = Tree::k_width;
-
-/// x y + z with two roundings: the same bits on every instruction set.
-template <class Vec>
-HWY_INLINE Vec unfused_mul_add(Vec x, Vec y, Vec z) {
-  return hn::Add(hn::Mul(x, y), z);
-}
+using namespace lanes::HWY_NAMESPACE;
 
 HWY_INLINE M no_lane() { return hn::Lt(hn::Zero(k_lanes), hn::Zero(k_lanes)); }
-
-/// The bits of the lanes of `mask`, from bit `i` on.
-HWY_INLINE std::uint32_t bits_of(M mask, std::size_t i) {
-  HWY_ALIGN std::uint8_t stored[8] = {};
-  hn::StoreMaskBits(k_lanes, mask, stored);
-  return static_cast<std::uint32_t>(stored[0]) << i;
-}
 
 /// The motion of B in the frames of the trees: p_A - center_A = rotation (p_B - center_B) + shift + x displacement.
 struct TreeMotion {
@@ -61,8 +42,7 @@ struct TreeMotion {
   float slack;                 ///< Largest error of a transformed coordinate.
   float middle[3];             ///< shift + displacement / 2
   float half_displacement[3];  ///< displacement / 2
-  float half_sweep_in_a[3];    ///< Half extents of the displacement along A's axes,
-  float half_sweep_in_b[3];    ///< and along B's.
+  float half_sweep_in_b[3];    ///< Half extents of the displacement along B's axes.
   float inverse[3];  ///< 1 / displacement, per axis of A; 1 / slack where the displacement is below the slack.
   float pad[3];      ///< 0; the slack where the displacement is below the slack.
 
@@ -84,7 +64,6 @@ struct TreeMotion {
       displacement[i] = static_cast<float>(displacement_A[i]);
       half_displacement[i] = 0.5f * displacement[i];
       middle[i] = static_cast<float>(d[i] + 0.5 * displacement_A[i]);
-      half_sweep_in_a[i] = std::abs(half_displacement[i]);
       half_sweep_in_b[i] = static_cast<float>(0.5 * std::abs(displacement_B[i]));
       const bool moves = std::abs(displacement[i]) > slack;
       inverse[i] = 1.0f / (moves ? displacement[i] : slack);
@@ -105,32 +84,32 @@ struct alignas(64) Children {
 /// @tparam of_b true for children of B (the other frame is A's), false for those of A.
 template <bool of_b>
 HWY_INLINE void load_children(const Tree::Node& node, const TreeMotion& x, Children& out) {
-  const V half = hn::Set(k_lanes, 0.5f);
-  const V slack = hn::Set(k_lanes, x.slack);
+  const V half = set(0.5f);
+  const V slack = set(x.slack);
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
     V c[3], h[3], n[3], from[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      const V lower = hn::Load(k_lanes, node.lower[k] + i), upper = hn::Load(k_lanes, node.upper[k] + i);
+      const V lower = load(node.lower[k] + i), upper = load(node.upper[k] + i);
       c[k] = hn::Mul(half, hn::Add(lower, upper));
       h[k] = hn::Mul(half, hn::Sub(upper, lower));
-      n[k] = hn::Load(k_lanes, node.normal[k] + i);
+      n[k] = load(node.normal[k] + i);
       hn::Store(c[k], k_lanes, out.center[k] + i);
       hn::Store(h[k], k_lanes, out.half[k] + i);
-      from[k] = of_b ? c[k] : hn::Sub(c[k], hn::Set(k_lanes, x.middle[k]));
+      from[k] = of_b ? c[k] : hn::Sub(c[k], set(x.middle[k]));
     }
     for (std::size_t k = 0; k < 3; ++k) {
-      V center = of_b ? hn::Set(k_lanes, x.middle[k]) : hn::Zero(k_lanes);
+      V center = of_b ? set(x.middle[k]) : hn::Zero(k_lanes);
       V extent = slack;
       V normal = hn::Zero(k_lanes);
       for (std::size_t j = 0; j < 3; ++j) {
-        const V r = hn::Set(k_lanes, of_b ? x.rotation[k][j] : x.rotation[j][k]);
+        const V r = set(of_b ? x.rotation[k][j] : x.rotation[j][k]);
         center = unfused_mul_add(r, from[j], center);
         extent = unfused_mul_add(hn::Abs(r), h[j], extent);
         normal = unfused_mul_add(r, n[j], normal);
       }
       hn::Store(center, k_lanes, out.other_center[k] + i);
       hn::Store(extent, k_lanes, out.unswept_half[k] + i);
-      const V swept = hn::Add(extent, hn::Set(k_lanes, of_b ? x.half_sweep_in_a[k] : x.half_sweep_in_b[k]));
+      const V swept = hn::Add(extent, set(of_b ? std::abs(x.half_displacement[k]) : x.half_sweep_in_b[k]));
       hn::Store(swept, k_lanes, out.other_half[k] + i);
       hn::Store(normal, k_lanes, out.normal[k] + i);
     }
@@ -138,15 +117,15 @@ HWY_INLINE void load_children(const Tree::Node& node, const TreeMotion& x, Child
     // along the normal.
     V along_displacement = hn::Zero(k_lanes);
     for (std::size_t k = 0; k < 3; ++k) {
-      const V normal = of_b ? hn::Load(k_lanes, out.normal[k] + i) : n[k];
-      along_displacement = unfused_mul_add(normal, hn::Set(k_lanes, x.half_displacement[k]), along_displacement);
+      const V normal = of_b ? load(out.normal[k] + i) : n[k];
+      along_displacement = unfused_mul_add(normal, set(x.half_displacement[k]), along_displacement);
     }
-    const V slab_slack = unfused_mul_add(hn::Set(k_lanes, 3.0f), slack, hn::Abs(along_displacement));
-    V lower = hn::Sub(hn::Load(k_lanes, node.slab_lower + i), slab_slack);
-    V upper = hn::Add(hn::Load(k_lanes, node.slab_upper + i), slab_slack);
+    const V slab_slack = unfused_mul_add(set(3.0f), slack, hn::Abs(along_displacement));
+    V lower = hn::Sub(load(node.slab_lower + i), slab_slack);
+    V upper = hn::Add(load(node.slab_upper + i), slab_slack);
     if (of_b) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const V along = hn::Mul(hn::Load(k_lanes, out.normal[k] + i), hn::Set(k_lanes, x.middle[k]));
+        const V along = hn::Mul(load(out.normal[k] + i), set(x.middle[k]));
         lower = hn::Add(lower, along);
         upper = hn::Add(upper, along);
       }
@@ -163,11 +142,11 @@ HWY_INLINE M separated_across_displacement(const Children& a, const Children& b,
   M apart = no_lane();
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-    const V move_l = hn::Set(k_lanes, x.displacement[l]), move_m = hn::Set(k_lanes, x.displacement[m]);
-    const V l_off = hn::Sub(hn::Load(k_lanes, a.center[l] + i), hn::Set(k_lanes, b.other_center[l][j]));
-    const V m_off = hn::Sub(hn::Load(k_lanes, a.center[m] + i), hn::Set(k_lanes, b.other_center[m][j]));
-    const V l_half = hn::Add(hn::Load(k_lanes, a.half[l] + i), hn::Set(k_lanes, b.unswept_half[l][j]));
-    const V m_half = hn::Add(hn::Load(k_lanes, a.half[m] + i), hn::Set(k_lanes, b.unswept_half[m][j]));
+    const V move_l = set(x.displacement[l]), move_m = set(x.displacement[m]);
+    const V l_off = hn::Sub(load(a.center[l] + i), set(b.other_center[l][j]));
+    const V m_off = hn::Sub(load(a.center[m] + i), set(b.other_center[m][j]));
+    const V l_half = hn::Add(load(a.half[l] + i), set(b.unswept_half[l][j]));
+    const V m_half = hn::Add(load(a.half[m] + i), set(b.unswept_half[m][j]));
     const V across = hn::Sub(hn::Mul(l_off, move_m), hn::Mul(m_off, move_l));
     const V radius = unfused_mul_add(l_half, hn::Abs(move_m), hn::Mul(m_half, hn::Abs(move_l)));
     apart = hn::Or(apart, hn::Gt(hn::Abs(across), radius));
@@ -186,26 +165,23 @@ HWY_INLINE std::uint32_t overlapping_children(const Children& a, const Tree::Nod
     V middle_a = hn::Zero(k_lanes), radius_a = hn::Zero(k_lanes);  // of A's boxes along the normal of j
     V middle_b = hn::Zero(k_lanes), radius_b = hn::Zero(k_lanes);  // of j's box along A's normals
     for (std::size_t k = 0; k < 3; ++k) {
-      const V other = hn::Load(k_lanes, a.other_center[k] + i);
+      const V other = load(a.other_center[k] + i);
       const V gap_in_a =
-          hn::Sub(hn::Abs(hn::Sub(hn::Load(k_lanes, a.center[k] + i), hn::Set(k_lanes, b.other_center[k][j]))),
-                  hn::Load(k_lanes, a.half[k] + i));
-      const V gap_in_b =
-          hn::Sub(hn::Abs(hn::Sub(other, hn::Set(k_lanes, b.center[k][j]))), hn::Load(k_lanes, a.other_half[k] + i));
-      apart = hn::Or(apart, hn::Gt(gap_in_a, hn::Set(k_lanes, b.other_half[k][j])));
-      apart = hn::Or(apart, hn::Gt(gap_in_b, hn::Set(k_lanes, b.half[k][j])));
-      const V normal_a = hn::Load(k_lanes, a.normal[k] + i);  // of A's child, in B's frame
-      const V normal_b = hn::Set(k_lanes, b.normal[k][j]);    // of j, in A's frame
-      middle_a = unfused_mul_add(normal_b, hn::Load(k_lanes, a.center[k] + i), middle_a);
-      radius_a = unfused_mul_add(hn::Abs(normal_b), hn::Load(k_lanes, a.half[k] + i), radius_a);
-      middle_b =
-          unfused_mul_add(hn::Load(k_lanes, node_a.normal[k] + i), hn::Set(k_lanes, b.other_center[k][j]), middle_b);
-      radius_b = unfused_mul_add(hn::Abs(normal_a), hn::Set(k_lanes, b.half[k][j]), radius_b);
+          hn::Sub(hn::Abs(hn::Sub(load(a.center[k] + i), set(b.other_center[k][j]))), load(a.half[k] + i));
+      const V gap_in_b = hn::Sub(hn::Abs(hn::Sub(other, set(b.center[k][j]))), load(a.other_half[k] + i));
+      apart = hn::Or(apart, hn::Gt(gap_in_a, set(b.other_half[k][j])));
+      apart = hn::Or(apart, hn::Gt(gap_in_b, set(b.half[k][j])));
+      const V normal_a = load(a.normal[k] + i);  // of A's child, in B's frame
+      const V normal_b = set(b.normal[k][j]);    // of j, in A's frame
+      middle_a = unfused_mul_add(normal_b, load(a.center[k] + i), middle_a);
+      radius_a = unfused_mul_add(hn::Abs(normal_b), load(a.half[k] + i), radius_a);
+      middle_b = unfused_mul_add(load(node_a.normal[k] + i), set(b.other_center[k][j]), middle_b);
+      radius_b = unfused_mul_add(hn::Abs(normal_a), set(b.half[k][j]), radius_b);
     }
-    apart = hn::Or(apart, hn::Gt(hn::Sub(middle_b, radius_b), hn::Load(k_lanes, a.slab_upper + i)));
-    apart = hn::Or(apart, hn::Lt(hn::Add(middle_b, radius_b), hn::Load(k_lanes, a.slab_lower + i)));
-    apart = hn::Or(apart, hn::Gt(hn::Sub(middle_a, radius_a), hn::Set(k_lanes, b.slab_upper[j])));
-    apart = hn::Or(apart, hn::Lt(hn::Add(middle_a, radius_a), hn::Set(k_lanes, b.slab_lower[j])));
+    apart = hn::Or(apart, hn::Gt(hn::Sub(middle_b, radius_b), load(a.slab_upper + i)));
+    apart = hn::Or(apart, hn::Lt(hn::Add(middle_b, radius_b), load(a.slab_lower + i)));
+    apart = hn::Or(apart, hn::Gt(hn::Sub(middle_a, radius_a), set(b.slab_upper[j])));
+    apart = hn::Or(apart, hn::Lt(hn::Add(middle_a, radius_a), set(b.slab_lower[j])));
     if constexpr (moving) apart = hn::Or(apart, separated_across_displacement(a, b, j, i, x));
     bits |= bits_of(hn::Not(apart), i);
   }
@@ -218,8 +194,8 @@ struct FractionInterval {
 
   /// To the fractions at which a box of B overlaps a box of A along an axis of A; bounds are those at fraction 0.
   HWY_INLINE void narrow_to_boxes(V lower_a, V upper_a, V lower_b, V upper_b, std::size_t axis, const TreeMotion& x) {
-    const V pad = hn::Set(k_lanes, x.pad[axis]);
-    const V inverse = hn::Set(k_lanes, x.inverse[axis]);
+    const V pad = set(x.pad[axis]);
+    const V inverse = set(x.inverse[axis]);
     const V low = hn::Mul(hn::Sub(hn::Sub(lower_a, upper_b), pad), inverse);
     const V high = hn::Mul(hn::Add(hn::Sub(upper_a, lower_b), pad), inverse);
     first = hn::Max(first, x.inverse[axis] < 0.0f ? high : low);
@@ -230,8 +206,159 @@ struct FractionInterval {
 /// Rounding of a fraction, a quotient of differences.
 constexpr float k_fraction_rounding = 2e-6f;
 
+using LeafLanesTag = hn::CappedTag<float, Tree::k_leaf_triangles>;
+using LeafV = hn::Vec<LeafLanesTag>;
+
+constexpr LeafLanesTag k_leaf_lanes;
+constexpr std::size_t k_leaf = Tree::k_leaf_triangles;
+constexpr std::size_t k_pairs = k_leaf * k_leaf;
+
+/// A leaf's triangles in A's frame, relative to the centre of A's tree. Missing triangles repeat the last.
+struct alignas(64) LeafLanes {
+  float corner[3][3][k_leaf];  // [corner][axis]
+  float normal[3][k_leaf];     // (c1 - c0) x (c2 - c0)
+  float lower[3][k_leaf], upper[3][k_leaf];
+  float size[k_leaf];  // sum of the absolute components of both edges from corner 0
+};
+
+/// Fills everything but the corners, from the corners. Boxes are enlarged by `slack`.
+HWY_INLINE void compute_from_corners(LeafLanes& leaf, float slack) {
+  for (std::size_t i = 0; i < k_leaf; i += hn::Lanes(k_leaf_lanes)) {
+    LeafV corner[3][3], u[3], v[3];
+    LeafV size = hn::Zero(k_leaf_lanes);
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t c = 0; c < 3; ++c) corner[c][k] = hn::Load(k_leaf_lanes, leaf.corner[c][k] + i);
+      u[k] = hn::Sub(corner[1][k], corner[0][k]);
+      v[k] = hn::Sub(corner[2][k], corner[0][k]);
+      size = hn::Add(size, hn::Add(hn::Abs(u[k]), hn::Abs(v[k])));
+      const LeafV lower = hn::Min(hn::Min(corner[0][k], corner[1][k]), corner[2][k]);
+      const LeafV upper = hn::Max(hn::Max(corner[0][k], corner[1][k]), corner[2][k]);
+      hn::Store(hn::Sub(lower, hn::Set(k_leaf_lanes, slack)), k_leaf_lanes, leaf.lower[k] + i);
+      hn::Store(hn::Add(upper, hn::Set(k_leaf_lanes, slack)), k_leaf_lanes, leaf.upper[k] + i);
+    }
+    hn::Store(size, k_leaf_lanes, leaf.size + i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+      hn::Store(hn::Sub(hn::Mul(u[l], v[m]), hn::Mul(u[m], v[l])), k_leaf_lanes, leaf.normal[k] + i);
+    }
+  }
+}
+
+HWY_INLINE void load_leaf_of_b(const Tree::Leaf& from, const TreeMotion& x, LeafLanes& out) {
+  for (std::size_t i = 0; i < k_leaf; i += hn::Lanes(k_leaf_lanes)) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      LeafV p[3];
+      for (std::size_t k = 0; k < 3; ++k) p[k] = hn::Load(k_leaf_lanes, from.corner[c][k] + i);
+      for (std::size_t k = 0; k < 3; ++k) {
+        LeafV q = hn::Set(k_leaf_lanes, x.shift[k]);
+        for (std::size_t j = 0; j < 3; ++j) q = unfused_mul_add(hn::Set(k_leaf_lanes, x.rotation[k][j]), p[j], q);
+        hn::Store(q, k_leaf_lanes, out.corner[c][k] + i);
+      }
+    }
+  }
+  compute_from_corners(out, x.slack);
+}
+
+HWY_INLINE void load_leaf_of_a(const Tree::Leaf& from, LeafLanes& out) {
+  std::memcpy(out.corner, from.corner, sizeof(out.corner));
+  compute_from_corners(out, 0.0f);
+}
+
+/// Children of A (bits) whose boxes overlap a leaf of B at some fraction of the displacement.
+HWY_INLINE std::uint32_t overlapping_boxes(const Tree::Node& node_a, const LeafLanes& b, const TreeMotion& x) {
+  float lower[3], upper[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    lower[k] = *std::min_element(b.lower[k], b.lower[k] + k_leaf);
+    upper[k] = *std::max_element(b.upper[k], b.upper[k] + k_leaf);
+  }
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+    FractionInterval interval{hn::Zero(k_lanes), set(1.0f)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      interval.narrow_to_boxes(load(node_a.lower[k] + i), load(node_a.upper[k] + i), set(lower[k]), set(upper[k]), k,
+                               x);
+    }
+    const V last = hn::Add(interval.last, set(2.0f * k_fraction_rounding));
+    bits |= bits_of(hn::Le(interval.first, last), i);
+  }
+  return bits;
+}
+
+/// Values of A's and of B's triangles for the lanes i, i + 1, ... of the pairs.
+HWY_INLINE V load_of_a(const float* p, std::size_t i) {
+#if HWY_TARGET == HWY_SCALAR
+  return set(p[i / k_leaf]);
+#else
+  if constexpr (hn::MaxLanes(k_lanes) <= k_leaf) {
+    return set(p[i / k_leaf]);
+  } else {
+    const hn::Half<Lanes> half;
+    return hn::Combine(k_lanes, hn::Set(half, p[i / k_leaf + 1]), hn::Set(half, p[i / k_leaf]));
+  }
+#endif
+}
+HWY_INLINE V load_of_b(const float* p, std::size_t i) {
+#if HWY_TARGET == HWY_SCALAR
+  return load(p + i % k_leaf);
+#else
+  (void)i;
+  return hn::LoadDup128(k_lanes, p);
+#endif
+}
+
+/// Corners and normals for the lanes i, i + 1, ... of the pairs, and the tolerances of their plane distances.
+struct PairLanes {
+  V corner_a[3][3], corner_b[3][3];  // [corner][axis]
+  V normal_a[3], normal_b[3];
+  V tolerance_a, tolerance_b;
+
+  /// Tolerances: errors of normal . (corner of the other triangle - corner 0), wherever the boxes overlap. A normal is
+  /// a sum of products of edges (size E) whose coordinates are off by twice the slack s: 8 s E. A corner of the other
+  /// triangle (size E') is at most E + E' + 6 s away, off by 2 s: together below 16 s E (2 E + E' + 6 s), which
+  /// includes the rounding of the products.
+  HWY_INLINE PairLanes(const LeafLanes& a, const LeafLanes& b, std::size_t i, float slack) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        corner_a[c][k] = load_of_a(a.corner[c][k], i);
+        corner_b[c][k] = load_of_b(b.corner[c][k], i);
+      }
+      normal_a[k] = load_of_a(a.normal[k], i);
+      normal_b[k] = load_of_b(b.normal[k], i);
+    }
+    const V size_a = load_of_a(a.size, i), size_b = load_of_b(b.size, i);
+    const V s = set(16.0f * slack);
+    const V both = hn::Add(hn::Add(size_a, size_b), set(6.0f * slack));
+    tolerance_a = hn::Mul(hn::Mul(s, size_a), hn::Add(both, size_a));
+    tolerance_b = hn::Mul(hn::Mul(s, size_b), hn::Add(both, size_b));
+  }
+};
+
+/// Range of normal . (p - origin) over three corners p.
+struct PlaneRange {
+  V low, high;
+
+  HWY_INLINE PlaneRange(const V (&normal)[3], const V (&origin)[3], const V (&corner)[3][3]) {
+    V distance[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const V p[3] = {hn::Sub(corner[c][0], origin[0]), hn::Sub(corner[c][1], origin[1]),
+                      hn::Sub(corner[c][2], origin[2])};
+      distance[c] = dot(normal, p);
+    }
+    low = hn::Min(hn::Min(distance[0], distance[1]), distance[2]);
+    high = hn::Max(hn::Max(distance[0], distance[1]), distance[2]);
+  }
+};
+
+/// Calls take(lane, pair) for the pairs of triangles whose bits are set, but for lanes without a triangle.
+template <class Take>
+HWY_INLINE void for_each_pair(std::uint32_t bits, Tree::Child leaf_a, Tree::Child leaf_b, const Take& take) {
+  for (; bits != 0; bits &= bits - 1) {
+    const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+    const std::uint32_t t = lane / k_leaf, u = lane % k_leaf;
+    if (t < leaf_a.count() && u < leaf_b.count()) take(lane, TrianglePair{leaf_a.first() + t, leaf_b.first() + u});
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace sixdof::candidates
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -12,6 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// A mesh whose largest patch has fewer triangles counts as having none.
+constexpr std::uint32_t k_least_triangles = 4;
+
 /// Largest thickness of a patch: the rounding of its corners and of the products that measure it, together a dozen
 /// units in the last place. Relative to the mesh's radius, and to the distance of its centre from the origin.
 constexpr double k_thickness = 4e-15;

@@ -8,18 +8,15 @@
 
 #include <sixdof/geometry/tree.h>
 
-/// Planar parts of surfaces, where thousands of pairs of triangles have the same distance. Internal: use distance.h.
 namespace sixdof::detail {
 
-/// The subtrees of a tree whose triangles lie in one plane up to rounding: faces of a block, decks, walls.
+/// The subtrees of a tree whose triangles lie in one plane up to rounding: faces of a block, decks, walls. Internal:
+/// use distance.h.
 ///
-/// Where two such patches face each other, all pairs of their triangles have the same distance up to rounding. The
-/// tree's volumes are floats and too coarse to prune them; planes in double precision can.
+/// Where two such patches face each other, all pairs of their triangles, often thousands, have the same distance up to
+/// rounding. The tree's volumes are floats and too coarse to prune them; planes in double precision can.
 class CoplanarPatches {
  public:
-  /// A mesh whose largest patch has fewer triangles counts as having none.
-  static constexpr std::uint32_t k_least_triangles = 4;
-
   /// lower <= normal . (p - center) <= upper for every point p of the patch, with the tree's center(). The normal is of
   /// unit length up to rounding; the interval includes the rounding of the product.
   struct Plane {

@@ -22,8 +22,6 @@ struct PlaneCrossing {
   bool none() const { return down < 0; }
 };
 
-bool all_equal(const std::array<int, 3>& s) { return s[0] == s[1] && s[1] == s[2]; }
-
 /// On which side the line of side i of `a` passes that of side j of `b`: side_of_perturbed_edge().
 int passing(const OrderedTriangle& a, int i, const OrderedTriangle& b, int j) {
   const auto at = [](const OrderedTriangle& t, int k) -> const Eigen::Vector3d& {
@@ -74,21 +72,21 @@ std::optional<Segment> cross_degenerate(const PlaneDistances& distances, const P
 
 std::optional<Segment> cross(const OrderedTriangle& a, const OrderedTriangle& b) {
   PlaneDistances distances{a, b, {}, {}};
+  // The sides on which corners lie of the other triangle's plane; false if all lie on one side.
+  const auto crosses_plane = [](const OrderedTriangle& of, const OrderedTriangle& plane, auto perturbed,
+                                std::array<int, 3>& sign, std::array<double, 3>& distance) {
+    const auto& [p, q, r] = plane.corner;
+    const TrianglePlane exact(p, q, r);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const TrianglePlane::Orientation h = exact.orientation(of.corner[i]);
+      sign[i] = h.sign != 0 ? h.sign : perturbed(p, q, r, of.corner[i]);
+      distance[i] = h.value;
+    }
+    return sign[0] == 0 || sign[0] != sign[1] || sign[1] != sign[2];
+  };
   std::array<int, 3> sign_of_a, sign_of_b;
-  const TrianglePlane plane_b(b.corner[0], b.corner[1], b.corner[2]);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const TrianglePlane::Orientation h = plane_b.orientation(a.corner[i]);
-    sign_of_a[i] = h.sign != 0 ? h.sign : side_of_perturbed_plane(b.corner[0], b.corner[1], b.corner[2], a.corner[i]);
-    distances.of_a[i] = h.value;
-  }
-  if (sign_of_a[0] != 0 && all_equal(sign_of_a)) return std::nullopt;
-  const TrianglePlane plane_a(a.corner[0], a.corner[1], a.corner[2]);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const TrianglePlane::Orientation h = plane_a.orientation(b.corner[i]);
-    sign_of_b[i] = h.sign != 0 ? h.sign : side_of_perturbed_point(a.corner[0], a.corner[1], a.corner[2], b.corner[i]);
-    distances.of_b[i] = h.value;
-  }
-  if (sign_of_b[0] != 0 && all_equal(sign_of_b)) return std::nullopt;
+  if (!crosses_plane(a, b, side_of_perturbed_plane, sign_of_a, distances.of_a)) return std::nullopt;
+  if (!crosses_plane(b, a, side_of_perturbed_point, sign_of_b, distances.of_b)) return std::nullopt;
   const PlaneCrossing in_a(sign_of_a);
   const PlaneCrossing in_b(sign_of_b);
   if (in_a.none() || in_b.none()) return cross_degenerate(distances, in_a, in_b);

@@ -1,11 +1,8 @@
 #include <sixdof/oracle/distance.h>
 
-#include <algorithm>
-#include <numeric>
-
 #include <Eigen/Geometry>
 
-#include <sixdof/oracle/distance_traversal.h>
+#include <sixdof/geometry/sides.h>
 #include <sixdof/oracle/winding.h>
 
 namespace sixdof {
@@ -17,22 +14,17 @@ using Eigen::Vector3d;
 /// intersect, all of a piece lies on one side of the other surface.
 std::vector<Vector3d> find_piece_vertices(const Mesh& mesh) {
   if (!mesh.solid()) return {};
-  std::vector<std::uint32_t> root(mesh.vertices().size());
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&root](std::uint32_t v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
+  UnionFind pieces(mesh.vertices().size());
   for (const Triangle& t : mesh.triangles()) {
-    for (const std::uint32_t v : {t[1], t[2]}) {
-      const std::uint32_t x = find(t[0]);
-      const std::uint32_t y = find(v);
-      root[std::max(x, y)] = std::min(x, y);
-    }
+    pieces.join(t[0], t[1]);
+    pieces.join(t[0], t[2]);
   }
   std::vector<Vector3d> vertices;
-  for (std::uint32_t v = 0; v < root.size(); ++v) {
-    if (root[v] == v) vertices.push_back(mesh.vertices()[v]);
+  std::vector<bool> seen(mesh.vertices().size(), false);
+  for (std::uint32_t v = 0; v < mesh.vertices().size(); ++v) {
+    const std::uint32_t piece = pieces.find(v);
+    if (!seen[piece]) vertices.push_back(mesh.vertices()[v]);
+    seen[piece] = true;
   }
   return vertices;
 }
@@ -41,19 +33,12 @@ std::vector<Vector3d> find_piece_vertices(const Mesh& mesh) {
 Vector3d transform_point_of_b(const Pose& X_AB, const Vector3d& p) { return X_AB * p; }
 
 /// Whether the boxes around the two meshes are certainly apart, by the axes of both.
-bool boxes_apart(const Tree& a, const Tree& b, const Pose& X_AB) {
-  const Tree::Volume& box_a = a.nodes()[0].volume;
-  const Tree::Volume& box_b = b.nodes()[0].volume;
-  Vector3d half_a, half_b, middle_a, middle_b;
-  for (int k = 0; k < 3; ++k) {
-    half_a[k] = 0.5 * (static_cast<double>(box_a.upper[k]) - static_cast<double>(box_a.lower[k]));
-    half_b[k] = 0.5 * (static_cast<double>(box_b.upper[k]) - static_cast<double>(box_b.lower[k]));
-    middle_a[k] = static_cast<double>(box_a.lower[k]) + half_a[k] + a.center()[k];
-    middle_b[k] = static_cast<double>(box_b.lower[k]) + half_b[k] + b.center()[k];
-  }
-  const Vector3d between = X_AB * middle_b - middle_a;
-  const double slack = 1e-9 * (a.radius() + b.radius()) +
-                       1e-14 * (a.center().cwiseAbs() + b.center().cwiseAbs() + X_AB.t.cwiseAbs()).sum();
+bool boxes_apart(const detail::DistanceBody& a, const detail::DistanceBody& b, const Pose& X_AB) {
+  const Vector3d half_a = 0.5 * a.box.sizes();
+  const Vector3d half_b = 0.5 * b.box.sizes();
+  const Vector3d between = X_AB * b.box.center() - a.box.center();
+  const double slack = 1e-9 * (a.tree.radius() + b.tree.radius()) +
+                       1e-14 * (a.box.center().cwiseAbs() + b.box.center().cwiseAbs() + X_AB.t.cwiseAbs()).sum();
   const Eigen::Matrix3d abs_R = X_AB.R.cwiseAbs();
   return (between.cwiseAbs() - half_a - abs_R * half_b).maxCoeff() > slack ||
          ((X_AB.R.transpose() * between).cwiseAbs() - half_b - abs_R.transpose() * half_a).maxCoeff() > slack;
@@ -61,32 +46,24 @@ bool boxes_apart(const Tree& a, const Tree& b, const Pose& X_AB) {
 
 }  // namespace
 
-DistanceOracle::Body::Body(const Mesh& mesh)
-    : tree(mesh), patches(tree), seeds(tree), piece_vertices(find_piece_vertices(mesh)) {}
+detail::DistanceBody::DistanceBody(const Mesh& mesh)
+    : tree(mesh), box(mesh.box()), patches(tree), seeds(tree), piece_vertices(find_piece_vertices(mesh)) {}
 
-std::size_t DistanceOracle::Body::bytes() const {
+std::size_t detail::DistanceBody::bytes() const {
   return tree.bytes() + patches.bytes() + piece_vertices.capacity() * sizeof(Vector3d);
 }
 
 DistanceOracle::DistanceOracle(const Mesh& a, const Mesh& b)
-    : a_(std::make_shared<const Body>(a)), b_(&a == &b ? a_ : std::make_shared<const Body>(b)) {}
+    : a_(std::make_shared<const detail::DistanceBody>(a)),
+      b_(&a == &b ? a_ : std::make_shared<const detail::DistanceBody>(b)) {}
 
 std::size_t DistanceOracle::bytes() const { return a_->bytes() + (b_ == a_ ? 0 : b_->bytes()); }
 
-double DistanceOracle::tie_width(const Pose& X_AB) const {
-  return detail::TieWindow::of(a_->tree, a_->patches, b_->tree, b_->patches, X_AB).width;
-}
-
-DistanceQuery::DistanceQuery(const DistanceOracle& oracle) : oracle_(oracle) {
-  search_.a = &oracle.a_->tree;
-  search_.b = &oracle.b_->tree;
-  search_.patches_a = &oracle.a_->patches;
-  search_.patches_b = &oracle.b_->patches;
-}
+double DistanceOracle::tie_width(const Pose& X_AB) const { return detail::TieWindow::of(*a_, *b_, X_AB).width; }
 
 void DistanceQuery::prepare(const Pose& X_AB, bool warm_start) {
   search_.X_AB = X_AB;
-  search_.ties = detail::TieWindow::of(*search_.a, *search_.patches_a, *search_.b, *search_.patches_b, X_AB);
+  search_.ties = detail::TieWindow::of(search_.a, search_.b, X_AB);
   search_.found = false;
   search_.measured.clear();
   search_.counts = {};
@@ -103,8 +80,8 @@ Separation DistanceQuery::distance(const Pose& X_AB, const DistanceOptions& opti
   s.best = options.upper_bound;
   if (closest_pair_ && detail::try_update(s, *closest_pair_)) s.direction = s.closest.on_b - s.closest.on_a;
   const auto intersecting = [&s] { return s.found && s.best == 0.0; };
-  if (!intersecting()) detail::seed_search(s, oracle_.a_->seeds, oracle_.b_->seeds);
-  if (!intersecting()) detail::find_closest(s);
+  if (!intersecting()) detail::seed_search(s);
+  if (!intersecting()) detail::find_pair(s, false);
   Separation result;
   result.has_witnesses = s.found && s.closest.distance <= options.upper_bound;
   if (!result.has_witnesses) {
@@ -115,36 +92,36 @@ Separation DistanceQuery::distance(const Pose& X_AB, const DistanceOptions& opti
   result.distance = s.closest.distance;
   result.witness_a = s.closest.on_a;
   result.witness_b = s.closest.on_b;
-  result.triangle_a = s.a->mesh_triangle()[s.pair.a];
-  result.triangle_b = s.b->mesh_triangle()[s.pair.b];
+  result.triangle_a = s.a.tree.mesh_triangle()[s.pair.a];
+  result.triangle_b = s.b.tree.mesh_triangle()[s.pair.b];
   return result;
 }
 
 bool DistanceQuery::surfaces_intersect(const Pose& X_AB, bool warm_start) {
   search_.counts = {};
-  return !boxes_apart(*search_.a, *search_.b, X_AB) && intersect(X_AB, warm_start);
+  return !boxes_apart(search_.a, search_.b, X_AB) && intersect(X_AB, warm_start);
 }
 
 bool DistanceQuery::intersect(const Pose& X_AB, bool warm_start) {
   prepare(X_AB, warm_start);
   if (intersecting_pair_ && detail::intersects(search_, *intersecting_pair_)) return true;
-  detail::find_intersection(search_);
+  detail::find_pair(search_, true);
   if (search_.found) intersecting_pair_ = search_.pair;
   return search_.found;
 }
 
 bool DistanceQuery::collide(const Pose& X_AB, bool warm_start) {
   search_.counts = {};
-  if (boxes_apart(*search_.a, *search_.b, X_AB)) return false;
+  if (boxes_apart(search_.a, search_.b, X_AB)) return false;
   if (intersect(X_AB, warm_start)) return true;
-  const std::vector<Vector3d>& of_a = oracle_.a_->piece_vertices;
-  const std::vector<Vector3d>& of_b = oracle_.b_->piece_vertices;
+  const std::vector<Vector3d>& of_a = search_.a.piece_vertices;
+  const std::vector<Vector3d>& of_b = search_.b.piece_vertices;
   if (of_a.empty() || of_b.empty()) return false;
   for (const Vector3d& p : of_b) {
-    if (detail::winding_of_a(*search_.a, X_AB * p, triangles_) > 0) return true;
+    if (detail::winding_of_a(search_.a.tree, X_AB * p, triangles_) > 0) return true;
   }
   for (const Vector3d& p : of_a) {
-    if (detail::winding_of_b(*search_.b, X_AB, transform_point_of_b, p, triangles_) > 0) return true;
+    if (detail::winding_of_b(search_.b.tree, X_AB, transform_point_of_b, p, triangles_) > 0) return true;
   }
   return false;
 }

@@ -15,22 +15,18 @@
 #include <sixdof/oracle/distance_search.h>
 #include <sixdof/query/algorithm.h>
 
-/// Exact distance and exact yes/no of two triangle meshes.
-///
-/// Notation: mesh A is fixed, mesh B is moved: a point p of B's frame is X_AB * p in A's frame. All results are in A's
-/// frame and in the meshes' length unit.
+/// Exact distance and exact yes/no of two triangle meshes. Results are in A's frame and in the meshes' length unit.
 ///
 /// What is measured: A's triangles as given, and B's triangles with each corner p replaced by X_AB * p, rounded to
 /// doubles. Between these triangles yes/no answers are exact (predicates.h), and the distance is the smallest of
 /// triangle_triangle_distance() over all pairs. Its error is at most k_triangle_distance_error times (longest edge of
-/// the closest pair + distance). Rounding the corners adds up to about 4e-16 times (|R p| + |t|): relative to the
-/// meshes' size at the origin, relative to the offset far from it.
+/// the closest pair + distance). Rounding the corners adds up to about 4e-16 times (|R p| + |t|).
 ///
 /// Method: branch and bound over pairs of nodes of two bounding-volume trees, as in PQP (Larsen, Gottschalk, Lin and
 /// Manocha, "Fast proximity queries with swept sphere volumes", 1999). Bounds on nodes and on pairs of triangles are
-/// computed in floats, eight or more at once, and lowered by their rounding (distance_bounds-inl.h,
-/// distance_leaf-inl.h); what they cannot prune is measured in double precision (distance_traversal.cpp). So the answer
-/// does not depend on the bounds: it has the same bits on every instruction set, for every thread, warm or cold.
+/// computed in floats, eight or more at once, and lowered by their rounding (distance_bounds-inl.h); what they cannot
+/// prune is measured in double precision (distance_search.cpp). So the answer does not depend on the bounds: it has the
+/// same bits on every instruction set, for every thread, warm or cold.
 ///
 /// Ties: where surfaces are apart, the closest pair is the one with the lowest triangle in A, then in B, of all pairs
 /// that are equally far; distance and points are those of this pair. Pairs are equally far if their distances are the
@@ -59,9 +55,8 @@ class DistanceOracle {
   const Tree& tree_b() const { return b_->tree; }
 
   /// Distances that differ by no more than this length count as equal: see Ties. 0 unless both meshes have a coplanar
-  /// patch of four triangles or more; then a few times the rounding of the distances between parallel patches,
-  /// 1.2e-14 times (radii of the meshes + distance of their centres) + 4.5e-15 times (distances of the meshes' centres
-  /// from their origins + |t|).
+  /// patch of four triangles or more; then 1.2e-14 times (radii of the meshes + distance of their centres) + 4.5e-15
+  /// times (distances of the meshes' centres from their origins + |t|).
   double tie_width(const Pose& X_AB) const;
 
   std::size_t bytes() const;
@@ -69,19 +64,8 @@ class DistanceOracle {
  private:
   friend class DistanceQuery;
 
-  struct Body {
-    explicit Body(const Mesh& mesh);
-    std::size_t bytes() const;
-
-    Tree tree;
-    detail::CoplanarPatches patches;
-    detail::SeedCorners seeds;
-    /// Of each connected piece of the surface one vertex; empty unless the mesh is solid.
-    std::vector<Eigen::Vector3d> piece_vertices;
-  };
-
-  std::shared_ptr<const Body> a_;
-  std::shared_ptr<const Body> b_;  // the same as a_ if both meshes are the same object
+  std::shared_ptr<const detail::DistanceBody> a_;
+  std::shared_ptr<const detail::DistanceBody> b_;  // the same as a_ if both meshes are the same object
 };
 
 /// Queries of a DistanceOracle; one object per thread. The oracle outlives it.
@@ -89,7 +73,7 @@ class DistanceOracle {
 /// Poses must be finite with a rotation matrix in R; they are not checked.
 class DistanceQuery {
  public:
-  explicit DistanceQuery(const DistanceOracle& oracle);
+  explicit DistanceQuery(const DistanceOracle& oracle) : search_{.a = *oracle.a_, .b = *oracle.b_} {}
 
   /// The distance of the surfaces with witnesses and their triangles. 0 if and only if the surfaces have a point in
   /// common; then the witnesses are one such point. Above the upper bound: distance is infinite and has_witnesses
@@ -109,7 +93,6 @@ class DistanceQuery {
   void prepare(const Pose& X_AB, bool warm_start);
   bool intersect(const Pose& X_AB, bool warm_start);
 
-  const DistanceOracle& oracle_;
   detail::DistanceSearch search_;
   std::optional<TrianglePair> closest_pair_;       // of the last distance
   std::optional<TrianglePair> intersecting_pair_;  // of the last intersection

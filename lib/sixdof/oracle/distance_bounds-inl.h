@@ -1,10 +1,4 @@
-// Compiled once per instruction set: part of distance_traversal.cpp, included by nothing else.
-#if defined(SIXDOF_ORACLE_DISTANCE_BOUNDS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIXDOF_ORACLE_DISTANCE_BOUNDS_INL_H_
-#undef SIXDOF_ORACLE_DISTANCE_BOUNDS_INL_H_
-#else
-#define SIXDOF_ORACLE_DISTANCE_BOUNDS_INL_H_
-#endif
+// Part of distance_search.cpp, which includes it once per instruction set: it has no include guard.
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +11,7 @@
 
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/lanes-inl.h>
 
 // Lower bounds on the distances of one volume (the fixed one) from the eight children of a node (the expanded one),
 // one child per SIMD lane.
@@ -37,12 +32,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Lanes = hn::CappedTag<float, Tree::k_width>;
-using V = hn::Vec<Lanes>;
-
-constexpr Lanes k_lanes;
-constexpr std::size_t k_width = Tree::k_width;
+using namespace lanes::HWY_NAMESPACE;
 
 /// Rounding of a bound, relative to the lengths that enter it: fewer than 30 roundings of 6e-8 each.
 constexpr float k_slack = 4e-6f;
@@ -152,61 +142,59 @@ struct FixedVolume {
 
 /// Lower bounds on the distances of the children of `node` from `fixed`; negative where they may overlap. Returns a bit
 /// for each child whose bound is not above `best`.
-HWY_INLINE unsigned bound_children(const Tree::Node& node, const FixedVolume& fixed, const Frame& f, const Slack& slack,
-                                   float best, float* HWY_RESTRICT bounds) {
-  unsigned kept = 0;
-  const V half = hn::Set(k_lanes, 0.5f);
+HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const FixedVolume& fixed, const Frame& f,
+                                        const Slack& slack, float best, float* HWY_RESTRICT bounds) {
+  std::uint32_t kept = 0;
+  const V half = set(0.5f);
   const V zero = hn::Zero(k_lanes);
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
     V c[3], e[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      const V lower = hn::Load(k_lanes, node.lower[k] + i);
-      const V upper = hn::Load(k_lanes, node.upper[k] + i);
+      const V lower = load(node.lower[k] + i);
+      const V upper = load(node.upper[k] + i);
       c[k] = hn::Mul(half, hn::Add(lower, upper));
       e[k] = hn::Mul(half, hn::Sub(upper, lower));
     }
-    const V n[3] = {hn::Load(k_lanes, node.normal[0] + i), hn::Load(k_lanes, node.normal[1] + i),
-                    hn::Load(k_lanes, node.normal[2] + i)};
-    const V slab_lower = hn::Load(k_lanes, node.slab_lower + i);
-    const V slab_upper = hn::Load(k_lanes, node.slab_upper + i);
+    const V n[3] = {load(node.normal[0] + i), load(node.normal[1] + i), load(node.normal[2] + i)};
+    const V slab_lower = load(node.slab_lower + i);
+    const V slab_upper = load(node.slab_upper + i);
 
     // Axis w: the children's largest p . w, bounded as in FixedVolume.
     V along = zero;
     V over_box = zero;
     for (std::size_t k = 0; k < 3; ++k) {
-      const V w = hn::Set(k_lanes, f.direction[k]);
+      const V w = set(f.direction[k]);
       along = hn::MulAdd(w, n[k], along);
       over_box = hn::MulAdd(w, c[k], hn::MulAdd(hn::Abs(w), e[k], over_box));
     }
     V over_rest = hn::Max(hn::Mul(along, slab_lower), hn::Mul(along, slab_upper));
     for (std::size_t k = 0; k < 3; ++k) {
-      const V rest = hn::NegMulAdd(along, n[k], hn::Set(k_lanes, f.direction[k]));
+      const V rest = hn::NegMulAdd(along, n[k], set(f.direction[k]));
       over_rest = hn::MulAdd(rest, c[k], hn::MulAdd(hn::Abs(rest), e[k], over_rest));
     }
     const V gap_along =
-        hn::Sub(hn::Set(k_lanes,
-                        static_cast<float>(static_cast<double>(fixed.least_along) + f.translation_along) - slack.local),
+        hn::Sub(set(static_cast<float>(static_cast<double>(fixed.least_along) + f.translation_along) - slack.local),
                 hn::Min(over_box, over_rest));
 
     // Boxes in N.
     V m[3];
-    V widest = hn::Set(k_lanes, -Tree::k_empty);
+    V widest = set(-Tree::k_empty);
     V squared = zero;
     for (std::size_t k = 0; k < 3; ++k) {
-      m[k] = hn::Sub(hn::Set(k_lanes, fixed.center[k]), c[k]);
-      const V gap = hn::Sub(hn::Abs(m[k]), hn::Add(e[k], hn::Set(k_lanes, fixed.half[k])));
+      m[k] = hn::Sub(set(fixed.center[k]), c[k]);
+      const V gap = hn::Sub(hn::Abs(m[k]), hn::Add(e[k], set(fixed.half[k])));
       widest = hn::Max(widest, gap);
       const V positive = hn::Max(gap, zero);
       squared = hn::MulAdd(positive, positive, squared);
     }
     // Boxes in F: m and e rotated back.
-    V widest_fixed = hn::Set(k_lanes, -Tree::k_empty);
+    V widest_fixed = set(-Tree::k_empty);
     V squared_fixed = zero;
     for (std::size_t k = 0; k < 3; ++k) {
       V center = zero;
-      V extent = hn::Set(k_lanes, fixed.half_fixed[k]);
+      V extent = set(fixed.half_fixed[k]);
       for (std::size_t j = 0; j < 3; ++j) {
-        const V r = hn::Set(k_lanes, f.rotation[j][k]);
+        const V r = set(f.rotation[j][k]);
         center = hn::MulAdd(r, m[j], center);
         extent = hn::MulAdd(hn::Abs(r), e[j], extent);
       }
@@ -217,19 +205,19 @@ HWY_INLINE unsigned bound_children(const Tree::Node& node, const FixedVolume& fi
     }
     V gap = hn::Max(widest, widest_fixed);
     gap = hn::Max(gap, hn::Sub(hn::Sqrt(hn::Max(squared, squared_fixed)),
-                               hn::IfThenZeroElse(hn::Gt(gap, zero), hn::Set(k_lanes, Tree::k_empty))));
+                               hn::IfThenZeroElse(hn::Gt(gap, zero), set(Tree::k_empty))));
 
     // The fixed volume's slab.
     {
       V middle = zero;
       V radius = zero;
       for (std::size_t k = 0; k < 3; ++k) {
-        const V axis = hn::Set(k_lanes, fixed.normal[k]);
+        const V axis = set(fixed.normal[k]);
         middle = hn::MulAdd(axis, c[k], middle);
         radius = hn::MulAdd(hn::Abs(axis), e[k], radius);
       }
-      const V above = hn::Sub(hn::Sub(middle, radius), hn::Set(k_lanes, fixed.slab_upper));
-      const V below = hn::Sub(hn::Set(k_lanes, fixed.slab_lower), hn::Add(middle, radius));
+      const V above = hn::Sub(hn::Sub(middle, radius), set(fixed.slab_upper));
+      const V below = hn::Sub(set(fixed.slab_lower), hn::Add(middle, radius));
       gap = hn::Max(gap, hn::Max(above, below));
     }
     // The children's slabs, and the line through the centres.
@@ -237,7 +225,7 @@ HWY_INLINE unsigned bound_children(const Tree::Node& node, const FixedVolume& fi
     V length2 = zero;
     V reach = zero;
     for (std::size_t k = 0; k < 3; ++k) {
-      middle = hn::MulAdd(n[k], hn::Set(k_lanes, fixed.center[k]), middle);
+      middle = hn::MulAdd(n[k], set(fixed.center[k]), middle);
       length2 = hn::MulAdd(m[k], m[k], length2);
       reach = hn::MulAdd(hn::Abs(m[k]), e[k], reach);
     }
@@ -246,7 +234,7 @@ HWY_INLINE unsigned bound_children(const Tree::Node& node, const FixedVolume& fi
       V on_normal = zero;
       V on_line = zero;
       for (std::size_t j = 0; j < 3; ++j) {
-        const V axis = hn::Set(k_lanes, fixed.axis[k][j]);
+        const V axis = set(fixed.axis[k][j]);
         on_normal = hn::MulAdd(axis, n[j], on_normal);
         on_line = hn::MulAdd(axis, m[j], on_line);
       }
@@ -255,20 +243,115 @@ HWY_INLINE unsigned bound_children(const Tree::Node& node, const FixedVolume& fi
     }
     gap = hn::Max(gap,
                   hn::Max(hn::Sub(hn::Sub(middle, radius), slab_upper), hn::Sub(slab_lower, hn::Add(middle, radius))));
-    const V length = hn::Sqrt(hn::Max(length2, hn::Set(k_lanes, 1e-36f)));
+    const V length = hn::Sqrt(hn::Max(length2, set(k_smallest_square)));
     gap = hn::Max(gap, hn::Sub(length, hn::Div(reach, length)));
 
-    const V bound = hn::Max(gap_along, hn::Sub(gap, hn::Set(k_lanes, slack.all)));
+    const V bound = hn::Max(gap_along, hn::Sub(gap, set(slack.all)));
     hn::Store(bound, k_lanes, bounds + i);
-    std::uint8_t bits[8];  // as many as StoreMaskBits may write
-    hn::StoreMaskBits(k_lanes, hn::Le(bound, hn::Set(k_lanes, best)), bits);
-    kept |= static_cast<unsigned>(bits[0]) << i;
+    kept |= bits_of(hn::Le(bound, set(best)), i);
   }
   return kept & ((1u << node.child_count) - 1);
+}
+
+constexpr std::uint32_t k_leaf = Tree::k_leaf_triangles;
+
+/// All pairs of triangles of two leaves, in A's frame relative to its centre. Lane 4 i + j holds pair (i, j).
+struct LeafPair {
+  static constexpr std::size_t k_pairs = k_leaf * k_leaf;
+  HWY_ALIGN float a[3][3][k_pairs];  // [corner][axis][pair]
+  HWY_ALIGN float b[3][3][k_pairs];
+  HWY_ALIGN float lower[k_pairs];  // bounds on the distance
+  HWY_ALIGN float upper[k_pairs];  // but for rounding; set for pairs whose lower bound is not above the best
+};
+
+/// Lower bounds by the axis w alone. Returns false if all are above `best`.
+HWY_INLINE bool bound_along_direction(const Tree::Leaf& a, const Tree::Leaf& b, const Frame& f, const Slack& slack,
+                                      float best, float* HWY_RESTRICT lower) {
+  const hn::CappedTag<float, k_leaf> d;
+  HWY_ALIGN float greatest_a[k_leaf];
+  HWY_ALIGN float least_b[k_leaf];
+  for (std::size_t i = 0; i < k_leaf; i += hn::Lanes(d)) {
+    auto greatest = hn::Set(d, -Tree::k_empty);
+    auto least = hn::Set(d, Tree::k_empty);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      auto along_a = hn::Zero(d);
+      auto along_b = hn::Zero(d);
+      for (std::size_t k = 0; k < 3; ++k) {
+        along_a = hn::MulAdd(hn::Set(d, f.direction[k]), hn::Load(d, a.corner[corner][k] + i), along_a);
+        along_b = hn::MulAdd(hn::Set(d, f.direction_fixed[k]), hn::Load(d, b.corner[corner][k] + i), along_b);
+      }
+      greatest = hn::Max(greatest, along_a);
+      least = hn::Min(least, along_b);
+    }
+    hn::Store(greatest, d, greatest_a + i);
+    hn::Store(least, d, least_b + i);
+  }
+  const double shift = f.translation_along - static_cast<double>(slack.local);
+  const float least = std::min(std::min(least_b[0], least_b[1]), std::min(least_b[2], least_b[3]));
+  const float greatest = std::max(std::max(greatest_a[0], greatest_a[1]), std::max(greatest_a[2], greatest_a[3]));
+  if (static_cast<float>(static_cast<double>(least - greatest) + shift) > best) return false;
+  for (std::size_t i = 0; i < k_leaf; ++i) {
+    for (std::size_t j = 0; j < k_leaf; ++j) {
+      lower[k_leaf * i + j] = static_cast<float>(static_cast<double>(least_b[j] - greatest_a[i]) + shift);
+    }
+  }
+  return true;
+}
+
+/// Writes the corners of all pairs; those of B are transformed to A's frame.
+HWY_INLINE void load_pairs(const Tree::Leaf& a, const Tree::Leaf& b, const Frame& f, LeafPair& pairs) {
+  const hn::CappedTag<float, k_leaf> d;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t j = 0; j < k_leaf; j += hn::Lanes(d)) {
+        auto p = hn::Set(d, f.translation[k]);
+        for (std::size_t m = 0; m < 3; ++m) {
+          p = hn::MulAdd(hn::Set(d, f.rotation[k][m]), hn::Load(d, b.corner[corner][m] + j), p);
+        }
+        for (std::size_t i = 0; i < k_leaf; ++i) {
+          hn::Store(p, d, pairs.b[corner][k] + k_leaf * i + j);
+          hn::Store(hn::Set(d, a.corner[corner][k][i]), d, pairs.a[corner][k] + k_leaf * i + j);
+        }
+      }
+    }
+  }
+}
+
+/// Raises the lower bounds by Frank-Wolfe steps, until they are above `enough` or k_steps are done.
+HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough) {
+  namespace fw = frank_wolfe;
+  constexpr auto k_fused = fw::Rounding::fused;
+  constexpr int k_steps = 5;
+  const V goal = set(enough);
+  for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
+    const auto at = [i](const float* p) { return load(p + i); };
+    V lower = at(pairs.lower);
+    if (hn::AllTrue(k_lanes, hn::Gt(lower, goal))) {
+      hn::Store(set(Tree::k_empty), k_lanes, pairs.upper + i);
+      continue;
+    }
+    V x[3];  // a difference b - a of points of the triangles: first of the centroids, then ever shorter
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V p = hn::Add(hn::Add(at(pairs.a[0][k]), at(pairs.a[1][k])), at(pairs.a[2][k]));
+      const V q = hn::Add(hn::Add(at(pairs.b[0][k]), at(pairs.b[1][k])), at(pairs.b[2][k]));
+      x[k] = hn::Mul(set(1.0f / 3.0f), hn::Sub(q, p));
+    }
+    V length;
+    for (int step = 0;; ++step) {
+      const auto of_a = fw::support<k_fused, fw::Extreme::greatest>(x, pairs.a, i);
+      const auto of_b = fw::support<k_fused, fw::Extreme::least>(x, pairs.b, i);
+      length = fw::length<k_fused>(x);
+      lower = hn::Max(lower, hn::Sub(hn::Div(hn::Sub(of_b.value, of_a.value), length), set(slack)));
+      if (step == k_steps || hn::AllTrue(k_lanes, hn::Gt(lower, goal))) break;
+      const V s[3] = {hn::Sub(of_b.point[0], of_a.point[0]), hn::Sub(of_b.point[1], of_a.point[1]),
+                      hn::Sub(of_b.point[2], of_a.point[2])};
+      fw::step<k_fused>(x, s);
+    }
+    hn::Store(lower, k_lanes, pairs.lower + i);
+    hn::Store(length, k_lanes, pairs.upper + i);
+  }
 }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace sixdof::detail
 HWY_AFTER_NAMESPACE();
-
-#endif

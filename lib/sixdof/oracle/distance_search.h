@@ -7,11 +7,12 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
+#include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 #include <sixdof/geometry/triangle_distance.h>
-#include <sixdof/geometry/triangle_pair.h>
 #include <sixdof/oracle/coplanar_patches.h>
 
 /// The state of one distance query. Internal: use distance.h.
@@ -35,12 +36,6 @@ inline void push_sorted(std::vector<NodePair>& stack, std::size_t first, const N
   stack[at] = pair;
 }
 
-/// A pair of triangles whose exact distance is computed last, if its lower bound is still small enough by then.
-struct DeferredPair {
-  TrianglePair pair;
-  float lower;
-};
-
 /// A pair of triangles and its exact distance.
 struct MeasuredPair {
   TrianglePair pair;
@@ -63,13 +58,33 @@ struct RankedPair {
   NodePair pair;
 };
 
+/// Corners spread over a surface: where a search may start.
+struct SeedCorners {
+  static constexpr std::size_t k_count = 64;
+  explicit SeedCorners(const Tree& tree);
+  alignas(64) float point[3][k_count];  ///< [axis][corner], relative to the tree's centre.
+  std::uint32_t leaf[k_count];          ///< The corner is the first one of the first triangle of this leaf.
+};
+
+/// One mesh prepared for distance queries.
+struct DistanceBody {
+  explicit DistanceBody(const Mesh& mesh);
+  std::size_t bytes() const;
+
+  Tree tree;
+  Eigen::AlignedBox3d box;  ///< In the mesh's frame.
+  CoplanarPatches patches;
+  SeedCorners seeds;
+  /// Of each connected piece of the surface one vertex; empty unless the mesh is solid.
+  std::vector<Eigen::Vector3d> piece_vertices;
+};
+
 /// Rounding of the distances between coplanar patches (lengths); all 0 where a mesh has no patches.
 struct TieWindow {
   double error = 0.0;   ///< Of plane_gap() against triangle_triangle_distance().
   double margin = 0.0;  ///< A gap above the smallest distance less this is a tie.
   double width = 0.0;   ///< Distances that exceed the smallest one by no more count as equal to it.
-  static TieWindow of(const Tree& a, const CoplanarPatches& patches_a, const Tree& b, const CoplanarPatches& patches_b,
-                      const Pose& X_AB);
+  static TieWindow of(const DistanceBody& a, const DistanceBody& b, const Pose& X_AB);
 };
 
 /// Work of one query.
@@ -79,20 +94,10 @@ struct TraversalCounts {
   std::uint64_t triangles = 0;   ///< Pairs of triangles tested exactly.
 };
 
-/// Corners spread over a surface: where a search may start.
-struct SeedCorners {
-  static constexpr std::size_t k_count = 64;
-  explicit SeedCorners(const Tree& tree);
-  alignas(64) float point[3][k_count];  ///< [axis][corner], relative to the tree's centre.
-  std::uint32_t leaf[k_count];          ///< The corner is the first one of the first triangle of this leaf.
-};
-
 /// Input, output and scratch of one search.
 struct DistanceSearch {
-  const Tree* a = nullptr;
-  const Tree* b = nullptr;
-  const CoplanarPatches* patches_a = nullptr;
-  const CoplanarPatches* patches_b = nullptr;
+  const DistanceBody& a;
+  const DistanceBody& b;
   Pose X_AB;
   TieWindow ties;
   double best = std::numeric_limits<double>::infinity();  ///< The upper bound, then the smallest distance found.
@@ -103,7 +108,7 @@ struct DistanceSearch {
   TraversalCounts counts;
   std::vector<MeasuredPair> measured;  ///< Those not above best + ties.width, as best was then.
   std::vector<NodePair> stack;         ///< Scratch.
-  std::vector<DeferredPair> deferred;  ///< Scratch.
+  std::vector<NodePair> deferred;      ///< Scratch: triangles measured last, if their bound is still small enough.
   std::vector<TiedPair> tied;          ///< Scratch.
   std::vector<RankedPair> ranked;      ///< Scratch.
 };
@@ -116,5 +121,16 @@ ClosestPoints distance_of(const DistanceSearch& search, TrianglePair pair);
 double gap_of(const DistanceSearch& search, TrianglePair pair);
 bool intersects(const DistanceSearch& search, TrianglePair pair);
 Rank rank_of(const DistanceSearch& search, TrianglePair pair);
+
+/// Calls try_update() for one pair that is probably close: starts at the closest pair of seed corners and alternately
+/// searches the corner of one mesh that is closest to that of the other. Does nothing if a pair closer than the seed
+/// corners is known.
+void seed_search(DistanceSearch& search);
+
+/// Branch and bound for the closest pair of triangles whose distance is at most search.best. Of all pairs whose
+/// distance exceeds the smallest by no more than ties.width, takes the one of smallest rank, whatever the order in
+/// which pairs were met and whichever were known before. A distance of 0 ends the search, with any intersecting pair.
+/// @param only_intersection finds any intersecting pair instead: sets found and pair
+void find_pair(DistanceSearch& search, bool only_intersection);
 
 }  // namespace sixdof::detail

@@ -40,7 +40,7 @@ class SurfacePart {
   }
 
   /// Adds a whole piece, as often as the other body winds around its pole.
-  void add_piece(const Solid::Piece& piece, int winding) { add(piece.total, winding); }
+  void add_piece(const Solid::Piece& piece, int winding) { potential_.add(piece.total, winding); }
 
   /// Fluxes about the origin between the border and the path, in A's frame.
   Solid::Moments beside_path() const { return beside_path_; }
@@ -64,15 +64,10 @@ class SurfacePart {
     beside_path_.first += sign * m.first;
   }
 
-  void add(const Solid::Potential& p, int sign) {
-    potential_.volume += sign * p.volume;
-    for (std::size_t k = 0; k < 3; ++k) potential_.first[k] += sign * p.first[k];
-  }
-
   /// Moves the end of a segment along the side opposite the lowest corner to the middle corner.
   void add_end(std::uint32_t index, const OrderedTriangle& triangle, const Vector3d& end, int sign) {
     add(triangle_moments(triangle.corner[0], triangle.corner[triangle.rises ? 1 : 2], end), -sign);
-    add(solid_->potential(index), sign);
+    potential_.add(solid_->potential(index), sign);
     const OrderedTriangle own = ordered(solid_->tree().corners()[index], solid_->order(index));
     const Vector3d low = own.corner[0] - origin_;
     const Vector3d middle = own.corner[own.rises ? 1 : 2] - origin_;
@@ -89,21 +84,18 @@ class SurfacePart {
   Matrix3d first_order_ = Matrix3d::Zero();  // within the path: integral of p n^T, but for a multiple of the identity
 };
 
-/// Centre of the intersection of both bodies' boxes, in A's frame: an origin near all crossings.
-Vector3d common_center(const Solid& a, const Solid& b, const Pose& X_AB) {
+/// Intersection of A's box, and that around B enlarged by `slack`, in A's frame.
+Eigen::AlignedBox3d common_box(const Solid& a, const Solid& b, const Pose& X_AB, double slack) {
   const Vector3d center = X_AB * b.mesh().center();
-  const Vector3d half = X_AB.R.cwiseAbs() * (0.5 * b.mesh().box().sizes());
-  return a.mesh().box().intersection(Eigen::AlignedBox3d(center - half, center + half)).center();
+  const Vector3d half = X_AB.R.cwiseAbs() * (0.5 * b.mesh().box().sizes()) + Vector3d::Constant(slack);
+  return a.mesh().box().intersection(Eigen::AlignedBox3d(center - half, center + half));
 }
 
 /// Whether the bodies' boxes are certainly apart.
 bool apart(const Solid& a, const Solid& b, const Pose& X_AB) {
-  const Vector3d center = X_AB * b.mesh().center();
-  // Far above the rounding of transformed vertices.
-  constexpr double k_relative_slack = 1e-12;
+  constexpr double k_relative_slack = 1e-12;  // far above the rounding of transformed vertices
   const double slack = k_relative_slack * (b.mesh().diagonal() + X_AB.t.lpNorm<1>() + b.mesh().center().lpNorm<1>());
-  const Vector3d half = X_AB.R.cwiseAbs() * (0.5 * b.mesh().box().sizes()) + Vector3d::Constant(slack);
-  return a.mesh().box().intersection(Eigen::AlignedBox3d(center - half, center + half)).isEmpty();
+  return common_box(a, b, X_AB, slack).isEmpty();
 }
 
 }  // namespace
@@ -125,7 +117,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
   result.centroid.setConstant(std::numeric_limits<double>::quiet_NaN());
   if (apart(*a_, *b_, X_AB)) return result;
 
-  const Vector3d origin = common_center(*a_, *b_, X_AB);
+  const Vector3d origin = common_box(*a_, *b_, X_AB, 0.0).center();  // near all crossings
   const Vector3d origin_B = X_AB.inverse() * origin;
   SurfacePart part_a(*a_, origin);
   SurfacePart part_b(*b_, origin_B);

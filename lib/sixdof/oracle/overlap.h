@@ -8,33 +8,28 @@
 #include <Eigen/Core>
 
 #include <sixdof/geometry/pose.h>
-#include <sixdof/geometry/triangle_pair.h>
+#include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/solid.h>
 
 /// Exact overlap of two solids: volume of the intersection, its centroid, and the volume's gradient.
 ///
-/// Notation: body A is fixed, body B is moved by X_AB; vectors are in A's frame. The overlap is computed for B's
-/// vertices rounded to doubles in A's frame (transform_point()). The surfaces intersect in closed curves, which consist
-/// of one segment per pair of triangles that intersect (a crossing, crossing.h).
+/// Body A is fixed, body B is moved by X_AB; vectors are in A's frame. The overlap is that for B's vertices rounded to
+/// doubles in A's frame (transform_point()). The surfaces intersect in closed curves, which consist of one segment per
+/// pair of triangles that intersect (crossing.h).
 ///
-/// Idea: every integral over the intersection is a sum over the pieces of its boundary, and each piece is a part of A's
-/// or of B's surface that is bounded by the curves.
-///   - By the divergence theorem, volume and first moment are fluxes through these parts. On a closed surface, the flux
-///     through a region is a sum of potentials along the region's border (solid.h), so it takes the curves alone, not
-///     the triangles inside. Which side of a curve belongs to the intersection follows from the normals of the two
-///     triangles. The total flux of each connected piece of a surface is added as often as the other body winds around
-///     one vertex of it (winding.h).
+/// Idea: every integral over the intersection is a sum over the parts of A's and of B's surface that bound it.
+///   - By the divergence theorem, volume and first moment are fluxes through these parts: sums of potentials along the
+///     curves that border them (solid.h), not over the triangles inside. Which side of a curve belongs to the
+///     intersection follows from the normals of the two triangles. The total flux of each connected piece of a surface
+///     is added as often as the other body winds around one vertex of it (winding.h).
 ///   - By Stokes' theorem, area and moment (integrals of n and p x n) are integrals along the curves.
-/// Each crossing adds its terms by itself, without its neighbours: the intersection is never built. On each of its two
-/// triangles a segment adds the fluxes through the triangle (lowest corner, start, end); an end on the side opposite
-/// the lowest corner adds a potential and the flux through the triangle (lowest corner, middle corner, end).
+/// Each crossing adds its terms by itself: the intersection is never built. On each of its two triangles a segment adds
+/// the fluxes through the triangle (lowest corner, start, end); an end on the side opposite the lowest corner adds a
+/// potential and the flux through the triangle (lowest corner, middle corner, end).
 ///
-/// Robustness: every decision is exact, and ties (equal faces, shared vertices, touching) are decided as if B were
-/// translated by an infinitesimal vector (predicates.h). This is symbolic perturbation in the sense of Edelsbrunner and
-/// Muecke, "Simulation of simplicity", 1990, with a perturbation that is a motion, so all decisions agree with one
-/// position of B.
-///
-/// overlap_by_columns.h computes the volume by another method, for verification.
+/// Robustness: every decision is exact. Ties (equal faces, shared vertices, touching) are decided as if B were
+/// translated by an infinitesimal vector (predicates.h): Edelsbrunner and Muecke, "Simulation of simplicity", 1990,
+/// with a perturbation that is a motion, so all decisions agree with one position of B.
 namespace sixdof {
 
 /// What two solid bodies have in common at a pose. All vectors are in A's frame.
@@ -61,10 +56,9 @@ struct Overlap {
 /// Error of volume: a small multiple of 1e-16 * (size + distance of the bodies from the origin of A's frame) * (area of
 /// the triangles that are crossed), however small the volume is.
 ///
-/// Cost: finding the crossings in the trees, then a constant per crossing. It follows the length of the curves, not the
-/// number of triangles.
+/// Cost: finding the crossings in the trees, then a constant per crossing.
 ///
-/// One object per thread; any number of objects may share the solids. No allocation once the scratch has grown.
+/// One object per thread; any number may share the solids. No allocation once the scratch has grown.
 class OverlapQuery {
  public:
   /// Both solids outlive this object.

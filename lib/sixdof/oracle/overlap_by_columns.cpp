@@ -106,7 +106,7 @@ double integrate_lower(const Face& f, const Face& g) {
 /// A uniform grid over the projections: each cell lists the faces whose projections' boxes overlap it.
 class FaceGrid {
  public:
-  explicit FaceGrid(const std::vector<Face>& faces) : faces_(faces) {
+  explicit FaceGrid(const std::vector<Face>& faces) {
     if (faces.empty()) return;
     low_ = faces.front().low;
     high_ = faces.front().high;
@@ -121,30 +121,21 @@ class FaceGrid {
     per_length_ = edge > 0.0 ? 1.0 / edge : 0.0;
     along_x_ = 1 + cell(high_.x(), low_.x());
     along_y_ = 1 + cell(high_.y(), low_.y());
-    // Counting sort: faces_of_cells_[begin_[c]] .. [begin_[c + 1] - 1] are the faces of cell c.
-    begin_.assign(along_x_ * along_y_ + 1, 0);
+    faces_of_cells_.resize(along_x_ * along_y_);
     for (const Face& f : faces) {
-      for_each_cell(f, [&](std::size_t c, std::size_t, std::size_t) { ++begin_[c + 1]; });
-    }
-    for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
-    faces_of_cells_.resize(begin_.back());
-    std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      for_each_cell(faces[i], [&](std::size_t c, std::size_t, std::size_t) { faces_of_cells_[next[c]++] = i; });
+      for_each_cell(f, [&](std::size_t c, std::size_t, std::size_t) { faces_of_cells_[c].push_back(&f); });
     }
   }
 
   /// Calls take(g) once for every face g whose projection's box overlaps that of `f` in more than a line.
   template <class Take>
   void for_each_near(const Face& f, const Take& take) const {
-    if (faces_.empty() || f.low.x() >= high_.x() || f.low.y() >= high_.y()) return;
-    if (f.high.x() <= low_.x() || f.high.y() <= low_.y()) return;
+    if (faces_of_cells_.empty() || (f.low.array() >= high_.array()).any() || (f.high.array() <= low_.array()).any())
+      return;
     for_each_cell(f, [&](std::size_t c, std::size_t x, std::size_t y) {
-      for (std::size_t k = begin_[c]; k < begin_[c + 1]; ++k) {
-        const Face& g = faces_[faces_of_cells_[k]];
-        if (g.low.x() >= f.high.x() || g.high.x() <= f.low.x() || g.low.y() >= f.high.y() || g.high.y() <= f.low.y()) {
-          continue;
-        }
+      for (const Face* near : faces_of_cells_[c]) {
+        const Face& g = *near;
+        if ((g.low.array() >= f.high.array()).any() || (g.high.array() <= f.low.array()).any()) continue;
         // A pair may share several cells: it counts in the one with the lower corner of the boxes' intersection.
         if (cell(std::max(f.low.x(), g.low.x()), low_.x()) == x &&
             cell(std::max(f.low.y(), g.low.y()), low_.y()) == y) {
@@ -171,11 +162,10 @@ class FaceGrid {
     }
   }
 
-  const std::vector<Face>& faces_;
   Vector2d low_ = Vector2d::Zero(), high_ = Vector2d::Zero();
   double per_length_ = 0.0;
   std::size_t along_x_ = 0, along_y_ = 0;
-  std::vector<std::size_t> begin_, faces_of_cells_;
+  std::vector<std::vector<const Face*>> faces_of_cells_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/predicates.h>
+#include <sixdof/geometry/sides.h>
 
 namespace sixdof {
 namespace {
@@ -33,43 +34,20 @@ void check(const Mesh& mesh) {
 /// For each half-edge 3 t + k (from corner k to the next) the opposite half-edge. At edges with more than two triangles
 /// half-edges are paired in order: any pairing of opposite directions makes a closed surface.
 std::vector<std::uint32_t> pair_half_edges(const Mesh& mesh) {
-  const std::vector<Triangle>& triangles = mesh.triangles();
-  struct HalfEdge {
-    std::uint32_t high, index;
-  };
-  // Buckets by lower vertex, each sorted by the higher one.
-  std::vector<std::uint32_t> begin(mesh.vertices().size() + 1, 0);
-  for (const Triangle& t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k) ++begin[std::min(t[k], t[(k + 1) % 3]) + 1];
-  }
-  for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
-  std::vector<HalfEdge> edges(3 * triangles.size());
-  std::vector<std::uint32_t> fill(begin.begin(), begin.end() - 1);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = triangles[t][k], to = triangles[t][(k + 1) % 3];
-      edges[fill[std::min(from, to)]++] = {std::max(from, to), 3 * t + k};
+  const std::vector<Side> sides = sorted_sides(mesh.triangles());
+  std::vector<std::uint32_t> twin(sides.size(), k_none);
+  for_each_edge(sides, [&](std::span<const Side> edge) {
+    for (std::size_t i = 0; i < edge.size(); ++i) {
+      const Side& side = edge[i];
+      if (twin[side.corner] != k_none) continue;
+      const auto other = std::find_if(edge.begin() + static_cast<std::ptrdiff_t>(i), edge.end(), [&](const Side& x) {
+        return twin[x.corner] == k_none && x.forward != side.forward;
+      });
+      if (other == edge.end()) continue;
+      twin[side.corner] = other->corner;
+      twin[other->corner] = side.corner;
     }
-  }
-  std::vector<std::uint32_t> twin(edges.size(), k_none);
-  const auto rises = [&](std::uint32_t h) { return triangles[h / 3][h % 3] < triangles[h / 3][(h % 3 + 1) % 3]; };
-  for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
-    const auto first = edges.begin() + begin[v];
-    const auto last = edges.begin() + begin[v + 1];
-    std::sort(first, last, [](const HalfEdge& a, const HalfEdge& b) {
-      return a.high != b.high ? a.high < b.high : a.index < b.index;
-    });
-    for (auto i = first; i != last; ++i) {
-      if (twin[i->index] != k_none) continue;
-      for (auto j = i + 1; j != last && j->high == i->high; ++j) {
-        if (twin[j->index] == k_none && rises(j->index) != rises(i->index)) {
-          twin[i->index] = j->index;
-          twin[j->index] = i->index;
-          break;
-        }
-      }
-    }
-  }
+  });
   return twin;
 }
 
@@ -90,8 +68,8 @@ void flood(std::uint32_t root, const std::vector<std::uint32_t>& twin, std::vect
   }
 }
 
-/// Of each connected piece the triangle with the pole, its vertex of highest index. The pole is far from the centre:
-/// then it most often lies outside the other body's box, where the winding number is 0.
+/// Of each connected piece the triangle with the pole, its vertex of highest index. Far from the centre: then it most
+/// often lies outside the other body's box, where the winding number is 0.
 std::vector<std::uint32_t> find_pole_triangles(const Mesh& mesh, const Eigen::Vector3d& center,
                                                const std::vector<std::uint32_t>& twin) {
   const std::vector<Triangle>& triangles = mesh.triangles();
@@ -144,13 +122,6 @@ int fixed_exponent(double total) {
   return k_potential_bits - exponent;
 }
 
-void add(Solid::Potential& sum, const Solid::Potential& x) {
-  sum.volume += x.volume;
-  for (std::size_t k = 0; k < 3; ++k) sum.first[k] += x.first[k];
-}
-
-Solid::Potential negative(const Solid::Potential& p) { return {-p.volume, {-p.first[0], -p.first[1], -p.first[2]}}; }
-
 }  // namespace
 
 Solid::Solid(const Mesh& mesh, const Tree& tree) : mesh_(&mesh), tree_(&tree) {
@@ -163,7 +134,7 @@ Solid::Solid(const Mesh& mesh, const Tree& tree) : mesh_(&mesh), tree_(&tree) {
   std::vector<Potential> sums = triangle_fluxes();
   for (std::size_t i = sums.size(); i-- > 0;) {
     const std::uint32_t t = spanning.triangles[i];
-    if (spanning.to_parent[t] != k_none) add(sums[twin[spanning.to_parent[t]] / 3], sums[t]);
+    if (spanning.to_parent[t] != k_none) sums[twin[spanning.to_parent[t]] / 3].add(sums[t], 1);
   }
   pieces_.reserve(poles.size());
   for (const std::uint32_t t : poles) {
@@ -180,13 +151,12 @@ Solid::Solid(const Mesh& mesh, const Tree& tree) : mesh_(&mesh), tree_(&tree) {
     orders_[i] = {lowest, rises};
     // The side from lowest to middle index: half-edge h, or its reverse if the middle corner comes last.
     const std::uint32_t h = 3 * t + (rises ? lowest : (lowest + 2u) % 3);
-    Potential p;
+    const int sign = rises ? 1 : -1;
     if (spanning.to_parent[t] == h) {
-      p = sums[t];
+      potentials_[i].add(sums[t], sign);
     } else if (spanning.to_parent[twin[h] / 3] == twin[h]) {
-      p = negative(sums[twin[h] / 3]);
+      potentials_[i].add(sums[twin[h] / 3], -sign);
     }
-    potentials_[i] = rises ? p : negative(p);
   }
 }
 

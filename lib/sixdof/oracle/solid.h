@@ -26,15 +26,14 @@ namespace sixdof {
 ///
 /// **Numbers.** alpha is the flux through the subtree beyond the edge in a spanning tree of the triangles. It may be as
 /// large as the whole flux where the answer is tiny, so potentials are 128-bit integers (fixed point): sums of them are
-/// exact in any order. There are four fluxes: that of (p - m) / 3, which gives the volume, and the three components of
+/// exact. There are four fluxes: that of (p - m) / 3, which gives the volume, and the three components of
 /// |p - m|^2 n / 2, which give the first moment; m is the tree's centre.
 ///
-/// **Curves between vertices.** A curve that enters a triangle through one side and leaves it through another is
-/// deformed to run through vertices: each crossing of a side moves to the side's vertex of lowest index. The two sides
-/// at the triangle's lowest vertex need no more; for a crossing of the opposite side the deformed curve runs along the
-/// triangle's side from the lowest to the middle index. So one potential per triangle, that of this side, is stored. No
-/// curve runs through a triangle's corner of highest index. There the pole is: whether it lies inside is decided for a
-/// vertex.
+/// **Curves between vertices.** Curves are deformed to run through vertices: each crossing of a side moves to the
+/// side's vertex of lowest index. The two sides at the triangle's lowest vertex need no more; for a crossing of the
+/// opposite side the deformed curve runs along the triangle's side from the lowest to the middle index. So one
+/// potential per triangle, that of this side, is stored. No curve runs through a triangle's corner of highest index:
+/// there the pole is.
 ///
 /// Memory: 66 bytes per triangle, besides the tree's. Preparation: linear, but for sorting.
 class Solid {
@@ -50,6 +49,11 @@ class Solid {
   struct Potential {
     Integer volume = 0;
     std::array<Integer, 3> first{};
+
+    void add(const Potential& x, int factor) {
+      volume += factor * x.volume;
+      for (std::size_t k = 0; k < 3; ++k) first[k] += factor * x.first[k];
+    }
   };
 
   /// Connected piece of the surface (through edges).

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,7 +13,6 @@
 
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
-#include <sixdof/query/outcome.h>
 #include <sixdof/query/settings.h>
 
 /// The interface of every algorithm under test. To add one, derive from Query, prepare in its constructor, and describe
@@ -33,10 +33,36 @@
 
 namespace sixdof {
 
-/// Answer of a distance query: the smallest distance between the two surfaces, >= 0 (length).
+/// How a query ended.
+enum class Status {
+  ok,
+  unsupported,  ///< The algorithm does not answer this kind of query.
+  failed,       ///< The algorithm gave up, threw, or returned something that is no answer.
+  non_finite,   ///< The algorithm returned, or was given, a NaN or an infinity.
+};
+
+constexpr std::string_view to_string(Status status) {
+  constexpr std::string_view k_names[] = {"ok", "unsupported", "failed", "non_finite"};
+  return k_names[static_cast<std::size_t>(status)];
+}
+
+/// A value, or why there is none. `value` is meaningful only if ok(); Query::diagnosis() has the words for a failure.
+template <class T>
+struct Outcome {
+  Status status = Status::unsupported;
+  T value{};
+
+  Outcome() = default;
+  Outcome(Status why) : status(why) {}                      // NOLINT(google-explicit-constructor): reads as a value
+  Outcome(T answer) : status(Status::ok), value(answer) {}  // NOLINT(google-explicit-constructor)
+
+  bool ok() const { return status == Status::ok; }
+};
+
+/// Answer of a distance query.
 struct Separation {
   static constexpr std::uint32_t k_no_triangle = std::numeric_limits<std::uint32_t>::max();
-  double distance = 0.0;
+  double distance = 0.0;                                ///< Smallest one between the two surfaces, >= 0 (length).
   bool has_witnesses = false;                           ///< Whether the witness points are set.
   Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();  ///< Closest point on A, in A's frame.
   Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();  ///< Closest point on B, in A's frame.
@@ -83,8 +109,7 @@ struct Footprint {
   std::vector<std::pair<std::string, double>> counts;
 };
 
-/// How many elements a query tested, in a unit that explains its time. Rows report `<unit>_tested`, `<unit>_total` and
-/// the time per tested element.
+/// How many elements a query tested. Rows report `<unit>_tested`, `<unit>_total` and the time per tested element.
 struct Work {
   std::string unit;     ///< Plural, as in names of counters: "points", "sphere_pairs".
   double tested = 0.0;  ///< Elements that the last query tested, of any kind of query.
@@ -99,31 +124,26 @@ struct Traits {
   QuerySet answers;     ///< Benchmarks ask these kinds of query only; the others return Status::unsupported.
   ResponseLaw law = ResponseLaw::none;  ///< Of respond().
   std::vector<Parameter> parameters;    ///< What a user may set; empty if nothing.
-  /// Whether benchmarks have rows of its queries. False for a reference that is too slow to be compared, such as
-  /// brute force: it is still found by name, by tests, the generator and the command line.
+  /// Whether benchmarks have rows of its queries. False for a reference that is too slow, such as brute force.
   bool timed = true;
 };
 
 /// An algorithm prepared for one pair of meshes.
 ///
-/// **Threads.** One thread at a time uses a Query. Different queries of one algorithm may run at the same time, so they
-/// share nothing that changes.
+/// **Threads.** One thread at a time uses a Query. Queries of one algorithm share nothing that changes.
 ///
-/// **State.** A query may start from the result of the last one (warm start). The order of the poses may then change
-/// the rounding of the answers, but nothing else.
+/// **State.** After a warm start from the last query, the order of poses may change the rounding of answers only.
 ///
 /// **Errors.** An implementation should not throw: what goes wrong is returned as a Status other than ok, by fail()
-/// with words. A caller counts whatever is thrown all the same, like a status that is not ok, as one failed
-/// configuration and goes on with the next one. It does the same with an answer that is ok but holds a NaN or an
-/// infinity (other than Response::volume = k_absent).
+/// with words. Callers count all the same what is thrown, and an answer with a NaN or an infinity (other than
+/// Response::volume = k_absent), as one failed configuration (ask.h).
 ///
-/// **Time.** Only the three queries are timed, one call at a time. Memory that they need is best kept between calls.
+/// **Time.** Only the three queries are timed. Memory that they need is best kept between calls.
 class Query {
  public:
   virtual ~Query() = default;
 
-  /// Do the two bodies, or for algorithms that know only surfaces the two surfaces, have a point in common? Contact
-  /// counts.
+  /// Do the two bodies (for some algorithms, the two surfaces) have a point in common? Contact counts.
   virtual Outcome<bool> collide(const Pose& /*X_AB*/) { return Status::unsupported; }
 
   /// Distance of the two surfaces; 0 where they touch or intersect.
@@ -148,7 +168,6 @@ class Query {
     return status;
   }
 
-  /// Poses of configuration sets always are; those of other callers may hold a NaN or an infinity.
   static bool is_finite(const Pose& X_AB) { return X_AB.R.allFinite() && X_AB.t.allFinite(); }
 
  private:

@@ -15,10 +15,9 @@ class Registry {
   /// @throws BadArgument if the name is taken or has characters other than a-z 0-9 '-'.
   void add(std::unique_ptr<Algorithm> algorithm);
 
-  /// @throws BadArgument that lists the registered names.
+  /// @throws BadArgument that lists the registered names
   const Algorithm& find(std::string_view name) const;
 
-  /// In the order of registration.
   const std::vector<std::unique_ptr<Algorithm>>& all() const { return algorithms_; }
 
  private:

@@ -43,24 +43,25 @@ void check(const Parameter& parameter, const std::string& text) {
 Settings::Settings(std::vector<Parameter> parameters) : parameters_(std::move(parameters)) {
   for (const Parameter& parameter : parameters_) {
     check(parameter, parameter.default_value);
-    values_[parameter.name] = parameter.default_value;
+    values_.push_back(parameter.default_value);
   }
 }
 
-const Parameter& Settings::find(const std::string& parameter) const {
-  const auto found =
-      std::find_if(parameters_.begin(), parameters_.end(), [&](const Parameter& p) { return p.name == parameter; });
-  if (found != parameters_.end()) return *found;
+std::size_t Settings::find(const std::string& parameter) const {
   std::vector<std::string> names;
-  for (const Parameter& p : parameters_) names.push_back(p.name);
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    if (parameters_[i].name == parameter) return i;
+    names.push_back(parameters_[i].name);
+  }
   throw BadArgument(names.empty()
                         ? fmt::format("{}: this algorithm has no parameters", parameter)
                         : fmt::format("{}: no such parameter; there are {}", parameter, fmt::join(names, ", ")));
 }
 
 void Settings::set(const std::string& parameter, const std::string& text) {
-  check(find(parameter), text);
-  values_[parameter] = text;
+  const std::size_t i = find(parameter);
+  check(parameters_[i], text);
+  values_[i] = text;
 }
 
 void Settings::set_all(const std::vector<std::string>& assignments) {
@@ -71,19 +72,13 @@ void Settings::set_all(const std::vector<std::string>& assignments) {
   }
 }
 
-double Settings::number(const std::string& parameter) const {
-  find(parameter);
-  return parse_number(values_.at(parameter));
-}
+double Settings::number(const std::string& parameter) const { return parse_number(choice(parameter)); }
 
-const std::string& Settings::choice(const std::string& parameter) const {
-  find(parameter);
-  return values_.at(parameter);
-}
+const std::string& Settings::choice(const std::string& parameter) const { return values_[find(parameter)]; }
 
 std::string Settings::to_string() const {
   std::vector<std::string> parts;
-  for (const Parameter& parameter : parameters_) parts.push_back(parameter.name + "=" + values_.at(parameter.name));
+  for (std::size_t i = 0; i < values_.size(); ++i) parts.push_back(parameters_[i].name + "=" + values_[i]);
   return fmt::format("{}", fmt::join(parts, ","));
 }
 

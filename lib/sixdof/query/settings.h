@@ -1,7 +1,8 @@
 #pragma once
 
-#include <map>
+#include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sixdof {
@@ -16,6 +17,21 @@ struct Parameter {
   double high = 0.0;          ///< Largest allowed number.
   bool integer = false;       ///< Only whole numbers.
   std::vector<std::string> choices = {};  ///< If not empty, the value is one of these words instead of a number.
+
+  static Parameter number(std::string name, std::string meaning, std::string unit, std::string default_value,
+                          double low, double high) {
+    return {std::move(name), std::move(meaning), std::move(unit), std::move(default_value), low, high};
+  }
+  static Parameter count(std::string name, std::string meaning, std::string default_value, double low, double high) {
+    return {std::move(name), std::move(meaning), "1", std::move(default_value), low, high, true};
+  }
+  static Parameter choice(std::string name, std::string meaning, std::string default_value,
+                          std::vector<std::string> choices) {
+    return {.name = std::move(name),
+            .meaning = std::move(meaning),
+            .default_value = std::move(default_value),
+            .choices = std::move(choices)};
+  }
 };
 
 /// A value for every parameter of one algorithm; always complete and valid.
@@ -24,11 +40,10 @@ class Settings {
   /// All defaults.
   explicit Settings(std::vector<Parameter> parameters = {});
 
-  /// @throws BadArgument naming the parameter if there is none of that name, or the text is not a number in range or a
-  /// choice.
+  /// @throws BadArgument if there is no such parameter, or the text is not a number in range or a choice
   void set(const std::string& parameter, const std::string& text);
 
-  /// Each assignment reads "parameter=value". @throws BadArgument
+  /// @param assignments each reads "parameter=value"
   void set_all(const std::vector<std::string>& assignments);
 
   double number(const std::string& parameter) const;              ///< Value of a numeric parameter.
@@ -39,9 +54,9 @@ class Settings {
   std::string to_string() const;
 
  private:
-  const Parameter& find(const std::string& parameter) const;
+  std::size_t find(const std::string& parameter) const;
   std::vector<Parameter> parameters_;
-  std::map<std::string, std::string> values_;
+  std::vector<std::string> values_;
 };
 
 }  // namespace sixdof

@@ -1,21 +1,16 @@
-#include <sixdof/scenario/cone_block.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include <sixdof/scenario/circles.h>
-#include <sixdof/scenario/parameters.h>
-#include <sixdof/scenario/plane_wrench.h>
+#include <sixdof/scenario/kinds.h>
+#include <sixdof/scenario/plane.h>
 
 namespace sixdof {
 namespace {
 
 struct Shape {
-  double height, radius, block_length, block_height, block_width, depth, overshoot, reference_length;
+  double height, radius, block_length, block_height, block_width, depth, overshoot;
   int facets;
   RoundParts round;
 
@@ -27,7 +22,6 @@ struct Shape {
         block_width(s.number("block_width")),
         depth(s.number("depth")),
         overshoot(s.number("overshoot")),
-        reference_length(radius),
         facets(facets_of(s)),
         round(round_parts_of(s)) {
     const double tip = depth * radius / height;
@@ -42,6 +36,11 @@ struct Shape {
   }
 };
 
+/// Scenarios Ia (thick block) and Ib (thin plate): a cone, apex down, slides along a block at a constant depth.
+///
+/// A's frame: x along the block, y up, z across; the block is [0, L] x [-h, 0] x [-w/2, w/2]. B's frame: apex at the
+/// origin, axis +y. Pose: translation by (x, -depth, 0), x from -overshoot to L + overshoot. Reference point: middle of
+/// the cone's bounding box. README.md derives the ideal models.
 class ConeBlock final : public Scenario {
  public:
   ConeBlock(Description description, const Shape& shape)
@@ -76,9 +75,8 @@ class ConeBlock final : public Scenario {
       case IdealLaw::energy:
         return wrench(volume(x), volume(x) * gradient(x));
       case IdealLaw::traction:
-        return wrench(depth(x), traction(x, false));
       case IdealLaw::wall_traction:
-        return wrench(depth(x), traction(x, true));
+        return wrench(depth(x), traction(x, law == IdealLaw::wall_traction));
       // "p ~ delta" and "V ~ delta^3": constant while the bodies overlap.
       case IdealLaw::paper_depth:
         return upwards(depth(x) > 0.0 ? shape_.depth : 0.0);
@@ -101,14 +99,11 @@ class ConeBlock final : public Scenario {
     const double rim = x + shape_.radius;
     const double top = low + shape_.height;
     sketch.dimensions = {
-        {{x, low}, {x, top}, {1.25 * shape_.radius, 0.0}, fmt::format("H = {:g}", shape_.height)},
-        {{x, top}, {rim, top}, {0.0, 0.12 * shape_.height}, fmt::format("r = {:g}", shape_.radius)},
-        {{x, low}, {x, 0.0}, {-0.75 * shape_.radius, 0.0}, fmt::format("\u03b4 = {:g}", shape_.depth)},
-        {{-shape_.overshoot, 0.0}, {0.0, 0.0}, {0.0, -0.15 * shape_.height}, fmt::format("a = {:g}", shape_.overshoot)},
-        {{rim, -shape_.block_height},
-         {rim, 0.0},
-         {0.6 * shape_.radius, 0.0},
-         fmt::format("h = {:g}", shape_.block_height)}};
+        {{x, low}, {x, top}, {1.25 * shape_.radius, 0.0}, "H", shape_.height},
+        {{x, top}, {rim, top}, {0.0, 0.12 * shape_.height}, "r", shape_.radius},
+        {{x, low}, {x, 0.0}, {-0.75 * shape_.radius, 0.0}, "\u03b4", shape_.depth},
+        {{-shape_.overshoot, 0.0}, {0.0, 0.0}, {0.0, -0.15 * shape_.height}, "a", shape_.overshoot},
+        {{rim, -shape_.block_height}, {rim, 0.0}, {0.6 * shape_.radius, 0.0}, "h", shape_.block_height}};
     return sketch;
   }
 
@@ -246,7 +241,7 @@ class ConeBlock final : public Scenario {
 }  // namespace
 
 Settings cone_block_settings(bool thin) {
-  std::vector<Parameter> parameters{
+  return settings_with_round_parts({
       length_parameter("cone_height", "height H of the cone", "60"),
       length_parameter("cone_radius", "radius r of the cone's base", "30"),
       length_parameter("block_length", "length L of the block along the path", "900"),
@@ -254,9 +249,7 @@ Settings cone_block_settings(bool thin) {
       length_parameter("block_width", "width of the block across the path", "375"),
       length_parameter("depth", "how far the apex is below the block's top, delta", "20"),
       length_parameter("overshoot", "path before and behind the block, a", "30"),
-  };
-  add_round_parameters(parameters);
-  return Settings(std::move(parameters));
+  });
 }
 
 std::unique_ptr<Scenario> make_cone_block(const Settings& settings, bool thin) {
@@ -271,7 +264,7 @@ std::unique_ptr<Scenario> make_cone_block(const Settings& settings, bool thin) {
            : "Does a sharp tip that slides over a flat face feel a constant force along the face's normal?",
       rules,
       {0.0, 0.5 * shape.height, 0.0},
-      shape.reference_length,
+      shape.radius,
       false};
   return std::make_unique<ConeBlock>(std::move(description), shape);
 }

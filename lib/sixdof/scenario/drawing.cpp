@@ -1,5 +1,3 @@
-#include <sixdof/scenario/drawing.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,8 @@
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
+
+#include <sixdof/scenario/scenario.h>
 
 namespace sixdof {
 namespace {
@@ -31,7 +31,6 @@ const double k_crease_cosine = std::cos(20.0 * std::numbers::pi / 180.0);
 
 constexpr unsigned k_rgb_a = 0xb9bcc2;
 constexpr unsigned k_rgb_b = 0x8db4dc;
-constexpr const char* k_color_path = "#c8102e";
 constexpr const char* k_color_wrench = "#123a8c";
 constexpr const char* k_color_dimension = "#333333";
 
@@ -128,8 +127,7 @@ std::string draw_path(const Scenario& scenario, const View& view) {
   }
   constexpr double k_visible = 2.0;  // pixels; a rotation about the reference point has no path
   if (length < k_visible) return {};
-  return svg_path(
-      points, fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" stroke-dasharray=\"6 4\"", k_color_path));
+  return svg_path(points, "fill=\"none\" stroke=\"#c8102e\" stroke-width=\"1.6\" stroke-dasharray=\"6 4\"");
 }
 
 /// The ideal force of the volume law as an arrow, its torque (along z in all scenarios) as an arc in the x, y plane.
@@ -167,17 +165,16 @@ std::string draw_dimension(const Dimension& dimension, const View& view) {
       "stroke=\"{}\" stroke-width=\".9\" marker-start=\"url(#dim)\" marker-end=\"url(#dim)\"", k_color_dimension);
   std::string svg = svg_line(view.pixel(dimension.from), from, thin) + svg_line(view.pixel(dimension.to), to, thin);
   svg += svg_line(from, to, arrows);
-  const Vector2d middle = 0.5 * (from + to);
   // The label is beside a vertical line, above a horizontal one.
   const bool vertical = std::abs(to.y() - from.y()) > std::abs(to.x() - from.x());
   constexpr double k_tiny = 14.0;  // pixels: shorter than a label, which is then above the arrows
   const bool tiny = (to - from).norm() < k_tiny;
   const Vector2d shift = vertical ? Vector2d(6.0, tiny ? -8.0 : 4.0) : Vector2d(0.0, -5.0);
-  const Vector2d at = vertical ? Vector2d(0.35 * from + 0.65 * to) : middle;
-  svg +=
-      svg_text(at + shift, dimension.label,
-               vertical ? "font-size=\"12\" class=\"halo\"" : "font-size=\"12\" text-anchor=\"middle\" class=\"halo\"");
-  return svg;
+  const Vector2d at = vertical ? Vector2d(0.35 * from + 0.65 * to) : Vector2d(0.5 * (from + to));
+  const std::string label = fmt::format("{} = {:g}", dimension.symbol, dimension.length);
+  return svg + svg_text(at + shift, label,
+                        vertical ? "font-size=\"12\" class=\"halo\""
+                                 : "font-size=\"12\" text-anchor=\"middle\" class=\"halo\"");
 }
 
 std::string draw_panel(const Scenario& scenario, const Sketch& sketch, const View& view, bool underside,

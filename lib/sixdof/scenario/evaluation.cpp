@@ -16,87 +16,79 @@ namespace {
 
 /// Ideal and measured vectors side by side.
 struct Compared {
-  std::vector<Eigen::Vector3d> ideal;
-  std::vector<Eigen::Vector3d> measured;
+  std::vector<Eigen::Vector3d> ideal, measured;
 };
 
-/// Force and torque over some of the steps.
+/// Over some of the steps.
 struct Selection {
-  Compared force;
-  Compared torque;
+  Compared force, torque;
   std::size_t failed = 0;
-
-  bool has_force() const { return peak(force.ideal) > 0.0; }
-  bool has_torque() const { return peak(torque.ideal) > 0.0; }
 };
 
-class Evaluator {
- public:
-  Evaluator(const Scenario& scenario, const Recording& recording, IdealLaw law)
-      : scenario_(scenario), recording_(recording), ideals_(ideals_of(scenario, recording, law)) {}
+struct Evaluator {
+  const Scenario& scenario;
+  const Recording& recording;
+  Ideals ideals;
+  Measures measures = {};
 
   Measures evaluate() {
     std::size_t inside = 0;
-    for (const double progress : recording_.progress) inside += scenario_.in_window(progress) ? 1 : 0;
+    for (const double progress : recording.progress) inside += scenario.in_window(progress) ? 1 : 0;
     if (inside > 0) add_all(true, "");
-    if (inside < recording_.size()) add_all(false, "_all");
-    if (scenario_.closed()) {
-      add("loop_work", loop_work(recording_.forces, recording_.torques, recording_.poses, scenario_.reference_b()));
+    if (inside < recording.size()) add_all(false, "_all");
+    if (scenario.closed()) {
+      add("loop_work", loop_work(recording.forces, recording.torques, recording.poses, scenario.reference_b()));
     }
-    const Latency times = latency(recording_.times_ns);
-    measures_.insert(measures_.end(), {{"mean_ns", times.mean},
-                                       {"processor_ns", recording_.processor_ns},
-                                       {"p50_ns", times.p50},
-                                       {"p99_ns", times.p99},
-                                       {"p999_ns", times.p999},
-                                       {"max_ns", times.max},
-                                       {"over_1ms", times.over_deadline}});
-    return std::move(measures_);
+    const Latency times = latency(recording.times_ns);
+    measures.insert(measures.end(), {{"mean_ns", times.mean},
+                                     {"processor_ns", recording.processor_ns},
+                                     {"p50_ns", times.p50},
+                                     {"p99_ns", times.p99},
+                                     {"p999_ns", times.p999},
+                                     {"max_ns", times.max},
+                                     {"over_1ms", times.over_deadline}});
+    return std::move(measures);
   }
 
- private:
   /// @param window_only steps in the window only; @param answered_only steps with an answer only
   Selection select(bool window_only, bool answered_only) const {
     Selection selection;
-    for (std::size_t k = 0; k < recording_.size(); ++k) {
-      if (window_only && !scenario_.in_window(recording_.progress[k])) continue;
-      const bool answered = recording_.status[k] == Status::ok;
+    for (std::size_t k = 0; k < recording.size(); ++k) {
+      if (window_only && !scenario.in_window(recording.progress[k])) continue;
+      const bool answered = recording.status[k] == Status::ok;
       if (!answered) ++selection.failed;
       if (answered_only && !answered) continue;
-      selection.force.ideal.push_back(ideals_[k].force);
-      selection.force.measured.push_back(recording_.forces[k]);
-      selection.torque.ideal.push_back(ideals_[k].torque);
-      selection.torque.measured.push_back(recording_.torques[k]);
+      selection.force.ideal.push_back(ideals.forces[k]);
+      selection.force.measured.push_back(recording.forces[k]);
+      selection.torque.ideal.push_back(ideals.torques[k]);
+      selection.torque.measured.push_back(recording.torques[k]);
     }
     return selection;
   }
 
   void add(const std::string& name, const std::optional<double>& value) {
-    if (value) measures_.emplace_back(name, *value);
+    if (value) measures.emplace_back(name, *value);
   }
 
   void add_all(bool window_only, const std::string& suffix) {
     const Selection answered = select(window_only, true);
     const Selection every = select(window_only, false);
-    if (answered.has_force()) add_compared(answered.force, every.force, "_F", suffix);
-    if (answered.has_torque()) add_compared(answered.torque, every.torque, "_T", suffix);
+    const bool has_force = peak(answered.force.ideal) > 0.0;
+    const bool has_torque = peak(answered.torque.ideal) > 0.0;
+    if (has_force) add_compared(answered.force, every.force, "_F", suffix);
+    if (has_torque) add_compared(answered.torque, every.torque, "_T", suffix);
 
-    const bool by_force = answered.has_force() || !answered.has_torque();
-    const Compared& main = by_force ? answered.force : answered.torque;
-    const DirectionError direction = direction_error(main.ideal, main.measured);
+    Compared Selection::*const wanted = has_force || !has_torque ? &Selection::force : &Selection::torque;
+    const DirectionError direction = direction_error((answered.*wanted).ideal, (answered.*wanted).measured);
     add("misses" + suffix, static_cast<double>(direction.misses));
     add("false_contacts" + suffix, static_cast<double>(direction.false_contacts));
     add("skipped" + suffix, static_cast<double>(direction.skipped));
     add("failed" + suffix, static_cast<double>(answered.failed));
-    const Compared& main_every = by_force ? every.force : every.torque;
-    add("lag" + suffix, lag(main_every.ideal, main_every.measured, k_lag_reach));
-
-    if (answered.has_force() && !answered.has_torque()) {
-      add("leakage" + suffix,
-          leakage(answered.torque.measured, answered.force.measured, 1.0 / scenario_.reference_length()));
-    } else if (answered.has_torque() && !answered.has_force()) {
-      add("leakage" + suffix, leakage(answered.force.measured, answered.torque.measured, scenario_.reference_length()));
-    }
+    add("lag" + suffix, lag((every.*wanted).ideal, (every.*wanted).measured, k_lag_reach));
+    if (has_force == has_torque) return;
+    const double length = scenario.reference_length();
+    add("leakage" + suffix, has_force ? leakage(answered.torque.measured, answered.force.measured, 1.0 / length)
+                                      : leakage(answered.force.measured, answered.torque.measured, length));
   }
 
   void add_compared(const Compared& answered, const Compared& every, const std::string& which,
@@ -116,41 +108,29 @@ class Evaluator {
     add(name("nu"), nu(every.ideal, every.measured));
     add(name("noise"), residual_noise(every.ideal, every.measured, k_haptic_rate_hz, k_noise_cutoff_hz));
   }
-
-  const Scenario& scenario_;
-  const Recording& recording_;
-  std::vector<IdealWrench> ideals_;
-  Measures measures_;
 };
-
-/// Intervals that are refined, and how often each is halved: a slope shrinks to a thousandth.
-constexpr std::size_t k_jump_candidates = 4;
-constexpr std::size_t k_jump_halvings = 10;
 
 }  // namespace
 
-std::vector<IdealWrench> ideals_of(const Scenario& scenario, const Recording& recording, IdealLaw law) {
-  std::vector<IdealWrench> ideals;
-  ideals.reserve(recording.size());
+Ideals::Ideals(const Scenario& scenario, const Recording& recording, IdealLaw law) {
   for (const double progress : recording.progress) {
     const std::optional<IdealWrench> ideal = scenario.ideal(law, progress);
     if (!ideal) throw BadArgument(fmt::format("scenario {} has no ideal \"{}\"", scenario.name(), to_string(law)));
-    ideals.push_back(*ideal);
+    forces.push_back(ideal->force);
+    torques.push_back(ideal->torque);
+    penalties.push_back(ideal->penalty);
   }
-  return ideals;
 }
 
 Measures evaluate(const Scenario& scenario, const Recording& recording, IdealLaw law) {
-  return Evaluator(scenario, recording, law).evaluate();
+  return Evaluator{scenario, recording, Ideals(scenario, recording, law)}.evaluate();
 }
 
 Measures evaluate_jumps(const Scenario& scenario, Query& query, const Recording& recording, IdealLaw law) {
-  std::vector<Eigen::Vector3d> ideal_forces;
-  std::vector<Eigen::Vector3d> ideal_torques;
-  for (const IdealWrench& ideal : ideals_of(scenario, recording, law)) {
-    ideal_forces.push_back(ideal.force);
-    ideal_torques.push_back(ideal.torque);
-  }
+  const Ideals ideals(scenario, recording, law);
+  // Intervals that are refined, and how often each is halved: a slope shrinks to a thousandth.
+  constexpr std::size_t k_candidates = 4;
+  constexpr std::size_t k_halvings = 10;
   Measures measures;
   const auto add = [&](const char* name, Vectors ideal, Vectors measured, Eigen::Vector3d Response::*component) {
     if (peak(ideal) == 0.0 || peak(measured) == 0.0) return;
@@ -159,11 +139,11 @@ Measures evaluate_jumps(const Scenario& scenario, Query& query, const Recording&
       const Outcome<Response> outcome = respond_at(scenario, query, progress, diagnosis);
       return outcome.ok() ? Eigen::Vector3d(outcome.value.*component) : Eigen::Vector3d(Eigen::Vector3d::Zero());
     };
-    const double jump = largest_jump(recording.progress, measured, at, k_jump_candidates, k_jump_halvings);
+    const double jump = largest_jump(recording.progress, measured, at, k_candidates, k_halvings);
     measures.emplace_back(name, jump / peak(measured));
   };
-  add("jump_F", ideal_forces, recording.forces, &Response::force);
-  add("jump_T", ideal_torques, recording.torques, &Response::torque);
+  add("jump_F", ideals.forces, recording.forces, &Response::force);
+  add("jump_T", ideals.torques, recording.torques, &Response::torque);
   return measures;
 }
 

@@ -29,7 +29,13 @@ Measures evaluate(const Scenario& scenario, const Recording& recording, IdealLaw
 /// only where the ideal is nonzero. Asks the query again, between the steps.
 Measures evaluate_jumps(const Scenario& scenario, Query& query, const Recording& recording, IdealLaw law);
 
-/// The ideal at every step of a recording. @throws BadArgument if the scenario has no such ideal
-std::vector<IdealWrench> ideals_of(const Scenario& scenario, const Recording& recording, IdealLaw law);
+/// The ideal at every step of a recording.
+struct Ideals {
+  std::vector<Eigen::Vector3d> forces, torques;
+  std::vector<double> penalties;
+
+  /// @throws BadArgument if the scenario has no such ideal
+  Ideals(const Scenario& scenario, const Recording& recording, IdealLaw law);
+};
 
 }  // namespace sixdof

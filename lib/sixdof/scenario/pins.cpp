@@ -1,17 +1,20 @@
-#include <sixdof/scenario/pins.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
-#include <fmt/format.h>
-
-#include <sixdof/scenario/circles.h>
-#include <sixdof/scenario/parameters.h>
-#include <sixdof/scenario/pin_traction.h>
+#include <sixdof/scenario/kinds.h>
+#include <sixdof/scenario/plane.h>
 
 namespace sixdof {
 namespace {
+
+// Scenarios III and IV: a plate with a square and a round pin, and a block with the matching holes.
+//
+// A's frame: the block's top is z = 0, its middle on the z axis; square hole at (-b/4, 0), round hole at (+b/4, 0).
+// B's frame is the same for the plate, whose underside lies ON the block's top along both paths: a superfluous contact
+// that must not act. README.md derives the ideal models.
 
 constexpr const char* k_superfluous = "The plate lies on the block all along: that contact must not act.";
 
@@ -36,14 +39,16 @@ void check_pins(const PinsShape& shape) {
           "round_radius is too large for its half of the block");
 }
 
-std::vector<Parameter> pins_parameters() {
-  return {
+/// @param path the parameter of the path
+Settings pins_settings(Parameter path) {
+  return settings_with_round_parts({
       length_parameter("width", "width b of plate and block", "80"),
       length_parameter("depth", "depth a of plate and block; also height of the block and length of the pins", "40"),
       length_parameter("square_side", "side c of the square pin", "20"),
       length_parameter("round_radius", "radius r of the round pin", "10"),
       length_parameter("plate_thickness", "thickness of the plate that carries the pins", "10"),
-  };
+      std::move(path),
+  });
 }
 
 double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
@@ -58,14 +63,21 @@ Sketch pins_sketch(const PinsShape& shape, double left) {
   sketch.region = {Eigen::Vector2d(left, -0.85 * a), Eigen::Vector2d(0.62 * b, 0.9 * a)};
   sketch.up = Eigen::Vector3d::UnitZ();
   sketch.underside = true;  // from above, the plate hides its pins
-  sketch.dimensions = {
-      {{-0.5 * b, -0.5 * a}, {0.5 * b, -0.5 * a}, {0.0, -0.2 * a}, fmt::format("b = {:g}", b)},
-      {{0.5 * b, -0.5 * a}, {0.5 * b, 0.5 * a}, {0.12 * a, 0.0}, fmt::format("a = {:g}", a)},
-      {{-0.25 * b - 0.5 * c, -0.5 * c}, {-0.25 * b + 0.5 * c, -0.5 * c}, {0.0, -0.15 * a}, fmt::format("c = {:g}", c)},
-      {{0.25 * b, 0.0}, {0.25 * b + r, 0.0}, {0.0, -0.4 * a}, fmt::format("r = {:g}", r)}};
+  sketch.dimensions = {{{-0.5 * b, -0.5 * a}, {0.5 * b, -0.5 * a}, {0.0, -0.2 * a}, "b", b},
+                       {{0.5 * b, -0.5 * a}, {0.5 * b, 0.5 * a}, {0.12 * a, 0.0}, "a", a},
+                       {{-0.25 * b - 0.5 * c, -0.5 * c}, {-0.25 * b + 0.5 * c, -0.5 * c}, {0.0, -0.15 * a}, "c", c},
+                       {{0.25 * b, 0.0}, {0.25 * b + r, 0.0}, {0.0, -0.4 * a}, "r", r}};
   return sketch;
 }
 
+/// Load of a vertical line of the wall at depth d.
+double line_load(double d, double length, bool along_wall) { return d * (along_wall ? length - 2.0 * d : length - d); }
+
+/// Scenario III: only the square pin is in its hole, and rotates about its own axis.
+///
+/// X_AB rotates by pi - phi about the square hole's axis, phi = 0 .. rotation_degrees: at pi the round pin is outside
+/// the block. The rotation is clockwise, so that the torque that reverses it points along +z, as in the paper.
+/// Reference: middle of the square pin.
 class RotatingPin final : public Scenario {
  public:
   /// @param largest_phi radians
@@ -103,9 +115,6 @@ class RotatingPin final : public Scenario {
     // -dV / dz on the side where the plate leaves the block: the part of the pin outside its hole gets shorter. By
     // symmetry that part is centred at the axis, so there is no torque.
     const double lift = v / length;
-    const auto traction = [&](bool along_wall) {
-      return twist(p, square_pin_traction(c, length, -phi, Eigen::Vector2d::Zero(), along_wall).torque);
-    };
     switch (law) {
       case IdealLaw::depth:
         return twist(p, p);
@@ -116,9 +125,9 @@ class RotatingPin final : public Scenario {
       case IdealLaw::energy:
         return twist(v, v * slope, v * lift);
       case IdealLaw::traction:
-        return traction(false);
       case IdealLaw::wall_traction:
-        return traction(true);
+        return twist(
+            p, square_pin_traction(c, length, -phi, Eigen::Vector2d::Zero(), law == IdealLaw::wall_traction).torque);
       // "p ~ sin(phi/2) - 1": negative throughout, so the torque is its absolute value.
       case IdealLaw::paper_depth:
         return twist(std::sin(0.5 * phi) - 1.0, 1.0 - std::sin(0.5 * phi));
@@ -141,6 +150,10 @@ class RotatingPin final : public Scenario {
   double largest_phi_;
 };
 
+/// Scenario IV: both pins are in their holes, and move along a small circle without rotation.
+///
+/// X_AB is the translation by orbit_radius (cos 2 pi s, sin 2 pi s, 0). Reference: between the pins, at the middle of
+/// their length.
 class OrbitingPins final : public Scenario {
  public:
   /// @param orbit radius rho of the path
@@ -170,9 +183,8 @@ class OrbitingPins final : public Scenario {
       case IdealLaw::energy:
         return gradient(u, v);
       case IdealLaw::traction:
-        return traction(u, false);
       case IdealLaw::wall_traction:
-        return traction(u, true);
+        return traction(u, law == IdealLaw::wall_traction);
       case IdealLaw::paper_volume: {
         // As printed, without the pins' length; the integral's limits are c/2 and r, so it is empty if c = 2 r.
         const double c = shape_.square_side;
@@ -189,9 +201,8 @@ class OrbitingPins final : public Scenario {
     Sketch sketch = pins_sketch(shape_, -0.7 * shape_.width);
     sketch.progress = 0.125;
     const Eigen::Vector2d d = orbit_ * direction(sketch.progress);
-    sketch.dimensions.push_back({Eigen::Vector2d::Zero(), d,
-                                 0.8 * shape_.depth * Eigen::Vector2d(-d.y(), d.x()) / d.norm(),
-                                 fmt::format("\u03c1 = {:g}", orbit_)});
+    sketch.dimensions.push_back(
+        {Eigen::Vector2d::Zero(), d, 0.8 * shape_.depth * Eigen::Vector2d(-d.y(), d.x()) / d.norm(), "\u03c1", orbit_});
     return sketch;
   }
 
@@ -256,16 +267,68 @@ class OrbitingPins final : public Scenario {
 
 }  // namespace
 
+PlaneWrench square_pin_traction(double side, double length, double angle, const Eigen::Vector2d& shift,
+                                bool along_wall) {
+  const double half = 0.5 * side;
+  PlaneWrench sum;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    // Rotation by quarters by exact exchange of sine and cosine.
+    const std::array<double, 4> cosines{std::cos(angle), -std::sin(angle), -std::cos(angle), std::sin(angle)};
+    const Eigen::Vector2d normal(cosines[static_cast<std::size_t>(quarter)],
+                                 cosines[static_cast<std::size_t>((quarter + 3) % 4)]);
+    const Eigen::Vector2d along(-normal.y(), normal.x());
+    const auto arm = [&](double t) { return Eigen::Vector2d(half * normal + t * along); };
+    const auto element = [&](double t) {
+      const Eigen::Vector2d p = shift + arm(t);
+      const Eigen::Vector2d excess = (p.cwiseAbs().array() - half).max(0.0);
+      const double d = excess.norm();
+      if (d == 0.0) return PlaneWrench{};
+      const Eigen::Vector2d wall = -(excess.array() * p.array().sign()).matrix() / d;
+      const Eigen::Vector2d direction = along_wall ? wall : Eigen::Vector2d(-normal);
+      return PlaneWrench::of(arm(t), line_load(d, length, along_wall) * direction);
+    };
+    // The depth has kinks where this side crosses the lines of the hole's walls.
+    std::vector<double> cuts{-half, half};
+    for (int axis = 0; axis < 2; ++axis) {
+      for (const double line : {-half, half}) {
+        if (along[axis] == 0.0) continue;
+        const double t = (line - shift[axis] - half * normal[axis]) / along[axis];
+        if (std::abs(t) < half) cuts.push_back(t);
+      }
+    }
+    std::sort(cuts.begin(), cuts.end());
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      sum += integrate_wrench(element, cuts[i], cuts[i + 1]);
+    }
+  }
+  return sum;
+}
+
+PlaneWrench round_pin_traction(double r, double length, const Eigen::Vector2d& shift, bool along_wall) {
+  PlaneWrench sum;
+  const double distance = shift.norm();
+  if (distance == 0.0) return sum;
+  const double middle = std::atan2(shift.y(), shift.x());
+  const auto element = [&](double angle) {
+    const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
+    const Eigen::Vector2d p = shift + r * normal;
+    const double d = p.norm() - r;
+    const Eigen::Vector2d direction = along_wall ? Eigen::Vector2d(-p / p.norm()) : Eigen::Vector2d(-normal);
+    return PlaneWrench::of(r * normal, r * line_load(d, length, along_wall) * direction);
+  };
+  // The part of the wall outside the hole: |shift + r normal| > r.
+  const double reach = std::acos(std::clamp(-0.5 * distance / r, -1.0, 1.0));
+  sum += integrate_wrench(element, middle - reach, middle + reach);
+  return sum;
+}
+
 Settings rotating_pin_settings() {
-  std::vector<Parameter> parameters = pins_parameters();
-  parameters.push_back({.name = "rotation_degrees",
+  return pins_settings({.name = "rotation_degrees",
                         .meaning = "largest rotation phi of the square pin",
                         .unit = "degree",
                         .default_value = "30",
                         .low = 1e-3,
                         .high = 45.0});
-  add_round_parameters(parameters);
-  return Settings(std::move(parameters));
 }
 
 std::unique_ptr<Scenario> make_rotating_pin(const Settings& settings) {
@@ -287,10 +350,7 @@ std::unique_ptr<Scenario> make_rotating_pin(const Settings& settings) {
 }
 
 Settings orbiting_pins_settings() {
-  std::vector<Parameter> parameters = pins_parameters();
-  parameters.push_back(length_parameter("orbit_radius", "radius rho of the circle along which the pins move", "2"));
-  add_round_parameters(parameters);
-  return Settings(std::move(parameters));
+  return pins_settings(length_parameter("orbit_radius", "radius rho of the circle along which the pins move", "2"));
 }
 
 std::unique_ptr<Scenario> make_orbiting_pins(const Settings& settings) {

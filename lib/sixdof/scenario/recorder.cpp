@@ -1,39 +1,25 @@
 #include <sixdof/scenario/recorder.h>
 
 #include <chrono>
-#include <cmath>
 #include <ctime>
-#include <exception>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include <sixdof/query/ask.h>
 
 namespace sixdof {
 namespace {
 
-bool finite(const Response& r) {
-  return std::isfinite(r.penalty) && r.force.allFinite() && r.torque.allFinite() && r.reference.allFinite();
-}
-
 /// The query alone; exceptions and values that are not finite become a status.
 Outcome<Response> respond_guarded(Query& query, const Pose& X_AB, std::string& diagnosis) {
-  try {
-    const Outcome<Response> outcome = query.respond(X_AB);
-    if (!outcome.ok()) {
-      diagnosis = outcome.status == Status::unsupported ? "the algorithm gives no response" : query.diagnosis();
-      return outcome;
-    }
-    if (!finite(outcome.value)) {
-      diagnosis = "the response is not finite";
-      return Status::non_finite;
-    }
+  const auto failed = [&](std::string words) { diagnosis = std::move(words); };
+  const auto ask = [&] {
+    Outcome<Response> outcome = query.respond(X_AB);
+    examine(query, outcome, failed);
     return outcome;
-  } catch (const std::exception& e) {
-    diagnosis = e.what();
-    return Status::failed;
-  } catch (...) {
-    diagnosis = "the algorithm threw something that is not a std::exception";
-    return Status::failed;
-  }
+  };
+  return ask_guarded(ask, failed);
 }
 
 }  // namespace

@@ -7,9 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/scenario/cone_block.h>
-#include <sixdof/scenario/pins.h>
-#include <sixdof/scenario/sphere_cylinder.h>
+#include <sixdof/scenario/kinds.h>
 
 namespace sixdof {
 namespace {
@@ -77,12 +75,9 @@ std::vector<double> Scenario::steps(std::size_t count) const {
   return progress;
 }
 
-const std::vector<std::string>& scenario_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> list;
-    for (const Kind& kind : k_kinds) list.emplace_back(kind.name);
-    return list;
-  }();
+std::vector<std::string> scenario_names() {
+  std::vector<std::string> names;
+  for (const Kind& kind : k_kinds) names.emplace_back(kind.name);
   return names;
 }
 
@@ -93,5 +88,36 @@ std::unique_ptr<Scenario> make_scenario(std::string_view name, const Settings& s
 }
 
 std::unique_ptr<Scenario> make_scenario(std::string_view name) { return make_scenario(name, scenario_settings(name)); }
+
+Parameter length_parameter(const std::string& name, const std::string& meaning, const std::string& default_value) {
+  return {.name = name, .meaning = meaning, .unit = "length", .default_value = default_value, .low = 1e-6, .high = 1e6};
+}
+
+Settings settings_with_round_parts(std::vector<Parameter> parameters) {
+  // Fewer than 8 facets do not approximate a circle; with 4096 a sphere has 16 million triangles.
+  parameters.push_back({.name = "facets",
+                        .meaning = "sides of the polygon that stands for a circle",
+                        .unit = "1",
+                        .default_value = "96",
+                        .low = 8,
+                        .high = 4096,
+                        .integer = true});
+  parameters.push_back({.name = "round",
+                        .meaning = "polygons with vertices on the circle, or with the circle's area (spheres: volume)",
+                        .unit = "1",
+                        .default_value = "equal_area",
+                        .choices = {"equal_area", "inscribed"}});
+  return Settings(std::move(parameters));
+}
+
+int facets_of(const Settings& settings) { return static_cast<int>(settings.number("facets")); }
+
+RoundParts round_parts_of(const Settings& settings) {
+  return settings.choice("round") == "inscribed" ? RoundParts::inscribed : RoundParts::equal_area;
+}
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw BadArgument(message);
+}
 
 }  // namespace sixdof

@@ -53,10 +53,11 @@ struct Dimension {
   Eigen::Vector2d from;  ///< In the x, y plane of A's frame.
   Eigen::Vector2d to;
   Eigen::Vector2d offset;  ///< From the measured points to the dimension line.
-  std::string label;
+  std::string symbol;
+  double length = 0.0;
 };
 
-/// How to draw a scenario (drawing.h).
+/// How to draw a scenario (draw()).
 struct Sketch {
   double progress = 0.0;       ///< Where B is shown.
   Eigen::AlignedBox2d region;  ///< Part of the x, y plane that the plan shows.
@@ -124,7 +125,7 @@ class Scenario {
 };
 
 /// "Ia", "Ib", "II", "III", "IV".
-const std::vector<std::string>& scenario_names();
+std::vector<std::string> scenario_names();
 
 /// Every length, angle and tessellation of a scenario with the paper's default. @throws BadArgument for another name
 Settings scenario_settings(std::string_view name);
@@ -134,5 +135,11 @@ std::unique_ptr<Scenario> make_scenario(std::string_view name, const Settings& s
 
 /// With all defaults.
 std::unique_ptr<Scenario> make_scenario(std::string_view name);
+
+/// An SVG drawing of a scenario from its own meshes, path and ideal model: a plan (x to the right, y up, seen along -z)
+/// with dimensions, and an oblique view. A is grey, B translucent blue at the progress in sketch(); the path of the
+/// reference point is dashed red, the ideal force or torque of the volume law a dark blue arrow (its length has no
+/// scale). The same scenario gives the same bytes.
+std::string draw(const Scenario& scenario);
 
 }  // namespace sixdof

@@ -16,24 +16,12 @@ constexpr std::uint64_t k_format_version = 1;
 constexpr std::size_t k_chunk_rows = 1024;
 constexpr std::size_t k_spectrum_hop = 8;
 
-void write_column(hdf5::File& file, const std::string& name, const std::vector<double>& values) {
-  file.write_matrix(name, values.data(), values.size(), 1, k_chunk_rows);
+void write_rows(hdf5::File& file, const std::string& name, const std::vector<double>& values, std::size_t columns) {
+  file.write_matrix(name, values.data(), values.size() / columns, columns, k_chunk_rows);
 }
 
-void write_vectors(hdf5::File& file, const std::string& name, const std::vector<Eigen::Vector3d>& values) {
-  std::vector<double> rows;
-  for (const Eigen::Vector3d& v : values) rows.insert(rows.end(), v.data(), v.data() + 3);
-  file.write_matrix(name, rows.data(), values.size(), 3, k_chunk_rows);
-}
-
-void write_poses(hdf5::File& file, const std::vector<Pose>& poses) {
-  std::vector<double> rows;
-  for (const Pose& pose : poses) {
-    const Eigen::Vector4d q = pose.quaternion();
-    rows.insert(rows.end(), q.data(), q.data() + 4);
-    rows.insert(rows.end(), pose.t.data(), pose.t.data() + 3);
-  }
-  file.write_matrix("/pose", rows.data(), poses.size(), 7, k_chunk_rows);
+void write_vectors(hdf5::File& file, const std::string& name, Vectors vectors) {
+  file.write_matrix(name, vectors.front().data(), vectors.size(), 3, k_chunk_rows);
 }
 
 /// Signal and residual of the forces or of the torques.
@@ -45,28 +33,25 @@ void write_spectra(hdf5::File& file, const std::string& kind, Vectors ideal, Vec
   }
   const auto write = [&](const std::string& what, const std::vector<double>& values) {
     const Spectrogram diagram = short_time_spectrum(values, k_haptic_rate_hz, k_spectrum_window, k_spectrum_hop);
-    file.write_matrix("/spectrum/" + kind + "_" + what, diagram.intensity.data(), diagram.times.size(),
-                      diagram.frequencies.size(), k_chunk_rows);
+    write_rows(file, "/spectrum/" + kind + "_" + what, diagram.intensity, diagram.frequencies.size());
     return diagram;
   };
   write("signal", signal);
   const Spectrogram axes = write("residual", residual);
   if (kind != "force") return;  // both kinds have the same axes
-  write_column(file, "/spectrum/times", axes.times);
-  write_column(file, "/spectrum/frequencies", axes.frequencies);
+  write_rows(file, "/spectrum/times", axes.times, 1);
+  write_rows(file, "/spectrum/frequencies", axes.frequencies, 1);
 }
 
 }  // namespace
 
 void write_series(const std::filesystem::path& path, const Scenario& scenario, const Recording& recording, IdealLaw law,
                   const SeriesSource& source, const Measures& measures) {
-  std::vector<Eigen::Vector3d> forces;
-  std::vector<Eigen::Vector3d> torques;
-  std::vector<double> penalties;
-  for (const IdealWrench& ideal : ideals_of(scenario, recording, law)) {
-    forces.push_back(ideal.force);
-    torques.push_back(ideal.torque);
-    penalties.push_back(ideal.penalty);
+  const Ideals ideals(scenario, recording, law);
+  std::vector<double> poses;
+  for (const Pose& pose : recording.poses) {
+    const Eigen::Vector4d q = pose.quaternion();
+    poses.insert(poses.end(), {q[0], q[1], q[2], q[3], pose.t.x(), pose.t.y(), pose.t.z()});
   }
   std::vector<std::int32_t> status;
   for (const Status s : recording.status) status.push_back(static_cast<std::int32_t>(s));
@@ -84,20 +69,20 @@ void write_series(const std::filesystem::path& path, const Scenario& scenario, c
   file.write_attribute("/", "shape", source.shape);
   file.write_attribute("/", "rate_hz", k_haptic_rate_hz);
   for (const auto& [name, value] : measures) file.write_attribute("/", name.c_str(), value);
-  write_column(file, "/progress", recording.progress);
-  write_poses(file, recording.poses);
+  write_rows(file, "/progress", recording.progress, 1);
+  write_rows(file, "/pose", poses, 7);
   write_vectors(file, "/force", recording.forces);
   write_vectors(file, "/torque", recording.torques);
-  write_column(file, "/penalty", recording.penalties);
-  write_column(file, "/time_ns", recording.times_ns);
-  write_vectors(file, "/ideal_force", forces);
-  write_vectors(file, "/ideal_torque", torques);
-  write_column(file, "/ideal_penalty", penalties);
+  write_rows(file, "/penalty", recording.penalties, 1);
+  write_rows(file, "/time_ns", recording.times_ns, 1);
+  write_vectors(file, "/ideal_force", ideals.forces);
+  write_vectors(file, "/ideal_torque", ideals.torques);
+  write_rows(file, "/ideal_penalty", ideals.penalties, 1);
   file.write_values("/status", std::span<const std::int32_t>(status));
   if (recording.size() >= k_spectrum_window) {
     file.make_group("/spectrum");
-    write_spectra(file, "force", forces, recording.forces);
-    write_spectra(file, "torque", torques, recording.torques);
+    write_spectra(file, "force", ideals.forces, recording.forces);
+    write_spectra(file, "torque", ideals.torques, recording.torques);
   }
   file.close();
   output.commit();

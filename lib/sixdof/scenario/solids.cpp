@@ -19,11 +19,6 @@ class Soup {
     vertices_.insert(vertices_.end(), {p, q, r});
     triangles_.push_back({first, first + 1, first + 2});
   }
-  /// Counter-clockwise seen from outside.
-  void quad(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r, const Eigen::Vector3d& s) {
-    triangle(p, q, r);
-    triangle(p, r, s);
-  }
   Mesh build(std::string name) && { return Mesh::build(std::move(vertices_), std::move(triangles_), std::move(name)); }
 
  private:
@@ -48,7 +43,8 @@ void add_walls(Soup& soup, const Loop& loop, double low, double high, bool outwa
   for (std::size_t j = 0; j < loop.size(); ++j) {
     const Eigen::Vector2d& p = loop[outwards ? j : (j + 1) % loop.size()];
     const Eigen::Vector2d& q = loop[outwards ? (j + 1) % loop.size() : j];
-    soup.quad(at_z(p, low), at_z(q, low), at_z(q, high), at_z(p, high));
+    soup.triangle(at_z(p, low), at_z(q, low), at_z(q, high));
+    soup.triangle(at_z(p, low), at_z(q, high), at_z(p, high));
   }
 }
 
@@ -59,19 +55,15 @@ void add_fan(Soup& soup, const Loop& loop, const Eigen::Vector2d& middle, double
   }
 }
 
-/// Angle of p - middle in [0, 2 pi).
-double angle_about(const Eigen::Vector2d& p, const Eigen::Vector2d& middle) {
-  const double angle = std::atan2(p.y() - middle.y(), p.x() - middle.x());
-  return angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle;
-}
-
 /// The face between a rectangle and a convex loop about the rectangle's middle, both counter-clockwise. Each vertex of
 /// the loop is joined to the corner in its own quadrant, so no edge crosses the loop.
 void add_face_with_hole(Soup& soup, const Loop& rectangle, const Loop& hole, double z, bool up) {
   const Eigen::Vector2d middle = 0.5 * (rectangle[0] + rectangle[2]);
   // Corner q of the rectangle is in quadrant q: angles from q pi/2 to (q + 1) pi/2.
   const auto quadrant = [&](const Eigen::Vector2d& p) {
-    return std::min<std::size_t>(3, static_cast<std::size_t>(angle_about(p, middle) / (0.5 * std::numbers::pi)));
+    double angle = std::atan2(p.y() - middle.y(), p.x() - middle.x());
+    if (angle < 0.0) angle += 2.0 * std::numbers::pi;
+    return std::min<std::size_t>(3, static_cast<std::size_t>(angle / (0.5 * std::numbers::pi)));
   };
   for (std::size_t j = 0; j < hole.size(); ++j) {
     const Eigen::Vector2d& from = hole[j];
@@ -97,13 +89,10 @@ Loop rectangle_about(const Eigen::Vector2d& middle, double width, double depth) 
 
 /// The outlines that pins and holes have in common.
 struct PinsOutline {
-  Eigen::Vector2d square_middle;
-  Eigen::Vector2d round_middle;
-  Loop square;
-  Loop round;
-  Loop square_half;  ///< Half of the plate or block around the square.
-  Loop round_half;
-  Loop outer;  ///< Counter-clockwise, with the vertices where the halves meet.
+  Eigen::Vector2d square_middle, round_middle;
+  Loop square, round;
+  Loop square_half, round_half;  ///< Halves of the plate or block around them.
+  Loop outer;                    ///< Counter-clockwise, with the vertices where the halves meet.
 
   explicit PinsOutline(const PinsShape& shape)
       : square_middle(-0.25 * shape.width, 0.0),

@@ -1,13 +1,10 @@
-#include <sixdof/scenario/sphere_cylinder.h>
-
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include <fmt/format.h>
-
-#include <sixdof/scenario/circles.h>
-#include <sixdof/scenario/parameters.h>
-#include <sixdof/scenario/quadrature.h>
+#include <sixdof/scenario/kinds.h>
+#include <sixdof/scenario/plane.h>
 
 namespace sixdof {
 namespace {
@@ -39,6 +36,11 @@ struct Shape {
   }
 };
 
+/// Scenario II: a sphere moves around a cylinder at a constant depth, without rotation.
+///
+/// A's frame: the cylinder's axis is z, its middle the origin. B's frame: the sphere's centre is the origin, which is
+/// also the reference point. Pose: translation by orbit * (cos 2 pi s, sin 2 pi s, 0). README.md derives the ideal
+/// models.
 class SphereCylinder final : public Scenario {
  public:
   SphereCylinder(Description description, const Shape& shape)
@@ -46,39 +48,25 @@ class SphereCylinder final : public Scenario {
                  cylinder_solid(shape.cylinder_radius, shape.cylinder_length, shape.facets, shape.round, "cylinder"),
                  sphere_solid(shape.sphere_radius, shape.facets, shape.round, "sphere")),
         shape_(shape) {
-    depth_ = shape.sphere_radius + shape.cylinder_radius - shape.orbit;
     const double half = shape.half_height();
-    volume_ = 2.0 * integrate_chords([&](double z) { return lens_area(circle(z), cylinder(), orbit()); }, 0.0, half);
-    gradient_ = 2.0 * integrate_chords([&](double z) { return lens_chord(circle(z), cylinder(), orbit()); }, 0.0, half);
-    traction_ = 2.0 * integrate_chords([&](double z) { return traction(z, false); }, 0.0, half);
-    wall_traction_ = 2.0 * integrate_chords([&](double z) { return traction(z, true); }, 0.0, half);
+    const auto over_height = [&](const auto& f) { return 2.0 * integrate_chords(f, 0.0, half); };
+    const double volume = over_height([&](double z) { return lens_area(circle(z), cylinder(), orbit()); });
+    const double gradient = over_height([&](double z) { return lens_chord(circle(z), cylinder(), orbit()); });
+    by_law_ = {{{depth(), depth()},
+                {volume, volume},
+                {volume, gradient},
+                {volume, volume * gradient},
+                {depth(), over_height([&](double z) { return traction(z, false); })},
+                {depth(), over_height([&](double z) { return traction(z, true); })},
+                {orbit(), orbit()},  // "p = rho"
+                {1.0, 1.0}}};        // "V = const"
   }
 
   Pose pose(double progress) const override { return {Eigen::Matrix3d::Identity(), shape_.orbit * outwards(progress)}; }
 
   std::optional<IdealWrench> ideal(IdealLaw law, double progress) const override {
-    const auto radial = [&](double penalty, double magnitude) {
-      return IdealWrench{penalty, magnitude * outwards(progress), Eigen::Vector3d::Zero()};
-    };
-    switch (law) {
-      case IdealLaw::depth:
-        return radial(depth_, depth_);
-      case IdealLaw::volume:
-        return radial(volume_, volume_);
-      case IdealLaw::gradient:
-        return radial(volume_, gradient_);
-      case IdealLaw::energy:
-        return radial(volume_, volume_ * gradient_);
-      case IdealLaw::traction:
-        return radial(depth_, traction_);
-      case IdealLaw::wall_traction:
-        return radial(depth_, wall_traction_);
-      case IdealLaw::paper_depth:
-        return radial(shape_.orbit, shape_.orbit);  // "p = rho"
-      case IdealLaw::paper_volume:
-        return radial(1.0, 1.0);  // "V = const"
-    }
-    return std::nullopt;
+    const auto [penalty, magnitude] = by_law_[static_cast<std::size_t>(law)];
+    return IdealWrench{penalty, magnitude * outwards(progress), Eigen::Vector3d::Zero()};
   }
 
   Sketch sketch() const override {
@@ -91,24 +79,22 @@ class SphereCylinder final : public Scenario {
     sketch.up = Eigen::Vector3d::UnitZ();
     const Eigen::Vector2d left(-shape_.cylinder_radius, 0.0);
     sketch.dimensions = {
-        {Eigen::Vector2d::Zero(), center, 0.55 * shape_.sphere_radius * across,
-         fmt::format("\u03c1 = {:g}", shape_.orbit)},
-        {Eigen::Vector2d::Zero(),
-         left,
-         {0.0, 0.3 * shape_.cylinder_radius},
-         fmt::format("R = {:g}", shape_.cylinder_radius)},
+        {Eigen::Vector2d::Zero(), center, 0.55 * shape_.sphere_radius * across, "\u03c1", shape_.orbit},
+        {Eigen::Vector2d::Zero(), left, {0.0, 0.3 * shape_.cylinder_radius}, "R", shape_.cylinder_radius},
         {center,
          center + shape_.sphere_radius * Eigen::Vector2d::UnitX(),
          {0.0, -0.35 * shape_.sphere_radius},
-         fmt::format("r = {:g}", shape_.sphere_radius)},
+         "r",
+         shape_.sphere_radius},
         {center * (1.0 - shape_.sphere_radius / shape_.orbit), center * (shape_.cylinder_radius / shape_.orbit),
-         -0.95 * shape_.sphere_radius * across, fmt::format("p = {:g}", depth_)}};
+         -0.95 * shape_.sphere_radius * across, "p", depth()}};
     return sketch;
   }
 
  private:
   double orbit() const { return shape_.orbit; }
   double cylinder() const { return shape_.cylinder_radius; }
+  double depth() const { return shape_.sphere_radius + cylinder() - orbit(); }
 
   /// Radius of the sphere's horizontal circle at height z.
   double circle(double z) const { return std::sqrt((shape_.sphere_radius - z) * (shape_.sphere_radius + z)); }
@@ -134,24 +120,19 @@ class SphereCylinder final : public Scenario {
   }
 
   Shape shape_;
-  double depth_ = 0.0;
-  double volume_ = 0.0;
-  double gradient_ = 0.0;  ///< -dV / d orbit
-  double traction_ = 0.0;
-  double wall_traction_ = 0.0;
+  /// Penalty, and magnitude of the force away from the axis, in the order of IdealLaw.
+  std::array<std::pair<double, double>, 8> by_law_;
 };
 
 }  // namespace
 
 Settings sphere_cylinder_settings() {
-  std::vector<Parameter> parameters{
+  return settings_with_round_parts({
       length_parameter("sphere_radius", "radius r of the sphere", "30"),
       length_parameter("cylinder_radius", "radius R of the cylinder", "30"),
       length_parameter("cylinder_length", "length of the cylinder", "100"),
       length_parameter("orbit_radius", "distance rho of the sphere's centre from the cylinder's axis", "50"),
-  };
-  add_round_parameters(parameters);
-  return Settings(std::move(parameters));
+  });
 }
 
 std::unique_ptr<Scenario> make_sphere_cylinder(const Settings& settings) {

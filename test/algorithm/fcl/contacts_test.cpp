@@ -1,4 +1,4 @@
-#include <sixdof/algorithm/fcl/contacts.h>
+#include <sixdof/algorithm/fcl/fcl.h>
 
 #include <cmath>
 

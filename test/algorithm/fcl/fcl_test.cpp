@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/algorithm/brute_force.h>
+#include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/geometry/closest_point.h>
 #include <sixdof/geometry/tree.h>
 

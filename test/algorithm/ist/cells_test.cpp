@@ -1,4 +1,4 @@
-#include <sixdof/algorithm/ist/cells.h>
+#include <sixdof/algorithm/ist/packing.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/algorithm/ist/packing.h>
 #include <sixdof/base/parallel.h>
-#include <sixdof/models/boxes.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/models/recipe.h>
 
 namespace sixdof::ist {
 namespace {
@@ -67,9 +66,10 @@ TEST(Cells, FillTheSolid) {
 TEST(Cells, DoNotDependOnTheNumberOfThreads) {
   const Mesh mesh = load_model("torus-knot-1k");
   const Packing packing = pack_spheres(mesh, {.spheres = 200});
-  const auto weights_with = [&](std::size_t threads) {
-    const parallel::ThreadLimit limit(threads);
-    return cell_weights(mesh, packing.spheres);
+  const auto weights_with = [&](unsigned threads) {
+    decltype(cell_weights(mesh, packing.spheres)) weights;
+    parallel::with_threads(threads, [&] { weights = cell_weights(mesh, packing.spheres); });
+    return weights;
   };
   EXPECT_EQ(weights_with(1), weights_with(2));
 }

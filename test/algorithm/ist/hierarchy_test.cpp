@@ -83,9 +83,10 @@ TEST(SphereTree, SplitsConcentricSpheres) {
 }
 
 TEST(SphereTree, HasTheSameBitsForAnyNumberOfThreads) {
-  const auto build_with = [](std::size_t threads) {
-    const parallel::ThreadLimit limit(threads);
-    return build_sphere_tree(random_spheres(9000, 6));
+  const auto build_with = [](unsigned threads) {
+    SphereTree tree;
+    parallel::with_threads(threads, [&] { tree = build_sphere_tree(random_spheres(9000, 6)); });
+    return tree;
   };
   const SphereTree one = build_with(1), two = build_with(2);
   ASSERT_EQ(one.nodes.size(), two.nodes.size());

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <sixdof/models/boxes.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/models/recipe.h>
 
 #include "../closed_loop.h"
 #include "random_spheres.h"

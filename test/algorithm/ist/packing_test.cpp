@@ -9,8 +9,8 @@
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>
-#include <sixdof/models/boxes.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/models/recipe.h>
 
 namespace sixdof::ist {
 namespace {
@@ -141,9 +141,10 @@ TEST(Packing, StopsAtTheFillRateAndTheSmallestRadius) {
 TEST(Packing, SameBitsForAnyNumberOfThreads) {
   const Mesh mesh = load_model("torus-knot-1k");
   const Tree tree(mesh);
-  const auto pack_with = [&](std::size_t threads) {
-    const parallel::ThreadLimit limit(threads);
-    return pack_spheres(mesh, at_most(300)).spheres;
+  const auto pack_with = [&](unsigned threads) {
+    std::vector<Sphere> spheres;
+    parallel::with_threads(threads, [&] { spheres = pack_spheres(mesh, at_most(300)).spheres; });
+    return spheres;
   };
   const auto one = pack_with(1), two = pack_with(2);
   ASSERT_EQ(one.size(), two.size());

@@ -1,4 +1,4 @@
-#include <sixdof/algorithm/ist/steepest_descent.h>
+#include <sixdof/algorithm/ist/traversal.h>
 
 #include <cmath>
 #include <vector>

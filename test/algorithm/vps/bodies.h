@@ -9,8 +9,7 @@
 
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
-#include <sixdof/models/boxes.h>
-#include <sixdof/models/round.h>
+#include <sixdof/models/recipe.h>
 
 /// Bodies and poses for the tests of voxmap-pointshell.
 

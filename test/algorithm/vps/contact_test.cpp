@@ -201,14 +201,14 @@ TEST_F(Contact, EveryInstructionSetGivesTheBitsOfScalarCode) {
       const VoxelTransform x = transform_to(map_, ++seed, reach), x_wide = transform_to(wide_, seed, reach);
       for (const LayerDepth kind : {LayerDepth::layers, LayerDepth::layers_and_local}) {
         const ContactSums expected = plain_layers(map_, tree_, x, kind);
-        expect_same_bits(sum_layers(map_, tree_, x, kind, all_), expected);
-        expect_same_bits(sum_layers(wide_, tree_, x_wide, kind, all_), plain_layers(wide_, tree_, x_wide, kind));
-        EXPECT_EQ(touches_layers(map_, tree_, x, all_), expected.contacts > 0.0);
+        expect_same_bits(sum_layers(map_, {tree_, x, all_}, kind), expected);
+        expect_same_bits(sum_layers(wide_, {tree_, x_wide, all_}, kind), plain_layers(wide_, tree_, x_wide, kind));
+        EXPECT_EQ(touches_layers(map_, {tree_, x, all_}), expected.contacts > 0.0);
         contacts += expected.contacts;
       }
       const ContactSums expected = plain_field(field_, tree_, x);
-      expect_same_bits(sum_field(field_, tree_, x, all_), expected);
-      EXPECT_EQ(touches_field(field_, tree_, x, all_), expected.contacts > 0.0);
+      expect_same_bits(sum_field(field_, {tree_, x, all_}), expected);
+      EXPECT_EQ(touches_field(field_, {tree_, x, all_}), expected.contacts > 0.0);
       contacts += expected.contacts;
     }
     EXPECT_GT(contacts, 1000.0);
@@ -223,12 +223,12 @@ TEST_F(Contact, CullingChangesNoBitAndSkipsManyLeaves) {
     const VoxelTransform x = transform_to(map_, seed, reach);
     std::span<const std::uint32_t> some = tree_.cull(map_, x, 0.0, scratch);
     ASSERT_TRUE(std::is_sorted(some.begin(), some.end()));
-    expect_same_bits(sum_layers(map_, tree_, x, LayerDepth::layers_and_local, some),
-                     sum_layers(map_, tree_, x, LayerDepth::layers_and_local, all_));
+    expect_same_bits(sum_layers(map_, {tree_, x, some}, LayerDepth::layers_and_local),
+                     sum_layers(map_, {tree_, x, all_}, LayerDepth::layers_and_local));
     left_out += all_.size() - some.size();
     taken += some.size();
     some = tree_.cull(map_, x, DistanceField::k_reach, scratch);
-    expect_same_bits(sum_field(field_, tree_, x, some), sum_field(field_, tree_, x, all_));
+    expect_same_bits(sum_field(field_, {tree_, x, some}), sum_field(field_, {tree_, x, all_}));
   }
   // In two poses out of nine nearly all points are in contact.
   EXPECT_GT(2 * left_out, taken);
@@ -288,10 +288,10 @@ TEST_F(Contact, CullingKeepsANodeThatJustReachesAContact) {
       }
       const PointTree tree(shell, a_.center(), true);
       const VoxelTransform at = VoxelTransform::of(Pose{}, tree.center(), map_.grid);
-      if (touches_layers(map_, tree, at, std::span(&leaf, 1))) {
+      if (touches_layers(map_, {tree, at, std::span(&leaf, 1)})) {
         ASSERT_EQ(tree.cull(map_, at, 0.0, scratch).size(), 1u) << middle.transpose();
       }
-      touched = touches_field(field_, tree, at, std::span(&leaf, 1));
+      touched = touches_field(field_, {tree, at, std::span(&leaf, 1)});
       if (touched) {
         ++field_contacts;
         ASSERT_EQ(tree.cull(map_, at, DistanceField::k_reach, scratch).size(), 1u) << middle.transpose();

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sixdof/algorithm/vps/surface_voxels.h>
 #include <sixdof/algorithm/vps/vps.h>
-#include <sixdof/algorithm/vps/winding_number.h>
 #include <sixdof/geometry/closest_point.h>
 #include <sixdof/models/model_catalogue.h>
 

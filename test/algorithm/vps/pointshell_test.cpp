@@ -110,9 +110,10 @@ TEST(PointShell, HasPointsOnBothSidesOfAThinPlate) {
 
 TEST(PointShell, IsTheSameForAnyNumberOfThreads) {
   const Mesh body = make_bumpy_sphere({}, 900);
-  const auto build = [&](std::size_t threads) {
-    const parallel::ThreadLimit limit(threads);
-    return PointShell::build(body, 0.06);
+  const auto build = [&](unsigned threads) {
+    PointShell shell;
+    parallel::with_threads(threads, [&] { shell = PointShell::build(body, 0.06); });
+    return shell;
   };
   const PointShell one = build(1), four = build(4);
   EXPECT_EQ(one.points, four.points);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/algorithm/vps/field.h>
-#include <sixdof/algorithm/vps/winding_number.h>
+#include <sixdof/algorithm/vps/surface_voxels.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/triangle_distance.h>
@@ -152,10 +152,13 @@ TEST(VoxelMap, SixteenBitsHoldTheSameLayersAsEight) {
 TEST(VoxelMap, IsTheSameForAnyNumberOfThreads) {
   const Mesh body = together(moved(make_bumpy_sphere({}, 400), generic_pose(21, 0.2)),
                              moved(box({3.0, 0.1, 0.2}), generic_pose(22, 1.5)));
-  const auto build = [&](std::size_t threads) {
-    const parallel::ThreadLimit limit(threads);
-    const VoxelMap map = VoxelMap::build(body, 0.01 * body.diagonal(), DistanceField::k_border);
-    return std::pair{map, DistanceField::build(body, map)};
+  const auto build = [&](unsigned threads) {
+    std::pair<VoxelMap, DistanceField> built;
+    parallel::with_threads(threads, [&] {
+      built.first = VoxelMap::build(body, 0.01 * body.diagonal(), DistanceField::k_border);
+      built.second = DistanceField::build(body, built.first);
+    });
+    return built;
   };
   const auto [one, field_of_one] = build(1);
   const auto [four, field_of_four] = build(4);

@@ -2,13 +2,16 @@
 
 #include <fcl/config.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
+#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/math/bv/RSS.h>
 #include <fcl/narrowphase/collision.h>
@@ -17,50 +20,101 @@
 #include <fcl/narrowphase/distance.h>
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/fcl/contacts.h>
-#include <sixdof/algorithm/fcl/model.h>
 #include <sixdof/base/error.h>
 
 namespace sixdof {
 namespace {
 
-using fcl_backend::build_model;
-using fcl_backend::bytes_of;
-using fcl_backend::Model;
-
 constexpr const char* k_relative_error = "relative_error";
+constexpr const char* k_combine = "combine";
+constexpr const char* k_max_contacts = "max_contacts";
+
+/// @throws BadMesh if FCL refuses the mesh
+template <class BV>
+std::shared_ptr<const fcl::BVHModel<BV>> build_model(const Mesh& mesh) {
+  // FCL counts in int.
+  constexpr auto k_max_count = static_cast<std::size_t>(std::numeric_limits<int>::max()) / 2;
+  if (mesh.triangles().size() > k_max_count || mesh.vertices().size() > k_max_count) {
+    throw BadMesh(fmt::format("{}: more triangles or vertices than FCL can count", mesh.name()));
+  }
+  std::vector<fcl::Triangle> triangles;
+  triangles.reserve(mesh.triangles().size());
+  for (const Triangle& t : mesh.triangles()) triangles.emplace_back(t[0], t[1], t[2]);
+
+  const auto model = std::make_shared<fcl::BVHModel<BV>>();
+  int code = model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices().size()));
+  if (code == fcl::BVH_OK) code = model->addSubModel(mesh.vertices(), triangles);
+  if (code == fcl::BVH_OK) code = model->endModel();
+  if (code != fcl::BVH_OK) throw BadMesh(fmt::format("{}: FCL cannot build a tree (code {})", mesh.name(), code));
+  return model;
+}
+
+/// The trees of both bodies. Equal meshes share one.
+template <class BV>
+class FclQuery : public Query {
+ public:
+  Footprint footprint() const override {
+    Footprint sum;
+    double nodes = 0.0;
+    double triangles = 0.0;
+    for (const auto* model : {a_.get(), a_ == b_ ? nullptr : b_.get()}) {
+      if (model == nullptr) continue;
+      nodes += model->getNumBVs();
+      triangles += model->num_tris;
+      // FCL's own memUsage() returns a status instead of a size.
+      sum.bytes += sizeof(*model) + static_cast<std::size_t>(model->getNumBVs()) * sizeof(fcl::BVNode<BV>) +
+                   static_cast<std::size_t>(model->num_tris) * (sizeof(fcl::Triangle) + sizeof(unsigned)) +
+                   static_cast<std::size_t>(model->num_vertices) * sizeof(fcl::Vector3d);
+    }
+    sum.counts = {{"nodes", nodes}, {"triangles", triangles}};
+    return sum;
+  }
+
+ protected:
+  FclQuery(const Mesh& a, const Mesh& b) : a_(build_model<BV>(a)), b_(a.hash() == b.hash() ? a_ : build_model<BV>(b)) {}
+
+  /// answer() with X_AB_ set; a failure if it throws, or if the pose is not finite: FCL would find no two volumes apart
+  /// and expand the whole tree.
+  template <class Answer>
+  auto guarded(const Pose& X_AB, const Answer& answer) -> decltype(answer()) {
+    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
+    X_AB_.linear() = X_AB.R;
+    X_AB_.translation() = X_AB.t;
+    try {
+      return answer();
+    } catch (const std::exception& e) {
+      return fail(Status::failed, e.what());
+    }
+  }
+
+  const std::shared_ptr<const fcl::BVHModel<BV>> a_, b_;
+  const fcl::Transform3d X_AA_ = fcl::Transform3d::Identity();
+  fcl::Transform3d X_AB_ = fcl::Transform3d::Identity();
+};
 
 template <class BV>
-class FclQuery final : public Query {
+class FclDistanceQuery final : public FclQuery<BV> {
+  using Base = FclQuery<BV>;
+  using Base::a_, Base::b_, Base::fail, Base::guarded, Base::X_AA_, Base::X_AB_;
+
  public:
-  /// Equal meshes share one tree.
-  FclQuery(const Mesh& a, const Mesh& b, const Settings& settings)
-      : a_(build_model<BV>(a)),
-        b_(a.hash() == b.hash() ? a_ : build_model<BV>(b)),
-        relative_error_(settings.number(k_relative_error)) {
-    first_contact_.num_max_contacts = 1;
-    first_contact_.enable_contact = false;
-    nearest_points_.enable_nearest_points = true;
-  }
+  FclDistanceQuery(const Mesh& a, const Mesh& b, const Settings& settings)
+      : Base(a, b), relative_error_(settings.number(k_relative_error)) {}
 
   Outcome<bool> collide(const Pose& X_AB) override {
     if constexpr (!std::is_same_v<BV, fcl::OBBRSSd>) {
       return Status::unsupported;
     } else {
-      if (!set_pose(X_AB)) return bad_pose();
-      try {
+      return guarded(X_AB, [&]() -> Outcome<bool> {
         fcl::CollisionResultd result;
         fcl::collide<double>(a_.get(), X_AA_, b_.get(), X_AB_, first_contact_, result);
         return result.isCollision();
-      } catch (const std::exception& e) {
-        return fail(Status::failed, e.what());
-      }
+      });
     }
   }
 
   Outcome<Separation> distance(const Pose& X_AB) override {
-    if (!set_pose(X_AB)) return bad_pose();
-    try {
+    return guarded(X_AB, [&] {
       fcl::DistanceResultd result;
       if (relative_error_ == 0.0) {
         fcl::distance<double>(a_.get(), X_AA_, b_.get(), X_AB_, nearest_points_, result);
@@ -68,37 +122,10 @@ class FclQuery final : public Query {
         approximate_distance(result);
       }
       return answer(result);
-    } catch (const std::exception& e) {
-      return fail(Status::failed, e.what());
-    }
-  }
-
-  Footprint footprint() const override {
-    Footprint sum;
-    double nodes = 0.0;
-    double triangles = 0.0;
-    const auto add = [&](const Model<BV>& model) {
-      sum.bytes += bytes_of(model);
-      nodes += model.getNumBVs();
-      triangles += model.num_tris;
-    };
-    add(*a_);
-    if (b_ != a_) add(*b_);
-    sum.counts = {{"nodes", nodes}, {"triangles", triangles}};
-    return sum;
+    });
   }
 
  private:
-  /// False if the pose is not finite: FCL would find no two volumes apart and expand the whole tree.
-  bool set_pose(const Pose& X_AB) {
-    if (!is_finite(X_AB)) return false;
-    X_AB_.linear() = X_AB.R;
-    X_AB_.translation() = X_AB.t;
-    return true;
-  }
-
-  Status bad_pose() { return fail(Status::failed, "the pose is not finite"); }
-
   /// FCL 0.7 ignores the error bounds of a request, so they are set on the traversal node here. FCL skips a pair of
   /// volumes if BOTH bounds hold; with an infinite absolute bound the relative one decides.
   void approximate_distance(fcl::DistanceResultd& result) {
@@ -128,13 +155,63 @@ class FclQuery final : public Query {
     return separation;
   }
 
-  const std::shared_ptr<const Model<BV>> a_;
-  const std::shared_ptr<const Model<BV>> b_;
   const double relative_error_;
-  fcl::CollisionRequestd first_contact_;
-  fcl::DistanceRequestd nearest_points_;
-  const fcl::Transform3d X_AA_ = fcl::Transform3d::Identity();
-  fcl::Transform3d X_AB_ = fcl::Transform3d::Identity();
+  const fcl::CollisionRequestd first_contact_{1, false};  ///< One contact, without its points.
+  const fcl::DistanceRequestd nearest_points_{true};
+};
+
+class ContactsQuery final : public FclQuery<fcl::OBBRSSd> {
+ public:
+  ContactsQuery(const Mesh& a, const Mesh& b, const Settings& settings)
+      : FclQuery(a, b),
+        center_b_(b.center()),
+        combine_(settings.choice(k_combine)),
+        request_(static_cast<std::size_t>(settings.number(k_max_contacts)), true) {}
+
+  Outcome<Response> respond(const Pose& X_AB) override {
+    return guarded(X_AB, [&]() -> Outcome<Response> {
+      fcl::CollisionResultd result;
+      fcl::collide<double>(a_.get(), X_AA_, b_.get(), X_AB_, request_, result);
+      if (result.numContacts() >= request_.num_max_contacts) {
+        return fail(Status::failed, fmt::format("more contacts than {}", request_.num_max_contacts));
+      }
+      return combined(result, X_AB * center_b_);
+    });
+  }
+
+ private:
+  Outcome<Response> combined(const fcl::CollisionResultd& result, const Eigen::Vector3d& reference) {
+    const bool only_deepest = combine_ == "deepest";
+    Response response;
+    response.reference = reference;
+    for (std::size_t i = 0; i < result.numContacts(); ++i) {
+      const fcl::Contactd& contact = result.getContact(i);
+      const double depth = std::max(0.0, contact.penetration_depth);
+      // FCL's normal points from the first body to the second: A to B.
+      const Eigen::Vector3d force = depth * contact.normal;
+      const Eigen::Vector3d torque = (contact.pos - reference).cross(force);
+      if (!only_deepest) {
+        response.force += force;
+        response.torque += torque;
+      } else if (depth > response.penalty) {
+        response.force = force;
+        response.torque = torque;
+      }
+      response.penalty = std::max(response.penalty, depth);
+    }
+    if (combine_ == "mean" && result.numContacts() > 0) {
+      response.force /= static_cast<double>(result.numContacts());
+      response.torque /= static_cast<double>(result.numContacts());
+    }
+    if (!response.force.allFinite() || !response.torque.allFinite()) {
+      return fail(Status::non_finite, "a contact is not finite");
+    }
+    return response;
+  }
+
+  const Eigen::Vector3d center_b_;
+  const std::string combine_;
+  const fcl::CollisionRequestd request_;
 };
 
 Traits traits(std::string name, std::string summary, QuerySet answers) {
@@ -142,24 +219,35 @@ Traits traits(std::string name, std::string summary, QuerySet answers) {
           .version = FCL_VERSION,
           .summary = std::move(summary),
           .answers = answers,
-          .parameters = {{.name = k_relative_error,
-                          .meaning = "a distance may be too large by this fraction of the true one; 0 is exact",
-                          .unit = "1",
-                          .default_value = "0",
-                          .low = 0.0,
-                          .high = 1.0}}};
+          .parameters = {Parameter::number(k_relative_error,
+                                           "a distance may be too large by this fraction of the true one; 0 is exact",
+                                           "1", "0", 0.0, 1.0)}};
 }
 
 }  // namespace
 
 std::unique_ptr<Algorithm> make_fcl_obbrss_algorithm() {
-  return make_algorithm<FclQuery<fcl::OBBRSSd>>(traits(
+  return make_algorithm<FclDistanceQuery<fcl::OBBRSSd>>(traits(
       "fcl-obbrss", "FCL, tree of oriented boxes with rectangle-swept spheres", {.collide = true, .distance = true}));
 }
 
 std::unique_ptr<Algorithm> make_fcl_rss_algorithm() {
-  return make_algorithm<FclQuery<fcl::RSSd>>(
+  return make_algorithm<FclDistanceQuery<fcl::RSSd>>(
       traits("fcl-rss", "FCL, tree of rectangle-swept spheres as in PQP", {.distance = true}));
+}
+
+std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() {
+  return make_algorithm<ContactsQuery>(
+      {.name = "fcl-contacts",
+       .version = FCL_VERSION,
+       .summary = "FCL's contacts of triangle pairs as a penalty wrench",
+       .answers = {.respond = true},
+       .law = ResponseLaw::depth,
+       .parameters = {
+           Parameter::choice(k_combine, "how depth * normal of all contacts become one force", "mean",
+                             {"mean", "sum", "deepest"}),
+           Parameter::count(k_max_contacts, "a query with this many contacts fails, because FCL drops the rest",
+                            "1000000", 1, 1e9)}});
 }
 
 void register_fcl_algorithms(Registry& registry) {

@@ -16,7 +16,18 @@ std::unique_ptr<Algorithm> make_fcl_obbrss_algorithm();
 /// FCL 0.7 copies and refits the whole model in every collide() on this volume, which would be all that is measured.
 std::unique_ptr<Algorithm> make_fcl_rss_algorithm();
 
-/// Adds both and `fcl-contacts` (contacts.h).
+/// `fcl-contacts`: FCL's contacts turned into a wrench of the depth law. Answers respond only.
+///
+/// For every pair of intersecting triangles FCL reports a point, a unit normal from A to B and the penetration depth of
+/// these two triangles, not of the bodies. The wrench is the mean of depth * normal over the contacts, with torques
+/// about the centre of B's bounding box, and the penalty is the largest depth. The mean, because the number of pairs
+/// depends on the tessellation; parameter `combine` selects the sum or the deepest contact instead.
+///
+/// Limits: surfaces only, so a body wholly inside the other has no contact; coplanar triangles give contacts with
+/// normals of either sign, or none; depths are not continuous, as pairs appear and disappear.
+std::unique_ptr<Algorithm> make_fcl_contacts_algorithm();
+
+/// Adds the three.
 void register_fcl_algorithms(Registry& registry);
 
 }  // namespace sixdof

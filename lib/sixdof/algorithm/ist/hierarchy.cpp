@@ -1,6 +1,5 @@
 #include <sixdof/algorithm/ist/hierarchy.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -21,7 +20,7 @@ constexpr int k_epochs = 20;  // T in the formula of build_sphere_tree()
 constexpr double k_lambda_start = k_branching / 2.0;
 constexpr double k_lambda_end = 0.01;
 constexpr std::size_t k_max_even_split = k_branching * k_branching;  // spheres that are split evenly, at most
-constexpr std::size_t k_min_task = 2000;                             // spheres of a subtree that is built as a task
+constexpr std::size_t k_min_task = 2000;                             // spheres of a subtree that is built in parallel
 
 using Prototypes = std::array<Eigen::Vector3d, k_branching>;
 
@@ -79,8 +78,7 @@ Prototypes batch_neural_gas(std::span<const Sphere> spheres) {
   return prototypes;
 }
 
-/// Sorts `spheres` into `parts` ranges of nearly equal size, by halving across the longest axis, and appends their
-/// ends.
+/// Sorts `spheres` into `parts` ranges of nearly equal size across the longest axes, and appends their ends.
 void split_evenly(std::span<Sphere> spheres, std::size_t parts, std::size_t begin, std::vector<std::size_t>& ends) {
   if (parts == 1) {
     ends.push_back(begin + spheres.size());
@@ -97,9 +95,8 @@ void split_evenly(std::span<Sphere> spheres, std::size_t parts, std::size_t begi
   split_evenly(spheres.subspan(middle), parts - low, begin + middle, ends);
 }
 
-/// Sorts `spheres` into up to four clusters and returns their ends. Few spheres are split evenly, so that nodes of
-/// leaves are nearly full. Falls back to four parts in the present order if one cluster takes all spheres (equal
-/// centres).
+/// Sorts `spheres` into up to four clusters and returns their ends. If one cluster takes all spheres (equal centres),
+/// they are split in the present order.
 std::vector<std::size_t> split(std::span<Sphere> spheres) {
   std::vector<std::size_t> ends;
   if (spheres.size() <= k_branching) {
@@ -127,7 +124,7 @@ std::vector<std::size_t> split(std::span<Sphere> spheres) {
   return ends;
 }
 
-/// A node under construction. Tasks build subtrees in any order; flatten() then appends them to the tree.
+/// A node under construction. Subtrees are built in any order; flatten() then appends them to the tree.
 struct BuildNode {
   struct Child {
     Sphere ball;
@@ -144,24 +141,19 @@ std::unique_ptr<BuildNode> build(std::span<Sphere> spheres, std::size_t first_le
   const bool of_leaves = spheres.size() <= k_branching;
   const std::vector<std::size_t> ends = split(spheres);
   result->children.resize(ends.size());
-  parallel::Tasks tasks;
-  std::size_t begin = 0;
-  for (std::size_t slot = 0; slot < ends.size(); ++slot) {
+  const auto build_child = [&](std::size_t slot) {
+    const std::size_t begin = slot == 0 ? 0 : ends[slot - 1];
     const std::span<Sphere> part = spheres.subspan(begin, ends[slot] - begin);
     BuildNode::Child& child = result->children[slot];
     child.ball = enclosing_sphere(part);
-    for (const Sphere& s : part) child.volume += s.volume();
-    if (!of_leaves) {
-      const std::size_t leaf = first_leaf + begin;
-      if (part.size() >= k_min_task) {
-        tasks.run([&child, part, leaf] { child.node = build(part, leaf); });
-      } else {
-        child.node = build(part, leaf);
-      }
-    }
-    begin = ends[slot];
+    child.volume = total_volume(part);
+    if (!of_leaves) child.node = build(part, first_leaf + begin);
+  };
+  if (spheres.size() >= k_min_task) {
+    parallel::for_each(ends.size(), build_child);
+  } else {
+    for (std::size_t slot = 0; slot < ends.size(); ++slot) build_child(slot);
   }
-  tasks.wait();
   return result;
 }
 
@@ -174,6 +166,13 @@ void set_ball(SphereNode& node, std::size_t slot, const Sphere& ball, const Sphe
   node.y[slot] = center.y();
   node.z[slot] = center.z();
   node.r[slot] = static_cast<float>(ball.radius / bound.radius + k_rounding_up);
+}
+
+void append_nodes(SphereTree& tree, std::size_t count) {
+  const std::size_t size = tree.nodes.size() + count;
+  tree.nodes.resize(size);
+  tree.first_child.resize(size);
+  tree.volumes.resize(size);
 }
 
 /// Writes `from` to the existing node `index` and appends the nodes below it.
@@ -191,11 +190,9 @@ void flatten(const BuildNode& from, std::size_t index, SphereTree& tree) {
     tree.first_child[index] = ~static_cast<std::int32_t>(from.first_leaf);
     return;
   }
-  const std::size_t first = tree.nodes.size(), after = first + from.children.size();
+  const std::size_t first = tree.nodes.size();
   tree.first_child[index] = static_cast<std::int32_t>(first);
-  tree.nodes.resize(after);
-  tree.first_child.resize(after);
-  tree.volumes.resize(after);
+  append_nodes(tree, from.children.size());
   for (std::size_t slot = 0; slot < from.children.size(); ++slot) {
     flatten(*from.children[slot].node, first + slot, tree);
   }
@@ -208,12 +205,10 @@ SphereTree build_sphere_tree(std::vector<Sphere> spheres) {
   SphereTree tree;
   tree.bound = enclosing_sphere(spheres);
   const std::unique_ptr<BuildNode> root = build(spheres, 0);
-  tree.nodes.resize(1);
-  tree.first_child.resize(1);
-  tree.volumes.resize(1);
+  append_nodes(tree, 1);
   flatten(*root, 0, tree);
   tree.leaves = std::move(spheres);
-  for (const Sphere& s : tree.leaves) tree.volume += s.volume();
+  tree.volume = total_volume(tree.leaves);
   return tree;
 }
 

@@ -10,18 +10,16 @@
 
 namespace sixdof::ist {
 
-/// One node: the bounding spheres ("balls") of its up to four children, as arrays over the children, so that the 16
-/// pairs of balls of two nodes are tested at once; one cache line. In single precision, relative to the centre of the
-/// tree's bound and in units of its radius; radii are rounded up, so that a ball contains all leaf spheres below it.
+/// The bounding spheres ("balls") of a node's up to four children, as arrays over the children: one cache line. In
+/// single precision, relative to the centre of the tree's bound and in units of its radius; radii are rounded up.
 /// Children fill the first slots; empty slots have radius -infinity.
 struct alignas(64) SphereNode {
   static constexpr std::size_t k_slots = 4;
   std::array<float, k_slots> x, y, z, r;
 };
 
-/// Inner sphere tree. Its leaves are the packed spheres. An inner ball contains all LEAF spheres below it ("wrapped",
-/// Weller and Zachmann 2009), which is tighter than containing the children's balls. The children of a node are either
-/// all nodes or all leaves.
+/// Inner sphere tree. Its leaves are the packed spheres. A ball contains all LEAF spheres below it ("wrapped", Weller
+/// and Zachmann 2009). The children of a node are either all nodes or all leaves.
 struct SphereTree {
   std::vector<SphereNode> nodes;          ///< nodes[0] is the root; the children of a node are consecutive.
   std::vector<std::int32_t> first_child;  ///< Per node: index of a node, or ~index of a leaf (then negative).
@@ -53,8 +51,8 @@ struct SphereTree {
 ///   w_i = sum_j h(k_ij) v_j x_j / sum_j h(k_ij) v_j,  h(k) = exp(-k / lambda),
 ///   lambda_t = lambda_0 (0.01 / lambda_0)^(t / T),  lambda_0 = 4 / 2,
 /// with k_ij the rank of prototype i by distance from sphere j and v_j the sphere's volume. Up to 16 spheres are split
-/// evenly instead, so that nodes of leaves are nearly full.
-/// The same bits for every number of threads. @throws BadArgument if there is no sphere.
+/// evenly instead, so that nodes of leaves are nearly full. The same bits for every number of threads. @throws
+/// BadArgument if there is no sphere.
 SphereTree build_sphere_tree(std::vector<Sphere> spheres);
 
 /// Sets the weight of every leaf, in tree order, and updates the sums of volumes.

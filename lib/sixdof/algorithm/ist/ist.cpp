@@ -6,9 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <sixdof/algorithm/ist/cells.h>
 #include <sixdof/algorithm/ist/packing.h>
-#include <sixdof/algorithm/ist/steepest_descent.h>
 #include <sixdof/algorithm/ist/traversal.h>
 
 namespace sixdof {
@@ -16,57 +14,24 @@ namespace ist {
 namespace {
 
 std::vector<Parameter> parameters() {
-  return {{.name = "spheres",
-           .meaning = "spheres per body, at most",
-           .unit = "1",
-           .default_value = "10000",
-           .low = 1,
-           .high = 5e6,
-           .integer = true},
-          {.name = "fill",
-           .meaning = "stop packing at this fraction of the solid's volume",
-           .unit = "1",
-           .default_value = "1",
-           .low = 0.01,
-           .high = 1},
-          {.name = "smallest_radius",
-           .meaning = "smallest radius of a sphere",
-           .unit = "diagonal",
-           .default_value = "0.0001",
-           .low = 1e-6,
-           .high = 0.5},
-          {.name = "force",
-           .meaning = "volume: each pair's force is its overlap volume; gradient: minus the gradient of that volume; "
-                      "steepest_descent: the total volume, in the direction of the summed gradients",
-           .unit = "",
-           .default_value = "volume",
-           .choices = {"volume", "gradient", "steepest_descent"}},
-          {.name = "correct_fill",
-           .meaning = "on: divide volume and force by both fill rates; cells: weight each sphere with the part of the "
-                      "solid that is nearest to it",
-           .unit = "",
-           .default_value = "off",
-           .choices = {"off", "on", "cells"}},
-          {.name = "budget",
-           .meaning = "sphere tests per response, beyond which the rest is estimated; 0: no limit",
-           .unit = "1",
-           .default_value = "0",
-           .low = 0,
-           .high = 1e9,
-           .integer = true},
-          {.name = "stiffness",
-           .meaning = "force per volume (force=volume, steepest_descent) or per area (force=gradient)",
-           .unit = "1",
-           .default_value = "1",
-           .low = 1e-12,
-           .high = 1e12},
-          {.name = "seed",
-           .meaning = "of the packing's start points",
-           .unit = "1",
-           .default_value = "1",
-           .low = 0,
-           .high = 1e9,
-           .integer = true}};
+  return {
+      Parameter::count("spheres", "spheres per body, at most", "10000", 1, 5e6),
+      Parameter::number("fill", "stop packing at this fraction of the solid's volume", "1", "1", 0.01, 1),
+      Parameter::number("smallest_radius", "smallest radius of a sphere", "diagonal", "0.0001", 1e-6, 0.5),
+      Parameter::choice("force",
+                        "volume: each pair's force is its overlap volume; gradient: minus the gradient of that volume; "
+                        "steepest_descent: the total volume, in the direction of the summed gradients",
+                        "volume", {"volume", "gradient", "steepest_descent"}),
+      Parameter::choice("correct_fill",
+                        "on: divide volume and force by both fill rates; cells: weight each sphere with the part of "
+                        "the solid that is nearest to it",
+                        "off", {"off", "on", "cells"}),
+      Parameter::count("budget", "sphere tests per response, beyond which the rest is estimated; 0: no limit", "0", 0,
+                       1e9),
+      Parameter::number("stiffness", "force per volume (force=volume, steepest_descent) or per area (force=gradient)",
+                        "1", "1", 1e-12, 1e12),
+      Parameter::count("seed", "of the packing's start points", "1", 0, 1e9),
+  };
 }
 
 class IstQuery final : public Query {

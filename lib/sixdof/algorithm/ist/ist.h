@@ -13,14 +13,10 @@ namespace sixdof {
 ///
 /// The spheres fill only a fraction of each solid (the fill rate, a count of the footprint), so volume and force are
 /// too small and distances too large. `correct_fill=on` divides volume and force by both fill rates.
-/// `correct_fill=cells` weights each sphere with the part of the solid that is nearest to it (cells.h), which corrects
-/// the volume locally. `collide` and `distance` answer for the spheres, not for the surfaces.
+/// `correct_fill=cells` weights each sphere with the part of the solid that is nearest to it (packing.h), which
+/// corrects the volume locally. `collide` and `distance` answer for the spheres, not for the surfaces.
 ///
-/// Parameter `force`:
-/// - `volume` (the paper's): each pair's force has the magnitude of its overlap volume.
-/// - `gradient`: the force is minus the gradient of the summed volume. With more spheres its direction and, with
-///   correct_fill, its magnitude converge to the exact ones; the direction of `volume` does not.
-/// - `steepest_descent`: magnitude of the summed volume, direction of the gradient (steepest_descent.h).
+/// Parameter `force`: PairForce, or steepest_descent() (traversal.h); the algorithms' README compares them.
 std::unique_ptr<Algorithm> make_ist_algorithm();
 
 namespace ist {

@@ -6,15 +6,12 @@
 #define SIXDOF_IST_NODE_PAIR_INL_H_
 #endif
 
-#include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 
 #include <hwy/highway.h>
 
-#include <sixdof/algorithm/ist/node_pair.h>
+#include <sixdof/algorithm/ist/traversal.h>
 
 // Tests a node of A against a node of B: their 4 x 4 pairs of balls in lanes 4 i + j, i a slot of A's node and j one of
 // B's. Products and sums are separate operations (no fused multiply-add), so all instruction sets round alike.
@@ -96,8 +93,8 @@ class NodePairTest {
   F rotation_[3][3], translation_[3], ratio_, slack_;
 };
 
-/// Gaps between the balls of two nodes. In double precision: the rounding errors of single precision grow with the
-/// distance and would exceed the differences between the gaps.
+/// Gaps between the balls of two nodes. In double precision: the rounding errors of single precision grow with
+/// distance.
 class NodePairGaps {
  public:
   NodePairGaps(const SphereTree& a, const SphereTree& b, const Pose& X_AB)
@@ -150,7 +147,7 @@ class NodePairGaps {
 /// are pairs of their children. If only one is a node of leaves, that node stays in the pair and the other one is
 /// replaced by each of its children that overlaps one of the leaves.
 ///
-/// Branchless, since the branches would be unpredictable: all bits of a mask are set, or none.
+/// Branchless: all bits of a mask are set, or none.
 struct ChildPairs {
   std::int32_t first_a, first_b;          ///< Node or leaf of the first slot.
   std::int32_t slot_mask_a, slot_mask_b;  ///< 0 where the node stays in the pair: all slots are the node itself.
@@ -179,8 +176,7 @@ struct ChildPairs {
   bool a_stays() const { return slot_mask_a == 0; }
   bool b_stays() const { return slot_mask_b == 0; }
 
-  /// The smallest of NodePairGaps' gaps that belong to this pair: its own, or those of all leaves of the node that
-  /// stays.
+  /// The smallest of NodePairGaps' gaps that belong to this pair.
   double smallest_gap(const double* gap, unsigned pair) const {
     const unsigned step = a_stays() ? k_slots : 1, end = !a_stays() && !b_stays() ? pair + 1 : pair + 4 * step;
     double result = gap[pair];
@@ -209,7 +205,6 @@ struct ChildPairs {
   }
 };
 
-/// A list and the number of pairs in it, for appending.
 struct ListEnd {
   PairList& list;
   std::size_t& size;
@@ -226,8 +221,7 @@ class NodePairExpansion {
   }
 
   /// Expands `count` pairs and appends the results. Both lists must have room for them.
-  /// @tparam k_ahead distance, in pairs, at which nodes are prefetched; 0: no prefetching. The columns must be readable
-  /// that far beyond the last pair; any values will do there.
+  /// @tparam k_ahead nodes are prefetched so many pairs ahead; the columns must be readable that far beyond the last
   template <std::size_t k_ahead>
   HWY_INLINE void expand_all(const std::int32_t* a, const std::int32_t* b, std::size_t count, ListEnd of_nodes,
                              ListEnd of_leaves) const {

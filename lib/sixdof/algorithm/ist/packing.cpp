@@ -4,26 +4,21 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <numbers>
+#include <numeric>
 #include <queue>
 #include <random>
-#include <span>
 #include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/ist/sphere_index.h>
-#include <sixdof/algorithm/load_or_build.h>
-#include <sixdof/algorithm/require_solid.h>
-#include <sixdof/base/cache.h>
+#include <sixdof/algorithm/preparation.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/hash.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>
 #include <sixdof/geometry/tree.h>
-
-// Packer keeps a queue of prototypes ordered by clearance. Each round inserts the largest ones as spheres and optimises
-// new prototypes around them. maximise_clearance() moves a prototype to a local maximum of its clearance.
 
 namespace sixdof::ist {
 namespace {
@@ -48,8 +43,7 @@ struct Prototype {
   }
 };
 
-/// What limits the clearance of a prototype: an inserted sphere, or the tangent plane of the surface at the closest
-/// point.
+/// An inserted sphere, or the tangent plane of the surface at the closest point.
 struct Obstacle {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< Centre of the sphere, or point on the surface.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Plane: unit normal towards the prototype. Sphere: unused.
@@ -64,9 +58,9 @@ struct Obstacle {
 };
 
 /// The space inside the mesh and outside the inserted spheres.
-class FreeSpace {
- public:
-  FreeSpace(const Tree& tree, double largest) : tree_(tree), spheres_(largest) {}
+struct FreeSpace {
+  const Tree& tree;
+  SphereIndex spheres;
 
   struct Clearance {
     double value = 0.0;  ///< Distance to the closest obstacle; `bound` if none is nearer than that.
@@ -76,8 +70,8 @@ class FreeSpace {
   /// @param bound upper bound on the clearance; it changes by at most the length of a step
   Clearance clearance(const Eigen::Vector3d& p, double bound) const {
     constexpr double k_bound_slack = 1.0 + 1e-12;
-    const auto sphere = spheres_.nearest(p, bound * k_bound_slack);
-    const auto surface = closest_point(tree_, p, std::max(0.0, std::min(bound * k_bound_slack, sphere.clearance)));
+    const auto sphere = spheres.nearest(p, bound * k_bound_slack);
+    const auto surface = closest_point(tree, p, std::max(0.0, std::min(bound * k_bound_slack, sphere.clearance)));
     if (surface) {
       const Eigen::Vector3d offset = p - surface->point;
       const Eigen::Vector3d away =
@@ -85,23 +79,12 @@ class FreeSpace {
       return {surface->distance, {surface->point, away, 0.0}};
     }
     if (sphere.sphere < 0) return {bound, {}};
-    const Sphere& nearest = spheres_.spheres()[static_cast<std::size_t>(sphere.sphere)];
+    const Sphere& nearest = spheres.spheres()[static_cast<std::size_t>(sphere.sphere)];
     return {sphere.clearance, {nearest.center, Eigen::Vector3d::Zero(), nearest.radius}};
   }
-
-  double clearance_of_spheres(const Eigen::Vector3d& p, double within) const {
-    return spheres_.nearest(p, within).clearance;
-  }
-
-  void insert(const Sphere& sphere) { spheres_.insert(sphere); }
-  std::span<const Sphere> spheres() const { return spheres_.spheres(); }
-
- private:
-  const Tree& tree_;
-  SphereIndex spheres_;
 };
 
-/// Model of the clearance near a prototype: the distance to the nearest of the obstacles met last.
+/// Models the clearance near a prototype as the distance to the nearest of the obstacles met last.
 class ClearanceModel {
  public:
   void add(const Obstacle& obstacle) {
@@ -156,9 +139,8 @@ struct Start {
 
 /// Moves a prototype from `start`, in the free space, to a local maximum of the clearance.
 ///
-/// First phase: move away from the closest obstacle while that doubles the clearance. Second phase, by cutting planes:
-/// every measured clearance adds an obstacle to the model, and the maximum of the model within a trust region is
-/// measured next.
+/// First phase: away from the closest obstacle while that doubles the clearance. Second phase, by cutting planes: every
+/// measured clearance adds an obstacle to the model, whose maximum within a trust region is measured next.
 Prototype maximise_clearance(const FreeSpace& space, const Start& start, std::uint64_t order) {
   ClearanceModel model;
   auto here = space.clearance(start.position, start.bound);
@@ -189,9 +171,8 @@ Prototype maximise_clearance(const FreeSpace& space, const Start& start, std::ui
   return best;
 }
 
-/// Start points just below the surface, one per equal part of its area in the order of the triangles (stratified
-/// sampling). Where another wall is nearer than the point's own surface point, the point may be beyond that wall:
-/// min_clearance discards it.
+/// Start points just below the surface, one per equal part of its area (stratified sampling). min_clearance discards
+/// points that may be beyond another wall.
 std::vector<Start> surface_starts(const Mesh& mesh, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1.0p-53; };
@@ -231,25 +212,20 @@ void add_starts_around(const Sphere& sphere, std::vector<Start>& starts) {
   }
 }
 
-double total_volume(std::span<const Sphere> spheres) {
-  double volume = 0.0;
-  for (const Sphere& s : spheres) volume += s.volume();
-  return volume;
-}
-
 class Packer {
  public:
   Packer(const Mesh& mesh, const Tree& tree, const PackingOptions& options)
       : mesh_(mesh),
         options_(options),
         min_radius_(options.smallest_radius * mesh.diagonal()),
-        space_(tree, mesh.diagonal()) {}
+        space_{tree, SphereIndex(mesh.diagonal())} {}
 
   Packing run() {
     add_prototypes(
         surface_starts(mesh_, std::max(k_min_starts, k_starts_per_sphere * options_.spheres), options_.seed));
     while (!queue_.empty() && !done()) insert_largest();
-    Packing result{{space_.spheres().begin(), space_.spheres().end()}, total_volume(space_.spheres()) / mesh_.volume()};
+    const std::span<const Sphere> spheres = space_.spheres.spheres();
+    Packing result{{spheres.begin(), spheres.end()}, total_volume(spheres) / mesh_.volume()};
     if (result.spheres.empty()) {
       throw BadMesh(fmt::format("{}: too thin for a sphere of radius {}", mesh_.name(), min_radius_));
     }
@@ -257,7 +233,9 @@ class Packer {
   }
 
  private:
-  bool done() const { return space_.spheres().size() >= options_.spheres || filled_ >= options_.fill * mesh_.volume(); }
+  bool done() const {
+    return space_.spheres.spheres().size() >= options_.spheres || filled_ >= options_.fill * mesh_.volume();
+  }
 
   /// Optimises one prototype per start, in parallel, and queues those that are large enough.
   void add_prototypes(const std::vector<Start>& starts) {
@@ -282,14 +260,14 @@ class Packer {
     std::vector<Start> starts;
     for (const Prototype& p : largest) {
       if (done()) return;
-      const double clearance = space_.clearance_of_spheres(p.position, p.clearance);
+      const double clearance = space_.spheres.nearest(p.position, p.clearance).clearance;
       if (clearance < p.clearance) {
         // A position inside a sphere is discarded.
         if (clearance > 0.0) starts.push_back({p.position, clearance});
         continue;
       }
       const Sphere sphere{p.position, p.clearance * (1.0 - k_margin)};
-      space_.insert(sphere);
+      space_.spheres.insert(sphere);
       filled_ += sphere.volume();
       add_starts_around(sphere, starts);
     }
@@ -305,6 +283,51 @@ class Packer {
   double filled_ = 0.0;
 };
 
+constexpr std::size_t k_rays = 96;          // per sphere, for an error of the cell's volume of some percent
+constexpr int k_max_steps = 24;             // of a ray towards the surface
+constexpr double k_near_surface = 0.02;     // in radii: a ray ends at this distance from the surface
+constexpr double k_rounding = 1.0 - 1e-12;  // another sphere is nearer if its distance is smaller by this factor
+
+/// Near-uniform unit vectors (a Fibonacci lattice), rotated by `offset` about z so that spheres have different ones.
+Eigen::Vector3d direction(std::size_t i, double offset) {
+  constexpr double k_golden_angle = std::numbers::pi * (3.0 - 2.23606797749978969);
+  const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(k_rays);
+  const double angle = offset + k_golden_angle * static_cast<double>(i);
+  const double radius = std::sqrt(1.0 - z * z);
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+/// The smallest length along the ray at which another sphere's surface is equally near, at most `length`. Every step
+/// finds the sphere nearest to the end of the ray and shortens the ray to the bisector with it.
+double bisector(const SphereIndex& spheres, const Sphere& sphere, const Eigen::Vector3d& u, double length) {
+  while (true) {
+    const auto nearest = spheres.nearest(sphere.center + length * u, (length - sphere.radius) * k_rounding);
+    if (nearest.sphere < 0) return length;
+    const Sphere& other = spheres.spheres()[static_cast<std::size_t>(nearest.sphere)];
+    // |c + l u - c'| - r' = l - r, squared, is linear in l.
+    const Eigen::Vector3d offset = other.center - sphere.center;
+    const double difference = sphere.radius - other.radius;
+    const double slope = 2.0 * (offset.dot(u) - difference);
+    const double shorter = (offset.squaredNorm() - difference * difference) / slope;
+    if (!(shorter < length)) return length;
+    length = std::max(shorter, sphere.radius);
+  }
+}
+
+/// Distance from the sphere's centre to the end of its cell in direction `u`.
+double ray(const FreeSpace& space, const Sphere& sphere, const Eigen::Vector3d& u) {
+  double length = sphere.radius;
+  for (int step = 0; step < k_max_steps; ++step) {
+    // Steps are at most a radius: another sphere is mostly nearer than that.
+    const auto surface = closest_point(space.tree, sphere.center + length * u, sphere.radius);
+    const double clearance = surface ? surface->distance : sphere.radius;
+    if (clearance < k_near_surface * sphere.radius) return length;
+    length += clearance;
+    if (const double end = bisector(space.spheres, sphere, u, length); end < length) return end;
+  }
+  return length;
+}
+
 }  // namespace
 
 Packing pack_spheres(const Mesh& mesh, const PackingOptions& options) {
@@ -317,28 +340,46 @@ Packing cached_packing(const Mesh& mesh, const PackingOptions& options) {
   // Increase the version whenever the packing of the same mesh and options changes.
   const std::string key = fmt::format("2 {} spheres={} fill={} smallest_radius={} seed={}", mesh.hash(),
                                       options.spheres, options.fill, options.smallest_radius, options.seed);
-  const auto pack = [](const Packing& packing) {
-    std::vector<double> values;
-    values.reserve(4 * packing.spheres.size());
-    for (const Sphere& s : packing.spheres) {
-      values.insert(values.end(), {s.center.x(), s.center.y(), s.center.z(), s.radius});
-    }
-    CacheEntry entry;
-    entry.put("spheres", std::move(values));
-    return entry;
-  };
-  const auto unpack = [&](CacheEntry entry) -> std::optional<Packing> {
-    const auto values = entry.take<double>("spheres");
-    Packing packing;
-    for (std::size_t i = 0; i + 3 < values.size(); i += 4) {
-      packing.spheres.push_back({{values[i], values[i + 1], values[i + 2]}, values[i + 3]});
-    }
-    if (packing.spheres.empty()) return std::nullopt;
+  const auto visit = [&](CacheMembers members, Packing& packing) {
+    members.records("spheres", packing.spheres);
     packing.fill = total_volume(packing.spheres) / mesh.volume();
-    return packing;
   };
   return load_or_build(
-      "ist-packing", key, [&] { return pack_spheres(mesh, options); }, pack, unpack);
+      "ist-packing", key, [&] { return pack_spheres(mesh, options); }, visit,
+      [](const Packing& packing) { return !packing.spheres.empty(); });
+}
+
+std::vector<double> cell_weights(const Mesh& mesh, std::span<const Sphere> spheres) {
+  const Tree tree(mesh);
+  FreeSpace space{tree, SphereIndex(mesh.diagonal())};
+  for (const Sphere& s : spheres) space.spheres.insert(s);
+  std::vector<double> gaps(spheres.size());  // volumes of the cells without the spheres
+  parallel::for_each(spheres.size(), [&](std::size_t i) {
+    const Sphere& sphere = spheres[i];
+    const double cube = sphere.radius * sphere.radius * sphere.radius;
+    double sum = 0.0;
+    for (std::size_t k = 0; k < k_rays; ++k) {
+      const double length = ray(space, sphere, direction(k, static_cast<double>(i)));
+      sum += length * length * length - cube;
+    }
+    gaps[i] = 4.0 / 3.0 * std::numbers::pi * sum / static_cast<double>(k_rays);
+  });
+  const double unfilled = std::accumulate(gaps.begin(), gaps.end(), 0.0);
+  const double scale = unfilled > 0.0 ? std::max(0.0, mesh.volume() - total_volume(spheres)) / unfilled : 0.0;
+  std::vector<double> weights(spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) weights[i] = 1.0 + scale * gaps[i] / spheres[i].volume();
+  return weights;
+}
+
+std::vector<double> cached_cell_weights(const Mesh& mesh, std::span<const Sphere> spheres) {
+  ContentHash hash;
+  hash.add(std::as_bytes(spheres));
+  // Increase the version whenever the weights of the same mesh and spheres change.
+  const std::string key = fmt::format("2 {} spheres={}", mesh.hash(), hash.hex());
+  return load_or_build(
+      "ist-cells", key, [&] { return cell_weights(mesh, spheres); },
+      [](CacheMembers members, std::vector<double>& weights) { members.array("weights", weights); },
+      [&](const std::vector<double>& weights) { return weights.size() == spheres.size(); });
 }
 
 }  // namespace sixdof::ist

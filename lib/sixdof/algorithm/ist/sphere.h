@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -19,9 +22,45 @@ struct Sphere {
 /// volume where it lies inside the other, 0 where they are apart. (Weisstein, "Sphere-Sphere Intersection", MathWorld.)
 double overlap_volume(double r1, double r2, double d);
 
-/// A bounding sphere of `spheres`, close to the smallest one. The centre moves towards the farthest point of all
-/// spheres in shrinking steps (Badoiu and Clarkson 2003, there for points); the radius is then computed for that centre
-/// and rounded up.
+/// Sum of the spheres' own volumes.
+double total_volume(std::span<const Sphere> spheres);
+
+/// A bounding sphere, close to the smallest one (Badoiu and Clarkson 2003, there for points): the centre moves towards
+/// the farthest point in shrinking steps; the radius is then rounded up.
 Sphere enclosing_sphere(std::span<const Sphere> spheres);
+
+/// Finds the sphere whose surface is closest to a point. Each class of radii (powers of two) has a hashed grid with
+/// cells of four radii. Several threads may read at once while none inserts.
+class SphereIndex {
+ public:
+  /// @param largest upper bound on all radii.
+  explicit SphereIndex(double largest);
+
+  void insert(const Sphere& sphere);
+  std::span<const Sphere> spheres() const { return spheres_; }
+
+  struct Nearest {
+    double clearance;          ///< Distance from the point to the sphere's surface, negative inside it.
+    std::int32_t sphere = -1;  ///< Index into spheres(); -1 if none is nearer than `within`.
+  };
+  /// The sphere whose surface is nearest to `p` among those with a clearance below `within`; ties by lower index.
+  Nearest nearest(const Eigen::Vector3d& p, double within) const;
+
+ private:
+  struct Cell {
+    std::uint64_t key = 0;    // 0: empty
+    std::int32_t first = -1;  // head of the list of the cell's spheres
+  };
+  std::uint64_t key(std::size_t size_class, std::int64_t x, std::int64_t y, std::int64_t z) const;
+  std::size_t slot(std::uint64_t key) const;
+  void grow();
+
+  double largest_;
+  std::vector<Sphere> spheres_;
+  std::vector<std::int32_t> next_;                        // per sphere: the next one in its cell, -1 at the end
+  std::vector<std::vector<std::int32_t>> class_members_;  // spheres of each size class
+  std::vector<Cell> cells_;                               // open addressing, power-of-two size
+  std::size_t used_ = 0;                                  // cells that are not empty
+};
 
 }  // namespace sixdof::ist

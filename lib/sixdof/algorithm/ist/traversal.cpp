@@ -1,12 +1,12 @@
 #include <sixdof/algorithm/ist/traversal.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <queue>
-#include <vector>
+
+#include <Eigen/Geometry>
 
 // SIMD vectors are members of structures here, which targets of unknown vector length (SVE, RVV) do not allow.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -18,9 +18,8 @@
 
 #include <sixdof/algorithm/ist/node_pair-inl.h>
 
-// Dual-tree traversals of two sphere trees. Pairs of nodes are tested in single precision, with slack for the rounding;
-// the pairs of leaves that remain are computed in double precision. Products and sums are separate operations (no fused
-// multiply-add), so all instruction sets round alike.
+// Pairs of nodes are tested in single precision, with slack for the rounding; the pairs of leaves that remain are
+// computed in double precision.
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::ist {
@@ -235,7 +234,7 @@ bool overlaps(const SphereTree& a, const SphereTree& b, const Pose& X_AB, const 
   return false;
 }
 
-/// A pair of nodes in the queue, with the overlap to assume if it is never expanded.
+/// Of a pair of nodes that may never be expanded.
 struct ExpectedOverlap {
   double volume;
   std::uint64_t order;  ///< Breaks ties: first come, first expanded.
@@ -342,6 +341,25 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sixdof::ist {
 
+NodeTransform NodeTransform::of(const SphereTree& a, const SphereTree& b, const Pose& X_AB) {
+  // Far above the rounding of the pose's rotation and of the sums below.
+  constexpr double k_touch = 1.0 + 1e-12;
+  // In overlap all lengths are below T = 2 (1 + ratio). With u = 2^-24 a coordinate of a transformed centre (three
+  // products of rounded factors, the rounded translation, three sums) is off by less than 13 u T and the centre by
+  // sqrt(3) times that; the differences, squares and sums of the test add less than 9 u T.
+  constexpr float k_slack = 32.0f / (1 << 24);
+  NodeTransform result;
+  const double unit = a.bound.radius, ratio = b.bound.radius / unit;
+  const Eigen::Vector3d translation = (X_AB * b.bound.center - a.bound.center) / unit;
+  result.apart = !(translation.norm() <= k_touch * (1.0 + ratio));
+  if (result.apart) return result;
+  result.rotation = (ratio * X_AB.R).cast<float>();
+  result.translation = translation.cast<float>();
+  result.ratio = static_cast<float>(ratio);
+  result.slack = k_slack * 2.0f * (1.0f + result.ratio);
+  return result;
+}
+
 HWY_EXPORT(penetration);
 HWY_EXPORT(penetration_within_budget);
 HWY_EXPORT(overlaps);
@@ -376,6 +394,18 @@ SphereSeparation separation(const SphereTree& a, const SphereTree& b, const Pose
   SphereSeparation best;
   HWY_DYNAMIC_DISPATCH(separation)(a, b, X_AB, best);
   return best;
+}
+
+Wrench steepest_descent(const PenetrationSum& sum) {
+  if (!(sum.volume > 0.0)) return {};
+  const Eigen::Vector3d centroid = sum.first_moment / sum.volume;
+  const double gyration = std::sqrt(std::max(0.0, sum.second_moment / sum.volume - centroid.squaredNorm()));
+  const double moment = (sum.moment - centroid.cross(sum.force)).norm();
+  // A single pair has no radius of gyration; its moment about the centroid is rounding.
+  const double norm = std::hypot(sum.force.norm(), gyration > 0.0 ? moment / gyration : 0.0);
+  if (!(norm > 0.0)) return {};
+  const double scale = sum.volume / norm;
+  return {scale * sum.force, scale * sum.moment};
 }
 
 }  // namespace sixdof::ist

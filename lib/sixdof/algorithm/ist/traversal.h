@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include <sixdof/algorithm/ist/hierarchy.h>
-#include <sixdof/algorithm/ist/node_pair.h>
 #include <sixdof/geometry/pose.h>
 
 namespace sixdof::ist {
@@ -17,10 +19,33 @@ enum class PairForce {
              ///< the volume by the distance of the centres: the sum is minus the gradient of the summed volume.
 };
 
+/// Maps the coordinates of B's nodes to those of A's nodes: p -> rotation p + translation, in single precision and in
+/// units of the radius of A's bound.
+struct NodeTransform {
+  Eigen::Matrix3f rotation;  ///< Times `ratio`.
+  Eigen::Vector3f translation;
+  float ratio = 1.0f;  ///< Radius of B's bound over that of A's.
+  float slack = 0.0f;  ///< Bound on the rounding errors of a distance of two centres less a sum of two radii, see of().
+  bool apart = false;  ///< The trees' bounds are disjoint; nothing else is set.
+
+  static NodeTransform of(const SphereTree& a, const SphereTree& b, const Pose& X_AB);
+};
+
+/// Pairs of indices into two trees. The arrays grow and never shrink; their users keep the number of pairs.
+struct PairList {
+  std::vector<std::int32_t> a, b;
+
+  void make_room(std::size_t pairs) {
+    if (pairs <= a.size()) return;
+    const std::size_t size = std::max(pairs, 2 * a.size());
+    a.resize(size);
+    b.resize(size);
+  }
+};
+
 /// Memory that traversals reuse.
 struct TraversalScratch {
-  PairList node_pairs;  ///< To be expanded.
-  PairList leaf_pairs;  ///< That may overlap.
+  PairList node_pairs, leaf_pairs;
 };
 
 struct TraversalCount {
@@ -58,9 +83,8 @@ PenetrationSum penetration(const SphereTree& a, const SphereTree& b, const Pose&
                            const Eigen::Vector3d& about, TraversalScratch& scratch);
 
 /// Estimate of the same sums within a budget of sphere tests (time-critical variant, Weller and Zachmann 2009). Pairs
-/// of nodes are expanded in the order of their expected overlap; those that the budget does not cover are added with
-/// it. The expected overlap of two balls is the overlap volume of the balls times the density of the leaves in both,
-/// with a force along the line of centres. A budget of tests, unlike one of time, gives reproducible answers.
+/// of nodes are expanded in the order of their expected overlap, and those beyond the budget are added with it: the
+/// overlap volume of two balls times the density of the leaves in both, with a force along the line of centres.
 PenetrationSum penetration_within_budget(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
                                          const Eigen::Vector3d& about, std::uint64_t budget);
 
@@ -69,5 +93,19 @@ SphereContact overlaps(const SphereTree& a, const SphereTree& b, const Pose& X_A
 
 /// Smallest gap of two leaf spheres, by branch and bound.
 SphereSeparation separation(const SphereTree& a, const SphereTree& b, const Pose& X_AB);
+
+/// Force and moment on B, in the frame and about the point of the sum they come from.
+struct Wrench {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+};
+
+/// A wrench with the overlap volume V as magnitude and the direction in which V decreases fastest: V g / |g| for the
+/// wrench g of `sum`, a sum of PairForce::gradient.
+///
+/// |g|^2 = |f|^2 + |m|^2 / l^2, with m the moment about the overlap's centroid and l its radius of gyration about it.
+/// So the result does not depend on the reference point, on which body is called A, or on the unit of length. If m = 0,
+/// |force| = V; if f = 0, |moment| = V l. Zero where the gradient vanishes. It derives from no potential.
+Wrench steepest_descent(const PenetrationSum& sum);
 
 }  // namespace sixdof::ist

@@ -12,9 +12,6 @@
 
 #include <sixdof/algorithm/vps/lookup-inl.h>
 
-// The inner loops over points. Products and sums are separate operations (no fused multiply-add), so all instruction
-// sets round alike.
-
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::vps {
 namespace HWY_NAMESPACE {
@@ -78,13 +75,13 @@ class Accumulator {
   HWY_ALIGN double total_[k_sums][k_lanes] = {};
 };
 
-/// Contact of points with a voxelmap.
+/// Contact of points with a voxelmap. @tparam k_local LayerDepth::layers_and_local
+template <bool k_local>
 class LayerContact {
  public:
   LayerContact(const VoxelMap& map, const VoxelTransform& transform)
       : lookup_(map.grid), transform_(transform), rotation_(transform.rotation), layers_(map) {}
 
-  template <bool k_local>
   HWY_INLINE void add(const PointLanes& points, LaneSums& sums) const {
     const Vec3 p = points.position();
     const Vec3 q = transform_ * p;
@@ -184,7 +181,7 @@ class FieldContact {
     }
   };
 
-  /// The splines along all axes, in memory, to be read lane by lane.
+  /// The splines along all axes, to be read lane by lane.
   struct SplineTable {
     static constexpr std::size_t k_values = 6;
     alignas(64) float value[3 * k_values * PointTree::k_leaf_points];
@@ -205,8 +202,7 @@ class FieldContact {
   /// The field and its gradient. Returns false if the field is known to be positive in all lanes; in single lanes where
   /// it is, the field is set to 1 and the gradient to 0.
   ///
-  /// Each lane reads 9 rows of coefficients, as four floats of which three have a weight. This is faster than gathering
-  /// 27 coefficients in all lanes at once.
+  /// Each lane reads 9 rows of four coefficients, which is faster than gathering 27 in all lanes at once.
   HWY_INLINE bool evaluate(const Vec3& q, Value& result) const {
     constexpr int k = DistanceField::k_brick_edge;
     constexpr std::size_t k_lanes = PointTree::k_leaf_points, k_columns = 4;
@@ -274,60 +270,48 @@ HWY_INLINE PointLanes lanes_of(const PointTree& tree, std::uint32_t leaf, std::s
   return {tree.blocks() + leaf * PointTree::k_rows * PointTree::k_leaf_points + lane};
 }
 
-/// Calls add(lanes, sums) for all points of the leaves.
-template <class Add>
-HWY_INLINE ContactSums sum_leaves(const PointTree& tree, std::span<const std::uint32_t> leaves, const Add& add) {
+template <class Contact>
+HWY_INLINE ContactSums sum_leaves(const PosedLeaves points, const Contact& contact) {
   Accumulator sums;
   const F zero = hn::Zero(k_floats);
+  const std::span<const std::uint32_t> leaves = points.leaves;
   for (std::size_t begin = 0, end = 0; begin < leaves.size(); begin = end) {
     const std::uint32_t batch = leaves[begin] / k_batch_leaves;
     while (end < leaves.size() && leaves[end] / k_batch_leaves == batch) ++end;
     for (std::size_t lane = 0; lane < PointTree::k_leaf_points; lane += hn::Lanes(k_floats)) {
       LaneSums lanes{{zero, zero, zero}, {zero, zero, zero}, zero, zero};
-      for (std::size_t i = begin; i < end; ++i) add(lanes_of(tree, leaves[i], lane), lanes);
+      for (std::size_t i = begin; i < end; ++i) contact.add(lanes_of(points.tree, leaves[i], lane), lanes);
       sums.add(lane, lanes);
     }
   }
   return sums.finish();
 }
 
-/// Does touches(lanes) hold for some points of the leaves?
-template <class Touches>
-HWY_INLINE bool any_point(const PointTree& tree, std::span<const std::uint32_t> leaves, const Touches& touches) {
-  for (const std::uint32_t leaf : leaves) {
+template <class Contact>
+HWY_INLINE bool any_touches(const PosedLeaves points, const Contact& contact) {
+  for (const std::uint32_t leaf : points.leaves) {
     for (std::size_t lane = 0; lane < PointTree::k_leaf_points; lane += hn::Lanes(k_floats)) {
-      if (touches(lanes_of(tree, leaf, lane))) return true;
+      if (contact.touches(lanes_of(points.tree, leaf, lane))) return true;
     }
   }
   return false;
 }
 
-ContactSums sum_layers(const VoxelMap& map, const PointTree& tree, const VoxelTransform& transform, LayerDepth depth,
-                       std::span<const std::uint32_t> leaves) {
-  const LayerContact contact(map, transform);
-  if (depth == LayerDepth::layers) {
-    return sum_leaves(tree, leaves,
-                      [&](PointLanes points, LaneSums& sums) HWY_ATTR { contact.add<false>(points, sums); });
-  }
-  return sum_leaves(tree, leaves, [&](PointLanes points, LaneSums& sums) HWY_ATTR { contact.add<true>(points, sums); });
+ContactSums sum_layers(const VoxelMap& map, const PosedLeaves& points, LayerDepth depth) {
+  if (depth == LayerDepth::layers) return sum_leaves(points, LayerContact<false>(map, points.transform));
+  return sum_leaves(points, LayerContact<true>(map, points.transform));
 }
 
-bool touches_layers(const VoxelMap& map, const PointTree& tree, const VoxelTransform& transform,
-                    std::span<const std::uint32_t> leaves) {
-  const LayerContact contact(map, transform);
-  return any_point(tree, leaves, [&](PointLanes points) HWY_ATTR { return contact.touches(points); });
+bool touches_layers(const VoxelMap& map, const PosedLeaves& points) {
+  return any_touches(points, LayerContact<false>(map, points.transform));
 }
 
-ContactSums sum_field(const DistanceField& field, const PointTree& tree, const VoxelTransform& transform,
-                      std::span<const std::uint32_t> leaves) {
-  const FieldContact contact(field, transform);
-  return sum_leaves(tree, leaves, [&](PointLanes points, LaneSums& sums) HWY_ATTR { contact.add(points, sums); });
+ContactSums sum_field(const DistanceField& field, const PosedLeaves& points) {
+  return sum_leaves(points, FieldContact(field, points.transform));
 }
 
-bool touches_field(const DistanceField& field, const PointTree& tree, const VoxelTransform& transform,
-                   std::span<const std::uint32_t> leaves) {
-  const FieldContact contact(field, transform);
-  return any_point(tree, leaves, [&](PointLanes points) HWY_ATTR { return contact.touches(points); });
+bool touches_field(const DistanceField& field, const PosedLeaves& points) {
+  return any_touches(points, FieldContact(field, points.transform));
 }
 
 }  // namespace HWY_NAMESPACE
@@ -342,24 +326,20 @@ HWY_EXPORT(touches_layers);
 HWY_EXPORT(sum_field);
 HWY_EXPORT(touches_field);
 
-ContactSums sum_layers(const VoxelMap& map, const PointTree& tree, const VoxelTransform& transform, LayerDepth depth,
-                       std::span<const std::uint32_t> leaves) {
-  return HWY_DYNAMIC_DISPATCH(sum_layers)(map, tree, transform, depth, leaves);
+ContactSums sum_layers(const VoxelMap& map, const PosedLeaves& points, LayerDepth depth) {
+  return HWY_DYNAMIC_DISPATCH(sum_layers)(map, points, depth);
 }
 
-bool touches_layers(const VoxelMap& map, const PointTree& tree, const VoxelTransform& transform,
-                    std::span<const std::uint32_t> leaves) {
-  return HWY_DYNAMIC_DISPATCH(touches_layers)(map, tree, transform, leaves);
+bool touches_layers(const VoxelMap& map, const PosedLeaves& points) {
+  return HWY_DYNAMIC_DISPATCH(touches_layers)(map, points);
 }
 
-ContactSums sum_field(const DistanceField& field, const PointTree& tree, const VoxelTransform& transform,
-                      std::span<const std::uint32_t> leaves) {
-  return HWY_DYNAMIC_DISPATCH(sum_field)(field, tree, transform, leaves);
+ContactSums sum_field(const DistanceField& field, const PosedLeaves& points) {
+  return HWY_DYNAMIC_DISPATCH(sum_field)(field, points);
 }
 
-bool touches_field(const DistanceField& field, const PointTree& tree, const VoxelTransform& transform,
-                   std::span<const std::uint32_t> leaves) {
-  return HWY_DYNAMIC_DISPATCH(touches_field)(field, tree, transform, leaves);
+bool touches_field(const DistanceField& field, const PosedLeaves& points) {
+  return HWY_DYNAMIC_DISPATCH(touches_field)(field, points);
 }
 
 }  // namespace sixdof::vps

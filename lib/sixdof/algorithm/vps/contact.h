@@ -29,24 +29,25 @@ enum class LayerDepth {
   layers_and_local,  ///< p = max(0, n . (voxel centre - point) + v), n the point's inward normal
 };
 
+/// Leaves of a point tree, ascending, at a pose.
+struct PosedLeaves {
+  const PointTree& tree;
+  const VoxelTransform& transform;
+  std::span<const std::uint32_t> leaves;
+};
+
 /// Sums of w p n and of w p (P - C) x n over the points with v >= 0, in the POINTS' frame; torque in weight x voxels x
 /// length.
-/// @param leaves ascending
-ContactSums sum_layers(const VoxelMap& map, const PointTree& tree, const VoxelTransform& transform, LayerDepth depth,
-                       std::span<const std::uint32_t> leaves);
+ContactSums sum_layers(const VoxelMap& map, const PosedLeaves& points, LayerDepth depth);
 
-/// Does one of these leaves hold a point with v >= 0?
-bool touches_layers(const VoxelMap& map, const PointTree& tree, const VoxelTransform& transform,
-                    std::span<const std::uint32_t> leaves);
+/// Is there a point with v >= 0?
+bool touches_layers(const VoxelMap& map, const PosedLeaves& points);
 
 /// Sums of -w f grad f and of (P - C) x (-w f grad f) over the points where the field f is negative, in the VOXELMAP's
 /// frame, all in voxels: minus the gradient of the energy sum w f^2 / 2 by translation and rotation of the points.
-/// @param leaves ascending
-ContactSums sum_field(const DistanceField& field, const PointTree& tree, const VoxelTransform& transform,
-                      std::span<const std::uint32_t> leaves);
+ContactSums sum_field(const DistanceField& field, const PosedLeaves& points);
 
-/// Does one of these leaves hold a point where the field is negative?
-bool touches_field(const DistanceField& field, const PointTree& tree, const VoxelTransform& transform,
-                   std::span<const std::uint32_t> leaves);
+/// Is there a point where the field is negative?
+bool touches_field(const DistanceField& field, const PosedLeaves& points);
 
 }  // namespace sixdof::vps

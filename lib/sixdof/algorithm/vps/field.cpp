@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/vps/winding_number.h>
+#include <sixdof/algorithm/vps/surface_voxels.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>

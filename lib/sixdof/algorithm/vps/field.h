@@ -16,8 +16,8 @@ namespace sixdof::vps {
 /// curvature H is displaced by H size^2 / 4, and an edge is rounded off over one voxel. Where a mesh intersects itself,
 /// its inner walls count as surface.
 ///
-/// A brick of 8^3 voxels is stored if one of its coefficients is negative, together with the neighbouring coefficients
-/// that its splines need (10^3 floats, 4000 bytes). Elsewhere the field is positive.
+/// A brick of 8^3 voxels is stored if one of its coefficients is negative, with the neighbours that its splines need
+/// (10^3 floats). Elsewhere the field is positive.
 struct DistanceField {
   static constexpr int k_brick_edge = VoxelGrid::k_edge + 2;  ///< Coefficients along a stored brick's edge.
   static constexpr int k_brick_coefficients = k_brick_edge * k_brick_edge * k_brick_edge;

@@ -18,9 +18,8 @@ struct VoxelGrid {
   double size = 1.0;                               ///< Edge of a voxel, in the mesh's length unit.
   Eigen::Array3i bricks = Eigen::Array3i::Zero();  ///< Count along each axis.
 
-  /// A grid with at least `margin` whole voxels between the box and the grid's border on every side. The box begins in
-  /// the middle of a voxel, so that faces of axis-aligned bodies do not coincide with voxel faces, where rounding would
-  /// decide.
+  /// A grid with at least `margin` whole voxels around the box. The box begins in the middle of a voxel: on voxel faces
+  /// rounding would decide.
   static VoxelGrid around(const Eigen::AlignedBox3d& box, double voxel_size, int margin) {
     VoxelGrid grid;
     grid.size = voxel_size;
@@ -38,7 +37,7 @@ struct VoxelGrid {
   /// Continuous voxel coordinates of a point: voxel (x, y, z) covers [x, x + 1) and so on.
   Eigen::Vector3d coordinates(const Eigen::Vector3d& point) const { return (point - origin) / size; }
 
-  /// Centre of a voxel, in the mesh's frame.
+  /// In the mesh's frame.
   Eigen::Vector3d center(int x, int y, int z) const {
     return origin + size * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5);
   }

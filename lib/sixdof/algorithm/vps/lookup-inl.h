@@ -6,18 +6,11 @@
 #define SIXDOF_VPS_LOOKUP_INL_H_
 #endif
 
-#include <cstddef>
-#include <cstdint>
-
-#include <Eigen/Core>
-
 #include <hwy/highway.h>
 
 #include <sixdof/algorithm/vps/point_tree.h>
-#include <sixdof/algorithm/vps/voxelmap.h>
 
-// Looks up the voxels of up to eight points at once. Products and sums are separate operations (no fused multiply-add),
-// so all instruction sets round alike.
+// Products and sums are separate operations (no fused multiply-add), so all instruction sets round alike.
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::vps {
@@ -99,7 +92,6 @@ class GridLookup {
   I row_, slice_;
 };
 
-/// A VoxelTransform in all lanes.
 struct TransformLanes {
   Matrix scaled;
   Vec3 center;

@@ -17,9 +17,6 @@
 
 #include <sixdof/algorithm/vps/lookup-inl.h>
 
-// A node's bounding spheres are compared with the voxelmap: a sphere that is farther from the nearest surface voxel
-// than its radius, and not inside, holds no point in contact.
-
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::vps {
 namespace HWY_NAMESPACE {
@@ -152,6 +149,58 @@ VoxelTransform VoxelTransform::of(const Pose& X, const Eigen::Vector3d& center, 
           .center = grid.coordinates(X * center).cast<float>()};
 }
 
+namespace {
+
+/// Points `begin` to `end` - 1 of an ordering.
+struct Range {
+  std::size_t begin, end;
+  std::size_t leaves() const { return (end - begin + PointTree::k_leaf_points - 1) / PointTree::k_leaf_points; }
+};
+
+/// Sorts the points of a range into `parts` of nearly equal size and whole leaves, and appends them.
+void split(const PointShell& shell, std::vector<std::uint32_t>& order, Range range, std::size_t parts,
+           std::vector<Range>& out) {
+  if (parts == 1) {
+    out.push_back(range);
+    return;
+  }
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = range.begin; i < range.end; ++i) box.extend(shell.points[order[i]]);
+  int axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const std::size_t low = (parts + 1) / 2;
+  const std::size_t middle = range.begin + (range.leaves() * low + parts - 1) / parts * PointTree::k_leaf_points;
+  const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(range.begin), at(middle), at(range.end), [&](std::uint32_t i, std::uint32_t j) {
+    const double a = shell.points[i][axis], b = shell.points[j][axis];
+    return a != b ? a < b : i < j;
+  });
+  split(shell, order, {range.begin, middle}, low, out);
+  split(shell, order, {middle, range.end}, parts - low, out);
+}
+
+PointTree::Node enclose(const PointShell& shell, const Eigen::Vector3d& center, const std::vector<std::uint32_t>& order,
+                        std::span<const Range> children) {
+  PointTree::Node node{};
+  std::fill_n(node.sphere[3], PointTree::k_width, -std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    const Range& part = children[i];
+    Eigen::AlignedBox3d box;
+    for (std::size_t k = part.begin; k < part.end; ++k) box.extend(shell.points[order[k]]);
+    const Eigen::Vector3d middle = box.center();
+    double radius = 0.0;
+    for (std::size_t k = part.begin; k < part.end; ++k) {
+      radius = std::max(radius, (shell.points[order[k]] - middle).norm());
+    }
+    const Eigen::Vector3f relative = (middle - center).cast<float>();
+    for (Eigen::Index k = 0; k < 3; ++k) node.sphere[k][i] = relative[k];
+    node.sphere[3][i] = static_cast<float>(radius);
+  }
+  return node;
+}
+
+}  // namespace
+
 PointTree::PointTree(const PointShell& shell, const Eigen::Vector3d& center, bool by_area)
     : center_(center), points_(shell.points.size()) {
   std::vector<std::uint32_t> order(points_);
@@ -168,7 +217,7 @@ PointTree::PointTree(const PointShell& shell, const Eigen::Vector3d& center, boo
       const std::size_t first = next.size();
       split(shell, order, range, (range.leaves() + child_leaves - 1) / child_leaves, next);
       first_child_.push_back(next_level + static_cast<std::uint32_t>(first));
-      nodes_.push_back(enclose(shell, order, std::span(next).subspan(first)));
+      nodes_.push_back(enclose(shell, center_, order, std::span(next).subspan(first)));
     }
     level = std::move(next);
   }
@@ -181,47 +230,6 @@ PointTree::PointTree(const PointShell& shell, const Eigen::Vector3d& center, boo
     const float row[k_rows] = {position.x(), position.y(), position.z(), weight, normal.x(), normal.y(), normal.z()};
     for (std::size_t r = 0; r < k_rows; ++r) lane[r * k_leaf_points] = row[r];
   }
-}
-
-void PointTree::split(const PointShell& shell, std::vector<std::uint32_t>& order, Range range, std::size_t parts,
-                      std::vector<Range>& out) {
-  if (parts == 1) {
-    out.push_back(range);
-    return;
-  }
-  Eigen::AlignedBox3d box;
-  for (std::size_t i = range.begin; i < range.end; ++i) box.extend(shell.points[order[i]]);
-  int axis = 0;
-  box.sizes().maxCoeff(&axis);
-  const std::size_t low = (parts + 1) / 2;
-  const std::size_t middle = range.begin + (range.leaves() * low + parts - 1) / parts * k_leaf_points;
-  const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(range.begin), at(middle), at(range.end), [&](std::uint32_t i, std::uint32_t j) {
-    const double a = shell.points[i][axis], b = shell.points[j][axis];
-    return a != b ? a < b : i < j;
-  });
-  split(shell, order, {range.begin, middle}, low, out);
-  split(shell, order, {middle, range.end}, parts - low, out);
-}
-
-PointTree::Node PointTree::enclose(const PointShell& shell, const std::vector<std::uint32_t>& order,
-                                   std::span<const Range> children) const {
-  Node node{};
-  std::fill_n(node.sphere[3], k_width, -std::numeric_limits<float>::infinity());
-  for (std::size_t i = 0; i < children.size(); ++i) {
-    const Range& part = children[i];
-    Eigen::AlignedBox3d box;
-    for (std::size_t k = part.begin; k < part.end; ++k) box.extend(shell.points[order[k]]);
-    const Eigen::Vector3d middle = box.center();
-    double radius = 0.0;
-    for (std::size_t k = part.begin; k < part.end; ++k) {
-      radius = std::max(radius, (shell.points[order[k]] - middle).norm());
-    }
-    const Eigen::Vector3f center = (middle - center_).cast<float>();
-    for (Eigen::Index k = 0; k < 3; ++k) node.sphere[k][i] = center[k];
-    node.sphere[3][i] = static_cast<float>(radius);
-  }
-  return node;
 }
 
 std::span<const std::uint32_t> PointTree::cull(const VoxelMap& map, const VoxelTransform& transform, double reach,

@@ -24,8 +24,7 @@ struct VoxelTransform {
   static VoxelTransform of(const Pose& X, const Eigen::Vector3d& center, const VoxelGrid& grid);
 };
 
-/// A pointshell as a tree of bounding spheres. A leaf has eight points and a node up to eight children, so that one
-/// SIMD instruction treats all of them. All leaves have the same depth.
+/// A pointshell as a tree of bounding spheres, eight points per leaf. All leaves have the same depth.
 class PointTree {
  public:
   static constexpr std::size_t k_leaf_points = 8;
@@ -40,8 +39,7 @@ class PointTree {
   std::size_t points() const { return points_; }
   std::uint32_t leaves() const { return leaves_; }
   std::size_t nodes() const { return nodes_.size(); }
-  /// One block of k_rows * k_leaf_points floats per leaf. The last leaf is filled up with copies of its last point of
-  /// weight 0.
+  /// k_rows * k_leaf_points floats per leaf; the last leaf is filled up with copies of its last point of weight 0.
   const float* blocks() const { return blocks_.data(); }
   std::size_t bytes() const {
     return nodes_.size() * (sizeof(Node) + sizeof(first_child_[0])) + blocks_.size() * sizeof(float);
@@ -69,17 +67,6 @@ class PointTree {
   };
 
  private:
-  /// Points `begin` to `end` - 1 of an ordering.
-  struct Range {
-    std::size_t begin, end;
-    std::size_t leaves() const { return (end - begin + k_leaf_points - 1) / k_leaf_points; }
-  };
-  /// Sorts the points of a range into `parts` of nearly equal size and whole leaves, so that only the last leaf of all
-  /// is not full, and appends them.
-  static void split(const PointShell& shell, std::vector<std::uint32_t>& order, Range range, std::size_t parts,
-                    std::vector<Range>& out);
-  Node enclose(const PointShell& shell, const std::vector<std::uint32_t>& order, std::span<const Range> children) const;
-
   Eigen::Vector3d center_;
   std::size_t points_;
   std::uint32_t leaves_ = 0;

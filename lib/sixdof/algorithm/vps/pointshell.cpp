@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <utility>
 
-#include <sixdof/algorithm/require_solid.h>
+#include <sixdof/algorithm/preparation.h>
 #include <sixdof/algorithm/vps/grid.h>
-#include <sixdof/algorithm/vps/point_cells.h>
 #include <sixdof/algorithm/vps/triangle_voxels.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>
@@ -24,6 +25,62 @@ constexpr double k_piece = 0.5;
 constexpr int k_relaxations = 2;
 constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 
+struct Point {
+  Eigen::Vector3d position;
+  Eigen::Vector3d outward;
+};
+
+/// Points sorted into the voxels of a grid, to find neighbours. Each row of voxels along x has a list sorted by x.
+class PointCells {
+ public:
+  PointCells(const VoxelGrid& grid, const std::vector<Point>& points) : grid_(grid), n_(grid.voxels()) {
+    std::vector<Eigen::Array3i> cells;
+    cells.reserve(points.size());
+    first_.assign(row(0, n_.z()) + 1, 0);
+    for (const Point& point : points) {
+      cells.push_back(cell_of(point.position));
+      ++first_[row(cells.back().y(), cells.back().z()) + 1];
+    }
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    entries_.resize(points.size());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      entries_[next[row(cells[i].y(), cells[i].z())]++] = {cells[i].x(), i};
+    }
+    for (std::size_t r = 0; r + 1 < first_.size(); ++r) {
+      std::sort(entries_.begin() + first_[r], entries_.begin() + first_[r + 1]);
+    }
+  }
+
+  /// Calls callback(index) for every point whose voxel is at most `reach` voxels away from that of `point` along each
+  /// axis. All points nearer than reach * voxel size are among them.
+  template <class Callback>
+  void for_each_near(const Eigen::Vector3d& point, int reach, const Callback& callback) const {
+    const Eigen::Array3i cell = cell_of(point);
+    const Eigen::Array3i low = (cell - reach).max(0), high = (cell + reach).min(n_ - 1);
+    for (int z = low.z(); z <= high.z(); ++z) {
+      for (int y = low.y(); y <= high.y(); ++y) {
+        const auto end = entries_.begin() + first_[row(y, z) + 1];
+        auto entry = std::lower_bound(entries_.begin() + first_[row(y, z)], end, std::pair{low.x(), std::uint32_t{0}});
+        for (; entry != end && entry->first <= high.x(); ++entry) callback(entry->second);
+      }
+    }
+  }
+
+ private:
+  Eigen::Array3i cell_of(const Eigen::Vector3d& point) const {
+    return grid_.coordinates(point).array().floor().cast<int>().max(0).min(n_ - 1);
+  }
+  std::size_t row(int y, int z) const {
+    return static_cast<std::size_t>(z) * static_cast<std::size_t>(n_.y()) + static_cast<std::size_t>(y);
+  }
+
+  VoxelGrid grid_;
+  Eigen::Array3i n_;
+  std::vector<std::uint32_t> first_;
+  std::vector<std::pair<int, std::uint32_t>> entries_;  ///< x of the voxel, index of the point
+};
+
 /// A part of a triangle that is small enough to belong to one cell as a whole.
 struct Piece {
   Eigen::Vector3d middle;
@@ -31,17 +88,12 @@ struct Piece {
   std::uint32_t triangle;
 };
 
-struct Point {
-  Eigen::Vector3d position;
-  Eigen::Vector3d outward;
-};
-
 class ShellBuilder {
  public:
   ShellBuilder(const Mesh& mesh, double spacing)
       : mesh_(mesh), spacing_(spacing), grid_(VoxelGrid::around(mesh.box(), spacing, 1)) {
-    for (const Triangle& t : mesh.triangles()) {
-      const Eigen::Vector3d &a = mesh.vertices()[t[0]], &b = mesh.vertices()[t[1]], &c = mesh.vertices()[t[2]];
+    for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
+      const auto [a, b, c] = corners(t);
       const Eigen::Vector3d twice = (b - a).cross(c - a);
       const double norm = twice.norm();
       outward_.push_back(norm > 0.0 ? Eigen::Vector3d(twice / norm) : Eigen::Vector3d::Zero());
@@ -76,32 +128,33 @@ class ShellBuilder {
     for (std::uint32_t t = 0; t < mesh_.triangles().size(); ++t) {
       if (outward_[t].isZero()) continue;
       const auto [a, b, c] = corners(t);
-      cut(a, b, c, 0.5 * (b - a).cross(c - a).norm(), t);
+      cut({a, b, c}, 0.5 * (b - a).cross(c - a).norm(), t);
     }
   }
 
   /// Halves the longest edge until it is short: slivers are cut along their length only.
-  void cut(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, double area, std::uint32_t t) {
-    const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+  void cut(const std::array<Eigen::Vector3d, 3>& corners, double area, std::uint32_t t) {
+    constexpr std::size_t k_edges[3][2] = {{0, 1}, {1, 2}, {0, 2}};
     // Of edges that differ by rounding only the first is halved, so that rotated or translated meshes are cut alike.
     constexpr double k_longer = 1.0 + 1e-9;
-    double longest = ab;
-    if (bc > k_longer * longest) longest = bc;
-    if (ca > k_longer * longest) longest = ca;
+    double longest = 0.0;
+    std::size_t from = 0, to = 0;
+    for (const auto& [i, j] : k_edges) {
+      const double squared = (corners[j] - corners[i]).squaredNorm();
+      if (squared <= k_longer * longest) continue;
+      longest = squared;
+      from = i;
+      to = j;
+    }
     if (longest <= k_piece * k_piece * spacing_ * spacing_) {
-      pieces_.push_back({(a + b + c) / 3.0, area, t});
-    } else if (longest == ab) {
-      const Eigen::Vector3d m = 0.5 * (a + b);
-      cut(a, m, c, 0.5 * area, t);
-      cut(m, b, c, 0.5 * area, t);
-    } else if (longest == bc) {
-      const Eigen::Vector3d m = 0.5 * (b + c);
-      cut(a, b, m, 0.5 * area, t);
-      cut(a, m, c, 0.5 * area, t);
-    } else {
-      const Eigen::Vector3d m = 0.5 * (c + a);
-      cut(a, b, m, 0.5 * area, t);
-      cut(m, b, c, 0.5 * area, t);
+      pieces_.push_back({(corners[0] + corners[1] + corners[2]) / 3.0, area, t});
+      return;
+    }
+    const Eigen::Vector3d middle = 0.5 * (corners[from] + corners[to]);
+    for (const std::size_t replaced : {to, from}) {
+      std::array<Eigen::Vector3d, 3> half = corners;
+      half[replaced] = middle;
+      cut(half, 0.5 * area, t);
     }
   }
 
@@ -157,16 +210,13 @@ class ShellBuilder {
 
   /// Keeps the candidates, in their order, that are not too near to a kept one with a similar normal.
   void thin_out(const std::vector<Point>& candidates) {
-    std::vector<Eigen::Vector3d> positions;
-    positions.reserve(candidates.size());
-    for (const Point& candidate : candidates) positions.push_back(candidate.position);
-    const PointCells cells(grid_, positions);
+    const PointCells cells(grid_, candidates);
     const double min_squared = k_thinning * k_thinning * spacing_ * spacing_;
     std::vector<bool> kept(candidates.size(), false);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       bool free = true;
-      cells.for_each_near(positions[i], 1, [&](std::uint32_t j) {
-        free = free && !(kept[j] && (positions[j] - positions[i]).squaredNorm() < min_squared &&
+      cells.for_each_near(candidates[i].position, 1, [&](std::uint32_t j) {
+        free = free && !(kept[j] && (candidates[j].position - candidates[i].position).squaredNorm() < min_squared &&
                          candidates[j].outward.dot(candidates[i].outward) > PointShell::k_same_side);
       });
       if (!free) continue;
@@ -175,15 +225,12 @@ class ShellBuilder {
     }
   }
 
-  /// Assigns every piece to the nearest point with a similar normal; adds a point where there is none within two
-  /// spacings.
+  /// Assigns every piece to the nearest point with a similar normal within two spacings; adds a point where there is
+  /// none.
   void assign() {
     owner_.assign(pieces_.size(), k_none);
     for (bool complete = false; !complete;) {
-      std::vector<Eigen::Vector3d> positions;
-      positions.reserve(points_.size());
-      for (const Point& point : points_) positions.push_back(point.position);
-      const PointCells cells(grid_, positions);
+      const PointCells cells(grid_, points_);
       parallel::for_each(pieces_.size(), [&](std::size_t i) { owner_[i] = nearest(cells, pieces_[i]); });
       complete = true;
       const std::size_t before = points_.size();
@@ -237,8 +284,7 @@ class ShellBuilder {
     return cells;
   }
 
-  /// Moves every point to the point of its cell's triangles that is nearest to the cell's centroid; drops points
-  /// without a cell.
+  /// Moves every point to the triangle of its cell nearest to the cell's centroid; drops points without a cell.
   void relax() {
     const std::vector<Cell> cells = measure();
     std::vector<double> smallest(points_.size(), std::numeric_limits<double>::infinity());

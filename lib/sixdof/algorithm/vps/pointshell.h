@@ -11,9 +11,8 @@ namespace sixdof::vps {
 /// The pointshell of a body: near-uniform points on its surface. The cell of a point is the part of the surface that is
 /// nearer to it than to any other point with a similar normal.
 ///
-/// - Points lie on the surface, in the body's mesh frame, about `spacing` apart. A cell has only triangles whose
-/// normals
-///   are within k_same_side of the point's, so both sides of a thin plate or of a sharp edge have their own points.
+/// - Points lie on the surface, in the mesh's frame, about `spacing` apart. The normals in a cell are within
+///   k_same_side of the point's, so both sides of a thin plate or of a sharp edge have their own points.
 /// - The normal is the mean over the cell (its area vector, normalised). It points INTO the body.
 /// - The area is the cell's (length^2); the areas sum to the mesh's, up to rounding.
 struct PointShell {

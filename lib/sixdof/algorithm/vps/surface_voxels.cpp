@@ -4,10 +4,14 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <numeric>
 
+#include <Eigen/Geometry>
+
 #include <sixdof/algorithm/vps/triangle_voxels.h>
-#include <sixdof/algorithm/vps/winding_number.h>
 #include <sixdof/base/parallel.h>
 
 namespace sixdof::vps {
@@ -36,20 +40,109 @@ class DisjointSets {
     return i;
   }
   void unite(std::uint32_t i, std::uint32_t j) {
-    i = root(i);
-    j = root(j);
-    if (i < j) {
-      parent_[j] = i;
-    } else {
-      parent_[i] = j;
-    }
+    const auto [low, high] = std::minmax({root(i), root(j)});
+    parent_[high] = low;
   }
 
  private:
   std::vector<std::uint32_t> parent_;
 };
 
+constexpr std::int32_t k_infinite = std::numeric_limits<std::int32_t>::max();
+
+/// s.output[i] = min over j of (i - j)^2 + s.values[j], without the j where the value is k_infinite.
+void lower_envelope(int n, DistanceTransform::Scratch& s) {
+  const auto at = [](std::vector<std::int32_t>& v, int i) -> std::int32_t& { return v[static_cast<std::size_t>(i)]; };
+  int top = -1;
+  for (int j = 0; j < n; ++j) {
+    if (at(s.values, j) == k_infinite) continue;
+    std::int32_t from = 0;  // parabola j is the lowest at i >= from
+    while (top >= 0) {
+      const std::int32_t i = at(s.centers, top);
+      // Parabola j lies below parabola i at x > (j^2 - i^2 + values[j] - values[i]) / (2 (j - i)).
+      const std::int32_t rise = j * j - i * i + at(s.values, j) - at(s.values, i), run = 2 * (j - i);
+      const std::int32_t crossing = rise >= 0 ? rise / run : -((-rise + run - 1) / run);
+      if (crossing >= at(s.bounds, top)) {
+        from = crossing + 1;
+        break;
+      }
+      --top;
+    }
+    if (from >= n) continue;
+    ++top;
+    at(s.centers, top) = j;
+    at(s.bounds, top) = from;
+  }
+  if (top < 0) {
+    std::fill_n(s.output.begin(), n, k_infinite);
+    return;
+  }
+  for (int k = 0; k <= top; ++k) {
+    const std::int32_t center = at(s.centers, k), value = at(s.values, center);
+    const std::int32_t end = k < top ? at(s.bounds, k + 1) : n;
+    for (std::int32_t i = at(s.bounds, k); i < end; ++i) at(s.output, i) = (i - center) * (i - center) + value;
+  }
+}
+
+/// Signed solid angle of a triangle seen from p (van Oosterom and Strackee 1983), positive if p is behind it.
+double solid_angle(const Tree::Corners& corners, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d a = corners[0] - p, b = corners[1] - p, c = corners[2] - p;
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  return 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+}
+
 }  // namespace
+
+WindingNumber::WindingNumber(const Tree& tree) : tree_(&tree) {
+  dipoles_.reserve(tree.nodes().size());
+  for (const Tree::Node& node : tree.nodes()) {
+    const auto triangles = tree.corners().subspan(node.first_triangle, node.triangle_count);
+    Dipole& dipole = dipoles_.emplace_back();
+    double area = 0.0;
+    for (const auto& [a, b, c] : triangles) {
+      const Eigen::Vector3d area_vector = 0.5 * (b - a).cross(c - a);
+      dipole.area_vector += area_vector;
+      dipole.center += area_vector.norm() / 3.0 * (a + b + c);
+      area += area_vector.norm();
+    }
+    dipole.center = area > 0.0 ? Eigen::Vector3d(dipole.center / area) : triangles.front()[0];
+    for (const Tree::Corners& corners : triangles) {
+      for (const Eigen::Vector3d& corner : corners) {
+        dipole.radius = std::max(dipole.radius, (corner - dipole.center).norm());
+      }
+    }
+  }
+}
+
+double WindingNumber::at(const Eigen::Vector3d& p) const {
+  constexpr std::size_t k_max_depth = 64;  // of the tree
+  double angle = 0.0;
+  std::array<std::uint32_t, k_max_depth * Tree::k_width> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const std::uint32_t index = stack[--size];
+    const Dipole& dipole = dipoles_[index];
+    const Eigen::Vector3d offset = dipole.center - p;
+    const double distance = offset.norm();
+    if (distance > k_far_ratio * dipole.radius) {
+      angle += dipole.area_vector.dot(offset) / (distance * distance * distance);
+      continue;
+    }
+    const Tree::Node& node = tree_->nodes()[index];
+    for (std::size_t i = 0; i < node.child_count; ++i) {
+      const Tree::Child child = node.child[i];
+      if (!child.is_leaf()) {
+        stack[size++] = child.node();
+        continue;
+      }
+      for (const Tree::Corners& corners : tree_->corners().subspan(child.first(), child.count())) {
+        angle += solid_angle(corners, p);
+      }
+    }
+  }
+  return angle / (4.0 * std::numbers::pi);
+}
 
 SurfaceVoxels::SurfaceVoxels(const Mesh& mesh, const VoxelGrid& grid)
     : grid_(grid), words_per_row_((static_cast<std::size_t>(grid.voxels().x()) + k_word - 1) / k_word) {
@@ -143,6 +236,51 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding)
     region.inside = winding.at(surface.grid().center(x, y, z)) > 0.5;
   });
   for (std::size_t i = 0; i < runs_.size(); ++i) runs_[i].inside = regions[region_of[i]].inside;
+}
+
+DistanceTransform::DistanceTransform(const SurfaceVoxels& surface) : n_(surface.grid().voxels()) {
+  const auto nx = static_cast<std::size_t>(n_.x()), ny = static_cast<std::size_t>(n_.y());
+  along_z_.resize(nx * ny * static_cast<std::size_t>(n_.z()));
+  parallel::for_each(ny, [&](std::size_t row) {
+    const auto y = static_cast<int>(row);
+    const auto line = [&](int z) { return along_z_.data() + (static_cast<std::size_t>(z) * ny + row) * nx; };
+    const auto sweep = [&](int z, const std::uint16_t* previous) {
+      std::uint16_t* const here = line(z);
+      for (std::size_t x = 0; x < nx; ++x) {
+        const auto next = static_cast<std::uint16_t>(previous[x] == k_none ? k_none : previous[x] + 1);
+        here[x] = std::min(here[x], next);
+      }
+    };
+    for (int z = 0; z < n_.z(); ++z) {
+      const std::span<const std::uint64_t> bits = surface.row(y, z);
+      std::uint16_t* const here = line(z);
+      for (std::size_t x = 0; x < nx; ++x) here[x] = (bits[x / 64] >> (x % 64) & 1u) != 0 ? 0 : k_none;
+      if (z > 0) sweep(z, line(z - 1));
+    }
+    for (int z = n_.z() - 2; z >= 0; --z) sweep(z, line(z + 1));
+  });
+}
+
+void DistanceTransform::slice(int z, Scratch& scratch, std::vector<std::int32_t>& squared) const {
+  const auto nx = static_cast<std::size_t>(n_.x()), ny = static_cast<std::size_t>(n_.y());
+  const std::size_t longest = std::max(nx, ny);
+  for (auto* buffer : {&scratch.values, &scratch.centers, &scratch.bounds, &scratch.output}) buffer->resize(longest);
+  squared.resize(nx * ny);
+  const std::uint16_t* const g = along_z_.data() + static_cast<std::size_t>(z) * nx * ny;
+  for (std::size_t x = 0; x < nx; ++x) {
+    for (std::size_t y = 0; y < ny; ++y) {
+      const std::int32_t distance = g[y * nx + x];
+      scratch.values[y] = distance == k_none ? k_infinite : distance * distance;
+    }
+    lower_envelope(n_.y(), scratch);
+    for (std::size_t y = 0; y < ny; ++y) squared[y * nx + x] = scratch.output[y];
+  }
+  for (std::size_t y = 0; y < ny; ++y) {
+    const auto row = squared.begin() + static_cast<std::ptrdiff_t>(y * nx);
+    std::copy_n(row, nx, scratch.values.begin());
+    lower_envelope(n_.x(), scratch);
+    std::copy_n(scratch.output.begin(), nx, row);
+  }
 }
 
 }  // namespace sixdof::vps

@@ -56,7 +56,7 @@ class SeparatingAxes {
   std::array<Axis, 13> axes_;
 };
 
-/// An inclusive range of voxels.
+/// Inclusive.
 struct VoxelRange {
   Eigen::Array3i low, high;
   Eigen::Array3i extent() const { return high - low + 1; }
@@ -101,9 +101,8 @@ void test_range(const SeparatingAxes& triangle, const VoxelRange& range, bool pa
 
 }  // namespace detail
 
-/// Calls callback(x, y, z) once for every voxel that the triangle touches, voxel boundaries included. The cost grows
-/// with the number of these voxels, not with the triangle's box. With `parallel`, the callback runs on several threads
-/// at once for large triangles, in no fixed order.
+/// Calls callback(x, y, z) once for every voxel that the triangle touches, voxel boundaries included; with `parallel`,
+/// for large triangles on several threads at once, in no fixed order.
 /// @param triangle in voxel coordinates, inside the grid
 template <class Callback>
 void for_each_touched_voxel(const SeparatingAxes& triangle, bool parallel, const Callback& callback) {

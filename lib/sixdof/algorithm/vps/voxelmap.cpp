@@ -1,16 +1,11 @@
 #include <sixdof/algorithm/vps/voxelmap.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/require_solid.h>
-#include <sixdof/algorithm/vps/distance_transform.h>
+#include <sixdof/algorithm/preparation.h>
 #include <sixdof/algorithm/vps/surface_voxels.h>
-#include <sixdof/algorithm/vps/winding_number.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/tree.h>
@@ -28,71 +23,54 @@ struct Slab {
   std::uint64_t inside = 0;
 };
 
-class SlabBuilder {
- public:
-  SlabBuilder(const VoxelMap& map, const DistanceTransform& distances, const FreeRuns& runs)
-      : map_(map), distances_(distances), runs_(runs), n_(map.grid.voxels()) {}
-
-  Slab build(int bz) const {
-    const auto nx = static_cast<std::size_t>(n_.x()), ny = static_cast<std::size_t>(n_.y());
-    std::vector<std::int16_t> layers(nx * ny * k_edge);
-    const std::size_t bricks =
-        static_cast<std::size_t>(map_.grid.bricks.x()) * static_cast<std::size_t>(map_.grid.bricks.y());
-    std::vector<std::int32_t> nearest(bricks, INT32_MAX);  // smallest squared distance in the brick
-    std::vector<std::int16_t> greatest(bricks, INT16_MIN);
-    Slab slab;
-    DistanceTransform::Scratch scratch;
-    std::vector<std::int32_t> squared;
-    for (int z = 0; z < k_edge; ++z) {
-      distances_.slice(bz * k_edge + z, scratch, squared);
-      for (int y = 0; y < n_.y(); ++y) {
-        const std::size_t row = static_cast<std::size_t>(y) * nx;
-        std::int16_t* const layer = layers.data() + static_cast<std::size_t>(z) * nx * ny + row;
-        for (const FreeRuns::Run& run : runs_.row(y, bz * k_edge + z)) {
-          if (run.inside) slab.inside += static_cast<std::uint64_t>(run.end - run.begin);
-          const int sign = run.inside ? 1 : -1;
-          for (std::int32_t x = run.begin; x < run.end; ++x) {
-            layer[x] = signed_layer(squared[row + static_cast<std::size_t>(x)], sign);
-          }
+Slab build_slab(const VoxelMap& map, const DistanceTransform& distances, const FreeRuns& runs, int bz) {
+  const Eigen::Array3i n = map.grid.voxels();
+  const auto nx = static_cast<std::size_t>(n.x()), ny = static_cast<std::size_t>(n.y());
+  const auto bricks_x = static_cast<std::size_t>(map.grid.bricks.x());
+  const std::size_t bricks = bricks_x * static_cast<std::size_t>(map.grid.bricks.y());
+  std::vector<std::int16_t> layers(nx * ny * k_edge);
+  std::vector<std::int32_t> nearest(bricks, INT32_MAX);  // smallest squared distance in the brick
+  std::vector<std::int16_t> greatest(bricks, INT16_MIN);
+  Slab slab;
+  DistanceTransform::Scratch scratch;
+  std::vector<std::int32_t> squared;
+  for (int z = 0; z < k_edge; ++z) {
+    distances.slice(bz * k_edge + z, scratch, squared);
+    for (int y = 0; y < n.y(); ++y) {
+      const std::size_t row = static_cast<std::size_t>(y) * nx;
+      std::int16_t* const layer = layers.data() + static_cast<std::size_t>(z) * nx * ny + row;
+      for (const FreeRuns::Run& run : runs.row(y, bz * k_edge + z)) {
+        if (run.inside) slab.inside += static_cast<std::uint64_t>(run.end - run.begin);
+        for (std::int32_t x = run.begin; x < run.end; ++x) {
+          const auto distance = static_cast<std::int32_t>(
+              std::lround(std::sqrt(static_cast<double>(squared[row + static_cast<std::size_t>(x)]))));
+          layer[x] = static_cast<std::int16_t>(std::max(run.inside ? distance : -distance, map.min_layer()));
         }
-        for (std::size_t x = 0; x < nx; ++x) {
-          const std::size_t brick = map_.grid.brick_of(static_cast<int>(x), y, 0);
-          nearest[brick] = std::min(nearest[brick], squared[row + x]);
-          greatest[brick] = std::max(greatest[brick], layer[x]);
-        }
+      }
+      for (std::size_t x = 0; x < nx; ++x) {
+        const std::size_t brick = map.grid.brick_of(static_cast<int>(x), y, 0);
+        nearest[brick] = std::min(nearest[brick], squared[row + x]);
+        greatest[brick] = std::max(greatest[brick], layer[x]);
       }
     }
-    std::int32_t stored = 0;
-    for (std::size_t brick = 0; brick < bricks; ++brick) {
-      if (greatest[brick] < -map_.border) {
-        slab.table.push_back(-1 - static_cast<std::int32_t>(std::floor(std::sqrt(nearest[brick]))));
-        continue;
-      }
-      slab.table.push_back(stored++);
-      const std::size_t bx = brick % static_cast<std::size_t>(map_.grid.bricks.x()),
-                        by = brick / static_cast<std::size_t>(map_.grid.bricks.x());
-      for (std::size_t z = 0; z < k_edge; ++z) {
-        for (std::size_t y = 0; y < k_edge; ++y) {
-          const auto first =
-              layers.begin() + static_cast<std::ptrdiff_t>((z * ny + by * k_edge + y) * nx + bx * k_edge);
-          slab.layers.insert(slab.layers.end(), first, first + k_edge);
-        }
+  }
+  std::int32_t stored = 0;
+  for (std::size_t brick = 0; brick < bricks; ++brick) {
+    if (greatest[brick] < -map.border) {
+      slab.table.push_back(-1 - static_cast<std::int32_t>(std::floor(std::sqrt(nearest[brick]))));
+      continue;
+    }
+    slab.table.push_back(stored++);
+    const std::size_t first = (brick / bricks_x * nx + brick % bricks_x) * k_edge;
+    for (std::size_t z = 0; z < k_edge; ++z) {
+      for (std::size_t y = 0; y < k_edge; ++y) {
+        const auto row = layers.begin() + static_cast<std::ptrdiff_t>(first + (z * ny + y) * nx);
+        slab.layers.insert(slab.layers.end(), row, row + k_edge);
       }
     }
-    return slab;
   }
-
- private:
-  std::int16_t signed_layer(std::int32_t squared, int sign) const {
-    const auto layer = static_cast<std::int32_t>(std::lround(std::sqrt(static_cast<double>(squared))));
-    return static_cast<std::int16_t>(std::max(sign * layer, map_.min_layer()));
-  }
-
-  const VoxelMap& map_;
-  const DistanceTransform& distances_;
-  const FreeRuns& runs_;
-  Eigen::Array3i n_;
-};
+  return slab;
+}
 
 }  // namespace
 
@@ -114,9 +92,9 @@ VoxelMap VoxelMap::build(const Mesh& mesh, double voxel_size, int border) {
   const DistanceTransform distances(surface);
   map.surface_voxels = surface.count();
 
-  const SlabBuilder builder(map, distances, runs);
   std::vector<Slab> slabs(static_cast<std::size_t>(map.grid.bricks.z()));
-  parallel::for_each(slabs.size(), [&](std::size_t bz) { slabs[bz] = builder.build(static_cast<int>(bz)); });
+  parallel::for_each(slabs.size(),
+                     [&](std::size_t bz) { slabs[bz] = build_slab(map, distances, runs, static_cast<int>(bz)); });
 
   // Brick 0 represents the bricks that are not stored; the slabs' bricks follow in their order.
   const auto per_word = static_cast<std::size_t>(32 / map.layer_bits);

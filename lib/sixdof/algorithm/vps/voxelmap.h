@@ -12,13 +12,11 @@ namespace sixdof::vps {
 
 /// The voxelmap of a body: an integer layer v for every voxel. v = 0 where the surface touches the voxel; elsewhere |v|
 /// is the Euclidean distance from the voxel's centre to the nearest surface voxel's centre, in voxels, rounded to the
-/// nearest integer (at least 1); v > 0 inside, v < 0 outside. On an axis-aligned face these are McNeely's layers 1, 2,
-/// 3, ...; on a slanted face |v| is still a distance, unlike the number of steps between neighbouring voxels.
+/// nearest integer (at least 1); v > 0 inside, v < 0 outside. On an axis-aligned face these are McNeely's layers.
 ///
 /// |v| size differs from the distance of the voxel's centre to the surface by at most k_layer_error voxels.
 ///
-/// Memory: 4 bytes per brick of the grid, and 512 or 1024 bytes (8 or 16 bits per layer) for each stored brick. A brick
-/// is stored if it has a voxel with v >= -border; for the others the table has one distance. Building needs another 2
+/// A brick is stored if it has a voxel with v >= -border; for the others the table has one distance. Building needs 2
 /// bytes and 1 bit per voxel of the grid.
 struct VoxelMap {
   /// Rounding to an integer 1/2, and half a voxel's diagonal between a surface voxel's centre and the surface in it.
@@ -39,8 +37,7 @@ struct VoxelMap {
 
   /// @param voxel_size edge of a voxel, in the mesh's length unit
   /// @param border number of layers outside the body to store, >= 0
-  /// @throws BadMesh if the mesh is not solid(); BadArgument if the grid would exceed k_max_voxels, or the stored
-  /// bricks k_max_bricks
+  /// @throws BadMesh if the mesh is not solid(); BadArgument beyond k_max_voxels or k_max_bricks
   static VoxelMap build(const Mesh& mesh, double voxel_size, int border);
 
   static constexpr double k_max_voxels = 8e9;  ///< 16 GB while building: a larger grid is taken for a mistake.

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include <sixdof/algorithm/vps/field.h>
 #include <sixdof/algorithm/vps/pointshell.h>
 #include <sixdof/algorithm/vps/voxelmap.h>
 #include <sixdof/query/algorithm.h>
@@ -26,26 +27,26 @@ namespace sixdof {
 /// edges only.
 ///
 /// Limits of both:
-/// - A is sampled at B's points only. Where A lies wholly inside B, or penetrates B between two points, there is no
-///   force; `pointshell=a` finds such contacts.
+/// - A is sampled at B's points only: no force where A lies wholly inside B or penetrates B between two points;
+///   `pointshell=a` finds such contacts.
 /// - Where B encloses a thin part of A, `vps-field` pushes each point out of that part the shortest way, which is
 ///   sideways; `vps` pushes along B's normals.
-/// - Parts smaller than a voxel are surface voxels. On a plate thinner than a voxel `vps` acts with layer 0: p is
-/// counted
-///   from the voxel's centre, so a point on either side is pushed along its own normal. With `depth=layers` there is no
+/// - Parts smaller than a voxel are surface voxels. On a plate thinner than a voxel `vps` acts with layer 0, counted
+///   from the voxel's centre: a point on either side is pushed along its own normal. With `depth=layers` there is no
 ///   force, with `vps-field` hardly any.
 /// - Both bodies must be solid; prepare() throws BadMesh otherwise, also for inside-out meshes. Inner walls of a mesh
 ///   that intersects itself count as surface.
 std::unique_ptr<Algorithm> make_vps_algorithm();
 std::unique_ptr<Algorithm> make_vps_field_algorithm();
 
-/// The structures that the queries use, built with the algorithms' settings or taken from the cache on disk.
-/// @throws BadMesh, BadArgument as VoxelMap::build() and PointShell::build() do
 namespace vps {
 
+/// The structures that the queries use, built with the algorithms' settings or taken from the cache on disk
+/// (base/cache.h). They throw what the structures' build() functions do.
 VoxelMap prepare_voxelmap(const Mesh& mesh, const Settings& settings);
 PointShell prepare_pointshell(const Mesh& mesh, const Settings& settings);
+/// @param map prepare_voxelmap() of the same mesh
+DistanceField prepare_field(const Mesh& mesh, const VoxelMap& map);
 
 }  // namespace vps
-
 }  // namespace sixdof

@@ -1,0 +1,144 @@
+#include <sixdof/generation/overlap_bounds.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sixdof {
+namespace {
+
+/// Upper bound on the rounding of areas in single precision, their sums and slopes, as a fraction of the areas.
+constexpr double k_rounding = 1e-6;
+
+/// A triangle whose plane makes an angle with the ray of a sine below this counts as parallel to the ray: through it
+/// only strips of this fraction of the displacement in width enter or leave. In an interval of length d that changes
+/// the volume by less than 1e-12 d^2 times the length of the triangle's edges, far below the tolerance of hits
+/// (k_volume_tolerance).
+constexpr double k_least_sine = 1e-12;
+
+/// The upper bound on a function on [0, length], and where it is attained: for one with the values `begin` and `end`
+/// that rises by at most `rise` and falls by at most `fall` per length.
+VolumePeak upper_bound(double begin, double rise, double end, double fall, double length) {
+  if (!(rise + fall > 0.0)) return begin > end ? VolumePeak{begin, 0.0} : VolumePeak{end, length};
+  const double at = std::clamp((end + fall * length - begin) / (rise + fall), 0.0, length);
+  return {std::max({begin + rise * at, begin, end}), at};
+}
+
+/// Upper bound on the area of a section of a box by a plane with the normal `n` (unit, in the box's frame).
+double largest_section(const Eigen::Vector3d& size, const Eigen::Vector3d& n) {
+  double area = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double projected = size[(i + 1) % 3] * size[(i + 2) % 3];
+    if (n[i] != 0.0) area = std::min(area, projected / std::abs(n[i]));
+  }
+  return area;
+}
+
+}  // namespace
+
+double overlap_upper_bound(const Eigen::Vector3d& size_a, const Eigen::Vector3d& size_b, const Eigen::Matrix3d& R_AB) {
+  double bound = std::min(size_a.prod(), size_b.prod());
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    bound = std::min(bound, size_b[i] * largest_section(size_a, R_AB.col(i)));
+    bound = std::min(bound, size_a[i] * largest_section(size_b, R_AB.row(i).transpose()));
+  }
+  return bound;
+}
+
+VolumePeak volume_peak(const OverlapMeasurement& outer, const OverlapMeasurement& inner,
+                       std::span<const SlopeRange> ranges) {
+  const std::size_t n = ranges.size();
+  const double part = (outer.s - inner.s) / static_cast<double>(n);
+  // Upper bounds on the volume at the ends of the parts: from the inner measurement, then from both.
+  double to_inner = 0.0;
+  for (const SlopeRange& range : ranges) to_inner += part * range.low;
+  double begin = outer.volume;
+  VolumePeak peak = outer.volume > inner.volume ? VolumePeak{outer.volume, outer.s} : VolumePeak{inner.volume, inner.s};
+  for (std::size_t j = 0; j < n; ++j) {
+    to_inner -= part * ranges[j].low;
+    const double from_inner = j + 1 == n ? inner.volume : inner.volume - to_inner;
+    const double end = std::min(begin + part * ranges[j].high, from_inner);
+    const VolumePeak top = upper_bound(begin, ranges[j].high, end, -ranges[j].low, part);
+    if (top.volume > peak.volume) peak = {top.volume, outer.s - part * static_cast<double>(j) - top.s};
+    begin = end;
+  }
+  return peak;
+}
+
+SlopeBounds::TriangleContacts& SlopeBounds::Contacts::of(std::uint32_t triangle, const Eigen::Vector3d& outwards) {
+  TriangleContacts& contacts = contacts_[triangle];
+  if (contacts.round != round_) {
+    const double area = areas_[triangle].dot(outwards);
+    const double least = k_least_sine * areas_[triangle].lpNorm<1>();
+    const int side = area > least ? 1 : area < -least ? -1 : 0;
+    contacts = {static_cast<float>(std::abs(area)), round_, PartRange::none(), PartRange::none(),
+                static_cast<std::int8_t>(side)};
+    touched_.push_back(triangle);
+  }
+  return contacts;
+}
+
+SlopeBounds::SlopeChange SlopeBounds::Contacts::change() const {
+  SlopeChange change;
+  for (const std::uint32_t t : touched_) {
+    const TriangleContacts& contacts = contacts_[t];
+    const auto area = static_cast<double>(contacts.area);
+    if (contacts.raising.any()) {
+      change.raised_since_outer[contacts.raising.first] += area;
+      change.raised_until_inner[contacts.raising.last] += area;
+    }
+    if (contacts.lowering.any()) {
+      change.lowered_since_outer[contacts.lowering.first] += area;
+      change.lowered_until_inner[contacts.lowering.last] += area;
+    }
+  }
+  for (std::size_t j = 1; j < k_parts; ++j) {
+    change.raised_since_outer[j] += change.raised_since_outer[j - 1];
+    change.lowered_since_outer[j] += change.lowered_since_outer[j - 1];
+    change.raised_until_inner[k_parts - 1 - j] += change.raised_until_inner[k_parts - j];
+    change.lowered_until_inner[k_parts - 1 - j] += change.lowered_until_inner[k_parts - j];
+  }
+  return change;
+}
+
+std::array<SlopeRange, SlopeBounds::k_parts> SlopeBounds::bound(const SweptCandidates& swept,
+                                                                const Eigen::Vector3d& outwards_A,
+                                                                const Eigen::Vector3d& outwards_B, double first,
+                                                                double last, double outer_slope, double inner_slope) {
+  a_.clear();
+  b_.clear();
+  const double parts_per_fraction = static_cast<double>(k_parts) / (last - first);
+  const auto part = [&](float fraction) {
+    const double at = (static_cast<double>(fraction) - first) * parts_per_fraction;
+    return static_cast<std::uint8_t>(std::clamp(at, 0.0, static_cast<double>(k_parts - 1)));
+  };
+  for (std::size_t i = 0; i < swept.pairs.size(); ++i) {
+    if (swept.first[i] > last || swept.last[i] < first) continue;
+    TriangleContacts& a = a_.of(swept.pairs[i].a, outwards_A);
+    TriangleContacts& b = b_.of(swept.pairs[i].b, outwards_B);
+    const PartRange parts{part(swept.first[i]), part(swept.last[i])};
+    const auto extend = [&](PartRange& known) {
+      known = {std::min(known.first, parts.first), std::max(known.last, parts.last)};
+    };
+    const int both = a.side * b.side;
+    if (both < 0) {
+      extend(a.raising);
+      extend(b.raising);
+    } else if (both > 0) {
+      extend(a.lowering);
+      extend(b.lowering);
+    }
+  }
+  const SlopeChange of_a = a_.change(), of_b = b_.change();
+  const auto least = [](double x, double y) { return (1.0 + k_rounding) * std::min(x, y); };
+  std::array<SlopeRange, k_parts> ranges;
+  for (std::size_t j = 0; j < k_parts; ++j) {
+    ranges[j].high = std::min(outer_slope + least(of_a.raised_since_outer[j], of_b.raised_since_outer[j]),
+                              inner_slope + least(of_a.lowered_until_inner[j], of_b.lowered_until_inner[j]));
+    ranges[j].low = std::max(outer_slope - least(of_a.lowered_since_outer[j], of_b.lowered_since_outer[j]),
+                             inner_slope - least(of_a.raised_until_inner[j], of_b.raised_until_inner[j]));
+  }
+  return ranges;
+}
+
+}  // namespace sixdof

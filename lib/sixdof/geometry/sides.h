@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include <sixdof/geometry/mesh.h>
+
+namespace sixdof {
+
+/// One side of a triangle: an undirected edge and the direction in which the triangle uses it.
+struct Side {
+  std::uint32_t low, high;  ///< Vertices of the edge.
+  std::uint32_t corner;     ///< 3 * triangle + k: the side from corner k to corner k + 1.
+  bool forward;             ///< From low to high.
+
+  std::uint32_t triangle() const { return corner / 3; }
+};
+
+/// All sides, by edge and then by corner.
+std::vector<Side> sorted_sides(std::span<const Triangle> triangles);
+
+/// visit(the sides of one edge) for every edge, in the order of sorted_sides().
+template <class Visit>
+void for_each_edge(std::span<const Side> sorted, const Visit& visit) {
+  for (std::size_t begin = 0; begin < sorted.size();) {
+    std::size_t end = begin + 1;
+    while (end < sorted.size() && sorted[end].low == sorted[begin].low && sorted[end].high == sorted[begin].high) ++end;
+    visit(sorted.subspan(begin, end - begin));
+    begin = end;
+  }
+}
+
+/// For each corner (3 * triangle + k) the one whose side is the other side of its edge, whatever their directions;
+/// k_no_twin where the edge has not exactly two triangles.
+std::vector<std::uint32_t> find_twins(std::span<const Side> sorted);
+inline constexpr std::uint32_t k_no_twin = std::numeric_limits<std::uint32_t>::max();
+
+/// Disjoint sets of 0 .. n - 1.
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t i, std::uint32_t j) { parent_[find(i)] = find(j); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+/// The shells of a surface: its triangles, connected through edges that have exactly two.
+struct Shells {
+  std::vector<std::uint32_t> of_triangle;             ///< Number of each triangle's shell.
+  std::vector<std::vector<std::uint32_t>> triangles;  ///< Of each shell, ascending; shells by their first triangle.
+};
+
+/// @param sorted sorted_sides() of the triangles
+Shells find_shells(std::span<const Side> sorted, std::size_t triangle_count);
+
+}  // namespace sixdof

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cmath>
+#include <exception>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/query/algorithm.h>
+
+/// For callers: whatever a query does wrong is one failed configuration with its words.
+
+namespace sixdof {
+
+inline bool is_finite(bool) { return true; }
+inline bool is_finite(const Separation& answer) { return std::isfinite(answer.distance); }
+/// A volume may be absent, which is NaN.
+inline bool is_finite(const Response& answer) {
+  return std::isfinite(answer.penalty) && !std::isinf(answer.volume) && answer.force.allFinite() &&
+         answer.torque.allFinite() && answer.reference.allFinite();
+}
+
+/// The Outcome of ask(). An exception becomes Status::failed and calls failed(words); without one it costs nothing.
+template <class Ask, class Failed>
+auto ask_guarded(Ask&& ask, const Failed& failed) -> decltype(ask()) {
+  try {
+    return ask();
+  } catch (const std::exception& e) {
+    failed(e.what());
+  } catch (...) {
+    failed("an exception of unknown type was thrown");
+  }
+  return Status::failed;
+}
+
+/// Turns an answer of `query` that holds a NaN or an infinity into Status::non_finite. Calls failed(words) for an
+/// answer that is not ok.
+template <class T, class Failed>
+void examine(const Query& query, Outcome<T>& answer, const Failed& failed) {
+  if (answer.ok() && !is_finite(answer.value)) {
+    answer = Status::non_finite;
+    failed("the answer is not finite");
+  } else if (!answer.ok()) {
+    failed(answer.status == Status::unsupported ? "the algorithm gives no such answer" : query.diagnosis());
+  }
+}
+
+/// @throws BadArgument if the algorithm answers no distance queries
+inline void require_distance_queries(const Algorithm& algorithm) {
+  if (algorithm.traits().answers.distance) return;
+  throw BadArgument(fmt::format("algorithm {}: answers no distance queries", algorithm.traits().name));
+}
+
+/// For callers that cannot go on without an answer.
+/// @param name of the algorithm, for the message
+/// @throws Error with the status and the query's diagnosis if there is no distance
+inline Separation require_distance(Query& query, const std::string& name, const Pose& X_AB) {
+  const Outcome<Separation> answer = query.distance(X_AB);
+  if (answer.ok()) return answer.value;
+  throw Error(fmt::format("{}: distance {}: {}", name, to_string(answer.status), query.diagnosis()));
+}
+
+}  // namespace sixdof
