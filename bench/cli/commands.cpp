@@ -11,7 +11,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include <sixdof/models/suggestions.h>
+#include <sixdof/models/model_catalogue.h>
 
 #include "bench/cli/shared.h"
 #include "bench/common/run_guarded.h"

@@ -9,8 +9,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/generation/ray_cast.h>
-#include <sixdof/generation/sphere_method.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/models/model_catalogue.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"

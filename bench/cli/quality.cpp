@@ -12,7 +12,6 @@
 #include <sixdof/measure/metrics.h>
 #include <sixdof/scenario/evaluation.h>
 #include <sixdof/scenario/scenario.h>
-#include <sixdof/scenario/series_file.h>
 #include "bench/cli/shared.h"
 
 namespace sixdof::cli {
@@ -44,8 +43,8 @@ void print_json(const Options& options, IdealLaw law, const SeriesSource& source
 
 void print_text(const Scenario& scenario, IdealLaw law, const SeriesSource& source, const Recording& recording,
                 const Measures& measures) {
-  fmt::print("scenario   {}: {}\n", scenario.name(), scenario.purpose());
-  for (const std::string& rule : scenario.rules()) fmt::print("           {}\n", rule);
+  fmt::print("scenario   {}: {}\n", scenario.name(), scenario.description().purpose);
+  for (const std::string& rule : scenario.description().rules) fmt::print("           {}\n", rule);
   fmt::print("shape      {}\nalgorithm  {} {}\nsettings   {}\nlaw        {}\nsteps      {}\n", source.shape,
              source.algorithm, source.version, source.settings.empty() ? "none" : source.settings, to_string(law),
              recording.size());

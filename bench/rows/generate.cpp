@@ -7,8 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <sixdof/generation/ray_cast.h>
-#include <sixdof/generation/sphere_method.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/generation/volume_generator.h>
 #include <sixdof/generation/work_sample.h>
 #include "bench/rows/families.h"

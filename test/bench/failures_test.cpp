@@ -6,7 +6,7 @@
 
 #include <sixdof/configuration/bucket_sample.h>
 #include <sixdof/models/model_catalogue.h>
-#include <sixdof/scenario/recorder.h>
+#include <sixdof/scenario/evaluation.h>
 #include "bench/common/run_guarded.h"
 
 #include "../cli/run_program.h"

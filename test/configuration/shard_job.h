@@ -7,7 +7,7 @@
 
 #include <sixdof/configuration/generation_job.h>
 #include <sixdof/configuration/shard_file.h>
-#include <sixdof/generation/ray_cast.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/generation/shard_generator.h>
 
 #include "shapes.h"

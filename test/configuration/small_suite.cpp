@@ -10,7 +10,7 @@
 #include <sixdof/algorithm/fcl/fcl.h>
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/configuration/configuration_set.h>
-#include <sixdof/generation/ray_cast.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/generation/volume_generator.h>
 #include <sixdof/models/model_catalogue.h>
 

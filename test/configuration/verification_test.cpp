@@ -11,7 +11,6 @@
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/error.h>
 #include <sixdof/generation/distance_generator.h>
-#include <sixdof/generation/sphere_method.h>
 
 #include "shapes.h"
 

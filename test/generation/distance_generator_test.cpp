@@ -9,7 +9,6 @@
 
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/error.h>
-#include <sixdof/generation/sphere_method.h>
 
 #include "../configuration/shapes.h"
 

@@ -1,4 +1,4 @@
-#include <sixdof/generation/ray_cast.h>
+#include <sixdof/generation/distance_generator.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +13,6 @@
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/configuration/bucket.h>
 #include <sixdof/configuration/grid.h>
-#include <sixdof/generation/distance_generator.h>
-#include <sixdof/generation/sphere_method.h>
 #include <sixdof/models/model_catalogue.h>
 
 #include "../configuration/shapes.h"

@@ -1,4 +1,4 @@
-#include <sixdof/generation/sphere_method.h>
+#include <sixdof/generation/distance_generator.h>
 
 #include <algorithm>
 #include <cmath>

@@ -18,11 +18,10 @@
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/error.h>
 #include <sixdof/configuration/verification.h>
-#include <sixdof/generation/ray_cast.h>
-#include <sixdof/generation/sphere_method.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/models/recipe.h>
-#include <sixdof/oracle/overlap_by_columns.h>
+#include <sixdof/oracle/overlap.h>
 
 #include "../configuration/shapes.h"
 

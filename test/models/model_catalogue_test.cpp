@@ -5,7 +5,6 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/models/recipe.h>
-#include <sixdof/models/suggestions.h>
 
 namespace sixdof {
 namespace {

@@ -35,7 +35,7 @@ TEST(DistanceOracle, FarFromTheOriginEveryBitIsThatOfBruteForce) {
     const Separation truth = brute_force(a, b, pose);
     const Separation d = query.distance(pose);
     EXPECT_EQ(d.distance, truth.distance);
-    EXPECT_EQ(query.surfaces_intersect(pose, false), truth.distance == 0.0);
+    EXPECT_EQ(query.collide(pose, false), truth.distance == 0.0);
     if (truth.distance > 0.0) {
       ++apart;
       EXPECT_EQ(d.triangle_a, truth.triangle_a);
@@ -123,7 +123,7 @@ TEST(DistanceOracle, ColdSearchesExpandFewNodes) {
   for (int i = 0; i < k_poses; ++i) {
     Pose pose = shapes::random_pose(generator, 0.0);
     pose.t = shapes::uniform(generator, 2.3, 3.0) * shapes::unit_vector(generator);
-    ASSERT_GT(query.distance(pose, {.warm_start = false}).distance, 0.0);
+    ASSERT_GT(query.distance(pose, false).distance, 0.0);
     sum.nodes += query.counts().nodes;
     sum.leaf_pairs += query.counts().leaf_pairs;
     sum.triangles += query.counts().triangles;

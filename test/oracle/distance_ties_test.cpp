@@ -78,7 +78,7 @@ TEST(DistanceTies, CubesOnAGridTieInEveryBit) {
     if (i % 2 == 1) pose.R << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
     const Separation truth = brute_force(a, b, pose);
     ASSERT_EQ(truth.distance, 0.25);
-    for (const bool warm : {false, true}) expect_same(query.distance(pose, {.warm_start = warm}), truth);
+    for (const bool warm : {false, true}) expect_same(query.distance(pose, warm), truth);
   }
 }
 
@@ -103,17 +103,12 @@ TEST(DistanceTies, BlocksFaceToFaceAnywhere) {
     const Separation truth = brute_force(a.mesh, b.mesh, pose, width);
     EXPECT_NEAR(truth.distance, gap, width);
     tied += brute_force(a.mesh, b.mesh, pose).distance < truth.distance;
-    expect_same(query.distance(pose, {.warm_start = false}), truth);
+    expect_same(query.distance(pose, false), truth);
     expect_same(query.distance(pose), truth);
     Pose before = pose;  // another part of the plane, another pair to begin with
     before.t += 0.2 * aside;
     query.distance(before);
     expect_same(query.distance(pose), truth);
-    // The bound is one of the distance that is returned, not of the smallest.
-    expect_same(query.distance(pose, {.upper_bound = truth.distance, .warm_start = i % 2 == 0}), truth);
-    const double below = std::nextafter(truth.distance, 0.0);
-    EXPECT_FALSE(query.distance(pose, {.upper_bound = below, .warm_start = i % 2 == 0}).has_witnesses);
-    EXPECT_FALSE(query.distance(pose, {.upper_bound = 0.5 * below, .warm_start = false}).has_witnesses);
     EXPECT_FALSE(query.collide(pose));
 
     const DistanceOracle swapped(b.mesh, a.mesh);
@@ -182,7 +177,7 @@ TEST(DistanceTies, DistancesAtTheLimitOfATieAreDistinguished) {
     const double width = oracle.tie_width(pose);
     const Separation truth = brute_force(ground, plates, pose, width);
     ASSERT_NEAR(truth.distance, gap, 13.0 * step);
-    expect_same(query.distance(pose, {.warm_start = false}), truth);
+    expect_same(query.distance(pose, false), truth);
     for (int k = 0; k < 5; ++k) {
       Pose before = pose;
       before.t += 0.1 * rotation.R * Vector3d(uniform(generator, -1.0, 1.0), uniform(generator, -1.0, 1.0), 0.1);
@@ -219,7 +214,7 @@ TEST(DistanceTies, SmallestRankInPrunedPatches) {
     const Separation truth = brute_force(a, b, pose, oracle.tie_width(pose));
     ASSERT_GT(truth.distance, 0.0);
     DistanceQuery query(oracle);
-    expect_same(query.distance(pose, {.warm_start = false}), truth);
+    expect_same(query.distance(pose, false), truth);
     for (int i = 0; i < 4; ++i) {  // warm, from other pairs of the plates
       Pose aside = before;
       aside.t += 0.1 * i * (before.t - pose.t);
@@ -254,14 +249,13 @@ TEST(DistanceTies, FacesThatTouchUpToRounding) {
     const double gap = std::pow(10.0, uniform(generator, -17.0, -13.0));
     const Pose pose = face_to_face(generator, a.normal, a.middle, b.normal, b.middle, gap);
     const Separation smallest = brute_force(a.mesh, b.mesh, pose);
-    EXPECT_EQ(query.surfaces_intersect(pose, false), smallest.distance == 0.0);
+    EXPECT_EQ(query.collide(pose, false), smallest.distance == 0.0);
     if (smallest.distance == 0.0) {
       ++meeting;
-      EXPECT_EQ(query.distance(pose, {.warm_start = false}).distance, 0.0);
+      EXPECT_EQ(query.distance(pose, false).distance, 0.0);
     } else {
       ++apart;
-      expect_same(query.distance(pose, {.warm_start = false}),
-                  brute_force(a.mesh, b.mesh, pose, oracle.tie_width(pose)));
+      expect_same(query.distance(pose, false), brute_force(a.mesh, b.mesh, pose, oracle.tie_width(pose)));
     }
   }
   EXPECT_GT(apart, 5);
@@ -287,7 +281,7 @@ TEST(DistanceTies, CostLittle) {
         SCOPED_TRACE(testing::Message() << mesh.name() << " gap " << gap << " quarter " << quarter);
         const Eigen::AngleAxisd rotation(1.5707963267948966 * quarter, Vector3d::UnitZ());
         const Pose pose{rotation.toRotationMatrix(), {0.0137, -0.0211, size_z + gap}};
-        EXPECT_NEAR(query.distance(pose, {.warm_start = false}).distance, gap, oracle.tie_width(pose));
+        EXPECT_NEAR(query.distance(pose, false).distance, gap, oracle.tie_width(pose));
         check_counts();
         EXPECT_FALSE(query.collide(pose, false));
         check_counts();
@@ -313,7 +307,7 @@ TEST(DistanceTies, AreResolvedInTheOrderOfRanks) {
     const auto count = [&](const Mesh& first, const Mesh& second, const Pose& at) {
       const DistanceOracle oracle(first, second);
       DistanceQuery query(oracle);
-      query.distance(at, {.warm_start = false});
+      query.distance(at, false);
       pairs += static_cast<double>(query.counts().triangles);
       ++queries;
     };

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/oracle/overlap_by_columns.h>
 
 #include "bodies.h"
 #include "convex.h"

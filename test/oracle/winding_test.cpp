@@ -140,7 +140,7 @@ TEST(Winding, DecidesCollisionsOfBlocksInARow) {
       const auto check = [&](const Vector3d& p, int winding) {
         EXPECT_EQ(of_b(blocks, pose, pose * p), winding) << "p " << p.transpose();
         const Pose around{pose.R, pose.t - pose * p};  // p, and with it the small block, at A's origin
-        EXPECT_FALSE(query.surfaces_intersect(around));
+        EXPECT_GT(query.distance(around).distance, 0.0);
         EXPECT_EQ(query.collide(around), winding == 1) << "p " << p.transpose();
         EXPECT_EQ(query_back.collide(around.inverse()), winding == 1) << "p " << p.transpose();
       };

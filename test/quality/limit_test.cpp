@@ -14,7 +14,7 @@
 #include <sixdof/measure/magnitude.h>
 #include <sixdof/scenario/evaluation.h>
 #include <sixdof/scenario/solids.h>
-#include "bench/common/all_algorithms.h"
+#include "bench/common/build_info.h"
 
 namespace sixdof {
 namespace {
@@ -160,7 +160,7 @@ TEST(Limit, ExactIsTheAnswerOfTheTessellatedSolids) {
   EXPECT_LE(*sigma(forces, recording.forces), 1e-6);
   EXPECT_NEAR(fit_gain(forces, recording.forces)->gain, 1.0, 1e-6);
   EXPECT_LE(*direction_error(forces, recording.forces).gamma_degrees, 1e-4);
-  EXPECT_LE(torque_error, 1e-6 * peak(forces) * scenario->reference_length());
+  EXPECT_LE(torque_error, 1e-6 * peak(forces) * scenario->description().reference_length);
 }
 
 }  // namespace

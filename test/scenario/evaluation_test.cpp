@@ -11,7 +11,6 @@
 #include <sixdof/measure/metrics.h>
 #include <sixdof/measure/spectrum.h>
 #include <sixdof/scenario/scenario.h>
-#include <sixdof/scenario/series_file.h>
 
 #include "ideal_query.h"
 
@@ -44,7 +43,7 @@ TEST(Evaluation, AnIdealAnswerIsPerfect) {
       EXPECT_EQ(m.count("sigma_" + std::string(by_torque ? "F" : "T")),
                 name == "IV" && law == IdealLaw::volume ? 1u : 0u);
       EXPECT_EQ(m.count("leakage"), name == "IV" && law == IdealLaw::volume ? 0u : 1u);
-      EXPECT_EQ(m.count("loop_work"), scenario->closed() ? 1u : 0u);
+      EXPECT_EQ(m.count("loop_work"), scenario->description().closed ? 1u : 0u);
       EXPECT_EQ(m.count("sigma_F_all"), name[0] == 'I' && name.size() == 2 && name != "II" && name != "IV" ? 1u : 0u);
       for (const auto& [key, value] : m) {
         EXPECT_NE(find_metric(key), nullptr) << key;
@@ -131,7 +130,7 @@ TEST(SeriesFile, HoldsTheRecording) {
     EXPECT_EQ(file.read_string("/", "scenario"), "III");
     EXPECT_EQ(file.read_string("/", "law"), "volume");
     EXPECT_EQ(file.read_string("/", "settings"), "x=2");
-    EXPECT_NEAR(file.read_number("/", "gain_T"), 3.0, k_rounding);
+    EXPECT_NEAR(file.read_attribute<double>("/", "gain_T"), 3.0, k_rounding);
     EXPECT_EQ(file.matrix_size("/torque"), std::pair(std::size_t{150}, std::size_t{3}));
     EXPECT_EQ(file.read_matrix("/torque")[3 * 149 + 2], recording.torques[149].z());
     EXPECT_NEAR(file.read_matrix("/ideal_torque")[3 * 149 + 2] * 3.0, recording.torques[149].z(), k_rounding * 1e4);

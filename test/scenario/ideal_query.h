@@ -21,13 +21,13 @@ class IdealQuery final : public Query {
   Outcome<Response> respond(const Pose& X_AB) override {
     const double progress = progress_of(X_AB);
     double answered = progress - late_;
-    if (scenario_.closed()) answered -= std::floor(answered);
+    if (scenario_.description().closed) answered -= std::floor(answered);
     const auto ideal = scenario_.ideal(law_, std::max(0.0, answered));
     Response response;
     response.penalty = ideal->penalty;
     response.force = ideal->force;
     response.torque = ideal->torque;
-    response.reference = X_AB * scenario_.reference_b();
+    response.reference = X_AB * scenario_.description().reference_b;
     if (spoil_) spoil_(response, progress, number_);
     ++number_;
     return response;
@@ -39,13 +39,13 @@ class IdealQuery final : public Query {
   /// Of a pose on the path, from the one coordinate that changes monotonically along it.
   double progress_of(const Pose& X_AB) const {
     const auto coordinate = [&](const Pose& pose) {
-      if (scenario_.closed()) {
+      if (scenario_.description().closed) {
         const double angle = std::atan2(pose.t.y(), pose.t.x());
         return angle < 0.0 ? angle + k_full_angle : angle;
       }
       return scenario_.name() == "III" ? -std::atan2(pose.R(1, 0), pose.R(0, 0)) : pose.t.x();
     };
-    if (scenario_.closed()) return coordinate(X_AB) / k_full_angle;
+    if (scenario_.description().closed) return coordinate(X_AB) / k_full_angle;
     const double from = coordinate(scenario_.pose(0.0));
     const double to = coordinate(scenario_.pose(1.0));
     return std::clamp((coordinate(X_AB) - from) / (to - from), 0.0, 1.0);

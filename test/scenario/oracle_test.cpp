@@ -43,15 +43,16 @@ Errors largest_errors(const Scenario& scenario, int steps) {
   double force = 0.0;
   for (const double progress : scenario.steps(static_cast<std::size_t>(steps))) {
     const Pose pose = scenario.pose(progress);
-    const Overlap overlap = oracle.evaluate(pose, pose * scenario.reference_b());
+    const Overlap overlap = oracle.evaluate(pose, pose * scenario.description().reference_b);
     const auto ideal = scenario.ideal(IdealLaw::gradient, progress);
     volume = std::max(volume, ideal->penalty);
-    force = std::max({force, ideal->force.norm(), ideal->torque.norm() / scenario.reference_length()});
+    force = std::max({force, ideal->force.norm(), ideal->torque.norm() / scenario.description().reference_length});
     errors.volume = std::max(errors.volume, std::abs(overlap.volume - ideal->penalty));
     errors.force = std::max(errors.force, (overlap.area + ideal->force).norm());
     errors.torque = std::max(errors.torque, (overlap.moment + ideal->torque).norm());
   }
-  return {errors.volume / volume, errors.force / force, errors.torque / (force * scenario.reference_length())};
+  return {errors.volume / volume, errors.force / force,
+          errors.torque / (force * scenario.description().reference_length)};
 }
 
 /// Order of an error under halving of the facets' length.
@@ -86,7 +87,7 @@ TEST(IdealAgainstOracle, ConeIsExactWhereItsTipIsOverTheBlock) {
   for (const double progress : scenario->steps(37)) {
     if (!scenario->in_window(progress)) continue;
     const Pose pose = scenario->pose(progress);
-    const Overlap overlap = oracle.evaluate(pose, pose * scenario->reference_b());
+    const Overlap overlap = oracle.evaluate(pose, pose * scenario->description().reference_b);
     const auto ideal = scenario->ideal(IdealLaw::gradient, progress);
     EXPECT_NEAR(overlap.volume / ideal->penalty, 1.0, k_rounding);
     EXPECT_LT((overlap.area + ideal->force).norm(), k_rounding * ideal->force.norm());
@@ -102,7 +103,7 @@ TEST(IdealAgainstOracle, PinsHaveFlatWalls) {
   for (const double progress : scenario->steps(23)) {
     if (!scenario->in_window(progress)) continue;
     const Pose pose = scenario->pose(progress);
-    const Overlap overlap = oracle.evaluate(pose, pose * scenario->reference_b());
+    const Overlap overlap = oracle.evaluate(pose, pose * scenario->description().reference_b);
     const auto ideal = scenario->ideal(IdealLaw::gradient, progress);
     EXPECT_NEAR(overlap.volume, ideal->penalty, k_rounding * 1e4) << progress;
     EXPECT_LT((overlap.area + ideal->force).norm(), k_rounding * 1e4) << progress;
@@ -120,7 +121,7 @@ TEST(IdealAgainstOracle, OrbitingPinsConvergeWithTheirRoundPin) {
     Errors errors;
     for (const double progress : scenario->steps(28)) {
       const Pose pose = scenario->pose(progress);
-      const Overlap overlap = oracle.evaluate(pose, pose * scenario->reference_b());
+      const Overlap overlap = oracle.evaluate(pose, pose * scenario->description().reference_b);
       const auto ideal = scenario->ideal(IdealLaw::gradient, progress);
       errors.volume = std::max(errors.volume, std::abs(overlap.volume / ideal->penalty - 1.0));
       errors.force = std::max(errors.force, (overlap.area + ideal->force).norm() / ideal->force.norm());

@@ -124,7 +124,7 @@ TEST(RotatingPin, PoseRotatesTheSquarePinAboutItsHole) {
   const auto scenario = make_scenario("III");
   for (const double s : {0.0, 0.4, 1.0}) {
     const Pose pose = scenario->pose(s);
-    EXPECT_TRUE((pose * scenario->reference_b()).isApprox(Eigen::Vector3d(-20, 0, -20), 1e-14));
+    EXPECT_TRUE((pose * scenario->description().reference_b).isApprox(Eigen::Vector3d(-20, 0, -20), 1e-14));
     // The round pin is outside the block's outline, and the plate on its top.
     EXPECT_LT((pose * Eigen::Vector3d(20, 0, -20)).x() + 10.1, -40.0);
     EXPECT_EQ((pose * Eigen::Vector3d(7, 3, 0)).z(), 0.0);

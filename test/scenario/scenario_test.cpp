@@ -20,8 +20,8 @@ TEST(Scenario, EveryOneIsComplete) {
   for (const std::string& name : scenario_names()) {
     const auto scenario = make_scenario(name);
     EXPECT_EQ(scenario->name(), name);
-    EXPECT_FALSE(scenario->purpose().empty());
-    EXPECT_FALSE(scenario->rules().empty());
+    EXPECT_FALSE(scenario->description().purpose.empty());
+    EXPECT_FALSE(scenario->description().rules.empty());
     EXPECT_TRUE(scenario->a().solid());
     EXPECT_TRUE(scenario->b().solid());
     EXPECT_TRUE(scenario->a().topology().manifold);
@@ -53,7 +53,7 @@ TEST(Scenario, StepsCoverThePath) {
   for (const std::string& name : scenario_names()) {
     const auto scenario = make_scenario(name);
     const double gap = (scenario->pose(0.0).t - scenario->pose(1.0).t).norm();
-    EXPECT_EQ(gap < k_rounding, scenario->closed()) << name;
+    EXPECT_EQ(gap < k_rounding, scenario->description().closed) << name;
   }
 }
 
@@ -120,7 +120,7 @@ TEST(Scenario, ConeIsWhereTheDocumentationSays) {
   EXPECT_EQ(thick->a().box().max(), Eigen::Vector3d(900.0, 0.0, 187.5));
   EXPECT_EQ(thick->pose(0.0).t, Eigen::Vector3d(-30.0, -20.0, 0.0));
   EXPECT_TRUE(thick->pose(1.0).t.isApprox(Eigen::Vector3d(930.0, -20.0, 0.0), k_rounding));
-  EXPECT_EQ(thick->reference_b(), Eigen::Vector3d(0.0, 30.0, 0.0));
+  EXPECT_EQ(thick->description().reference_b, Eigen::Vector3d(0.0, 30.0, 0.0));
   EXPECT_EQ(make_scenario("Ib")->a().box().min().y(), -0.2);
 }
 

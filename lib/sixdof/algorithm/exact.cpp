@@ -33,7 +33,7 @@ class ExactQuery final : public Query {
 
   Outcome<Separation> distance(const Pose& X_AB) override {
     if (const Status status = check(X_AB); status != Status::ok) return status;
-    return distance_query_.distance(X_AB, {.warm_start = warm_start_});
+    return distance_query_.distance(X_AB, warm_start_);
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {

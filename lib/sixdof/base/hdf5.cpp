@@ -163,13 +163,8 @@ T File::read_attribute(const std::string& object, const char* name) const {
   return value;
 }
 
-double File::read_number(const std::string& object, const char* name) const {
-  return read_attribute<double>(object, name);
-}
-
-std::uint64_t File::read_count(const std::string& object, const char* name) const {
-  return read_attribute<std::uint64_t>(object, name);
-}
+template double File::read_attribute(const std::string& object, const char* name) const;
+template std::uint64_t File::read_attribute(const std::string& object, const char* name) const;
 
 void File::write_dataset(const std::string& object, std::span<const hsize_t> size, NumberType type,
                          std::size_t chunk_rows, const void* values) {

@@ -85,8 +85,9 @@ class File {
     write_attribute(object, name, number_type<T>().stored, &value);
   }
   std::string read_string(const std::string& object, const char* name) const;
-  double read_number(const std::string& object, const char* name) const;
-  std::uint64_t read_count(const std::string& object, const char* name) const;
+  /// T: double or std::uint64_t.
+  template <class T>
+  T read_attribute(const std::string& object, const char* name) const;
 
   /// A float64 matrix, row-major. `chunk_rows` = 0 stores it in one piece without filters; otherwise in chunks of that
   /// many rows with shuffle, deflate and a Fletcher-32 checksum.
@@ -117,8 +118,6 @@ class File {
   void write_attribute(const std::string& object, const char* name, hid_t type, const void* value);
   /// The attribute and its type.
   std::pair<Handle, Handle> open_attribute(const std::string& object, const char* name) const;
-  template <class T>
-  T read_attribute(const std::string& object, const char* name) const;
   void write_dataset(const std::string& object, std::span<const hsize_t> size, NumberType type, std::size_t chunk_rows,
                      const void* values);
   /// @param size filled with one element for each dimension that the dataset must have

@@ -27,7 +27,6 @@ BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mes
                       .target = summary.target,
                       .tolerance = summary.tolerance,
                       .diagonal = a.diagonal(),
-                      .volume = a.volume(),
                       .reachable = summary.reachable};
   const bool all = count == 0 || summary.reachable <= count;
 

@@ -19,7 +19,6 @@ struct BucketSample {
   double target = 0.0;          ///< Distance (length) or overlap volume (length^3) of every configuration.
   double tolerance = 0.0;       ///< Upper bound of the set's own |measured - target|, same unit.
   double diagonal = 0.0;        ///< Of A's box: the scale of tolerances of distances.
-  double volume = 0.0;          ///< Of A: the scale of tolerances of overlap volumes.
   std::uint64_t reachable = 0;  ///< Reachable configurations of the whole bucket.
 
   static constexpr std::size_t k_run = 32;

@@ -20,8 +20,6 @@ struct CatalogueEntry {
 /// at no cost.
 class SetCatalogue {
  public:
-  SetCatalogue() = default;
-
   /// Reads a manifest (`manifest.json` of `fixtures/`), whose file names are relative to its folder.
   /// @throws BadFile naming the entry and the cause
   static SetCatalogue read(const std::filesystem::path& manifest);

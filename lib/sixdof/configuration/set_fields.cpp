@@ -44,8 +44,9 @@ struct AttributeReader {
   const hdf5::File& file;
   const std::string& at;
   void operator()(const char* name, std::string& value) const { value = file.read_string(at, name); }
-  void operator()(const char* name, double& value) const { value = file.read_number(at, name); }
-  void operator()(const char* name, std::uint64_t& value) const { value = file.read_count(at, name); }
+  void operator()(const char* name, auto& number) const {
+    number = file.read_attribute<std::decay_t<decltype(number)>>(at, name);
+  }
 };
 
 /// Number of values that are not NaN.
@@ -118,7 +119,7 @@ hdf5::File open_format(const std::filesystem::path& path, std::string_view forma
   if (file.read_string("/", "format") != format) {
     throw BadFile(path.string(), "root", fmt::format("is not {}", what));
   }
-  if (const std::uint64_t found = file.read_count("/", "format_version"); found != version) {
+  if (const std::uint64_t found = file.read_attribute<std::uint64_t>("/", "format_version"); found != version) {
     throw BadFile(path.string(), "root",
                   fmt::format("has format version {}, but this build reads version {}; make it again with "
                               "`sixdof generate`",

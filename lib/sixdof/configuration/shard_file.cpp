@@ -155,7 +155,8 @@ void write_shard(const std::filesystem::path& path, const GenerationJob& job, co
 ShardFile::ShardFile(std::filesystem::path path) : path_(std::move(path)) {
   const hdf5::Session session;
   const hdf5::File file = detail::open_format(path_, k_format, k_format_version, "a shard of a configuration set");
-  number_ = {.number = file.read_count("/", "shard"), .count = file.read_count("/", "shards")};
+  number_ = {.number = file.read_attribute<std::uint64_t>("/", "shard"),
+             .count = file.read_attribute<std::uint64_t>("/", "shards")};
   for (const auto& [name, text] : k_job_attributes) job_.*text = file.read_string("/", name);
   job_.a = detail::read_identity(file, path_, "mesh_a");
   job_.b = detail::read_identity(file, path_, "mesh_b");

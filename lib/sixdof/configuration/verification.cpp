@@ -11,7 +11,6 @@
 
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/overlap.h>
-#include <sixdof/oracle/overlap_by_columns.h>
 #include <sixdof/oracle/solid.h>
 #include <sixdof/query/ask.h>
 

@@ -16,6 +16,8 @@
 
 namespace sixdof {
 
+class Algorithm;
+
 /// Finds the translations at which targets are met, for one pair of meshes. Used by one thread at a time. Results may
 /// depend on the rays solved since set_rotation() and their order, but on nothing before.
 class RaySolver {
@@ -49,6 +51,45 @@ class DistanceGenerator {
   /// May be called from several threads. Both meshes outlive the solver. @throws BadMesh
   virtual std::unique_ptr<RaySolver> prepare(const Mesh& a, const Mesh& b) const = 0;
 };
+
+/// The sphere method by one ray cast per configuration instead of an iteration. A ray is cast against the Minkowski
+/// difference of B and A, grown by the target distance. The largest translation s with dist(A, B + s u) = target is the
+/// largest over all pairs of triangles, which one branch and bound over two trees finds. It is the first hit from
+/// outside, however short the interval in which the distance is below the target. The search for each target of a ray
+/// starts from the pairs that the search for the larger target before it did not cull.
+///
+/// A hit is not replaced by one that is farther out by less than 1e-14, in units of the sum of the meshes' radii and
+/// the target (k_cast_tie).
+///
+/// Results have the same bits for every number of threads and on every instruction set.
+std::unique_ptr<DistanceGenerator> make_ray_cast();
+
+/// How B moves along a ray.
+enum class SphereMarch {
+  certified,     ///< By the longest certified steps; each target continues where the larger one before it was met.
+  conservative,  ///< By the distance less the target (conservative advancement); every target alone, from outside.
+};
+
+/// The paper's sphere method on top of a distance algorithm: B moves from outside towards A and stops where the target
+/// is met for the first time.
+///
+/// Steps are as long as is certain to pass no hit. Let f(s) be the distance at translation s. Two facts bound it:
+/// - |f(s) - f(s')| <= |s - s'|, since B moves by |s - s'| (conservative advancement; Mirtich 1996);
+/// - f(s)^2 - s^2 is concave: it is the minimum over all pairs of points (p on A, q on B) of a linear function of s. So
+///   between two measurements f^2 lies above the parabola with leading coefficient 1 through both.
+/// SphereMarch::certified uses both. By the second, one further measurement certifies a Newton step from the witnesses
+/// wherever the target is not small against the step. SphereMarch::conservative uses the first alone and needs many
+/// more measurements, most of all where B grazes A.
+///
+/// Certified steps may pass a hit that begins and ends within k_first_hit_resolution; conservative ones pass none.
+/// @param algorithm measures the distances, with its default settings. They have to be exact and depend on the pose
+/// alone, in every bit. It outlives the generator.
+/// @throws BadArgument if it answers no distance queries
+std::unique_ptr<DistanceGenerator> make_sphere_method(const Algorithm& algorithm,
+                                                      SphereMarch march = SphereMarch::certified);
+
+/// In units of the diagonal of A's box. The distance falls below the target by at most half of it in a hit so short.
+constexpr double k_first_hit_resolution = 1e-6;
 
 struct Generated {
   /// In the order of the percentages asked for. The rows of a bucket are in the order of the rotations asked for; those

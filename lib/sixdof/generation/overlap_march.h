@@ -30,8 +30,6 @@ class OverlapMarch {
   /// @throws Error if the measurements are not those of a continuous function
   std::optional<OverlapMeasurement> advance(double target);
 
-  int measurements() const { return measurements_; }
-
   /// |volume - target| at which the search ends, as a fraction of the tolerance: leaves room for oracles that round
   /// differently.
   static constexpr double k_converged = 0.1;

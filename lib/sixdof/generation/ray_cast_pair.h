@@ -12,7 +12,7 @@ namespace sixdof::ray_cast {
 
 /// Distance of two triangles while one of them is translated along a line. It agrees with triangle_triangle_distance()
 /// but for pairs of edges that are nearly parallel and nearly touch: for edges of length L at an angle, their distance
-/// is off by up to 1e-32 L^2 / (distance angle^2). Internal: use ray_cast.h.
+/// is off by up to 1e-32 L^2 / (distance angle^2). Internal: use distance_generator.h.
 class MovingPair {
  public:
   /// @param b is translated by t * direction

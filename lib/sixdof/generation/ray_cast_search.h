@@ -11,7 +11,7 @@
 #include <sixdof/generation/ray_cast_tree.h>
 #include <sixdof/geometry/tree.h>
 
-/// The branch and bound of the ray cast. Internal: use ray_cast.h.
+/// The branch and bound of the ray cast. Internal: use distance_generator.h.
 ///
 /// Notation. B is translated by t u, where u is the ray's direction; at t = 0 the centres of both meshes' boxes
 /// coincide. For a pair of triangles, or of volumes around many of them, S is the Minkowski difference {q - p} of the

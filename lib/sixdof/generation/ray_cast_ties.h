@@ -10,7 +10,7 @@
 #include <sixdof/generation/ray_cast_tree.h>
 
 /// Tests in double precision of pairs of subtrees that tie. Notation: see ray_cast_search.h. Internal: use
-/// ray_cast.h.
+/// distance_generator.h.
 ///
 /// A pair of triangles ties with the best hit if its distance at the hit's translation is less than the target by no
 /// more than k_cast_tie. Where faces lie over parallel faces, edges along edges or corners over corners, thousands of

@@ -11,7 +11,7 @@
 #include <sixdof/geometry/tree.h>
 #include <sixdof/geometry/triangle_distance.h>
 
-/// Both meshes' trees in one common frame, for the ray cast. Internal: use ray_cast.h.
+/// Both meshes' trees in one common frame, for the ray cast. Internal: use distance_generator.h.
 ///
 /// The volume of a subtree is the intersection of a box, a ball and a slab (the points between two parallel planes).
 /// The slot Tree::k_width * node + lane stands for the child `lane` of node `node`, and for that child's volume.

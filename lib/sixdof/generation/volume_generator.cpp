@@ -5,9 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include <fmt/format.h>
-
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/preparation.h>
 #include <sixdof/generation/overlap_bounds.h>
 #include <sixdof/generation/overlap_march.h>
 #include <sixdof/geometry/tree.h>
@@ -21,12 +19,7 @@ namespace {
 /// The part of a prepared pair that all threads use.
 struct VolumePair {
   struct Body {
-    explicit Body(const Mesh& mesh) : tree(checked(mesh)), solid(mesh, tree), areas(area_vectors(tree)) {}
-
-    static const Mesh& checked(const Mesh& mesh) {
-      if (mesh.solid()) return mesh;
-      throw BadMesh(fmt::format("{}: an overlap volume needs a solid: {}", mesh.name(), mesh.why_not_solid()));
-    }
+    explicit Body(const Mesh& mesh) : tree(mesh), solid(mesh, tree), areas(area_vectors(tree)) {}
 
     Tree tree;
     Solid solid;
@@ -92,13 +85,13 @@ class VolumeSolver final : public RaySolver {
       residuals[k] = std::abs(hit->volume - targets[k]);
     }
     if (k > first) first_step_ = contact - translations[first];
-    measurements_ += static_cast<std::uint64_t>(march.measurements());
   }
 
   std::uint64_t measurements() const override { return measurements_; }
 
  private:
   OverlapMeasurement measure(double s, double outer) {
+    ++measurements_;
     if (s < inner_ || s > outer_) collect(std::max(0.0, s - k_margin * (outer - s)), outer);
     select_candidates(swept_, fraction(s), pairs_);
     const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a, pairs_);
@@ -147,6 +140,7 @@ class VolumeSolver final : public RaySolver {
 
 std::function<std::unique_ptr<RaySolver>()> volume_solvers(const DistanceGenerator& touching, const Mesh& a,
                                                            const Mesh& b) {
+  for (const Mesh* mesh : {&a, &b}) require_solid(*mesh, "an overlap volume");
   return [&touching, pair = std::make_shared<const VolumePair>(a, b)] {
     return std::make_unique<VolumeSolver>(pair, touching.prepare(pair->mesh_a, pair->mesh_b));
   };

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -33,11 +32,6 @@ void for_each_edge(std::span<const Side> sorted, const Visit& visit) {
   }
 }
 
-/// For each corner (3 * triangle + k) the one whose side is the other side of its edge, whatever their directions;
-/// k_no_twin where the edge has not exactly two triangles.
-std::vector<std::uint32_t> find_twins(std::span<const Side> sorted);
-inline constexpr std::uint32_t k_no_twin = std::numeric_limits<std::uint32_t>::max();
-
 /// Disjoint sets of 0 .. n - 1.
 class UnionFind {
  public:
@@ -51,14 +45,5 @@ class UnionFind {
  private:
   std::vector<std::uint32_t> parent_;
 };
-
-/// The shells of a surface: its triangles, connected through edges that have exactly two.
-struct Shells {
-  std::vector<std::uint32_t> of_triangle;             ///< Number of each triangle's shell.
-  std::vector<std::vector<std::uint32_t>> triangles;  ///< Of each shell, ascending; shells by their first triangle.
-};
-
-/// @param sorted sorted_sides() of the triangles
-Shells find_shells(std::span<const Side> sorted, std::size_t triangle_count);
 
 }  // namespace sixdof

@@ -3,15 +3,317 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
-#include <sixdof/geometry/tree_builder.h>
 
 namespace sixdof {
+
+/// How the triangles of a mesh are partitioned into the nodes of a Tree: the first half of its construction.
+///
+/// A range of triangles is split in two again and again, always the part with the largest box, until a node has eight
+/// children. Large ranges are split at one of 16 bins along an axis, by the surface-area heuristic. The two levels next
+/// to the leaves are split exactly, at multiples of full leaves and full nodes, so that most leaves and nodes are full.
+namespace tree_builder {
+
+/// Axis-aligned box in single precision, relative to the tree's centre; contains its triangles.
+struct Box {
+  std::array<float, 3> lower{Tree::k_empty, Tree::k_empty, Tree::k_empty};
+  std::array<float, 3> upper{-Tree::k_empty, -Tree::k_empty, -Tree::k_empty};
+
+  void add(const Box& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower[k] = std::min(lower[k], other.lower[k]);
+      upper[k] = std::max(upper[k], other.upper[k]);
+    }
+  }
+  float half_area() const {
+    const float x = upper[0] - lower[0];
+    const float y = upper[1] - lower[1];
+    const float z = upper[2] - lower[2];
+    return x * y + y * z + z * x;
+  }
+};
+
+/// Triangles first .. last - 1 in tree order.
+struct Range {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  Box box;
+  std::size_t count() const { return last - first; }
+};
+
+/// A node with all nodes below it.
+struct Subtree {
+  std::vector<Range> children;                  ///< In tree order.
+  std::vector<std::unique_ptr<Subtree>> nodes;  ///< Of each child; null if it is a leaf.
+  std::size_t total = 1;                        ///< Nodes in this subtree.
+};
+
+namespace {
+
+/// Strictly below x: also below any double that rounds to x in a difference.
+float round_down(double x) { return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity()); }
+float round_up(double x) { return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity()); }
+
+constexpr std::size_t k_bins = 16;
+constexpr std::size_t k_full_node = Tree::k_width * Tree::k_leaf_triangles;  // triangles of a node with full leaves
+constexpr std::size_t k_full_two_levels = Tree::k_width * k_full_node;       // of a node with full nodes
+constexpr std::size_t k_parallel_subtree = 4096;                             // smaller subtrees are built by one task
+constexpr std::size_t k_parallel_bins = 1 << 17;                             // larger ranges are binned by several
+
+/// A triangle while the tree is built.
+struct Primitive {
+  Box box;
+  std::uint32_t triangle = 0;
+  std::array<float, 3> twice_center() const {
+    return {box.lower[0] + box.upper[0], box.lower[1] + box.upper[1], box.lower[2] + box.upper[2]};
+  }
+};
+
+/// Box and number of the triangles in each bin, by axis.
+struct Bins {
+  std::array<std::array<Box, k_bins>, 3> box;
+  std::array<std::array<std::uint32_t, k_bins>, 3> count{};
+
+  void add(const Bins& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < k_bins; ++i) {
+        box[k][i].add(other.box[k][i]);
+        count[k][i] += other.count[k][i];
+      }
+    }
+  }
+};
+
+/// Which bin a triangle is in: by the centre of its box.
+struct Binning {
+  std::array<float, 3> lower{};
+  std::array<float, 3> scale{};  // bins per length; 0 where all centres agree
+
+  explicit Binning(const Box& centers) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower[k] = centers.lower[k];
+      const float extent = centers.upper[k] - centers.lower[k];
+      const float bins_per_length = static_cast<float>(k_bins) * (1.0f - 1e-6f) / extent;
+      scale[k] = extent > 0.0f && std::isfinite(bins_per_length) ? bins_per_length : 0.0f;
+    }
+  }
+  std::size_t bin(float twice_center, std::size_t axis) const {
+    const auto i = static_cast<std::size_t>((twice_center - lower[axis]) * scale[axis]);
+    return std::min(i, k_bins - 1);
+  }
+};
+
+/// fold(first, last) of the whole range. T::add() is exact and associative: the result does not depend on the parts.
+template <class T, class Fold>
+T fold_in_parallel(std::size_t first, std::size_t last, const Fold& fold) {
+  if (last - first < k_parallel_bins) return fold(first, last);
+  return parallel::reduce<T>(
+      last - first, k_parallel_bins / 8,
+      [&](std::size_t begin, std::size_t end) { return fold(first + begin, first + end); },
+      [](T x, const T& y) {
+        x.add(y);
+        return x;
+      });
+}
+
+/// Leaves hold up to four triangles, so the cost of a side is its area times the leaves it needs.
+float cost(float half_area, std::size_t count) {
+  const std::size_t leaves = (count + Tree::k_leaf_triangles - 1) / Tree::k_leaf_triangles;
+  return half_area * static_cast<float>(leaves);
+}
+
+class Builder {
+ public:
+  Builder(const Mesh& mesh, const Eigen::Vector3d& center) : primitives_(mesh.triangles().size()) {
+    parallel::for_each(primitives_.size(), [&](std::size_t i) {
+      Eigen::AlignedBox3d box;
+      for (const std::uint32_t v : mesh.triangles()[i]) box.extend(mesh.vertices()[v]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<Eigen::Index>(k);
+        primitives_[i].box.lower[k] = round_down(box.min()[axis] - center[axis]);
+        primitives_[i].box.upper[k] = round_up(box.max()[axis] - center[axis]);
+      }
+      primitives_[i].triangle = static_cast<std::uint32_t>(i);
+    });
+  }
+
+  /// The same for every number of threads.
+  std::unique_ptr<Subtree> build() {
+    const std::size_t n = primitives_.size();
+    return build(Range{0, n, bounds(0, n)});
+  }
+
+  /// Once all is built: the mesh's triangle of each triangle in tree order.
+  std::vector<std::uint32_t> mesh_triangle() const {
+    std::vector<std::uint32_t> result;
+    for (const Primitive& p : primitives_) result.push_back(p.triangle);
+    return result;
+  }
+
+ private:
+  Box bounds(std::size_t first, std::size_t last) const {
+    return fold_in_parallel<Box>(first, last, [this](std::size_t i, std::size_t end) {
+      Box box;
+      for (; i < end; ++i) box.add(primitives_[i].box);
+      return box;
+    });
+  }
+
+  /// The best cut between two bins.
+  std::array<Range, 2> split(const Range& range) {
+    const Box centers = fold_in_parallel<Box>(range.first, range.last, [this](std::size_t i, std::size_t end) {
+      Box box;
+      for (; i < end; ++i) box.add({primitives_[i].twice_center(), primitives_[i].twice_center()});
+      return box;
+    });
+    const Binning binning(centers);
+    const Bins bins = fold_in_parallel<Bins>(range.first, range.last, [&](std::size_t i, std::size_t end) {
+      Bins sum;
+      for (; i < end; ++i) {
+        const std::array<float, 3> center = primitives_[i].twice_center();
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::size_t bin = binning.bin(center[k], k);
+          sum.box[k][bin].add(primitives_[i].box);
+          ++sum.count[k][bin];
+        }
+      }
+      return sum;
+    });
+
+    std::size_t best_axis = 3;
+    std::size_t best_bin = 0;
+    float best_cost = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (binning.scale[k] == 0.0f) continue;
+      std::array<float, k_bins> right_cost{};
+      Box right;
+      std::size_t right_count = 0;
+      for (std::size_t i = k_bins - 1; i > 0; --i) {
+        right.add(bins.box[k][i]);
+        right_count += bins.count[k][i];
+        right_cost[i] =
+            right_count == 0 ? std::numeric_limits<float>::infinity() : cost(right.half_area(), right_count);
+      }
+      Box left;
+      std::size_t left_count = 0;
+      for (std::size_t i = 1; i < k_bins; ++i) {
+        left.add(bins.box[k][i - 1]);
+        left_count += bins.count[k][i - 1];
+        if (left_count == 0) continue;
+        const float sum = cost(left.half_area(), left_count) + right_cost[i];
+        if (sum < best_cost) {
+          best_cost = sum;
+          best_axis = k;
+          best_bin = i;
+        }
+      }
+    }
+
+    std::size_t middle = range.first + range.count() / 2;  // all centres agree: any halves will do
+    if (best_axis < 3) {
+      const auto begin = primitives_.begin();
+      const auto boundary = std::partition(
+          begin + static_cast<std::ptrdiff_t>(range.first), begin + static_cast<std::ptrdiff_t>(range.last),
+          [&](const Primitive& p) { return binning.bin(p.twice_center()[best_axis], best_axis) < best_bin; });
+      middle = static_cast<std::size_t>(boundary - begin);
+    }
+    return {Range{range.first, middle, bounds(range.first, middle)},
+            Range{middle, range.last, bounds(middle, range.last)}};
+  }
+
+  /// The best of all cuts at multiples of `block` triangles; for ranges of up to k_full_two_levels.
+  std::array<Range, 2> split_aligned(const Range& range, std::size_t block) {
+    const std::size_t n = range.count();
+    const auto begin = primitives_.begin() + static_cast<std::ptrdiff_t>(range.first);
+    std::array<Primitive, k_full_two_levels> sorted;
+    std::array<Primitive, k_full_two_levels> best;
+    float best_cost = std::numeric_limits<float>::infinity();
+    Range left{range.first, range.first, {}};
+    Range right{range.last, range.last, {}};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::array<std::pair<float, std::uint32_t>, k_full_two_levels> order;
+      for (std::size_t i = 0; i < n; ++i) {
+        order[i] = {begin[static_cast<std::ptrdiff_t>(i)].twice_center()[k], static_cast<std::uint32_t>(i)};
+      }
+      std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
+      for (std::size_t i = 0; i < n; ++i) sorted[i] = begin[static_cast<std::ptrdiff_t>(order[i].second)];
+
+      constexpr std::size_t k_cuts = k_full_two_levels / k_full_node;
+      std::array<Box, k_cuts + 1> tail;  // boxes of the triangles right of each cut
+      const std::size_t last_cut = (n - 1) / block;
+      std::size_t end = n;
+      for (std::size_t cut = last_cut; cut > 0; --cut) {
+        if (cut < last_cut) tail[cut] = tail[cut + 1];
+        for (std::size_t i = cut * block; i < end; ++i) tail[cut].add(sorted[i].box);
+        end = cut * block;
+      }
+      Box head;
+      bool improved = false;
+      for (std::size_t cut = 1; cut <= last_cut; ++cut) {
+        for (std::size_t i = (cut - 1) * block; i < cut * block; ++i) head.add(sorted[i].box);
+        const float sum =
+            head.half_area() * static_cast<float>(cut) + tail[cut].half_area() * static_cast<float>(last_cut + 1 - cut);
+        if (sum < best_cost) {
+          best_cost = sum;
+          improved = true;
+          left = {range.first, range.first + cut * block, head};
+          right = {range.first + cut * block, range.last, tail[cut]};
+        }
+      }
+      if (improved) std::copy_n(sorted.begin(), n, best.begin());
+    }
+    std::copy_n(best.begin(), n, begin);
+    return {left, right};
+  }
+
+  std::unique_ptr<Subtree> build(const Range& range) {
+    auto subtree = std::make_unique<Subtree>();
+    std::vector<Range>& children = subtree->children;
+    children.push_back(range);
+    // Children of up to `block` triangles stay whole: a leaf if this node's children are leaves, else a full node.
+    const std::size_t block = range.count() <= k_full_node ? Tree::k_leaf_triangles : k_full_node;
+    const bool aligned = range.count() <= k_full_two_levels;
+    while (children.size() < Tree::k_width) {
+      std::size_t widest = children.size();
+      float widest_area = -1.0f;
+      for (std::size_t i = 0; i < children.size(); ++i) {
+        if (children[i].count() > block && children[i].box.half_area() > widest_area) {
+          widest = i;
+          widest_area = children[i].box.half_area();
+        }
+      }
+      if (widest == children.size()) break;
+      const std::array<Range, 2> halves = aligned ? split_aligned(children[widest], block) : split(children[widest]);
+      children[widest] = halves[0];
+      children.push_back(halves[1]);
+    }
+    // A subtree's triangles are consecutive, in the order of the children.
+    std::sort(children.begin(), children.end(), [](const Range& x, const Range& y) { return x.first < y.first; });
+
+    subtree->nodes.resize(children.size());
+    const auto build_child = [&](std::size_t i) {
+      if (children[i].count() > Tree::k_leaf_triangles) subtree->nodes[i] = build(children[i]);
+    };
+    if (range.count() > k_parallel_subtree) {
+      parallel::for_each(children.size(), build_child);
+    } else {
+      for (std::size_t i = 0; i < children.size(); ++i) build_child(i);
+    }
+    for (const auto& node : subtree->nodes) subtree->total += node ? node->total : 0;
+    return subtree;
+  }
+
+  std::vector<Primitive> primitives_;  ///< In tree order once all is built.
+};
+
+}  // namespace
+}  // namespace tree_builder
 
 Tree::Tree(const Mesh& mesh) : center_(mesh.center()) {
   const std::size_t n = mesh.triangles().size();
@@ -25,16 +327,17 @@ Tree::Tree(const Mesh& mesh) : center_(mesh.center()) {
   for (const Eigen::Vector3d& v : mesh.vertices()) radius_ = std::max(radius_, (v - center_).squaredNorm());
   radius_ = std::sqrt(radius_) * (1.0 + 1e-15);
 
-  tree_builder::Partition partition = tree_builder::build(mesh, center_);
-  mesh_triangle_ = std::move(partition.mesh_triangle);
+  tree_builder::Builder builder(mesh, center_);
+  const std::unique_ptr<tree_builder::Subtree> root = builder.build();
+  mesh_triangle_ = builder.mesh_triangle();
   corners_.resize(n);
   parallel::for_each(n, [&](std::size_t i) {
     const Triangle& triangle = mesh.triangles()[mesh_triangle_[i]];
     for (std::size_t k = 0; k < 3; ++k) corners_[i][k] = mesh.vertices()[triangle[k]];
   });
 
-  nodes_.reserve(partition.root->total);
-  store_nodes(*partition.root);
+  nodes_.reserve(root->total);
+  store_nodes(*root);
   leaves_.shrink_to_fit();
   parallel::for_each(nodes_.size(), [this](std::size_t i) { fit_slabs(nodes_[i]); });
   store_volumes();

@@ -27,7 +27,7 @@ struct Subtree;
 /// are consecutive. Existing children fill the first lanes; the other lanes hold empty boxes (lower = k_empty, upper =
 /// -k_empty). Leaves also hold their corners as floats, for tests that come before the exact ones.
 ///
-/// Built by the surface-area heuristic (tree_builder.h); the same bits for every number of threads. A node takes 512
+/// Built by the surface-area heuristic; the same bits for every number of threads. A node takes 512
 /// bytes, a leaf 192, a triangle 76: about 150 MB per million triangles.
 class Tree {
  public:

@@ -67,7 +67,7 @@ constexpr std::array k_metrics{
     Metric{"real_time", "time_unit", lower, "mean wall-clock time of one iteration", k_google},
     Metric{"cpu_time", "time_unit", lower, "mean processor time of one iteration", k_google},
     Metric{"mean_ns", "ns", lower, "mean time of a query", k_paper},
-    Metric{"processor_ns", "ns", lower, "mean processor time of a query", "lib/sixdof/scenario/recorder.h"},
+    Metric{"processor_ns", "ns", lower, "mean processor time of a query", "lib/sixdof/scenario/evaluation.h"},
     Metric{"p50_ns", "ns", lower, "median time of a query", k_latency},
     Metric{"p99_ns", "ns", lower, "99 % of the queries take no longer", k_latency},
     Metric{"p999_ns", "ns", lower, "99.9 % of the queries take no longer", k_latency},

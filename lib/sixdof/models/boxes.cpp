@@ -8,7 +8,6 @@
 
 #include <sixdof/models/cos_sin.h>
 #include <sixdof/models/refine.h>
-#include <sixdof/models/sizing.h>
 #include <sixdof/models/surface.h>
 
 namespace sixdof {
@@ -62,6 +61,8 @@ double distance_squared(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return dot_in_order(along, along);
 }
 
+/// The surface between solid and empty cells, facing the empty ones: two triangles per wall element, divided along its
+/// shorter diagonal. It is manifold unless two solid cells touch in an edge or corner only.
 class Builder {
  public:
   explicit Builder(const Lattice& lattice) : lattice_(lattice) {
@@ -71,6 +72,12 @@ class Builder {
     }
   }
 
+  Surface build() {
+    for_each_wall(lattice_, [this](const Wall& wall) { add(wall); });
+    return std::move(surface_);
+  }
+
+ private:
   void add(const Wall& wall) {
     const std::size_t u = (wall.axis + 1) % 3;
     const std::size_t v = (wall.axis + 2) % 3;
@@ -92,9 +99,6 @@ class Builder {
     }
   }
 
-  Surface take() { return std::move(surface_); }
-
- private:
   std::uint32_t vertex(Lattice::Node node) {
     if (lattice_.ring && node[1] == start_[1].back()) node[1] = 0;
     const std::uint64_t width = start_[2].back() + 1ULL;
@@ -129,14 +133,6 @@ std::size_t count_triangles(const Lattice& lattice) {
     sum += 2ULL * lattice.steps[u][wall.cell[u]] * lattice.steps[v][wall.cell[v]];
   });
   return sum;
-}
-
-/// The surface between solid and empty cells, facing the empty ones: two triangles per wall element, divided along its
-/// shorter diagonal. It is manifold unless two solid cells touch in an edge or corner only.
-Surface surface_of(const Lattice& lattice) {
-  Builder builder(lattice);
-  for_each_wall(lattice, [&](const Wall& wall) { builder.add(wall); });
-  return builder.take();
 }
 
 Lattice lattice_of(const BoxShape& shape, double h) {
@@ -229,7 +225,8 @@ void check(const CircularBoxShape& shape) {
 template <class Shape>
 Mesh tessellate(const Shape& shape, double area, std::size_t budget, const char* name) {
   const double h = fit_edge_length(area, budget, [&](double edge) { return count_triangles(lattice_of(shape, edge)); });
-  Surface surface = surface_of(lattice_of(shape, h));
+  const Lattice lattice = lattice_of(shape, h);
+  Surface surface = Builder(lattice).build();
   refine_to(surface, budget);
   return to_mesh(std::move(surface), name);
 }

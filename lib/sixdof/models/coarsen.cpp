@@ -1,13 +1,13 @@
-#include <sixdof/models/coarsen.h>
+#include <sixdof/models/refine.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <queue>
 
 #include <Eigen/Geometry>
 
 #include <sixdof/base/error.h>
-#include <sixdof/models/half_edge.h>
 
 namespace sixdof {
 namespace {
@@ -36,8 +36,10 @@ struct Limits {
 constexpr std::array<Limits, 3> k_limits{{{0.5, 0.7, 8}, {0.3, 0.5, 10}, {0.05, 0.3, 16}}};
 
 class Coarsener {
+  using Queue = std::priority_queue<Edge, std::vector<Edge>, decltype(&collapses_later)>;
+
  public:
-  Coarsener(Surface& surface, const Project& project)
+  Coarsener(Surface& surface, const SurfaceProjection& project)
       : surface_(surface),
         project_(project),
         alive_(surface.triangles.size()),
@@ -50,9 +52,8 @@ class Coarsener {
       if (alive_ <= triangles) return;
       fill_queue();
       while (alive_ > triangles && !queue_.empty()) {
-        std::pop_heap(queue_.begin(), queue_.end(), collapses_later);
-        const Edge candidate = queue_.back();
-        queue_.pop_back();
+        const Edge candidate = queue_.top();
+        queue_.pop();
         if (is_current(candidate)) try_collapse(candidate.half_edge, limits);
       }
     }
@@ -106,11 +107,11 @@ class Coarsener {
   }
 
   void fill_queue() {
-    queue_.clear();
+    std::vector<Edge> edges;
     for (HalfEdge h = 0; h < twin_.size(); ++h) {
-      if (is_alive(h) && h < twin_[h]) queue_.push_back(edge_of(surface_, h));
+      if (is_alive(h) && h < twin_[h]) edges.push_back(edge_of(surface_, h));
     }
-    std::make_heap(queue_.begin(), queue_.end(), collapses_later);
+    queue_ = Queue(collapses_later, std::move(edges));
   }
 
   bool is_current(const Edge& c) {
@@ -177,14 +178,9 @@ class Coarsener {
     for (const HalfEdge gone : {h, other}) surface_.triangles[gone / 3] = {k_none, k_none, k_none};
     alive_ -= 2;
     for (const HalfEdge g : leaving(leaving_a)) {
-      push(g);
-      push(next_in_triangle(g));
+      queue_.push(edge_of(surface_, g));
+      queue_.push(edge_of(surface_, next_in_triangle(g)));
     }
-  }
-
-  void push(HalfEdge h) {
-    queue_.push_back(edge_of(surface_, h));
-    std::push_heap(queue_.begin(), queue_.end(), collapses_later);
   }
 
   /// Quality of the worst triangle at the origin of `start` if that origin moves to `position`.
@@ -210,16 +206,16 @@ class Coarsener {
   }
 
   Surface& surface_;
-  const Project& project_;
+  const SurfaceProjection& project_;
   std::size_t alive_;
   std::vector<HalfEdge> twin_;
-  std::vector<Edge> queue_;       ///< Heap, shortest first; may hold stale entries.
+  Queue queue_;                   ///< Shortest first; may hold stale entries.
   std::vector<HalfEdge> around_;  ///< Of leaving().
 };
 
 }  // namespace
 
-void coarsen_to(Surface& surface, std::size_t triangles, const Project& project) {
+void coarsen_to(Surface& surface, std::size_t triangles, const SurfaceProjection& project) {
   constexpr int k_rounds = 8;  // of smoothing; more have little effect
   Coarsener coarsener(surface, project);
   coarsener.collapse_until(triangles);

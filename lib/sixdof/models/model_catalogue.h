@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <sixdof/geometry/mesh.h>
 
@@ -27,5 +28,9 @@ ModelName parse_model_name(std::string_view name);
 /// @throws BadArgument for a name that does not exist (the message lists similar ones) or a count out of range; BadFile
 /// for a file that cannot be read or a model that is not fetched.
 Mesh load_model(const std::string& name_or_file);
+
+/// Those of `names` that are similar to `word`, nearest first: within three edits (swapped neighbours are one) and
+/// about a third of the word's length, or one contains the other.
+std::vector<std::string> suggestions(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace sixdof

@@ -1,11 +1,10 @@
 #include <sixdof/models/refine.h>
 
-#include <algorithm>
+#include <queue>
 
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/models/half_edge.h>
 
 namespace sixdof {
 namespace {
@@ -16,17 +15,17 @@ bool splits_later(const Edge& x, const Edge& y) {
 }
 
 class Refiner {
+  using Queue = std::priority_queue<Edge, std::vector<Edge>, decltype(&splits_later)>;
+
  public:
   Refiner(Surface& surface, const SplitPosition& position) : surface_(surface), position_(position) {
     link_half_edges();
-    std::make_heap(queue_.begin(), queue_.end(), splits_later);
   }
 
   void split_longest() {
     while (true) {
-      std::pop_heap(queue_.begin(), queue_.end(), splits_later);
-      const Edge edge = queue_.back();
-      queue_.pop_back();
+      const Edge edge = queue_.top();
+      queue_.pop();
       // The queue keeps entries of edges that have been split or belong to another half-edge now.
       if (!edge.joins_same(edge_of(surface_, edge.half_edge))) continue;
       split(edge);
@@ -40,10 +39,12 @@ class Refiner {
   /// Links the half-edges of each edge, of any number, in a ring, and keeps one queue entry per edge.
   void link_half_edges() {
     ring_.resize(3 * surface_.triangles.size());
-    for_each_edge(sorted_sides(surface_.triangles), [this](std::span<const Side> sides) {
+    std::vector<Edge> edges;
+    for_each_edge(sorted_sides(surface_.triangles), [&](std::span<const Side> sides) {
       for (std::size_t i = 0; i < sides.size(); ++i) ring_[sides[i].corner] = sides[(i + 1) % sides.size()].corner;
-      queue_.push_back(edge_of(surface_, sides[0].corner));
+      edges.push_back(edge_of(surface_, sides[0].corner));
     });
+    queue_ = Queue(splits_later, std::move(edges));
   }
 
   /// Replaces `old` by `fresh` in its ring.
@@ -60,12 +61,7 @@ class Refiner {
 
   void link_ring(const std::vector<HalfEdge>& members) {
     for (std::size_t i = 0; i < members.size(); ++i) ring_[members[i]] = members[(i + 1) % members.size()];
-    push(members.front());
-  }
-
-  void push(HalfEdge h) {
-    queue_.push_back(edge_of(surface_, h));
-    std::push_heap(queue_.begin(), queue_.end(), splits_later);
+    queue_.push(edge_of(surface_, members.front()));
   }
 
   void split(const Edge& edge) {
@@ -92,12 +88,12 @@ class Refiner {
       replace_in_ring(after, added + 1);
       surface_.triangles.push_back({middle, b, c});
       origin(after) = middle;
-      push(added + 1);
+      queue_.push(edge_of(surface_, added + 1));
       (a == edge.low ? at_low_ : at_high_).push_back(cut);
       (a == edge.low ? at_high_ : at_low_).push_back(added);
       ring_[after] = added + 2;
       ring_[added + 2] = after;
-      push(after);
+      queue_.push(edge_of(surface_, after));
     }
     link_ring(at_low_);
     link_ring(at_high_);
@@ -105,7 +101,7 @@ class Refiner {
 
   Surface& surface_;
   const SplitPosition& position_;
-  std::vector<Edge> queue_;     ///< Heap, longest first; may hold stale entries.
+  Queue queue_;                 ///< Longest first; may hold stale entries.
   std::vector<HalfEdge> ring_;  ///< Next half-edge of the same edge.
   std::vector<HalfEdge> around_, at_low_, at_high_;
 };

@@ -19,6 +19,17 @@ Eigen::Vector3d midpoint_of_edge(const Surface& surface, std::uint32_t a, std::u
 /// lower vertex numbers comes first: the result is deterministic. Cost O((edges + splits) log edges).
 void refine_to(Surface& surface, std::size_t triangles, const SplitPosition& position = midpoint_of_edge);
 
+/// Projects a point near a smooth surface onto it.
+using SurfaceProjection = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
+
+/// Coarsens a closed manifold surface and improves its triangles: collapses the shortest edge until exactly `triangles`
+/// (even) are left, then moves each vertex along the surface if that improves its worst triangle. New positions are
+/// projected. The topology stays: an edge is collapsed only if its end points have no common neighbours but the two
+/// opposite vertices, and if no triangle is inverted. Deterministic; of equally long edges the one with lower vertex
+/// numbers comes first.
+/// @throws BadMesh if the surface is not a closed manifold or its topology needs more triangles.
+void coarsen_to(Surface& surface, std::size_t triangles, const SurfaceProjection& project);
+
 /// refine_to() by midpoints: the shape stays the same up to their rounding, half a unit in the last place of the
 /// coordinates.
 /// @param name of the result

@@ -8,7 +8,6 @@
 
 #include <sixdof/models/cos_sin.h>
 #include <sixdof/models/refine.h>
-#include <sixdof/models/sizing.h>
 #include <sixdof/models/surface.h>
 
 namespace sixdof {
@@ -51,9 +50,10 @@ std::vector<ProfileRing> rings_along(std::span<const ProfilePoint> profile, doub
   return rings;
 }
 
+/// Every ring but the poles at both ends has a strip of triangles on either side.
 std::size_t count_triangles(std::span<const ProfileRing> rings) {
   std::size_t sum = 0;
-  for (std::size_t i = 1; i < rings.size(); ++i) sum += strip_size(rings[i - 1].count, rings[i].count);
+  for (const ProfileRing& ring : rings) sum += ring.count == 1 ? 0 : 2 * std::size_t{ring.count};
   return sum;
 }
 

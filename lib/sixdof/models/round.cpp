@@ -8,7 +8,6 @@
 
 #include <sixdof/models/cos_sin.h>
 #include <sixdof/models/refine.h>
-#include <sixdof/models/sizing.h>
 #include <sixdof/models/surface.h>
 
 namespace sixdof {

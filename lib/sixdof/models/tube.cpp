@@ -10,7 +10,6 @@
 
 #include <sixdof/models/cos_sin.h>
 #include <sixdof/models/refine.h>
-#include <sixdof/models/sizing.h>
 #include <sixdof/models/surface.h>
 
 namespace sixdof {
@@ -76,10 +75,11 @@ std::vector<double> equal_parts(const TorusKnotShape& shape, std::uint32_t count
   return parameters;
 }
 
+/// Length of the core, by the trapezium rule (exact to rounding for a periodic analytic curve).
 /// @throws BadArgument if the tube intersects itself. Where the core's curvature is at most 1 / tube_radius, two points
 /// that are less than half a circle of that radius apart along the core are no nearer than on the circle (Schur); all
 /// other pairs are compared.
-void check_clearance(const TorusKnotShape& shape) {
+double check_clearance(const TorusKnotShape& shape) {
   std::vector<CorePoint> core(k_core_points);
   std::vector<double> along(k_core_points + 1, 0.0);
   for (std::uint32_t i = 0; i < k_core_points; ++i) {
@@ -98,15 +98,7 @@ void check_clearance(const TorusKnotShape& shape) {
                   "strands of the tube meet");
     }
   }
-}
-
-/// Length of the core, by the trapezium rule (exact to rounding for a periodic analytic curve).
-double core_length(const TorusKnotShape& shape) {
-  double sum = 0.0;
-  for (std::uint32_t i = 0; i < k_core_points; ++i) {
-    sum += norm_in_order(core_at(shape, static_cast<double>(i) / k_core_points).first);
-  }
-  return sum / k_core_points;
+  return along[k_core_points];
 }
 
 struct Counts {
@@ -177,9 +169,8 @@ Mesh make_torus_knot(const TorusKnotShape& shape, std::size_t triangles) {
                   std::gcd(shape.revolutions, shape.windings) == 1,
               "torus-knot", "revolutions and windings must be from 1 to 20 without a common divisor");
   check_shape(shape.minor_radius < shape.major_radius, "torus-knot", "minor_radius must be less than major_radius");
-  check_clearance(shape);
+  const double core = check_clearance(shape);
   const std::size_t budget = triangle_budget("torus-knot", triangles, k_minimum_torus_knot);
-  const double core = core_length(shape);
   const double radius = shape.tube_radius;
   const Counts counts = fit_counts(core, radius, budget, k_fewest_torus_knot);
   Surface surface;

@@ -1,5 +1,8 @@
 #include <sixdof/oracle/distance.h>
 
+#include <cmath>
+#include <limits>
+
 #include <Eigen/Geometry>
 
 #include <sixdof/geometry/sides.h>
@@ -74,16 +77,15 @@ void DistanceQuery::prepare(const Pose& X_AB, bool warm_start) {
   }
 }
 
-Separation DistanceQuery::distance(const Pose& X_AB, const DistanceOptions& options) {
-  prepare(X_AB, options.warm_start);
+Separation DistanceQuery::distance(const Pose& X_AB, bool warm_start) {
+  prepare(X_AB, warm_start);
   detail::DistanceSearch& s = search_;
-  s.best = options.upper_bound;
+  s.best = std::numeric_limits<double>::infinity();
   if (closest_pair_ && detail::try_update(s, *closest_pair_)) s.direction = s.closest.on_b - s.closest.on_a;
-  const auto intersecting = [&s] { return s.found && s.best == 0.0; };
-  if (!intersecting()) detail::seed_search(s);
-  if (!intersecting()) detail::find_pair(s, false);
+  if (s.best != 0.0) detail::seed_search(s);
+  if (s.best != 0.0) detail::find_pair(s, false);
   Separation result;
-  result.has_witnesses = s.found && s.closest.distance <= options.upper_bound;
+  result.has_witnesses = !std::isnan(s.closest.distance);  // NaN: coordinates that overflow
   if (!result.has_witnesses) {
     result.distance = std::numeric_limits<double>::infinity();
     return result;
@@ -97,23 +99,16 @@ Separation DistanceQuery::distance(const Pose& X_AB, const DistanceOptions& opti
   return result;
 }
 
-bool DistanceQuery::surfaces_intersect(const Pose& X_AB, bool warm_start) {
-  search_.counts = {};
-  return !boxes_apart(search_.a, search_.b, X_AB) && intersect(X_AB, warm_start);
-}
-
-bool DistanceQuery::intersect(const Pose& X_AB, bool warm_start) {
-  prepare(X_AB, warm_start);
-  if (intersecting_pair_ && detail::intersects(search_, *intersecting_pair_)) return true;
-  detail::find_pair(search_, true);
-  if (search_.found) intersecting_pair_ = search_.pair;
-  return search_.found;
-}
-
 bool DistanceQuery::collide(const Pose& X_AB, bool warm_start) {
   search_.counts = {};
   if (boxes_apart(search_.a, search_.b, X_AB)) return false;
-  if (intersect(X_AB, warm_start)) return true;
+  prepare(X_AB, warm_start);
+  if (intersecting_pair_ && detail::intersects(search_, *intersecting_pair_)) return true;
+  detail::find_pair(search_, true);
+  if (search_.found) {
+    intersecting_pair_ = search_.pair;
+    return true;
+  }
   const std::vector<Vector3d>& of_a = search_.a.piece_vertices;
   const std::vector<Vector3d>& of_b = search_.b.piece_vertices;
   if (of_a.empty() || of_b.empty()) return false;

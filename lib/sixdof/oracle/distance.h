@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -34,14 +33,6 @@
 /// than DistanceOracle::tie_width(): the distances of parallel faces are equal up to rounding for thousands of pairs.
 namespace sixdof {
 
-/// What one query needs besides the pose.
-struct DistanceOptions {
-  /// Larger distances are not of interest: a length. The query ends as soon as the distance is known to be larger.
-  double upper_bound = std::numeric_limits<double>::infinity();
-  /// Start with the closest triangles of this query object's last answer. Changes the time, never the distance.
-  bool warm_start = true;
-};
-
 /// Two meshes prepared for distance queries: immutable, shared by the DistanceQuery objects of all threads.
 ///
 /// Memory: a Tree per mesh, and up to 5 % more for meshes with coplanar patches.
@@ -70,18 +61,15 @@ class DistanceOracle {
 
 /// Queries of a DistanceOracle; one object per thread. The oracle outlives it.
 ///
-/// Poses must be finite with a rotation matrix in R; they are not checked.
+/// Poses must be finite with a rotation matrix in R; they are not checked. A warm start begins with the triangles of
+/// the object's last answer: it changes the time, never the answer.
 class DistanceQuery {
  public:
   explicit DistanceQuery(const DistanceOracle& oracle) : search_{.a = *oracle.a_, .b = *oracle.b_} {}
 
   /// The distance of the surfaces with witnesses and their triangles. 0 if and only if the surfaces have a point in
-  /// common; then the witnesses are one such point. Above the upper bound: distance is infinite and has_witnesses
-  /// false.
-  Separation distance(const Pose& X_AB, const DistanceOptions& options = {});
-
-  /// Whether the surfaces have a point in common.
-  bool surfaces_intersect(const Pose& X_AB, bool warm_start = true);
+  /// common; then the witnesses are one such point.
+  Separation distance(const Pose& X_AB, bool warm_start = true);
 
   /// Whether the surfaces have a point in common or, if both meshes are solid, a piece of one lies inside the other.
   bool collide(const Pose& X_AB, bool warm_start = true);
@@ -91,7 +79,6 @@ class DistanceQuery {
 
  private:
   void prepare(const Pose& X_AB, bool warm_start);
-  bool intersect(const Pose& X_AB, bool warm_start);
 
   detail::DistanceSearch search_;
   std::optional<TrianglePair> closest_pair_;       // of the last distance

@@ -391,7 +391,6 @@ class DistanceTraversal {
   /// whether a pair of small rank counts as equal depends on that distance.
   bool resolve_ties() {
     std::erase_if(search_.tied, [&](const TiedPair& x) { return x.lower > search_.best + search_.ties.width; });
-    if (!search_.found) return search_.tied.empty();  // all distances are above the upper bound
     FirstOfTies first(search_);
     for (const MeasuredPair& x : search_.measured) first.update(x);
     std::vector<RankedPair>& heap = search_.ranked;

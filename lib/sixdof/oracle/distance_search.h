@@ -100,7 +100,7 @@ struct DistanceSearch {
   const DistanceBody& b;
   Pose X_AB;
   TieWindow ties;
-  double best = std::numeric_limits<double>::infinity();  ///< The upper bound, then the smallest distance found.
+  double best = std::numeric_limits<double>::infinity();  ///< The smallest distance found.
   bool found = false;                                     ///< `pair` and `closest` are set.
   TrianglePair pair;
   ClosestPoints closest;

@@ -1,4 +1,4 @@
-#include <sixdof/oracle/overlap_by_columns.h>
+#include <sixdof/oracle/overlap.h>
 
 #include <algorithm>
 #include <array>

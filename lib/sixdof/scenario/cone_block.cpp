@@ -22,7 +22,7 @@ struct Shape {
         block_width(s.number("block_width")),
         depth(s.number("depth")),
         overshoot(s.number("overshoot")),
-        facets(facets_of(s)),
+        facets(static_cast<int>(s.number("facets"))),
         round(round_parts_of(s)) {
     const double tip = depth * radius / height;
     require(depth < height, "the cone sinks in completely: depth must be below cone_height");

@@ -122,7 +122,7 @@ std::string draw_path(const Scenario& scenario, const View& view) {
   double length = 0.0;
   for (int k = 0; k <= k_pieces; ++k) {
     const double progress = static_cast<double>(k) / k_pieces;
-    points.push_back(view(scenario.pose(progress) * scenario.reference_b()));
+    points.push_back(view(scenario.pose(progress) * scenario.description().reference_b));
     if (k > 0) length += (points.back() - points[points.size() - 2]).norm();
   }
   constexpr double k_visible = 2.0;  // pixels; a rotation about the reference point has no path
@@ -133,7 +133,7 @@ std::string draw_path(const Scenario& scenario, const View& view) {
 /// The ideal force of the volume law as an arrow, its torque (along z in all scenarios) as an arc in the x, y plane.
 std::string draw_wrench(const Scenario& scenario, double progress, const View& view) {
   const auto ideal = scenario.ideal(IdealLaw::volume, progress);
-  const Vector3d at = scenario.pose(progress) * scenario.reference_b();
+  const Vector3d at = scenario.pose(progress) * scenario.description().reference_b;
   const std::string style =
       fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"2.6\" marker-end=\"url(#wrench)\"", k_color_wrench);
   std::string svg;
@@ -145,7 +145,7 @@ std::string draw_wrench(const Scenario& scenario, double progress, const View& v
   }
   if (ideal->torque.norm() > 0.0) {
     constexpr int k_pieces = 24;
-    const double radius = 0.55 * scenario.reference_length() + 12.0 / view.scale;
+    const double radius = 0.55 * scenario.description().reference_length + 12.0 / view.scale;
     const double arc = (ideal->torque.z() > 0.0 ? 1.0 : -1.0) * 1.25 * std::numbers::pi;
     std::vector<Vector2d> points;
     for (int k = 0; k <= k_pieces; ++k) {

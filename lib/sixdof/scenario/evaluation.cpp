@@ -1,18 +1,36 @@
 #include <sixdof/scenario/evaluation.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <ctime>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/hdf5.h>
 #include <sixdof/measure/direction.h>
 #include <sixdof/measure/latency.h>
 #include <sixdof/measure/magnitude.h>
 #include <sixdof/measure/path.h>
 #include <sixdof/measure/spectrum.h>
+#include <sixdof/query/ask.h>
 
 namespace sixdof {
 namespace {
+
+/// The query alone; exceptions and values that are not finite become a status.
+Outcome<Response> respond_guarded(Query& query, const Pose& X_AB, std::string& diagnosis) {
+  const auto failed = [&](std::string words) { diagnosis = std::move(words); };
+  const auto ask = [&] {
+    Outcome<Response> outcome = query.respond(X_AB);
+    examine(query, outcome, failed);
+    return outcome;
+  };
+  return ask_guarded(ask, failed);
+}
 
 /// Ideal and measured vectors side by side.
 struct Compared {
@@ -36,8 +54,9 @@ struct Evaluator {
     for (const double progress : recording.progress) inside += scenario.in_window(progress) ? 1 : 0;
     if (inside > 0) add_all(true, "");
     if (inside < recording.size()) add_all(false, "_all");
-    if (scenario.closed()) {
-      add("loop_work", loop_work(recording.forces, recording.torques, recording.poses, scenario.reference_b()));
+    if (scenario.description().closed) {
+      add("loop_work",
+          loop_work(recording.forces, recording.torques, recording.poses, scenario.description().reference_b));
     }
     const Latency times = latency(recording.times_ns);
     measures.insert(measures.end(), {{"mean_ns", times.mean},
@@ -86,7 +105,7 @@ struct Evaluator {
     add("failed" + suffix, static_cast<double>(answered.failed));
     add("lag" + suffix, lag((every.*wanted).ideal, (every.*wanted).measured, k_lag_reach));
     if (has_force == has_torque) return;
-    const double length = scenario.reference_length();
+    const double length = scenario.description().reference_length;
     add("leakage" + suffix, has_force ? leakage(answered.torque.measured, answered.force.measured, 1.0 / length)
                                       : leakage(answered.force.measured, answered.torque.measured, length));
   }
@@ -110,7 +129,74 @@ struct Evaluator {
   }
 };
 
+constexpr const char* k_format = "sixdof-series";
+constexpr std::uint64_t k_format_version = 1;
+constexpr std::size_t k_chunk_rows = 1024;
+constexpr std::size_t k_spectrum_hop = 8;
+
+void write_rows(hdf5::File& file, const std::string& name, const std::vector<double>& values, std::size_t columns) {
+  file.write_matrix(name, values.data(), values.size() / columns, columns, k_chunk_rows);
+}
+
+void write_vectors(hdf5::File& file, const std::string& name, Vectors vectors) {
+  file.write_matrix(name, vectors.front().data(), vectors.size(), 3, k_chunk_rows);
+}
+
+/// Signal and residual of the forces or of the torques.
+void write_spectra(hdf5::File& file, const std::string& kind, Vectors ideal, Vectors measured) {
+  const std::vector<double> signal = magnitudes(measured);
+  std::vector<double> residual = signal;
+  if (const auto fit = fit_gain(ideal, measured)) {
+    for (std::size_t k = 0; k < residual.size(); ++k) residual[k] -= fit->gain * ideal[k].norm();
+  }
+  const auto write = [&](const std::string& what, const std::vector<double>& values) {
+    const Spectrogram diagram = short_time_spectrum(values, k_haptic_rate_hz, k_spectrum_window, k_spectrum_hop);
+    write_rows(file, "/spectrum/" + kind + "_" + what, diagram.intensity, diagram.frequencies.size());
+    return diagram;
+  };
+  write("signal", signal);
+  const Spectrogram axes = write("residual", residual);
+  if (kind != "force") return;  // both kinds have the same axes
+  write_rows(file, "/spectrum/times", axes.times, 1);
+  write_rows(file, "/spectrum/frequencies", axes.frequencies, 1);
+}
+
 }  // namespace
+
+Outcome<Response> respond_at(const Scenario& scenario, Query& query, double progress, std::string& diagnosis) {
+  const Pose X_AB = scenario.pose(progress);
+  Outcome<Response> outcome = respond_guarded(query, X_AB, diagnosis);
+  if (outcome.ok()) outcome.value = outcome.value.about(X_AB * scenario.description().reference_b);
+  return outcome;
+}
+
+Recording record(const Scenario& scenario, Query& query, std::size_t count) {
+  Recording recording;
+  recording.progress = scenario.steps(count);
+  for (const double progress : recording.progress) recording.poses.push_back(scenario.pose(progress));
+  std::string diagnosis;
+  respond_guarded(query, recording.poses.front(), diagnosis);
+  const std::clock_t processor_start = std::clock();
+  for (const Pose& X_AB : recording.poses) {
+    const auto start = std::chrono::steady_clock::now();
+    Outcome<Response> outcome = respond_guarded(query, X_AB, diagnosis);
+    const auto stop = std::chrono::steady_clock::now();
+    Response response;
+    if (outcome.ok()) {
+      response = outcome.value.about(X_AB * scenario.description().reference_b);
+    } else if (recording.first_failure.empty()) {
+      recording.first_failure = fmt::format("{}: {}", to_string(outcome.status), diagnosis);
+    }
+    recording.status.push_back(outcome.status);
+    recording.forces.push_back(response.force);
+    recording.torques.push_back(response.torque);
+    recording.penalties.push_back(response.penalty);
+    recording.times_ns.push_back(std::chrono::duration<double, std::nano>(stop - start).count());
+  }
+  const double processor_s = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
+  recording.processor_ns = processor_s * 1e9 / static_cast<double>(count);
+  return recording;
+}
 
 Ideals::Ideals(const Scenario& scenario, const Recording& recording, IdealLaw law) {
   for (const double progress : recording.progress) {
@@ -145,6 +231,49 @@ Measures evaluate_jumps(const Scenario& scenario, Query& query, const Recording&
   add("jump_F", ideals.forces, recording.forces, &Response::force);
   add("jump_T", ideals.torques, recording.torques, &Response::torque);
   return measures;
+}
+
+void write_series(const std::filesystem::path& path, const Scenario& scenario, const Recording& recording, IdealLaw law,
+                  const SeriesSource& source, const Measures& measures) {
+  const Ideals ideals(scenario, recording, law);
+  std::vector<double> poses;
+  for (const Pose& pose : recording.poses) {
+    const Eigen::Vector4d q = pose.quaternion();
+    poses.insert(poses.end(), {q[0], q[1], q[2], q[3], pose.t.x(), pose.t.y(), pose.t.z()});
+  }
+  std::vector<std::int32_t> status;
+  for (const Status s : recording.status) status.push_back(static_cast<std::int32_t>(s));
+
+  AtomicFile output(path);
+  const hdf5::Session session;
+  hdf5::File file = hdf5::File::create(output.temporary_path(), path);
+  file.write_attribute("/", "format", std::string(k_format));
+  file.write_attribute("/", "format_version", k_format_version);
+  file.write_attribute("/", "scenario", scenario.name());
+  file.write_attribute("/", "law", std::string(to_string(law)));
+  file.write_attribute("/", "algorithm", source.algorithm);
+  file.write_attribute("/", "version", source.version);
+  file.write_attribute("/", "settings", source.settings);
+  file.write_attribute("/", "shape", source.shape);
+  file.write_attribute("/", "rate_hz", k_haptic_rate_hz);
+  for (const auto& [name, value] : measures) file.write_attribute("/", name.c_str(), value);
+  write_rows(file, "/progress", recording.progress, 1);
+  write_rows(file, "/pose", poses, 7);
+  write_vectors(file, "/force", recording.forces);
+  write_vectors(file, "/torque", recording.torques);
+  write_rows(file, "/penalty", recording.penalties, 1);
+  write_rows(file, "/time_ns", recording.times_ns, 1);
+  write_vectors(file, "/ideal_force", ideals.forces);
+  write_vectors(file, "/ideal_torque", ideals.torques);
+  write_rows(file, "/ideal_penalty", ideals.penalties, 1);
+  file.write_values("/status", std::span<const std::int32_t>(status));
+  if (recording.size() >= k_spectrum_window) {
+    file.make_group("/spectrum");
+    write_spectra(file, "force", ideals.forces, recording.forces);
+    write_spectra(file, "torque", ideals.torques, recording.torques);
+  }
+  file.close();
+  output.commit();
 }
 
 }  // namespace sixdof

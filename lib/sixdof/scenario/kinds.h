@@ -27,9 +27,8 @@ std::unique_ptr<Scenario> make_orbiting_pins(const Settings& settings);
 /// A length between 1e-6 and 1e6 in the meshes' unit.
 Parameter length_parameter(const std::string& name, const std::string& meaning, const std::string& default_value);
 
-/// These parameters, "facets" and "round", which facets_of() and round_parts_of() read.
+/// These parameters, "facets" (a count) and "round", which round_parts_of() reads.
 Settings settings_with_round_parts(std::vector<Parameter> parameters);
-int facets_of(const Settings& settings);
 RoundParts round_parts_of(const Settings& settings);
 
 /// Traction on one pin in its hole, summed over the pin's wall: force in length^3, torque about the pin's axis in

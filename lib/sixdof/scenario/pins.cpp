@@ -24,7 +24,7 @@ PinsShape shape_of(const Settings& s) {
           .square_side = s.number("square_side"),
           .round_radius = s.number("round_radius"),
           .plate_thickness = s.number("plate_thickness"),
-          .facets = facets_of(s),
+          .facets = static_cast<int>(s.number("facets")),
           .round = round_parts_of(s)};
 }
 
@@ -54,8 +54,9 @@ Settings pins_settings(Parameter path) {
 double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 /// Dimensions of block and holes. @param left end of the region that the plan shows
-Sketch pins_sketch(const PinsShape& shape, double left) {
+Sketch pins_sketch(const PinsShape& shape, double left, double progress) {
   Sketch sketch;
+  sketch.progress = progress;
   const double b = shape.width;
   const double a = shape.depth;
   const double c = shape.square_side;
@@ -139,11 +140,7 @@ class RotatingPin final : public Scenario {
     return std::nullopt;
   }
 
-  Sketch sketch() const override {
-    Sketch sketch = pins_sketch(shape_, -1.15 * shape_.width);
-    sketch.progress = 1.0;
-    return sketch;
-  }
+  Sketch sketch() const override { return pins_sketch(shape_, -1.15 * shape_.width, 1.0); }
 
  private:
   PinsShape shape_;
@@ -198,8 +195,7 @@ class OrbitingPins final : public Scenario {
   }
 
   Sketch sketch() const override {
-    Sketch sketch = pins_sketch(shape_, -0.7 * shape_.width);
-    sketch.progress = 0.125;
+    Sketch sketch = pins_sketch(shape_, -0.7 * shape_.width, 0.125);
     const Eigen::Vector2d d = orbit_ * direction(sketch.progress);
     sketch.dimensions.push_back(
         {Eigen::Vector2d::Zero(), d, 0.8 * shape_.depth * Eigen::Vector2d(-d.y(), d.x()) / d.norm(), "\u03c1", orbit_});
@@ -323,12 +319,8 @@ PlaneWrench round_pin_traction(double r, double length, const Eigen::Vector2d& s
 }
 
 Settings rotating_pin_settings() {
-  return pins_settings({.name = "rotation_degrees",
-                        .meaning = "largest rotation phi of the square pin",
-                        .unit = "degree",
-                        .default_value = "30",
-                        .low = 1e-3,
-                        .high = 45.0});
+  return pins_settings(
+      Parameter::number("rotation_degrees", "largest rotation phi of the square pin", "degree", "30", 1e-3, 45.0));
 }
 
 std::unique_ptr<Scenario> make_rotating_pin(const Settings& settings) {

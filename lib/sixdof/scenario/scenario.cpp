@@ -70,7 +70,7 @@ std::vector<double> Scenario::steps(std::size_t count) const {
   for (std::size_t k = 0; k < count; ++k) {
     const auto index = static_cast<double>(k);
     const auto total = static_cast<double>(count);
-    progress[k] = closed() ? (index + 0.5) / total : index / (total - 1.0);
+    progress[k] = description_.closed ? (index + 0.5) / total : index / (total - 1.0);
   }
   return progress;
 }
@@ -90,27 +90,17 @@ std::unique_ptr<Scenario> make_scenario(std::string_view name, const Settings& s
 std::unique_ptr<Scenario> make_scenario(std::string_view name) { return make_scenario(name, scenario_settings(name)); }
 
 Parameter length_parameter(const std::string& name, const std::string& meaning, const std::string& default_value) {
-  return {.name = name, .meaning = meaning, .unit = "length", .default_value = default_value, .low = 1e-6, .high = 1e6};
+  return Parameter::number(name, meaning, "length", default_value, 1e-6, 1e6);
 }
 
 Settings settings_with_round_parts(std::vector<Parameter> parameters) {
   // Fewer than 8 facets do not approximate a circle; with 4096 a sphere has 16 million triangles.
-  parameters.push_back({.name = "facets",
-                        .meaning = "sides of the polygon that stands for a circle",
-                        .unit = "1",
-                        .default_value = "96",
-                        .low = 8,
-                        .high = 4096,
-                        .integer = true});
-  parameters.push_back({.name = "round",
-                        .meaning = "polygons with vertices on the circle, or with the circle's area (spheres: volume)",
-                        .unit = "1",
-                        .default_value = "equal_area",
-                        .choices = {"equal_area", "inscribed"}});
+  parameters.push_back(Parameter::count("facets", "sides of the polygon that stands for a circle", "96", 8, 4096));
+  parameters.push_back(
+      Parameter::choice("round", "polygons with vertices on the circle, or with the circle's area (spheres: volume)",
+                        "equal_area", {"equal_area", "inscribed"}));
   return Settings(std::move(parameters));
 }
-
-int facets_of(const Settings& settings) { return static_cast<int>(settings.number("facets")); }
 
 RoundParts round_parts_of(const Settings& settings) {
   return settings.choice("round") == "inscribed" ? RoundParts::inscribed : RoundParts::equal_area;

@@ -70,33 +70,23 @@ class Scenario {
  public:
   /// The constants of a scenario besides its solids.
   struct Description {
-    std::string name;
-    std::string purpose;
-    std::vector<std::string> rules;
-    Eigen::Vector3d reference_b = Eigen::Vector3d::Zero();
-    double reference_length = 1.0;
-    bool closed = false;
+    std::string name;                                       ///< "Ia", "Ib", "II", "III", "IV".
+    std::string purpose;                                    ///< The question it answers.
+    std::vector<std::string> rules;                         ///< Conditions of a fair run.
+    Eigen::Vector3d reference_b = Eigen::Vector3d::Zero();  ///< Point that torques are about, in B's frame.
+    double reference_length = 1.0;  ///< Makes torque over force a pure number, in the meshes' unit.
+    bool closed = false;            ///< The path ends where it starts.
   };
 
   virtual ~Scenario() = default;
   Scenario(const Scenario&) = delete;
   Scenario& operator=(const Scenario&) = delete;
 
-  const std::string& name() const { return description_.name; }                 ///< "Ia", "Ib", "II", "III", "IV".
-  const std::string& purpose() const { return description_.purpose; }           ///< The question it answers.
-  const std::vector<std::string>& rules() const { return description_.rules; }  ///< Conditions of a fair run.
+  const Description& description() const { return description_; }
+  const std::string& name() const { return description_.name; }
 
   const Mesh& a() const { return a_; }  ///< Fixed. Its mesh frame is the frame of all answers.
   const Mesh& b() const { return b_; }  ///< Moving.
-
-  /// Point that torques are about, in B's frame.
-  const Eigen::Vector3d& reference_b() const { return description_.reference_b; }
-
-  /// Length that makes torque over force a pure number, in the meshes' unit.
-  double reference_length() const { return description_.reference_length; }
-
-  /// The path ends where it starts.
-  bool closed() const { return description_.closed; }
 
   /// Progress of each of `count` steps, increasing within [0, 1]. An open path has steps at both ends, k / (N - 1).
   /// A closed path has them at (k + 1/2) / N: no pose counts twice, and if N is a multiple of four, no step falls on a

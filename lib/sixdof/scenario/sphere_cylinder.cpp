@@ -19,7 +19,7 @@ struct Shape {
         cylinder_radius(s.number("cylinder_radius")),
         cylinder_length(s.number("cylinder_length")),
         orbit(s.number("orbit_radius")),
-        facets(facets_of(s)),
+        facets(static_cast<int>(s.number("facets"))),
         round(round_parts_of(s)) {
     require(orbit < sphere_radius + cylinder_radius, "the sphere never touches: orbit_radius is too large");
     require(orbit > cylinder_radius && orbit > sphere_radius,

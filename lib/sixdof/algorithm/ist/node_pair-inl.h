@@ -1,10 +1,4 @@
-// Compiled once per instruction set: part of traversal.cpp, included by nothing else.
-#if defined(SIXDOF_IST_NODE_PAIR_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIXDOF_IST_NODE_PAIR_INL_H_
-#undef SIXDOF_IST_NODE_PAIR_INL_H_
-#else
-#define SIXDOF_IST_NODE_PAIR_INL_H_
-#endif
+// Compiled once per instruction set: part of traversal.cpp. It has no include guard.
 
 #include <array>
 #include <cstring>
@@ -259,5 +253,3 @@ class NodePairExpansion {
 }  // namespace HWY_NAMESPACE
 }  // namespace sixdof::ist
 HWY_AFTER_NAMESPACE();
-
-#endif

@@ -42,6 +42,11 @@ struct VoxelGrid {
     return origin + size * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5);
   }
 
+  /// Number of a row of voxels along x.
+  std::size_t row(int y, int z) const {
+    return static_cast<std::size_t>(z) * static_cast<std::size_t>(bricks.y() * k_edge) + static_cast<std::size_t>(y);
+  }
+
   /// Index into the table of bricks of the brick that holds a voxel.
   std::size_t brick_of(int x, int y, int z) const {
     const std::size_t bx = static_cast<unsigned>(x) / k_edge, by = static_cast<unsigned>(y) / k_edge,

@@ -1,10 +1,4 @@
-// Compiled once per instruction set: part of contact.cpp and point_tree.cpp, included by nothing else.
-#if defined(SIXDOF_VPS_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIXDOF_VPS_LOOKUP_INL_H_
-#undef SIXDOF_VPS_LOOKUP_INL_H_
-#else
-#define SIXDOF_VPS_LOOKUP_INL_H_
-#endif
+// Compiled once per instruction set: part of contact.cpp and point_tree.cpp. It has no include guard.
 
 #include <hwy/highway.h>
 
@@ -147,5 +141,3 @@ class LayerLookup {
 }  // namespace HWY_NAMESPACE
 }  // namespace sixdof::vps
 HWY_AFTER_NAMESPACE();
-
-#endif

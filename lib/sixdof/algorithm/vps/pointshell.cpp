@@ -36,16 +36,16 @@ class PointCells {
   PointCells(const VoxelGrid& grid, const std::vector<Point>& points) : grid_(grid), n_(grid.voxels()) {
     std::vector<Eigen::Array3i> cells;
     cells.reserve(points.size());
-    first_.assign(row(0, n_.z()) + 1, 0);
+    first_.assign(grid_.row(0, n_.z()) + 1, 0);
     for (const Point& point : points) {
       cells.push_back(cell_of(point.position));
-      ++first_[row(cells.back().y(), cells.back().z()) + 1];
+      ++first_[grid_.row(cells.back().y(), cells.back().z()) + 1];
     }
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     entries_.resize(points.size());
     std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
     for (std::uint32_t i = 0; i < points.size(); ++i) {
-      entries_[next[row(cells[i].y(), cells[i].z())]++] = {cells[i].x(), i};
+      entries_[next[grid_.row(cells[i].y(), cells[i].z())]++] = {cells[i].x(), i};
     }
     for (std::size_t r = 0; r + 1 < first_.size(); ++r) {
       std::sort(entries_.begin() + first_[r], entries_.begin() + first_[r + 1]);
@@ -60,8 +60,9 @@ class PointCells {
     const Eigen::Array3i low = (cell - reach).max(0), high = (cell + reach).min(n_ - 1);
     for (int z = low.z(); z <= high.z(); ++z) {
       for (int y = low.y(); y <= high.y(); ++y) {
-        const auto end = entries_.begin() + first_[row(y, z) + 1];
-        auto entry = std::lower_bound(entries_.begin() + first_[row(y, z)], end, std::pair{low.x(), std::uint32_t{0}});
+        const std::size_t row = grid_.row(y, z);
+        const auto end = entries_.begin() + first_[row + 1];
+        auto entry = std::lower_bound(entries_.begin() + first_[row], end, std::pair{low.x(), std::uint32_t{0}});
         for (; entry != end && entry->first <= high.x(); ++entry) callback(entry->second);
       }
     }
@@ -70,9 +71,6 @@ class PointCells {
  private:
   Eigen::Array3i cell_of(const Eigen::Vector3d& point) const {
     return grid_.coordinates(point).array().floor().cast<int>().max(0).min(n_ - 1);
-  }
-  std::size_t row(int y, int z) const {
-    return static_cast<std::size_t>(z) * static_cast<std::size_t>(n_.y()) + static_cast<std::size_t>(y);
   }
 
   VoxelGrid grid_;

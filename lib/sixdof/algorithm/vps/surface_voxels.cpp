@@ -13,6 +13,7 @@
 
 #include <sixdof/algorithm/vps/triangle_voxels.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/geometry/sides.h>
 
 namespace sixdof::vps {
 namespace {
@@ -30,23 +31,6 @@ int find_bit(std::span<const std::uint64_t> row, int from, int end, bool wanted)
   }
   return end;
 }
-
-/// Union-find over runs. The smaller index becomes the root, so that roots do not depend on the order of unions.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(std::uint32_t i, std::uint32_t j) {
-    const auto [low, high] = std::minmax({root(i), root(j)});
-    parent_[high] = low;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 constexpr std::int32_t k_infinite = std::numeric_limits<std::int32_t>::max();
 
@@ -146,10 +130,10 @@ double WindingNumber::at(const Eigen::Vector3d& p) const {
 
 SurfaceVoxels::SurfaceVoxels(const Mesh& mesh, const VoxelGrid& grid)
     : grid_(grid), words_per_row_((static_cast<std::size_t>(grid.voxels().x()) + k_word - 1) / k_word) {
-  bits_.assign(row_index(0, grid_.voxels().z()) * words_per_row_, 0);
+  bits_.assign(grid_.row(0, grid_.voxels().z()) * words_per_row_, 0);
   const auto mark = [this](int x, int y, int z) {
     const auto column = static_cast<std::size_t>(x);
-    std::uint64_t& word = bits_[row_index(y, z) * words_per_row_ + column / k_word];
+    std::uint64_t& word = bits_[grid_.row(y, z) * words_per_row_ + column / k_word];
     std::atomic_ref(word).fetch_or(std::uint64_t{1} << (column % k_word), std::memory_order_relaxed);
   };
   parallel::for_each(mesh.triangles().size(), [&](std::size_t t) {
@@ -191,11 +175,14 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding)
   });
 
   // Connect runs of neighbouring rows that share a face of a voxel.
-  DisjointSets sets(runs_.size());
+  UnionFind sets(runs_.size());
   const auto join = [&](std::size_t r, std::size_t s) {
     for (std::size_t i = first_[r], j = first_[s]; i < first_[r + 1] && j < first_[s + 1];) {
       if (runs_[i].begin < runs_[j].end && runs_[j].begin < runs_[i].end) {
-        sets.unite(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+        // The smaller index becomes the root: roots do not depend on the order of the joins.
+        const auto [low, high] =
+            std::minmax({sets.find(static_cast<std::uint32_t>(i)), sets.find(static_cast<std::uint32_t>(j))});
+        sets.join(high, low);
       }
       ++(runs_[i].end < runs_[j].end ? i : j);
     }
@@ -215,7 +202,7 @@ FreeRuns::FreeRuns(const SurfaceVoxels& surface, const WindingNumber& winding)
   std::vector<std::uint32_t> region_of(runs_.size());
   for (std::size_t r = 0; r < rows; ++r) {
     for (std::size_t i = first_[r]; i < first_[r + 1]; ++i) {
-      const std::uint32_t root = sets.root(static_cast<std::uint32_t>(i));
+      const std::uint32_t root = sets.find(static_cast<std::uint32_t>(i));
       if (root == i) {
         region_of[i] = static_cast<std::uint32_t>(regions.size());
         regions.emplace_back();

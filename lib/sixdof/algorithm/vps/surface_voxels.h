@@ -47,15 +47,11 @@ class SurfaceVoxels {
   const VoxelGrid& grid() const { return grid_; }
   /// Bit x % 64 of word x / 64 is set if the surface touches voxel (x, y, z).
   std::span<const std::uint64_t> row(int y, int z) const {
-    return {bits_.data() + row_index(y, z) * words_per_row_, words_per_row_};
+    return {bits_.data() + grid_.row(y, z) * words_per_row_, words_per_row_};
   }
   std::size_t count() const;
 
  private:
-  std::size_t row_index(int y, int z) const {
-    return static_cast<std::size_t>(z) * static_cast<std::size_t>(grid_.voxels().y()) + static_cast<std::size_t>(y);
-  }
-
   VoxelGrid grid_;
   std::size_t words_per_row_;
   std::vector<std::uint64_t> bits_;

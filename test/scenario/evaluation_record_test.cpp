@@ -1,4 +1,4 @@
-#include <sixdof/scenario/recorder.h>
+#include <sixdof/scenario/evaluation.h>
 
 #include <chrono>
 #include <cmath>
