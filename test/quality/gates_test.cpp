@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/scenario/evaluation.h>
-#include "bench/common/build_info.h"
+#include "bench/common/all_algorithms.h"
 
 #include "bounds.h"
 

@@ -14,7 +14,7 @@
 #include <sixdof/measure/magnitude.h>
 #include <sixdof/scenario/evaluation.h>
 #include <sixdof/scenario/solids.h>
-#include "bench/common/build_info.h"
+#include "bench/common/all_algorithms.h"
 
 namespace sixdof {
 namespace {
