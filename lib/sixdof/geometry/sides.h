@@ -18,7 +18,7 @@ struct Side {
   std::uint32_t triangle() const { return corner / 3; }
 };
 
-/// All sides, by edge and then by corner.
+/// All sides, by edge and then by corner. Time and memory grow with the largest vertex index, too.
 std::vector<Side> sorted_sides(std::span<const Triangle> triangles);
 
 /// visit(the sides of one edge) for every edge, in the order of sorted_sides().
