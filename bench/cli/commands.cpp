@@ -11,10 +11,9 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
-#include <sixdof/models/model_catalogue.h>
-
 #include "bench/cli/shared.h"
 #include "bench/common/run_guarded.h"
+#include "bench/common/unknown_word.h"
 
 namespace sixdof::cli {
 namespace {
@@ -56,16 +55,6 @@ std::optional<UnknownWord> find_unknown_word(const CLI::App& app) {
   return std::nullopt;
 }
 
-/// The one of `names` that `word` probably means; empty if none is similar.
-std::string nearest(const std::string& word, const std::vector<std::string>& names) {
-  if (const std::vector<std::string> near = suggestions(word, names); !near.empty()) return near.front();
-  // Exchanged letters, which are too many edits for a short word.
-  const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-    return std::is_permutation(word.begin(), word.end(), name.begin(), name.end());
-  });
-  return found == names.end() ? std::string() : *found;
-}
-
 /// "--gird: no such option; did you mean --grid?"
 std::string explain(const UnknownWord& unknown) {
   const auto& [command, word] = unknown;
@@ -79,11 +68,7 @@ std::string explain(const UnknownWord& unknown) {
     if (!is_option) names.push_back(each->get_name());
   }
   if (!is_option && names.empty()) return fmt::format("{}: unexpected argument ({} --help)", word, name);
-  const std::string typed = is_option ? word.substr(0, word.find('=')) : word;
-  const std::string meant = nearest(typed.substr(std::min(typed.find_first_not_of('-'), typed.size())), names);
-  const std::string hint = meant.empty() ? fmt::format(" ({} --help lists them)", name)
-                                         : fmt::format("; did you mean {}{}?", is_option ? "--" : "", meant);
-  return fmt::format("{}: no such {}{}", typed, is_option ? "option" : "command", hint);
+  return explain_unknown_word(word, names, name + " --help");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "bench/harness/options.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 
 #include <sixdof/base/error.h>
 #include "bench/common/run_guarded.h"
+#include "bench/common/unknown_word.h"
 
 namespace sixdof::bench {
 namespace {
@@ -45,6 +47,25 @@ std::string initialize_benchmark(const std::vector<std::string>& flags) {
   int count = static_cast<int>(words.size());
   benchmark::Initialize(&count, pointers.data());
   return count > 1 ? pointers[1] : std::string();
+}
+
+/// Long names of this program's options and of Google Benchmark's, which the parser does not know.
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names{"benchmark_list_tests",
+                                 "benchmark_filter",
+                                 "benchmark_min_time",
+                                 "benchmark_min_warmup_time",
+                                 "benchmark_repetitions",
+                                 "benchmark_enable_random_interleaving",
+                                 "benchmark_report_aggregates_only",
+                                 "benchmark_display_aggregates_only",
+                                 "benchmark_color",
+                                 "benchmark_counters_tabular",
+                                 "benchmark_context",
+                                 "benchmark_time_unit"};
+  for (const CLI::Option* option : app.get_options())
+    std::ranges::copy(option->get_lnames(), std::back_inserter(names));
+  return names;
 }
 
 }  // namespace
@@ -110,7 +131,9 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   if (!has_flag(flags, "--benchmark_min_time")) flags.emplace_back(k_default_min_time);
   const std::string unknown = initialize_benchmark(flags);
   if (unknown.empty()) return -1;
-  print_message("sixdof-bench", unknown + ": no such option (--help lists them)");
+  print_message("sixdof-bench", unknown.starts_with('-')
+                                    ? explain_unknown_word(unknown, option_names(app), "sixdof-bench --help")
+                                    : unknown + ": unexpected argument (sixdof-bench --help)");
   return k_exit_usage;
 }
 

@@ -93,6 +93,26 @@ TEST_F(Info, ShowsAConfigurationSet) {
   EXPECT_THAT(run("info " + path("set.h5")).out, HasSubstr("distance/05"));
 }
 
+TEST_F(Info, ReadsAByteOrderMarkAndALastLineWithoutABreak) {
+  const std::string text = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3";
+  std::ofstream(path("plain.off")) << text << "\n";
+  std::ofstream(path("marked.off")) << "\xEF\xBB\xBF" << text;
+  EXPECT_EQ(json_of("info " + path("marked.off")).at("hash"), json_of("info " + path("plain.off")).at("hash"));
+}
+
+TEST_F(Info, ShowsInvisibleBytes) {
+  std::ofstream(path("space.obj")) << "v 0 0 0\xC2\xA0"
+                                      "0\n";
+  EXPECT_THAT(run("info " + path("space.obj")).err, HasSubstr("space.obj: line 1: '0\\xC2\\xA00' is not a number"));
+}
+
+TEST_F(Info, SaysWhyAFileIsNoMesh) {
+  std::ofstream(path("noext")) << "x";
+  EXPECT_THAT(run("info " + path("noext")).err, HasSubstr("noext: has no extension"));
+  EXPECT_THAT(run("info " + path("fandisk.obj")).err,
+              HasSubstr("fandisk.obj: no such file; for the model fandisk run"));
+}
+
 TEST_F(Info, NamesFilesThatItCannotRead) {
   std::ofstream(path("cut.ply")) << "ply\nformat ascii 1.0\nelement vertex 3\n";
   for (const char* name : {"cut.ply", "missing.ply", "missing.h5"}) {

@@ -107,20 +107,23 @@ TEST_P(Damage, CutOffAnywhereItIsRefusedOrWhole) {
     const std::optional<Mesh> mesh = load(bytes.substr(0, length));
     refused += mesh ? 0 : 1;
     if (!mesh) continue;
-    if (GetParam().counted) {
-      ASSERT_EQ(mesh->hash(), whole->hash()) << length << " of " << bytes.size() << " bytes";
-    } else {
-      // Cut at the end of a line: what is there must be right, down to the last number.
-      ASSERT_EQ(bytes[length - 1], '\n') << length << " of " << bytes.size() << " bytes";
-      ASSERT_LT(mesh->triangles().size(), whole->triangles().size());
-      for (std::size_t i = 0; i < mesh->triangles().size(); ++i) {
+    // The last line needs no line break, so its last number may be cut. Everything before it must be right.
+    const bool cut_in_number = bytes[length - 1] != '\n' && bytes[length - 1] != ' ' && bytes[length] != '\n';
+    if (GetParam().counted && mesh->hash() != whole->hash()) {
+      ASSERT_TRUE(cut_in_number) << length << " of " << bytes.size() << " bytes";
+      ASSERT_EQ(bytes.find_first_of(" \n", length), bytes.size() - 1) << length << " of " << bytes.size() << " bytes";
+    }
+    if (!GetParam().counted) {
+      ASSERT_LE(mesh->triangles().size(), whole->triangles().size());
+      const std::size_t right = mesh->triangles().size() - (cut_in_number ? 1 : 0);
+      for (std::size_t i = 0; i < right; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
           ASSERT_EQ(mesh->vertices()[mesh->triangles()[i][k]], whole->vertices()[whole->triangles()[i][k]]);
         }
       }
     }
   }
-  EXPECT_GT(refused, 9 * lengths.size() / 10);
+  EXPECT_GT(refused, (GetParam().counted ? 9 : 8) * lengths.size() / 10);
 }
 
 TEST_P(Damage, BytesChangedAtRandomNeverEndInMoreThanAnError) {

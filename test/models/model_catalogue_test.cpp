@@ -13,11 +13,12 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 std::string message_for(const std::string& name) {
   try {
     load_model(name);
-  } catch (const BadArgument& e) {
+  } catch (const Error& e) {
     return e.what();
   }
   return "loaded";
@@ -51,6 +52,12 @@ TEST(ModelCatalogue, SuggestsSimilarNames) {
   EXPECT_THAT(message_for("zzzzzz-10k"), AllOf(HasSubstr("known: "), HasSubstr("circular-box")));
   EXPECT_THAT(message_for("cone"), HasSubstr("how many triangles, as in cone-10k"));
   EXPECT_THAT(message_for("torus-3"), HasSubstr("60 to 20000000"));
+}
+
+TEST(ModelCatalogue, AFileThatDoesNotExistButHasAModelsName) {
+  EXPECT_THAT(message_for("./no-such-folder/fandisk.obj"),
+              AllOf(HasSubstr("fandisk.obj: no such file"), HasSubstr("run models/fetch fandisk")));
+  EXPECT_THAT(message_for("./no-such-folder/hull.obj"), Not(HasSubstr("models/fetch")));
 }
 
 TEST(Suggestions, AreNearOrContained) {

@@ -166,8 +166,12 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
 
 Surface read_by_assimp(const std::filesystem::path& file) {
   const std::string extension = lower_case_extension(file);
+  if (extension.empty()) {
+    throw BadFile(file.string(),
+                  "has no extension, which would say its mesh format (.ply, .obj, .stl, .off, .glb and others)");
+  }
   Assimp::Importer importer;
-  keep_only(importer, extension.empty() ? "" : extension.substr(1));
+  keep_only(importer, extension.substr(1));
   if (importer.GetImporterCount() == 0) throw BadFile(file.string(), "'" + extension + "' is no mesh format");
   Source source = read_source(file);
   try {

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 #include <sixdof/geometry/load_formats.h>
 #include <sixdof/geometry/triangulate.h>
 
@@ -21,15 +22,6 @@ namespace loading {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
-
-/// A word for a message: printable and short.
-std::string shown(std::string_view word) {
-  constexpr std::size_t k_longest = 40;
-  std::string result;
-  for (const char c : word.substr(0, k_longest)) result += c >= ' ' && c <= '~' ? c : '?';
-  if (word.size() > k_longest) result += "...";
-  return result;
-}
 
 }  // namespace
 
@@ -85,13 +77,22 @@ std::size_t text_begin(std::string_view bytes) {
   return bytes.starts_with(k_byte_order_mark) ? k_byte_order_mark.size() : 0;
 }
 
+void refuse_utf16(const Source& source) {
+  const std::string_view bytes = source.bytes;
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    source.fail("line 1", "begins with " + visible_text(bytes.substr(0, 2)) + ": UTF-16; save it as ASCII or UTF-8");
+  }
+}
+
 TextLines::TextLines(const Source& source, Syntax syntax, std::size_t begin, std::size_t line)
     : source_(source),
       text_(source.bytes),
       syntax_(syntax),
       next_(std::max(begin, text_begin(source.bytes))),
       line_(line),
-      next_line_(line) {}
+      next_line_(line) {
+  refuse_utf16(source);
+}
 
 bool TextLines::next() {
   words_.clear();
@@ -125,9 +126,6 @@ bool TextLines::read_line() {
     while (i < line.size() && !is_blank(line[i])) ++i;
     words_.push_back(line.substr(begin, i - begin));
   }
-  if (!ended && !words_.empty() && syntax_.newline_at_end) {
-    fail("the last line is not ended by a line break; the file may be cut off");
-  }
   return continues;
 }
 
@@ -137,11 +135,11 @@ T TextLines::parse(std::string_view word, const char* range, const char* kind) c
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   T value{};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error == std::errc::result_out_of_range) fail(fmt::format("'{}' is {}", shown(word), range));
+  if (error == std::errc::result_out_of_range) fail(fmt::format("'{}' is {}", visible_text(word), range));
   if (error != std::errc() || end != word.data() + word.size()) {
-    fail(fmt::format("'{}' is not {}", shown(word), kind));
+    fail(fmt::format("'{}' is not {}", visible_text(word), kind));
   }
-  if (!std::isfinite(static_cast<double>(value))) fail(fmt::format("'{}' is not finite", shown(word)));
+  if (!std::isfinite(static_cast<double>(value))) fail(fmt::format("'{}' is not finite", visible_text(word)));
   return value;
 }
 
@@ -159,7 +157,7 @@ std::string TextLines::place() const { return fmt::format("line {}", line_); }
 void TextLines::fail(const std::string& cause) const { source_.fail(place(), cause); }
 
 void TextLines::expect_end() {
-  if (next()) fail(fmt::format("'{}' behind the last element", shown(words_[0])));
+  if (next()) fail(fmt::format("'{}' behind the last element", visible_text(words_[0])));
 }
 
 namespace {

@@ -21,10 +21,10 @@ namespace sixdof {
 /// Coordinates keep the file's unit and frame; only COLLADA is converted, to metres with y pointing up. Faces with more
 /// than three corners are triangulated as triangulate.h says. A byte order mark before a text is skipped.
 ///
-/// Errors are: a count, index or number that is wrong, a text whose last line has no line break (it may be cut off
-/// within a number), and bytes behind the end. OBJ holds no counts: a file cut off at the end of a line is a valid file
-/// of fewer faces. Nothing is repaired in silence: polygons that are not flat or cross themselves, skipped statements,
-/// and what Mesh::build welded or dropped are counted in Mesh::repairs().
+/// Errors are: a count, index or number that is wrong, and bytes behind the end. The last line needs no line break, so
+/// a text that is cut off within its last number is read with what is left of that number. OBJ holds no counts: a file
+/// cut off between two faces is a valid file of fewer faces. Nothing is repaired in silence: polygons that are not flat
+/// or cross themselves, skipped statements, and what Mesh::build welded or dropped are counted in Mesh::repairs().
 ///
 /// Assimp holds coordinates and transforms in single precision (relative rounding 6e-8). The transforms of a scene's
 /// nodes are multiplied and applied in double precision; a mirroring one reverses the corners, so that outside stays

@@ -72,14 +72,17 @@ void add_polygon(const Source& source, std::span<const std::uint32_t> corners,
 /// The first byte of a text: behind a UTF-8 byte order mark if there is one.
 std::size_t text_begin(std::string_view bytes);
 
+/// @throws BadFile if the file begins with the byte order mark of UTF-16.
+void refuse_utf16(const Source& source);
+
 /// Reads the lines of a text file that hold data, as words separated by blanks. Numbers are read by std::from_chars,
-/// which no locale changes. Lines end in LF or CR LF; a UTF-8 byte order mark at the file's start is skipped.
+/// which no locale changes. Lines end in LF or CR LF, the last one also at the end of the file; a UTF-8 byte order mark
+/// at the file's start is skipped.
 class TextLines {
  public:
   struct Syntax {
-    char comment = '\0';         ///< Starts a comment that lasts to the end of the line; 0: there are none.
-    bool continuation = false;   ///< A backslash at the end of a line joins the next one to it.
-    bool newline_at_end = true;  ///< Refuse data on a last line without a line break: it may be cut off.
+    char comment = '\0';        ///< Starts a comment that lasts to the end of the line; 0: there are none.
+    bool continuation = false;  ///< A backslash at the end of a line joins the next one to it.
   };
 
   /// Starts at byte `begin` of the source, which is on line `line` (from 1).

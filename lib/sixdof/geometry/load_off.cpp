@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <sixdof/base/visible_text.h>
 #include <sixdof/geometry/load_formats.h>
 
 namespace sixdof::loading {
@@ -12,8 +13,9 @@ bool read_keyword(TextLines& lines) {
   const std::string_view keyword = lines.words()[0];
   const bool extras = keyword == "COFF" || keyword == "NOFF" || keyword == "CNOFF" || keyword == "STOFF";
   if (!extras && keyword != "OFF") {
-    lines.fail(keyword.starts_with("OFF") ? "a blank or line break is missing behind the keyword OFF"
-                                          : "begins with none of OFF, COFF, NOFF, CNOFF, STOFF");
+    lines.fail(keyword.starts_with("OFF")
+                   ? "a blank or line break is missing behind the keyword OFF"
+                   : fmt::format("begins with '{}', not OFF, COFF, NOFF, CNOFF or STOFF", visible_text(keyword)));
   }
   if (lines.size() > 1 && lines.words()[1] == "BINARY") lines.fail("binary OFF is not supported");
   return extras;
@@ -21,7 +23,8 @@ bool read_keyword(TextLines& lines) {
 
 std::size_t read_count(const TextLines& lines, std::size_t word, const char* what, std::size_t least_bytes) {
   const std::int64_t count = lines.integer(word);
-  if (count < 0 || static_cast<std::uint64_t>(count) > lines.remaining() / least_bytes) {
+  // The last line may lack its line break.
+  if (count < 0 || static_cast<std::uint64_t>(count) > (lines.remaining() + 1) / least_bytes) {
     lines.fail(fmt::format("{} {} do not fit into the {} bytes that follow", count, what, lines.remaining()));
   }
   return static_cast<std::size_t>(count);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/base/visible_text.h>
 #include <sixdof/geometry/load_formats.h>
 
 namespace sixdof::loading {
@@ -68,7 +69,7 @@ Property read_property(const TextLines& lines) {
     for (const Type& known : k_types) {
       if (word == known.name || word == known.other_name) return known;
     }
-    lines.fail(fmt::format("'{:.20}' is no type", word));
+    lines.fail(fmt::format("'{}' is no type", visible_text(word)));
   };
   Property property{std::string(words.back()), type(words[words.size() - 2])};
   if (list) {
@@ -80,7 +81,11 @@ Property read_property(const TextLines& lines) {
 
 Header read_header(const Source& source) {
   const std::string_view text = std::string_view(source.bytes).substr(text_begin(source.bytes));
-  if (!text.starts_with("ply\n") && !text.starts_with("ply\r\n")) source.fail("line 1", "does not begin with 'ply'");
+  refuse_utf16(source);
+  if (!text.starts_with("ply\n") && !text.starts_with("ply\r\n")) {
+    const std::string first = visible_text(text.substr(0, text.find_first_of("\r\n")));
+    source.fail("line 1", "does not begin with 'ply', but with '" + first + "'");
+  }
   // Without this test the data of a binary file would be read as lines of the header.
   if (source.bytes.find("\nend_header") == std::string::npos) source.fail("the header has no 'end_header'");
   Header header;
@@ -97,7 +102,7 @@ Header read_header(const Source& source) {
       header.text = words[1] == "ascii";
       header.order = words[1] == "binary_big_endian" ? std::endian::big : std::endian::little;
       if (!header.text && words[1] != "binary_little_endian" && words[1] != "binary_big_endian") {
-        lines.fail(fmt::format("'{:.30}' is no format", words[1]));
+        lines.fail(fmt::format("'{}' is no format", visible_text(words[1])));
       }
       has_format = true;
     } else if (words[0] == "element") {
@@ -109,7 +114,7 @@ Header read_header(const Source& source) {
       if (header.elements.empty()) lines.fail("a property before the first element");
       header.elements.back().properties.push_back(read_property(lines));
     } else {
-      lines.fail(fmt::format("'{:.20}' is unknown in a header", words[0]));
+      lines.fail(fmt::format("'{}' is unknown in a header", visible_text(words[0])));
     }
   }
   if (!has_format) lines.fail("the header names no format");
@@ -171,7 +176,8 @@ class Reader {
       least += lines_ ? sizeof("0\n") - 1 : (p.count_type != nullptr ? *p.count_type : p.type).bytes;
     }
     if (least == 0) source_.fail("element " + element.name, "has no properties");
-    if (element.count > remaining() / least) {
+    // The last line of a text may lack its line break.
+    if (element.count > (remaining() + (lines_ ? 1 : 0)) / least) {
       source_.fail("element " + element.name, fmt::format("{} of at least {} bytes each do not fit into the {} bytes "
                                                           "that are left",
                                                           element.count, least, remaining()));

@@ -51,8 +51,7 @@ bool is_line(const TextLines& lines, std::initializer_list<std::string_view> wor
 
 Surface read_text(const Source& source) {
   Surface surface;
-  // What follows "endsolid" is a name; a file may end there.
-  TextLines lines(source, {.newline_at_end = false});
+  TextLines lines(source, {});
   const auto advance = [&] {
     if (!lines.next()) lines.fail("the file ends within a solid");
   };
@@ -96,6 +95,7 @@ Surface read_stl(const Source& source) {
     count = load_bytes<std::uint32_t>(bytes.data() + k_header_bytes);
     if (bytes.size() == k_header_bytes + k_count_bytes + k_triangle_bytes * count) return read_binary(source, count);
   }
+  refuse_utf16(source);
   const std::size_t first = bytes.find_first_not_of(" \t\r\n", text_begin(bytes));
   const bool text = first != std::string::npos && is_word(std::string_view(bytes).substr(first, 5), "solid") &&
                     bytes.find('\0') == std::string::npos;

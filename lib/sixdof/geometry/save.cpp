@@ -122,7 +122,8 @@ void save_mesh(const Mesh& mesh, const std::filesystem::path& file) {
   if (extension == ".off") return save_off(mesh, file);
   if (extension == ".obj") return save_obj(mesh, file);
   if (extension == ".stl") return save_stl(mesh, file);
-  throw BadFile(file.string(), "'" + extension + "' is no mesh format this can write (.ply, .off, .obj, .stl)");
+  throw BadFile(file.string(), (extension.empty() ? "has no extension" : "'" + extension + "' cannot be written") +
+                                   "; mesh formats are .ply, .off, .obj and .stl");
 }
 
 }  // namespace sixdof

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -70,6 +71,20 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
                         : fmt::format("no model is called {}; did you mean {}?", name, fmt::join(near, " or ")));
 }
 
+/// Reads a file. If it does not exist, but has a model's name, the message says how to name the model.
+Mesh load_file(const std::string& file) {
+  const std::filesystem::path path(file);
+  if (!std::filesystem::exists(path)) {
+    const std::string stem = path.stem().string();
+    if (find(fetched_models(), stem) != nullptr) {
+      throw BadFile(file, fmt::format("no such file; for the model {0} run models/fetch {0}, and name it {0}, without "
+                                      "folder and extension",
+                                      stem));
+    }
+  }
+  return load_mesh(path);
+}
+
 }  // namespace
 
 ModelName parse_model_name(std::string_view name) {
@@ -85,7 +100,7 @@ ModelName parse_model_name(std::string_view name) {
 }
 
 Mesh load_model(const std::string& name_or_file) {
-  if (name_or_file.find_first_of("./") != std::string::npos) return load_mesh(name_or_file);
+  if (name_or_file.find_first_of("./") != std::string::npos) return load_file(name_or_file);
   const ModelName parts = parse_model_name(name_or_file);
   if (const Recipe* const recipe = find(recipes(), parts.base)) {
     if (!parts.triangles) {
