@@ -11,7 +11,8 @@ namespace sixdof {
 
 enum class Kind {
   gate,     ///< Not above the bound, and not below half of it (then the table is to be tightened).
-  records,  ///< A known weakness: the value is recorded, and a change in either direction fails.
+  records,  ///< A known weakness, or a value that is neither good nor bad, such as a gain: a change in either direction
+            ///< fails.
 };
 
 /// An algorithm with its default settings, or with some parameters changed.

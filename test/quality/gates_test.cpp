@@ -1,52 +1,23 @@
-#include <cctype>
 #include <cmath>
-#include <map>
-#include <memory>
 #include <string>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/scenario/evaluation.h>
-#include "bench/common/all_algorithms.h"
-
-#include "bounds.h"
+#include "recorded.h"
 
 namespace sixdof {
 namespace {
 
-/// An algorithm prepared and recorded once per scenario, for all bounds of this process.
-struct Recorded {
-  std::unique_ptr<Scenario> scenario;
-  std::unique_ptr<Query> query;
-  Recording recording;
-};
-
-const Recorded& recorded(const std::string& scenario, const std::string& algorithm) {
-  static std::map<std::pair<std::string, std::string>, Recorded> cache;
-  const auto [entry, is_new] = cache.try_emplace({scenario, algorithm});
-  Recorded& r = entry->second;
-  if (is_new) {
-    Registry registry;
-    register_all_algorithms(registry);
-    const auto& [name, parameters] = subject(algorithm);
-    const Algorithm& found = registry.find(name);
-    Settings settings = found.settings();
-    settings.set_all(parameters);
-    r.scenario = make_scenario(scenario);
-    r.query = found.prepare(r.scenario->a(), r.scenario->b(), settings);
-    r.recording = record(*r.scenario, *r.query, k_gate_steps);
-  }
-  return r;
-}
-
 double measured(const Bound& bound) {
   const Recorded& r = recorded(std::string(bound.scenario), std::string(bound.algorithm));
   EXPECT_EQ(r.recording.first_failure, "");
-  Measures measures = evaluate(*r.scenario, r.recording, bound.law);
-  if (bound.measure.starts_with("jump")) measures = evaluate_jumps(*r.scenario, *r.query, r.recording, bound.law);
-  for (const auto& [name, value] : measures) {
-    if (name == bound.measure) return std::abs(value);
+  if (bound.measure.starts_with("jump")) {
+    for (const auto& [name, value] : evaluate_jumps(*r.scenario, *r.query, r.recording, bound.law)) {
+      if (name == bound.measure) return std::abs(value);
+    }
+  } else if (const auto value = measured(bound, r.recording)) {
+    return std::abs(*value);
   }
   ADD_FAILURE() << bound.measure << " is undefined here";
   return 0.0;
@@ -70,20 +41,13 @@ TEST_P(Gate, Holds) {
       ADD_FAILURE() << what << ": below half of the bound, tighten test/quality/bounds.cpp";
       break;
     case Verdict::changed:
-      ADD_FAILURE() << what << ": not the value in test/quality/bounds.cpp; if it is better now, make it a gate";
+      ADD_FAILURE() << what << ": not the value recorded in test/quality/bounds.cpp";
   }
 }
 
-std::string name_of(const ::testing::TestParamInfo<Bound>& info) {
-  const Bound& b = info.param;
-  std::string name = fmt::format("{}_{}_{}_{}", b.scenario, b.algorithm, to_string(b.law), b.measure);
-  for (char& c : name) {
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  }
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Gates, Gate, ::testing::ValuesIn(bounds().begin(), bounds().end()), name_of);
+INSTANTIATE_TEST_SUITE_P(Gates, Gate, ::testing::ValuesIn(bounds().begin(), bounds().end()), [](const auto& made) {
+  return test_name({made.param.scenario, made.param.algorithm, to_string(made.param.law), made.param.measure});
+});
 
 }  // namespace
 }  // namespace sixdof
