@@ -21,6 +21,10 @@ namespace {
 /// another order than the writer of the set did.
 constexpr double k_target_rounding = 1e-14;
 
+/// Translations at which a march that looked for the target with the makers' oracle is checked with the method of
+/// measure(): one where the target seemed nearest, the others at random.
+constexpr int k_checks_of_a_march = 3;
+
 /// A quantity that is measured along rays; by itself a distance.
 class Quantity {
  public:
@@ -31,6 +35,11 @@ class Quantity {
   virtual double remaining(const ConfigurationRay& ray, double s, double target) { return measure(ray, s) - target; }
   /// A displacement inwards within which the target cannot be met.
   virtual double safe_displacement(const ConfigurationRay& /*ray*/, double remaining) { return remaining; }
+  /// Whether remaining() is by another method than measure(): as measured, the target is passed at s by more than
+  /// `tolerance`. False where remaining() says the same already.
+  virtual bool also_passed(const ConfigurationRay& /*ray*/, double /*s*/, double /*target*/, double /*tolerance*/) {
+    return false;
+  }
 
   const std::string name;  ///< Of the method.
 };
@@ -65,6 +74,9 @@ class VolumeQuantity final : public Quantity {
   }
   double remaining(const ConfigurationRay& ray, double s, double target) override {
     return target - query_.evaluate(ray.pose(s)).volume;
+  }
+  bool also_passed(const ConfigurationRay& ray, double s, double target, double tolerance) override {
+    return measure(ray, s) > target + tolerance;
   }
   /// Every column along the ray gains at most the displacement in length, and the columns that overlap lie in the
   /// projections of both meshes.
@@ -233,12 +245,23 @@ class Verifier {
   /// Marches from outside to `end`. @return a translation at which the target has been passed; NaN if there is none
   double march(Quantity& quantity, const ConfigurationRay& ray, const BucketSummary& target, double end) {
     const double step = k_march_step * a_.diagonal();
-    double s = 0.5 * (a_.diagonal() + b_.diagonal());
-    if (target.key.kind == BucketKind::distance) s += target.target;
-    while (s > end) {
+    double start = 0.5 * (a_.diagonal() + b_.diagonal());
+    if (target.key.kind == BucketKind::distance) start += target.target;
+    if (!(start > end)) return std::numeric_limits<double>::quiet_NaN();
+    double nearest = start;
+    double least = std::numeric_limits<double>::infinity();
+    for (double s = start; s > end;) {
       const double remaining = quantity.remaining(ray, s, target.target);
       if (remaining < -target.tolerance) return s;
+      if (remaining < least) {
+        least = remaining;
+        nearest = s;
+      }
       s -= std::max(quantity.safe_displacement(ray, remaining), step);
+    }
+    for (int k = 0; k < k_checks_of_a_march; ++k) {
+      const double s = k == 0 ? nearest : std::uniform_real_distribution(end, start)(random_);
+      if (quantity.also_passed(ray, s, target.target, target.tolerance)) return s;
     }
     return std::numeric_limits<double>::quiet_NaN();
   }

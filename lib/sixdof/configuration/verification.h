@@ -46,7 +46,8 @@ struct Verdict {
 ///
 /// Distances are measured with an oracle of the caller's choice, best another one than made the set; so is volume
 /// bucket 0, which is contact. Other volumes are measured with overlap_volume_by_columns(), which shares no code with
-/// the oracle that makes sets. The march uses that oracle itself.
+/// the oracle that makes sets. The march for a volume uses that oracle itself, since columns are slow; columns then
+/// measure where the march found the target nearest, and at two random translations outside of the hit.
 ///
 /// The march steps by the greatest displacement within which the target cannot be met, but at least by k_march_step:
 /// a target that is passed and lost again within less may go unnoticed in one check.
