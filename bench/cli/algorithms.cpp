@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/shared.h"
+#include "bench/common/json_text.h"
 
 namespace sixdof::cli {
 namespace {
@@ -58,7 +59,7 @@ void print_json(const Registry& registry) {
                     {"timed", traits.timed},
                     {"parameters", parameters}});
   }
-  fmt::print("{}\n", list.dump(2));
+  fmt::print("{}\n", json_text(list));
 }
 
 void print_text(const Registry& registry) {

@@ -9,6 +9,7 @@
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/models/model_catalogue.h>
 #include "bench/cli/shared.h"
+#include "bench/common/json_text.h"
 
 namespace sixdof::cli {
 namespace {
@@ -157,7 +158,7 @@ void print_text(const ConfigurationSet& set) {
 
 /// Lengths are in the meshes' own unit and frame; numbers in JSON have up to 17 significant digits.
 void print(const auto& content, bool json) {
-  json ? fmt::print("{}\n", as_json(content).dump(2)) : print_text(content);
+  json ? fmt::print("{}\n", json_text(as_json(content))) : print_text(content);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <sixdof/models/recipe.h>
 #include <sixdof/models/surface.h>
 #include "bench/cli/shared.h"
+#include "bench/common/json_text.h"
 
 namespace sixdof::cli {
 namespace {
@@ -45,7 +46,7 @@ void list_as_json() {
                                {"licence", model.licence},
                                {"hash", model.hash}});
   }
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", json_text(json));
 }
 
 void list_as_text() {

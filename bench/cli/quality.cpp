@@ -13,6 +13,7 @@
 #include <sixdof/scenario/evaluation.h>
 #include <sixdof/scenario/scenario.h>
 #include "bench/cli/shared.h"
+#include "bench/common/json_text.h"
 
 namespace sixdof::cli {
 namespace {
@@ -38,7 +39,7 @@ void print_json(const Options& options, IdealLaw law, const SeriesSource& source
   nlohmann::ordered_json values = nlohmann::ordered_json::object();
   for (const auto& [name, value] : measures) values[name] = value;
   json["measures"] = values;
-  fmt::print("{}\n", json.dump(2));
+  fmt::print("{}\n", json_text(json));
 }
 
 void print_text(const Scenario& scenario, IdealLaw law, const SeriesSource& source, const Recording& recording,

@@ -13,6 +13,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/models/model_catalogue.h>
 #include "bench/cli/shared.h"
+#include "bench/common/json_text.h"
 
 namespace sixdof::cli {
 namespace {
@@ -125,7 +126,7 @@ Json describe(const Traits& traits, const Settings& settings, const Answers& ans
 void print_text(const Json& answers) {
   for (const auto& [key, value] : answers.items()) {
     if (value.is_null()) continue;
-    fmt::print("{:<16} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+    fmt::print("{:<16} {}\n", key, value.is_string() ? value.get<std::string>() : json_text(value, -1));
   }
 }
 
@@ -142,7 +143,7 @@ void run_query(const Arguments& arguments) {
     answers.respond.value = answers.respond.value.about({about[0], about[1], about[2]});
   }
   const Json json = describe(algorithm->traits(), settings, answers);
-  arguments.json ? fmt::print("{}\n", json.dump(2)) : print_text(json);
+  arguments.json ? fmt::print("{}\n", json_text(json)) : print_text(json);
   if (answers.status != Status::ok) {
     throw Error(fmt::format("{}: {}: {}", arguments.algorithm.name, to_string(answers.status), answers.diagnosis));
   }

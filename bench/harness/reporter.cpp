@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include <sixdof/base/error.h>
+#include "bench/common/json_text.h"
 
 namespace sixdof::bench {
 namespace {
@@ -41,15 +41,20 @@ void RowReporter::ReportRuns(const std::vector<Run>& runs) {
   if (next_ != nullptr && !kept.empty()) next_->ReportRuns(kept);
 }
 
+bool JsonRows::ReportContext(const Context& context) {
+  std::ostringstream text;
+  benchmark::JSONReporter writer;
+  writer.SetOutputStream(&text);
+  writer.ReportContext(context);
+  writer.Finalize();
+  document = nlohmann::ordered_json::parse(valid_utf8(text.str()));
+  return true;
+}
+
 std::string ResultCollector::document(const ContextKeys& context) const {
-  nlohmann::ordered_json json;
-  try {
-    json = nlohmann::ordered_json::parse(text_.str());
-  } catch (const nlohmann::json::exception& e) {
-    throw Error(std::string("Google Benchmark wrote no valid JSON: ") + e.what());
-  }
+  nlohmann::ordered_json json = rows_.document;
   for (const auto& [key, value] : context) json["context"][key] = value;
-  return json.dump(2) + "\n";
+  return json_text(json) + "\n";
 }
 
 }  // namespace sixdof::bench

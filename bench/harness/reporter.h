@@ -1,12 +1,14 @@
 #pragma once
 
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/harness/row_json.h"
 
 namespace sixdof::bench {
 
@@ -37,20 +39,35 @@ class RowReporter : public benchmark::BenchmarkReporter {
   int failed_ = 0;
 };
 
-/// Collects Google Benchmark's JSON in memory, so that a file appears whole or not at all.
-class ResultCollector final : public RowReporter {
+/// Keeps rows as JSON in memory.
+class JsonRows final : public benchmark::BenchmarkReporter {
  public:
-  explicit ResultCollector(const std::set<std::string>& left_out) : RowReporter(&json_, left_out) {
-    json_.SetOutputStream(&text_);
+  /// @param fields of every row; outlives this object
+  explicit JsonRows(const FieldsByName& fields) : fields_(fields) {}
+  bool ReportContext(const Context& context) override;
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs) document["benchmarks"].push_back(row_json(run, fields_));
   }
 
-  /// The whole document after Finalize(), or after a run that was broken off. Keys are added to "context".
-  /// @throws Error if the text is not valid JSON
+  /// Google Benchmark's "context" and the rows so far.
+  nlohmann::ordered_json document;
+
+ private:
+  const FieldsByName& fields_;
+};
+
+/// Collects rows in memory, so that a file appears whole or not at all.
+class ResultCollector final : public RowReporter {
+ public:
+  /// @param fields of every row. Both arguments outlive this object.
+  ResultCollector(const std::set<std::string>& left_out, const FieldsByName& fields)
+      : RowReporter(&rows_, left_out), rows_(fields) {}
+
+  /// The whole document, with the rows so far. Keys are added to "context".
   std::string document(const ContextKeys& context) const;
 
  private:
-  benchmark::JSONReporter json_;
-  std::ostringstream text_;
+  JsonRows rows_;
 };
 
 }  // namespace sixdof::bench

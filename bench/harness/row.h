@@ -9,6 +9,7 @@
 
 #include <sixdof/configuration/set_catalogue.h>
 #include <sixdof/query/registry.h>
+#include "bench/common/row_fields.h"
 #include "bench/harness/pair_cache.h"
 
 namespace sixdof::bench {
@@ -32,6 +33,7 @@ struct Row {
   /// needs to be done once. An exception ends the row, not the program. The number is the wall time in seconds that
   /// the whole row may take, infinity without a limit.
   std::function<void(benchmark::State&, double)> run;
+  RowFields fields;  ///< What the name says, for readers of the result file.
   benchmark::TimeUnit unit = benchmark::kNanosecond;
 };
 

@@ -107,14 +107,14 @@ ContextKeys context_of(const Options& options, const Resources& resources) {
   return context;
 }
 
-void run_registered(RowCaller& caller, const Options& options, const Resources& resources) {
+void run_registered(RowCaller& caller, const FieldsByName& fields, const Options& options, const Resources& resources) {
   // Before the rows run, so that a file that cannot be written is refused at once.
   std::optional<AtomicFile> file;
   if (!options.out.empty()) file.emplace(options.out);
 
   const std::unique_ptr<benchmark::BenchmarkReporter> console(benchmark::CreateDefaultDisplayReporter());
   RowReporter display(options.json_on_stdout ? nullptr : console.get(), caller.left_out);
-  ResultCollector collector(caller.left_out);
+  ResultCollector collector(caller.left_out, fields);
   const InterruptGuard guard;
   try {
     benchmark::RunSpecifiedBenchmarks(&display, &collector);
@@ -152,7 +152,9 @@ void run_rows(const std::vector<Row>& rows, const Options& options, const Resour
                                   benchmark::GetBenchmarkFilter()));
   }
   RowCaller caller(matches, options.budget_s);
+  FieldsByName fields;
   for (const Row& row : rows) {
+    fields.emplace(row.name, row.fields);
     benchmark::RegisterBenchmark(row.name.c_str(), [&caller, &row](benchmark::State& state) {
       caller.call(row, state);
     })->Unit(row.unit);
@@ -160,7 +162,7 @@ void run_rows(const std::vector<Row>& rows, const Options& options, const Resour
   if (options.list_only) {
     benchmark::RunSpecifiedBenchmarks();
   } else {
-    run_registered(caller, options, resources);
+    run_registered(caller, fields, options, resources);
   }
   // They refer to local variables. If an exception passes here, nobody runs them any more.
   benchmark::ClearRegisteredBenchmarks();

@@ -3,13 +3,29 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-#include "bench/common/row_name.h"
 
 namespace sixdof::bench {
+namespace {
+
+/// The parts of a row's name by their keys: "collide/algorithm:exact/pair:ship" is {"query", "collide"}, {"algorithm",
+/// "exact"}, {"pair", "ship"}. Parts without a colon behind the first have no key and are left out.
+std::map<std::string, std::string> row_name_parts(std::string_view name) {
+  std::map<std::string, std::string> parts;
+  std::istringstream words{std::string(name)};
+  std::getline(words, parts["query"], '/');
+  for (std::string word; std::getline(words, word, '/');) {
+    const auto colon = word.find(':');
+    if (colon != std::string::npos) parts[word.substr(0, colon)] = word.substr(colon + 1);
+  }
+  return parts;
+}
+
+}  // namespace
 
 Suite read_suite(const std::filesystem::path& file, const std::vector<std::string>& external_algorithms) {
   std::ifstream in(file);

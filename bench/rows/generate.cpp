@@ -111,9 +111,11 @@ std::vector<Row> generate_rows(const Resources& resources) {
     for (const Method& method : k_methods) {
       if (method.march && !has_fcl) continue;
       const GenerateRow row{resources, method, pair, a, b, generator};
-      rows.push_back({.name = row.name,
-                      .run = [row](benchmark::State& state, double) { row.run(state); },
-                      .unit = benchmark::kMillisecond});
+      rows.push_back(
+          {.name = row.name,
+           .run = [row](benchmark::State& state, double) { row.run(state); },
+           .fields = {.query = "generate", .algorithm = method.name, .pair = pair, .target = to_string(method.kind)},
+           .unit = benchmark::kMillisecond});
     }
   };
   std::set<std::string> pairs;

@@ -57,10 +57,15 @@ std::vector<Pose> kernel_poses(const Mesh& mesh, double centers_apart) {
   return poses;
 }
 
-void run(const Resources& resources, const Kernel& kernel, benchmark::State& state) {
-  const Algorithm& algorithm = resources.registry.find(kernel.algorithm);
+Settings settings_of(const Algorithm& algorithm, const Kernel& kernel) {
   Settings settings = algorithm.settings();
   settings.set_all(kernel.settings);
+  return settings;
+}
+
+void run(const Resources& resources, const Kernel& kernel, benchmark::State& state) {
+  const Algorithm& algorithm = resources.registry.find(kernel.algorithm);
+  const Settings settings = settings_of(algorithm, kernel);
   Query& query = resources.cache.query(algorithm, settings, k_model, k_model);
   const std::vector<Pose> poses = kernel_poses(resources.cache.mesh(k_model), kernel.centers_apart);
   Failures failures;
@@ -82,8 +87,13 @@ void run(const Resources& resources, const Kernel& kernel, benchmark::State& sta
 std::vector<Row> kernel_rows(const Resources& resources) {
   std::vector<Row> rows;
   for (const Kernel& kernel : k_kernels) {
+    const Settings settings = settings_of(resources.registry.find(kernel.algorithm), kernel);
     rows.push_back({.name = fmt::format("kernel/{}/algorithm:{}", kernel.name, kernel.algorithm),
-                    .run = [&resources, &kernel](benchmark::State& state, double) { run(resources, kernel, state); }});
+                    .run = [&resources, &kernel](benchmark::State& state, double) { run(resources, kernel, state); },
+                    .fields = {.query = "kernel",
+                               .algorithm = kernel.algorithm,
+                               .settings = settings.to_string(),
+                               .kernel = kernel.name}});
   }
   return rows;
 }

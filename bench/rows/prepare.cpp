@@ -39,6 +39,10 @@ std::vector<Row> prepare_rows(const Resources& resources) {
       rows.push_back({.name = fmt::format("prepare/algorithm:{}/pair:{}", algorithm->traits().name, pair.pair),
                       .run = [&resources, &algorithm = *algorithm, &pair](
                                  benchmark::State& state, double) { run(resources, algorithm, pair, state); },
+                      .fields = {.query = "prepare",
+                                 .algorithm = algorithm->traits().name,
+                                 .settings = resources.settings_of(*algorithm).to_string(),
+                                 .pair = pair.pair},
                       .unit = benchmark::kMillisecond});
     }
   }

@@ -57,6 +57,15 @@ struct QueryRow {
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
   std::optional<std::array<DirectionError, 2>> directions = {};
 
+  RowFields fields() const {
+    return {.query = k_questions[static_cast<std::size_t>(question)],
+            .algorithm = algorithm.traits().name,
+            .settings = resources.settings_of(algorithm).to_string(),
+            .pair = pair.pair,
+            .bucket = key,
+            .order = path ? "path" : "random"};
+  }
+
   std::string name() const {
     std::string bucket = key.name();
     bucket.at(bucket.find('/')) = ':';
@@ -165,7 +174,8 @@ std::vector<Row> query_rows(const Resources& resources) {
         for (const bool path : {false, true}) {
           const auto row = std::make_shared<QueryRow>(resources, *algorithm, pair, key, question, path);
           rows.push_back({.name = row->name(),
-                          .run = [row](benchmark::State& state, double seconds) { row->run(state, seconds); }});
+                          .run = [row](benchmark::State& state, double seconds) { row->run(state, seconds); },
+                          .fields = row->fields()});
         }
       };
       const QuerySet& answers = algorithm->traits().answers;

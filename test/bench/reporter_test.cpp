@@ -28,7 +28,10 @@ ResultRow row(const std::string& name) {
 
 struct Collector : ::testing::Test {
   std::set<std::string> left_out;
-  ResultCollector collector{left_out};
+  FieldsByName fields{{"a", {.query = "distance", .algorithm = "exact"}},
+                      {"b", {.query = "prepare", .algorithm = "exact"}},
+                      {"c", {.query = "scenario", .algorithm = "vps", .scenario = "II"}}};
+  ResultCollector collector{left_out, fields};
   void SetUp() override { collector.ReportContext(benchmark::BenchmarkReporter::Context()); }
   nlohmann::json document() {
     collector.Finalize();
@@ -92,6 +95,25 @@ TEST_F(Collector, LeavesOutRowsByName) {
   const auto json = document();
   ASSERT_EQ(json.at("benchmarks").size(), 1u);
   EXPECT_EQ(json.at("benchmarks")[0].at("name"), "b");
+}
+
+TEST_F(Collector, AddsTheFieldsOfARow) {
+  ResultRow measured = row("a");
+  measured.counters["configurations"] = 64;
+  measured.report_label = "stack \xff is full";
+  ResultRow mean = measured;
+  mean.run_type = ResultRow::RT_Aggregate;
+  mean.aggregate_name = "stddev";
+  mean.counters["configurations"] = 0;
+  collector.ReportRuns({measured, mean});
+  const auto json = document();
+  ASSERT_EQ(json.at("benchmarks").size(), 2u);
+  const auto& first = json.at("benchmarks")[0];
+  EXPECT_EQ(first.at("sixdof").at("query"), "distance");
+  EXPECT_EQ(first.at("sixdof").at("configurations"), 64);
+  EXPECT_EQ(first.at("configurations"), 64);
+  EXPECT_EQ(first.at("label"), "stack \xEF\xBF\xBD is full") << "bytes that are not UTF-8 are replaced";
+  EXPECT_FALSE(json.at("benchmarks")[1].at("sixdof").contains("configurations")) << "a deviation is no number of them";
 }
 
 TEST_F(Collector, IsValidWithoutAnyRow) { EXPECT_EQ(document().at("benchmarks").size(), 0u); }

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <sixdof/configuration/bucket.h>
+
+namespace sixdof {
+
+/// What a row of sixdof-bench measures, so that no reader of a result file needs to take the row's name apart. A row's
+/// JSON holds it as an object under k_row_fields_key.
+struct RowFields {
+  std::string query;      ///< "collide", "distance" or "respond"; of other rows the family: "prepare", "scenario", ...
+  std::string algorithm;  ///< As in the registry; of a generate row the method.
+  std::string settings = {};  ///< Of the algorithm: "name=value,name=value".
+  std::string pair = {};      ///< Empty where the row belongs to none.
+  std::optional<BucketKey> bucket = {};
+  std::string order = {};     ///< Of a query's configurations: "random" or "path", the grid's own order.
+  std::string scenario = {};  ///< "II".
+  std::string kernel = {};    ///< Which inner loop, of a kernel row.
+  std::string target = {};    ///< Of a generate row: "distance" or "volume".
+  /// How many were asked or made; empty where the row has none or could not be run.
+  std::optional<std::uint64_t> configurations = {};
+};
+
+inline constexpr const char* k_row_fields_key = "sixdof";
+
+/// Keys are those of RowFields; empty members are left out. "bucket" is {"kind": "distance", "percent": 5}. "settings"
+/// is an object by parameter, always there, with numbers as numbers.
+nlohmann::ordered_json to_json_object(const RowFields& fields);
+
+/// The inverse. @throws Error with the key, e.g. "sixdof.bucket: ..."
+RowFields row_fields_of(const nlohmann::ordered_json& object);
+
+}  // namespace sixdof

@@ -1,0 +1,36 @@
+#include "bench/harness/row_json.h"
+
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+
+#include "bench/common/json_text.h"
+
+namespace sixdof::bench {
+
+using Json = nlohmann::ordered_json;
+using Run = benchmark::BenchmarkReporter::Run;
+
+Json row_json(const Run& run, const FieldsByName& fields) {
+  std::ostringstream text;
+  benchmark::JSONReporter writer;
+  writer.SetOutputStream(&text);
+  writer.ReportRuns({run});  // without a context: the object alone
+  Json json;
+  try {
+    json = Json::parse(valid_utf8(text.str()));
+  } catch (const Json::exception& e) {
+    throw Error(run.benchmark_name() + ": Google Benchmark wrote no valid JSON: " + e.what());
+  }
+  RowFields of_run = fields.at(run.run_name.function_name);
+  const auto asked = run.counters.find("configurations");
+  if (asked != run.counters.end() && run.run_type == Run::RT_Iteration) {
+    of_run.configurations = static_cast<std::uint64_t>(asked->second.value);
+  }
+  json[k_row_fields_key] = to_json_object(of_run);
+  return json;
+}
+
+}  // namespace sixdof::bench

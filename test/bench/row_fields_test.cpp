@@ -1,0 +1,62 @@
+#include "bench/common/row_fields.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using ::testing::HasSubstr;
+
+const RowFields k_query{.query = "respond",
+                        .algorithm = "vps",
+                        .settings = "voxel_size=0.002,culling=off",
+                        .pair = "elephant",
+                        .bucket = BucketKey{BucketKind::volume, 5},
+                        .order = "path",
+                        .configurations = 640};
+
+TEST(RowFields, AreAnObjectWithNumbersAsNumbers) {
+  EXPECT_EQ(to_json_object(k_query), Json::parse(R"({"query": "respond", "algorithm": "vps",
+    "settings": {"voxel_size": 0.002, "culling": "off"}, "pair": "elephant", "order": "path",
+    "bucket": {"kind": "volume", "percent": 5}, "configurations": 640})"));
+  EXPECT_EQ(to_json_object({.query = "scenario", .algorithm = "exact", .scenario = "II"}),
+            Json::parse(R"({"query": "scenario", "algorithm": "exact", "settings": {}, "scenario": "II"})"));
+}
+
+TEST(RowFields, AreReadBack) {
+  for (const RowFields& fields : {k_query, RowFields{.query = "kernel", .algorithm = "ist", .kernel = "apart"},
+                                  RowFields{.query = "generate", .algorithm = "raycast", .target = "distance"}}) {
+    EXPECT_EQ(to_json_object(row_fields_of(to_json_object(fields))), to_json_object(fields));
+  }
+  const RowFields read = row_fields_of(to_json_object(k_query));
+  EXPECT_EQ(read.settings, k_query.settings);
+  EXPECT_EQ(read.bucket, k_query.bucket);
+  EXPECT_EQ(read.configurations, k_query.configurations);
+}
+
+TEST(RowFields, ThatAreWrongAreNamed) {
+  const auto message_of = [](const char* key, const Json& value) {
+    Json object = to_json_object(k_query);
+    object[key] = value;
+    try {
+      row_fields_of(object);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(message_of("query", 7), HasSubstr("sixdof.query: "));
+  EXPECT_THAT(message_of("settings", nullptr), HasSubstr("sixdof.settings: not an object"));
+  EXPECT_THAT(message_of("bucket", {{"kind", "depth"}, {"percent", 5}}), HasSubstr("sixdof.bucket: "));
+  EXPECT_THAT(message_of("bucket", {{"kind", "volume"}, {"percent", 101}}), HasSubstr("sixdof.bucket: "));
+  EXPECT_THAT(message_of("configurations", "many"), HasSubstr("sixdof.configurations: "));
+  EXPECT_THROW(row_fields_of(Json::parse("[]")), Error);
+}
+
+}  // namespace
+}  // namespace sixdof
