@@ -11,6 +11,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/measure/direction.h>
+#include <sixdof/measure/magnitude.h>
 #include "bench/harness/check.h"
 #include "bench/harness/timing.h"
 #include "bench/rows/families.h"
@@ -31,15 +32,42 @@ constexpr double k_passes = 3.0 + k_latency_passes;
 /// Fraction of the row's time for the exact responses that answers are compared with.
 constexpr double k_exact_time = 0.1;
 
-/// The same wrench about another point, scaled down where moving the torque might overflow; directions do not change.
-Response about(Response response, const Eigen::Vector3d& point) {
+/// Directions and magnitudes of forces or torques against those of the exact responses.
+struct VectorError {
+  DirectionError direction;
+  std::optional<MagnitudeError> magnitude;
+};
+
+/// A series of forces or torques with the exact ones.
+struct VectorSeries {
+  std::vector<Eigen::Vector3d> exact, measured;
+  std::vector<double> exact_magnitudes, magnitudes;
+
+  /// @param scale of `vector`: its true length is |vector| / scale
+  void add(const Eigen::Vector3d& exact_vector, const Eigen::Vector3d& vector, double scale) {
+    exact.push_back(exact_vector);
+    measured.push_back(vector);
+    exact_magnitudes.push_back(exact_vector.norm());
+    magnitudes.push_back(std::min(vector.stableNorm() / scale, Errors::k_largest));
+  }
+  VectorError error() const {
+    return {direction_error(exact, measured), magnitude_error(exact_magnitudes, magnitudes)};
+  }
+};
+
+/// The same wrench about another point, times `scale`, which is less than 1 where moving the torque might overflow.
+struct ScaledResponse {
+  Response response;
+  double scale = 1.0;
+};
+
+ScaledResponse about(Response response, const Eigen::Vector3d& point) {
   constexpr double k_large = 1e100;
   const double largest = std::max(response.force.cwiseAbs().maxCoeff(), response.torque.cwiseAbs().maxCoeff());
-  if (largest > k_large) {
-    response.force /= largest;
-    response.torque /= largest;
-  }
-  return response.about(point);
+  const double scale = largest > k_large ? 1.0 / largest : 1.0;
+  response.force *= scale;
+  response.torque *= scale;
+  return {response.about(point), scale};
 }
 
 /// One row, and what its first call measured.
@@ -55,7 +83,7 @@ struct QueryRow {
   std::vector<Pose> poses = {};  ///< Those with an answer, in this row's order.
   Latency latency = {};
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
-  std::optional<std::array<DirectionError, 2>> directions = {};
+  std::optional<std::array<VectorError, 2>> errors = {};
 
   RowFields fields() const {
     return {.query = k_questions[static_cast<std::size_t>(question)],
@@ -90,7 +118,7 @@ struct QueryRow {
     } else {
       const auto ask = [&query](const Pose& pose) { return query.respond(pose); };
       GuardedQuery guarded(query, ask, failures);
-      if (!directions) compare_directions(bucket, *exact, guarded);
+      if (!errors) compare_with_exact(bucket, *exact, guarded);
       run(state, bucket, guarded, seconds);
     }
   }
@@ -108,19 +136,18 @@ struct QueryRow {
     report(state, bucket);
   }
 
-  /// A configuration without an answer counts as one without force and torque.
+  /// Configurations without an answer are left out: they count as failed.
   template <class Ask>
-  void compare_directions(const BucketSample& bucket, const std::vector<Response>& exact, GuardedQuery<Ask>& query) {
-    std::vector<Eigen::Vector3d> exact_forces, exact_torques, forces, torques;
+  void compare_with_exact(const BucketSample& bucket, const std::vector<Response>& exact, GuardedQuery<Ask>& query) {
+    VectorSeries forces, torques;
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const Outcome<Response> answer = query.ask(bucket.poses[i]);
-      const Response response = answer.ok() ? about(answer.value, exact[i].reference) : Response{};
-      exact_forces.push_back(exact[i].force);
-      exact_torques.push_back(exact[i].torque);
-      forces.push_back(response.force);
-      torques.push_back(response.torque);
+      if (!answer.ok()) continue;
+      const auto [response, scale] = about(answer.value, exact[i].reference);
+      forces.add(exact[i].force, response.force, scale);
+      torques.add(exact[i].torque, response.torque, scale);
     }
-    directions = {direction_error(exact_forces, forces), direction_error(exact_torques, torques)};
+    errors = {forces.error(), torques.error()};
   }
 
   void report(benchmark::State& state, const BucketSample& bucket) const {
@@ -148,12 +175,16 @@ struct QueryRow {
         count("volume_error_mean", check->errors.mean());
         count("volume_error_max", check->errors.largest());
       }
-      for (const auto& [error, suffix] : {std::pair(&directions->at(0), "F_deg"), {&directions->at(1), "T_deg"}}) {
-        if (!error->gamma_degrees) continue;
-        count(fmt::format("gamma_{}", suffix), *error->gamma_degrees);
-        count(fmt::format("gamma_max_{}", suffix), error->largest_degrees);
+      for (const auto& [error, suffix] : {std::pair(&errors->at(0), "F"), {&errors->at(1), "T"}}) {
+        if (error->magnitude) {
+          count(fmt::format("gain_{}", suffix), error->magnitude->gain);
+          count(fmt::format("magnitude_error_{}", suffix), error->magnitude->relative);
+        }
+        if (!error->direction.gamma_degrees) continue;
+        count(fmt::format("gamma_{}_deg", suffix), *error->direction.gamma_degrees);
+        count(fmt::format("gamma_max_{}_deg", suffix), error->direction.largest_degrees);
       }
-      count("compared", directions->at(0).compared);
+      count("compared", errors->at(0).direction.compared);
     }
     std::string label = resources.settings_of(algorithm).to_string();
     if (failures.count() > 0) {

@@ -70,7 +70,15 @@ TEST_F(BenchProgram, JudgesResponsesByTheirVolumeAndForce) {
     EXPECT_EQ(exact.at(angle), 0) << angle;
   }
   EXPECT_GE(exact.at("compared"), 32);
+  for (const char* which : {"F", "T"}) {
+    // The order of poses may change the rounding of answers.
+    EXPECT_NEAR(exact.at(std::string("gain_") + which).get<double>(), 1.0, 1e-9) << which;
+    EXPECT_LT(exact.at(std::string("magnitude_error_") + which), 1e-9) << which;
+  }
   const json spheres = row(document, "respond/algorithm:ist/pair:torus-1k-cone-1k/volume:03");
+  EXPECT_GT(spheres.at("magnitude_error_F"), 0.001);
+  EXPECT_LT(spheres.at("magnitude_error_F"), 0.5);
+  EXPECT_GT(spheres.at("gain_F"), 0.0);
   EXPECT_GT(spheres.at("gamma_F_deg"), 0.01);
   EXPECT_LT(spheres.at("gamma_F_deg"), 45);
   EXPECT_GT(spheres.at("gamma_max_F_deg"), spheres.at("gamma_F_deg"));

@@ -60,7 +60,33 @@ TEST(Magnitude, ZeroSeriesHaveNoCurve) {
   EXPECT_FALSE(sigma({}, {}));
 }
 
+TEST(MagnitudeError, IsTheSineOfTheAngleBetweenTheSeries) {
+  const std::vector<double> ideal{3.0, 4.0}, turned{4.0, 3.0};  // cosine 24 / 25
+  const auto error = magnitude_error(ideal, turned);
+  EXPECT_NEAR(error->gain, 24.0 / 25.0, k_rounding);
+  EXPECT_NEAR(error->relative, 7.0 / 25.0, k_rounding);
+  EXPECT_NEAR(magnitude_error(turned, ideal)->relative, 7.0 / 25.0, k_rounding);
+}
+
+TEST(MagnitudeError, DoesNotSeeAGain) {
+  const std::vector<double> ideal{3.1, 4.7, 0.2};
+  std::vector<double> louder;
+  for (const double i : ideal) louder.push_back(1.7 * i);
+  EXPECT_NEAR(magnitude_error(ideal, louder)->gain, 1.7, k_rounding);
+  EXPECT_LT(magnitude_error(ideal, louder)->relative, k_rounding);
+}
+
+TEST(MagnitudeError, IsOneWithoutAnyForceOrWithForcesElsewhere) {
+  const std::vector<double> ideal{3.0, 0.0}, zero{0.0, 0.0}, elsewhere{0.0, 2.0};
+  EXPECT_EQ(magnitude_error(ideal, zero)->relative, 1.0);
+  EXPECT_EQ(magnitude_error(ideal, zero)->gain, 0.0);
+  EXPECT_EQ(magnitude_error(ideal, elsewhere)->relative, 1.0);
+  EXPECT_FALSE(magnitude_error(zero, ideal));
+  EXPECT_FALSE(magnitude_error({}, {}));
+}
+
 TEST(Magnitude, RefusesUnequalLengths) {
+  EXPECT_THROW(magnitude_error(std::vector{1.0}, {}), BadArgument);
   EXPECT_THROW(sigma(k_ideal, Vectors(k_measured).first(2)), BadArgument);
   EXPECT_THROW(sigma_paper(k_ideal, Vectors(k_measured).first(2)), BadArgument);
   EXPECT_THROW(fit_gain(k_ideal, Vectors(k_measured).first(2)), BadArgument);

@@ -12,6 +12,11 @@ namespace {
 
 double square(double x) { return x * x; }
 
+void check_lengths(std::size_t ideal, std::size_t measured) {
+  if (ideal == measured) return;
+  throw BadArgument(fmt::format("{} ideal steps cannot be compared with {} measured ones", ideal, measured));
+}
+
 }  // namespace
 
 std::vector<double> magnitudes(Vectors vectors) {
@@ -26,12 +31,7 @@ double peak(Vectors vectors) {
   return largest;
 }
 
-void check_same_length(Vectors ideal, Vectors measured) {
-  if (ideal.size() != measured.size()) {
-    throw BadArgument(
-        fmt::format("{} ideal steps cannot be compared with {} measured ones", ideal.size(), measured.size()));
-  }
-}
+void check_same_length(Vectors ideal, Vectors measured) { check_lengths(ideal.size(), measured.size()); }
 
 std::optional<double> sigma(Vectors ideal, Vectors measured) {
   check_same_length(ideal, measured);
@@ -67,6 +67,23 @@ std::optional<GainFit> fit_gain(Vectors ideal, Vectors measured) {
   for (std::size_t k = 0; k < ideal.size(); ++k) residual += square(measured[k].norm() - fit.gain * ideal[k].norm());
   fit.sigma = std::sqrt(residual / static_cast<double>(ideal.size())) / (fit.gain * peak(ideal));
   return fit;
+}
+
+std::optional<MagnitudeError> magnitude_error(std::span<const double> ideal, std::span<const double> measured) {
+  check_lengths(ideal.size(), measured.size());
+  double products = 0.0, ideal_squares = 0.0, measured_squares = 0.0;
+  for (std::size_t k = 0; k < ideal.size(); ++k) {
+    products += ideal[k] * measured[k];
+    ideal_squares += square(ideal[k]);
+    measured_squares += square(measured[k]);
+  }
+  if (ideal_squares == 0.0) return std::nullopt;
+  MagnitudeError error{.gain = products / ideal_squares, .relative = 1.0};
+  if (measured_squares == 0.0) return error;
+  double residual = 0.0;
+  for (std::size_t k = 0; k < ideal.size(); ++k) residual += square(measured[k] - error.gain * ideal[k]);
+  error.relative = std::sqrt(residual / measured_squares);
+  return error;
 }
 
 }  // namespace sixdof

@@ -39,4 +39,17 @@ struct GainFit {
 /// it. Empty where the ideal or the measured series is zero throughout.
 std::optional<GainFit> fit_gain(Vectors ideal, Vectors measured);
 
+struct MagnitudeError {
+  double gain = 0.0;      ///< As in GainFit; 0 where the measured magnitudes are all zero.
+  double relative = 0.0;  ///< RMS of m - gain i over the RMS of m, 0..1, a pure number.
+};
+
+/// How far measured magnitudes m are from proportional to the ideal ones i, whatever their unit: 0 if m = gain i, and 1
+/// if they have nothing in common or the measured ones are all zero. It is the sine of the angle between the two series
+/// as vectors, so exchanging them changes the gain only. Unlike GainFit::sigma it does not depend on the largest value.
+///
+/// Empty where the ideal is zero throughout. Squares of the magnitudes and their sums must not overflow.
+/// @param ideal, measured >= 0. @throws BadArgument unless both have the same length
+std::optional<MagnitudeError> magnitude_error(std::span<const double> ideal, std::span<const double> measured);
+
 }  // namespace sixdof

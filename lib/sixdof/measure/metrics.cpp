@@ -38,6 +38,8 @@ constexpr std::array k_metrics{
     Metric{"gain_T", "measured/ideal", neither, "least-squares factor from ideal to measured torques", k_magnitude},
     Metric{"sigma_gain_F", "1", lower, "RMS difference of forces after the gain, over gain * max|ideal|", k_magnitude},
     Metric{"sigma_gain_T", "1", lower, "RMS difference of torques after the gain, over gain * max|ideal|", k_magnitude},
+    Metric{"magnitude_error_F", "1", lower, "RMS of |F| - gain |true F| over the RMS of |F|, 0..1", k_magnitude},
+    Metric{"magnitude_error_T", "1", lower, "RMS of |T| - gain |true T| over the RMS of |T|, 0..1", k_magnitude},
     Metric{"gamma_F_deg", "degree", lower, "mean angle between true and measured force", k_paper_gamma},
     Metric{"gamma_T_deg", "degree", lower, "mean angle between true and measured torque", k_paper_gamma},
     Metric{"gamma_max_F_deg", "degree", lower, "largest angle between true and measured force", k_direction},
