@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
 #include <sixdof/generation/distance_generator.h>
@@ -14,12 +15,20 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 #include "bench/common/build_info.h"
+#include "bench/common/json_text.h"
 
 namespace sixdof::cli {
 namespace {
 
 constexpr int k_most_shards = 1'000'000;
 const std::string k_default_oracle = "fcl-rss";
+
+constexpr const char* k_keys =
+    "Keys of --plan --json: kinds[] {kind, grid, sampler, directions, rotations, distinct_rotations,\n"
+    "configurations_per_bucket, buckets}, configurations, computed, bytes; given --a, also estimate {kinds[] {kind,\n"
+    "cpu_us_per_configuration, relative_standard_error, cpu_s, ray_cpu_us {median, p99, greatest, greatest_rotation,\n"
+    "greatest_direction}, sampled {rays, configurations, unreachable}}, seed, threads, time_s, prepare_s,\n"
+    "process_bytes, value_bytes; with --shards, shards and shard_time_s}.";
 
 struct Arguments {
   std::string a, b, grid, output;
@@ -29,7 +38,7 @@ struct Arguments {
   std::size_t shards = 0, shard = 0;  // 0: not given.
   double plan_seconds = 5.0;
   std::uint64_t seed = 1;
-  bool plan = false, resume = false, progress = false;
+  bool plan = false, json = false, resume = false, progress = false;
 };
 
 int parse_percent(std::string_view list, std::string_view text) {
@@ -90,9 +99,15 @@ void generate(const Arguments& arguments) {
   const std::vector<int> distances = parse_percents(no_buckets ? "0:30" : arguments.distances);
   const std::vector<int> volumes = parse_percents(arguments.volumes);
   SetDescription set = describe(arguments, distances, volumes);
+  if (arguments.json && !arguments.plan) throw BadArgument("--json is for --plan");
   if (arguments.plan) {
-    print_counts(set, distances.size(), volumes.size());
-    if (arguments.a.empty() || arguments.plan_seconds == 0.0) return;
+    const bool only_counts = arguments.a.empty() || arguments.plan_seconds == 0.0;
+    if (!arguments.json) {
+      print_counts(set, distances.size(), volumes.size());
+    } else if (only_counts) {
+      fmt::print("{}\n", json_text(counts_as_json(set, distances.size(), volumes.size())));
+    }
+    if (only_counts) return;
   } else if (arguments.a.empty() || arguments.output.empty()) {
     throw BadArgument("--a and -o are needed (or --plan)");
   }
@@ -115,7 +130,11 @@ void generate(const Arguments& arguments) {
                             .progress = arguments.progress};
   if (arguments.plan) {
     if (arguments.shards != 0) check_shard_number({.number = 1, .count = arguments.shards}, set, job);
-    return print_estimate(work, arguments.shards, arguments.plan_seconds, arguments.seed);
+    if (!arguments.json) return print_estimate(work, arguments.shards, arguments.plan_seconds, arguments.seed);
+    auto plan = counts_as_json(set, distances.size(), volumes.size());
+    plan["estimate"] = estimate_as_json(work, arguments.shards, arguments.plan_seconds, arguments.seed);
+    fmt::print("{}\n", json_text(plan));
+    return;
   }
   if (arguments.shards == 0) return generate_set(work, arguments.output);
   generate_shards(work, arguments.output, {.number = arguments.shard, .count = arguments.shards}, arguments.resume);
@@ -156,13 +175,14 @@ void add_generate_command(CLI::App& app) {
   command->add_flag("--progress", arguments->progress, "Show progress where stderr is not a terminal, too");
   command->add_flag("--plan", arguments->plan,
                     "Only print what would be made and, given --a, the time and memory it needs, from a timed sample");
+  command->add_flag("--json", arguments->json, "What --plan prints, as JSON");
   command->add_option("--plan-seconds", arguments->plan_seconds, "Time for the sample of --plan; 0: no sample")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Of the sample of --plan")->capture_default_str();
-  add_examples(*command,
-               "sixdof generate --a torus-knot-10k --b cone-1k --grid 90 --distances 0,5:10 --volumes 5 -o set.h5",
-               "sixdof generate --a cone-1k --grid paper --distances 0:30 --volumes 0:10 --plan --plan-seconds 1");
+  add_examples(
+      *command, "sixdof generate --a torus-knot-10k --b cone-1k --grid 90 --distances 0,5:10 --volumes 5 -o set.h5",
+      "sixdof generate --a cone-1k --grid paper --distances 0:30 --volumes 0:10 --plan --plan-seconds 1", k_keys);
   command->callback([arguments] { generate(*arguments); });
 }
 

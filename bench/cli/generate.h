@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/generation_job.h>
 #include <sixdof/generation/distance_generator.h>
@@ -28,11 +30,18 @@ struct GenerationWork {
 /// @param distances, volumes numbers of buckets
 void print_counts(const SetDescription& set, std::size_t distances, std::size_t volumes);
 
+/// What print_counts() prints, as an object. `sixdof generate --help` documents the keys, also of estimate_as_json().
+nlohmann::ordered_json counts_as_json(const SetDescription& set, std::size_t distances, std::size_t volumes);
+
 /// Times a seeded sample of the job's rays. Prints the estimated processor time, time and memory of the job, and the
 /// sample's median, p99 and greatest processor time of a ray and its unreachable configurations.
 /// @param shards 0 for a whole set in one process
 /// @param seconds wall time for the sample
 void print_estimate(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed);
+
+/// What print_estimate() prints, as an object.
+nlohmann::ordered_json estimate_as_json(const GenerationWork& work, std::size_t shards, double seconds,
+                                        std::uint64_t seed);
 
 /// Makes the whole set in memory, writes it to `output` and prints a summary.
 void generate_set(const GenerationWork& work, const std::filesystem::path& output);

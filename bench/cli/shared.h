@@ -14,11 +14,12 @@
 
 namespace sixdof::cli {
 
-/// Ends the help of `command` with two examples, each a full command line for a shell. test/cli/examples_test.cpp runs
-/// the examples of all commands in one empty folder, in the order in which `sixdof --help` lists the commands, so a
-/// later example may use a file that an earlier one wrote. None needs a fetched model.
-inline void add_examples(CLI::App& command, const std::string& first, const std::string& second) {
-  command.footer("Examples:\n  " + first + "\n  " + second);
+/// Ends the help of `command` with `more`, if there is any, and two examples, each a full command line for a shell.
+/// test/cli/examples_test.cpp runs the examples of all commands in one empty folder, in the order in which `sixdof
+/// --help` lists the commands, so a later example may use a file that an earlier one wrote. None needs a fetched model.
+inline void add_examples(CLI::App& command, const std::string& first, const std::string& second,
+                         const std::string& more = {}) {
+  command.footer((more.empty() ? "" : more + "\n\n") + "Examples:\n  " + first + "\n  " + second);
 }
 
 /// As JSON takes it.

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
 #include <sixdof/configuration/configuration_set.h>
@@ -11,6 +12,7 @@
 #include <sixdof/models/model_catalogue.h>
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
+#include "bench/common/json_text.h"
 #include "bench/common/progress_line.h"
 
 namespace sixdof::cli {
@@ -21,7 +23,13 @@ struct Arguments {
   std::string oracle = "fcl-obbrss";
   std::size_t sample = 50;
   std::uint64_t seed = 1;
+  bool json = false;
 };
+
+constexpr const char* k_keys =
+    "Keys of --json: file, a, b, grid, oracle {name, version}, seed, ok, problems[], buckets[] {bucket, sampled,\n"
+    "reachable, largest_residual, tolerance (both in diagonals of A's box or in A's volumes), wrong_value,\n"
+    "earlier_hit, false_nan, measured_by}.";
 
 void print_table(const Verdict& verdict) {
   fmt::print("{:<13} {:>8} {:>10} {:>13} {:>10} {:>8} {:>8} {:>8}  {}\n", "bucket", "sampled", "reachable", "residual",
@@ -33,6 +41,40 @@ void print_table(const Verdict& verdict) {
                bucket.oracle);
   }
   fmt::print("residuals and what is allowed: in diagonals of A's box and in A's volumes\n");
+}
+
+nlohmann::ordered_json as_json(const BucketVerdict& bucket) {
+  return {{"bucket", bucket.summary.key.name()},
+          {"sampled", bucket.sampled},
+          {"reachable", bucket.reachable},
+          {"largest_residual", bucket.largest_residual / bucket.scale},
+          {"tolerance", bucket.tolerance / bucket.scale},
+          {"wrong_value", bucket.wrong_value},
+          {"earlier_hit", bucket.earlier_hit},
+          {"false_nan", bucket.false_nan},
+          {"measured_by", bucket.oracle}};
+}
+
+void print_json(const Arguments& arguments, const ConfigurationSet& set, const Traits& oracle, const Verdict& verdict) {
+  auto buckets = nlohmann::ordered_json::array();
+  for (const BucketVerdict& bucket : verdict.buckets) buckets.push_back(as_json(bucket));
+  fmt::print("{}\n", json_text({{"file", arguments.file},
+                                {"a", set.description().a.name},
+                                {"b", set.description().b.name},
+                                {"grid", set.grid(BucketKind::distance).spec},
+                                {"oracle", {{"name", oracle.name}, {"version", oracle.version}}},
+                                {"seed", arguments.seed},
+                                {"ok", verdict.ok()},
+                                {"problems", verdict.problems},
+                                {"buckets", std::move(buckets)}}));
+}
+
+void print_text(const Arguments& arguments, const ConfigurationSet& set, const Traits& oracle, const Verdict& verdict) {
+  fmt::print("{}: {} with {}, grid {}, distances by {} {}, seed {}\n", arguments.file, set.description().a.name,
+             set.description().b.name, set.grid(BucketKind::distance).spec, oracle.name, oracle.version,
+             arguments.seed);
+  print_table(verdict);
+  for (const std::string& problem : verdict.problems) fmt::print("{}\n", problem);
 }
 
 void verify(const Arguments& arguments) {
@@ -51,11 +93,7 @@ void verify(const Arguments& arguments) {
                          {.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
                           .cancelled = InterruptGuard::requested});
   }
-  fmt::print("{}: {} with {}, grid {}, distances by {} {}, seed {}\n", arguments.file, set.description().a.name,
-             set.description().b.name, set.grid(BucketKind::distance).spec, oracle.name, oracle.version,
-             arguments.seed);
-  print_table(verdict);
-  for (const std::string& problem : verdict.problems) fmt::print("{}\n", problem);
+  arguments.json ? print_json(arguments, set, oracle, verdict) : print_text(arguments, set, oracle, verdict);
   if (!verdict.ok()) throw Error(fmt::format("{}: verification failed", arguments.file));
 }
 
@@ -72,8 +110,9 @@ void add_verify_command(CLI::App& app) {
   command->add_option("--seed", arguments->seed, "Of the sample")->capture_default_str();
   command->add_option("--oracle", arguments->oracle, "Algorithm with exact distances that measures them")
       ->capture_default_str();
+  command->add_flag("--json", arguments->json, "As JSON; the exit code is the same");
   add_examples(*command, "sixdof generate --a torus-knot-10k --grid 90 --distances 0,10 -o set.h5",
-               "sixdof verify set.h5 --sample 20 --seed 7");
+               "sixdof verify set.h5 --sample 20 --seed 7", k_keys);
   command->callback([arguments] { verify(*arguments); });
 }
 
