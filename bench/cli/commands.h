@@ -34,12 +34,8 @@ void add_merge_command(CLI::App& app);
 /// `sixdof verify FILE [--sample N] [--seed S] [--oracle NAME]`: measures a sample of every bucket of a configuration
 /// set again and prints a table; fails if anything is wrong.
 void add_verify_command(CLI::App& app);
-/// `sixdof table FILE.json`: the results of sixdof-bench as one table per pair and kind of bucket.
+/// `sixdof table FILE.json [MORE.json ...] [--markdown | --json]`: results of sixdof-bench, one table per pair, query
+/// and kind of bucket; several files side by side (table.h).
 void add_table_command(CLI::App& app);
-
-/// The tables from the text of a result file: one line per kind of query and algorithm, one column per bucket. Times
-/// are in microseconds. '!' marks a row with wrong answers, '?' one with queries that failed.
-/// @param file named in messages. @throws BadFile if the text is no result file
-std::string results_table(const std::string& text, const std::string& file);
 
 }  // namespace sixdof::cli

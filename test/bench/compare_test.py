@@ -2,8 +2,10 @@
 
 import importlib.machinery
 import importlib.util
+import json
 import pathlib
 import random
+import subprocess
 import tempfile
 import unittest
 
@@ -76,6 +78,25 @@ class Rows(unittest.TestCase):
     def test_have_to_be_chosen_where_there_is_none(self):
         with self.assertRaises(compare.Failure):
             compare.filter_of_default_suite({"base": self.old, "contender": self.old})
+
+
+class ComparePy(unittest.TestCase):
+    """Google Benchmark's script takes rows with the fields of sixdof-bench."""
+
+    def test_reads_result_files(self):
+        fields = {"query": "distance", "algorithm": "exact", "settings": {}, "pair": "p", "order": "random",
+                  "bucket": {"kind": "distance", "percent": 5}, "configurations": 64}
+        with tempfile.TemporaryDirectory() as folder:
+            files = []
+            for side, time in (("base", 100.0), ("contender", 150.0)):
+                row = {"name": "distance/algorithm:exact", "run_name": "distance/algorithm:exact",
+                       "run_type": "iteration", "repetitions": 1, "repetition_index": 0, "threads": 1, "iterations": 9,
+                       "real_time": time, "cpu_time": time, "time_unit": "ns", "sixdof": fields}
+                files.append(pathlib.Path(folder) / side)
+                files[-1].write_text(json.dumps({"context": {"date": "today"}, "benchmarks": [row]}), encoding="utf-8")
+            done = subprocess.run(compare.COMPARE + ["benchmarks", *map(str, files)], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("+0.5000", done.stdout)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <sixdof/measure/metrics.h>
@@ -13,12 +14,43 @@ namespace {
 
 using test::BenchProgram;
 using test::json;
+using ::testing::HasSubstr;
 
 /// Keys of a row in Google Benchmark's JSON that are no counters.
 const std::set<std::string> k_no_counters{"name",        "family_index", "per_family_instance_index",
                                           "run_name",    "run_type",     "repetition_index",
                                           "repetitions", "threads",      "time_unit",
-                                          "label"};
+                                          "label",       "sixdof"};
+
+/// The fields of a row say what its name says.
+void expect_fields_of_the_name(const json& entry) {
+  const std::string name = entry.at("name");
+  const json& fields = entry.at("sixdof");
+  EXPECT_EQ(fields.at("query"), name.substr(0, name.find('/')));
+  EXPECT_TRUE(fields.at("settings").is_object()) << name;
+  const std::string algorithm = fields.at("algorithm");
+  EXPECT_THAT(name, HasSubstr("/algorithm:" + algorithm));
+  if (algorithm == "ist") {
+    EXPECT_EQ(fields.at("settings").at("spheres"), 300) << name;
+  }
+  for (const char* key : {"pair", "scenario", "kernel", "target"}) {
+    EXPECT_THAT(name, HasSubstr(fields.value(key, std::string())));
+  }
+  for (const auto& [key, family] :
+       {std::pair("scenario", "scenario"), std::pair("kernel", "kernel"), std::pair("target", "generate")}) {
+    EXPECT_EQ(fields.contains(key), fields.at("query") == family) << key << " of " << name;
+  }
+  EXPECT_EQ(fields.contains("pair"), name.find("/pair:") != std::string::npos) << name;
+  const bool has_bucket = name.find("/distance:") != std::string::npos || name.find("/volume:") != std::string::npos;
+  ASSERT_EQ(fields.contains("bucket"), has_bucket) << name;
+  if (has_bucket) {
+    const json& bucket = fields.at("bucket");
+    EXPECT_THAT(name, HasSubstr(fmt::format("/{}:{:02}", bucket.at("kind").get<std::string>(),
+                                            bucket.at("percent").get<int>())));
+    EXPECT_EQ(fields.at("configurations"), entry.at("configurations")) << name;
+    EXPECT_EQ(fields.at("order"), "random") << name;
+  }
+}
 
 TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
   const json document = result(
@@ -31,6 +63,7 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
     const std::string name = entry.at("name");
     EXPECT_FALSE(entry.contains("error_occurred")) << entry;
     families.insert(name.substr(0, name.find('/')));
+    expect_fields_of_the_name(entry);
     for (const auto& [key, value] : entry.items()) {
       if (k_no_counters.contains(key)) continue;
       counters.insert(key);
@@ -39,8 +72,8 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
   }
   EXPECT_EQ(families,
             (std::set<std::string>{"prepare", "collide", "distance", "respond", "scenario", "kernel", "generate"}));
-  for (const char* counter : {"p99_ns", "error_rms", "gamma_F_deg", "points_tested", "ns_per_points", "bytes",
-                              "sigma_F_by_depth", "steps", "ns_per_configuration"}) {
+  for (const char* counter : {"p99_ns", "error_rms", "gamma_F_deg", "magnitude_error_F", "gain_T", "points_tested",
+                              "ns_per_points", "bytes", "sigma_F_by_depth", "steps", "ns_per_configuration"}) {
     EXPECT_TRUE(counters.contains(counter)) << counter;
   }
 }

@@ -1,5 +1,8 @@
 // What rows report of algorithms that throw, or return NaN, infinity, 1e308 or a wrong answer at one pose in 20.
 
+#include <fstream>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +20,7 @@ namespace sixdof {
 namespace {
 
 using nlohmann::json;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 constexpr const char* k_pair = "torus-1k";
@@ -122,6 +126,44 @@ TEST_F(Faulty, ScenariosCountFailedStepsAndGoOn) {
     EXPECT_LT(entry.at("cpu_time"), 0.02 * k_fault_delay_ns) << entry;
     EXPECT_THAT(entry.at("label").get<std::string>(), HasSubstr("first failure")) << entry;
   }
+}
+
+/// Lines of `text` that hold `word`.
+std::vector<std::string> lines_with(const std::string& text, const std::string& word) {
+  std::vector<std::string> found;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(word) != std::string::npos) found.push_back(line);
+  }
+  return found;
+}
+
+TEST_F(Faulty, TheTableNeverCallsAConstantAnswerTheFastest) {
+  const test::SuiteCopy folder(SIXDOF_SMALL_SUITE);
+  const std::string file = (folder.directory() / "constant.json").string();
+  const json document =
+      run("'--benchmark_filter=^(respond|collide)/algorithm:(exact|zero-force|always-apart|null)/pair:torus-1k/"
+          "(distance:05|volume:03)$'");
+  std::ofstream(file) << document;
+  const json silent = row(document, "respond", "zero-force", "volume:03");
+  EXPECT_EQ(silent.at("misses"), silent.at("configurations"));
+  EXPECT_EQ(silent.at("magnitude_error_F"), 1.0);
+  EXPECT_EQ(silent.at("gain_F"), 0.0);
+
+  const auto table = test::run_program(std::string(SIXDOF_PROGRAM) + " table " + file);
+  ASSERT_EQ(table.exit_code, 0) << table.err;
+  const std::string count = fmt::format("{}", silent.at("configurations").get<std::size_t>());
+  EXPECT_THAT(table.out, HasSubstr("! zero-force: " + count + " of " + count + " without a force though the bodies "));
+  EXPECT_THAT(table.out, HasSubstr("! always-apart: " + count + " of " + count + " wrong (03 %)"));
+  EXPECT_THAT(table.out, HasSubstr("! always-apart: no right answer at volume 03 % (05 %)"));
+  EXPECT_THAT(table.out, HasSubstr("! null: measures the harness, answers constants (05 %)"));
+  // Tables of collide at a distance, collide in overlaps, and respond.
+  const auto fastest = lines_with(table.out, "  *  ");
+  ASSERT_EQ(fastest.size(), 3u) << table.out;
+  for (const std::size_t collide : {0, 1}) {
+    EXPECT_THAT(fastest[collide], AnyOf(HasSubstr(" exact "), HasSubstr(" zero-force ")));
+  }
+  EXPECT_THAT(fastest[2], AnyOf(HasSubstr(" exact "), HasSubstr(" always-apart ")));
 }
 
 TEST_F(Faulty, NullPointersAreErrorsWithWords) {

@@ -1,4 +1,5 @@
-// sixdof-bench with algorithms that answer as `exact` does but have a fault at one pose in 20 (faulty_pose.h).
+// sixdof-bench with algorithms that answer as `exact` does but have a fault at one pose in 20 (faulty_pose.h), or at
+// all.
 
 #include <chrono>
 #include <functional>
@@ -26,6 +27,7 @@ void spend_fault_delay() {
 /// What an algorithm does at a faulty pose to its right answer, by kind of query; it may throw instead.
 struct Fault {
   std::string name;
+  bool at_every_pose = false;  ///< Without the delay of a faulty pose.
   std::function<bool(bool)> collide = [](bool answer) { return answer; };
   std::function<double(double)> distance = [](double answer) { return answer; };
   std::function<Eigen::Vector3d(const Eigen::Vector3d&)> force = [](const Eigen::Vector3d& answer) { return answer; };
@@ -52,7 +54,8 @@ class FaultyQuery final : public Query {
   }
 
  private:
-  static bool goes_wrong(const Pose& X_AB) {
+  bool goes_wrong(const Pose& X_AB) const {
+    if (fault_.at_every_pose) return true;
     if (!test::is_faulty(X_AB)) return false;
     spend_fault_delay();
     return true;
@@ -111,6 +114,10 @@ const Registrar k_faults[] = {
          .collide = [](bool answer) { return !answer; },
          .distance = [](double answer) { return 1.1 * answer; }}),
     add({.name = "null-pointer"}),
+    add({.name = "zero-force",
+         .at_every_pose = true,
+         .force = [](const Eigen::Vector3d&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); }}),
+    add({.name = "always-apart", .at_every_pose = true, .collide = [](bool) { return false; }}),
 };
 
 }  // namespace

@@ -1,54 +1,297 @@
-#include "bench/cli/commands.h"
+// `sixdof table` on result files made here: what stands in cells, which row is the fastest, which files are refused.
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
-#include <sixdof/base/error.h>
+#include "bench/common/run_guarded.h"
+
+#include "run_program.h"
+#include "scratch_folder.h"
 
 namespace sixdof::cli {
 namespace {
 
-TEST(ResultsTable, HasALinePerAlgorithmAndAColumnPerBucket) {
-  const std::string text = R"({"context": {}, "benchmarks": [
-    {"name": "prepare/algorithm:x/pair:p", "run_type": "iteration", "cpu_time": 7, "time_unit": "ms"},
-    {"name": "collide/algorithm:x/pair:p/distance:05", "run_type": "iteration", "cpu_time": 2500, "time_unit": "ns", "p99_ns": 40000, "failed": 0, "mismatch": 0},
-    {"name": "collide/algorithm:x/pair:p/distance:05", "run_type": "iteration", "cpu_time": 1500, "time_unit": "ns", "p99_ns": 30000, "failed": 0, "mismatch": 0},
-    {"name": "collide/algorithm:x/pair:p/distance:00", "run_type": "iteration", "cpu_time": 123456, "time_unit": "ns", "p99_ns": 200000, "failed": 1, "mismatch": 2},
-    {"name": "collide/algorithm:x/pair:p/distance:05_mean", "run_type": "aggregate", "cpu_time": 9, "time_unit": "ns"},
-    {"name": "distance/algorithm:y/pair:p/distance:05/order:path", "run_type": "iteration", "error_occurred": true, "error_message": "no"}]})";
-  EXPECT_EQ(results_table(text, "r.json"),
-            "p: mean / p99 in us, at distances in percent of A's box diagonal\n"
-            "                          00 %         05 %\n"
-            "collide x          123 / 200!?  1.50 / 30.0\n"
-            "distance y (path)            -        error\n"
-            "\n"
-            "! some answers were wrong   ? some queries gave no answer\n");
+using Json = nlohmann::ordered_json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// A row of pair "p" as sixdof-bench writes it, of 64 configurations and with a right answer to each.
+Json row(const std::string& query, const std::string& algorithm, const std::string& kind, int percent, double cpu_ns,
+         const Json& values = Json::object()) {
+  Json json = {{"name", query + "/algorithm:" + algorithm + "/pair:p"},
+               {"run_type", "iteration"},
+               {"cpu_time", cpu_ns},
+               {"real_time", 2 * cpu_ns},
+               {"time_unit", "ns"},
+               {"configurations", 64},
+               {"judged", 64},
+               {"failed", 0},
+               {"mismatch", 0},
+               {"p50_ns", 1e4},
+               {"p99_ns", 2e4},
+               {"max_ns", 3e4},
+               {"over_1ms", 0.0}};
+  json.update(values);
+  json["sixdof"] = {{"query", query},
+                    {"algorithm", algorithm},
+                    {"settings", {{"size", 0.5}}},
+                    {"pair", "p"},
+                    {"bucket", {{"kind", kind}, {"percent", percent}}},
+                    {"order", "random"}};
+  return json;
 }
 
-TEST(ResultsTable, ResponsesHaveTheirLargestTimeAndTheErrorOfTheirForce) {
-  const std::string text = R"({"context": {}, "benchmarks": [
-    {"name": "collide/algorithm:x/pair:p/volume:05", "run_type": "iteration", "cpu_time": 2500, "time_unit": "ns", "p99_ns": 40000},
-    {"name": "respond/algorithm:x/pair:p/volume:05", "run_type": "iteration", "cpu_time": 2500, "time_unit": "ns", "p99_ns": 40000, "max_ns": 50000, "gamma_F_deg": 1.234, "gamma_max_F_deg": 20.25},
-    {"name": "respond/algorithm:null/pair:p/volume:05", "run_type": "iteration", "cpu_time": 3, "time_unit": "ns", "p99_ns": 40, "max_ns": 40}]})";
-  EXPECT_EQ(
-      results_table(text, "r.json"),
-      "p: mean / p99 in us, at overlaps in percent of A's volume\n"
-      "                  05 %\n"
-      "collide x  2.50 / 40.0\n"
-      "\n"
-      "p: mean / p99 / max in us, force's angle to the exact one mean / max in degrees, at overlaps in percent of "
-      "A's volume\n"
-      "                                         05 %\n"
-      "respond x     2.50 / 40.0 / 50.0, 1.23 / 20.2\n"
-      "respond null          0.0030 / 0.04 / 0.04, -\n"
-      "\n"
-      "! some answers were wrong   ? some queries gave no answer\n");
+Json failed_row(const std::string& query, const std::string& algorithm, const std::string& kind, int percent) {
+  Json json = row(query, algorithm, kind, percent, 0.0);
+  json.update({{"error_occurred", true}, {"error_message", "no such model"}});
+  return json;
 }
 
-TEST(ResultsTable, RefusesOtherFiles) {
-  for (const char* bad : {"", "[]", "{}", R"({"benchmarks": [{}]})"}) {
-    EXPECT_THROW(results_table(bad, "r.json"), BadFile) << bad;
+class TableCommand : public test::ScratchFolder {
+ protected:
+  std::string write_text(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name)) << text;
+    return path(name);
   }
+  std::string write(const std::string& name, const std::vector<Json>& rows,
+                    const Json& context = Json::object()) const {
+    return write_text(name, Json({{"context", context}, {"benchmarks", rows}}).dump());
+  }
+  static test::ProgramResult table(const std::string& arguments) {
+    return test::run_program(std::string(SIXDOF_PROGRAM) + " table " + arguments);
+  }
+  static std::string printed(const std::string& arguments) {
+    const auto result = table(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  }
+};
+
+// clang-format off
+constexpr const char* k_distances =
+    "p: distance, distances in percent of A's box diagonal\n"
+    "                            cpu, us    wall clock, us            error, diagonals of A\n"
+    "distance     algorithm   n     mean   p50   p99   max  >1 ms, %      rms           max\n"
+    "00 %      *  x          64     9.00  10.0  20.0  30.0         0        -             -\n"
+    "05 %      *  x          64     1.50  10.0  20.0  30.0      25.0        0             0\n"
+    "05 %      !  slow       64      123  10.0  20.0  30.0         0  1.2e-03       1.4e-02\n"
+    "05 %      *  x (path)   64     4.00  10.0  20.0  30.0         0        -             -\n"
+    "! slow: 3 of 64 wrong (05 %)\n";
+
+constexpr const char* k_responses =
+    "p: respond, overlaps in percent of A's volume\n"
+    "                          cpu, us    wall clock, us            force to the exact one           torque    volume\n"
+    "volume     algorithm   n     mean   p50   p99   max  >1 ms, %  angle   max   magn., %  angle  magn., %  error, %\n"
+    "05 %    *  x          64     1.50  10.0  20.0  30.0         0   1.23  20.2       12.5   3.50       3.6     <0.01\n";
+
+constexpr const char* k_two_files =
+    "                                               [1]                                   [2]\n"
+    "distance  algorithm     cpu, us  p99, us  >1 ms, %     cpu, us  / [1]  p99, us  >1 ms, %\n"
+    "00 %      y          *     1.00     20.0         0           -      -        -         -\n"
+    "05 %      x                2.00     20.0         0  *     0.50   0.25     20.0         0\n"
+    "05 %      y          *     1.00     20.0         0  !     1.50   1.50     20.0         0\n"
+    "! [2] y: 1 of 64 failed (05 %)\n";
+
+constexpr const char* k_markdown =
+    "### p: collide, overlaps in percent of A's volume\n\n"
+    "| volume |  | algorithm | n | cpu, us: mean | wall clock, us: p50 | wall clock, us: p99 | wall clock, us: max | >1 ms, % |\n"
+    "|---|---|---|---:|---:|---:|---:|---:|---:|\n"
+    "| 05 % | ! | x | 64 | 1.50 | 10.0 | 20.0 | 30.0 | 0 |\n"
+    "| 05 % | \\* | y | 64 | 1.50 | 10.0 | 20.0 | 30.0 | 0 |\n\n"
+    "- ! x: 2 of 64 wrong (05 %)\n";
+// clang-format on
+
+TEST_F(TableCommand, HasALinePerBucketAndAlgorithmAndOneClockPerColumn) {
+  Json path = row("distance", "x", "distance", 5, 4000);
+  path["sixdof"]["order"] = "path";
+  const Json right = {{"over_1ms", 0.25}, {"error_rms", 0.0}, {"error_max", 0.0}};
+  const Json wrong = {{"error_rms", 1.24e-3}, {"error_max", 0.0136}, {"mismatch", 3}};
+  EXPECT_THAT(printed(write("r.json", {row("distance", "x", "distance", 5, 1500, right),
+                                       row("distance", "slow", "distance", 5, 123456, wrong),
+                                       row("distance", "x", "distance", 0, 9.0, {{"time_unit", "us"}}), path})),
+              HasSubstr(k_distances));
+}
+
+TEST_F(TableCommand, ShowsHowWrongResponsesAreAndTheSettings) {
+  const Json errors = {{"gamma_F_deg", 1.234}, {"gamma_max_F_deg", 20.25},     {"magnitude_error_F", 0.125},
+                       {"gamma_T_deg", 3.5},   {"magnitude_error_T", 0.03601}, {"volume_error_mean", 2e-5}};
+  const std::string out = printed(write("r.json", {row("respond", "x", "volume", 5, 1500, errors)}));
+  EXPECT_THAT(out, AllOf(HasSubstr(k_responses), HasSubstr("wall clock of single\nqueries"),
+                         HasSubstr("settings x: size=0.5\n")));
+}
+
+TEST_F(TableCommand, RanksOnlyRowsWithoutFaults) {
+  const std::string out = printed(
+      write("r.json",
+            {row("respond", "right", "volume", 1, 900), row("respond", "right", "volume", 5, 900),
+             row("respond", "failing", "volume", 1, 1, {{"failed", 3}}), row("respond", "failing", "volume", 5, 800),
+             row("respond", "missing", "volume", 1, 2, {{"failed", 4}, {"misses", 6}}),
+             row("respond", "missing", "volume", 5, 2, {{"misses", 5}}),
+             row("respond", "silent", "volume", 1, 3, {{"misses", 64}}), row("respond", "silent", "volume", 5, 3),
+             row("respond", "null", "volume", 5, 0.5), failed_row("respond", "broken", "volume", 1)}));
+  EXPECT_THAT(out, AllOf(HasSubstr("01 %    *  right"), HasSubstr("05 %       right"), HasSubstr("01 %    !  failing"),
+                         HasSubstr("05 %    *  failing"), HasSubstr("05 %    !  missing"),
+                         HasSubstr("05 %    !  silent"), HasSubstr("05 %    !  null")));
+  EXPECT_THAT(out, HasSubstr("! failing: 3 of 64 failed (01 %)\n"));
+  EXPECT_THAT(out, HasSubstr("! missing: 4 of 64 failed (01 %); 6 of 60 without a force though the bodies overlap "
+                             "(01 %), 5 of 64 without a force though the bodies overlap (05 %)\n"));
+  EXPECT_THAT(out, HasSubstr("! silent: 64 of 64 without a force though the bodies overlap (01 %); "
+                             "no right answer at volume 01 % (05 %)\n"));
+  EXPECT_THAT(out, HasSubstr("! null: measures the harness, answers constants (05 %)\n"));
+  EXPECT_THAT(out, HasSubstr("! broken: not run: no such model (01 %)\n"));
+}
+
+TEST_F(TableCommand, AConstantNoIsNotTheFastestWhereBodiesAreApart) {
+  const std::string out =
+      printed(write("r.json", {row("collide", "x", "distance", 5, 10), row("collide", "constant", "distance", 5, 1),
+                               row("collide", "constant", "volume", 5, 1, {{"mismatch", 64}})}));
+  EXPECT_THAT(out, AllOf(HasSubstr("*  x"), HasSubstr("05 %      !  constant"),
+                         HasSubstr("! constant: no right answer at volume 05 % (05 %)")));
+}
+
+TEST_F(TableCommand, AddsUpFaultsOfManyBuckets) {
+  std::vector<Json> rows;
+  for (int percent = 1; percent <= 6; ++percent) {
+    rows.push_back(row("respond", "x", "volume", percent, 1, {{"misses", percent}}));
+    rows.push_back(row("respond", "y", "volume", percent, 1, {{"failed", 2}}));
+  }
+  const std::string out = printed(write("r.json", rows));
+  EXPECT_THAT(out, HasSubstr("! x: 21 of 384 without a force though the bodies overlap (sum over 6 buckets from 01 % "
+                             "to 06 %)\n"));
+  EXPECT_THAT(out, HasSubstr("! y: 2 of 64 failed (6 buckets from 01 % to 06 %)\n"));
+}
+
+TEST_F(TableCommand, KeepsTheFastestOfRepetitionsAndLeavesOutAggregates) {
+  Json mean = row("collide", "x", "distance", 5, 1.0);
+  mean["run_type"] = "aggregate";
+  const std::string out =
+      printed(write("r.json", {row("collide", "x", "distance", 5, 2000), mean, row("collide", "x", "distance", 5, 1500),
+                               failed_row("collide", "x", "distance", 5)}));
+  EXPECT_THAT(out, HasSubstr(" 1.50 "));
+  EXPECT_THAT(out, AllOf(Not(HasSubstr(" 2.00 ")), Not(HasSubstr("0.0010")), Not(HasSubstr("not run"))));
+}
+
+TEST_F(TableCommand, PutsFilesSideBySide) {
+  const std::string first = write("a.json",
+                                  {row("distance", "x", "distance", 5, 2000), row("distance", "y", "distance", 5, 1000),
+                                   row("distance", "y", "distance", 0, 1000)},
+                                  {{"commit", "0123456789abcdef"}, {"date", "today"}});
+  const std::string second = write(
+      "b.json", {row("distance", "y", "distance", 5, 1500, {{"failed", 1}}), row("distance", "x", "distance", 5, 500)},
+      {{"interrupted", "true"}});
+  const std::string out = printed(first + " " + second);
+  EXPECT_THAT(out, StartsWith("[1] " + first + ": today, commit 0123456789ab\n[2] " + second +
+                              ": INTERRUPTED: rows are missing\n"));
+  EXPECT_THAT(out, HasSubstr(k_two_files));
+  EXPECT_THAT(out, AllOf(HasSubstr("settings [1] y: size=0.5\n"), HasSubstr("settings [2] x: size=0.5\n")));
+}
+
+TEST_F(TableCommand, PrintsMarkdown) {
+  const std::string file = write(
+      "r.json", {row("collide", "x", "volume", 5, 1500, {{"mismatch", 2}}), row("collide", "y", "volume", 5, 1500)});
+  EXPECT_THAT(printed(file + " --markdown"), HasSubstr(k_markdown));
+}
+
+TEST_F(TableCommand, PrintsJson) {
+  Json of_prepare = row("prepare", "x", "volume", 5, 1.0);
+  of_prepare["sixdof"].erase("bucket");
+  const std::string first =
+      write("r.json", {row("respond", "x", "volume", 5, 1.5, {{"time_unit", "us"}, {"misses", 2}, {"threads", 1}}),
+                       of_prepare, row("respond", "y", "volume", 5, 3.0)});
+  const std::string second = write("b\xFF.json", {row("respond", "y", "volume", 5, 6.0)}, {{"commit", "abc"}});
+  const Json json = Json::parse(printed(first + " " + second + " --json"));
+  EXPECT_EQ(json.at("files")[0], Json({{"file", first},
+                                       {"date", ""},
+                                       {"commit", ""},
+                                       {"interrupted", false},
+                                       {"settings", {{"x", {{"size", 0.5}}}, {"y", {{"size", 0.5}}}}},
+                                       {"not_shown", {{"prepare", 1}}}}));
+  EXPECT_EQ(json.at("files")[1].at("file"), path("b\xEF\xBF\xBD.json")) << "no UTF-8: replaced";
+  ASSERT_EQ(json.at("tables").size(), 1u);
+  const Json& table = json.at("tables")[0];
+  EXPECT_EQ(table.at("pair"), "p");
+  EXPECT_EQ(table.at("query"), "respond");
+  EXPECT_EQ(table.at("kind"), "volume");
+  ASSERT_EQ(table.at("rows").size(), 2u);
+  const Json &x = table.at("rows")[0], &y = table.at("rows")[1];
+  EXPECT_EQ(x.at("algorithm"), "x");
+  EXPECT_EQ(x.at("percent"), 5);
+  const Json& measured = x.at("files")[0];
+  EXPECT_EQ(measured.at("faults")[0].at("count"), 2);
+  EXPECT_EQ(measured.at("faults")[0].at("of"), 64);
+  EXPECT_EQ(measured.at("fastest"), false);
+  EXPECT_EQ(measured.at("values").at("processor_mean_ns"), 1500.0);
+  EXPECT_EQ(measured.at("values").at("wall_mean_ns"), 3000.0);
+  EXPECT_FALSE(measured.at("values").contains("threads")) << "not a metric";
+  EXPECT_EQ(x.at("files")[1], nullptr);
+  EXPECT_EQ(y.at("files")[0].at("fastest"), true);
+  EXPECT_EQ(y.at("files")[1].at("ratio_to_first"), 2.0);
+  EXPECT_EQ(TableCommand::table(first + " --json --markdown").exit_code, k_exit_usage);
+}
+
+TEST_F(TableCommand, CountsRowsOfOtherFamilies) {
+  const Json scenario = {{"name", "scenario/II/algorithm:x"},
+                         {"cpu_time", 1},
+                         {"real_time", 1},
+                         {"time_unit", "ns"},
+                         {"sixdof", {{"query", "scenario"}, {"algorithm", "x"}, {"settings", Json::object()}}}};
+  const std::string out = printed(write("r.json", {scenario, scenario}));
+  EXPECT_THAT(out, AllOf(HasSubstr("no rows of queries on buckets\n"),
+                         HasSubstr("rows of other families, not shown: 2 scenario\n")));
+  EXPECT_THAT(printed(write("empty-run.json", std::vector<Json>())), HasSubstr("no rows of queries on buckets\n"));
+}
+
+/// What is written to the file "r.json", and what stands on stderr behind the file's name.
+class RefusedFiles : public TableCommand {
+ protected:
+  std::string message(const std::string& text) const {
+    const auto result = table(write_text("r.json", text));
+    EXPECT_EQ(result.exit_code, k_exit_error) << text;
+    EXPECT_EQ(result.out, "") << text;
+    const std::string start = "sixdof: " + path("r.json") + ": ";
+    EXPECT_THAT(result.err, StartsWith(start));
+    return result.err.substr(std::min(start.size(), result.err.size()));
+  }
+  /// The second row is changed by a patch.
+  std::string message_of_row(const Json& patch) const {
+    Json bad = row("collide", "x", "distance", 5, 1.0);
+    bad.merge_patch(patch);
+    return message(Json({{"benchmarks", {row("collide", "y", "distance", 5, 1.0), bad}}}).dump());
+  }
+};
+
+TEST_F(RefusedFiles, AreNamedWithTheCause) {
+  EXPECT_EQ(message(""), "is empty\n");
+  EXPECT_EQ(message(" \n"), "is empty\n");
+  EXPECT_THAT(message("{\"benchmarks\":\n ["), StartsWith("not JSON: parse error at line 2, column 3: "));
+  EXPECT_THAT(message("\xFF"), StartsWith("not JSON: parse error at line 1, column 1: "));
+  for (const char* other : {"[]", "{}", "7", R"({"benchmarks": 7})"}) {
+    EXPECT_EQ(message(other), "not a result file of sixdof-bench: it has no array \"benchmarks\"\n");
+  }
+  EXPECT_THAT(table("no-such-file.json").err, HasSubstr("no-such-file.json: cannot be opened\n"));
+  EXPECT_EQ(table("").exit_code, k_exit_usage);
+}
+
+TEST_F(RefusedFiles, AreNamedWithTheRow) {
+  EXPECT_EQ(message(R"({"benchmarks": [7]})"), "benchmarks[0]: not an object\n");
+  EXPECT_THAT(message(R"({"benchmarks": [{"name": "BM_sort/8", "cpu_time": 3}]})"),
+              StartsWith("benchmarks[0] (BM_sort/8): no \"sixdof\" object: not a row of sixdof-bench"));
+  const std::string place = "benchmarks[1] (collide/algorithm:x/pair:p): ";
+  EXPECT_EQ(message_of_row({{"cpu_time", nullptr}}), place + "no number \"cpu_time\"\n");
+  EXPECT_EQ(message_of_row({{"time_unit", "days"}}), place + "time_unit \"days\" is none of ns, us, ms, s\n");
+  EXPECT_THAT(message_of_row({{"sixdof", {{"bucket", {{"kind", "depth"}}}}}}),
+              StartsWith(place + "sixdof.bucket: bucket 'depth/05'"));
+  EXPECT_THAT(message_of_row({{"sixdof", {{"query", 7}}}}), StartsWith(place + "sixdof.query: "));
+  EXPECT_EQ(message_of_row({{"sixdof", {{"algorithm", "y"}, {"settings", {{"size", 9}}}}}}),
+            place + "y has the settings size=9 here and size=0.5 in an earlier row\n");
 }
 
 }  // namespace

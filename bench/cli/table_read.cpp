@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include <sixdof/measure/metrics.h>
+#include "bench/cli/table.h"
+
+namespace sixdof::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The words of nlohmann::json's exceptions behind "[json.exception.parse_error.101] ".
+std::string words_of(const Json::exception& e) {
+  const std::string words = e.what();
+  const std::size_t end = words.find("] ");
+  return end == std::string::npos ? words : words.substr(end + 2);
+}
+
+Json parse_document(const std::string& text, const std::string& path) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw BadFile(path, "is empty");
+  Json document;
+  try {
+    document = Json::parse(text);
+  } catch (const Json::exception& e) {
+    throw BadFile(path, "not JSON: " + words_of(e));
+  }
+  if (!document.is_object() || !document.contains("benchmarks") || !document["benchmarks"].is_array()) {
+    throw BadFile(path, "not a result file of sixdof-bench: it has no array \"benchmarks\"");
+  }
+  return document;
+}
+
+std::string text_at(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+/// @throws Error
+double nanoseconds(const std::string& time_unit) {
+  static const std::map<std::string, double> units{{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
+  const auto found = units.find(time_unit);
+  if (found == units.end()) throw Error(fmt::format("time_unit \"{}\" is none of ns, us, ms, s", time_unit));
+  return found->second;
+}
+
+/// @throws Error
+ResultRow row_of(const Json& entry) {
+  if (!entry.contains(k_row_fields_key)) {
+    throw Error(
+        fmt::format("no \"{}\" object: not a row of sixdof-bench, or of one before it wrote them; measure again",
+                    k_row_fields_key));
+  }
+  ResultRow row{.fields = row_fields_of(entry.at(k_row_fields_key)), .error = {}, .values = {}};
+  if (entry.contains("error_occurred") && entry.at("error_occurred") == true) {
+    row.error = text_at(entry, "error_message");
+    if (row.error.empty()) row.error = "unknown error";
+    return row;
+  }
+  for (const auto& [key, value] : entry.items()) {
+    if (value.is_number() && find_metric(key) != nullptr) row.values[key] = value.get<double>();
+  }
+  for (const auto& [key, name] : {std::pair("cpu_time", k_processor_mean), std::pair("real_time", k_wall_mean)}) {
+    const auto found = row.values.find(key);
+    if (found == row.values.end()) throw Error(fmt::format("no number \"{}\"", key));
+    row.values[name] = found->second * nanoseconds(text_at(entry, "time_unit"));
+    row.values.erase(found);
+  }
+  return row;
+}
+
+bool are_repetitions(const RowFields& a, const RowFields& b) {
+  return a.query == b.query && a.algorithm == b.algorithm && a.pair == b.pair && a.bucket == b.bucket &&
+         a.order == b.order;
+}
+
+/// Adds a row, or keeps the better one of two repetitions. @throws Error
+void add(ResultRow row, ResultFile& file) {
+  const auto same = std::ranges::find_if(
+      file.rows, [&](const ResultRow& other) { return are_repetitions(row.fields, other.fields); });
+  if (same == file.rows.end()) {
+    file.rows.push_back(std::move(row));
+    return;
+  }
+  if (same->fields.settings != row.fields.settings) {
+    throw Error(fmt::format("{} has the settings {} here and {} in an earlier row", row.fields.algorithm,
+                            row.fields.settings, same->fields.settings));
+  }
+  const auto time = row.value(k_processor_mean), earlier = same->value(k_processor_mean);
+  if (time && (!earlier || *time < *earlier)) *same = std::move(row);
+}
+
+}  // namespace
+
+std::optional<double> ResultRow::value(const std::string& name) const {
+  const auto found = values.find(name);
+  return found == values.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::uint64_t ResultRow::count(const std::string& name) const {
+  return static_cast<std::uint64_t>(value(name).value_or(0.0));
+}
+
+ResultFile parse_result_file(const std::string& text, const std::string& path) {
+  const Json document = parse_document(text, path);
+  ResultFile file;
+  file.path = path;
+  if (document.contains("context") && document.at("context").is_object()) {
+    const Json& context = document.at("context");
+    file.date = text_at(context, "date");
+    file.commit = text_at(context, "commit");
+    file.interrupted = text_at(context, "interrupted") == "true";
+  }
+  std::size_t index = 0;
+  for (const Json& entry : document.at("benchmarks")) {
+    const std::string place = fmt::format("benchmarks[{}]", index++);
+    if (!entry.is_object()) throw BadFile(path, place, "not an object");
+    const std::string name = text_at(entry, "name");
+    try {
+      if (text_at(entry, "run_type") == "aggregate") continue;
+      ResultRow row = row_of(entry);
+      if (row.fields.bucket) {
+        add(std::move(row), file);
+      } else {
+        ++file.not_shown[row.fields.query];
+      }
+    } catch (const Error& e) {
+      throw BadFile(path, name.empty() ? place : fmt::format("{} ({})", place, name), e.what());
+    } catch (const Json::exception& e) {
+      throw BadFile(path, name.empty() ? place : fmt::format("{} ({})", place, name), words_of(e));
+    }
+  }
+  return file;
+}
+
+ResultFile read_result_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw BadFile(path, "cannot be opened");
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (in.bad()) throw BadFile(path, "cannot be read");
+  return parse_result_file(text.str(), path);
+}
+
+}  // namespace sixdof::cli

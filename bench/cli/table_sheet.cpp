@@ -1,0 +1,256 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/cli/table.h"
+
+namespace sixdof::cli {
+namespace {
+
+/// Of an algorithm whose faults differ from bucket to bucket, more buckets than this are added up.
+constexpr std::size_t k_most_buckets = 4;
+
+/// Three significant digits of a time in microseconds.
+std::string as_microseconds(double ns) {
+  const double us = ns / 1e3;
+  const int decimals = us < 0.01 ? 4 : us < 10.0 ? 2 : us < 100.0 ? 1 : 0;
+  return fmt::format("{:.{}f}", us, decimals);
+}
+
+std::string as_percent(double fraction) {
+  const double percent = 100.0 * fraction;
+  if (percent == 0.0) return "0";
+  if (percent < 0.01) return "<0.01";
+  return fmt::format("{:.{}f}", percent, percent < 1.0 ? 2 : percent < 100.0 ? 1 : 0);
+}
+
+std::string as_degrees(double degrees) { return fmt::format("{:.{}f}", degrees, degrees < 10.0 ? 2 : 1); }
+
+std::string as_small(double value) { return value == 0.0 ? "0" : fmt::format("{:.1e}", value); }
+
+std::string as_count(double value) { return fmt::format("{:.0f}", value); }
+
+/// A column that shows one value of a row.
+struct ValueColumn {
+  const char* group;
+  const char* title;
+  const char* value;
+  std::string (*format)(double);
+};
+
+constexpr const char* k_processor = "cpu, us";
+constexpr const char* k_wall = "wall clock, us";
+constexpr const char* k_force = "force to the exact one";
+constexpr const char* k_torque = "torque";
+constexpr const char* k_distance = "error, diagonals of A";
+
+constexpr ValueColumn k_mean{k_processor, "mean", k_processor_mean, as_microseconds};
+constexpr ValueColumn k_p99{k_wall, "p99", "p99_ns", as_microseconds};
+constexpr ValueColumn k_late{"", ">1 ms, %", "over_1ms", as_percent};
+constexpr ValueColumn k_angle{k_force, "angle", "gamma_F_deg", as_degrees};
+constexpr ValueColumn k_magnitude{k_force, "magn., %", "magnitude_error_F", as_percent};
+constexpr ValueColumn k_distance_rms{k_distance, "rms", "error_rms", as_small};
+
+/// How wrong the answers to a query are.
+std::vector<ValueColumn> error_columns(const std::string& query, bool brief) {
+  if (query == "distance") {
+    return brief ? std::vector{k_distance_rms}
+                 : std::vector{k_distance_rms, ValueColumn{k_distance, "max", "error_max", as_small}};
+  }
+  if (query != "respond") return {};
+  if (brief) return {k_angle, k_magnitude};
+  return {k_angle,
+          {k_force, "max", "gamma_max_F_deg", as_degrees},
+          k_magnitude,
+          {k_torque, "angle", "gamma_T_deg", as_degrees},
+          {k_torque, "magn., %", "magnitude_error_T", as_percent},
+          {"volume", "error, %", "volume_error_mean", as_percent}};
+}
+
+/// All columns, or the most important ones where several files share the width.
+std::vector<ValueColumn> value_columns(const std::string& query, bool brief) {
+  std::vector<ValueColumn> columns = brief ? std::vector{k_mean, k_p99, k_late}
+                                           : std::vector{ValueColumn{"", "n", "configurations", as_count},      k_mean,
+                                                         ValueColumn{k_wall, "p50", "p50_ns", as_microseconds}, k_p99,
+                                                         ValueColumn{k_wall, "max", "max_ns", as_microseconds}, k_late};
+  std::ranges::copy(error_columns(query, brief), std::back_inserter(columns));
+  return columns;
+}
+
+std::string cell_of(const RankedRow& ranked, const ValueColumn& column) {
+  if (ranked.row == nullptr) return "-";
+  if (!ranked.row->error.empty()) return column.value == k_mean.value ? "error" : "-";
+  const std::optional<double> value = ranked.row->value(column.value);
+  return value ? column.format(*value) : "-";
+}
+
+std::string mark_of(const RankedRow& ranked) { return !ranked.faults.empty() ? "!" : ranked.fastest ? "*" : ""; }
+
+std::string bucket_text(BucketKey bucket) { return fmt::format("{:02} %", bucket.percent); }
+
+/// Where there are several files, the file stands above a column, and its clock or unit in the title.
+std::string brief_title(const ValueColumn& column) {
+  if (column.group == std::string(k_processor)) return k_processor;
+  return column.group == std::string(k_wall) ? fmt::format("{}, us", column.title) : column.title;
+}
+
+/// The faults of one algorithm in one file that read the same but for their counts.
+struct FaultNote {
+  std::string what;
+  std::vector<std::pair<BucketKey, Fault>> places;
+
+  std::string text() const {
+    // Equal words stand once with all their buckets.
+    std::vector<std::pair<std::string, std::vector<std::string>>> groups;
+    for (const auto& [bucket, fault] : places) {
+      const std::string words = to_string(fault);
+      if (groups.empty() || groups.back().first != words) groups.push_back({words, {}});
+      groups.back().second.push_back(bucket_text(bucket));
+    }
+    if (groups.size() > k_most_buckets) return sum();
+    std::vector<std::string> texts;
+    for (const auto& [words, buckets] : groups) {
+      const std::string range =
+          buckets.size() <= k_most_buckets
+              ? fmt::format("{}", fmt::join(buckets, ", "))
+              : fmt::format("{} buckets from {} to {}", buckets.size(), buckets.front(), buckets.back());
+      texts.push_back(fmt::format("{} ({})", words, range));
+    }
+    return fmt::format("{}", fmt::join(texts, ", "));
+  }
+
+ private:
+  std::string sum() const {
+    Fault all{.what = what};
+    for (const auto& [bucket, fault] : places) {
+      all.count += fault.count;
+      all.of += fault.of;
+    }
+    return fmt::format("{} (sum over {} buckets from {} to {})", to_string(all), places.size(),
+                       bucket_text(places.front().first), bucket_text(places.back().first));
+  }
+};
+
+/// "! vps: 3 of 640 failed (05 %)", one line for each algorithm of each file.
+std::vector<std::string> fault_notes(const ResultTable& table, std::size_t files) {
+  std::vector<std::string> notes;
+  for (std::size_t file = 0; file < files; ++file) {
+    std::vector<std::pair<std::string, std::vector<FaultNote>>> by_label;
+    for (const TableLine& line : table.lines) {
+      for (const Fault& fault : line.files[file].faults) {
+        auto of_label = std::ranges::find(by_label, line.label(), [](const auto& entry) { return entry.first; });
+        if (of_label == by_label.end()) of_label = by_label.insert(by_label.end(), {line.label(), {}});
+        auto& list = of_label->second;
+        auto note = std::ranges::find(list, fault.what, &FaultNote::what);
+        if (note == list.end()) note = list.insert(list.end(), {fault.what, {}});
+        note->places.emplace_back(line.bucket, fault);
+      }
+    }
+    for (const auto& [label, list] : by_label) {
+      std::vector<std::string> texts;
+      for (const FaultNote& note : list) texts.push_back(note.text());
+      notes.push_back(
+          fmt::format("! {}{}: {}", files > 1 ? fmt::format("[{}] ", file + 1) : "", label, fmt::join(texts, "; ")));
+    }
+  }
+  return notes;
+}
+
+Sheet sheet_of_one(const ResultTable& table) {
+  const std::vector<ValueColumn> values = value_columns(table.query, false);
+  Sheet sheet;
+  sheet.columns = {{"", to_string(table.kind), true}, {"", "", true}, {"", "algorithm", true}};
+  for (const ValueColumn& column : values) sheet.columns.push_back({column.group, column.title});
+  for (const TableLine& line : table.lines) {
+    const RankedRow& ranked = line.files.front();
+    sheet.lines.push_back({bucket_text(line.bucket), mark_of(ranked), line.label()});
+    for (const ValueColumn& column : values) sheet.lines.back().push_back(cell_of(ranked, column));
+  }
+  return sheet;
+}
+
+Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
+  const std::vector<ValueColumn> values = value_columns(table.query, true);
+  Sheet sheet;
+  sheet.columns = {{"", to_string(table.kind), true}, {"", "algorithm", true}};
+  for (std::size_t file = 0; file < files; ++file) {
+    const std::string group = fmt::format("[{}]", file + 1);
+    sheet.columns.push_back({group, "", true});
+    for (const ValueColumn& column : values) {
+      sheet.columns.push_back({group, brief_title(column)});
+      if (column.value == k_mean.value && file > 0) sheet.columns.push_back({group, "/ [1]"});
+    }
+  }
+  for (const TableLine& line : table.lines) {
+    auto& cells = sheet.lines.emplace_back(std::vector{bucket_text(line.bucket), line.label()});
+    for (std::size_t file = 0; file < files; ++file) {
+      const RankedRow& ranked = line.files[file];
+      cells.push_back(mark_of(ranked));
+      for (const ValueColumn& column : values) {
+        cells.push_back(cell_of(ranked, column));
+        if (column.value == k_mean.value && file > 0) {
+          cells.push_back(ranked.ratio ? fmt::format("{:.2f}", *ranked.ratio) : "-");
+        }
+      }
+    }
+  }
+  return sheet;
+}
+
+/// "[1] " where there are several files.
+std::string prefix_of(std::size_t file, std::size_t files) {
+  return files > 1 ? fmt::format("[{}] ", file + 1) : std::string();
+}
+
+}  // namespace
+
+Sheet sheet_of(const ResultTable& table, const std::vector<ResultFile>& files) {
+  Sheet sheet = files.size() == 1 ? sheet_of_one(table) : sheet_of_several(table, files.size());
+  const char* const percent = table.kind == BucketKind::distance ? "distances in percent of A's box diagonal"
+                                                                 : "overlaps in percent of A's volume";
+  sheet.title = fmt::format("{}: {}, {}", table.pair, table.query, percent);
+  sheet.notes = fault_notes(table, files.size());
+  return sheet;
+}
+
+std::vector<std::string> lines_above(const std::vector<ResultFile>& files) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    std::vector<std::string> facts;
+    if (!files[i].date.empty()) facts.push_back(files[i].date);
+    if (!files[i].commit.empty()) facts.push_back("commit " + files[i].commit.substr(0, 12));
+    if (files[i].interrupted) facts.emplace_back("INTERRUPTED: rows are missing");
+    lines.push_back(fmt::format("{}{}{}{}", prefix_of(i, files.size()), files[i].path, facts.empty() ? "" : ": ",
+                                fmt::join(facts, ", ")));
+  }
+  return lines;
+}
+
+std::vector<std::string> lines_below(const std::vector<ResultFile>& files) {
+  std::vector<std::string> lines{
+      "cpu: mean processor time of a query, in a loop over all n configurations. p50, p99, max: wall clock of single",
+      "queries, each the least of three passes, so that cpu may exceed max. >1 ms: share of them over the haptic "
+      "deadline.",
+      "angle: mean angle to the exact response, in degrees. magn.: RMS of |F| - gain |exact F| over the RMS of |F|, "
+      "one",
+      "gain for all. volume: mean error of the overlap volume. (path): configurations in the grid's own order.",
+      "* least cpu of its bucket among rows without fault   ! has faults, which stand below its table"};
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    std::map<std::string, std::string> settings;
+    for (const ResultRow& row : files[i].rows) settings[row.fields.algorithm] = row.fields.settings;
+    for (const auto& [algorithm, text] : settings) {
+      lines.push_back(
+          fmt::format("settings {}{}: {}", prefix_of(i, files.size()), algorithm, text.empty() ? "none" : text));
+    }
+    std::vector<std::string> others;
+    for (const auto& [query, count] : files[i].not_shown) others.push_back(fmt::format("{} {}", count, query));
+    if (!others.empty()) {
+      lines.push_back(
+          fmt::format("{}rows of other families, not shown: {}", prefix_of(i, files.size()), fmt::join(others, ", ")));
+    }
+  }
+  return lines;
+}
+
+}  // namespace sixdof::cli
