@@ -12,6 +12,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "bench/cli/shared.h"
+#include "bench/common/interrupt.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/unknown_word.h"
 
@@ -87,6 +88,7 @@ int run(int argc, const char* const* argv) {
     add(app);
   }
   add_examples(app, "sixdof models list", k_first_query);
+  const InterruptGuard interruptible("sixdof");
   try {
     return run_guarded("sixdof", [&] { app.parse(argc, argv); });
   } catch (const CLI::Success& e) {

@@ -109,7 +109,6 @@ struct Estimate {
 };
 
 Estimate estimate(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed) {
-  const InterruptGuard interruptible;
   Estimate result{.threads = work.threads != 0 ? work.threads : std::max(1u, std::thread::hardware_concurrency()),
                   .shards = shards};
   const bool both = work.job.has(BucketKind::distance) && work.job.has(BucketKind::volume);

@@ -21,7 +21,6 @@ struct Arguments {
 };
 
 void merge(const Arguments& arguments) {
-  const InterruptGuard interruptible;
   remove_stale_partials(arguments.output);
   {
     ProgressLine line("merged", arguments.progress);

@@ -85,7 +85,6 @@ void verify(const Arguments& arguments) {
   const std::string& b_name = arguments.b.empty() ? set.description().b.name : arguments.b;
   const Mesh a = load_model(a_name);
   const Mesh b = b_name == a_name ? a : load_model(b_name);
-  const InterruptGuard interruptible;
   Verdict verdict;
   {
     ProgressLine line("verified");

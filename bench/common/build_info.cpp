@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <Eigen/Core>
 
+#include <sixdof/base/library_build.h>
+
 #include "sixdof_commit.h"
 
 namespace sixdof {
@@ -38,6 +40,7 @@ std::vector<std::pair<std::string, std::string>> build_info() {
       {"compiler", SIXDOF_COMPILER},
       {"flags", SIXDOF_FLAGS},
       {"build_type", SIXDOF_BUILD_TYPE},
+      {"sixdof_build", to_string(library_build())},
       {"cpu_model", processor()},
       {"version:eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"version:benchmark", SIXDOF_BENCHMARK_VERSION},

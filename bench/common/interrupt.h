@@ -1,46 +1,49 @@
 #pragma once
 
-#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <csignal>
-
-#include <sixdof/base/error.h>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
 
 namespace sixdof {
 
-/// While an object of this class exists, Ctrl-C (SIGINT) and SIGTERM set a flag instead of ending the program. The work
-/// polls requested() between its steps and throws Interrupted, and every half-written file is removed on the way out. A
-/// second signal ends the program at once. Use it only around work that polls the flag; one object at a time.
+/// While an object of this class exists, Ctrl-C (SIGINT) and SIGTERM end the work within a second. They set a flag; the
+/// work polls requested() between its steps and throws Interrupted, so that it ends in order. If the object still
+/// exists k_patience after the signal, because a step takes long, a thread of its own ends the program: it calls
+/// `keep`, removes the temporary files of every AtomicFile, prints one line and exits with k_exit_interrupted. A second
+/// signal ends the program at once. One object at a time.
 class InterruptGuard {
  public:
-  InterruptGuard() {
-    struct sigaction action = {};
-    action.sa_handler = [](int /*signal*/) { signalled_.store(true, std::memory_order_relaxed); };
-    sigemptyset(&action.sa_mask);
-    // SA_RESETHAND: the second signal has its default action, which ends the program.
-    action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
-    sigaction(SIGINT, &action, &old_interrupt_);
-    sigaction(SIGTERM, &action, &old_terminate_);
-  }
-  ~InterruptGuard() {
-    sigaction(SIGINT, &old_interrupt_, nullptr);
-    sigaction(SIGTERM, &old_terminate_, nullptr);
-  }
+  /// @param program named in the line on stderr
+  /// @param keep saves what is finished; called from another thread while the work goes on. It does not throw.
+  explicit InterruptGuard(std::string program, std::function<void()> keep = {});
+  ~InterruptGuard();
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
   /// True once a signal came; stays true for the rest of the program.
-  static bool requested() { return signalled_.load(std::memory_order_relaxed); }
+  static bool requested();
 
   /// @throws Interrupted once a signal came
-  static void check() {
-    if (requested()) throw Interrupted("interrupted");
-  }
+  static void check();
+
+  /// With what `keep` and the exit take, less than a second.
+  static constexpr std::chrono::milliseconds k_patience{700};
 
  private:
-  static inline std::atomic<bool> signalled_{false};
-  static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+  void watch();
+
+  const std::string program_;
+  const std::function<void()> keep_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool ended_ = false;
   struct sigaction old_interrupt_ = {};
   struct sigaction old_terminate_ = {};
+  std::thread watcher_;
 };
 
 }  // namespace sixdof

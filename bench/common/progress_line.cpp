@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -15,9 +16,16 @@ constexpr const char* k_erase_line = "\r\033[K";
 
 /// Columns that fit on one line of the terminal behind stderr. The last one stays free: some terminals wrap there.
 std::size_t terminal_columns() {
+  constexpr unsigned k_usual = 80;
   winsize size = {};
   const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return known ? size.ws_col - 1u : std::string_view::npos;
+  return (known ? size.ws_col : k_usual) - 1u;
+}
+
+/// Whether stderr is a terminal that knows the codes for erasing a line.
+bool can_rewrite_lines() {
+  const char* const kind = std::getenv("TERM");
+  return ::isatty(STDERR_FILENO) == 1 && (kind == nullptr || std::string_view(kind) != "dumb");
 }
 
 }  // namespace
@@ -38,7 +46,7 @@ std::string_view cut_to_columns(std::string_view text, std::size_t columns) {
   return text;
 }
 
-StatusLine::StatusLine(bool always) : terminal_(::isatty(STDERR_FILENO) == 1), visible_(terminal_ || always) {}
+StatusLine::StatusLine(bool always) : terminal_(can_rewrite_lines()), visible_(terminal_ || always) {}
 
 bool StatusLine::due() const {
   const auto pause = terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(10'000);
@@ -60,6 +68,12 @@ void StatusLine::show(std::string_view text) {
 void StatusLine::clear() {
   if (!shown_ || !terminal_) return;
   shown_ = false;
+  fmt::print(stderr, "{}", k_erase_line);
+  std::fflush(stderr);
+}
+
+void erase_status_line() {
+  if (!can_rewrite_lines()) return;
   fmt::print(stderr, "{}", k_erase_line);
   std::fflush(stderr);
 }

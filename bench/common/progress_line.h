@@ -9,11 +9,12 @@
 
 namespace sixdof {
 
-/// One line on stderr that is rewritten in place and cut to the width of the terminal. Where stderr is not a terminal
-/// nothing is printed or, if asked, one line every ten seconds.
+/// One line on stderr that is rewritten in place and cut to the terminal's width of the moment. Where stderr is not a
+/// terminal, or one that cannot rewrite a line (TERM=dumb), nothing is printed or, if asked, one line every ten
+/// seconds.
 class StatusLine {
  public:
-  /// @param always print where stderr is not a terminal, too
+  /// @param always print where stderr is not such a terminal, too
   explicit StatusLine(bool always = false);
   ~StatusLine() { clear(); }
   StatusLine(const StatusLine&) = delete;
@@ -47,6 +48,9 @@ class ProgressLine {
   const std::string what_;
   const Clock::time_point start_ = Clock::now();
 };
+
+/// Removes what a StatusLine shows on the terminal, from another thread. For a program that ends without unwinding.
+void erase_status_line();
 
 /// Seconds as h:mm:ss.
 std::string as_clock(double seconds);

@@ -1,10 +1,14 @@
 #include "bench/harness/options.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
+#include <set>
+#include <string_view>
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -29,8 +33,49 @@ bool has_flag(const std::vector<std::string>& flags, const std::string& name) {
   return std::any_of(flags.begin(), flags.end(), [&](const auto& flag) { return flag.starts_with(name); });
 }
 
-std::string refuse_csv(const std::string& format) {
-  return format == "csv" ? "csv needs the same counters in every row, and rows differ; use json" : std::string();
+/// A word as a POSIX shell takes it.
+std::string shell_quoted(const std::string& word) {
+  constexpr const char* k_plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./:,@%";
+  if (!word.empty() && word.find_first_not_of(k_plain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+/// The words of the command line but those that name the result file.
+std::string arguments_but_file(int argc, const char* const* argv) {
+  const std::set<std::string> names{"--benchmark_out", "--out", "--resume"};
+  std::string text;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const std::size_t equals = word.find('=');
+    if (names.contains(word.substr(0, equals))) {
+      if (equals == std::string::npos) ++i;
+      continue;
+    }
+    text += (text.empty() ? "" : " ") + shell_quoted(word);
+  }
+  return text;
+}
+
+/// Google Benchmark's flags but those that choose rows or what is shown of them.
+std::string flags_of_measurement(std::vector<std::string> flags) {
+  const std::set<std::string> others{"--benchmark_filter",
+                                     "--benchmark_list_tests",
+                                     "--benchmark_color",
+                                     "--benchmark_counters_tabular",
+                                     "--benchmark_display_aggregates_only",
+                                     "--v"};
+  std::erase_if(flags, [&](const std::string& flag) { return others.contains(flag.substr(0, flag.find('='))); });
+  std::ranges::sort(flags);
+  return fmt::format("{}", fmt::join(flags, " "));
+}
+
+/// Whether the environment asks for text without colour (no-color.org, terminals that cannot show it).
+bool wants_no_color() {
+  const char* const no_color = std::getenv("NO_COLOR");
+  const char* const terminal = std::getenv("TERM");
+  return (no_color != nullptr && *no_color != '\0') || (terminal != nullptr && std::string_view(terminal) == "dumb");
 }
 
 /// Google Benchmark reads its flags from a command line, and keeps a pointer to the program's name.
@@ -102,13 +147,19 @@ int parse_options(int argc, const char* const* argv, Options& options) {
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Of samples and orders")->capture_default_str();
   app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were used");
-  app.add_option("--benchmark_out,--out", options.out, "Result file (JSON); appears whole or not at all");
-  app.add_option("--benchmark_out_format", out_format, "Of the result file")
-      ->check(CLI::IsMember({"json"}))
+  auto* const out =
+      app.add_option("--benchmark_out,--out", options.out,
+                     "Result file; appears whole or not at all. Until then finished rows are in FILE.journal");
+  auto* const resume =
+      app.add_option("--resume", options.out,
+                     "Continue the result file of a run that was broken off, with the same arguments: rows that are "
+                     "there are not measured again, failed ones are")
+          ->excludes(out);
+  app.add_option("--benchmark_out_format", out_format, "Of the result file; csv has no context")
+      ->check(CLI::IsMember({"json", "csv"}))
       ->capture_default_str();
   app.add_option("--benchmark_format", format, "Of standard output")
-      ->check(refuse_csv)
-      ->check(CLI::IsMember({"console", "json"}))
+      ->check(CLI::IsMember({"console", "json", "csv"}))
       ->capture_default_str();
   try {
     app.parse(argc, argv);
@@ -126,9 +177,17 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   if (suite.empty()) suite = own_sets || has_flag(flags, "--benchmark_filter") ? "all" : "default";
   if (suite != "all") options.suite = suite == "default" ? SIXDOF_DEFAULT_SUITE : suite;
   if (no_manifest) options.manifest.clear();
-  options.json_on_stdout = format == "json";
+  options.resume = !resume->empty();
+  options.out_format = out_format == "csv" ? ResultFormat::csv : ResultFormat::json;
+  if (format != "console") options.format = format == "csv" ? ResultFormat::csv : ResultFormat::json;
   options.list_only = has_flag(flags, "--benchmark_list_tests") && !has_flag(flags, "--benchmark_list_tests=false");
   if (!has_flag(flags, "--benchmark_min_time")) flags.emplace_back(k_default_min_time);
+  options.arguments = arguments_but_file(argc, argv);
+  options.benchmark_flags = flags_of_measurement(flags);
+  const auto is_color = [](const std::string& flag) {
+    return flag.starts_with("--benchmark_color=") && flag != "--benchmark_color=auto";
+  };
+  if (wants_no_color() && std::ranges::none_of(flags, is_color)) flags.emplace_back("--benchmark_color=false");
   const std::string unknown = initialize_benchmark(flags);
   if (unknown.empty()) return -1;
   print_message("sixdof-bench", unknown.starts_with('-')

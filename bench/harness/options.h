@@ -4,12 +4,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <sixdof/query/registry.h>
 
 namespace sixdof::bench {
+
+enum class ResultFormat {
+  json,
+  csv
+};
 
 /// What sixdof-bench understands besides Google Benchmark's own flags.
 struct Options {
@@ -23,7 +29,11 @@ struct Options {
   std::uint64_t seed = 1;                     ///< Of samples and orders.
   bool stats = false;                         ///< Print how much was opened, read, loaded and prepared.
   std::filesystem::path out;                  ///< Result file; empty for none.
-  bool json_on_stdout = false;
+  ResultFormat out_format = ResultFormat::json;
+  bool resume = false;                 ///< Take over the rows that are in the result file.
+  std::optional<ResultFormat> format;  ///< Of standard output; none for the console's table.
+  std::string arguments;               ///< The command line, but for the result file, as a shell takes it.
+  std::string benchmark_flags;         ///< Those of Google Benchmark's flags that change how a row is measured.
   bool list_only = false;
 };
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <sstream>
+#include <iostream>
 
 #include <fmt/format.h>
 
-#include "bench/common/json_text.h"
 
 namespace sixdof::bench {
 namespace {
@@ -41,20 +40,19 @@ void RowReporter::ReportRuns(const std::vector<Run>& runs) {
   if (next_ != nullptr && !kept.empty()) next_->ReportRuns(kept);
 }
 
-bool JsonRows::ReportContext(const Context& context) {
-  std::ostringstream text;
-  benchmark::JSONReporter writer;
-  writer.SetOutputStream(&text);
-  writer.ReportContext(context);
-  writer.Finalize();
-  document = nlohmann::ordered_json::parse(valid_utf8(text.str()));
-  return true;
+void ResultCollector::ReportRuns(const std::vector<Run>& runs) {
+  for (const Run& run : runs) store_.add(run.run_name.function_name, row_json(run, fields_));
 }
 
-std::string ResultCollector::document(const ContextKeys& context) const {
-  nlohmann::ordered_json json = rows_.document;
-  for (const auto& [key, value] : context) json["context"][key] = value;
-  return json_text(json) + "\n";
+Console::Console() : console_(benchmark::CreateDefaultDisplayReporter()) { console_->SetErrorStream(&context_); }
+
+bool Console::ReportContext(const Context& context) {
+  const bool run = console_->ReportContext(context);
+  std::istringstream lines(context_.str());
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("***WARNING*** Library was built as DEBUG")) std::cerr << line << "\n";
+  }
+  return run;
 }
 
 }  // namespace sixdof::bench

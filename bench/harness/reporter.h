@@ -1,19 +1,16 @@
 #pragma once
 
+#include <memory>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
-#include <nlohmann/json.hpp>
 
+#include "bench/harness/result_store.h"
 #include "bench/harness/row_json.h"
 
 namespace sixdof::bench {
-
-/// (key, value) of a result file's "context".
-using ContextKeys = std::vector<std::pair<std::string, std::string>>;
 
 /// Hands rows on to another reporter:
 /// - rows that are left out are not handed on;
@@ -39,35 +36,31 @@ class RowReporter : public benchmark::BenchmarkReporter {
   int failed_ = 0;
 };
 
-/// Keeps rows as JSON in memory.
-class JsonRows final : public benchmark::BenchmarkReporter {
+/// Hands rows on to a store.
+class ResultCollector final : public benchmark::BenchmarkReporter {
  public:
-  /// @param fields of every row; outlives this object
-  explicit JsonRows(const FieldsByName& fields) : fields_(fields) {}
-  bool ReportContext(const Context& context) override;
-  void ReportRuns(const std::vector<Run>& runs) override {
-    for (const Run& run : runs) document["benchmarks"].push_back(row_json(run, fields_));
-  }
-
-  /// Google Benchmark's "context" and the rows so far.
-  nlohmann::ordered_json document;
+  /// @param fields of every row. Both outlive this object.
+  ResultCollector(ResultStore& store, const FieldsByName& fields) : store_(store), fields_(fields) {}
+  bool ReportContext(const Context& /*context*/) override { return true; }
+  void ReportRuns(const std::vector<Run>& runs) override;
 
  private:
+  ResultStore& store_;
   const FieldsByName& fields_;
 };
 
-/// Collects rows in memory, so that a file appears whole or not at all.
-class ResultCollector final : public RowReporter {
+/// Google Benchmark's console, without its warning that Debian's build of that library has assertions: nothing of it
+/// runs in a timed loop.
+class Console final : public benchmark::BenchmarkReporter {
  public:
-  /// @param fields of every row. Both arguments outlive this object.
-  ResultCollector(const std::set<std::string>& left_out, const FieldsByName& fields)
-      : RowReporter(&rows_, left_out), rows_(fields) {}
-
-  /// The whole document, with the rows so far. Keys are added to "context".
-  std::string document(const ContextKeys& context) const;
+  Console();
+  bool ReportContext(const Context& context) override;
+  void ReportRuns(const std::vector<Run>& runs) override { console_->ReportRuns(runs); }
+  void Finalize() override { console_->Finalize(); }
 
  private:
-  JsonRows rows_;
+  std::ostringstream context_;
+  std::unique_ptr<benchmark::BenchmarkReporter> console_;
 };
 
 }  // namespace sixdof::bench

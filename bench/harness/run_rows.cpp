@@ -1,171 +1,165 @@
 #include "bench/harness/run_rows.h"
 
-#include <algorithm>
-#include <chrono>
-#include <limits>
-#include <memory>
-#include <optional>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <mutex>
 #include <regex>
-#include <set>
+#include <string>
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
-#include "bench/common/build_info.h"
+#include <sixdof/base/library_build.h>
 #include "bench/common/interrupt.h"
-#include "bench/common/progress_line.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/reporter.h"
-#include "bench/harness/timing.h"
+#include "bench/harness/result_store.h"
+#include "bench/harness/result_text.h"
+#include "bench/harness/row_caller.h"
+#include "bench/harness/run_context.h"
 
 namespace sixdof::bench {
 namespace {
 
-/// How many rows the filter takes. Google Benchmark searches names for the filter; a leading '-' negates it.
-std::size_t count_matches(const std::vector<Row>& rows) {
+constexpr const char* k_program = "sixdof-bench";
+
+/// The rows that the filter takes. Google Benchmark searches names for the filter; a leading '-' negates it.
+std::vector<const Row*> choose_rows(const std::vector<Row>& rows) {
   std::string filter = benchmark::GetBenchmarkFilter();
-  if (filter.empty() || filter == "all") return rows.size();
+  if (filter.empty() || filter == "all") filter = ".";
   const bool negated = filter.starts_with('-');
   if (negated) filter.erase(0, 1);
+  std::vector<const Row*> chosen;
   try {
     const std::regex expression(filter, std::regex::extended);
-    return static_cast<std::size_t>(std::count_if(
-        rows.begin(), rows.end(), [&](const Row& row) { return std::regex_search(row.name, expression) != negated; }));
+    for (const Row& row : rows) {
+      if (std::regex_search(row.name, expression) != negated) chosen.push_back(&row);
+    }
   } catch (const std::regex_error& e) {
     throw BadArgument(fmt::format("--benchmark_filter={}: not a regular expression ({})", filter, e.what()));
   }
+  if (chosen.empty()) {
+    throw BadArgument(fmt::format("--benchmark_filter={}: no row matches (--benchmark_list_tests lists them)",
+                                  benchmark::GetBenchmarkFilter()));
+  }
+  return chosen;
 }
 
-/// Calls rows: divides the time among them, shows progress, and turns exceptions into errors of the row.
-class RowCaller {
+/// Registers rows with Google Benchmark while it exists. The library keeps references to them.
+class Registration {
  public:
-  RowCaller(std::size_t rows, double budget_s) : rows_(rows), budget_s_(budget_s) {}
-
-  /// Google Benchmark calls a row several times in succession.
-  void call(const Row& row, benchmark::State& state) {
-    InterruptGuard::check();
-    if (current_ != row.name) {
-      current_ = row.name;
-      ++begun_;
+  Registration(const std::vector<const Row*>& rows, const std::function<void(const Row&, benchmark::State&)>& call) {
+    for (const Row* const row : rows) {
+      benchmark::RegisterBenchmark(row->name.c_str(), [row, &call](benchmark::State& state) {
+        call(*row, state);
+      })->Unit(row->unit);
     }
-    progress_.show(begun_ - 1, rows_, row.name);
-    try {
-      row.run(state, row_budget_s());
-    } catch (const Interrupted&) {
-      throw;  // through the library, which ends the run with the rows that are finished
-    } catch (const NeedsSolid& e) {
-      left_out.insert(row.name);
-      not_solid.insert(e.what());
-      state.SkipWithError(e.what());
-    } catch (const std::exception& e) {
-      state.SkipWithError(e.what());
-    } catch (...) {
-      state.SkipWithError("an exception of unknown type was thrown");
-    }
-    progress_.clear();
-    InterruptGuard::check();
   }
-
-  std::set<std::string> left_out;   ///< Names of the rows that are left out because they need solids.
-  std::set<std::string> not_solid;  ///< Meshes, with the reason.
-
- private:
-  /// Equal parts of the time that is left.
-  double row_budget_s() const {
-    if (budget_s_ == 0.0) return std::numeric_limits<double>::infinity();
-    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const std::size_t left = rows_ > begun_ ? rows_ - begun_ + 1 : 1;
-    return std::max(0.0, budget_s_ - elapsed) / static_cast<double>(left);
-  }
-
-  const std::size_t rows_;
-  const double budget_s_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  ProgressLine progress_{"rows"};
-  std::string current_;
-  std::size_t begun_ = 0;
+  ~Registration() { benchmark::ClearRegisteredBenchmarks(); }
+  Registration(const Registration&) = delete;
+  Registration& operator=(const Registration&) = delete;
 };
 
-/// What the "context" of a result file says besides Google Benchmark's own keys.
-ContextKeys context_of(const Options& options, const Resources& resources) {
-  ContextKeys context = build_info();
-  for (const auto& algorithm : resources.registry.all()) {
-    const Traits& traits = algorithm->traits();
-    context.emplace_back("algorithm:" + traits.name, traits.version);
-    const std::string settings = resources.settings_of(*algorithm).to_string();
-    if (!settings.empty()) context.emplace_back("settings:" + traits.name, settings);
-  }
-  for (auto& entry : resources.cache.hashes()) context.push_back(std::move(entry));
-  context.emplace_back("seed", std::to_string(options.seed));
-  context.emplace_back("sample", std::to_string(options.sample));
-  context.emplace_back("budget_s", fmt::format("{}", options.budget_s));
-  context.emplace_back("clock_overhead_ns", fmt::format("{:.0f}", clock_overhead_ns()));
-  context.emplace_back("interrupted", InterruptGuard::requested() ? "true" : "false");
-  return context;
+void list_rows(const std::vector<const Row*>& rows) {
+  const std::function<void(const Row&, benchmark::State&)> nothing = [](const Row&, benchmark::State&) {};
+  const Registration registered(rows, nothing);
+  benchmark::RunSpecifiedBenchmarks();
 }
 
-void run_registered(RowCaller& caller, const FieldsByName& fields, const Options& options, const Resources& resources) {
-  // Before the rows run, so that a file that cannot be written is refused at once.
-  std::optional<AtomicFile> file;
-  if (!options.out.empty()) file.emplace(options.out);
+/// Writes the result once, whichever thread comes first.
+class Delivery {
+ public:
+  Delivery(const Options& options, ResultStore& store) : options_(options), store_(store) {}
 
-  const std::unique_ptr<benchmark::BenchmarkReporter> console(benchmark::CreateDefaultDisplayReporter());
-  RowReporter display(options.json_on_stdout ? nullptr : console.get(), caller.left_out);
-  ResultCollector collector(caller.left_out, fields);
-  const InterruptGuard guard;
-  try {
-    benchmark::RunSpecifiedBenchmarks(&display, &collector);
-  } catch (const Interrupted&) {
-    collector.Finalize();  // the library skips it
+  void deliver(bool interrupted) {
+    std::call_once(once_, [&] {
+      store_.finish(interrupted);
+      if (!options_.format) return;
+      fmt::print("{}", result_text(store_.document(interrupted), *options_.format));
+      std::fflush(stdout);
+    });
   }
 
-  if (!caller.left_out.empty()) {
-    print_message("sixdof-bench", fmt::format("left out {} rows that need solids: {}", caller.left_out.size(),
-                                              fmt::join(caller.not_solid, ", ")));
-  }
-  if (options.stats) {
-    const PairCache::Counts& counts = resources.cache.counts();
-    fmt::print(stderr, "stats: sets_opened={} buckets_read={} meshes_loaded={} structures_prepared={}\n",
-               counts.sets_opened, counts.buckets_read, counts.meshes_loaded, counts.structures_prepared);
-  }
-  if (file || options.json_on_stdout) {
-    const std::string document = collector.document(context_of(options, resources));
-    if (options.json_on_stdout) fmt::print("{}", document);
-    if (file) {
-      file.reset();
-      write_file_atomically(options.out, document);
+ private:
+  const Options& options_;
+  ResultStore& store_;
+  std::once_flag once_;
+};
+
+void print_left_out(const RowCaller& caller) {
+  if (caller.left_out.empty()) return;
+  print_message(k_program, fmt::format("left out {} rows that need solids: {}", caller.left_out.size(),
+                                       fmt::join(caller.not_solid, ", ")));
+}
+
+void print_stats(const RowCaller& caller, const PairCache::Counts& counts) {
+  fmt::print(stderr, "stats: sets_opened={} buckets_read={} meshes_loaded={} structures_prepared={} rows_measured={}\n",
+             counts.sets_opened, counts.buckets_read, counts.meshes_loaded, counts.structures_prepared,
+             caller.measured());
+}
+
+/// Measures rows and writes the result. @returns how many could not be run
+int measure(const std::vector<const Row*>& rows, const Options& options, const Resources& resources,
+            ResultStore& store) {
+  FieldsByName fields;
+  for (const Row* const row : rows) fields.emplace(row->name, row->fields);
+  const auto commit = [&] { store.commit(resources.cache.hashes()); };
+  RowCaller caller(rows.size(), options.budget_s, commit);
+  Console console;
+  RowReporter display(options.format ? nullptr : &console, caller.left_out);
+  ResultCollector collector(store, fields);
+  RowReporter result(&collector, caller.left_out);
+  const std::function<void(const Row&, benchmark::State&)> call = [&](const Row& row, benchmark::State& state) {
+    caller.call(row, state);
+  };
+  Delivery delivery(options, store);
+  const InterruptGuard guard(k_program, [&delivery]() noexcept {
+    try {
+      delivery.deliver(true);
+    } catch (const std::exception& e) {
+      print_message(k_program, e.what());
     }
+  });
+  try {
+    const Registration registered(rows, call);
+    if (!rows.empty()) benchmark::RunSpecifiedBenchmarks(&display, &result);
+  } catch (const Interrupted&) {
   }
+  commit();
+  print_left_out(caller);
+  if (options.stats) print_stats(caller, resources.cache.counts());
+  delivery.deliver(InterruptGuard::requested());
   InterruptGuard::check();
-  if (collector.failed() > 0) throw Error(fmt::format("{} rows could not be run", collector.failed()));
+  return result.failed();
+}
+
+void warn_of_build() {
+  if (library_build() != LibraryBuild::unoptimised) return;
+  print_message(k_program,
+                "***WARNING*** sixdof was built without optimisation, so times mean nothing; build with "
+                "-DCMAKE_BUILD_TYPE=Release");
 }
 
 }  // namespace
 
 void run_rows(const std::vector<Row>& rows, const Options& options, const Resources& resources) {
-  const std::size_t matches = count_matches(rows);
-  if (matches == 0) {
-    throw BadArgument(fmt::format("--benchmark_filter={}: no row matches (--benchmark_list_tests lists them)",
-                                  benchmark::GetBenchmarkFilter()));
+  std::vector<const Row*> chosen = choose_rows(rows);
+  if (options.list_only) return list_rows(chosen);
+  warn_of_build();
+  std::vector<std::string> order;
+  for (const Row* const row : chosen) order.push_back(row->name);
+  ResultStore store(std::move(order), run_context(options, resources));
+  if (!options.out.empty()) store.open(options.out, options.out_format, options.resume);
+  if (const auto there = std::erase_if(chosen, [&](const Row* row) { return store.has(row->name); }); there > 0) {
+    print_message(k_program, fmt::format("{}: {} rows are there, {} are to be measured", options.out.string(), there,
+                                         chosen.size()));
   }
-  RowCaller caller(matches, options.budget_s);
-  FieldsByName fields;
-  for (const Row& row : rows) {
-    fields.emplace(row.name, row.fields);
-    benchmark::RegisterBenchmark(row.name.c_str(), [&caller, &row](benchmark::State& state) {
-      caller.call(row, state);
-    })->Unit(row.unit);
+  if (const int failed = measure(chosen, options, resources, store); failed > 0) {
+    throw Error(fmt::format("{} rows could not be run", failed));
   }
-  if (options.list_only) {
-    benchmark::RunSpecifiedBenchmarks();
-  } else {
-    run_registered(caller, fields, options, resources);
-  }
-  // They refer to local variables. If an exception passes here, nobody runs them any more.
-  benchmark::ClearRegisteredBenchmarks();
 }
 
 }  // namespace sixdof::bench

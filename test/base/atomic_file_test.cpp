@@ -80,6 +80,21 @@ TEST_F(AtomicFileTest, RemovesTemporaryFilesOfKilledWriters) {
   EXPECT_TRUE(std::filesystem::exists(another.temporary_path()));
 }
 
+TEST_F(AtomicFileTest, RemovesTheTemporaryFilesOfThisProcess) {
+  write_file_atomically(directory_ / "x", "whole");
+  AtomicFile file(directory_ / "y");
+  std::ofstream(file.temporary_path()) << "half";
+  {
+    AtomicFile committed(directory_ / "z");
+    std::ofstream(committed.temporary_path()) << "whole";
+    committed.commit();
+    ASSERT_EQ(file_count(), 3u);
+    remove_own_partials();
+  }
+  EXPECT_EQ(file_count(), 2u);
+  EXPECT_THROW(file.commit(), BadFile);
+}
+
 TEST_F(AtomicFileTest, NamesTheFileThatCannotBeWritten) {
   try {
     write_file_atomically(directory_ / "absent" / "x.json", "");

@@ -136,6 +136,15 @@ TEST(Parallel, OneThreadMeansTheCallersOnly) {
   EXPECT_EQ(threads, 1);
 }
 
+TEST(Parallel, MoreThreadsThanTheMachineHasAreNotAskedFor) {
+  EXPECT_GE(parallel::most_threads(), 1u);
+  std::atomic<std::size_t> bodies{0};
+  ::testing::internal::CaptureStderr();
+  parallel::with_threads(1000, [&] { parallel::for_each(k_many, [&](std::size_t) { ++bodies; }); });
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "oneTBB would warn";
+  EXPECT_EQ(bodies, k_many);
+}
+
 TEST(Parallel, IsolatedRunsAtOnce) {
   bool ran = false;
   parallel::isolated([&] { ran = true; });

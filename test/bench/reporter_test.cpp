@@ -31,20 +31,24 @@ struct Collector : ::testing::Test {
   FieldsByName fields{{"a", {.query = "distance", .algorithm = "exact"}},
                       {"b", {.query = "prepare", .algorithm = "exact"}},
                       {"c", {.query = "scenario", .algorithm = "vps", .scenario = "II"}}};
-  ResultCollector collector{left_out, fields};
-  void SetUp() override { collector.ReportContext(benchmark::BenchmarkReporter::Context()); }
-  nlohmann::json document() {
-    collector.Finalize();
-    return nlohmann::json::parse(collector.document({{"seed", "7"}}));
+  ResultStore store{{"a", "b", "c"}, {{"seed", "7"}}};
+  ResultCollector rows{store, fields};
+  RowReporter collector{&rows, left_out};
+
+  /// Each call of ReportRuns() is a row of its own.
+  void report(const std::vector<ResultRow>& runs) {
+    collector.ReportRuns(runs);
+    store.commit({});
   }
+  nlohmann::json document() { return store.document(false); }
 };
 
 TEST_F(Collector, MakesARowWithANonFiniteCounterAnError) {
-  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-    ResultRow run = row("a");
+  for (const auto& [name, bad] : {std::pair("a", std::nan("")), {"b", std::numeric_limits<double>::infinity()}}) {
+    ResultRow run = row(name);
     run.counters["good"] = 2.5;
     run.counters["misses"] = bad;
-    collector.ReportRuns({run});
+    report({run});
   }
   EXPECT_EQ(collector.failed(), 2);
   const auto json = document();
@@ -64,7 +68,7 @@ TEST_F(Collector, LeavesOutTheCoefficientOfVariationOfZeros) {
   variation.counters["p50_ns"] = 0.1;
   ResultRow without_time = variation;
   without_time.cpu_accumulated_time = std::nan("");
-  collector.ReportRuns({variation, without_time});
+  report({variation, without_time});
   EXPECT_EQ(collector.failed(), 0);
   const auto json = document();
   ASSERT_EQ(json.at("benchmarks").size(), 1u);
@@ -76,8 +80,8 @@ TEST_F(Collector, KeepsAndCountsFailures) {
   ResultRow failure = row("a");
   failure.error_occurred = true;
   failure.error_message = "no such model";
-  collector.ReportRuns({failure});
-  collector.ReportRuns({row("c")});
+  report({failure});
+  report({row("c")});
   EXPECT_EQ(collector.failed(), 1);
   const auto json = document();
   ASSERT_EQ(json.at("benchmarks").size(), 2u);
@@ -89,8 +93,8 @@ TEST_F(Collector, LeavesOutRowsByName) {
   left_out.insert("needs-a-solid");
   ResultRow skipped = row("needs-a-solid");
   skipped.error_occurred = true;
-  collector.ReportRuns({skipped});
-  collector.ReportRuns({row("b")});
+  report({skipped});
+  report({row("b")});
   EXPECT_EQ(collector.failed(), 0);
   const auto json = document();
   ASSERT_EQ(json.at("benchmarks").size(), 1u);
@@ -105,7 +109,7 @@ TEST_F(Collector, AddsTheFieldsOfARow) {
   mean.run_type = ResultRow::RT_Aggregate;
   mean.aggregate_name = "stddev";
   mean.counters["configurations"] = 0;
-  collector.ReportRuns({measured, mean});
+  report({measured, mean});
   const auto json = document();
   ASSERT_EQ(json.at("benchmarks").size(), 2u);
   const auto& first = json.at("benchmarks")[0];
@@ -114,6 +118,14 @@ TEST_F(Collector, AddsTheFieldsOfARow) {
   EXPECT_EQ(first.at("configurations"), 64);
   EXPECT_EQ(first.at("label"), "stack \xEF\xBF\xBD is full") << "bytes that are not UTF-8 are replaced";
   EXPECT_FALSE(json.at("benchmarks")[1].at("sixdof").contains("configurations")) << "a deviation is no number of them";
+}
+
+TEST(ConsoleText, DoesNotCallTheLibraryADebugBuild) {
+  ::testing::internal::CaptureStderr();
+  Console().ReportContext(benchmark::BenchmarkReporter::Context());
+  const std::string text = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(text.find("Load Average"), std::string::npos) << text;
+  EXPECT_EQ(text.find("DEBUG"), std::string::npos) << text;
 }
 
 TEST_F(Collector, IsValidWithoutAnyRow) { EXPECT_EQ(document().at("benchmarks").size(), 0u); }

@@ -9,6 +9,8 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <mutex>
+#include <set>
 
 #include <sixdof/base/error.h>
 
@@ -32,6 +34,27 @@ int flush_to_disk(const std::filesystem::path& path, int flags) {
   return failure;
 }
 
+/// Temporary files of the objects that exist.
+struct Partials {
+  std::mutex mutex;
+  std::set<std::filesystem::path> paths;
+
+  void add(const std::filesystem::path& path) {
+    const std::scoped_lock lock(mutex);
+    paths.insert(path);
+  }
+  void erase(const std::filesystem::path& path) {
+    const std::scoped_lock lock(mutex);
+    paths.erase(path);
+  }
+};
+
+/// Never destroyed: a thread may end the process while another destroys static objects.
+Partials& partials() {
+  static auto* const all = new Partials;
+  return *all;
+}
+
 [[noreturn]] void throw_not_writable(const std::filesystem::path& file, int failure) {
   throw BadFile(file.string(), "cannot be written: " + std::string(std::strerror(failure)));
 }
@@ -47,12 +70,15 @@ AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)
   if (::access(directory.c_str(), W_OK) != 0) throw_not_writable(target_, errno);
   temporary_ = directory / (temporary_prefix(target_) + std::to_string(::getpid()) + "." + std::to_string(counter++) +
                             std::string(k_partial));
+  partials().add(temporary_);
 }
 
 AtomicFile::~AtomicFile() {
-  if (committed_) return;
-  std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);
+  if (!committed_) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary_, ignored);
+  }
+  partials().erase(temporary_);
 }
 
 void AtomicFile::commit() {
@@ -61,6 +87,13 @@ void AtomicFile::commit() {
   committed_ = true;
   // Makes the rename durable. Where a file system cannot flush a directory, the file is complete all the same.
   flush_to_disk(directory_of(target_), O_RDONLY | O_DIRECTORY);
+}
+
+void remove_own_partials() {
+  Partials& all = partials();
+  const std::scoped_lock lock(all.mutex);
+  std::error_code ignored;
+  for (const std::filesystem::path& path : all.paths) std::filesystem::remove(path, ignored);
 }
 
 void remove_stale_partials(const std::filesystem::path& target) {

@@ -30,6 +30,10 @@ class AtomicFile {
   bool committed_ = false;
 };
 
+/// Removes the temporary file of every AtomicFile of this process that is not committed. For a program that is about to
+/// end without unwinding; may be called from any thread.
+void remove_own_partials();
+
 /// Removes temporary files of `target` whose writers were killed. Files of processes that run on this machine stay. A
 /// writer on another machine would lose its file and fail in commit(): a target must have one writer at a time.
 void remove_stale_partials(const std::filesystem::path& target);

@@ -61,9 +61,13 @@ void for_ranges(std::size_t n, const std::function<void(std::size_t, std::size_t
 
 void isolated(const std::function<void()>& f) { tbb::this_task_arena::isolate(f); }
 
+unsigned most_threads() { return static_cast<unsigned>(tbb::task_arena().max_concurrency()); }
+
 void with_threads(unsigned threads, const std::function<void()>& f) {
   Step step;  // oneTBB may run f on another thread
-  tbb::task_arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)).execute([&] {
+  // oneTBB prints a warning if it is asked for more than it has.
+  const unsigned used = threads == 0 ? most_threads() : std::min(threads, most_threads());
+  tbb::task_arena(static_cast<int>(used)).execute([&] {
     const Step::Body part(step);
     f();
   });

@@ -90,7 +90,10 @@ void sort(std::vector<T>& values) {
 /// f(), during which this thread runs no body of another step, so that a lock may be held.
 void isolated(const std::function<void()>& f);
 
-/// f(), whose steps use at most `threads` threads; 0 means all cores.
+/// The number of threads that steps use where no limit is set: the processors that this process may use.
+unsigned most_threads();
+
+/// f(), whose steps use at most `threads` threads; 0, or more than most_threads(), means most_threads().
 void with_threads(unsigned threads, const std::function<void()>& f);
 
 /// A value for each thread that asks for one.

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace sixdof::bench {
+
+/// A file of JSON values, one a line, that only grows. A line is on the disk when append() returns, so that whatever
+/// ends the program, all lines before stay.
+class ResultJournal {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  /// Opens the file, makes it if missing, and keeps other processes out of it while this object exists. A last line
+  /// that was cut off by a crash is removed.
+  /// @throws BadFile if it cannot be opened or written, has a line that is no JSON, or is in use by another process
+  explicit ResultJournal(std::filesystem::path file);
+  ~ResultJournal();
+  ResultJournal(const ResultJournal&) = delete;
+  ResultJournal& operator=(const ResultJournal&) = delete;
+
+  /// What was in the file when it was opened.
+  const std::vector<Json>& lines() const { return lines_; }
+
+  /// @throws BadFile if the line cannot be written (disk full); the file then has the lines before
+  void append(const Json& line);
+
+  void remove();
+
+ private:
+  void read();
+
+  std::filesystem::path file_;
+  std::vector<Json> lines_;
+  int descriptor_ = -1;
+  std::size_t size_ = 0;  ///< Bytes of whole lines.
+};
+
+}  // namespace sixdof::bench

@@ -1,0 +1,96 @@
+#include "bench/harness/run_context.h"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/common/build_info.h"
+#include "bench/common/json_text.h"
+#include "bench/harness/timing.h"
+
+namespace sixdof::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Google Benchmark's keys: date, host, processor, caches, load.
+Json context_of_benchmark() {
+  std::ostringstream text;
+  benchmark::JSONReporter writer;
+  writer.SetOutputStream(&text);
+  writer.ReportContext(benchmark::BenchmarkReporter::Context());
+  writer.Finalize();
+  return Json::parse(valid_utf8(text.str())).at("context");
+}
+
+/// Whether times or answers of a row depend on what stands under this key.
+bool matters(std::string_view key) {
+  static const std::set<std::string_view> k_keys{"num_cpus",  "sixdof_version", "commit",     "commit_dirty",
+                                                 "compiler",  "flags",          "build_type", "sixdof_build",
+                                                 "cpu_model", "seed",           "sample",     "benchmark_flags"};
+  return k_keys.contains(key) || key.starts_with("version:") || key.starts_with("algorithm:") ||
+         key.starts_with("settings:");
+}
+
+std::string value_of(const Json& context, const std::string& key) {
+  const auto found = context.find(key);
+  if (found == context.end()) return "missing";
+  return found->is_string() ? found->get<std::string>() : found->dump();
+}
+
+/// "KEY was X, is Y; ..." of those keys.
+std::string differences(const Json& before, const Json& now, const std::set<std::string>& keys) {
+  std::vector<std::string> list;
+  for (const std::string& key : keys) {
+    const std::string old_value = value_of(before, key), new_value = value_of(now, key);
+    if (old_value != new_value) list.push_back(fmt::format("{} was {}, now it is {}", key, old_value, new_value));
+  }
+  return fmt::format("{}", fmt::join(list, "; "));
+}
+
+}  // namespace
+
+Json run_context(const Options& options, const Resources& resources) {
+  Json context = context_of_benchmark();
+  for (const auto& [key, value] : build_info()) context[key] = value;
+  for (const auto& algorithm : resources.registry.all()) {
+    const Traits& traits = algorithm->traits();
+    context["algorithm:" + traits.name] = traits.version;
+    const std::string settings = resources.settings_of(*algorithm).to_string();
+    if (!settings.empty()) context["settings:" + traits.name] = settings;
+  }
+  context["arguments"] = options.arguments;
+  context["benchmark_flags"] = options.benchmark_flags;
+  context["seed"] = std::to_string(options.seed);
+  context["sample"] = std::to_string(options.sample);
+  context["budget_s"] = fmt::format("{}", options.budget_s);
+  context["clock_overhead_ns"] = fmt::format("{:.0f}", clock_overhead_ns());
+  return context;
+}
+
+std::string difference_of_contexts(const Json& before, const Json& now) {
+  std::set<std::string> keys;
+  for (const Json* const context : {&before, &now}) {
+    for (const auto& item : context->items()) {
+      if (matters(item.key())) keys.insert(item.key());
+    }
+  }
+  return differences(before, now, keys);
+}
+
+std::string difference_of_hashes(const Json& before, const Json& now) {
+  std::set<std::string> keys;
+  for (const auto& item : now.items()) {
+    if (is_hash(item.key()) && before.contains(item.key())) keys.insert(item.key());
+  }
+  return differences(before, now, keys);
+}
+
+bool is_hash(std::string_view key) { return key.starts_with("mesh:") || key.starts_with("set:"); }
+
+}  // namespace sixdof::bench
