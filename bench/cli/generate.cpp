@@ -1,5 +1,6 @@
 #include "bench/cli/generate.h"
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <string>
@@ -10,12 +11,14 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/parallel.h>
 #include <sixdof/generation/distance_generator.h>
 #include <sixdof/models/model_catalogue.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 #include "bench/common/build_info.h"
 #include "bench/common/json_text.h"
+#include "bench/common/run_guarded.h"
 
 namespace sixdof::cli {
 namespace {
@@ -91,6 +94,16 @@ SetDescription describe(const Arguments& arguments, const std::vector<int>& dist
   return set;
 }
 
+/// The number of threads asked for, or as many as the machine has.
+unsigned usable_threads(unsigned asked) {
+  const unsigned most = parallel::most_threads();
+  if (asked > most) {
+    print_message("sixdof",
+                  fmt::format("--threads {}: this process may use {} at once; {} are used", asked, most, most));
+  }
+  return asked == 0 ? most : std::min(asked, most);
+}
+
 void generate(const Arguments& arguments) {
   if (arguments.shards == 0 && (arguments.shard != 0 || arguments.resume)) {
     throw BadArgument("--shard and --resume go with --shards N");
@@ -126,7 +139,7 @@ void generate(const Arguments& arguments) {
                             .b = b,
                             .set = set,
                             .job = job,
-                            .threads = arguments.threads,
+                            .threads = usable_threads(arguments.threads),
                             .progress = arguments.progress};
   if (arguments.plan) {
     if (arguments.shards != 0) check_shard_number({.number = 1, .count = arguments.shards}, set, job);
@@ -162,7 +175,8 @@ void add_generate_command(CLI::App& app) {
   command->add_option(
       "--oracle", arguments->oracle,
       "Algorithm with exact distances that --method advance measures with (default " + k_default_oracle + ")");
-  command->add_option("--threads", arguments->threads, "0: as many as the machine has")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "0, or more than the machine has: as many as it has")
+      ->capture_default_str();
   command->add_option("-o,--output", arguments->output,
                       "The set (HDF5); replaced if it exists. With --shards a folder, made if missing");
   command

@@ -22,7 +22,7 @@ struct GenerationWork {
   const Mesh& b;
   const SetDescription& set;
   const GenerationJob& job;
-  unsigned threads = 0;   ///< 0: as many as the machine has.
+  unsigned threads = 1;
   bool progress = false;  ///< Show it where stderr is not a terminal, too.
 };
 

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <functional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -109,8 +108,7 @@ struct Estimate {
 };
 
 Estimate estimate(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed) {
-  Estimate result{.threads = work.threads != 0 ? work.threads : std::max(1u, std::thread::hardware_concurrency()),
-                  .shards = shards};
+  Estimate result{.threads = work.threads, .shards = shards};
   const bool both = work.job.has(BucketKind::distance) && work.job.has(BucketKind::volume);
   for (const BucketKind kind : {BucketKind::distance, BucketKind::volume}) {
     if (work.job.has(kind)) result.kinds.push_back(measure(work, kind, seconds / (both ? 2.0 : 1.0), seed));

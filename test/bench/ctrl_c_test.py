@@ -52,7 +52,7 @@ class CtrlC(unittest.TestCase):
         out = self.folder / "result.json"
         journal = self.folder / "result.json.journal"
         self.interrupt([SIXDOF_BENCH, f"--benchmark_filter=^({FIRST}|{row})$", "--out", out, "--sample", "16", *words],
-                       lambda: journal.exists() and FIRST in journal.read_text())
+                       lambda: journal.exists() and f'"row":"{FIRST}"' in journal.read_text())
         document = json.loads(out.read_text())
         self.assertEqual([each["name"] for each in document["benchmarks"]], [FIRST])
         self.assertEqual(document["context"]["interrupted"], "true")

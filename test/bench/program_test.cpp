@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/base/library_build.h>
 #include "bench/common/run_guarded.h"
 
 #include "bench_program.h"
@@ -279,6 +280,24 @@ TEST_F(BenchProgram, WritesAWholeFileOnCtrlC) {
   std::ifstream file(out);
   EXPECT_EQ(json::parse(file).at("context").at("interrupted"), "true");
   EXPECT_FALSE(any_partial_file());
+}
+
+TEST_F(BenchProgram, SaysThatItIsNotOptimised) {
+  const std::string rows = "--benchmark_filter=^prepare/algorithm:null/ --benchmark_out=" + out.string();
+  const auto build_of = [&] {
+    std::ifstream file(out);
+    return json::parse(file).at("context").at("sixdof_build").get<std::string>();
+  };
+  const auto slow = test::run_program(command(rows, UNOPTIMISED_PROGRAM));
+  EXPECT_EQ(slow.exit_code, 0) << slow.err;
+  EXPECT_THAT(slow.err, HasSubstr("***WARNING*** sixdof was built without optimisation"));
+  EXPECT_EQ(build_of(), "debug (unoptimised)");
+  const auto fast = bench(rows);
+#if defined(__OPTIMIZE__)
+  EXPECT_THAT(fast.err, Not(HasSubstr("***WARNING*** sixdof")));
+#endif
+  EXPECT_THAT(fast.err, Not(HasSubstr("Library was built as DEBUG")));
+  EXPECT_EQ(build_of(), to_string(library_build()));
 }
 
 TEST_F(BenchProgram, PrintsJsonToStandardOutputWhole) {

@@ -16,6 +16,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sixdof/base/parallel.h>
 #include <sixdof/configuration/shard_file.h>
 #include "bench/common/run_guarded.h"
 
@@ -236,6 +237,20 @@ TEST_F(Generate, SurvivesKillsAtAnyTime) {
   // Most kills came before the end, and some between two shards.
   EXPECT_GT(killed, k_rounds / 2);
   EXPECT_GT(with_some, k_rounds / 4);
+}
+
+TEST_F(Generate, UsesNoMoreThreadsThanThereAre) {
+  const std::string most = std::to_string(parallel::most_threads());
+  const auto many = run({"generate", "--a", "cone-1k", "--grid", "90", "--distances", "5", "--threads", "1000", "-o",
+                         folder_ / "many.h5"});
+  EXPECT_EQ(many.exit_code, 0) << many.err;
+  EXPECT_EQ(many.err, "sixdof: --threads 1000: this process may use " + most + " at once; " + most + " are used\n");
+  const auto plan = run(job_with({"--plan", "--plan-seconds", "0.1", "--threads", "1000"}));
+  EXPECT_THAT(plan.out, HasSubstr("with " + most + " threads"));
+  const auto none = run(
+      {"generate", "--a", "cone-1k", "--grid", "90", "--distances", "5", "--threads", "0", "-o", folder_ / "none.h5"});
+  EXPECT_EQ(none.err, "");
+  EXPECT_EQ(bytes_of(folder_ / "many.h5"), bytes_of(folder_ / "none.h5"));
 }
 
 TEST_F(Generate, KilledMergeLeavesNoSetOrAWholeOne) {
