@@ -13,7 +13,8 @@ int run(int argc, const char* const* argv);
 /// `sixdof models list [--json]`: every model with its triangle counts and size, and whether a fetched one is here.
 /// `sixdof models make NAME [--triangles N] -o FILE`: writes a model to a mesh file, which appears whole or not at all.
 void add_models_command(CLI::App& app);
-/// `sixdof info FILE_OR_NAME [--json]`: what a configuration set, a mesh file or a model holds.
+/// `sixdof info FILE_OR_NAME [--check] [--json]`: what a configuration set, a mesh file or a model holds; with --check
+/// also where a mesh meets itself or counts twice (oracle/mesh_check.h), and k_exit_defects if it does.
 void add_info_command(CLI::App& app);
 /// `sixdof algorithms [--json]`: what every algorithm of this build answers, its law, version and parameters, and
 /// whether benchmarks time it.

@@ -18,6 +18,7 @@
 #include "bench/cli/shared.h"
 #include "bench/common/build_info.h"
 #include "bench/common/json_text.h"
+#include "bench/common/mesh_warning.h"
 #include "bench/common/run_guarded.h"
 
 namespace sixdof::cli {
@@ -104,6 +105,11 @@ unsigned usable_threads(unsigned asked) {
   return asked == 0 ? most : std::min(asked, most);
 }
 
+/// One line on stderr if volumes of the mesh count parts of it several times.
+void warn(const Mesh& mesh, const std::string& argument) {
+  if (const std::string text = mesh_warning(mesh, argument); !text.empty()) print_message("sixdof", text);
+}
+
 void generate(const Arguments& arguments) {
   if (arguments.shards == 0 && (arguments.shard != 0 || arguments.resume)) {
     throw BadArgument("--shard and --resume go with --shards N");
@@ -130,6 +136,10 @@ void generate(const Arguments& arguments) {
   const auto generator = make_generator(arguments, registry);
   const Mesh a = load_model(arguments.a);
   const Mesh b = arguments.b.empty() || arguments.b == arguments.a ? a : load_model(arguments.b);
+  if (!arguments.plan) {
+    warn(a, arguments.a);
+    if (b.hash() != a.hash()) warn(b, arguments.b);
+  }
   set.a = MeshIdentity::of(a);
   set.b = MeshIdentity::of(b);
   const auto job = GenerationJob::of(program_version(), generator->oracle_name(), generator->oracle_version(), a, b,

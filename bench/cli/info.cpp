@@ -6,10 +6,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/base/error.h>
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/oracle/mesh_check.h>
+#include "bench/cli/info_check.h"
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
+#include "bench/common/mesh_warning.h"
+#include "bench/common/run_guarded.h"
 
 namespace sixdof::cli {
 namespace {
@@ -161,18 +166,41 @@ void print(const auto& content, bool json) {
   json ? fmt::print("{}\n", json_text(as_json(content))) : print_text(content);
 }
 
+/// @throws DefectsFound after printing
+void print_checked(const Mesh& mesh, bool json) {
+  const MeshCheck check = check_mesh(mesh);
+  if (json) {
+    Json document = as_json(mesh);
+    document["check"] = check_as_json(check);
+    fmt::print("{}\n", json_text(document));
+  } else {
+    print_text(mesh);
+    print_check(check);
+  }
+  if (!check.clean()) throw DefectsFound(fmt::format("{}: {}", mesh.name(), summary(check)));
+}
+
 }  // namespace
 
 void add_info_command(CLI::App& app) {
   auto* const command = app.add_subcommand("info", "Print what a mesh or a configuration set holds");
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
+  const auto check = std::make_shared<bool>(false);
   command->add_option("file", *name, "File, or name of a model (sixdof models list)")->required();
+  command->add_flag("--check", *check,
+                    "Look for triangles of a mesh that meet each other and for shells that count twice; exit code 3 if "
+                    "there are any, 0 if not");
   command->add_flag("--json", *json, "As JSON");
-  command->callback([name, json] {
-    looks_like_configuration_set(*name) ? print(ConfigurationSet(*name), *json) : print(load_model(*name), *json);
+  command->callback([name, json, check] {
+    if (looks_like_configuration_set(*name)) {
+      if (*check) throw BadArgument(*name + ": --check is for meshes");
+      print(ConfigurationSet(*name), *json);
+    } else {
+      *check ? print_checked(load_model(*name), *json) : print(load_model(*name), *json);
+    }
   });
-  add_examples(*command, "sixdof info cone.ply", "sixdof info torus-knot-10k --json");
+  add_examples(*command, "sixdof info cone.ply", "sixdof info torus-knot-10k --check --json");
 }
 
 }  // namespace sixdof::cli

@@ -28,6 +28,8 @@ int run_guarded(std::string_view program, const std::function<void()>& work) {
     throw;
   } catch (const Interrupted& e) {
     return report(e.what(), k_exit_interrupted);
+  } catch (const DefectsFound& e) {
+    return report(e.what(), k_exit_defects);
   } catch (const std::bad_alloc&) {
     return report("out of memory", k_exit_error);
   } catch (const std::exception& e) {

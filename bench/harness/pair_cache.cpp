@@ -9,6 +9,7 @@
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/geometry/load.h>
 #include <sixdof/models/model_catalogue.h>
+#include "bench/common/mesh_warning.h"
 
 namespace sixdof::bench {
 
@@ -18,10 +19,14 @@ void require_solids(const Mesh& a, const Mesh& b) {
   }
 }
 
+std::vector<std::filesystem::path>::const_iterator PairCache::find_file(const std::string& model) const {
+  return std::ranges::find(mesh_files_, model, [](const auto& path) { return path.stem().string(); });
+}
+
 const Mesh& PairCache::mesh(const std::string& model) {
   auto& entry = meshes_[model];
   if (!entry) {
-    const auto file = std::ranges::find(mesh_files_, model, [](const auto& path) { return path.stem().string(); });
+    const auto file = find_file(model);
     entry = std::make_unique<const Mesh>(file == mesh_files_.end() ? load_model(model) : load_mesh(*file));
     ++counts_.meshes_loaded;
   }
@@ -99,6 +104,16 @@ Query& PairCache::query(const Algorithm& algorithm, const Settings& settings, co
     it = bytes > k_most_prepared_bytes && it != prepared_.begin() ? prepared_.erase(it) : std::next(it);
   }
   return *prepared_.front().query;
+}
+
+std::vector<std::string> PairCache::warnings() const {
+  std::vector<std::string> lines;
+  for (const auto& [name, mesh] : meshes_) {
+    const auto file = find_file(name);
+    std::string line = mesh ? mesh_warning(*mesh, file == mesh_files_.end() ? name : file->string()) : std::string();
+    if (!line.empty()) lines.push_back(std::move(line));
+  }
+  return lines;
 }
 
 std::vector<std::pair<std::string, std::string>> PairCache::hashes() const {

@@ -66,6 +66,9 @@ class PairCache {
   };
   const Counts& counts() const { return counts_; }
 
+  /// One line for each mesh that was fetched and whose volumes count parts of it several times (mesh_warning.h).
+  std::vector<std::string> warnings() const;
+
   /// ("mesh:elephant", content hash), ("set:elephant", content hash) of everything that was fetched.
   std::vector<std::pair<std::string, std::string>> hashes() const;
 
@@ -81,6 +84,9 @@ class PairCache {
     std::size_t bytes = 0;
   };
   using PairBucket = std::pair<std::string, BucketKey>;  ///< Name of the pair and bucket.
+
+  /// The file that stands for a model; the end of mesh_files_ if none does.
+  std::vector<std::filesystem::path>::const_iterator find_file(const std::string& model) const;
 
   std::size_t sample_;
   std::uint64_t seed_;

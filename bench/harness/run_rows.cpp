@@ -95,6 +95,12 @@ void print_left_out(const RowCaller& caller) {
                                        fmt::join(caller.not_solid, ", ")));
 }
 
+/// Checks the meshes that rows used, after the result is written: the first check of a large mesh takes seconds.
+void print_warnings(const PairCache& cache) {
+  if (InterruptGuard::requested()) return;
+  for (const std::string& line : cache.warnings()) print_message(k_program, line);
+}
+
 void print_stats(const RowCaller& caller, const PairCache::Counts& counts) {
   fmt::print(stderr, "stats: sets_opened={} buckets_read={} meshes_loaded={} structures_prepared={} rows_measured={}\n",
              counts.sets_opened, counts.buckets_read, counts.meshes_loaded, counts.structures_prepared,
@@ -132,6 +138,7 @@ int measure(const std::vector<const Row*>& rows, const Options& options, const R
   print_left_out(caller);
   if (options.stats) print_stats(caller, resources.cache.counts());
   delivery.deliver(InterruptGuard::requested());
+  print_warnings(resources.cache);
   InterruptGuard::check();
   return result.failed();
 }

@@ -84,6 +84,40 @@ TEST_F(Info, TellsAnOpenMeshFromASolid) {
   EXPECT_EQ(json.at("border_edges"), 3);
 }
 
+TEST_F(Info, ShowsWhatLoadingRepaired) {
+  // A tetrahedron; its base is a quadrilateral with a corner off the plane, and one face has its edges crossed.
+  std::ofstream(path("odd.obj")) << "v 0 0 0\nv 1 0 0\nv 1 1 0.25\nv 0 1 0\nv 0 0 1\nv 0 0 1\nv 5 5 5\n"
+                                    "strange words\n"
+                                    "f 1 2 3 4\n"
+                                    "f 1 3 2 4\n"
+                                    "f 1 2 5\nf 2 3 6\n"
+                                    "f 5 6 1\n";
+  const auto json = json_of("info " + path("odd.obj")).at("repairs");
+  EXPECT_EQ(json.at("nonplanar_polygons").at("count"), 2);
+  EXPECT_EQ(json.at("nonplanar_polygons").at("first_place"), "line 9");
+  EXPECT_EQ(json.at("crossing_polygons").at("count"), 0);
+  EXPECT_EQ(json.at("skipped_statements").at("count"), 1);
+  EXPECT_EQ(json.at("skipped_statements").at("first_place"), "line 8");
+  EXPECT_EQ(json.at("welded_vertices"), 1);
+  EXPECT_EQ(json.at("unreferenced_vertices"), 1);
+  EXPECT_EQ(json.at("collapsed_triangles"), 1);
+  EXPECT_EQ(json.at("zero_area_triangles"), 0);
+  const std::string text = run("info " + path("odd.obj")).out;
+  EXPECT_THAT(text,
+              HasSubstr("1 vertices welded, 1 unused dropped; 1 collapsed triangles dropped, 0 of zero area kept"));
+  EXPECT_THAT(text, HasSubstr("polygons that are not flat, triangulated: 2, the first at line 9"));
+  EXPECT_THAT(text, HasSubstr("unknown statements skipped: 1, the first at line 8"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("polygons that cross themselves")));
+
+  // A bow tie: its sides 2-3 and 4-1 cross.
+  std::ofstream(path("bow.obj")) << "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 2 1 0\nf 1 2 3 4\n";
+  const auto bow = json_of("info " + path("bow.obj")).at("repairs");
+  EXPECT_EQ(bow.at("crossing_polygons").at("count"), 1);
+  EXPECT_EQ(bow.at("crossing_polygons").at("first_place"), "line 5");
+  EXPECT_THAT(run("info " + path("bow.obj")).out,
+              HasSubstr("polygons that cross themselves, triangulated: 1, the first at line 5"));
+}
+
 TEST_F(Info, ShowsAConfigurationSet) {
   ASSERT_EQ(run("generate --a box-12 --grid 90 --distances 0,5 -o " + path("set.h5")).exit_code, 0);
   const auto json = json_of("info " + path("set.h5"));

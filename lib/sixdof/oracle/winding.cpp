@@ -71,21 +71,21 @@ void find_in_box(const Tree& tree, const AlignedBox3d& box, std::vector<std::uin
 /// @param p the point in A's frame, p_mesh in the mesh's frame
 /// @param slack above the rounding of p_mesh and of transformed corners
 /// @param to_a maps points of the mesh to A's frame
-template <class ToA>
-int winding(const Tree& tree, const Vector3d& p, const Vector3d& p_mesh, double slack, Perturbed perturbed,
-            const ToA& to_a, std::vector<std::uint32_t>& triangles) {
+/// @param add takes each term: the triangle in tree order, and 1 or -1
+template <class ToA, class Add>
+void find_terms(const Tree& tree, const Vector3d& p, const Vector3d& p_mesh, double slack, Perturbed perturbed,
+                const ToA& to_a, std::vector<std::uint32_t>& triangles, const Add& add) {
   const std::optional<Vector3d> end = exit_point(box_of(tree, slack), p_mesh);
-  if (!end) return 0;
+  if (!end) return;
   find_in_box(tree,
               {p_mesh.cwiseMin(*end) - Vector3d::Constant(slack), p_mesh.cwiseMax(*end) + Vector3d::Constant(slack)},
               triangles);
   const Vector3d q = to_a(*end);
-  int entered = 0;
   for (const std::uint32_t t : triangles) {
     const Tree::Corners& c = tree.corners()[t];
-    entered += pierce(p, q, {to_a(c[0]), to_a(c[1]), to_a(c[2])}, perturbed);
+    const int entered = pierce(p, q, {to_a(c[0]), to_a(c[1]), to_a(c[2])}, perturbed);
+    if (entered != 0) add(t, -entered);
   }
-  return -entered;
 }
 
 constexpr double k_slack = 1e-12;  // relative to the lengths that are added
@@ -93,16 +93,26 @@ constexpr double k_slack = 1e-12;  // relative to the lengths that are added
 }  // namespace
 
 int winding_of_a(const Tree& a, const Vector3d& p, std::vector<std::uint32_t>& triangles) {
+  int sum = 0;
+  for_each_winding_term(a, p, triangles, [&](std::uint32_t, int n) { sum += n; });
+  return sum;
+}
+
+void for_each_winding_term(const Tree& a, const Vector3d& p, std::vector<std::uint32_t>& triangles,
+                           const std::function<void(std::uint32_t i, int n)>& add) {
   const double slack = k_slack * (2.0 * a.radius() + p.lpNorm<1>());
   const auto to_a = [](const Vector3d& x) -> const Vector3d& { return x; };
-  return winding(a, p, p, slack, Perturbed::edge, to_a, triangles);
+  find_terms(a, p, p, slack, Perturbed::edge, to_a, triangles, add);
 }
 
 int winding_of_b(const Tree& b, const Pose& X_AB, PointTransform transform, const Vector3d& p,
                  std::vector<std::uint32_t>& triangles) {
   const double slack = k_slack * (2.0 * b.radius() + p.lpNorm<1>() + X_AB.t.lpNorm<1>());
   const auto to_a = [&](const Vector3d& x) { return transform(X_AB, x); };
-  return winding(b, p, X_AB.inverse() * p, slack, Perturbed::triangle, to_a, triangles);
+  int sum = 0;
+  find_terms(b, p, X_AB.inverse() * p, slack, Perturbed::triangle, to_a, triangles,
+             [&](std::uint32_t, int n) { sum += n; });
+  return sum;
 }
 
 }  // namespace sixdof::detail

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,6 +22,11 @@ using PointTransform = Eigen::Vector3d (*)(const Pose& X_AB, const Eigen::Vector
 
 /// Winding number of A's surface around the point `p` (A's frame) of B; `triangles` is scratch.
 int winding_of_a(const Tree& a, const Eigen::Vector3d& p, std::vector<std::uint32_t>& triangles);
+
+/// The same sum, term by term: calls `add(i, n)` for each triangle i of A, in tree order, that the segment from `p`
+/// crosses; n is 1 or -1.
+void for_each_winding_term(const Tree& a, const Eigen::Vector3d& p, std::vector<std::uint32_t>& triangles,
+                           const std::function<void(std::uint32_t i, int n)>& add);
 
 /// Winding number of B's surface around the point `p` (A's frame) of A. `transform` maps the corners of B.
 int winding_of_b(const Tree& b, const Pose& X_AB, PointTransform transform, const Eigen::Vector3d& p,

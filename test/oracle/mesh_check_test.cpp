@@ -1,0 +1,217 @@
+#include <sixdof/oracle/mesh_check.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+
+#include "../geometry/shapes.h"
+
+namespace sixdof {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// Several meshes as one.
+Mesh joined(const std::vector<Mesh>& parts) {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Triangle> triangles;
+  for (const Mesh& part : parts) {
+    const auto offset = static_cast<std::uint32_t>(vertices.size());
+    vertices.insert(vertices.end(), part.vertices().begin(), part.vertices().end());
+    for (const Triangle& t : part.triangles()) triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  }
+  return Mesh::build(std::move(vertices), std::move(triangles), "joined");
+}
+
+Mesh inside_out(const Mesh& mesh) {
+  std::vector<Triangle> triangles = mesh.triangles();
+  for (Triangle& t : triangles) std::swap(t[1], t[2]);
+  return Mesh::build(mesh.vertices(), std::move(triangles), "inside out");
+}
+
+/// A generic pose, so that nothing is parallel to an axis.
+Mesh turned(const Mesh& mesh) {
+  shapes::Generator generator(20261122);
+  return shapes::moved(mesh, shapes::random_pose(generator, 0.7));
+}
+
+Mesh ball(double radius, const Eigen::Vector3d& center = Eigen::Vector3d::Zero()) {
+  return shapes::bumpy_sphere(2, 0.1, radius, center);
+}
+
+TEST(MeshCheck, IsCleanForOneBodyAndForBodiesApart) {
+  for (const Mesh& mesh :
+       {ball(1.0), turned(shapes::box({0.3, 0.5, 0.7})), joined({ball(1.0), ball(0.5, {2, 0, 0})})}) {
+    const MeshCheck check = check_mesh(mesh);
+    EXPECT_TRUE(check.clean());
+    EXPECT_EQ(check.undecided + check.open_shells, 0u);
+    EXPECT_EQ(check.shells, mesh.topology().components);
+    EXPECT_THAT(check.contacts.touched, ::testing::Each(0));
+  }
+}
+
+TEST(MeshCheck, FindsADoubledShell) {
+  const Mesh one = turned(ball(1.0));
+  const MeshCheck check = check_mesh(joined({one, one}));
+  EXPECT_EQ(check.contacts.coincident, one.triangles().size());
+  EXPECT_EQ(check.contacts.pairs(), 1 * check.contacts.coincident);
+  EXPECT_EQ(check.shells, 2u);
+  EXPECT_EQ(check.doubled, 1u);
+  ASSERT_EQ(check.first.size(), 1u);
+  EXPECT_EQ(check.first[0].defect, ShellDefect::doubled);
+  EXPECT_EQ(check.first[0].triangle, one.triangles().size());
+  EXPECT_EQ(check.first[0].triangles, one.triangles().size());
+  EXPECT_FALSE(check.clean());
+}
+
+TEST(MeshCheck, CountsTheLayersOfNestedShells) {
+  const MeshCheck check = check_mesh(turned(joined({ball(1.0), ball(0.7), ball(0.4)})));
+  EXPECT_EQ(check.contacts.pairs(), 0u);
+  EXPECT_EQ(check.nested, 2u);
+  ASSERT_EQ(check.first.size(), 2u);
+  EXPECT_EQ(check.first[0].layers, 2);
+  EXPECT_EQ(check.first[1].layers, 3);
+}
+
+TEST(MeshCheck, AcceptsACavityAndABodyInIt) {
+  const Mesh mesh = turned(joined({ball(1.0), inside_out(ball(0.7)), ball(0.4)}));
+  const MeshCheck check = check_mesh(mesh);
+  EXPECT_TRUE(check.clean());
+  EXPECT_EQ(check.shells, 3u);
+}
+
+TEST(MeshCheck, FindsShellsThatFaceInwardsInEmptySpace) {
+  const MeshCheck check = check_mesh(turned(joined({ball(1.0), inside_out(ball(0.5, {2, 0, 0}))})));
+  EXPECT_EQ(check.inverted, 1u);
+  EXPECT_EQ(check.nested, 0u);
+  ASSERT_EQ(check.first.size(), 1u);
+  EXPECT_EQ(check.first[0].layers, -1);
+}
+
+/// A body and another that pierces it: the curve where they cross is closed, and every crossing triangle is named.
+TEST(MeshCheck, FindsCrossingBodies) {
+  const Mesh block = shapes::box({1.0, 0.8, 0.6});
+  const Mesh needle = shapes::box({0.1, 0.1, 2.0}, {0.23, 0.11, 0.0});
+  const MeshCheck check = check_mesh(turned(joined({block, needle})));
+  // The four sides of the needle (8 triangles) pass through the top and through the bottom. The diagonals of those two
+  // faces run from (-1, -0.8) to (1, 0.8) or across: the needle's section lies in one or two triangles.
+  EXPECT_GE(check.contacts.crossing, 16u);
+  EXPECT_EQ(check.contacts.coplanar + check.contacts.coincident, 0u);
+  for (const SelfContact& contact : check.contacts.first) {
+    EXPECT_LT(contact.a, 12u);
+    EXPECT_GE(contact.b, 12u);
+  }
+  for (std::size_t t = 0; t < 4; ++t) EXPECT_EQ(check.contacts.touched[12 + 4 * 0 + t], 0) << "end of the needle";
+}
+
+TEST(MeshCheck, FindsFacesThatLieOnEachOther) {
+  // The small box stands on top of the large one; its bottom is part of the top.
+  const Mesh pair = joined({shapes::box({1.0, 1.0, 1.0}), shapes::box({0.3, 0.4, 0.5}, {0.1, -0.2, 1.5})});
+  const MeshCheck check = check_mesh(pair);
+  EXPECT_GT(check.contacts.coplanar, 0u);
+  EXPECT_GT(check.contacts.crossing, 0u);  // sides of the small box end on the top
+  EXPECT_EQ(check.nested + check.inverted + check.undecided, 0u);
+}
+
+TEST(MeshCheck, PlacesLieOnBothTriangles) {
+  shapes::Generator generator(7);
+  const Mesh soup = shapes::soup(generator, 200, 1.0, 0.6);
+  const MeshCheck check = check_mesh(soup);
+  ASSERT_EQ(check.contacts.first.size(), SelfContacts::k_listed);
+  EXPECT_EQ(check.open_shells, 200u);
+  for (const SelfContact& contact : check.contacts.first) {
+    for (const std::uint32_t t : {contact.a, contact.b}) {
+      const auto corner = [&](std::size_t k) { return soup.vertices()[soup.triangles()[t][k]]; };
+      const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+      EXPECT_NEAR(normal.dot(contact.point - corner(0)), 0.0, 1e-12);
+    }
+  }
+}
+
+TEST(MeshCheck, IsTheSameForEveryNumberOfThreads) {
+  shapes::Generator generator(11);
+  const Mesh soup = shapes::soup(generator, 3000, 1.0, 0.2);
+  RunOptions one;
+  one.threads = 1;
+  const MeshCheck a = check_mesh(soup, one), b = check_mesh(soup);
+  EXPECT_GT(a.contacts.crossing, 1000u);
+  EXPECT_EQ(a.contacts.crossing, b.contacts.crossing);
+  EXPECT_EQ(a.contacts.touched, b.contacts.touched);
+  ASSERT_EQ(a.contacts.first.size(), b.contacts.first.size());
+  for (std::size_t i = 0; i < a.contacts.first.size(); ++i) {
+    EXPECT_EQ(a.contacts.first[i].a, b.contacts.first[i].a);
+    EXPECT_EQ(a.contacts.first[i].b, b.contacts.first[i].b);
+    EXPECT_EQ(a.contacts.first[i].point, b.contacts.first[i].point);
+  }
+}
+
+TEST(MeshCheck, EndsWhenItIsCancelled) {
+  RunOptions options;
+  options.cancelled = [] { return true; };
+  EXPECT_THROW(check_mesh(ball(1.0), options), Interrupted);
+}
+
+/// Two triangles of five points at most; each case in all orders of corners and both orders of the triangles.
+void expect_contact(const std::vector<Eigen::Vector3d>& points, Triangle a, Triangle b,
+                    std::optional<ContactKind> expected) {
+  std::sort(a.begin(), a.end());
+  do {
+    std::sort(b.begin(), b.end());
+    do {
+      for (const auto& [x, y] : {std::pair(a, b), std::pair(b, a)}) {
+        const auto contact = find_contact(points, x, y);
+        ASSERT_EQ(contact.has_value(), expected.has_value());
+        if (contact) {
+          ASSERT_EQ(contact->kind, *expected);
+        }
+      }
+    } while (std::next_permutation(b.begin(), b.end()));
+  } while (std::next_permutation(a.begin(), a.end()));
+}
+
+TEST(TriangleContact, OfTrianglesThatShareAVertex) {
+  // b's opposite edge: pierces a, ends on a, lies in a's plane inside and outside of a, is apart.
+  const std::vector<Eigen::Vector3d> p{{0, 0, 0}, {4, 0, 0}, {0, 4, 0},  {1, 1, -1},  {1, 1, 1}, {1, 1, 0}, {3, 1, 1},
+                                       {5, 5, 0}, {6, 5, 0}, {-1, 1, 0}, {-1, -2, 0}, {2, 2, 0}, {1, 0, 3}, {0, 1, 3}};
+  expect_contact(p, {0, 1, 2}, {0, 3, 4}, ContactKind::crossing);
+  expect_contact(p, {0, 1, 2}, {0, 5, 6}, ContactKind::crossing);
+  expect_contact(p, {0, 1, 2}, {0, 7, 8}, ContactKind::coplanar);
+  expect_contact(p, {0, 1, 2}, {0, 9, 10}, std::nullopt);
+  expect_contact(p, {0, 1, 2}, {0, 12, 13}, std::nullopt);
+  expect_contact(p, {0, 1, 2}, {0, 11, 9}, ContactKind::coplanar);
+}
+
+TEST(TriangleContact, OfTrianglesThatShareAnEdge) {
+  const std::vector<Eigen::Vector3d> p{{0, 0, 0}, {4, 0, 0}, {1, 3, 0}, {2, -1, 0}, {2, 1, 0}, {2, 1, 0x1p-60}};
+  expect_contact(p, {0, 1, 2}, {0, 1, 3}, std::nullopt);
+  expect_contact(p, {0, 1, 2}, {0, 1, 4}, ContactKind::coplanar);
+  expect_contact(p, {0, 1, 2}, {0, 1, 5}, std::nullopt);  // folded back, but not quite
+  expect_contact(p, {0, 1, 2}, {2, 0, 1}, ContactKind::coincident);
+}
+
+TEST(TriangleContact, OfTrianglesThatShareNothing) {
+  const std::vector<Eigen::Vector3d> p{{0, 0, 0},       {4, 0, 0},  {0, 4, 0},   // a
+                                       {1, 1, 0},       {1, 1, 2},  {2, 1, 2},   // a corner on a
+                                       {2, 2, -1},      {2, 2, 1},  {5, 5, 0},   // an edge through a's longest edge
+                                       {1, 1, 0},       {2, 1, 0},  {1, 2, 0},   // inside a
+                                       {3, 3, 0},       {5, 3, 0},  {3, 5, 0},   // in its plane, beside it
+                                       {1, 1, 0x1p-70}, {1, 1, 2},  {2, 1, 2},   // not quite on a
+                                       {4, 0, 1},       {4, 0, -1}, {6, 0, 0}};  // an edge through a's corner
+  expect_contact(p, {0, 1, 2}, {3, 4, 5}, ContactKind::crossing);
+  expect_contact(p, {0, 1, 2}, {6, 7, 8}, ContactKind::crossing);
+  expect_contact(p, {0, 1, 2}, {9, 10, 11}, ContactKind::coplanar);
+  expect_contact(p, {0, 1, 2}, {12, 13, 14}, std::nullopt);
+  expect_contact(p, {0, 1, 2}, {15, 16, 17}, std::nullopt);
+  expect_contact(p, {0, 1, 2}, {18, 19, 20}, ContactKind::crossing);
+}
+
+TEST(TriangleContact, CollinearCorners) {
+  EXPECT_TRUE(is_collinear({0, 0, 0}, {1, 2, 3}, {2, 4, 6}));
+  EXPECT_TRUE(is_collinear({0, 0, 0}, {1, 2, 3}, {1, 2, 3}));
+  EXPECT_FALSE(is_collinear({0, 0, 0}, {1, 2, 3}, {2, 4, std::nextafter(6.0, 7.0)}));
+}
+
+}  // namespace
+}  // namespace sixdof
