@@ -16,6 +16,9 @@ void add_models_command(CLI::App& app);
 /// `sixdof info FILE_OR_NAME [--check] [--json]`: what a configuration set, a mesh file or a model holds; with --check
 /// also where a mesh meets itself or counts twice (oracle/mesh_check.h), and k_exit_defects if it does.
 void add_info_command(CLI::App& app);
+/// `sixdof repair FILE_OR_NAME -o FILE [--weld T] [--max-hole N] [--json]`: welds, cleans, orients and closes a mesh
+/// (repair/repair.h); k_exit_defects if the result, which is written, is no solid. Does not overwrite its input.
+void add_repair_command(CLI::App& app);
 /// `sixdof algorithms [--json]`: what every algorithm of this build answers, its law, version and parameters, and
 /// whether benchmarks time it.
 void add_algorithms_command(CLI::App& app);

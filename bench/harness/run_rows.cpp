@@ -13,6 +13,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/library_build.h>
+#include <sixdof/oracle/solid.h>
 #include "bench/common/interrupt.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/reporter.h"
@@ -91,8 +92,8 @@ class Delivery {
 
 void print_left_out(const RowCaller& caller) {
   if (caller.left_out.empty()) return;
-  print_message(k_program, fmt::format("left out {} rows that need solids: {}", caller.left_out.size(),
-                                       fmt::join(caller.not_solid, ", ")));
+  print_message(k_program, fmt::format("left out {} rows that need solids: {}{}", caller.left_out.size(),
+                                       fmt::join(caller.not_solid, ", "), k_repair_hint));
 }
 
 /// Checks the meshes that rows used, after the result is written: the first check of a large mesh takes seconds.

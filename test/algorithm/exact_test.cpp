@@ -83,7 +83,7 @@ TEST(ExactAlgorithm, GivesAReasonWhereAMeshIsNotSolid) {
   for (const auto& [a, b] : {std::pair(&solid, &open), std::pair(&open, &solid)}) {
     const auto query = algorithm->prepare(*a, *b, algorithm->settings());
     EXPECT_EQ(query->respond(Pose{}).status, Status::failed);
-    EXPECT_EQ(query->diagnosis(), "open: " + open.why_not_solid());
+    EXPECT_EQ(query->diagnosis(), "open: " + open.why_not_solid() + k_repair_hint);
     EXPECT_TRUE(query->distance(Pose{}).ok());
   }
 }

@@ -313,7 +313,7 @@ TEST(Overlap, MeshesThatAreNotSolidAreRefused) {
     const Solid solid(with_hole, tree);
     FAIL() << "an open mesh was accepted";
   } catch (const BadMesh& e) {
-    EXPECT_EQ(std::string(e.what()), "hole: " + with_hole.why_not_solid());
+    EXPECT_EQ(std::string(e.what()), "hole: " + with_hole.why_not_solid() + k_repair_hint);
   }
   t = open.triangles();
   std::swap(t[5][0], t[5][1]);

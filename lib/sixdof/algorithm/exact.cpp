@@ -17,7 +17,7 @@ class ExactQuery final : public Query {
       : oracle_(a, b), distance_query_(oracle_), warm_start_(settings.choice("warm_start") == "on") {
     for (const Mesh* mesh : {&a, &b}) {
       if (!mesh->solid()) {
-        why_no_response_ = mesh->name() + ": " + mesh->why_not_solid();
+        why_no_response_ = mesh->name() + ": " + mesh->why_not_solid() + k_repair_hint;
         return;
       }
     }

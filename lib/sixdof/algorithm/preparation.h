@@ -11,6 +11,7 @@
 #include <sixdof/base/cache.h>
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/mesh.h>
+#include <sixdof/oracle/solid.h>
 
 /// Shared by the algorithms that prepare structures of their own.
 
@@ -19,7 +20,8 @@ namespace sixdof {
 /// @param what needs the solid, for the message
 /// @throws BadMesh with the reason if the mesh is not solid()
 inline void require_solid(const Mesh& mesh, const std::string& what) {
-  if (!mesh.solid()) throw BadMesh(mesh.name() + ": " + what + " needs a solid: " + mesh.why_not_solid());
+  if (!mesh.solid())
+    throw BadMesh(mesh.name() + ": " + what + " needs a solid: " + mesh.why_not_solid() + k_repair_hint);
 }
 
 /// Copies the members of a structure to a CacheEntry, or moves them back. Reading throws BadFile where an array is

@@ -172,7 +172,7 @@ class FaceGrid {
 
 double overlap_volume_by_columns(const Mesh& a, const Mesh& b, const Pose& X_AB) {
   for (const Mesh* mesh : {&a, &b}) {
-    if (!mesh->solid()) throw BadMesh(mesh->name() + ": " + mesh->why_not_solid());
+    if (!mesh->solid()) throw BadMesh(mesh->name() + ": " + mesh->why_not_solid() + k_repair_hint);
   }
   const Vector3d origin = a.center();
   const std::vector<Face> of_a = project(a, Pose{}, origin);

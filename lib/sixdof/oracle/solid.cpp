@@ -20,7 +20,7 @@ constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
 constexpr int k_potential_bits = 96;
 
 void check(const Mesh& mesh) {
-  if (!mesh.solid()) throw BadMesh(fmt::format("{}: {}", mesh.name(), mesh.why_not_solid()));
+  if (!mesh.solid()) throw BadMesh(mesh.name() + ": " + mesh.why_not_solid() + k_repair_hint);
   for (std::size_t i = 0; i < mesh.vertices().size(); ++i) {
     for (const double x : mesh.vertices()[i]) {
       if (x != 0.0 && (std::abs(x) < k_smallest_exact_coordinate || std::abs(x) > k_largest_exact_coordinate)) {

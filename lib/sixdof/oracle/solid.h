@@ -14,6 +14,9 @@
 
 namespace sixdof {
 
+/// Behind a reason why a mesh is no solid.
+inline constexpr const char* k_repair_hint = "; `sixdof repair IN -o OUT` may mend it";
+
 /// A closed mesh prepared for overlap queries: potentials by which the part of the surface inside a closed curve is
 /// integrated from the curve alone.
 ///
@@ -69,8 +72,8 @@ class Solid {
   };
 
   /// @param mesh the tree's mesh; both outlive this object.
-  /// @throws BadMesh with Mesh::why_not_solid() if the mesh is open or not consistently oriented, and if a coordinate
-  /// lies outside the range of the exact predicates.
+  /// @throws BadMesh with Mesh::why_not_solid() and k_repair_hint if the mesh is open or not consistently oriented, and
+  /// if a coordinate lies outside the range of the exact predicates.
   Solid(const Mesh& mesh, const Tree& tree);
 
   const Mesh& mesh() const { return *mesh_; }

@@ -1,0 +1,143 @@
+#include "bench/cli/commands.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include <sixdof/geometry/save.h>
+#include <sixdof/models/model_catalogue.h>
+#include <sixdof/repair/repair.h>
+#include "bench/cli/shared.h"
+#include "bench/common/json_text.h"
+#include "bench/common/run_guarded.h"
+
+namespace sixdof::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::string input, output;
+  RepairOptions options;
+  bool json = false;
+};
+
+struct KindName {
+  const char* key;  ///< In JSON.
+  const char* text;
+};
+
+KindName name_of(RepairKind kind) {
+  switch (kind) {
+    case RepairKind::welded_vertices:
+      return {"welded_vertices", "vertices welded"};
+    case RepairKind::duplicate_triangles:
+      return {"duplicate_triangles", "duplicate triangles dropped"};
+    case RepairKind::degenerate_triangles:
+      return {"degenerate_triangles", "triangles without area taken out"};
+    case RepairKind::split_edges:
+      return {"split_edges", "edges split at vertices that lay on them"};
+    case RepairKind::flipped_triangles:
+      return {"flipped_triangles", "triangles turned"};
+    case RepairKind::filled_holes:
+      return {"filled_holes", "holes filled"};
+  }
+  return {"", ""};
+}
+
+Json state_of(const Mesh& mesh) {
+  return {{"triangles", mesh.triangles().size()},
+          {"vertices", mesh.vertices().size()},
+          {"solid", mesh.solid()},
+          {"why_not_solid", mesh.why_not_solid()},
+          {"closed", mesh.topology().closed},
+          {"border_edges", mesh.topology().border_edges},
+          {"manifold", mesh.topology().manifold},
+          {"oriented", mesh.topology().oriented},
+          {"nonmanifold_edges", mesh.topology().nonmanifold_edges},
+          {"volume", mesh.volume()},
+          {"hash", mesh.hash()}};
+}
+
+void print_json(const Mesh& before, const RepairedMesh& repaired) {
+  Json repairs;
+  for (std::size_t k = 0; k < k_repair_kinds; ++k) {
+    const RepairsOfKind& of_kind = repaired.log.kinds[k];
+    auto places = Json::array();
+    for (const Eigen::Vector3d& p : of_kind.first) places.push_back(coordinates(p));
+    repairs[name_of(static_cast<RepairKind>(k)).key] = {{"count", of_kind.count}, {"first", std::move(places)}};
+  }
+  const Json json{{"before", state_of(before)},
+                  {"after", state_of(repaired.mesh)},
+                  {"repairs", std::move(repairs)},
+                  {"passes", repaired.passes},
+                  {"converged", repaired.converged}};
+  fmt::print("{}\n", json_text(json));
+}
+
+std::string state_text(const Mesh& mesh) {
+  return fmt::format(
+      "{} triangles, {}", mesh.triangles().size(),
+      mesh.solid() ? fmt::format("a solid of volume {:.9g}", mesh.volume()) : "no solid: " + mesh.why_not_solid());
+}
+
+void print_text(const Mesh& before, const RepairedMesh& repaired) {
+  fmt::print("{:<8} {}\n", "before", state_text(before));
+  if (repaired.log.total() == 0) fmt::print("{:<8} nothing to repair\n", "");
+  for (std::size_t k = 0; k < k_repair_kinds; ++k) {
+    const RepairsOfKind& of_kind = repaired.log.kinds[k];
+    if (of_kind.count == 0) continue;
+    std::string places;
+    for (const Eigen::Vector3d& p : of_kind.first)
+      places += fmt::format(" ({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
+    fmt::print("{:>8} {}, at{}{}\n", of_kind.count, name_of(static_cast<RepairKind>(k)).text, places,
+               of_kind.count > of_kind.first.size() ? " ..." : "");
+  }
+  fmt::print("{:<8} {}\n", "after", state_text(repaired.mesh));
+  if (!repaired.converged) fmt::print("{:<8} repairing the result again may change more\n", "");
+}
+
+void repair(const Arguments& arguments) {
+  std::error_code none;
+  if (std::filesystem::equivalent(arguments.input, arguments.output, none)) {
+    throw BadArgument(arguments.output + ": is the input, which is not overwritten");
+  }
+  const Mesh mesh = load_model(arguments.input);
+  const RepairedMesh repaired = repair_mesh(mesh, arguments.options);
+  save_mesh(repaired.mesh, arguments.output);
+  arguments.json ? print_json(mesh, repaired) : print_text(mesh, repaired);
+  if (!repaired.mesh.solid()) {
+    throw DefectsFound(
+        fmt::format("{}: written, but still no solid: {}", arguments.output, repaired.mesh.why_not_solid()));
+  }
+}
+
+}  // namespace
+
+void add_repair_command(CLI::App& app) {
+  auto* const command = app.add_subcommand("repair", "Close and orient a damaged mesh");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("file", arguments->input, "File, or name of a model (sixdof models list)")->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "File to write: .ply, .off, .obj or .stl; replaced if it exists, but must not be the input. Exit "
+                   "code 3 if what is written is still no solid")
+      ->required();
+  command
+      ->add_option("--weld", arguments->options.weld,
+                   "Weld border vertices, and close edges to vertices on them, within this fraction of the diagonal")
+      ->capture_default_str();
+  command->add_option("--max-hole", arguments->options.max_hole, "Fill holes of up to this number of edges; 0: none")
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "As JSON");
+  add_examples(*command, "sixdof repair cone.ply -o mended.ply",
+               "sixdof repair torus-1k -o mended.obj --weld 0 --json");
+  command->callback([arguments] { repair(*arguments); });
+}
+
+}  // namespace sixdof::cli

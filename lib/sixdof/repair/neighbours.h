@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <nanoflann.hpp>
+
+namespace sixdof::repairing {
+
+/// Points by position: a k-d tree of nanoflann.
+class Neighbours {
+ public:
+  /// @param vertices outlive this object; @param chosen the numbers of those to look for
+  Neighbours(std::span<const Eigen::Vector3d> vertices, std::vector<std::uint32_t> chosen)
+      : cloud_{vertices, std::move(chosen)}, tree_(3, cloud_) {}
+
+  /// Numbers of the chosen vertices closer than `radius` to `p`, in ascending order.
+  std::vector<std::uint32_t> within(const Eigen::Vector3d& p, double radius) const {
+    std::vector<std::pair<std::uint32_t, double>> found;
+    tree_.radiusSearch(p.data(), radius * radius, found, nanoflann::SearchParams(0, 0.0F, false));
+    std::vector<std::uint32_t> numbers;
+    numbers.reserve(found.size());
+    for (const auto& [i, squared] : found) numbers.push_back(cloud_.chosen[i]);
+    std::sort(numbers.begin(), numbers.end());
+    return numbers;
+  }
+
+ private:
+  struct Cloud {
+    std::span<const Eigen::Vector3d> vertices;
+    std::vector<std::uint32_t> chosen;
+
+    std::size_t kdtree_get_point_count() const { return chosen.size(); }
+    double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+      return vertices[chosen[i]][static_cast<Eigen::Index>(axis)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box& /*box*/) const {
+      return false;
+    }
+  };
+  using KdTree =
+      nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
+
+  Cloud cloud_;
+  KdTree tree_;
+};
+
+}  // namespace sixdof::repairing

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <sixdof/geometry/mesh.h>
+
+/// Makes a closed, consistently oriented surface of a damaged one where small changes suffice.
+///
+/// The surface is a plain list of triangles: half-edge structures (OpenMesh) refuse the edges with three and more
+/// triangles that damaged files have.
+///
+/// Steps, repeated until none finds anything to do:
+/// 1. border vertices that are closer than the tolerance to another vertex become one with it (weld.h);
+/// 2. duplicate triangles go; triangles whose corners are collinear within rounding are replaced by splitting the
+///    neighbour at their longest edge (cleanup.h);
+/// 3. border edges are split at the border vertices that lie on them within the tolerance (t_junctions.h);
+/// 4. triangles are turned to agree with their neighbours, and shells to face outwards (orient.h);
+/// 5. holes of few edges are filled (holes.h).
+/// A closed, oriented mesh without duplicate and collinear triangles stays as it is, bit by bit. Self-intersections and
+/// nested shells stay, see oracle/mesh_check.h.
+namespace sixdof {
+
+struct RepairOptions {
+  static constexpr double k_default_weld = 1e-6;
+  static constexpr std::size_t k_default_max_hole = 32;
+  static constexpr std::size_t k_largest_max_hole = 512;
+
+  /// Tolerance of welding and of vertices on edges, relative to the diagonal of the mesh's box. The default is above
+  /// the rounding of coordinates to float. 0: within rounding.
+  double weld = k_default_weld;
+  /// Edges of the largest hole that is filled; 0: none. Time grows with its third power.
+  std::size_t max_hole = k_default_max_hole;
+};
+
+enum class RepairKind {
+  welded_vertices,
+  duplicate_triangles,   ///< Dropped.
+  degenerate_triangles,  ///< Of no area; dropped.
+  split_edges,           ///< By vertices that lay on them.
+  flipped_triangles,
+  filled_holes,
+};
+inline constexpr std::size_t k_repair_kinds = 6;
+
+/// Repairs of one kind.
+struct RepairsOfKind {
+  static constexpr std::size_t k_listed = 5;
+  std::size_t count = 0;
+  std::vector<Eigen::Vector3d> first;  ///< Where the first k_listed were made, in the mesh's frame.
+};
+
+/// What was done, by kind.
+struct RepairLog {
+  std::array<RepairsOfKind, k_repair_kinds> kinds;
+
+  void add(RepairKind kind, const Eigen::Vector3d& place) {
+    RepairsOfKind& of_kind = kinds[static_cast<std::size_t>(kind)];
+    if (of_kind.count++ < RepairsOfKind::k_listed) of_kind.first.push_back(place);
+  }
+  const RepairsOfKind& of(RepairKind kind) const { return kinds[static_cast<std::size_t>(kind)]; }
+  std::size_t total() const {
+    std::size_t sum = 0;
+    for (const RepairsOfKind& of_kind : kinds) sum += of_kind.count;
+    return sum;
+  }
+};
+
+struct RepairedMesh {
+  Mesh mesh;
+  RepairLog log;
+  std::size_t passes = 0;  ///< Rounds of all steps, the last without work included.
+  /// Whether the last round found nothing to do. If not, repairing the result again may change it.
+  bool converged = false;
+};
+
+/// @throws BadArgument if `weld` is not in [0, 0.1] or `max_hole` is above k_largest_max_hole; BadMesh if no triangle
+/// is left.
+RepairedMesh repair_mesh(const Mesh& mesh, const RepairOptions& options = {});
+
+}  // namespace sixdof
