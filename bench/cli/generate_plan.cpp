@@ -95,11 +95,10 @@ struct SetCounts {
   std::size_t bytes() const { return configurations * sizeof(double); }
 };
 
-/// What a job takes, from a timed sample. Times are wall times but for cpu_s.
+/// What a job takes, from a timed sample. Times are wall times.
 struct Estimate {
   std::vector<Kind> kinds;
   unsigned threads = 0;
-  std::size_t shards = 0;  ///< 0: a whole set in one process.
   double total_s = 0.0;    ///< All shards in sequence.
   double shard_s = 0.0;    ///< Of one shard, of which
   double prepare_s = 0.0;  ///< for preparation.
@@ -107,8 +106,9 @@ struct Estimate {
   double value_bytes = 0.0;
 };
 
+/// @param shards 0: a whole set in one process
 Estimate estimate(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed) {
-  Estimate result{.threads = work.threads, .shards = shards};
+  Estimate result{.threads = work.threads};
   const bool both = work.job.has(BucketKind::distance) && work.job.has(BucketKind::volume);
   for (const BucketKind kind : {BucketKind::distance, BucketKind::volume}) {
     if (work.job.has(kind)) result.kinds.push_back(measure(work, kind, seconds / (both ? 2.0 : 1.0), seed));

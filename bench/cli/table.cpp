@@ -63,7 +63,7 @@ void add_table_command(CLI::App& app) {
   add_examples(*command,
                "sixdof-bench --benchmark_filter=/algorithm:exact/pair:torus-knot-10k/distance:05 --sample 32 "
                "--out results.json",
-               "sixdof table results.json results.json --markdown", k_details);
+               "sixdof table results.json", k_details);
 }
 
 }  // namespace sixdof::cli

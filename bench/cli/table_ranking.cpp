@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/measure/metrics.h>
 #include "bench/cli/table.h"
 
 namespace sixdof::cli {
@@ -101,6 +102,11 @@ void sort_lines(ResultTable& table) {
   std::ranges::sort(table.lines, {}, place);
 }
 
+/// Both rows could be run, so they have the value.
+bool is_faster(const ResultRow& row, const ResultRow& other) {
+  return is_better(find_metric("cpu_time")->better, *row.value(k_processor_mean), *other.value(k_processor_mean));
+}
+
 /// Marks the fastest row of every bucket and order in one file.
 void mark_fastest(ResultTable& table, std::size_t file) {
   std::map<std::pair<BucketKey, std::string>, RankedRow*> fastest;
@@ -108,7 +114,7 @@ void mark_fastest(ResultTable& table, std::size_t file) {
     RankedRow& ranked = line.files[file];
     if (ranked.row == nullptr || !ranked.faults.empty()) continue;
     RankedRow*& best = fastest[{line.bucket, line.order}];
-    if (best == nullptr || ranked.row->value(k_processor_mean) < best->row->value(k_processor_mean)) best = &ranked;
+    if (best == nullptr || is_faster(*ranked.row, *best->row)) best = &ranked;
   }
   for (const auto& [bucket, ranked] : fastest) ranked->fastest = true;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,6 +46,7 @@ constexpr const char* k_force = "force to the exact one";
 constexpr const char* k_torque = "torque";
 constexpr const char* k_distance = "error, diagonals of A";
 
+constexpr ValueColumn k_count{"", "n", "configurations", as_count};
 constexpr ValueColumn k_mean{k_processor, "mean", k_processor_mean, as_microseconds};
 constexpr ValueColumn k_p99{k_wall, "p99", "p99_ns", as_microseconds};
 constexpr ValueColumn k_late{"", ">1 ms, %", "over_1ms", as_percent};
@@ -53,13 +55,13 @@ constexpr ValueColumn k_magnitude{k_force, "magn., %", "magnitude_error_F", as_p
 constexpr ValueColumn k_distance_rms{k_distance, "rms", "error_rms", as_small};
 
 /// How wrong the answers to a query are.
-std::vector<ValueColumn> error_columns(const std::string& query, bool brief) {
+std::vector<ValueColumn> error_columns(const std::string& query, std::size_t files) {
   if (query == "distance") {
-    return brief ? std::vector{k_distance_rms}
-                 : std::vector{k_distance_rms, ValueColumn{k_distance, "max", "error_max", as_small}};
+    return files > 1 ? std::vector{k_distance_rms}
+                     : std::vector{k_distance_rms, ValueColumn{k_distance, "max", "error_max", as_small}};
   }
   if (query != "respond") return {};
-  if (brief) return {k_angle, k_magnitude};
+  if (files > 1) return {k_angle, k_magnitude};
   return {k_angle,
           {k_force, "max", "gamma_max_F_deg", as_degrees},
           k_magnitude,
@@ -68,13 +70,18 @@ std::vector<ValueColumn> error_columns(const std::string& query, bool brief) {
           {"volume", "error, %", "volume_error_mean", as_percent}};
 }
 
-/// All columns, or the most important ones where several files share the width.
-std::vector<ValueColumn> value_columns(const std::string& query, bool brief) {
-  std::vector<ValueColumn> columns = brief ? std::vector{k_mean, k_p99, k_late}
-                                           : std::vector{ValueColumn{"", "n", "configurations", as_count},      k_mean,
-                                                         ValueColumn{k_wall, "p50", "p50_ns", as_microseconds}, k_p99,
-                                                         ValueColumn{k_wall, "max", "max_ns", as_microseconds}, k_late};
-  std::ranges::copy(error_columns(query, brief), std::back_inserter(columns));
+/// The more files share the width, the fewer columns has each.
+std::vector<ValueColumn> time_columns(std::size_t files) {
+  if (files > 2) return {k_mean, k_p99};
+  if (files > 1) return {k_count, k_mean, k_p99, k_late};
+  return {
+      k_count, k_mean, {k_wall, "p50", "p50_ns", as_microseconds}, k_p99, {k_wall, "max", "max_ns", as_microseconds},
+      k_late};
+}
+
+std::vector<ValueColumn> value_columns(const std::string& query, std::size_t files) {
+  std::vector<ValueColumn> columns = time_columns(files);
+  std::ranges::copy(error_columns(query, files), std::back_inserter(columns));
   return columns;
 }
 
@@ -88,6 +95,11 @@ std::string cell_of(const RankedRow& ranked, const ValueColumn& column) {
 std::string mark_of(const RankedRow& ranked) { return !ranked.faults.empty() ? "!" : ranked.fastest ? "*" : ""; }
 
 std::string bucket_text(BucketKey bucket) { return fmt::format("{:02} %", bucket.percent); }
+
+/// "[1] " where there are several files.
+std::string prefix_of(std::size_t file, std::size_t files) {
+  return files > 1 ? fmt::format("[{}] ", file + 1) : std::string();
+}
 
 /// Where there are several files, the file stands above a column, and its clock or unit in the title.
 std::string brief_title(const ValueColumn& column) {
@@ -150,15 +162,14 @@ std::vector<std::string> fault_notes(const ResultTable& table, std::size_t files
     for (const auto& [label, list] : by_label) {
       std::vector<std::string> texts;
       for (const FaultNote& note : list) texts.push_back(note.text());
-      notes.push_back(
-          fmt::format("! {}{}: {}", files > 1 ? fmt::format("[{}] ", file + 1) : "", label, fmt::join(texts, "; ")));
+      notes.push_back(fmt::format("! {}{}: {}", prefix_of(file, files), label, fmt::join(texts, "; ")));
     }
   }
   return notes;
 }
 
 Sheet sheet_of_one(const ResultTable& table) {
-  const std::vector<ValueColumn> values = value_columns(table.query, false);
+  const std::vector<ValueColumn> values = value_columns(table.query, 1);
   Sheet sheet;
   sheet.columns = {{"", to_string(table.kind), true}, {"", "", true}, {"", "algorithm", true}};
   for (const ValueColumn& column : values) sheet.columns.push_back({column.group, column.title});
@@ -171,7 +182,7 @@ Sheet sheet_of_one(const ResultTable& table) {
 }
 
 Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
-  const std::vector<ValueColumn> values = value_columns(table.query, true);
+  const std::vector<ValueColumn> values = value_columns(table.query, files);
   Sheet sheet;
   sheet.columns = {{"", to_string(table.kind), true}, {"", "algorithm", true}};
   for (std::size_t file = 0; file < files; ++file) {
@@ -196,11 +207,6 @@ Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
     }
   }
   return sheet;
-}
-
-/// "[1] " where there are several files.
-std::string prefix_of(std::size_t file, std::size_t files) {
-  return files > 1 ? fmt::format("[{}] ", file + 1) : std::string();
 }
 
 }  // namespace
@@ -229,13 +235,13 @@ std::vector<std::string> lines_above(const std::vector<ResultFile>& files) {
 
 std::vector<std::string> lines_below(const std::vector<ResultFile>& files) {
   std::vector<std::string> lines{
-      "cpu: mean processor time of a query, in a loop over all n configurations. p50, p99, max: wall clock of single",
-      "queries, each the least of three passes, so that cpu may exceed max. >1 ms: share of them over the haptic "
-      "deadline.",
-      "angle: mean angle to the exact response, in degrees. magn.: RMS of |F| - gain |exact F| over the RMS of |F|, "
-      "one",
-      "gain for all. volume: mean error of the overlap volume. (path): configurations in the grid's own order.",
-      "* least cpu of its bucket among rows without fault   ! has faults, which stand below its table"};
+      "n: configurations; cpu: mean processor time of a query in a loop over all of them",
+      "p50, p99, max: wall clock of single queries, each the least of three passes, so that cpu may exceed max",
+      ">1 ms: share of these queries over the haptic deadline",
+      "angle: mean angle to the exact response, in degrees; max: the largest",
+      "magn.: RMS of |F| - gain |exact F| over the RMS of |F|, with one gain per row; of torques likewise",
+      "volume: mean error of the overlap volume; (path): configurations in the grid's own order",
+      "*: least cpu of its bucket among rows without faults; !: has faults, which stand below its table"};
   for (std::size_t i = 0; i < files.size(); ++i) {
     std::map<std::string, std::string> settings;
     for (const ResultRow& row : files[i].rows) settings[row.fields.algorithm] = row.fields.settings;

@@ -93,11 +93,11 @@ constexpr const char* k_responses =
     "05 %    *  x          64     1.50  10.0  20.0  30.0         0   1.23  20.2       12.5   3.50       3.6     <0.01\n";
 
 constexpr const char* k_two_files =
-    "                                               [1]                                   [2]\n"
-    "distance  algorithm     cpu, us  p99, us  >1 ms, %     cpu, us  / [1]  p99, us  >1 ms, %\n"
-    "00 %      y          *     1.00     20.0         0           -      -        -         -\n"
-    "05 %      x                2.00     20.0         0  *     0.50   0.25     20.0         0\n"
-    "05 %      y          *     1.00     20.0         0  !     1.50   1.50     20.0         0\n"
+    "                                                   [1]                                       [2]\n"
+    "distance  algorithm      n  cpu, us  p99, us  >1 ms, %      n  cpu, us  / [1]  p99, us  >1 ms, %\n"
+    "00 %      y          *  64     1.00     20.0         0      -        -      -        -         -\n"
+    "05 %      x             64     2.00     20.0         0  *  64     0.50   0.25     20.0         0\n"
+    "05 %      y          *  64     1.00     20.0         0  !  64     1.50   1.50     20.0         0\n"
     "! [2] y: 1 of 64 failed (05 %)\n";
 
 constexpr const char* k_markdown =
@@ -124,7 +124,7 @@ TEST_F(TableCommand, ShowsHowWrongResponsesAreAndTheSettings) {
   const Json errors = {{"gamma_F_deg", 1.234}, {"gamma_max_F_deg", 20.25},     {"magnitude_error_F", 0.125},
                        {"gamma_T_deg", 3.5},   {"magnitude_error_T", 0.03601}, {"volume_error_mean", 2e-5}};
   const std::string out = printed(write("r.json", {row("respond", "x", "volume", 5, 1500, errors)}));
-  EXPECT_THAT(out, AllOf(HasSubstr(k_responses), HasSubstr("wall clock of single\nqueries"),
+  EXPECT_THAT(out, AllOf(HasSubstr(k_responses), HasSubstr("wall clock of single queries"),
                          HasSubstr("settings x: size=0.5\n")));
 }
 
@@ -192,6 +192,14 @@ TEST_F(TableCommand, PutsFilesSideBySide) {
                               ": INTERRUPTED: rows are missing\n"));
   EXPECT_THAT(out, HasSubstr(k_two_files));
   EXPECT_THAT(out, AllOf(HasSubstr("settings [1] y: size=0.5\n"), HasSubstr("settings [2] x: size=0.5\n")));
+}
+
+TEST_F(TableCommand, HasFewerColumnsOfManyFiles) {
+  const std::string file = write("r.json", {row("respond", "x", "volume", 5, 1500, {{"gamma_F_deg", 1.5}})}) + " ";
+  const std::string out = printed(file + file + file);
+  EXPECT_THAT(
+      out, HasSubstr("volume  algorithm     cpu, us  p99, us  angle     cpu, us  / [1]  p99, us  angle     cpu, us"));
+  EXPECT_THAT(out, HasSubstr("*     1.50   1.00     20.0   1.50"));
 }
 
 TEST_F(TableCommand, PrintsMarkdown) {
