@@ -65,6 +65,7 @@ std::string flags_of_measurement(std::vector<std::string> flags) {
                                      "--benchmark_color",
                                      "--benchmark_counters_tabular",
                                      "--benchmark_display_aggregates_only",
+                                     "--benchmark_context",
                                      "--v"};
   std::erase_if(flags, [&](const std::string& flag) { return others.contains(flag.substr(0, flag.find('='))); });
   std::ranges::sort(flags);
@@ -154,7 +155,8 @@ int parse_options(int argc, const char* const* argv, Options& options) {
       app.add_option("--resume", options.out,
                      "Continue the result file of a run that was broken off, with the same arguments: rows that are "
                      "there are not measured again, failed ones are")
-          ->excludes(out);
+          ->excludes(out)
+          ->check([](const std::string& file) { return file.empty() ? "a file is needed" : ""; });
   app.add_option("--benchmark_out_format", out_format, "Of the result file; csv has no context")
       ->check(CLI::IsMember({"json", "csv"}))
       ->capture_default_str();

@@ -35,6 +35,7 @@ void ResultStore::open(const std::filesystem::path& file, ResultFormat format, b
   if (fs::exists(file) && !fs::is_regular_file(file)) {
     throw BadFile(file.string(), "cannot be written: is not a regular file");
   }
+  remove_stale_partials(file);
   const AtomicFile writable(file);  // refuses a folder that is missing or not writable
   file_ = file;
   format_ = format;

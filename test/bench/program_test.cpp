@@ -185,7 +185,7 @@ TEST_F(BenchProgram, FailsIfNothingMatchesOrAnOptionIsUnknown) {
     EXPECT_FALSE(std::filesystem::exists(out)) << bad;
   }
   for (const char* bad : {"--no-such-flag", "--sample=-1", "--benchmark_out_format=xml", "stray", "--set no-such-file",
-                          "--benchmark_format=xml", "--out=a --resume=a"}) {
+                          "--benchmark_format=xml", "--out=a --resume=a", "--resume ''"}) {
     EXPECT_EQ(bench(bad).exit_code, k_exit_usage) << bad;
   }
   EXPECT_EQ(bench("--suite no-such-file --benchmark_list_tests").exit_code, k_exit_error);
