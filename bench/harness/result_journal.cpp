@@ -78,6 +78,12 @@ void ResultJournal::append(const Json& line) {
   size_ += text.size();
 }
 
+void ResultJournal::clear() {
+  if (::ftruncate(descriptor_, 0) != 0) throw_not_writable(file_, errno);
+  lines_.clear();
+  size_ = 0;
+}
+
 void ResultJournal::remove() {
   std::error_code ignored;
   std::filesystem::remove(file_, ignored);

@@ -28,6 +28,9 @@ class ResultJournal {
   /// @throws BadFile if the line cannot be written (disk full); the file then has the lines before
   void append(const Json& line);
 
+  /// Removes all lines. @throws BadFile
+  void clear();
+
   void remove();
 
  private:

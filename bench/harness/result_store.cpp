@@ -47,11 +47,14 @@ void ResultStore::open(const std::filesystem::path& file, ResultFormat format, b
                               "journal gives them up",
                               file.string()));
   }
+  if (!journal_has_rows_) journal_->clear();
   if (resume) {
-    if (format == ResultFormat::json && fs::exists(file)) take_over_file();
+    // The journal of a run that was to replace FILE does not belong to it.
+    const bool replaces = journal_has_rows_ && !journal_->lines().front().value("continues", true);
+    if (format == ResultFormat::json && !replaces && fs::exists(file)) take_over_file();
     take_over_journal();
   }
-  journal_->append({{"context", context_}});
+  journal_->append({{"context", context_}, {"continues", resume}});
 }
 
 void ResultStore::take_over_file() {

@@ -155,6 +155,28 @@ TEST_F(Store, RefusesWhatIsNoResult) {
   EXPECT_THROW(store.open("/no-such-folder/x.json", k_json, false), BadFile);
 }
 
+TEST_F(Store, ContinuesTheRunThatWasToReplaceAFile) {
+  {
+    ResultStore older(order, {{"seed", "8"}});
+    older.open(file, k_json, false);
+    measure(older, "b");
+    older.finish(false);
+  }
+  leave_rows({"a"});
+  ResultStore store(order, context);
+  store.open(file, k_json, true);
+  EXPECT_TRUE(store.has("a"));
+  EXPECT_FALSE(store.has("b")) << "a row of the older result";
+}
+
+TEST_F(Store, ForgetsARunThatEndedBeforeItsFirstRow) {
+  std::ofstream(journal) << "{\"context\":{\"seed\":\"8\"},\"continues\":false}\n";
+  leave_rows({"a"});
+  ResultStore store(order, context);
+  store.open(file, k_json, true);
+  EXPECT_TRUE(store.has("a"));
+}
+
 TEST_F(Store, LeavesNoJournalWithoutRows) {
   leave_rows({});
   EXPECT_FALSE(fs::exists(journal));
