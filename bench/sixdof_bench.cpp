@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <sixdof/configuration/set_catalogue.h>
@@ -10,6 +11,7 @@
 #include "bench/common/all_algorithms.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/options.h"
+#include "bench/harness/own_sets.h"
 #include "bench/harness/run_rows.h"
 #include "bench/harness/suite.h"
 #include "bench/rows/families.h"
@@ -25,13 +27,15 @@ void run(const Options& options) {
     registry.add(make());
     external.push_back(registry.all().back()->traits().name);
   }
+  auto settings = parse_parameters(options.parameters, registry);
   SetCatalogue catalogue;
   if (!options.manifest.empty()) catalogue = SetCatalogue::read(options.manifest);
-  for (const auto& set : options.sets) catalogue.add_file(set);
-  PairCache cache(options.sample, options.seed, options.meshes);
+  PairCache cache(options.sample, options.seed,
+                  [&](const std::string& key) { return load_mesh_of(key, options, catalogue); });
+  const auto coarse_set = add_own_sets(options, catalogue, cache);
   const Resources resources{.registry = registry,
                             .catalogue = catalogue,
-                            .settings = parse_parameters(options.parameters, registry),
+                            .settings = std::move(settings),
                             .cache = cache,
                             .seed = options.seed};
 

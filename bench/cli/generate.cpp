@@ -1,7 +1,7 @@
 #include "bench/cli/generate.h"
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -12,6 +12,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/configuration/set_meshes.h>
 #include <sixdof/generation/distance_generator.h>
 #include <sixdof/models/model_catalogue.h>
 #include "bench/cli/commands.h"
@@ -19,6 +20,7 @@
 #include "bench/common/build_info.h"
 #include "bench/common/json_text.h"
 #include "bench/common/mesh_warning.h"
+#include "bench/common/pair_warnings.h"
 #include "bench/common/run_guarded.h"
 
 namespace sixdof::cli {
@@ -45,28 +47,28 @@ struct Arguments {
   bool plan = false, json = false, resume = false, progress = false;
 };
 
-int parse_percent(std::string_view list, std::string_view text) {
-  int value = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > BucketKey::k_max_percent) {
-    throw BadArgument(
-        fmt::format("percentages '{}': '{}' is not a whole number from 0 to {}", list, text, BucketKey::k_max_percent));
-  }
-  return value;
+double parse_item(std::string_view list, std::string_view text) {
+  if (const auto percent = parse_percent(text)) return *percent;
+  throw BadArgument(fmt::format("percentages '{}': '{}' is not a number from 0 to {} with at most {} decimals", list,
+                                text, BucketKey::k_max_percent, BucketKey::k_max_decimals));
 }
 
-/// Percentages as typed: numbers and ranges FIRST:LAST, separated by commas ("0,1,5:10"); none if the text is empty.
-std::vector<int> parse_percents(std::string_view text) {
-  std::vector<int> percents;
+/// Percentages as typed: numbers and ranges FIRST:LAST of whole ones, separated by commas ("0,0.5,5:10"); none if the
+/// text is empty.
+std::vector<double> parse_percents(std::string_view text) {
+  std::vector<double> percents;
   if (text.empty()) return percents;
   for (std::string_view rest = text;;) {
     const std::size_t comma = rest.find(',');
     const std::string_view item = rest.substr(0, comma);
     const std::size_t colon = item.find(':');
-    const int first = parse_percent(text, item.substr(0, colon));
-    const int last = colon == std::string_view::npos ? first : parse_percent(text, item.substr(colon + 1));
+    const double first = parse_item(text, item.substr(0, colon));
+    const double last = colon == std::string_view::npos ? first : parse_item(text, item.substr(colon + 1));
     if (last < first) throw BadArgument(fmt::format("percentages '{}': {} runs backwards", text, item));
-    for (int percent = first; percent <= last; ++percent) percents.push_back(percent);
+    if (first < last && (first != std::floor(first) || last != std::floor(last))) {
+      throw BadArgument(fmt::format("percentages '{}': {} does not run over whole percentages", text, item));
+    }
+    for (double percent = first; percent <= last; ++percent) percents.push_back(percent);
     if (comma == std::string_view::npos) return percents;
     rest.remove_prefix(comma + 1);
   }
@@ -79,8 +81,8 @@ std::unique_ptr<DistanceGenerator> make_generator(const Arguments& arguments, co
 }
 
 /// The description of the set, still without meshes.
-SetDescription describe(const Arguments& arguments, const std::vector<int>& distances,
-                        const std::vector<int>& volumes) {
+SetDescription describe(const Arguments& arguments, const std::vector<double>& distances,
+                        const std::vector<double>& volumes) {
   if (arguments.grid.empty()) throw BadArgument("--grid is needed");
   // The paper has a coarser grid for volumes.
   const std::string volume_grid = !arguments.volume_grid.empty() ? arguments.volume_grid
@@ -115,8 +117,8 @@ void generate(const Arguments& arguments) {
     throw BadArgument("--shard and --resume go with --shards N");
   }
   const bool no_buckets = arguments.distances.empty() && arguments.volumes.empty();
-  const std::vector<int> distances = parse_percents(no_buckets ? "0:30" : arguments.distances);
-  const std::vector<int> volumes = parse_percents(arguments.volumes);
+  const std::vector<double> distances = parse_percents(no_buckets ? "0:30" : arguments.distances);
+  const std::vector<double> volumes = parse_percents(arguments.volumes);
   SetDescription set = describe(arguments, distances, volumes);
   if (arguments.json && !arguments.plan) throw BadArgument("--json is for --plan");
   if (arguments.plan) {
@@ -140,10 +142,11 @@ void generate(const Arguments& arguments) {
     warn(a, arguments.a);
     if (b.hash() != a.hash()) warn(b, arguments.b);
   }
-  set.a = MeshIdentity::of(a);
-  set.b = MeshIdentity::of(b);
-  const auto job = GenerationJob::of(program_version(), generator->oracle_name(), generator->oracle_version(), a, b,
-                                     set, distances, volumes);
+  set.a = identify(a, arguments.a);
+  set.b = identify(b, arguments.b.empty() ? arguments.a : arguments.b);
+  warn_of_sizes("sixdof", set.a, set.b);
+  const auto job = GenerationJob::of(program_version(), generator->oracle_name(), generator->oracle_version(), a, set,
+                                     distances, volumes);
   const GenerationWork work{.generator = *generator,
                             .a = a,
                             .b = b,
@@ -175,8 +178,8 @@ void add_generate_command(CLI::App& app) {
   command->add_option("--volume-grid", arguments->volume_grid,
                       "Grid of the volumes; --grid if left out, but paper-volume with --grid paper");
   command->add_option("--distances", arguments->distances,
-                      "Percent of the diagonal of A's box, e.g. 0,1,5:10; 0:30 if no --volumes are given either");
-  command->add_option("--volumes", arguments->volumes, "Percent of A's volume, e.g. 0:10 (A and B must be solids)");
+                      "Percent of the diagonal of A's box, e.g. 0,0.5,5:10; 0:30 if no --volumes are given either");
+  command->add_option("--volumes", arguments->volumes, "Percent of A's volume, e.g. 0.1,1:10 (A and B must be solids)");
   command
       ->add_option("--method", arguments->method,
                    "raycast: search the pairs of triangles along each ray; advance: step by step with the distances of "

@@ -15,6 +15,7 @@
 #include <sixdof/configuration/shard_file.h>
 #include <sixdof/generation/shard_generator.h>
 #include "bench/common/interrupt.h"
+#include "bench/common/pair_warnings.h"
 #include "bench/common/progress_line.h"
 #include "bench/common/run_guarded.h"
 
@@ -171,6 +172,7 @@ void generate_set(const GenerationWork& work, const std::filesystem::path& outpu
     return std::move(*std::ranges::find(values.buckets, key, of_key));
   };
   assemble_set(output, work.job, work.set, k_whole.count, take, {.cancelled = InterruptGuard::requested});
+  warn_of_unreached("sixdof", ConfigurationSet(output));
   std::size_t configurations = 0;
   for (const BucketSummary& bucket : work.job.buckets) {
     configurations += work.set.grid_of(bucket.key.kind).configurations();

@@ -95,12 +95,17 @@ void print_text(const Mesh& mesh) {
 }
 
 Json as_json(const MeshIdentity& mesh) {
-  return {{"name", mesh.name},
-          {"content_hash", mesh.hash},
-          {"triangles", mesh.triangles},
-          {"box_min", coordinates(mesh.box_min)},
-          {"box_max", coordinates(mesh.box_max)},
-          {"volume", mesh.volume}};
+  Json json = {{"name", mesh.name},
+               {"content_hash", mesh.hash},
+               {"triangles", mesh.triangles},
+               {"box_min", coordinates(mesh.box_min)},
+               {"box_max", coordinates(mesh.box_max)},
+               {"volume", mesh.volume}};
+  if (!mesh.path.empty()) {
+    json["path"] = mesh.path;
+    json["absolute_path"] = mesh.absolute_path;
+  }
+  return json;
 }
 
 Json as_json(const ConfigurationSet& set) {
@@ -150,6 +155,7 @@ void print_text(const ConfigurationSet& set) {
   for (const auto& [label, mesh] : {std::pair("A (fixed)", &d.a), std::pair("B (moving)", &d.b)}) {
     fmt::print("{:<18} {}: {} triangles, box diagonal {:.6g}, volume {:.6g}, content hash {}\n", label, mesh->name,
                mesh->triangles, mesh->diagonal(), mesh->volume, mesh->hash);
+    if (!mesh->path.empty()) fmt::print("{:<18} {} ({})\n", "", mesh->path, mesh->absolute_path);
   }
   print_grid(d.volume_grid ? "grid of distances" : "grid", d.grid);
   if (d.volume_grid) print_grid("grid of volumes", *d.volume_grid);

@@ -10,6 +10,7 @@
 #include <sixdof/configuration/shard_file.h>
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
+#include "bench/common/pair_warnings.h"
 #include "bench/common/progress_line.h"
 
 namespace sixdof::cli {
@@ -29,6 +30,7 @@ void merge(const Arguments& arguments) {
                   .cancelled = InterruptGuard::requested});
   }
   const ConfigurationSet set(arguments.output);
+  warn_of_unreached("sixdof", set);
   fmt::print("{}: {} with {}, {} buckets, content hash {}\n", arguments.output, set.description().a.name,
              set.description().b.name, set.buckets().size(), set.hash());
 }

@@ -14,6 +14,7 @@
 #include <sixdof/models/model_catalogue.h>
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
+#include "bench/common/pair_warnings.h"
 
 namespace sixdof::cli {
 namespace {
@@ -138,6 +139,7 @@ void run_query(const Arguments& arguments) {
 
   const Mesh a = load_model(arguments.a);
   const Mesh b = arguments.b == arguments.a ? a : load_model(arguments.b);
+  warn_of_sizes("sixdof", MeshIdentity::of(a), MeshIdentity::of(b));
   Answers answers = ask(*algorithm, a, b, settings, X_AB);
   if (!about.empty() && answers.respond.ok()) {
     answers.respond.value = answers.respond.value.about({about[0], about[1], about[2]});

@@ -41,7 +41,7 @@ Json as_json(const std::vector<ResultTable>& tables, const std::vector<ResultFil
     for (const TableLine& line : table.lines) {
       Json of_files = Json::array();
       for (const RankedRow& ranked : line.files) of_files.push_back(as_json(ranked));
-      lines.push_back({{"percent", line.bucket.percent},
+      lines.push_back({{"percent", percent_number(line.bucket)},
                        {"algorithm", line.algorithm},
                        {"order", line.order},
                        {"files", std::move(of_files)}});

@@ -47,8 +47,9 @@ std::vector<Fault> faults_of(const ResultRow& row, const std::map<Subject, Bucke
   if (row.fields.algorithm == k_null_algorithm) faults.push_back({.what = "measures the harness, answers constants"});
   const auto constant = constant_answers.find(subject_of(row));
   if (faults.empty() && constant != constant_answers.end()) {
-    const auto [kind, percent] = constant->second;
-    faults.push_back({.what = fmt::format("no right answer at {} {:02} %", to_string(kind), percent)});
+    const BucketKey bucket = constant->second;
+    faults.push_back(
+        {.what = fmt::format("no right answer at {} {} %", to_string(bucket.kind), bucket.percent_text())});
   }
   return faults;
 }

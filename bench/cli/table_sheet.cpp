@@ -94,7 +94,7 @@ std::string cell_of(const RankedRow& ranked, const ValueColumn& column) {
 
 std::string mark_of(const RankedRow& ranked) { return !ranked.faults.empty() ? "!" : ranked.fastest ? "*" : ""; }
 
-std::string bucket_text(BucketKey bucket) { return fmt::format("{:02} %", bucket.percent); }
+std::string bucket_text(BucketKey bucket) { return bucket.percent_text() + " %"; }
 
 /// "[1] " where there are several files.
 std::string prefix_of(std::size_t file, std::size_t files) {

@@ -8,11 +8,12 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/configuration/configuration_set.h>
+#include <sixdof/configuration/set_meshes.h>
 #include <sixdof/configuration/verification.h>
-#include <sixdof/models/model_catalogue.h>
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
+#include "bench/common/pair_warnings.h"
 #include "bench/common/progress_line.h"
 
 namespace sixdof::cli {
@@ -81,10 +82,12 @@ void verify(const Arguments& arguments) {
   const ConfigurationSet set(arguments.file);
   const SelectedAlgorithm selected = select_algorithm({.name = arguments.oracle, .parameters = {}});
   const Traits& oracle = selected.algorithm->traits();
-  const std::string& a_name = arguments.a.empty() ? set.description().a.name : arguments.a;
-  const std::string& b_name = arguments.b.empty() ? set.description().b.name : arguments.b;
-  const Mesh a = load_model(a_name);
-  const Mesh b = b_name == a_name ? a : load_model(b_name);
+  const MeshIdentity& a_identity = set.description().a;
+  const MeshIdentity& b_identity = set.description().b;
+  const Mesh a = find_mesh(a_identity, set.path(), arguments.a);
+  const bool copy = arguments.b.empty() && a_identity.hash == b_identity.hash;
+  const Mesh b = copy ? a : find_mesh(b_identity, set.path(), arguments.b);
+  warn_of_sizes("sixdof", a_identity, b_identity);
   Verdict verdict;
   {
     ProgressLine line("verified");
@@ -102,7 +105,7 @@ void add_verify_command(CLI::App& app) {
   auto* const command = app.add_subcommand("verify", "Measure a sample of a configuration set again");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("file", arguments->file, "The set")->required();
-  command->add_option("--a", arguments->a, "Mesh A, if its name in the set is not a model here");
+  command->add_option("--a", arguments->a, "Mesh A, a model's name or a file, if it is not where the set says");
   command->add_option("--b", arguments->b, "Mesh B, likewise");
   command->add_option("--sample", arguments->sample, "Configurations per bucket, drawn at random")
       ->capture_default_str();

@@ -71,6 +71,11 @@ void read_key(const char* key, Read read) {
 
 }  // namespace
 
+Json percent_number(BucketKey key) {
+  const auto whole = static_cast<int>(key.percent);
+  return whole == key.percent ? Json(whole) : Json(key.percent);
+}
+
 Json to_json_object(const RowFields& fields) {
   Json object = {{"query", fields.query}, {"algorithm", fields.algorithm}};
   object["settings"] = settings_object(fields.settings);
@@ -78,7 +83,7 @@ Json to_json_object(const RowFields& fields) {
     if (!(fields.*member).empty()) object[key] = fields.*member;
   }
   if (fields.bucket) {
-    object["bucket"] = {{"kind", to_string(fields.bucket->kind)}, {"percent", fields.bucket->percent}};
+    object["bucket"] = {{"kind", to_string(fields.bucket->kind)}, {"percent", percent_number(*fields.bucket)}};
   }
   if (fields.configurations) object["configurations"] = *fields.configurations;
   return object;
@@ -95,8 +100,8 @@ RowFields row_fields_of(const Json& object) {
   if (object.contains("bucket")) {
     read_key("bucket", [&] {
       const Json& bucket = object.at("bucket");
-      const int percent = bucket.at("percent").get<int>();
-      fields.bucket = BucketKey::parse(fmt::format("{}/{:02}", bucket.at("kind").get<std::string>(), percent));
+      const auto percent = bucket.at("percent").get<double>();
+      fields.bucket = BucketKey::parse(fmt::format("{}/{}", bucket.at("kind").get<std::string>(), percent));
     });
   }
   if (object.contains("configurations")) {

@@ -28,6 +28,9 @@ struct RowFields {
 
 inline constexpr const char* k_row_fields_key = "sixdof";
 
+/// The percentage as a JSON number: whole ones without a point.
+nlohmann::ordered_json percent_number(BucketKey key);
+
 /// Keys are those of RowFields; empty members are left out. "bucket" is {"kind": "distance", "percent": 5}. "settings"
 /// is an object by parameter, always there, with numbers as numbers.
 nlohmann::ordered_json to_json_object(const RowFields& fields);

@@ -23,6 +23,10 @@ namespace {
 /// Short enough for a suite of hundreds of rows; one round over the bucket is the shortest measurement.
 constexpr const char* k_default_min_time = "--benchmark_min_time=0.1";
 
+/// For the rows of an own pair: a table within two minutes, the making of its coarse set included.
+constexpr double k_own_pair_budget_s = 60.0;
+constexpr const char* k_own_pair_min_time = "--benchmark_min_time=0.02";
+
 constexpr const char* k_examples =
     "\nExamples:\n"
     "  sixdof-bench --benchmark_filter='^distance/algorithm:(exact|fcl-rss)/pair:torus-knot-10k/distance:05$' "
@@ -77,6 +81,18 @@ bool wants_no_color() {
   const char* const no_color = std::getenv("NO_COLOR");
   const char* const terminal = std::getenv("TERM");
   return (no_color != nullptr && *no_color != '\0') || (terminal != nullptr && std::string_view(terminal) == "dumb");
+}
+
+/// Why --a and --b do not go with the other options; empty if they do.
+std::string conflict_of_meshes(const Options& options, bool has_manifest) {
+  if (!options.b.empty() && options.a.empty() && options.sets.empty()) return "--b needs --a";
+  if (!(options.a.empty() && options.b.empty()) && options.sets.size() > 1) {
+    return "--a and --b say where the meshes of one --set are, not of several";
+  }
+  if (options.own_pair() && has_manifest) {
+    return "--a without --set measures this pair alone; leave out --manifest";
+  }
+  return {};
 }
 
 /// Google Benchmark reads its flags from a command line, and keeps a pointer to the program's name.
@@ -134,18 +150,30 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   app.add_option("--mesh", options.meshes, "The file of a mesh that is in a set (tray.off for tray); may be repeated")
       ->allow_extra_args(false)
       ->check(CLI::ExistingFile);
-  app.add_option("--suite", suite,
-                 "Rows to run: default (bench/default_suite.json), all, or a file of the same form. Without this "
-                 "option: default, but all with a --benchmark_filter or sets of your own");
+  app.add_option(
+      "--a", options.a,
+      "Fixed mesh A, a model's name or a file. With a --set: where A is now. Without: measure this pair alone, "
+      "on a coarse set that is made in seconds and kept in the cache");
+  app.add_option("--b", options.b, "Moving mesh B, likewise; a copy of A if left out");
+  app.add_option(
+      "--suite", suite,
+      "Rows to run: default (bench/default_suite.json), own-pair (bench/own_pair_suite.json), all, or a file "
+      "of the same form. Without this option: own-pair with --a and no --set; all with a "
+      "--benchmark_filter or sets of your own; default otherwise");
   app.add_option("-p,--parameter", options.parameters,
                  "Parameter of an algorithm: ALGORITHM:NAME=VALUE (sixdof algorithms); may be repeated")
       ->allow_extra_args(false);
   app.add_option("--sample", options.sample, "Configurations per bucket, drawn by seed; 0 for all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--budget", options.budget_s, "Seconds for all rows together: samples shrink to fit; 0 for no limit")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  auto* const budget =
+      app.add_option(
+             "--budget", options.budget_s,
+             fmt::format("Seconds for all rows together: samples shrink to fit; 0 for no limit. {} with --a and "
+                         "no --set",
+                         k_own_pair_budget_s))
+          ->check(CLI::NonNegativeNumber)
+          ->capture_default_str();
   app.add_option("--seed", options.seed, "Of samples and orders")->capture_default_str();
   app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were used");
   auto* const out =
@@ -174,16 +202,32 @@ int parse_options(int argc, const char* const* argv, Options& options) {
     return app.exit(e) == 0 ? 0 : k_exit_usage;
   }
 
+  if (const std::string conflict = conflict_of_meshes(options, !manifest->empty()); !conflict.empty()) {
+    print_message("sixdof-bench", conflict);
+    return k_exit_usage;
+  }
+  if (options.own_pair()) {
+    no_manifest = true;
+    if (budget->empty()) options.budget_s = k_own_pair_budget_s;
+  }
+
   std::vector<std::string> flags = app.remaining();
   const bool own_sets = no_manifest || !manifest->empty() || !options.sets.empty();
+  if (suite.empty() && options.own_pair()) suite = "own-pair";
   if (suite.empty()) suite = own_sets || has_flag(flags, "--benchmark_filter") ? "all" : "default";
-  if (suite != "all") options.suite = suite == "default" ? SIXDOF_DEFAULT_SUITE : suite;
+  if (suite == "default" || suite == "own-pair") {
+    options.suite = suite == "default" ? SIXDOF_DEFAULT_SUITE : SIXDOF_OWN_PAIR_SUITE;
+  } else if (suite != "all") {
+    options.suite = suite;
+  }
   if (no_manifest) options.manifest.clear();
   options.resume = !resume->empty();
   options.out_format = out_format == "csv" ? ResultFormat::csv : ResultFormat::json;
   if (format != "console") options.format = format == "csv" ? ResultFormat::csv : ResultFormat::json;
   options.list_only = has_flag(flags, "--benchmark_list_tests") && !has_flag(flags, "--benchmark_list_tests=false");
-  if (!has_flag(flags, "--benchmark_min_time")) flags.emplace_back(k_default_min_time);
+  if (!has_flag(flags, "--benchmark_min_time")) {
+    flags.emplace_back(options.own_pair() ? k_own_pair_min_time : k_default_min_time);
+  }
   options.arguments = arguments_but_file(argc, argv);
   options.benchmark_flags = flags_of_measurement(flags);
   const auto is_color = [](const std::string& flag) {

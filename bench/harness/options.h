@@ -21,6 +21,7 @@ enum class ResultFormat {
 struct Options {
   std::filesystem::path manifest;             ///< Catalogue of configuration sets; empty for none.
   std::vector<std::filesystem::path> sets;    ///< Further sets of the user's.
+  std::string a, b;                           ///< Meshes, models' names or files: of the one set, or of a coarse set.
   std::vector<std::filesystem::path> meshes;  ///< Mesh files that these sets name.
   std::filesystem::path suite;                ///< List of rows (harness/suite.h); empty for all rows.
   std::vector<std::string> parameters;        ///< "ALGORITHM:NAME=VALUE".
@@ -35,6 +36,9 @@ struct Options {
   std::string arguments;               ///< The command line, but for the result file, as a shell takes it.
   std::string benchmark_flags;         ///< Those of Google Benchmark's flags that change how a row is measured.
   bool list_only = false;
+
+  /// Whether a coarse set of the meshes is to be made (coarse_set.h), the only one of the run.
+  bool own_pair() const { return !a.empty() && sets.empty(); }
 };
 
 /// Parses the command line and hands Google Benchmark its part of it. Help, version and errors are printed.

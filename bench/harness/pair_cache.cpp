@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 
 #include <sixdof/algorithm/core_algorithms.h>
-#include <sixdof/geometry/load.h>
-#include <sixdof/models/model_catalogue.h>
 #include "bench/common/mesh_warning.h"
 
 namespace sixdof::bench {
@@ -19,18 +17,15 @@ void require_solids(const Mesh& a, const Mesh& b) {
   }
 }
 
-std::vector<std::filesystem::path>::const_iterator PairCache::find_file(const std::string& model) const {
-  return std::ranges::find(mesh_files_, model, [](const auto& path) { return path.stem().string(); });
+const Mesh& PairCache::mesh(const std::string& key) {
+  if (!meshes_.contains(key)) keep(key, load_(key));
+  return meshes_.at(key)->mesh;
 }
 
-const Mesh& PairCache::mesh(const std::string& model) {
-  auto& entry = meshes_[model];
-  if (!entry) {
-    const auto file = find_file(model);
-    entry = std::make_unique<const Mesh>(file == mesh_files_.end() ? load_model(model) : load_mesh(*file));
-    ++counts_.meshes_loaded;
-  }
-  return *entry;
+void PairCache::keep(const std::string& key, LoadedMesh mesh) {
+  if (meshes_.contains(key)) return;
+  meshes_.emplace(key, std::make_unique<const LoadedMesh>(std::move(mesh)));
+  ++counts_.meshes_loaded;
 }
 
 const BucketSample& PairCache::bucket(const CatalogueEntry& entry, BucketKey key) {
@@ -108,9 +103,8 @@ Query& PairCache::query(const Algorithm& algorithm, const Settings& settings, co
 
 std::vector<std::string> PairCache::warnings() const {
   std::vector<std::string> lines;
-  for (const auto& [name, mesh] : meshes_) {
-    const auto file = find_file(name);
-    std::string line = mesh ? mesh_warning(*mesh, file == mesh_files_.end() ? name : file->string()) : std::string();
+  for (const auto& [key, loaded] : meshes_) {
+    std::string line = mesh_warning(loaded->mesh, loaded->argument);
     if (!line.empty()) lines.push_back(std::move(line));
   }
   return lines;
@@ -118,9 +112,7 @@ std::vector<std::string> PairCache::warnings() const {
 
 std::vector<std::pair<std::string, std::string>> PairCache::hashes() const {
   std::vector<std::pair<std::string, std::string>> list;
-  for (const auto& [name, mesh] : meshes_) {
-    if (mesh) list.emplace_back("mesh:" + name, mesh->hash());
-  }
+  for (const auto& [key, loaded] : meshes_) list.emplace_back("mesh:" + key, loaded->mesh.hash());
   for (const auto& [name, set] : sets_) {
     if (set) list.emplace_back("set:" + name, set->hash());
   }

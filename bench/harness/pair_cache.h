@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
+#include <functional>
 #include <list>
 #include <map>
 #include <memory>
@@ -28,17 +28,27 @@ class NeedsSolid : public BadMesh {
 /// @throws NeedsSolid with the name of the mesh and Mesh::why_not_solid()
 void require_solids(const Mesh& a, const Mesh& b);
 
+struct LoadedMesh {
+  Mesh mesh;
+  std::string argument;  ///< Stands for the mesh on a command line: a model's name or a file.
+};
+
 /// Cache of pairs: meshes, configuration sets, samples of buckets and prepared queries, each fetched when a row first
 /// asks for it.
 class PairCache {
  public:
-  /// @param sample configurations per bucket, 0 for all; @param seed of the samples
-  /// @param mesh_files stand for the models of the same names, without their endings
-  PairCache(std::size_t sample, std::uint64_t seed, std::vector<std::filesystem::path> mesh_files = {})
-      : sample_(sample), seed_(seed), mesh_files_(std::move(mesh_files)) {}
+  /// Loads the mesh of a key (CatalogueEntry::a).
+  using Loader = std::function<LoadedMesh(const std::string& key)>;
 
-  /// @throws what load_model() throws
-  const Mesh& mesh(const std::string& model);
+  /// @param sample configurations per bucket, 0 for all; @param seed of the samples
+  PairCache(std::size_t sample, std::uint64_t seed, Loader load)
+      : sample_(sample), seed_(seed), load_(std::move(load)) {}
+
+  /// @throws what the loader throws
+  const Mesh& mesh(const std::string& key);
+
+  /// Keeps a mesh that is loaded already; does nothing if there is one of this key.
+  void keep(const std::string& key, LoadedMesh mesh);
 
   /// Checks that the set belongs to the pair's meshes when it takes the sample.
   /// @throws BadFile, BadArgument
@@ -85,14 +95,11 @@ class PairCache {
   };
   using PairBucket = std::pair<std::string, BucketKey>;  ///< Name of the pair and bucket.
 
-  /// The file that stands for a model; the end of mesh_files_ if none does.
-  std::vector<std::filesystem::path>::const_iterator find_file(const std::string& model) const;
-
   std::size_t sample_;
   std::uint64_t seed_;
-  std::vector<std::filesystem::path> mesh_files_;
+  Loader load_;
   Counts counts_;
-  std::map<std::string, std::unique_ptr<const Mesh>> meshes_;            ///< By name of the model.
+  std::map<std::string, std::unique_ptr<const LoadedMesh>> meshes_;      ///< By key.
   std::map<std::string, std::unique_ptr<const ConfigurationSet>> sets_;  ///< By name of the pair.
   std::map<PairBucket, BucketSample> buckets_;
   std::size_t poses_ = 0;  ///< In buckets_.

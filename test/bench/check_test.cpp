@@ -10,7 +10,7 @@
 namespace sixdof::bench {
 namespace {
 
-BucketSample bucket(BucketKind kind, int percent, double target) {
+BucketSample bucket(BucketKind kind, double percent, double target) {
   return {.key = {kind, percent}, .target = target, .tolerance = 1e-3, .diagonal = 10.0};
 }
 

@@ -28,6 +28,13 @@ TEST(RowFields, AreAnObjectWithNumbersAsNumbers) {
             Json::parse(R"({"query": "scenario", "algorithm": "exact", "settings": {}, "scenario": "II"})"));
 }
 
+TEST(RowFields, HavePartsOfAPercent) {
+  const Json half = to_json_object({.query = "collide", .bucket = BucketKey{BucketKind::distance, 0.5}});
+  EXPECT_EQ(half.at("bucket").dump(), R"({"kind":"distance","percent":0.5})");
+  EXPECT_EQ(row_fields_of(half).bucket, (BucketKey{BucketKind::distance, 0.5}));
+  EXPECT_EQ(to_json_object(k_query).at("bucket").dump(), R"({"kind":"volume","percent":5})");
+}
+
 TEST(RowFields, AreReadBack) {
   for (const RowFields& fields : {k_query, RowFields{.query = "kernel", .algorithm = "ist", .kernel = "apart"},
                                   RowFields{.query = "generate", .algorithm = "raycast", .target = "distance"}}) {
@@ -54,6 +61,7 @@ TEST(RowFields, ThatAreWrongAreNamed) {
   EXPECT_THAT(message_of("settings", nullptr), HasSubstr("sixdof.settings: not an object"));
   EXPECT_THAT(message_of("bucket", {{"kind", "depth"}, {"percent", 5}}), HasSubstr("sixdof.bucket: "));
   EXPECT_THAT(message_of("bucket", {{"kind", "volume"}, {"percent", 101}}), HasSubstr("sixdof.bucket: "));
+  EXPECT_THAT(message_of("bucket", {{"kind", "volume"}, {"percent", 0.00001}}), HasSubstr("sixdof.bucket: "));
   EXPECT_THAT(message_of("configurations", "many"), HasSubstr("sixdof.configurations: "));
   EXPECT_THROW(row_fields_of(Json::parse("[]")), Error);
 }

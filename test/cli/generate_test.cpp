@@ -136,6 +136,59 @@ TEST_F(Generate, ShardsMergeToTheBytesOfTheWholeSet) {
   EXPECT_EQ(bytes_of(folder_ / "one-by-one.h5"), expected);
 }
 
+TEST_F(Generate, ShardsOfMeshesInFilesMergeToTheBytesOfTheWholeSet) {
+  const std::string mesh = folder_ / "my.ply";
+  ASSERT_EQ(run({"models", "make", "bumpy-sphere-200", "-o", mesh}).exit_code, 0);
+  ASSERT_EQ(run(job_with({"--a", mesh, "-o", folder_ / "whole.h5"})).exit_code, 0);
+  ASSERT_EQ(make_shards("shards", {"--a", mesh}).exit_code, 0);
+  ASSERT_EQ(merge("shards").exit_code, 0);
+  EXPECT_EQ(bytes_of(folder_ / "shards.h5"), bytes_of(folder_ / "whole.h5"));
+  const auto info = run({"info", folder_ / "shards.h5"});
+  EXPECT_THAT(info.out, HasSubstr(mesh + " (" + mesh + ")"));
+  EXPECT_THAT(run({"info", folder_ / "shards.h5", "--json"}).out, HasSubstr("\"absolute_path\": \"" + mesh + "\""));
+  // A path is no part of a set's content.
+  EXPECT_THAT(info.out, Not(HasSubstr("torus-knot-600.")));
+}
+
+TEST_F(Generate, TakesPercentagesBelowOne) {
+  const std::string set = folder_ / "set.h5";
+  const auto made = run(job_with({"--distances", "0.5,0,12.125,1:2", "--volumes", "0.5,5", "-o", set}));
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const std::string out = run({"info", set}).out;
+  std::size_t before = 0;
+  for (const char* const bucket : {"\ndistance/00 ", "\ndistance/0.5 ", "\ndistance/01 ", "\ndistance/02 ",
+                                   "\ndistance/12.125 ", "\nvolume/0.5 ", "\nvolume/05 "}) {
+    const std::size_t at = out.find(bucket);
+    ASSERT_NE(at, std::string::npos) << bucket << out;
+    EXPECT_GT(at, before) << bucket;
+    before = at;
+  }
+  const auto verified = run({"verify", set, "--sample", "20"});
+  EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.err;
+  for (const char* const bad : {"0.5:2", "1:2.5", "0.0001", "1e-1", ".5", "-1", "100.5", "1."}) {
+    const auto refused = run(job_with({"--distances", bad, "-o", folder_ / "bad.h5"}));
+    EXPECT_EQ(refused.exit_code, k_exit_error) << bad;
+    EXPECT_THAT(refused.err, HasSubstr(std::string("percentages '") + bad + "'"));
+  }
+}
+
+TEST_F(Generate, WarnsOfOddSizesAndOfBucketsThatNothingReaches) {
+  std::ofstream(folder_ / "tiny.off") << "OFF\n4 4 0\n0 0 0\n.001 0 0\n0 .001 0\n0 0 .001\n"
+                                         "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+  const auto made = run(job_with({"--b", folder_ / "tiny.off", "-o", folder_ / "set.h5"}));
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.err, AllOf(HasSubstr("sixdof: warning: bumpy-sphere-200 is "), HasSubstr(" times as large as tiny"),
+                              HasSubstr("set.h5: no configuration reaches volume 5 %\n")));
+  EXPECT_EQ(std::ranges::count(made.err, '\n'), 2);
+  ASSERT_EQ(make_shards("shards", {"--b", folder_ / "tiny.off"}).exit_code, 0);
+  EXPECT_THAT(merge("shards").err, HasSubstr("no configuration reaches volume 5 %\n"));
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{"verify", folder_ / "set.h5", "--sample", "1"},
+        {"query", "--a", "bumpy-sphere-200", "--b", folder_ / "tiny.off", "--pose", "3 0 0 1 0 0 0"}}) {
+    EXPECT_THAT(run(other).err, HasSubstr(" times as large as tiny")) << other.front();
+  }
+}
+
 TEST_F(Generate, ResumeKeepsValidShardsAndMakesTheOthersAgain) {
   ASSERT_EQ(make_shards("set").exit_code, 0);
   const auto first = folder_ / "set" / shard_file_name({.number = 1, .count = k_shards});

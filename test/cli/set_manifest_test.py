@@ -13,7 +13,7 @@ import tempfile
 JOBS = {
     "both": "--a bumpy-sphere-200 --b torus-knot-600 --grid 90 --volume-grid 90/60 --distances 5,0:2 --volumes 2",
     "distances": "--a torus-knot-600 --grid so3:5:4 --distances 7 --method advance --oracle exact",
-    "volumes": "--a bumpy-sphere-200 --grid 90 --volumes 1:3",
+    "volumes": "--a bumpy-sphere-200 --grid 90 --volumes 0.5,1:3,2.5",
 }
 
 

@@ -24,7 +24,7 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 /// A row of pair "p" as sixdof-bench writes it, of 64 configurations and with a right answer to each.
-Json row(const std::string& query, const std::string& algorithm, const std::string& kind, int percent, double cpu_ns,
+Json row(const std::string& query, const std::string& algorithm, const std::string& kind, double percent, double cpu_ns,
          const Json& values = Json::object()) {
   Json json = {{"name", query + "/algorithm:" + algorithm + "/pair:p"},
                {"run_type", "iteration"},
@@ -49,7 +49,7 @@ Json row(const std::string& query, const std::string& algorithm, const std::stri
   return json;
 }
 
-Json failed_row(const std::string& query, const std::string& algorithm, const std::string& kind, int percent) {
+Json failed_row(const std::string& query, const std::string& algorithm, const std::string& kind, double percent) {
   Json json = row(query, algorithm, kind, percent, 0.0);
   json.update({{"error_occurred", true}, {"error_message", "no such model"}});
   return json;
@@ -118,6 +118,19 @@ TEST_F(TableCommand, HasALinePerBucketAndAlgorithmAndOneClockPerColumn) {
                                        row("distance", "slow", "distance", 5, 123456, wrong),
                                        row("distance", "x", "distance", 0, 9.0, {{"time_unit", "us"}}), path})),
               HasSubstr(k_distances));
+}
+
+TEST_F(TableCommand, OrdersBucketsByTheirNumbers) {
+  const std::string out =
+      printed(write("r.json", {row("collide", "x", "distance", 10, 4), row("collide", "x", "distance", 0.5, 2),
+                               row("collide", "x", "distance", 1, 3), row("collide", "x", "distance", 0, 1)}));
+  std::size_t before = 0;
+  for (const char* const bucket : {"\n00 %", "\n0.5 %", "\n01 %", "\n10 %"}) {
+    const std::size_t at = out.find(bucket);
+    ASSERT_NE(at, std::string::npos) << bucket << out;
+    EXPECT_GT(at, before) << bucket;
+    before = at;
+  }
 }
 
 TEST_F(TableCommand, ShowsHowWrongResponsesAreAndTheSettings) {

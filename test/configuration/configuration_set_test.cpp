@@ -310,12 +310,59 @@ TEST_F(ConfigurationSetTest, TellsASetFromOtherFilesByItsFirstBytes) {
   EXPECT_FALSE(looks_like_configuration_set(folder_ / "absent"));
 }
 
+TEST_F(ConfigurationSetTest, KeepsWhereMeshesAreApartFromItsContent) {
+  const std::string hash = ConfigurationSet(write("set.h5")).hash();
+  SetDescription set = description();
+  set.a.path = "parts/a.ply";
+  set.a.absolute_path = "/home/parts/a.ply";
+  ConfigurationSetWriter writer(folder_ / "places.h5", set);
+  writer.write(some_summary(k_near), near_);
+  writer.write(some_summary(k_far), far_);
+  writer.write(some_summary(k_deep), deep_);
+  writer.commit();
+  const ConfigurationSet read(folder_ / "places.h5");
+  EXPECT_EQ(read.description().a.path, set.a.path);
+  EXPECT_EQ(read.description().a.absolute_path, set.a.absolute_path);
+  EXPECT_EQ(read.description().b.path + read.description().b.absolute_path, "");
+  EXPECT_EQ(read.hash(), hash);
+}
+
+TEST_F(ConfigurationSetTest, HasBucketsOfPartsOfAPercent) {
+  const BucketKey half{BucketKind::distance, 0.5}, close{BucketKind::distance, 0.125};
+  ConfigurationSetWriter writer(folder_ / "set.h5", description());
+  writer.write(some_summary(k_near), near_);
+  writer.write(some_summary(half), far_);
+  writer.write(some_summary(close), deep_);
+  EXPECT_THROW(writer.write(some_summary({BucketKind::distance, 0.0625}), near_), BadArgument);
+  writer.commit();
+  const ConfigurationSet set(folder_ / "set.h5");
+  ASSERT_EQ(set.buckets().size(), 3u);
+  EXPECT_EQ(set.buckets()[0].key, close);
+  EXPECT_EQ(set.buckets()[1].key, half);
+  EXPECT_EQ(set.buckets()[2].key, k_near);
+  EXPECT_TRUE(same_bits(set.read(half), far_));
+}
+
+TEST_F(ConfigurationSetTest, RefusesABucketOfAnotherName) {
+  const auto path = write("set.h5");
+  {
+    const hdf5::Session session;
+    const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    ASSERT_GE(H5Lmove(file.id(), "/distance/05", file.id(), "/distance/5.0", H5P_DEFAULT, H5P_DEFAULT), 0);
+  }
+  EXPECT_THAT([&] { ConfigurationSet set(path); },
+              ThrowsMessage<BadFile>(AllOf(HasSubstr("distance/5.0"), HasSubstr("no name of a bucket"))));
+}
+
 TEST(BucketKey, NamesComeBack) {
-  for (const BucketKey key : {BucketKey{BucketKind::distance, 0}, k_near, k_deep, BucketKey{BucketKind::volume, 100}}) {
+  for (const BucketKey key : {BucketKey{BucketKind::distance, 0}, k_near, k_deep, BucketKey{BucketKind::volume, 100},
+                              BucketKey{BucketKind::volume, 0.1}, BucketKey{BucketKind::distance, 12.345}}) {
     EXPECT_EQ(BucketKey::parse(key.name()), key);
   }
+  EXPECT_EQ((BucketKey{BucketKind::distance, 0.5}).name(), "distance/0.5");
   EXPECT_EQ(k_near.name(), "distance/05");
-  for (const char* name : {"", "distance", "distance/", "distance/x", "distance/-1", "distance/101", "depth/05"}) {
+  for (const char* name : {"", "distance", "distance/", "distance/x", "distance/-1", "distance/101", "depth/05",
+                           "distance/.5", "distance/5.", "distance/0.0001", "distance/100.1", "distance/1e1"}) {
     EXPECT_THROW(BucketKey::parse(name), BadArgument) << name;
   }
 }

@@ -74,8 +74,8 @@ TEST(GenerationJob, DescribesItsSetAgain) {
 
 TEST(GenerationJob, RefusesWhatCannotBeDone) {
   const test::SmallJob small;
-  const auto with = [&](std::vector<int> distances, std::vector<int> volumes) {
-    static_cast<void>(GenerationJob::of("", "raycast", "1", small.a, small.b, small.set, distances, volumes));
+  const auto with = [&](std::vector<double> distances, std::vector<double> volumes) {
+    static_cast<void>(GenerationJob::of("", "raycast", "1", small.a, small.set, distances, volumes));
   };
   EXPECT_THAT([&] { with({}, {}); }, ThrowsMessage<BadArgument>(HasSubstr("no bucket")));
   EXPECT_THAT([&] { with({3, 3}, {}); }, ThrowsMessage<BadArgument>(HasSubstr("distance/03")));

@@ -27,12 +27,35 @@ TEST(SetCatalogue, ReadsAManifestWithoutOpeningSets) {
 
 TEST(SetCatalogue, NamesAUsersSetAfterItsMeshes) {
   const test::SuiteCopy suite(SIXDOF_SMALL_SUITE);
+  const ConfigurationSet set(suite.directory() / "torus-1k-cone-1k.h5");
+  const auto& [version, a, b, grid, volume_grid] = set.description();
   SetCatalogue catalogue;
-  catalogue.add_file(suite.directory() / "torus-1k-cone-1k.h5");
-  ASSERT_EQ(catalogue.sets().size(), 1u);
-  EXPECT_EQ(catalogue.sets()[0].pair, "torus-1k-cone-1k");
-  EXPECT_EQ(catalogue.sets()[0].buckets.size(), 3u);
-  EXPECT_THROW(catalogue.add_file(suite.directory() / "torus-1k-cone-1k.h5"), BadArgument);
+  const CatalogueEntry entry = catalogue.add(set.path(), a, b, {{BucketKind::distance, 0.5}});
+  EXPECT_EQ(entry.pair, "torus-1k-cone-1k");
+  EXPECT_EQ(entry.a, "torus-1k");
+  EXPECT_EQ(entry.buckets.size(), 1u);
+  EXPECT_EQ(catalogue.mesh("cone-1k")->identity.hash, b.hash);
+  EXPECT_EQ(catalogue.mesh("cone-1k")->set, set.path());
+  EXPECT_EQ(catalogue.mesh("cone-2k"), nullptr);
+  EXPECT_THROW(catalogue.add(set.path(), a, b, {}), BadArgument) << "the same pair again";
+}
+
+TEST(SetCatalogue, KeepsMeshesOfOneNameApart) {
+  const auto mesh = [](const std::string& name, const std::string& hash) {
+    return MeshIdentity{.name = name, .hash = hash, .path = hash + "/" + name + ".obj"};
+  };
+  const MeshIdentity first = mesh("My Part", "0123456789ab"), second = mesh("My Part", "fedcba987654");
+  SetCatalogue catalogue;
+  const CatalogueEntry both = catalogue.add("1.h5", first, second, {});
+  EXPECT_EQ(both.pair, "my-part-my-part");
+  EXPECT_EQ(both.a, "my-part@01234567");
+  EXPECT_EQ(both.b, "my-part@fedcba98");
+  EXPECT_EQ(catalogue.mesh(both.b)->identity.path, second.path);
+  EXPECT_EQ(catalogue.add("2.h5", first, first, {}).pair, "my-part");
+  EXPECT_EQ(catalogue.add("3.h5", second, second, {}).pair, "my-part-fedcba98-fedcba98");
+  EXPECT_THROW(catalogue.add("4.h5", first, first, {}), BadArgument);
+  // A file is never taken for the model of its name.
+  EXPECT_EQ(catalogue.mesh("my-part"), nullptr);
 }
 
 TEST(SetCatalogue, SaysWhatIsWrongWithAManifest) {

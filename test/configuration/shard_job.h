@@ -23,8 +23,8 @@ struct SmallJob {
     set.b = MeshIdentity::of(b);
     set.grid = make_grid("90/60");
     set.volume_grid = make_grid("90");
-    job = GenerationJob::of("1.2.3 abc", generator->oracle_name(), generator->oracle_version(), a, b, set,
-                            std::vector{20, 0}, std::vector{3});
+    job = GenerationJob::of("1.2.3 abc", generator->oracle_name(), generator->oracle_version(), a, set,
+                            std::vector{20.0, 0.0}, std::vector{3.0});
   }
 
   Generated compute(ShardNumber shard, unsigned threads = 1) const {

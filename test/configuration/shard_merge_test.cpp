@@ -48,8 +48,8 @@ TEST_F(ShardMerge, AnyNumberOfShardsGivesTheSameFile) {
     EXPECT_EQ(bytes, first) << count;
   }
   const ConfigurationSet set(folder_ / "set.h5");
-  const Generated whole =
-      generate_distances(*small_.generator, small_.a, small_.b, small_.set.grid, std::vector{20, 0}, {.threads = 2});
+  const Generated whole = generate_distances(*small_.generator, small_.a, small_.b, small_.set.grid,
+                                             std::vector{20.0, 0.0}, {.threads = 2});
   for (const Bucket& bucket : whole.buckets) {
     const std::vector<double> translations = set.read(bucket.summary.key);
     EXPECT_TRUE(test::same_bits(translations, bucket.translations));
@@ -119,9 +119,9 @@ TEST_F(ShardMerge, HoldsOneBucketInMemoryAndNotTheSet) {
   SetDescription set = small_.set;
   set.grid = make_grid("30");
   set.volume_grid.reset();
-  std::vector<int> percents(BucketKey::k_max_percent + 1);
-  std::iota(percents.begin(), percents.end(), 0);
-  const auto job = GenerationJob::of("", "raycast", "1", small_.a, small_.b, set, percents, {});
+  std::vector<double> percents(BucketKey::k_max_percent + 1);
+  std::iota(percents.begin(), percents.end(), 0.0);
+  const auto job = GenerationJob::of("", "raycast", "1", small_.a, set, percents, {});
   const DistinctRotations distinct(set.grid.rotations);
   const auto rows = [&](ShardNumber shard, BucketKey key) {
     Bucket bucket;

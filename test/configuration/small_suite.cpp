@@ -65,7 +65,7 @@ void make_set(const std::filesystem::path& file, const std::string& name_a, cons
         [&](const auto& u, const auto& q) { return solve(*query, a, b, u, q, contact); });
   write({BucketKind::distance, 5}, apart, apart,
         [&](const auto& u, const auto& q) { return solve(*query, a, b, u, q, apart); });
-  const std::vector<int> volumes{3};
+  const std::vector<double> volumes{3};
   const Generated overlapping = generate_volumes(*make_ray_cast(), a, b, grid, volumes);
   for (const Bucket& bucket : overlapping.buckets) writer.write(bucket.summary, bucket.translations);
   writer.commit();

@@ -28,7 +28,7 @@ const std::unique_ptr<Algorithm> k_brute_force = make_brute_force_algorithm();
 const Mesh k_a = test::boxes_mesh({{{1.1, 0.3, 0}, {0.05, 0.3, 0.3}}, {{-0.9, 0.3, 0}, {0.05, 0.3, 0.3}}}, "walls");
 const Mesh k_b = test::boxes_mesh({{{5.0, 1.0, 2.0}, {0.1, 0.12, 0.14}}}, "box");
 const Grid k_grid = make_grid("90");
-const std::vector<int> k_percents{0, 2, 10};
+const std::vector<double> k_percents{0, 2, 10};
 
 using Edit = std::function<void(std::vector<Bucket>&)>;
 

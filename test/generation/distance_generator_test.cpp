@@ -24,7 +24,7 @@ const std::unique_ptr<Algorithm> k_brute_force = make_brute_force_algorithm();
 // Few triangles, since the oracle tests every pair.
 const Mesh k_a = test::tetrahedron_mesh({1.0, -2.0, 0.5}, 1.7);
 const Mesh k_b = test::tetrahedron_mesh({0.1, 0.2, 3.0}, 0.8);
-const std::vector<int> k_percents{0, 30, 5};
+const std::vector<double> k_percents{0, 30, 5};
 
 Generated generate(const Grid& grid, const RunOptions& run = {}, const Mesh& a = k_a, const Mesh& b = k_b,
                    const std::vector<std::uint32_t>& rotations = {}) {
@@ -117,7 +117,7 @@ TEST(DistanceGenerator, ReportsProgressToTheEndAndStopsWhenAsked) {
 TEST(DistanceGenerator, RefusesWhatCannotBeDone) {
   const Grid grid = make_grid("90");
   const auto generator = make_sphere_method(*k_brute_force);
-  const auto with = [&](const std::vector<int>& percents, const std::vector<std::uint32_t>& rotations = {}) {
+  const auto with = [&](const std::vector<double>& percents, const std::vector<std::uint32_t>& rotations = {}) {
     generate_distances(*generator, k_a, k_b, grid, percents, {}, rotations);
   };
   EXPECT_THAT([&] { with({}); }, ThrowsMessage<BadArgument>(HasSubstr("no bucket")));

@@ -330,7 +330,7 @@ bool same_bits(const Generated& left, const Generated& right) {
   return same;
 }
 
-const std::vector<int> k_percents{30, 12, 11, 1, 0};
+const std::vector<double> k_percents{30, 12, 11, 1, 0};
 
 /// Pairs of a smooth and a flat body, and of a body with itself on which faces tie.
 class RayCastBits : public testing::TestWithParam<std::pair<const char*, const char*>> {

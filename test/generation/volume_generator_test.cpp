@@ -36,7 +36,7 @@ using testing::ThrowsMessage;
 const std::unique_ptr<Algorithm> k_brute_force = make_brute_force_algorithm();
 
 const std::unique_ptr<DistanceGenerator> k_touching = make_sphere_method(*k_brute_force);
-const std::vector<int> k_percents{0, 10, 1, 5};
+const std::vector<double> k_percents{0, 10, 1, 5};
 
 /// A grid of one configuration.
 Grid single(const Eigen::Vector3d& direction, const Eigen::Vector4d& rotation) {
@@ -181,7 +181,7 @@ TEST(VolumeGenerator, FirstCrossingWhereTheVolumeFallsAgain) {
   ASSERT_GT(wall, 0.05 * a.volume());
   ASSERT_LT(wall, 0.06 * a.volume());
   const Generated result = generate_volumes(*k_touching, a, b, single(Eigen::Vector3d::UnitX(), {1, 0, 0, 0}),
-                                            std::vector{0, 5, 6, 7, 8, 10});
+                                            std::vector<double>{0, 5, 6, 7, 8, 10});
   // Translations are from the centre of A's box.
   const double outer = 3.1 + 0.15 - a.center().x(), block = 1.2 + 0.15 - a.center().x();
   for (const int percent : {5, 6, 7, 8}) {
@@ -268,7 +268,7 @@ TEST(VolumeGenerator, EveryInstructionSetGivesTheSameBits) {
 TEST(VolumeGenerator, FewMeasurementsMeetABucket) {
   // A bucket takes one measurement where it is predicted and one or two where the cubics meet it. The others divide
   // intervals in which the bounds do not exclude an earlier hit, most of them in coarse meshes of many parts.
-  const std::vector<int> percents{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  const std::vector<double> percents{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
   const auto touching = make_ray_cast();
   for (const char* name : {"bumpy-sphere-8k", "torus-knot-8k"}) {
     const Mesh a = load_model(name);
@@ -288,7 +288,7 @@ TEST(VolumeGenerator, FewMeasurementsMeetABucket) {
 TEST(VolumeGenerator, CrossingPlatesTakeNoMeasurements) {
   const Mesh plate = make_box({.size = {2.0, 1.6, 0.002}}, 12);
   const Grid grid = make_grid("90");
-  const std::vector<int> percents{1, 2, 5};
+  const std::vector<double> percents{1, 2, 5};
   const auto touching = make_ray_cast();
   const Generated result = generate_volumes(*touching, plate, plate, grid, percents);
   const auto solver = volume_solvers(*touching, plate, plate)();
@@ -324,10 +324,10 @@ TEST(VolumeGenerator, RefusesMeshesThatAreNotSolids) {
   }
   EXPECT_THAT(
       [&] {
-        generate_volumes(*k_touching, a, a, grid, std::vector{5, 5});
+        generate_volumes(*k_touching, a, a, grid, std::vector{5.0, 5.0});
       },
       ThrowsMessage<BadArgument>(HasSubstr("volume 5 %")));
-  EXPECT_THAT([&] { generate_volumes(*k_touching, a, a, grid, std::vector{101}); },
+  EXPECT_THAT([&] { generate_volumes(*k_touching, a, a, grid, std::vector{101.0}); },
               ThrowsMessage<BadArgument>(HasSubstr("volume 101 %")));
 }
 
@@ -338,7 +338,7 @@ Verdict verify_after(const Edit& edit) {
       test::boxes_mesh({{{1.1, 0.3, 0}, {0.1, 0.4, 0.3}}, {{-0.9, 0.3, 0}, {0.4, 0.4, 0.3}}}, "walls");
   static const Mesh b = test::lump_mesh(5, {0, 3.0, 0});
   static const Grid grid = make_grid("90");
-  static const Generated honest = generate_volumes(*k_touching, a, b, grid, std::vector{0, 2, 10});
+  static const Generated honest = generate_volumes(*k_touching, a, b, grid, std::vector<double>{0, 2, 10});
   std::vector<Bucket> buckets = honest.buckets;
   edit(buckets);
   const auto path = std::filesystem::path(testing::TempDir()) /

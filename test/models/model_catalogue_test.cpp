@@ -66,6 +66,7 @@ TEST(Suggestions, AreNearOrContained) {
   EXPECT_THAT(suggestions("trous", names), ElementsAre("torus"));
   EXPECT_THAT(suggestions("sphere", names), IsEmpty());
   EXPECT_THAT(suggestions("toruss", names), ElementsAre("torus"));
+  EXPECT_THAT(suggestions("frobnicate", {"a", "b"}), IsEmpty()) << "a letter is contained in most words";
 }
 
 }  // namespace

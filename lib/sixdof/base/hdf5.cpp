@@ -112,6 +112,23 @@ void File::make_group(const std::string& object) {
           "cannot be written");
 }
 
+std::vector<std::string> File::names(const std::string& group) const {
+  std::vector<std::string> list;
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
+    static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+    return 0;
+  };
+  check(H5Literate_by_name(file_.id(), group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &list, H5P_DEFAULT),
+        group, "cannot be listed");
+  return list;
+}
+
+bool File::has_attribute(const std::string& object, const char* name) const {
+  const htri_t found = H5Aexists_by_name(file_.id(), object.c_str(), name, H5P_DEFAULT);
+  check(found, object, fmt::format("attribute {} cannot be looked up", name));
+  return found > 0;
+}
+
 void File::write_attribute(const std::string& object, const char* name, hid_t type, const void* value) {
   const std::string what = fmt::format("attribute {} cannot be written", name);
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);

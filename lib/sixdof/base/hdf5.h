@@ -77,7 +77,10 @@ class File {
 
   bool exists(const std::string& object) const;
   void make_group(const std::string& object);
+  /// Names of the objects in a group, without the group's own, in the order of their bytes.
+  std::vector<std::string> names(const std::string& group) const;
 
+  bool has_attribute(const std::string& object, const char* name) const;
   void write_attribute(const std::string& object, const char* name, const std::string& value);
   /// T: double or std::uint64_t.
   template <class T>

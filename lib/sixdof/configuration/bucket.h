@@ -2,6 +2,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,17 +23,24 @@ std::string to_string(BucketKind kind);
 
 struct BucketKey {
   BucketKind kind = BucketKind::distance;
-  int percent = 0;
+  double percent = 0.0;  ///< 0 to k_max_percent, a decimal number with at most k_max_decimals digits behind the point.
 
   auto operator<=>(const BucketKey&) const = default;
 
-  /// Name of the bucket's dataset: "distance/05", "volume/10". Names of benchmarks have it with ':' for '/'.
+  /// Name of the bucket's dataset: "distance/05", "volume/10", "distance/0.5". Whole percentages have two digits at
+  /// least. Names of benchmarks have it with ':' for '/'.
   std::string name() const;
+  std::string percent_text() const;  ///< "05", "0.5": the part of name() behind the '/'.
   /// The inverse of name(). @throws BadArgument
   static BucketKey parse(std::string_view name);
 
   static constexpr int k_max_percent = 100;
+  static constexpr int k_max_decimals = 3;
 };
+
+/// A percentage as a bucket may have it: digits, and at most k_max_decimals digits behind a point ("5", "05", "0.5").
+/// Nothing if the text is something else or above k_max_percent.
+std::optional<double> parse_percent(std::string_view text);
 
 /// Everything about a bucket but its values. Distances in the meshes' length unit, volumes in its cube.
 struct BucketSummary {
@@ -67,11 +75,11 @@ constexpr double k_contact_target = 1e-11;
 constexpr double k_volume_tolerance = 1e-9;
 
 /// The distance bucket of a percentage of the diagonal of A's box, with key, nominal, target and tolerance.
-/// @throws BadArgument unless 0 <= percent <= BucketKey::k_max_percent
-BucketSummary distance_bucket(const Mesh& a, int percent);
+/// @throws BadArgument if a BucketKey cannot have this percentage
+BucketSummary distance_bucket(const Mesh& a, double percent);
 
 /// The volume bucket of a percentage of A's volume, with key, nominal, target and tolerance. Bucket 0 is contact.
-/// @throws BadArgument unless 0 <= percent <= BucketKey::k_max_percent
-BucketSummary volume_bucket(const Mesh& a, int percent);
+/// @throws BadArgument if a BucketKey cannot have this percentage
+BucketSummary volume_bucket(const Mesh& a, double percent);
 
 }  // namespace sixdof

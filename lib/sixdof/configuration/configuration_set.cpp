@@ -116,7 +116,7 @@ ConfigurationSet::ConfigurationSet(std::filesystem::path path) : path_(std::move
   description_.b = detail::read_identity(file, path_, "mesh_b");
   description_.grid = detail::read_grid(file, path_, "/");
   if (file.exists(k_volume_grid)) description_.volume_grid = detail::read_grid(file, path_, k_volume_grid);
-  buckets_ = detail::read_summaries(file);
+  buckets_ = detail::read_summaries(file, path_);
   for (const BucketSummary& bucket : buckets_) {
     const Grid& grid = description_.grid_of(bucket.key.kind);
     const auto [rows, columns] = file.matrix_size(bucket.key.name());

@@ -24,6 +24,9 @@ struct MeshIdentity {
   Eigen::Vector3d box_min = Eigen::Vector3d::Zero();
   Eigen::Vector3d box_max = Eigen::Vector3d::Zero();
   double volume = 0.0;
+  /// Where a mesh that is no model of the catalogue was when the set was made: as the user wrote it, and absolute. Both
+  /// are empty for a model. They are no part of content hashes: the same mesh may lie anywhere (set_meshes.h).
+  std::string path, absolute_path;
 
   static MeshIdentity of(const Mesh& mesh);
   double diagonal() const { return (box_max - box_min).norm(); }

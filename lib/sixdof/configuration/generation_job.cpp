@@ -11,10 +11,11 @@
 namespace sixdof {
 namespace {
 
-std::vector<BucketSummary> bucket_list(const Mesh& a, std::span<const int> distances, std::span<const int> volumes) {
+std::vector<BucketSummary> bucket_list(const Mesh& a, std::span<const double> distances,
+                                       std::span<const double> volumes) {
   std::vector<BucketSummary> buckets;
-  for (const int percent : distances) buckets.push_back(distance_bucket(a, percent));
-  for (const int percent : volumes) buckets.push_back(volume_bucket(a, percent));
+  for (const double percent : distances) buckets.push_back(distance_bucket(a, percent));
+  for (const double percent : volumes) buckets.push_back(volume_bucket(a, percent));
   std::ranges::sort(buckets, {}, &BucketSummary::key);
   const auto repeated = std::ranges::adjacent_find(buckets, {}, &BucketSummary::key);
   if (repeated != buckets.end()) throw BadArgument(fmt::format("bucket {}: asked for twice", repeated->key.name()));
@@ -50,14 +51,14 @@ Grid make_again(const GridIdentity& identity) {
 GridIdentity GridIdentity::of(const Grid& grid) { return {.spec = grid.spec, .hash = detail::hash_of(grid)}; }
 
 GenerationJob GenerationJob::of(std::string program, const std::string& oracle, const std::string& oracle_version,
-                                const Mesh& a, const Mesh& b, const SetDescription& set, std::span<const int> distances,
-                                std::span<const int> volumes) {
+                                const Mesh& a, const SetDescription& set, std::span<const double> distances,
+                                std::span<const double> volumes) {
   GenerationJob job{.program = std::move(program),
                     .generator_version = set.generator_version,
                     .oracle = oracle,
                     .oracle_version = oracle_version,
-                    .a = MeshIdentity::of(a),
-                    .b = MeshIdentity::of(b),
+                    .a = set.a,
+                    .b = set.b,
                     .grid = GridIdentity::of(set.grid),
                     .volume_grid = std::nullopt,
                     .buckets = bucket_list(a, distances, volumes)};

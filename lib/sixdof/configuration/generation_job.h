@@ -33,11 +33,12 @@ struct GenerationJob {
   std::optional<GridIdentity> volume_grid;
   std::vector<BucketSummary> buckets;  ///< Ascending by key, with key, nominal, target and tolerance.
 
+  /// @param set with the identities of its meshes
   /// @param distances, volumes percentages, each once
   /// @throws BadArgument
   static GenerationJob of(std::string program, const std::string& oracle, const std::string& oracle_version,
-                          const Mesh& a, const Mesh& b, const SetDescription& set, std::span<const int> distances,
-                          std::span<const int> volumes);
+                          const Mesh& a, const SetDescription& set, std::span<const double> distances,
+                          std::span<const double> volumes);
 
   bool has(BucketKind kind) const;
   std::string hash() const;

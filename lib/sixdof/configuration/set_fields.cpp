@@ -16,6 +16,9 @@ namespace {
 constexpr std::tuple k_mesh_attributes{
     std::pair{"name", &MeshIdentity::name}, std::pair{"content_hash", &MeshIdentity::hash},
     std::pair{"triangles", &MeshIdentity::triangles}, std::pair{"volume", &MeshIdentity::volume}};
+/// Attributes that are not there if they are empty.
+constexpr std::tuple k_place_attributes{std::pair{"path", &MeshIdentity::path},
+                                        std::pair{"absolute_path", &MeshIdentity::absolute_path}};
 constexpr std::tuple k_grid_attributes{std::pair{"grid", &Grid::spec}, std::pair{"sampler", &Grid::sampler},
                                        std::pair{"direction_step_degrees", &Grid::direction_step_degrees},
                                        std::pair{"rotation_step_degrees", &Grid::rotation_step_degrees}};
@@ -136,6 +139,9 @@ std::string check_content_hash(const hdf5::File& file, const std::filesystem::pa
 void write_identity(hdf5::File& file, const std::string& group, const MeshIdentity& mesh) {
   file.make_group(group);
   for_each_attribute(mesh, k_mesh_attributes, AttributeWriter{file, group});
+  for_each_attribute(mesh, k_place_attributes, [&](const char* name, const std::string& value) {
+    if (!value.empty()) file.write_attribute(group, name, value);
+  });
   Eigen::Matrix<double, 3, 2> box;
   box << mesh.box_min, mesh.box_max;
   file.write_matrix(group + "/box", box.data(), 2, 3, 0);
@@ -144,6 +150,9 @@ void write_identity(hdf5::File& file, const std::string& group, const MeshIdenti
 MeshIdentity read_identity(const hdf5::File& file, const std::filesystem::path& path, const std::string& group) {
   MeshIdentity mesh;
   for_each_attribute(mesh, k_mesh_attributes, AttributeReader{file, group});
+  for_each_attribute(mesh, k_place_attributes, [&](const char* name, std::string& value) {
+    if (file.has_attribute(group, name)) value = file.read_string(group, name);
+  });
   const std::string box_name = group + "/box";
   if (file.matrix_size(box_name) != std::pair<std::size_t, std::size_t>(2, 3)) {
     throw BadFile(path.string(), box_name, "is not 2 x 3");
@@ -176,23 +185,33 @@ BucketSummary write_bucket(hdf5::File& file, BucketSummary summary, std::span<co
   const std::string object = summary.key.name();
   const std::size_t chunk_rows = std::max<std::size_t>(1, k_chunk_bytes / (sizeof(double) * directions));
   file.write_matrix(object, translations.data(), translations.size() / directions, directions, chunk_rows);
-  file.write_attribute(object, "target_percent", static_cast<std::uint64_t>(summary.key.percent));
+  const double percent = summary.key.percent;
+  if (percent == std::floor(percent)) {  // A count, as in sets that have no other percentages.
+    file.write_attribute(object, "target_percent", static_cast<std::uint64_t>(percent));
+  } else {
+    file.write_attribute(object, "target_percent", percent);
+  }
   for_each_attribute(summary, k_bucket_attributes, AttributeWriter{file, object});
   return summary;
 }
 
-std::vector<BucketSummary> read_summaries(const hdf5::File& file) {
+std::vector<BucketSummary> read_summaries(const hdf5::File& file, const std::filesystem::path& path) {
   std::vector<BucketSummary> buckets;
   for (const BucketKind kind : {BucketKind::distance, BucketKind::volume}) {
-    if (!file.exists(to_string(kind))) continue;
-    for (int percent = 0; percent <= BucketKey::k_max_percent; ++percent) {
-      BucketSummary bucket{.key = {kind, percent}};
-      const std::string object = bucket.key.name();
-      if (!file.exists(object)) continue;
+    const std::string group = to_string(kind);
+    if (!file.exists(group)) continue;
+    for (const std::string& name : file.names(group)) {
+      const std::string object = group + "/" + name;
+      const std::optional<double> percent = parse_percent(name);
+      if (!percent || BucketKey{kind, *percent}.percent_text() != name) {
+        throw BadFile(path.string(), object, "is no name of a bucket");
+      }
+      BucketSummary bucket{.key = {kind, *percent}};
       for_each_attribute(bucket, k_bucket_attributes, AttributeReader{file, object});
       buckets.push_back(std::move(bucket));
     }
   }
+  std::ranges::sort(buckets, {}, &BucketSummary::key);
   return buckets;
 }
 

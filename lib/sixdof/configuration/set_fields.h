@@ -61,7 +61,7 @@ Grid read_grid(const hdf5::File& file, const std::filesystem::path& path, const 
 BucketSummary write_bucket(hdf5::File& file, BucketSummary summary, std::span<const double> translations,
                            std::size_t directions);
 /// Of all buckets in the file, distances before volumes, each by percentage.
-std::vector<BucketSummary> read_summaries(const hdf5::File& file);
+std::vector<BucketSummary> read_summaries(const hdf5::File& file, const std::filesystem::path& path);
 /// Opens a session of its own. @throws BadFile if the values do not fit the summary
 std::vector<double> read_translations(const std::filesystem::path& path, const BucketSummary& summary);
 

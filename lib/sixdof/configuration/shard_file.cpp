@@ -162,7 +162,7 @@ ShardFile::ShardFile(std::filesystem::path path) : path_(std::move(path)) {
   job_.b = detail::read_identity(file, path_, "mesh_b");
   job_.grid = read_grid(file, "grid");
   if (file.exists("volume_grid")) job_.volume_grid = read_grid(file, "volume_grid");
-  buckets_ = detail::read_summaries(file);
+  buckets_ = detail::read_summaries(file, path_);
   for (const BucketSummary& b : buckets_) {
     job_.buckets.push_back({.key = b.key, .nominal = b.nominal, .target = b.target, .tolerance = b.tolerance});
   }

@@ -100,10 +100,10 @@ Generated detail::sweep_rotations(const std::function<std::unique_ptr<RaySolver>
 }
 
 Generated generate_distances(const DistanceGenerator& generator, const Mesh& a, const Mesh& b, const Grid& grid,
-                             std::span<const int> percents, const RunOptions& run,
+                             std::span<const double> percents, const RunOptions& run,
                              std::span<const std::uint32_t> rotations) {
   std::vector<BucketSummary> summaries;
-  for (const int percent : percents) {
+  for (const double percent : percents) {
     BucketSummary summary = distance_bucket(a, percent);
     summary.oracle = generator.oracle_name();
     summary.oracle_version = generator.oracle_version();

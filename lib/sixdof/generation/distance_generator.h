@@ -100,12 +100,12 @@ struct Generated {
 
 /// Finds all configurations of distance buckets. Every distinct rotation is solved once. The result has the same bits
 /// for every number of threads and every split into shards.
-/// @param percents of the diagonal of A's box, each once, 0 to BucketKey::k_max_percent
+/// @param percents of the diagonal of A's box, each once, as a BucketKey has them
 /// @param run a step is one configuration that is solved
 /// @param rotations indices into the grid, a shard's part; empty: all rotations of the grid
 /// @throws BadArgument, Interrupted, and Error from the solver naming the configuration
 Generated generate_distances(const DistanceGenerator& generator, const Mesh& a, const Mesh& b, const Grid& grid,
-                             std::span<const int> percents, const RunOptions& run = {},
+                             std::span<const double> percents, const RunOptions& run = {},
                              std::span<const std::uint32_t> rotations = {});
 
 namespace detail {

@@ -25,7 +25,7 @@ struct Part {
   BucketKind kind;
   const Grid& grid;
   std::vector<std::uint32_t> rotations;
-  std::vector<int> percents;
+  std::vector<double> percents;
 };
 
 }  // namespace

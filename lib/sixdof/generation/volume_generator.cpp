@@ -147,12 +147,12 @@ std::function<std::unique_ptr<RaySolver>()> volume_solvers(const DistanceGenerat
 }
 
 Generated generate_volumes(const DistanceGenerator& touching, const Mesh& a, const Mesh& b, const Grid& grid,
-                           std::span<const int> percents, const RunOptions& run,
+                           std::span<const double> percents, const RunOptions& run,
                            std::span<const std::uint32_t> rotations) {
   std::vector<BucketSummary> summaries;
-  for (const int percent : percents) {
+  for (const double percent : percents) {
     BucketSummary summary = volume_bucket(a, percent);
-    const bool contact = percent == 0;
+    const bool contact = percent == 0.0;
     summary.oracle = contact ? touching.oracle_name() : "exact";
     summary.oracle_version = contact ? touching.oracle_version() : SIXDOF_VERSION;
     summaries.push_back(std::move(summary));

@@ -39,10 +39,10 @@ std::function<std::unique_ptr<RaySolver>()> volume_solvers(const DistanceGenerat
 constexpr double k_first_overlap_resolution = 2e-3;
 
 /// Finds all configurations of volume buckets, as generate_distances() does those of distance buckets.
-/// @param percents of A's volume, each once, 0 to BucketKey::k_max_percent
+/// @param percents of A's volume, each once, as a BucketKey has them
 /// @throws BadArgument, BadMesh, Interrupted, and Error naming the configuration
 Generated generate_volumes(const DistanceGenerator& touching, const Mesh& a, const Mesh& b, const Grid& grid,
-                           std::span<const int> percents, const RunOptions& run = {},
+                           std::span<const double> percents, const RunOptions& run = {},
                            std::span<const std::uint32_t> rotations = {});
 
 }  // namespace sixdof

@@ -99,8 +99,10 @@ ModelName parse_model_name(std::string_view name) {
   return {std::string(name), std::nullopt};
 }
 
+bool names_file(std::string_view name_or_file) { return name_or_file.find_first_of("./") != std::string_view::npos; }
+
 Mesh load_model(const std::string& name_or_file) {
-  if (name_or_file.find_first_of("./") != std::string::npos) return load_file(name_or_file);
+  if (names_file(name_or_file)) return load_file(name_or_file);
   const ModelName parts = parse_model_name(name_or_file);
   if (const Recipe* const recipe = find(recipes(), parts.base)) {
     if (!parts.triangles) {
@@ -127,7 +129,7 @@ std::vector<std::string> suggestions(std::string_view word, const std::vector<st
   for (const std::string& name : names) {
     const std::size_t edits = edit_distance(word, name);
     const bool similar = edits <= std::min(k_most_edits, std::max<std::size_t>(1, (word.size() + 1) / 3));
-    const bool contained = word.size() >= k_shortest_part &&
+    const bool contained = std::min(word.size(), name.size()) >= k_shortest_part &&
                            (name.find(word) != std::string::npos || word.find(name) != std::string_view::npos);
     if (similar || contained) found.emplace_back(edits, name);
   }

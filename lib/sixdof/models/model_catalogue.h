@@ -20,6 +20,9 @@ struct ModelName {
 /// 0-9 and '-'.
 ModelName parse_model_name(std::string_view name);
 
+/// Whether load_model() takes the word for a file: it has a '.' or a '/'.
+bool names_file(std::string_view name_or_file);
+
 /// A mesh by its name or from a file:
 /// - RECIPE-COUNT is made by a recipe: "torus-100k", "sphere-12500" (recipe.h);
 /// - NAME is a fetched model: "elephant" (manifest.h); NAME-COUNT is its subdivision: "elephant-1m" (refine.h);
@@ -30,7 +33,7 @@ ModelName parse_model_name(std::string_view name);
 Mesh load_model(const std::string& name_or_file);
 
 /// Those of `names` that are similar to `word`, nearest first: within three edits (swapped neighbours are one) and
-/// about a third of the word's length, or one contains the other.
+/// about a third of the word's length, or one contains the other, which has three letters at least.
 std::vector<std::string> suggestions(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace sixdof

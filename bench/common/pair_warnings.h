@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+
+#include <sixdof/configuration/configuration_set.h>
+
+/// What looks wrong with a pair or its set and yet can be measured: one line each on stderr, "PROGRAM: warning: ...".
+
+namespace sixdof {
+
+/// From this ratio of the boxes' diagonals on, the units of two meshes are doubted: millimetres against metres are 1000
+/// for bodies of one size.
+constexpr double k_doubtful_size_ratio = 500.0;
+
+/// One line if one mesh is k_doubtful_size_ratio times as large as the other or more.
+void warn_of_sizes(std::string_view program, const MeshIdentity& a, const MeshIdentity& b);
+
+/// One line for every bucket of the set that no configuration reaches.
+void warn_of_unreached(std::string_view program, const ConfigurationSet& set);
+
+}  // namespace sixdof

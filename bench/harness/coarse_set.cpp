@@ -1,0 +1,145 @@
+#include "bench/harness/coarse_set.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <span>
+#include <string>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <sixdof/base/atomic_file.h>
+#include <sixdof/base/cache.h>
+#include <sixdof/base/error.h>
+#include <sixdof/generation/distance_generator.h>
+#include <sixdof/generation/volume_generator.h>
+#include "bench/common/interrupt.h"
+#include "bench/common/progress_line.h"
+#include "bench/common/run_guarded.h"
+
+namespace sixdof::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* k_program = "sixdof-bench";
+
+/// Uniform rotations and directions: no two configurations are equal, as they are on small grids of Euler angles.
+constexpr const char* k_distance_grid = "so3:64:16";
+/// A volume costs some ten times as much as a distance.
+constexpr const char* k_volume_grid = "so3:32:8";
+constexpr double k_distances[] = {0, 1, 5, 10, 20};
+constexpr double k_volumes[] = {1, 5, 10};
+
+/// Everything that the content of the set depends on.
+std::string cache_key(const DistanceGenerator& generator, const Mesh& a, const Mesh& b) {
+  return fmt::format("sixdof {}, {} {}, {} with {}, distances {} on {}, volumes {} on {}", SIXDOF_VERSION,
+                     generator.oracle_name(), generator.oracle_version(), a.hash(), b.hash(),
+                     fmt::join(k_distances, ","), k_distance_grid, fmt::join(k_volumes, ","), k_volume_grid);
+}
+
+/// Where the set is kept; empty where the cache is off or cannot be written.
+fs::path file_in_cache(const std::string& key) {
+  fs::path file = cache_file("coarse-set", key);
+  if (file.empty()) return file;
+  try {
+    fs::create_directories(file.parent_path());
+    const AtomicFile writable(file);
+  } catch (const std::exception&) {
+    return {};
+  }
+  return file;
+}
+
+fs::path temporary_file() { return fs::temp_directory_path() / fmt::format("sixdof-coarse-set-{}.h5", ::getpid()); }
+
+/// Whether the file is the whole set, with every value undamaged.
+bool is_whole(const fs::path& file, const Mesh& a, const Mesh& b) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return false;
+  try {
+    const ConfigurationSet set(file);
+    set.check_meshes(a, b);
+    for (const BucketKey key : CoarseSet::buckets(a, b)) static_cast<void>(set.read(key));
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// Says so if the pair has no volumes.
+bool has_volumes(const Mesh& a, const Mesh& b) {
+  for (const Mesh* mesh : {&a, &b}) {
+    if (mesh->solid()) continue;
+    print_message(k_program, fmt::format("no volumes: {} is no solid ({})", mesh->name(), mesh->why_not_solid()));
+    return false;
+  }
+  return true;
+}
+
+void make(const fs::path& file, const DistanceGenerator& generator, const Mesh& a, const Mesh& b,
+          const SetDescription& description) {
+  ConfigurationSetWriter writer(file, description);
+  const InterruptGuard interruptible(k_program);
+  const auto sweep = [&](BucketKind kind, const auto& generate, std::span<const double> percents) {
+    ProgressLine line(fmt::format("coarse set, {}s", to_string(kind)));
+    const Generated made =
+        generate(generator, a, b, description.grid_of(kind), percents,
+                 RunOptions{.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
+                            .cancelled = InterruptGuard::requested},
+                 {});
+    for (const Bucket& bucket : made.buckets) writer.write(bucket.summary, bucket.translations);
+  };
+  sweep(BucketKind::distance, generate_distances, k_distances);
+  if (description.volume_grid) {
+    try {
+      sweep(BucketKind::volume, generate_volumes, k_volumes);
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& e) {  // e.g. of surfaces that intersect themselves
+      print_message(k_program, fmt::format("no volumes: {}", e.what()));
+    }
+  }
+  writer.commit();
+}
+
+}  // namespace
+
+std::vector<BucketKey> CoarseSet::buckets(const Mesh& a, const Mesh& b) {
+  std::vector<BucketKey> keys;
+  for (const double percent : k_distances) keys.push_back({BucketKind::distance, percent});
+  if (!a.solid() || !b.solid()) return keys;
+  for (const double percent : k_volumes) keys.push_back({BucketKind::volume, percent});
+  return keys;
+}
+
+CoarseSet::CoarseSet(const Mesh& a, const MeshIdentity& a_identity, const Mesh& b, const MeshIdentity& b_identity) {
+  const std::unique_ptr<DistanceGenerator> generator = make_ray_cast();
+  SetDescription description{
+      .generator_version = SIXDOF_VERSION, .a = a_identity, .b = b_identity, .grid = make_grid(k_distance_grid)};
+  if (has_volumes(a, b)) description.volume_grid = make_grid(k_volume_grid);
+  file_ = file_in_cache(cache_key(*generator, a, b));
+  const std::string pair = fmt::format("coarse set of {} with {}", a.name(), b.name());
+  if (is_whole(file_, a, b)) {
+    print_message(k_program, fmt::format("{}: {}", pair, file_.string()));
+    return;
+  }
+  temporary_ = file_.empty();
+  if (temporary_) file_ = temporary_file();
+  const auto start = std::chrono::steady_clock::now();
+  make(file_, *generator, a, b, description);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  print_message(k_program, fmt::format("{} made in {:.1f} s{}", pair, seconds,
+                                       temporary_ ? std::string() : ": " + file_.string()));
+}
+
+CoarseSet::~CoarseSet() {
+  std::error_code ignored;
+  if (temporary_) fs::remove(file_, ignored);
+}
+
+}  // namespace sixdof::bench
