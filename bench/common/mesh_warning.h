@@ -16,7 +16,7 @@ std::string summary(const MeshCheck& check);
 /// @param argument that stands for the mesh on a command line
 std::string mesh_warning(const Mesh& mesh, const std::string& argument);
 
-/// About three times what a mesh of a million triangles takes on two cores.
+/// Several times what a mesh of a million triangles takes where contacts are few.
 constexpr double k_longest_check_s = 10.0;
 
 }  // namespace sixdof

@@ -1,7 +1,7 @@
 // `sixdof info --check`, and the warning of `sixdof generate`.
 
-#include <algorithm>
-#include <fstream>
+#include <sstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -85,7 +85,8 @@ TEST_F(Info, TellsAnOpenMeshFromASolid) {
 }
 
 TEST_F(Info, ShowsWhatLoadingRepaired) {
-  // A tetrahedron; its base is a quadrilateral with a corner off the plane, and one face has its edges crossed.
+  // Quadrilaterals that are not flat, a statement of no OBJ file, two equal vertices, one that no face uses, and a face
+  // that collapses since its corners are equal.
   std::ofstream(path("odd.obj")) << "v 0 0 0\nv 1 0 0\nv 1 1 0.25\nv 0 1 0\nv 0 0 1\nv 0 0 1\nv 5 5 5\n"
                                     "strange words\n"
                                     "f 1 2 3 4\n"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/models/recipe.h>
 
 #include "../geometry/shapes.h"
 
@@ -46,6 +47,14 @@ TEST(MeshCheck, IsCleanForOneBodyAndForBodiesApart) {
     EXPECT_EQ(check.undecided + check.open_shells, 0u);
     EXPECT_EQ(check.shells, mesh.topology().components);
     EXPECT_THAT(check.contacts.touched, ::testing::Each(0));
+  }
+}
+
+TEST(MeshCheck, IsCleanForEveryRecipe) {
+  for (const Recipe& recipe : recipes()) {
+    for (const std::size_t triangles : {recipe.minimum, std::size_t{3000}}) {
+      EXPECT_TRUE(check_mesh(recipe.make(triangles)).clean()) << recipe.name << ' ' << triangles;
+    }
   }
 }
 

@@ -33,8 +33,7 @@ struct SelfContacts {
 };
 
 /// Tests all pairs of triangles whose boxes overlap, without those that are exactly collinear (Mesh::repairs() has
-/// them). Time: about two seconds per million triangles on two cores where there are few contacts, and proportional to
-/// the number of contacts where there are many.
+/// them). Time grows with the number of triangles and of contacts.
 /// @param tree of the mesh
 /// @throws Interrupted
 SelfContacts find_self_contacts(const Mesh& mesh, const Tree& tree, const RunOptions& options = {});

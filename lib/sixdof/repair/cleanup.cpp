@@ -1,6 +1,6 @@
 #include <sixdof/repair/cleanup.h>
 
-#include <numeric>
+#include <algorithm>
 #include <tuple>
 
 #include <sixdof/repair/weld.h>
@@ -88,15 +88,15 @@ double longest_side(const Surface& surface, const Triangle& t) {
   return longest;
 }
 
-/// Where positions cannot be told apart, of a triangle's corners.
-double rounding_at(const Surface& surface, const Triangle& t) {
-  return std::max({repairing::rounding_at(surface.vertices[t[0]]), repairing::rounding_at(surface.vertices[t[1]]),
-                   repairing::rounding_at(surface.vertices[t[2]])});
+/// The largest rounding_at() of a triangle's corners.
+double rounding_of(const Surface& surface, const Triangle& t) {
+  return std::max(
+      {rounding_at(surface.vertices[t[0]]), rounding_at(surface.vertices[t[1]]), rounding_at(surface.vertices[t[2]])});
 }
 
 /// Whether the corners lie on a line within rounding.
 bool is_degenerate(const Surface& surface, const Triangle& t) {
-  return surface.normal(t).norm() <= rounding_at(surface, t) * longest_side(surface, t);
+  return surface.normal(t).norm() <= rounding_of(surface, t) * longest_side(surface, t);
 }
 
 /// Merges the ends of sides that are within rounding, where triangles are degenerate. @return repairs made
@@ -107,7 +107,7 @@ std::size_t merge_close_corners(Surface& surface, const std::vector<std::uint32_
     const Triangle& t = surface.triangles[i];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      if ((surface.vertices[a] - surface.vertices[b]).norm() > rounding_at(surface, t)) continue;
+      if ((surface.vertices[a] - surface.vertices[b]).norm() > rounding_of(surface, t)) continue;
       if (same.find(a) == same.find(b)) continue;
       same.join(std::max(same.find(a), same.find(b)), std::min(same.find(a), same.find(b)));
       ++merged;

@@ -1,5 +1,7 @@
 #include <sixdof/repair/holes.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>

@@ -1,5 +1,7 @@
 #include <sixdof/repair/orient.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>

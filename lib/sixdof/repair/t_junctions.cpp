@@ -1,5 +1,6 @@
 #include <sixdof/repair/t_junctions.h>
 
+#include <algorithm>
 #include <map>
 
 #include <sixdof/repair/neighbours.h>
