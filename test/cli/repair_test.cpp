@@ -115,7 +115,7 @@ TEST_F(Repair, RefusesInWordsAndWritesNothing) {
   };
   refuses("damaged.off -o damaged.off", k_exit_error, "is the input, which is not overwritten");
   refuses("damaged.off -o ../" + folder().filename().string() + "/damaged.off", k_exit_error, "is the input");
-  refuses("damaged.off -o mended.xyz", k_exit_error, "'.xyz' is no mesh format");
+  refuses("damaged.off -o mended.xyz", k_exit_error, "mended.xyz: '.xyz'");
   refuses("damaged.off -o no/such/mended.ply", k_exit_error, "no/such");
   refuses("missing.off -o mended.ply", k_exit_error, "missing.off");
   refuses("damaged.off", k_exit_usage, "--output");
