@@ -68,6 +68,7 @@ nlohmann::ordered_json check_as_json(const MeshCheck& check) {
            {{"count", check.shells},
             {"open", check.open_shells},
             {"undecided", check.undecided},
+            {"meeting", check.meeting},
             {"doubled", check.doubled},
             {"nested", check.nested},
             {"inverted", check.inverted},
@@ -87,8 +88,9 @@ void print_check(const MeshCheck& check) {
   if (contacts.pairs() > contacts.first.size()) {
     row("", fmt::format("and {} more", contacts.pairs() - contacts.first.size()));
   }
-  row("shells", fmt::format("{}: {} doubled, {} nested, {} inverted; {} open, {} undecided", check.shells,
-                            check.doubled, check.nested, check.inverted, check.open_shells, check.undecided));
+  row("shells",
+      fmt::format("{}: {} meet others, {} doubled, {} nested, {} inverted; {} open, {} undecided", check.shells,
+                  check.meeting, check.doubled, check.nested, check.inverted, check.open_shells, check.undecided));
   for (const DefectiveShell& shell : check.first) row("", text_of(shell));
   const std::size_t defective = check.doubled + check.nested + check.inverted;
   if (defective > check.first.size()) row("", fmt::format("and {} more", defective - check.first.size()));

@@ -16,7 +16,7 @@ namespace sixdof {
 namespace {
 
 constexpr const char* k_kind = "mesh-check";
-constexpr const char* k_version = "1";  // of check_mesh() and of the entry
+constexpr const char* k_version = "2";  // of check_mesh() and of the entry
 
 std::string cache_key(const Mesh& mesh) { return fmt::format("{} version {}", mesh.hash(), k_version); }
 
@@ -78,7 +78,7 @@ std::string mesh_warning(const Mesh& mesh, const std::string& argument) {
     store_summary(mesh, *found);
   }
   if (found->empty()) return {};
-  return fmt::format("warning: {}: {}; its volumes count what lies inside k times k times (sixdof info --check {})",
+  return fmt::format("warning: {}: {}; what it encloses k times counts k times in volumes (sixdof info --check {})",
                      mesh.name(), *found, argument);
 }
 

@@ -65,6 +65,7 @@ TEST(MeshCheck, FindsADoubledShell) {
   EXPECT_EQ(check.contacts.pairs(), check.contacts.coincident);
   EXPECT_EQ(check.shells, 2u);
   EXPECT_EQ(check.doubled, 1u);
+  EXPECT_EQ(check.meeting, 0u);
   ASSERT_EQ(check.first.size(), 1u);
   EXPECT_EQ(check.first[0].defect, ShellDefect::doubled);
   EXPECT_EQ(check.first[0].triangle, one.triangles().size());
@@ -105,6 +106,8 @@ TEST(MeshCheck, FindsCrossingBodies) {
   // faces run from (-1, -0.8) to (1, 0.8) or across: the needle's section lies in one or two triangles.
   EXPECT_GE(check.contacts.crossing, 16u);
   EXPECT_EQ(check.contacts.coplanar + check.contacts.coincident, 0u);
+  EXPECT_EQ(check.meeting, 2u);
+  EXPECT_EQ(check.nested, 0u);
   for (const SelfContact& contact : check.contacts.first) {
     EXPECT_LT(contact.a, 12u);
     EXPECT_GE(contact.b, 12u);
@@ -118,6 +121,7 @@ TEST(MeshCheck, FindsFacesThatLieOnEachOther) {
   const MeshCheck check = check_mesh(pair);
   EXPECT_GT(check.contacts.coplanar, 0u);
   EXPECT_GT(check.contacts.crossing, 0u);  // sides of the small box end on the top
+  EXPECT_EQ(check.meeting, 2u);
   EXPECT_EQ(check.nested + check.inverted + check.undecided, 0u);
 }
 

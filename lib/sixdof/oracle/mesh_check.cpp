@@ -58,8 +58,18 @@ void add(MeshCheck& check, const Mesh& mesh, const Shell& shell, ShellDefect def
                          .triangles = shell.triangles});
 }
 
-void check_shells(const Mesh& mesh, const Tree& tree, const RunOptions& options, MeshCheck& check) {
-  const Shells shells = find_shells(mesh);
+/// 1 for each shell in contact with another.
+std::vector<std::uint8_t> meeting_others(const Shells& shells, const std::vector<std::uint8_t>& touched) {
+  std::vector<std::uint8_t> meeting(shells.all.size(), 0);
+  for (std::size_t t = 0; t < touched.size(); ++t) {
+    if ((touched[t] & SelfContacts::k_across) != 0) meeting[shells.of_triangle[t]] = 1;
+  }
+  return meeting;
+}
+
+void check_shells(const Mesh& mesh, const Tree& tree, const Shells& shells, const RunOptions& options,
+                  MeshCheck& check) {
+  const auto meeting = meeting_others(shells, check.contacts.touched);
   const auto samples = samples_of(mesh, shells, check.contacts.touched);
   check.shells = shells.all.size();
   for (std::uint32_t s = 0; s < shells.all.size(); ++s) {
@@ -69,6 +79,8 @@ void check_shells(const Mesh& mesh, const Tree& tree, const RunOptions& options,
       ++check.open_shells;
     } else if (shell.doubled) {
       add(check, mesh, shell, ShellDefect::doubled, shell.first_triangle, 0);
+    } else if (meeting[s] != 0) {
+      ++check.meeting;
     } else if (!samples[s]) {
       ++check.undecided;
     } else {
@@ -84,8 +96,9 @@ void check_shells(const Mesh& mesh, const Tree& tree, const RunOptions& options,
 MeshCheck check_mesh(const Mesh& mesh, const RunOptions& options) {
   const Tree tree(mesh);
   MeshCheck check;
-  check.contacts = find_self_contacts(mesh, tree, options);
-  check_shells(mesh, tree, options, check);
+  const Shells shells = find_shells(mesh);
+  check.contacts = find_self_contacts(mesh, tree, shells.of_triangle, options);
+  check_shells(mesh, tree, shells, options, check);
   return check;
 }
 

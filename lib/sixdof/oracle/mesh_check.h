@@ -39,15 +39,16 @@ struct MeshCheck {
   std::size_t shells = 0;
   std::size_t open_shells = 0;  ///< They enclose nothing and are neither nested nor inverted, nor is what is in them.
   std::size_t doubled = 0, nested = 0, inverted = 0;  ///< Shells by defect.
-  /// Closed shells of which every triangle is in contact: where they lie is not decided.
-  std::size_t undecided = 0;
+  /// Closed shells in contact with others, besides copies: parts of them may lie in the material of others.
+  std::size_t meeting = 0;
+  std::size_t undecided = 0;          ///< Closed shells of which every triangle is in contact, but not with others.
   std::vector<DefectiveShell> first;  ///< The first k_listed, in the order of shells.
 
   bool clean() const { return contacts.pairs() + doubled + nested + inverted == 0; }
 };
 
-/// Finds contacts of the mesh with itself, and the winding number at one triangle of each closed shell: the largest
-/// that is in no contact. A shell in contact with others may have other numbers elsewhere.
+/// Finds contacts of the mesh with itself, and of each closed shell that meets no other the winding number at its
+/// largest triangle in no contact.
 /// @throws Interrupted; BadMesh if the mesh is too large for a Tree.
 MeshCheck check_mesh(const Mesh& mesh, const RunOptions& options = {});
 

@@ -47,8 +47,13 @@ struct Found {
 
 class Search {
  public:
-  Search(const Mesh& mesh, const Tree& tree, const RunOptions& options)
-      : mesh_(mesh), tree_(tree), options_(options), boxes_(tree.corners().size()), collinear_(boxes_.size()) {
+  Search(const Mesh& mesh, const Tree& tree, std::span<const std::uint32_t> group, const RunOptions& options)
+      : mesh_(mesh),
+        tree_(tree),
+        group_(group),
+        options_(options),
+        boxes_(tree.corners().size()),
+        collinear_(boxes_.size()) {
     parallel::for_each(boxes_.size(), [this](std::size_t i) {
       const Tree::Corners& c = tree_.corners()[i];
       boxes_[i] = {c[0].cwiseMin(c[1]).cwiseMin(c[2]), c[0].cwiseMax(c[1]).cwiseMax(c[2])};
@@ -110,11 +115,14 @@ class Search {
     const auto contact = find_contact(mesh_.vertices(), mesh_.triangles()[a], mesh_.triangles()[b]);
     if (!contact) return;
     found.add({.a = a, .b = b, .kind = contact->kind, .point = contact->point});
-    for (const std::uint32_t t : {a, b}) std::atomic_ref(touched_[t]).store(1, std::memory_order_relaxed);
+    const bool across = !group_.empty() && group_[a] != group_[b] && contact->kind != ContactKind::coincident;
+    const std::uint8_t bits = across ? SelfContacts::k_within | SelfContacts::k_across : SelfContacts::k_within;
+    for (const std::uint32_t t : {a, b}) std::atomic_ref(touched_[t]).fetch_or(bits, std::memory_order_relaxed);
   }
 
   const Mesh& mesh_;
   const Tree& tree_;
+  const std::span<const std::uint32_t> group_;
   const RunOptions& options_;
   // In tree order.
   std::vector<Eigen::AlignedBox3d> boxes_;
@@ -124,9 +132,10 @@ class Search {
 
 }  // namespace
 
-SelfContacts find_self_contacts(const Mesh& mesh, const Tree& tree, const RunOptions& options) {
+SelfContacts find_self_contacts(const Mesh& mesh, const Tree& tree, std::span<const std::uint32_t> group,
+                                const RunOptions& options) {
   SelfContacts contacts;
-  parallel::with_threads(options.threads, [&] { contacts = Search(mesh, tree, options).run(); });
+  parallel::with_threads(options.threads, [&] { contacts = Search(mesh, tree, group, options).run(); });
   return contacts;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -27,7 +28,10 @@ struct SelfContacts {
 
   std::size_t crossing = 0, coplanar = 0, coincident = 0;  ///< Pairs of triangles, by ContactKind.
   std::vector<SelfContact> first;                          ///< The first k_listed, by (a, b).
-  std::vector<std::uint8_t> touched;  ///< For each triangle of the mesh: 1 if it has a contact, else 0.
+  /// For each triangle of the mesh: bit k_within if it has a contact, and k_across if one with another group that is
+  /// not coincident.
+  std::vector<std::uint8_t> touched;
+  static constexpr std::uint8_t k_within = 1, k_across = 2;
 
   std::size_t pairs() const { return crossing + coplanar + coincident; }
 };
@@ -35,7 +39,9 @@ struct SelfContacts {
 /// Tests all pairs of triangles whose boxes overlap, without those that are exactly collinear (Mesh::repairs() has
 /// them). Time grows with the number of triangles and of contacts.
 /// @param tree of the mesh
+/// @param group of each triangle, e.g. its shell; empty: all are in one
 /// @throws Interrupted
-SelfContacts find_self_contacts(const Mesh& mesh, const Tree& tree, const RunOptions& options = {});
+SelfContacts find_self_contacts(const Mesh& mesh, const Tree& tree, std::span<const std::uint32_t> group = {},
+                                const RunOptions& options = {});
 
 }  // namespace sixdof
