@@ -162,7 +162,7 @@ TEST_F(OwnMeshes, AnOpenMeshHasDistancesOnly) {
                                      "3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n";
   const auto open = succeed("sixdof-bench --a tray.off --b my.obj" + k_pair);
   EXPECT_THAT(open.err, AllOf(HasSubstr("no volumes: tray is no solid (not closed: 4 border edges)\n"),
-                              HasSubstr("rows that need solids: tray (not closed: 4 border edges)\n")));
+                              HasSubstr("rows that need solids: tray (not closed: 4 border edges); `sixdof repair")));
   std::size_t distances = 0;
   for (const json& row : rows(open)) {
     EXPECT_FALSE(row.contains("error_occurred")) << row;

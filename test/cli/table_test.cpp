@@ -309,7 +309,7 @@ TEST_F(RefusedFiles, AreNamedWithTheRow) {
   EXPECT_EQ(message_of_row({{"cpu_time", nullptr}}), place + "no number \"cpu_time\"\n");
   EXPECT_EQ(message_of_row({{"time_unit", "days"}}), place + "time_unit \"days\" is none of ns, us, ms, s\n");
   EXPECT_THAT(message_of_row({{"sixdof", {{"bucket", {{"kind", "depth"}}}}}}),
-              StartsWith(place + "sixdof.bucket: bucket 'depth/05'"));
+              StartsWith(place + "sixdof.bucket: bucket 'depth/5'"));
   EXPECT_THAT(message_of_row({{"sixdof", {{"query", 7}}}}), StartsWith(place + "sixdof.query: "));
   EXPECT_EQ(message_of_row({{"sixdof", {{"algorithm", "y"}, {"settings", {{"size", 9}}}}}}),
             place + "y has the settings size=9 here and size=0.5 in an earlier row\n");
