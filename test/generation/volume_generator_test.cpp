@@ -75,7 +75,7 @@ Mesh ball_mesh(double r, std::size_t rings, const Eigen::Vector3d& center, const
   return Mesh::build(std::move(vertices), std::move(triangles), name);
 }
 
-const Bucket& bucket_of(const Generated& result, int percent) {
+const Bucket& bucket_of(const Generated& result, double percent) {
   for (const Bucket& bucket : result.buckets) {
     if (bucket.summary.key == BucketKey{BucketKind::volume, percent}) return bucket;
   }
