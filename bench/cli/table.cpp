@@ -22,9 +22,9 @@ table with their counts: configurations that failed, wrong answers, overlaps wit
 by side, with the ratio of cpu to the first.
 
 Keys of --json: files[] {file, date, commit, interrupted, settings {ALGORITHM: {PARAMETER: value}}, not_shown {FAMILY:
-rows}}; tables[] {pair, query, kind, rows[] {percent, algorithm, order, files[]}}, with null or {fastest, faults[]
-{what, count, of}, ratio_to_first, values} for each file. values are the row's counters (lib/sixdof/measure/metrics.cpp),
-processor_mean_ns and wall_mean_ns; none of a row that could not be run.)";
+rows}}; tables[] {pair, query, kind, rows[] {percent, algorithm, order, cache, files[]}}, with null or {fastest,
+faults[] {what, count, of}, ratio_to_first, values} for each file. values are the row's counters
+(lib/sixdof/measure/metrics.cpp), processor_mean_ns and wall_mean_ns; none of a row that could not be run.)";
 
 struct Arguments {
   std::vector<std::string> files;

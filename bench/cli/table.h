@@ -35,7 +35,7 @@ struct ResultFile {
   std::string path;
   std::string date, commit;  ///< From the context; empty where it has none.
   bool interrupted = false;  ///< The run was broken off; rows may be missing.
-  /// Those with a bucket, in the file's order. Of repetitions the one with the least mean processor time.
+  /// Those with a bucket, in the file's order. Of repetitions the one with the least mean time.
   std::vector<ResultRow> rows;
   std::map<std::string, std::size_t> not_shown;  ///< How many rows of other families, by family.
 };
@@ -68,9 +68,13 @@ struct RankedRow {
 struct TableLine {
   BucketKey bucket;
   std::string algorithm, order;
+  std::string cache;             ///< "warm" or "cold".
   std::vector<RankedRow> files;  ///< One for each file.
 
-  std::string label() const { return order == "random" || order.empty() ? algorithm : algorithm + " (" + order + ")"; }
+  std::string label() const {
+    const std::string with_order = order == "random" || order.empty() ? algorithm : algorithm + " (" + order + ")";
+    return cache == "warm" ? with_order : with_order + " (" + cache + ")";
+  }
 };
 
 /// The lines of a pair, query and kind of bucket: by bucket, then in the order in which the files name the algorithms.

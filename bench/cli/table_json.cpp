@@ -44,6 +44,7 @@ Json as_json(const std::vector<ResultTable>& tables, const std::vector<ResultFil
       lines.push_back({{"percent", percent_number(line.bucket)},
                        {"algorithm", line.algorithm},
                        {"order", line.order},
+                       {"cache", line.cache},
                        {"files", std::move(of_files)}});
     }
     document["tables"].push_back(

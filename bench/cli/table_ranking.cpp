@@ -78,10 +78,12 @@ std::vector<ResultTable> align(const std::vector<ResultFile>& files) {
       TableLine& line = find_or_add(
           table.lines,
           [&](const TableLine& l) {
-            return l.bucket == *fields.bucket && l.algorithm == fields.algorithm && l.order == fields.order;
+            return l.bucket == *fields.bucket && l.algorithm == fields.algorithm && l.order == fields.order &&
+                   l.cache == fields.cache;
           },
           [&] {
-            return TableLine{*fields.bucket, fields.algorithm, fields.order, std::vector<RankedRow>(files.size())};
+            return TableLine{*fields.bucket, fields.algorithm, fields.order, fields.cache,
+                             std::vector<RankedRow>(files.size())};
           });
       line.files[i].row = &row;
       line.files[i].faults = faults_of(row, constant_answers);
@@ -90,7 +92,7 @@ std::vector<ResultTable> align(const std::vector<ResultFile>& files) {
   return tables;
 }
 
-/// By bucket; within a bucket, orders of configurations apart, algorithms as they first occur.
+/// By bucket; within a bucket, orders of configurations and states of the caches apart, algorithms as they first occur.
 void sort_lines(ResultTable& table) {
   std::vector<std::string> algorithms;
   for (const TableLine& line : table.lines) {
@@ -98,22 +100,23 @@ void sort_lines(ResultTable& table) {
   }
   const auto place = [&](const TableLine& line) {
     const bool random = line.order == "random" || line.order.empty();
-    return std::tuple(line.bucket, !random, std::ranges::find(algorithms, line.algorithm) - algorithms.begin());
+    return std::tuple(line.bucket, !random, line.cache != "warm",
+                      std::ranges::find(algorithms, line.algorithm) - algorithms.begin());
   };
   std::ranges::sort(table.lines, {}, place);
 }
 
-/// Both rows could be run, so they have the value.
+/// Both rows have a processor time.
 bool is_faster(const ResultRow& row, const ResultRow& other) {
   return is_better(find_metric("cpu_time")->better, *row.value(k_processor_mean), *other.value(k_processor_mean));
 }
 
-/// Marks the fastest row of every bucket and order in one file.
+/// Marks the fastest row of every bucket and order in one file, among those with a processor time: not on cold caches.
 void mark_fastest(ResultTable& table, std::size_t file) {
   std::map<std::pair<BucketKey, std::string>, RankedRow*> fastest;
   for (TableLine& line : table.lines) {
     RankedRow& ranked = line.files[file];
-    if (ranked.row == nullptr || !ranked.faults.empty()) continue;
+    if (ranked.row == nullptr || !ranked.faults.empty() || !ranked.row->value(k_processor_mean)) continue;
     RankedRow*& best = fastest[{line.bucket, line.order}];
     if (best == nullptr || is_faster(*ranked.row, *best->row)) best = &ranked;
   }

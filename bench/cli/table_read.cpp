@@ -56,6 +56,7 @@ ResultRow row_of(const Json& entry) {
                     k_row_fields_key));
   }
   ResultRow row{.fields = row_fields_of(entry.at(k_row_fields_key)), .error = {}, .values = {}};
+  if (row.fields.cache.empty()) row.fields.cache = "warm";  // written before there were cold rows
   if (entry.contains("error_occurred") && entry.at("error_occurred") == true) {
     row.error = text_at(entry, "error_message");
     if (row.error.empty()) row.error = "unknown error";
@@ -70,12 +71,13 @@ ResultRow row_of(const Json& entry) {
     row.values[name] = found->second * nanoseconds(text_at(entry, "time_unit"));
     row.values.erase(found);
   }
+  if (row.fields.cache == "cold") row.values.erase(k_processor_mean);  // the wall time again
   return row;
 }
 
 bool are_repetitions(const RowFields& a, const RowFields& b) {
   return a.query == b.query && a.algorithm == b.algorithm && a.pair == b.pair && a.bucket == b.bucket &&
-         a.order == b.order;
+         a.order == b.order && a.cache == b.cache;
 }
 
 /// Adds a row, or keeps the better one of two repetitions. @throws Error
@@ -90,7 +92,8 @@ void add(ResultRow row, ResultFile& file) {
     throw Error(fmt::format("{} has the settings {} here and {} in an earlier row", row.fields.algorithm,
                             row.fields.settings, same->fields.settings));
   }
-  const auto time = row.value(k_processor_mean), earlier = same->value(k_processor_mean);
+  const char* const mean = row.fields.cache == "cold" ? k_wall_mean : k_processor_mean;
+  const auto time = row.value(mean), earlier = same->value(mean);
   if (time && (!earlier || *time < *earlier)) *same = std::move(row);
 }
 

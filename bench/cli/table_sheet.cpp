@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sixdof/measure/latency.h>
 #include "bench/cli/table.h"
 
 namespace sixdof::cli {
@@ -236,11 +237,13 @@ std::vector<std::string> lines_above(const std::vector<ResultFile>& files) {
 std::vector<std::string> lines_below(const std::vector<ResultFile>& files) {
   std::vector<std::string> lines{
       "n: configurations; cpu: mean processor time of a query in a loop over all of them",
-      "p50, p99, max: wall clock of single queries, each the least of three passes, so that cpu may exceed max",
+      fmt::format("p50, p99, max: wall clock of single queries, in one pass; p99 from {} configurations on, else -",
+                  k_fewest_for_p99),
       ">1 ms: share of these queries over the haptic deadline",
       "angle: mean angle to the exact response, in degrees; max: the largest",
       "magn.: RMS of |F| - gain |exact F| over the RMS of |F|, with one gain per row; of torques likewise",
       "volume: mean error of the overlap volume; (path): configurations in the grid's own order",
+      "(cold): data is removed from the caches before each query; wall clock only, not ranked",
       "*: least cpu of its bucket among rows without faults; !: has faults, which stand below its table"};
   for (std::size_t i = 0; i < files.size(); ++i) {
     std::map<std::string, std::string> settings;

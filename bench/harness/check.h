@@ -1,9 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <sixdof/configuration/bucket_sample.h>
@@ -39,10 +39,9 @@ class Errors {
   double squares_ = 0.0;
 };
 
-/// The answers to each configuration of a bucket, asked once.
+/// The answers to the first configurations of a sample, each asked once.
 struct Check {
-  std::size_t asked = 0;       ///< Configurations asked; fewer than given where the time ran out.
-  std::vector<Pose> answered;  ///< Those that got an answer, in the order in which they were asked.
+  std::vector<bool> answered;  ///< For each configuration asked, whether it got an answer.
   std::size_t judged = 0;      ///< Answers that are compared with a truth.
   std::size_t mismatch = 0;    ///< Wrong ones among them.
   Errors errors;               ///< |answer - truth|: distances in A's diagonals, volumes in the bucket's volume.
@@ -81,19 +80,14 @@ inline void judge(const BucketSample& bucket, const Response& answer, Check& che
   check.errors.add(std::abs(answer.volume - bucket.target) / bucket.target);
 }
 
-/// Asks every configuration once. Stops when `seconds` have passed, at the end of a run of neighbours, so that the
-/// configurations asked are a random sample of those given.
+/// Asks the first `count` configurations once, however long it takes: rows that are compared ask the same ones.
 template <class Ask>
-Check check_answers(const BucketSample& bucket, GuardedQuery<Ask>& query, double seconds) {
+Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query) {
   Check check;
-  const auto start = std::chrono::steady_clock::now();
-  for (const Pose& pose : bucket.poses) {
-    const bool run_ends = check.asked > 0 && check.asked % BucketSample::k_run == 0;
-    if (run_ends && std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds) break;
+  for (const Pose& pose : std::span(bucket.poses).first(count)) {
     const auto answer = query.ask(pose);
-    ++check.asked;
+    check.answered.push_back(answer.ok());
     if (!answer.ok()) continue;
-    check.answered.push_back(pose);
     judge(bucket, answer.value, check);
     check.work.add(query.query().work());
   }

@@ -1,7 +1,6 @@
 #include "bench/harness/pair_cache.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -49,24 +48,23 @@ const BucketSample& PairCache::bucket(const CatalogueEntry& entry, BucketKey key
   return buckets_.emplace(name, std::move(sample)).first->second;
 }
 
-const std::vector<Response>& PairCache::exact_responses(const CatalogueEntry& entry, BucketKey key, double seconds) {
-  std::vector<Response>& responses = exact_responses_[{entry.pair, key}];
-  if (!responses.empty()) return responses;
+std::span<const Response> PairCache::exact_responses(const CatalogueEntry& entry, BucketKey key, std::size_t count) {
   require_solids(mesh(entry.a), mesh(entry.b));
   const BucketSample& sample = bucket(entry, key);
-  const auto exact = make_exact_algorithm();
-  Query& exact_query = query(*exact, exact->settings(), entry.a, entry.b);
-  const auto start = std::chrono::steady_clock::now();
-  for (const Pose& pose : sample.poses) {
-    const bool late = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds;
-    if (responses.size() == k_most_exact || (late && responses.size() >= BucketSample::k_run)) break;
-    const Outcome<Response> answer = exact_query.respond(pose);
-    if (!answer.ok()) {
-      throw Error(fmt::format("{}: exact gives no response: {}", entry.pair, exact_query.diagnosis()));
+  count = std::min({count, k_most_exact, sample.poses.size()});
+  std::vector<Response>& responses = exact_responses_[{entry.pair, key}];
+  if (responses.size() < count) {
+    const auto exact = make_exact_algorithm();
+    Query& exact_query = query(*exact, exact->settings(), entry.a, entry.b);
+    while (responses.size() < count) {
+      const Outcome<Response> answer = exact_query.respond(sample.poses[responses.size()]);
+      if (!answer.ok()) {
+        throw Error(fmt::format("{}: exact gives no response: {}", entry.pair, exact_query.diagnosis()));
+      }
+      responses.push_back(answer.value);
     }
-    responses.push_back(answer.value);
   }
-  return responses;
+  return std::span(responses).first(count);
 }
 
 std::unique_ptr<Query> PairCache::prepare(const Algorithm& algorithm, const Settings& settings, const Mesh& a,

@@ -6,6 +6,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,10 +55,11 @@ class PairCache {
   /// @throws BadFile, BadArgument
   const BucketSample& bucket(const CatalogueEntry& set, BucketKey key);
 
-  /// Responses of the algorithm `exact` to the first poses of a bucket's sample. Measured at the first call: at least
-  /// BucketSample::k_run of them, and up to k_most_exact while `seconds` last. May drop prepared queries.
+  /// Responses of the algorithm `exact` to the first poses of a bucket's sample: `count` of them, but at most
+  /// k_most_exact, so that rows that ask the same configurations compare the same ones. Each is measured once. May drop
+  /// prepared queries. The span is valid until the next call of exact_responses().
   /// @throws NeedsSolid
-  const std::vector<Response>& exact_responses(const CatalogueEntry& set, BucketKey key, double seconds);
+  std::span<const Response> exact_responses(const CatalogueEntry& set, BucketKey key, std::size_t count);
 
   /// Enough for a mean.
   static constexpr std::size_t k_most_exact = 256;

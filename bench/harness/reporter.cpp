@@ -22,6 +22,9 @@ void RowReporter::ReportRuns(const std::vector<Run>& runs) {
   std::vector<Run> kept;
   for (Run run : runs) {
     if (left_out_.contains(run.run_name.function_name)) continue;
+    if (!run.run_name.time_type.empty()) run.cpu_accumulated_time = run.real_accumulated_time;
+    run.run_name.time_type.clear();
+    run.run_name.iterations.clear();
     if (run.aggregate_name == "cv") {
       if (!std::isfinite(run.real_accumulated_time) || !std::isfinite(run.cpu_accumulated_time)) continue;
       std::erase_if(run.counters, std::not_fn(is_finite));

@@ -14,6 +14,8 @@ namespace sixdof::bench {
 
 /// Hands rows on to another reporter:
 /// - rows that are left out are not handed on;
+/// - names are those of Row, without what Google Benchmark adds to rows of one round, and the processor time of these
+///   is the wall time that the row has set: that of their loop is mostly none of queries;
 /// - a row with a counter that is not finite becomes an error that names the counter;
 /// - the coefficient of variation of zeros, which has no value, is left out of repetitions.
 class RowReporter : public benchmark::BenchmarkReporter {

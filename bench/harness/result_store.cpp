@@ -114,6 +114,16 @@ bool ResultStore::has(const std::string& row) const {
   return found != rows_.end() && !failed(found->second);
 }
 
+std::vector<RowFields> ResultStore::fields() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<RowFields> list;
+  for (const auto& [name, runs] : rows_) {
+    if (failed(runs) || runs.empty() || !runs.front().contains(k_row_fields_key)) continue;
+    list.push_back(row_fields_of(runs.front().at(k_row_fields_key)));
+  }
+  return list;
+}
+
 void ResultStore::add(const std::string& row, Json run) {
   measuring_ = row;
   measured_.push_back(std::move(run));

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -25,16 +27,30 @@ struct Resources {
   const Settings& settings_of(const Algorithm& algorithm) const { return settings.at(algorithm.traits().name); }
 };
 
+/// What a row may use.
+struct Share {
+  double seconds = std::numeric_limits<double>::infinity();  ///< Wall time of the whole row.
+  /// Of a bucket's sample the row asks the first so many, however long they take, or all if it has no more. The same
+  /// for all rows that are compared (sample_plan.h).
+  std::size_t configurations = std::numeric_limits<std::size_t>::max();
+};
+
 /// One benchmark. Making a row costs nothing: its name comes from registry and catalogue alone; sets, meshes and
 /// prepared queries are fetched from the cache inside `run`.
 struct Row {
   std::string name;  ///< API: "distance/algorithm:fcl-rss/pair:elephant/distance:05".
   /// Google Benchmark calls it several times, until it has found the number of iterations; it keeps for itself what
-  /// needs to be done once. An exception ends the row, not the program. The number is the wall time in seconds that
-  /// the whole row may take, infinity without a limit.
-  std::function<void(benchmark::State&, double)> run;
+  /// needs to be done once. An exception ends the row, not the program.
+  std::function<void(benchmark::State&, const Share&)> run;
   RowFields fields;  ///< What the name says, for readers of the result file.
   benchmark::TimeUnit unit = benchmark::kNanosecond;
+  /// Of rows on a bucket's sample: the wall time in seconds that each configuration takes the row, estimated from a
+  /// few; 0 if none of them has an answer. The argument is the time of the whole row, of which the estimate takes
+  /// little. It may throw what `run` throws.
+  std::function<double(double)> trial = {};
+  /// Google Benchmark calls `run` once per repetition, which decides itself how often to ask, and sets the wall time of
+  /// every iteration.
+  bool one_round = false;
 };
 
 }  // namespace sixdof::bench

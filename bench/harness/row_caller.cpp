@@ -15,7 +15,8 @@ void RowCaller::call(const Row& row, benchmark::State& state) {
   begun_.insert(row.name);
   progress_.show(begun_.size() - 1, rows_, row.name);
   try {
-    row.run(state, row_budget_s());
+    const std::size_t configurations = plan_.configurations(row, [this] { return row_budget_s(); });
+    row.run(state, {.seconds = row_budget_s(), .configurations = configurations});
   } catch (const Interrupted&) {
     throw;  // through the library, which ends the run with the rows that are finished
   } catch (const NeedsSolid& e) {

@@ -10,6 +10,7 @@
 
 #include "bench/common/progress_line.h"
 #include "bench/harness/row.h"
+#include "bench/harness/sample_plan.h"
 
 namespace sixdof::bench {
 
@@ -17,9 +18,10 @@ namespace sixdof::bench {
 class RowCaller {
  public:
   /// @param rows how many will be called; @param budget_s wall time for all of them, 0 for no limit
+  /// @param plan of their samples, which outlives this object
   /// @param before_row called before each; what it throws ends the run
-  RowCaller(std::size_t rows, double budget_s, std::function<void()> before_row)
-      : rows_(rows), budget_s_(budget_s), before_row_(std::move(before_row)) {}
+  RowCaller(std::size_t rows, double budget_s, SamplePlan& plan, std::function<void()> before_row)
+      : rows_(rows), budget_s_(budget_s), plan_(plan), before_row_(std::move(before_row)) {}
 
   /// Google Benchmark calls a row several times in succession. @throws Interrupted
   void call(const Row& row, benchmark::State& state);
@@ -35,6 +37,7 @@ class RowCaller {
 
   const std::size_t rows_;
   const double budget_s_;
+  SamplePlan& plan_;
   const std::function<void()> before_row_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   ProgressLine progress_{"rows"};

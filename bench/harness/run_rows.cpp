@@ -26,6 +26,8 @@ namespace sixdof::bench {
 namespace {
 
 constexpr const char* k_program = "sixdof-bench";
+/// A filter for Google Benchmark: choose_rows() has applied the user's.
+constexpr const char* k_all_registered = ".";
 
 /// The rows that the filter takes. Google Benchmark searches names for the filter; a leading '-' negates it.
 std::vector<const Row*> choose_rows(const std::vector<Row>& rows) {
@@ -49,14 +51,16 @@ std::vector<const Row*> choose_rows(const std::vector<Row>& rows) {
   return chosen;
 }
 
-/// Registers rows with Google Benchmark while it exists. The library keeps references to them.
+/// Registers rows with Google Benchmark while it exists. The library keeps references to them. It adds words to
+/// the name of a row of one round, which RowReporter removes.
 class Registration {
  public:
   Registration(const std::vector<const Row*>& rows, const std::function<void(const Row&, benchmark::State&)>& call) {
     for (const Row* const row : rows) {
-      benchmark::RegisterBenchmark(row->name.c_str(), [row, &call](benchmark::State& state) {
-        call(*row, state);
-      })->Unit(row->unit);
+      auto* const registered =
+          benchmark::RegisterBenchmark(row->name.c_str(), [row, &call](benchmark::State& state) { call(*row, state); });
+      registered->Unit(row->unit);
+      if (row->one_round) registered->Iterations(1)->UseManualTime();
     }
   }
   ~Registration() { benchmark::ClearRegisteredBenchmarks(); }
@@ -65,9 +69,7 @@ class Registration {
 };
 
 void list_rows(const std::vector<const Row*>& rows) {
-  const std::function<void(const Row&, benchmark::State&)> nothing = [](const Row&, benchmark::State&) {};
-  const Registration registered(rows, nothing);
-  benchmark::RunSpecifiedBenchmarks();
+  for (const Row* const row : rows) fmt::print("{}\n", row->name);
 }
 
 /// Writes the result once, whichever thread comes first.
@@ -114,7 +116,9 @@ int measure(const std::vector<const Row*>& rows, const Options& options, const R
   FieldsByName fields;
   for (const Row* const row : rows) fields.emplace(row->name, row->fields);
   const auto commit = [&] { store.commit(resources.cache.hashes()); };
-  RowCaller caller(rows.size(), options.budget_s, commit);
+  SamplePlan plan(rows);
+  for (const RowFields& measured : store.fields()) plan.keep(measured);
+  RowCaller caller(rows.size(), options.budget_s, plan, commit);
   Console console;
   RowReporter display(options.format ? nullptr : &console, caller.left_out);
   ResultCollector collector(store, fields);
@@ -132,7 +136,7 @@ int measure(const std::vector<const Row*>& rows, const Options& options, const R
   });
   try {
     const Registration registered(rows, call);
-    if (!rows.empty()) benchmark::RunSpecifiedBenchmarks(&display, &result);
+    if (!rows.empty()) benchmark::RunSpecifiedBenchmarks(&display, &result, k_all_registered);
   } catch (const Interrupted&) {
   }
   commit();

@@ -113,7 +113,7 @@ std::vector<Row> generate_rows(const Resources& resources) {
       const GenerateRow row{resources, method, pair, a, b, generator};
       rows.push_back(
           {.name = row.name,
-           .run = [row](benchmark::State& state, double) { row.run(state); },
+           .run = [row](benchmark::State& state, const Share&) { row.run(state); },
            .fields = {.query = "generate", .algorithm = method.name, .pair = pair, .target = to_string(method.kind)},
            .unit = benchmark::kMillisecond});
     }

@@ -88,12 +88,13 @@ std::vector<Row> kernel_rows(const Resources& resources) {
   std::vector<Row> rows;
   for (const Kernel& kernel : k_kernels) {
     const Settings settings = settings_of(resources.registry.find(kernel.algorithm), kernel);
-    rows.push_back({.name = fmt::format("kernel/{}/algorithm:{}", kernel.name, kernel.algorithm),
-                    .run = [&resources, &kernel](benchmark::State& state, double) { run(resources, kernel, state); },
-                    .fields = {.query = "kernel",
-                               .algorithm = kernel.algorithm,
-                               .settings = settings.to_string(),
-                               .kernel = kernel.name}});
+    rows.push_back(
+        {.name = fmt::format("kernel/{}/algorithm:{}", kernel.name, kernel.algorithm),
+         .run = [&resources, &kernel](benchmark::State& state, const Share&) { run(resources, kernel, state); },
+         .fields = {.query = "kernel",
+                    .algorithm = kernel.algorithm,
+                    .settings = settings.to_string(),
+                    .kernel = kernel.name}});
   }
   return rows;
 }

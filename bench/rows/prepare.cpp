@@ -38,7 +38,7 @@ std::vector<Row> prepare_rows(const Resources& resources) {
       if (!algorithm->traits().timed) continue;
       rows.push_back({.name = fmt::format("prepare/algorithm:{}/pair:{}", algorithm->traits().name, pair.pair),
                       .run = [&resources, &algorithm = *algorithm, &pair](
-                                 benchmark::State& state, double) { run(resources, algorithm, pair, state); },
+                                 benchmark::State& state, const Share&) { run(resources, algorithm, pair, state); },
                       .fields = {.query = "prepare",
                                  .algorithm = algorithm->traits().name,
                                  .settings = resources.settings_of(*algorithm).to_string(),

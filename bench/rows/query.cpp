@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +14,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/measure/direction.h>
 #include <sixdof/measure/magnitude.h>
+#include "bench/harness/cache_eviction.h"
 #include "bench/harness/check.h"
 #include "bench/harness/timing.h"
 #include "bench/rows/families.h"
@@ -26,11 +29,20 @@ enum class Question {
 };
 constexpr const char* k_questions[] = {"collide", "distance", "respond"};
 
-/// A row asks each configuration about six times: once in the check, in one or two timed rounds, and in the passes that
-/// time single queries. The check gets this part of the row's time.
+/// How often a row asks each configuration, for its trial: once in the check, in one or two timed rounds, and in the
+/// passes that time single queries.
 constexpr double k_passes = 3.0 + k_latency_passes;
-/// Fraction of the row's time for the exact responses that answers are compared with.
-constexpr double k_exact_time = 0.1;
+/// The same on cold caches: in the check, and in the timed round.
+constexpr double k_cold_passes = 2.0;
+/// Configurations of a trial, and the part of the row's time that it may take.
+constexpr std::size_t k_trial = 8;
+constexpr double k_trial_time = 0.1;
+/// Most configurations on cold caches: emptying them takes up to a tenth of a second.
+constexpr std::size_t k_most_cold = 64;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// Directions and magnitudes of forces or torques against those of the exact responses.
 struct VectorError {
@@ -78,10 +90,13 @@ struct QueryRow {
   BucketKey key;
   Question question;
   bool path;  ///< In the grid's own order instead of a random one.
+  /// Called before each query; empty for a row on warm caches.
+  std::shared_ptr<CacheEviction> evict;
   Failures failures = {};
   std::optional<Check> check = {};
   std::vector<Pose> poses = {};  ///< Those with an answer, in this row's order.
   Latency latency = {};
+  std::optional<Latency> least = {};  ///< Of several passes; none on cold caches.
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
   std::optional<std::array<VectorError, 2>> errors = {};
 
@@ -91,54 +106,116 @@ struct QueryRow {
             .settings = resources.settings_of(algorithm).to_string(),
             .pair = pair.pair,
             .bucket = key,
-            .order = path ? "path" : "random"};
+            .order = path ? "path" : "random",
+            .cache = evict ? "cold" : "warm"};
   }
 
   std::string name() const {
     std::string bucket = key.name();
     bucket.at(bucket.find('/')) = ':';
-    return fmt::format("{}/algorithm:{}/pair:{}/{}{}", k_questions[static_cast<std::size_t>(question)],
-                       algorithm.traits().name, pair.pair, bucket, path ? "/order:path" : "");
+    return fmt::format("{}/algorithm:{}/pair:{}/{}{}{}", k_questions[static_cast<std::size_t>(question)],
+                       algorithm.traits().name, pair.pair, bucket, path ? "/order:path" : "",
+                       evict ? "/cache:cold" : "");
   }
 
-  void run(benchmark::State& state, double seconds) {
-    PairCache& cache = resources.cache;
-    const BucketSample& bucket = cache.bucket(pair, key);
-    if (bucket.poses.empty()) throw BadArgument(key.name() + ": no configuration of this bucket can be reached");
-    if (key.kind == BucketKind::volume) require_solids(cache.mesh(pair.a), cache.mesh(pair.b));
-    const std::vector<Response>* const exact =
-        question == Question::respond ? &cache.exact_responses(pair, key, k_exact_time * seconds) : nullptr;
-    Query& query = cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
-    if (question == Question::collide) {
-      const auto ask = [&query](const Pose& pose) { return query.collide(pose); };
-      run(state, bucket, GuardedQuery(query, ask, failures), seconds);
-    } else if (question == Question::distance) {
-      const auto ask = [&query](const Pose& pose) { return query.distance(pose); };
-      run(state, bucket, GuardedQuery(query, ask, failures), seconds);
-    } else {
-      const auto ask = [&query](const Pose& pose) { return query.respond(pose); };
-      GuardedQuery guarded(query, ask, failures);
-      if (!errors) compare_with_exact(bucket, *exact, guarded);
-      run(state, bucket, guarded, seconds);
-    }
-  }
-
-  template <class Ask>
-  void run(benchmark::State& state, const BucketSample& bucket, GuardedQuery<Ask> query, double seconds) {
-    if (!check) {
-      check = check_answers(bucket, query, seconds / k_passes);
-      poses = path ? check->answered : shuffled(check->answered, check->answered.size(), resources.seed);
-      check->answered.clear();
-      latency = time_each(poses, query);
-    }
-    if (poses.empty()) throw Error(fmt::format("no configuration has an answer: {}", failures.first()));
-    time_mean(state, poses, query);
+  void run(benchmark::State& state, const Share& share) {
+    const BucketSample& bucket = sample();
+    const std::size_t most = evict ? k_most_cold : bucket.poses.size();
+    const std::size_t count = std::min({share.configurations, most, bucket.poses.size()});
+    std::span<const Response> exact;
+    if (question == Question::respond) exact = resources.cache.exact_responses(pair, key, count);
+    with_query(failures, [&](auto query) {
+      if (!check) {
+        if constexpr (requires { query.ask(poses[0]).value.force; }) compare_with_exact(bucket, exact, query);
+        check = check_answers(bucket, count, query);
+        const auto order = path ? grid_order(bucket, count) : random_order(count, resources.seed);
+        for (const std::size_t i : order) {
+          if (check->answered[i]) poses.push_back(bucket.poses[i]);
+        }
+        if (!evict) {
+          const SingleTimes times = time_each(poses, query);
+          latency = times.once;
+          least = times.least;
+        }
+      }
+      if (poses.empty()) throw Error(fmt::format("no configuration has an answer: {}", failures.first()));
+      if (evict) {
+        latency = time_cold(state, poses, query, *evict);
+      } else {
+        time_mean(state, poses, query);
+      }
+    });
     report(state, bucket);
+  }
+
+  /// Row::trial.
+  double trial(double seconds) {
+    const BucketSample& bucket = sample();
+    double each = question == Question::respond ? time_exact() : 0.0;
+    Failures ignored;
+    with_query(ignored, [&](auto query) {
+      const auto start = std::chrono::steady_clock::now();
+      double answers_ns = 0.0;
+      std::size_t answers = 0;
+      for (const Pose& pose : std::span(bucket.poses).first(std::min(k_trial, bucket.poses.size()))) {
+        const auto [answer, took_ns] = ask_with_clock(pose, query);
+        if (answer.ok()) {
+          answers_ns += took_ns;
+          ++answers;
+        }
+        if (seconds_since(start) > k_trial_time * seconds) break;
+      }
+      // A response is asked once more, to be compared with the exact one.
+      const double passes = (evict ? k_cold_passes : k_passes) + (question == Question::respond ? 1.0 : 0.0);
+      if (answers > 0) each += passes * 1e-9 * answers_ns / static_cast<double>(answers);
+    });
+    if (evict) each += time_eviction();
+    return each;
+  }
+
+ private:
+  /// @throws BadArgument for an empty bucket, NeedsSolid
+  const BucketSample& sample() const {
+    const BucketSample& bucket = resources.cache.bucket(pair, key);
+    if (bucket.poses.empty()) throw BadArgument(key.name() + ": no configuration of this bucket can be reached");
+    if (key.kind == BucketKind::volume) require_solids(resources.cache.mesh(pair.a), resources.cache.mesh(pair.b));
+    return bucket;
+  }
+
+  /// Calls use(GuardedQuery) with this row's question.
+  template <class Use>
+  void with_query(Failures& counted, Use use) const {
+    Query& query = resources.cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
+    if (question == Question::collide) {
+      use(GuardedQuery(
+          query, [&query](const Pose& pose) { return query.collide(pose); }, counted));
+    } else if (question == Question::distance) {
+      use(GuardedQuery(
+          query, [&query](const Pose& pose) { return query.distance(pose); }, counted));
+    } else {
+      use(GuardedQuery(
+          query, [&query](const Pose& pose) { return query.respond(pose); }, counted));
+    }
+  }
+
+  /// Seconds of an exact response. Near 0 in the second trial of a bucket: the cache has them.
+  double time_exact() const {
+    resources.cache.exact_responses(pair, key, 1);  // prepares
+    const auto start = std::chrono::steady_clock::now();
+    resources.cache.exact_responses(pair, key, k_trial);
+    return seconds_since(start) / (k_trial - 1.0);
+  }
+
+  double time_eviction() const {
+    (*evict)();  // makes the buffer
+    const auto start = std::chrono::steady_clock::now();
+    (*evict)();
+    return seconds_since(start);
   }
 
   /// Configurations without an answer are left out: they count as failed.
   template <class Ask>
-  void compare_with_exact(const BucketSample& bucket, const std::vector<Response>& exact, GuardedQuery<Ask>& query) {
+  void compare_with_exact(const BucketSample& bucket, std::span<const Response> exact, GuardedQuery<Ask>& query) {
     VectorSeries forces, torques;
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const Outcome<Response> answer = query.ask(bucket.poses[i]);
@@ -155,11 +232,13 @@ struct QueryRow {
       state.counters[counter] = static_cast<double>(value);
     };
     count("p50_ns", latency.p50);
-    count("p99_ns", latency.p99);
-    count("p999_ns", latency.p999);
+    if (latency.p99) count("p99_ns", *latency.p99);
+    if (latency.p999) count("p999_ns", *latency.p999);
     count("max_ns", latency.max);
     count("over_1ms", latency.over_deadline);
-    count("configurations", check->asked);
+    if (least && least->p99) count("p99_least_ns", *least->p99);
+    if (least) count("max_least_ns", least->max);
+    count("configurations", check->answered.size());
     count("reachable", bucket.reachable);
     count("failed", failures.count());
     count("judged", check->judged);
@@ -198,15 +277,19 @@ struct QueryRow {
 
 std::vector<Row> query_rows(const Resources& resources) {
   std::vector<Row> rows;
+  const auto evict = std::make_shared<CacheEviction>();
   for (const CatalogueEntry& pair : resources.catalogue.sets()) {
     for (const auto& algorithm : resources.registry.all()) {
       if (!algorithm->traits().timed) continue;
       const auto add = [&](BucketKey key, Question question) {
-        for (const bool path : {false, true}) {
-          const auto row = std::make_shared<QueryRow>(resources, *algorithm, pair, key, question, path);
+        for (const auto& [path, cold] : {std::pair(false, false), {true, false}, {false, true}}) {
+          const auto row = std::make_shared<QueryRow>(resources, *algorithm, pair, key, question, path,
+                                                      cold ? evict : std::shared_ptr<CacheEviction>());
           rows.push_back({.name = row->name(),
-                          .run = [row](benchmark::State& state, double seconds) { row->run(state, seconds); },
-                          .fields = row->fields()});
+                          .run = [row](benchmark::State& state, const Share& share) { row->run(state, share); },
+                          .fields = row->fields(),
+                          .trial = [row](double seconds) { return row->trial(seconds); },
+                          .one_round = cold});
         }
       };
       const QuerySet& answers = algorithm->traits().answers;

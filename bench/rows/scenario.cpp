@@ -99,7 +99,7 @@ std::vector<Row> scenario_rows(const Resources& resources) {
       if (!algorithm->traits().answers.respond) continue;
       const auto row = std::make_shared<ScenarioRow>(resources, *algorithm, scenario);
       rows.push_back({.name = fmt::format("scenario/{}/algorithm:{}", scenario, algorithm->traits().name),
-                      .run = [row](benchmark::State& state, double seconds) { row->run(state, seconds); },
+                      .run = [row](benchmark::State& state, const Share& share) { row->run(state, share.seconds); },
                       .fields = {.query = "scenario",
                                  .algorithm = algorithm->traits().name,
                                  .settings = resources.settings_of(*algorithm).to_string(),

@@ -84,7 +84,8 @@ TEST_P(Agreement, OfHarnessAndPlainLoop) {
   const ConfigurationSet set(SIXDOF_SMALL_SUITE "/torus-1k.h5");
   const BucketSample bucket = sample_bucket(set, {BucketKind::distance, 5}, mesh, mesh, k_sample, 1);
   std::vector<fcl::Transform3d> poses;
-  for (const Pose& pose : shuffled(bucket.poses, bucket.poses.size(), 1)) {
+  for (const std::size_t i : random_order(bucket.poses.size(), 1)) {
+    const Pose& pose = bucket.poses[i];
     poses.push_back(fcl::Transform3d::Identity());
     poses.back().linear() = pose.R;
     poses.back().translation() = pose.t;

@@ -49,6 +49,7 @@ void expect_fields_of_the_name(const json& entry) {
                                             bucket.at("percent").get<int>())));
     EXPECT_EQ(fields.at("configurations"), entry.at("configurations")) << name;
     EXPECT_EQ(fields.at("order"), "random") << name;
+    EXPECT_EQ(fields.at("cache"), name.ends_with("/cache:cold") ? "cold" : "warm") << name;
   }
 }
 
@@ -56,6 +57,7 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
   const json document = result(
       "--sample 32 -p ist:spheres=300 --benchmark_filter='"
       "^(prepare|collide|distance|respond)/.*/pair:torus-1k-cone-1k(/(distance:05|volume:03))?$|"
+      "^collide/algorithm:exact/pair:torus-1k-cone-1k/distance:05/cache:cold$|"
       "^scenario/(II|III)/algorithm:exact$|^kernel/(apart|map-in-cache)/algorithm:vps$|"
       "^generate/.*/pair:torus-1k-cone-1k$' --budget 10");
   std::set<std::string> families, counters;
@@ -72,8 +74,9 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
   }
   EXPECT_EQ(families,
             (std::set<std::string>{"prepare", "collide", "distance", "respond", "scenario", "kernel", "generate"}));
-  for (const char* counter : {"p99_ns", "error_rms", "gamma_F_deg", "magnitude_error_F", "gain_T", "points_tested",
-                              "ns_per_points", "bytes", "sigma_F_by_depth", "steps", "ns_per_configuration"}) {
+  for (const char* counter :
+       {"max_least_ns", "error_rms", "gamma_F_deg", "magnitude_error_F", "gain_T", "points_tested", "ns_per_points",
+        "bytes", "sigma_F_by_depth", "steps", "ns_per_configuration"}) {
     EXPECT_TRUE(counters.contains(counter)) << counter;
   }
 }

@@ -60,6 +60,18 @@ TEST_F(Collector, MakesARowWithANonFiniteCounterAnError) {
   EXPECT_FALSE(json.at("benchmarks")[0].contains("good"));
 }
 
+TEST_F(Collector, RowsOfOneRoundHaveTheirOwnNameAndTime) {
+  ResultRow run = row("a");
+  run.run_name.iterations = "iterations:1";
+  run.run_name.time_type = "manual_time";
+  run.cpu_accumulated_time = 7.0;
+  report({run});
+  const auto written = document().at("benchmarks")[0];
+  EXPECT_EQ(written.at("name"), "a");
+  EXPECT_EQ(written.at("run_name"), "a");
+  EXPECT_EQ(written.at("cpu_time"), written.at("real_time"));
+}
+
 TEST_F(Collector, LeavesOutTheCoefficientOfVariationOfZeros) {
   ResultRow variation = row("a");
   variation.run_type = ResultRow::RT_Aggregate;

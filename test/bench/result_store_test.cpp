@@ -177,6 +177,24 @@ TEST_F(Store, ForgetsARunThatEndedBeforeItsFirstRow) {
   EXPECT_TRUE(store.has("a"));
 }
 
+TEST_F(Store, KnowsTheFieldsOfRowsThatAreMeasured) {
+  {
+    ResultStore store(order, context);
+    store.open(file, k_json, false);
+    measure(store, "a");  // without fields
+    const Json fields = to_json_object({.query = "collide", .algorithm = "exact", .configurations = 32});
+    store.add("b", {{"name", "b"}, {"run_name", "b"}, {k_row_fields_key, fields}});
+    store.commit({});
+    store.add("c", {{"name", "c"}, {"run_name", "c"}, {k_row_fields_key, fields}, {"error_occurred", true}});
+    store.commit({});
+  }
+  ResultStore store(order, context);
+  store.open(file, k_json, true);
+  ASSERT_EQ(store.fields().size(), 1u);
+  EXPECT_EQ(store.fields()[0].query, "collide");
+  EXPECT_EQ(store.fields()[0].configurations, 32u);
+}
+
 TEST_F(Store, LeavesNoJournalWithoutRows) {
   leave_rows({});
   EXPECT_FALSE(fs::exists(journal));

@@ -18,11 +18,12 @@ const RowFields k_query{.query = "respond",
                         .pair = "elephant",
                         .bucket = BucketKey{BucketKind::volume, 5},
                         .order = "path",
+                        .cache = "cold",
                         .configurations = 640};
 
 TEST(RowFields, AreAnObjectWithNumbersAsNumbers) {
   EXPECT_EQ(to_json_object(k_query), Json::parse(R"({"query": "respond", "algorithm": "vps",
-    "settings": {"voxel_size": 0.002, "culling": "off"}, "pair": "elephant", "order": "path",
+    "settings": {"voxel_size": 0.002, "culling": "off"}, "pair": "elephant", "order": "path", "cache": "cold",
     "bucket": {"kind": "volume", "percent": 5}, "configurations": 640})"));
   EXPECT_EQ(to_json_object({.query = "scenario", .algorithm = "exact", .scenario = "II"}),
             Json::parse(R"({"query": "scenario", "algorithm": "exact", "settings": {}, "scenario": "II"})"));

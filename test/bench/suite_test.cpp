@@ -32,6 +32,7 @@ TEST_F(SuiteFile, TakesRowsWhoseEveryPartIsListed) {
   EXPECT_FALSE(suite("distance/algorithm:exact/pair:ship/distance:02"));
   EXPECT_FALSE(suite("respond/algorithm:exact/pair:ship/volume:01")) << "no volumes are listed";
   EXPECT_FALSE(suite("distance/algorithm:exact/pair:ship/distance:05/order:path"));
+  EXPECT_FALSE(suite("distance/algorithm:exact/pair:ship/distance:05/cache:cold"));
   EXPECT_TRUE(suite("scenario/II/algorithm:ist"));
   EXPECT_FALSE(suite("scenarios/II/algorithm:ist"));
 }

@@ -215,6 +215,27 @@ TEST_F(TableCommand, HasFewerColumnsOfManyFiles) {
   EXPECT_THAT(out, HasSubstr("*     1.50   1.00     20.0   1.50"));
 }
 
+TEST_F(TableCommand, KeepsColdRowsApartAndLeavesOutPercentilesOfFewQueries) {
+  Json cold = row("collide", "x", "distance", 5, 9000), slow = row("collide", "y", "distance", 5, 9500);
+  for (Json* const each : {&cold, &slow}) {
+    (*each)["sixdof"]["cache"] = "cold";
+    each->erase("p99_ns");
+  }
+  Json warm = row("collide", "x", "distance", 5, 1500);
+  warm["sixdof"]["cache"] = "warm";
+  const Json old = row("collide", "y", "distance", 5, 2500);
+  const std::string file = write("r.json", {cold, slow, warm, old});
+  const std::string out = printed(file);
+  EXPECT_THAT(out, AllOf(HasSubstr("05 %      *  x          64     1.50  10.0  20.0  30.0"),
+                         HasSubstr("05 %         y          64     2.50  10.0  20.0  30.0"),
+                         HasSubstr("05 %         x (cold)   64        -  10.0     -  30.0"),
+                         HasSubstr("05 %         y (cold)   64        -  10.0     -  30.0"),
+                         HasSubstr("p99 from 200 configurations on")));
+  const Json json = Json::parse(printed(file + " --json"));
+  EXPECT_EQ(json.at("tables")[0].at("rows")[1].at("cache"), "warm");
+  EXPECT_EQ(json.at("tables")[0].at("rows")[2].at("cache"), "cold");
+}
+
 TEST_F(TableCommand, PrintsMarkdown) {
   const std::string file = write(
       "r.json", {row("collide", "x", "volume", 5, 1500, {{"mismatch", 2}}), row("collide", "y", "volume", 5, 1500)});

@@ -10,13 +10,28 @@ namespace {
 
 /// Fisher-Yates. Not std::shuffle, whose order may differ from one standard library to the next. The bias of the
 /// modulo is at most length / 2^64.
-template <class T>
-void shuffle(std::vector<T>& list, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  for (std::size_t i = list.size(); i > 1; --i) std::swap(list[i - 1], list[random() % i]);
+std::vector<std::size_t> permutation(std::size_t length, std::mt19937_64& random) {
+  std::vector<std::size_t> list(length);
+  std::iota(list.begin(), list.end(), std::size_t{0});
+  for (std::size_t i = length; i > 1; --i) std::swap(list[i - 1], list[random() % i]);
+  return list;
 }
 
 }  // namespace
+
+CellOrder::CellOrder(std::size_t rotations, std::size_t directions, std::uint64_t seed)
+    : period_(std::lcm(rotations, directions)) {
+  std::mt19937_64 random(seed);
+  rotations_ = permutation(rotations, random);
+  directions_ = permutation(directions, random);
+}
+
+/// Within a period no pair of remainders occurs twice, by the Chinese remainder theorem; the shift by one direction
+/// after each period gives the pairs of remainders that have not occurred.
+std::uint64_t CellOrder::operator[](std::uint64_t t) const {
+  const std::size_t rotation = rotations_[t % rotations_.size()];
+  return rotation * directions_.size() + directions_[(t + t / period_) % directions_.size()];
+}
 
 BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mesh& a, const Mesh& b, std::size_t count,
                            std::uint64_t seed) {
@@ -28,30 +43,30 @@ BucketSample sample_bucket(const ConfigurationSet& set, BucketKey key, const Mes
                       .tolerance = summary.tolerance,
                       .diagonal = a.diagonal(),
                       .reachable = summary.reachable};
-  const bool all = count == 0 || summary.reachable <= count;
-
   const std::size_t directions = grid.directions.size();
-  const std::size_t runs_per_rotation = (directions + BucketSample::k_run - 1) / BucketSample::k_run;
-  std::vector<std::uint64_t> runs(grid.rotations.size() * runs_per_rotation);
-  std::iota(runs.begin(), runs.end(), std::uint64_t{0});
-  if (!all) shuffle(runs, seed);
-  for (const std::uint64_t run : runs) {
-    if (!all && sample.poses.size() >= count) break;
-    const std::size_t r = run / runs_per_rotation;
-    const std::size_t first = run % runs_per_rotation * BucketSample::k_run;
-    for (std::size_t u = first; u < std::min(first + BucketSample::k_run, directions); ++u) {
-      const double s = translations[r * directions + u];
-      if (std::isnan(s)) continue;  // The target is not met on this ray.
-      sample.poses.push_back(ConfigurationRay(a, b, grid.rotations[r], grid.directions[u]).pose(s));
-    }
+  const CellOrder order(grid.rotations.size(), directions, seed);
+  for (std::uint64_t t = 0; t < order.size(); ++t) {
+    if (count > 0 && sample.poses.size() == count) break;
+    const std::uint64_t cell = order[t];
+    const double s = translations[cell];
+    if (std::isnan(s)) continue;  // The target is not met on this ray.
+    const ConfigurationRay ray(a, b, grid.rotations[cell / directions], grid.directions[cell % directions]);
+    sample.poses.push_back(ray.pose(s));
+    sample.cells.push_back(cell);
   }
   return sample;
 }
 
-std::vector<Pose> shuffled(const std::vector<Pose>& poses, std::size_t count, std::uint64_t seed) {
-  std::vector<Pose> list(poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(std::min(count, poses.size())));
-  shuffle(list, seed);
-  return list;
+std::vector<std::size_t> grid_order(const BucketSample& sample, std::size_t count) {
+  std::vector<std::size_t> order(std::min(count, sample.poses.size()));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return sample.cells[i]; });
+  return order;
+}
+
+std::vector<std::size_t> random_order(std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  return permutation(count, random);
 }
 
 }  // namespace sixdof

@@ -22,8 +22,8 @@ Latency latency(std::span<const double> times_ns) {
   const auto quantile = [&](std::size_t permille) { return sorted[(sorted.size() * permille + 999) / 1000 - 1]; };
   result.mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / count;
   result.p50 = quantile(500);
-  result.p99 = quantile(990);
-  result.p999 = quantile(999);
+  if (sorted.size() >= k_fewest_for_p99) result.p99 = quantile(990);
+  if (sorted.size() >= k_fewest_for_p999) result.p999 = quantile(999);
   result.max = sorted.back();
   const auto first_late = std::upper_bound(sorted.begin(), sorted.end(), k_haptic_deadline_ns);
   result.over_deadline = static_cast<double>(sorted.end() - first_late) / count;

@@ -59,13 +59,13 @@ struct Evaluator {
           loop_work(recording.forces, recording.torques, recording.poses, scenario.description().reference_b));
     }
     const Latency times = latency(recording.times_ns);
-    measures.insert(measures.end(), {{"mean_ns", times.mean},
-                                     {"processor_ns", recording.processor_ns},
-                                     {"p50_ns", times.p50},
-                                     {"p99_ns", times.p99},
-                                     {"p999_ns", times.p999},
-                                     {"max_ns", times.max},
-                                     {"over_1ms", times.over_deadline}});
+    add("mean_ns", times.mean);
+    add("processor_ns", recording.processor_ns);
+    add("p50_ns", times.p50);
+    add("p99_ns", times.p99);
+    add("p999_ns", times.p999);
+    add("max_ns", times.max);
+    add("over_1ms", times.over_deadline);
     return std::move(measures);
   }
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace sixdof::bench {
+
+/// Size of the last-level cache in bytes as the system tells it, or k_unknown_cache_bytes where it does not.
+std::size_t last_level_cache_bytes();
+
+/// As large as the cache of most machines.
+constexpr std::size_t k_unknown_cache_bytes = std::size_t{64} << 20;
+
+/// Empties the caches of the processor: data that was used before is in memory only.
+class CacheEviction {
+ public:
+  /// Reads every cache line of a buffer of twice the last-level cache, which is made at the first call: caches that do
+  /// not replace the oldest line first keep some of what a buffer of their own size would replace.
+  /// @throws std::bad_alloc
+  void operator()();
+
+  std::size_t bytes() const { return buffer_.size() * sizeof(buffer_[0]); }
+
+ private:
+  std::vector<std::uint64_t> buffer_;
+};
+
+}  // namespace sixdof::bench

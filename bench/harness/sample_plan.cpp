@@ -1,0 +1,62 @@
+#include "bench/harness/sample_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+#include "bench/common/interrupt.h"
+
+namespace sixdof::bench {
+namespace {
+
+/// Row::trial(), 0 where the row cannot be run: it says so itself when it is called.
+double trial(const Row& row, double seconds) {
+  InterruptGuard::check();
+  try {
+    return row.trial(seconds);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (...) {
+    return 0.0;
+  }
+}
+
+}  // namespace
+
+std::string group_of(const RowFields& fields) {
+  if (!fields.bucket) return {};
+  return fmt::format("{}/{}/{}/{}/{}", fields.query, fields.pair, fields.bucket->name(), fields.order, fields.cache);
+}
+
+SamplePlan::SamplePlan(const std::vector<const Row*>& rows) {
+  for (const Row* const row : rows) {
+    if (row->trial) rows_[group_of(row->fields)].push_back(row);
+  }
+}
+
+void SamplePlan::keep(const RowFields& measured) {
+  const std::string group = group_of(measured);
+  if (!group.empty() && measured.configurations) configurations_.emplace(group, *measured.configurations);
+}
+
+std::size_t SamplePlan::configurations(const Row& row, const std::function<double()>& row_seconds) {
+  const std::string group = group_of(row.fields);
+  const auto members = rows_.find(group);
+  if (members == rows_.end()) return Share().configurations;
+  if (const auto found = configurations_.find(group); found != configurations_.end()) return found->second;
+  std::size_t count = Share().configurations;
+  if (std::isfinite(row_seconds())) {
+    double seconds_each = 0.0;
+    for (const Row* const member : members->second) seconds_each += trial(*member, row_seconds());
+    // After the trials, which prepared structures: what they took is gone.
+    const double most = row_seconds() * static_cast<double>(members->second.size()) / seconds_each;
+    if (most < static_cast<double>(count)) count = std::max(k_fewest, static_cast<std::size_t>(most));
+  }
+  configurations_.emplace(group, count);
+  return count;
+}
+
+}  // namespace sixdof::bench

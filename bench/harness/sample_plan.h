@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/harness/row.h"
+
+namespace sixdof::bench {
+
+/// What rows have in common that differ in the algorithm alone: query, pair, bucket, order and state of the caches.
+/// Empty for rows that ask no configurations of a bucket.
+std::string group_of(const RowFields& fields);
+
+/// How many configurations rows ask. All rows of a group ask the same ones, however fast their algorithms are: the
+/// number is chosen before the first of them is measured, such that all of them together fit into their parts of the
+/// time.
+class SamplePlan {
+ public:
+  /// @param rows those that are to be measured; they outlive this object
+  explicit SamplePlan(const std::vector<const Row*>& rows);
+
+  /// A row that is measured already: the others of its group ask as many.
+  void keep(const RowFields& measured);
+
+  /// Share::configurations of a row. Where there is a limit of time, the first call for a group asks trial() of its
+  /// rows; those that throw or have no answer take no time.
+  /// @param row_seconds wall time that each row may take at the moment, infinity without a limit
+  /// @throws Interrupted
+  std::size_t configurations(const Row& row, const std::function<double()>& row_seconds);
+
+  /// Enough for a mean; asked even where the time does not suffice.
+  static constexpr std::size_t k_fewest = 32;
+
+ private:
+  std::map<std::string, std::vector<const Row*>> rows_;  ///< By group.
+  std::map<std::string, std::size_t> configurations_;    ///< By group, where it is known.
+};
+
+}  // namespace sixdof::bench
