@@ -42,6 +42,7 @@ nlohmann::ordered_json as_json(const Parameter& parameter) {
   } else {
     json["choices"] = parameter.choices;
   }
+  if (!parameter.sweep.empty()) json["sweep"] = parameter.sweep;
   return json;
 }
 

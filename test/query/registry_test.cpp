@@ -36,6 +36,18 @@ TEST(Registry, RefusesANameTwiceAndInvalidNames) {
   EXPECT_EQ(registry.all().size(), 1u);
 }
 
+TEST(Registry, RefusesSweepsOfUnlikeLength) {
+  const auto with_sweeps = [](std::vector<std::string> second) {
+    const Parameter count = Parameter::count("voxels", "voxels", "1", 1, 9);
+    Parameter other = count.swept(std::move(second));
+    other.name = "points";
+    return make_algorithm<EmptyQuery>({.name = "swept", .parameters = {count.swept({"1", "2"}), count, other}});
+  };
+  Registry registry;
+  EXPECT_THROW(registry.add(with_sweeps({"1", "2", "3"})), BadArgument);
+  EXPECT_NO_THROW(registry.add(with_sweeps({"3", "4"})));
+}
+
 /// What an algorithm does not override.
 TEST(Query, AnswersNothingByDefault) {
   const Mesh mesh = Mesh::build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});

@@ -39,5 +39,12 @@ TEST(Settings, RefuseInvalidValuesAndNames) {
   EXPECT_THROW(Settings().set("voxel", "1"), BadArgument);
 }
 
+TEST(Settings, RefuseADefaultOrASweepThatIsNotAllowed) {
+  const Parameter voxel = Parameter::number("voxel", "edge of a voxel", "diagonal", "0.01", 1e-4, 0.5);
+  EXPECT_NO_THROW(Settings({voxel.swept({"0.02", "0.01"})}));
+  EXPECT_THROW(Settings({voxel.swept({"0.02", "0.6"})}), BadArgument);
+  EXPECT_THROW(Settings({Parameter::count("layers", "layers", "0", 1, 9)}), BadArgument);
+}
+
 }  // namespace
 }  // namespace sixdof

@@ -43,6 +43,7 @@ void check(const Parameter& parameter, const std::string& text) {
 Settings::Settings(std::vector<Parameter> parameters) : parameters_(std::move(parameters)) {
   for (const Parameter& parameter : parameters_) {
     check(parameter, parameter.default_value);
+    for (const std::string& value : parameter.sweep) check(parameter, value);
     values_.push_back(parameter.default_value);
   }
 }

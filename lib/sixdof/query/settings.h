@@ -17,6 +17,9 @@ struct Parameter {
   double high = 0.0;          ///< Largest allowed number.
   bool integer = false;       ///< Only whole numbers.
   std::vector<std::string> choices = {};  ///< If not empty, the value is one of these words instead of a number.
+  /// Values from coarse to fine, where a finer one costs time and makes smaller errors; else empty. A sweep sets every
+  /// such parameter of an algorithm to its k-th value together, so all of them have equally many.
+  std::vector<std::string> sweep = {};
 
   static Parameter number(std::string name, std::string meaning, std::string unit, std::string default_value,
                           double low, double high) {
@@ -25,6 +28,13 @@ struct Parameter {
   static Parameter count(std::string name, std::string meaning, std::string default_value, double low, double high) {
     return {std::move(name), std::move(meaning), "1", std::move(default_value), low, high, true};
   }
+  /// The same with values for sweeps.
+  Parameter swept(std::vector<std::string> values) const {
+    Parameter parameter = *this;
+    parameter.sweep = std::move(values);
+    return parameter;
+  }
+
   static Parameter choice(std::string name, std::string meaning, std::string default_value,
                           std::vector<std::string> choices) {
     return {.name = std::move(name),
@@ -37,7 +47,7 @@ struct Parameter {
 /// A value for every parameter of one algorithm; always complete and valid.
 class Settings {
  public:
-  /// All defaults.
+  /// All defaults. @throws BadArgument for a default, or a value of a sweep, that its parameter does not allow
   explicit Settings(std::vector<Parameter> parameters = {});
 
   /// @throws BadArgument if there is no such parameter, or the text is not a number in range or a choice

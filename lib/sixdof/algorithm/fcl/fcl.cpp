@@ -221,7 +221,8 @@ Traits traits(std::string name, std::string summary, QuerySet answers) {
           .answers = answers,
           .parameters = {Parameter::number(k_relative_error,
                                            "a distance may be too large by this fraction of the true one; 0 is exact",
-                                           "1", "0", 0.0, 1.0)}};
+                                           "1", "0", 0.0, 1.0)
+                             .swept({"1", "0.1", "0.01", "0"})}};
 }
 
 }  // namespace

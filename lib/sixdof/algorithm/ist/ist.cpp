@@ -15,7 +15,8 @@ namespace {
 
 std::vector<Parameter> parameters() {
   return {
-      Parameter::count("spheres", "spheres per body, at most", "10000", 1, 5e6),
+      Parameter::count("spheres", "spheres per body, at most", "10000", 1, 5e6)
+          .swept({"300", "1000", "3000", "10000", "30000", "100000"}),
       Parameter::number("fill", "stop packing at this fraction of the solid's volume", "1", "1", 0.01, 1),
       Parameter::number("smallest_radius", "smallest radius of a sphere", "diagonal", "0.0001", 1e-6, 0.5),
       Parameter::choice("force",

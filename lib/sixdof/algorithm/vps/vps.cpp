@@ -212,14 +212,22 @@ class PointQuery final : public Query {
   std::size_t tested_leaves_ = 0;  ///< By the last query.
 };
 
-std::vector<Parameter> common_parameters(const std::string& voxel_size, const std::string& point_spacing,
-                                         int min_border) {
+Parameter voxel_size(const std::string& default_value) {
+  return Parameter::number("voxel_size", "edge of a voxel, as a fraction of the diagonal of the voxelised body's box",
+                           "diagonal", default_value, 0.0005, 0.1);
+}
+
+Parameter point_spacing(const std::string& default_value) {
+  return Parameter::number("point_spacing",
+                           "distance of neighbouring points, as a fraction of the diagonal of their body's box",
+                           "diagonal", default_value, 0.0005, 0.1);
+}
+
+/// What `vps` and `vps-field` share.
+std::vector<Parameter> common_parameters(const Parameter& voxel_size, const Parameter& point_spacing, int min_border) {
   return {
-      Parameter::number("voxel_size", "edge of a voxel, as a fraction of the diagonal of the voxelised body's box",
-                        "diagonal", voxel_size, 0.0005, 0.1),
-      Parameter::number("point_spacing",
-                        "distance of neighbouring points, as a fraction of the diagonal of their body's box",
-                        "diagonal", point_spacing, 0.0005, 0.1),
+      voxel_size,
+      point_spacing,
       {.name = "border",
        .meaning = "voxel layers outside the body that are stored; beyond them culling uses one distance per brick",
        .unit = "voxels",
@@ -251,7 +259,9 @@ Traits traits(std::string name, std::string summary, std::vector<Parameter> para
 }  // namespace
 
 std::unique_ptr<Algorithm> make_vps_algorithm() {
-  std::vector<Parameter> parameters = common_parameters("0.004", "0.004", 0);
+  std::vector<Parameter> parameters =
+      common_parameters(voxel_size("0.004").swept({"0.032", "0.016", "0.008", "0.004", "0.002"}),
+                        point_spacing("0.004").swept({"0.032", "0.016", "0.008", "0.004", "0.002"}), 0);
   parameters.insert(
       parameters.begin() + 2,
       Parameter::choice("depth",
@@ -262,9 +272,10 @@ std::unique_ptr<Algorithm> make_vps_algorithm() {
 }
 
 std::unique_ptr<Algorithm> make_vps_field_algorithm() {
-  return make_algorithm<PointQuery<true>>(
-      traits("vps-field", "points of B in a smooth signed distance to A: conservative, continuous voxmap-pointshell",
-             common_parameters("0.008", "0.004", DistanceField::k_border)));
+  return make_algorithm<PointQuery<true>>(traits(
+      "vps-field", "points of B in a smooth signed distance to A: conservative, continuous voxmap-pointshell",
+      common_parameters(voxel_size("0.008").swept({"0.032", "0.016", "0.008", "0.004"}),
+                        point_spacing("0.004").swept({"0.016", "0.008", "0.004", "0.002"}), DistanceField::k_border)));
 }
 
 }  // namespace sixdof
