@@ -55,14 +55,14 @@ std::string differences(const Json& before, const Json& now, const std::set<std:
 
 }  // namespace
 
-Json run_context(const Options& options, const Resources& resources) {
+Json run_context(const Options& options, const Registry& registry, const std::map<std::string, Settings>& settings) {
   Json context = context_of_benchmark();
   for (const auto& [key, value] : build_info()) context[key] = value;
-  for (const auto& algorithm : resources.registry.all()) {
+  for (const auto& algorithm : registry.all()) {
     const Traits& traits = algorithm->traits();
     context["algorithm:" + traits.name] = traits.version;
-    const std::string settings = resources.settings_of(*algorithm).to_string();
-    if (!settings.empty()) context["settings:" + traits.name] = settings;
+    const std::string text = settings.at(traits.name).to_string();
+    if (!text.empty()) context["settings:" + traits.name] = text;
   }
   context["arguments"] = options.arguments;
   context["benchmark_flags"] = options.benchmark_flags;

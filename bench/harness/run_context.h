@@ -1,18 +1,21 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
+#include <sixdof/query/registry.h>
 #include "bench/harness/options.h"
-#include "bench/harness/row.h"
 
 namespace sixdof::bench {
 
 /// The "context" of a result file when a run begins: Google Benchmark's own keys, build, processor, algorithms with
 /// their settings, options. The store adds "mesh:NAME" and "set:NAME", the content hashes of what rows use.
-nlohmann::ordered_json run_context(const Options& options, const Resources& resources);
+/// @param settings of every algorithm, by name
+nlohmann::ordered_json run_context(const Options& options, const Registry& registry,
+                                   const std::map<std::string, Settings>& settings);
 
 /// Why rows of two runs do not belong in one file: another machine, build, algorithm, setting, sample, seed or way to
 /// measure. "sample is 64, now 32; ..."; empty if nothing is in the way. The choice of rows and --budget may differ: a

@@ -163,7 +163,7 @@ void run_rows(const std::vector<Row>& rows, const Options& options, const Resour
   warn_of_build();
   std::vector<std::string> order;
   for (const Row* const row : chosen) order.push_back(row->name);
-  ResultStore store(std::move(order), run_context(options, resources));
+  ResultStore store(std::move(order), run_context(options, resources.registry, resources.settings));
   if (!options.out.empty()) store.open(options.out, options.out_format, options.resume);
   if (const auto there = std::erase_if(chosen, [&](const Row* row) { return store.has(row->name); }); there > 0) {
     print_message(k_program, fmt::format("{}: {} rows are there, {} are to be measured", options.out.string(), there,
