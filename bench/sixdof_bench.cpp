@@ -11,6 +11,7 @@
 #include <sixdof/configuration/set_catalogue.h>
 #include <sixdof/query/registrar.h>
 #include "bench/common/all_algorithms.h"
+#include "bench/common/interrupt.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/options.h"
 #include "bench/harness/own_sets.h"
@@ -38,7 +39,10 @@ void run(const Options& options) {
   if (!options.manifest.empty()) catalogue = SetCatalogue::read(options.manifest);
   PairCache cache(options.sample, options.seed,
                   [&](const std::string& key) { return load_mesh_of(key, options, catalogue); });
-  const auto coarse_set = add_own_sets(options, catalogue, cache);
+  const auto coarse_set = [&] {
+    const InterruptGuard interruptible(options.program);
+    return add_own_sets(options, catalogue, cache);
+  }();
   const Resources resources{.registry = registry,
                             .catalogue = catalogue,
                             .settings = std::move(settings),

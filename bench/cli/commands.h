@@ -30,6 +30,12 @@ void add_show_command(CLI::App& app);
 /// `sixdof quality --scenario II --algorithm NAME`: the response of one algorithm along one scenario against the ideal,
 /// as measures (text or JSON) and as a series (HDF5); `--draw FILE.svg` draws the scenario instead.
 void add_quality_command(CLI::App& app);
+/// `sixdof precision --pair elephant [--question distance] [--budget 10min] [-o FILE.json]`: time and error of every
+/// algorithm at every resolution on the same configurations, with the frontiers (study/precision.h).
+void add_precision_command(CLI::App& app);
+/// `sixdof recommend --a A --b B --deadline 1ms [--metric gamma_F_deg]`: which algorithm and parameters keep the
+/// deadline on this pair with the least error, and what else there is; k_exit_defects if none does (study/recommend.h).
+void add_recommend_command(CLI::App& app);
 /// `sixdof generate --a A [--b B] --grid GRID [--distances LIST] [--volumes LIST] -o FILE`: makes a configuration set.
 /// With `--shards N [--shard I] -o FOLDER` in parts; with `--plan` it only prints what would be made and at what cost.
 void add_generate_command(CLI::App& app);

@@ -26,12 +26,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* k_program = "sixdof-bench";
-
 /// Uniform rotations and directions: no two configurations are equal, as they are on small grids of Euler angles.
 constexpr const char* k_distance_grid = "so3:64:16";
-/// A volume costs some ten times as much as a distance.
-constexpr const char* k_volume_grid = "so3:32:8";
+/// As many, so that a p99.9 over the volumes has its 2,000 configurations.
+constexpr const char* k_volume_grid = "so3:64:16";
 constexpr double k_distances[] = {0, 1, 5, 10, 20};
 constexpr double k_volumes[] = {1, 5, 10};
 
@@ -72,19 +70,18 @@ bool is_whole(const fs::path& file, const Mesh& a, const Mesh& b) {
 }
 
 /// Says so if the pair has no volumes.
-bool has_volumes(const Mesh& a, const Mesh& b) {
+bool has_volumes(const Mesh& a, const Mesh& b, std::string_view program) {
   for (const Mesh* mesh : {&a, &b}) {
     if (mesh->solid()) continue;
-    print_message(k_program, fmt::format("no volumes: {} is no solid ({})", mesh->name(), mesh->why_not_solid()));
+    print_message(program, fmt::format("no volumes: {} is no solid ({})", mesh->name(), mesh->why_not_solid()));
     return false;
   }
   return true;
 }
 
 void make(const fs::path& file, const DistanceGenerator& generator, const Mesh& a, const Mesh& b,
-          const SetDescription& description) {
+          const SetDescription& description, std::string_view program) {
   ConfigurationSetWriter writer(file, description);
-  const InterruptGuard interruptible(k_program);
   const auto sweep = [&](BucketKind kind, const auto& generate, std::span<const double> percents) {
     ProgressLine line(fmt::format("coarse set, {}s", to_string(kind)));
     const Generated made =
@@ -101,7 +98,7 @@ void make(const fs::path& file, const DistanceGenerator& generator, const Mesh& 
     } catch (const Interrupted&) {
       throw;
     } catch (const Error& e) {  // e.g. of surfaces that intersect themselves
-      print_message(k_program, fmt::format("no volumes: {}", e.what()));
+      print_message(program, fmt::format("no volumes: {}", e.what()));
     }
   }
   writer.commit();
@@ -117,24 +114,25 @@ std::vector<BucketKey> CoarseSet::buckets(const Mesh& a, const Mesh& b) {
   return keys;
 }
 
-CoarseSet::CoarseSet(const Mesh& a, const MeshIdentity& a_identity, const Mesh& b, const MeshIdentity& b_identity) {
+CoarseSet::CoarseSet(const Mesh& a, const MeshIdentity& a_identity, const Mesh& b, const MeshIdentity& b_identity,
+                     std::string_view program) {
   const std::unique_ptr<DistanceGenerator> generator = make_ray_cast();
   SetDescription description{
       .generator_version = SIXDOF_VERSION, .a = a_identity, .b = b_identity, .grid = make_grid(k_distance_grid)};
-  if (has_volumes(a, b)) description.volume_grid = make_grid(k_volume_grid);
+  if (has_volumes(a, b, program)) description.volume_grid = make_grid(k_volume_grid);
   file_ = file_in_cache(cache_key(*generator, a, b));
   const std::string pair = fmt::format("coarse set of {} with {}", a.name(), b.name());
   if (is_whole(file_, a, b)) {
-    print_message(k_program, fmt::format("{}: {}", pair, file_.string()));
+    print_message(program, fmt::format("{}: {}", pair, file_.string()));
     return;
   }
   temporary_ = file_.empty();
   if (temporary_) file_ = temporary_file();
   const auto start = std::chrono::steady_clock::now();
-  make(file_, *generator, a, b, description);
+  make(file_, *generator, a, b, description, program);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  print_message(k_program, fmt::format("{} made in {:.1f} s{}", pair, seconds,
-                                       temporary_ ? std::string() : ": " + file_.string()));
+  print_message(
+      program, fmt::format("{} made in {:.1f} s{}", pair, seconds, temporary_ ? std::string() : ": " + file_.string()));
 }
 
 CoarseSet::~CoarseSet() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include <sixdof/configuration/bucket.h>
@@ -18,10 +19,12 @@ class CoarseSet {
   static std::vector<BucketKey> buckets(const Mesh& a, const Mesh& b);
 
   /// Finds the set in the cache or makes it, on all cores. On stderr: a progress line, one line that says where the set
-  /// is, and one if it has no volumes.
+  /// is, and one if it has no volumes. Polls InterruptGuard::requested().
   /// @param a_identity, b_identity for the set's file
+  /// @param program named in these lines
   /// @throws BadFile if the set cannot be written; Interrupted; Error from the generator of distances
-  CoarseSet(const Mesh& a, const MeshIdentity& a_identity, const Mesh& b, const MeshIdentity& b_identity);
+  CoarseSet(const Mesh& a, const MeshIdentity& a_identity, const Mesh& b, const MeshIdentity& b_identity,
+            std::string_view program);
   /// Removes a temporary file.
   ~CoarseSet();
   CoarseSet(const CoarseSet&) = delete;

@@ -132,11 +132,13 @@ std::vector<std::string> option_names(const CLI::App& app) {
 
 }  // namespace
 
+std::filesystem::path default_manifest() { return SIXDOF_FIXTURES_DIR "/manifest.json"; }
+
 int parse_options(int argc, const char* const* argv, Options& options) {
   CLI::App app("sixdof-bench: collision queries under Google Benchmark", "sixdof-bench");
   app.set_version_flag("--version", std::string("sixdof-bench ") + SIXDOF_VERSION);
   app.allow_extras();
-  options.manifest = SIXDOF_FIXTURES_DIR "/manifest.json";
+  options.manifest = default_manifest();
   std::string format = "console";
   std::string out_format = "json";
   std::string suite;

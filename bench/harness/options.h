@@ -19,6 +19,7 @@ enum class ResultFormat {
 
 /// What sixdof-bench understands besides Google Benchmark's own flags.
 struct Options {
+  std::string program = "sixdof-bench";       ///< Named in messages.
   std::filesystem::path manifest;             ///< Catalogue of configuration sets; empty for none.
   std::vector<std::filesystem::path> sets;    ///< Further sets of the user's.
   std::string a, b;                           ///< Meshes, models' names or files: of the one set, or of a coarse set.
@@ -40,6 +41,9 @@ struct Options {
   /// Whether a coarse set of the meshes is to be made (coarse_set.h), the only one of the run.
   bool own_pair() const { return !a.empty() && sets.empty(); }
 };
+
+/// The catalogue of the committed sets.
+std::filesystem::path default_manifest();
 
 /// Parses the command line and hands Google Benchmark its part of it. Help, version and errors are printed.
 /// @returns the exit code if the program should end now, -1 otherwise

@@ -12,8 +12,6 @@
 namespace sixdof::bench {
 namespace {
 
-constexpr const char* k_program = "sixdof-bench";
-
 /// The file under --mesh that stands for a mesh of this name; empty if there is none.
 std::string mesh_option(const std::string& name, const Options& options) {
   const auto file = std::ranges::find(options.meshes, name, [](const auto& path) { return path.stem().string(); });
@@ -44,8 +42,8 @@ void add_set(const std::filesystem::path& file, const Options& options, SetCatal
   if (b.hash != a.hash || !options.b.empty()) {
     cache.keep(entry.b, find(b, file, options.b.empty() ? mesh_option(b.name, options) : options.b));
   }
-  warn_of_sizes(k_program, a, b);
-  warn_of_unreached(k_program, set);
+  warn_of_sizes(options.program, a, b);
+  warn_of_unreached(options.program, set);
 }
 
 std::unique_ptr<const CoarseSet> add_pair(const Options& options, SetCatalogue& catalogue, PairCache& cache) {
@@ -57,13 +55,13 @@ std::unique_ptr<const CoarseSet> add_pair(const Options& options, SetCatalogue& 
     catalogue.add({}, a_identity, b_identity, CoarseSet::buckets(a, b));
     return nullptr;
   }
-  warn_of_sizes(k_program, a_identity, b_identity);
-  auto coarse = std::make_unique<const CoarseSet>(a, a_identity, b, b_identity);
+  warn_of_sizes(options.program, a_identity, b_identity);
+  auto coarse = std::make_unique<const CoarseSet>(a, a_identity, b, b_identity, options.program);
   const ConfigurationSet set(coarse->file());
   const CatalogueEntry& entry = catalogue.add(coarse->file(), a_identity, b_identity, reached_buckets(set));
   cache.keep(entry.a, {.mesh = std::move(a), .argument = options.a});
   cache.keep(entry.b, {.mesh = std::move(b), .argument = b_name});
-  warn_of_unreached(k_program, set);
+  warn_of_unreached(options.program, set);
   return coarse;
 }
 

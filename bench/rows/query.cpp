@@ -12,22 +12,15 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/measure/direction.h>
-#include <sixdof/measure/magnitude.h>
 #include "bench/harness/cache_eviction.h"
 #include "bench/harness/check.h"
+#include "bench/harness/question.h"
+#include "bench/harness/response_error.h"
 #include "bench/harness/timing.h"
 #include "bench/rows/families.h"
 
 namespace sixdof::bench {
 namespace {
-
-enum class Question {
-  collide,
-  distance,
-  respond
-};
-constexpr const char* k_questions[] = {"collide", "distance", "respond"};
 
 /// How often a row asks each configuration, for its trial: once in the check, in one or two timed rounds, and in the
 /// passes that time single queries.
@@ -42,44 +35,6 @@ constexpr std::size_t k_most_cold = 64;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Directions and magnitudes of forces or torques against those of the exact responses.
-struct VectorError {
-  DirectionError direction;
-  std::optional<MagnitudeError> magnitude;
-};
-
-/// A series of forces or torques with the exact ones.
-struct VectorSeries {
-  std::vector<Eigen::Vector3d> exact, measured;
-  std::vector<double> exact_magnitudes, magnitudes;
-
-  /// @param scale of `vector`: its true length is |vector| / scale
-  void add(const Eigen::Vector3d& exact_vector, const Eigen::Vector3d& vector, double scale) {
-    exact.push_back(exact_vector);
-    measured.push_back(vector);
-    exact_magnitudes.push_back(exact_vector.norm());
-    magnitudes.push_back(std::min(vector.stableNorm() / scale, Errors::k_largest));
-  }
-  VectorError error() const {
-    return {direction_error(exact, measured), magnitude_error(exact_magnitudes, magnitudes)};
-  }
-};
-
-/// The same wrench about another point, times `scale`, which is less than 1 where moving the torque might overflow.
-struct ScaledResponse {
-  Response response;
-  double scale = 1.0;
-};
-
-ScaledResponse about(Response response, const Eigen::Vector3d& point) {
-  constexpr double k_large = 1e100;
-  const double largest = std::max(response.force.cwiseAbs().maxCoeff(), response.torque.cwiseAbs().maxCoeff());
-  const double scale = largest > k_large ? 1.0 / largest : 1.0;
-  response.force *= scale;
-  response.torque *= scale;
-  return {response.about(point), scale};
 }
 
 /// One row, and what its first call measured.
@@ -101,7 +56,7 @@ struct QueryRow {
   std::optional<std::array<VectorError, 2>> errors = {};
 
   RowFields fields() const {
-    return {.query = k_questions[static_cast<std::size_t>(question)],
+    return {.query = std::string(to_string(question)),
             .algorithm = algorithm.traits().name,
             .settings = resources.settings_of(algorithm).to_string(),
             .pair = pair.pair,
@@ -113,9 +68,8 @@ struct QueryRow {
   std::string name() const {
     std::string bucket = key.name();
     bucket.at(bucket.find('/')) = ':';
-    return fmt::format("{}/algorithm:{}/pair:{}/{}{}{}", k_questions[static_cast<std::size_t>(question)],
-                       algorithm.traits().name, pair.pair, bucket, path ? "/order:path" : "",
-                       evict ? "/cache:cold" : "");
+    return fmt::format("{}/algorithm:{}/pair:{}/{}{}{}", to_string(question), algorithm.traits().name, pair.pair,
+                       bucket, path ? "/order:path" : "", evict ? "/cache:cold" : "");
   }
 
   void run(benchmark::State& state, const Share& share) {
@@ -186,16 +140,7 @@ struct QueryRow {
   template <class Use>
   void with_query(Failures& counted, Use use) const {
     Query& query = resources.cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
-    if (question == Question::collide) {
-      use(GuardedQuery(
-          query, [&query](const Pose& pose) { return query.collide(pose); }, counted));
-    } else if (question == Question::distance) {
-      use(GuardedQuery(
-          query, [&query](const Pose& pose) { return query.distance(pose); }, counted));
-    } else {
-      use(GuardedQuery(
-          query, [&query](const Pose& pose) { return query.respond(pose); }, counted));
-    }
+    with_question(query, question, counted, use);
   }
 
   /// Seconds of an exact response. Near 0 in the second trial of a bucket: the cache has them.
@@ -220,7 +165,7 @@ struct QueryRow {
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const Outcome<Response> answer = query.ask(bucket.poses[i]);
       if (!answer.ok()) continue;
-      const auto [response, scale] = about(answer.value, exact[i].reference);
+      const auto [response, scale] = scaled_about(answer.value, exact[i].reference);
       forces.add(exact[i].force, response.force, scale);
       torques.add(exact[i].torque, response.torque, scale);
     }
@@ -292,13 +237,10 @@ std::vector<Row> query_rows(const Resources& resources) {
                           .one_round = cold});
         }
       };
-      const QuerySet& answers = algorithm->traits().answers;
       for (const BucketKey key : pair.buckets) {
-        if (answers.collide) add(key, Question::collide);
-        // The distance of overlapping bodies is 0 by definition: nothing to measure.
-        if (answers.distance && key.kind == BucketKind::distance) add(key, Question::distance);
-        // Bodies that only touch have no force.
-        if (answers.respond && key.kind == BucketKind::volume && key.percent > 0) add(key, Question::respond);
+        for (const Question question : k_questions) {
+          if (answers(algorithm->traits().answers, question) && suits(key, question)) add(key, question);
+        }
       }
     }
   }

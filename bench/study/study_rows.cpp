@@ -36,10 +36,14 @@ Json to_json_object(const StudyRow& row) {
   return json;
 }
 
-void write_study_rows(const std::filesystem::path& file, const Json& context, const std::vector<StudyRow>& rows) {
+Json study_document(const Json& context, const std::vector<StudyRow>& rows) {
   Json list = Json::array();
   for (const StudyRow& row : rows) list.push_back(to_json_object(row));
-  write_file_atomically(file, json_text({{"context", context}, {"benchmarks", std::move(list)}}) + "\n");
+  return {{"context", context}, {"benchmarks", std::move(list)}};
+}
+
+void write_study_rows(const std::filesystem::path& file, const Json& context, const std::vector<StudyRow>& rows) {
+  write_file_atomically(file, json_text(study_document(context, rows)) + "\n");
 }
 
 }  // namespace sixdof::study

@@ -26,8 +26,10 @@ struct StudyRow {
 /// One entry of "benchmarks". @throws Error for a counter that is not finite, or that the table of metrics lacks
 nlohmann::ordered_json to_json_object(const StudyRow& row);
 
-/// Writes {"context": ..., "benchmarks": [...]}, whole or not at all. @param context of the run
-/// (bench/harness/run_context.h) @throws BadFile, Error
+/// {"context": ..., "benchmarks": [...]}. @param context of the run (bench/harness/run_context.h) @throws Error
+nlohmann::ordered_json study_document(const nlohmann::ordered_json& context, const std::vector<StudyRow>& rows);
+
+/// Writes the document, whole or not at all. @throws BadFile, Error
 void write_study_rows(const std::filesystem::path& file, const nlohmann::ordered_json& context,
                       const std::vector<StudyRow>& rows);
 

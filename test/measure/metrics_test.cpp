@@ -30,6 +30,8 @@ std::string name_of(std::string_view counter) {
 }
 
 TEST(Metrics, SuffixesBelongToTheSameMetric) {
+  EXPECT_EQ(name_of("gamma_F_deg_low"), "gamma_F_deg");
+  EXPECT_EQ(name_of("cpu_time_high"), "cpu_time");
   EXPECT_EQ(name_of("gamma_F_deg_all"), "gamma_F_deg");
   EXPECT_EQ(name_of("sigma_T_by_wall_traction"), "sigma_T");
   EXPECT_EQ(name_of("sigma_F_all_by_depth"), "sigma_F");

@@ -24,6 +24,8 @@ constexpr std::string_view k_work = "bench/harness/work.h";
 constexpr std::string_view k_footprint = "lib/sixdof/query/algorithm.h (Footprint)";
 constexpr std::string_view k_generate_row = "bench/rows/generate.cpp";
 constexpr std::string_view k_query_row = "bench/rows/query.cpp";
+constexpr std::string_view k_answers = "bench/study/answer_errors.h";
+constexpr std::string_view k_precision = "bench/study/precision.h";
 
 using enum Better;
 
@@ -45,6 +47,9 @@ constexpr std::array k_metrics{
     Metric{"gamma_T_deg", "degree", lower, "mean angle between true and measured torque", k_paper_gamma},
     Metric{"gamma_max_F_deg", "degree", lower, "largest angle between true and measured force", k_direction},
     Metric{"gamma_max_T_deg", "degree", lower, "largest angle between true and measured torque", k_direction},
+    Metric{"gamma_F_p95_deg", "degree", lower, "95 % of the angles between true and measured force are no larger", k_answers},
+    Metric{"gamma_T_p95_deg", "degree", lower, "95 % of the angles between true and measured torque are no larger", k_answers},
+    Metric{"penalty_error", "1", lower, "magnitude_error_F of the penalty against the exact volume, 0..1", k_answers},
     Metric{"misses", "queries", lower, "truth is not zero, measured force (or torque) is: tunnelling", k_direction},
     Metric{"false_contacts", "queries", lower, "ideal is zero, measured is not", k_direction},
     Metric{"skipped", "queries", neither, "ideal and measured are both zero", k_direction},
@@ -66,6 +71,13 @@ constexpr std::array k_metrics{
     Metric{"mismatch", "queries", lower, "wrong answers among the judged ones", k_check},
     Metric{"error_rms", "diagonal", lower, "RMS of |distance - truth| over A's box diagonal", k_check},
     Metric{"error_max", "diagonal", lower, "largest |distance - truth| over A's box diagonal", k_check},
+    Metric{"error_mean", "diagonal", lower, "mean of distance - truth, signed, over A's box diagonal", k_answers},
+    Metric{"too_small", "queries", lower, "distances below the truth by more than its tolerance: conservative", k_answers},
+    Metric{"too_large", "queries", lower, "distances above the truth by more than its tolerance", k_answers},
+    Metric{"false_positives", "queries", lower, "bodies apart, the answer is a collision", k_answers},
+    Metric{"false_negatives", "queries", lower, "bodies overlap, the answer is none", k_answers},
+    Metric{"touching", "queries", neither, "bodies touch: both answers are right", k_answers},
+    Metric{"touching_yes", "queries", neither, "touching bodies that are said to collide", k_answers},
     // Times.
     Metric{"real_time", "time_unit", lower, "mean wall-clock time of one iteration", k_google},
     Metric{"cpu_time", "time_unit", lower, "mean processor time of one iteration", k_google},
@@ -77,6 +89,7 @@ constexpr std::array k_metrics{
     Metric{"max_ns", "ns", lower, "longest query", k_paper},
     Metric{"p99_least_ns", "ns", lower, "p99_ns of the least of three times of every query", k_timing},
     Metric{"max_least_ns", "ns", lower, "max_ns of the least of three times of every query", k_timing},
+    Metric{"p999_least_ns", "ns", lower, "p999_ns of the least of three times of every query", k_timing},
     Metric{"over_1ms", "1", lower, "fraction of the queries over 1 ms, the haptic deadline", k_latency},
     Metric{"ns_per_configuration", "ns", lower, "processor time to make one configuration of a set", k_generate_row},
     // What a row was measured on.
@@ -84,7 +97,11 @@ constexpr std::array k_metrics{
     Metric{"configurations", "configurations", neither, "configurations that were asked or made", k_query_row},
     Metric{"reachable", "configurations", neither, "configurations of the whole bucket that exist", k_query_row},
     Metric{"steps", "steps", neither, "steps along the scenario's path", "bench/rows/scenario.cpp"},
+    Metric{"timing_rounds", "1", neither, "rounds of timing, of which cpu_time and real_time are medians", k_precision},
+    Metric{"on_frontier", "1", neither, "1: no point of the study is better in cost and error", k_precision},
+    Metric{"on_own_frontier", "1", neither, "1: no point of the same algorithm is", k_precision},
     // Size of a prepared structure.
+    Metric{"prepare_ns", "ns", lower, "wall time to prepare, which the cache on disk may shorten", k_precision},
     Metric{"bytes", "byte", lower, "memory of the prepared structure", k_footprint},
     Metric{"triangles", "triangles", neither, "triangles of both meshes", k_footprint},
     Metric{"nodes", "nodes", neither, "nodes of the hierarchies", k_footprint},
@@ -132,6 +149,9 @@ bool is_better(Better better, double value, double other) {
 std::span<const Metric> metrics() { return k_metrics; }
 
 const Metric* find_metric(std::string_view counter) {
+  for (const std::string_view bound : {"_low", "_high"}) {
+    if (counter.ends_with(bound)) counter.remove_suffix(bound.size());
+  }
   constexpr std::string_view k_whole_path = "_all";
   constexpr std::string_view k_other_law = "_by_";
   std::string_view name = counter.substr(0, counter.find(k_other_law));

@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include "bench/cli/commands.h"
+#include "bench/cli/precision_table.h"
+#include "bench/cli/shared.h"
+#include "bench/cli/study_options.h"
+#include "bench/common/duration.h"
+#include "bench/common/json_text.h"
+#include "bench/common/progress_line.h"
+#include "bench/harness/run_context.h"
+#include "bench/study/precision.h"
+#include "bench/study/study_pairs.h"
+
+namespace sixdof::cli {
+namespace {
+
+using bench::Question;
+
+struct Options {
+  StudyOptions study;
+  std::string question = "respond";
+  std::string metric;
+  std::string cost = "cpu_time";
+  std::size_t sample = 256;
+  bool markdown = false;
+};
+
+std::string default_error(Question question) {
+  return question == Question::collide ? "mismatch" : question == Question::distance ? "error_rms" : "gamma_F_deg";
+}
+
+std::string arguments_of(const Options& options) {
+  const StudyOptions& study = options.study;
+  std::string text = fmt::format("precision --question {}", options.question);
+  if (!study.pairs.empty()) text += fmt::format(" --pair {}", fmt::join(study.pairs, ","));
+  for (const std::string& set : study.sets) text += " --set " + set;
+  if (!study.a.empty()) text += " --a " + study.a;
+  if (!study.b.empty()) text += " --b " + study.b;
+  if (!study.algorithms.empty()) text += fmt::format(" --algorithms {}", fmt::join(study.algorithms, ","));
+  for (const std::string& values : study.values) text += " --params " + values;
+  return text + fmt::format(" --sample {} --seed {} --budget {}", options.sample, study.seed, study.budget);
+}
+
+/// The studies of all pairs, and the file that they fill.
+class PrecisionCommand {
+ public:
+  explicit PrecisionCommand(const Options& options) : options_(options) { register_all_algorithms(registry_); }
+
+  void run() {
+    plan_.question = parse_question();
+    plan_.error = options_.metric.empty() ? default_error(plan_.question) : options_.metric;
+    plan_.cost = options_.cost;
+    require_metric("--metric", plan_.error);
+    require_metric("--cost", plan_.cost);
+    plan_.single_queries = plan_.cost != "cpu_time" && plan_.cost != "real_time";
+    plan_.seed = options_.study.seed;
+    plan_.algorithms = study_algorithms(registry_, options_.study.algorithms, plan_.question);
+    plan_.values = swept_values(options_.study, plan_.algorithms);
+    const double budget_s = parse_duration("--budget", options_.study.budget);
+    study::StudyPairs pairs(harness_options(options_.study, options_.sample, arguments_of(options_)),
+                            options_.study.pairs);
+    context_ = bench::run_context(pairs.options(), registry_, bench::parse_parameters({}, registry_));
+    for (const CatalogueEntry* const pair : pairs.pairs()) {
+      plan_.budget_s = budget_s / static_cast<double>(pairs.pairs().size());
+      measure(pairs, *pair);
+    }
+    finish();
+  }
+
+ private:
+  Question parse_question() const {
+    for (const Question question : bench::k_questions) {
+      if (to_string(question) == options_.question) return question;
+    }
+    throw BadArgument(fmt::format("--question {}: must be collide, distance or respond", options_.question));
+  }
+
+  void measure(study::StudyPairs& pairs, const CatalogueEntry& pair) {
+    StatusLine line;
+    line.show(fmt::format("{}: truth of {} configurations", pair.pair, options_.sample));
+    samples_.push_back(study::draw_affordable_sample(plan_, pairs.cache(), pair, options_.sample));
+    study::PrecisionStudy& study = studies_.emplace_back(plan_, pairs.cache(), pair, samples_.back());
+    study.run(
+        [&](const std::string& what, std::size_t done, std::size_t total) {
+          line.show(fmt::format("{}: {}, {} of {} points", pair.pair, what, done, total));
+        },
+        [&] {
+          for (const auto& [key, hash] : pairs.cache().hashes()) context_[key] = hash;
+          write(true);
+        });
+    write(true);
+  }
+
+  std::vector<study::StudyRow> rows() const {
+    std::vector<study::StudyRow> all;
+    for (const study::PrecisionStudy& study : studies_) std::ranges::move(study.rows(), std::back_inserter(all));
+    return all;
+  }
+
+  /// Until the study ends, the file says that it is not whole.
+  void write(bool interrupted) const {
+    if (options_.study.output.empty()) return;
+    auto context = context_;
+    if (interrupted) context["interrupted"] = "true";
+    study::write_study_rows(options_.study.output, context, rows());
+  }
+
+  void finish() const {
+    write(false);
+    if (options_.study.json) {
+      fmt::print("{}\n", json_text(study::study_document(context_, rows())));
+      return;
+    }
+    for (const study::PrecisionStudy& study : studies_) {
+      const Sheet sheet = precision_sheet(study);
+      fmt::print("{}\n", options_.markdown ? as_markdown(sheet) : as_text(sheet));
+    }
+    std::vector<const study::PrecisionStudy*> all;
+    for (const study::PrecisionStudy& study : studies_) all.push_back(&study);
+    for (const std::string& text : gain_spreads(all)) fmt::print("{}\n", text);
+  }
+
+  const Options& options_;
+  Registry registry_;
+  study::PrecisionPlan plan_;
+  nlohmann::ordered_json context_;
+  std::list<study::StudySample> samples_;     ///< Of studies_.
+  std::list<study::PrecisionStudy> studies_;  ///< In the order of the pairs.
+};
+
+}  // namespace
+
+void add_precision_command(CLI::App& app) {
+  auto* const command = app.add_subcommand("precision", "Run time against error: every algorithm at every resolution");
+  const auto options = std::make_shared<Options>();
+  add_study_options(*command, options->study);
+  command->add_option("--question", options->question, "collide, distance or respond")->capture_default_str();
+  command->add_option("--metric", options->metric,
+                      "Error of the frontier: any metric of the rows. gamma_F_deg for respond, error_rms for distance, "
+                      "mismatch for collide if left out");
+  command
+      ->add_option("--cost", options->cost, "Cost of the frontier: cpu_time, real_time, p99_ns, bytes, prepare_ns, ...")
+      ->capture_default_str();
+  command
+      ->add_option("--sample", options->sample,
+                   "Configurations of a pair, spread evenly over its buckets; fewer if the budget is short")
+      ->check(CLI::Range(std::size_t{8}, std::size_t{1'000'000}))
+      ->capture_default_str();
+  command->add_flag("--markdown", options->markdown, "Print tables as Markdown");
+  command->callback([options] { PrecisionCommand(*options).run(); });
+  add_examples(*command, "sixdof precision --a cone-1k --b torus-1k --algorithms vps,exact --sample 32 --budget 20s",
+               "sixdof precision --a cone-1k --b torus-1k --question distance --params fcl-rss:relative_error=1,0.01,0 "
+               "--algorithms fcl-rss,exact --sample 32 --budget 20s -o precision.json");
+}
+
+}  // namespace sixdof::cli

@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include "bench/cli/commands.h"
+#include "bench/cli/shared.h"
+#include "bench/cli/study_options.h"
+#include "bench/common/duration.h"
+#include "bench/common/json_text.h"
+#include "bench/common/progress_line.h"
+#include "bench/common/run_guarded.h"
+#include "bench/harness/run_context.h"
+#include "bench/study/recommend.h"
+#include "bench/study/study_pairs.h"
+
+namespace sixdof::cli {
+namespace {
+
+using bench::Question;
+using study::Candidate;
+using study::Recommendation;
+
+/// Enough for a p99.9.
+constexpr std::size_t k_queries = 2100;
+
+struct Options {
+  StudyOptions study{.budget = "3min"};
+  std::string deadline = "1ms";
+  std::string metric = "gamma_F_deg";
+};
+
+/// The question that has the metric among its errors.
+Question question_of(const std::string& metric) {
+  for (const char* const of_distance : {"error_mean", "error_rms", "error_max", "too_small", "too_large"}) {
+    if (metric == of_distance) return Question::distance;
+  }
+  for (const char* const of_collide : {"mismatch", "false_positives", "false_negatives"}) {
+    if (metric == of_collide) return Question::collide;
+  }
+  return Question::respond;
+}
+
+std::string name_of(const Candidate& candidate) {
+  const auto& assignments = candidate.point->sweep.assignments;
+  return fmt::format("{}{}{}", candidate.point->algorithm->traits().name, assignments.empty() ? "" : " ",
+                     fmt::join(assignments, " "));
+}
+
+std::string error_text(const Candidate& candidate, const std::string& metric) {
+  std::string text = fmt::format("{} {:.3g}", metric, candidate.error.value);
+  if (candidate.error.low < candidate.error.high) {
+    text += fmt::format(" [{:.3g}, {:.3g}]", candidate.error.low, candidate.error.high);
+  }
+  if (metric != "gamma_F_deg") return text;
+  const auto p95 = candidate.point->metric("gamma_F_p95_deg"), most = candidate.point->metric("gamma_max_F_deg");
+  if (p95 && most) text += fmt::format(", 95 % below {:.3g}, largest {:.3g}", p95->value, most->value);
+  return text;
+}
+
+std::string line(const Candidate& candidate, const Recommendation& recommendation, const std::string& metric) {
+  return fmt::format("{}: {} {} ({} in one pass), {}", name_of(candidate), recommendation.tail,
+                     duration_text(1e-9 * candidate.tail_ns), duration_text(1e-9 * candidate.tail_once_ns),
+                     error_text(candidate, metric));
+}
+
+/// The command that measures the recommended point again as rows of sixdof-bench.
+std::string command_again(const Candidate& candidate, const Options& options, const CatalogueEntry& pair) {
+  const std::string& algorithm = candidate.point->algorithm->traits().name;
+  std::string text = "sixdof-bench";
+  if (!options.study.a.empty()) text += " --a " + options.study.a;
+  if (!options.study.b.empty()) text += " --b " + options.study.b;
+  for (const std::string& set : options.study.sets) text += " --no-manifest --set " + set;
+  for (const std::string& assignment : candidate.point->sweep.assignments) {
+    text += fmt::format(" -p {}:{}", algorithm, assignment);
+  }
+  return text + fmt::format(" --suite all --benchmark_filter='^{}/algorithm:{}/pair:{}/[^/]*$'",
+                            to_string(question_of(options.metric)), algorithm, pair.pair);
+}
+
+nlohmann::ordered_json as_json(const Candidate& candidate, const std::string& metric) {
+  return {{"algorithm", candidate.point->algorithm->traits().name},
+          {"settings", candidate.point->sweep.settings.to_string()},
+          {"tail_ns", candidate.tail_ns},
+          {"tail_once_ns", candidate.tail_once_ns},
+          {metric, candidate.error.value},
+          {metric + "_low", candidate.error.low},
+          {metric + "_high", candidate.error.high}};
+}
+
+void print_text(const Options& options, const Recommendation& found, const study::PrecisionStudy& study) {
+  fmt::print("pair        {}: {} configurations of each algorithm, of {}\n", study.pair().pair,
+             study.sample().poses.size(),
+             fmt::join(
+                 [&] {
+                   std::vector<std::string> names;
+                   for (const BucketKey key : study.sample().buckets) names.push_back(key.name());
+                   return names;
+                 }(),
+                 " "));
+  fmt::print("deadline    {}, for the {} of a query (the least of three times of each)\n", options.deadline,
+             found.tail);
+  if (found.best) {
+    fmt::print("take        {}\n", line(*found.best, found, options.metric));
+    fmt::print("because     its {} is the smallest of all that keep the deadline\n", options.metric);
+  } else {
+    fmt::print("take        none: no algorithm keeps this deadline\n");
+  }
+  for (const Candidate& slow : found.too_slow) {
+    fmt::print("too slow    {}\n", line(slow, found, options.metric));
+  }
+  if (found.second) fmt::print("runner-up   {}\n", line(*found.second, found, options.metric));
+  for (const study::PrecisionPoint& point : study.points()) {
+    const std::string name = name_of({.point = &point});
+    if (!point.left_out.empty()) fmt::print("left out    {}: {}\n", name, point.left_out);
+    if (point.measured() && point.faulty()) {
+      fmt::print("fault       {}: {} of {} failed, {} without a force\n", name, point.errors.failed,
+                 study.sample().poses.size(), point.metric("misses").value_or(study::Estimate{}).value);
+    }
+  }
+  if (found.best) fmt::print("again       {}\n", command_again(*found.best, options, study.pair()));
+}
+
+void print_json(const Options& options, double deadline_s, const Recommendation& found,
+                const study::PrecisionStudy& study) {
+  nlohmann::ordered_json json = {
+      {"pair", study.pair().pair}, {"deadline_ns", 1e9 * deadline_s}, {"tail", found.tail}, {"metric", options.metric}};
+  json["best"] = found.best ? as_json(*found.best, options.metric) : nlohmann::ordered_json();
+  json["second"] = found.second ? as_json(*found.second, options.metric) : nlohmann::ordered_json();
+  json["too_slow"] = nlohmann::ordered_json::array();
+  for (const Candidate& slow : found.too_slow) json["too_slow"].push_back(as_json(slow, options.metric));
+  if (found.best) json["again"] = command_again(*found.best, options, study.pair());
+  fmt::print("{}\n", json_text(json));
+}
+
+void run(const Options& options) {
+  Registry registry;
+  register_all_algorithms(registry);
+  require_metric("--metric", options.metric);
+  const double deadline_s = parse_duration("--deadline", options.deadline);
+  study::PrecisionPlan plan{.question = question_of(options.metric), .error = options.metric};
+  plan.cost = "p99_least_ns";
+  plan.seed = options.study.seed;
+  plan.budget_s = parse_duration("--budget", options.study.budget);
+  plan.single_queries = true;
+  plan.deadline_ns = 1e9 * deadline_s;
+  plan.rounds = 1;
+  plan.most_rounds = 1;
+  plan.algorithms = study_algorithms(registry, options.study.algorithms, plan.question);
+  plan.values = swept_values(options.study, plan.algorithms);
+  if (options.study.pairs.size() + options.study.sets.size() > 1) throw BadArgument("one pair at a time");
+  study::StudyPairs pairs(harness_options(options.study, k_queries, "recommend"), options.study.pairs);
+  const CatalogueEntry& pair = *pairs.pairs().front();
+  auto context = bench::run_context(pairs.options(), registry, bench::parse_parameters({}, registry));
+  StatusLine status;
+  status.show("truth");
+  const study::StudySample sample = study::draw_sample(pairs.cache(), pair, plan.question, pair.buckets, k_queries);
+  study::PrecisionStudy study(plan, pairs.cache(), pair, sample);
+  study.run([&](const std::string& what, std::size_t done,
+                std::size_t total) { status.show(fmt::format("{}, {} of {} points", what, done, total)); },
+            [] {});
+  status.clear();
+  for (const auto& [key, hash] : pairs.cache().hashes()) context[key] = hash;
+  if (!options.study.output.empty()) study::write_study_rows(options.study.output, context, study.rows());
+  const Recommendation found = study::recommend(study, deadline_s);
+  options.study.json ? print_json(options, deadline_s, found, study) : print_text(options, found, study);
+  if (!found.best) throw DefectsFound(fmt::format("no algorithm keeps a deadline of {}", options.deadline));
+}
+
+}  // namespace
+
+void add_recommend_command(CLI::App& app) {
+  auto* const command =
+      app.add_subcommand("recommend", "Which algorithm, with which parameters, keeps a deadline with the least error");
+  const auto options = std::make_shared<Options>();
+  add_study_options(*command, options->study);
+  command->add_option("--deadline", options->deadline, "Longest time of a query: 1ms, 200us")->capture_default_str();
+  command
+      ->add_option("--metric", options->metric,
+                   "Error that is to be small: gamma_F_deg, magnitude_error_F, error_rms, ...")
+      ->capture_default_str();
+  command->callback([options] { run(*options); });
+  add_examples(
+      *command, "sixdof recommend --a cone-1k --b torus-1k --deadline 1ms --budget 30s",
+      "sixdof recommend --a cone-1k --b torus-1k --metric error_rms --deadline 50us --algorithms exact,fcl-rss");
+}
+
+}  // namespace sixdof::cli

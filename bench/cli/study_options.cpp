@@ -1,0 +1,86 @@
+#include "bench/cli/study_options.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/measure/metrics.h>
+
+namespace sixdof::cli {
+
+void add_study_options(CLI::App& command, StudyOptions& options) {
+  auto* const pairs = command.add_option("--pair", options.pairs, "Pairs of the committed sets: elephant,bunny");
+  pairs->delimiter(',');
+  auto* const sets = command.add_option("--set", options.sets, "Configuration sets of your own; may be repeated");
+  sets->allow_extra_args(false)->excludes(pairs);
+  auto* const a = command.add_option("--a", options.a,
+                                     "Fixed mesh A, a model's name or a file, instead of --pair: measured on a coarse "
+                                     "set that is made in seconds and kept in the cache");
+  a->excludes(pairs)->excludes(sets);
+  command.add_option("--b", options.b, "Moving mesh B, likewise; a copy of A if left out")->needs(a);
+  command.add_option("--algorithms", options.algorithms, "vps,ist,...; all that answer if left out")->delimiter(',');
+  command
+      .add_option("--params", options.values,
+                  "Values of a parameter instead of the algorithm's own sweep: ALGORITHM:NAME=VALUE,VALUE,...; may be "
+                  "repeated, and then every combination is tried")
+      ->allow_extra_args(false);
+  command.add_option("--seed", options.seed, "Of the configurations")->capture_default_str();
+  command.add_option("--budget", options.budget, "Wall time: 90s, 10min")->capture_default_str();
+  command.add_option("-o,--output", options.output, "Write the rows to this JSON file; whole after every step");
+  command.add_flag("--json", options.json, "Print the rows as JSON");
+}
+
+bench::Options harness_options(const StudyOptions& options, std::size_t sample, std::string arguments) {
+  if (options.pairs.empty() && options.sets.empty() && options.a.empty()) {
+    throw BadArgument("--pair, --set or --a is needed");
+  }
+  bench::Options harness{.program = "sixdof", .a = options.a, .b = options.b, .sample = sample, .seed = options.seed};
+  for (const std::string& set : options.sets) harness.sets.emplace_back(set);
+  if (!options.pairs.empty()) harness.manifest = bench::default_manifest();
+  harness.arguments = std::move(arguments);
+  return harness;
+}
+
+std::vector<const Algorithm*> study_algorithms(const Registry& registry, const std::vector<std::string>& names,
+                                               bench::Question question) {
+  std::vector<const Algorithm*> chosen;
+  for (const std::string& name : names) {
+    const Algorithm& algorithm = registry.find(name);
+    if (!bench::answers(algorithm.traits().answers, question)) {
+      throw BadArgument(fmt::format("{} does not answer {}", name, to_string(question)));
+    }
+    if (std::ranges::find(chosen, &algorithm) == chosen.end()) chosen.push_back(&algorithm);
+  }
+  if (!names.empty()) return chosen;
+  for (const auto& algorithm : registry.all()) {
+    const Traits& traits = algorithm->traits();
+    if (traits.timed && traits.name != "null" && bench::answers(traits.answers, question)) {
+      chosen.push_back(algorithm.get());
+    }
+  }
+  return chosen;
+}
+
+std::vector<study::SweptValues> swept_values(const StudyOptions& options,
+                                             const std::vector<const Algorithm*>& algorithms) {
+  std::vector<study::SweptValues> all;
+  for (const std::string& text : options.values) {
+    study::SweptValues values = study::parse_swept_values(text);
+    const bool known =
+        std::ranges::any_of(algorithms, [&](const Algorithm* each) { return each->traits().name == values.algorithm; });
+    if (!known) throw BadArgument(fmt::format("--params {}: {} is not among the algorithms", text, values.algorithm));
+    all.push_back(std::move(values));
+  }
+  for (const Algorithm* const algorithm : algorithms) static_cast<void>(study::sweep_points(*algorithm, all));
+  return all;
+}
+
+void require_metric(const std::string& option, const std::string& name) {
+  if (find_metric(name) != nullptr) return;
+  throw BadArgument(fmt::format("{} {}: not in the table of metrics (lib/sixdof/measure/metrics.cpp)", option, name));
+}
+
+}  // namespace sixdof::cli

@@ -1,0 +1,227 @@
+#include "bench/study/answer_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include <sixdof/measure/direction.h>
+#include <sixdof/measure/magnitude.h>
+#include "bench/harness/check.h"
+#include "bench/harness/question.h"
+#include "bench/harness/response_error.h"
+
+namespace sixdof::study {
+namespace {
+
+using bench::Errors;
+using bench::GuardedQuery;
+using Counters = std::map<std::string, double>;
+using Indices = std::span<const std::size_t>;
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Nearest rank, as in measure/latency.h.
+double quantile(std::vector<double> values, double q) {
+  const auto rank = static_cast<std::size_t>(std::ceil(q * static_cast<double>(values.size())));
+  const std::size_t place = std::max<std::size_t>(rank, 1) - 1;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(place), values.end());
+  return values[place];
+}
+
+/// Answers yes/no.
+class Collisions {
+ public:
+  void add(const Truth& truth, bool answer) {
+    touching_.push_back(truth.key.percent == 0);
+    overlap_.push_back(truth.key.kind == BucketKind::volume);
+    yes_.push_back(answer);
+  }
+  std::size_t size() const { return yes_.size(); }
+  Counters counters(Indices chosen) const {
+    Counters counts{
+        {"mismatch", 0}, {"false_positives", 0}, {"false_negatives", 0}, {"touching", 0}, {"touching_yes", 0}};
+    for (const std::size_t i : chosen) {
+      if (touching_[i]) {
+        ++counts["touching"];
+        if (yes_[i]) ++counts["touching_yes"];
+      } else if (yes_[i] != overlap_[i]) {
+        ++counts["mismatch"];
+        ++counts[yes_[i] ? "false_positives" : "false_negatives"];
+      }
+    }
+    return counts;
+  }
+
+ private:
+  std::vector<bool> touching_, overlap_, yes_;
+};
+
+class Distances {
+ public:
+  void add(const Truth& truth, const Separation& answer) {
+    const double error = std::clamp(answer.distance - truth.target, -Errors::k_largest, Errors::k_largest);
+    const double allowed = truth.tolerance + bench::k_distance_slack * truth.diagonal;
+    errors_.push_back(error / truth.diagonal);
+    beyond_.push_back(std::abs(error) <= allowed ? 0 : error < 0.0 ? -1 : 1);
+  }
+  std::size_t size() const { return errors_.size(); }
+  Counters counters(Indices chosen) const {
+    Errors absolute;
+    double sum = 0.0;
+    Counters counts{{"too_small", 0}, {"too_large", 0}};
+    for (const std::size_t i : chosen) {
+      absolute.add(std::abs(errors_[i]));
+      sum += errors_[i];
+      if (beyond_[i] != 0) ++counts[beyond_[i] < 0 ? "too_small" : "too_large"];
+    }
+    counts["error_mean"] = sum / static_cast<double>(chosen.size());
+    counts["error_rms"] = absolute.rms();
+    counts["error_max"] = absolute.largest();
+    return counts;
+  }
+
+ private:
+  std::vector<double> errors_;
+  std::vector<int> beyond_;  ///< The tolerance: -1 too small, 1 too large.
+};
+
+/// Forces or torques.
+class VectorAnswers {
+ public:
+  explicit VectorAnswers(std::string suffix) : suffix_(std::move(suffix)) {}
+
+  void add(const Eigen::Vector3d& exact, const Eigen::Vector3d& vector, double scale) {
+    series_.add(exact, vector, scale);
+    angles_.push_back(exact.isZero(0.0) || vector.isZero(0.0) ? k_nan : angle_degrees(exact, vector));
+  }
+
+  void count(Indices chosen, Counters& counters) const {
+    std::vector<double> exact, measured, angles;
+    for (const std::size_t i : chosen) {
+      exact.push_back(series_.exact_magnitudes[i]);
+      measured.push_back(series_.magnitudes[i]);
+      if (std::isfinite(angles_[i])) angles.push_back(angles_[i]);
+    }
+    if (const auto error = magnitude_error(exact, measured)) {
+      counters["gain_" + suffix_] = error->gain;
+      counters["magnitude_error_" + suffix_] = error->relative;
+    }
+    if (angles.empty()) return;
+    const double sum = std::accumulate(angles.begin(), angles.end(), 0.0);
+    counters["gamma_" + suffix_ + "_deg"] = sum / static_cast<double>(angles.size());
+    counters["gamma_max_" + suffix_ + "_deg"] = *std::ranges::max_element(angles);
+    counters["gamma_" + suffix_ + "_p95_deg"] = quantile(std::move(angles), 0.95);
+  }
+
+ private:
+  const std::string suffix_;
+  bench::VectorSeries series_;
+  std::vector<double> angles_;  ///< Degrees; NaN where a vector is zero.
+};
+
+class Responses {
+ public:
+  void add(const Truth& truth, const Response& answer) {
+    const auto [response, scale] = bench::scaled_about(answer, truth.exact.reference);
+    forces_.add(truth.exact.force, response.force, scale);
+    torques_.add(truth.exact.torque, response.torque, scale);
+    missed_.push_back(answer.force.isZero(0.0));
+    volumes_.push_back(truth.target);
+    penalties_.push_back(std::min(std::abs(answer.penalty), Errors::k_largest));
+    volume_errors_.push_back(std::min(std::abs(answer.volume - truth.target) / truth.target, Errors::k_largest));
+    has_volume_ = has_volume_ && std::isfinite(answer.volume);
+  }
+  std::size_t size() const { return missed_.size(); }
+  Counters counters(Indices chosen) const {
+    Counters counters{{"misses", 0}};
+    std::vector<double> volumes, penalties;
+    double volume_error = 0.0;
+    for (const std::size_t i : chosen) {
+      if (missed_[i]) ++counters["misses"];
+      volumes.push_back(volumes_[i]);
+      penalties.push_back(penalties_[i]);
+      volume_error += volume_errors_[i];
+    }
+    forces_.count(chosen, counters);
+    torques_.count(chosen, counters);
+    if (const auto error = magnitude_error(volumes, penalties)) counters["penalty_error"] = error->relative;
+    if (has_volume_) counters["volume_error_mean"] = volume_error / static_cast<double>(chosen.size());
+    return counters;
+  }
+
+ private:
+  VectorAnswers forces_{"F"}, torques_{"T"};
+  std::vector<bool> missed_;
+  std::vector<double> volumes_, penalties_, volume_errors_;
+  bool has_volume_ = true;
+};
+
+bool is_count(const std::string& counter) {
+  for (const char* const count : {"mismatch", "false_positives", "false_negatives", "touching", "touching_yes",
+                                  "too_small", "too_large", "misses"}) {
+    if (counter == count) return true;
+  }
+  return false;
+}
+
+/// The value over all answers, and the quantiles over resamples of them.
+template <class Answers>
+std::map<std::string, Estimate> estimate(const Answers& answers, std::uint64_t seed) {
+  std::vector<std::size_t> all(answers.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  if (all.empty()) return {};
+  std::map<std::string, std::vector<double>> spread;
+  std::mt19937_64 random(seed);
+  std::vector<std::size_t> drawn(all.size());
+  for (std::size_t k = 0; k < k_resamples; ++k) {
+    // Not a std distribution: its numbers differ between standard libraries.
+    for (std::size_t& i : drawn) i = random() % all.size();
+    for (const auto& [name, value] : answers.counters(drawn)) spread[name].push_back(value);
+  }
+  std::map<std::string, Estimate> values;
+  for (const auto& [name, value] : answers.counters(all)) {
+    const auto resampled = spread.find(name);
+    if (is_count(name) || resampled == spread.end()) {
+      values[name] = Estimate::exactly(value);
+    } else {
+      // A maximum over a resample is never larger than that over all.
+      values[name] = {value, std::min(value, quantile(resampled->second, 0.025)),
+                      std::max(value, quantile(resampled->second, 0.975))};
+    }
+  }
+  return values;
+}
+
+/// Collects the answers to a kind of query.
+template <class Value>
+using AnswersTo = std::conditional_t<std::is_same_v<Value, bool>, Collisions,
+                                     std::conditional_t<std::is_same_v<Value, Separation>, Distances, Responses>>;
+
+}  // namespace
+
+AnswerErrors measure_errors(Query& query, const StudySample& sample, std::uint64_t seed) {
+  AnswerErrors errors;
+  bench::Failures failures;
+  bench::with_question(query, sample.question, failures, [&](auto guarded) {
+    AnswersTo<decltype(guarded.ask(sample.poses[0]).value)> answers;
+    for (std::size_t i = 0; i < sample.poses.size(); ++i) {
+      const auto answer = guarded.ask(sample.poses[i]);
+      if (!answer.ok()) continue;
+      errors.answered.push_back(sample.poses[i]);
+      if (i < sample.truths.size()) answers.add(sample.truths[i], answer.value);
+    }
+    errors.values = estimate(answers, seed);
+    errors.values["configurations"] = Estimate::exactly(static_cast<double>(answers.size()));
+  });
+  errors.failed = failures.count();
+  errors.first_failure = failures.first();
+  errors.values["failed"] = Estimate::exactly(static_cast<double>(failures.count()));
+  return errors;
+}
+
+}  // namespace sixdof::study

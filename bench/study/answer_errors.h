@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <sixdof/query/algorithm.h>
+#include "bench/study/estimate.h"
+#include "bench/study/study_sample.h"
+
+namespace sixdof::study {
+
+/// The errors of an algorithm's answers to the judged configurations of a sample, by names of the table of metrics.
+///
+/// collide: mismatch, false_positives, false_negatives; touching (configurations of bucket 0, where both answers are
+///   right, so they are in none of the others) and touching_yes.
+/// distance: error_mean (signed), error_rms, error_max, in A's diagonals; too_small and too_large count answers beyond
+///   the tolerance: a distance that is too small is conservative, one that is too large is not.
+/// respond: for force and torque about the centre of B's box, angles to the exact vector (gamma_F_deg, gamma_F_p95_deg,
+///   gamma_max_F_deg), gain_F and magnitude_error_F (measure/magnitude.h), and penalty_error likewise for the penalty
+///   against the exact volume; volume_error_mean where there is a volume; misses: responses without a force.
+/// All: configurations (that were judged) and failed, which includes those that are not judged.
+struct AnswerErrors {
+  /// Intervals are bootstraps over the configurations (Efron 1979): 2.5 % and 97.5 % of k_resamples resamples. Counts
+  /// have no spread.
+  std::map<std::string, Estimate> values;
+  std::vector<Pose> answered;  ///< Those of the sample's poses that have an answer, judged or not.
+  std::size_t failed = 0;
+  std::string first_failure;  ///< Words of it.
+
+  bool has(const std::string& metric) const { return values.contains(metric); }
+};
+
+inline constexpr std::size_t k_resamples = 200;
+
+/// Asks every configuration of the sample once. The same answers and seed give the same bits.
+AnswerErrors measure_errors(Query& query, const StudySample& sample, std::uint64_t seed);
+
+}  // namespace sixdof::study

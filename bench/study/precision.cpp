@@ -1,0 +1,210 @@
+#include "bench/study/precision.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <sixdof/base/error.h>
+#include "bench/common/duration.h"
+#include "bench/common/interrupt.h"
+
+namespace sixdof::study {
+namespace {
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::optional<Estimate> percentile(const std::optional<double>& value) {
+  return value ? std::optional(Estimate::exactly(*value)) : std::nullopt;
+}
+
+}  // namespace
+
+bool PrecisionPoint::faulty() const {
+  const auto misses = errors.values.find("misses");
+  return errors.failed > 0 || (misses != errors.values.end() && misses->second.value > 0.0);
+}
+
+std::optional<Estimate> PrecisionPoint::metric(const std::string& name) const {
+  if (name == "cpu_time") return times.cpu_ns();
+  if (name == "real_time") return times.wall_ns();
+  if (name == "bytes") return Estimate::exactly(static_cast<double>(bytes));
+  if (name == "prepare_ns") return Estimate::exactly(1e9 * prepare_s);
+  if (single) {
+    if (name == "p50_ns") return Estimate::exactly(single->once.p50);
+    if (name == "p99_ns") return percentile(single->once.p99);
+    if (name == "p999_ns") return percentile(single->once.p999);
+    if (name == "max_ns") return Estimate::exactly(single->once.max);
+    if (name == "over_1ms") return Estimate::exactly(single->once.over_deadline);
+    if (name == "p99_least_ns") return percentile(single->least.p99);
+    if (name == "p999_least_ns") return percentile(single->least.p999);
+    if (name == "max_least_ns") return Estimate::exactly(single->least.max);
+  }
+  const auto found = errors.values.find(name);
+  return found == errors.values.end() ? std::nullopt : std::optional(found->second);
+}
+
+StudySample draw_affordable_sample(const PrecisionPlan& plan, bench::PairCache& cache, const CatalogueEntry& pair,
+                                   std::size_t count) {
+  // A query of the finest point of a sweep takes some k_finer times as long as one of the coarsest, their mean half.
+  constexpr double k_finer = 8.0;
+  constexpr double k_share = 0.5;  // of the budget; the rest is for preparation and further rounds
+  constexpr std::size_t k_trial = 8;
+  if (std::isinf(plan.budget_s)) return draw_sample(cache, pair, plan.question, pair.buckets, count);
+  const StudySample trial = draw_sample(cache, pair, plan.question, pair.buckets, k_trial);
+  double seconds_each = 0.0;  // of a configuration, over all points and rounds
+  for (const Algorithm* const algorithm : plan.algorithms) {
+    const std::vector<SweepPoint> points = sweep_points(*algorithm, plan.values);
+    try {
+      // Not kept, so that the study sees how long preparation takes.
+      const auto query = cache.prepare(*algorithm, points.front().settings, cache.mesh(pair.a), cache.mesh(pair.b));
+      TimingRounds times;
+      times.add(*query, plan.question, trial.poses);
+      const double finer = points.size() > 1 ? 0.5 * (1.0 + k_finer) : 1.0;
+      seconds_each += 1e-9 * times.wall_ns().value * finer * static_cast<double>(points.size() * (1 + plan.rounds));
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const std::exception&) {  // the study says so itself
+    }
+  }
+  std::size_t affordable = count;
+  while (affordable / 2 >= k_fewest_configurations &&
+         static_cast<double>(affordable) * seconds_each > k_share * plan.budget_s) {
+    affordable /= 2;
+  }
+  return draw_sample(cache, pair, plan.question, pair.buckets, affordable);
+}
+
+PrecisionStudy::PrecisionStudy(PrecisionPlan plan, bench::PairCache& cache, const CatalogueEntry& pair,
+                               const StudySample& sample)
+    : plan_(std::move(plan)), cache_(cache), pair_(pair), sample_(sample) {
+  for (const Algorithm* const algorithm : plan_.algorithms) {
+    for (SweepPoint& point : sweep_points(*algorithm, plan_.values)) {
+      points_.push_back({.algorithm = algorithm, .sweep = std::move(point)});
+    }
+  }
+}
+
+double PrecisionStudy::left_s() const { return plan_.budget_s - (now_s() - started_s_); }
+
+Query& PrecisionStudy::query_of(const PrecisionPoint& point) {
+  return cache_.query(*point.algorithm, point.sweep.settings, pair_.a, pair_.b);
+}
+
+/// A finer structure takes as much longer to prepare as the last one did, within k_growth and k_most_growth (the cache
+/// on disk makes some of them fast); a query of it k_growth times as long.
+std::string PrecisionStudy::why_left_out(const PrecisionPoint& point) const {
+  constexpr double k_growth = 2.0, k_most_growth = 8.0;
+  const PrecisionPoint* last = nullptr;
+  const PrecisionPoint* before = nullptr;
+  for (const PrecisionPoint& other : points_) {
+    if (&other == &point) break;
+    if (other.algorithm != point.algorithm) continue;
+    before = last;
+    last = &other;
+  }
+  const double left = left_s();
+  if (left <= 0.0) return "the budget was spent";
+  if (last == nullptr) return {};
+  if (!last->left_out.empty()) return last->left_out;
+  const double growth =
+      before == nullptr ? k_growth : std::clamp(last->prepare_s / before->prepare_s, k_growth, k_most_growth);
+  const double queries = static_cast<double>(sample_.poses.size()) * static_cast<double>(1 + plan_.rounds);
+  const double needed = growth * last->prepare_s + k_growth * queries * 1e-9 * last->times.cpu_ns().value;
+  if (needed <= left) return {};
+  return fmt::format("it would take about {:.0f} s, and {:.0f} s of the budget were left", needed, left);
+}
+
+/// @throws Error if the plan's deadline cannot be kept
+void PrecisionStudy::check_deadline(Query& query) const {
+  if (std::isinf(plan_.deadline_ns)) return;
+  constexpr std::size_t k_trial = 16;
+  const auto first = std::span(sample_.poses).first(std::min(k_trial, sample_.poses.size()));
+  const double p50 = time_single_queries(query, sample_.question, {first.begin(), first.end()}).least.p50;
+  if (p50 > plan_.deadline_ns) {
+    throw Error(fmt::format("half of its queries take longer than {}, over the deadline", duration_text(1e-9 * p50)));
+  }
+}
+
+void PrecisionStudy::measure(PrecisionPoint& point) {
+  point.left_out = why_left_out(point);
+  if (!point.left_out.empty()) return;
+  try {
+    const double start = now_s();
+    Query& query = query_of(point);
+    point.prepare_s = now_s() - start;
+    point.bytes = query.footprint().bytes;
+    check_deadline(query);
+    point.errors = measure_errors(query, sample_, plan_.seed);
+    if (point.errors.answered.empty()) {
+      throw Error(fmt::format("no configuration has an answer: {}", point.errors.first_failure));
+    }
+    if (plan_.single_queries) point.single = time_single_queries(query, sample_.question, point.errors.answered);
+    point.times.add(query, sample_.question, point.errors.answered);
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::exception& e) {
+    point.left_out = e.what();
+  }
+}
+
+void PrecisionStudy::time_once(PrecisionPoint& point) {
+  point.times.add(query_of(point), sample_.question, point.errors.answered);
+}
+
+std::vector<std::size_t> PrecisionStudy::timed_points() const {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (points_[i].measured()) places.push_back(i);
+  }
+  return places;
+}
+
+std::vector<std::size_t> PrecisionStudy::uncertain_points() const {
+  const PointTradeoffs all = tradeoffs();
+  const std::vector<bool> open = uncertain(all.tradeoffs);
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    if (open[k] && points_[all.places[k]].times.count() < plan_.most_rounds) result.push_back(all.places[k]);
+  }
+  return result;
+}
+
+void PrecisionStudy::run(const Progress& progress, const std::function<void()>& finished) {
+  started_s_ = now_s();
+  // The coarse points of all algorithms come first, so that a short budget leaves out the fine ones.
+  std::map<const Algorithm*, std::size_t> next;
+  std::vector<std::pair<std::size_t, std::size_t>> order;
+  for (std::size_t i = 0; i < points_.size(); ++i) order.emplace_back(next[points_[i].algorithm]++, i);
+  std::ranges::sort(order);
+  std::size_t done = 0;
+  for (const auto& [step, place] : order) {
+    InterruptGuard::check();
+    progress(points_[place].algorithm->traits().name, done++, points_.size());
+    measure(points_[place]);
+    finished();
+  }
+  for (std::size_t round = 1; round < plan_.rounds; ++round) {
+    for (const std::size_t place : timed_points()) {
+      if (left_s() <= 0.0) return;
+      progress(fmt::format("round {} of timing", round + 1), place, points_.size());
+      time_once(points_[place]);
+    }
+    finished();
+  }
+  for (auto open = uncertain_points(); !open.empty(); open = uncertain_points()) {
+    for (const std::size_t place : open) {
+      if (left_s() <= 0.0) return;
+      progress("points that are not told apart", place, points_.size());
+      time_once(points_[place]);
+    }
+    finished();
+  }
+}
+
+}  // namespace sixdof::study

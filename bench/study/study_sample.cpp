@@ -1,0 +1,69 @@
+#include "bench/study/study_sample.h"
+
+#include <algorithm>
+#include <span>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof::study {
+namespace {
+
+using bench::Question;
+
+/// The sample of one bucket, with responses where they are asked for.
+struct BucketTruth {
+  const BucketSample* sample;
+  std::vector<Response> exact;
+};
+
+BucketTruth truth_of(bench::PairCache& cache, const CatalogueEntry& pair, Question question, BucketKey key,
+                     std::size_t count) {
+  const BucketSample& sample = cache.bucket(pair, key);
+  BucketTruth truth{&sample, {}};
+  if (question == Question::respond) {
+    const auto exact = cache.exact_responses(pair, key, count);
+    truth.exact.assign(exact.begin(), exact.end());
+  }
+  return truth;
+}
+
+}  // namespace
+
+StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, Question question,
+                        const std::vector<BucketKey>& buckets, std::size_t count) {
+  StudySample sample{.question = question};
+  for (const BucketKey key : buckets) {
+    if (bench::suits(key, question)) sample.buckets.push_back(key);
+  }
+  if (sample.buckets.empty()) {
+    throw BadArgument(fmt::format("{}: no bucket to ask {} of", pair.pair, to_string(question)));
+  }
+  const std::size_t each = count == 0 ? count : (count + sample.buckets.size() - 1) / sample.buckets.size();
+  std::vector<BucketTruth> truths;
+  std::size_t longest = 0;
+  for (const BucketKey key : sample.buckets) {
+    truths.push_back(truth_of(cache, pair, question, key, count == 0 ? bench::PairCache::k_most_exact : each));
+    longest = std::max(longest, truths.back().sample->poses.size());
+  }
+  bool judged = true;
+  for (std::size_t i = 0; i < (each == 0 ? longest : std::min(each, longest)); ++i) {
+    for (const BucketTruth& bucket : truths) {
+      if (i >= bucket.sample->poses.size() || (count > 0 && sample.poses.size() == count)) continue;
+      const BucketSample& from = *bucket.sample;
+      sample.poses.push_back(from.poses[i]);
+      judged = judged && (question != Question::respond || i < bucket.exact.size());
+      if (!judged) continue;
+      sample.truths.push_back({.key = from.key,
+                               .target = from.target,
+                               .tolerance = from.tolerance,
+                               .diagonal = from.diagonal,
+                               .exact = question == Question::respond ? bucket.exact[i] : Response{}});
+    }
+  }
+  if (sample.poses.empty()) throw BadArgument(fmt::format("{}: no configuration can be reached", pair.pair));
+  return sample;
+}
+
+}  // namespace sixdof::study

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <sixdof/configuration/bucket_sample.h>
+#include <sixdof/query/algorithm.h>
+#include "bench/harness/pair_cache.h"
+#include "bench/harness/question.h"
+
+namespace sixdof::study {
+
+/// What an answer is compared with.
+struct Truth {
+  BucketKey key;
+  double target = 0.0;     ///< Distance (length) or overlap volume (length^3).
+  double tolerance = 0.0;  ///< Of `target`, same unit.
+  double diagonal = 0.0;   ///< Of A's box (length).
+  Response exact;          ///< The response of `exact`; only for Question::respond.
+};
+
+/// Configurations of several buckets, the same ones for every point of a study: one of each bucket in turn, each bucket
+/// in the order of its sample, so that every prefix is spread evenly over buckets, rotations and directions.
+struct StudySample {
+  bench::Question question = bench::Question::respond;
+  std::vector<BucketKey> buckets;
+  std::vector<Pose> poses;
+  std::vector<Truth> truths;  ///< Of the first poses; answers to the others are timed only.
+};
+
+/// @param buckets of the set; those that do not suit the question are left out
+/// @param count configurations in all, as many as there are if 0
+/// @throws BadArgument if no bucket suits the question, NeedsSolid, BadFile
+StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, bench::Question question,
+                        const std::vector<BucketKey>& buckets, std::size_t count);
+
+}  // namespace sixdof::study

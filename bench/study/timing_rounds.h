@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <sixdof/geometry/pose.h>
+#include <sixdof/measure/latency.h>
+#include <sixdof/query/algorithm.h>
+#include "bench/harness/question.h"
+#include "bench/study/estimate.h"
+
+namespace sixdof::study {
+
+/// Times of one point of a study. Its rounds lie minutes apart, with rounds of other points between them, so that a
+/// drift of the machine's speed meets all points alike.
+class TimingRounds {
+ public:
+  /// Asks all poses, which have an answer, as often as k_shortest_s needs, in a loop without clocks. @throws
+  /// Interrupted
+  void add(Query& query, bench::Question question, std::span<const Pose> poses);
+
+  std::size_t count() const { return cpu_ns_.size(); }
+
+  /// Median over the rounds of the mean time of a query, in ns, with its 95 % interval by ranks: that of the binomial
+  /// distribution, which is least to largest for up to 8 rounds. No narrower than k_least_spread, which is what two
+  /// runs of one program on an idle machine differ by.
+  Estimate cpu_ns() const { return median(cpu_ns_); }
+  Estimate wall_ns() const { return median(wall_ns_); }
+
+  static constexpr double k_shortest_s = 0.02;
+  static constexpr double k_least_spread = 0.02;
+
+ private:
+  static Estimate median(std::vector<double> values);
+
+  std::vector<double> cpu_ns_, wall_ns_;
+};
+
+/// Times of single queries: of one pass, and of the least of three (bench/harness/timing.h).
+struct SingleQueries {
+  Latency once, least;
+};
+SingleQueries time_single_queries(Query& query, bench::Question question, std::vector<Pose> poses);
+
+}  // namespace sixdof::study

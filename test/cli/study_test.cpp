@@ -1,0 +1,136 @@
+// sixdof precision and recommend, as a user types them.
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/common/run_guarded.h"
+
+#include "run_program.h"
+#include "scratch_folder.h"
+
+namespace sixdof {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class Studies : public test::ScratchFolder {
+ protected:
+  test::ProgramResult run(const std::string& arguments) const {
+    return test::run_program("SIXDOF_CACHE=" + path("cache") + " " + std::string(SIXDOF_PROGRAM) + " " + arguments);
+  }
+  const std::string quick = "precision --a cone-1k --b torus-1k --sample 16 --budget 60s ";
+};
+
+std::map<std::string, json> rows_of(const json& document) {
+  std::map<std::string, json> rows;
+  for (const json& row : document.at("benchmarks")) rows[row.at("name")] = row;
+  return rows;
+}
+
+TEST_F(Studies, PrecisionMeasuresEveryPointAndWritesRows) {
+  const auto done = run(quick + "--algorithms vps,exact --params vps:voxel_size=0.04,0.02 -o " + path("rows.json"));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("gamma_F_deg"));
+  EXPECT_THAT(done.out, HasSubstr("voxel_size=0.02"));
+  std::ifstream file(path("rows.json"));
+  const json document = json::parse(file);
+  EXPECT_FALSE(document.at("context").contains("interrupted"));
+  EXPECT_TRUE(document.at("context").contains("mesh:cone-1k"));
+  const auto rows = rows_of(document);
+  ASSERT_EQ(rows.size(), 3u);
+  const std::string pair = "/pair:cone-1k-torus-1k";
+  const json& exact = rows.at("precision/respond/algorithm:exact" + pair);
+  const json& coarse = rows.at("precision/respond/algorithm:vps" + pair + "/voxel_size:0.04");
+  EXPECT_LT(exact.at("gamma_max_F_deg"), 1e-9);
+  EXPECT_GT(coarse.at("gamma_F_deg"), 0.1);
+  EXPECT_LT(coarse.at("cpu_time"), exact.at("cpu_time"));
+  EXPECT_EQ(exact.at("on_frontier"), 1.0);
+  EXPECT_EQ(coarse.at("sixdof").at("settings").at("voxel_size"), 0.04);
+  EXPECT_EQ(coarse.at("sixdof").at("question"), "respond");
+  EXPECT_EQ(coarse.at("failed"), 0.0);
+}
+
+TEST_F(Studies, PrecisionTwiceHasTheSameErrors) {
+  const std::string command =
+      quick + "--algorithms vps,ist,exact --params vps:voxel_size=0.03 --params ist:spheres=200 --json";
+  const auto first = run(command), second = run(command);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const auto before = rows_of(json::parse(first.out)), after = rows_of(json::parse(second.out));
+  ASSERT_EQ(before.size(), 3u);
+  for (const auto& [name, row] : before) {
+    for (const char* const metric : {"gamma_F_deg", "gamma_F_p95_deg", "magnitude_error_F", "gain_F", "misses"}) {
+      EXPECT_EQ(row.at(metric), after.at(name).at(metric)) << name << " " << metric;
+    }
+  }
+}
+
+TEST_F(Studies, PrecisionSaysWhatABudgetLeavesOut) {
+  const auto done = run("precision --a cone-1k --b torus-1k --sample 16 --budget 1ms --algorithms vps --json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const auto rows = rows_of(json::parse(done.out));
+  ASSERT_EQ(rows.size(), 5u);
+  for (const auto& [name, row] : rows) {
+    const bool coarsest = name.find("voxel_size:0.032") != std::string::npos;
+    if (!coarsest) EXPECT_THAT(row.at("error_message").get<std::string>(), HasSubstr("budget")) << name;
+  }
+}
+
+TEST_F(Studies, PrecisionOfDistancesAndCollisions) {
+  const auto distance = run(quick + "--question distance --algorithms exact,ist --params ist:spheres=200 --json");
+  ASSERT_EQ(distance.exit_code, 0) << distance.err;
+  const auto rows = rows_of(json::parse(distance.out));
+  const std::string pair = "/pair:cone-1k-torus-1k";
+  EXPECT_EQ(rows.at("precision/distance/algorithm:exact" + pair).at("too_large"), 0.0);
+  EXPECT_GT(rows.at("precision/distance/algorithm:ist" + pair + "/spheres:200").at("error_mean"), 1e-6)
+      << "spheres inside are farther apart than the surfaces";
+  const auto collide = run(quick + "--question collide --algorithms exact --json");
+  ASSERT_EQ(collide.exit_code, 0) << collide.err;
+  EXPECT_EQ(rows_of(json::parse(collide.out)).begin()->second.at("mismatch"), 0.0);
+}
+
+TEST_F(Studies, RecommendNamesAnAlgorithmAndTheCommandThatMeasuresItAgain) {
+  const auto done =
+      run("recommend --a cone-1k --b torus-1k --deadline 1s --budget 60s --algorithms exact,vps --params "
+          "vps:voxel_size=0.04 --json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const json found = json::parse(done.out);
+  EXPECT_EQ(found.at("tail"), "p99.9");
+  EXPECT_EQ(found.at("best").at("algorithm"), "exact");
+  EXPECT_EQ(found.at("second").at("algorithm"), "vps");
+  EXPECT_THAT(found.at("again").get<std::string>(), HasSubstr("sixdof-bench --a cone-1k --b torus-1k"));
+  const auto none = run("recommend --a cone-1k --b torus-1k --deadline 1ns --budget 60s --algorithms exact");
+  EXPECT_EQ(none.exit_code, k_exit_defects) << none.err;
+  EXPECT_THAT(none.out, HasSubstr("no algorithm keeps this deadline"));
+}
+
+TEST_F(Studies, RefuseBadArguments) {
+  const std::map<std::string, std::string> cases{
+      {"precision", "--pair, --set or --a is needed"},
+      {"precision --pair nothing", "pair nothing: no such pair; there are elephant"},
+      {"precision --a cone-1k --algorithms nothing", "nothing"},
+      {"precision --a cone-1k --algorithms fcl-rss", "fcl-rss does not answer respond"},
+      {"precision --a cone-1k --question push", "--question push: must be collide, distance or respond"},
+      {"precision --a cone-1k --metric beauty", "--metric beauty: not in the table of metrics"},
+      {"precision --a cone-1k --budget 10", "--budget 10: must be a positive time with its unit"},
+      {"precision --a cone-1k --params vps:voxel_size=7", "voxel_size=7: must be a number from"},
+      {"precision --a cone-1k --algorithms exact --params vps:voxel_size=0.1", "vps is not among the algorithms"},
+      {"recommend --a cone-1k --deadline 0ms", "--deadline 0ms"},
+      {"recommend --pair elephant,bunny", "one pair at a time"},
+  };
+  for (const auto& [arguments, words] : cases) {
+    const auto done = run(arguments);
+    EXPECT_NE(done.exit_code, 0) << arguments;
+    EXPECT_THAT(done.err, HasSubstr(words)) << arguments;
+    EXPECT_EQ(done.out, "") << arguments;
+  }
+}
+
+}  // namespace
+}  // namespace sixdof

@@ -1,0 +1,87 @@
+#include "bench/study/recommend.h"
+
+#include <chrono>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/models/model_catalogue.h>
+
+#include "../configuration/small_suite.h"
+
+namespace sixdof::study {
+namespace {
+
+/// Takes a time and answers with an error in the distance that both follow from its resolution: fine is slow and exact.
+class TunableQuery final : public Query {
+ public:
+  TunableQuery(const Mesh& a, const Mesh&, const Settings& settings)
+      : steps_(settings.number("steps")), diagonal_(a.diagonal()) {}
+
+  Outcome<Separation> distance(const Pose&) override {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(static_cast<int>(20 * steps_));
+    while (std::chrono::steady_clock::now() < end) {
+    }
+    return Separation{.distance = 0.05 * diagonal_ * (1.0 + 1.0 / steps_)};
+  }
+
+ private:
+  const double steps_;
+  const double diagonal_;
+};
+
+std::unique_ptr<Algorithm> tunable(const std::string& name, std::vector<std::string> steps) {
+  return make_algorithm<TunableQuery>({.name = name,
+                                       .answers = {.distance = true},
+                                       .parameters = {Parameter::count("steps", "steps", "1", 1, 1e6).swept(steps)}});
+}
+
+class Recommend : public ::testing::Test {
+ protected:
+  /// A query takes 20 us a step.
+  Recommendation within(double deadline_s) {
+    PrecisionPlan plan{.question = bench::Question::distance, .algorithms = {fine_.get(), coarse_.get()}};
+    plan.error = "error_rms";
+    plan.single_queries = true;
+    plan.deadline_ns = 1e9 * deadline_s;
+    plan.rounds = 1;
+    plan.most_rounds = 1;
+    study_ = std::make_unique<PrecisionStudy>(plan, cache_, pair_, sample_);
+    study_->run([](const std::string&, std::size_t, std::size_t) {}, [] {});
+    return recommend(*study_, deadline_s);
+  }
+  static std::string name(const std::optional<Candidate>& candidate) {
+    if (!candidate) return "none";
+    return candidate->point->algorithm->traits().name + " " + candidate->point->sweep.assignments.front();
+  }
+
+  std::unique_ptr<Algorithm> fine_ = tunable("fine", {"2", "20", "200", "400"});
+  std::unique_ptr<Algorithm> coarse_ = tunable("coarse", {"3", "10"});
+  bench::PairCache cache_{32, 1, [](const std::string& key) { return bench::LoadedMesh{load_model(key), key}; }};
+  SetCatalogue catalogue_ = SetCatalogue::read(std::filesystem::path(SIXDOF_SMALL_SUITE) / "manifest.json");
+  const CatalogueEntry& pair_ = catalogue_.sets().front();
+  StudySample sample_ = draw_sample(cache_, pair_, bench::Question::distance, {{BucketKind::distance, 5}}, 32);
+  std::unique_ptr<PrecisionStudy> study_;
+};
+
+TEST_F(Recommend, TakesTheSmallestErrorThatKeepsTheDeadline) {
+  const Recommendation found = within(2e-3);
+  EXPECT_EQ(found.tail, "max") << "32 queries have no p99";
+  EXPECT_EQ(name(found.best), "fine steps=20");
+  EXPECT_EQ(name(found.second), "coarse steps=10");
+  EXPECT_NEAR(found.best->error.value, 0.05 / 20, 1e-6);
+  EXPECT_GE(found.best->tail_ns, 20 * 20e3);
+  EXPECT_LE(found.best->tail_ns, 2e6);
+  EXPECT_GE(found.best->tail_once_ns, found.best->tail_ns);
+  // Half of its first queries are over the deadline, so the finer ones are not tried.
+  EXPECT_NE(study_->points()[2].left_out.find("over the deadline"), std::string::npos) << study_->points()[2].left_out;
+  EXPECT_EQ(study_->points()[3].left_out, study_->points()[2].left_out);
+}
+
+TEST_F(Recommend, TakesNoneWhereNoneKeepsIt) {
+  const Recommendation found = within(30e-6);
+  EXPECT_FALSE(found.best);
+  EXPECT_FALSE(found.second);
+}
+
+}  // namespace
+}  // namespace sixdof::study

@@ -1,0 +1,63 @@
+#include "bench/study/sweep.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof::study {
+namespace {
+
+using ::testing::ElementsAre;
+
+class NoQuery final : public Query {
+ public:
+  NoQuery(const Mesh&, const Mesh&, const Settings&) {}
+};
+
+std::unique_ptr<Algorithm> algorithm() {
+  const Parameter voxel = Parameter::number("voxel", "edge", "diagonal", "0.01", 1e-4, 0.5).swept({"0.1", "0.01"});
+  const Parameter points = Parameter::count("points", "points", "10", 1, 1e6).swept({"10", "1000"});
+  return make_algorithm<NoQuery>(
+      {.name = "mine", .parameters = {voxel, Parameter::choice("law", "law", "a", {"a", "b"}), points}});
+}
+
+std::vector<std::string> settings_of(const std::vector<SweepPoint>& points) {
+  std::vector<std::string> list;
+  for (const SweepPoint& point : points) list.push_back(point.settings.to_string());
+  return list;
+}
+
+TEST(Sweep, SetsAllParametersTogether) {
+  const auto mine = algorithm();
+  const auto points = sweep_points(*mine, {});
+  EXPECT_THAT(settings_of(points), ElementsAre("voxel=0.1,law=a,points=10", "voxel=0.01,law=a,points=1000"));
+  EXPECT_THAT(points[1].assignments, ElementsAre("voxel=0.01", "points=1000"));
+}
+
+TEST(Sweep, OfAnAlgorithmWithoutOneIsItsDefault) {
+  const auto plain = make_algorithm<NoQuery>({.name = "plain"});
+  const auto points = sweep_points(*plain, {});
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_TRUE(points[0].assignments.empty());
+}
+
+TEST(Sweep, IsReplacedByEveryCombinationOfGivenValues) {
+  const auto mine = algorithm();
+  const auto points = sweep_points(*mine, {parse_swept_values("mine:law=a,b"), parse_swept_values("other:x=1"),
+                                           parse_swept_values("mine:points=5,7")});
+  EXPECT_THAT(settings_of(points), ElementsAre("voxel=0.01,law=a,points=5", "voxel=0.01,law=a,points=7",
+                                               "voxel=0.01,law=b,points=5", "voxel=0.01,law=b,points=7"));
+}
+
+TEST(Sweep, RefusesWhatItCannotRead) {
+  const auto mine = algorithm();
+  for (const char* text : {"", "mine", "mine:law", "mine:law=", "law=a,b"}) {
+    EXPECT_THROW(parse_swept_values(text), BadArgument) << text;
+  }
+  EXPECT_THROW(sweep_points(*mine, {parse_swept_values("mine:voxel=7")}), BadArgument);
+  EXPECT_THROW(sweep_points(*mine, {parse_swept_values("mine:none=7")}), BadArgument);
+}
+
+}  // namespace
+}  // namespace sixdof::study
