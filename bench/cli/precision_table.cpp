@@ -51,8 +51,8 @@ std::string settings_of(const PrecisionPoint& point) {
 void add_notes(const PrecisionStudy& study, Sheet& sheet) {
   for (const study::ErrorOrder& order : study::error_orders(study)) {
     sheet.notes.push_back(fmt::format("{} of {}: proportional to {}^{:.2f} (standard error {:.2f}, {} points)",
-                                      study.plan().error, order.algorithm, order.parameter, order.order,
-                                      order.standard_error, order.points));
+                                      order.metric, order.algorithm, order.parameter, order.order, order.standard_error,
+                                      order.points));
   }
   for (const PrecisionPoint& point : study.points()) {
     const std::string name = fmt::format("{} {}", point.algorithm->traits().name, settings_of(point));
@@ -84,6 +84,9 @@ Sheet precision_sheet(const PrecisionStudy& study) {
   std::vector<std::string> others = shown_metrics(study.sample().question);
   std::erase(others, error);
   for (const std::string& metric : others) sheet.columns.push_back({.title = metric});
+  const auto to_finest = study.angles_to_finest();
+  const bool shows_finest = std::ranges::any_of(to_finest, [](const auto& angle) { return angle.has_value(); });
+  if (shows_finest) sheet.columns.push_back({.title = "gamma_F_finest_deg"});
   const auto on = study.frontiers();
   for (std::size_t i = 0; i < study.points().size(); ++i) {
     const PrecisionPoint& point = study.points()[i];
@@ -99,6 +102,7 @@ Sheet precision_sheet(const PrecisionStudy& study) {
       const auto value = point.metric(metric);
       line.push_back(value ? number(value->value) : "-");
     }
+    if (shows_finest) line.push_back(to_finest[i] ? number(*to_finest[i]) : "-");
     sheet.lines.push_back(std::move(line));
   }
   add_notes(study, sheet);

@@ -93,7 +93,8 @@ nlohmann::ordered_json as_json(const Candidate& candidate, const std::string& me
           {metric + "_high", candidate.error.high}};
 }
 
-void print_text(const Options& options, const Recommendation& found, const study::PrecisionStudy& study) {
+void print_text(const Options& options, double deadline_s, const Recommendation& found,
+                const study::PrecisionStudy& study) {
   fmt::print("pair        {}: {} configurations of each algorithm, of {}\n", study.pair().pair,
              study.sample().poses.size(),
              fmt::join(
@@ -107,7 +108,8 @@ void print_text(const Options& options, const Recommendation& found, const study
              found.tail);
   if (found.best) {
     fmt::print("take        {}\n", line(*found.best, found, options.metric));
-    fmt::print("because     its {} is the smallest of all that keep the deadline\n", options.metric);
+    fmt::print("because     its {} is the smallest of all that keep the deadline; its {} is {:.0f} % of it\n",
+               options.metric, found.tail, 1e-7 * found.best->tail_ns / deadline_s);
   } else {
     fmt::print("take        none: no algorithm keeps this deadline\n");
   }
@@ -168,7 +170,7 @@ void run(const Options& options) {
   for (const auto& [key, hash] : pairs.cache().hashes()) context[key] = hash;
   if (!options.study.output.empty()) study::write_study_rows(options.study.output, context, study.rows());
   const Recommendation found = study::recommend(study, deadline_s);
-  options.study.json ? print_json(options, deadline_s, found, study) : print_text(options, found, study);
+  options.study.json ? print_json(options, deadline_s, found, study) : print_text(options, deadline_s, found, study);
   if (!found.best) throw DefectsFound(fmt::format("no algorithm keeps a deadline of {}", options.deadline));
 }
 

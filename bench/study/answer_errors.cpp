@@ -197,6 +197,9 @@ std::map<std::string, Estimate> estimate(const Answers& answers, std::uint64_t s
   return values;
 }
 
+void keep_force(const Response& answer, Eigen::Vector3d& force) { force = answer.force; }
+void keep_force(const auto& /*answer*/, Eigen::Vector3d& /*force*/) {}
+
 /// Collects the answers to a kind of query.
 template <class Value>
 using AnswersTo = std::conditional_t<std::is_same_v<Value, bool>, Collisions,
@@ -206,6 +209,7 @@ using AnswersTo = std::conditional_t<std::is_same_v<Value, bool>, Collisions,
 
 AnswerErrors measure_errors(Query& query, const StudySample& sample, std::uint64_t seed) {
   AnswerErrors errors;
+  errors.forces.assign(sample.truths.size(), Eigen::Vector3d::Zero());
   bench::Failures failures;
   bench::with_question(query, sample.question, failures, [&](auto guarded) {
     AnswersTo<decltype(guarded.ask(sample.poses[0]).value)> answers;
@@ -213,7 +217,9 @@ AnswerErrors measure_errors(Query& query, const StudySample& sample, std::uint64
       const auto answer = guarded.ask(sample.poses[i]);
       if (!answer.ok()) continue;
       errors.answered.push_back(sample.poses[i]);
-      if (i < sample.truths.size()) answers.add(sample.truths[i], answer.value);
+      if (i >= sample.truths.size()) continue;
+      answers.add(sample.truths[i], answer.value);
+      keep_force(answer.value, errors.forces[i]);
     }
     errors.values = estimate(answers, seed);
     errors.values["configurations"] = Estimate::exactly(static_cast<double>(answers.size()));

@@ -27,6 +27,8 @@ struct AnswerErrors {
   /// have no spread.
   std::map<std::string, Estimate> values;
   std::vector<Pose> answered;  ///< Those of the sample's poses that have an answer, judged or not.
+  /// Of Question::respond: forces by the configurations that are judged; zero where there is no answer.
+  std::vector<Eigen::Vector3d> forces;
   std::size_t failed = 0;
   std::string first_failure;  ///< Words of it.
 

@@ -87,6 +87,11 @@ class PrecisionStudy {
   };
   std::vector<OnFrontier> frontiers() const;
 
+  /// Per point: the mean angle in degrees between its forces and those of the finest point of its algorithm that was
+  /// measured without a fault. It shows what the resolution does, apart from the limit to which the algorithm's law
+  /// tends. Empty for the finest points themselves, for algorithms of one point, and for other questions.
+  std::vector<std::optional<double>> angles_to_finest() const;
+
   /// Points of the frontier whose costs are not told apart from those of others on it.
   std::size_t undecided() const;
 
@@ -113,7 +118,7 @@ class PrecisionStudy {
   void time_once(PrecisionPoint& point);
   std::vector<std::size_t> timed_points() const;
   std::vector<std::size_t> uncertain_points() const;
-  StudyRow row(const PrecisionPoint& point, OnFrontier on) const;
+  StudyRow row(const PrecisionPoint& point, OnFrontier on, std::optional<double> to_finest) const;
 
   const PrecisionPlan plan_;
   bench::PairCache& cache_;
@@ -123,14 +128,15 @@ class PrecisionStudy {
   std::vector<PrecisionPoint> points_;  ///< Of each algorithm from coarse to fine.
 };
 
-/// How the error of each algorithm falls with its resolution.
+/// How an error of an algorithm falls with its resolution.
 struct ErrorOrder {
-  std::string algorithm, parameter;
+  std::string algorithm, metric, parameter;
   double order = 0.0, standard_error = 0.0;  ///< error ~ parameter^order.
   std::size_t points = 0;
 };
 
-/// For every algorithm whose points differ by at least one number: of the first such parameter.
+/// For every algorithm with three points or more, that differ in the first of their parameters: of the plan's error and
+/// of gamma_F_finest_deg (angles_to_finest()).
 std::vector<ErrorOrder> error_orders(const PrecisionStudy& study);
 
 }  // namespace sixdof::study

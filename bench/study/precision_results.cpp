@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
 
+#include <sixdof/measure/direction.h>
 #include "bench/study/order_fit.h"
 #include "bench/study/precision.h"
 
@@ -37,12 +39,27 @@ std::vector<PrecisionStudy::OnFrontier> PrecisionStudy::frontiers() const {
   return on;
 }
 
+std::vector<std::optional<double>> PrecisionStudy::angles_to_finest() const {
+  std::map<const Algorithm*, const PrecisionPoint*> finest;
+  for (const PrecisionPoint& point : points_) {
+    if (point.measured() && !point.faulty()) finest[point.algorithm] = &point;
+  }
+  std::vector<std::optional<double>> angles(points_.size());
+  if (sample_.question != bench::Question::respond) return angles;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const PrecisionPoint* const best = finest[points_[i].algorithm];
+    if (!points_[i].measured() || best == nullptr || best == &points_[i]) continue;
+    angles[i] = direction_error(best->errors.forces, points_[i].errors.forces).gamma_degrees;
+  }
+  return angles;
+}
+
 std::size_t PrecisionStudy::undecided() const {
   const std::vector<bool> open = uncertain(tradeoffs().tradeoffs);
   return static_cast<std::size_t>(std::ranges::count(open, true));
 }
 
-StudyRow PrecisionStudy::row(const PrecisionPoint& point, OnFrontier on) const {
+StudyRow PrecisionStudy::row(const PrecisionPoint& point, OnFrontier on, std::optional<double> to_finest) const {
   const std::string question(to_string(sample_.question));
   StudyRow row{
       .name = fmt::format("precision/{}/algorithm:{}/pair:{}", question, point.algorithm->traits().name, pair_.pair),
@@ -76,6 +93,7 @@ StudyRow PrecisionStudy::row(const PrecisionPoint& point, OnFrontier on) const {
                                  "p99_least_ns", "p999_least_ns", "max_least_ns"}) {
     if (const auto value = point.metric(name)) add(name, *value);
   }
+  if (to_finest) row.counters.emplace_back("gamma_F_finest_deg", *to_finest);
   row.counters.emplace_back("timing_rounds", static_cast<double>(point.times.count()));
   row.counters.emplace_back("on_frontier", on.overall ? 1.0 : 0.0);
   row.counters.emplace_back("on_own_frontier", on.own ? 1.0 : 0.0);
@@ -85,30 +103,49 @@ StudyRow PrecisionStudy::row(const PrecisionPoint& point, OnFrontier on) const {
 std::vector<StudyRow> PrecisionStudy::rows() const {
   std::vector<StudyRow> list;
   const std::vector<OnFrontier> on = frontiers();
-  for (std::size_t i = 0; i < points_.size(); ++i) list.push_back(row(points_[i], on[i]));
+  const auto to_finest = angles_to_finest();
+  for (std::size_t i = 0; i < points_.size(); ++i) list.push_back(row(points_[i], on[i], to_finest[i]));
   return list;
 }
 
+namespace {
+
+/// The order of one error of an algorithm. @param errors per point of the study, empty where there is none
+std::optional<ErrorOrder> order_of(const PrecisionStudy& study, const Algorithm& algorithm, const std::string& metric,
+                                   const std::vector<std::optional<double>>& errors) {
+  ErrorOrder order{.algorithm = algorithm.traits().name, .metric = metric};
+  std::vector<double> resolutions, values;
+  for (std::size_t i = 0; i < study.points().size(); ++i) {
+    const PrecisionPoint& point = study.points()[i];
+    const auto& assignments = point.sweep.assignments;
+    if (point.algorithm != &algorithm || assignments.empty() || point.faulty() || !errors[i]) continue;
+    if (!(*errors[i] > k_rounding)) continue;
+    order.parameter = assignments.front().substr(0, assignments.front().find('='));
+    resolutions.push_back(point.sweep.settings.number(order.parameter));
+    values.push_back(*errors[i]);
+  }
+  const std::set<double> distinct(resolutions.begin(), resolutions.end());
+  const auto fit = fit_order(resolutions, values);
+  if (distinct.size() != resolutions.size() || !fit) return std::nullopt;  // e.g. a grid of several parameters
+  order.order = fit->order;
+  order.standard_error = fit->standard_error;
+  order.points = values.size();
+  return order;
+}
+
+}  // namespace
+
 std::vector<ErrorOrder> error_orders(const PrecisionStudy& study) {
+  std::vector<std::optional<double>> errors;
+  for (const PrecisionPoint& point : study.points()) {
+    const auto error = point.measured() ? point.metric(study.plan().error) : std::nullopt;
+    errors.push_back(error ? std::optional(error->value) : std::nullopt);
+  }
   std::vector<ErrorOrder> orders;
   for (const Algorithm* const algorithm : study.plan().algorithms) {
-    std::string parameter;
-    std::vector<double> resolutions, errors;
-    for (const PrecisionPoint& point : study.points()) {
-      if (point.algorithm != algorithm || !point.measured() || point.faulty() || point.sweep.assignments.empty())
-        continue;
-      const std::string& first = point.sweep.assignments.front();
-      parameter = first.substr(0, first.find('='));
-      const auto error = point.metric(study.plan().error);
-      const double resolution = point.sweep.settings.number(parameter);
-      if (!error || !(error->value > k_rounding)) continue;
-      resolutions.push_back(resolution);
-      errors.push_back(error->value);
-    }
-    const std::set<double> distinct(resolutions.begin(), resolutions.end());
-    if (distinct.size() != resolutions.size()) continue;  // a grid of several parameters
-    if (const auto fit = fit_order(resolutions, errors)) {
-      orders.push_back({algorithm->traits().name, parameter, fit->order, fit->standard_error, errors.size()});
+    for (const auto& order : {order_of(study, *algorithm, study.plan().error, errors),
+                              order_of(study, *algorithm, "gamma_F_finest_deg", study.angles_to_finest())}) {
+      if (order) orders.push_back(*order);
     }
   }
   return orders;

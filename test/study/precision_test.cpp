@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/algorithm/vps/vps.h>
 #include <sixdof/models/model_catalogue.h>
 
 #include "../configuration/small_suite.h"
@@ -177,6 +178,30 @@ TEST_F(Precision, YesForEverythingHasFalsePositivesOnly) {
   EXPECT_EQ(value(points[1], "false_negatives"), 0.0);
   EXPECT_EQ(value(points[1], "touching"), value(points[1], "touching_yes"));
   EXPECT_EQ(value(points[0], "mismatch"), 0.0);
+}
+
+TEST_F(Precision, AnglesToTheFinestPointFallWithTheResolution) {
+  const auto vps = make_vps_algorithm();
+  PrecisionPlan plan{.algorithms = {vps.get()}, .rounds = 1, .most_rounds = 1};
+  for (const char* const values : {"vps:voxel_size=0.08,0.04,0.02,0.01", "vps:point_spacing=0.01"}) {
+    plan.values.push_back(parse_swept_values(values));
+  }
+  bench::PairCache cache(k_sample, 1, [](const std::string& key) { return bench::LoadedMesh{load_model(key), key}; });
+  const SetCatalogue catalogue = SetCatalogue::read(std::filesystem::path(SIXDOF_SMALL_SUITE) / "manifest.json");
+  const CatalogueEntry& pair = catalogue.sets().front();
+  const StudySample sample = draw_sample(cache, pair, Question::respond, pair.buckets, k_sample);
+  PrecisionStudy study(plan, cache, pair, sample);
+  study.run([](const std::string&, std::size_t, std::size_t) {}, [] {});
+  const auto angles = study.angles_to_finest();
+  ASSERT_EQ(angles.size(), 4u);
+  EXPECT_FALSE(angles[3]) << "the finest one itself";
+  EXPECT_GT(*angles[0], *angles[2]);
+  const auto orders = error_orders(study);
+  ASSERT_EQ(orders.size(), 2u);
+  EXPECT_EQ(orders[1].metric, "gamma_F_finest_deg");
+  EXPECT_EQ(orders[1].parameter, "voxel_size");
+  EXPECT_EQ(orders[1].points, 3u);
+  EXPECT_GT(orders[1].order, 0.3);
 }
 
 TEST_F(Precision, ErrorsAreTheSameBitsTwice) {

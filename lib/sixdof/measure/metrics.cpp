@@ -49,6 +49,7 @@ constexpr std::array k_metrics{
     Metric{"gamma_max_T_deg", "degree", lower, "largest angle between true and measured torque", k_direction},
     Metric{"gamma_F_p95_deg", "degree", lower, "95 % of the angles between true and measured force are no larger", k_answers},
     Metric{"gamma_T_p95_deg", "degree", lower, "95 % of the angles between true and measured torque are no larger", k_answers},
+    Metric{"gamma_F_finest_deg", "degree", lower, "mean angle to the forces of the finest point of the same algorithm", k_precision},
     Metric{"penalty_error", "1", lower, "magnitude_error_F of the penalty against the exact volume, 0..1", k_answers},
     Metric{"misses", "queries", lower, "truth is not zero, measured force (or torque) is: tunnelling", k_direction},
     Metric{"false_contacts", "queries", lower, "ideal is zero, measured is not", k_direction},
