@@ -8,6 +8,9 @@
 #include <Eigen/Core>
 
 #include <sixdof/base/library_build.h>
+#ifdef SIXDOF_WITH_FCL
+#include <sixdof/algorithm/fcl/fcl.h>
+#endif
 
 #include "sixdof_commit.h"
 
@@ -44,6 +47,9 @@ std::vector<std::pair<std::string, std::string>> build_info() {
       {"cpu_model", processor()},
       {"version:eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"version:benchmark", SIXDOF_BENCHMARK_VERSION},
+#ifdef SIXDOF_WITH_FCL
+      {"fcl_build", fcl_build()},
+#endif
   };
 }
 

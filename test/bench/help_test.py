@@ -64,6 +64,12 @@ class Help(unittest.TestCase):
         self.succeed([SIXDOF_BENCH, *measure[1:], *QUICK])
         self.assertIn("`torus-knot-10k`", self.succeed([str(BENCH / "generate-ratios"), *ratios[1:]]))
 
+    def test_speedups(self):
+        one, both = self.examples([str(BENCH / "speedups")])
+        self.assertEqual(both[0], "bench/speedups", "needs fetched models; the other one does not")
+        done = self.succeed([str(BENCH / "speedups"), "--program", SIXDOF_BENCH, *one[1:], "--seeds", "1", "--", *QUICK])
+        self.assertIn("| `torus-knot-10k` | distance | distance 5 % |", done)
+
     def test_response_table(self):
         both, one = self.examples([str(BENCH / "response-table")])
         self.assertEqual(both, ["bench/response-table"], "takes minutes; the other one prints a part of it")

@@ -23,6 +23,8 @@ TEST(DifferenceOfContexts, NamesWhatARowDependsOn) {
   EXPECT_EQ(difference_of_contexts(k_context, with("sample", "32")), "sample was 64, now it is 32");
   EXPECT_EQ(difference_of_contexts(k_context, with("settings:vps", "depth=3")),
             "settings:vps was depth=2, now it is depth=3");
+  EXPECT_EQ(difference_of_contexts(with("fcl_build", "1, SSE 0"), with("fcl_build", "1, SSE 1")),
+            "fcl_build was 1, SSE 0, now it is 1, SSE 1");
   EXPECT_EQ(difference_of_contexts(k_context, with("algorithm:mine", "1")), "algorithm:mine was missing, now it is 1");
   EXPECT_EQ(difference_of_contexts(with("algorithm:mine", "1"), k_context), "algorithm:mine was 1, now it is missing");
   Json both = with("commit", "3c4d");

@@ -251,6 +251,12 @@ std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() {
                             "1000000", 1, 1e9)}});
 }
 
+std::string fcl_build() {
+  const std::string package = SIXDOF_FCL_PACKAGE;
+  return fmt::format("{}, FCL_HAVE_SSE {}, EIGEN_MAX_ALIGN_BYTES {}", package.empty() ? "FCL " FCL_VERSION : package,
+                     FCL_HAVE_SSE, EIGEN_MAX_ALIGN_BYTES);
+}
+
 void register_fcl_algorithms(Registry& registry) {
   registry.add(make_fcl_obbrss_algorithm());
   registry.add(make_fcl_rss_algorithm());

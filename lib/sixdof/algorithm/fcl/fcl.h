@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <sixdof/query/registry.h>
 
@@ -26,6 +27,11 @@ std::unique_ptr<Algorithm> make_fcl_rss_algorithm();
 /// Limits: surfaces only, so a body wholly inside the other has no contact; coplanar triangles give contacts with
 /// normals of either sign, or none; depths are not continuous, as pairs appear and disappear.
 std::unique_ptr<Algorithm> make_fcl_contacts_algorithm();
+
+/// Which FCL this is: Debian's package and its version (FCL's own version elsewhere), FCL's option for SIMD and the
+/// alignment of Eigen's types, e.g. "libfcl-dev 0.7.0-3+b1, FCL_HAVE_SSE 0, EIGEN_MAX_ALIGN_BYTES 16". The package is
+/// that of the headers when sixdof was configured.
+std::string fcl_build();
 
 /// Adds the three.
 void register_fcl_algorithms(Registry& registry);
