@@ -30,10 +30,9 @@ Json context_of_benchmark() {
 
 /// Whether times or answers of a row depend on what stands under this key.
 bool matters(std::string_view key) {
-  static const std::set<std::string_view> k_keys{"num_cpus",  "sixdof_version", "commit",     "commit_dirty",
-                                                 "compiler",  "flags",          "build_type", "sixdof_build",
-                                                 "cpu_model", "seed",           "sample",     "benchmark_flags",
-                                                 "fcl_build"};
+  static const std::set<std::string_view> k_keys{
+      "num_cpus",     "sixdof_version", "commit", "commit_dirty", "compiler",        "flags",    "build_type",
+      "sixdof_build", "cpu_model",      "seed",   "sample",       "benchmark_flags", "fcl_build"};
   return k_keys.contains(key) || key.starts_with("version:") || key.starts_with("algorithm:") ||
          key.starts_with("settings:");
 }

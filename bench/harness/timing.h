@@ -96,7 +96,7 @@ SingleTimes time_each(std::vector<Pose>& poses, GuardedQuery<Ask> query) {
 }
 
 /// The timed loop of a row on cold caches: one round over all poses, with `evict` before each query. Times are set by
-/// hand: Google Benchmark's own clocks are system calls, which take 10 us themselves when nothing is in the caches.
+/// hand: Google Benchmark's own clocks are system calls, which take as long as a query when nothing is in the caches.
 /// @returns times of single queries, without those that failed
 template <class Ask, class Evict>
 Latency time_cold(benchmark::State& state, std::span<const Pose> poses, GuardedQuery<Ask> query, Evict& evict) {

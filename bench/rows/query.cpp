@@ -30,7 +30,7 @@ constexpr double k_cold_passes = 2.0;
 /// Configurations of a trial, and the part of the row's time that it may take.
 constexpr std::size_t k_trial = 8;
 constexpr double k_trial_time = 0.1;
-/// Most configurations on cold caches: emptying them takes up to a tenth of a second.
+/// Most configurations on cold caches: emptying them takes far longer than most queries.
 constexpr std::size_t k_most_cold = 64;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {

@@ -173,8 +173,9 @@ TEST_F(BenchProgram, RecordsItsContext) {
                           "settings:fcl-obbrss", "version:eigen", "clock_overhead_ns", "num_cpus"}) {
     EXPECT_TRUE(context.contains(key)) << key;
   }
-  EXPECT_TRUE(std::regex_match(context.at("fcl_build").get<std::string>(),
-                               std::regex("(libfcl-dev|FCL) 0\\.7\\.[^ ]*, FCL_HAVE_SSE [01], EIGEN_MAX_ALIGN_BYTES 16")))
+  EXPECT_TRUE(
+      std::regex_match(context.at("fcl_build").get<std::string>(),
+                       std::regex("(libfcl-dev|FCL) 0\\.7\\.[^ ]*, FCL_HAVE_SSE [01], EIGEN_MAX_ALIGN_BYTES 16")))
       << context.at("fcl_build");
   EXPECT_EQ(context.at("mesh:torus-1k").get<std::string>().size(), 32u);
   EXPECT_EQ(context.at("set:torus-1k").get<std::string>().size(), 32u);

@@ -57,7 +57,8 @@ class Speedups(unittest.TestCase):
         program.chmod(0o755)
         documents = [{"context": CONTEXT, "benchmarks": rows} for rows in seeds]
         (self.folder / "rows.json").write_text(json.dumps(documents))
-        return self.speedups("--program", program, "--pairs", "knot", "--query", "distance", "--seeds", len(seeds), *words)
+        return self.speedups("--program", program, "--pairs", "knot", "--query", "distance", "--seeds", len(seeds),
+                             *words)
 
     def refuses(self, done, code, *words):
         self.assertEqual((done.returncode, done.stdout), (code, ""), done.stderr)
@@ -88,12 +89,14 @@ class Speedups(unittest.TestCase):
         rows = re.compile(arguments[0].removeprefix("--benchmark_filter="))
         self.assertTrue(rows.search("distance/algorithm:fcl-any/pair:knot/volume:0.5"))
         for other in ("distance/algorithm:null/pair:knot/volume:05", "collide/algorithm:exact/pair:knot/volume:05",
-                      "distance/algorithm:exact/pair:knots/volume:05", "distance/algorithm:exact/pair:knot/volume:05/order:path"):
+                      "distance/algorithm:exact/pair:knots/volume:05",
+                      "distance/algorithm:exact/pair:knot/volume:05/order:path"):
             self.assertFalse(rows.search(other), other)
 
     def test_has_no_table_with_a_fault(self):
         good = [row("exact", 10), row("fcl-a", 200)]
-        for fault, words in (({"failed": 3}, "3 configurations without an answer"), ({"mismatch": 1}, "1 configurations wrong"),
+        for fault, words in (({"failed": 3}, "3 configurations without an answer"),
+                             ({"mismatch": 1}, "1 configurations wrong"),
                              ({"misses": 2}, "2 configurations without a force"),
                              ({"error_occurred": True, "error_message": "no memory"}, "no memory")):
             done = self.on_rows([good, [row("exact", 10), row("fcl-a", 200, **fault)]])
@@ -118,7 +121,8 @@ class Speedups(unittest.TestCase):
 
         done = real("--seeds", 2, "--out", "results", "--buckets", "distance:05,volume:03")
         self.assertEqual(done.returncode, 0, done.stderr)
-        lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in done.stdout.splitlines() if "torus" in line]
+        lines = [[cell.strip() for cell in line.strip("|").split("|")]
+                 for line in done.stdout.splitlines() if "torus" in line]
         self.assertEqual([line[1:3] for line in lines], [["collide", "distance 5 %"], ["collide", "volume 3 %"],
                                                          ["distance", "distance 5 %"]])
         for line in lines:

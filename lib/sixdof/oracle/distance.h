@@ -35,7 +35,7 @@ namespace sixdof {
 
 /// Two meshes prepared for distance queries: immutable, shared by the DistanceQuery objects of all threads.
 ///
-/// Memory: a Tree per mesh, and up to 5 % more for meshes with coplanar patches.
+/// Memory: a Tree per mesh and indices of coplanar patches; a row `prepare/algorithm:exact` reports a pair's bytes.
 class DistanceOracle {
  public:
   /// Builds a tree per mesh; a single one if both are the same object.
