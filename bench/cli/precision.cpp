@@ -1,9 +1,8 @@
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <chrono>
+#include <iterator>
 #include <list>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +36,19 @@ struct Options {
   bool markdown = false;
 };
 
+/// The end of the budget.
+class Deadline {
+ public:
+  explicit Deadline(double seconds) : seconds_(seconds) {}
+  double left_s() const {
+    return seconds_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  const double seconds_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 std::string default_error(Question question) {
   return question == Question::collide ? "mismatch" : question == Question::distance ? "error_rms" : "gamma_F_deg";
 }
@@ -68,13 +80,12 @@ class PrecisionCommand {
     plan_.seed = options_.study.seed;
     plan_.algorithms = study_algorithms(registry_, options_.study.algorithms, plan_.question);
     plan_.values = swept_values(options_.study, plan_.algorithms);
-    const double budget_s = parse_duration("--budget", options_.study.budget);
+    const Deadline deadline(parse_duration("--budget", options_.study.budget));
     study::StudyPairs pairs(harness_options(options_.study, options_.sample, arguments_of(options_)),
                             options_.study.pairs);
     context_ = bench::run_context(pairs.options(), registry_, bench::parse_parameters({}, registry_));
-    for (const CatalogueEntry* const pair : pairs.pairs()) {
-      plan_.budget_s = budget_s / static_cast<double>(pairs.pairs().size());
-      measure(pairs, *pair);
+    for (std::size_t i = 0; i < pairs.pairs().size(); ++i) {
+      measure(pairs, *pairs.pairs()[i], deadline, pairs.pairs().size() - i);
     }
     finish();
   }
@@ -87,10 +98,14 @@ class PrecisionCommand {
     throw BadArgument(fmt::format("--question {}: must be collide, distance or respond", options_.question));
   }
 
-  void measure(study::StudyPairs& pairs, const CatalogueEntry& pair) {
+  /// @param pairs_left which share the time that is left, this one included
+  void measure(study::StudyPairs& pairs, const CatalogueEntry& pair, const Deadline& deadline, std::size_t pairs_left) {
     StatusLine line;
+    const double until_s = deadline.left_s() * (1.0 - 1.0 / static_cast<double>(pairs_left));
+    plan_.budget_s = deadline.left_s() - until_s;
     line.show(fmt::format("{}: truth of {} configurations", pair.pair, options_.sample));
     samples_.push_back(study::draw_affordable_sample(plan_, pairs.cache(), pair, options_.sample));
+    plan_.budget_s = deadline.left_s() - until_s;
     study::PrecisionStudy& study = studies_.emplace_back(plan_, pairs.cache(), pair, samples_.back());
     study.run(
         [&](const std::string& what, std::size_t done, std::size_t total) {
