@@ -30,7 +30,7 @@ def commands():
         for i, algorithm in enumerate(ALGORITHMS):
             list_.append(["query", "--a", a, "--b", b, "--pose", POSES[i % len(POSES)], "--algorithm", algorithm, "--json"])
     ist = ["query", "--a", "cone-1k", "--b", "torus-1k", "--pose", POSES[1], "--algorithm", "ist", "--json"]
-    list_ += [ist + ["--parameter", "force=gradient"], ist + ["--parameter", "force=steepest_descent"],
+    list_ += [ist + ["--parameter", "force=gradient"], ist + ["--parameter", "force=volume"],
               ist + ["--parameter", "correct_fill=cells"], ist + ["--about", "0.1 0.2 0.3"]]
     for scenario, algorithm in [("Ia", "exact"), ("Ia", "vps"), ("Ib", "exact"), ("Ib", "ist"), ("II", "vps"),
                                 ("II", "fcl-contacts"), ("III", "exact"), ("III", "ist"), ("IV", "vps-field"),

@@ -47,7 +47,7 @@ TEST_P(Responses, PushBOutOfA) {
     if (algorithm->traits().name == "null" || !algorithm->traits().answers.respond) continue;
     Settings settings = algorithm->settings();
     const std::string& name = algorithm->traits().name;
-    if (name == "ist") settings.set("spheres", "500");
+    if (name.starts_with("ist")) settings.set("spheres", "500");
     if (name.starts_with("vps")) settings.set_all({"voxel_size=0.01", "point_spacing=0.01"});
     const auto query = algorithm->prepare(a, b, settings);
     const Outcome<Response> outcome = query->respond(X);

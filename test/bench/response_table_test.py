@@ -13,7 +13,7 @@ COLUMNS = {
     "vps": ["vps"],
     "vps-field": ["vps-field"],
     "ist": ["ist"],
-    "ist-steepest": ["ist", "--parameter", "force=steepest_descent", "--parameter", "correct_fill=cells"],
+    "ist-descent": ["ist-descent"],
     "fcl-contacts": ["fcl-contacts"],
 }
 

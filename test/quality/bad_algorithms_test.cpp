@@ -146,7 +146,7 @@ TEST(Table, EveryGateCanFail) {
 TEST(Table, LeavesNoAlgorithmAndNoScenarioOut) {
   for (const std::string& scenario : scenario_names()) {
     const std::string which = scenario == "III" ? "T" : "F";
-    for (const std::string_view algorithm : {"exact", "vps", "vps-field", "ist", "ist-steepest", "fcl-contacts"}) {
+    for (const std::string_view algorithm : {"exact", "vps", "vps-field", "ist", "ist-descent", "fcl-contacts"}) {
       std::map<std::string_view, Kind> kinds;
       for (const Bound& bound : bounds()) {
         if (bound.scenario == scenario && bound.algorithm == algorithm) kinds.emplace(bound.measure, bound.kind);

@@ -26,6 +26,7 @@ void register_core_algorithms(Registry& registry) {
   registry.add(make_brute_force_algorithm());
   registry.add(make_exact_algorithm());
   registry.add(make_ist_algorithm());
+  registry.add(make_ist_descent_algorithm());
   registry.add(make_vps_algorithm());
   registry.add(make_vps_field_algorithm());
 }

@@ -19,7 +19,7 @@ std::unique_ptr<Algorithm> make_exact_algorithm();
 std::unique_ptr<Algorithm> make_brute_force_algorithm();
 
 /// Adds the algorithms that need no third-party collision library: these two, `null`, which answers with constants,
-/// `ist`, `vps` and `vps-field`.
+/// `ist`, `ist-descent`, `vps` and `vps-field`.
 void register_core_algorithms(Registry& registry);
 
 }  // namespace sixdof

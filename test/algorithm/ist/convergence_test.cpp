@@ -76,7 +76,7 @@ TEST_P(IstConvergence, VolumeAndItsGradientConvergeToTheExactOnes) {
   EXPECT_NEAR(found.back().gradient.gain, 1.0, 0.2);
   EXPECT_LT(found.back().gradient.force_degrees, 0.6 * found.front().gradient.force_degrees);
   EXPECT_LT(found.back().gradient.torque_degrees, 0.6 * found.front().gradient.torque_degrees);
-  // The paper's force has each pair's volume as magnitude. Its direction does not converge to the exact one.
+  // V along lines of centres: its direction does not converge to the exact one.
   EXPECT_GT(found.back().volume_law.force_degrees, 2.0 * found.back().gradient.force_degrees);
 }
 

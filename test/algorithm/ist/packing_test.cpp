@@ -70,15 +70,15 @@ TEST(Packing, FindsTheLargestSphereAndFillsWell) {
   EXPECT_GT(many.fill, pack_spheres(knot, at_most(200)).fill + 0.05);
 }
 
-/// Fill rate of detailed closed bodies with 10,000 spheres in Weller and Zachmann (2010) and later ProtoSphere papers.
-constexpr double k_published_fill = 0.83;
+/// Fill rate of this body by 10,000 spheres: a record of what this packing reaches, between two bounds.
+constexpr double k_lowest_fill = 0.83, k_highest_fill = 0.88;
 
-TEST(Packing, FillsAsMuchAsPublishedPackings) {
+TEST(Packing, FillsATorusKnotByMoreThanFourFifths) {
   const Mesh mesh = load_model("torus-knot-2k");
   const Packing packing = pack_spheres(mesh, at_most(10'000));
   EXPECT_EQ(packing.spheres.size(), 10'000u);
-  EXPECT_GT(packing.fill, k_published_fill);
-  EXPECT_LT(packing.fill, k_published_fill + 0.05);
+  EXPECT_GT(packing.fill, k_lowest_fill);
+  EXPECT_LT(packing.fill, k_highest_fill);
   double volume = 0.0;  // by a formula of its own: pi d^3 / 6
   for (const Sphere& s : packing.spheres) volume += std::numbers::pi / 6.0 * std::pow(2.0 * s.radius, 3);
   EXPECT_NEAR(packing.fill, volume / mesh.volume(), 1e-12);

@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include <sixdof/algorithm/ist/hierarchy.h>
 #include <sixdof/algorithm/ist/sphere.h>
 #include <sixdof/geometry/pose.h>
 
@@ -19,6 +20,20 @@ inline std::vector<Sphere> random_spheres(std::size_t count, std::uint64_t seed)
     spheres.push_back({{x, y, z}, std::exp(log_radius(random))});
   }
   return spheres;
+}
+
+/// Normal axes of a tree's leaves, rotated by R: random unit vectors that depend on the radius, so that they stay with
+/// their spheres in another tree. A third of the leaves has none.
+inline SphereTree with_axes(SphereTree tree, const Eigen::Matrix3d& R = Eigen::Matrix3d::Identity()) {
+  tree.axes.clear();
+  for (const Sphere& s : tree.leaves) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(1e12 * s.radius));
+    std::normal_distribution<double> normal;
+    const double x = normal(random), y = normal(random), z = normal(random);
+    const bool none = random() % 3 == 0;
+    tree.axes.push_back(none ? Eigen::Vector3d::Zero() : Eigen::Vector3d(R * Eigen::Vector3d(x, y, z).normalized()));
+  }
+  return tree;
 }
 
 inline Pose random_pose(std::mt19937_64& random, double reach) {

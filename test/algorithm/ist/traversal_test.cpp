@@ -40,6 +40,33 @@ Eigen::Vector3d middle_of_overlap(const Sphere& s, const Sphere& t) {
   return s.center + s.radius * cosine * (t.center - s.center) / d;
 }
 
+/// Centre of mass of the overlap, by its slices across the line of centres. Simpson's rule is exact for their areas
+/// times the position, which are cubic on either side of the circle in which the spheres meet.
+Eigen::Vector3d center_of_overlap(const Sphere& s, const Sphere& t) {
+  const double d = (t.center - s.center).norm(), plane = (d * d + s.radius * s.radius - t.radius * t.radius) / (2 * d);
+  if (d + t.radius <= s.radius) return t.center;
+  if (d + s.radius <= t.radius) return s.center;
+  const auto slice = [](double radius, double z) { return radius * radius - z * z; };
+  const auto simpson = [](double from, double to, const auto& f) {
+    return (to - from) / 6.0 * (f(from) + 4.0 * f(0.5 * (from + to)) + f(to));
+  };
+  const auto part = [&](const auto& weight) {
+    return simpson(d - t.radius, plane, [&](double z) { return weight(z) * slice(t.radius, z - d); }) +
+           simpson(plane, s.radius, [&](double z) { return weight(z) * slice(s.radius, z); });
+  };
+  const double position = part([](double z) { return z; }) / part([](double) { return 1.0; });
+  return s.center + position * (t.center - s.center) / d;
+}
+
+/// The force of PairForce::cones for the volume 1, with both axes and the line of centres in one frame.
+Eigen::Vector3d cone_direction(const Eigen::Vector3d& axis_s, const Eigen::Vector3d& axis_t,
+                               const Eigen::Vector3d& line) {
+  if (axis_s.isZero() && axis_t.isZero()) return line;
+  if (axis_s.isZero()) return -axis_t;
+  if (axis_t.isZero()) return axis_s;
+  return 0.5 * (axis_s - axis_t);
+}
+
 /// All pairs, no tree.
 PenetrationSum brute_force(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
                            const Eigen::Vector3d& about) {
@@ -53,6 +80,14 @@ PenetrationSum brute_force(const SphereTree& a, const SphereTree& b, const Pose&
       const double volume = weight * overlap_volume(s.radius, t.radius, d);
       if (volume == 0.0) continue;
       sum.volume += volume;
+      if (law == PairForce::cones) {
+        const Eigen::Vector3d line = (center - s.center).normalized();
+        const Eigen::Vector3d force = volume * cone_direction(a.axes[i], X_AB.R * b.axes[j], line);
+        sum.force += force;
+        sum.moment += (center_of_overlap(s, {center, t.radius}) - about).cross(force);
+        ++sum.count.leaf_pairs;
+        continue;
+      }
       const double size = law == PairForce::volume ? volume : weight * overlap_disc_area(s.radius, t.radius, d);
       const Eigen::Vector3d force = size * (center - s.center).normalized();
       sum.force += force;
@@ -79,8 +114,8 @@ double brute_force_gap(const SphereTree& a, const SphereTree& b, const Pose& X_A
 
 class TraversalTest : public ::testing::Test {
  protected:
-  const SphereTree a_ = build_sphere_tree(random_spheres(400, 21));
-  const SphereTree b_ = build_sphere_tree(random_spheres(250, 22));
+  const SphereTree a_ = with_axes(build_sphere_tree(random_spheres(400, 21)));
+  const SphereTree b_ = with_axes(build_sphere_tree(random_spheres(250, 22)));
   const Eigen::Vector3d about_{0.4, -1.3, 0.8};
   TraversalScratch scratch_;
 };
@@ -91,7 +126,7 @@ TEST_F(TraversalTest, SumsEqualThoseOverAllPairs) {
   for (int i = 0; i < 40; ++i) {
     const Pose X = random_pose(random, 1.0);
     for (const auto& [a, b] : {std::pair{&a_, &b_}, std::pair{&b_, &a_}}) {
-      for (const PairForce law : {PairForce::volume, PairForce::gradient}) {
+      for (const PairForce law : {PairForce::cones, PairForce::volume, PairForce::gradient}) {
         const PenetrationSum truth = brute_force(*a, *b, X, law, about_);
         const PenetrationSum sum = penetration(*a, *b, X, law, about_, scratch_);
         EXPECT_EQ(sum.count.leaf_pairs, truth.count.leaf_pairs);
@@ -107,6 +142,36 @@ TEST_F(TraversalTest, SumsEqualThoseOverAllPairs) {
   }
   EXPECT_GT(touching, 5);
   EXPECT_LT(touching, 40);
+}
+
+/// However a small sphere lies in a large one, and for concentric spheres.
+TEST(PairForce, OfConesLeadsOutOfALargeSphereAlongItsAxis) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(0.48, -0.6, 0.64), about(0.3, 0.1, -0.7);
+  SphereTree large = build_sphere_tree({{{0.2, 0.3, -0.1}, 2.0}}), small = build_sphere_tree({{{1.0, 0.0, 0.5}, 0.3}});
+  TraversalScratch scratch;
+  std::mt19937_64 random(40);
+  for (int i = 0; i < 20; ++i) {
+    Pose X = random_pose(random, 1.0);
+    const Eigen::Vector3d offset = i == 0 ? Eigen::Vector3d::Zero() : Eigen::Vector3d(0.4 * X.t.normalized());
+    X.t = large.leaves[0].center + offset - X.R * small.leaves[0].center;  // the small sphere is inside
+    large.axes = {axis};
+    small.axes = {Eigen::Vector3d::Zero()};
+    const double volume = small.leaves[0].volume();
+    const PenetrationSum sum = penetration(large, small, X, PairForce::cones, about, scratch);
+    EXPECT_NEAR(sum.volume, volume, k_rounding);
+    EXPECT_LE((sum.force - volume * axis).norm(), k_rounding);
+    EXPECT_LE((sum.moment - (X * small.leaves[0].center - about).cross(volume * axis)).norm(), k_rounding);
+    // B's axis leads A's sphere out of B: the force on B is against it.
+    large.axes = {Eigen::Vector3d::Zero()};
+    small.axes = {axis};
+    const PenetrationSum by_b = penetration(large, small, X, PairForce::cones, about, scratch);
+    EXPECT_LE((by_b.force + volume * (X.R * axis)).norm(), k_rounding);
+    // Axes that oppose each other agree about the direction; equal ones cancel.
+    large.axes = {Eigen::Vector3d(-(X.R * axis))};
+    EXPECT_LE((penetration(large, small, X, PairForce::cones, about, scratch).force - by_b.force).norm(), k_rounding);
+    large.axes = {Eigen::Vector3d(X.R * axis)};
+    EXPECT_LE(penetration(large, small, X, PairForce::cones, about, scratch).force.norm(), k_rounding);
+  }
 }
 
 TEST_F(TraversalTest, WeightsScaleTheOverlaps) {
@@ -229,10 +294,14 @@ TEST_F(TraversalTest, ABudgetGivesAnEstimateThatConverges) {
     const Pose X = random_pose(random, 0.5);
     const PenetrationSum full = penetration(a_, b_, X, PairForce::volume, about_, scratch_);
     if (full.volume == 0.0) continue;
-    const PenetrationSum unlimited = penetration_within_budget(a_, b_, X, PairForce::volume, about_, 1'000'000);
-    EXPECT_LT(unlimited.count.sphere_tests, 1'000'000u);
-    EXPECT_NEAR(unlimited.volume, full.volume, k_rounding);
-    EXPECT_LE((unlimited.force - full.force).norm(), k_rounding);
+    for (const PairForce law : {PairForce::cones, PairForce::volume}) {
+      const PenetrationSum all = penetration(a_, b_, X, law, about_, scratch_);
+      const PenetrationSum unlimited = penetration_within_budget(a_, b_, X, law, about_, 1'000'000);
+      EXPECT_LT(unlimited.count.sphere_tests, 1'000'000u);
+      EXPECT_NEAR(unlimited.volume, all.volume, k_rounding);
+      EXPECT_LE((unlimited.force - all.force).norm(), k_rounding);
+      EXPECT_LE((unlimited.moment - all.moment).norm(), k_rounding);
+    }
 
     const std::uint64_t half = full.count.sphere_tests / 2, most = full.count.sphere_tests * 9 / 10;
     const PenetrationSum rough = penetration_within_budget(a_, b_, X, PairForce::volume, about_, half);
@@ -265,6 +334,10 @@ TEST_F(TraversalTest, PairsBeyondTheBudgetAddTheirExpectedOverlap) {
     const PenetrationSum estimate = penetration_within_budget(a_, b_, X, PairForce::volume, about_, 1);
     EXPECT_EQ(estimate.count.sphere_tests, 16u);
     EXPECT_NEAR(estimate.volume, expected, k_rounding * (1.0 + expected));
+    // Balls have no axis: their force is along the line of centres.
+    const PenetrationSum cones = penetration_within_budget(a_, b_, X, PairForce::cones, about_, 1);
+    EXPECT_LE((cones.force - estimate.force).norm(), k_rounding * (1.0 + expected));
+    EXPECT_LE((cones.moment - estimate.moment).norm(), k_rounding * (1.0 + expected));
   }
 }
 
@@ -279,35 +352,45 @@ TEST_F(TraversalTest, DoesNotDependOnTheFrames) {
   int touching = 0;
   for (int i = 0; i < 10; ++i) {
     const Pose X = random_pose(random, 0.7), move_a = random_pose(random, 20.0), move_b = random_pose(random, 20.0);
-    const SphereTree a = build_sphere_tree(moved(random_spheres(400, 21), move_a));
-    const SphereTree b = build_sphere_tree(moved(random_spheres(250, 22), move_b));
-    const PenetrationSum plain = penetration(a_, b_, X, PairForce::volume, about_, scratch_);
-    const PenetrationSum other =
-        penetration(a, b, move_a * X * move_b.inverse(), PairForce::volume, move_a * about_, scratch_);
-    EXPECT_EQ(other.count.leaf_pairs, plain.count.leaf_pairs);
-    EXPECT_NEAR(other.volume, plain.volume, k_moved);
-    EXPECT_LE((other.force - move_a.R * plain.force).norm(), k_moved);
-    EXPECT_LE((other.moment - move_a.R * plain.moment).norm(), k_moved);
-    touching += plain.volume > 0.0 ? 1 : 0;
+    const SphereTree a = with_axes(build_sphere_tree(moved(random_spheres(400, 21), move_a)), move_a.R);
+    const SphereTree b = with_axes(build_sphere_tree(moved(random_spheres(250, 22), move_b)), move_b.R);
+    for (const PairForce law : {PairForce::cones, PairForce::volume}) {
+      const PenetrationSum plain = penetration(a_, b_, X, law, about_, scratch_);
+      const PenetrationSum other = penetration(a, b, move_a * X * move_b.inverse(), law, move_a * about_, scratch_);
+      EXPECT_EQ(other.count.leaf_pairs, plain.count.leaf_pairs);
+      EXPECT_NEAR(other.volume, plain.volume, k_moved);
+      EXPECT_LE((other.force - move_a.R * plain.force).norm(), k_moved);
+      EXPECT_LE((other.moment - move_a.R * plain.moment).norm(), k_moved);
+      touching += plain.volume > 0.0 ? 1 : 0;
+    }
   }
-  EXPECT_GT(touching, 5);
+  EXPECT_GT(touching, 10);
 }
 
 TEST_F(TraversalTest, EveryInstructionSetGivesTheSameBits) {
   std::mt19937_64 random(34);
   std::vector<Pose> poses;
   for (int i = 0; i < 10; ++i) poses.push_back(random_pose(random, 0.6));
+  constexpr PairForce k_laws[] = {PairForce::cones, PairForce::volume, PairForce::gradient};
   std::vector<PenetrationSum> reference;
-  for (const Pose& X : poses) reference.push_back(penetration(a_, b_, X, PairForce::volume, about_, scratch_));
+  for (const Pose& X : poses) {
+    for (const PairForce law : k_laws) reference.push_back(penetration(a_, b_, X, law, about_, scratch_));
+  }
   int targets = 0;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     SCOPED_TRACE(hwy::TargetName(target));
     hwy::SetSupportedTargetsForTest(target);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const PenetrationSum sum = penetration(a_, b_, poses[i], PairForce::volume, about_, scratch_);
-      EXPECT_EQ(sum.volume, reference[i].volume);
-      EXPECT_EQ(sum.force, reference[i].force);
-      EXPECT_EQ(sum.moment, reference[i].moment);
+    std::size_t i = 0;
+    for (const Pose& X : poses) {
+      for (const PairForce law : k_laws) {
+        const PenetrationSum sum = penetration(a_, b_, X, law, about_, scratch_);
+        EXPECT_EQ(sum.volume, reference[i].volume);
+        EXPECT_EQ(sum.force, reference[i].force);
+        EXPECT_EQ(sum.moment, reference[i].moment);
+        EXPECT_EQ(sum.first_moment, reference[i].first_moment);
+        EXPECT_EQ(sum.second_moment, reference[i].second_moment);
+        ++i;
+      }
     }
     ++targets;
   }

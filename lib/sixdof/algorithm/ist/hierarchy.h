@@ -27,8 +27,10 @@ struct SphereTree {
   std::vector<std::array<double, SphereNode::k_slots>> volumes;
   std::vector<Sphere> leaves;   ///< In tree order: the leaves of a subtree are consecutive.
   std::vector<double> weights;  ///< Per leaf: factor of its overlap volumes; empty: 1 each.
-  Sphere bound;                 ///< Contains all leaves.
-  double volume = 0.0;          ///< Of all leaves, weighted as `volumes`.
+  /// Per leaf: axis of its normal cone, or zero (normal_cone.h); empty: zero each. In the mesh's frame.
+  std::vector<Eigen::Vector3d> axes;
+  Sphere bound;         ///< Contains all leaves.
+  double volume = 0.0;  ///< Of all leaves, weighted as `volumes`.
 
   std::size_t children(std::size_t node) const {
     const auto& r = nodes[node].r;
@@ -40,9 +42,13 @@ struct SphereTree {
     return {bound.center + bound.radius * Eigen::Vector3d(n.x[slot], n.y[slot], n.z[slot]), bound.radius * n.r[slot]};
   }
   double weight(std::int32_t leaf) const { return weights.empty() ? 1.0 : weights[static_cast<std::size_t>(leaf)]; }
+  Eigen::Vector3d axis(std::int32_t leaf) const {
+    if (axes.empty()) return Eigen::Vector3d::Zero();
+    return axes[static_cast<std::size_t>(leaf)];
+  }
   std::size_t bytes() const {
     return nodes.size() * (sizeof(SphereNode) + sizeof(first_child[0]) + sizeof(volumes[0])) +
-           leaves.size() * sizeof(Sphere) + weights.size() * sizeof(double);
+           leaves.size() * sizeof(Sphere) + weights.size() * sizeof(double) + axes.size() * sizeof(Eigen::Vector3d);
   }
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <sixdof/algorithm/ist/normal_cone.h>
 #include <sixdof/algorithm/ist/packing.h>
 #include <sixdof/algorithm/ist/traversal.h>
 
@@ -13,39 +14,95 @@ namespace sixdof {
 namespace ist {
 namespace {
 
-std::vector<Parameter> parameters() {
+/// What both algorithms have.
+std::vector<Parameter> packing_parameters() {
+  const std::vector<std::string> sweep{"300", "1000", "3000", "10000", "30000", "100000"};
   return {
-      Parameter::count("spheres", "spheres per body, at most", "10000", 1, 5e6)
-          .swept({"300", "1000", "3000", "10000", "30000", "100000"}),
+      Parameter::count("spheres", "spheres of body A, at most", "10000", 1, 5e6).swept(sweep),
+      Parameter::count("spheres_b", "spheres of body B, at most; 0: as `spheres`", "0", 0, 5e6).swept(sweep),
       Parameter::number("fill", "stop packing at this fraction of the solid's volume", "1", "1", 0.01, 1),
       Parameter::number("smallest_radius", "smallest radius of a sphere", "diagonal", "0.0001", 1e-6, 0.5),
-      Parameter::choice("force",
-                        "volume: each pair's force is its overlap volume; gradient: minus the gradient of that volume; "
-                        "steepest_descent: the total volume, in the direction of the summed gradients",
-                        "volume", {"volume", "gradient", "steepest_descent"}),
-      Parameter::choice("correct_fill",
-                        "on: divide volume and force by both fill rates; cells: weight each sphere with the part of "
-                        "the solid that is nearest to it",
-                        "off", {"off", "on", "cells"}),
       Parameter::count("budget", "sphere tests per response, beyond which the rest is estimated; 0: no limit", "0", 0,
                        1e9),
-      Parameter::number("stiffness", "force per volume (force=volume, steepest_descent) or per area (force=gradient)",
-                        "1", "1", 1e-12, 1e12),
       Parameter::count("seed", "of the packing's start points", "1", 0, 1e9),
   };
 }
 
-class IstQuery final : public Query {
+std::vector<Parameter> ist_parameters() {
+  std::vector<Parameter> parameters = packing_parameters();
+  parameters.push_back(
+      Parameter::choice("force",
+                        "cones: each pair's force is its overlap volume, along the axes of the spheres' normal cones; "
+                        "volume: the same along the line of centres; gradient: minus the gradient of that volume",
+                        "cones", {"cones", "volume", "gradient"}));
+  parameters.push_back(Parameter::choice("correct_fill",
+                                         "on: divide volume and force by both fill rates; cells: weight each sphere "
+                                         "with the part of the solid that is nearest to it",
+                                         "off", {"off", "on", "cells"}));
+  parameters.push_back(Parameter::number(
+      "stiffness", "force per volume (force=cones, volume) or per area (force=gradient)", "1", "1", 1e-12, 1e12));
+  return parameters;
+}
+
+std::vector<Parameter> descent_parameters() {
+  std::vector<Parameter> parameters = packing_parameters();
+  parameters.push_back(Parameter::number("stiffness", "force per volume", "1", "1", 1e-12, 1e12));
+  return parameters;
+}
+
+/// How a response follows from the overlaps of spheres.
+struct ForceLaw {
+  PairForce pair;
+  bool steepest_descent;  ///< The total volume in the direction of the summed pairs' forces.
+  bool by_fill_rates;     ///< Volume and force are divided by both fill rates.
+  bool by_cells;          ///< Each sphere is weighted with its cell.
+};
+
+ForceLaw ist_law(const Settings& settings) {
+  const std::string& force = settings.choice("force");
+  const std::string& correction = settings.choice("correct_fill");
+  return {.pair = force == "cones"    ? PairForce::cones
+                  : force == "volume" ? PairForce::volume
+                                      : PairForce::gradient,
+          .steepest_descent = false,
+          .by_fill_rates = correction == "on",
+          .by_cells = correction == "cells"};
+}
+
+constexpr ForceLaw k_descent{
+    .pair = PairForce::gradient, .steepest_descent = true, .by_fill_rates = false, .by_cells = true};
+
+InnerSphereTree build_tree(const Mesh& mesh, const Settings& settings, double spheres, const ForceLaw& law) {
+  Packing packing = cached_packing(mesh, {.spheres = static_cast<std::size_t>(spheres),
+                                          .fill = settings.number("fill"),
+                                          .smallest_radius = settings.number("smallest_radius"),
+                                          .seed = static_cast<std::uint64_t>(settings.number("seed"))});
+  InnerSphereTree result{build_sphere_tree(std::move(packing.spheres)), packing.fill};
+  SphereTree& tree = result.tree;
+  if (law.by_cells) set_weights(tree, cached_cell_weights(mesh, tree.leaves));
+  if (law.pair == PairForce::cones) {
+    for (const NormalCone& cone : cached_normal_cones(mesh, tree.leaves)) tree.axes.push_back(cone.axis);
+  }
+  return result;
+}
+
+double spheres_of_b(const Settings& settings) {
+  const double own = settings.number("spheres_b");
+  return own > 0.0 ? own : settings.number("spheres");
+}
+
+class SphereTreeQuery : public Query {
  public:
-  /// Equal meshes share one tree.
-  IstQuery(const Mesh& a, const Mesh& b, const Settings& settings)
-      : a_(std::make_shared<const InnerSphereTree>(build_inner_sphere_tree(a, settings))),
-        b_(a.hash() == b.hash() ? a_ : std::make_shared<const InnerSphereTree>(build_inner_sphere_tree(b, settings))),
+  /// Equal meshes with equally many spheres share one tree.
+  SphereTreeQuery(const Mesh& a, const Mesh& b, const Settings& settings, const ForceLaw& law)
+      : a_(std::make_shared<const InnerSphereTree>(build_tree(a, settings, settings.number("spheres"), law))),
+        b_(a.hash() == b.hash() && spheres_of_b(settings) == settings.number("spheres")
+               ? a_
+               : std::make_shared<const InnerSphereTree>(build_tree(b, settings, spheres_of_b(settings), law))),
         center_b_(b.center()),
-        law_(settings.choice("force") == "volume" ? PairForce::volume : PairForce::gradient),
-        steepest_descent_(settings.choice("force") == "steepest_descent"),
+        law_(law),
         budget_(static_cast<std::uint64_t>(settings.number("budget"))),
-        fill_correction_(settings.choice("correct_fill") == "on" ? 1.0 / (a_->fill * b_->fill) : 1.0),
+        fill_correction_(law.by_fill_rates ? 1.0 / (a_->fill * b_->fill) : 1.0),
         stiffness_(settings.number("stiffness")) {}
 
   Outcome<bool> collide(const Pose& X_AB) override {
@@ -77,13 +134,13 @@ class IstQuery final : public Query {
     if (!is_finite(X_AB)) return bad_pose();
     const Eigen::Vector3d reference = X_AB * center_b_;
     const PenetrationSum sum = budget_ == 0
-                                   ? penetration(a_->tree, b_->tree, X_AB, law_, reference, scratch_)
-                                   : penetration_within_budget(a_->tree, b_->tree, X_AB, law_, reference, budget_);
+                                   ? penetration(a_->tree, b_->tree, X_AB, law_.pair, reference, scratch_)
+                                   : penetration_within_budget(a_->tree, b_->tree, X_AB, law_.pair, reference, budget_);
     count_ = sum.count;
     Response response;
     response.volume = fill_correction_ * sum.volume;
     response.penalty = response.volume;
-    const Wrench wrench = steepest_descent_ ? steepest_descent(sum) : Wrench{sum.force, sum.moment};
+    const Wrench wrench = law_.steepest_descent ? steepest_descent(sum) : Wrench{sum.force, sum.moment};
     response.force = fill_correction_ * stiffness_ * wrench.force;
     response.torque = fill_correction_ * stiffness_ * wrench.moment;
     response.reference = reference;
@@ -113,8 +170,7 @@ class IstQuery final : public Query {
 
   std::shared_ptr<const InnerSphereTree> a_, b_;
   Eigen::Vector3d center_b_;
-  PairForce law_;
-  bool steepest_descent_;
+  ForceLaw law_;
   std::uint64_t budget_;
   double fill_correction_;
   double stiffness_;
@@ -122,18 +178,22 @@ class IstQuery final : public Query {
   TraversalCount count_;  ///< Of the last query.
 };
 
+class IstQuery final : public SphereTreeQuery {
+ public:
+  IstQuery(const Mesh& a, const Mesh& b, const Settings& settings)
+      : SphereTreeQuery(a, b, settings, ist_law(settings)) {}
+};
+
+class IstDescentQuery final : public SphereTreeQuery {
+ public:
+  IstDescentQuery(const Mesh& a, const Mesh& b, const Settings& settings)
+      : SphereTreeQuery(a, b, settings, k_descent) {}
+};
+
 }  // namespace
 
 InnerSphereTree build_inner_sphere_tree(const Mesh& mesh, const Settings& settings) {
-  Packing packing = cached_packing(mesh, {.spheres = static_cast<std::size_t>(settings.number("spheres")),
-                                          .fill = settings.number("fill"),
-                                          .smallest_radius = settings.number("smallest_radius"),
-                                          .seed = static_cast<std::uint64_t>(settings.number("seed"))});
-  InnerSphereTree result{build_sphere_tree(std::move(packing.spheres)), packing.fill};
-  if (settings.choice("correct_fill") == "cells") {
-    set_weights(result.tree, cached_cell_weights(mesh, result.tree.leaves));
-  }
-  return result;
+  return build_tree(mesh, settings, settings.number("spheres"), ist_law(settings));
 }
 
 }  // namespace ist
@@ -142,10 +202,20 @@ std::unique_ptr<Algorithm> make_ist_algorithm() {
   return make_algorithm<ist::IstQuery>(
       {.name = "ist",
        .version = SIXDOF_VERSION,
-       .summary = "inner sphere trees (Weller and Zachmann 2009): overlap volume of packed spheres",
+       .summary = "inner sphere trees (Weller and Zachmann 2009): overlap volume of packed spheres along normal cones",
        .answers = {.collide = true, .distance = true, .respond = true},
        .law = ResponseLaw::volume,
-       .parameters = ist::parameters()});
+       .parameters = ist::ist_parameters()});
+}
+
+std::unique_ptr<Algorithm> make_ist_descent_algorithm() {
+  return make_algorithm<ist::IstDescentQuery>(
+      {.name = "ist-descent",
+       .version = SIXDOF_VERSION,
+       .summary = "inner sphere trees: overlap volume of weighted spheres, in the direction of its steepest descent",
+       .answers = {.collide = true, .distance = true, .respond = true},
+       .law = ResponseLaw::volume,
+       .parameters = ist::descent_parameters()});
 }
 
 }  // namespace sixdof

@@ -17,6 +17,7 @@
 #include <hwy/highway.h>
 
 #include <sixdof/algorithm/ist/node_pair-inl.h>
+#include <sixdof/algorithm/ist/pair_sums-inl.h>
 
 // Pairs of nodes are tested in single precision, with slack for the rounding; the pairs of leaves that remain are
 // computed in double precision.
@@ -37,131 +38,6 @@ struct LeafPair {
         distance((X_AB * b.center - a.center).norm()) {}
   double gap() const { return distance - (a.radius + b.radius); }
   bool overlap() const { return gap() < 0.0; }
-};
-
-/// Sums over pairs of overlapping spheres, which are collected and then computed several at a time. Each of eight lanes
-/// has its own sums, which are added at the end: the same bits on every instruction set.
-class PairSums {
- public:
-  PairSums(PairForce law, const Pose& X_AB, const Eigen::Vector3d& about) : law_(law), X_AB_(X_AB), about_(about) {}
-
-  /// Adds the overlap of a sphere of A and one of B, each in its own frame, times `weight`.
-  void add(const Sphere& a, const Sphere& b, double weight) {
-    a_[filled_] = a;
-    b_[filled_] = b;
-    weight_[filled_] = weight;
-    if (++filled_ == k_batch) flush();
-  }
-
-  void finish(PenetrationSum& sum) {
-    while (filled_ % k_lanes != 0) add(a_[filled_ - 1], b_[filled_ - 1], 0.0);
-    flush();
-    for (std::size_t lane = 0; lane < k_lanes; ++lane) {
-      sum.volume += total_[k_volume][lane];
-      sum.second_moment += total_[k_second_moment][lane];
-      for (std::size_t k = 0; k < 3; ++k) {
-        sum.force[static_cast<Eigen::Index>(k)] += total_[k_force + k][lane];
-        sum.moment[static_cast<Eigen::Index>(k)] += total_[k_moment + k][lane];
-        sum.first_moment[static_cast<Eigen::Index>(k)] += total_[k_first_moment + k][lane];
-      }
-    }
-  }
-
-  /// Number of added pairs that overlap.
-  std::uint64_t overlapping() const { return overlapping_; }
-
- private:
-  static constexpr std::size_t k_lanes = 8;
-  static constexpr std::size_t k_batch = 32;  ///< Pairs. Delays reading as vectors what was just written as scalars.
-  using Lanes = hn::CappedTag<double, k_lanes>;
-  enum Output : std::size_t {
-    k_volume,
-    k_force,
-    k_moment = k_force + 3,
-    k_first_moment = k_moment + 3,
-    k_second_moment = k_first_moment + 3,
-    k_outputs
-  };
-
-  void flush() {
-    const Lanes d;
-    for (std::size_t first = 0; first < filled_; first += hn::Lanes(d)) compute(first);
-    filled_ = 0;
-  }
-
-  /// Adds the pairs from `first` on, one per SIMD lane. Volumes are those of overlap_volume().
-  HWY_INLINE void compute(std::size_t first) {
-    const Lanes d;
-    const std::size_t sums = first % k_lanes;
-    const auto constant = [&](double value) HWY_ATTR { return hn::Set(d, value); };
-    constexpr double k_pi = std::numbers::pi;
-    const auto zero = hn::Zero(d), weight = hn::LoadU(d, weight_ + first);
-    static_assert(sizeof(Sphere) == 4 * sizeof(double), "center x, y, z and radius");
-    hn::Vec<Lanes> a_x, a_y, a_z, r1, b_x, b_y, b_z, r2;
-    hn::LoadInterleaved4(d, &a_[first].center.x(), a_x, a_y, a_z, r1);
-    hn::LoadInterleaved4(d, &b_[first].center.x(), b_x, b_y, b_z, r2);
-    const auto transformed = [&](Eigen::Index k) HWY_ATTR {
-      const auto rotated =
-          hn::Add(hn::Add(hn::Mul(constant(X_AB_.R(k, 0)), b_x), hn::Mul(constant(X_AB_.R(k, 1)), b_y)),
-                  hn::Mul(constant(X_AB_.R(k, 2)), b_z));
-      return hn::Add(rotated, constant(X_AB_.t[k]));
-    };
-    const auto p_x = transformed(0), p_y = transformed(1), p_z = transformed(2);
-    const auto x = hn::Sub(p_x, a_x), y = hn::Sub(p_y, a_y), z = hn::Sub(p_z, a_z);
-    const auto squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-    const auto distance = hn::Sqrt(squared), sum = hn::Add(r1, r2), difference = hn::Sub(r1, r2);
-    const auto contained = hn::Le(distance, hn::Abs(difference));
-    const auto smaller = hn::Min(r1, r2);
-    const auto ball = hn::Mul(constant(4.0 / 3.0 * k_pi), hn::Mul(smaller, hn::Mul(smaller, smaller)));
-    const auto depth = hn::Max(hn::Sub(sum, distance), zero);
-    const auto shape = hn::Sub(hn::Add(squared, hn::Mul(constant(2.0), hn::Mul(distance, sum))),
-                               hn::Mul(constant(3.0), hn::Mul(difference, difference)));
-    const auto lens = hn::Div(hn::Mul(constant(k_pi / 12.0), hn::Mul(hn::Mul(depth, depth), shape)), distance);
-    const auto volume = hn::Mul(weight, hn::IfThenElse(contained, ball, lens));
-    const auto ax = hn::Sub(p_x, constant(about_.x())), ay = hn::Sub(p_y, constant(about_.y())),
-               az = hn::Sub(p_z, constant(about_.z()));
-    const auto add_to = [&](std::size_t i, auto value)
-                            HWY_ATTR { hn::Store(hn::Add(hn::Load(d, total_[i] + sums), value), d, total_[i] + sums); };
-    auto magnitude = volume;
-    if (law_ == PairForce::gradient) {
-      const auto to_plane = hn::Div(hn::Add(squared, hn::Mul(difference, sum)), hn::Mul(constant(2.0), distance));
-      const auto disc = hn::Max(hn::Sub(hn::Mul(r1, r1), hn::Mul(to_plane, to_plane)), zero);
-      const auto crossing = hn::Mul(weight, hn::Mul(constant(k_pi), disc));
-      magnitude = hn::IfThenElse(hn::Or(contained, hn::Ge(distance, sum)), zero, crossing);
-      // Middle of the overlap: centre of the disc, or of the sphere inside the other. It is B's centre plus `back`
-      // times the vector (x, y, z) from A's centre to B's.
-      const auto in_b = hn::IfThenElse(hn::Lt(r1, r2), constant(-1.0), zero);
-      const auto back = hn::IfThenElse(contained, in_b, hn::Sub(hn::Div(to_plane, distance), constant(1.0)));
-      const auto mx = hn::Add(ax, hn::Mul(back, x)), my = hn::Add(ay, hn::Mul(back, y)),
-                 mz = hn::Add(az, hn::Mul(back, z));
-      add_to(k_first_moment, hn::Mul(volume, mx));
-      add_to(k_first_moment + 1, hn::Mul(volume, my));
-      add_to(k_first_moment + 2, hn::Mul(volume, mz));
-      add_to(k_second_moment, hn::Mul(volume, hn::Add(hn::Add(hn::Mul(mx, mx), hn::Mul(my, my)), hn::Mul(mz, mz))));
-    }
-    const auto overlap = hn::And(hn::Lt(distance, sum), hn::Gt(weight, zero));
-    overlapping_ += hn::CountTrue(d, overlap);
-    // Concentric spheres exert no force: it would have no direction.
-    const auto factor = hn::IfThenElse(hn::Gt(distance, zero), hn::Div(magnitude, distance), zero);
-    const auto fx = hn::Mul(factor, x), fy = hn::Mul(factor, y), fz = hn::Mul(factor, z);
-    // The force acts along the line of centres, so any point on it may be the end of the arm: here B's centre.
-    add_to(k_volume, volume);
-    add_to(k_force, fx);
-    add_to(k_force + 1, fy);
-    add_to(k_force + 2, fz);
-    add_to(k_moment, hn::Sub(hn::Mul(ay, fz), hn::Mul(az, fy)));
-    add_to(k_moment + 1, hn::Sub(hn::Mul(az, fx), hn::Mul(ax, fz)));
-    add_to(k_moment + 2, hn::Sub(hn::Mul(ax, fy), hn::Mul(ay, fx)));
-  }
-
-  PairForce law_;
-  const Pose& X_AB_;
-  Eigen::Vector3d about_;
-  std::size_t filled_ = 0;
-  std::uint64_t overlapping_ = 0;
-  Sphere a_[k_batch], b_[k_batch];
-  double weight_[k_batch];
-  HWY_ALIGN double total_[k_outputs][k_lanes] = {};
 };
 
 /// Finds all pairs of leaves that overlap, and possibly some whose gap is within the rounding of the test.
@@ -202,7 +78,13 @@ void penetration(const SphereTree& a, const SphereTree& b, const Pose& X_AB, con
     const std::size_t ahead = std::min(i + k_ahead, found - 1);
     __builtin_prefetch(&leaf(a, pairs.a[ahead]));
     __builtin_prefetch(&leaf(b, pairs.b[ahead]));
-    sums.add(leaf(a, pairs.a[i]), leaf(b, pairs.b[i]), a.weight(pairs.a[i]) * b.weight(pairs.b[i]));
+    const std::int32_t in_a = pairs.a[i], in_b = pairs.b[i];
+    const double weight = a.weight(in_a) * b.weight(in_b);
+    if (law == PairForce::cones) {
+      sums.add(leaf(a, in_a), leaf(b, in_b), weight, a.axis(in_a), b.axis(in_b));
+    } else {
+      sums.add(leaf(a, in_a), leaf(b, in_b), weight);
+    }
   }
   sums.finish(sum);
   sum.count.leaf_pairs = sums.overlapping();
@@ -265,7 +147,7 @@ void penetration_within_budget(const SphereTree& a, const SphereTree& b, const P
     const ExpectedOverlap here = queue.top();
     queue.pop();
     if (sum.count.sphere_tests >= budget) {
-      sums.add(here.ball_a, here.ball_b, here.density);
+      sums.add(here.ball_a, here.ball_b, here.density, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
       continue;
     }
     sum.count.sphere_tests += k_pairs;
@@ -276,7 +158,7 @@ void penetration_within_budget(const SphereTree& a, const SphereTree& b, const P
       if (children.leaves) {
         const LeafPair leaf(a, b, X_AB, in_a, in_b);
         if (!leaf.overlap()) continue;
-        sums.add(leaf.a, leaf.b, a.weight(in_a) * b.weight(in_b));
+        sums.add(leaf.a, leaf.b, a.weight(in_a) * b.weight(in_b), a.axis(in_a), b.axis(in_b));
         ++sum.count.leaf_pairs;
         continue;
       }

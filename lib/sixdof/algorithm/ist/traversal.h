@@ -12,11 +12,16 @@
 
 namespace sixdof::ist {
 
-/// Magnitude of the force between two overlapping leaf spheres; it acts along the line of their centres.
+/// Force on B of two overlapping leaf spheres, s of A and t of B. V is the volume of their overlap.
 enum class PairForce {
-  volume,    ///< The overlap's volume (Weller and Zachmann 2009).
-  gradient,  ///< The area of the disc bounded by the circle in which the spheres meet, which is minus the derivative of
-             ///< the volume by the distance of the centres: the sum is minus the gradient of the summed volume.
+  /// V (n_s - n_t) / 2, n the axes of the spheres' normal cones, through the centre of mass of the overlap (Weller and
+  /// Zachmann 2009). A's axis leads t out of A, and B's axis leads s out of B. If one sphere has no axis, V times
+  /// that of the other one; if neither has, V along the line of centres.
+  cones,
+  volume,    ///< V along the line of their centres.
+  gradient,  ///< Along the line of centres; the area of the disc bounded by the circle in which the spheres meet, which
+             ///< is minus the derivative of the volume by the distance of the centres: the sum is minus the gradient of
+             ///< the summed volume.
 };
 
 /// Maps the coordinates of B's nodes to those of A's nodes: p -> rotation p + translation, in single precision and in
@@ -84,7 +89,8 @@ PenetrationSum penetration(const SphereTree& a, const SphereTree& b, const Pose&
 
 /// Estimate of the same sums within a budget of sphere tests (time-critical variant, Weller and Zachmann 2009). Pairs
 /// of nodes are expanded in the order of their expected overlap, and those beyond the budget are added with it: the
-/// overlap volume of two balls times the density of the leaves in both, with a force along the line of centres.
+/// overlap volume of two balls times the density of the leaves in both, with a force along the line of centres. That is
+/// so with PairForce::cones, too: balls have no axis.
 PenetrationSum penetration_within_budget(const SphereTree& a, const SphereTree& b, const Pose& X_AB, PairForce law,
                                          const Eigen::Vector3d& about, std::uint64_t budget);
 
