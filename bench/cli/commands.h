@@ -36,6 +36,9 @@ void add_precision_command(CLI::App& app);
 /// `sixdof recommend --a A --b B --deadline 1ms [--metric gamma_F_deg]`: which algorithm and parameters keep the
 /// deadline on this pair with the least error, and what else there is; k_exit_defects if none does (study/recommend.h).
 void add_recommend_command(CLI::App& app);
+/// `sixdof equivalent [--scenario LIST] [--algorithm LIST] [--tau TIME]`: the resolutions of A and B with the least
+/// error of a response at a given mean time (study/equivalent.h).
+void add_equivalent_command(CLI::App& app);
 /// `sixdof generate --a A [--b B] --grid GRID [--distances LIST] [--volumes LIST] -o FILE`: makes a configuration set.
 /// With `--shards N [--shard I] -o FOLDER` in parts; with `--plan` it only prints what would be made and at what cost.
 void add_generate_command(CLI::App& app);

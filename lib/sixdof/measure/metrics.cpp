@@ -12,6 +12,8 @@ constexpr std::string_view k_paper_sigma = "Weller et al. 2010 (1), read as RMS"
 constexpr std::string_view k_paper_sigma_printed = "Weller et al. 2010 (1), as printed";
 constexpr std::string_view k_paper_gamma = "Weller et al. 2010 (2)";
 constexpr std::string_view k_paper_nu = "Weller et al. 2010 (3)";
+constexpr std::string_view k_paper_eta = "Weller et al. 2010 (4)";
+constexpr std::string_view k_equivalent = "bench/study/equivalent.h";
 constexpr std::string_view k_google = "Google Benchmark";
 constexpr std::string_view k_magnitude = "lib/sixdof/measure/magnitude.h";
 constexpr std::string_view k_direction = "lib/sixdof/measure/direction.h";
@@ -93,6 +95,13 @@ constexpr std::array k_metrics{
     Metric{"p999_least_ns", "ns", lower, "p999_ns of the least of three times of every query", k_timing},
     Metric{"over_1ms", "1", lower, "fraction of the queries over 1 ms, the haptic deadline", k_latency},
     Metric{"ns_per_configuration", "ns", lower, "processor time to make one configuration of a set", k_generate_row},
+    // Of the search for equivalent resolutions.
+    Metric{"eta_measured", "1", lower, "weighted sum of sigma and gamma (radians)", k_paper_eta},
+    Metric{"eta_predicted", "1", neither, "the same as the fits predicted it", k_equivalent},
+    Metric{"eta_wanted", "1", neither, "the given eta of a search for the least time", k_equivalent},
+    Metric{"measured_ns", "ns", lower, "mean processor time of a query, the least of several passes", k_equivalent},
+    Metric{"predicted_ns", "ns", neither, "the same as the fits predicted it", k_equivalent},
+    Metric{"tau_ns", "ns", neither, "the given mean time of a search for the least eta", k_paper_eta},
     // What a row was measured on.
     Metric{"iterations", "1", neither, "iterations of the timed loop", k_google},
     Metric{"configurations", "configurations", neither, "configurations that were asked or made", k_query_row},

@@ -1,0 +1,264 @@
+#include "bench/cli/commands.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include <sixdof/scenario/scenario.h>
+#include "bench/cli/equivalent_text.h"
+#include "bench/cli/shared.h"
+#include "bench/common/interrupt.h"
+#include "bench/common/json_text.h"
+#include "bench/common/progress_line.h"
+#include "bench/harness/options.h"
+#include "bench/harness/run_context.h"
+#include "bench/study/equivalent_rows.h"
+#include "bench/study/equivalent_scenario.h"
+
+namespace sixdof::cli {
+namespace {
+
+using study::EquivalentResult;
+
+struct Options {
+  std::vector<std::string> scenarios = scenario_names();
+  std::vector<std::string> algorithms{"vps", "ist"};
+  std::vector<std::string> taus{"0.9ms"};
+  double reverse = 0.0;  ///< eta; 0: tau is given.
+  std::string weights = "sigma=1,gamma=1";
+  std::string law = "own";
+  std::vector<std::string> parameters;  ///< "ALGORITHM:NAME=VALUE".
+  std::vector<std::string> grids;       ///< "NAME=VALUE,VALUE,VALUE".
+  double reach = study::k_default_reach;
+  double largest_gb = 2.0;
+  std::size_t steps = k_default_steps;
+  std::string output;
+  bool json = false;
+};
+
+double parse_number(const std::string& text, const std::string& context) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) throw BadArgument(fmt::format("{}: \"{}\" is no number", context, text));
+  return value;
+}
+
+/// "name=rest" in two.
+std::pair<std::string, std::string> split(const std::string& text, const char* wanted) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) throw BadArgument(fmt::format("{}: must read {}", text, wanted));
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) c == ',' ? (void)parts.emplace_back() : parts.back().push_back(c);
+  return parts;
+}
+
+study::EtaWeights parse_weights(const std::string& text) {
+  study::EtaWeights weights;
+  for (const std::string& part : split_list(text)) {
+    const auto [name, value] = split(part, "sigma=NUMBER,gamma=NUMBER");
+    if (name != "sigma" && name != "gamma") throw BadArgument(fmt::format("--weights: {}: sigma or gamma", name));
+    (name == "sigma" ? weights.sigma : weights.gamma) = parse_number(value, "--weights");
+  }
+  if (!(weights.sigma >= 0.0 && weights.gamma >= 0.0 && weights.sigma + weights.gamma > 0.0)) {
+    throw BadArgument(fmt::format("--weights {}: must not be negative, nor both zero", text));
+  }
+  return weights;
+}
+
+study::Grids parse_grids(const std::vector<std::string>& texts) {
+  study::Grids grids;
+  for (const std::string& text : texts) {
+    const auto [name, values] = split(text, "NAME=VALUE,VALUE,VALUE");
+    for (const std::string& value : split_list(values)) grids[name].push_back(parse_number(value, "--grid " + text));
+  }
+  return grids;
+}
+
+/// One algorithm and its part of the options.
+struct Candidate {
+  const Algorithm* algorithm = nullptr;
+  std::array<study::ResolutionAxis, 2> axes;
+  Settings settings;
+};
+
+/// @throws BadArgument if an algorithm cannot be studied, or a parameter or a grid belongs to none
+std::vector<Candidate> select(const Options& options, const Registry& registry,
+                              const std::map<std::string, Settings>& settings) {
+  const study::Grids grids = parse_grids(options.grids);
+  std::vector<Candidate> candidates;
+  for (const std::string& name : options.algorithms) {
+    const Algorithm& algorithm = registry.find(name);
+    if (!algorithm.traits().answers.respond) throw BadArgument(fmt::format("{} gives no response", name));
+    candidates.push_back(
+        {&algorithm, study::resolution_axes(algorithm.traits(), grids, options.reach), settings.at(name)});
+  }
+  const auto searched = [&](const std::string& parameter, const std::string& algorithm) {
+    return std::ranges::any_of(candidates, [&](const Candidate& candidate) {
+      const bool meant = algorithm.empty() || algorithm == candidate.algorithm->traits().name;
+      return meant && (candidate.axes[0].parameter == parameter || candidate.axes[1].parameter == parameter);
+    });
+  };
+  for (const auto& [name, values] : grids) {
+    if (!searched(name, {})) throw BadArgument(fmt::format("--grid {}: no algorithm of the study searches it", name));
+  }
+  for (const std::string& text : options.parameters) {
+    const std::size_t colon = text.find(':');
+    const std::string parameter = text.substr(colon + 1, text.find('=') - colon - 1);
+    if (searched(parameter, text.substr(0, colon))) {
+      throw BadArgument(fmt::format("--parameter {}: {} is searched; --grid sets its values", text, parameter));
+    }
+  }
+  return candidates;
+}
+
+/// What the searches of one run are asked for.
+std::vector<study::SearchOptions> targets(const Options& options) {
+  constexpr double k_gigabyte = 1e9;
+  const double largest_bytes = options.largest_gb * k_gigabyte;
+  if (options.reverse > 0.0) {
+    return {{.goal = study::Goal::eta, .target = options.reverse, .largest_bytes = largest_bytes}};
+  }
+  std::vector<study::SearchOptions> list;
+  for (const std::string& tau : options.taus) {
+    list.push_back({.target = study::parse_time_ns(tau), .largest_bytes = largest_bytes});
+  }
+  return list;
+}
+
+/// One search for each target. A resolution is measured once for all of them.
+std::vector<EquivalentResult> run_one(const Options& options, const std::string& name, const Candidate& candidate,
+                                      StatusLine& line) {
+  const auto scenario = make_scenario(name);
+  const Traits& traits = candidate.algorithm->traits();
+  const IdealLaw law = parse_ideal_law(options.law, traits.law);
+  const study::ScenarioStudy study{.scenario = *scenario,
+                                   .algorithm = *candidate.algorithm,
+                                   .settings = candidate.settings,
+                                   .law = law,
+                                   .weights = parse_weights(options.weights),
+                                   .steps = options.steps};
+  std::map<study::Resolution, study::Measurement> known;
+  const study::Measure measure = [&](const study::Resolution& at) {
+    if (const auto found = known.find(at); found != known.end()) return found->second;
+    InterruptGuard::check();
+    line.show(fmt::format("{} {}: {}={} {}={}", name, traits.name, candidate.axes[0].parameter, at[0],
+                          candidate.axes[1].parameter, at[1]));
+    return known[at] = study::measure_scenario(study, candidate.axes, at);
+  };
+  std::vector<EquivalentResult> results;
+  for (const study::SearchOptions& target : targets(options)) {
+    results.push_back({.scenario = name,
+                       .algorithm = traits.name,
+                       .settings = candidate.settings,
+                       .law = std::string(to_string(law)),
+                       .axes = candidate.axes,
+                       .options = target,
+                       .search = study::search_equivalent(candidate.axes, target, measure)});
+  }
+  line.clear();
+  return results;
+}
+
+void write(const Options& options, const std::vector<EquivalentResult>& results, const Registry& registry,
+           const std::map<std::string, Settings>& settings) {
+  std::vector<study::StudyRow> rows;
+  for (const EquivalentResult& result : results) {
+    for (study::StudyRow& row : study::equivalent_rows(result)) rows.push_back(std::move(row));
+  }
+  const nlohmann::ordered_json context = bench::run_context({}, registry, settings);
+  if (!options.output.empty()) study::write_study_rows(options.output, context, rows);
+  if (!options.json) return;
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const study::StudyRow& row : rows) list.push_back(study::to_json_object(row));
+  fmt::print("{}\n", json_text({{"context", context}, {"benchmarks", std::move(list)}}));
+}
+
+/// What can be checked before anything is measured. @throws BadArgument
+void check(const Options& options) {
+  for (const std::string& scenario : options.scenarios) scenario_settings(scenario);
+  targets(options);
+  parse_weights(options.weights);
+}
+
+void run(const Options& options) {
+  check(options);
+  Registry registry;
+  register_all_algorithms(registry);
+  const std::map<std::string, Settings> settings = bench::parse_parameters(options.parameters, registry);
+  const std::vector<Candidate> candidates = select(options, registry, settings);
+
+  std::vector<EquivalentResult> results;
+  StatusLine line;
+  for (const std::string& scenario : options.scenarios) {
+    for (const Candidate& candidate : candidates) {
+      for (EquivalentResult& result : run_one(options, scenario, candidate, line)) {
+        if (!options.json) print_equivalent(result, options.weights);
+        results.push_back(std::move(result));
+      }
+    }
+  }
+  if (!options.json) print_prediction_errors(results);
+  write(options, results, registry, settings);
+}
+
+}  // namespace
+
+void add_equivalent_command(CLI::App& app) {
+  auto* const command = app.add_subcommand(
+      "equivalent", "Find the resolutions of A and B with the least error of a response at a given mean time");
+  const auto options = std::make_shared<Options>();
+  command->add_option("--scenario", options->scenarios, "Ia, Ib, II, III, IV: one or more")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command
+      ->add_option("--algorithm", options->algorithms,
+                   "Algorithms with two swept parameters, one for each body: one or more")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command
+      ->add_option("--tau", options->taus,
+                   "The mean processor time of a query, with its unit: ns, us, ms, s; one or more")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command->add_option("--reverse", options->reverse, "Instead of --tau: the least time for this eta")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--weights", options->weights, "Of sigma and of gamma (radians) in their sum eta")
+      ->capture_default_str();
+  command->add_option("--law", options->law, "Ideal to compare with (sixdof quality --help)")->capture_default_str();
+  command->add_option("--grid", options->grids, "Values of a searched parameter: NAME=V1,V2,V3; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("-p,--parameter", options->parameters, "A parameter that is not searched: ALGORITHM:NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--reach", options->reach, "How far to search beyond the grid: this factor, on both sides")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  command->add_option("--memory", options->largest_gb, "Leave out resolutions predicted to need more GB; 0: no limit")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--steps", options->steps, "Steps along the path")->capture_default_str();
+  command->add_option("-o,--output", options->output, "Write all measurements to this JSON file");
+  command->add_flag("--json", options->json, "As JSON");
+  command->callback([options] { run(*options); });
+  add_examples(*command, "sixdof equivalent --scenario II --algorithm vps-field --tau 30us --steps 40",
+               "sixdof equivalent --scenario II --algorithm vps-field --reverse 0.02 --steps 40 -o equivalent.json",
+               "Measures a grid of resolutions, fits time and error, and measures the predicted best one.");
+}
+
+}  // namespace sixdof::cli

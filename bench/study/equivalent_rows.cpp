@@ -1,0 +1,112 @@
+#include "bench/study/equivalent_rows.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+#include "bench/study/equivalent_scenario.h"
+
+namespace sixdof::study {
+namespace {
+
+constexpr std::array<std::pair<const char*, double>, 4> k_units{{{"s", 1e9}, {"ms", 1e6}, {"us", 1e3}, {"ns", 1.0}}};
+
+std::string prefix(const EquivalentResult& result) {
+  const std::string given = result.options.goal == Goal::time ? "tau:" + time_text(result.options.target)
+                                                              : fmt::format("eta:{}", result.options.target);
+  return fmt::format("equivalent/scenario:{}/algorithm:{}/{}", result.scenario, result.algorithm, given);
+}
+
+StudyRow measured_row(const EquivalentResult& result, const Measurement& measured, std::string name) {
+  const Settings settings = with_resolution(result.settings, result.axes, measured.at);
+  StudyRow row{.name = std::move(name),
+               .fields = {.query = "equivalent",
+                          .algorithm = result.algorithm,
+                          .settings = settings.to_string(),
+                          .scenario = result.scenario,
+                          .question = "respond"},
+               .real_time_ns = measured.time_ns,
+               .cpu_time_ns = measured.time_ns,
+               .counters = {{"measured_ns", measured.time_ns}, {"bytes", measured.bytes}},
+               .label = fmt::format("law={}", result.law)};
+  if (std::isfinite(measured.eta)) {
+    row.counters.emplace_back("eta_measured", measured.eta);
+  } else {
+    row.error = "eta is not defined: no force in the scenario's window";
+  }
+  for (const auto& counter : measured.counters) row.counters.push_back(counter);
+  return row;
+}
+
+StudyRow step_row(const EquivalentResult& result, const SearchStep& step, std::string name) {
+  StudyRow row = measured_row(result, step.measured, std::move(name));
+  row.counters.emplace_back("eta_predicted", step.eta_predicted);
+  row.counters.emplace_back("predicted_ns", step.time_predicted_ns);
+  row.counters.emplace_back(result.options.goal == Goal::time ? "tau_ns" : "eta_wanted", result.options.target);
+  row.label += fmt::format(" time={} eta={}", to_string(step.time_form), to_string(step.eta_form));
+  if (step.reach != Reach::on_line) row.label += step.reach == Reach::below ? " all-below" : " all-above";
+  return row;
+}
+
+}  // namespace
+
+std::vector<StudyRow> equivalent_rows(const EquivalentResult& result) {
+  std::vector<StudyRow> rows;
+  rows.push_back(step_row(result, result.search.answer(), prefix(result)));
+  if (!result.search.converged) rows.back().label += " not-within-tolerance";
+  for (std::size_t k = 0; k < result.search.steps.size(); ++k) {
+    rows.push_back(step_row(result, result.search.steps[k], fmt::format("{}/step:{}", prefix(result), k)));
+  }
+  for (const Measurement& point : result.search.grid) {
+    rows.push_back(measured_row(result, point,
+                                fmt::format("{}/{}:{}/{}:{}", prefix(result), result.axes[0].parameter, point.at[0],
+                                            result.axes[1].parameter, point.at[1])));
+  }
+  return rows;
+}
+
+PredictionError prediction_error(std::span<const EquivalentResult> results, bool first) {
+  PredictionError error;
+  for (const EquivalentResult& result : results) {
+    const SearchStep& step = first ? result.search.first() : result.search.answer();
+    const double difference = std::abs(step.eta_predicted - step.measured.eta);
+    if (!std::isfinite(difference) || step.measured.eta <= 0.0) continue;
+    ++error.searches;
+    error.difference += difference;
+    error.relative += difference / step.measured.eta;
+  }
+  if (error.searches > 0) {
+    error.difference /= static_cast<double>(error.searches);
+    error.relative /= static_cast<double>(error.searches);
+  }
+  return error;
+}
+
+std::string time_text(double nanoseconds) {
+  for (const auto& [unit, length] : k_units) {
+    // 0.9 ms is as readable as 900 us.
+    if (nanoseconds >= 0.1 * length) return fmt::format("{:.6g}{}", nanoseconds / length, unit);
+  }
+  return fmt::format("{:.6g}ns", nanoseconds);
+}
+
+double parse_time_ns(const std::string& text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
+  if (error == std::errc()) {
+    for (const auto& [name, length] : k_units) {
+      if (unit != name) continue;
+      if (!(value > 0.0 && std::isfinite(value))) throw BadArgument(fmt::format("{}: must be above zero", text));
+      return value * length;
+    }
+  }
+  throw BadArgument(fmt::format("{}: must be a number with a unit, ns, us, ms or s: 0.9ms", text));
+}
+
+}  // namespace sixdof::study

@@ -1,0 +1,107 @@
+#include "bench/study/equivalent_scenario.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof::study {
+namespace {
+
+constexpr double k_undefined = std::numeric_limits<double>::quiet_NaN();
+
+double find(const Measures& measures, const std::string& name) {
+  const auto found = std::ranges::find(measures, name, &Measures::value_type::first);
+  return found == measures.end() ? k_undefined : found->second;
+}
+
+/// Sets the parameter, so that texts of a grid are checked like those of the command line. @returns the number
+double checked_number(const Traits& traits, const std::string& parameter, const std::string& text) {
+  Settings settings(traits.parameters);
+  settings.set(parameter, text);
+  return settings.number(parameter);
+}
+
+std::string text_of(double value) { return fmt::format("{}", value); }
+
+ResolutionAxis axis_of(const Traits& traits, const Parameter& parameter, const Grids& grids, double reach) {
+  ResolutionAxis axis{.parameter = parameter.name, .integer = parameter.integer};
+  if (const auto given = grids.find(parameter.name); given != grids.end()) {
+    for (const double value : given->second) {
+      axis.grid.push_back(checked_number(traits, parameter.name, text_of(value)));
+    }
+  } else {
+    const std::size_t last = parameter.sweep.size() - 1;
+    for (const std::size_t i : {std::size_t{0}, (last + 1) / 2, last}) {
+      axis.grid.push_back(checked_number(traits, parameter.name, parameter.sweep[i]));
+    }
+  }
+  const auto [least, largest] = std::ranges::minmax(axis.grid);
+  axis.low = std::max(parameter.low, least / reach);
+  axis.high = std::min(parameter.high, largest * reach);
+  if (axis.integer) {
+    axis.low = std::ceil(axis.low);
+    axis.high = std::floor(axis.high);
+  }
+  return axis;
+}
+
+}  // namespace
+
+std::string_view rated_wrench(std::string_view scenario) { return scenario == "III" ? "T" : "F"; }
+
+std::array<ResolutionAxis, 2> resolution_axes(const Traits& traits, const Grids& grids, double reach) {
+  std::vector<const Parameter*> swept;
+  for (const Parameter& parameter : traits.parameters) {
+    if (!parameter.sweep.empty() && parameter.choices.empty()) swept.push_back(&parameter);
+  }
+  if (swept.size() != 2) {
+    throw BadArgument(fmt::format("{} has {} swept parameter{} instead of two, one for each body", traits.name,
+                                  swept.size(), swept.size() == 1 ? "" : "s"));
+  }
+  return {axis_of(traits, *swept[0], grids, reach), axis_of(traits, *swept[1], grids, reach)};
+}
+
+Settings with_resolution(const Settings& settings, const std::array<ResolutionAxis, 2>& axes, const Resolution& at) {
+  Settings complete = settings;
+  for (const std::size_t i : {0, 1}) complete.set(axes[i].parameter, text_of(at[i]));
+  return complete;
+}
+
+Measurement measure_scenario(const ScenarioStudy& study, const std::array<ResolutionAxis, 2>& axes,
+                             const Resolution& at) {
+  const Settings settings = with_resolution(study.settings, axes, at);
+  const auto query = study.algorithm.prepare(study.scenario.a(), study.scenario.b(), settings);
+  const Recording recording = record(study.scenario, *query, study.steps);
+  if (!recording.first_failure.empty()) {
+    throw Error(fmt::format("{} in {} with {}: {}", study.algorithm.traits().name, study.scenario.name(),
+                            settings.to_string(), recording.first_failure));
+  }
+  const Measures measures = evaluate(study.scenario, recording, study.law);
+  const std::string wrench(rated_wrench(study.scenario.name()));
+  const double sigma = find(measures, "sigma_" + wrench);
+  const double gamma = find(measures, "gamma_" + wrench + "_deg") * std::numbers::pi / 180.0;
+
+  std::vector<std::pair<std::string, double>> counters;
+  for (const std::string& name : {"sigma_" + wrench, "gamma_" + wrench + "_deg", std::string("misses")}) {
+    if (const double value = find(measures, name); std::isfinite(value)) counters.emplace_back(name, value);
+  }
+
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t pass = 0; pass < k_timing_passes; ++pass) {
+    least = std::min(least, record(study.scenario, *query, study.steps).processor_ns);
+  }
+  return {.at = at,
+          .time_ns = least,
+          .eta = study.weights.sigma * sigma + study.weights.gamma * gamma,
+          .bytes = static_cast<double>(query->footprint().bytes),
+          .counters = std::move(counters)};
+}
+
+}  // namespace sixdof::study
