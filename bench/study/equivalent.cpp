@@ -18,13 +18,6 @@ namespace {
 /// three decades, below the tolerance of a prediction.
 constexpr std::size_t k_values = 241;
 
-/// Distance in natural logarithms, over both axes, at which a sample's weight in a refined fit falls to a quarter:
-/// half the usual spacing of a grid, which doubles or triples a resolution.
-constexpr double k_weight_distance = 0.5;
-
-/// Least weight of a sample in a refined fit, so that few near points leave the fit determined.
-constexpr double k_least_weight = 1e-3;
-
 std::vector<double> spaced_values(const ResolutionAxis& axis) {
   std::vector<double> values;
   const double ratio = axis.high / axis.low;
@@ -69,26 +62,27 @@ class Search {
   double given(const Measurement& m) const { return options_.goal == Goal::time ? m.time_ns : m.eta; }
   double objective(const Measurement& m) const { return options_.goal == Goal::time ? m.eta : m.time_ns; }
 
-  /// Samples of one quantity, weighted by their distance from the last prediction; undefined values are left out.
+  /// Samples of one quantity; undefined values are left out.
   std::vector<FitSample> samples(double Measurement::*quantity) const {
     std::vector<FitSample> list;
     for (const Measurement& point : points_) {
       if (!std::isfinite(point.*quantity)) continue;
-      FitSample sample{point.at[0], point.at[1], point.*quantity, 1.0};
-      if (!result_.steps.empty()) {
-        const Resolution& centre = result_.steps.back().measured.at;
-        const double distance =
-            std::hypot(std::log(sample.x / centre[0]), std::log(sample.y / centre[1])) / k_weight_distance;
-        sample.weight = std::max(k_least_weight, 1.0 / std::pow(1.0 + distance * distance, 2));
-      }
-      list.push_back(sample);
+      list.push_back({point.at[0], point.at[1], point.*quantity});
     }
     return list;
   }
 
   struct Fits {
     SurfaceFit time, eta;
+    std::optional<CorrectedFit> corrected_time, corrected_eta;  ///< In refinements.
     std::optional<SurfaceFit> bytes;
+
+    double time_at(const Resolution& at) const {
+      return corrected_time ? corrected_time->at(at[0], at[1]) : time.at(at[0], at[1]);
+    }
+    double eta_at(const Resolution& at) const {
+      return corrected_eta ? corrected_eta->at(at[0], at[1]) : eta.at(at[0], at[1]);
+    }
   };
 
   Fits fit() const {
@@ -98,7 +92,12 @@ class Search {
       throw BadArgument(fmt::format("eta is defined at {} of {} resolutions only: the others give no force",
                                     etas.size(), points_.size()));
     }
-    Fits fits{fit_plane(samples(&Measurement::time_ns)), fit_surface(etas), std::nullopt};
+    const std::vector<FitSample> times = samples(&Measurement::time_ns);
+    Fits fits{fit_plane(times), fit_surface(etas), std::nullopt, std::nullopt, std::nullopt};
+    if (!result_.steps.empty()) {
+      fits.corrected_time.emplace(fits.time, times);
+      fits.corrected_eta.emplace(fits.eta, etas);
+    }
     const bool sizes_known = std::ranges::all_of(points_, [](const Measurement& m) { return m.bytes > 0.0; });
     if (options_.largest_bytes > 0.0 && sizes_known) {
       fits.bytes.emplace(FitForm::log_plane, samples(&Measurement::bytes));
@@ -106,11 +105,9 @@ class Search {
     return fits;
   }
 
-  const SurfaceFit& given(const Fits& fits) const { return options_.goal == Goal::time ? fits.time : fits.eta; }
-  const SurfaceFit& objective(const Fits& fits) const { return options_.goal == Goal::time ? fits.eta : fits.time; }
-
   Prediction predict(const Fits& fits, const Resolution& at) const {
-    return {at, given(fits).at(at[0], at[1]), objective(fits).at(at[0], at[1])};
+    const double time = fits.time_at(at), eta = fits.eta_at(at);
+    return options_.goal == Goal::time ? Prediction{at, time, eta} : Prediction{at, eta, time};
   }
 
   bool allowed(const Fits& fits, const Resolution& at) const {
@@ -184,8 +181,8 @@ class Search {
     const auto same = [&](const SearchStep& step) { return step.measured.at == at; };
     if (std::ranges::any_of(result_.steps, same)) return false;
     SearchStep step{.reach = choice.reach,
-                    .time_predicted_ns = fits.time.at(at[0], at[1]),
-                    .eta_predicted = fits.eta.at(at[0], at[1]),
+                    .time_predicted_ns = fits.time_at(at),
+                    .eta_predicted = fits.eta_at(at),
                     .measured = measure_(at),
                     .time_form = fits.time.form(),
                     .eta_form = fits.eta.form(),
@@ -207,7 +204,7 @@ class Search {
 
   bool within_tolerance(const SearchStep& step) const {
     const bool predicted =
-        near(step.measured.time_ns, step.time_predicted_ns) && near(step.measured.eta, step.eta_predicted);
+        near(step.time_predicted_ns, step.measured.time_ns) && near(step.eta_predicted, step.measured.eta);
     return predicted && (step.reach == Reach::above || meets_target(step));
   }
 

@@ -85,8 +85,8 @@ using Measure = std::function<Measurement(const Resolution&)>;
 
 /// Measures the grid, fits planes to the time (fit_plane) and a surface to eta (fit_surface), and predicts the best
 /// resolution on the line where the given value is met, which is then measured. If time or eta is off by more than the
-/// tolerance, the fits are repeated with that point and weights that fall with the distance from it, and a new point is
-/// predicted and measured, until it is within the tolerance or was measured before.
+/// tolerance, the fits are repeated with that point and corrected by interpolated residuals (CorrectedFit), and a new
+/// point is predicted and measured, until it is within the tolerance or was predicted before.
 ///
 /// Where the range of the axes does not reach the given value, the answer is the best resolution of the whole range if
 /// all are below it, the nearest to the given value if all are above.

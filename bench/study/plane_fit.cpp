@@ -16,6 +16,18 @@ namespace {
 /// a quadratic of a good grid has ratios down to 1e-6; points on a line leave rounding, about 1e-16.
 constexpr double k_least_singular_ratio = 1e-11;
 
+/// Length of the kernel of residuals in natural logarithms of a resolution: neighbours of a grid are a factor of 2 to
+/// 10 apart, so a residual reaches its neighbours and not much farther.
+constexpr double k_kernel_length = 0.8;
+
+/// Variance of the noise of a sample over that of the residuals: repeated times differ by a few percent, residuals are
+/// of tens of percent.
+constexpr double k_noise = 1e-3;
+
+double kernel(double dx, double dy) {
+  return std::exp(-(dx * dx + dy * dy) / (2.0 * k_kernel_length * k_kernel_length));
+}
+
 bool is_logarithmic(FitForm form) { return form == FitForm::log_plane || form == FitForm::log_quadratic; }
 
 Eigen::Index terms(FitForm form) { return form == FitForm::plane || form == FitForm::log_plane ? 3 : 6; }
@@ -37,10 +49,9 @@ bool solve(FitForm form, std::span<const FitSample> samples, std::array<double, 
   Eigen::VectorXd values(rows);
   for (Eigen::Index row = 0; row < rows; ++row) {
     const FitSample& sample = samples[static_cast<std::size_t>(row)];
-    const double root = std::sqrt(sample.weight);
     const std::array<double, 6> b = basis(form, sample.x, sample.y);
-    for (Eigen::Index i = 0; i < n; ++i) matrix(row, i) = root * b[static_cast<std::size_t>(i)];
-    values[row] = root * (is_logarithmic(form) ? std::log(sample.value) : sample.value);
+    for (Eigen::Index i = 0; i < n; ++i) matrix(row, i) = b[static_cast<std::size_t>(i)];
+    values[row] = is_logarithmic(form) ? std::log(sample.value) : sample.value;
   }
   // Columns of one length, so that units do not decide what counts as determined.
   const Eigen::VectorXd lengths = matrix.colwise().norm().cwiseMax(std::numeric_limits<double>::min());
@@ -61,7 +72,7 @@ double evaluate(FitForm form, const std::array<double, 6>& coefficients, double 
 
 double leave_one_out_error(FitForm form, std::span<const FitSample> samples) {
   constexpr double k_undetermined = std::numeric_limits<double>::infinity();
-  double sum = 0.0, weights = 0.0;
+  double sum = 0.0;
   for (std::size_t left_out = 0; left_out < samples.size(); ++left_out) {
     std::vector<FitSample> others(samples.begin(), samples.end());
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(left_out));
@@ -69,10 +80,9 @@ double leave_one_out_error(FitForm form, std::span<const FitSample> samples) {
     std::array<double, 6> coefficients{};
     if (sample.value == 0.0 || !solve(form, others, coefficients)) return k_undetermined;
     const double error = evaluate(form, coefficients, sample.x, sample.y) / sample.value - 1.0;
-    sum += sample.weight * error * error;
-    weights += sample.weight;
+    sum += error * error;
   }
-  return std::sqrt(sum / weights);
+  return std::sqrt(sum / static_cast<double>(samples.size()));
 }
 
 bool all_positive(std::span<const FitSample> samples) {
@@ -111,6 +121,36 @@ SurfaceFit fit_surface(std::span<const FitSample> samples) {
   const FitForm curved = logarithms ? FitForm::log_quadratic : FitForm::quadratic;
   std::array<double, 6> ignored{};
   return solve(curved, samples, ignored) ? better(plane, SurfaceFit(curved, samples)) : plane;
+}
+
+CorrectedFit::CorrectedFit(const SurfaceFit& fit, std::span<const FitSample> samples) : fit_(fit) {
+  const auto n = static_cast<Eigen::Index>(samples.size());
+  Eigen::MatrixXd covariance(n, n);
+  Eigen::VectorXd residuals(n);
+  for (const FitSample& sample : samples) {
+    ratios_ = ratios_ && sample.value > 0.0 && fit_.at(sample.x, sample.y) > 0.0;
+    centres_.push_back({std::log(sample.x), std::log(sample.y), 0.0});
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FitSample& sample = samples[static_cast<std::size_t>(i)];
+    const double fitted = fit_.at(sample.x, sample.y);
+    residuals[i] = ratios_ ? std::log(sample.value / fitted) : sample.value - fitted;
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const Centre &a = centres_[static_cast<std::size_t>(i)], &b = centres_[static_cast<std::size_t>(j)];
+      covariance(i, j) = kernel(a.log_x - b.log_x, a.log_y - b.log_y) + (i == j ? k_noise : 0.0);
+    }
+  }
+  const Eigen::VectorXd coefficients = covariance.ldlt().solve(residuals);
+  for (Eigen::Index i = 0; i < n; ++i) centres_[static_cast<std::size_t>(i)].coefficient = coefficients[i];
+}
+
+double CorrectedFit::at(double x, double y) const {
+  const double log_x = std::log(x), log_y = std::log(y);
+  double correction = 0.0;
+  for (const Centre& centre : centres_) {
+    correction += centre.coefficient * kernel(log_x - centre.log_x, log_y - centre.log_y);
+  }
+  return ratios_ ? fit_.at(x, y) * std::exp(correction) : fit_.at(x, y) + correction;
 }
 
 }  // namespace sixdof::study

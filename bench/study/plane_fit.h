@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <vector>
 
 /// Least-squares fits of a quantity over two resolutions: planes and quadratics, linear or in logarithms.
 
@@ -14,7 +15,6 @@ struct FitSample {
   double x = 0.0;
   double y = 0.0;
   double value = 0.0;
-  double weight = 1.0;  ///< Of the squared residual, > 0.
 };
 
 /// The functions that can be fitted.
@@ -39,8 +39,8 @@ class SurfaceFit {
 
   FitForm form() const { return form_; }
 
-  /// RMS over the samples of (value predicted without that sample - value) / |value|, weighted as the samples; infinity
-  /// where a sample is needed to determine the fit, or is zero.
+  /// RMS over the samples of (value predicted without that sample - value) / |value|; infinity where a sample is needed
+  /// to determine the fit, or is zero.
   double leave_one_out() const { return leave_one_out_; }
 
  private:
@@ -56,5 +56,24 @@ SurfaceFit fit_plane(std::span<const FitSample> samples);
 /// A plane or a quadratic, in logarithms where all values are positive and else linear: the one with the smaller error
 /// of leave-one-out. @throws BadArgument as SurfaceFit does
 SurfaceFit fit_surface(std::span<const FitSample> samples);
+
+/// A fit whose residuals at the samples are interpolated by simple kriging with a Gaussian kernel over the logarithms
+/// of both resolutions: close to the samples' values at the samples, the fit itself far from them. Residuals are ratios
+/// where fit and samples are all positive, else differences. For refinement near measured points, where a plane bends.
+class CorrectedFit {
+ public:
+  /// @param samples with positive resolutions; those of the fit or more
+  CorrectedFit(const SurfaceFit& fit, std::span<const FitSample> samples);
+
+  double at(double x, double y) const;
+
+ private:
+  struct Centre {
+    double log_x, log_y, coefficient;
+  };
+  SurfaceFit fit_;
+  std::vector<Centre> centres_;
+  bool ratios_ = true;
+};
 
 }  // namespace sixdof::study
