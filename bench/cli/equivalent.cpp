@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <string>
@@ -209,6 +210,7 @@ void run(const Options& options) {
         if (!options.json) print_equivalent(result, options.weights);
         results.push_back(std::move(result));
       }
+      std::fflush(stdout);  // into a file, too: the next search may take minutes
     }
   }
   if (!options.json) print_prediction_errors(results);
@@ -256,8 +258,11 @@ void add_equivalent_command(CLI::App& app) {
   command->add_option("-o,--output", options->output, "Write all measurements to this JSON file");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run(*options); });
-  add_examples(*command, "sixdof equivalent --scenario II --algorithm vps-field --tau 30us --steps 40",
-               "sixdof equivalent --scenario II --algorithm vps-field --reverse 0.02 --steps 40 -o equivalent.json",
+  add_examples(*command,
+               "sixdof equivalent --scenario II --algorithm vps --tau 10us --steps 100 "
+               "--grid voxel_size=0.03,0.02,0.01 --grid point_spacing=0.03,0.02,0.01",
+               "sixdof equivalent --scenario II --algorithm vps --reverse 0.05 --steps 100 "
+               "--grid voxel_size=0.03,0.02,0.01 --grid point_spacing=0.03,0.02,0.01 -o equivalent.json",
                "Measures a grid of resolutions, fits time and error, and measures the predicted best one.");
 }
 
