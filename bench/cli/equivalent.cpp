@@ -174,17 +174,25 @@ std::vector<EquivalentResult> run_one(const Options& options, const std::string&
   return results;
 }
 
-void write(const Options& options, const std::vector<EquivalentResult>& results, const Registry& registry,
-           const std::map<std::string, Settings>& settings) {
+std::vector<study::StudyRow> rows_of(const std::vector<EquivalentResult>& results) {
   std::vector<study::StudyRow> rows;
   for (const EquivalentResult& result : results) {
     for (study::StudyRow& row : study::equivalent_rows(result)) rows.push_back(std::move(row));
   }
-  const nlohmann::ordered_json context = bench::run_context({}, registry, settings);
-  if (!options.output.empty()) study::write_study_rows(options.output, context, rows);
-  if (!options.json) return;
+  return rows;
+}
+
+/// Until the study ends, the file says that it is not whole.
+void write(const Options& options, nlohmann::ordered_json context, const std::vector<EquivalentResult>& results,
+           bool interrupted) {
+  if (options.output.empty()) return;
+  if (interrupted) context["interrupted"] = "true";
+  study::write_study_rows(options.output, context, rows_of(results));
+}
+
+void print_json(const nlohmann::ordered_json& context, const std::vector<EquivalentResult>& results) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const study::StudyRow& row : rows) list.push_back(study::to_json_object(row));
+  for (const study::StudyRow& row : rows_of(results)) list.push_back(study::to_json_object(row));
   fmt::print("{}\n", json_text({{"context", context}, {"benchmarks", std::move(list)}}));
 }
 
@@ -202,6 +210,7 @@ void run(const Options& options) {
   const std::map<std::string, Settings> settings = bench::parse_parameters(options.parameters, registry);
   const std::vector<Candidate> candidates = select(options, registry, settings);
 
+  const nlohmann::ordered_json context = bench::run_context({}, registry, settings);
   std::vector<EquivalentResult> results;
   StatusLine line;
   for (const std::string& scenario : options.scenarios) {
@@ -211,10 +220,11 @@ void run(const Options& options) {
         results.push_back(std::move(result));
       }
       std::fflush(stdout);  // into a file, too: the next search may take minutes
+      write(options, context, results, true);
     }
   }
-  if (!options.json) print_prediction_errors(results);
-  write(options, results, registry, settings);
+  write(options, context, results, false);
+  options.json ? print_json(context, results) : print_prediction_errors(results);
 }
 
 }  // namespace
