@@ -28,16 +28,23 @@ namespace fs = std::filesystem;
 
 /// Uniform rotations and directions: no two configurations are equal, as they are on small grids of Euler angles.
 constexpr const char* k_distance_grid = "so3:64:16";
-/// As many, so that a p99.9 over the volumes has its 2,000 configurations.
+/// As many, so that a p99.9 over the volumes has its 2,000 configurations; fewer for large meshes, whose volumes take
+/// milliseconds each.
 constexpr const char* k_volume_grid = "so3:64:16";
+constexpr const char* k_large_volume_grid = "so3:32:8";
+constexpr std::size_t k_large_triangles = 400'000;  ///< Of both.
 constexpr double k_distances[] = {0, 1, 5, 10, 20};
 constexpr double k_volumes[] = {1, 5, 10};
+
+const char* volume_grid(const Mesh& a, const Mesh& b) {
+  return a.triangles().size() + b.triangles().size() > k_large_triangles ? k_large_volume_grid : k_volume_grid;
+}
 
 /// Everything that the content of the set depends on.
 std::string cache_key(const DistanceGenerator& generator, const Mesh& a, const Mesh& b) {
   return fmt::format("sixdof {}, {} {}, {} with {}, distances {} on {}, volumes {} on {}", SIXDOF_VERSION,
                      generator.oracle_name(), generator.oracle_version(), a.hash(), b.hash(),
-                     fmt::join(k_distances, ","), k_distance_grid, fmt::join(k_volumes, ","), k_volume_grid);
+                     fmt::join(k_distances, ","), k_distance_grid, fmt::join(k_volumes, ","), volume_grid(a, b));
 }
 
 /// Where the set is kept; empty where the cache is off or cannot be written.
@@ -119,7 +126,7 @@ CoarseSet::CoarseSet(const Mesh& a, const MeshIdentity& a_identity, const Mesh& 
   const std::unique_ptr<DistanceGenerator> generator = make_ray_cast();
   SetDescription description{
       .generator_version = SIXDOF_VERSION, .a = a_identity, .b = b_identity, .grid = make_grid(k_distance_grid)};
-  if (has_volumes(a, b, program)) description.volume_grid = make_grid(k_volume_grid);
+  if (has_volumes(a, b, program)) description.volume_grid = make_grid(volume_grid(a, b));
   file_ = file_in_cache(cache_key(*generator, a, b));
   const std::string pair = fmt::format("coarse set of {} with {}", a.name(), b.name());
   if (is_whole(file_, a, b)) {

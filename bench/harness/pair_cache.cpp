@@ -9,6 +9,14 @@
 #include "bench/common/mesh_warning.h"
 
 namespace sixdof::bench {
+namespace {
+
+std::string prepared_key(const Algorithm& algorithm, const Settings& settings, const std::string& a,
+                         const std::string& b) {
+  return algorithm.traits().name + "|" + settings.to_string() + "|" + a + "|" + b;
+}
+
+}  // namespace
 
 void require_solids(const Mesh& a, const Mesh& b) {
   for (const Mesh* mesh : {&a, &b}) {
@@ -81,9 +89,15 @@ std::unique_ptr<Query> PairCache::prepare(const Algorithm& algorithm, const Sett
   return query;
 }
 
+bool PairCache::is_prepared(const Algorithm& algorithm, const Settings& settings, const std::string& a,
+                            const std::string& b) const {
+  const std::string key = prepared_key(algorithm, settings, a, b);
+  return std::ranges::find(prepared_, key, &Prepared::key) != prepared_.end();
+}
+
 Query& PairCache::query(const Algorithm& algorithm, const Settings& settings, const std::string& a,
                         const std::string& b) {
-  const std::string key = algorithm.traits().name + "|" + settings.to_string() + "|" + a + "|" + b;
+  const std::string key = prepared_key(algorithm, settings, a, b);
   if (const auto found = std::ranges::find(prepared_, key, &Prepared::key); found != prepared_.end()) {
     prepared_.splice(prepared_.begin(), prepared_, found);
     return *found->query;

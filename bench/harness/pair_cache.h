@@ -67,6 +67,10 @@ class PairCache {
   /// The reference is valid until the next call of query() or exact_responses(). @throws what prepare() throws
   Query& query(const Algorithm& algorithm, const Settings& settings, const std::string& a, const std::string& b);
 
+  /// Whether query() would find it prepared.
+  bool is_prepared(const Algorithm& algorithm, const Settings& settings, const std::string& a,
+                   const std::string& b) const;
+
   /// Prepares anew and keeps nothing. @throws NeedsSolid, what Algorithm::prepare() throws, Error for a null pointer
   std::unique_ptr<Query> prepare(const Algorithm& algorithm, const Settings& settings, const Mesh& a, const Mesh& b);
 

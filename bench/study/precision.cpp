@@ -153,6 +153,15 @@ void PrecisionStudy::measure(PrecisionPoint& point) {
   }
 }
 
+/// Whether a round of timing fits into the budget. A structure that was dropped for want of memory is prepared again
+/// only if that takes a small part of what is left.
+bool PrecisionStudy::affordable(const PrecisionPoint& point) const {
+  constexpr double k_small = 0.1;
+  const double round_s = 1e-9 * point.times.wall_ns().value * static_cast<double>(point.errors.answered.size());
+  const bool prepared = cache_.is_prepared(*point.algorithm, point.sweep.settings, pair_.a, pair_.b);
+  return round_s <= left_s() && (prepared || point.prepare_s <= k_small * left_s());
+}
+
 void PrecisionStudy::time_once(PrecisionPoint& point) {
   point.times.add(query_of(point), sample_.question, point.errors.answered);
 }
@@ -191,17 +200,19 @@ void PrecisionStudy::run(const Progress& progress, const std::function<void()>& 
   }
   for (std::size_t round = 1; round < plan_.rounds; ++round) {
     for (const std::size_t place : timed_points()) {
-      if (left_s() <= 0.0) return;
+      if (!affordable(points_[place])) continue;
       progress(fmt::format("round {} of timing", round + 1), place, points_.size());
       time_once(points_[place]);
     }
     finished();
   }
-  for (auto open = uncertain_points(); !open.empty(); open = uncertain_points()) {
-    for (const std::size_t place : open) {
-      if (left_s() <= 0.0) return;
+  for (bool timed = true; timed;) {
+    timed = false;
+    for (const std::size_t place : uncertain_points()) {
+      if (!affordable(points_[place])) continue;
       progress("points that are not told apart", place, points_.size());
       time_once(points_[place]);
+      timed = true;
     }
     finished();
   }

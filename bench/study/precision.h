@@ -115,6 +115,7 @@ class PrecisionStudy {
   std::string why_left_out(const PrecisionPoint& point) const;
   void check_deadline(Query& query) const;
   void measure(PrecisionPoint& point);
+  bool affordable(const PrecisionPoint& point) const;
   void time_once(PrecisionPoint& point);
   std::vector<std::size_t> timed_points() const;
   std::vector<std::size_t> uncertain_points() const;
