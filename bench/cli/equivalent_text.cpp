@@ -51,7 +51,11 @@ void print_grid(const EquivalentResult& result) {
 /// What to know of the answer besides its numbers.
 void print_remarks(const EquivalentResult& result) {
   const SearchStep& answer = result.search.answer();
-  if (answer.reach != Reach::on_line) {
+  if (answer.reach == Reach::inside) {
+    const bool time = result.options.goal == Goal::time;
+    fmt::print("{} than asked for: no resolution at {} is predicted to be {}\n", time ? "faster" : "better",
+               given_text(result), time ? "better" : "faster");
+  } else if (answer.reach != Reach::on_line) {
     const bool time = result.options.goal == Goal::time;
     const char* const what = answer.reach == Reach::below ? (time ? "faster" : "better") : (time ? "slower" : "worse");
     std::string range;

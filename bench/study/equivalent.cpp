@@ -161,16 +161,19 @@ class Search {
 
   Choice choose(const Fits& fits) const {
     const auto least = [](const std::vector<Prediction>& list, double Prediction::*quantity) {
-      return std::ranges::min_element(list, {}, quantity)->at;
+      return *std::ranges::min_element(list, {}, quantity);
     };
-    const std::vector<Prediction> on_line = line(fits);
-    if (!on_line.empty()) return {Reach::on_line, least(on_line, &Prediction::objective)};
-    const std::vector<Prediction> all = range(fits);
+    const std::vector<Prediction> on_line = line(fits), all = range(fits);
     std::vector<Prediction> below;
     std::ranges::copy_if(all, std::back_inserter(below),
                          [&](const Prediction& p) { return p.given <= options_.target; });
-    if (!below.empty()) return {Reach::below, least(below, &Prediction::objective)};
-    return {Reach::above, least(all, &Prediction::given)};
+    if (on_line.empty() && below.empty()) return {Reach::above, least(all, &Prediction::given).at};
+    if (on_line.empty()) return {Reach::below, least(below, &Prediction::objective).at};
+    const Prediction best = least(on_line, &Prediction::objective);
+    if (below.empty()) return {Reach::on_line, best.at};
+    const Prediction inside = least(below, &Prediction::objective);
+    if (inside.objective > (1.0 - k_worthwhile) * best.objective) return {Reach::on_line, best.at};
+    return {Reach::inside, inside.at};
   }
 
   /// Predicts a point and measures it. @returns false if it was measured before as a prediction
@@ -198,7 +201,8 @@ class Search {
   /// Whether a point has the given value as far as the range allows.
   bool meets_target(const SearchStep& step) const {
     const double value = given(step.measured);
-    if (step.reach == Reach::below) return value <= (1.0 + options_.tolerance) * options_.target;
+    if (step.reach == Reach::below || step.reach == Reach::inside)
+      return value <= (1.0 + options_.tolerance) * options_.target;
     return near(value, options_.target);
   }
 

@@ -45,7 +45,8 @@ enum class Goal {
 
 /// Where the given value lies.
 enum class Reach {
-  on_line,  ///< Resolutions with the given value are in the range of the search.
+  on_line,  ///< The best resolution has the given value.
+  inside,   ///< Some have the given value, but one that is faster (or better) than asked for beats them all.
   below,    ///< All of the range is below it: faster (or better) than asked for.
   above,    ///< All of the range is above it: slower (or worse).
 };
@@ -88,8 +89,9 @@ using Measure = std::function<Measurement(const Resolution&)>;
 /// tolerance, the fits are repeated with that point and corrected by interpolated residuals (CorrectedFit), and a new
 /// point is predicted and measured, until it is within the tolerance or was predicted before.
 ///
-/// Where the range of the axes does not reach the given value, the answer is the best resolution of the whole range if
-/// all are below it, the nearest to the given value if all are above.
+/// The given value is the greatest that is admissible. If a resolution below it is predicted to be better than all on
+/// the line by k_worthwhile, it is taken. Where the range of the axes does not reach the given value, the answer is the
+/// best resolution of the whole range if all are below it, the nearest to the given value if all are above.
 ///
 /// The answer is the last point if within the tolerance. Otherwise, of all predicted points: the one with the least
 /// objective among those that meet the given value to the tolerance, else the one nearest to the given value.
@@ -97,6 +99,9 @@ using Measure = std::function<Measurement(const Resolution&)>;
 /// resolutions to fit a plane
 SearchResult search_equivalent(const std::array<ResolutionAxis, 2>& axes, const SearchOptions& options,
                                const Measure& measure);
+
+/// Fraction of the objective for which the search leaves the line: less than what predictions are off by.
+inline constexpr double k_worthwhile = 0.05;
 
 /// The allowed value next to `value`: within the axis's range, with four significant digits, whole for an integer axis.
 double rounded_value(const ResolutionAxis& axis, double value);

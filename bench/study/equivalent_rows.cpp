@@ -48,7 +48,9 @@ StudyRow step_row(const EquivalentResult& result, const SearchStep& step, std::s
   row.counters.emplace_back("predicted_ns", step.time_predicted_ns);
   row.counters.emplace_back(result.options.goal == Goal::time ? "tau_ns" : "eta_wanted", result.options.target);
   row.label += fmt::format(" time={} eta={}", to_string(step.time_form), to_string(step.eta_form));
-  if (step.reach != Reach::on_line) row.label += step.reach == Reach::below ? " all-below" : " all-above";
+  if (step.reach == Reach::inside) row.label += " inside";
+  if (step.reach == Reach::below) row.label += " all-below";
+  if (step.reach == Reach::above) row.label += " all-above";
   return row;
 }
 

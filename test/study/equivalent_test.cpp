@@ -98,6 +98,17 @@ TEST(SearchEquivalent, RefinesAPredictionThatIsOff) {
   EXPECT_LT(result.answer().measured.eta, 1.1 * 3.0 * x);
 }
 
+TEST(SearchEquivalent, TakesAFasterResolutionThatIsBetter) {
+  // The error grows again beyond 1,000, as where finer voxels do not pay: all points at tau are bad.
+  const auto off = [](double n) { return std::pow(std::log(n / 1000.0), 2); };
+  Fake fake{[](double a, double b) { return 10.0 * (a + b); },
+            [&](double a, double b) { return 0.1 + off(a) + off(b); }};
+  const SearchResult result = search_equivalent(counts(), {.target = 2e5}, fake.measure());
+  EXPECT_EQ(result.answer().reach, Reach::inside);
+  EXPECT_LT(result.answer().measured.time_ns, 1e5);
+  EXPECT_LT(result.answer().measured.eta, 1.0);  // at tau it is 10.7 or more
+}
+
 TEST(SearchEquivalent, SaysThatAllIsFasterOrSlower) {
   Fake fake{[](double a, double b) { return 10.0 * (a + b); }, [](double a, double b) { return 1.0 / a + 4.0 / b; }};
   const SearchResult faster = search_equivalent(counts(), {.target = 1e9}, fake.measure());
