@@ -82,6 +82,19 @@ TEST(Query, ParametersReachTheAlgorithm) {
   EXPECT_THAT(answers(ist).at("settings").get<std::string>(), HasSubstr("spheres=50"));
 }
 
+TEST(Query, InnerSphereTreesHaveTheirForceLawsAndNumbersOfSpheres) {
+  const std::string spheres = " -p spheres=60 -p spheres_b=40";
+  const auto force = [&](const std::string& algorithm) {
+    return answers(std::string(k_boxes) + " --algorithm " + algorithm + spheres).at("force");
+  };
+  const auto cones = force("ist");
+  EXPECT_EQ(cones, force("ist -p force=cones"));
+  EXPECT_NE(cones, force("ist -p force=volume"));
+  EXPECT_NE(cones, force("ist-descent"));
+  EXPECT_THAT(answers(std::string(k_boxes) + " --algorithm ist-descent" + spheres).at("settings").get<std::string>(),
+              HasSubstr("spheres_b=40"));
+}
+
 TEST(Query, RefusesBadArgumentsAndNamesThem) {
   const auto refuses = [](const std::string& arguments, const std::string& words) {
     const auto result = query(arguments);
@@ -97,6 +110,8 @@ TEST(Query, RefusesBadArgumentsAndNamesThem) {
   refuses(boxes + "--pose '0 0 0 1 0 0 0' --about '1 2'", "--about");
   refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm exactly", "no such algorithm");
   refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm ist -p sphere=3", "no such parameter");
+  refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm ist -p force=steepest_descent", "force");
+  refuses(boxes + "--pose '0 0 0 1 0 0 0' --algorithm ist-descent -p force=cones", "no such parameter");
   refuses("--a elefant --b box-100 --pose '0 0 0 1 0 0 0'", "elefant");
   refuses("--a box-100 --b no_such_file.ply --pose '0 0 0 1 0 0 0'", "no_such_file.ply");
   EXPECT_EQ(query("--a box-100 --b box-100").exit_code, k_exit_usage);
