@@ -23,8 +23,9 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
-  const json document =
-      result("--seed 5 --sample 32 -p ist:spheres=300 '--benchmark_filter=-^(scenario|kernel|generate)/'");
+  const json document = result(
+      "--seed 5 --sample 32 -p ist:spheres=300 -p ist-descent:spheres=300 "
+      "'--benchmark_filter=-^(scenario|kernel|generate)/'");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;
   std::size_t judged = 0;
@@ -92,7 +93,7 @@ TEST_F(BenchProgram, JudgesResponsesByTheirVolumeAndForce) {
 TEST_F(BenchProgram, ReportsTheWorkOfQueries) {
   const std::string pair = "/pair:torus-1k-cone-1k/";
   const json document = result(
-      "--sample 32 -p ist:spheres=300 --parameter vps:point_spacing=0.02 "
+      "--sample 32 -p ist:spheres=300 -p ist-descent:spheres=300 --parameter vps:point_spacing=0.02 "
       "--benchmark_filter='^(prepare|respond|collide)/algorithm:(vps|ist)/.*torus-1k-cone-1k'");
   const json prepared = row(document, "prepare/algorithm:vps/pair:torus-1k-cone-1k");
   for (const char* kind : {"respond", "collide"}) {
