@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -148,7 +149,8 @@ void run(const Options& options) {
   study::PrecisionPlan plan{.question = question_of(options.metric), .error = options.metric};
   plan.cost = "p99_least_ns";
   plan.seed = options.study.seed;
-  plan.budget_s = parse_duration("--budget", options.study.budget);
+  const double budget_s = parse_duration("--budget", options.study.budget);
+  const auto start = std::chrono::steady_clock::now();
   plan.single_queries = true;
   plan.deadline_ns = 1e9 * deadline_s;
   plan.rounds = 1;
@@ -162,6 +164,7 @@ void run(const Options& options) {
   StatusLine status;
   status.show("truth");
   const study::StudySample sample = study::draw_sample(pairs.cache(), pair, plan.question, pair.buckets, k_queries);
+  plan.budget_s = budget_s - std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   study::PrecisionStudy study(plan, pairs.cache(), pair, sample);
   study.run([&](const std::string& what, std::size_t done,
                 std::size_t total) { status.show(fmt::format("{}, {} of {} points", what, done, total)); },
@@ -188,8 +191,8 @@ void add_recommend_command(CLI::App& app) {
       ->capture_default_str();
   command->callback([options] { run(*options); });
   add_examples(
-      *command, "sixdof recommend --a cone-1k --b torus-1k --deadline 1ms --budget 30s",
-      "sixdof recommend --a cone-1k --b torus-1k --metric error_rms --deadline 50us --algorithms exact,fcl-rss");
+      *command, "sixdof recommend --a cone-1k --b torus-1k --deadline 1ms --algorithms exact,vps --budget 30s",
+      "sixdof recommend --a cone-1k --b torus-1k --metric error_rms --deadline 10ms --algorithms exact,fcl-rss");
 }
 
 }  // namespace sixdof::cli
