@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -33,7 +35,8 @@ TEST(Quality, PrintsMeasuresAsJson) {
 }
 
 TEST(Quality, PrintsATableAndWritesTheSeries) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "sixdof_quality_test.h5";
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("sixdof_quality_test" + std::to_string(::getpid()) + ".h5");
   const auto result =
       quality("--scenario Ia --algorithm null --law depth --steps 70 --shape facets=8 -o " + path.string());
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -43,7 +46,8 @@ TEST(Quality, PrintsATableAndWritesTheSeries) {
 }
 
 TEST(Quality, Draws) {
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "sixdof_quality_test.svg";
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("sixdof_quality_test" + std::to_string(::getpid()) + ".svg");
   const auto result = quality("--scenario IV --shape facets=16 --draw " + path.string());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   std::ifstream file(path);

@@ -1,5 +1,7 @@
 #include <sixdof/configuration/set_catalogue.h>
 
+#include <unistd.h>
+
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -59,7 +61,8 @@ TEST(SetCatalogue, KeepsMeshesOfOneNameApart) {
 }
 
 TEST(SetCatalogue, SaysWhatIsWrongWithAManifest) {
-  const auto file = std::filesystem::temp_directory_path() / "sixdof-bad-manifest.json";
+  const auto file =
+      std::filesystem::temp_directory_path() / ("sixdof-bad-manifest" + std::to_string(::getpid()) + ".json");
   for (const char* bad :
        {"", "{", "[]", R"({"sets": [{"pair": "x"}]})",
         R"({"sets": [{"pair": "X y", "a": {"name": "s"}, "b": {"name": "s"}, "file": "f", "buckets": []}]})",

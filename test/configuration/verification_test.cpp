@@ -1,5 +1,7 @@
 #include <sixdof/configuration/verification.h>
 
+#include <unistd.h>
+
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -38,7 +40,8 @@ Verdict verify_after(const Edit& edit, std::size_t sample = 200) {
   std::vector<Bucket> buckets = honest.buckets;
   edit(buckets);
   const auto path = std::filesystem::path(testing::TempDir()) /
-                    (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_verify.h5");
+                    (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
+                     std::to_string(::getpid()) + "_verify.h5");
   ConfigurationSetWriter writer(
       path, {.generator_version = "0", .a = MeshIdentity::of(k_a), .b = MeshIdentity::of(k_b), .grid = k_grid});
   for (const Bucket& bucket : buckets) writer.write(bucket.summary, bucket.translations);
@@ -125,7 +128,8 @@ TEST(Verification, FindsSummariesAndCopiesThatDoNotFit) {
 }
 
 TEST(Verification, StopsWhenAsked) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "sixdof_verify_stop.h5";
+  const auto path =
+      std::filesystem::path(testing::TempDir()) / ("sixdof_verify_stop" + std::to_string(::getpid()) + ".h5");
   ConfigurationSetWriter writer(
       path, {.generator_version = "0", .a = MeshIdentity::of(k_a), .b = MeshIdentity::of(k_b), .grid = k_grid});
   writer.write(distance_bucket(k_a, 5), std::vector<double>(k_grid.configurations(), 1.0));

@@ -1,5 +1,7 @@
 #include <sixdof/generation/volume_generator.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -342,7 +344,8 @@ Verdict verify_after(const Edit& edit) {
   std::vector<Bucket> buckets = honest.buckets;
   edit(buckets);
   const auto path = std::filesystem::path(testing::TempDir()) /
-                    (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_volumes.h5");
+                    (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
+                     std::to_string(::getpid()) + "_volumes.h5");
   ConfigurationSetWriter writer(
       path, {.generator_version = "0", .a = MeshIdentity::of(a), .b = MeshIdentity::of(b), .grid = grid});
   for (const Bucket& bucket : buckets) writer.write(bucket.summary, bucket.translations);

@@ -1,5 +1,7 @@
 #include <sixdof/scenario/evaluation.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <map>
 
@@ -121,7 +123,8 @@ TEST(SeriesFile, HoldsTheRecording) {
   IdealQuery query(*scenario, IdealLaw::volume, [](Response& r, double, std::size_t) { r.torque *= 3.0; });
   const Recording recording = record(*scenario, query, 150);
   const Measures measures = evaluate(*scenario, recording, IdealLaw::volume);
-  const std::filesystem::path path = std::filesystem::temp_directory_path() / "sixdof_series_test.h5";
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("sixdof_series_test" + std::to_string(::getpid()) + ".h5");
   write_series(path, *scenario, recording, IdealLaw::volume, {"ideal", "1", "x=2", "facets=96"}, measures);
   {
     const hdf5::Session session;

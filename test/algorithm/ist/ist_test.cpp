@@ -1,5 +1,7 @@
 #include <sixdof/algorithm/ist/ist.h>
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -249,7 +251,7 @@ TEST_F(IstTest, GivesNoForceFarApartAndFailsForAPoseThatIsNotFinite) {
 }
 
 TEST_F(IstTest, CachedPackingGivesTheSameAnswer) {
-  const std::string cache = ::testing::TempDir() + "/sixdof_ist_cache";
+  const std::string cache = ::testing::TempDir() + "/sixdof_ist_cache" + std::to_string(::getpid());
   std::filesystem::remove_all(cache);
   ::setenv("SIXDOF_CACHE", cache.c_str(), 1);
   const Mesh mesh = load_model("torus-knot-1k");
