@@ -96,6 +96,16 @@ Query& PrecisionStudy::query_of(const PrecisionPoint& point) {
   return cache_.query(*point.algorithm, point.sweep.settings, pair_.a, pair_.b);
 }
 
+/// Of the points with the settings of this one: algorithms of one family share structures through the cache on disk, so
+/// the first of them tells how long a finer one will take.
+double PrecisionStudy::slowest_preparation(const PrecisionPoint& point) const {
+  double slowest = 0.0;
+  for (const PrecisionPoint& other : points_) {
+    if (other.sweep.assignments == point.sweep.assignments) slowest = std::max(slowest, other.prepare_s);
+  }
+  return slowest;
+}
+
 /// A finer structure takes as much longer to prepare as the last one did, within k_growth and k_most_growth (the cache
 /// on disk makes some of them fast); a query of it k_growth times as long.
 std::string PrecisionStudy::why_left_out(const PrecisionPoint& point) const {
@@ -112,10 +122,12 @@ std::string PrecisionStudy::why_left_out(const PrecisionPoint& point) const {
   if (left <= 0.0) return "the budget was spent";
   if (last == nullptr) return {};
   if (!last->left_out.empty()) return last->left_out;
+  const double last_s = slowest_preparation(*last);
   const double growth =
-      before == nullptr ? k_growth : std::clamp(last->prepare_s / before->prepare_s, k_growth, k_most_growth);
+      before == nullptr ? k_growth
+                        : std::clamp(last_s / std::max(1e-9, slowest_preparation(*before)), k_growth, k_most_growth);
   const double queries = static_cast<double>(sample_.poses.size()) * static_cast<double>(1 + plan_.rounds);
-  const double needed = growth * last->prepare_s + k_growth * queries * 1e-9 * last->times.cpu_ns().value;
+  const double needed = growth * last_s + k_growth * queries * 1e-9 * last->times.cpu_ns().value;
   if (needed <= left) return {};
   return fmt::format("it would take about {:.0f} s, and {:.0f} s of the budget were left", needed, left);
 }

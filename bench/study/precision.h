@@ -112,6 +112,7 @@ class PrecisionStudy {
   PointTradeoffs tradeoffs() const;
   double left_s() const;
   Query& query_of(const PrecisionPoint& point);
+  double slowest_preparation(const PrecisionPoint& point) const;
   std::string why_left_out(const PrecisionPoint& point) const;
   void check_deadline(Query& query) const;
   void measure(PrecisionPoint& point);
