@@ -72,7 +72,7 @@ TEST(SetCatalogue, SaysWhatIsWrongWithAManifest) {
       SetCatalogue::read(file);
       ADD_FAILURE() << bad;
     } catch (const BadFile& e) {
-      EXPECT_THAT(e.what(), HasSubstr("sixdof-bad-manifest.json: set 0: ")) << bad;
+      EXPECT_THAT(e.what(), HasSubstr(file.filename().string() + ": set 0: ")) << bad;
     }
   }
   std::filesystem::remove(file);

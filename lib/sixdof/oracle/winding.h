@@ -9,7 +9,7 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 
-/// Exact winding numbers of closed surfaces. Internal: use distance.h or overlap.h.
+/// Exact winding numbers of closed surfaces. Internal: outside of the library use distance.h or overlap.h.
 ///
 /// The winding number of a closed surface around a point p is 1 inside of a body and 0 outside, and counts every layer
 /// where a mesh overlaps itself. It is the sum of the signed crossings of the surface by the shortest axis-parallel

@@ -51,6 +51,35 @@ TEST(Packing, SpheresAreInsideAndDisjoint) {
   }
 }
 
+/// A point just below a face of a part without thickness is outside the body.
+TEST(Packing, PutsNoSphereNextToPartsWithoutThickness) {
+  std::vector<Eigen::Vector3d> vertices;
+  for (const double z : {0.0, 1.0}) {
+    for (const auto& [x, y] : {std::pair(0.0, 0.0), {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}) vertices.emplace_back(x, y, z);
+  }
+  std::vector<Triangle> triangles;
+  constexpr std::uint32_t k_sides[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                           {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  for (const auto& side : k_sides) {
+    triangles.push_back({side[0], side[1], side[2]});
+    triangles.push_back({side[0], side[2], side[3]});
+  }
+  // Far from the box, the same triangle twice, back to back.
+  for (const auto& [x, y] : {std::pair(2.0, 0.0), {3.0, 0.0}, {2.0, 1.0}}) vertices.emplace_back(x, y, 0.0);
+  triangles.push_back({8, 9, 10});
+  triangles.push_back({8, 10, 9});
+  const Mesh mesh = Mesh::build(vertices, triangles, "box-and-flap");
+  ASSERT_TRUE(mesh.solid()) << mesh.why_not_solid();
+  const Packing packing = pack_spheres(mesh, at_most(100));
+  EXPECT_EQ(packing.spheres.size(), 100u);
+  EXPECT_GT(packing.fill, 0.7);
+  EXPECT_LT(packing.fill, 1.0);
+  for (const Sphere& s : packing.spheres) {
+    EXPECT_GE(s.center.minCoeff(), s.radius);
+    EXPECT_LE(s.center.maxCoeff(), 1.0 - s.radius);
+  }
+}
+
 TEST(Packing, FindsTheLargestSphereAndFillsWell) {
   const Mesh ball = load_model("sphere-2k");
   const Packing one = pack_spheres(ball, at_most(1));

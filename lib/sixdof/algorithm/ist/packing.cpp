@@ -19,6 +19,7 @@
 #include <sixdof/base/parallel.h>
 #include <sixdof/geometry/closest_point.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/winding.h>
 
 namespace sixdof::ist {
 namespace {
@@ -266,6 +267,7 @@ class Packer {
         if (clearance > 0.0) starts.push_back({p.position, clearance});
         continue;
       }
+      if (!is_inside(p.position)) continue;
       const Sphere sphere{p.position, p.clearance * (1.0 - k_margin)};
       space_.spheres.insert(sphere);
       filled_ += sphere.volume();
@@ -274,6 +276,10 @@ class Packer {
     add_prototypes(starts);
   }
 
+  /// Where the surface touches itself, a start just below one part of it may be outside of another part, and its
+  /// prototype then leaves the body.
+  bool is_inside(const Eigen::Vector3d& p) { return detail::winding_of_a(space_.tree, p, triangles_) > 0; }
+
   const Mesh& mesh_;
   const PackingOptions options_;
   const double min_radius_;
@@ -281,6 +287,7 @@ class Packer {
   std::priority_queue<Prototype> queue_;
   std::uint64_t order_ = 0;
   double filled_ = 0.0;
+  std::vector<std::uint32_t> triangles_;  ///< Scratch.
 };
 
 constexpr std::size_t k_rays = 96;          // per sphere, for an error of the cell's volume of some percent
@@ -338,7 +345,7 @@ Packing pack_spheres(const Mesh& mesh, const PackingOptions& options) {
 
 Packing cached_packing(const Mesh& mesh, const PackingOptions& options) {
   // Increase the version whenever the packing of the same mesh and options changes.
-  const std::string key = fmt::format("2 {} spheres={} fill={} smallest_radius={} seed={}", mesh.hash(),
+  const std::string key = fmt::format("3 {} spheres={} fill={} smallest_radius={} seed={}", mesh.hash(),
                                       options.spheres, options.fill, options.smallest_radius, options.seed);
   const auto visit = [&](CacheMembers members, Packing& packing) {
     members.records("spheres", packing.spheres);
