@@ -54,10 +54,11 @@ Mesh lumpy_globe(int rings, int sectors, double lump, std::uint64_t seed) {
   return Mesh::build(std::move(vertices), std::move(triangles), "lumpy-globe");
 }
 
-std::vector<std::unique_ptr<Algorithm>> both() {
+std::vector<std::unique_ptr<Algorithm>> with_distance() {
   std::vector<std::unique_ptr<Algorithm>> list;
   list.push_back(make_fcl_obbrss_algorithm());
   list.push_back(make_fcl_rss_algorithm());
+  list.push_back(make_fcl_kios_algorithm());
   return list;
 }
 
@@ -78,7 +79,7 @@ TEST_F(FclAgainstBruteForce, AgreesOnDistanceCollisionAndWitnesses) {
   std::uniform_real_distribution<double> reach(1.2, 2.6);
   int touching = 0;
   const int poses = 60;
-  for (const auto& algorithm : both()) {
+  for (const auto& algorithm : with_distance()) {
     const auto ab = algorithm->prepare(a, b, algorithm->settings());
     const auto ba = algorithm->prepare(b, a, algorithm->settings());
     for (int i = 0; i < poses; ++i) {
@@ -109,13 +110,42 @@ TEST_F(FclAgainstBruteForce, AgreesOnDistanceCollisionAndWitnesses) {
   }
   // Both answers must occur often.
   EXPECT_GT(touching, poses / 3);
-  EXPECT_LT(touching, 2 * poses - poses / 3);
+  EXPECT_LT(touching, 3 * poses - poses / 3);
+}
+
+TEST_F(FclAgainstBruteForce, AgreesOnCollisionWithoutDistance) {
+  for (const auto& algorithm : {make_fcl_obb_algorithm, make_fcl_aabb_algorithm}) {
+    const auto made = algorithm();
+    const auto ab = made->prepare(a, b, made->settings());
+    const auto ba = made->prepare(b, a, made->settings());
+    std::mt19937_64 random(2027);
+    std::uniform_real_distribution<double> reach(1.2, 2.6);
+    int touching = 0;
+    const int poses = 60;
+    for (int i = 0; i < poses; ++i) {
+      const Pose X_AB = generic_pose(random, reach(random));
+      const bool truth = brute_force_distance(a, b, X_AB) == 0.0;
+      touching += truth;
+      const auto forth = ab->collide(X_AB), back = ba->collide(X_AB.inverse()), again = ab->collide(X_AB);
+      ASSERT_TRUE(forth.ok() && back.ok() && again.ok());
+      EXPECT_EQ(forth.value, truth) << made->traits().name;
+      EXPECT_EQ(back.value, truth) << made->traits().name;
+      EXPECT_EQ(again.value, truth) << made->traits().name;
+      EXPECT_EQ(ab->distance(X_AB).status, Status::unsupported);
+    }
+    EXPECT_GT(touching, poses / 4);
+    EXPECT_LT(touching, poses - poses / 4);
+    Pose bad = generic_pose(random, 2.3);
+    bad.R(1, 2) = std::nan("");
+    EXPECT_EQ(ab->collide(bad).status, Status::failed);
+    EXPECT_THAT(ab->diagnosis(), ::testing::HasSubstr("not finite"));
+  }
 }
 
 TEST_F(FclAgainstBruteForce, BoundsTheApproximateDistance) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> reach(2.1, 3.0);
-  for (const auto& algorithm : both()) {
+  for (const auto& algorithm : with_distance()) {
     Settings settings = algorithm->settings();
     settings.set("relative_error", "0.25");
     const auto query = algorithm->prepare(a, b, settings);
@@ -151,7 +181,7 @@ TEST(Fcl, CountsSharedTreesOnce) {
   const Mesh a = lumpy_globe(9, 10, 0.2, 5);
   const Mesh same = Mesh::build(a.vertices(), a.triangles(), "another name");
   const Mesh other = lumpy_globe(9, 10, 0.2, 6);
-  for (const auto& algorithm : both()) {
+  for (const auto& algorithm : with_distance()) {
     const Footprint shared = algorithm->prepare(a, same, algorithm->settings())->footprint();
     const Footprint apart = algorithm->prepare(a, other, algorithm->settings())->footprint();
     EXPECT_EQ(apart.bytes, 2 * shared.bytes);
@@ -164,7 +194,7 @@ TEST(Fcl, CountsSharedTreesOnce) {
 
 TEST(Fcl, RefusesAPoseThatIsNotFinite) {
   const Mesh a = lumpy_globe(4, 5, 0.2, 5);
-  for (const auto& algorithm : both()) {
+  for (const auto& algorithm : with_distance()) {
     const auto query = algorithm->prepare(a, a, algorithm->settings());
     std::mt19937_64 random(8);
     Pose bad = generic_pose(random, 2.3);
@@ -176,11 +206,12 @@ TEST(Fcl, RefusesAPoseThatIsNotFinite) {
   }
 }
 
-TEST(Fcl, RegistersBothWithTheLibrarysVersion) {
+TEST(Fcl, RegistersAllWithTheLibrarysVersion) {
   Registry registry;
   register_fcl_algorithms(registry);
   EXPECT_THAT(registry.find("fcl-obbrss").traits().version, ::testing::StartsWith("0."));
   EXPECT_FALSE(registry.find("fcl-rss").traits().answers.collide);
+  EXPECT_EQ(registry.all().size(), 6u);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <fcl/config.h>
 
-#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
@@ -12,21 +11,24 @@
 #include <vector>
 
 #include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/math/bv/AABB.h>
+#include <fcl/math/bv/OBB.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/math/bv/RSS.h>
+#include <fcl/math/bv/kIOS.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
 #include <fcl/narrowphase/detail/traversal/distance/mesh_distance_traversal_node.h>
 #include <fcl/narrowphase/distance.h>
 #include <fmt/format.h>
 
+#include <sixdof/algorithm/contact_wrench.h>
 #include <sixdof/base/error.h>
 
 namespace sixdof {
 namespace {
 
 constexpr const char* k_relative_error = "relative_error";
-constexpr const char* k_combine = "combine";
 constexpr const char* k_max_contacts = "max_contacts";
 
 /// @throws BadMesh if FCL refuses the mesh
@@ -87,9 +89,42 @@ class FclQuery : public Query {
     }
   }
 
+  /// Whether any two triangles intersect. FCL stops at the first pair.
+  Outcome<bool> any_contact(const Pose& X_AB) {
+    return guarded(X_AB, [&]() -> Outcome<bool> {
+      fcl::CollisionResultd result;
+      fcl::collide<double>(a_.get(), X_AA_, b_.get(), X_AB_, first_contact_, result);
+      return result.isCollision();
+    });
+  }
+
+  const fcl::CollisionRequestd first_contact_{1, false};  ///< One contact, without its points.
   const std::shared_ptr<const fcl::BVHModel<BV>> a_, b_;
   const fcl::Transform3d X_AA_ = fcl::Transform3d::Identity();
   fcl::Transform3d X_AB_ = fcl::Transform3d::Identity();
+};
+
+template <class BV>
+class FclCollideQuery final : public FclQuery<BV> {
+ public:
+  FclCollideQuery(const Mesh& a, const Mesh& b, const Settings& /*settings*/) : FclQuery<BV>(a, b) {}
+  Outcome<bool> collide(const Pose& X_AB) override { return this->any_contact(X_AB); }
+};
+
+/// FCL's traversal for distances in trees of BV.
+template <class BV>
+struct DistanceNode;
+template <>
+struct DistanceNode<fcl::OBBRSSd> {
+  using type = fcl::detail::MeshDistanceTraversalNodeOBBRSSd;
+};
+template <>
+struct DistanceNode<fcl::RSSd> {
+  using type = fcl::detail::MeshDistanceTraversalNodeRSSd;
+};
+template <>
+struct DistanceNode<fcl::kIOSd> {
+  using type = fcl::detail::MeshDistanceTraversalNodekIOSd;
 };
 
 template <class BV>
@@ -102,14 +137,10 @@ class FclDistanceQuery final : public FclQuery<BV> {
       : Base(a, b), relative_error_(settings.number(k_relative_error)) {}
 
   Outcome<bool> collide(const Pose& X_AB) override {
-    if constexpr (!std::is_same_v<BV, fcl::OBBRSSd>) {
+    if constexpr (std::is_same_v<BV, fcl::RSSd>) {
       return Status::unsupported;
     } else {
-      return guarded(X_AB, [&]() -> Outcome<bool> {
-        fcl::CollisionResultd result;
-        fcl::collide<double>(a_.get(), X_AA_, b_.get(), X_AB_, first_contact_, result);
-        return result.isCollision();
-      });
+      return this->any_contact(X_AB);
     }
   }
 
@@ -129,9 +160,7 @@ class FclDistanceQuery final : public FclQuery<BV> {
   /// FCL 0.7 ignores the error bounds of a request, so they are set on the traversal node here. FCL skips a pair of
   /// volumes if BOTH bounds hold; with an infinite absolute bound the relative one decides.
   void approximate_distance(fcl::DistanceResultd& result) {
-    using Node = std::conditional_t<std::is_same_v<BV, fcl::OBBRSSd>, fcl::detail::MeshDistanceTraversalNodeOBBRSSd,
-                                    fcl::detail::MeshDistanceTraversalNodeRSSd>;
-    Node node;
+    typename DistanceNode<BV>::type node;
     fcl::detail::initialize(node, *a_, X_AA_, *b_, X_AB_, nearest_points_, result);
     node.rel_err = relative_error_;
     node.abs_err = std::numeric_limits<double>::infinity();
@@ -156,7 +185,6 @@ class FclDistanceQuery final : public FclQuery<BV> {
   }
 
   const double relative_error_;
-  const fcl::CollisionRequestd first_contact_{1, false};  ///< One contact, without its points.
   const fcl::DistanceRequestd nearest_points_{true};
 };
 
@@ -165,7 +193,7 @@ class ContactsQuery final : public FclQuery<fcl::OBBRSSd> {
   ContactsQuery(const Mesh& a, const Mesh& b, const Settings& settings)
       : FclQuery(a, b),
         center_b_(b.center()),
-        combine_(settings.choice(k_combine)),
+        wrench_(settings),
         request_(static_cast<std::size_t>(settings.number(k_max_contacts)), true) {}
 
   Outcome<Response> respond(const Pose& X_AB) override {
@@ -175,42 +203,23 @@ class ContactsQuery final : public FclQuery<fcl::OBBRSSd> {
       if (result.numContacts() >= request_.num_max_contacts) {
         return fail(Status::failed, fmt::format("more contacts than {}", request_.num_max_contacts));
       }
-      return combined(result, X_AB * center_b_);
+      wrench_.reset(X_AB * center_b_);
+      for (std::size_t i = 0; i < result.numContacts(); ++i) {
+        const fcl::Contactd& contact = result.getContact(i);
+        // FCL's normal points from the first body to the second: A to B.
+        wrench_.add(contact.pos, contact.normal, contact.penetration_depth);
+      }
+      const Response response = wrench_.response();
+      if (!response.force.allFinite() || !response.torque.allFinite()) {
+        return fail(Status::non_finite, "a contact is not finite");
+      }
+      return response;
     });
   }
 
  private:
-  Outcome<Response> combined(const fcl::CollisionResultd& result, const Eigen::Vector3d& reference) {
-    const bool only_deepest = combine_ == "deepest";
-    Response response;
-    response.reference = reference;
-    for (std::size_t i = 0; i < result.numContacts(); ++i) {
-      const fcl::Contactd& contact = result.getContact(i);
-      const double depth = std::max(0.0, contact.penetration_depth);
-      // FCL's normal points from the first body to the second: A to B.
-      const Eigen::Vector3d force = depth * contact.normal;
-      const Eigen::Vector3d torque = (contact.pos - reference).cross(force);
-      if (!only_deepest) {
-        response.force += force;
-        response.torque += torque;
-      } else if (depth > response.penalty) {
-        response.force = force;
-        response.torque = torque;
-      }
-      response.penalty = std::max(response.penalty, depth);
-    }
-    if (combine_ == "mean" && result.numContacts() > 0) {
-      response.force /= static_cast<double>(result.numContacts());
-      response.torque /= static_cast<double>(result.numContacts());
-    }
-    if (!response.force.allFinite() || !response.torque.allFinite()) {
-      return fail(Status::non_finite, "a contact is not finite");
-    }
-    return response;
-  }
-
   const Eigen::Vector3d center_b_;
-  const std::string combine_;
+  ContactWrench wrench_;
   const fcl::CollisionRequestd request_;
 };
 
@@ -237,6 +246,27 @@ std::unique_ptr<Algorithm> make_fcl_rss_algorithm() {
       traits("fcl-rss", "FCL, tree of rectangle-swept spheres as in PQP", {.distance = true}));
 }
 
+std::unique_ptr<Algorithm> make_fcl_kios_algorithm() {
+  return make_algorithm<FclDistanceQuery<fcl::kIOSd>>(
+      traits("fcl-kios", "FCL, tree of intersections of spheres with an oriented box (kIOS)",
+             {.collide = true, .distance = true}));
+}
+
+std::unique_ptr<Algorithm> make_fcl_obb_algorithm() {
+  return make_algorithm<FclCollideQuery<fcl::OBBd>>({.name = "fcl-obb",
+                                                     .version = FCL_VERSION,
+                                                     .summary = "FCL, tree of oriented boxes",
+                                                     .answers = {.collide = true}});
+}
+
+std::unique_ptr<Algorithm> make_fcl_aabb_algorithm() {
+  return make_algorithm<FclCollideQuery<fcl::AABBd>>(
+      {.name = "fcl-aabb",
+       .version = FCL_VERSION,
+       .summary = "FCL, tree of axis-aligned boxes; every query copies and refits the models",
+       .answers = {.collide = true}});
+}
+
 std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() {
   return make_algorithm<ContactsQuery>(
       {.name = "fcl-contacts",
@@ -244,11 +274,7 @@ std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() {
        .summary = "FCL's contacts of triangle pairs as a penalty wrench",
        .answers = {.respond = true},
        .law = ResponseLaw::depth,
-       .parameters = {
-           Parameter::choice(k_combine, "how depth * normal of all contacts become one force", "mean",
-                             {"mean", "sum", "deepest"}),
-           Parameter::count(k_max_contacts, "a query with this many contacts fails, because FCL drops the rest",
-                            "1000000", 1, 1e9)}});
+       .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("1000000", 1e9)}});
 }
 
 std::string fcl_build() {
@@ -260,6 +286,9 @@ std::string fcl_build() {
 void register_fcl_algorithms(Registry& registry) {
   registry.add(make_fcl_obbrss_algorithm());
   registry.add(make_fcl_rss_algorithm());
+  registry.add(make_fcl_kios_algorithm());
+  registry.add(make_fcl_obb_algorithm());
+  registry.add(make_fcl_aabb_algorithm());
   registry.add(make_fcl_contacts_algorithm());
 }
 

@@ -17,12 +17,22 @@ std::unique_ptr<Algorithm> make_fcl_obbrss_algorithm();
 /// FCL 0.7 copies and refits the whole model in every collide() on this volume, which would be all that is measured.
 std::unique_ptr<Algorithm> make_fcl_rss_algorithm();
 
+/// `fcl-kios`: intersections of up to five spheres, with an oriented box, in every node. Answers collide (boxes first)
+/// and distance (spheres). Surfaces only.
+std::unique_ptr<Algorithm> make_fcl_kios_algorithm();
+
+/// `fcl-obb`: oriented boxes only. Answers collide; FCL has no distance for this volume. Surfaces only.
+std::unique_ptr<Algorithm> make_fcl_obb_algorithm();
+
+/// `fcl-aabb`: boxes along the axes of each mesh. Answers collide. FCL copies both models in every query, transforms
+/// the vertices of B and refits B's boxes, so that the time of a query grows with the number of triangles and hardly
+/// depends on the pose. Surfaces only.
+std::unique_ptr<Algorithm> make_fcl_aabb_algorithm();
+
 /// `fcl-contacts`: FCL's contacts turned into a wrench of the depth law. Answers respond only.
 ///
 /// For every pair of intersecting triangles FCL reports a point, a unit normal from A to B and the penetration depth of
-/// these two triangles, not of the bodies. The wrench is the mean of depth * normal over the contacts, with torques
-/// about the centre of B's bounding box, and the penalty is the largest depth. The mean, because the number of pairs
-/// depends on the tessellation; parameter `combine` selects the sum or the deepest contact instead.
+/// these two triangles, not of the bodies. They become a wrench by the rule of algorithm/contact_wrench.h.
 ///
 /// Limits: surfaces only, so a body wholly inside the other has no contact; coplanar triangles give contacts with
 /// normals of either sign, or none; depths are not continuous, as pairs appear and disappear.
@@ -33,7 +43,7 @@ std::unique_ptr<Algorithm> make_fcl_contacts_algorithm();
 /// that of the headers when sixdof was configured.
 std::string fcl_build();
 
-/// Adds the three.
+/// Adds all six.
 void register_fcl_algorithms(Registry& registry);
 
 }  // namespace sixdof
