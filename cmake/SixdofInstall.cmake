@@ -3,9 +3,12 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(sixdof_install_targets sixdof)
-if(TARGET sixdof_fcl)
-  list(APPEND sixdof_install_targets sixdof_fcl)
-endif()
+foreach(backend IN ITEMS fcl bullet ode)
+  if(TARGET sixdof_${backend})
+    list(APPEND sixdof_install_targets sixdof_${backend})
+    set(SIXDOF_HAS_${backend} ON)
+  endif()
+endforeach()
 install(TARGETS ${sixdof_install_targets} EXPORT sixdof
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -64,10 +64,10 @@ void print_json(const Registry& registry) {
 }
 
 void print_text(const Registry& registry) {
-  fmt::print("{:<16} {:<10} {:<28} {:<7} {}\n", "algorithm", "version", "answers", "law", "summary");
+  fmt::print("{:<16} {:<13} {:<28} {:<7} {}\n", "algorithm", "version", "answers", "law", "summary");
   for (const auto& algorithm : registry.all()) {
     const Traits& traits = algorithm->traits();
-    fmt::print("{:<16} {:<10} {:<28} {:<7} {}\n", traits.name, traits.version,
+    fmt::print("{:<16} {:<13} {:<28} {:<7} {}\n", traits.name, traits.version,
                fmt::format("{}", fmt::join(names_of(traits.answers), ",")), to_string(traits.law),
                traits.timed ? traits.summary : traits.summary + " (not timed)");
     for (const Parameter& parameter : traits.parameters) {

@@ -1,0 +1,38 @@
+# Configures without any backend, and with packages of the optional ones that pkg-config cannot use: both work, the
+# second says what is left out, and the list of algorithms compiles.
+function(run output_variable)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(result)
+    message(FATAL_ERROR "${ARGN}\nexited with ${result}:\n${output}")
+  endif()
+  set(${output_variable} "${output}" PARENT_SCOPE)
+endfunction()
+
+function(expect_no_backend build)
+  file(READ ${build}/build.ninja rules)
+  foreach(backend IN LISTS ARGN)
+    if(rules MATCHES "libsixdof_${backend}")
+      message(FATAL_ERROR "${build} builds the backend ${backend}")
+    endif()
+  endforeach()
+  run(output ${CMAKE_COMMAND} --build ${build}
+    --target bench/CMakeFiles/sixdof_bench_common.dir/common/all_algorithms.cpp.o)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK}/without ${WORK}/unusable ${WORK}/pkgconfig)
+set(configure ${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -DSIXDOF_BUILD_TESTS=OFF -DSIXDOF_INSTALL=OFF)
+run(output ${configure} -B ${WORK}/without -DSIXDOF_WITH_FCL=OFF -DSIXDOF_WITH_BULLET=OFF -DSIXDOF_WITH_ODE=OFF)
+expect_no_backend(${WORK}/without fcl bullet ode)
+
+foreach(module IN ITEMS bullet-float64 ode)
+  file(WRITE ${WORK}/pkgconfig/${module}.pc
+    "Name: ${module}\nDescription: unusable\nVersion: 1\nRequires: sixdof-no-such-package\n")
+endforeach()
+set(ENV{PKG_CONFIG_PATH} ${WORK}/pkgconfig)
+run(output ${configure} -B ${WORK}/unusable)
+foreach(words IN ITEMS "No bullet-float64: .*libbullet-dev" "No ode: .*libode-dev")
+  if(NOT output MATCHES "${words}")
+    message(FATAL_ERROR "no message '${words}' in:\n${output}")
+  endif()
+endforeach()
+expect_no_backend(${WORK}/unusable bullet ode)
