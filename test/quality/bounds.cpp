@@ -1,7 +1,12 @@
 #include "bounds.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+
+#include "backend_bounds.h"
+#include "bench/common/all_algorithms.h"
 
 namespace sixdof {
 namespace {
@@ -426,7 +431,19 @@ Subject subject(std::string_view name) {
   return {std::string(name), {}};
 }
 
-std::span<const Bound> bounds() { return k_bounds; }
+std::span<const Bound> bounds() {
+  static const std::vector<Bound> all = [] {
+    Registry registry;
+    register_all_algorithms(registry);
+    const auto is_built = [&](const Bound& bound) {
+      return std::ranges::any_of(registry.all(), [&](const auto& a) { return a->traits().name == bound.algorithm; });
+    };
+    std::vector<Bound> list(k_bounds.begin(), k_bounds.end());
+    std::ranges::copy_if(backend_bounds(), std::back_inserter(list), is_built);
+    return list;
+  }();
+  return all;
+}
 
 Verdict judge(double value, double bound, Kind kind) {
   if (kind == Kind::records) {

@@ -35,8 +35,8 @@ struct Bound {
   Kind kind = Kind::gate;
 };
 
-/// The one table. A value above the bound fails. A value below half the bound fails too, unless the bound is at most
-/// k_rounding_bound.
+/// The one table, without algorithms that this build leaves out. A value above the bound fails. A value below half the
+/// bound fails too, unless the bound is at most k_rounding_bound.
 std::span<const Bound> bounds();
 
 /// Up to here a bound means "rounding only", and a value far below it is not reported.
