@@ -19,6 +19,16 @@ LIMIT_S = 2.5
 FIRST = "collide/algorithm:null/pair:torus-knot-10k/distance:05"
 
 
+def handles(pid, how):
+    """Whether the process has installed a handler of the signal (proc(5), SigCgt)."""
+    try:
+        lines = pathlib.Path(f"/proc/{pid}/status").read_text(encoding="ascii").splitlines()
+    except OSError:
+        return False
+    masks = [int(line.split()[1], 16) for line in lines if line.startswith("SigCgt:")]
+    return bool(masks) and bool(masks[0] >> (how - 1) & 1)
+
+
 class CtrlC(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -29,11 +39,11 @@ class CtrlC(unittest.TestCase):
         return sorted(str(path.relative_to(self.folder)) for path in self.folder.rglob("*") if path.is_file())
 
     def interrupt(self, words, begun, how=signal.SIGINT):
-        """Sends the signal half a second after begun() is true; returns what was printed."""
+        """Sends the signal half a second after begun() is true and the program handles it; returns what was printed."""
         with subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                               env=os.environ | {"SIXDOF_CACHE": str(self.folder / "cache")}) as program:
             deadline = time.monotonic() + 60
-            while not begun() and time.monotonic() < deadline:
+            while not (begun() and handles(program.pid, how)) and time.monotonic() < deadline:
                 time.sleep(0.01)
             time.sleep(0.5)
             self.assertIsNone(program.poll(), "ended before the signal")
