@@ -1,7 +1,10 @@
 #include <sixdof/algorithm/ode/ode.h>
 
 #include <atomic>
+#include <stdexcept>
 #include <thread>
+
+#include <ode/ode.h>
 
 #include "../contact_checks.h"
 
@@ -28,6 +31,17 @@ TEST(Ode, FailsWhenOdeDropsContacts) {
   EXPECT_EQ(query->respond(t.X_AB).status, Status::failed);
   EXPECT_THAT(query->diagnosis(), ::testing::HasSubstr("more contacts than 2"));
   EXPECT_TRUE(query->collide(t.X_AB).value);
+}
+
+TEST(Ode, NeitherPrintsNorEndsTheProcess) {
+  const test::BallOnFace t;
+  const auto algorithm = make_ode_algorithm();
+  const auto query = test::prepare(*algorithm, t.block, t.ball);
+  ::testing::internal::CaptureStderr();
+  dMessage(1, "a message");
+  EXPECT_THROW(dError(1, "error %d", 7), std::runtime_error);
+  EXPECT_THROW(dDebug(1, "failed assertion"), std::runtime_error);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(Ode, AnswersOnSeveralThreads) {

@@ -13,7 +13,8 @@ namespace sixdof {
 ///
 /// **Prepare** builds OPCODE's tree of each mesh; it refers to the mesh's own arrays. **A query** moves B's geometry
 /// and calls dCollide() for the pair, without a space. collide asks for one contact and says that the contacts do not
-/// matter (CONTACTS_UNIMPORTANT), as ODE's manual has it. respond asks for all. Nothing is kept from query to query:
+/// matter (CONTACTS_UNIMPORTANT), as ODE's manual has it; OPCODE collects all pairs of triangles nonetheless. respond
+/// asks for all. Nothing is kept from query to query:
 /// OPCODE's temporal coherence is off, as by default.
 ///
 /// **Contacts** become a wrench by the rule of algorithm/contact_wrench.h. ODE counts contacts in 16 bits, so a query
