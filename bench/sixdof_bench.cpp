@@ -9,7 +9,6 @@
 #include <benchmark/benchmark.h>
 
 #include <sixdof/configuration/set_catalogue.h>
-#include <sixdof/query/registrar.h>
 #include "bench/common/all_algorithms.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/run_guarded.h"
@@ -28,12 +27,7 @@ constexpr const char* k_cold = "cold";
 
 void run(const Options& options) {
   Registry registry;
-  register_all_algorithms(registry);
-  std::vector<std::string> external;
-  for (const auto& make : Registrar::makers()) {
-    registry.add(make());
-    external.push_back(registry.all().back()->traits().name);
-  }
+  const std::vector<std::string> external = register_all_algorithms(registry);
   auto settings = parse_parameters(options.parameters, registry);
   SetCatalogue catalogue;
   if (!options.manifest.empty()) catalogue = SetCatalogue::read(options.manifest);

@@ -22,9 +22,10 @@ if(SIXDOF_SANITIZE)
   target_link_options(sixdof_build_flags INTERFACE -fsanitize=${SIXDOF_SANITIZE})
 endif()
 
-# sixdof_library(TARGET SOURCES...): a library of this project, exported as sixdof::NAME.
+# sixdof_library(TARGET SOURCES...): a library of this project, exported and installed as sixdof::NAME.
 function(sixdof_library target)
   add_library(${target} STATIC ${ARGN})
+  set_property(GLOBAL APPEND PROPERTY sixdof_libraries ${target})
   string(REGEX REPLACE "^sixdof_" "" export_name ${target})
   add_library(sixdof::${export_name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${export_name} POSITION_INDEPENDENT_CODE ON)

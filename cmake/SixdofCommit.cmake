@@ -13,8 +13,13 @@ else()
     set(dirty true)
   endif()
 endif()
+string(SUBSTRING ${commit} 0 12 short)
+if(dirty)
+  string(APPEND short " (modified)")
+endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT
 "#pragma once
 inline constexpr const char* k_commit = \"${commit}\";
+inline constexpr const char* k_short_commit = \"${short}\";
 inline constexpr bool k_commit_dirty = ${dirty};
 ")

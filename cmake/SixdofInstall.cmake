@@ -1,31 +1,45 @@
-# Installation and export: find_package(sixdof) gives sixdof::sixdof and the backends that were built.
+# Installation and export: find_package(sixdof) gives sixdof::sixdof, the backends that were built, and sixdof::bench_main
+# and sixdof::cli_main if the programs were built. Nothing installed names its folder: it may be moved.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof)
+set(data_folder share/sixdof)  # as lib/sixdof/base/data_folder.h looks for it
 
-set(sixdof_install_targets sixdof)
 foreach(backend IN ITEMS fcl bullet ode)
   if(TARGET sixdof_${backend})
-    list(APPEND sixdof_install_targets sixdof_${backend})
     set(SIXDOF_HAS_${backend} ON)
   endif()
 endforeach()
-install(TARGETS ${sixdof_install_targets} EXPORT sixdof
+get_property(libraries GLOBAL PROPERTY sixdof_libraries)
+install(TARGETS ${libraries} EXPORT sixdof
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT sixdof NAMESPACE sixdof:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof FILE sixdof-targets.cmake)
+install(EXPORT sixdof NAMESPACE sixdof:: DESTINATION ${package_folder} FILE sixdof-targets.cmake)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/sixdof DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.h" PATTERN "*-inl.h" EXCLUDE)
+  FILES_MATCHING PATTERN "*.h" PATTERN "query/README.md" PATTERN "*-inl.h" EXCLUDE)
 
-foreach(program IN ITEMS sixdof_program sixdof-bench)
-  if(TARGET ${program})
-    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  endif()
-endforeach()
+if(SIXDOF_BUILD_BENCH)
+  install(TARGETS sixdof_program sixdof-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES ${PROJECT_SOURCE_DIR}/bench/default_suite.json ${PROJECT_SOURCE_DIR}/bench/own_pair_suite.json
+    DESTINATION ${data_folder}/bench)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/new_algorithm DESTINATION ${data_folder}/bench)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/fixtures DESTINATION ${data_folder}
+    FILES_MATCHING PATTERN "manifest.json" PATTERN "*.h5")
+  install(FILES ${PROJECT_SOURCE_DIR}/models/models.json DESTINATION ${data_folder}/models)
+  install(PROGRAMS ${PROJECT_SOURCE_DIR}/models/fetch DESTINATION ${data_folder}/models)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/linked_data_folder.cpp DESTINATION ${data_folder}/cmake)
+endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sixdof-config.cmake.in
   ${PROJECT_BINARY_DIR}/sixdof-config.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof)
+  INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/sixdof-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/sixdof-config.cmake ${PROJECT_BINARY_DIR}/sixdof-config-version.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof)
+  ${PROJECT_SOURCE_DIR}/cmake/SixdofCommit.cmake ${PROJECT_SOURCE_DIR}/cmake/SixdofCommitHeader.cmake
+  DESTINATION ${package_folder})
+
+# pkg-config, for the core library alone.
+file(RELATIVE_PATH prefix_of_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/sixdof.pc.in ${PROJECT_BINARY_DIR}/sixdof.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/sixdof.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -50,5 +50,8 @@ void add_verify_command(CLI::App& app);
 /// `sixdof table FILE.json [MORE.json ...] [--markdown | --json]`: results of sixdof-bench, one table per pair, query
 /// and kind of bucket; several files side by side (table.h).
 void add_table_command(CLI::App& app);
+/// `sixdof new-algorithm NAME [-o FOLDER]`: a project of its own with an algorithm that is to be replaced, made of
+/// the files in bench/new_algorithm/. The folder appears whole or not at all; nothing is overwritten.
+void add_new_algorithm_command(CLI::App& app);
 
 }  // namespace sixdof::cli

@@ -1,6 +1,7 @@
 #include "bench/common/all_algorithms.h"
 
 #include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/query/registrar.h>
 #ifdef SIXDOF_WITH_BULLET
 #include <sixdof/algorithm/bullet/bullet.h>
 #endif
@@ -13,7 +14,7 @@
 
 namespace sixdof {
 
-void register_all_algorithms(Registry& registry) {
+std::vector<std::string> register_all_algorithms(Registry& registry) {
   register_core_algorithms(registry);
 #ifdef SIXDOF_WITH_FCL
   register_fcl_algorithms(registry);
@@ -24,6 +25,12 @@ void register_all_algorithms(Registry& registry) {
 #ifdef SIXDOF_WITH_ODE
   register_ode_algorithms(registry);
 #endif
+  std::vector<std::string> external;
+  for (const auto& make : Registrar::makers()) {
+    registry.add(make());
+    external.push_back(registry.all().back()->traits().name);
+  }
+  return external;
 }
 
 }  // namespace sixdof

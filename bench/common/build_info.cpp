@@ -1,8 +1,6 @@
 #include "bench/common/build_info.h"
 
-#include <cstddef>
 #include <fstream>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <Eigen/Core>
@@ -29,11 +27,7 @@ std::string processor() {
 
 }  // namespace
 
-std::string program_version() {
-  constexpr std::size_t k_digits = 12;
-  return fmt::format("{} {}{}", SIXDOF_VERSION, std::string_view(k_commit).substr(0, k_digits),
-                     k_commit_dirty ? " (modified)" : "");
-}
+std::string program_version() { return fmt::format("{} {}", SIXDOF_VERSION, k_short_commit); }
 
 std::vector<std::pair<std::string, std::string>> build_info() {
   return {

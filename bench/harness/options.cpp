@@ -13,6 +13,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include <sixdof/base/data_folder.h>
 #include <sixdof/base/error.h>
 #include "bench/common/run_guarded.h"
 #include "bench/common/unknown_word.h"
@@ -132,7 +133,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
 
 }  // namespace
 
-std::filesystem::path default_manifest() { return SIXDOF_FIXTURES_DIR "/manifest.json"; }
+std::filesystem::path default_manifest() { return data_folder() / "fixtures" / "manifest.json"; }
 
 int parse_options(int argc, const char* const* argv, Options& options) {
   CLI::App app("sixdof-bench: collision queries under Google Benchmark", "sixdof-bench");
@@ -218,7 +219,7 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   if (suite.empty() && options.own_pair()) suite = "own-pair";
   if (suite.empty()) suite = own_sets || has_flag(flags, "--benchmark_filter") ? "all" : "default";
   if (suite == "default" || suite == "own-pair") {
-    options.suite = suite == "default" ? SIXDOF_DEFAULT_SUITE : SIXDOF_OWN_PAIR_SUITE;
+    options.suite = data_folder() / "bench" / (suite == "default" ? "default_suite.json" : "own_pair_suite.json");
   } else if (suite != "all") {
     options.suite = suite;
   }

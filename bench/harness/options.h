@@ -42,7 +42,7 @@ struct Options {
   bool own_pair() const { return !a.empty() && sets.empty(); }
 };
 
-/// The catalogue of the committed sets.
+/// The catalogue of the sets that come with the programs.
 std::filesystem::path default_manifest();
 
 /// Parses the command line and hands Google Benchmark its part of it. Help, version and errors are printed.

@@ -36,6 +36,11 @@ TEST(Registry, RefusesANameTwiceAndInvalidNames) {
   EXPECT_EQ(registry.all().size(), 1u);
 }
 
+TEST(Registry, RefusesANullPointer) {
+  Registry registry;
+  EXPECT_THROW(registry.add(nullptr), BadArgument);
+}
+
 TEST(Registry, RefusesSweepsOfUnlikeLength) {
   const auto with_sweeps = [](std::vector<std::string> second) {
     const Parameter count = Parameter::count("voxels", "voxels", "1", 1, 9);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/base/data_folder.h>
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/load.h>
 
@@ -60,6 +61,8 @@ std::filesystem::path model_cache() {
     const std::filesystem::path folder = models_folder_above(start);
     if (!folder.empty()) return folder / "cache";
   }
+  const std::filesystem::path packaged = data_folder() / "models";
+  if (std::filesystem::exists(packaged / "models.json", ignored)) return packaged / "cache";
   return std::filesystem::path("models") / "cache";
 }
 

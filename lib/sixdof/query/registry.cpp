@@ -12,6 +12,7 @@
 namespace sixdof {
 
 void Registry::add(std::unique_ptr<Algorithm> algorithm) {
+  if (algorithm == nullptr) throw BadArgument("an algorithm to be registered is null");
   const std::string& name = algorithm->traits().name;
   if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos) {
     throw BadArgument(fmt::format("algorithm name '{}': only a-z, 0-9 and '-'", name));

@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <sixdof/base/atomic_file.h>
+#include <sixdof/base/data_folder.h>
+#include <sixdof/base/error.h>
+#include "bench/cli/commands.h"
+#include "bench/cli/shared.h"
+
+namespace sixdof::cli {
+namespace {
+
+using Path = std::filesystem::path;
+
+struct Arguments {
+  std::string name;
+  std::string output;
+};
+
+/// @throws BadArgument unless an algorithm, a file, a class and a CMake target can have names made of this one
+void check_name(const std::string& name) {
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto is_allowed = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-'; };
+  if (name.empty() || !is_letter(name.front()) || name.back() == '-' || !std::ranges::all_of(name, is_allowed)) {
+    throw BadArgument(fmt::format("{}: a name is a letter, then a-z, 0-9 and '-', and ends in no '-'", name));
+  }
+  Registry registry;
+  register_all_algorithms(registry);
+  for (const auto& algorithm : registry.all()) {
+    if (algorithm->traits().name == name)
+      throw BadArgument(fmt::format("{}: there is an algorithm of this name", name));
+  }
+}
+
+/// "fast-boxes" gives "fast_boxes".
+std::string file_stem(std::string name) {
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+/// "fast-boxes" gives "FastBoxesQuery".
+std::string class_name(const std::string& name) {
+  std::string result;
+  bool begins_word = true;
+  for (const char c : name) {
+    if (c != '-') result += begins_word ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    begins_word = c == '-';
+  }
+  return result + "Query";
+}
+
+/// The sixdof that the project uses: the source that this program was built in, else the installation that it is part
+/// of.
+Path sixdof_root() {
+  std::error_code ignored;
+  const Path root = std::filesystem::weakly_canonical(data_folder() / "bench", ignored).parent_path();
+  return std::filesystem::exists(root / "lib" / "sixdof" / "CMakeLists.txt", ignored)
+             ? root
+             : root.parent_path().parent_path();
+}
+
+using Words = std::vector<std::pair<std::string, std::string>>;
+
+/// The template with each word "@KEY@" replaced. @throws BadFile
+std::string fill_in(const Path& file, const Words& words) {
+  std::ifstream in(file);
+  if (!in) throw BadFile(file.string(), "cannot be opened");
+  std::ostringstream whole;
+  whole << in.rdbuf();
+  std::string text = whole.str();
+  for (const auto& [key, value] : words) {
+    const std::string place = "@" + key + "@";
+    for (std::size_t at = 0; (at = text.find(place, at)) != std::string::npos; at += value.size()) {
+      text.replace(at, place.size(), value);
+    }
+  }
+  return text;
+}
+
+/// A folder that gets its name when it is whole.
+class NewFolder {
+ public:
+  /// @throws BadArgument if the name is taken, BadFile if the folder cannot be made
+  explicit NewFolder(const Path& target)
+      : target_(target.has_filename() ? target : target.parent_path()),
+        unfinished_(target_.string() + fmt::format(".{}.partial", ::getpid())) {
+    refuse_existing();
+    std::error_code why;
+    std::filesystem::create_directory(unfinished_, why);
+    if (why) throw BadFile(target_.string(), "cannot be made: " + why.message());
+  }
+  ~NewFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(unfinished_, ignored);
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+
+  void write(const std::string& file, const std::string& text) const {
+    write_file_atomically(unfinished_ / file, text);
+  }
+
+  void commit() const {
+    refuse_existing();
+    std::error_code why;
+    std::filesystem::rename(unfinished_, target_, why);
+    if (why) throw BadFile(target_.string(), "cannot be made: " + why.message());
+  }
+
+ private:
+  void refuse_existing() const {
+    std::error_code ignored;
+    if (std::filesystem::exists(std::filesystem::symlink_status(target_, ignored))) {
+      throw BadArgument(fmt::format("{}: exists already, and is not overwritten", target_.string()));
+    }
+  }
+
+  Path target_, unfinished_;
+};
+
+void write_project(const Arguments& arguments) {
+  const std::string& name = arguments.name;
+  check_name(name);
+  const Path templates = data_folder() / "bench" / "new_algorithm";
+  const std::string stem = file_stem(name);
+  const Words words{{"NAME", name}, {"FILE", stem}, {"CLASS", class_name(name)}, {"SIXDOF", sixdof_root().string()}};
+  const Path output = arguments.output.empty() ? name : arguments.output;
+  const NewFolder folder(output);
+  folder.write("CMakeLists.txt", fill_in(templates / "CMakeLists.txt.in", words));
+  folder.write("README.md", fill_in(templates / "README.md.in", words));
+  folder.write(stem + ".cpp", fill_in(templates / "algorithm.cpp.in", words));
+  folder.commit();
+  fmt::print(
+      "{0}: a project with the algorithm {1}. To build it and see its first row:\n"
+      "  cd {0} && cmake -S . -B build && cmake --build build\n"
+      "  build/{1}-bench --a cone-1k --b torus-1k\n",
+      output.string(), name);
+}
+
+}  // namespace
+
+void add_new_algorithm_command(CLI::App& app) {
+  auto* const command =
+      app.add_subcommand("new-algorithm", "Write a project with an algorithm of your own, which builds as it is");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("name", arguments->name, "The algorithm's name: a-z, 0-9 and '-'")->required();
+  command->add_option("-o,--output", arguments->output, "The folder to make; NAME if left out");
+  command->callback([arguments] { write_project(*arguments); });
+  add_examples(*command, "sixdof new-algorithm fast-boxes", "sixdof new-algorithm fast-boxes -o my-project");
+}
+
+}  // namespace sixdof::cli

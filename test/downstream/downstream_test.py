@@ -1,0 +1,127 @@
+"""Foreign projects with an algorithm of their own, against the installed package and by FetchContent.
+
+CMakeLists.txt calls this with a test class and the folders.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import unittest
+
+PROJECT = pathlib.Path(__file__).resolve().parent / "project"
+MOST_LINES = 50  # of an adapter around a library
+PAIR = ["--a", "cone-1k", "--b", "torus-1k"]
+APART, TOGETHER = "2.9 0 0.1 1 0 0 0", "0.9 0 0.1 1 0 0 0"
+VERSION = r"^[0-9]+\.[0-9]+ ([0-9a-f]{12}( \(modified\))?|unknown)$"  # of Bullet, and the commit
+ARGUMENTS = None
+
+
+def run(*words, cwd="/", expected=0):
+    """Standard output of a command that ends with the expected code. Its caches are the test's own."""
+    environment = {**os.environ, "SIXDOF_CACHE": str(ARGUMENTS.work / "cache")}
+    environment.pop("SIXDOF_DATA", None)
+    done = subprocess.run([str(word) for word in words], cwd=cwd, env=environment, capture_output=True, text=True)
+    if done.returncode != expected:
+        raise AssertionError(f"{words} ended with {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
+    return done.stdout if expected == 0 else done.stderr
+
+
+def configure_and_build(source, build, *options):
+    run("cmake", "-G", "Ninja", "-S", source, "-B", build, *ARGUMENTS.cmake, *options)
+    run("cmake", "--build", build)
+
+
+class Project(unittest.TestCase):
+    """What every program with an added algorithm must show."""
+
+    def check_lists(self, program, name, version):
+        listed = {entry["name"]: entry for entry in json.loads(run(program, "algorithms", "--json"))}
+        self.assertIn("exact", listed)
+        self.assertRegex(listed[name]["version"], version)
+
+    def check_queries(self, program, name):
+        for pose, meet in ((APART, False), (TOGETHER, True)):
+            answer = json.loads(run(program, "query", *PAIR, "--pose", pose, "--algorithm", name, "--json"))
+            self.assertEqual((answer["status"], answer["colliding"]), ("ok", meet))
+
+    def check_study(self, program, name, folder):
+        file = folder / "precision.json"
+        run(program, "precision", *PAIR, "--question", "collide", "--algorithms", f"exact,{name}", "--sample", 16,
+            "--budget", "20s", "-o", file)
+        result = json.loads(file.read_text())
+        self.assertIn(f"algorithm:{name}", result["context"])
+        self.assertEqual({row["sixdof"]["algorithm"] for row in result["benchmarks"]}, {"exact", name})
+
+    def check_rows(self, program, name, version, folder):
+        """Rows of the default suites: of a pair of one's own, and of a set that comes with the programs."""
+        file = folder / "result.json"
+        for words in (PAIR, ["--suite", "default", f"--benchmark_filter=/algorithm:{name}/pair:torus-knot-10k/distance:0[15]$"]):
+            run(program, *words, "--sample", 16, "--budget", 20, "--out", file)
+            result = json.loads(file.read_text())
+            self.assertRegex(result["context"][f"algorithm:{name}"], version)
+            rows = [row for row in result["benchmarks"] if row["sixdof"]["algorithm"] == name]
+            self.assertGreaterEqual({row["sixdof"]["query"] for row in rows}, {"collide"})
+            for row in rows:
+                self.assertNotIn("error_occurred", row)
+                self.assertGreater(row["real_time"], 0.0)
+
+
+class Installed(Project):
+    """The package was installed and moved."""
+
+    def test_of_bullet(self):
+        lines = (PROJECT / "gimpact.cpp").read_text().splitlines()
+        self.assertLessEqual(len(lines), MOST_LINES)
+        build = ARGUMENTS.work / "installed"
+        shutil.rmtree(build, ignore_errors=True)
+        configure_and_build(PROJECT, build, f"-DSIXDOF={ARGUMENTS.installed}")
+        self.check_lists(build / "gimpact-sixdof", "gimpact", VERSION)
+        self.check_queries(build / "gimpact-sixdof", "gimpact")
+        self.check_study(build / "gimpact-sixdof", "gimpact", build)
+        self.check_rows(build / "gimpact-bench", "gimpact", VERSION, build)
+        self.assertIn("gimpact", run(build / "gimpact-sixdof", "query", *PAIR, "--pose", APART, "--algorithm", "none",
+                                     expected=1))
+
+    def test_programs_find_their_data(self):
+        programs = ARGUMENTS.installed / "bin"
+        rows = run(programs / "sixdof-bench", "--suite", "default", "--benchmark_list_tests").splitlines()
+        self.assertIn("collide/algorithm:exact/pair:elephant/distance:05", rows)
+        self.assertIn(str(ARGUMENTS.installed / "share/sixdof/models/cache"),
+                      run(programs / "sixdof", "info", "elephant", expected=1))
+
+    def test_new_algorithm(self):
+        program = ARGUMENTS.installed / "bin" / "sixdof"
+        folder = ARGUMENTS.work / "mine"
+        shutil.rmtree(folder, ignore_errors=True)
+        run(program, "new-algorithm", "fast-boxes", "-o", folder)
+        self.assertEqual(sorted(path.name for path in folder.iterdir()), ["CMakeLists.txt", "README.md", "fast_boxes.cpp"])
+        configure_and_build(folder, folder / "build")
+        # What its README says.
+        commands = re.search(r"```sh\n(.*?)```", (folder / "README.md").read_text(), re.DOTALL).group(1)
+        for line in commands.splitlines()[2:]:
+            run("sh", "-c", line, cwd=folder)
+        self.check_lists(folder / "build" / "fast-boxes-sixdof", "fast-boxes", r"^0\.1\.0 ")
+
+
+class Fetched(Project):
+    """The project has sixdof's source as a part of its own."""
+
+    def test_of_bullet(self):
+        build = ARGUMENTS.fetched
+        configure_and_build(PROJECT, build, f"-DSIXDOF={ARGUMENTS.source}")
+        self.check_lists(build / "gimpact-sixdof", "gimpact", VERSION)
+        self.check_rows(build / "gimpact-bench", "gimpact", VERSION, ARGUMENTS.work)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser()
+    parser.add_argument("test", choices=["Installed", "Fetched"])
+    for folder in ("installed", "source", "work", "fetched"):
+        parser.add_argument("--" + folder, type=pathlib.Path, required=True)
+    parser.add_argument("--cmake", nargs=argparse.REMAINDER, default=[])
+    ARGUMENTS = parser.parse_args()
+    unittest.main(argv=["downstream_test.py", ARGUMENTS.test], verbosity=2)

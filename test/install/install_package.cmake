@@ -1,0 +1,19 @@
+# Installs the build, moves the installation, and looks whether anything in it still names the folders of source or build.
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+file(REMOVE_RECURSE ${WORK}/prefix ${INSTALLED})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+cmake_path(GET INSTALLED PARENT_PATH parent)
+file(MAKE_DIRECTORY ${parent})
+file(RENAME ${WORK}/prefix ${INSTALLED})
+
+# Assertions and debugging information name source files.
+set(kind_of_files "")
+if(NOT BUILD_TYPE STREQUAL "Release")
+  set(kind_of_files --binary-files=without-match)
+endif()
+execute_process(COMMAND grep -rlF ${kind_of_files} -e ${SOURCE}/ -e ${BUILD}/ ${INSTALLED}
+  OUTPUT_VARIABLE files RESULT_VARIABLE result)
+if(NOT result EQUAL 1)
+  message(FATAL_ERROR "these name ${SOURCE} or ${BUILD}:\n${files}")
+endif()
