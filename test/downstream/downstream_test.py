@@ -51,7 +51,7 @@ class Project(unittest.TestCase):
     def check_study(self, program, name, folder):
         file = folder / "precision.json"
         run(program, "precision", *PAIR, "--question", "collide", "--algorithms", f"exact,{name}", "--sample", 16,
-            "--budget", "20s", "-o", file)
+            "--budget", "60s", "-o", file)
         result = json.loads(file.read_text())
         self.assertIn(f"algorithm:{name}", result["context"])
         self.assertEqual({row["sixdof"]["algorithm"] for row in result["benchmarks"]}, {"exact", name})

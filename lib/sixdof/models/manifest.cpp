@@ -55,14 +55,14 @@ std::filesystem::path model_cache() {
   const char* const chosen = std::getenv("SIXDOF_MODELS");
   if (chosen != nullptr && *chosen != '\0') return chosen;
   std::error_code ignored;
+  const std::filesystem::path packaged = data_folder() / "models";
+  if (std::filesystem::exists(packaged / "models.json", ignored)) return packaged / "cache";
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
   const std::filesystem::path here = std::filesystem::current_path(ignored);
   for (const std::filesystem::path& start : {program.parent_path(), here}) {
     const std::filesystem::path folder = models_folder_above(start);
     if (!folder.empty()) return folder / "cache";
   }
-  const std::filesystem::path packaged = data_folder() / "models";
-  if (std::filesystem::exists(packaged / "models.json", ignored)) return packaged / "cache";
   return std::filesystem::path("models") / "cache";
 }
 

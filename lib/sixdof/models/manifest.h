@@ -32,9 +32,9 @@ std::string_view manifest_text();
 /// All entries, in the manifest's order.
 std::span<const FetchedModel> fetched_models();
 
-/// The folder of fetched models: that of environment variable SIXDOF_MODELS, else models/cache of the source tree that
-/// contains the running program or the current directory, else that of data_folder(), else models/cache in the current
-/// directory.
+/// The folder of fetched models: that of environment variable SIXDOF_MODELS, else models/cache in
+/// data_folder() if that has a list of models, else models/cache of the source tree that contains the running program
+/// or the current directory, else models/cache in the current directory.
 std::filesystem::path model_cache();
 
 /// Reads a fetched model and compares its hash with the manifest. @throws BadFile if the file does not exist, is
