@@ -65,9 +65,7 @@ std::string class_name(const std::string& name) {
 Path sixdof_root() {
   std::error_code ignored;
   const Path root = std::filesystem::weakly_canonical(data_folder() / "bench", ignored).parent_path();
-  return std::filesystem::exists(root / "lib" / "sixdof" / "CMakeLists.txt", ignored)
-             ? root
-             : root.parent_path().parent_path();
+  return std::filesystem::exists(root / "lib" / "CMakeLists.txt", ignored) ? root : root.parent_path().parent_path();
 }
 
 using Words = std::vector<std::pair<std::string, std::string>>;

@@ -48,6 +48,11 @@ TEST_F(NewAlgorithm, WritesAProjectUnderItsName) {
   EXPECT_THAT(build, AllOf(HasSubstr("project(fast-boxes-2 "), HasSubstr("sixdof::bench_main"),
                            HasSubstr(" fast_boxes_2.cpp")));
   EXPECT_THAT(source, AllOf(HasSubstr("class FastBoxes2Query final"), HasSubstr(".name = \"fast-boxes-2\"")));
+  // The program is in a folder of builds, so the project uses the source.
+  const std::string place = "set(SIXDOF \"";
+  const std::size_t begin = build.find(place) + place.size();
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(build.substr(begin, build.find('"', begin) - begin)) /
+                                      "lib" / "CMakeLists.txt"));
   for (const std::string& text : {build, source, readme}) EXPECT_THAT(text, Not(HasSubstr("@")));
 }
 
