@@ -59,7 +59,8 @@ class Project(unittest.TestCase):
     def check_rows(self, program, name, version, folder):
         """Rows of the default suites: of a pair of one's own, and of a set that comes with the programs."""
         file = folder / "result.json"
-        for words in (PAIR, ["--suite", "default", f"--benchmark_filter=/algorithm:{name}/pair:torus-knot-10k/distance:0[15]$"]):
+        of_it = f"--benchmark_filter=/algorithm:{name}/"
+        for words in ([*PAIR, of_it], ["--suite", "default", of_it + "pair:torus-knot-10k/distance:0[15]$"]):
             run(program, *words, "--sample", 16, "--budget", 20, "--out", file)
             result = json.loads(file.read_text())
             self.assertRegex(result["context"][f"algorithm:{name}"], version)
