@@ -129,7 +129,8 @@ TEST_F(Faulty, ScenariosCountFailedStepsAndGoOn) {
     if (entry.at("name") == "scenario/II/algorithm:exact") continue;
     EXPECT_EQ(entry.at("steps"), k_default_steps) << entry;
     EXPECT_EQ(entry.at("failed"), faulty) << entry;
-    EXPECT_LT(entry.at("cpu_time"), 2.0 * exact_ns + 0.02 * k_fault_delay_ns) << entry;
+    // One faulty step in 20 that is timed would add a twentieth of its delay.
+    EXPECT_LT(entry.at("cpu_time"), 1.1 * exact_ns + 0.01 * k_fault_delay_ns) << entry;
     EXPECT_THAT(entry.at("label").get<std::string>(), HasSubstr("first failure")) << entry;
   }
 }

@@ -273,7 +273,12 @@ TEST_F(BenchProgram, TimesSingleQueriesOnColdCaches) {
   EXPECT_EQ(cold.at("configurations"), 8);
   EXPECT_EQ(cold.at("iterations"), 8) << "one round";
   EXPECT_EQ(cold.at("mismatch"), 0);
-  EXPECT_GT(cold.at("p50_ns"), warm.at("p50_ns")) << "data comes from memory";
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  const char* const warm_time = "p50_ns";  // instrumented code takes longer than memory
+#else
+  const char* const warm_time = "max_least_ns";
+#endif
+  EXPECT_GT(cold.at("p50_ns"), warm.at(warm_time)) << "data comes from memory";
   EXPECT_FALSE(cold.contains("max_least_ns")) << "of one pass";
   // The means are those of the single times.
   EXPECT_LE(cold.at("real_time"), cold.at("max_ns"));

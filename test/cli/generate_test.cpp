@@ -1,13 +1,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <limits>
+#include <limits>
 #include <random>
 #include <string>
 #include <thread>
@@ -259,9 +260,13 @@ TEST_F(Generate, SurvivesKillsAtAnyTime) {
   std::cout << "SIXDOF_SEED=" << seed << std::endl;
   std::mt19937_64 random(seed);
   const std::string expected = undisturbed();
-  const auto start = Clock::now();
-  ASSERT_EQ(make_shards("timed").exit_code, 0);
-  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  // The least of three: other work on the machine, or a first start, must not put most kills behind the end.
+  double seconds = std::numeric_limits<double>::infinity();
+  for (const char* const where : {"timed-1", "timed-2", "timed-3"}) {
+    const auto start = Clock::now();
+    ASSERT_EQ(make_shards(where).exit_code, 0);
+    seconds = std::min(seconds, std::chrono::duration<double>(Clock::now() - start).count());
+  }
 
   int killed = 0, with_some = 0;
   for (int round = 0; round < k_rounds; ++round) {
@@ -290,8 +295,8 @@ TEST_F(Generate, SurvivesKillsAtAnyTime) {
     EXPECT_EQ(bytes_of(folder_ / (where + ".h5")), expected);
     std::filesystem::remove_all(folder_ / where);
   }
-  // Many kills came before the end, and some between two shards.
-  EXPECT_GE(killed, k_rounds / 4);
+  // Most kills came before the end, and some between two shards.
+  EXPECT_GT(killed, k_rounds / 2);
   EXPECT_GT(with_some, k_rounds / 4);
 }
 
