@@ -190,12 +190,6 @@ void write(const Options& options, nlohmann::ordered_json context, const std::ve
   study::write_study_rows(options.output, context, rows_of(results));
 }
 
-void print_json(const nlohmann::ordered_json& context, const std::vector<EquivalentResult>& results) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const study::StudyRow& row : rows_of(results)) list.push_back(study::to_json_object(row));
-  fmt::print("{}\n", json_text({{"context", context}, {"benchmarks", std::move(list)}}));
-}
-
 /// What can be checked before anything is measured. @throws BadArgument
 void check(const Options& options) {
   for (const std::string& scenario : options.scenarios) scenario_settings(scenario);
@@ -224,7 +218,8 @@ void run(const Options& options) {
     }
   }
   write(options, context, results, false);
-  options.json ? print_json(context, results) : print_prediction_errors(results);
+  if (!options.json) return print_prediction_errors(results);
+  fmt::print("{}\n", json_text(study::study_document(context, rows_of(results))));
 }
 
 }  // namespace

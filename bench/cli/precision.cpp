@@ -49,22 +49,6 @@ class Deadline {
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::string default_error(Question question) {
-  return question == Question::collide ? "mismatch" : question == Question::distance ? "error_rms" : "gamma_F_deg";
-}
-
-std::string arguments_of(const Options& options) {
-  const StudyOptions& study = options.study;
-  std::string text = fmt::format("precision --question {}", options.question);
-  if (!study.pairs.empty()) text += fmt::format(" --pair {}", fmt::join(study.pairs, ","));
-  for (const std::string& set : study.sets) text += " --set " + set;
-  if (!study.a.empty()) text += " --a " + study.a;
-  if (!study.b.empty()) text += " --b " + study.b;
-  if (!study.algorithms.empty()) text += fmt::format(" --algorithms {}", fmt::join(study.algorithms, ","));
-  for (const std::string& values : study.values) text += " --params " + values;
-  return text + fmt::format(" --sample {} --seed {} --budget {}", options.sample, study.seed, study.budget);
-}
-
 /// The studies of all pairs, and the file that they fill.
 class PrecisionCommand {
  public:
@@ -72,17 +56,16 @@ class PrecisionCommand {
 
   void run() {
     plan_.question = parse_question();
-    plan_.error = options_.metric.empty() ? default_error(plan_.question) : options_.metric;
+    plan_.error = options_.metric.empty() ? study::error_metrics(plan_.question).front() : options_.metric;
     plan_.cost = options_.cost;
-    require_metric("--metric", plan_.error);
-    require_metric("--cost", plan_.cost);
+    require_metric("--metric", plan_.error, study::error_metrics(plan_.question));
+    require_metric("--cost", plan_.cost, study::cost_metrics());
     plan_.single_queries = plan_.cost != "cpu_time" && plan_.cost != "real_time";
     plan_.seed = options_.study.seed;
     plan_.algorithms = study_algorithms(registry_, options_.study.algorithms, plan_.question);
     plan_.values = swept_values(options_.study, plan_.algorithms);
     const Deadline deadline(parse_duration("--budget", options_.study.budget));
-    study::StudyPairs pairs(harness_options(options_.study, options_.sample, arguments_of(options_)),
-                            options_.study.pairs);
+    study::StudyPairs pairs(harness_options(options_.study, options_.sample, arguments()), options_.study.pairs);
     context_ = bench::run_context(pairs.options(), registry_, bench::parse_parameters({}, registry_));
     for (std::size_t i = 0; i < pairs.pairs().size(); ++i) {
       measure(pairs, *pairs.pairs()[i], deadline, pairs.pairs().size() - i);
@@ -91,6 +74,12 @@ class PrecisionCommand {
   }
 
  private:
+  std::string arguments() const {
+    return arguments_of("precision", options_.study) + fmt::format(" --question {} --metric {} --cost {} --sample {}",
+                                                                   options_.question, plan_.error, plan_.cost,
+                                                                   options_.sample);
+  }
+
   Question parse_question() const {
     for (const Question question : bench::k_questions) {
       if (to_string(question) == options_.question) return question;

@@ -36,14 +36,16 @@ struct Options {
   std::string metric = "gamma_F_deg";
 };
 
-/// The question that has the metric among its errors.
+/// The question that has the metric among its errors. @throws BadArgument, which lists them
 Question question_of(const std::string& metric) {
-  for (const char* const of_distance : {"error_mean", "error_rms", "error_max", "too_small", "too_large"}) {
-    if (metric == of_distance) return Question::distance;
+  std::vector<std::string> known;
+  for (const Question question : {Question::respond, Question::distance, Question::collide}) {
+    const std::vector<std::string> metrics = study::error_metrics(question);
+    if (std::ranges::find(metrics, metric) != metrics.end()) return question;
+    known.insert(known.end(), metrics.begin(), metrics.end() - 1);  // all end with "failed"
   }
-  for (const char* const of_collide : {"mismatch", "false_positives", "false_negatives"}) {
-    if (metric == of_collide) return Question::collide;
-  }
+  known.emplace_back("failed");
+  require_metric("--metric", metric, known);
   return Question::respond;
 }
 
@@ -144,7 +146,6 @@ void print_json(const Options& options, double deadline_s, const Recommendation&
 void run(const Options& options) {
   Registry registry;
   register_all_algorithms(registry);
-  require_metric("--metric", options.metric);
   const double deadline_s = parse_duration("--deadline", options.deadline);
   study::PrecisionPlan plan{.question = question_of(options.metric), .error = options.metric};
   plan.cost = "p99_least_ns";
@@ -158,20 +159,30 @@ void run(const Options& options) {
   plan.algorithms = study_algorithms(registry, options.study.algorithms, plan.question);
   plan.values = swept_values(options.study, plan.algorithms);
   if (options.study.pairs.size() + options.study.sets.size() > 1) throw BadArgument("one pair at a time");
-  study::StudyPairs pairs(harness_options(options.study, k_queries, "recommend"), options.study.pairs);
+  study::StudyPairs pairs(
+      harness_options(options.study, k_queries,
+                      arguments_of("recommend", options.study) +
+                          fmt::format(" --deadline {} --metric {}", options.deadline, options.metric)),
+      options.study.pairs);
   const CatalogueEntry& pair = *pairs.pairs().front();
-  auto context = bench::run_context(pairs.options(), registry, bench::parse_parameters({}, registry));
+  const auto started = bench::run_context(pairs.options(), registry, bench::parse_parameters({}, registry));
   StatusLine status;
   status.show("truth");
   const study::StudySample sample = study::draw_sample(pairs.cache(), pair, plan.question, pair.buckets, k_queries);
   plan.budget_s = budget_s - std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   study::PrecisionStudy study(plan, pairs.cache(), pair, sample);
+  const auto write = [&](bool interrupted) {
+    if (options.study.output.empty()) return;
+    auto context = started;
+    for (const auto& [key, hash] : pairs.cache().hashes()) context[key] = hash;
+    if (interrupted) context["interrupted"] = "true";
+    study::write_study_rows(options.study.output, context, study.rows());
+  };
   study.run([&](const std::string& what, std::size_t done,
                 std::size_t total) { status.show(fmt::format("{}, {} of {} points", what, done, total)); },
-            [] {});
+            [&] { write(true); });
   status.clear();
-  for (const auto& [key, hash] : pairs.cache().hashes()) context[key] = hash;
-  if (!options.study.output.empty()) study::write_study_rows(options.study.output, context, study.rows());
+  write(false);
   const Recommendation found = study::recommend(study, deadline_s);
   options.study.json ? print_json(options, deadline_s, found, study) : print_text(options, deadline_s, found, study);
   if (!found.best) throw DefectsFound(fmt::format("no algorithm keeps a deadline of {}", options.deadline));

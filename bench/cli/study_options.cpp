@@ -7,7 +7,6 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/measure/metrics.h>
 
 namespace sixdof::cli {
 
@@ -78,9 +77,20 @@ std::vector<study::SweptValues> swept_values(const StudyOptions& options,
   return all;
 }
 
-void require_metric(const std::string& option, const std::string& name) {
-  if (find_metric(name) != nullptr) return;
-  throw BadArgument(fmt::format("{} {}: not in the table of metrics (lib/sixdof/measure/metrics.cpp)", option, name));
+void require_metric(const std::string& option, const std::string& name, const std::vector<std::string>& known) {
+  if (std::ranges::find(known, name) != known.end()) return;
+  throw BadArgument(fmt::format("{} {}: must be one of {}", option, name, fmt::join(known, ", ")));
+}
+
+std::string arguments_of(const std::string& command, const StudyOptions& options) {
+  std::string text = command;
+  if (!options.pairs.empty()) text += fmt::format(" --pair {}", fmt::join(options.pairs, ","));
+  for (const std::string& set : options.sets) text += " --set " + set;
+  if (!options.a.empty()) text += " --a " + options.a;
+  if (!options.b.empty()) text += " --b " + options.b;
+  if (!options.algorithms.empty()) text += fmt::format(" --algorithms {}", fmt::join(options.algorithms, ","));
+  for (const std::string& values : options.values) text += " --params " + values;
+  return text + fmt::format(" --seed {} --budget {}", options.seed, options.budget);
 }
 
 }  // namespace sixdof::cli

@@ -40,7 +40,10 @@ std::vector<const Algorithm*> study_algorithms(const Registry& registry, const s
 std::vector<study::SweptValues> swept_values(const StudyOptions& options,
                                              const std::vector<const Algorithm*>& algorithms);
 
-/// @throws BadArgument unless the table of metrics has it
-void require_metric(const std::string& option, const std::string& name);
+/// @throws BadArgument, which lists those that there are, unless `name` is among `known`
+void require_metric(const std::string& option, const std::string& name, const std::vector<std::string>& known);
+
+/// The command line, for the context of a result.
+std::string arguments_of(const std::string& command, const StudyOptions& options);
 
 }  // namespace sixdof::cli

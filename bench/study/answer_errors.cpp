@@ -207,6 +207,25 @@ using AnswersTo = std::conditional_t<std::is_same_v<Value, bool>, Collisions,
 
 }  // namespace
 
+std::vector<std::string> error_metrics(bench::Question question) {
+  if (question == bench::Question::collide) return {"mismatch", "false_positives", "false_negatives", "failed"};
+  if (question == bench::Question::distance) {
+    return {"error_rms", "error_mean", "error_max", "too_small", "too_large", "failed"};
+  }
+  return {"gamma_F_deg",
+          "gamma_F_p95_deg",
+          "gamma_max_F_deg",
+          "gamma_T_deg",
+          "gamma_T_p95_deg",
+          "gamma_max_T_deg",
+          "magnitude_error_F",
+          "magnitude_error_T",
+          "penalty_error",
+          "volume_error_mean",
+          "misses",
+          "failed"};
+}
+
 AnswerErrors measure_errors(Query& query, const StudySample& sample, std::uint64_t seed) {
   AnswerErrors errors;
   errors.forces.assign(sample.truths.size(), Eigen::Vector3d::Zero());

@@ -31,9 +31,10 @@ struct AnswerErrors {
   std::vector<Eigen::Vector3d> forces;
   std::size_t failed = 0;
   std::string first_failure;  ///< Words of it.
-
-  bool has(const std::string& metric) const { return values.contains(metric); }
 };
+
+/// The names of the values, those of which the table of metrics knows what is better.
+std::vector<std::string> error_metrics(bench::Question question);
 
 inline constexpr std::size_t k_resamples = 200;
 

@@ -25,6 +25,11 @@ std::optional<Estimate> percentile(const std::optional<double>& value) {
 
 }  // namespace
 
+std::vector<std::string> cost_metrics() {
+  return {"cpu_time", "real_time",    "bytes",         "prepare_ns",   "p50_ns", "p99_ns",
+          "p999_ns",  "p99_least_ns", "p999_least_ns", "max_least_ns", "max_ns", "over_1ms"};
+}
+
 bool PrecisionPoint::faulty() const {
   const auto misses = errors.values.find("misses");
   return errors.failed > 0 || (misses != errors.values.end() && misses->second.value > 0.0);

@@ -37,6 +37,9 @@ struct PrecisionPlan {
   std::size_t most_rounds = 15;  ///< For points that are not told apart by `rounds`.
 };
 
+/// What a point may cost, by names of PrecisionPoint::metric().
+std::vector<std::string> cost_metrics();
+
 /// One algorithm with one setting.
 struct PrecisionPoint {
   const Algorithm* algorithm = nullptr;
