@@ -1,4 +1,5 @@
-"""bench/compare: the verdict on synthetic times (a slowdown is found, noise is not taken for one), and the rows."""
+"""bench/compare: the verdict on synthetic times (a slowdown is found, noise is not taken for one), the rows, and answers.
+"""
 
 import importlib.machinery
 import importlib.util
@@ -6,10 +7,12 @@ import json
 import pathlib
 import random
 import subprocess
+import sys
 import tempfile
 import unittest
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "bench" / "compare"
+sys.path.insert(0, str(SCRIPT.parent))
 loader = importlib.machinery.SourceFileLoader("compare", str(SCRIPT))
 compare = importlib.util.module_from_spec(importlib.util.spec_from_loader("compare", loader))
 loader.exec_module(compare)
@@ -99,5 +102,109 @@ class ComparePy(unittest.TestCase):
         self.assertIn("+0.5000", done.stdout)
 
 
+# A program that writes one row; what it answers and how long it takes are settings.
+PROGRAM = """#!/usr/bin/python3
+import json, random, sys
+settings = json.loads('''SETTINGS''')
+flags = dict(word[2:].split("=", 1) for word in sys.argv[1:] if word.startswith("--") and "=" in word)
+row = {"name": "distance/algorithm:x/pair:p/distance:05", "run_name": "distance/algorithm:x/pair:p/distance:05",
+       "run_type": "iteration", "repetitions": 1, "repetition_index": 0, "threads": 1, "iterations": 9,
+       "time_unit": "ns", "cpu_time": settings["time"] * (1 + 0.01 * random.random()), "failed": 0.0, "p50_ns": 5.0,
+       "mismatch": 0.0, "error_max": 1e-16 * random.random(), "nodes_tested": 10.0} | settings.get("row", {})
+row["real_time"] = row["cpu_time"]
+rows = [row] + [row | {"name": name, "run_name": name} for name in settings.get("more", [])]
+if settings.get("error"):
+    rows[0] = {key: row[key] for key in ("name", "run_name", "run_type", "repetitions", "repetition_index", "threads")}
+    rows[0] |= {"error_occurred": True, "error_message": settings["error"]}
+json.dump({"context": {"date": "today", "algorithm:x": settings["version"]}, "benchmarks": rows},
+          open(flags["benchmark_out"], "w"))
+sys.exit(1 if settings.get("error") else 0)
+"""
+
+
+def compared(programs, folder, *arguments):
+    return subprocess.run([sys.executable, "-B", SCRIPT, "--programs", *programs,
+                           "--folder", pathlib.Path(folder) / "results", *arguments], capture_output=True, text=True)
+
+
+class Programs(unittest.TestCase):
+    """Two programs whose answers and times are known."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def program(self, name, time=100.0, version="1.0", **settings):
+        path = pathlib.Path(self.folder.name) / name
+        settings |= {"time": time, "version": version}
+        path.write_text(PROGRAM.replace("SETTINGS", json.dumps(settings)), encoding="utf-8")
+        path.chmod(0o755)
+        return path
+
+    def compare(self, *arguments, base=None, contender=None):
+        programs = [self.program("base", **(base or {})), self.program("contender", **(contender or {}))]
+        return compared(programs, self.folder.name, "--filter", ".", *arguments)
+
+    def test_that_agree_have_no_changed_answers(self):
+        done = self.compare("--fail-on-answers", "--fail-above", "10")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("answers: 0 counters of 1 rows changed", done.stdout)
+        self.assertNotIn("version", done.stdout)
+
+    def test_that_differ_show_versions_and_answers_before_times(self):
+        done = self.compare("--fail-on-answers", contender={
+            "version": "1.1", "row": {"mismatch": 3.0, "error_max": 0.02, "nodes_tested": 20.0}})
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        lines = done.stdout.splitlines()
+        self.assertEqual(lines[0], "version  algorithm:x: 1.0 -> 1.1")
+        row = "distance/algorithm:x/pair:p/distance:05"
+        self.assertRegex(lines[1], f"^ANSWER   {row}: error_max .* -> 0.02$")
+        self.assertEqual(lines[2], f"ANSWER   {row}: mismatch 0 -> 3")
+        self.assertEqual(lines[3], f"work     {row}: nodes_tested 10 -> 20")
+        self.assertEqual(lines[4], "answers: 2 counters of 1 rows changed")
+        self.assertIn("Time", "".join(lines[5:]))
+
+    def test_changed_answers_alone_fail_nothing_that_was_not_asked(self):
+        done = self.compare(contender={"row": {"mismatch": 3.0}})
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_that_are_slower_fail_by_time(self):
+        done = self.compare("--fail-above", "10", contender={"time": 130.0})
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertIn("answers: 0 counters", done.stdout)
+        self.assertRegex(done.stdout, "SLOWER distance/algorithm:x/pair:p/distance:05: x1.[23]")
+
+    def test_a_row_without_a_result_is_a_change(self):
+        done = self.compare("--fail-on-answers", base={"more": ["distance/y"]},
+                            contender={"error": "it broke", "more": ["distance/z"]})
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertIn("only in base: distance/y", done.stdout)
+        self.assertIn("only in contender: distance/z", done.stdout)
+        self.assertIn("ANSWER   distance/algorithm:x/pair:p/distance:05: error none -> it broke", done.stdout)
+
+    def test_that_do_not_exist_are_named(self):
+        done = subprocess.run([SCRIPT, "--programs", "/nowhere/a", "/nowhere/b"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stderr, "bench/compare: /nowhere/a: no such program\n")
+
+    def test_are_not_mixed_with_commits(self):
+        for arguments in (["HEAD", "--programs", "a", "b"], []):
+            done = subprocess.run([SCRIPT, *arguments], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("name a commit, or two programs", done.stderr)
+
+
+class SixdofBench(unittest.TestCase):
+    """sixdof-bench against itself: its rows are read, and the same program gives the same answers."""
+
+    def test_agrees_with_itself(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = compared([BENCH, BENCH], folder, "--filter", "^(distance|respond)/algorithm:(exact|vps)/",
+                            "--sample", "8", "--min-time", "0.001", "--fail-on-answers", "--", "--manifest", MANIFEST)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout.splitlines()[0], "^answers: 0 counters of [1-9][0-9]* rows changed$")
+
+
 if __name__ == "__main__":
-    unittest.main()
+    BENCH, MANIFEST = sys.argv[1:]
+    unittest.main(argv=sys.argv[:1])
