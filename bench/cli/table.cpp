@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/base/error.h>
+
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
@@ -19,7 +21,8 @@ constexpr const char* k_details =
 processor time of a query in a loop over all, the other times are by wall clock, of single queries. The least cpu of
 each bucket is marked *, among rows without faults. A row with faults is marked !, and what they are stands below its
 table with their counts: configurations that failed, wrong answers, overlaps without a force. Several files stand side
-by side, with the ratio of cpu to the first.
+by side, with the ratio of cpu to the first. --wide: one table per query, of one file, with a line per pair and
+algorithm and a column per bucket; angles and magnitudes are means over the buckets, errors the largest, faults sums.
 
 Keys of --json: files[] {file, date, commit, interrupted, settings {ALGORITHM: {PARAMETER: value}}, not_shown {FAMILY:
 rows}}; tables[] {pair, query, kind, rows[] {percent, algorithm, order, cache, files[]}}, with null or {fastest,
@@ -28,26 +31,34 @@ faults[] {what, count, of}, ratio_to_first, values} for each file. values are th
 
 struct Arguments {
   std::vector<std::string> files;
-  bool markdown = false, json = false;
+  bool markdown = false, json = false, wide = false;
 };
 
-void print(const std::vector<ResultTable>& tables, const std::vector<ResultFile>& files, bool markdown) {
+void print(const std::vector<ResultTable>& tables, const std::vector<ResultFile>& files, const Arguments& arguments) {
+  const bool markdown = arguments.markdown;
   const auto format_lines = markdown ? lines_as_markdown : lines_as_text;
   const auto format_sheet = markdown ? as_markdown : as_text;
   fmt::print("{}\n", format_lines(lines_above(files)));
-  for (const ResultTable& table : tables) fmt::print("{}\n", format_sheet(sheet_of(table, files)));
+  std::vector<Sheet> sheets;
+  if (arguments.wide) {
+    sheets = wide_sheets_of(tables);
+  } else {
+    for (const ResultTable& table : tables) sheets.push_back(sheet_of(table, files));
+  }
+  for (const Sheet& sheet : sheets) fmt::print("{}\n", format_sheet(sheet));
   if (tables.empty()) fmt::print("no rows of queries on buckets\n\n");
   fmt::print("{}", format_lines(lines_below(files)));
 }
 
 void run(const Arguments& arguments) {
+  if (arguments.wide && arguments.files.size() > 1) throw BadArgument("--wide shows one file");
   std::vector<ResultFile> files;
   for (const std::string& file : arguments.files) files.push_back(read_result_file(file));
   const std::vector<ResultTable> tables = rank(files);
   if (arguments.json) {
     fmt::print("{}\n", json_text(as_json(tables, files)));
   } else {
-    print(tables, files, arguments.markdown);
+    print(tables, files, arguments);
   }
 }
 
@@ -58,7 +69,8 @@ void add_table_command(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("file", arguments->files, "Result files of sixdof-bench (JSON)")->required();
   auto* const markdown = command->add_flag("--markdown", arguments->markdown, "As Markdown");
-  command->add_flag("--json", arguments->json, "As JSON")->excludes(markdown);
+  auto* const json = command->add_flag("--json", arguments->json, "As JSON")->excludes(markdown);
+  command->add_flag("--wide", arguments->wide, "A line per pair and algorithm, a column per bucket")->excludes(json);
   command->callback([arguments] { run(*arguments); });
   add_examples(*command,
                "sixdof-bench --benchmark_filter=/algorithm:exact/pair:torus-knot-10k/distance:05 --sample 32 "

@@ -12,8 +12,8 @@
 #include "bench/common/row_fields.h"
 
 /// What `sixdof table` does: reads result files (table_read.cpp), puts their rows side by side and ranks them
-/// (table_ranking.cpp), chooses columns (table_sheet.cpp), and prints as text, Markdown (table_format.cpp) or JSON
-/// (table_json.cpp).
+/// (table_ranking.cpp), chooses columns (table_sheet.cpp, table_wide.cpp), and prints as text, Markdown
+/// (table_format.cpp) or JSON (table_json.cpp).
 
 namespace sixdof::cli {
 
@@ -109,6 +109,11 @@ struct Sheet {
 
 /// @param files those of `table`; columns of several files stand side by side, with fewer of each
 Sheet sheet_of(const ResultTable& table, const std::vector<ResultFile>& files);
+
+/// One sheet per query over all pairs, a line per pair and algorithm, a column per bucket. Errors are over all buckets:
+/// the mean of means, or the largest; faults are sums.
+/// @param tables of one file
+std::vector<Sheet> wide_sheets_of(const std::vector<ResultTable>& tables);
 
 /// What stands once, above and below all tables.
 std::vector<std::string> lines_above(const std::vector<ResultFile>& files);

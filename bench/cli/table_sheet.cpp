@@ -6,32 +6,13 @@
 
 #include <sixdof/measure/latency.h>
 #include "bench/cli/table.h"
+#include "bench/cli/table_numbers.h"
 
 namespace sixdof::cli {
 namespace {
 
 /// Of an algorithm whose faults differ from bucket to bucket, more buckets than this are added up.
 constexpr std::size_t k_most_buckets = 4;
-
-/// Three significant digits of a time in microseconds.
-std::string as_microseconds(double ns) {
-  const double us = ns / 1e3;
-  const int decimals = us < 0.01 ? 4 : us < 10.0 ? 2 : us < 100.0 ? 1 : 0;
-  return fmt::format("{:.{}f}", us, decimals);
-}
-
-std::string as_percent(double fraction) {
-  const double percent = 100.0 * fraction;
-  if (percent == 0.0) return "0";
-  if (percent < 0.01) return "<0.01";
-  return fmt::format("{:.{}f}", percent, percent < 1.0 ? 2 : percent < 100.0 ? 1 : 0);
-}
-
-std::string as_degrees(double degrees) { return fmt::format("{:.{}f}", degrees, degrees < 10.0 ? 2 : 1); }
-
-std::string as_small(double value) { return value == 0.0 ? "0" : fmt::format("{:.1e}", value); }
-
-std::string as_count(double value) { return fmt::format("{:.0f}", value); }
 
 /// A column that shows one value of a row.
 struct ValueColumn {
@@ -94,8 +75,6 @@ std::string cell_of(const RankedRow& ranked, const ValueColumn& column) {
 }
 
 std::string mark_of(const RankedRow& ranked) { return !ranked.faults.empty() ? "!" : ranked.fastest ? "*" : ""; }
-
-std::string bucket_text(BucketKey bucket) { return bucket.percent_text() + " %"; }
 
 /// "[1] " where there are several files.
 std::string prefix_of(std::size_t file, std::size_t files) {

@@ -131,6 +131,16 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// The file of a named list of rows, or of the user's own; empty for all rows.
+std::filesystem::path file_of_suite(const std::string& suite) {
+  if (suite == "all") return {};
+  const std::filesystem::path folder = data_folder() / "bench";
+  if (suite == "default") return folder / "default_suite.json";
+  if (suite == "own-pair") return folder / "own_pair_suite.json";
+  if (suite == "all-algorithms") return folder / "all_algorithms_suite.json";
+  return suite;
+}
+
 }  // namespace
 
 std::filesystem::path default_manifest() { return data_folder() / "fixtures" / "manifest.json"; }
@@ -160,9 +170,9 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   app.add_option("--b", options.b, "Moving mesh B, likewise; a copy of A if left out");
   app.add_option(
       "--suite", suite,
-      "Rows to run: default (bench/default_suite.json), own-pair (bench/own_pair_suite.json), all, or a file "
-      "of the same form. Without this option: own-pair with --a and no --set; all with a "
-      "--benchmark_filter or sets of your own; default otherwise");
+      "Rows to run: default, own-pair, all-algorithms (bench/*_suite.json), all, or a file of the same form. Without "
+      "this "
+      "option: own-pair with --a and no --set; all with a --benchmark_filter or sets of your own; default otherwise");
   app.add_option("-p,--parameter", options.parameters,
                  "Parameter of an algorithm: ALGORITHM:NAME=VALUE (sixdof algorithms); may be repeated")
       ->allow_extra_args(false);
@@ -218,11 +228,7 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   const bool own_sets = no_manifest || !manifest->empty() || !options.sets.empty();
   if (suite.empty() && options.own_pair()) suite = "own-pair";
   if (suite.empty()) suite = own_sets || has_flag(flags, "--benchmark_filter") ? "all" : "default";
-  if (suite == "default" || suite == "own-pair") {
-    options.suite = data_folder() / "bench" / (suite == "default" ? "default_suite.json" : "own_pair_suite.json");
-  } else if (suite != "all") {
-    options.suite = suite;
-  }
+  options.suite = file_of_suite(suite);
   if (no_manifest) options.manifest.clear();
   options.resume = !resume->empty();
   options.out_format = out_format == "csv" ? ResultFormat::csv : ResultFormat::json;

@@ -52,12 +52,14 @@ class Help(unittest.TestCase):
             self.assertIn("torus-knot-10k", self.succeed([SIXDOF_BENCH, *words[1:], "--benchmark_list_tests"]))
 
     def test_compare(self):
+        sys.path.insert(0, str(BENCH))
         loader = importlib.machinery.SourceFileLoader("compare", str(BENCH / "compare"))
         compare = importlib.util.module_from_spec(importlib.util.spec_from_loader("compare", loader))
         loader.exec_module(compare)
-        for words in self.examples([str(BENCH / "compare")]):
-            self.assertEqual(words[0], "bench/compare")
-            self.assertTrue(compare.parse_arguments(words[1:]).base)
+        commits, programs = self.examples([str(BENCH / "compare")])
+        self.assertEqual((commits[0], programs[0]), ("bench/compare", "bench/compare"))
+        self.assertEqual(compare.parse_arguments(commits[1:]).base, "v0.1")
+        self.assertEqual(len(compare.parse_arguments(programs[1:]).programs), 2)
 
     def test_generate_ratios(self):
         measure, ratios = self.examples([str(BENCH / "generate-ratios")])

@@ -136,6 +136,27 @@ class Run(unittest.TestCase):
         self.assertEqual(len(self.rows()), COUNT)
         self.assertEqual(json.loads(self.result().read_text())["context"]["interrupted"], "false")
 
+    def test_all_algorithms_stand_in_one_wide_table(self):
+        words = ["--all-algorithms", "--sample", "8", "--budget", "0", "--benchmark_min_time=0.001",
+                 "--benchmark_filter=^collide/algorithm:(exact|null)/pair:torus-knot-1m/(distance:0[15]|distance:10)$"]
+        done = self.run_it(*words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, "collide: cpu mean / wall clock p99, us")
+        [line] = [line for line in done.stdout.splitlines() if re.match("torus-knot-1m +exact ", line)]
+        self.assertEqual(len(re.findall(" / ", line)), 3, line)
+        context = json.loads(self.result().read_text())["context"]
+        self.assertIn("--suite all-algorithms", context["arguments"])
+        self.assertEqual(context["sample"], "8")
+
+    def test_all_algorithms_have_sizes_of_their_own(self):
+        rows = "--benchmark_filter=^collide/algorithm:exact/pair:torus-knot-1m/distance:05$"
+        done = self.run_it("--all-algorithms", "--benchmark_min_time=0.001", rows)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        context = json.loads(self.result().read_text())["context"]
+        self.assertEqual((context["sample"], context["budget_s"]), ("256", "2400"))
+        self.assertEqual(self.run_it("--all-algorithms", "--benchmark_list_tests=true", rows).stdout.splitlines()[-1],
+                         "collide/algorithm:exact/pair:torus-knot-1m/distance:05")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -107,6 +107,20 @@ constexpr const char* k_markdown =
     "| 05 % | ! | x | 64 | 1.50 | 10.0 | 20.0 | 30.0 | 0 |\n"
     "| 05 % | \\* | y | 64 | 1.50 | 10.0 | 20.0 | 30.0 | 0 |\n\n"
     "- ! x: 2 of 64 wrong (05 %)\n";
+
+constexpr const char* k_wide =
+    "distance: cpu mean / wall clock p99, us\n"
+    "                                           distance        volume\n"
+    "pair  algorithm       n          01 %          05 %          05 %  error max, diagonals  faults\n"
+    "p     x              64  *1.00 / 20.0  *3.00 / 20.0             -               1.0e-03\n"
+    "p     y          32..64         error  !2.00 / 20.0  *4.00 / 20.0               2.0e-02  "
+    "not run: no such model, 3 of 64 wrong\n"
+    "q     x              64             -  *0.50 / 20.0             -                     0\n"
+    "\n"
+    "respond: cpu mean / wall clock p99, us\n"
+    "                                         volume\n"
+    "pair  algorithm   n          01 %          05 %  angle  angle max  magn., %  torque angle  faults\n"
+    "p     x          64  *1.50 / 20.0  !1.50 / 20.0   1.50       20.2      25.0          4.00  2 of 64 failed\n";
 // clang-format on
 
 TEST_F(TableCommand, HasALinePerBucketAndAlgorithmAndOneClockPerColumn) {
@@ -118,6 +132,29 @@ TEST_F(TableCommand, HasALinePerBucketAndAlgorithmAndOneClockPerColumn) {
                                        row("distance", "slow", "distance", 5, 123456, wrong),
                                        row("distance", "x", "distance", 0, 9.0, {{"time_unit", "us"}}), path})),
               HasSubstr(k_distances));
+}
+
+TEST_F(TableCommand, WideHasALinePerPairAndAlgorithmAndAColumnPerBucket) {
+  Json other_pair = row("distance", "x", "distance", 5, 500, {{"error_max", 0.0}});
+  other_pair["sixdof"]["pair"] = "q";
+  const Json angles = {
+      {"gamma_F_deg", 1.0}, {"gamma_max_F_deg", 20.25}, {"magnitude_error_F", 0.125}, {"gamma_T_deg", 3.5}};
+  const Json other_angles = {{"gamma_F_deg", 2.0},
+                             {"gamma_max_F_deg", 10.25},
+                             {"magnitude_error_F", 0.375},
+                             {"gamma_T_deg", 4.5},
+                             {"failed", 2}};
+  const Json wrong = {{"error_max", 2e-2}, {"mismatch", 3}, {"configurations", 32}};
+  const std::string file = write(
+      "r.json", {row("distance", "x", "distance", 1, 1000, {{"error_max", 1e-3}}),
+                 row("distance", "x", "distance", 5, 3000, {{"error_max", 1e-4}}),
+                 failed_row("distance", "y", "distance", 1), row("distance", "y", "distance", 5, 2000, wrong),
+                 row("distance", "y", "volume", 5, 4000, {{"error_max", 0.0}}), other_pair,
+                 row("respond", "x", "volume", 1, 1500, angles), row("respond", "x", "volume", 5, 1500, other_angles)});
+  EXPECT_THAT(printed("--wide " + file), HasSubstr(k_wide));
+  EXPECT_THAT(printed("--wide --markdown " + file), HasSubstr("| q | x | 64 | - | \\*0.50 / 20.0 | - | 0 |  |\n"));
+  EXPECT_EQ(table("--wide " + file + " " + file).exit_code, 1);
+  EXPECT_THAT(table("--wide " + file + " " + file).err, HasSubstr("--wide shows one file"));
 }
 
 TEST_F(TableCommand, OrdersBucketsByTheirNumbers) {

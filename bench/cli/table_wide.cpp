@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/cli/table.h"
+#include "bench/cli/table_numbers.h"
+
+namespace sixdof::cli {
+namespace {
+
+/// The rows of one algorithm on one pair, of all buckets.
+struct WideLine {
+  std::string pair, label;
+  std::map<BucketKey, const RankedRow*> rows;
+
+  /// Of all rows that have the value: f(so far, value).
+  template <class F>
+  std::optional<double> fold(const std::string& name, F f) const {
+    std::optional<double> result;
+    for (const auto& [bucket, ranked] : rows) {
+      if (const auto value = ranked->row->value(name)) result = result ? f(*result, *value) : *value;
+    }
+    return result;
+  }
+
+  std::optional<double> largest(const std::string& name) const {
+    return fold(name, [](double a, double b) { return std::max(a, b); });
+  }
+  std::optional<double> mean(const std::string& name) const {
+    const auto sum = fold(name, [](double a, double b) { return a + b; });
+    const auto count =
+        std::ranges::count_if(rows, [&](const auto& entry) { return entry.second->row->value(name).has_value(); });
+    return sum ? std::optional(*sum / static_cast<double>(count)) : std::nullopt;
+  }
+};
+
+/// Lines of a query in the order of the tables: by pair, then algorithm.
+std::vector<WideLine> lines_of(const std::vector<const ResultTable*>& tables) {
+  std::vector<WideLine> lines;
+  for (const ResultTable* table : tables) {
+    for (const TableLine& line : table->lines) {
+      const RankedRow& ranked = line.files.front();
+      if (ranked.row == nullptr) continue;
+      const auto is_same = [&](const WideLine& other) {
+        return other.pair == table->pair && other.label == line.label();
+      };
+      auto found = std::ranges::find_if(lines, is_same);
+      if (found == lines.end()) found = lines.insert(lines.end(), {table->pair, line.label(), {}});
+      found->rows[line.bucket] = &ranked;
+    }
+  }
+  // Tables of distances and of volumes name the algorithms of a pair in turn.
+  std::vector<std::string> pairs;
+  for (const WideLine& line : lines) {
+    if (std::ranges::find(pairs, line.pair) == pairs.end()) pairs.push_back(line.pair);
+  }
+  std::ranges::stable_sort(lines, {}, [&](const WideLine& line) { return std::ranges::find(pairs, line.pair); });
+  return lines;
+}
+
+std::string time_cell(const RankedRow& ranked) {
+  if (!ranked.row->error.empty()) return "error";
+  const char* const mark = !ranked.faults.empty() ? "!" : ranked.fastest ? "*" : "";
+  const auto mean = ranked.row->value(k_processor_mean), p99 = ranked.row->value("p99_ns");
+  return fmt::format("{}{} / {}", mark, mean ? as_microseconds(*mean) : "-", p99 ? as_microseconds(*p99) : "-");
+}
+
+std::string cell(std::optional<double> value, std::string (*format)(double)) { return value ? format(*value) : "-"; }
+
+/// How wrong the answers are, over all buckets.
+struct ErrorColumn {
+  const char* title;
+  std::string (*text)(const WideLine&);
+};
+
+std::vector<ErrorColumn> error_columns(const std::string& query) {
+  if (query == "distance") {
+    return {{"error max, diagonals", [](const WideLine& line) { return cell(line.largest("error_max"), as_small); }}};
+  }
+  if (query != "respond") return {};
+  return {{"angle", [](const WideLine& line) { return cell(line.mean("gamma_F_deg"), as_degrees); }},
+          {"angle max", [](const WideLine& line) { return cell(line.largest("gamma_max_F_deg"), as_degrees); }},
+          {"magn., %", [](const WideLine& line) { return cell(line.mean("magnitude_error_F"), as_percent); }},
+          {"torque angle", [](const WideLine& line) { return cell(line.mean("gamma_T_deg"), as_degrees); }}};
+}
+
+/// "3 of 640 failed, 2 of 637 wrong": sums over the buckets, those with equal words together.
+std::string faults_cell(const WideLine& line) {
+  std::vector<Fault> sums;
+  for (const auto& [bucket, ranked] : line.rows) {
+    for (const Fault& fault : ranked->faults) {
+      const auto found = std::ranges::find(sums, fault.what, &Fault::what);
+      if (found == sums.end()) {
+        sums.push_back(fault);
+      } else {
+        found->count += fault.count;
+        found->of += fault.of;
+      }
+    }
+  }
+  std::vector<std::string> texts;
+  for (const Fault& fault : sums) texts.push_back(to_string(fault));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string configurations_cell(const WideLine& line) {
+  const auto least = line.fold("configurations", [](double a, double b) { return std::min(a, b); });
+  const auto largest = line.largest("configurations");
+  if (!least) return "-";
+  return *least == *largest ? as_count(*least) : fmt::format("{:.0f}..{:.0f}", *least, *largest);
+}
+
+}  // namespace
+
+std::vector<Sheet> wide_sheets_of(const std::vector<ResultTable>& tables) {
+  std::vector<std::string> queries;
+  for (const ResultTable& table : tables) {
+    if (std::ranges::find(queries, table.query) == queries.end()) queries.push_back(table.query);
+  }
+  std::vector<Sheet> sheets;
+  for (const std::string& query : queries) {
+    std::vector<const ResultTable*> of_query;
+    std::set<BucketKey> buckets;
+    for (const ResultTable& table : tables) {
+      if (table.query != query) continue;
+      of_query.push_back(&table);
+      for (const TableLine& line : table.lines) buckets.insert(line.bucket);
+    }
+    const std::vector<ErrorColumn> errors = error_columns(query);
+    Sheet& sheet = sheets.emplace_back();
+    sheet.title = query + ": cpu mean / wall clock p99, us";
+    sheet.columns = {{"", "pair", true}, {"", "algorithm", true}, {"", "n"}};
+    for (const BucketKey bucket : buckets) sheet.columns.push_back({to_string(bucket.kind), bucket_text(bucket)});
+    for (const ErrorColumn& column : errors) sheet.columns.push_back({"", column.title});
+    sheet.columns.push_back({"", "faults", true});
+    for (const WideLine& line : lines_of(of_query)) {
+      auto& cells = sheet.lines.emplace_back(std::vector{line.pair, line.label, configurations_cell(line)});
+      for (const BucketKey bucket : buckets) {
+        const auto found = line.rows.find(bucket);
+        cells.push_back(found == line.rows.end() ? "-" : time_cell(*found->second));
+      }
+      for (const ErrorColumn& column : errors) cells.push_back(column.text(line));
+      cells.push_back(faults_cell(line));
+    }
+  }
+  return sheets;
+}
+
+}  // namespace sixdof::cli
