@@ -33,6 +33,22 @@ function(sixdof_optional_backend backend module package)
 endfunction()
 sixdof_optional_backend(BULLET bullet-float64 libbullet-dev)
 sixdof_optional_backend(ODE ode libode-dev)
+
+# sixdof_optional_package(BACKEND TARGET PACKAGE NAME [VERSION]): TARGET if SIXDOF_WITH_BACKEND is on and find_package(NAME
+# VERSION) has it; else a message that names the Debian package, and the backend is left out.
+function(sixdof_optional_package backend target package name)
+  if(NOT SIXDOF_WITH_${backend})
+    return()
+  endif()
+  find_package(${name} ${ARGN} QUIET GLOBAL)
+  if(NOT TARGET ${target})
+    message(STATUS "No ${name}: without the backend SIXDOF_WITH_${backend} (Debian: ${package})")
+  endif()
+endfunction()
+sixdof_optional_package(EMBREE embree libembree-dev embree 3.13)
+
+# In the order in which programs list their algorithms. A backend is built if sixdof_NAME is a target.
+set(SIXDOF_BACKENDS fcl bullet ode embree)
 if(SIXDOF_BUILD_BENCH AND PROJECT_IS_TOP_LEVEL)
   find_package(benchmark 1.7 REQUIRED)
   find_package(CLI11 2.1 REQUIRED)

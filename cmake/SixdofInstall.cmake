@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof)
 set(data_folder share/sixdof)  # as lib/sixdof/base/data_folder.h looks for it
 
-foreach(backend IN ITEMS fcl bullet ode)
+foreach(backend IN LISTS SIXDOF_BACKENDS)
   if(TARGET sixdof_${backend})
     set(SIXDOF_HAS_${backend} ON)
   endif()

@@ -5,6 +5,9 @@
 #ifdef SIXDOF_WITH_BULLET
 #include <sixdof/algorithm/bullet/bullet.h>
 #endif
+#ifdef SIXDOF_WITH_EMBREE
+#include <sixdof/algorithm/embree/embree.h>
+#endif
 #ifdef SIXDOF_WITH_FCL
 #include <sixdof/algorithm/fcl/fcl.h>
 #endif
@@ -24,6 +27,9 @@ std::vector<std::string> register_all_algorithms(Registry& registry) {
 #endif
 #ifdef SIXDOF_WITH_ODE
   register_ode_algorithms(registry);
+#endif
+#ifdef SIXDOF_WITH_EMBREE
+  register_embree_algorithms(registry);
 #endif
   std::vector<std::string> external;
   for (const auto& make : Registrar::makers()) {

@@ -66,14 +66,17 @@ struct ClearPoses {
   }
 };
 
-/// Yes/no as `exact`: in both orders, repeated, and after a rigid motion of both meshes.
-inline void expect_clear_answers(const Algorithm& algorithm) {
+/// Yes/no as `exact`: in both orders, repeated, and after a rigid motion of both meshes. Calls
+/// check(query of A and B, pose, truth) for each pose.
+template <class Check>
+void expect_clear_answers(const Algorithm& algorithm, const std::vector<std::string>& parameters, const Check& check) {
   const ClearPoses clear(60);
   std::mt19937_64 random(5);
   const Pose move_a = generic_pose(random, 1.7), move_b = generic_pose(random, 0.9);
   const Mesh moved_a = moved(clear.a, move_a), moved_b = moved(clear.b, move_b);
-  const auto ab = prepare(algorithm, clear.a, clear.b), ba = prepare(algorithm, clear.b, clear.a);
-  const auto elsewhere = prepare(algorithm, moved_a, moved_b);
+  const auto ab = prepare(algorithm, clear.a, clear.b, parameters),
+             ba = prepare(algorithm, clear.b, clear.a, parameters);
+  const auto elsewhere = prepare(algorithm, moved_a, moved_b, parameters);
   std::size_t hits = 0;
   for (const auto& [X_AB, truth] : clear.poses) {
     const auto forth = ab->collide(X_AB), again = ab->collide(X_AB), back = ba->collide(X_AB.inverse());
@@ -83,14 +86,69 @@ inline void expect_clear_answers(const Algorithm& algorithm) {
     EXPECT_EQ(again.value, truth);
     EXPECT_EQ(back.value, truth);
     EXPECT_EQ(there.value, truth);
-    const auto response = ab->respond(X_AB);
-    ASSERT_TRUE(response.ok()) << ab->diagnosis();
-    EXPECT_EQ(response.value.penalty > 0.0, truth);
-    EXPECT_EQ(response.value.force.norm() > 0.0, truth);
+    check(*ab, X_AB, truth);
     hits += truth;
   }
   EXPECT_GT(hits, clear.poses.size() / 4);
   EXPECT_LT(hits, clear.poses.size() * 3 / 4);
+}
+
+/// For an algorithm without a response.
+inline void expect_clear_yes_no(const Algorithm& algorithm, const std::vector<std::string>& parameters = {}) {
+  expect_clear_answers(algorithm, parameters, [](Query&, const Pose&, bool) {});
+}
+
+/// For an algorithm with a response.
+inline void expect_clear_answers(const Algorithm& algorithm) {
+  expect_clear_answers(algorithm, {}, [](Query& query, const Pose& X_AB, bool truth) {
+    const auto response = query.respond(X_AB);
+    ASSERT_TRUE(response.ok()) << query.diagnosis();
+    EXPECT_EQ(response.value.penalty > 0.0, truth);
+    EXPECT_EQ(response.value.force.norm() > 0.0, truth);
+  });
+}
+
+/// Yes/no as `exact` where B is moved along the line of the closest points to a gap of either sign that is far below a
+/// float's resolution, in both orders. For algorithms whose test of triangles is exact.
+inline void expect_close_yes_no(const Algorithm& algorithm, const std::vector<std::string>& parameters = {}) {
+  const Mesh a = load_model("torus-1k"), b = load_model("cone-1k");
+  const auto exact = make_exact_algorithm();
+  const auto truth = prepare(*exact, a, b);
+  const auto ab = prepare(algorithm, a, b, parameters), ba = prepare(algorithm, b, a, parameters);
+  std::mt19937_64 random(77);
+  int apart = 0, touching = 0;
+  while (apart + touching < 400) {
+    const Pose X_AB = generic_pose(random, 1.3 * a.diagonal());
+    const Separation far = truth->distance(X_AB).value;
+    if (far.distance == 0.0) continue;
+    const Eigen::Vector3d way = far.witness_b - far.witness_a;
+    for (const double gap : {1e-4, 1e-6, 1e-8, 1e-10, -1e-4, -1e-6, -1e-8, -1e-10}) {
+      Pose close = X_AB;
+      close.t -= way * (1.0 - gap * a.diagonal() / far.distance);
+      const bool meet = truth->collide(close).value;
+      EXPECT_EQ(ab->collide(close).value, meet) << gap;
+      EXPECT_EQ(ba->collide(close.inverse()).value, meet) << gap;
+      (meet ? touching : apart)++;
+    }
+  }
+  EXPECT_GT(apart, 100);
+  EXPECT_GT(touching, 100);
+}
+
+/// Boxes that share a face's plane, with coordinates that no float has: contact counts, the smallest gap does not.
+inline void expect_touching_boxes_collide(const Algorithm& algorithm, const std::vector<std::string>& parameters = {}) {
+  const Mesh a = box_solid({-0.7, -0.3, -0.9}, {0.3, 0.1, 0.2}, "a");
+  const Mesh b = box_solid({-0.1, 0.1, -0.2}, {0.6, 0.4, 0.8}, "b");
+  const auto ab = prepare(algorithm, a, b, parameters), ba = prepare(algorithm, b, a, parameters);
+  Pose X_AB;
+  EXPECT_TRUE(ab->collide(X_AB).value);
+  EXPECT_TRUE(ba->collide(X_AB).value);
+  X_AB.t.y() = 1e-15;
+  EXPECT_FALSE(ab->collide(X_AB).value);
+  EXPECT_FALSE(ba->collide(X_AB.inverse()).value);
+  X_AB.t.y() = -1e-15;
+  EXPECT_TRUE(ab->collide(X_AB).value);
+  EXPECT_TRUE(ba->collide(X_AB.inverse()).value);
 }
 
 /// The same bits for the same pose, whatever was asked in between.

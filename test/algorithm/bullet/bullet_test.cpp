@@ -1,5 +1,8 @@
 #include <sixdof/algorithm/bullet/bullet.h>
 
+#include <BulletCollision/CollisionDispatch/btEmptyCollisionAlgorithm.h>
+#include <btBulletCollisionCommon.h>
+
 #include "../contact_checks.h"
 
 namespace sixdof {
@@ -41,6 +44,27 @@ TEST(Bullet, TakesWhatIsBehindATriangleForAContact) {
   EXPECT_FALSE(test::prepare(*algorithm, plate, ball)->collide(above).value);
   const Mesh tilted = test::moved(plate, tilt);
   EXPECT_TRUE(test::prepare(*algorithm, tilted, ball)->collide(tilt * above).value);
+}
+
+/// Why there is no algorithm of this shape: Bullet answers nothing for two of them.
+TEST(Bullet, HasNoAlgorithmForTwoBvhTriangleMeshShapes) {
+  btTriangleMesh triangles;
+  triangles.addTriangle({0.0, 0.0, 0.0}, {1.0, 0.1, 0.0}, {0.2, 1.0, 0.0});
+  triangles.addTriangle({0.3, 0.3, -1.0}, {0.4, 0.3, 1.0}, {0.5, 0.6, 1.0});
+  btBvhTriangleMeshShape first(&triangles, true), second(&triangles, true);
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btCollisionObject a, b;
+  a.setCollisionShape(&first);
+  b.setCollisionShape(&second);
+  const btCollisionObjectWrapper wrapped_a(nullptr, &first, &a, a.getWorldTransform(), -1, -1);
+  const btCollisionObjectWrapper wrapped_b(nullptr, &second, &b, b.getWorldTransform(), -1, -1);
+  for (const auto kind : {BT_CONTACT_POINT_ALGORITHMS, BT_CLOSEST_POINT_ALGORITHMS}) {
+    btCollisionAlgorithm* const algorithm = dispatcher.findAlgorithm(&wrapped_a, &wrapped_b, nullptr, kind);
+    EXPECT_NE(dynamic_cast<btEmptyAlgorithm*>(algorithm), nullptr);
+    algorithm->~btCollisionAlgorithm();
+    dispatcher.freeCollisionAlgorithm(algorithm);
+  }
 }
 
 TEST(Bullet, SharesTheStructureOfEqualMeshes) {

@@ -22,6 +22,12 @@ namespace sixdof {
 /// **Contacts** become a wrench by the rule of algorithm/contact_wrench.h. A contact is a point of a pair of triangles,
 /// with the depth of that point below the plane of the other triangle.
 ///
+/// **Why no btBvhTriangleMeshShape.** Bullet has no public query of two of these shapes. Its collision configuration
+/// has an algorithm for a concave shape against a convex or a compound one; for two concave ones it returns
+/// btEmptyAlgorithm, which finds nothing (tested). The tree of the shape, btOptimizedBvh, takes a box or a ray, never a
+/// second tree. Its nodes are public, but a traversal of two trees would be this project's own, and so would its time.
+/// What Bullet itself has of tree against tree is btGImpactQuantizedBvh::find_collision(), which `bullet-gimpact` runs.
+///
 /// **Margin.** GImpact thickens every triangle by parameter `margin`. Its own default is 0.1 length units whatever the
 /// size of the mesh, which is a tenth of a body of size 1. The default here is 0, so that the question is the same as
 /// that to the other algorithms.
