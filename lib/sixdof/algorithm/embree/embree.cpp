@@ -49,12 +49,14 @@ void check(RTCDevice device) {
 /// A mesh with its vertices in A's frame, as a scene.
 class Body {
  public:
-  Body(RTCDevice device, const Mesh& mesh, RTCBuildQuality scene_quality, RTCBuildQuality geometry_quality)
+  Body(RTCDevice device, const Mesh& mesh, RTCSceneFlags flags, RTCBuildQuality scene_quality,
+       RTCBuildQuality geometry_quality)
       : mesh_(mesh),
         vertices_A_(mesh.vertices()),
         scene_(rtcNewScene(device)),
         geometry_(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER)) {
     if (scene_ == nullptr || geometry_ == nullptr) check(device);
+    rtcSetSceneFlags(scene_.get(), flags);
     rtcSetSceneBuildQuality(scene_.get(), scene_quality);
     rtcSetGeometryBuildQuality(geometry_.get(), geometry_quality);
     rtcSetGeometryUserPrimitiveCount(geometry_.get(), static_cast<unsigned>(mesh.triangles().size()));
@@ -126,10 +128,10 @@ class EmbreeQuery final : public Query {
     }
     const bool tuned = settings.choice(k_profile) == "tuned";
     one_thread_.execute([&] {
-      a_ = std::make_unique<Body>(device_.get(), a, tuned ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW,
-                                  RTC_BUILD_QUALITY_MEDIUM);
-      b_ = std::make_unique<Body>(device_.get(), b, RTC_BUILD_QUALITY_LOW,
-                                  tuned ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+      a_ = std::make_unique<Body>(device_.get(), a, RTC_SCENE_FLAG_NONE,
+                                  tuned ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_LOW, RTC_BUILD_QUALITY_MEDIUM);
+      b_ = std::make_unique<Body>(device_.get(), b, tuned ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE,
+                                  RTC_BUILD_QUALITY_LOW, tuned ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
     });
   }
 
