@@ -48,7 +48,11 @@ void run(const Options& options) {
     std::ranges::move(family(resources), std::back_inserter(rows));
   }
   if (!options.suite.empty()) {
-    const Suite suite = read_suite(options.suite, external);
+    std::vector<std::string> named_only;
+    for (const auto& algorithm : registry.all()) {
+      if (!algorithm->traits().in_default_runs()) named_only.push_back(algorithm->traits().name);
+    }
+    const Suite suite = read_suite(options.suite, external, named_only);
     std::erase_if(rows, [&](const Row& row) { return !suite(row.name); });
   } else if (benchmark::GetBenchmarkFilter().find(k_cold) == std::string::npos) {
     std::erase_if(rows, [&](const Row& row) { return row.fields.cache == k_cold; });

@@ -58,9 +58,17 @@ void print_json(const Registry& registry) {
                     {"answers", names_of(traits.answers)},
                     {"law", to_string(traits.law)},
                     {"timed", traits.timed},
+                    {"by_default", traits.in_default_runs()},
+                    {"body", to_string(traits.body)},
                     {"parameters", parameters}});
   }
   fmt::print("{}\n", json_text(list));
+}
+
+std::string remark_of(const Traits& traits) {
+  if (!traits.timed) return " (not timed)";
+  if (traits.body != Body::mesh) return " (another question: only where it is named)";
+  return traits.by_default ? "" : " (slow: only where it is named)";
 }
 
 void print_text(const Registry& registry) {
@@ -69,7 +77,7 @@ void print_text(const Registry& registry) {
     const Traits& traits = algorithm->traits();
     fmt::print("{:<16} {:<13} {:<28} {:<7} {}\n", traits.name, traits.version,
                fmt::format("{}", fmt::join(names_of(traits.answers), ",")), to_string(traits.law),
-               traits.timed ? traits.summary : traits.summary + " (not timed)");
+               traits.summary + remark_of(traits));
     for (const Parameter& parameter : traits.parameters) {
       fmt::print("  {}={}  [{}]  unit {}: {}\n", parameter.name, parameter.default_value, range_of(parameter),
                  parameter.unit.empty() ? "none" : parameter.unit, parameter.meaning);

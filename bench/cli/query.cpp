@@ -109,6 +109,7 @@ Json describe(const Traits& traits, const Settings& settings, const Answers& ans
   return {{"algorithm", traits.name},
           {"version", traits.version},
           {"settings", settings.to_string()},
+          {"body", or_null(traits.body != Body::mesh, to_string(traits.body))},
           {"status", to_string(answers.status)},
           {"diagnosis", or_null(!answers.diagnosis.empty(), answers.diagnosis)},
           {"colliding", or_null(answers.collide.ok(), answers.collide.value)},

@@ -51,12 +51,16 @@ std::vector<const Algorithm*> study_algorithms(const Registry& registry, const s
     if (!bench::answers(algorithm.traits().answers, question)) {
       throw BadArgument(fmt::format("{} does not answer {}", name, to_string(question)));
     }
+    if (algorithm.traits().body != Body::mesh) {
+      throw BadArgument(fmt::format("{} answers for the {} of the meshes, which no study compares with others", name,
+                                    to_string(algorithm.traits().body)));
+    }
     if (std::ranges::find(chosen, &algorithm) == chosen.end()) chosen.push_back(&algorithm);
   }
   if (!names.empty()) return chosen;
   for (const auto& algorithm : registry.all()) {
     const Traits& traits = algorithm->traits();
-    if (traits.timed && traits.name != "null" && bench::answers(traits.answers, question)) {
+    if (traits.in_default_runs() && traits.name != "null" && bench::answers(traits.answers, question)) {
       chosen.push_back(algorithm.get());
     }
   }

@@ -67,13 +67,15 @@ std::vector<ResultTable> align(const std::vector<ResultFile>& files) {
     const std::map<Subject, BucketKey> constant_answers = find_constant_answers(files[i]);
     for (const ResultRow& row : files[i].rows) {
       const RowFields& fields = row.fields;
+      // Answers about other bodies stand in tables of their own.
+      const std::string pair = fields.body.empty() ? fields.pair : fmt::format("{} ({})", fields.pair, fields.body);
       ResultTable& table = find_or_add(
           tables,
           [&](const ResultTable& t) {
-            return t.pair == fields.pair && t.query == fields.query && t.kind == fields.bucket->kind;
+            return t.pair == pair && t.query == fields.query && t.kind == fields.bucket->kind;
           },
           [&] {
-            return ResultTable{fields.pair, fields.query, fields.bucket->kind, {}};
+            return ResultTable{pair, fields.query, fields.bucket->kind, {}};
           });
       TableLine& line = find_or_add(
           table.lines,

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::pair<const char*, std::string RowFields::*> k_texts[] = {
     {"pair", &RowFields::pair},         {"order", &RowFields::order},   {"cache", &RowFields::cache},
     {"scenario", &RowFields::scenario}, {"kernel", &RowFields::kernel}, {"target", &RowFields::target},
-    {"question", &RowFields::question},
+    {"question", &RowFields::question}, {"body", &RowFields::body},
 };
 
 /// The whole text as a number; empty if it is none.

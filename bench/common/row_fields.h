@@ -19,6 +19,7 @@ struct RowFields {
   std::string pair = {};      ///< Empty where the row belongs to none.
   std::optional<BucketKey> bucket = {};
   std::string order = {};     ///< Of a query's configurations: "random" or "path", the grid's own order.
+  std::string body = {};      ///< "convex_hull" where answers are not about the meshes; empty where they are.
   std::string cache = {};     ///< Of a query: "warm", or "cold" where data leaves the caches before each.
   std::string scenario = {};  ///< "II".
   std::string kernel = {};    ///< Which inner loop, of a kernel row.

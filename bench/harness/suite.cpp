@@ -25,9 +25,14 @@ std::map<std::string, std::string> row_name_parts(std::string_view name) {
   return parts;
 }
 
+bool is_one_of(const std::vector<std::string>& list, const std::string& word) {
+  return std::ranges::find(list, word) != list.end();
+}
+
 }  // namespace
 
-Suite read_suite(const std::filesystem::path& file, const std::vector<std::string>& external_algorithms) {
+Suite read_suite(const std::filesystem::path& file, const std::vector<std::string>& external_algorithms,
+                 const std::vector<std::string>& named_only) {
   std::ifstream in(file);
   if (!in) throw BadFile(file.string(), "cannot be opened");
   using Entry = std::map<std::string, std::vector<std::string>>;  // allowed values by key of a part; no values: all
@@ -47,13 +52,14 @@ Suite read_suite(const std::filesystem::path& file, const std::vector<std::strin
   } catch (const nlohmann::json::exception& e) {
     throw BadFile(file.string(), e.what());
   }
-  return [entries = std::move(entries)](std::string_view row) {
+  return [entries = std::move(entries), named_only](std::string_view row) {
     const auto parts = row_name_parts(row);
     return std::ranges::any_of(entries, [&](const Entry& entry) {
       return std::ranges::all_of(parts, [&](const auto& part) {
         const auto found = entry.find(part.first);
         if (found == entry.end()) return false;
-        return found->second.empty() || std::ranges::find(found->second, part.second) != found->second.end();
+        if (found->second.empty()) return part.first != "algorithm" || !is_one_of(named_only, part.second);
+        return is_one_of(found->second, part.second);
       });
     });
   };

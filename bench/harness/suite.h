@@ -13,10 +13,13 @@ using Suite = std::function<bool(std::string_view)>;
 
 /// Reads a list of rows (bench/default_suite.json). A row belongs to it if one entry lists every part of the row's
 /// name. "distance/algorithm:fcl-rss/pair:bunny/volume:05" needs an entry with "distance" under "query", "fcl-rss"
-/// under "algorithm", and so on; the word "all" instead of a list allows everything. Parts without a colon behind the
-/// first ("II" of "scenario/II/algorithm:exact") are free.
+/// under "algorithm", and so on; the word "all" instead of a list allows everything, of algorithms those of default
+/// runs (Traits::in_default_runs()). Parts without a colon behind the first ("II" of "scenario/II/algorithm:exact") are
+/// free.
 /// @param external_algorithms belong wherever an entry lists algorithms
+/// @param named_only algorithms that "all" leaves out
 /// @throws BadFile
-Suite read_suite(const std::filesystem::path& file, const std::vector<std::string>& external_algorithms);
+Suite read_suite(const std::filesystem::path& file, const std::vector<std::string>& external_algorithms,
+                 const std::vector<std::string>& named_only);
 
 }  // namespace sixdof::bench

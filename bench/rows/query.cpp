@@ -62,6 +62,7 @@ struct QueryRow {
             .pair = pair.pair,
             .bucket = key,
             .order = path ? "path" : "random",
+            .body = is_judged() ? "" : std::string(to_string(algorithm.traits().body)),
             .cache = evict ? "cold" : "warm"};
   }
 
@@ -81,7 +82,7 @@ struct QueryRow {
     with_query(failures, [&](auto query) {
       if (!check) {
         if constexpr (requires { query.ask(poses[0]).value.force; }) compare_with_exact(bucket, exact, query);
-        check = check_answers(bucket, count, query);
+        check = check_answers(bucket, count, query, is_judged());
         const auto order = path ? grid_order(bucket, count) : random_order(count, resources.seed);
         for (const std::size_t i : order) {
           if (check->answered[i]) poses.push_back(bucket.poses[i]);
@@ -128,6 +129,9 @@ struct QueryRow {
   }
 
  private:
+  /// The set's truth is that of the meshes.
+  bool is_judged() const { return algorithm.traits().body == Body::mesh; }
+
   /// @throws BadArgument for an empty bucket, NeedsSolid
   const BucketSample& sample() const {
     const BucketSample& bucket = resources.cache.bucket(pair, key);
@@ -189,7 +193,7 @@ struct QueryRow {
     count("judged", check->judged);
     count("mismatch", check->mismatch);
     check->work.report(state.counters);
-    if (question == Question::distance) {
+    if (question == Question::distance && is_judged()) {
       count("error_rms", check->errors.rms());
       count("error_max", check->errors.largest());
     }
@@ -211,6 +215,10 @@ struct QueryRow {
       count("compared", errors->at(0).direction.compared);
     }
     std::string label = resources.settings_of(algorithm).to_string();
+    if (!is_judged()) {
+      label += fmt::format("{}{} instead of the mesh, not judged", label.empty() ? "" : "; ",
+                           to_string(algorithm.traits().body));
+    }
     if (failures.count() > 0) {
       label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures.first());
     }

@@ -16,9 +16,10 @@ struct SuiteFile : ::testing::Test {
       std::filesystem::temp_directory_path() / ("sixdof-suite-" + std::to_string(::getpid()) + ".json");
   ~SuiteFile() override { std::filesystem::remove(path); }
 
-  Suite read(const std::string& rows, const std::vector<std::string>& external = {}) const {
+  Suite read(const std::string& rows, const std::vector<std::string>& external = {},
+             const std::vector<std::string>& named_only = {}) const {
     std::ofstream(path) << R"({"rows": [)" << rows << "]}";
-    return read_suite(path, external);
+    return read_suite(path, external, named_only);
   }
 };
 
@@ -43,11 +44,19 @@ TEST_F(SuiteFile, TakesExternalAlgorithmsWhereAlgorithmsAreListed) {
   EXPECT_FALSE(suite("distance/algorithm:mine"));
 }
 
+TEST_F(SuiteFile, LeavesOutOfAllWhatMustBeNamed) {
+  const Suite all = read(R"({"query": ["collide"], "algorithm": "all", "pair": "all"})", {}, {"slow"});
+  EXPECT_TRUE(all("collide/algorithm:exact/pair:slow"));
+  EXPECT_FALSE(all("collide/algorithm:slow/pair:ship"));
+  const Suite named = read(R"({"query": ["collide"], "algorithm": ["slow"], "pair": "all"})", {}, {"slow"});
+  EXPECT_TRUE(named("collide/algorithm:slow/pair:ship"));
+}
+
 TEST_F(SuiteFile, RefusesWhatItCannotRead) {
   for (const char* bad : {R"({"query": []})", R"({"query": "some"})", R"({"query": 5})", "{"}) {
     EXPECT_THROW(read(bad), BadFile) << bad;
   }
-  EXPECT_THROW(read_suite("no-such-file", {}), BadFile);
+  EXPECT_THROW(read_suite("no-such-file", {}, {}), BadFile);
 }
 
 }  // namespace

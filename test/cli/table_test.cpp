@@ -134,6 +134,19 @@ TEST_F(TableCommand, HasALinePerBucketAndAlgorithmAndOneClockPerColumn) {
               HasSubstr(k_distances));
 }
 
+TEST_F(TableCommand, AnswersAboutOtherBodiesHaveATableOfTheirOwn) {
+  Json hulls = row("collide", "hulls", "distance", 5, 1.0);
+  hulls["sixdof"]["body"] = "convex_hull";
+  const std::string file = write("r.json", {row("collide", "x", "distance", 5, 1500), hulls});
+  for (const std::string& option : {"", "--wide "}) {
+    const std::string text = printed(option + file);
+    EXPECT_THAT(text, HasSubstr("p (convex_hull)"));
+  }
+  const Json tables = Json::parse(printed("--json " + file)).at("tables");
+  ASSERT_EQ(tables.size(), 2u);
+  for (const Json& table : tables) EXPECT_EQ(table.at("rows").size(), 1u) << table;
+}
+
 TEST_F(TableCommand, WideHasALinePerPairAndAlgorithmAndAColumnPerBucket) {
   Json other_pair = row("distance", "x", "distance", 5, 500, {{"error_max", 0.0}});
   other_pair["sixdof"]["pair"] = "q";

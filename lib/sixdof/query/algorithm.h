@@ -96,6 +96,14 @@ struct QuerySet {
   bool respond = false;
 };
 
+/// Which bodies an algorithm's answers are about.
+enum class Body {
+  mesh,
+  convex_hull  ///< Of each mesh: another question than that of the other algorithms, with another truth.
+};
+
+constexpr std::string_view to_string(Body body) { return body == Body::mesh ? "mesh" : "convex_hull"; }
+
 /// What the magnitude of a response is proportional to. It selects the ideal model that scenarios compare with.
 enum class ResponseLaw {
   none,
@@ -126,6 +134,14 @@ struct Traits {
   std::vector<Parameter> parameters;    ///< What a user may set; empty if nothing.
   /// Whether benchmarks have rows of its queries. False for a reference that is too slow, such as brute force.
   bool timed = true;
+  /// Never compared with the truth of the meshes, or with other algorithms, unless it is `mesh`.
+  Body body = Body::mesh;
+  /// Whether what takes "all" algorithms takes this one. False where thousands of queries would take hours: it is
+  /// measured where it is named.
+  bool by_default = true;
+
+  /// Whether suites and studies of "all" algorithms include it.
+  bool in_default_runs() const { return timed && by_default && body == Body::mesh; }
 };
 
 /// An algorithm prepared for one pair of meshes.

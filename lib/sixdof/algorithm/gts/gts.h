@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+
+#include <sixdof/query/registry.h>
+
+namespace sixdof {
+
+/// `gts`: Boolean operations of the GNU Triangulated Surface library. Answers collide and respond.
+///
+/// **Prepare** builds a surface of each mesh and the tree of A. **A query** moves B's vertices, builds B's tree of
+/// boxes and computes the curves in which the surfaces intersect (gts_surface_inter_new()), as GTS's example `set`
+/// does. collide asks whether there are any, or whether a vertex of one body is inside the other. respond then takes
+/// the parts of either surface that are inside the other body (gts_surface_inter_boolean()); volume and force are sums
+/// over their triangles (volume_response.h). Nothing is kept from query to query.
+///
+/// **Precision.** GTS's predicates are exact, its new vertices are rounded to double precision.
+///
+/// **Profiles.** None: GTS's manual gives no other advice for these queries.
+///
+/// **Process.** GTS is not made for threads: queries take turns; a mutex serves one at a time. The first preparation
+/// silences GTS's messages for the rest of the process.
+///
+/// **Known failures.**
+/// - GTS ends the process (a failed assertion of its own, after a message on standard error) or never returns where
+/// faces
+///   of both bodies lie in one plane: two boxes of 300 triangles in the same place (tested), or half a length apart
+///   along a face. Nothing can stop that within the process: ask poses like these in a process of their own. On generic
+///   poses it has not been seen.
+/// - Answers repeat to rounding, not to the bit: GTS's hash tables are in the order of addresses.
+/// - Curves that are not closed are a failed response ("the curves are not closed").
+/// - A body inside the other counts by one vertex: bodies of several shells, of which some are inside and none crosses,
+/// are
+///   answered for the first shell.
+///
+/// Not in suites and studies of all algorithms (Traits::by_default): every query rebuilds B's tree and the curves.
+std::unique_ptr<Algorithm> make_gts_algorithm();
+
+/// Adds it.
+void register_gts_algorithms(Registry& registry);
+
+}  // namespace sixdof

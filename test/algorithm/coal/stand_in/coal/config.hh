@@ -1,0 +1,3 @@
+#pragma once
+
+#define COAL_VERSION "stand-in"
