@@ -23,6 +23,9 @@
 #ifdef SIXDOF_WITH_GTS
 #include <sixdof/algorithm/gts/gts.h>
 #endif
+#ifdef SIXDOF_WITH_MUJOCO
+#include <sixdof/algorithm/mujoco/mujoco.h>
+#endif
 #ifdef SIXDOF_WITH_ODE
 #include <sixdof/algorithm/ode/ode.h>
 #endif
@@ -54,6 +57,9 @@ std::vector<std::string> register_all_algorithms(Registry& registry) {
 #endif
 #ifdef SIXDOF_WITH_CCD
   register_ccd_algorithms(registry);
+#endif
+#ifdef SIXDOF_WITH_MUJOCO
+  register_mujoco_algorithms(registry);
 #endif
 #ifdef SIXDOF_WITH_COAL
   register_coal_algorithms(registry);

@@ -138,7 +138,7 @@ TEST_F(TableCommand, AnswersAboutOtherBodiesHaveATableOfTheirOwn) {
   Json hulls = row("collide", "hulls", "distance", 5, 1.0);
   hulls["sixdof"]["body"] = "convex_hull";
   const std::string file = write("r.json", {row("collide", "x", "distance", 5, 1500), hulls});
-  for (const std::string& option : {"", "--wide "}) {
+  for (const char* const option : {"", "--wide "}) {
     const std::string text = printed(option + file);
     EXPECT_THAT(text, HasSubstr("p (convex_hull)"));
   }

@@ -22,20 +22,20 @@ endfunction()
 file(REMOVE_RECURSE ${WORK}/without ${WORK}/unusable ${WORK}/pkgconfig)
 set(configure ${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -DSIXDOF_BUILD_TESTS=OFF -DSIXDOF_INSTALL=OFF)
 run(output ${configure} -B ${WORK}/without -DSIXDOF_WITH_FCL=OFF -DSIXDOF_WITH_BULLET=OFF -DSIXDOF_WITH_ODE=OFF
-  -DSIXDOF_WITH_EMBREE=OFF -DSIXDOF_WITH_GTS=OFF -DSIXDOF_WITH_SIMBODY=OFF -DSIXDOF_WITH_CCD=OFF -DSIXDOF_WITH_COAL=OFF)
+  -DSIXDOF_WITH_EMBREE=OFF -DSIXDOF_WITH_GTS=OFF -DSIXDOF_WITH_SIMBODY=OFF -DSIXDOF_WITH_CCD=OFF -DSIXDOF_WITH_MUJOCO=OFF -DSIXDOF_WITH_COAL=OFF)
 # CGAL is off by default: a program that links it is under the GPL.
-expect_no_backend(${WORK}/without fcl bullet ode embree gts simbody ccd coal cgal)
+expect_no_backend(${WORK}/without fcl bullet ode embree gts simbody ccd mujoco coal cgal)
 
 foreach(module IN ITEMS bullet-float64 ode gts simbody ccd)
   file(WRITE ${WORK}/pkgconfig/${module}.pc
     "Name: ${module}\nDescription: unusable\nVersion: 1\nRequires: sixdof-no-such-package\n")
 endforeach()
 set(ENV{PKG_CONFIG_PATH} ${WORK}/pkgconfig)
-run(output ${configure} -B ${WORK}/unusable -DCMAKE_DISABLE_FIND_PACKAGE_embree=ON)
+run(output ${configure} -B ${WORK}/unusable -DCMAKE_DISABLE_FIND_PACKAGE_embree=ON -DCMAKE_DISABLE_FIND_PACKAGE_mujoco=ON)
 foreach(words IN ITEMS "No bullet-float64: .*libbullet-dev" "No ode: .*libode-dev" "No embree: .*libembree-dev"
-        "No gts: .*libgts-dev" "No simbody: .*libsimbody-dev" "No ccd: .*libccd-dev")
+        "No gts: .*libgts-dev" "No simbody: .*libsimbody-dev" "No ccd: .*libccd-dev" "No mujoco: .*libmujoco-dev")
   if(NOT output MATCHES "${words}")
     message(FATAL_ERROR "no message '${words}' in:\n${output}")
   endif()
 endforeach()
-expect_no_backend(${WORK}/unusable bullet ode embree gts simbody ccd cgal)
+expect_no_backend(${WORK}/unusable bullet ode embree gts simbody ccd mujoco cgal)

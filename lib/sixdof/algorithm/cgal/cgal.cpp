@@ -123,7 +123,7 @@ class CgalQuery final : public Query {
 std::unique_ptr<Algorithm> make_cgal_algorithm() {
   return make_algorithm<CgalQuery>(
       {.name = "cgal",
-       .version = CGAL_VERSION_STR " GPL-3.0-or-later",
+       .version = CGAL_VERSION_STR " (GPL)",
        .summary = "CGAL (GPL): yes/no of moving meshes; volume of the intersection by corefinement, and its gradient",
        .answers = {.collide = true, .respond = true},
        .law = ResponseLaw::volume,

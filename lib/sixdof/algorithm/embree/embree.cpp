@@ -176,7 +176,7 @@ class EmbreeQuery final : public Query {
 std::unique_ptr<Algorithm> make_embree_algorithm() {
   return make_algorithm<EmbreeQuery>(
       {.name = "embree",
-       .version = RTC_VERSION_STRING " single-precision boxes",
+       .version = RTC_VERSION_STRING " float",
        .summary = "Embree's rtcCollide with this project's exact test of triangles; every query moves and refits B",
        .answers = {.collide = true},
        .parameters = {Parameter::choice(k_profile, "default: Embree's tutorial; tuned: its manual's advice", "default",
