@@ -102,8 +102,32 @@ TEST(Predicates, Orient3dHasTheExactSign) {
     EXPECT_EQ(orient3d(b, a, c, d), -sign(truth));
     EXPECT_EQ(orient3d(d, c, b, a), sign(truth));  // an even permutation
     EXPECT_EQ(detail::sign_of(detail::orient3d_exact_value(c, d, a, b)), sign(truth));
+    EXPECT_EQ(detail::orient3d_exact_sign(c, d, a, b), sign(truth));
   }
   EXPECT_GT(ties, 100);
+}
+
+TEST(Predicates, SignsAreExactWhateverPrecisionTheyTake) {
+  // A corner lifted off a plane across no axis by 2^-20 .. 2^-140 of the size: floats, numbers of twice the precision,
+  // and expansions decide some each. All coordinates are multiples of 2^-160.
+  const Vector3d a(0.0, 0.0, 0.0), b(1.0, 0.0, 0.5), c(0.0, 1.0, 0.25);
+  int positive = 0;
+  for (int power = 20; power <= 140; ++power) {
+    for (const double s : {1.0, -1.0, 0.0}) {
+      const Vector3d d(0.0, 0.0, s * std::ldexp(1.0, -power));
+      for (const Vector3d& shift : {Vector3d(0, 0, 0), Vector3d(1, 2, 1), Vector3d(3, -1, 1.25)}) {
+        // In the plane z = x / 2 + y / 4, shifted along it: the rest of d's height is lost where the sum rounds.
+        const Vector3d at(shift.x(), shift.y(), 0.5 * shift.x() + 0.25 * shift.y());
+        const Vector3d p = at + d;
+        const int truth = sign(determinant(exact(a), exact(b), exact(c), exact(p)));
+        EXPECT_EQ(orient3d(a, b, c, p), truth) << power;
+        EXPECT_EQ(detail::orient3d_exact_sign(a, b, c, p), truth) << power;
+        EXPECT_EQ(detail::orient3d_exact_sign(b, a, c, p), -truth) << power;
+        positive += truth > 0;
+      }
+    }
+  }
+  EXPECT_GT(positive, 150);
 }
 
 TEST(Predicates, Orient3dValueIsAccurateAtAnyMagnitude) {

@@ -1,9 +1,11 @@
 #include <sixdof/oracle/crossing.h>
 
+#include <cmath>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 #include <boost/multiprecision/cpp_int.hpp>
 
 /// The crossing of two triangles against rational arithmetic, with B translated by a small rational vector.
@@ -94,6 +96,68 @@ TEST(Crossing, TiesAreThoseOfATranslatedBody) {
     EXPECT_GE(dot(d, end.at - start.at), 0);
   }
   EXPECT_GT(crossings, 250);
+}
+
+/// A triangle in the plane through the origin across (1, 2, 3), in units that round: off the plane by a few 1e-17.
+OrderedTriangle triangle_in_plane(std::mt19937_64& random, double size) {
+  std::uniform_real_distribution<double> coordinate(-1.0, 1.0);
+  const Vector3d u = Vector3d(3.0, 0.0, -1.0).normalized();
+  const Vector3d v = Vector3d(1.0, 2.0, 3.0).normalized().cross(u);
+  OrderedTriangle t;
+  const double x = coordinate(random), y = coordinate(random);
+  for (Vector3d& c : t.corner) c = (x + size * coordinate(random)) * u + (y + size * coordinate(random)) * v;
+  return t;
+}
+
+Point exact_point(const Vector3d& p) { return {Rational(p.x()), Rational(p.y()), Rational(p.z())}; }
+
+TEST(Crossing, TrianglesInOnePlaneUpToRoundingAreDecidedExactly) {
+  std::mt19937_64 random(19);
+  int crossings = 0, apart = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const OrderedTriangle a = triangle_in_plane(random, 0.7), b = triangle_in_plane(random, i % 2 == 0 ? 0.7 : 0.1);
+    ExactTriangle exact_a, exact_b;
+    for (std::size_t k = 0; k < 3; ++k) {
+      exact_a[k] = exact_point(a.corner[k]);
+      exact_b[k] = exact_point(b.corner[k]);
+    }
+    std::vector<Piercing> truth;
+    collect_piercings(exact_a, exact_b, 0, truth);
+    collect_piercings(exact_b, exact_a, 3, truth);
+    const std::optional<Segment> segment = cross(a, b);
+    ASSERT_EQ(segment.has_value(), !truth.empty()) << i;
+    ++(segment ? crossings : apart);
+    EXPECT_FALSE(segment && certainly_apart(a, b));
+    EXPECT_EQ(certainly_apart(a, b), certainly_apart(b, a));
+  }
+  EXPECT_GT(crossings, 150);
+  EXPECT_GT(apart, 2000);
+}
+
+/// Two fans over the same circle, from apexes beside each other on it, in a plane across no axis.
+std::vector<OrderedTriangle> fan(int corners, double turn) {
+  const Vector3d u = Vector3d(3.0, 0.0, -1.0).normalized();
+  const Vector3d v = Vector3d(1.0, 2.0, 3.0).normalized().cross(u);
+  const auto rim = [&](int i) {
+    const double angle = turn + 2.0 * 3.14159265358979 * i / corners;
+    return Vector3d(std::cos(angle) * u + std::sin(angle) * v);
+  };
+  std::vector<OrderedTriangle> triangles;
+  for (int i = 1; i + 1 < corners; ++i) triangles.push_back({{rim(0), rim(i), rim(i + 1)}, true});
+  return triangles;
+}
+
+TEST(Crossing, OfFansOverEachOtherFewPairsNeedExactSigns) {
+  // The apexes are half a side apart. A triangle overlaps those that it meets on the rim and those near the apexes.
+  constexpr int k_corners = 256;
+  const std::vector<OrderedTriangle> a = fan(k_corners, 0.0);
+  const std::vector<OrderedTriangle> b = fan(k_corners, 3.14159265358979 / k_corners);
+  std::size_t doubtful = 0;
+  for (const OrderedTriangle& s : a) {
+    for (const OrderedTriangle& t : b) doubtful += certainly_apart(s, t) ? 0 : 1;
+  }
+  EXPECT_GE(doubtful, a.size());
+  EXPECT_LE(doubtful, a.size() * b.size() / 2 + 8 * a.size());
 }
 
 TEST(Crossing, EdgesPierceWhereSegmentsEnd) {

@@ -142,9 +142,13 @@ struct Row {
       : x(difference(p.x(), origin.x())), y(difference(p.y(), origin.y())), z(difference(p.z(), origin.z())) {}
 };
 
-/// Whether two points are equal: the determinant is zero. By far the most frequent tie.
-bool coincident(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                const Eigen::Vector3d& d) {
+/// Whether two points are equal, or all have a coordinate in common: the determinant is zero. By far the most frequent
+/// ties: shared vertices, and faces across an axis.
+bool surely_coplanar(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                     const Eigen::Vector3d& d) {
+  for (int k = 0; k < 3; ++k) {
+    if (a[k] == b[k] && a[k] == c[k] && a[k] == d[k]) return true;
+  }
   return d == a || d == b || d == c || a == b || b == c || a == c;
 }
 
@@ -157,6 +161,52 @@ Expansion<192> determinant(const Eigen::Vector3d& a, const Eigen::Vector3d& b, c
   const Expansion<16> vw = v.x * w.y - w.x * v.y;
   const Expansion<16> wu = w.x * u.y - u.x * w.y;
   return (uv * w.z + vw * u.z) + wu * v.z;
+}
+
+/// A number of twice the precision: high + low, of which high is the sum rounded.
+struct Double2 {
+  double high, low;
+};
+
+Double2 operator*(const Double2& x, const Double2& y) {
+  const Two p = two_product(x.high, y.high);
+  const Two s = fast_two_sum(p.high, p.low + (x.high * y.low + x.low * y.high));
+  return {s.high, s.low};
+}
+
+Double2 operator+(const Double2& x, const Double2& y) {
+  const Two high = two_sum(x.high, y.high);
+  const Two low = two_sum(x.low, y.low);
+  const Two s = fast_two_sum(high.high, high.low + low.high);
+  const Two t = fast_two_sum(s.high, s.low + low.low);
+  return {t.high, t.low};
+}
+
+Double2 operator-(const Double2& x, const Double2& y) { return x + Double2{-y.high, -y.low}; }
+
+/// The determinant of b - a, c - a, d - a. A sum or product has a relative error below 2^-100, of the result or of the
+/// terms that cancel; fewer than 32 of them add up to less than k_double2_bound times the permanent.
+constexpr double k_double2_bound = 0x1p-92;
+
+int sign_in_double2(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                    const Eigen::Vector3d& d) {
+  const auto minus_a = [&a](const Eigen::Vector3d& p, int k) {
+    const Two x = two_sum(p[k], -a[k]);
+    return Double2{x.high, x.low};
+  };
+  const Double2 u[3] = {minus_a(b, 0), minus_a(b, 1), minus_a(b, 2)};
+  const Double2 v[3] = {minus_a(c, 0), minus_a(c, 1), minus_a(c, 2)};
+  const Double2 w[3] = {minus_a(d, 0), minus_a(d, 1), minus_a(d, 2)};
+  Double2 sum{0.0, 0.0};
+  double permanent = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    const Double2 left = u[l] * v[m], right = u[m] * v[l];
+    sum = sum + (left - right) * w[k];
+    permanent += (std::abs(left.high) + std::abs(right.high)) * std::abs(w[k].high);
+  }
+  const double bound = k_double2_bound * permanent + detail::k_underflow_bound;
+  return (sum.high > bound ? 1 : 0) - (sum.high < -bound ? 1 : 0);
 }
 
 /// Exact sign of (b - a)(d - c) - (f - e)(h - g).
@@ -189,7 +239,14 @@ namespace detail {
 
 double orient3d_exact_value(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                             const Eigen::Vector3d& d) {
-  return coincident(a, b, c, d) ? 0.0 : determinant(a, b, c, d).estimate();
+  return surely_coplanar(a, b, c, d) ? 0.0 : determinant(a, b, c, d).estimate();
+}
+
+int orient3d_exact_sign(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                        const Eigen::Vector3d& d) {
+  if (surely_coplanar(a, b, c, d)) return 0;
+  const int sign = sign_in_double2(a, b, c, d);
+  return sign != 0 ? sign : determinant(a, b, c, d).sign();
 }
 
 int lexicographic_cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,

@@ -1,6 +1,10 @@
 #include <sixdof/oracle/crossing.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
 
 namespace sixdof {
 namespace {
@@ -30,22 +34,60 @@ int passing(const OrderedTriangle& a, int i, const OrderedTriangle& b, int j) {
   return side_of_perturbed_edge(at(a, i), at(a, i + 1), at(b, j), at(b, j + 1));
 }
 
-/// Both triangles, with orient3d() of each one's corners and the other triangle: proportional to the corner's signed
-/// distance from the other's plane.
+/// The corners of a triangle and the plane of another.
+class PlaneSides {
+ public:
+  /// Keeps references to both.
+  /// @param tie multiplies detail::lexicographic_cross() of the plane's sides: the side on which a corner in the plane
+  /// lies, 1 if the plane is A's, -1 if it is B's
+  PlaneSides(const OrderedTriangle& triangle, const OrderedTriangle& plane, int tie)
+      : triangle_(triangle), other_(plane), plane_(plane.corner[0], plane.corner[1], plane.corner[2]), tie_(tie) {
+    for (std::size_t i = 0; i < 3; ++i) filtered_[i] = plane_.filter(triangle.corner[i]);
+  }
+
+  /// Whether floating point decides all signs.
+  bool is_clear() const {
+    return std::all_of(filtered_.begin(), filtered_.end(),
+                       [](const detail::Filtered& f) { return std::abs(f.value) > f.bound; });
+  }
+
+  /// Each corner's side of the plane: 1 in front, -1 behind; all 0 if the plane's corners are collinear.
+  std::array<int, 3> signs() const {
+    std::array<int, 3> sign;
+    for (std::size_t i = 0; i < 3; ++i) sign[i] = plane_.sign(triangle_.corner[i], filtered_[i]);
+    if (std::find(sign.begin(), sign.end(), 0) == sign.end()) return sign;
+    const auto& [p, q, r] = other_.corner;
+    const int in_plane = tie_ * detail::lexicographic_cross(p, q, p, r);
+    std::replace(sign.begin(), sign.end(), 0, in_plane);
+    return sign;
+  }
+
+  /// Proportional to a corner's signed distance from the plane.
+  double distance(std::size_t corner) const { return plane_.value(triangle_.corner[corner], filtered_[corner]); }
+
+ private:
+  const OrderedTriangle& triangle_;
+  const OrderedTriangle& other_;
+  TrianglePlane plane_;
+  int tie_;
+  std::array<detail::Filtered, 3> filtered_;
+};
+
+/// Both triangles, each with the other's plane.
 struct PlaneDistances {
   const OrderedTriangle& a;
   const OrderedTriangle& b;
-  std::array<double, 3> of_a, of_b;
+  const PlaneSides &of_a, &of_b;
 
   /// Where a side pierces the other triangle's plane; sides 3, 4, 5 are those of b.
   Eigen::Vector3d point(int side) const {
     const OrderedTriangle& edge = side < 3 ? a : b;
-    const std::array<double, 3>& distance = side < 3 ? of_a : of_b;
+    const PlaneSides& sides = side < 3 ? of_a : of_b;
     const auto low = static_cast<std::size_t>(edge.low(side % 3));
     const auto high = static_cast<std::size_t>(edge.high(side % 3));
     const Eigen::Vector3d& p = edge.corner[low];
     const Eigen::Vector3d& q = edge.corner[high];
-    const double at_p = distance[low], at_q = distance[high];
+    const double at_p = sides.distance(low), at_q = sides.distance(high);
     // From the nearer end: if an end lies on the plane, it is the point.
     if (std::abs(at_p) <= std::abs(at_q)) return p + (at_p / (at_p - at_q)) * (q - p);
     return q + (at_q / (at_q - at_p)) * (p - q);
@@ -55,6 +97,9 @@ struct PlaneDistances {
     return {point(start_side), point(end_side), start_side, end_side};
   }
 };
+
+/// Rounding of a projection's difference, relative to the largest coordinate and the axis: a dozen roundings.
+constexpr double k_projection_rounding = 1e-14;
 
 /// For a triangle with collinear corners: only the other triangle can be pierced, by two sides at one point.
 std::optional<Segment> cross_degenerate(const PlaneDistances& distances, const PlaneCrossing& in_a,
@@ -70,23 +115,43 @@ std::optional<Segment> cross_degenerate(const PlaneDistances& distances, const P
 
 }  // namespace
 
-std::optional<Segment> cross(const OrderedTriangle& a, const OrderedTriangle& b) {
-  PlaneDistances distances{a, b, {}, {}};
-  // The sides on which corners lie of the other triangle's plane; false if all lie on one side.
-  const auto crosses_plane = [](const OrderedTriangle& of, const OrderedTriangle& plane, auto perturbed,
-                                std::array<int, 3>& sign, std::array<double, 3>& distance) {
-    const auto& [p, q, r] = plane.corner;
-    const TrianglePlane exact(p, q, r);
+bool certainly_apart(const OrderedTriangle& a, const OrderedTriangle& b) {
+  const auto edge_separates = [](const OrderedTriangle& t, const OrderedTriangle& other) {
+    const auto& c = t.corner;
+    const Eigen::Vector3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
     for (std::size_t i = 0; i < 3; ++i) {
-      const TrianglePlane::Orientation h = exact.orientation(of.corner[i]);
-      sign[i] = h.sign != 0 ? h.sign : perturbed(p, q, r, of.corner[i]);
-      distance[i] = h.value;
+      const Eigen::Vector3d& from = c[i];
+      const Eigen::Vector3d edge = c[(i + 1) % 3] - from;
+      const Eigen::Vector3d outwards = edge.cross(normal);
+      double highest = std::max({0.0, outwards.dot(edge), outwards.dot(c[(i + 2) % 3] - from)});
+      double lowest = std::numeric_limits<double>::infinity();
+      double size = edge.cwiseAbs().sum() + (c[(i + 2) % 3] - from).cwiseAbs().sum();
+      for (const Eigen::Vector3d& p : other.corner) {
+        lowest = std::min(lowest, outwards.dot(p - from));
+        size = std::max(size, (p - from).cwiseAbs().sum());
+      }
+      if (lowest - highest > k_projection_rounding * size * outwards.cwiseAbs().sum() + detail::k_underflow_bound) {
+        return true;
+      }
     }
-    return sign[0] == 0 || sign[0] != sign[1] || sign[1] != sign[2];
+    return false;
   };
-  std::array<int, 3> sign_of_a, sign_of_b;
-  if (!crosses_plane(a, b, side_of_perturbed_plane, sign_of_a, distances.of_a)) return std::nullopt;
-  if (!crosses_plane(b, a, side_of_perturbed_point, sign_of_b, distances.of_b)) return std::nullopt;
+  return edge_separates(a, b) || edge_separates(b, a);
+}
+
+std::optional<Segment> cross(const OrderedTriangle& a, const OrderedTriangle& b) {
+  const auto on_one_side = [](const std::array<int, 3>& sign) {
+    return sign[0] != 0 && sign[0] == sign[1] && sign[1] == sign[2];
+  };
+  const PlaneSides sides_of_a(a, b, -1);
+  if (!sides_of_a.is_clear() && certainly_apart(a, b)) return std::nullopt;
+  const std::array<int, 3> sign_of_a = sides_of_a.signs();
+  if (on_one_side(sign_of_a)) return std::nullopt;
+  const PlaneSides sides_of_b(b, a, 1);
+  if (sides_of_a.is_clear() && !sides_of_b.is_clear() && certainly_apart(a, b)) return std::nullopt;
+  const std::array<int, 3> sign_of_b = sides_of_b.signs();
+  if (on_one_side(sign_of_b)) return std::nullopt;
+  const PlaneDistances distances{a, b, sides_of_a, sides_of_b};
   const PlaneCrossing in_a(sign_of_a);
   const PlaneCrossing in_b(sign_of_b);
   if (in_a.none() || in_b.none()) return cross_degenerate(distances, in_a, in_b);

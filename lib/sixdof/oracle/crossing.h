@@ -34,6 +34,11 @@ struct Segment {
 /// Corners of `b` are in A's frame.
 std::optional<Segment> cross(const OrderedTriangle& a, const OrderedTriangle& b);
 
+/// Whether two triangles are certainly separated by a plane through an edge of one of them and across that triangle.
+/// Where faces lie in one plane, up to rounding, most pairs are: fans, strips and grids over each other. cross() asks
+/// this before the exact predicates, which such pairs need to decide on which side of the plane a corner lies.
+bool certainly_apart(const OrderedTriangle& a, const OrderedTriangle& b);
+
 /// Which of an edge and a triangle belongs to B and is translated by e; the other belongs to A.
 enum class Perturbed {
   edge,
