@@ -50,7 +50,12 @@ bool boxes_apart(const detail::DistanceBody& a, const detail::DistanceBody& b, c
 }  // namespace
 
 detail::DistanceBody::DistanceBody(const Mesh& mesh)
-    : tree(mesh), box(mesh.box()), patches(tree), seeds(tree), piece_vertices(find_piece_vertices(mesh)) {}
+    : tree(mesh),
+      box(mesh.box()),
+      patches(tree),
+      seeds(tree),
+      smallest_leaf(smallest_leaf_of(tree)),
+      piece_vertices(find_piece_vertices(mesh)) {}
 
 std::size_t detail::DistanceBody::bytes() const {
   return tree.bytes() + patches.bytes() + piece_vertices.capacity() * sizeof(Vector3d);

@@ -17,6 +17,9 @@
 // Depth-first branch and bound over pairs of volumes, the pair with the smallest lower bound first. Of two volumes the
 // larger is expanded: its eight children are bounded against the other volume at once, one child per SIMD lane.
 //
+// Bounds are floats. A pair whose bound is not above the best, but less than its rounding below, is bounded once more
+// in doubles; and where floats cannot tell the parts of a pair apart, the pair is searched in doubles (close_search.h).
+//
 // Ties: between coplanar patches the distances of thousands of pairs of triangles count as equal (TieWindow), and the
 // answer is the pair of smallest rank. A pair that can at most tie with the best is pruned and recorded in `tied`.
 // resolve_ties() expands the recorded pairs in the order of their ranks, so only a few of them.
@@ -169,7 +172,7 @@ void seed_search(DistanceSearch& search) {
 }
 
 /// Square of a box's diagonal.
-float size_of(const Tree::Volume& v) {
+HWY_INLINE float size_of(const Tree::Volume& v) {
   const float x = v.upper[0] - v.lower[0];
   const float y = v.upper[1] - v.lower[1];
   const float z = v.upper[2] - v.lower[2];
@@ -214,14 +217,27 @@ enum class TiePruning {
   none
 };
 
-class DistanceTraversal {
+/// Volumes smaller than this many times the rounding of float bounds are searched in doubles.
+constexpr float k_blurred = 16.0f;
+/// So is a leaf with a node whose size is less than the leaf's thickness times this.
+constexpr float k_thick = 4.0f;
+/// Where doubles may prune more but are not the only way, they are used only after as many such pairs in a search. Most
+/// searches have fewer, and to bound a pair again takes as long as to expand it.
+constexpr std::uint64_t k_patience_with_thick = 256;
+constexpr std::uint64_t k_patience_with_doubtful = 2048;
+constexpr std::uint64_t k_patience_with_touching = 256;  // for intersections, exact tests of triangles are spared, too
+
+class DistanceTraversal final : private CloseVisitor {
  public:
   DistanceTraversal(DistanceSearch& search, bool only_intersection)
       : search_(search),
         tree_a_(search.a.tree),
         tree_b_(search.b.tree),
         only_intersection_(only_intersection),
-        frames_(tree_a_, tree_b_, search.X_AB) {
+        frames_(tree_a_, tree_b_, search.X_AB),
+        blurred_(k_blurred * k_blurred * frames_.slack.all * frames_.slack.all),
+        blurs_leaves_(std::max(search.a.smallest_leaf, search.b.smallest_leaf) < blurred_),
+        close_bounds_(tree_a_, tree_b_, search.X_AB) {
     if (search_.direction.squaredNorm() == 0.0) search_.direction = frames_.shift;
     frames_.set_direction(search_.direction);
     set_best();
@@ -236,7 +252,10 @@ class DistanceTraversal {
   }
 
  private:
-  void set_best() { best_ = only_intersection_ ? 0.0f : rounded_up(search_.best + search_.ties.width); }
+  void set_best() {
+    best_ = only_intersection_ ? 0.0f : rounded_up(search_.best + search_.ties.width);
+    doubtful_ = best_ - frames_.slack.all;
+  }
 
   /// Returns true if an intersecting pair was found.
   bool find() {
@@ -260,15 +279,77 @@ class DistanceTraversal {
       const NodePair top = stack.back();
       stack.pop_back();
       if (top.lower > best_ || (tie_pruning_ == TiePruning::planes && prune_by_planes(top))) continue;
+      if (is_doubtful(top) && bound_closely(top) > largest_of_interest()) continue;
       if (is_leaf(top.a) && is_leaf(top.b)) {
-        if (measure_leaves(top)) return true;
+        if (are_blurred(top) ? search_in_doubles(top) : measure_leaves(top)) return true;
+        continue;
+      }
+      const Choice choice = choose(top);
+      if (choice.needs_doubles) {
+        if (search_in_doubles(top)) return true;
         continue;
       }
       const std::size_t first = stack.size();
-      expand_larger(top, [&](const NodePair& next) { push_sorted(stack, first, next); });
+      expand(top, choice.expands_a, [&](const NodePair& next) { push_sorted(stack, first, next); });
     }
     return false;
   }
+
+  /// Which of two volumes is expanded, and whether in doubles.
+  struct Choice {
+    bool expands_a;
+    bool needs_doubles;
+  };
+
+  /// Expands the larger, or the one that is no leaf. In doubles if it is so small that floats blur it, or if the other
+  /// is a leaf and thick in comparison: then the leaf's volume is much larger than its triangles.
+  HWY_INLINE Choice choose(const NodePair& pair) {
+    const Tree::Volume& a = volume_of(tree_a_, pair.a);
+    const Tree::Volume& b = volume_of(tree_b_, pair.b);
+    const float size_a = size_of(a);
+    const float size_b = size_of(b);
+    const bool expands_a = is_leaf(pair.b) || (!is_leaf(pair.a) && size_a >= size_b);
+    const float expanded = expands_a ? size_a : size_b;
+    if (expanded < blurred_) return {expands_a, true};
+    const bool other_is_leaf = is_leaf(expands_a ? pair.b : pair.a);
+    return {expands_a,
+            other_is_leaf && is_thick(expands_a ? b : a, expanded) && ++thick_pairs_ > k_patience_with_thick};
+  }
+
+  /// @param size square of a diagonal
+  static bool is_thick(const Tree::Volume& leaf, float size) {
+    float thickness = leaf.slab_upper - leaf.slab_lower;
+    for (std::size_t k = 0; k < 3; ++k) thickness = std::min(thickness, leaf.upper[k] - leaf.lower[k]);
+    return k_thick * k_thick * thickness * thickness > size;
+  }
+
+  bool are_blurred(const NodePair& leaves) const {
+    return blurs_leaves_ &&
+           std::max(size_of(volume_of(tree_a_, leaves.a)), size_of(volume_of(tree_b_, leaves.b))) < blurred_;
+  }
+
+  HWY_NOINLINE bool search_in_doubles(const NodePair& top) {
+    return search_closely(tree_a_, tree_b_, close_bounds_, top.a, top.b, *this, search_.close);
+  }
+
+  /// Whether the pair's bound may exceed the best but for rounding.
+  bool is_doubtful(const NodePair& pair) {
+    if (!(pair.lower > doubtful_)) return false;
+    return ++doubtful_pairs_ > (only_intersection_ ? k_patience_with_touching : k_patience_with_doubtful);
+  }
+
+  HWY_NOINLINE double bound_closely(const NodePair& pair) const {
+    return close_bounds_.lower_bound(close_bounds_.shape_of_a({pair.a}), close_bounds_.shape_of_b({pair.b}),
+                                     search_.direction, largest_of_interest());
+  }
+
+  double largest_of_interest() const override { return only_intersection_ ? 0.0 : search_.best + search_.ties.width; }
+  const Eigen::Vector3d& direction() const override { return search_.direction; }
+  bool prune_volumes(std::uint32_t a, std::uint32_t b) override {
+    return tie_pruning_ == TiePruning::planes && prune_by_planes({a, b, 0.0f});
+  }
+  bool visit_triangles(TrianglePair pair) override { return measure(pair); }
+  void count_expansion() override { ++search_.counts.nodes; }
 
   /// Tests two triangles exactly. Returns true if they intersect.
   bool measure(TrianglePair pair) {
@@ -337,13 +418,12 @@ class DistanceTraversal {
     }
   }
 
-  /// Expands the larger of two volumes that are not both leaves: calls keep() for each pair of a child and the other
-  /// volume whose bound is not above the best.
+  /// Expands one of two volumes that are not both leaves: calls keep() for each pair of a child and the other volume
+  /// whose bound is not above the best.
   template <class Keep>
-  HWY_INLINE void expand_larger(const NodePair& top, const Keep& keep) {
+  HWY_INLINE void expand(const NodePair& top, bool expands_a, const Keep& keep) {
     const Tree::Volume& volume_a = volume_of(tree_a_, top.a);
     const Tree::Volume& volume_b = volume_of(tree_b_, top.b);
-    const bool expands_a = is_leaf(top.b) || (!is_leaf(top.a) && size_of(volume_a) >= size_of(volume_b));
     const Tree& tree = expands_a ? tree_a_ : tree_b_;
     const Tree::Node& node = tree.nodes()[expands_a ? top.a : top.b];
     const Frame& frame = expands_a ? frames_.expand_a : frames_.expand_b;
@@ -410,14 +490,16 @@ class DistanceTraversal {
       if (is_triangle(top.a)) {
         ++search_.counts.triangles;
         first.update({triangles_of(top), distance_of(search_, triangles_of(top)).distance});
-      } else if (is_leaf(top.a) && is_leaf(top.b)) {
+        continue;
+      }
+      if (is_leaf(top.a) && is_leaf(top.b)) {
         const Tree::Leaf& leaf_a = leaf_of(tree_a_, top.a);
         const Tree::Leaf& leaf_b = leaf_of(tree_b_, top.b);
         LeafPair pairs;
         if (!bound_pairs(leaf_a, leaf_b, pairs)) continue;
         for_each_kept(leaf_a, leaf_b, pairs, push);
       } else {
-        expand_larger(top, push);
+        expand(top, choose(top).expands_a, push);
       }
     }
     if (first.uncertain < first.rank) return false;
@@ -461,7 +543,13 @@ class DistanceTraversal {
   const Tree& tree_b_;
   const bool only_intersection_;
   Frames frames_;
-  float best_;  // search_.best + search_.ties.width, rounded up
+  const float blurred_;      // square of a diagonal: of the largest volume that floats blur
+  const bool blurs_leaves_;  // both trees have leaves that small
+  const CloseBounds close_bounds_;
+  std::uint64_t thick_pairs_ = 0;
+  std::uint64_t doubtful_pairs_ = 0;
+  float best_;      // search_.best + search_.ties.width, rounded up
+  float doubtful_;  // bounds above this may exceed the best but for rounding
   TiePruning tie_pruning_ = TiePruning::planes;
 };
 
@@ -532,6 +620,16 @@ bool try_update(DistanceSearch& search, TrianglePair pair) {
   search.pair = pair;
   search.closest = closest;
   return closer;
+}
+
+float smallest_leaf_of(const Tree& tree) {
+  float smallest = std::numeric_limits<float>::infinity();
+  for (const Tree::Leaf& leaf : tree.leaves()) {
+    const Tree::Volume& v = leaf.volume;
+    const Eigen::Vector3f size(v.upper[0] - v.lower[0], v.upper[1] - v.lower[1], v.upper[2] - v.lower[2]);
+    smallest = std::min(smallest, size.squaredNorm());
+  }
+  return smallest;
 }
 
 SeedCorners::SeedCorners(const Tree& tree) {

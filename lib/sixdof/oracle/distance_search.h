@@ -13,6 +13,7 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 #include <sixdof/geometry/triangle_distance.h>
+#include <sixdof/oracle/close_search.h>
 #include <sixdof/oracle/coplanar_patches.h>
 
 /// The state of one distance query. Internal: use distance.h.
@@ -66,6 +67,8 @@ struct SeedCorners {
   std::uint32_t leaf[k_count];          ///< The corner is the first one of the first triangle of this leaf.
 };
 
+float smallest_leaf_of(const Tree& tree);
+
 /// One mesh prepared for distance queries.
 struct DistanceBody {
   explicit DistanceBody(const Mesh& mesh);
@@ -75,6 +78,7 @@ struct DistanceBody {
   Eigen::AlignedBox3d box;  ///< In the mesh's frame.
   CoplanarPatches patches;
   SeedCorners seeds;
+  float smallest_leaf;  ///< Square of the shortest diagonal of a leaf's box.
   /// Of each connected piece of the surface one vertex; empty unless the mesh is solid.
   std::vector<Eigen::Vector3d> piece_vertices;
 };
@@ -89,7 +93,7 @@ struct TieWindow {
 
 /// Work of one query.
 struct TraversalCounts {
-  std::uint64_t nodes = 0;       ///< Nodes expanded.
+  std::uint64_t nodes = 0;       ///< Nodes expanded; in double precision, nodes and leaves.
   std::uint64_t leaf_pairs = 0;  ///< Pairs of leaves whose triangles were bounded.
   std::uint64_t triangles = 0;   ///< Pairs of triangles tested exactly.
 };
@@ -111,6 +115,7 @@ struct DistanceSearch {
   std::vector<NodePair> deferred;      ///< Scratch: triangles measured last, if their bound is still small enough.
   std::vector<TiedPair> tied;          ///< Scratch.
   std::vector<RankedPair> ranked;      ///< Scratch.
+  std::vector<ClosePair> close;        ///< Scratch.
 };
 
 /// Measures one pair exactly and keeps it if it is closer. Returns whether the distance decreased.
