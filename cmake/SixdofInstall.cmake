@@ -11,13 +11,21 @@ foreach(backend IN LISTS SIXDOF_BACKENDS)
   endif()
 endforeach()
 get_property(libraries GLOBAL PROPERTY sixdof_libraries)
+# In an export of its own: a project without GoogleTest has everything else.
+list(REMOVE_ITEM libraries sixdof_conformance)
+if(TARGET sixdof_conformance)
+  set(SIXDOF_HAS_conformance ON)
+  install(TARGETS sixdof_conformance EXPORT sixdof_conformance ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT sixdof_conformance NAMESPACE sixdof:: DESTINATION ${package_folder}
+    FILE sixdof-conformance-targets.cmake)
+endif()
 install(TARGETS ${libraries} EXPORT sixdof
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT sixdof NAMESPACE sixdof:: DESTINATION ${package_folder} FILE sixdof-targets.cmake)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/sixdof DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.h" PATTERN "query/README.md" PATTERN "*-inl.h" EXCLUDE)
+  FILES_MATCHING PATTERN "*.h" PATTERN "query/README.md" PATTERN "conformance/README.md" PATTERN "*-inl.h" EXCLUDE)
 
 if(SIXDOF_BUILD_BENCH)
   install(TARGETS sixdof_program sixdof-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

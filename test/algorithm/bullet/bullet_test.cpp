@@ -3,23 +3,32 @@
 #include <BulletCollision/CollisionDispatch/btEmptyCollisionAlgorithm.h>
 #include <btBulletCollisionCommon.h>
 
+#include <sixdof/conformance/conformance.h>
+
 #include "../contact_checks.h"
 
 namespace sixdof {
 namespace {
 
-TEST(Bullet, AnswersAsExactWhereItIsClear) { test::expect_clear_answers(*make_bullet_gimpact_algorithm()); }
+const char* const k_behind = "takes what is behind a triangle, in its box, for a contact: the plate of large triangles";
+const char* const k_behind_issue = "bulletphysics/bullet3#4318";
 
-TEST(Bullet, RepeatsItself) { test::expect_repeatable(*make_bullet_gimpact_algorithm()); }
+SIXDOF_CONFORMANCE(make_bullet_gimpact_algorithm,
+                   {.known_failures = {
+                        {"Collide", k_behind, k_behind_issue},
+                        {"Respond", k_behind, k_behind_issue},
+                        {"MotionOfCollide", k_behind, k_behind_issue},
+                        {"MotionOfRespond", k_behind, k_behind_issue},
+                        {"ScaleOfRespond", "CONTACT_DIFF_EPSILON and others are lengths of 1e-5, whatever the unit",
+                         ""},
+                    }});
 
 TEST(Bullet, PushesABallOutOfAFace) {
   // GImpact also sees the facets that lie wholly below the face.
   test::expect_ball_pushed_out(*make_bullet_gimpact_algorithm(), 1.0 - 1e-6);
 }
 
-TEST(Bullet, FailsOnAPoseThatIsNotFinite) { test::expect_no_answer_where_not_finite(*make_bullet_gimpact_algorithm()); }
-
-TEST(Bullet, KnowsSurfacesOnly) { test::expect_no_contact_inside(*make_bullet_gimpact_algorithm()); }
+TEST(Bullet, GivesNoForceInside) { test::expect_no_contact_inside(*make_bullet_gimpact_algorithm()); }
 
 TEST(Bullet, ThickensTrianglesByTheMargin) {
   const test::BallOnFace t;

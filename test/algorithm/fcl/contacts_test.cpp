@@ -1,7 +1,5 @@
 #include <sixdof/algorithm/fcl/fcl.h>
 
-#include <cmath>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,21 +37,8 @@ TEST(FclContacts, PushesTheTipOut) {
   EXPECT_GT(respond(t.block, t.cone, t.X_AB, "sum").force.norm(), 10.0 * mean.force.norm());
 }
 
-TEST(FclContacts, ActsEquallyOnBothBodies) {
+TEST(FclContacts, GivesNoForceInside) {
   const ConeInBlock t;
-  const Response on_cone = respond(t.block, t.cone, t.X_AB, "mean");
-  const Pose X_BA = t.X_AB.inverse();
-  const Response on_block = respond(t.cone, t.block, X_BA, "mean");  // in the cone's frame
-  EXPECT_TRUE((t.X_AB.R * on_block.force).isApprox(-on_cone.force, 1e-9));
-  const Response moved = on_cone.about(t.X_AB * on_block.reference);
-  EXPECT_TRUE((t.X_AB.R * on_block.torque).isApprox(-moved.torque, 1e-9));
-}
-
-TEST(FclContacts, GivesNoForceApartAndInside) {
-  const ConeInBlock t;
-  Pose apart = t.X_AB;
-  apart.t.y() = 0.7;
-  EXPECT_EQ(respond(t.block, t.cone, apart, "mean").force.norm(), 0.0);
   // Known limit: FCL has surfaces only.
   const Mesh small = cone_solid(3.0, 5.0, 12, RoundParts::inscribed, "small");
   EXPECT_EQ(respond(t.block, small, {Eigen::Matrix3d::Identity(), {3.1, -20.0, 2.2}}, "mean").force.norm(), 0.0);
@@ -67,9 +52,6 @@ TEST(FclContacts, FailsWhenFclDropsContacts) {
   const auto query = algorithm->prepare(t.block, t.cone, settings);
   EXPECT_EQ(query->respond(t.X_AB).status, Status::failed);
   EXPECT_THAT(query->diagnosis(), ::testing::HasSubstr("more contacts than 3"));
-  Pose bad = t.X_AB;
-  bad.t.x() = std::nan("");
-  EXPECT_EQ(query->respond(bad).status, Status::failed);
 }
 
 }  // namespace

@@ -9,8 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/algorithm/core_algorithms.h>
-#include <sixdof/geometry/closest_point.h>
-#include <sixdof/geometry/tree.h>
 
 namespace sixdof {
 namespace {
@@ -73,75 +71,6 @@ class FclAgainstBruteForce : public ::testing::Test {
   const Mesh b = lumpy_globe(4, 6, 0.3, 12);
 };
 
-TEST_F(FclAgainstBruteForce, AgreesOnDistanceCollisionAndWitnesses) {
-  const Tree tree_a(a), tree_b(b);
-  std::mt19937_64 random(2026);
-  std::uniform_real_distribution<double> reach(1.2, 2.6);
-  int touching = 0;
-  const int poses = 60;
-  for (const auto& algorithm : with_distance()) {
-    const auto ab = algorithm->prepare(a, b, algorithm->settings());
-    const auto ba = algorithm->prepare(b, a, algorithm->settings());
-    for (int i = 0; i < poses; ++i) {
-      const Pose X_AB = generic_pose(random, reach(random));
-      const double truth = brute_force_distance(a, b, X_AB);
-      touching += truth == 0.0;
-      const auto forth = ab->distance(X_AB);
-      const auto back = ba->distance(X_AB.inverse());
-      ASSERT_TRUE(forth.ok() && back.ok());
-      EXPECT_NEAR(forth.value.distance, truth, k_rounding);
-      EXPECT_NEAR(back.value.distance, truth, k_rounding);
-      EXPECT_EQ(forth.value.has_witnesses, truth > 0.0);
-      if (truth > 0.0) {
-        EXPECT_NEAR((forth.value.witness_a - forth.value.witness_b).norm(), truth, k_rounding);
-        EXPECT_NEAR(closest_point(tree_a, forth.value.witness_a)->distance, 0.0, k_rounding);
-        EXPECT_NEAR(closest_point(tree_b, X_AB.inverse() * forth.value.witness_b)->distance, 0.0, k_rounding);
-      }
-      const auto yes = ab->collide(X_AB);
-      const auto yes_back = ba->collide(X_AB.inverse());
-      if (algorithm->traits().answers.collide) {
-        ASSERT_TRUE(yes.ok() && yes_back.ok());
-        EXPECT_EQ(yes.value, truth == 0.0);
-        EXPECT_EQ(yes_back.value, truth == 0.0);
-      } else {
-        EXPECT_EQ(yes.status, Status::unsupported);
-      }
-    }
-  }
-  // Both answers must occur often.
-  EXPECT_GT(touching, poses / 3);
-  EXPECT_LT(touching, 3 * poses - poses / 3);
-}
-
-TEST_F(FclAgainstBruteForce, AgreesOnCollisionWithoutDistance) {
-  for (const auto& algorithm : {make_fcl_obb_algorithm, make_fcl_aabb_algorithm}) {
-    const auto made = algorithm();
-    const auto ab = made->prepare(a, b, made->settings());
-    const auto ba = made->prepare(b, a, made->settings());
-    std::mt19937_64 random(2027);
-    std::uniform_real_distribution<double> reach(1.2, 2.6);
-    int touching = 0;
-    const int poses = 60;
-    for (int i = 0; i < poses; ++i) {
-      const Pose X_AB = generic_pose(random, reach(random));
-      const bool truth = brute_force_distance(a, b, X_AB) == 0.0;
-      touching += truth;
-      const auto forth = ab->collide(X_AB), back = ba->collide(X_AB.inverse()), again = ab->collide(X_AB);
-      ASSERT_TRUE(forth.ok() && back.ok() && again.ok());
-      EXPECT_EQ(forth.value, truth) << made->traits().name;
-      EXPECT_EQ(back.value, truth) << made->traits().name;
-      EXPECT_EQ(again.value, truth) << made->traits().name;
-      EXPECT_EQ(ab->distance(X_AB).status, Status::unsupported);
-    }
-    EXPECT_GT(touching, poses / 4);
-    EXPECT_LT(touching, poses - poses / 4);
-    Pose bad = generic_pose(random, 2.3);
-    bad.R(1, 2) = std::nan("");
-    EXPECT_EQ(ab->collide(bad).status, Status::failed);
-    EXPECT_THAT(ab->diagnosis(), ::testing::HasSubstr("not finite"));
-  }
-}
-
 TEST_F(FclAgainstBruteForce, BoundsTheApproximateDistance) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> reach(2.1, 3.0);
@@ -164,19 +93,6 @@ TEST_F(FclAgainstBruteForce, BoundsTheApproximateDistance) {
   }
 }
 
-TEST(Fcl, KnowsSurfacesOnly) {
-  const Mesh outer = lumpy_globe(5, 7, 0.1, 3);
-  std::vector<Vector3d> small = outer.vertices();
-  for (Vector3d& v : small) v *= 0.23;
-  const Mesh inner = Mesh::build(small, outer.triangles());
-  std::mt19937_64 random(4);
-  const Pose X_AB = generic_pose(random, 0.17);
-  const auto algorithm = make_fcl_obbrss_algorithm();
-  const auto query = algorithm->prepare(outer, inner, algorithm->settings());
-  EXPECT_FALSE(query->collide(X_AB).value);
-  EXPECT_NEAR(query->distance(X_AB).value.distance, brute_force_distance(outer, inner, X_AB), k_rounding);
-}
-
 TEST(Fcl, CountsSharedTreesOnce) {
   const Mesh a = lumpy_globe(9, 10, 0.2, 5);
   const Mesh same = Mesh::build(a.vertices(), a.triangles(), "another name");
@@ -189,20 +105,6 @@ TEST(Fcl, CountsSharedTreesOnce) {
     // A binary tree with one triangle in each leaf.
     EXPECT_THAT(shared.counts, ::testing::ElementsAre(std::pair("nodes", 2 * n - 1), std::pair("triangles", n)));
     EXPECT_GT(shared.bytes, a.triangles().size() * 2 * sizeof(double) * 15);
-  }
-}
-
-TEST(Fcl, RefusesAPoseThatIsNotFinite) {
-  const Mesh a = lumpy_globe(4, 5, 0.2, 5);
-  for (const auto& algorithm : with_distance()) {
-    const auto query = algorithm->prepare(a, a, algorithm->settings());
-    std::mt19937_64 random(8);
-    Pose bad = generic_pose(random, 2.3);
-    bad.t.y() = std::nan("");
-    EXPECT_EQ(query->distance(bad).status, Status::failed);
-    EXPECT_THAT(query->diagnosis(), ::testing::HasSubstr("not finite"));
-    const Status expected = algorithm->traits().answers.collide ? Status::failed : Status::unsupported;
-    EXPECT_EQ(query->collide(bad).status, expected);
   }
 }
 

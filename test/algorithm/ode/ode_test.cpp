@@ -1,28 +1,30 @@
 #include <sixdof/algorithm/ode/ode.h>
 
-#include <atomic>
 #include <stdexcept>
-#include <thread>
 
 #include <ode/ode.h>
+
+#include <sixdof/conformance/conformance.h>
 
 #include "../contact_checks.h"
 
 namespace sixdof {
 namespace {
 
-TEST(Ode, AnswersAsExactWhereItIsClear) { test::expect_clear_answers(*make_ode_algorithm()); }
-
-TEST(Ode, RepeatsItself) { test::expect_repeatable(*make_ode_algorithm()); }
+// Measured: 20.1 degrees, and 7 % between the two orders and after a motion, where the contacts of some pair of
+// triangles are others.
+SIXDOF_CONFORMANCE(make_ode_algorithm,
+                   {.force_degrees = 25.0,
+                    .order_error = 0.1,
+                    .motion_error = 0.1,
+                    .known_failures = {{"ScaleOfRespond", "contacts depend on the unit of length", ""}}});
 
 TEST(Ode, PushesABallOutOfAFace) {
   // Only facets that cross the face are contacts; the lowest lies wholly below it. FCL gives the same depth.
   test::expect_ball_pushed_out(*make_ode_algorithm(), 0.75);
 }
 
-TEST(Ode, FailsOnAPoseThatIsNotFinite) { test::expect_no_answer_where_not_finite(*make_ode_algorithm()); }
-
-TEST(Ode, KnowsSurfacesOnly) { test::expect_no_contact_inside(*make_ode_algorithm()); }
+TEST(Ode, GivesNoForceInside) { test::expect_no_contact_inside(*make_ode_algorithm()); }
 
 TEST(Ode, FailsWhenOdeDropsContacts) {
   const test::BallOnFace t;
@@ -42,21 +44,6 @@ TEST(Ode, NeitherPrintsNorEndsTheProcess) {
   EXPECT_THROW(dError(1, "error %d", 7), std::runtime_error);
   EXPECT_THROW(dDebug(1, "failed assertion"), std::runtime_error);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-}
-
-TEST(Ode, AnswersOnSeveralThreads) {
-  const test::ClearPoses clear(20);
-  const auto algorithm = make_ode_algorithm();
-  std::atomic<int> wrong = 0;
-  std::vector<std::thread> threads;
-  for (int i = 0; i < 4; ++i) {
-    threads.emplace_back([&] {
-      const auto query = test::prepare(*algorithm, clear.a, clear.b);
-      for (const auto& [X_AB, truth] : clear.poses) wrong += query->collide(X_AB).value != truth;
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(wrong, 0);
 }
 
 /// A pose at which GImpact, by the same author, finds a contact.
