@@ -27,6 +27,9 @@ namespace sixdof {
 ///   of both bodies lie in one plane: two boxes of 300 triangles in the same place (tested), or half a length apart
 ///   along a face. Nothing can stop that within the process: ask poses like these in a process of their own. On generic
 ///   poses it has not been seen.
+/// - A vertex with very many edges makes it slow beyond use: GTS goes through all of them for each pair of vertices. A
+///   response of the ship (models/), on whose deck many triangles share a vertex, had not come after three minutes of
+///   processor time.
 /// - Answers repeat to rounding, not to the bit: GTS's hash tables are in the order of addresses.
 /// - Curves that are not closed are a failed response ("the curves are not closed").
 /// - A body inside the other counts by one vertex: bodies of several shells, of which some are inside and none crosses,
