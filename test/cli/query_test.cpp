@@ -58,6 +58,16 @@ TEST(Query, TorqueMovesWithTheReferencePoint) {
   EXPECT_LE((vector(moved.at("torque")) - expected).norm(), k_rounding);
 }
 
+TEST(Query, BodiesFarApartAreAnswered) {
+  // At 1e9 radii all pairs of triangles, 9e8, have the same distance in floats.
+  const auto json = answers("--a sphere-30k --b sphere-30k --pose '6e8 -6.4e8 4.8e8 1 0 0 0'");
+  const double between_centers = Eigen::Vector3d(6e8, -6.4e8, 4.8e8).norm();
+  constexpr double k_facets = 1e-3;  // of spheres of 30,000 triangles: they lie farther inside by no more
+  EXPECT_EQ(json.at("colliding"), false);
+  EXPECT_GE(json.at("distance"), between_centers - 2.0 - 1e-6);
+  EXPECT_LE(json.at("distance"), between_centers - 2.0 + k_facets);
+}
+
 TEST(Query, PoseIsTranslationThenQuaternionWithTheScalarFirst) {
   // A rotation by 90 degrees about z puts B's edge of 2 along y; the gap along x is 2.5 - 1 - 0.8.
   const auto json = answers("--a box-100 --b box-100 --pose '2.5 0 0 0.7071067811865476 0 0 0.7071067811865476'");

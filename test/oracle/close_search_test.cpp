@@ -241,6 +241,35 @@ TEST(CloseSearch, BodiesFarApartTakeFewPairs) {
   }
 }
 
+TEST(CloseSearch, SmallPartsOfLargeBodiesTakeFewPairs) {
+  // A block, and beside it a ball of 5e-6 times its size: two of them, ball before ball. Balls alone have the same
+  // closest pair, and floats tell their triangles apart.
+  const Mesh block = shapes::box({1000.0, 1000.0, 1000.0});
+  const Mesh unit = sphere(180, 89, 0.01);
+  std::vector<Vector3d> v = unit.vertices();
+  for (Vector3d& p : v) p.x() += 1500.0;
+  const Mesh ball = Mesh::build(v, unit.triangles());
+  std::vector<Triangle> t = unit.triangles();
+  const auto first = static_cast<std::uint32_t>(v.size());
+  for (const Triangle& f : block.triangles()) t.push_back({f[0] + first, f[1] + first, f[2] + first});
+  v.insert(v.end(), block.vertices().begin(), block.vertices().end());
+  const Mesh both = Mesh::build(v, t);
+
+  Pose pose{Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitZ()).toRotationMatrix(), {3000.025, 0.001, 0.0}};
+  const DistanceOracle balls(ball, ball);
+  const Separation truth = DistanceQuery(balls).distance(pose);
+  EXPECT_NEAR(truth.distance, std::hypot(0.025, 0.001) - 0.02, 1e-5);  // facets lie up to 6e-6 inside
+  const DistanceOracle oracle(both, both);
+  DistanceQuery query(oracle);
+  const Separation d = query.distance(pose);
+  EXPECT_EQ(d.distance, truth.distance);
+  EXPECT_EQ(d.triangle_a, truth.triangle_a);
+  EXPECT_EQ(d.triangle_b, truth.triangle_b);
+  EXPECT_LE(work_of(query), 8000u);
+  EXPECT_FALSE(query.collide(pose));
+  EXPECT_LE(work_of(query), 8000u);
+}
+
 /// `count` square sheets of 10 x 10 squares, `spacing` apart.
 Mesh layers(std::uint32_t count, double spacing) {
   constexpr std::uint32_t n = 10;
