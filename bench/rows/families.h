@@ -27,6 +27,10 @@ std::vector<Row> scenario_rows(const Resources& resources);
 /// contact.
 std::vector<Row> kernel_rows(const Resources& resources);
 
+/// `stability/FAMILY/algorithm:A`: the seed's cases of a family of hard cases (lib/sixdof/stability), all that the
+/// algorithm answers, with the worst verdict and error as counters. Settings are the coarsest of sweeps unless given.
+std::vector<Row> stability_rows(const Resources& resources);
+
 /// What a configuration of the paper's grid and buckets costs to make, on the same seeded rays for all, as the counter
 /// ns_per_configuration (processor time):
 /// - `generate/distance/algorithm:raycast/pair:P`: make_ray_cast();

@@ -23,6 +23,7 @@ constexpr std::string_view k_latency = "lib/sixdof/measure/latency.h";
 constexpr std::string_view k_check = "bench/harness/check.h";
 constexpr std::string_view k_timing = "bench/harness/timing.h";
 constexpr std::string_view k_work = "bench/harness/work.h";
+constexpr std::string_view k_stability = "bench/rows/stability.cpp";
 constexpr std::string_view k_footprint = "lib/sixdof/query/algorithm.h (Footprint)";
 constexpr std::string_view k_generate_row = "bench/rows/generate.cpp";
 constexpr std::string_view k_query_row = "bench/rows/query.cpp";
@@ -81,6 +82,11 @@ constexpr std::array k_metrics{
     Metric{"false_negatives", "queries", lower, "bodies overlap, the answer is none", k_answers},
     Metric{"touching", "queries", neither, "bodies touch: both answers are right", k_answers},
     Metric{"touching_yes", "queries", neither, "touching bodies that are said to collide", k_answers},
+    // Hard cases.
+    Metric{"stability_cases", "cases", neither, "hard cases of a family that were judged", k_stability},
+    Metric{"stability_red", "cases", lower, "cases with a wrong, non-finite or missing answer", k_stability},
+    Metric{"stability_verdict", "1", lower, "the worst verdict: 0 exact, 1 within resolution, 2 unsupported", k_stability},
+    Metric{"stability_worst", "1", lower, "the largest defect, in the unit that the label says", k_stability},
     // Times.
     Metric{"real_time", "time_unit", lower, "mean wall-clock time of one iteration", k_google},
     Metric{"cpu_time", "time_unit", lower, "mean processor time of one iteration", k_google},
@@ -128,6 +134,7 @@ constexpr std::array k_metrics{
     Metric{"spheres_b", "spheres", neither, "spheres packed into B", k_footprint},
     Metric{"fill_a", "1", higher, "fraction of A's volume inside its spheres", k_footprint},
     Metric{"fill_b", "1", higher, "fraction of B's volume inside its spheres", k_footprint},
+    Metric{"resolution", "length", lower, "how far from the true surfaces the prepared ones may lie", k_footprint},
     // Work of a query, by its unit.
     Metric{"*_tested", "1", lower, "units of work that a query looks at, on average", k_work},
     Metric{"*_total", "1", neither, "units of work that a query without culling would look at", k_work},

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <sixdof/algorithm/ist/coverage.h>
 #include <sixdof/algorithm/ist/normal_cone.h>
 #include <sixdof/algorithm/ist/packing.h>
 #include <sixdof/algorithm/ist/traversal.h>
@@ -95,7 +96,9 @@ class SphereTreeQuery : public Query {
  public:
   /// Equal meshes with equally many spheres share one tree.
   SphereTreeQuery(const Mesh& a, const Mesh& b, const Settings& settings, const ForceLaw& law)
-      : a_(std::make_shared<const InnerSphereTree>(build_tree(a, settings, settings.number("spheres"), law))),
+      : mesh_a_(&a),
+        mesh_b_(&b),
+        a_(std::make_shared<const InnerSphereTree>(build_tree(a, settings, settings.number("spheres"), law))),
         b_(a.hash() == b.hash() && spheres_of_b(settings) == settings.number("spheres")
                ? a_
                : std::make_shared<const InnerSphereTree>(build_tree(b, settings, spheres_of_b(settings), law))),
@@ -156,7 +159,8 @@ class SphereTreeQuery : public Query {
             {{"spheres_a", static_cast<double>(a_->tree.leaves.size())},
              {"spheres_b", static_cast<double>(b_->tree.leaves.size())},
              {"fill_a", a_->fill},
-             {"fill_b", b_->fill}}};
+             {"fill_b", b_->fill},
+             {"resolution", largest_gap(*mesh_a_, a_->tree.leaves) + largest_gap(*mesh_b_, b_->tree.leaves)}}};
   }
 
   /// Tests are of pairs of balls, inner nodes and empty slots included; the total is of pairs of packed spheres.
@@ -168,6 +172,7 @@ class SphereTreeQuery : public Query {
  private:
   Status bad_pose() { return fail(Status::non_finite, "the pose is not finite"); }
 
+  const Mesh *mesh_a_, *mesh_b_;
   std::shared_ptr<const InnerSphereTree> a_, b_;
   Eigen::Vector3d center_b_;
   ForceLaw law_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <span>
 #include <string>
@@ -112,6 +113,9 @@ class PointQuery final : public Query {
     } else if (settings.choice("depth") == "layers") {
       depth_ = LayerDepth::layers;
     }
+    // Parts smaller than a voxel, and parts between points, are not seen.
+    resolution_ =
+        std::numbers::sqrt3 * map_.grid.size + settings.number("point_spacing") * (points_on_b_ ? b : a).diagonal();
     all_leaves_.resize(culling_ ? 0 : tree_.leaves());
     std::iota(all_leaves_.begin(), all_leaves_.end(), 0u);
   }
@@ -162,7 +166,8 @@ class PointQuery final : public Query {
                    {"inside_voxels", static_cast<double>(map_.inside_voxels)},
                    {"bricks", static_cast<double>(map_.stored_bricks())},
                    {"points", static_cast<double>(tree_.points())},
-                   {"nodes", static_cast<double>(tree_.nodes())}}};
+                   {"nodes", static_cast<double>(tree_.nodes())},
+                   {"resolution", resolution_}}};
     if (k_field) footprint.counts.emplace_back("field_bricks", static_cast<double>(field_.stored_bricks()));
     return footprint;
   }
@@ -203,6 +208,7 @@ class PointQuery final : public Query {
   const bool points_on_b_, by_area_, culling_;
   const double stiffness_;
   const Eigen::Vector3d b_center_;
+  double resolution_ = 0.0;  ///< How far the sampled surfaces may lie from the true ones (length).
   const VoxelMap map_;
   const PointTree tree_;
   DistanceField field_;                              ///< With `k_field`.

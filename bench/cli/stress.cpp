@@ -1,0 +1,127 @@
+#include "bench/cli/commands.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/base/atomic_file.h>
+#include <sixdof/base/error.h>
+#include "bench/cli/shared.h"
+#include "bench/common/interrupt.h"
+#include "bench/common/json_text.h"
+#include "bench/common/progress_line.h"
+#include "bench/common/run_guarded.h"
+#include "bench/study/stress_text.h"
+
+namespace sixdof::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> algorithms, families;
+  std::string effort = "quick", output, cases = "stress-cases";
+  std::uint64_t seed = 1;
+  bool json = false;
+};
+
+std::set<std::string> own_algorithms() {
+  Registry own;
+  register_core_algorithms(own);
+  std::set<std::string> names;
+  for (const auto& algorithm : own.all()) names.insert(algorithm->traits().name);
+  return names;
+}
+
+study::StressPlan plan_of(const Options& options, const Registry& registry) {
+  study::StressPlan plan{
+      .algorithms = {},
+      .families = {},
+      .effort = options.effort == "full" ? study::StressEffort::full() : study::StressEffort::quick(),
+      .seed = options.seed};
+  for (const std::string& name : options.algorithms) plan.algorithms.push_back(&registry.find(name));
+  if (plan.algorithms.empty()) {
+    for (const auto& algorithm : registry.all()) {
+      // It answers with constants.
+      if (algorithm->traits().name != "null") plan.algorithms.push_back(algorithm.get());
+    }
+  }
+  for (const std::string& name : options.families) plan.families.push_back(&stability::find_family(name));
+  if (plan.families.empty()) {
+    for (const stability::Family& family : stability::families()) plan.families.push_back(&family);
+  }
+  return plan;
+}
+
+void print_red(const study::StressCell& cell, const study::StressLine& line) {
+  fmt::print("\n{} on {}: {}: {} {} ({}{}{}; parameter {:.3g})\n  {}\n  {}\n", cell.algorithm->traits().name,
+             cell.family->name, line.verdict, line.metric, line.worst, line.member, line.thread.empty() ? "" : ", ",
+             line.thread, cell.member.parameter, line.words, line.reproduction);
+}
+
+void run_stress_command(const Options& options) {
+  Registry registry;
+  register_all_algorithms(registry);
+  const study::StressPlan plan = plan_of(options, registry);
+  // Bodies are new for every seed: a cache on disk would grow by thousands of structures that are asked for once.
+  ::setenv("SIXDOF_CACHE", "off", 0);
+  std::filesystem::create_directories(options.cases);
+  ProgressLine progress("stress");
+  const std::vector<study::StressCell> cells = study::run_stress(plan, [&](std::size_t done, std::size_t total) {
+    InterruptGuard::check();
+    progress.show(done, total);
+  });
+  progress.clear();
+
+  std::vector<study::StressLine> lines;
+  for (const study::StressCell& cell : cells) lines.push_back(study::stress_line(cell, options.cases));
+  const nlohmann::ordered_json json = study::stress_json(cells, lines, options.seed);
+  if (!options.output.empty()) write_file_atomically(options.output, json_text(json) + "\n");
+  const std::set<std::string> own = own_algorithms();
+  std::string defects;
+  if (options.json) fmt::print("{}\n", json_text(json));
+  if (!options.json) fmt::print("{}", study::stress_matrix(cells));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!stability::is_red(cells[i].worst.verdict)) continue;
+    if (!options.json) print_red(cells[i], lines[i]);
+    const std::string name = cells[i].algorithm->traits().name;
+    if (own.contains(name))
+      defects += fmt::format("{}{} on {}", defects.empty() ? "" : ", ", name, cells[i].family->name);
+  }
+  if (!defects.empty()) throw DefectsFound("algorithms of this project fail: " + defects);
+}
+
+}  // namespace
+
+void add_stress_command(CLI::App& app) {
+  auto* const command =
+      app.add_subcommand("stress", "Ask algorithms hard cases with known answers, and show where each one breaks");
+  const auto options = std::make_shared<Options>();
+  command->add_option("--algorithms,--algorithm", options->algorithms, "One or more (default: all but null)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  std::string names;
+  for (const stability::Family& family : stability::families())
+    names += fmt::format("\n  {:<15} {} Sweep: {}.", family.name, family.sentence, family.parameter);
+  command->add_option("--families,--family", options->families, "One or more (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--effort", options->effort, "How many cases are made and how long worse ones are searched for")
+      ->check(CLI::IsMember({"quick", "full"}))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of the generated cases and the searches")->capture_default_str();
+  command->add_option("--cases", options->cases, "Folder for the meshes that the printed commands read")
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "Write the list of cells to this JSON file");
+  command->add_flag("--json", options->json, "As JSON");
+  command->callback([options] { run_stress_command(*options); });
+  add_examples(*command, "sixdof stress --algorithms exact,fcl-obbrss --families kissing,grazing",
+               "sixdof stress --algorithms exact --families scale --json -o stability.json", "Families:" + names);
+}
+
+}  // namespace sixdof::cli

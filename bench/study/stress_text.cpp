@@ -1,0 +1,86 @@
+#include "bench/study/stress_text.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace sixdof::study {
+namespace {
+
+using stability::Verdict;
+
+std::string_view word(Verdict verdict) {
+  constexpr std::string_view k_words[] = {"exact", "within", "-", "WRONG", "NAN", "THREW", "MEMORY", "HUNG", "CRASH"};
+  return k_words[static_cast<std::size_t>(verdict)];
+}
+
+}  // namespace
+
+StressLine stress_line(const StressCell& cell, const std::filesystem::path& folder) {
+  const auto& worst = cell.worst;
+  return {.verdict = std::string(to_string(worst.verdict)),
+          .metric = worst.metric,
+          .worst = fmt::format("{:.3g} {}", worst.value, worst.unit),
+          .member = cell.member.name,
+          .thread = cell.member.thread,
+          .reproduction = reproduction(cell.member.shots[worst.shot], *cell.algorithm, cell.settings, folder),
+          .slow_reproduction = cell.slow_member.shots.empty() ? std::string()
+                                                              : reproduction(cell.slow_member.shots[cell.slow_shot],
+                                                                             *cell.algorithm, cell.settings, folder),
+          .words = worst.words};
+}
+
+std::string stress_matrix(const std::vector<StressCell>& cells) {
+  if (cells.empty()) return {};
+  constexpr std::size_t k_first_column = 17;
+  static constexpr std::size_t k_least_column = 6;
+  std::string text = fmt::format("{:<{}}", "family", k_first_column);
+  const auto width = [](const StressCell& cell) {
+    return std::max(k_least_column, cell.algorithm->traits().name.size());
+  };
+  for (const StressCell& cell : cells) {
+    if (cell.family != cells.front().family) break;
+    text += fmt::format(" {:>{}}", cell.algorithm->traits().name, width(cell));
+  }
+  const stability::Family* family = nullptr;
+  for (const StressCell& cell : cells) {
+    if (cell.family != family)
+      text += fmt::format("\n{:<{}}", fmt::format("{:2} {}", cell.family->number, cell.family->name), k_first_column);
+    family = cell.family;
+    text += fmt::format(" {:>{}}", word(cell.worst.verdict), width(cell));
+  }
+  return text + "\n";
+}
+
+nlohmann::ordered_json stress_json(const std::vector<StressCell>& cells, const std::vector<StressLine>& lines,
+                                   std::uint64_t seed) {
+  auto list = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const StressCell& cell = cells[i];
+    const StressLine& line = lines[i];
+    list.push_back({{"family", cell.family->name},
+                    {"algorithm", cell.algorithm->traits().name},
+                    {"verdict", line.verdict},
+                    {"cases", cell.cases},
+                    {"worst", cell.worst.value},
+                    {"unit", cell.worst.unit},
+                    {"reproduction", line.reproduction},
+                    {"metric", line.metric},
+                    {"case", line.member},
+                    {"thread", line.thread},
+                    {"parameter", cell.member.parameter},
+                    {"words", line.words},
+                    {"times_of_rounding", cell.worst.excess},
+                    {"unsupported", cell.unsupported},
+                    {"slowest_s", cell.slowest_seconds},
+                    {"slowest_reproduction", line.slow_reproduction},
+                    {"version", cell.algorithm->traits().version},
+                    {"settings", cell.settings.to_string()},
+                    {"seed", seed}});
+  }
+  return list;
+}
+
+}  // namespace sixdof::study

@@ -1,0 +1,93 @@
+#include <sixdof/stability/answers.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <exception>
+#include <new>
+
+#include <sixdof/base/error.h>
+#include <sixdof/query/ask.h>
+#include <sixdof/stability/bodies.h>
+
+namespace sixdof::stability {
+namespace {
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+template <class T>
+void ask_one(Query& query, bool asked, Outcome<T> (Query::*question)(const Pose&), const Pose& X_AB, Asked<T>& result,
+             Answers& answers) {
+  if (!asked) return;
+  const auto note = [&](const std::string& words) { result.words = words; };
+  const auto begin = std::chrono::steady_clock::now();
+  const double cpu = thread_seconds();
+  result.outcome = ask_guarded([&] { return (query.*question)(X_AB); }, note);
+  answers.seconds = std::max(answers.seconds, thread_seconds() - cpu);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  answers.wall_seconds = std::max(answers.wall_seconds, wall.count());
+  if (result.words.empty()) examine(query, result.outcome, note);
+}
+
+}  // namespace
+
+Settings coarse_settings(const Algorithm& algorithm) {
+  Settings settings = algorithm.settings();
+  for (const Parameter& parameter : algorithm.traits().parameters) {
+    if (!parameter.sweep.empty()) settings.set(parameter.name, parameter.sweep.front());
+  }
+  if (settings.to_string() == algorithm.settings().to_string()) return settings;
+  const MeshPointer probe = box({1.0, 0.9, 0.8});
+  const bool declares = declared_resolution(*algorithm.prepare(*probe, *probe, settings)) > 0.0;
+  return declares ? settings : algorithm.settings();
+}
+
+Answers ask(Query& query, const QuerySet& kinds, const Pose& X_AB) {
+  Answers answers;
+  ask_one(query, kinds.collide, &Query::collide, X_AB, answers.collide, answers);
+  ask_one(query, kinds.distance, &Query::distance, X_AB, answers.distance, answers);
+  ask_one(query, kinds.respond, &Query::respond, X_AB, answers.respond, answers);
+  return answers;
+}
+
+double declared_resolution(const Query& query) {
+  for (const auto& [name, value] : query.footprint().counts) {
+    if (name == "resolution") return value;
+  }
+  return 0.0;
+}
+
+PreparedPairs::Pair& PreparedPairs::pair_of(const Shot& shot) {
+  for (Pair& pair : pairs_) {
+    if (pair.a == shot.a && pair.b == shot.b) return pair;
+  }
+  Pair& pair = pairs_.emplace_back(Pair{shot.a, shot.b, nullptr, 0.0, {}});
+  try {
+    pair.query = prepare_(*shot.a, *shot.b);
+    pair.resolution = declared_resolution(*pair.query);
+  } catch (const BadMesh& e) {
+    pair.failure.refused = true;
+    pair.failure.words = e.what();
+  } catch (const BadArgument& e) {
+    pair.failure.refused = true;
+    pair.failure.words = e.what();
+  } catch (const std::exception& e) {
+    pair.failure.prepare_threw = true;
+    pair.failure.words = e.what();
+  }
+  return pair;
+}
+
+Answers PreparedPairs::ask(const Shot& shot) {
+  Pair& pair = pair_of(shot);
+  if (!pair.query) return pair.failure;
+  Answers answers = stability::ask(*pair.query, kinds_, shot.pose());
+  answers.resolution = pair.resolution;
+  return answers;
+}
+
+}  // namespace sixdof::stability

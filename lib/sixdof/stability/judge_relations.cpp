@@ -1,0 +1,279 @@
+#include <sixdof/stability/judge_relations.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include <sixdof/stability/judge_shot.h>
+
+namespace sixdof::stability {
+namespace {
+
+double angle_between(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+Bounds sum(const Bounds& x, const Bounds& y, double scale) {
+  return {x.rounding + y.rounding / scale, x.resolution + y.resolution / scale};
+}
+
+void compare_forces(std::size_t index, const Shot& first_shot, const Shot& shot, const Response& first,
+                    const Response& other, const Bounds& bounds_first, const Bounds& bounds_other, double depth,
+                    const Profile& profile, std::vector<Finding>& findings) {
+  if (first.force.isZero(0.0) || other.force.isZero(0.0) ||
+      !(depth > bounds_first.largest() + bounds_other.largest() / shot.scale)) {
+    return;
+  }
+  const double angle = angle_between(shot.turn * first.force, other.force);
+  const double allowed = rounding_angle(shot, bounds_other, depth * shot.scale, other.force, profile) +
+                         rounding_angle(first_shot, bounds_first, depth, first.force, profile);
+  const bool own_direction = profile.law != ResponseLaw::volume ||
+                             bounds_first.resolution > 2.0 * k_declared_accuracy * first_shot.a->diagonal();
+  findings.push_back({.verdict = angle <= allowed ? Verdict::exact
+                                 : own_direction  ? Verdict::resolution
+                                                  : Verdict::wrong,
+                      .metric = "turned force",
+                      .value = angle,
+                      .unit = "rad",
+                      .excess = angle / allowed,
+                      .shot = index,
+                      .words = "angle to the force at the case's first pose, in the same frame"});
+}
+
+template <class T>
+std::uint64_t bits(T x) {
+  return std::bit_cast<std::uint64_t>(static_cast<double>(x));
+}
+
+/// All that an answer says.
+std::vector<double> numbers(const Answers& answers) {
+  std::vector<double> all;
+  if (answers.collide.outcome.ok()) all.push_back(answers.collide.outcome.value ? 1.0 : 0.0);
+  if (answers.distance.outcome.ok()) all.push_back(answers.distance.outcome.value.distance);
+  if (answers.respond.outcome.ok()) {
+    const Response& response = answers.respond.outcome.value;
+    all.push_back(response.penalty);
+    for (const Eigen::Vector3d* v : {&response.force, &response.torque}) all.insert(all.end(), v->begin(), v->end());
+  }
+  return all;
+}
+
+bool same_bits(const Answers& x, const Answers& y) {
+  const std::vector<double> a = numbers(x), b = numbers(y);
+  return std::ranges::equal(a, b, {}, bits<double>, bits<double>);
+}
+
+std::vector<Answers> ask_all(const Case& member, const Profile& profile, const Prepare& prepare, bool backwards) {
+  PreparedPairs pairs(prepare, profile.answers);
+  std::vector<Answers> answers(member.shots.size());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const std::size_t k = backwards ? answers.size() - 1 - i : i;
+    answers[k] = pairs.ask(member.shots[k]);
+  }
+  return answers;
+}
+
+/// The largest relative difference of two lists of answers, or one if their statuses differ.
+double difference(const std::vector<Answers>& xs, const std::vector<Answers>& ys) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < xs.size(); ++i) {
+    const std::vector<double> a = numbers(xs[i]), b = numbers(ys[i]);
+    if (a.size() != b.size()) return 1.0;
+    double scale = 0.0;
+    for (const double x : a) scale = std::max(scale, std::abs(x));
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      if (scale > 0.0) largest = std::max(largest, std::abs(a[k] - b[k]) / scale);
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+void judge_same(const Case& member, const std::vector<Answers>& answers, const Profile& profile,
+                std::vector<Finding>& findings) {
+  const Shot& first = member.shots.front();
+  const double size = first.a->diagonal();
+  for (std::size_t i = 1; i < answers.size(); ++i) {
+    const Shot& shot = member.shots[i];
+    const Bounds bounds = sum(bounds_of(first, answers[0]), bounds_of(shot, answers[i]), shot.scale);
+    const auto &d0 = answers[0].distance.outcome, &d = answers[i].distance.outcome;
+    if (d0.ok() && d.ok()) {
+      const double error = std::abs(d.value.distance / shot.scale - d0.value.distance);
+      findings.push_back(length_finding(
+          "same distance", error, size, bounds, i,
+          fmt::format("distance {} and, at the case's first pose, {}", d.value.distance, d0.value.distance)));
+    }
+    const auto &r0 = answers[0].respond.outcome, &r = answers[i].respond.outcome;
+    if (!r0.ok() || !r.ok()) continue;
+    if (std::isfinite(r0.value.volume) && std::isfinite(r.value.volume)) {
+      const double error = std::abs(r.value.volume / (shot.scale * shot.scale * shot.scale) - r0.value.volume);
+      Finding finding =
+          length_finding("same volume", error / moving_area(first), size, bounds, i,
+                         fmt::format("volume {} and, at the case's first pose, {}", r.value.volume, r0.value.volume));
+      finding.value = error / (size * size * size);
+      finding.unit = "volume";
+      findings.push_back(finding);
+    }
+    // Contained bodies may be pushed in any direction.
+    if (!first.truth.contained && first.truth.push)
+      compare_forces(i, first, shot, r0.value, r.value, bounds_of(first, answers[0]), bounds_of(shot, answers[i]),
+                     -first.truth.gap, profile, findings);
+  }
+}
+
+void judge_path(const Case& member, const std::vector<Answers>& answers, std::vector<Finding>& findings) {
+  for (std::size_t i = 1; i < answers.size(); ++i) {
+    const Shot &before = member.shots[i - 1], &shot = member.shots[i];
+    const double step = (shot.X_AB.t - before.X_AB.t).norm(), size = shot.a->diagonal();
+    const Bounds bounds = sum(bounds_of(before, answers[i - 1]), bounds_of(shot, answers[i]), 1.0);
+    const auto slope = [&](const char* metric, double change) {
+      Finding finding = length_finding(metric, std::max(0.0, change - step), size, bounds, i,
+                                       fmt::format("a change of {} in a step of {}", change, step));
+      if (finding.verdict == Verdict::exact) finding.value = 0.0;
+      findings.push_back(finding);
+    };
+    const auto &d0 = answers[i - 1].distance.outcome, &d = answers[i].distance.outcome;
+    if (d0.ok() && d.ok()) slope("slope of the distance", std::abs(d.value.distance - d0.value.distance));
+    const auto &r0 = answers[i - 1].respond.outcome, &r = answers[i].respond.outcome;
+    if (r0.ok() && r.ok() && std::isfinite(r.value.volume) && std::isfinite(r0.value.volume)) {
+      slope("slope of the volume", std::abs(r.value.volume - r0.value.volume) / moving_area(shot));
+    }
+  }
+}
+
+void judge_loop(const Case& member, const std::vector<Answers>& answers, const Profile& profile,
+                std::vector<Finding>& findings) {
+  double work = 0.0, length = 0.0, peak = 0.0;
+  bool has_potential = profile.law == ResponseLaw::volume;
+  for (std::size_t i = 1; i < answers.size(); ++i) {
+    const auto &r0 = answers[i - 1].respond.outcome, &r = answers[i].respond.outcome;
+    if (!r0.ok() || !r.ok()) return;
+    const Eigen::Vector3d step = member.shots[i].X_AB.t - member.shots[i - 1].X_AB.t;
+    work += 0.5 * (r0.value.force + r.value.force).dot(step);
+    length += step.norm();
+    peak = std::max(peak, r.value.force.norm());
+    has_potential = has_potential && answers[i].resolution == 0.0;
+  }
+  if (peak == 0.0) return;
+  // Sums by trapezia of a force with kinks.
+  const double steps = static_cast<double>(answers.size()), allowed = 4.0 / steps;
+  const double value = std::abs(work) / (peak * length);
+  findings.push_back({.verdict = value <= allowed ? Verdict::exact
+                                 : has_potential  ? Verdict::wrong
+                                                  : Verdict::resolution,
+                      .metric = "loop work",
+                      .value = value,
+                      .unit = "1",
+                      .excess = value / allowed,
+                      .words = "work over peak force times length"});
+}
+
+void judge_repeat(const Case& member, const std::vector<Answers>& answers, const Profile& profile,
+                  const Prepare& prepare, std::vector<Finding>& findings) {
+  // An order or a thread may change rounding only.
+  constexpr double k_rounding = 1e-12;
+  const auto compare = [&](const char* metric, const std::vector<Answers>& others, bool all_bits) {
+    bool equal = true;
+    for (std::size_t i = 0; i < others.size(); ++i) equal = equal && same_bits(answers[i], others[i]);
+    const double by = difference(answers, others);
+    const bool right = all_bits ? equal : by <= k_rounding;
+    findings.push_back({.verdict = right ? Verdict::exact : Verdict::wrong,
+                        .metric = metric,
+                        .value = by,
+                        .unit = "1",
+                        .excess = by / k_rounding,
+                        .words = "relative difference of the answers"});
+  };
+  compare("second object", ask_all(member, profile, prepare, false), true);
+  compare("other order", ask_all(member, profile, prepare, true), false);
+  std::vector<Answers> at_once[2];
+  {
+    std::jthread one([&] { at_once[0] = ask_all(member, profile, prepare, false); });
+    std::jthread two([&] { at_once[1] = ask_all(member, profile, prepare, false); });
+  }
+  for (const auto& others : at_once) compare("two threads", others, true);
+}
+
+void judge_sweep(const Case& member, const Profile& profile, const Prepare& prepare, std::vector<Finding>& findings) {
+  PreparedPairs pairs(prepare, profile.answers);
+  const Shot& start = member.shots.front();
+  const double size = start.a->diagonal(), speed = member.motion.norm();
+  // Steps end as near contact as a body of this size allows.
+  constexpr double k_near = 1e-7;
+  constexpr int k_most_steps = 2000;
+  const auto at_time = [&](double time) {
+    Shot shot = start;
+    shot.truth = {};
+    shot.X_AB.t += time * member.motion;
+    return shot;
+  };
+  if (!profile.answers.distance) {
+    const Answers before = pairs.ask(start);
+    if (!before.collide.outcome.ok() || !std::isfinite(member.contact_time)) return;
+    const Bounds bounds = bounds_of(start, before);
+    const double margin = (bounds.largest() + k_near * size) / speed;
+    const Answers inside = pairs.ask(at_time(member.contact_time + 2.0 * margin));
+    if (!inside.collide.outcome.ok()) return;
+    const bool right = inside.collide.outcome.value;
+    findings.push_back({.verdict = right ? Verdict::exact : Verdict::resolution,
+                        .metric = "contact",
+                        .unit = "size",
+                        .words = "yes/no after the contact"});
+    return;
+  }
+  double time = 0.0;
+  // A time after which bodies that part are far from each other.
+  const double end = std::isfinite(member.contact_time) ? 2.0 * member.contact_time : 4.0 * size / speed;
+  Bounds bounds{};
+  int steps = 0;
+  for (; steps < k_most_steps && time < end; ++steps) {
+    const Answers answers = pairs.ask(at_time(time));
+    if (!answers.distance.outcome.ok()) return;
+    bounds = bounds_of(at_time(time), answers);
+    const double distance = answers.distance.outcome.value.distance;
+    if (distance <= k_near * size) break;
+    time += distance / speed;
+  }
+  const bool touched = time < end && steps < k_most_steps;
+  if (!std::isfinite(member.contact_time)) {
+    findings.push_back({.verdict = touched ? Verdict::wrong : Verdict::exact,
+                        .metric = "phantom",
+                        .unit = "size",
+                        .words = "bodies that part"});
+    return;
+  }
+  bounds.rounding += 2.0 * k_near * size;
+  findings.push_back(
+      touched ? length_finding("time of contact", std::abs(time - member.contact_time) * speed, size, bounds, 0,
+                               fmt::format("contact at {} instead of {}", time, member.contact_time))
+              : Finding{.verdict = Verdict::wrong, .metric = "missed", .unit = "size", .words = "passed through"});
+}
+
+void judge_bad(const Case& member, const std::vector<Answers>& answers, std::vector<Finding>& findings) {
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const Pose X = member.shots[i].pose();
+    const bool finite = X.R.allFinite() && X.t.allFinite();
+    const auto examine = [&](const char* query, Status status, const std::string& words) {
+      if (status == Status::unsupported) return;
+      const std::string_view name = to_string(status);
+      Finding finding{.metric = query, .unit = "1", .shot = i, .words = words};
+      if (name == "ok" && !finite)
+        finding.verdict = Verdict::wrong, finding.words = "an answer for a pose that is not finite";
+      if (name == "non_finite" && finite && words == "the answer is not finite") finding.verdict = Verdict::non_finite;
+      if (name == "crashed") finding.verdict = Verdict::crashed;
+      if (name == "timed_out") finding.verdict = Verdict::hung;
+      if (name == "out_of_memory") finding.verdict = Verdict::out_of_memory;
+      findings.push_back(finding);
+    };
+    examine("collide", answers[i].collide.outcome.status, answers[i].collide.words);
+    examine("distance", answers[i].distance.outcome.status, answers[i].distance.words);
+    examine("respond", answers[i].respond.outcome.status, answers[i].respond.words);
+  }
+}
+
+}  // namespace sixdof::stability

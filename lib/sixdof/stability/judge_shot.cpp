@@ -1,0 +1,217 @@
+#include <sixdof/stability/judge_shot.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace sixdof::stability {
+namespace {
+
+bool pushes(const Response& response) { return response.penalty != 0.0 || !response.force.isZero(0.0); }
+
+double angle_between(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+Verdict verdict_of(Status status) {
+  const std::string_view name = to_string(status);
+  if (name == "non_finite") return Verdict::non_finite;
+  if (name == "crashed") return Verdict::crashed;
+  if (name == "timed_out") return Verdict::hung;
+  if (name == "out_of_memory") return Verdict::out_of_memory;
+  if (name == "unsupported") return Verdict::unsupported;
+  return Verdict::threw;
+}
+
+/// Yes/no, once right and wrong are known: how far from contact the mistake is.
+Finding sign_finding(const char* metric, bool right, double gap, double size, const Bounds& bounds, std::size_t shot) {
+  if (right) return {.verdict = Verdict::exact, .metric = metric, .unit = "size", .shot = shot, .words = {}};
+  return length_finding(metric, std::abs(gap), size, bounds, shot,
+                        fmt::format("true gap {}, where the answer has the wrong sign", gap));
+}
+
+void judge_response(const Case& member, std::size_t index, const Response& response, const Answers& answers,
+                    const Profile& profile, std::vector<Finding>& findings) {
+  const Shot& shot = member.shots[index];
+  const Truth& truth = shot.truth;
+  const Bounds bounds = bounds_of(shot, answers);
+  const double size = shot.a->diagonal();
+  const bool excused = truth.contained && !profile.pushes_contained;
+  if (!std::isnan(truth.gap) && profile.law != ResponseLaw::none) {
+    // At a gap of 0 any answer is right.
+    const bool right = truth.gap == 0.0 || pushes(response) == (truth.gap < 0.0);
+    if (excused && !right) {
+      findings.push_back({.verdict = Verdict::unsupported,
+                          .metric = "missed",
+                          .unit = "size",
+                          .shot = index,
+                          .words = "surfaces only"});
+    } else {
+      findings.push_back(sign_finding(truth.gap < 0.0 ? "missed" : "phantom", right, truth.gap, size, bounds, index));
+    }
+  }
+  if (!std::isnan(truth.volume) && std::isfinite(response.volume)) {
+    const double area = moving_area(shot), error = std::abs(response.volume - truth.volume);
+    Finding finding = length_finding("volume", error / area, size, bounds, index,
+                                     fmt::format("volume {} instead of {}", response.volume, truth.volume));
+    finding.value = error / (size * size * size);
+    finding.unit = "volume";
+    findings.push_back(std::move(finding));
+  }
+  const double depth = -truth.gap;
+  if (truth.push && depth > bounds.largest() && !response.force.isZero(0.0)) {
+    const double angle = angle_between(response.force, *truth.push);
+    const double allowed = rounding_angle(shot, bounds, depth, response.force, profile);
+    const bool own_direction = profile.law != ResponseLaw::volume || answers.resolution > 0.0;
+    const Verdict verdict = angle <= allowed                                  ? Verdict::exact
+                            : own_direction && angle < 0.5 * std::numbers::pi ? Verdict::resolution
+                                                                              : Verdict::wrong;
+    findings.push_back({.verdict = verdict,
+                        .metric = "direction",
+                        .value = angle,
+                        .unit = "rad",
+                        .excess = angle / allowed,
+                        .shot = index,
+                        .words = "angle of the force to the shortest way out"});
+  }
+}
+
+/// Lowest point of a mesh along a direction.
+double support(const Mesh& mesh, const Pose& X, const Eigen::Vector3d& direction) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& p : mesh.vertices()) least = std::min(least, direction.dot(X * p));
+  return least;
+}
+
+void judge_witnesses(const Case& member, std::size_t index, const Separation& gap, const Bounds& bounds,
+                     std::vector<Finding>& findings) {
+  const Shot& shot = member.shots[index];
+  if (!gap.has_witnesses || !(gap.distance > bounds.largest())) return;
+  const double size = shot.a->diagonal();
+  const Eigen::Vector3d between = gap.witness_b - gap.witness_a;
+  findings.push_back(length_finding("witnesses", std::abs(between.norm() - gap.distance), size, bounds, index,
+                                    fmt::format("points {} apart at distance {}", between.norm(), gap.distance)));
+  if (!member.convex || shot.raw || shot.truth.gap <= 0.0) return;
+  // Along the normal the supporting planes of convex bodies are as far apart as the bodies. Rounding turns the normal
+  // by rounding / distance, which moves a support by that times the body's size.
+  const Eigen::Vector3d n = between.normalized();
+  const double width = support(*shot.b, shot.X_AB.pose(), n) + support(*shot.a, {}, -n);
+  Bounds turned = bounds;
+  const double lever = 1.0 + (size + shot.b->diagonal()) / gap.distance;
+  turned.rounding *= lever;
+  turned.resolution *= lever;
+  findings.push_back(
+      length_finding("support", std::abs(width - gap.distance), size, turned, index,
+                     fmt::format("planes across the closest points are {} apart, distance {}", width, gap.distance)));
+}
+
+void judge_contradictions(std::size_t index, const Shot& shot, const Answers& answers, const Bounds& bounds,
+                          std::vector<Finding>& findings) {
+  if (!answers.collide.outcome.ok() || !answers.distance.outcome.ok()) return;
+  const double distance = answers.distance.outcome.value.distance;
+  const bool yes = answers.collide.outcome.value;
+  const double size = shot.a->diagonal();
+  const bool bodies = shot.truth.contained || std::isnan(shot.truth.gap) || shot.truth.gap < 0.0;
+  // Inside each other bodies collide though the surfaces are apart.
+  const bool contradict = yes ? distance > 0.0 && !bodies : distance == 0.0;
+  if (!contradict) return;
+  const double by = yes ? distance : std::isnan(shot.truth.gap) ? 0.0 : std::abs(shot.truth.gap);
+  findings.push_back(length_finding("contradiction", by, size, bounds, index,
+                                    fmt::format("collide says {}, distance is {}", yes ? "yes" : "no", distance)));
+}
+
+}  // namespace
+
+Bounds bounds_of(const Shot& shot, const Answers& answers) {
+  return {.rounding = shot.truth.error + shot.rounding(),
+          .resolution = answers.resolution + k_declared_accuracy * shot.a->diagonal()};
+}
+
+double rounding_angle(const Shot& shot, const Bounds& bounds, double depth, const Eigen::Vector3d& force,
+                      const Profile& profile) {
+  constexpr double k_cap = 100.0, k_exact_angle = 1e-9;
+  const double angle = k_exact_angle + k_cap * bounds.rounding / depth;
+  if (profile.law != ResponseLaw::volume) return angle;
+  return angle + bounds.rounding * (shot.a->diagonal() + shot.b->diagonal()) / force.norm();
+}
+
+double moving_area(const Shot& shot) { return shot.a->area() + shot.b->area(); }
+
+Finding length_finding(const char* metric, double error, double size, const Bounds& bounds, std::size_t shot,
+                       std::string words) {
+  return {.verdict = bounds.verdict(error),
+          .metric = metric,
+          .value = error / size,
+          .unit = "size",
+          .excess = error / bounds.rounding,
+          .shot = shot,
+          .words = std::move(words)};
+}
+
+void judge_statuses(const Shot& shot, std::size_t index, const Answers& answers, const Limits& limits,
+                    std::vector<Finding>& findings) {
+  const bool solid = shot.a->solid() && shot.b->solid();
+  if (answers.refused || answers.prepare_threw) {
+    const bool declared = answers.refused;
+    findings.push_back({.verdict = declared ? Verdict::unsupported : Verdict::threw,
+                        .metric = "prepare",
+                        .unit = "1",
+                        .shot = index,
+                        .words = answers.words});
+    return;
+  }
+  const auto examine = [&](const char* query, Status status, const std::string& words) {
+    if (status == Status::ok || status == Status::unsupported) return;
+    Verdict verdict = verdict_of(status);
+    if (verdict == Verdict::threw && !solid) verdict = Verdict::unsupported;
+    findings.push_back({.verdict = verdict, .metric = query, .unit = "1", .shot = index, .words = words});
+  };
+  examine("collide", answers.collide.outcome.status, answers.collide.words);
+  examine("distance", answers.distance.outcome.status, answers.distance.words);
+  examine("respond", answers.respond.outcome.status, answers.respond.words);
+  if (answers.wall_seconds > limits.seconds) {
+    findings.push_back({.verdict = Verdict::hung,
+                        .metric = "time",
+                        .value = answers.wall_seconds,
+                        .unit = "s",
+                        .shot = index,
+                        .words = "time limit"});
+  }
+}
+
+void judge_truth(const Case& member, std::size_t index, const Answers& answers, const Profile& profile,
+                 std::vector<Finding>& findings) {
+  const Shot& shot = member.shots[index];
+  const Truth& truth = shot.truth;
+  const Bounds bounds = bounds_of(shot, answers);
+  const double size = shot.a->diagonal();
+  if (answers.collide.outcome.ok() && !std::isnan(truth.gap)) {
+    const bool right = answers.collide.outcome.value == (truth.gap <= 0.0);
+    if (!right && truth.contained && !profile.finds_contained) {
+      findings.push_back({.verdict = Verdict::unsupported,
+                          .metric = "missed",
+                          .unit = "size",
+                          .shot = index,
+                          .words = "surfaces only"});
+    } else {
+      findings.push_back(sign_finding(truth.gap <= 0.0 ? "missed" : "phantom", right, truth.gap, size, bounds, index));
+    }
+  }
+  if (answers.distance.outcome.ok()) {
+    const Separation& gap = answers.distance.outcome.value;
+    if (!std::isnan(truth.distance)) {
+      findings.push_back(length_finding("distance", std::abs(gap.distance - truth.distance), size, bounds, index,
+                                        fmt::format("distance {} instead of {}", gap.distance, truth.distance)));
+    }
+    judge_witnesses(member, index, gap, bounds, findings);
+  }
+  if (answers.respond.outcome.ok())
+    judge_response(member, index, answers.respond.outcome.value, answers, profile, findings);
+  judge_contradictions(index, shot, answers, bounds, findings);
+}
+
+}  // namespace sixdof::stability

@@ -1,0 +1,85 @@
+// sixdof stress, as a user types it.
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/common/run_guarded.h"
+
+#include "run_program.h"
+#include "scratch_folder.h"
+
+namespace sixdof {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class Stress : public test::ScratchFolder {
+ protected:
+  test::ProgramResult run(const std::string& arguments) const {
+    return test::run_program("cd " + folder().string() + " && " + SIXDOF_PROGRAM + " " + arguments);
+  }
+  json cells(const std::string& arguments) const {
+    const auto done = run("stress " + arguments + " -o " + path("cells.json"));
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    return json::parse(std::ifstream(path("cells.json")));
+  }
+};
+
+TEST_F(Stress, PrintsAMatrixAndWritesItsCells) {
+  const json list = cells("--algorithms exact,brute-force --families kissing,scale,contained");
+  ASSERT_EQ(list.size(), 6u);
+  for (const json& cell : list) {
+    for (const char* key : {"family", "algorithm", "verdict", "cases", "worst", "unit", "reproduction"}) {
+      EXPECT_TRUE(cell.contains(key)) << key;
+    }
+    EXPECT_GE(cell.at("cases"), 5);
+  }
+  EXPECT_EQ(list[0].at("family"), "kissing");
+  EXPECT_EQ(list[1].at("algorithm"), "brute-force");
+  const auto done = run("stress --algorithms exact --families kissing,scale");
+  EXPECT_THAT(done.out, HasSubstr("family"));
+  EXPECT_THAT(done.out, HasSubstr(" 5 kissing"));
+  EXPECT_THAT(done.out, HasSubstr(" 1 scale"));
+}
+
+TEST_F(Stress, EveryReproductionIsACommandThatAsksTheSameCase) {
+  const json list = cells("--algorithms exact --families parallel,slivers,motion");
+  for (const json& cell : list) {
+    const std::string line = cell.at("reproduction");
+    ASSERT_TRUE(line.starts_with("sixdof query ")) << line;
+    const auto done = run(line.substr(std::string("sixdof ").size()) + " --json");
+    ASSERT_EQ(done.exit_code, 0) << done.err << line;
+    EXPECT_EQ(json::parse(done.out).at("status"), "ok");
+  }
+}
+
+TEST_F(Stress, IsDeterministicBySeedButForTimes) {
+  const auto without_times = [&](const std::string& arguments) {
+    json list = cells("--algorithms exact,brute-force --families motion,repeat,grazing " + arguments);
+    for (json& cell : list) {
+      cell.erase("slowest_s");
+      cell.erase("slowest_reproduction");
+    }
+    return list;
+  };
+  const json one = without_times("--seed 3");
+  EXPECT_EQ(one, without_times("--seed 3"));
+  EXPECT_NE(one, without_times("--seed 4"));
+}
+
+TEST_F(Stress, RefusesWhatDoesNotExist) {
+  const auto family = run("stress --families kissings");
+  EXPECT_EQ(family.exit_code, k_exit_error);
+  EXPECT_THAT(family.err, HasSubstr("kissings: no such family"));
+  EXPECT_EQ(run("stress --algorithms exacts").exit_code, k_exit_error);
+  EXPECT_EQ(run("stress --effort great").exit_code, k_exit_usage);
+}
+
+}  // namespace
+}  // namespace sixdof
