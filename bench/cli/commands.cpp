@@ -82,10 +82,11 @@ int run(int argc, const char* const* argv) {
   CLI::App app("sixdof: speed and correctness of collision queries in six degrees of freedom", "sixdof");
   app.set_version_flag("--version", std::string("sixdof ") + SIXDOF_VERSION);
   app.require_subcommand(1);
-  for (const auto add : {add_models_command, add_info_command, add_repair_command, add_algorithms_command,
-                         add_query_command, add_show_command, add_quality_command, add_generate_command,
-                         add_merge_command, add_verify_command, add_table_command, add_precision_command,
-                         add_recommend_command, add_equivalent_command, add_stress_command, add_new_algorithm_command}) {
+  for (const auto add :
+       {add_models_command, add_info_command, add_repair_command, add_algorithms_command, add_query_command,
+        add_show_command, add_quality_command, add_generate_command, add_merge_command, add_verify_command,
+        add_table_command, add_precision_command, add_recommend_command, add_equivalent_command, add_stress_command,
+        add_new_algorithm_command}) {
     add(app);
   }
   add_examples(app, "sixdof models list", k_first_query);

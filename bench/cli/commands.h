@@ -40,7 +40,8 @@ void add_recommend_command(CLI::App& app);
 /// error of a response at a given mean time (study/equivalent.h).
 void add_equivalent_command(CLI::App& app);
 /// `sixdof stress [--algorithms LIST] [--families LIST] [--effort quick|full] [--seed N]`: every algorithm on families
-/// of hard cases with known answers; k_exit_defects if one of this project's own answers wrongly or not (study/stress.h).
+/// of hard cases with known answers; k_exit_defects if one of this project's own answers wrongly or not
+/// (study/stress.h).
 void add_stress_command(CLI::App& app);
 /// `sixdof generate --a A [--b B] --grid GRID [--distances LIST] [--volumes LIST] -o FILE`: makes a configuration set.
 /// With `--shards N [--shard I] -o FOLDER` in parts; with `--plan` it only prints what would be made and at what cost.

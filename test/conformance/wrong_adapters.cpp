@@ -136,7 +136,7 @@ SIXDOF_CONFORMANCE(wrong("wrong-volume", {.respond = [](const Asked&, Outcome<Re
 SIXDOF_CONFORMANCE(wrong("wrong-open-surfaces", {}), {.collide = Meaning::bodies, .open_meshes = false});
 SIXDOF_CONFORMANCE(wrong_collide("wrong-order-of-collide", &Asked::swapped), bodies());
 SIXDOF_CONFORMANCE(wrong_distance("wrong-order-of-distance", [](const Asked& q) { return q.swapped() ? k_too_much : 0.0; }), bodies());
-SIXDOF_CONFORMANCE(wrong("wrong-order-of-respond", {.respond = [](const Asked& q, Outcome<Response>& outcome) { outcome.value.reference = q.a.centroid(); }}), bodies());
+SIXDOF_CONFORMANCE(wrong_respond("wrong-order-of-respond", &Asked::swapped), bodies());
 SIXDOF_CONFORMANCE(wrong_collide("wrong-motion-of-collide", [](const Asked& q) { return q.has("(moved)"); }), bodies());
 SIXDOF_CONFORMANCE(wrong_distance("wrong-motion-of-distance", [](const Asked& q) { return q.has("(moved)") ? k_too_much : 0.0; }), bodies());
 SIXDOF_CONFORMANCE(wrong_respond("wrong-motion-of-respond", [](const Asked& q) { return q.has("(moved)"); }), bodies());

@@ -120,6 +120,7 @@ constexpr std::array k_metrics{
     Metric{"prepare_ns", "ns", lower, "wall time to prepare, which the cache on disk may shorten", k_precision},
     Metric{"bytes", "byte", lower, "memory of the prepared structure", k_footprint},
     Metric{"triangles", "triangles", neither, "triangles of both meshes", k_footprint},
+    Metric{"vertices", "vertices", neither, "vertices of both convex hulls", k_footprint},
     Metric{"nodes", "nodes", neither, "nodes of the hierarchies", k_footprint},
     Metric{"nodes_a", "nodes", neither, "nodes of the tree of A", k_footprint},
     Metric{"nodes_b", "nodes", neither, "nodes of the tree of B", k_footprint},

@@ -26,8 +26,8 @@ namespace sixdof {
 /// every commit (https://github.com/RenderKit/embree/blob/master/tutorials/collide/collide_device.cpp). `tuned` follows
 /// Embree's manual: A's scene of quality HIGH, "better rendering performance but slower scene commit times"
 /// (https://manpages.ubuntu.com/manpages/jammy/man3/rtcSetSceneBuildQuality.3.html), B's scene with the flag DYNAMIC,
-/// "better build performance for dynamic scenes" (rtcSetSceneFlags(3)), and its geometry of quality REFIT, "when changing
-/// only the vertex buffer" (https://man.archlinux.org/man/rtcSetGeometryBuildQuality.3embree3.en.txt).
+/// "better build performance for dynamic scenes" (rtcSetSceneFlags(3)), and its geometry of quality REFIT, "when
+/// changing only the vertex buffer" (https://man.archlinux.org/man/rtcSetGeometryBuildQuality.3embree3.en.txt).
 ///
 /// **Threads.** Embree spreads builds and rtcCollide() over all cores. Here both run in a task arena of one thread.
 ///
