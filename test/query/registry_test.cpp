@@ -18,6 +18,14 @@ class EmptyQuery final : public Query {
 
 std::unique_ptr<Algorithm> named(const std::string& name) { return make_algorithm<EmptyQuery>({.name = name}); }
 
+TEST(Status, HasWords) {
+  EXPECT_EQ(to_string(Status::ok), "ok");
+  EXPECT_EQ(to_string(Status::non_finite), "non_finite");
+  EXPECT_EQ(to_string(Status::crashed), "crashed");
+  EXPECT_EQ(to_string(Status::timed_out), "timed_out");
+  EXPECT_EQ(to_string(Status::out_of_memory), "out_of_memory");
+}
+
 TEST(Registry, FindsByNameAndListsTheOthers) {
   Registry registry;
   registry.add(named("first"));

@@ -24,6 +24,7 @@ constexpr std::string_view k_check = "bench/harness/check.h";
 constexpr std::string_view k_timing = "bench/harness/timing.h";
 constexpr std::string_view k_work = "bench/harness/work.h";
 constexpr std::string_view k_stability = "bench/rows/stability.cpp";
+constexpr std::string_view k_status = "lib/sixdof/query/algorithm.h (Status)";
 constexpr std::string_view k_footprint = "lib/sixdof/query/algorithm.h (Footprint)";
 constexpr std::string_view k_generate_row = "bench/rows/generate.cpp";
 constexpr std::string_view k_query_row = "bench/rows/query.cpp";
@@ -71,6 +72,9 @@ constexpr std::array k_metrics{
     Metric{"volume_error_max", "1", lower, "largest |volume - bucket's volume| over the bucket's volume", k_check},
     // Correctness of other answers.
     Metric{"failed", "queries", lower, "no answer: refused, thrown, or not finite", "bench/harness/guarded_query.h"},
+    Metric{"crashed", "queries", lower, "of the failed: the process ended; absent for none", k_status},
+    Metric{"timed_out", "queries", lower, "of the failed: no answer within the limit; absent for none", k_status},
+    Metric{"out_of_memory", "queries", lower, "of the failed: more memory than there is; absent for none", k_status},
     Metric{"judged", "queries", neither, "answers for which the truth is known", k_check},
     Metric{"mismatch", "queries", lower, "wrong answers among the judged ones", k_check},
     Metric{"error_rms", "diagonal", lower, "RMS of |distance - truth| over A's box diagonal", k_check},

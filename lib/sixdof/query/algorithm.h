@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -36,15 +37,22 @@ namespace sixdof {
 /// How a query ended.
 enum class Status {
   ok,
-  unsupported,  ///< The algorithm does not answer this kind of query.
-  failed,       ///< The algorithm gave up, threw, or returned something that is no answer.
-  non_finite,   ///< The algorithm returned, or was given, a NaN or an infinity.
+  unsupported,    ///< The algorithm does not answer this kind of query.
+  failed,         ///< The algorithm gave up, threw, or returned something that is no answer.
+  non_finite,     ///< The algorithm returned, or was given, a NaN or an infinity.
+  crashed,        ///< The process in which it ran ended: a signal, an abort, an exit.
+  timed_out,      ///< No answer within the limit; its process was ended.
+  out_of_memory,  ///< It asked for more memory than there is, or than it may have.
 };
 
 constexpr std::string_view to_string(Status status) {
-  constexpr std::string_view k_names[] = {"ok", "unsupported", "failed", "non_finite"};
+  constexpr std::string_view k_names[] = {"ok",      "unsupported", "failed",       "non_finite",
+                                          "crashed", "timed_out",   "out_of_memory"};
   return k_names[static_cast<std::size_t>(status)];
 }
+
+/// Those that rows count apart, besides counting them as failed configurations.
+inline constexpr std::array<Status, 3> k_counted_statuses{Status::crashed, Status::timed_out, Status::out_of_memory};
 
 /// A value, or why there is none. `value` is meaningful only if ok(); Query::diagnosis() has the words for a failure.
 template <class T>

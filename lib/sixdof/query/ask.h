@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <exception>
+#include <new>
 #include <string>
 
 #include <fmt/format.h>
@@ -21,11 +22,15 @@ inline bool is_finite(const Response& answer) {
          answer.torque.allFinite() && answer.reference.allFinite();
 }
 
-/// The Outcome of ask(). An exception becomes Status::failed and calls failed(words); without one it costs nothing.
+/// The Outcome of ask(). An exception becomes Status::failed, or Status::out_of_memory where it is std::bad_alloc, and
+/// calls failed(words); without one it costs nothing.
 template <class Ask, class Failed>
 auto ask_guarded(Ask&& ask, const Failed& failed) -> decltype(ask()) {
   try {
     return ask();
+  } catch (const std::bad_alloc& e) {
+    failed(e.what());
+    return Status::out_of_memory;
   } catch (const std::exception& e) {
     failed(e.what());
   } catch (...) {
