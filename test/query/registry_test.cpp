@@ -44,6 +44,16 @@ TEST(Registry, RefusesANameTwiceAndInvalidNames) {
   EXPECT_EQ(registry.all().size(), 1u);
 }
 
+TEST(Registry, GivesItsAlgorithmsAway) {
+  Registry registry;
+  registry.add(named("first"));
+  registry.add(named("second"));
+  const auto taken = registry.take();
+  EXPECT_EQ(taken.at(1)->traits().name, "second");
+  EXPECT_TRUE(registry.all().empty());
+  registry.add(named("first"));
+}
+
 TEST(Registry, RefusesANullPointer) {
   Registry registry;
   EXPECT_THROW(registry.add(nullptr), BadArgument);

@@ -72,13 +72,18 @@ TEST(Evaluation, FailedStepsAreCountedAndLeftOut) {
   const auto scenario = make_scenario("II");
   IdealQuery query(*scenario, IdealLaw::volume);
   Recording recording = record(*scenario, query, 100);
-  const std::map<std::size_t, Status> failures{{7, Status::failed}, {8, Status::non_finite}, {60, Status::unsupported}};
+  const std::map<std::size_t, Status> failures{{7, Status::failed},       {8, Status::non_finite},
+                                               {60, Status::unsupported}, {61, Status::crashed},
+                                               {70, Status::crashed},     {71, Status::timed_out}};
   for (const auto& [k, status] : failures) {
     recording.status[k] = status;
     recording.forces[k].setZero();
   }
   const auto m = by_name(evaluate(*scenario, recording, IdealLaw::volume));
-  EXPECT_EQ(m.at("failed"), 3.0);
+  EXPECT_EQ(m.at("failed"), 6.0);
+  EXPECT_EQ(m.at("crashed"), 2.0);
+  EXPECT_EQ(m.at("timed_out"), 1.0);
+  EXPECT_EQ(m.count("out_of_memory"), 0u) << "absent for none";
   EXPECT_EQ(m.at("misses"), 0.0);
   EXPECT_NEAR(m.at("sigma_F"), 0.0, k_rounding);
   EXPECT_GT(m.at("noise_F"), 1e-3);  // failed steps are zero in the spectrum

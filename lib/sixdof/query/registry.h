@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <sixdof/query/algorithm.h>
@@ -20,6 +21,9 @@ class Registry {
   const Algorithm& find(std::string_view name) const;
 
   const std::vector<std::unique_ptr<Algorithm>>& all() const { return algorithms_; }
+
+  /// All algorithms; leaves none.
+  std::vector<std::unique_ptr<Algorithm>> take() { return std::exchange(algorithms_, {}); }
 
  private:
   std::vector<std::unique_ptr<Algorithm>> algorithms_;

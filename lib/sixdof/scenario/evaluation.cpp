@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <ctime>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include <sixdof/measure/magnitude.h>
 #include <sixdof/measure/path.h>
 #include <sixdof/measure/spectrum.h>
+#include <sixdof/process/remote_algorithm.h>
 #include <sixdof/query/ask.h>
 
 namespace sixdof {
@@ -41,6 +43,7 @@ struct Compared {
 struct Selection {
   Compared force, torque;
   std::size_t failed = 0;
+  std::map<Status, std::size_t> counted;  ///< Those of k_counted_statuses among them.
 };
 
 struct Evaluator {
@@ -76,6 +79,9 @@ struct Evaluator {
       if (window_only && !scenario.in_window(recording.progress[k])) continue;
       const bool answered = recording.status[k] == Status::ok;
       if (!answered) ++selection.failed;
+      if (std::ranges::find(k_counted_statuses, recording.status[k]) != k_counted_statuses.end()) {
+        ++selection.counted[recording.status[k]];
+      }
       if (answered_only && !answered) continue;
       selection.force.ideal.push_back(ideals.forces[k]);
       selection.force.measured.push_back(recording.forces[k]);
@@ -103,6 +109,9 @@ struct Evaluator {
     add("false_contacts" + suffix, static_cast<double>(direction.false_contacts));
     add("skipped" + suffix, static_cast<double>(direction.skipped));
     add("failed" + suffix, static_cast<double>(answered.failed));
+    for (const auto& [status, count] : answered.counted) {
+      add(std::string(to_string(status)) + suffix, static_cast<double>(count));
+    }
     add("lag" + suffix, lag((every.*wanted).ideal, (every.*wanted).measured, k_lag_reach));
     if (has_force == has_torque) return;
     const double length = scenario.description().reference_length;
@@ -176,6 +185,8 @@ Recording record(const Scenario& scenario, Query& query, std::size_t count) {
   for (const double progress : recording.progress) recording.poses.push_back(scenario.pose(progress));
   std::string diagnosis;
   respond_guarded(query, recording.poses.front(), diagnosis);
+  RemoteQuery* const remote = as_remote(query);
+  std::vector<Pose> answered;
   const std::clock_t processor_start = std::clock();
   for (const Pose& X_AB : recording.poses) {
     const auto start = std::chrono::steady_clock::now();
@@ -184,6 +195,7 @@ Recording record(const Scenario& scenario, Query& query, std::size_t count) {
     Response response;
     if (outcome.ok()) {
       response = outcome.value.about(X_AB * scenario.description().reference_b);
+      answered.push_back(X_AB);
     } else if (recording.first_failure.empty()) {
       recording.first_failure = fmt::format("{}: {}", to_string(outcome.status), diagnosis);
     }
@@ -191,7 +203,14 @@ Recording record(const Scenario& scenario, Query& query, std::size_t count) {
     recording.forces.push_back(response.force);
     recording.torques.push_back(response.torque);
     recording.penalties.push_back(response.penalty);
-    recording.times_ns.push_back(std::chrono::duration<double, std::nano>(stop - start).count());
+    recording.times_ns.push_back(remote != nullptr ? remote->last_ns()
+                                                   : std::chrono::duration<double, std::nano>(stop - start).count());
+  }
+  if (remote != nullptr) {
+    recording.processor_ns =
+        answered.empty() ? 0.0
+                         : remote->time_together<Response>(answered, 1).cpu_ns / static_cast<double>(answered.size());
+    return recording;
   }
   const double processor_s = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
   recording.processor_ns = processor_s * 1e9 / static_cast<double>(count);

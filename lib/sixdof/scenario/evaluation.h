@@ -25,7 +25,8 @@ struct Recording {
   std::vector<Eigen::Vector3d> torques;  ///< On B about the scenario's reference point, in A's frame.
   std::vector<double> penalties;
   std::vector<double> times_ns;  ///< Wall-clock time of each query alone, successful or not.
-  double processor_ns = 0.0;     ///< Mean processor time per step, the recorder's own overhead included.
+  double processor_ns = 0.0;     ///< Mean processor time per step, the recorder's own overhead included; of an isolated
+                                 ///< query that of another pass over the answered steps in its process.
   std::string first_failure;     ///< Diagnosis of the first step without an answer; empty if there is none.
 
   std::size_t size() const { return progress.size(); }

@@ -1,0 +1,229 @@
+#include <sixdof/process/child_process.h>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+
+namespace sixdof {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+/// A time limit is looked at this often.
+constexpr int k_poll_ms = 50;
+/// Time to end after its input was closed.
+constexpr milliseconds k_patience{200};
+/// Descriptors from here on are out of the way of those that a program finds.
+constexpr int k_high = 100;
+/// Exit code of a shell, and of fork() here, for a program that cannot be started.
+constexpr int k_not_started = 127;
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool k_can_limit_memory = false;  // their shadow memory counts
+#else
+constexpr bool k_can_limit_memory = true;
+#endif
+
+[[noreturn]] void throw_errno(const char* what) { throw Error(fmt::format("{}: {}", what, std::strerror(errno))); }
+
+/// Processes that the kernel has ended for want of memory since it started; 0 where it does not tell.
+long count_kernel_kills() {
+  std::ifstream file("/proc/vmstat");
+  std::string name;
+  for (long value = 0; file >> name >> value;) {
+    if (name == "oom_kill") return value;
+  }
+  return 0;
+}
+
+/// In the new process, where only calls are allowed that a signal handler may make.
+[[noreturn]] void become(char* const* words, int input, int output, const std::vector<int>& files,
+                         std::size_t memory_bytes, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(k_not_started);
+  ::setpgid(0, 0);
+  sigset_t none;
+  sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  if (k_can_limit_memory && memory_bytes > 0) {
+    const rlimit memory{memory_bytes, memory_bytes};
+    ::setrlimit(RLIMIT_DATA, &memory);
+  }
+  ::dup2(input, STDIN_FILENO);
+  ::dup2(output, STDOUT_FILENO);
+  int place = STDERR_FILENO + 1;
+  for (const int file : files) ::dup2(file, place++);
+  ::execvp(words[0], words);
+  ::_exit(k_not_started);
+}
+
+}  // namespace
+
+TimeLimit expires_after(double seconds) {
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  return [end] { return Clock::now() >= end; };
+}
+
+ChildFailure how_it_ended(int wait_status, bool ran_out_of_memory) {
+  std::string words;
+  if (WIFSIGNALED(wait_status)) {
+    const int signal = WTERMSIG(wait_status);
+    const char* const name = ::sigdescr_np(signal);
+    words = fmt::format("ended by signal {} ({})", signal, name == nullptr ? "unknown" : name);
+  } else if (WEXITSTATUS(wait_status) == k_not_started) {
+    words = fmt::format("could not be started (exit code {})", k_not_started);
+  } else {
+    words = fmt::format("ended with exit code {}", WEXITSTATUS(wait_status));
+  }
+  if (!ran_out_of_memory) return {Status::crashed, words};
+  return {Status::out_of_memory, "out of memory: " + words};
+}
+
+int high_descriptor(int descriptor) {
+  const int high = ::fcntl(descriptor, F_DUPFD_CLOEXEC, k_high);
+  const int error = errno;
+  ::close(descriptor);
+  errno = error;
+  if (high < 0) throw_errno("file descriptor");
+  return high;
+}
+
+std::size_t default_memory_limit() {
+  constexpr double k_share = 0.8;
+  const double bytes = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  return static_cast<std::size_t>(k_share * bytes);
+}
+
+ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::vector<int>& files,
+                           std::size_t memory_bytes)
+    : kernel_kills_(count_kernel_kills()) {
+  std::vector<char*> pointers;
+  for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
+  pointers.push_back(nullptr);
+  // A socket rather than a pipe: writing to a program that has ended raises no SIGPIPE (MSG_NOSIGNAL).
+  std::array<int, 2> input{}, output{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input.data()) != 0) throw_errno("socketpair");
+  if (::pipe2(output.data(), O_CLOEXEC) != 0) throw_errno("pipe");
+  input_ = high_descriptor(input[0]);
+  output_ = high_descriptor(output[0]);
+  const int its_input = high_descriptor(input[1]), its_output = high_descriptor(output[1]);
+  const pid_t parent = ::getpid();
+  process_ = ::fork();
+  if (process_ == 0) become(pointers.data(), its_input, its_output, files, memory_bytes, parent);
+  const int error = errno;
+  ::close(its_input);
+  ::close(its_output);
+  if (process_ < 0) {
+    ::close(input_);
+    ::close(output_);
+    errno = error;
+    throw_errno("fork");
+  }
+  ::setpgid(process_, process_);  // whichever of the two processes runs first
+  ::fcntl(input_, F_SETFL, O_NONBLOCK);
+  ::fcntl(output_, F_SETFL, O_NONBLOCK);
+}
+
+ChildProcess::~ChildProcess() {
+  ::close(input_);
+  const auto end_of_patience = Clock::now() + k_patience;
+  while (!ended_ && !has_ended() && Clock::now() < end_of_patience) std::this_thread::sleep_for(milliseconds(1));
+  end();
+  ::close(output_);
+}
+
+/// Whether it has ended by itself. Its number stays taken until end().
+bool ChildProcess::has_ended() const {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid != 0;
+}
+
+/// Kills the program and what it has started.
+void ChildProcess::end() {
+  if (ended_) return;
+  ::kill(-process_, SIGKILL);
+  while (::waitpid(process_, &wait_status_, 0) < 0 && errno == EINTR) {
+  }
+  ended_ = true;
+}
+
+void ChildProcess::give_up(Status status, const std::string& words) {
+  end();
+  throw ChildFailure(status, words);
+}
+
+/// The program has closed its side, mostly by ending.
+void ChildProcess::closed() {
+  const auto end_of_patience = Clock::now() + k_patience;
+  while (!has_ended() && Clock::now() < end_of_patience) std::this_thread::sleep_for(milliseconds(1));
+  if (!has_ended()) give_up(Status::crashed, "closed its standard streams");
+  end();
+  const bool killed = WIFSIGNALED(wait_status_) && WTERMSIG(wait_status_) == SIGKILL;
+  const ChildFailure failure =
+      how_it_ended(wait_status_, noted_memory_ || (killed && count_kernel_kills() > kernel_kills_));
+  throw failure;
+}
+
+void ChildProcess::send(std::string_view line, const TimeLimit& expired) {
+  const std::string text = std::string(line) + "\n";
+  for (std::size_t sent = 0; sent < text.size();) {
+    const ssize_t count = ::send(input_, text.data() + sent, text.size() - sent, MSG_NOSIGNAL);
+    if (count >= 0) {
+      sent += static_cast<std::size_t>(count);
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      pollfd waiting{input_, POLLOUT, 0};
+      ::poll(&waiting, 1, k_poll_ms);
+      if (expired()) give_up(Status::timed_out, "did not read what it is asked within the limit");
+    } else if (errno != EINTR) {
+      closed();
+    }
+  }
+}
+
+std::string ChildProcess::receive(const TimeLimit& expired) {
+  while (true) {
+    if (const std::size_t end_of_line = received_.find('\n', searched_); end_of_line != std::string::npos) {
+      std::string line = received_.substr(0, end_of_line);
+      received_.erase(0, end_of_line + 1);
+      searched_ = 0;
+      if (line != k_memory_note) return line;
+      noted_memory_ = true;
+      if (expired()) give_up(Status::timed_out, "gave no answer in time");
+      continue;
+    }
+    searched_ = received_.size();
+    if (received_.size() > k_longest_line) {
+      give_up(Status::failed, fmt::format("wrote a line of more than {} bytes", k_longest_line));
+    }
+    std::array<char, 1 << 16> block;
+    const ssize_t count = ::read(output_, block.data(), block.size());
+    if (count > 0) {
+      received_.append(block.data(), static_cast<std::size_t>(count));
+    } else if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+      pollfd waiting{output_, POLLIN, 0};
+      if (::poll(&waiting, 1, k_poll_ms) <= 0 && expired()) give_up(Status::timed_out, "gave no answer in time");
+    } else if (count == 0 || errno != EINTR) {
+      closed();
+    }
+  }
+}
+
+}  // namespace sixdof

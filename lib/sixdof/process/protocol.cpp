@@ -1,0 +1,385 @@
+#include <sixdof/process/protocol.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace sixdof::protocol {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array k_laws{"none", "depth", "volume"};
+constexpr std::array k_refusals{"error", "bad_mesh", "bad_argument"};
+
+// JSON has no words for what is not finite.
+constexpr const char* k_nan = "nan";
+constexpr const char* k_infinity = "inf";
+constexpr const char* k_minus_infinity = "-inf";
+
+Json number(double value) {
+  if (std::isnan(value)) return k_nan;
+  if (std::isinf(value)) return value > 0.0 ? k_infinity : k_minus_infinity;
+  return value;
+}
+
+double number_of(const Json& json) {
+  if (json.is_number()) return json.get<double>();
+  const auto word = json.get<std::string>();
+  if (word == k_nan) return std::numeric_limits<double>::quiet_NaN();
+  if (word == k_infinity) return std::numeric_limits<double>::infinity();
+  if (word == k_minus_infinity) return -std::numeric_limits<double>::infinity();
+  throw Malformed(fmt::format("\"{}\" is no number", word));
+}
+
+Json vector(const Eigen::Vector3d& v) { return {number(v.x()), number(v.y()), number(v.z())}; }
+
+Eigen::Vector3d vector_of(const Json& json) {
+  if (json.size() != 3) throw Malformed("a vector does not have three numbers");
+  return {number_of(json.at(0)), number_of(json.at(1)), number_of(json.at(2))};
+}
+
+constexpr std::size_t k_pose_numbers = 12;
+
+Json pose(const Pose& X_AB) {
+  Json numbers = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) numbers.push_back(number(X_AB.R(row, column)));
+  }
+  for (const double x : X_AB.t) numbers.push_back(number(x));
+  return numbers;
+}
+
+Pose pose_of(const Json& json) {
+  if (json.size() != k_pose_numbers) throw Malformed("a pose does not have twelve numbers");
+  Pose X_AB;
+  for (int i = 0; i < 9; ++i) X_AB.R(i / 3, i % 3) = number_of(json.at(static_cast<std::size_t>(i)));
+  for (int i = 0; i < 3; ++i) X_AB.t[i] = number_of(json.at(static_cast<std::size_t>(9 + i)));
+  return X_AB;
+}
+
+Json numbers(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(value));
+  return list;
+}
+
+std::vector<double> numbers_of(const Json& json) {
+  std::vector<double> values;
+  for (const Json& value : json) values.push_back(number_of(value));
+  return values;
+}
+
+/// What is said last may hold bytes that are no text.
+std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// The line for messages.
+std::string quoted(const std::string& line) {
+  constexpr std::size_t k_most = 60;
+  const std::string start = line.substr(0, k_most);
+  return text(Json(line.size() > k_most ? start + "..." : start));
+}
+
+/// Calls read(JSON object) and turns what goes wrong into Malformed.
+template <class Read>
+auto read_line(const std::string& line, Read read) {
+  try {
+    const Json json = Json::parse(line);
+    if (!json.is_object()) throw Malformed("not a JSON object");
+    return read(json);
+  } catch (const Json::exception& e) {
+    // "[json.exception.out_of_range.403] key 'ns' not found"
+    const std::string words = e.what();
+    const std::size_t end = words.find("] ");
+    throw Malformed(fmt::format("{}: {}", quoted(line), end == std::string::npos ? words : words.substr(end + 2)));
+  } catch (const Malformed& e) {
+    throw Malformed(fmt::format("{}: {}", quoted(line), e.what()));
+  }
+}
+
+template <class List>
+std::size_t place_of(const List& names, const std::string& name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) throw Malformed(fmt::format("\"{}\" is not known", name));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+Status status_of(const std::string& name) {
+  for (const Status status :
+       {Status::unsupported, Status::failed, Status::non_finite, Status::timed_out, Status::out_of_memory}) {
+    if (name == to_string(status)) return status;
+  }
+  throw Malformed(fmt::format("\"{}\" is no status", name));
+}
+
+Json mesh(const MeshPlace& place) {
+  return {{"name", place.name},
+          {"vertices", place.vertices},
+          {"vertex_count", place.vertex_count},
+          {"triangles", place.triangles},
+          {"triangle_count", place.triangle_count}};
+}
+
+MeshPlace mesh_of(const Json& json) {
+  return {json.at("name"), json.at("vertices"), json.at("triangles"), json.at("vertex_count"),
+          json.at("triangle_count")};
+}
+
+Json parameter(const Parameter& p) {
+  Json json = {{"name", p.name}, {"meaning", p.meaning}, {"unit", p.unit}, {"default", p.default_value}};
+  if (p.choices.empty()) {
+    json.update({{"low", p.low}, {"high", p.high}, {"integer", p.integer}});
+  } else {
+    json["choices"] = p.choices;
+  }
+  if (!p.sweep.empty()) json["sweep"] = p.sweep;
+  return json;
+}
+
+Parameter parameter_of(const Json& json) {
+  Parameter p{.name = json.at("name"),
+              .meaning = json.value("meaning", ""),
+              .unit = json.value("unit", ""),
+              .default_value = json.at("default")};
+  if (json.contains("choices")) {
+    json.at("choices").get_to(p.choices);
+  } else {
+    p.low = json.at("low");
+    p.high = json.at("high");
+    p.integer = json.value("integer", false);
+  }
+  if (json.contains("sweep")) json.at("sweep").get_to(p.sweep);
+  return p;
+}
+
+void put(Json& json, bool answer) { json["collide"] = answer; }
+void put(Json& json, const Separation& answer) {
+  json["distance"] = number(answer.distance);
+  if (answer.has_witnesses) json.update({{"a", vector(answer.witness_a)}, {"b", vector(answer.witness_b)}});
+  if (answer.triangle_a != Separation::k_no_triangle) json["triangle_a"] = answer.triangle_a;
+  if (answer.triangle_b != Separation::k_no_triangle) json["triangle_b"] = answer.triangle_b;
+}
+void put(Json& json, const Response& answer) {
+  json["penalty"] = number(answer.penalty);
+  if (!std::isnan(answer.volume)) json["volume"] = number(answer.volume);
+  json.update(
+      {{"force", vector(answer.force)}, {"torque", vector(answer.torque)}, {"reference", vector(answer.reference)}});
+}
+
+void take(const Json& json, bool& answer) { answer = json.at("collide").get<bool>(); }
+void take(const Json& json, Separation& answer) {
+  answer.distance = number_of(json.at("distance"));
+  answer.has_witnesses = json.contains("a");
+  if (answer.has_witnesses) {
+    answer.witness_a = vector_of(json.at("a"));
+    answer.witness_b = vector_of(json.at("b"));
+  }
+  answer.triangle_a = json.value("triangle_a", Separation::k_no_triangle);
+  answer.triangle_b = json.value("triangle_b", Separation::k_no_triangle);
+}
+void take(const Json& json, Response& answer) {
+  answer.penalty = number_of(json.at("penalty"));
+  if (json.contains("volume")) answer.volume = number_of(json.at("volume"));
+  answer.force = vector_of(json.at("force"));
+  answer.torque = vector_of(json.at("torque"));
+  answer.reference = vector_of(json.at("reference"));
+}
+
+std::optional<double> optional_number(const Json& json, const char* key) {
+  return json.contains(key) ? std::optional(number_of(json.at(key))) : std::nullopt;
+}
+
+struct RequestWriter {
+  Json operator()(const Hello&) const { return {{"do", "hello"}, {"protocol", k_version}}; }
+  Json operator()(const Prepare& prepare) const {
+    Json settings = Json::object();
+    for (const auto& [name, value] : prepare.settings) settings[name] = value;
+    return {{"do", "prepare"},
+            {"a", mesh(prepare.a)},
+            {"b", mesh(prepare.b)},
+            {"settings", settings},
+            {"progress", prepare.progress}};
+  }
+  Json operator()(const Ask& ask) const { return {{"do", "ask"}, {"query", ask.query}, {"pose", pose(ask.X_AB)}}; }
+  Json operator()(const Time& time) const {
+    Json poses = Json::array();
+    for (const Pose& X_AB : time.poses) poses.push_back(pose(X_AB));
+    return {{"do", "time"},
+            {"query", time.query},
+            {"passes", time.passes},
+            {"each", time.each},
+            {"evict_bytes", time.evict_bytes},
+            {"poses", std::move(poses)}};
+  }
+};
+
+}  // namespace
+
+std::string to_line(const Request& request) { return text(std::visit(RequestWriter(), request)); }
+
+Request request_of(const std::string& line) {
+  return read_line(line, [](const Json& json) -> Request {
+    const auto what = json.at("do").get<std::string>();
+    if (what == "hello") {
+      if (json.at("protocol") != k_version) throw Malformed(fmt::format("not version {} of the protocol", k_version));
+      return Hello{};
+    }
+    if (what == "prepare") {
+      Prepare prepare{mesh_of(json.at("a")), mesh_of(json.at("b")), {}, json.at("progress")};
+      for (const auto& [name, value] : json.at("settings").items()) prepare.settings.emplace_back(name, value);
+      return prepare;
+    }
+    if (what == "ask") return Ask{json.at("query"), pose_of(json.at("pose"))};
+    if (what != "time") throw Malformed(fmt::format("\"{}\" is not known", what));
+    Time time{json.at("query"), {}, json.at("passes"), json.at("each"), json.at("evict_bytes")};
+    for (const Json& each : json.at("poses")) time.poses.push_back(pose_of(each));
+    return time;
+  });
+}
+
+std::string to_line(const Greeting& greeting) {
+  const Traits& traits = greeting.traits;
+  Json answers = Json::array(), can = Json::array(), parameters = Json::array();
+  if (traits.answers.collide) answers.push_back("collide");
+  if (traits.answers.distance) answers.push_back("distance");
+  if (traits.answers.respond) answers.push_back("respond");
+  if (greeting.times) can.push_back("time");
+  if (greeting.progress) can.push_back("progress");
+  for (const Parameter& each : traits.parameters) parameters.push_back(parameter(each));
+  return text({{"protocol", k_version},
+               {"name", traits.name},
+               {"version", traits.version},
+               {"summary", traits.summary},
+               {"answers", answers},
+               {"law", k_laws.at(static_cast<std::size_t>(traits.law))},
+               {"parameters", parameters},
+               {"can", can}});
+}
+
+Greeting greeting_of(const std::string& line) {
+  return read_line(line, [](const Json& json) {
+    if (json.at("protocol") != k_version) throw Malformed(fmt::format("not version {} of the protocol", k_version));
+    Greeting greeting;
+    Traits& traits = greeting.traits;
+    json.at("name").get_to(traits.name);
+    json.at("version").get_to(traits.version);
+    traits.summary = json.value("summary", "");
+    constexpr std::array k_kinds{"collide", "distance", "respond"};
+    const std::array members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond};
+    for (const std::string kind : json.at("answers")) traits.answers.*members.at(place_of(k_kinds, kind)) = true;
+    traits.law = static_cast<ResponseLaw>(place_of(k_laws, json.value("law", "none")));
+    for (const Json& each : json.value("parameters", Json::array())) traits.parameters.push_back(parameter_of(each));
+    for (const std::string ability : json.value("can", Json::array())) {
+      greeting.times = greeting.times || ability == "time";
+      greeting.progress = greeting.progress || ability == "progress";
+    }
+    return greeting;
+  });
+}
+
+std::string to_line(const Prepared& prepared) {
+  Json counts = Json::object();
+  for (const auto& [name, count] : prepared.footprint.counts) counts[name] = number(count);
+  Json json = {{"prepared", true}, {"bytes", prepared.footprint.bytes}, {"counts", counts}};
+  if (prepared.wall_ns) json["ns"] = *prepared.wall_ns;
+  if (prepared.cpu_ns) json["cpu_ns"] = *prepared.cpu_ns;
+  return text(json);
+}
+
+std::string to_line(const Refusal& refusal) {
+  return text({{"error", refusal.words}, {"kind", k_refusals.at(static_cast<std::size_t>(refusal.kind))}});
+}
+
+std::variant<Prepared, Refusal> prepared_of(const std::string& line) {
+  return read_line(line, [](const Json& json) -> std::variant<Prepared, Refusal> {
+    if (json.contains("error")) {
+      return Refusal{static_cast<Refusal::Kind>(place_of(k_refusals, json.value("kind", k_refusals.front()))),
+                     json.at("error")};
+    }
+    if (!json.at("prepared").get<bool>()) throw Malformed("nothing is prepared, and no \"error\" says why");
+    Prepared prepared{optional_number(json, "ns"), optional_number(json, "cpu_ns"), {}};
+    prepared.footprint.bytes = json.value("bytes", std::size_t{0});
+    const Json counts = json.value("counts", Json::object());
+    for (const auto& [name, count] : counts.items()) {
+      prepared.footprint.counts.emplace_back(name, number_of(count));
+    }
+    return prepared;
+  });
+}
+
+template <class Answer>
+std::string to_line(const Asked<Answer>& asked) {
+  Json json = Json::object();
+  if (asked.outcome.ok()) {
+    put(json, asked.outcome.value);
+  } else {
+    json.update({{"status", to_string(asked.outcome.status)}, {"words", asked.words}});
+  }
+  if (asked.ns) json["ns"] = *asked.ns;
+  for (const Work& each : asked.work) json["work"].push_back({each.unit, number(each.tested), number(each.total)});
+  return text(json);
+}
+
+template <class Answer>
+Asked<Answer> asked_of(const std::string& line) {
+  return read_line(line, [](const Json& json) {
+    Asked<Answer> asked;
+    if (json.contains("status")) {
+      asked.outcome = status_of(json.at("status"));
+      asked.words = json.value("words", "");
+    } else {
+      Answer answer{};
+      take(json, answer);
+      asked.outcome = answer;
+    }
+    asked.ns = optional_number(json, "ns");
+    for (const Json& each : json.value("work", Json::array())) {
+      asked.work.push_back({each.at(0), number_of(each.at(1)), number_of(each.at(2))});
+    }
+    return asked;
+  });
+}
+
+template std::string to_line(const Asked<bool>&);
+template std::string to_line(const Asked<Separation>&);
+template std::string to_line(const Asked<Response>&);
+template Asked<bool> asked_of(const std::string&);
+template Asked<Separation> asked_of(const std::string&);
+template Asked<Response> asked_of(const std::string&);
+
+std::string to_line(const Timed& timed) {
+  Json failed = Json::array();
+  for (const Failed& each : timed.failed) failed.push_back({each.place, to_string(each.status), each.words});
+  return text({{"wall_ns", timed.wall_ns},
+               {"cpu_ns", timed.cpu_ns},
+               {"once_ns", numbers(timed.once_ns)},
+               {"least_ns", numbers(timed.least_ns)},
+               {"failed", failed}});
+}
+
+Timed timed_of(const std::string& line, std::size_t count, bool each) {
+  return read_line(line, [&](const Json& json) {
+    Timed timed;
+    if (each) {
+      timed.once_ns = numbers_of(json.at("once_ns"));
+      timed.least_ns = numbers_of(json.at("least_ns"));
+      if (timed.once_ns.size() != count || timed.least_ns.size() != count) {
+        throw Malformed(fmt::format("not {} times for as many poses", count));
+      }
+    } else {
+      timed.wall_ns = number_of(json.at("wall_ns"));
+      timed.cpu_ns = number_of(json.at("cpu_ns"));
+    }
+    for (const Json& one : json.value("failed", Json::array())) {
+      timed.failed.push_back({one.at(0), status_of(one.at(1)), one.at(2)});
+      if (timed.failed.back().place >= count) throw Malformed("a place beyond the last pose");
+    }
+    return timed;
+  });
+}
+
+}  // namespace sixdof::protocol

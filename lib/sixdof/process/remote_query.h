@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sixdof/process/child_process.h>
+#include <sixdof/process/protocol.h>
+#include <sixdof/process/shared_memory.h>
+#include <sixdof/query/algorithm.h>
+
+namespace sixdof {
+
+/// What a process of an algorithm may use.
+struct ProcessLimits {
+  double query_s = 10.0;                              ///< Wall time of one query.
+  double prepare_s = 600.0;                           ///< Of the start of the program, and of preparing a pair.
+  std::size_t memory_bytes = default_memory_limit();  ///< Data (RLIMIT_DATA); 0 for no limit.
+};
+
+/// A program that answers the protocol (README.md).
+struct RemoteProgram {
+  std::vector<std::string> words;  ///< Program and arguments.
+  ProcessLimits limits;
+};
+
+/// What a program says of itself. @throws Error if it cannot be started, ends, is silent or answers nonsense
+protocol::Greeting ask_greeting(const RemoteProgram& program);
+
+/// A pair that is prepared in a process of its own, with files in memory for its meshes.
+class RemoteQuery final : public Query {
+ public:
+  /// @throws BadMesh, BadArgument as the algorithm does; Error if the process ends or gives no answer
+  RemoteQuery(RemoteProgram program, const Traits& traits, const Mesh& a, const Mesh& b, const Settings& settings);
+  ~RemoteQuery() override;
+
+  /// A process that ends, is silent for too long or writes nonsense is ended: Status::crashed, timed_out, out_of_memory
+  /// or failed with words. The next query has a new one, which prepares the pair again. A pose that has ended a process
+  /// is not asked again: it has the same status. After k_most_deaths poses in a row, or k_most_time_outs, the others
+  /// have Status::failed and are not asked until forgive().
+  Outcome<bool> collide(const Pose& X_AB) override;
+  Outcome<Separation> distance(const Pose& X_AB) override;
+  Outcome<Response> respond(const Pose& X_AB) override;
+
+  Footprint footprint() const override { return prepared_.footprint; }
+  std::vector<Work> work() const override { return work_; }
+
+  static constexpr int k_most_deaths = 20;
+  static constexpr int k_most_time_outs = 5;
+
+  /// Poses are asked again after too many deaths: another row begins.
+  void forgive() { deaths_in_a_row_ = time_outs_in_a_row_ = 0; }
+
+  /// Wall time of the last query that was asked, in ns: as the process says or, where it does not, the round trip.
+  double last_ns() const { return last_ns_; }
+  /// Whether the process times its queries itself.
+  bool is_timed_inside() const { return timed_inside_; }
+
+  /// Wall and processor time of preparing, as the process says; empty where it does not.
+  const protocol::Prepared& prepared() const { return prepared_; }
+
+  /// Times of single queries as PassTimes has them, taken inside. In `failed` are the poses without an answer in any of
+  /// the passes; their times mean nothing. Passes over more than protocol::k_most_poses poses are over that many at a
+  /// time. A program that cannot time is asked pose by pose.
+  /// @param evict_bytes read before each query, by a program that can time
+  /// @throws Error if the process ends and no pose is the cause
+  template <class Answer>
+  protocol::Timed time_each(std::span<const Pose> poses, std::size_t passes, std::size_t evict_bytes = 0) {
+    return time<Answer>(poses, {.passes = passes, .each = true, .evict_bytes = evict_bytes});
+  }
+
+  /// Wall and processor time of all passes together, likewise, without the poses in `failed`. Of a program that cannot
+  /// time, both are the sum of its single times.
+  template <class Answer>
+  protocol::Timed time_together(std::span<const Pose> poses, std::size_t passes) {
+    return time<Answer>(poses, {.passes = passes});
+  }
+
+ private:
+  struct Death {
+    Status status = Status::crashed;
+    std::string words;
+  };
+  struct Files;
+
+  void start();
+  std::string exchange(const protocol::Request& request, const TimeLimit& expired);
+  TimeLimit stalled() const;
+  bool gave_up() const { return deaths_in_a_row_ >= k_most_deaths || time_outs_in_a_row_ >= k_most_time_outs; }
+  Status not_asked();
+  Status died(const ChildFailure& failure);
+  template <class Answer>
+  Outcome<Answer> ask(const Pose& X_AB);
+  template <class Answer>
+  protocol::Asked<Answer> exchange_ask(const Pose& X_AB);
+  template <class Answer>
+  protocol::Timed time(std::span<const Pose> poses, const protocol::Time& how);
+  template <class Answer>
+  protocol::Timed time_by_asking(std::span<const Pose> poses, const protocol::Time& how);
+  template <class Answer>
+  std::vector<protocol::Failed> find_culprits(const protocol::Time& request, const ChildFailure& failure);
+  template <class Answer>
+  void time_chunk(std::span<const Pose> poses, std::size_t first, const protocol::Time& how, protocol::Timed& all);
+
+  const RemoteProgram program_;
+  const std::string name_;
+  const std::unique_ptr<Files> files_;
+  protocol::Prepare request_;
+  protocol::Greeting greeting_;
+  protocol::Prepared prepared_;
+  std::unique_ptr<ChildProcess> process_;  ///< Null after a death.
+  std::vector<Work> work_;
+  double last_ns_ = 0.0;
+  bool timed_inside_ = true;
+  std::map<std::string, Death> deaths_;  ///< By kind of query and pose.
+  int deaths_in_a_row_ = 0, time_outs_in_a_row_ = 0;
+  std::string last_death_;  ///< Words.
+};
+
+}  // namespace sixdof

@@ -1,0 +1,58 @@
+#include <sixdof/process/shared_memory.h>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/process/child_process.h>
+
+namespace sixdof {
+
+MemoryFile::MemoryFile(const char* name, std::span<const std::byte> content) {
+  const int made = ::memfd_create(name, MFD_CLOEXEC);
+  if (made < 0) throw Error(fmt::format("memfd_create: {}", std::strerror(errno)));
+  descriptor_ = high_descriptor(made);
+  for (std::size_t written = 0; written < content.size();) {
+    const ssize_t count = ::write(descriptor_, content.data() + written, content.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
+      ::close(descriptor_);
+      throw Error(fmt::format("{}: a file in memory of {} bytes: {}", name, content.size(), std::strerror(errno)));
+    }
+    written += static_cast<std::size_t>(count);
+  }
+}
+
+MemoryFile::~MemoryFile() { ::close(descriptor_); }
+
+std::string path_of_descriptor(int number) { return fmt::format("/proc/self/fd/{}", number); }
+
+SharedCounter::SharedCounter(int descriptor) { map(descriptor, "progress"); }
+
+SharedCounter::SharedCounter(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) throw BadFile(path, std::strerror(errno));
+  try {
+    map(descriptor, path);
+  } catch (...) {
+    ::close(descriptor);
+    throw;
+  }
+  ::close(descriptor);
+}
+
+SharedCounter::~SharedCounter() { ::munmap(value_, sizeof(*value_)); }
+
+void SharedCounter::map(int descriptor, const std::string& name) {
+  void* const memory = ::mmap(nullptr, sizeof(*value_), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  if (memory == MAP_FAILED) throw BadFile(name, std::strerror(errno));
+  value_ = static_cast<std::uint64_t*>(memory);
+}
+
+}  // namespace sixdof

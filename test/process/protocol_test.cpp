@@ -1,0 +1,176 @@
+#include <sixdof/process/protocol.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace sixdof::protocol {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+
+/// Numbers whose shortest decimal has few digits, many, or none.
+const std::vector<double> k_hard_numbers{
+    0.1,         1.0 / 3.0,  -0.0, 5e-324, 2.2250738585072011e-308, 1.7976931348623157e308, 9007199254740993.0,
+    -k_infinity, k_infinity, 3.0};
+
+bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+Pose hard_pose(std::size_t shift) {
+  Pose X_AB;
+  const auto next = [&] { return k_hard_numbers[shift++ % k_hard_numbers.size()]; };
+  for (int i = 0; i < 9; ++i) X_AB.R(i / 3, i % 3) = next();
+  for (int i = 0; i < 3; ++i) X_AB.t[i] = next();
+  return X_AB;
+}
+
+bool same_bits(const Pose& a, const Pose& b) {
+  for (int i = 0; i < 9; ++i) {
+    if (!same_bits(a.R(i / 3, i % 3), b.R(i / 3, i % 3))) return false;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if (!same_bits(a.t[i], b.t[i])) return false;
+  }
+  return true;
+}
+
+TEST(Protocol, PosesKeepAllBits) {
+  for (std::size_t shift = 0; shift < k_hard_numbers.size(); ++shift) {
+    const Pose X_AB = hard_pose(shift);
+    const Request ask = request_of(to_line(Ask{"distance", X_AB}));
+    EXPECT_EQ(std::get<Ask>(ask).query, "distance");
+    EXPECT_TRUE(same_bits(std::get<Ask>(ask).X_AB, X_AB)) << shift;
+  }
+  const Request time = request_of(to_line(Time{"respond", {hard_pose(1), hard_pose(2)}, 3, true, 77}));
+  EXPECT_TRUE(same_bits(std::get<Time>(time).poses.at(1), hard_pose(2)));
+  EXPECT_EQ(std::get<Time>(time).passes, 3u);
+  EXPECT_TRUE(std::get<Time>(time).each);
+  EXPECT_EQ(std::get<Time>(time).evict_bytes, 77u);
+}
+
+TEST(Protocol, AnswersKeepAllBits) {
+  for (const double x : k_hard_numbers) {
+    const double y = k_hard_numbers[3], z = k_hard_numbers[1];
+    const Separation gap{x, true, {y, x, z}, {x, z, y}, 7, 4294967294u};
+    const auto distance = asked_of<Separation>(to_line(Asked<Separation>{gap, "", 12.5, {{"points", x, 3.0}}}));
+    ASSERT_TRUE(distance.outcome.ok());
+    EXPECT_TRUE(same_bits(distance.outcome.value.distance, x));
+    EXPECT_TRUE(same_bits(distance.outcome.value.witness_a.y(), x));
+    EXPECT_TRUE(same_bits(distance.outcome.value.witness_b.z(), y));
+    EXPECT_EQ(distance.outcome.value.triangle_a, 7u);
+    EXPECT_EQ(distance.outcome.value.triangle_b, 4294967294u);
+    EXPECT_EQ(distance.ns, 12.5);
+    EXPECT_EQ(distance.work.at(0).unit, "points");
+    EXPECT_TRUE(same_bits(distance.work.at(0).tested, x));
+
+    const Response push{x, z, {x, y, z}, {z, x, y}, {y, z, x}};
+    const auto response = asked_of<Response>(to_line(Asked<Response>{push, "", {}, {}}));
+    EXPECT_TRUE(same_bits(response.outcome.value.penalty, x));
+    EXPECT_TRUE(same_bits(response.outcome.value.volume, z));
+    EXPECT_TRUE(same_bits(response.outcome.value.force.x(), x));
+    EXPECT_TRUE(same_bits(response.outcome.value.torque.y(), x));
+    EXPECT_TRUE(same_bits(response.outcome.value.reference.z(), x));
+    EXPECT_FALSE(response.ns);
+  }
+}
+
+TEST(Protocol, WhatIsAbsentStaysAbsent) {
+  const auto gap = asked_of<Separation>(R"({"distance": 2})").outcome.value;
+  EXPECT_FALSE(gap.has_witnesses);
+  EXPECT_EQ(gap.triangle_a, Separation::k_no_triangle);
+  const Response push{.penalty = k_nan};
+  const auto response = asked_of<Response>(to_line(Asked<Response>{push, "", {}, {}})).outcome.value;
+  EXPECT_TRUE(std::isnan(response.penalty));
+  EXPECT_TRUE(std::isnan(response.volume));
+  EXPECT_TRUE(asked_of<bool>(R"({"collide": true, "colour": "red"})").outcome.value) << "unknown keys are ignored";
+}
+
+TEST(Protocol, StatusesHaveWords) {
+  const auto failed = asked_of<bool>(to_line(Asked<bool>{Status::out_of_memory, "too many nodes", {}, {}}));
+  EXPECT_EQ(failed.outcome.status, Status::out_of_memory);
+  EXPECT_EQ(failed.words, "too many nodes");
+  EXPECT_EQ(asked_of<bool>(to_line(Asked<bool>{Status::failed, "bad byte \xFF", {}, {}})).outcome.status,
+            Status::failed);
+  EXPECT_THROW(asked_of<bool>(R"({"status": "crashed"})"), Malformed) << "a process that has crashed cannot say so";
+}
+
+TEST(Protocol, GreetingsAndPreparations) {
+  const Greeting sent{{.name = "x",
+                       .version = "1.5",
+                       .summary = "s",
+                       .answers = {.collide = true, .respond = true},
+                       .law = ResponseLaw::volume,
+                       .parameters = {Parameter::count("n", "how many", "5", 1, 9).swept({"1", "5"}),
+                                      Parameter::choice("mode", "which", "b", {"a", "b"})}},
+                      true,
+                      false};
+  const Greeting read = greeting_of(to_line(sent));
+  EXPECT_EQ(read.traits.version, "1.5");
+  EXPECT_TRUE(read.traits.answers.collide && read.traits.answers.respond && !read.traits.answers.distance);
+  EXPECT_EQ(read.traits.law, ResponseLaw::volume);
+  EXPECT_EQ(read.traits.parameters.at(0).high, 9.0);
+  EXPECT_TRUE(read.traits.parameters.at(0).integer);
+  EXPECT_EQ(read.traits.parameters.at(0).sweep, (std::vector<std::string>{"1", "5"}));
+  EXPECT_EQ(read.traits.parameters.at(1).choices, (std::vector<std::string>{"a", "b"}));
+  EXPECT_TRUE(read.times);
+  EXPECT_FALSE(read.progress);
+
+  const auto prepared = prepared_of(to_line(Prepared{5.0, 4.0, {.bytes = 9, .counts = {{"z", 1}, {"a", 2.5}}}}));
+  const auto& made = std::get<Prepared>(prepared);
+  EXPECT_EQ(made.wall_ns, 5.0);
+  EXPECT_EQ(made.footprint.bytes, 9u);
+  EXPECT_EQ(made.footprint.counts.at(0).first, "z") << "in their order";
+  EXPECT_EQ(made.footprint.counts.at(1).second, 2.5);
+  const auto refused = prepared_of(to_line(Refusal{Refusal::Kind::bad_mesh, "open"}));
+  EXPECT_EQ(std::get<Refusal>(refused).kind, Refusal::Kind::bad_mesh);
+  EXPECT_EQ(std::get<Refusal>(refused).words, "open");
+}
+
+TEST(Protocol, TimesBelongToPoses) {
+  const auto timed = timed_of(to_line(Timed{{1, 2}, {1, 1.5}, 0, 0, {{1, Status::non_finite, "nan"}}}), 2, true);
+  EXPECT_EQ(timed.least_ns, (std::vector<double>{1, 1.5}));
+  EXPECT_EQ(timed.failed.at(0).place, 1u);
+  EXPECT_EQ(timed.failed.at(0).status, Status::non_finite);
+  EXPECT_EQ(timed_of(R"({"wall_ns": 8, "cpu_ns": 7})", 2, false).cpu_ns, 7.0);
+  EXPECT_THROW(timed_of(to_line(Timed{{1}, {1}, 0, 0, {}}), 2, true), Malformed);
+  EXPECT_THROW(timed_of(to_line(Timed{{1, 2}, {1, 2}, 0, 0, {{2, Status::failed, ""}}}), 2, true), Malformed);
+  EXPECT_THROW(timed_of(R"({"cpu_ns": 7})", 2, false), Malformed);
+}
+
+TEST(Protocol, RefusesNonsenseWithTheLine) {
+  const auto words_of = [](const std::string& line) -> std::string {
+    try {
+      asked_of<Separation>(line);
+    } catch (const Malformed& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(words_of("Hello, I am a library"), HasSubstr(R"("Hello, I am a library": )"));
+  EXPECT_THAT(words_of("{}"), HasSubstr("key 'distance' not found"));
+  for (const char* const line :
+       {"", "7", "[]", "null", R"({"distance": "near"})", R"({"distance": null})", R"({"distance": NaN})",
+        R"({"collide": true})", R"({"distance": 1)", R"({"distance": 1, "a": [1, 2], "b": [1, 2, 3]})",
+        R"({"distance": 1, "a": [1, 2, 3]})", R"({"distance": 1, "triangle_a": "x"})", R"({"distance": 1, "ns": []})",
+        R"({"status": "fine"})", R"({"distance": 1, "work": [["points"]]})", "\xFF\xFE"}) {
+    EXPECT_NE(words_of(line), "accepted") << line;
+  }
+  EXPECT_LT(words_of(std::string(100'000, 'x')).size(), 300u) << "long lines are cut";
+  for (const char* const line : {R"({"do": "dance"})", R"({"do": "hello", "protocol": 2})", R"({"do": "hello"})",
+                                 R"({"do": "ask", "query": "distance", "pose": [1, 2]})"}) {
+    EXPECT_THROW(request_of(line), Malformed) << line;
+  }
+  EXPECT_THROW(greeting_of(R"({"protocol": 2, "name": "x", "version": "1", "answers": []})"), Malformed);
+  EXPECT_THROW(greeting_of(R"({"protocol": 1, "name": "x", "version": "1", "answers": ["dance"]})"), Malformed);
+  EXPECT_THROW(prepared_of(R"({"prepared": false})"), Malformed);
+}
+
+}  // namespace
+}  // namespace sixdof::protocol
