@@ -12,6 +12,7 @@
 #include "bench/common/all_algorithms.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/run_guarded.h"
+#include "bench/common/serve_algorithm.h"
 #include "bench/harness/options.h"
 #include "bench/harness/own_sets.h"
 #include "bench/harness/run_rows.h"
@@ -27,7 +28,7 @@ constexpr const char* k_cold = "cold";
 
 void run(const Options& options) {
   Registry registry;
-  const std::vector<std::string> external = register_all_algorithms(registry);
+  const std::vector<std::string> external = register_all_algorithms(registry, options.process);
   auto settings = parse_parameters(options.parameters, registry);
   SetCatalogue catalogue;
   if (!options.manifest.empty()) catalogue = SetCatalogue::read(options.manifest);
@@ -64,6 +65,7 @@ void run(const Options& options) {
 }  // namespace sixdof::bench
 
 int main(int argc, char** argv) {
+  if (const auto code = sixdof::serve_if_asked(argc, argv)) return *code;
   sixdof::bench::Options options;
   if (const int code = sixdof::bench::parse_options(argc, argv, options); code >= 0) return code;
   return sixdof::run_guarded("sixdof-bench", [&] { sixdof::bench::run(options); });

@@ -25,14 +25,16 @@ install(TARGETS ${libraries} EXPORT sixdof
 install(EXPORT sixdof NAMESPACE sixdof:: DESTINATION ${package_folder} FILE sixdof-targets.cmake)
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/sixdof DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN "*.h" PATTERN "query/README.md" PATTERN "conformance/README.md" PATTERN "*-inl.h" EXCLUDE)
+  FILES_MATCHING PATTERN "*.h" PATTERN "query/README.md" PATTERN "process/README.md" PATTERN "conformance/README.md"
+  PATTERN "*-inl.h" EXCLUDE)
 
 if(SIXDOF_BUILD_BENCH)
   install(TARGETS sixdof_program sixdof-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(FILES ${PROJECT_SOURCE_DIR}/bench/all_algorithms_suite.json ${PROJECT_SOURCE_DIR}/bench/default_suite.json
     ${PROJECT_SOURCE_DIR}/bench/own_pair_suite.json
     DESTINATION ${data_folder}/bench)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/new_algorithm DESTINATION ${data_folder}/bench)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/new_algorithm ${PROJECT_SOURCE_DIR}/bench/external
+    DESTINATION ${data_folder}/bench)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/fixtures DESTINATION ${data_folder}
     FILES_MATCHING PATTERN "manifest.json" PATTERN "*.h5")
   install(FILES ${PROJECT_SOURCE_DIR}/models/models.json DESTINATION ${data_folder}/models)

@@ -90,12 +90,17 @@ void print_text(const Registry& registry) {
 void add_algorithms_command(CLI::App& app) {
   auto* const command =
       app.add_subcommand("algorithms", "List the algorithms: what each answers, its parameters and version");
-  const auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "As JSON");
-  command->callback([json] {
+  struct Options {
+    ProcessOptions process;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  add_process_options(*command, options->process);
+  command->add_flag("--json", options->json, "As JSON");
+  command->callback([options] {
     Registry registry;
-    register_all_algorithms(registry);
-    *json ? print_json(registry) : print_text(registry);
+    register_all_algorithms(registry, options->process);
+    options->json ? print_json(registry) : print_text(registry);
   });
   add_examples(*command, "sixdof algorithms", "sixdof algorithms --json");
 }

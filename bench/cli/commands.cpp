@@ -14,6 +14,7 @@
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/run_guarded.h"
+#include "bench/common/serve_algorithm.h"
 #include "bench/common/unknown_word.h"
 
 namespace sixdof::cli {
@@ -75,6 +76,7 @@ std::string explain(const UnknownWord& unknown) {
 }  // namespace
 
 int run(int argc, const char* const* argv) {
+  if (const auto code = serve_if_asked(argc, argv)) return *code;
   if (argc < 2) {
     fmt::print(stderr, k_first_steps, k_first_query);
     return k_exit_usage;

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/process/remote_algorithm.h>
 #include <sixdof/scenario/scenario.h>
 #include "bench/cli/equivalent_text.h"
 #include "bench/cli/shared.h"
@@ -44,6 +45,7 @@ struct Options {
   std::size_t steps = k_default_steps;
   std::string output;
   bool json = false;
+  ProcessOptions process{.isolate = "third-party"};
 };
 
 double parse_number(const std::string& text, const std::string& context) {
@@ -168,7 +170,8 @@ std::vector<EquivalentResult> run_one(const Options& options, const std::string&
                        .law = std::string(to_string(law)),
                        .axes = candidate.axes,
                        .options = target,
-                       .search = study::search_equivalent(candidate.axes, target, measure)});
+                       .search = study::search_equivalent(candidate.axes, target, measure),
+                       .isolated = is_isolated(*candidate.algorithm)});
   }
   line.clear();
   return results;
@@ -200,7 +203,7 @@ void check(const Options& options) {
 void run(const Options& options) {
   check(options);
   Registry registry;
-  register_all_algorithms(registry);
+  register_all_algorithms(registry, options.process);
   const std::map<std::string, Settings> settings = bench::parse_parameters(options.parameters, registry);
   const std::vector<Candidate> candidates = select(options, registry, settings);
 
@@ -260,6 +263,7 @@ void add_equivalent_command(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_option("--steps", options->steps, "Steps along the path")->capture_default_str();
+  add_process_options(*command, options->process);
   command->add_option("-o,--output", options->output, "Write all measurements to this JSON file");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run(*options); });

@@ -52,7 +52,9 @@ class Deadline {
 /// The studies of all pairs, and the file that they fill.
 class PrecisionCommand {
  public:
-  explicit PrecisionCommand(const Options& options) : options_(options) { register_all_algorithms(registry_); }
+  explicit PrecisionCommand(const Options& options) : options_(options) {
+    register_all_algorithms(registry_, options.study.process);
+  }
 
   void run() {
     plan_.question = parse_question();

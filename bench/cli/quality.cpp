@@ -91,6 +91,7 @@ void add_quality_command(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command->add_option("--scenario", options->scenario, "Ia, Ib, II, III or IV")->required();
   add_algorithm_options(*command, options->algorithm, "Name of an algorithm that gives responses");
+  add_process_options(*command, options->algorithm.process);
   command
       ->add_option("--shape", options->shape,
                    "Parameter of the scenario's solids and path: NAME=VALUE (the line \"shape\" of the output lists "

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/process/remote_algorithm.h>
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
 #include "bench/common/pair_warnings.h"
@@ -79,7 +81,9 @@ void ask_one(Query& query, const char* kind, bool asked, Outcome<T> (Query::*que
   if (!asked) return;
   const auto begin = Clock::now();
   outcome = (query.*question)(X_AB);
-  const std::int64_t took = nanoseconds_since(begin);
+  const std::int64_t round_trip = nanoseconds_since(begin);
+  const RemoteQuery* const remote = as_remote(query);
+  const std::int64_t took = remote == nullptr ? round_trip : std::llround(remote->last_ns());
   answers.times_ns[kind] = took;
   answers.query_ns += took;
   if (outcome.ok() || answers.status != Status::ok) return;
@@ -92,6 +96,10 @@ Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Sett
   const auto begin = Clock::now();
   const std::unique_ptr<Query> query = algorithm.prepare(a, b, settings);
   answers.times_ns["prepare"] = nanoseconds_since(begin);
+  const RemoteQuery* const remote = as_remote(*query);
+  if (remote != nullptr && remote->prepared().wall_ns) {
+    answers.times_ns["prepare"] = std::llround(*remote->prepared().wall_ns);
+  }
   const QuerySet kinds = algorithm.traits().answers;
   ask_one(*query, "collide", kinds.collide, &Query::collide, X_AB, answers.collide, answers);
   ask_one(*query, "distance", kinds.distance, &Query::distance, X_AB, answers.distance, answers);
@@ -166,6 +174,7 @@ void add_query_command(CLI::App& app) {
       ->required();
   add_algorithm_options(*command, arguments->algorithm, "Name of an algorithm (sixdof algorithms lists them)")
       ->capture_default_str();
+  add_process_options(*command, arguments->algorithm.process);
   command->add_option("--about", arguments->about,
                       "Reference point \"x y z\" of the torque, in A's frame (default: centre of B's bounding box)");
   command->add_flag("--json", arguments->json, "As JSON; null where the algorithm gives no answer");

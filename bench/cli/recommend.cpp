@@ -145,7 +145,7 @@ void print_json(const Options& options, double deadline_s, const Recommendation&
 
 void run(const Options& options) {
   Registry registry;
-  register_all_algorithms(registry);
+  register_all_algorithms(registry, options.study.process);
   const double deadline_s = parse_duration("--deadline", options.deadline);
   study::PrecisionPlan plan{.question = question_of(options.metric), .error = options.metric};
   plan.cost = "p99_least_ns";

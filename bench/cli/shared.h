@@ -29,6 +29,7 @@ inline std::array<double, 3> coordinates(const Eigen::Vector3d& p) { return {p.x
 struct AlgorithmOptions {
   std::string name;
   std::vector<std::string> parameters;  ///< "NAME=VALUE".
+  ProcessOptions process = {};
 };
 
 /// Adds --algorithm and -p,--parameter NAME=VALUE. @returns the option --algorithm
@@ -52,7 +53,7 @@ struct SelectedAlgorithm {
 /// @throws BadArgument if the algorithm or a parameter does not exist, or a value is not allowed
 inline SelectedAlgorithm select_algorithm(const AlgorithmOptions& options) {
   SelectedAlgorithm selected;
-  register_all_algorithms(selected.registry);
+  register_all_algorithms(selected.registry, options.process);
   selected.algorithm = &selected.registry.find(options.name);
   selected.settings = selected.algorithm->settings();
   selected.settings.set_all(options.parameters);

@@ -28,6 +28,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
       ->allow_extra_args(false);
   command.add_option("--seed", options.seed, "Of the configurations")->capture_default_str();
   command.add_option("--budget", options.budget, "Wall time: 90s, 10min")->capture_default_str();
+  add_process_options(command, options.process);
   command.add_option("-o,--output", options.output, "Write the rows to this JSON file; whole after every step");
   command.add_flag("--json", options.json, "Print the rows as JSON");
 }

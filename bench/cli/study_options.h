@@ -23,6 +23,7 @@ struct StudyOptions {
   std::string budget = "10min";
   std::string output;
   bool json = false;
+  ProcessOptions process{.isolate = "third-party"};
 };
 
 void add_study_options(CLI::App& command, StudyOptions& options);

@@ -19,7 +19,9 @@ std::vector<Fault> own_faults(const ResultRow& row) {
   const std::uint64_t asked = row.count("configurations"), failed = row.count("failed");
   std::vector<Fault> faults;
   for (const Fault& fault :
-       {Fault{"failed", failed, asked}, Fault{"wrong", row.count("mismatch"), row.count("judged")},
+       {Fault{"failed", failed, asked}, Fault{"crashed", row.count("crashed"), asked},
+        Fault{"timed out", row.count("timed_out"), asked}, Fault{"out of memory", row.count("out_of_memory"), asked},
+        Fault{"wrong", row.count("mismatch"), row.count("judged")},
         Fault{"without a force though the bodies overlap", row.count("misses"), asked - std::min(asked, failed)}}) {
     if (fault.count > 0) faults.push_back(fault);
   }

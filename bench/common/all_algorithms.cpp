@@ -1,7 +1,9 @@
 #include "bench/common/all_algorithms.h"
 
 #include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/process/remote_algorithm.h>
 #include <sixdof/query/registrar.h>
+#include "bench/common/serve_algorithm.h"
 #ifdef SIXDOF_WITH_BULLET
 #include <sixdof/algorithm/bullet/bullet.h>
 #endif
@@ -35,8 +37,10 @@
 
 namespace sixdof {
 
-std::vector<std::string> register_all_algorithms(Registry& registry) {
-  register_core_algorithms(registry);
+namespace {
+
+/// Those of the backends that were built.
+void register_backends(Registry& registry) {
 #ifdef SIXDOF_WITH_FCL
   register_fcl_algorithms(registry);
 #endif
@@ -67,12 +71,36 @@ std::vector<std::string> register_all_algorithms(Registry& registry) {
 #ifdef SIXDOF_WITH_CGAL
   register_cgal_algorithms(registry);
 #endif
-  std::vector<std::string> external;
+}
+
+}  // namespace
+
+std::vector<std::string> register_all_algorithms(Registry& registry, const ProcessOptions& options) {
+  Registry local;
+  register_core_algorithms(local);
+  const std::size_t own = local.all().size();
+  register_backends(local);
+  std::vector<std::string> added;
   for (const auto& make : Registrar::makers()) {
-    registry.add(make());
-    external.push_back(registry.all().back()->traits().name);
+    local.add(make());
+    added.push_back(local.all().back()->traits().name);
   }
-  return external;
+  const ProcessLimits limits = options.limits();
+  std::size_t place = 0;
+  for (std::unique_ptr<Algorithm>& algorithm : local.take()) {
+    const bool third_party = place++ >= own;
+    if (options.isolate == "all" || (options.isolate == "third-party" && third_party)) {
+      RemoteProgram program{serving_command(algorithm->traits().name), limits};
+      algorithm = std::make_unique<RemoteAlgorithm>(std::move(algorithm), std::move(program));
+    }
+    registry.add(std::move(algorithm));
+  }
+  for (const std::string& text : options.external) {
+    const auto [name, command] = parse_external(text);
+    registry.add(RemoteAlgorithm::external(name, command, limits));
+    added.push_back(name);
+  }
+  return added;
 }
 
 }  // namespace sixdof

@@ -4,13 +4,15 @@
 #include <vector>
 
 #include <sixdof/query/registry.h>
+#include "bench/common/process_options.h"
 
 namespace sixdof {
 
 /// Adds every algorithm that this program has: the core's own, then those of each backend that was built, then those of
-/// every Registrar.
-/// @return the names of the last ones
-/// @throws BadArgument if the name of one is taken or invalid
-std::vector<std::string> register_all_algorithms(Registry& registry);
+/// every Registrar, then those of --external. Each is isolated as the options say (process/remote_algorithm.h); those
+/// of backends and Registrars are third-party.
+/// @return the names of those of Registrars and of --external
+/// @throws BadArgument if the name of one is taken or invalid, or an external one does not answer
+std::vector<std::string> register_all_algorithms(Registry& registry, const ProcessOptions& options = {});
 
 }  // namespace sixdof

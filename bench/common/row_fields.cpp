@@ -83,6 +83,7 @@ Json to_json_object(const RowFields& fields) {
   for (const auto& [key, member] : k_texts) {
     if (!(fields.*member).empty()) object[key] = fields.*member;
   }
+  if (fields.isolated) object["isolated"] = true;
   if (fields.bucket) {
     object["bucket"] = {{"kind", to_string(fields.bucket->kind)}, {"percent", percent_number(*fields.bucket)}};
   }
@@ -98,6 +99,7 @@ RowFields row_fields_of(const Json& object) {
   for (const auto& [key, member] : k_texts) {
     if (object.contains(key)) read_key(key, [&, to = member] { object.at(key).get_to(fields.*to); });
   }
+  if (object.contains("isolated")) read_key("isolated", [&] { object.at("isolated").get_to(fields.isolated); });
   if (object.contains("bucket")) {
     read_key("bucket", [&] {
       const Json& bucket = object.at("bucket");

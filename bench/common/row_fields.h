@@ -24,6 +24,7 @@ struct RowFields {
   std::string scenario = {};  ///< "II".
   std::string kernel = {};    ///< Which inner loop, of a kernel row.
   std::string target = {};    ///< Of a generate row: "distance" or "volume".
+  bool isolated = false;      ///< The algorithm runs, and is timed, in a process of its own.
   std::string question = {};  ///< Of a study's row: the kind of query that it asks.
   /// How many were asked or made; empty where the row has none or could not be run.
   std::optional<std::uint64_t> configurations = {};

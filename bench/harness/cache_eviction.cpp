@@ -18,7 +18,7 @@ void CacheEviction::operator()() {
   constexpr std::size_t k_line_bytes = 64;
   constexpr std::size_t k_step = k_line_bytes / sizeof(buffer_[0]);
   // Written once, so that every page has memory of its own.
-  if (buffer_.empty()) buffer_.assign(2 * last_level_cache_bytes() / sizeof(buffer_[0]), 1);
+  if (buffer_.empty()) buffer_.assign(eviction_bytes() / sizeof(buffer_[0]), 1);
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < buffer_.size(); i += k_step) sum += buffer_[i];
   benchmark::DoNotOptimize(sum);

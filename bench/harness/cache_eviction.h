@@ -12,11 +12,14 @@ std::size_t last_level_cache_bytes();
 /// As large as the cache of most machines.
 constexpr std::size_t k_unknown_cache_bytes = std::size_t{64} << 20;
 
+/// What is read to empty the caches: caches that do not replace the oldest line first keep some of what a buffer of
+/// their own size would replace.
+inline std::size_t eviction_bytes() { return 2 * last_level_cache_bytes(); }
+
 /// Empties the caches of the processor: data that was used before is in memory only.
 class CacheEviction {
  public:
-  /// Reads every cache line of a buffer of twice the last-level cache, which is made at the first call: caches that do
-  /// not replace the oldest line first keep some of what a buffer of their own size would replace.
+  /// Reads every cache line of a buffer of eviction_bytes(), which is made at the first call.
   /// @throws std::bad_alloc
   void operator()();
 

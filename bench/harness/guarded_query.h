@@ -1,10 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
-#include <set>
+#include <map>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include <sixdof/process/remote_algorithm.h>
 #include <sixdof/query/ask.h>
 
 namespace sixdof::bench {
@@ -14,13 +18,20 @@ class Failures {
  public:
   /// Counts a configuration once, however often it is asked. Poses are told apart by their address.
   void add(const Pose& X_AB, std::string words) {
-    if (poses_.insert(&X_AB).second && poses_.size() == 1) first_ = std::move(words);
+    if (poses_.emplace(&X_AB, Status::failed).second && poses_.size() == 1) first_ = std::move(words);
   }
+  /// The status of a configuration that was added; of several the last one.
+  void set_status(const Pose& X_AB, Status status) { poses_.at(&X_AB) = status; }
+
   std::size_t count() const { return poses_.size(); }
+  std::size_t count(Status status) const {
+    const auto has_status = [status](const auto& entry) { return entry.second == status; };
+    return static_cast<std::size_t>(std::ranges::count_if(poses_, has_status));
+  }
   const std::string& first() const { return first_; }  ///< Words of the first failure.
 
  private:
-  std::set<const Pose*> poses_;
+  std::map<const Pose*, Status> poses_;
   std::string first_;
 };
 
@@ -28,8 +39,12 @@ class Failures {
 template <class Ask>
 class GuardedQuery {
  public:
+  /// What an Outcome of the question holds.
+  using Answer = decltype(std::declval<Ask&>()(std::declval<const Pose&>()).value);
+
   /// All arguments but `ask` outlive this object.
-  GuardedQuery(const Query& query, Ask ask, Failures& failures) : query_(query), ask_(ask), failures_(failures) {}
+  GuardedQuery(Query& query, Ask ask, Failures& failures)
+      : query_(query), remote_(as_remote(query)), ask_(ask), failures_(failures) {}
 
   /// The answer, examined.
   auto ask(const Pose& X_AB) {
@@ -47,9 +62,20 @@ class GuardedQuery {
   template <class T>
   void examine(const Pose& X_AB, Outcome<T>& answer) {
     sixdof::examine(query_, answer, counted(X_AB));
+    if (!answer.ok()) failures_.set_status(X_AB, answer.status);
+  }
+
+  /// Counts the poses that a process could not answer.
+  void count(std::span<const Pose> poses, const std::vector<protocol::Failed>& failed) {
+    for (const protocol::Failed& each : failed) {
+      failures_.add(poses[each.place], each.words);
+      failures_.set_status(poses[each.place], each.status);
+    }
   }
 
   const Query& query() const { return query_; }
+  /// The query if it runs in a process of its own, where it is timed; else null.
+  RemoteQuery* remote() const { return remote_; }
 
  private:
   auto counted(const Pose& X_AB) {
@@ -57,6 +83,7 @@ class GuardedQuery {
   }
 
   const Query& query_;
+  RemoteQuery* remote_;
   Ask ask_;
   Failures& failures_;
 };

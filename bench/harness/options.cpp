@@ -189,6 +189,7 @@ int parse_options(int argc, const char* const* argv, Options& options) {
           ->capture_default_str();
   app.add_option("--seed", options.seed, "Of samples and orders")->capture_default_str();
   app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were used");
+  add_process_options(app, options.process);
   auto* const out =
       app.add_option("--benchmark_out,--out", options.out,
                      "Result file; appears whole or not at all. Until then finished rows are in FILE.journal");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <sixdof/query/registry.h>
+#include "bench/common/process_options.h"
 
 namespace sixdof::bench {
 
@@ -37,6 +38,7 @@ struct Options {
   std::string arguments;               ///< The command line, but for the result file, as a shell takes it.
   std::string benchmark_flags;         ///< Those of Google Benchmark's flags that change how a row is measured.
   bool list_only = false;
+  ProcessOptions process;
 
   /// Whether a coarse set of the meshes is to be made (coarse_set.h), the only one of the run.
   bool own_pair() const { return !a.empty() && sets.empty(); }

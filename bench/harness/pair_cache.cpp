@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/process/remote_algorithm.h>
 #include "bench/common/mesh_warning.h"
 
 namespace sixdof::bench {
@@ -13,7 +14,9 @@ namespace {
 
 std::string prepared_key(const Algorithm& algorithm, const Settings& settings, const std::string& a,
                          const std::string& b) {
-  return algorithm.traits().name + "|" + settings.to_string() + "|" + a + "|" + b;
+  // The exact responses come from this process, whatever is isolated.
+  const char* const place = is_isolated(algorithm) ? "isolated" : "here";
+  return fmt::format("{}|{}|{}|{}|{}", algorithm.traits().name, place, settings.to_string(), a, b);
 }
 
 }  // namespace
@@ -100,6 +103,7 @@ Query& PairCache::query(const Algorithm& algorithm, const Settings& settings, co
   const std::string key = prepared_key(algorithm, settings, a, b);
   if (const auto found = std::ranges::find(prepared_, key, &Prepared::key); found != prepared_.end()) {
     prepared_.splice(prepared_.begin(), prepared_, found);
+    if (RemoteQuery* const remote = as_remote(*found->query)) remote->forgive();
     return *found->query;
   }
   Prepared fresh{.key = key, .query = prepare(algorithm, settings, mesh(a), mesh(b))};

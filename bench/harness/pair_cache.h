@@ -95,7 +95,7 @@ class PairCache {
 
  private:
   struct Prepared {
-    std::string key;  ///< Algorithm, settings and meshes.
+    std::string key;  ///< Algorithm, whether it is isolated, settings and meshes.
     std::unique_ptr<Query> query;
     std::size_t bytes = 0;
   };

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "bench/harness/timing.h"
+
 namespace sixdof::bench {
 namespace {
 
@@ -16,6 +18,18 @@ bool is_finite(const std::pair<const std::string, benchmark::Counter>& counter) 
   return std::isfinite(counter.second.value);
 }
 
+/// Takes the processor time that a row measured in another process out of its counters.
+void take_processor_time(Run& run) {
+  const auto counter = run.counters.find(k_processor_inside);
+  if (counter == run.counters.end()) return;
+  const double value = counter->second.value;
+  run.counters.erase(counter);
+  // A coefficient of variation has no unit; everything else is divided by the iterations when it is printed.
+  const bool is_ratio = run.aggregate_unit == benchmark::kPercentage;
+  run.cpu_accumulated_time =
+      is_ratio ? value : 1e-9 * value * static_cast<double>(std::max(run.iterations, std::int64_t{1}));
+}
+
 }  // namespace
 
 void RowReporter::ReportRuns(const std::vector<Run>& runs) {
@@ -23,6 +37,7 @@ void RowReporter::ReportRuns(const std::vector<Run>& runs) {
   for (Run run : runs) {
     if (left_out_.contains(run.run_name.function_name)) continue;
     if (!run.run_name.time_type.empty()) run.cpu_accumulated_time = run.real_accumulated_time;
+    take_processor_time(run);
     run.run_name.time_type.clear();
     run.run_name.iterations.clear();
     if (run.aggregate_name == "cv") {

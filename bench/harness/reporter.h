@@ -16,6 +16,7 @@ namespace sixdof::bench {
 /// - rows that are left out are not handed on;
 /// - names are those of Row, without what Google Benchmark adds to rows of one round, and the processor time of these
 ///   is the wall time that the row has set: that of their loop is mostly none of queries;
+/// - the processor time of an isolated algorithm is what its process measured (k_processor_inside);
 /// - a row with a counter that is not finite becomes an error that names the counter;
 /// - the coefficient of variation of zeros, which has no value, is left out of repetitions.
 class RowReporter : public benchmark::BenchmarkReporter {

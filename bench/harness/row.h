@@ -51,6 +51,9 @@ struct Row {
   /// Google Benchmark calls `run` once per repetition, which decides itself how often to ask, and sets the wall time of
   /// every iteration.
   bool one_round = false;
+  /// `run` sets the wall time of its iterations and the processor time (k_processor_inside), since the algorithm runs
+  /// in a process of its own.
+  bool manual_time = false;
 };
 
 }  // namespace sixdof::bench

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sixdof/process/remote_algorithm.h>
 #include "bench/common/build_info.h"
 #include "bench/common/json_text.h"
 #include "bench/harness/timing.h"
@@ -31,8 +32,8 @@ Json context_of_benchmark() {
 /// Whether times or answers of a row depend on what stands under this key.
 bool matters(std::string_view key) {
   static const std::set<std::string_view> k_keys{
-      "num_cpus",     "sixdof_version", "commit", "commit_dirty", "compiler",        "flags",    "build_type",
-      "sixdof_build", "cpu_model",      "seed",   "sample",       "benchmark_flags", "fcl_build"};
+      "num_cpus",     "sixdof_version", "commit", "commit_dirty", "compiler",        "flags",     "build_type",
+      "sixdof_build", "cpu_model",      "seed",   "sample",       "benchmark_flags", "fcl_build", "isolated"};
   return k_keys.contains(key) || key.starts_with("version:") || key.starts_with("algorithm:") ||
          key.starts_with("settings:");
 }
@@ -64,6 +65,11 @@ Json run_context(const Options& options, const Registry& registry, const std::ma
     const std::string text = settings.at(traits.name).to_string();
     if (!text.empty()) context["settings:" + traits.name] = text;
   }
+  std::vector<std::string> isolated;
+  for (const auto& algorithm : registry.all()) {
+    if (is_isolated(*algorithm)) isolated.push_back(algorithm->traits().name);
+  }
+  if (!isolated.empty()) context["isolated"] = fmt::format("{}", fmt::join(isolated, ","));
   context["arguments"] = options.arguments;
   context["benchmark_flags"] = options.benchmark_flags;
   context["seed"] = std::to_string(options.seed);

@@ -60,7 +60,8 @@ class Registration {
       auto* const registered =
           benchmark::RegisterBenchmark(row->name.c_str(), [row, &call](benchmark::State& state) { call(*row, state); });
       registered->Unit(row->unit);
-      if (row->one_round) registered->Iterations(1)->UseManualTime();
+      if (row->one_round) registered->Iterations(1);
+      if (row->one_round || row->manual_time) registered->UseManualTime();
     }
   }
   ~Registration() { benchmark::ClearRegisteredBenchmarks(); }

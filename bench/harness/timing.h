@@ -11,16 +11,14 @@
 
 #include <sixdof/geometry/pose.h>
 #include <sixdof/measure/latency.h>
+#include <sixdof/query/timed_loop.h>
+#include "bench/harness/cache_eviction.h"
 #include "bench/harness/guarded_query.h"
 
 /// How queries are timed. The functions are templates on the question, so that the timed loops contain nothing but the
-/// query.
+/// query. Queries in a process of their own are timed there, by the same loops (query/timed_loop.h).
 
 namespace sixdof::bench {
-
-/// Passes over the poses that time single queries. Each visits all poses, since the same pose twice in a row is the
-/// best case of a warm start.
-constexpr int k_latency_passes = 3;
 
 /// Times of single queries, by wall clock.
 struct SingleTimes {
@@ -44,65 +42,107 @@ inline double clock_overhead_ns() {
   return gaps_ns[k_gaps / 2];
 }
 
+/// Counter by which a row hands the processor time of a query, in ns, to RowReporter: Google Benchmark's own is that of
+/// this process.
+inline constexpr const char* k_processor_inside = "processor_inside_ns";
+
 /// The timed loop of a row: whole rounds over all poses, so that the mean is over all of them. One iteration is one
-/// query.
+/// query. Rows of isolated algorithms set the time by hand (Row::manual_time).
 template <class Ask>
 void time_mean(benchmark::State& state, std::span<const Pose> poses, GuardedQuery<Ask> query) {
   const auto round = static_cast<benchmark::IterationCount>(poses.size());
-  while (state.KeepRunningBatch(round)) {
-    for (const Pose& pose : poses) {
-      auto answer = query.ask_timed(pose);
-      benchmark::DoNotOptimize(answer);
+  if (RemoteQuery* const remote = query.remote()) {
+    const auto rounds = std::max<benchmark::IterationCount>(1, (state.max_iterations + round - 1) / round);
+    while (state.KeepRunningBatch(round * rounds)) {
+      const auto timed =
+          remote->time_together<typename GuardedQuery<Ask>::Answer>(poses, static_cast<std::size_t>(rounds));
+      query.count(poses, timed.failed);
+      if (timed.failed.size() >= poses.size()) throw Error("no configuration has an answer in the timed loop");
+      const double of_all = static_cast<double>(poses.size()) / static_cast<double>(poses.size() - timed.failed.size());
+      state.SetIterationTime(1e-9 * timed.wall_ns * of_all);
+      state.counters[k_processor_inside] = timed.cpu_ns * of_all / static_cast<double>(round * rounds);
     }
+    return;
+  }
+  while (state.KeepRunningBatch(round)) {
+    ask_all(poses.size(), [&](std::size_t i) { return query.ask_timed(poses[i]); });
   }
 }
 
 /// Asks with a clock around the query. @returns the examined answer and the wall time in ns
 template <class Ask>
 auto ask_with_clock(const Pose& pose, GuardedQuery<Ask>& query) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
-  auto answer = query.ask_timed(pose);
-  benchmark::DoNotOptimize(answer);
-  const auto stop = Clock::now();
+  auto [answer, took_ns] = with_clock([&] { return query.ask_timed(pose); });
   query.examine(pose, answer);
-  return std::pair(answer, std::chrono::duration<double, std::nano>(stop - start).count());
+  return std::pair(answer, query.remote() == nullptr ? took_ns : query.remote()->last_ns());
+}
+
+/// Times of k_latency_passes passes, and which poses have no answer in one of them.
+template <class Ask>
+std::pair<PassTimes, std::vector<bool>> time_latency_passes(const std::vector<Pose>& poses, GuardedQuery<Ask>& query) {
+  std::vector<bool> failed(poses.size());
+  if (RemoteQuery* const remote = query.remote()) {
+    auto timed = remote->time_each<typename GuardedQuery<Ask>::Answer>(poses, k_latency_passes);
+    query.count(poses, timed.failed);
+    for (const protocol::Failed& each : timed.failed) failed[each.place] = true;
+    return {{std::move(timed.once_ns), std::move(timed.least_ns)}, std::move(failed)};
+  }
+  PassTimes times = time_passes(
+      poses.size(), k_latency_passes, [](std::size_t) {}, [&](std::size_t i) { return query.ask_timed(poses[i]); },
+      [&](std::size_t i, auto& answer) {
+        query.examine(poses[i], answer);
+        if (!answer.ok()) failed[i] = true;
+      });
+  return {std::move(times), std::move(failed)};
 }
 
 /// Poses that fail in any pass are removed.
 template <class Ask>
 SingleTimes time_each(std::vector<Pose>& poses, GuardedQuery<Ask> query) {
-  std::vector<double> once_ns(poses.size()), least_ns(poses.size());
-  std::vector<bool> failed(poses.size());
-  for (int pass = 0; pass < k_latency_passes; ++pass) {
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const auto [answer, took_ns] = ask_with_clock(poses[i], query);
-      if (pass == 0) once_ns[i] = took_ns;
-      least_ns[i] = pass == 0 ? took_ns : std::min(least_ns[i], took_ns);
-      if (!answer.ok()) failed[i] = true;
-    }
-  }
+  auto [times, failed] = time_latency_passes(poses, query);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (failed[i]) continue;
     poses[kept] = poses[i];
-    once_ns[kept] = once_ns[i];
-    least_ns[kept++] = least_ns[i];
+    times.once_ns[kept] = times.once_ns[i];
+    times.least_ns[kept++] = times.least_ns[i];
   }
   poses.resize(kept);
-  once_ns.resize(kept);
-  least_ns.resize(kept);
-  return {latency(once_ns), latency(least_ns)};
+  times.once_ns.resize(kept);
+  times.least_ns.resize(kept);
+  return {latency(times.once_ns), latency(times.least_ns)};
 }
 
-/// The timed loop of a row on cold caches: one round over all poses, with `evict` before each query. Times are set by
-/// hand: Google Benchmark's own clocks are system calls, which take as long as a query when nothing is in the caches.
+/// One round on cold caches in the process of an isolated algorithm. @returns times without those that failed
+template <class Ask>
+std::vector<double> time_cold_there(benchmark::State& state, std::span<const Pose> poses, GuardedQuery<Ask>& query,
+                                    RemoteQuery& remote) {
+  const auto timed = remote.time_each<typename GuardedQuery<Ask>::Answer>(poses, 1, eviction_bytes());
+  query.count(poses, timed.failed);
+  std::vector<bool> failed(poses.size());
+  for (const protocol::Failed& each : timed.failed) failed[each.place] = true;
+  std::vector<double> times_ns;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (failed[i]) continue;
+    state.SetIterationTime(1e-9 * timed.once_ns[i]);
+    times_ns.push_back(timed.once_ns[i]);
+  }
+  return times_ns;
+}
+
+/// The timed loop of a row on cold caches: one round over all poses, with `evict` before each query; in the process of
+/// an isolated algorithm a buffer of the same size. Times are set by hand: Google Benchmark's own clocks are system
+/// calls, which take as long as a query when nothing is in the caches.
 /// @returns times of single queries, without those that failed
 template <class Ask, class Evict>
 Latency time_cold(benchmark::State& state, std::span<const Pose> poses, GuardedQuery<Ask> query, Evict& evict) {
   std::vector<double> times_ns;
   const auto round = static_cast<benchmark::IterationCount>(poses.size());
   while (state.KeepRunningBatch(round)) {
+    if (RemoteQuery* const remote = query.remote()) {
+      times_ns = time_cold_there(state, poses, query, *remote);
+      continue;
+    }
     for (const Pose& pose : poses) {
       evict();
       const auto [answer, took_ns] = ask_with_clock(pose, query);

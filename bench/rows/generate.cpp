@@ -10,6 +10,7 @@
 #include <sixdof/generation/distance_generator.h>
 #include <sixdof/generation/volume_generator.h>
 #include <sixdof/generation/work_sample.h>
+#include <sixdof/process/remote_algorithm.h>
 #include "bench/rows/families.h"
 
 namespace sixdof::bench {
@@ -92,8 +93,9 @@ struct GenerateRow {
     if (method.kind == BucketKind::volume) require_solids(a, b);
     generator->row.clear();
     generator->solver.reset();
-    generator->distances =
-        method.march ? make_sphere_method(resources.registry.find(k_fcl), *method.march) : make_ray_cast();
+    generator->distances = method.march
+                               ? make_sphere_method(in_this_process(resources.registry.find(k_fcl)), *method.march)
+                               : make_ray_cast();
     generator->solver = method.kind == BucketKind::volume ? volume_solvers(*generator->distances, a, b)()
                                                           : generator->distances->prepare(a, b);
     generator->row = name;

@@ -87,14 +87,17 @@ void run(const Resources& resources, const Kernel& kernel, benchmark::State& sta
 std::vector<Row> kernel_rows(const Resources& resources) {
   std::vector<Row> rows;
   for (const Kernel& kernel : k_kernels) {
-    const Settings settings = settings_of(resources.registry.find(kernel.algorithm), kernel);
+    const Algorithm& algorithm = resources.registry.find(kernel.algorithm);
+    const Settings settings = settings_of(algorithm, kernel);
     rows.push_back(
         {.name = fmt::format("kernel/{}/algorithm:{}", kernel.name, kernel.algorithm),
          .run = [&resources, &kernel](benchmark::State& state, const Share&) { run(resources, kernel, state); },
          .fields = {.query = "kernel",
                     .algorithm = kernel.algorithm,
                     .settings = settings.to_string(),
-                    .kernel = kernel.name}});
+                    .kernel = kernel.name,
+                    .isolated = is_isolated(algorithm)},
+         .manual_time = is_isolated(algorithm)});
   }
   return rows;
 }

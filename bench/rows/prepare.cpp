@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include "bench/harness/timing.h"
 #include "bench/rows/families.h"
 
 namespace sixdof::bench {
@@ -13,6 +14,8 @@ void run(const Resources& resources, const Algorithm& algorithm, const Catalogue
   const Mesh& a = resources.cache.mesh(pair.a);
   const Mesh& b = resources.cache.mesh(pair.b);
   std::unique_ptr<Query> query;
+  double processor_ns = 0.0;  // of those in other processes
+  std::size_t prepared_there = 0;
   for ([[maybe_unused]] auto _ : state) {
     if (query) {
       // The time to destroy the last structure is not part of preparing the next one.
@@ -20,8 +23,13 @@ void run(const Resources& resources, const Algorithm& algorithm, const Catalogue
       query.reset();
       state.ResumeTiming();
     }
-    query = resources.cache.prepare(algorithm, settings, a, b);
-    benchmark::DoNotOptimize(query.get());
+    auto [prepared, took_ns] = with_clock([&] { return resources.cache.prepare(algorithm, settings, a, b); });
+    query = std::move(prepared);
+    if (const RemoteQuery* const remote = as_remote(*query)) {
+      state.SetIterationTime(1e-9 * remote->prepared().wall_ns.value_or(took_ns));
+      processor_ns += remote->prepared().cpu_ns.value_or(took_ns);
+      state.counters[k_processor_inside] = processor_ns / static_cast<double>(++prepared_there);
+    }
   }
   const Footprint footprint = query->footprint();
   state.counters["bytes"] = static_cast<double>(footprint.bytes);
@@ -42,8 +50,10 @@ std::vector<Row> prepare_rows(const Resources& resources) {
                       .fields = {.query = "prepare",
                                  .algorithm = algorithm->traits().name,
                                  .settings = resources.settings_of(*algorithm).to_string(),
-                                 .pair = pair.pair},
-                      .unit = benchmark::kMillisecond});
+                                 .pair = pair.pair,
+                                 .isolated = is_isolated(*algorithm)},
+                      .unit = benchmark::kMillisecond,
+                      .manual_time = is_isolated(*algorithm)});
     }
   }
   return rows;

@@ -14,6 +14,7 @@
 #include <sixdof/base/error.h>
 #include "bench/harness/cache_eviction.h"
 #include "bench/harness/check.h"
+#include "bench/harness/failure_counters.h"
 #include "bench/harness/question.h"
 #include "bench/harness/response_error.h"
 #include "bench/harness/timing.h"
@@ -48,6 +49,7 @@ struct QueryRow {
   /// Called before each query; empty for a row on warm caches.
   std::shared_ptr<CacheEviction> evict;
   Failures failures = {};
+  bool timed_outside = false;  ///< By this process, of an algorithm in another one that does not say how long it took.
   std::optional<Check> check = {};
   std::vector<Pose> poses = {};  ///< Those with an answer, in this row's order.
   Latency latency = {};
@@ -63,7 +65,8 @@ struct QueryRow {
             .bucket = key,
             .order = path ? "path" : "random",
             .body = is_judged() ? "" : std::string(to_string(algorithm.traits().body)),
-            .cache = evict ? "cold" : "warm"};
+            .cache = evict ? "cold" : "warm",
+            .isolated = is_isolated(algorithm)};
   }
 
   std::string name() const {
@@ -94,6 +97,7 @@ struct QueryRow {
         }
       }
       if (poses.empty()) throw Error(fmt::format("no configuration has an answer: {}", failures.first()));
+      timed_outside = query.remote() != nullptr && !query.remote()->is_timed_inside();
       if (evict) {
         latency = time_cold(state, poses, query, *evict);
       } else {
@@ -190,6 +194,7 @@ struct QueryRow {
     count("configurations", check->answered.size());
     count("reachable", bucket.reachable);
     count("failed", failures.count());
+    count_statuses(state.counters, failures);
     count("judged", check->judged);
     count("mismatch", check->mismatch);
     check->work.report(state.counters);
@@ -222,6 +227,7 @@ struct QueryRow {
     if (failures.count() > 0) {
       label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures.first());
     }
+    if (timed_outside) label += fmt::format("{}times include the way to its process", label.empty() ? "" : "; ");
     state.SetLabel(label);
   }
 };
@@ -242,7 +248,8 @@ std::vector<Row> query_rows(const Resources& resources) {
                           .run = [row](benchmark::State& state, const Share& share) { row->run(state, share); },
                           .fields = row->fields(),
                           .trial = [row](double seconds) { return row->trial(seconds); },
-                          .one_round = cold});
+                          .one_round = cold,
+                          .manual_time = is_isolated(*algorithm)});
         }
       };
       for (const BucketKey key : pair.buckets) {

@@ -7,6 +7,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/scenario/evaluation.h>
+#include "bench/harness/failure_counters.h"
 #include "bench/harness/timing.h"
 #include "bench/rows/families.h"
 
@@ -41,6 +42,7 @@ struct ScenarioRow {
         state.counters[measure] = value;  // the row has its own times
     }
     state.counters["failed"].value += static_cast<double>(failures.count());
+    count_statuses(state.counters, failures);
     state.counters["steps"] = static_cast<double>(recording.size());
     std::string label = fmt::format("law={} {}", to_string(law), resources.settings_of(algorithm).to_string());
     const std::string& failure = recording.first_failure.empty() ? failures.first() : recording.first_failure;
@@ -103,7 +105,9 @@ std::vector<Row> scenario_rows(const Resources& resources) {
                       .fields = {.query = "scenario",
                                  .algorithm = algorithm->traits().name,
                                  .settings = resources.settings_of(*algorithm).to_string(),
-                                 .scenario = scenario}});
+                                 .scenario = scenario,
+                                 .isolated = is_isolated(*algorithm)},
+                      .manual_time = is_isolated(*algorithm)});
     }
   }
   return rows;

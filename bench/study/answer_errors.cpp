@@ -246,6 +246,10 @@ AnswerErrors measure_errors(Query& query, const StudySample& sample, std::uint64
   errors.failed = failures.count();
   errors.first_failure = failures.first();
   errors.values["failed"] = Estimate::exactly(static_cast<double>(failures.count()));
+  for (const Status status : k_counted_statuses) {
+    const std::size_t count = failures.count(status);
+    if (count > 0) errors.values[std::string(to_string(status))] = Estimate::exactly(static_cast<double>(count));
+  }
   return errors;
 }
 

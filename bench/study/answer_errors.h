@@ -21,7 +21,8 @@ namespace sixdof::study {
 /// respond: for force and torque about the centre of B's box, angles to the exact vector (gamma_F_deg, gamma_F_p95_deg,
 ///   gamma_max_F_deg), gain_F and magnitude_error_F (measure/magnitude.h), and penalty_error likewise for the penalty
 ///   against the exact volume; volume_error_mean where there is a volume; misses: responses without a force.
-/// All: configurations (that were judged) and failed, which includes those that are not judged.
+/// All: configurations (that were judged) and failed, which includes those that are not judged; crashed, timed_out and
+///   out_of_memory of the failed, where there are any.
 struct AnswerErrors {
   /// Intervals are bootstraps over the configurations (Efron 1979): 2.5 % and 97.5 % of k_resamples resamples. Counts
   /// have no spread.

@@ -28,6 +28,7 @@ StudyRow measured_row(const EquivalentResult& result, const Measurement& measure
                           .algorithm = result.algorithm,
                           .settings = settings.to_string(),
                           .scenario = result.scenario,
+                          .isolated = result.isolated,
                           .question = "respond"},
                .real_time_ns = measured.time_ns,
                .cpu_time_ns = measured.time_ns,

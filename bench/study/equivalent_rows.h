@@ -23,6 +23,7 @@ struct EquivalentResult {
   std::array<ResolutionAxis, 2> axes;
   SearchOptions options;
   SearchResult search;
+  bool isolated = false;  ///< The algorithm runs in a process of its own.
 };
 
 /// "equivalent/scenario:Ia/algorithm:vps/tau:0.9ms" is the answer; ".../step:0" the first prediction, ".../step:1" and

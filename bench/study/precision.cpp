@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/process/remote_algorithm.h>
 #include "bench/common/duration.h"
 #include "bench/common/interrupt.h"
 
@@ -155,6 +156,9 @@ void PrecisionStudy::measure(PrecisionPoint& point) {
     const double start = now_s();
     Query& query = query_of(point);
     point.prepare_s = now_s() - start;
+    if (const RemoteQuery* const remote = as_remote(query); remote != nullptr && remote->prepared().wall_ns) {
+      point.prepare_s = 1e-9 * *remote->prepared().wall_ns;
+    }
     point.bytes = query.footprint().bytes;
     check_deadline(query);
     point.errors = measure_errors(query, sample_, plan_.seed);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/measure/direction.h>
+#include <sixdof/process/remote_algorithm.h>
 #include "bench/study/order_fit.h"
 #include "bench/study/precision.h"
 
@@ -67,6 +68,7 @@ StudyRow PrecisionStudy::row(const PrecisionPoint& point, OnFrontier on, std::op
                  .algorithm = point.algorithm->traits().name,
                  .settings = point.sweep.settings.to_string(),
                  .pair = pair_.pair,
+                 .isolated = is_isolated(*point.algorithm),
                  .question = question,
                  .configurations = sample_.poses.size()}};
   for (std::string assignment : point.sweep.assignments) {

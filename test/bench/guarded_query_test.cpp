@@ -1,7 +1,9 @@
 #include "bench/harness/guarded_query.h"
 
 #include <limits>
+#include <new>
 #include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +44,33 @@ TEST_F(Guarded, TurnsExceptionsIntoFailures) {
   EXPECT_EQ(ask([](const Pose&) -> Outcome<bool> { throw 7; }), Status::failed);
   EXPECT_EQ(failures.first(), "an exception of unknown type was thrown");
   EXPECT_EQ(failures.count(), 1u);
+}
+
+TEST_F(Guarded, TellsWantOfMemoryFromOtherFailures) {
+  EXPECT_EQ(ask([](const Pose&) -> Outcome<bool> { throw std::bad_alloc(); }), Status::out_of_memory);
+  EXPECT_EQ(failures.count(), 1u);
+  EXPECT_EQ(failures.count(Status::out_of_memory), 1u);
+  EXPECT_EQ(failures.count(Status::failed), 0u);
+}
+
+TEST_F(Guarded, CountsConfigurationsByTheirLastStatus) {
+  const std::vector<Pose> poses(4);
+  std::vector<Status> statuses{Status::crashed, Status::timed_out, Status::ok, Status::crashed};
+  std::size_t place = 0;
+  failures = {};
+  GuardedQuery guarded(
+      query,
+      [&](const Pose&) { return statuses[place] == Status::ok ? Outcome<bool>(true) : Outcome<bool>(statuses[place]); },
+      failures);
+  for (place = 0; place < poses.size(); ++place) guarded.ask(poses[place]);
+  EXPECT_EQ(failures.count(), 3u);
+  EXPECT_EQ(failures.count(Status::crashed), 2u);
+  EXPECT_EQ(failures.count(Status::timed_out), 1u);
+  statuses[3] = Status::failed;
+  place = 3;
+  guarded.ask(poses[3]);
+  EXPECT_EQ(failures.count(), 3u) << "a configuration counts once";
+  EXPECT_EQ(failures.count(Status::crashed), 1u);
 }
 
 TEST_F(Guarded, KeepsTheWordsOfAFailure) {

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/harness/timing.h"
+
 namespace sixdof::bench {
 namespace {
 
@@ -70,6 +72,26 @@ TEST_F(Collector, RowsOfOneRoundHaveTheirOwnNameAndTime) {
   EXPECT_EQ(written.at("name"), "a");
   EXPECT_EQ(written.at("run_name"), "a");
   EXPECT_EQ(written.at("cpu_time"), written.at("real_time"));
+}
+
+TEST_F(Collector, IsolatedRowsHaveTheProcessorTimeOfTheirProcess) {
+  ResultRow run = row("a");
+  run.run_name.time_type = "manual_time";
+  run.iterations = 4;
+  run.real_accumulated_time = 4e-6;
+  run.counters[k_processor_inside] = 750.0;
+  ResultRow variation = run;
+  variation.run_type = ResultRow::RT_Aggregate;
+  variation.aggregate_name = "cv";
+  variation.aggregate_unit = benchmark::kPercentage;
+  variation.counters[k_processor_inside] = 0.25;
+  report({run, variation});
+  const auto rows_written = document().at("benchmarks");
+  EXPECT_EQ(rows_written[0].at("name"), "a");
+  EXPECT_DOUBLE_EQ(rows_written[0].at("cpu_time"), 750.0);
+  EXPECT_DOUBLE_EQ(rows_written[0].at("real_time"), 1000.0);
+  EXPECT_DOUBLE_EQ(rows_written[1].at("cpu_time"), 0.25);
+  for (const auto& written : rows_written) EXPECT_FALSE(written.contains(k_processor_inside));
 }
 
 TEST_F(Collector, LeavesOutTheCoefficientOfVariationOfZeros) {

@@ -29,6 +29,12 @@ TEST(RowFields, AreAnObjectWithNumbersAsNumbers) {
             Json::parse(R"({"query": "scenario", "algorithm": "exact", "settings": {}, "scenario": "II"})"));
 }
 
+TEST(RowFields, SayThatTheAlgorithmIsIsolated) {
+  EXPECT_EQ(to_json_object({.query = "collide", .algorithm = "ode", .isolated = true}).at("isolated"), true);
+  EXPECT_FALSE(to_json_object({.query = "collide", .algorithm = "ode"}).contains("isolated"));
+  EXPECT_TRUE(row_fields_of(to_json_object({.query = "collide", .algorithm = "ode", .isolated = true})).isolated);
+}
+
 TEST(RowFields, HavePartsOfAPercent) {
   const Json half = to_json_object({.query = "collide", .bucket = BucketKey{BucketKind::distance, 0.5}});
   EXPECT_EQ(half.at("bucket").dump(), R"({"kind":"distance","percent":0.5})");
@@ -38,6 +44,7 @@ TEST(RowFields, HavePartsOfAPercent) {
 
 TEST(RowFields, AreReadBack) {
   for (const RowFields& fields : {k_query, RowFields{.query = "kernel", .algorithm = "ist", .kernel = "apart"},
+                                  RowFields{.query = "collide", .algorithm = "ode", .isolated = true},
                                   RowFields{.query = "generate", .algorithm = "raycast", .target = "distance"}}) {
     EXPECT_EQ(to_json_object(row_fields_of(to_json_object(fields))), to_json_object(fields));
   }

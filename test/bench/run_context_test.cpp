@@ -25,6 +25,7 @@ TEST(DifferenceOfContexts, NamesWhatARowDependsOn) {
             "settings:vps was depth=2, now it is depth=3");
   EXPECT_EQ(difference_of_contexts(with("fcl_build", "1, SSE 0"), with("fcl_build", "1, SSE 1")),
             "fcl_build was 1, SSE 0, now it is 1, SSE 1");
+  EXPECT_EQ(difference_of_contexts(k_context, with("isolated", "ode")), "isolated was missing, now it is ode");
   EXPECT_EQ(difference_of_contexts(k_context, with("algorithm:mine", "1")), "algorithm:mine was missing, now it is 1");
   EXPECT_EQ(difference_of_contexts(with("algorithm:mine", "1"), k_context), "algorithm:mine was 1, now it is missing");
   Json both = with("commit", "3c4d");

@@ -22,7 +22,7 @@ TEST(TimeEach, AsksEveryPoseInEveryPassInOrder) {
     asked.push_back(static_cast<int>(pose.t.x()));
     return Outcome<bool>(true);
   };
-  const Query query;
+  Query query;
   Failures failures;
   const SingleTimes times = time_each(poses, GuardedQuery(query, ask, failures));
   ASSERT_EQ(asked.size(), poses.size() * k_latency_passes);
@@ -50,7 +50,7 @@ TEST(TimeEach, OfTheFirstPassStandsBesideTheLeastOfThree) {
     if (number == 0 || (first_pass && number % 20 == 0)) spend(2ms);
     return Outcome<bool>(true);
   };
-  const Query query;
+  Query query;
   Failures failures;
   const SingleTimes times = time_each(poses, GuardedQuery(query, ask, failures));
   EXPECT_GE(*times.once.p99, 2e6);
@@ -69,7 +69,7 @@ TEST(TimeEach, RemovesPosesThatFailInOnePass) {
     if (pose.t.x() == 7.0 && asked > 20) return Status::failed;
     return true;
   };
-  const Query query;
+  Query query;
   Failures failures;
   time_each(poses, GuardedQuery(query, ask, failures));
   ASSERT_EQ(poses.size(), 8u);

@@ -191,6 +191,14 @@ TEST_F(TableCommand, ShowsHowWrongResponsesAreAndTheSettings) {
                          HasSubstr("settings x: size=0.5\n")));
 }
 
+TEST_F(TableCommand, SaysHowConfigurationsFailed) {
+  const std::string out = printed(write(
+      "r.json",
+      {row("respond", "x", "volume", 1, 1, {{"failed", 6}, {"crashed", 3}, {"timed_out", 2}, {"out_of_memory", 1}})}));
+  EXPECT_THAT(out, HasSubstr("! x: 6 of 64 failed (01 %); 3 of 64 crashed (01 %); 2 of 64 timed out (01 %); "
+                             "1 of 64 out of memory (01 %)\n"));
+}
+
 TEST_F(TableCommand, RanksOnlyRowsWithoutFaults) {
   const std::string out = printed(
       write("r.json",

@@ -14,6 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array k_laws{"none", "depth", "volume"};
+constexpr std::array k_bodies{"mesh", "convex_hull"};
 constexpr std::array k_refusals{"error", "bad_mesh", "bad_argument"};
 
 // JSON has no words for what is not finite.
@@ -256,6 +257,7 @@ std::string to_line(const Greeting& greeting) {
                {"summary", traits.summary},
                {"answers", answers},
                {"law", k_laws.at(static_cast<std::size_t>(traits.law))},
+               {"body", k_bodies.at(static_cast<std::size_t>(traits.body))},
                {"parameters", parameters},
                {"can", can}});
 }
@@ -272,6 +274,7 @@ Greeting greeting_of(const std::string& line) {
     const std::array members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond};
     for (const std::string kind : json.at("answers")) traits.answers.*members.at(place_of(k_kinds, kind)) = true;
     traits.law = static_cast<ResponseLaw>(place_of(k_laws, json.value("law", "none")));
+    traits.body = static_cast<Body>(place_of(k_bodies, json.value("body", "mesh")));
     for (const Json& each : json.value("parameters", Json::array())) traits.parameters.push_back(parameter_of(each));
     for (const std::string ability : json.value("can", Json::array())) {
       greeting.times = greeting.times || ability == "time";
