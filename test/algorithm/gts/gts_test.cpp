@@ -62,13 +62,5 @@ TEST(Gts, LetsThreadsTakeTurns) {
   for (const auto& mine : got) EXPECT_THAT(mine, ::testing::Pointwise(::testing::DoubleNear(k_rounding), expected));
 }
 
-/// Known failure: the library's own assertion ends the process. In a process of its own here.
-TEST(GtsDeathTest, EndsTheProcessOnEqualBoxesInTheSamePlace) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const Mesh box = load_model("box-300");
-  const auto algorithm = make_gts_algorithm();
-  EXPECT_DEATH(static_cast<void>(test::prepare(*algorithm, box, box)->respond(Pose())), "assertion failed");
-}
-
 }  // namespace
 }  // namespace sixdof
