@@ -11,7 +11,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <sixdof/oracle/candidates.h>
 #include <sixdof/oracle/distance.h>
+#include <sixdof/oracle/overlap.h>
 
 #include "../geometry/shapes.h"
 #include "distance_truth.h"
@@ -241,21 +243,33 @@ TEST(CloseSearch, BodiesFarApartTakeFewPairs) {
   }
 }
 
-TEST(CloseSearch, SmallPartsOfLargeBodiesTakeFewPairs) {
-  // A block, and beside it a ball of 5e-6 times its size: two of them, ball before ball. Balls alone have the same
-  // closest pair, and floats tell their triangles apart.
-  const Mesh block = shapes::box({1000.0, 1000.0, 1000.0});
-  const Mesh unit = sphere(180, 89, 0.01);
-  std::vector<Vector3d> v = unit.vertices();
-  for (Vector3d& p : v) p.x() += 1500.0;
-  const Mesh ball = Mesh::build(v, unit.triangles());
-  std::vector<Triangle> t = unit.triangles();
-  const auto first = static_cast<std::uint32_t>(v.size());
-  for (const Triangle& f : block.triangles()) t.push_back({f[0] + first, f[1] + first, f[2] + first});
-  v.insert(v.end(), block.vertices().begin(), block.vertices().end());
-  const Mesh both = Mesh::build(v, t);
+/// A ball of radius 0.01 at (1500, 0, 0), alone, and beside a block of 2e5 times its size.
+struct Details {
+  Mesh ball, both;
 
-  Pose pose{Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitZ()).toRotationMatrix(), {3000.025, 0.001, 0.0}};
+  static Details make() {
+    const Mesh unit = sphere(180, 89, 0.01);
+    std::vector<Vector3d> v = unit.vertices();
+    for (Vector3d& p : v) p.x() += 1500.0;
+    const Mesh ball = Mesh::build(v, unit.triangles());
+    const Mesh block = shapes::box({1000.0, 1000.0, 1000.0});
+    std::vector<Triangle> t = unit.triangles();
+    const auto first = static_cast<std::uint32_t>(v.size());
+    for (const Triangle& f : block.triangles()) t.push_back({f[0] + first, f[1] + first, f[2] + first});
+    v.insert(v.end(), block.vertices().begin(), block.vertices().end());
+    return {ball, Mesh::build(v, t)};
+  }
+};
+
+/// Ball before ball, with the centres this far apart along x and 0.001 along y.
+Pose ball_to_ball(double apart) {
+  return {Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitZ()).toRotationMatrix(), {3000.0 + apart, 0.001, 0.0}};
+}
+
+TEST(CloseSearch, SmallPartsOfLargeBodiesTakeFewPairs) {
+  // Balls alone have the same closest pair, and floats tell their triangles apart.
+  const auto [ball, both] = Details::make();
+  const Pose pose = ball_to_ball(0.025);
   const DistanceOracle balls(ball, ball);
   const Separation truth = DistanceQuery(balls).distance(pose);
   EXPECT_NEAR(truth.distance, std::hypot(0.025, 0.001) - 0.02, 1e-5);  // facets lie up to 6e-6 inside
@@ -268,6 +282,44 @@ TEST(CloseSearch, SmallPartsOfLargeBodiesTakeFewPairs) {
   EXPECT_LE(work_of(query), 8000u);
   EXPECT_FALSE(query.collide(pose));
   EXPECT_LE(work_of(query), 8000u);
+}
+
+Overlap overlap_of(const Mesh& mesh, const Tree& tree, const Pose& pose) {
+  const Solid solid(mesh, tree);
+  return OverlapQuery(solid, solid).evaluate(pose);
+}
+
+TEST(CloseSearch, OverlapsOfSmallPartsHaveFewCandidates) {
+  const auto [ball, both] = Details::make();
+  const Tree tree_of_ball(ball), tree(both);
+  const Pose pose = ball_to_ball(0.017);
+  const Overlap truth = overlap_of(ball, tree_of_ball, pose), overlap = overlap_of(both, tree, pose);
+  EXPECT_GT(truth.crossings, 300u);
+  EXPECT_EQ(overlap.crossings, truth.crossings);
+  constexpr double k_relative = 1e-8;  // of a volume of 1e-6, by sums whose terms round to 1e-16 of 1500 x 1e-5
+  EXPECT_NEAR(overlap.volume, truth.volume, k_relative * truth.volume);
+  EXPECT_LE((overlap.area - truth.area).norm(), k_relative * truth.area.norm());
+  std::vector<TrianglePair> candidates;
+  find_candidates(tree, tree, pose, candidates);
+  EXPECT_LE(candidates.size(), 10 * truth.crossings);
+
+  // While B moves by a tenth of a radius: every candidate at a fraction of the way is among those of the whole way.
+  SweptCandidates swept;
+  const Vector3d displacement(-6e-4, 8e-4, 0.0);
+  find_swept_candidates(tree, tree, pose, displacement, swept);
+  EXPECT_LE(swept.pairs.size(), 400 * truth.crossings);
+  for (const double x : {0.0, 0.4, 1.0}) {
+    const Pose moved{pose.R, pose.t + x * displacement};
+    std::vector<TrianglePair> selected;
+    select_candidates(swept, x, selected);
+    const Solid solid(both, tree);
+    OverlapQuery query(solid, solid);
+    const Overlap of_all = query.evaluate(moved, Vector3d::Zero());
+    const Overlap of_selected = query.evaluate(moved, Vector3d::Zero(), selected);
+    EXPECT_GT(of_all.crossings, 300u);
+    EXPECT_EQ(of_selected.crossings, of_all.crossings);
+    EXPECT_EQ(of_selected.volume, of_all.volume);
+  }
 }
 
 /// `count` square sheets of 10 x 10 squares, `spacing` apart.

@@ -7,20 +7,73 @@
 
 // After foreach_target.h: this is compiled once per instruction set, too.
 #include <sixdof/oracle/candidates_bounds-inl.h>
+#include <sixdof/oracle/close_search.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::candidates {
 namespace HWY_NAMESPACE {
 
+/// Square of a box's diagonal.
+HWY_INLINE float size_of(const Tree::Volume& v) {
+  const float x = v.upper[0] - v.lower[0];
+  const float y = v.upper[1] - v.lower[1];
+  const float z = v.upper[2] - v.lower[2];
+  return x * x + y * y + z * z;
+}
+
+/// Nodes smaller than this many times the slack are tested in doubles: floats would not separate most of their
+/// children.
+constexpr float k_blurred = 64.0f;
+
+/// Tests in doubles, for volumes that are small next to the rounding of floats. They hold for all fractions of the
+/// displacement: B is taken at half of it, and has to be farther away than half of it.
+class CloseTests {
+ public:
+  CloseTests(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement, float slack)
+      : bounds_(a, b, {X_AB.R, X_AB.t + 0.5 * displacement}),
+        half_displacement_((0.5 + 1e-14) * displacement.norm()),  // with the rounding of positions on the way
+        blurred_(k_blurred * k_blurred * slack * slack) {}
+
+  bool are_due(const Tree::Node& a, const Tree::Node& b) const {
+    return std::max(size_of(a.volume), size_of(b.volume)) < blurred_;
+  }
+
+  /// Children of A's node (bits), of those in `lanes`, that may intersect child j of B's node.
+  std::uint32_t overlapping_children(const Tree::Node& node_a, std::uint32_t lanes, const Tree::Node& node_b,
+                                     std::size_t j) const {
+    const detail::CloseShape shape_b = bounds_.shape_of_b(detail::CloseVolume::child_of(node_b, j));
+    std::uint32_t bits = 0;
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(lanes));
+      if (!apart(bounds_.shape_of_a(detail::CloseVolume::child_of(node_a, i)), shape_b)) bits |= 1u << i;
+    }
+    return bits;
+  }
+
+  bool apart(TrianglePair pair) const {
+    return apart(bounds_.shape_of_a({0, pair.a}), bounds_.shape_of_b({0, pair.b}));
+  }
+
+ private:
+  bool apart(const detail::CloseShape& a, const detail::CloseShape& b) const {
+    return bounds_.lower_bound(a, b, Eigen::Vector3d::Zero(), half_displacement_) > half_displacement_;
+  }
+
+  detail::CloseBounds bounds_;
+  double half_displacement_;
+  float blurred_;  // square of a diagonal
+};
+
 /// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. The order of
 /// the pairs found is that of the trees.
 /// @tparam moving the displacement is not zero
-/// @tparam Test called as test(leaf of A, its lanes, leaf of B, its lanes) for leaves that may intersect
+/// @tparam Test called as test(leaf of A, its lanes, leaf of B, its lanes, whether floats blur them) for leaves that
+/// may intersect
 template <bool moving, class Test>
 class DualTreeTraversal {
  public:
-  DualTreeTraversal(const Tree& a, const Tree& b, const TreeMotion& motion, Test test)
-      : a_(a), b_(b), motion_(motion), test_(test) {}
+  DualTreeTraversal(const Tree& a, const Tree& b, const TreeMotion& motion, const CloseTests& close, Test test)
+      : a_(a), b_(b), motion_(motion), close_(close), test_(test) {}
 
   void run() { expand(0, 0, ~0u, ~0u); }
 
@@ -31,12 +84,18 @@ class DualTreeTraversal {
     const Tree::Node& node_b = b_.nodes()[index_b];
     std::uint32_t overlapping[k_width] = {};  // children of A, for each child of B
     std::uint32_t leaves_a = 0;
-    {
+    lanes_a &= (1u << node_a.child_count) - 1;
+    lanes_b &= (1u << node_b.child_count) - 1;
+    const bool blurred = close_.are_due(node_a, node_b);
+    if (blurred) {
+      for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
+        const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+        overlapping[j] = close_.overlapping_children(node_a, lanes_a, node_b, j);
+      }
+    } else {
       Children children_a, children_b;
       load_children<false>(node_a, motion_, children_a);
       load_children<true>(node_b, motion_, children_b);
-      lanes_a &= (1u << node_a.child_count) - 1;
-      lanes_b &= (1u << node_b.child_count) - 1;
       for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(rest));
         overlapping[j] = overlapping_children<moving>(children_a, node_a, children_b, j, motion_) & lanes_a;
@@ -45,7 +104,7 @@ class DualTreeTraversal {
     for (std::size_t i = 0; i < node_a.child_count; ++i) {
       if (node_a.child[i].is_leaf()) leaves_a |= 1u << i;
     }
-    test_leaves(node_a, node_b, leaves_a, lanes_b, overlapping);
+    test_leaves(node_a, node_b, leaves_a, lanes_b, overlapping, blurred);
     for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(rest));
       const Tree::Child child_b = node_b.child[j];
@@ -64,7 +123,7 @@ class DualTreeTraversal {
   }
 
   HWY_NOINLINE void test_leaves(const Tree::Node& node_a, const Tree::Node& node_b, std::uint32_t leaves_a,
-                                std::uint32_t lanes_b, const std::uint32_t* overlapping) {
+                                std::uint32_t lanes_b, const std::uint32_t* overlapping, bool blurred) {
     LeafLanes of_a[k_width], of_b;
     std::uint32_t loaded = 0;
     for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
@@ -79,7 +138,7 @@ class DualTreeTraversal {
         const Tree::Child leaf_a = node_a.child[i];
         if ((loaded & 1u << i) == 0) load_leaf_of_a(a_.leaves()[node_a.leaf[i]], of_a[i]);
         loaded |= 1u << i;
-        test_(leaf_a, of_a[i], leaf_b, of_b);
+        test_(leaf_a, of_a[i], leaf_b, of_b, blurred);
       }
     }
   }
@@ -87,6 +146,7 @@ class DualTreeTraversal {
   const Tree& a_;
   const Tree& b_;
   const TreeMotion& motion_;
+  const CloseTests& close_;
   Test test_;
 };
 
@@ -115,11 +175,14 @@ HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, 
 
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<TrianglePair>& pairs) {
   const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero());
-  const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b) {
-    for_each_pair(test_triangles(of_a, of_b, motion.slack), leaf_a, leaf_b,
-                  [&](std::uint32_t, TrianglePair pair) { pairs.push_back(pair); });
+  const CloseTests close(a, b, X_AB, Eigen::Vector3d::Zero(), motion.slack);
+  const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b,
+                        bool blurred) {
+    for_each_pair(test_triangles(of_a, of_b, motion.slack), leaf_a, leaf_b, [&](std::uint32_t, TrianglePair pair) {
+      if (!blurred || !close.apart(pair)) pairs.push_back(pair);
+    });
   };
-  DualTreeTraversal<false, decltype(test)>(a, b, motion, test).run();
+  DualTreeTraversal<false, decltype(test)>(a, b, motion, close, test).run();
 }
 
 // A separating-axis test of two triangles (boxes along each axis, both planes) is linear in the displacement's
@@ -186,16 +249,19 @@ HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLan
 void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                            SweptCandidates& found) {
   const TreeMotion motion(a, b, X_AB, displacement);
-  const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b) {
+  const CloseTests close(a, b, X_AB, displacement, motion.slack);
+  const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b,
+                        bool blurred) {
     float first[k_pairs], last[k_pairs];
     const std::uint32_t bits = test_moving_triangles(of_a, of_b, motion, first, last);
     for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t lane, TrianglePair pair) {
+      if (blurred && close.apart(pair)) return;
       found.pairs.push_back(pair);
       found.first.push_back(first[lane]);
       found.last.push_back(last[lane]);
     });
   };
-  DualTreeTraversal<true, decltype(test)>(a, b, motion, test).run();
+  DualTreeTraversal<true, decltype(test)>(a, b, motion, close, test).run();
 }
 
 }  // namespace HWY_NAMESPACE

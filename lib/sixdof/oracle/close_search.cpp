@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <sixdof/geometry/closest_point.h>
-#include <sixdof/oracle/distance_search.h>
+#include <sixdof/geometry/triangle_distance.h>
 
 namespace sixdof::detail {
 namespace {
@@ -22,10 +22,12 @@ constexpr double k_rounding = 6e-15;
 /// Rounding of transformed corners and of the shift, relative to the distances from the origins: 16 for each.
 constexpr double k_offset_rounding = 4e-15;
 
-bool is_leaf(const CloseVolume& v) { return (v.volume & NodePair::k_leaf) != 0; }
+bool is_leaf(const CloseVolume& v) { return (v.volume & CloseVolume::k_leaf) != 0; }
 bool is_triangle(const CloseVolume& v) { return v.triangle != CloseVolume::k_whole; }
 
-const Tree::Leaf& leaf_of(const Tree& tree, const CloseVolume& v) { return tree.leaves()[v.volume - NodePair::k_leaf]; }
+const Tree::Leaf& leaf_of(const Tree& tree, const CloseVolume& v) {
+  return tree.leaves()[v.volume - CloseVolume::k_leaf];
+}
 
 const Tree::Volume& volume_of(const Tree& tree, const CloseVolume& v) {
   return is_leaf(v) ? leaf_of(tree, v).volume : tree.nodes()[v.volume].volume;
@@ -166,10 +168,7 @@ bool search_closely(const Tree& tree_a, const Tree& tree_b, const CloseBounds& b
       for (; count < leaf.count(); ++count) children[count] = {expanded.volume, leaf.first() + count};
     } else {
       const Tree::Node& node = tree.nodes()[expanded.volume];
-      for (; count < node.child_count; ++count) {
-        const Tree::Child child = node.child[count];
-        children[count] = {child.is_leaf() ? NodePair::k_leaf + node.leaf[count] : child.node()};
-      }
+      for (; count < node.child_count; ++count) children[count] = CloseVolume::child_of(node, count);
     }
     const std::size_t first = stack.size();
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -8,8 +8,8 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 
-/// Branch and bound in double precision, for pairs of volumes whose distances floats cannot tell apart. Internal: part
-/// of distance_search.cpp, which calls it where a float bound is too coarse:
+/// Branch and bound in double precision, for pairs of volumes whose distances floats cannot tell apart. Internal: for
+/// distance_search.cpp and candidates.cpp, which call it where a float bound is too coarse:
 ///   - bodies of unlike size: what is small next to the rounding of the large body's coordinates;
 ///   - bodies that are far apart: all of both is small next to the rounding of their distance;
 ///   - layers closer to each other than that rounding;
@@ -19,11 +19,16 @@
 /// as long as one of distance_bounds-inl.h.
 namespace sixdof::detail {
 
-/// A node, or NodePair::k_leaf plus the index of a leaf, or one triangle of that leaf.
+/// A node, or k_leaf plus the index of a leaf, or one triangle of that leaf.
 struct CloseVolume {
+  static constexpr std::uint32_t k_leaf = 1u << 31;
   static constexpr std::uint32_t k_whole = ~std::uint32_t{0};
   std::uint32_t volume;
   std::uint32_t triangle = k_whole;  ///< In tree order; k_whole for the whole volume.
+
+  static CloseVolume child_of(const Tree::Node& node, std::size_t i) {
+    return {node.child[i].is_leaf() ? k_leaf + node.leaf[i] : node.child[i].node()};
+  }
 };
 
 struct ClosePair {
@@ -65,7 +70,7 @@ class CloseBounds {
  private:
   const Tree& a_;
   const Tree& b_;
-  const Pose& X_AB_;
+  Pose X_AB_;
   Eigen::Vector3d shift_;  // from A's centre to B's, in A's frame
   double slack_;
 };

@@ -22,7 +22,7 @@ namespace sixdof::detail {
 /// A node, leaf or triangle of each tree: an index into nodes(), k_leaf plus an index into leaves(), or k_triangle plus
 /// an index into corners(). Either both are triangles or none is.
 struct NodePair {
-  static constexpr std::uint32_t k_leaf = 1u << 31;
+  static constexpr std::uint32_t k_leaf = CloseVolume::k_leaf;
   static constexpr std::uint32_t k_triangle = 1u << 30;
   std::uint32_t a;
   std::uint32_t b;
