@@ -42,17 +42,18 @@ class PlaneSides {
   /// lies, 1 if the plane is A's, -1 if it is B's
   PlaneSides(const OrderedTriangle& triangle, const OrderedTriangle& plane, int tie)
       : triangle_(triangle), other_(plane), plane_(plane.corner[0], plane.corner[1], plane.corner[2]), tie_(tie) {
-    for (std::size_t i = 0; i < 3; ++i) filtered_[i] = plane_.filter(triangle.corner[i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      filtered_[i] = plane_.filter(triangle.corner[i]);
+      is_clear_ = is_clear_ && std::abs(filtered_[i].value) > filtered_[i].bound;
+    }
   }
 
   /// Whether floating point decides all signs.
-  bool is_clear() const {
-    return std::all_of(filtered_.begin(), filtered_.end(),
-                       [](const detail::Filtered& f) { return std::abs(f.value) > f.bound; });
-  }
+  bool is_clear() const { return is_clear_; }
 
   /// Each corner's side of the plane: 1 in front, -1 behind; all 0 if the plane's corners are collinear.
   std::array<int, 3> signs() const {
+    if (is_clear_) return {clear_sign(0), clear_sign(1), clear_sign(2)};
     std::array<int, 3> sign;
     for (std::size_t i = 0; i < 3; ++i) sign[i] = plane_.sign(triangle_.corner[i], filtered_[i]);
     if (std::find(sign.begin(), sign.end(), 0) == sign.end()) return sign;
@@ -66,11 +67,14 @@ class PlaneSides {
   double distance(std::size_t corner) const { return plane_.value(triangle_.corner[corner], filtered_[corner]); }
 
  private:
+  int clear_sign(std::size_t corner) const { return filtered_[corner].value > 0.0 ? 1 : -1; }
+
   const OrderedTriangle& triangle_;
   const OrderedTriangle& other_;
   TrianglePlane plane_;
   int tie_;
   std::array<detail::Filtered, 3> filtered_;
+  bool is_clear_ = true;
 };
 
 /// Both triangles, each with the other's plane.
