@@ -111,6 +111,42 @@ TEST(DistanceOracle, FarApartEveryBitIsThatOfBruteForce) {
   }
 }
 
+/// Needles along x side by side in y: tetrahedra of length 1 with a ridge of height `width` over their middle.
+Mesh comb(std::uint32_t count, double width) {
+  std::vector<Vector3d> v;
+  std::vector<Triangle> t;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double y = static_cast<double>(i) / count;
+    for (const Vector3d& p :
+         {Vector3d(0.0, y, 0.0), Vector3d(1.0, y, 0.0), Vector3d(0.5, y + width, 0.0), Vector3d(0.5, y, width)}) {
+      v.push_back(p);
+    }
+    t.insert(t.end(), {{4 * i, 4 * i + 2, 4 * i + 1},
+                       {4 * i, 4 * i + 1, 4 * i + 3},
+                       {4 * i + 1, 4 * i + 2, 4 * i + 3},
+                       {4 * i, 4 * i + 3, 4 * i + 2}});
+  }
+  return Mesh::build(v, t);
+}
+
+TEST(DistanceOracle, OfNeedlesThatCrossFewAreMeasured) {
+  // Each needle of B runs over all of A, at the height of A's ridges at its place: the middle ones are the closest. All
+  // boxes, slabs and gaps along the closest direction are the same.
+  constexpr std::uint32_t k_needles = 200;
+  constexpr double k_gap = 1e-3, k_width = 1e-4;
+  const Mesh a = comb(k_needles, k_width);
+  const DistanceOracle oracle(a, a);
+  DistanceQuery query(oracle);
+  Pose pose;  // B's needles along y, upside up: their lower sides are flat
+  pose.R << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  pose.t = Vector3d(1.0 + 0.5 * k_width, 0.0, k_gap);
+  // One needle's base, `width` wide, runs over the ridges' middle.
+  EXPECT_NEAR(query.distance(pose).distance, k_gap - k_width, 1e-9);
+  EXPECT_LE(query.counts().triangles, std::uint64_t{k_needles} * k_needles);
+  const Pose back = pose.inverse();
+  EXPECT_NEAR(query.distance(back).distance, k_gap - k_width, 1e-9);
+}
+
 TEST(DistanceOracle, ColdSearchesExpandFewNodes) {
   // By the seed, the order of expansion and the axis between the closest points. Sums over the poses, with a margin for
   // other trees.

@@ -352,6 +352,37 @@ HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough) {
   }
 }
 
+/// Raises the lower bounds that are not above `enough` by the nine axes across an edge of each triangle. Needles that
+/// cross have their distance along one of them, which Frank-Wolfe steps approach slowly.
+HWY_INLINE void bound_across_edges(LeafPair& pairs, float slack, float enough) {
+  namespace fw = frank_wolfe;
+  constexpr auto k_fused = fw::Rounding::fused;
+  const V goal = set(enough);
+  for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
+    V lower = load(pairs.lower + i);
+    for (std::size_t edge = 0; edge < 9 && !hn::AllTrue(k_lanes, hn::Gt(lower, goal)); ++edge) {
+      V u[3], v[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        u[k] = hn::Sub(load(pairs.a[(edge + 1) % 3][k] + i), load(pairs.a[edge % 3][k] + i));
+        v[k] = hn::Sub(load(pairs.b[(edge / 3 + 1) % 3][k] + i), load(pairs.b[edge / 3][k] + i));
+      }
+      V n[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+        n[k] = hn::NegMulAdd(u[m], v[l], hn::Mul(u[l], v[m]));
+      }
+      const auto value = [](const auto& support) { return support.value; };
+      const V most_a = value(fw::support<k_fused, fw::Extreme::greatest>(n, pairs.a, i));
+      const V least_a = value(fw::support<k_fused, fw::Extreme::least>(n, pairs.a, i));
+      const V most_b = value(fw::support<k_fused, fw::Extreme::greatest>(n, pairs.b, i));
+      const V least_b = value(fw::support<k_fused, fw::Extreme::least>(n, pairs.b, i));
+      const V gap = hn::Max(hn::Sub(least_b, most_a), hn::Sub(least_a, most_b));
+      lower = hn::Max(lower, hn::Sub(hn::Div(gap, fw::length<k_fused>(n)), set(slack)));
+    }
+    hn::Store(lower, k_lanes, pairs.lower + i);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace sixdof::detail
 HWY_AFTER_NAMESPACE();

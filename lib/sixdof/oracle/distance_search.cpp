@@ -227,6 +227,9 @@ constexpr std::uint64_t k_patience_with_thick = 256;
 constexpr std::uint64_t k_patience_with_doubtful = 2048;
 constexpr std::uint64_t k_patience_with_touching = 256;  // for intersections, exact tests of triangles are spared, too
 
+/// After as many pairs of leaves the bounds of their triangles get more axes, which take as long as all before.
+constexpr std::uint64_t k_patience_with_leaves = 4096;
+
 class DistanceTraversal final : private CloseVisitor {
  public:
   DistanceTraversal(DistanceSearch& search, bool only_intersection)
@@ -404,6 +407,7 @@ class DistanceTraversal final : private CloseVisitor {
     if (!bound_along_direction(leaf_a, leaf_b, frames_.expand_a, frames_.slack, best_, pairs.lower)) return false;
     load_pairs(leaf_a, leaf_b, frames_.expand_a, pairs);
     bound_triangles(pairs, frames_.slack.all, best_);
+    if (search_.counts.leaf_pairs > k_patience_with_leaves) bound_across_edges(pairs, frames_.slack.all, best_);
     return true;
   }
 
