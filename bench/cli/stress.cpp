@@ -1,10 +1,12 @@
 #include "bench/cli/commands.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -18,6 +20,7 @@
 #include "bench/common/json_text.h"
 #include "bench/common/progress_line.h"
 #include "bench/common/run_guarded.h"
+#include "bench/study/stress_processes.h"
 #include "bench/study/stress_text.h"
 
 namespace sixdof::cli {
@@ -27,6 +30,7 @@ struct Options {
   std::vector<std::string> algorithms, families;
   std::string effort = "quick", output, cases = "stress-cases";
   std::uint64_t seed = 1;
+  double silence_s = 60.0, memory_gb = 4.0;
   bool json = false;
 };
 
@@ -43,7 +47,10 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
       .algorithms = {},
       .families = {},
       .effort = options.effort == "full" ? study::StressEffort::full() : study::StressEffort::quick(),
-      .seed = options.seed};
+      .seed = options.seed,
+      .silence_s = options.silence_s,
+      .memory_bytes = 1e9 * options.memory_gb,
+      .processes = std::max(1u, std::thread::hardware_concurrency())};
   for (const std::string& name : options.algorithms) plan.algorithms.push_back(&registry.find(name));
   if (plan.algorithms.empty()) {
     for (const auto& algorithm : registry.all()) {
@@ -61,16 +68,17 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
 void print_red(const study::StressCell& cell, const study::StressLine& line) {
   fmt::print("\n{} on {}: {}: {} {} ({}{}{}; parameter {:.3g})\n  {}\n  {}\n", cell.algorithm->traits().name,
              cell.family->name, line.verdict, line.metric, line.worst, line.member, line.thread.empty() ? "" : ", ",
-             line.thread, cell.member.parameter, line.words, line.reproduction);
+             line.thread, line.parameter, line.words, line.reproduction);
 }
 
 void run_stress_command(const Options& options) {
   Registry registry;
   register_all_algorithms(registry);
   const study::StressPlan plan = plan_of(options, registry);
-  // Bodies are new for every seed: a cache on disk would grow by thousands of structures that are asked for once.
-  ::setenv("SIXDOF_CACHE", "off", 0);
+  // Bodies are new for every seed: in the user's cache they would stay for good. Here they are shared by algorithms and
+  // by the shots of a case.
   std::filesystem::create_directories(options.cases);
+  ::setenv("SIXDOF_CACHE", (std::filesystem::path(options.cases) / "structures").c_str(), 0);
   ProgressLine progress("stress");
   const std::vector<study::StressCell> cells = study::run_stress(plan, [&](std::size_t done, std::size_t total) {
     InterruptGuard::check();
@@ -115,7 +123,18 @@ void add_stress_command(CLI::App& app) {
       ->check(CLI::IsMember({"quick", "full"}))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the generated cases and the searches")->capture_default_str();
-  command->add_option("--cases", options->cases, "Folder for the meshes that the printed commands read")
+  command
+      ->add_option("--cases", options->cases,
+                   "Folder for the meshes that the printed commands read, and for prepared structures unless "
+                   "SIXDOF_CACHE is set")
+      ->capture_default_str();
+  command
+      ->add_option("--query-timeout", options->silence_s,
+                   "Longest time of one query or one preparation, in seconds; a process that takes longer is ended")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--memory-limit", options->memory_gb, "Data of each process in GB")
+      ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "Write the list of cells to this JSON file");
   command->add_flag("--json", options->json, "As JSON");

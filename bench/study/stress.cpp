@@ -3,42 +3,62 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <sixdof/base/parallel.h>
 #include <sixdof/geometry/save.h>
+#include <sixdof/stability/search.h>
+#include <sixdof/stability/shots.h>
 
 namespace sixdof::study {
 namespace {
 
 using namespace stability;
 
-/// Whether the algorithm declares a resolution: asked on a small pair.
-bool declares_resolution(const Prepare& prepare) {
-  const Genes genes = sample_genes(families().front(), 0, 0, 1);
-  Draw draw(genes);
-  const Case probe = families().front().make(draw);
-  PreparedPairs pairs(prepare, {});
-  return pairs.ask(probe.shots.front()).resolution > 0.0;
-}
+/// Tells a watch what is asked.
+class WatchedQuery final : public Query {
+ public:
+  WatchedQuery(std::unique_ptr<Query> inner, const StressWatch& watch) : inner_(std::move(inner)), watch_(watch) {}
+
+  Outcome<bool> collide(const Pose& X_AB) override { return ask(&Query::collide, X_AB); }
+  Outcome<Separation> distance(const Pose& X_AB) override { return ask(&Query::distance, X_AB); }
+  Outcome<Response> respond(const Pose& X_AB) override { return ask(&Query::respond, X_AB); }
+  Footprint footprint() const override { return inner_->footprint(); }
+
+ private:
+  template <class T>
+  Outcome<T> ask(Outcome<T> (Query::*question)(const Pose&), const Pose& X_AB) {
+    watch_.asks(X_AB);
+    Outcome<T> answer = ((*inner_).*question)(X_AB);
+    if (!answer.ok()) fail(answer.status, inner_->diagnosis());
+    return answer;
+  }
+
+  std::unique_ptr<Query> inner_;
+  const StressWatch& watch_;
+};
 
 /// An algorithm, ready to be asked anything.
 struct Subject {
-  const Algorithm* algorithm;
+  const Algorithm& algorithm;
   Settings settings;
   Prepare prepare;
   Profile profile;
   bool approximate;
 
-  explicit Subject(const Algorithm& of) : algorithm(&of), settings(coarse_settings(of)) {
-    prepare = [&of, chosen = settings](const Mesh& a, const Mesh& b) { return of.prepare(a, b, chosen); };
+  Subject(const Algorithm& of, const StressWatch& watch)
+      : algorithm(of), settings(coarse_settings(of)), prepare([this, &watch](const Mesh& a, const Mesh& b) {
+          watch.prepares();
+          return std::make_unique<WatchedQuery>(algorithm.prepare(a, b, settings), watch);
+        }) {
     profile = profile_of(of.traits(), prepare);
-    approximate = declares_resolution(prepare);
+    const Shot probe = aligned_boxes({1.0, 0.9, 0.8}, {0.3, 0.2, 0.25}, {2.0, 0.0, 0.0});
+    approximate = PreparedPairs(prepare, {}).ask(probe).resolution > 0.0;
   }
+  Subject(const Subject&) = delete;
+  Subject& operator=(const Subject&) = delete;
 };
 
 /// All pairs of triangles take too long; such an algorithm is a check for small meshes (Traits::timed).
@@ -50,107 +70,101 @@ bool too_large(const Case& member, const Algorithm& algorithm) {
 }
 
 Judgement judge_case(const Case& member, const Subject& subject) {
-  if (!too_large(member, *subject.algorithm)) return judge(member, subject.profile, subject.prepare);
+  if (!too_large(member, subject.algorithm)) return judge(member, subject.profile, subject.prepare);
   Judgement judgement;
   judgement.findings.push_back(
       {.verdict = Verdict::unsupported, .metric = "size", .unit = "1", .words = "a check for small meshes"});
   return judgement;
 }
 
-void add(StressCell& cell, Case member, const Judgement& judgement) {
+void note_time(StressCell& cell, const CaseId& id, const Judgement& judgement) {
+  if (judgement.slowest_seconds <= cell.slowest_seconds) return;
+  cell.slowest_seconds = judgement.slowest_seconds;
+  cell.slow_shot = judgement.slowest_shot;
+  cell.slow_id = id;
+}
+
+void add(StressCell& cell, const CaseId& id, const Judgement& judgement) {
+  note_time(cell, id, judgement);
   const Finding& worst = judgement.worst();
-  if (judgement.slowest_seconds > cell.slowest_seconds) {
-    cell.slowest_seconds = judgement.slowest_seconds;
-    cell.slow_shot = judgement.slowest_shot;
-    cell.slow_member = member;
-  }
   // Refusals say something only where there is nothing else.
   const bool refused = worst.verdict == Verdict::unsupported;
   if (refused) ++cell.unsupported;
-  const bool only_refusals = cell.unsupported == cell.cases + (refused ? 1 : 0);
-  if (cell.cases++ == 0 ||
-      (refused ? only_refusals : cell.worst.verdict == Verdict::unsupported || worst.worse_than(cell.worst))) {
-    cell.worst = worst;
-    cell.member = std::move(member);
-  }
-}
-
-StressCell run_cell(const Family& family, const Subject& subject, const StressPlan& plan) {
-  StressCell cell{.family = &family,
-                  .algorithm = subject.algorithm,
-                  .settings = subject.settings,
-                  .member = {},
-                  .worst = {},
-                  .slow_member = {}};
-  if (family.field_cases != nullptr) {
-    for (Case& member : family.field_cases()) {
-      const Judgement judgement = judge_case(member, subject);
-      add(cell, std::move(member), judgement);
-    }
-  }
-  const std::size_t samples = subject.approximate ? plan.effort.declared_samples : plan.effort.samples;
-  Judged worst, slowest;
-  for (std::size_t i = 0; i < samples; ++i) {
-    Judged sample{.genes = sample_genes(family, plan.seed, i, samples), .member = {}, .judgement = {}};
-    Draw draw(sample.genes);
-    sample.member = family.make(draw);
-    sample.judgement = judge_case(sample.member, subject);
-    add(cell, sample.member, sample.judgement);
-    if (i == 0 || worse_answer(sample.judgement, worst.judgement)) worst = sample;
-    if (i == 0 || slower(sample.judgement, slowest.judgement)) slowest = sample;
-  }
-  const StressEffort& effort = plan.effort;
-  const bool searches = subject.algorithm->traits().timed;  // a check for small meshes must not be led to larger ones
-  const std::size_t generations = !searches ? 0 : subject.approximate ? effort.generations / 2 : effort.generations;
-  worst = search_worst(family, std::move(worst), subject.profile, subject.prepare, worse_answer, generations,
-                       effort.children, plan.seed);
-  // What is slow depends on the machine's other work, so the search for it must not decide a verdict.
-  slowest = search_worst(family, std::move(slowest), subject.profile, subject.prepare, slower, generations,
-                         effort.children, plan.seed + 1);
-  add(cell, std::move(worst.member), worst.judgement);
-  if (slowest.judgement.slowest_seconds > cell.slowest_seconds) {
-    cell.slowest_seconds = slowest.judgement.slowest_seconds;
-    cell.slow_shot = slowest.judgement.slowest_shot;
-    cell.slow_member = std::move(slowest.member);
-  }
-  return cell;
+  const bool first = cell.cases++ == 0, only_refusals = cell.unsupported == cell.cases;
+  const bool worse =
+      refused ? only_refusals : cell.worst.verdict == Verdict::unsupported || worst.worse_than(cell.worst);
+  if (!first && !worse) return;
+  cell.worst = worst;
+  cell.id = id;
 }
 
 /// "name=value" of every parameter.
-std::vector<std::string> assignments(const Settings& settings) {
+std::vector<std::string> assignments(const std::string& settings) {
   std::vector<std::string> parts;
-  std::istringstream text(settings.to_string());
+  std::istringstream text(settings);
   for (std::string part; std::getline(text, part, ',');) parts.push_back(part);
   return parts;
 }
 
 std::string mesh_file(const Mesh& mesh, const std::filesystem::path& folder) {
   constexpr std::size_t k_digits = 12;
-  const std::string name = mesh.hash().substr(0, k_digits) + ".off";
-  if (folder.empty()) return name;
-  const std::filesystem::path file = folder / name;
+  const std::filesystem::path file = folder / (mesh.hash().substr(0, k_digits) + ".off");
   if (!std::filesystem::exists(file)) save_mesh(mesh, file);
   return file.string();
 }
 
 }  // namespace
 
-std::vector<StressCell> run_stress(const StressPlan& plan,
-                                   const std::function<void(std::size_t done, std::size_t total)>& progress) {
-  std::vector<Subject> subjects;
-  for (const Algorithm* algorithm : plan.algorithms) subjects.emplace_back(*algorithm);
-  std::vector<StressCell> cells(plan.families.size() * subjects.size());
-  std::mutex mutex;
-  std::size_t done = 0;
-  parallel::for_each(cells.size(), [&](std::size_t i) {
-    cells[i] = run_cell(*plan.families[i / subjects.size()], subjects[i % subjects.size()], plan);
-    const std::lock_guard lock(mutex);
-    progress(++done, cells.size());
-  });
-  return cells;
+Case make_case(const Family& family, const CaseId& id) {
+  if (id.field != CaseId::k_generated) return family.field_cases().at(id.field);
+  Draw draw(id.genes);
+  return family.make(draw);
 }
 
-std::string reproduction(const Shot& shot, const Algorithm& algorithm, const Settings& settings,
+StressCell run_cell(const Family& family, const Algorithm& algorithm, const StressEffort& effort, std::uint64_t seed,
+                    const StressWatch& watch) {
+  const Subject subject(algorithm, watch);
+  StressCell cell{.family = &family,
+                  .algorithm = &algorithm,
+                  .settings = subject.settings.to_string(),
+                  .id = {},
+                  .worst = {},
+                  .slow_id = {}};
+  const auto judge_announced = [&](const CaseId& id, const Case& member) {
+    watch.begins_case(id);
+    return judge_case(member, subject);
+  };
+  if (family.field_cases != nullptr) {
+    const std::vector<Case> members = family.field_cases();
+    for (std::size_t i = 0; i < members.size(); ++i) add(cell, {.field = i}, judge_announced({.field = i}, members[i]));
+  }
+  const JudgeCase judge_genes = [&](const Genes& genes, const Case& member) {
+    return judge_announced({.genes = genes}, member);
+  };
+  const std::size_t samples = subject.approximate ? effort.declared_samples : effort.samples;
+  Judged worst, slowest;
+  for (std::size_t i = 0; i < samples; ++i) {
+    Judged sample{.genes = sample_genes(family, seed, i, samples), .member = {}, .judgement = {}};
+    Draw draw(sample.genes);
+    sample.member = family.make(draw);
+    sample.judgement = judge_genes(sample.genes, sample.member);
+    add(cell, {.genes = sample.genes}, sample.judgement);
+    if (i == 0 || worse_answer(sample.judgement, worst.judgement)) worst = sample;
+    if (i == 0 || slower(sample.judgement, slowest.judgement)) slowest = sample;
+  }
+  // A check for small meshes must not be led to larger ones. What declares a resolution prepares for long.
+  const std::size_t part = subject.approximate ? 2 : 1;
+  const std::size_t generations = algorithm.traits().timed ? effort.generations / part : 0;
+  const std::size_t children = effort.children / part;
+  worst = search_worst(family, std::move(worst), judge_genes, worse_answer, generations, children, seed);
+  add(cell, {.genes = worst.genes}, worst.judgement);
+  // What is slow depends on the machine's other work, so the search for it must not decide a verdict.
+  slowest = search_worst(family, std::move(slowest), judge_genes, slower, generations, children, seed + 1);
+  note_time(cell, {.genes = slowest.genes}, slowest.judgement);
+  return cell;
+}
+
+std::string reproduction(const Shot& shot, const Algorithm& algorithm, const std::string& settings,
                          const std::filesystem::path& folder) {
   // The program refuses a pose that is none: such a line shows the meshes and the numbers.
   constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
@@ -160,7 +174,8 @@ std::string reproduction(const Shot& shot, const Algorithm& algorithm, const Set
   std::string line = fmt::format("sixdof query --a {} --b {} --pose \"{} {} {} {} {} {} {}\" --algorithm {}",
                                  mesh_file(*shot.a, folder), mesh_file(*shot.b, folder), t.x(), t.y(), t.z(), q.w(),
                                  q.x(), q.y(), q.z(), algorithm.traits().name);
-  const std::vector<std::string> chosen = assignments(settings), defaults = assignments(algorithm.settings());
+  const std::vector<std::string> chosen = assignments(settings),
+                                 defaults = assignments(algorithm.settings().to_string());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (chosen[i] != defaults[i]) line += " -p " + chosen[i];
   }

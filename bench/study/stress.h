@@ -4,12 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <sixdof/query/registry.h>
 #include <sixdof/stability/families.h>
-#include <sixdof/stability/search.h>
+#include <sixdof/stability/judge.h>
 
 /// Which algorithm breaks when numbers get hard, where, and how badly: families of hard cases against algorithms.
 
@@ -26,35 +27,44 @@ struct StressEffort {
   static StressEffort full() { return {.samples = 40, .declared_samples = 16, .generations = 6, .children = 6}; }
 };
 
-struct StressPlan {
-  std::vector<const Algorithm*> algorithms;
-  std::vector<const stability::Family*> families;
-  StressEffort effort;
-  std::uint64_t seed = 1;
+/// Which case of a family: one of its field cases, or that of some genes.
+struct CaseId {
+  static constexpr std::size_t k_generated = std::numeric_limits<std::size_t>::max();
+  std::size_t field = k_generated;
+  stability::Genes genes{};
 };
+
+stability::Case make_case(const stability::Family& family, const CaseId& id);
 
 /// An algorithm on a family.
 struct StressCell {
   const stability::Family* family = nullptr;
   const Algorithm* algorithm = nullptr;
-  Settings settings;  ///< coarse_settings() of the algorithm.
+  std::string settings;  ///< "name=value,name=value": coarse_settings() of the algorithm.
   std::size_t cases = 0;
   std::size_t unsupported = 0;  ///< Cases that it declares it does not answer.
-  stability::Case member;       ///< The worst case,
+  CaseId id;                    ///< The worst case,
   stability::Finding worst;     ///< and what is wrong with it.
-  stability::Case slow_member;  ///< The case with the slowest query.
+  CaseId slow_id;               ///< The case with the slowest query.
   std::size_t slow_shot = 0;
   double slowest_seconds = 0.0;  ///< Processor time.
 };
 
-/// All cells, by family, then by algorithm. Deterministic by seed but for times.
-/// @param progress is told how many cells of how many are done, from one thread at a time
-std::vector<StressCell> run_stress(const StressPlan& plan,
-                                   const std::function<void(std::size_t done, std::size_t total)>& progress);
+/// Is told what is asked next, so that it is known if the process ends there.
+struct StressWatch {
+  std::function<void(const CaseId&)> begins_case;
+  std::function<void()> prepares;
+  std::function<void(const Pose& X_AB)> asks;
+};
+
+/// One cell, in this process. Deterministic by seed but for times.
+StressCell run_cell(const stability::Family& family, const Algorithm& algorithm, const StressEffort& effort,
+                    std::uint64_t seed, const StressWatch& watch);
 
 /// The command that asks the same again, one line: numbers with all digits, settings that differ from the defaults.
-/// @param folder gets the two meshes as OFF files named by content, if it is not empty; else their names only
-std::string reproduction(const stability::Shot& shot, const Algorithm& algorithm, const Settings& settings,
+/// @param settings of StressCell
+/// @param folder gets the two meshes as OFF files named by content
+std::string reproduction(const stability::Shot& shot, const Algorithm& algorithm, const std::string& settings,
                          const std::filesystem::path& folder);
 
 }  // namespace sixdof::study

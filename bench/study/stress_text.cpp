@@ -20,16 +20,16 @@ std::string_view word(Verdict verdict) {
 
 StressLine stress_line(const StressCell& cell, const std::filesystem::path& folder) {
   const auto& worst = cell.worst;
+  const stability::Case member = make_case(*cell.family, cell.id), slow = make_case(*cell.family, cell.slow_id);
   return {.verdict = std::string(to_string(worst.verdict)),
           .metric = worst.metric,
           .worst = fmt::format("{:.3g} {}", worst.value, worst.unit),
-          .member = cell.member.name,
-          .thread = cell.member.thread,
-          .reproduction = reproduction(cell.member.shots[worst.shot], *cell.algorithm, cell.settings, folder),
-          .slow_reproduction = cell.slow_member.shots.empty() ? std::string()
-                                                              : reproduction(cell.slow_member.shots[cell.slow_shot],
-                                                                             *cell.algorithm, cell.settings, folder),
-          .words = worst.words};
+          .member = member.name,
+          .thread = member.thread,
+          .reproduction = reproduction(member.shots.at(worst.shot), *cell.algorithm, cell.settings, folder),
+          .slow_reproduction = reproduction(slow.shots.at(cell.slow_shot), *cell.algorithm, cell.settings, folder),
+          .words = worst.words,
+          .parameter = member.parameter};
 }
 
 std::string stress_matrix(const std::vector<StressCell>& cells) {
@@ -70,14 +70,14 @@ nlohmann::ordered_json stress_json(const std::vector<StressCell>& cells, const s
                     {"metric", line.metric},
                     {"case", line.member},
                     {"thread", line.thread},
-                    {"parameter", cell.member.parameter},
+                    {"parameter", line.parameter},
                     {"words", line.words},
                     {"times_of_rounding", cell.worst.excess},
                     {"unsupported", cell.unsupported},
                     {"slowest_s", cell.slowest_seconds},
                     {"slowest_reproduction", line.slow_reproduction},
                     {"version", cell.algorithm->traits().version},
-                    {"settings", cell.settings.to_string()},
+                    {"settings", cell.settings},
                     {"seed", seed}});
   }
   return list;

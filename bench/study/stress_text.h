@@ -14,6 +14,7 @@ namespace sixdof::study {
 /// A cell as text and for files.
 struct StressLine {
   std::string verdict, metric, worst, member, thread, reproduction, slow_reproduction, words;
+  double parameter = 0.0;  ///< Of the worst case.
 };
 
 /// @param folder gets the meshes of the reproductions; see reproduction()

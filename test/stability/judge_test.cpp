@@ -55,6 +55,11 @@ const Shot& deep_by_a_tenth() {
   static const Shot shot = aligned_boxes({1.0, 1.0, 1.0}, {0.5, 0.4, 0.3}, {0.1, 0.05, 0.55});
   return shot;
 }
+/// By less than a quarter of the thickness of the smaller body.
+const Shot& barely_deep() {
+  static const Shot shot = aligned_boxes({1.0, 1.0, 1.0}, {0.5, 0.4, 0.3}, {0.1, 0.05, 0.63});
+  return shot;
+}
 const Shot& inside() {
   static const Shot shot = aligned_boxes({1.0, 1.0, 1.0}, {0.5, 0.4, 0.3}, {0.1, 0.05, 0.07});
   return shot;
@@ -102,9 +107,10 @@ TEST(Judge, MissesAndPhantomsAreToldApart) {
 }
 
 TEST(Judge, ADeclaredResolutionExcusesAsMuchAndNoMore) {
-  EXPECT_EQ(judge_script({.collide = false, .resolution = 0.11}, deep_by_a_tenth(), k_all).worst().verdict,
+  // Moved inwards by volume / area = 0.0638 the smaller box vanishes.
+  EXPECT_EQ(judge_script({.collide = false, .resolution = 0.07}, deep_by_a_tenth(), k_all).worst().verdict,
             Verdict::resolution);
-  EXPECT_EQ(judge_script({.collide = false, .resolution = 0.09}, deep_by_a_tenth(), k_all).worst().verdict,
+  EXPECT_EQ(judge_script({.collide = false, .resolution = 0.06}, deep_by_a_tenth(), k_all).worst().verdict,
             Verdict::wrong);
 }
 
@@ -117,12 +123,15 @@ TEST(Judge, YesWithADistanceIsAContradiction) {
 }
 
 TEST(Judge, AForceThatPullsInIsWrongAndOneAsideIsTheLaws) {
-  EXPECT_EQ(judge_script({.respond = pushing(-Eigen::Vector3d::UnitZ())}, deep_by_a_tenth(), k_all).worst().verdict,
+  EXPECT_EQ(judge_script({.respond = pushing(-Eigen::Vector3d::UnitZ())}, barely_deep(), k_all).worst().verdict,
             Verdict::wrong);
   const Eigen::Vector3d aside(1.0, 0.0, 1.0);
-  EXPECT_EQ(judge_script({.respond = pushing(aside)}, deep_by_a_tenth(), k_all).worst().verdict, Verdict::resolution);
+  EXPECT_EQ(judge_script({.respond = pushing(aside)}, barely_deep(), k_all).worst().verdict, Verdict::resolution);
   Profile exact = k_all;
   exact.law = ResponseLaw::volume;
+  EXPECT_EQ(judge_script({.respond = pushing(aside)}, barely_deep(), exact).worst().verdict, Verdict::wrong);
+  // Deeper, laws of points follow their own shortest ways; the gradient of the volume is what it is.
+  EXPECT_EQ(judge_script({.respond = pushing(aside)}, deep_by_a_tenth(), k_all).worst().verdict, Verdict::exact);
   EXPECT_EQ(judge_script({.respond = pushing(aside)}, deep_by_a_tenth(), exact).worst().verdict, Verdict::wrong);
 }
 
@@ -133,6 +142,16 @@ TEST(Judge, SurfacesOnlyIsALimitWhereBodiesAreInsideEachOther) {
             Verdict::unsupported);
   EXPECT_EQ(judge_script({.collide = false}, inside(), k_all).worst().verdict, Verdict::wrong);
   EXPECT_EQ(judge_script({.collide = false}, deep_by_a_tenth(), surfaces).worst().verdict, Verdict::wrong);
+}
+
+TEST(Judge, ADistanceOfBodiesIsALimitWhereTheyAreInsideEachOther) {
+  Shot known = inside();
+  known.truth.distance = 0.2;
+  Profile bodies = k_all;
+  EXPECT_EQ(judge_script({.distance = at_distance(0.0)}, known, bodies).worst().verdict, Verdict::wrong);
+  bodies.distance_of_bodies = true;
+  EXPECT_EQ(judge_script({.distance = at_distance(0.0)}, known, bodies).worst().verdict, Verdict::unsupported);
+  EXPECT_EQ(judge_script({.distance = at_distance(0.1)}, known, bodies).worst().verdict, Verdict::wrong);
 }
 
 TEST(Judge, WaysToGiveNoAnswerAreKeptApart) {
@@ -181,6 +200,7 @@ TEST(Judge, TheReferenceFindsBodiesInsideEachOther) {
   const Profile profile = exact_profile();
   EXPECT_TRUE(profile.finds_contained);
   EXPECT_TRUE(profile.pushes_contained);
+  EXPECT_FALSE(profile.distance_of_bodies);
   const std::unique_ptr<Algorithm> surfaces = make_brute_force_algorithm();
   const auto prepare = [&](const Mesh& a, const Mesh& b) { return surfaces->prepare(a, b, surfaces->settings()); };
   EXPECT_FALSE(profile_of(surfaces->traits(), prepare).finds_contained);

@@ -28,6 +28,8 @@ class Resonant : public Query {
 const Prepare k_prepare = [](const Mesh& a, const Mesh& b) { return std::make_unique<Resonant>(a, b); };
 const Profile k_profile{.answers = {.collide = false, .distance = true, .respond = false}};
 
+const JudgeCase k_judge = [](const Genes&, const Case& member) { return judge(member, k_profile, k_prepare); };
+
 Judged start() {
   const Family& family = find_family("grazing");
   Judged judged{.genes = sample_genes(family, 4, 0, 1), .member = {}, .judgement = {}};
@@ -38,7 +40,7 @@ Judged start() {
 }
 
 Judged search(std::uint64_t seed) {
-  return search_worst(find_family("grazing"), start(), k_profile, k_prepare, worse_answer, 6, 6, seed);
+  return search_worst(find_family("grazing"), start(), k_judge, worse_answer, 6, 6, seed);
 }
 
 TEST(Search, FindsAWorseCaseThanItsStart) {
@@ -58,8 +60,7 @@ TEST(Search, IsDeterministicBySeedAndItsGenesGiveItsCase) {
 }
 
 TEST(Search, WithoutGenerationsReturnsTheStart) {
-  EXPECT_EQ(search_worst(find_family("grazing"), start(), k_profile, k_prepare, worse_answer, 0, 6, 1).genes,
-            start().genes);
+  EXPECT_EQ(search_worst(find_family("grazing"), start(), k_judge, worse_answer, 0, 6, 1).genes, start().genes);
 }
 
 }  // namespace

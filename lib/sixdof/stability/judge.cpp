@@ -54,6 +54,8 @@ Profile profile_of(const Traits& traits, const Prepare& prepare) {
     const Answers answers = pairs.ask(shot);
     const auto& yes = answers.collide.outcome;
     const auto& response = answers.respond.outcome;
+    const auto& distance = answers.distance.outcome;
+    if (distance.ok()) profile.distance_of_bodies = profile.distance_of_bodies || distance.value.distance == 0.0;
     if (yes.ok()) profile.finds_contained = profile.finds_contained && yes.value;
     if (response.ok()) profile.pushes_contained = profile.pushes_contained && response.value.penalty != 0.0;
   }

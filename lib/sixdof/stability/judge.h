@@ -15,8 +15,9 @@ namespace sixdof::stability {
 struct Profile {
   QuerySet answers;
   ResponseLaw law = ResponseLaw::none;
-  bool finds_contained = true;   ///< collide() is true for a body inside another, not only for surfaces that meet.
-  bool pushes_contained = true;  ///< respond() has a penalty there.
+  bool finds_contained = true;      ///< collide() is true for a body inside another, not only for surfaces that meet.
+  bool pushes_contained = true;     ///< respond() has a penalty there.
+  bool distance_of_bodies = false;  ///< distance() is 0 there, as of bodies, not that of the surfaces.
 };
 
 /// Asks about a small box inside a large one, in both orders.

@@ -27,10 +27,24 @@ Verdict verdict_of(Status status) {
   return Verdict::threw;
 }
 
+/// Half the mean thickness of a body: moving its surface inwards by that makes it vanish.
+double half_thickness(const Mesh& mesh) { return mesh.solid() ? mesh.volume() / mesh.area() : 0.0; }
+
+double least_half_thickness(const Shot& shot) { return std::min(half_thickness(*shot.a), half_thickness(*shot.b)); }
+
+/// How far surfaces have to move until a miss is right: to where they no longer meet or, for an algorithm that declares
+/// a resolution, until one body has vanished.
+double distance_to_miss(const Shot& shot, const Answers& answers) {
+  const double gap = std::abs(shot.truth.gap);
+  return answers.resolution > 0.0 && shot.truth.gap < 0.0 ? std::min(gap, least_half_thickness(shot)) : gap;
+}
+
 /// Yes/no, once right and wrong are known: how far from contact the mistake is.
-Finding sign_finding(const char* metric, bool right, double gap, double size, const Bounds& bounds, std::size_t shot) {
+Finding sign_finding(const char* metric, bool right, const Shot& asked, const Answers& answers, const Bounds& bounds,
+                     std::size_t shot) {
+  const double size = asked.a->diagonal(), gap = asked.truth.gap;
   if (right) return {.verdict = Verdict::exact, .metric = metric, .unit = "size", .shot = shot, .words = {}};
-  return length_finding(metric, std::abs(gap), size, bounds, shot,
+  return length_finding(metric, distance_to_miss(asked, answers), size, bounds, shot,
                         fmt::format("true gap {}, where the answer has the wrong sign", gap));
 }
 
@@ -51,7 +65,7 @@ void judge_response(const Case& member, std::size_t index, const Response& respo
                           .shot = index,
                           .words = "surfaces only"});
     } else {
-      findings.push_back(sign_finding(truth.gap < 0.0 ? "missed" : "phantom", right, truth.gap, size, bounds, index));
+      findings.push_back(sign_finding(truth.gap < 0.0 ? "missed" : "phantom", right, shot, answers, bounds, index));
     }
   }
   if (!std::isnan(truth.volume) && std::isfinite(response.volume)) {
@@ -63,10 +77,13 @@ void judge_response(const Case& member, std::size_t index, const Response& respo
     findings.push_back(std::move(finding));
   }
   const double depth = -truth.gap;
-  if (truth.push && depth > bounds.largest() && !response.force.isZero(0.0)) {
+  // Laws that add up what each point or contact is deep follow the shortest way of the whole body where it is shallow.
+  constexpr double k_shallow = 0.5;
+  const bool own_direction = profile.law != ResponseLaw::volume || answers.resolution > 0.0;
+  const bool claimed = !own_direction || depth < k_shallow * least_half_thickness(shot);
+  if (truth.push && claimed && depth > bounds.largest() && !response.force.isZero(0.0)) {
     const double angle = angle_between(response.force, *truth.push);
     const double allowed = rounding_angle(shot, bounds, depth, response.force, profile);
-    const bool own_direction = profile.law != ResponseLaw::volume || answers.resolution > 0.0;
     const Verdict verdict = angle <= allowed                                  ? Verdict::exact
                             : own_direction && angle < 0.5 * std::numbers::pi ? Verdict::resolution
                                                                               : Verdict::wrong;
@@ -167,6 +184,7 @@ void judge_statuses(const Shot& shot, std::size_t index, const Answers& answers,
   const auto examine = [&](const char* query, Status status, const std::string& words) {
     if (status == Status::ok || status == Status::unsupported) return;
     Verdict verdict = verdict_of(status);
+    if (words == "std::bad_alloc") verdict = Verdict::out_of_memory;
     if (verdict == Verdict::threw && !solid) verdict = Verdict::unsupported;
     findings.push_back({.verdict = verdict, .metric = query, .unit = "1", .shot = index, .words = words});
   };
@@ -198,12 +216,18 @@ void judge_truth(const Case& member, std::size_t index, const Answers& answers, 
                           .shot = index,
                           .words = "surfaces only"});
     } else {
-      findings.push_back(sign_finding(truth.gap <= 0.0 ? "missed" : "phantom", right, truth.gap, size, bounds, index));
+      findings.push_back(sign_finding(truth.gap <= 0.0 ? "missed" : "phantom", right, shot, answers, bounds, index));
     }
   }
   if (answers.distance.outcome.ok()) {
     const Separation& gap = answers.distance.outcome.value;
-    if (!std::isnan(truth.distance)) {
+    if (truth.contained && profile.distance_of_bodies && gap.distance == 0.0) {
+      findings.push_back({.verdict = Verdict::unsupported,
+                          .metric = "distance",
+                          .unit = "size",
+                          .shot = index,
+                          .words = "distance of the bodies"});
+    } else if (!std::isnan(truth.distance)) {
       findings.push_back(length_finding("distance", std::abs(gap.distance - truth.distance), size, bounds, index,
                                         fmt::format("distance {} instead of {}", gap.distance, truth.distance)));
     }

@@ -31,8 +31,8 @@ bool worse_answer(const Judgement& one, const Judgement& other) { return one.wor
 
 bool slower(const Judgement& one, const Judgement& other) { return one.slowest_seconds > other.slowest_seconds; }
 
-Judged search_worst(const Family& family, Judged start, const Profile& profile, const Prepare& prepare,
-                    const Worse& worse, std::size_t generations, std::size_t children, std::uint64_t seed) {
+Judged search_worst(const Family& family, Judged start, const JudgeCase& judge_case, const Worse& worse,
+                    std::size_t generations, std::size_t children, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   constexpr double k_first_step = 0.3, k_shrink = 0.7;
   double step = k_first_step;
@@ -42,7 +42,7 @@ Judged search_worst(const Family& family, Judged start, const Profile& profile, 
       Judged child{.genes = mutant(start.genes, step, random), .member = {}, .judgement = {}};
       Draw draw(child.genes);
       child.member = family.make(draw);
-      child.judgement = judge(child.member, profile, prepare);
+      child.judgement = judge_case(child.genes, child.member);
       if (worse(child.judgement, best.judgement)) best = std::move(child);
     }
     start = std::move(best);

@@ -53,8 +53,9 @@ Shot above_face(const MeshPointer& a, double height, const MeshPointer& b, const
 
 Shot aligned_boxes(const Eigen::Vector3d& size_a, const Eigen::Vector3d& size_b, const Eigen::Vector3d& offset) {
   Shot shot{.a = box(size_a), .b = box(size_b), .X_AB = {offset, Eigen::Quaterniond::Identity()}, .truth = {}};
+  constexpr long double k_same_plane = 1e-12L;
   long double volume = 1.0L, square = 0.0L, depth = std::numeric_limits<long double>::infinity();
-  bool b_inside = true, a_inside = true;
+  bool b_inside = true, a_inside = true, apart_inside = true;
   Eigen::Index axis = 0;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const long double a = size_a[k], b = size_b[k];
@@ -63,14 +64,16 @@ Shot aligned_boxes(const Eigen::Vector3d& size_a, const Eigen::Vector3d& size_b,
     depth = std::min(depth, overlap);
     volume *= std::clamp(overlap, 0.0L, std::min(a, b));
     if (overlap < 0) square += overlap * overlap;
-    b_inside = b_inside && overlap > b;
-    a_inside = a_inside && overlap > a;
+    b_inside = b_inside && overlap >= b - k_same_plane;
+    a_inside = a_inside && overlap >= a - k_same_plane;
+    apart_inside = apart_inside && overlap > std::min(a, b) + k_same_plane;
   }
+  // Inside with room on all sides the surfaces are apart, by what is not computed here.
   const bool inside = a_inside || b_inside;
   shot.truth.volume = static_cast<double>(volume);
   shot.truth.gap = static_cast<double>(square > 0 ? std::sqrt(square) : -depth);
   shot.truth.contained = inside;
-  shot.truth.distance = inside ? k_unknown : std::max(0.0, shot.truth.gap);
+  shot.truth.distance = inside && apart_inside ? k_unknown : std::max(0.0, shot.truth.gap);
   // A direction is claimed only where the other ways out are clearly longer, and one body's face lies inside the
   // other's: else the volume decreases sideways, too.
   constexpr double k_inside = 1e-9;

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "bench/study/stress.h"
+
+/// Cells of a stress, each in a process of its own: a library that aborts, never returns or takes all memory ends its
+/// cell and nothing else.
+
+namespace sixdof::study {
+
+struct StressPlan {
+  std::vector<const Algorithm*> algorithms;
+  std::vector<const stability::Family*> families;
+  StressEffort effort;
+  std::uint64_t seed = 1;
+  double silence_s = 60.0;    ///< Longest wall time of one query or one preparation.
+  double memory_bytes = 4e9;  ///< Of data, for each process.
+  std::size_t processes = 2;  ///< At once.
+};
+
+/// All cells, by family, then by algorithm. Deterministic by seed but for times and what depends on them. A cell whose
+/// process ends has the case and the pose that it was asked last, and the verdict crashed, hung or out of memory.
+///
+/// The processes are forks of this one, which has no threads of oneTBB as long as nothing was prepared in it.
+/// @param progress is called often, with how many cells are done; what it throws ends all processes
+/// @throws Error if no process can be made
+std::vector<StressCell> run_stress(const StressPlan& plan,
+                                   const std::function<void(std::size_t done, std::size_t total)>& progress);
+
+}  // namespace sixdof::study
