@@ -163,6 +163,29 @@ TEST(CloseSearch, SmallBodiesInsideLargeOnesTakeFewPairs) {
   }
 }
 
+TEST(CloseSearch, SmallBodiesBelowAFanTakeFewPairs) {
+  // All slices lie in one plane, which cuts all axes: their boxes overlap, and only one slice is the closest.
+  constexpr std::uint32_t k_slices = 512;
+  std::vector<Vector3d> v{{0.0, 0.0, 0.0}};
+  std::vector<Triangle> t;
+  for (std::uint32_t i = 0; i < k_slices; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / k_slices;
+    v.push_back({0.5 * std::cos(angle), 0.5 * std::sin(angle), 0.0});
+    t.push_back({0, 1 + i, 1 + (i + 1) % k_slices});
+  }
+  Generator generator(36);
+  const Mesh b = sphere(180, 89, 1e-3);
+  for (int i = 0; i < 5; ++i) {
+    const Pose frame = shapes::random_pose(generator, 0.1);
+    const Mesh a = shapes::moved(Mesh::build(v, t), frame);
+    Pose pose = shapes::random_pose(generator, 0.0);
+    pose.t = frame * Vector3d(0.13, 0.06 * i, 0.37);
+    double truth = std::numeric_limits<double>::infinity();
+    for (const Vector3d& p : b.vertices()) truth = std::min(truth, (frame.inverse() * (pose * p)).z());
+    expect_distance(a, b, pose, truth, 4e-16, 12'000);
+  }
+}
+
 TEST(CloseSearch, AScaledCopyInTheCentreTakesPairsAlongTheFacesThatTie) {
   // Every face is parallel to that of the copy, and the distances of those on a latitude are equal up to rounding.
   const Mesh a = sphere(180, 89);

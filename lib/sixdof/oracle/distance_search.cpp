@@ -227,7 +227,10 @@ constexpr std::uint64_t k_patience_with_thick = 256;
 constexpr std::uint64_t k_patience_with_doubtful = 2048;
 constexpr std::uint64_t k_patience_with_touching = 256;  // for intersections, exact tests of triangles are spared, too
 
-/// After as many pairs of leaves the bounds of their triangles get more axes, which take as long as all before.
+/// And, in long searches, with a node whose size is less than its own divided by this.
+constexpr float k_unlike = 8.0f;
+/// A search is long after as many pairs of leaves. Then the bounds of their triangles get more axes, which take as long
+/// as all before.
 constexpr std::uint64_t k_patience_with_leaves = 4096;
 
 class DistanceTraversal final : private CloseVisitor {
@@ -305,7 +308,8 @@ class DistanceTraversal final : private CloseVisitor {
   };
 
   /// Expands the larger, or the one that is no leaf. In doubles if it is so small that floats blur it, or if the other
-  /// is a leaf and thick in comparison: then the leaf's volume is much larger than its triangles.
+  /// is a leaf whose volume is much larger than its triangles in comparison: a thick one, or slices of a fan that lie
+  /// across all axes.
   HWY_INLINE Choice choose(const NodePair& pair) {
     const Tree::Volume& a = volume_of(tree_a_, pair.a);
     const Tree::Volume& b = volume_of(tree_b_, pair.b);
@@ -314,9 +318,10 @@ class DistanceTraversal final : private CloseVisitor {
     const bool expands_a = is_leaf(pair.b) || (!is_leaf(pair.a) && size_a >= size_b);
     const float expanded = expands_a ? size_a : size_b;
     if (expanded < blurred_) return {expands_a, true};
-    const bool other_is_leaf = is_leaf(expands_a ? pair.b : pair.a);
-    return {expands_a,
-            other_is_leaf && is_thick(expands_a ? b : a, expanded) && ++thick_pairs_ > k_patience_with_thick};
+    if (!is_leaf(expands_a ? pair.b : pair.a)) return {expands_a, false};
+    const bool is_long_search = search_.counts.leaf_pairs > k_patience_with_leaves;
+    if (is_long_search && k_unlike * k_unlike * expanded < (expands_a ? size_b : size_a)) return {expands_a, true};
+    return {expands_a, is_thick(expands_a ? b : a, expanded) && ++thick_pairs_ > k_patience_with_thick};
   }
 
   /// @param size square of a diagonal
