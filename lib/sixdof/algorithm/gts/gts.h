@@ -22,9 +22,8 @@ namespace sixdof {
 /// silences GTS's messages for the rest of the process.
 ///
 /// **Known failures.**
-/// - Where faces of both bodies lie in one plane GTS may end the process, by a failed assertion of its own after a
-/// message
-///   on standard error, or never return. Whether it does depends on the addresses that it was given, by which its hash
+/// - Where faces of both bodies lie in one plane GTS may end the process (a failed assertion of its own, with words on
+///   standard error), or never return. Whether it does depends on the addresses that it was given, by which its hash
 ///   tables are ordered: `sixdof query --a box-300 --b box-300 --pose "0 0 0 1 0 0 0" --algorithm gts` dies in four
 ///   runs of five; of three runs of the ship at 5 % of volume, where two of eight poses are of this kind, one ended,
 ///   one died and one ran on. Nothing can stop that within the process: ask poses like these in a process of their own.
