@@ -25,9 +25,11 @@ namespace sixdof {
 /// **Profiles.** `default` is what Embree's tutorial `collide` does: scenes of quality LOW, whose trees are rebuilt by
 /// every commit (https://github.com/RenderKit/embree/blob/master/tutorials/collide/collide_device.cpp). `tuned` follows
 /// Embree's manual: A's scene of quality HIGH, "better rendering performance but slower scene commit times"
-/// (https://manpages.ubuntu.com/manpages/jammy/man3/rtcSetSceneBuildQuality.3.html), B's scene with the flag DYNAMIC,
-/// "better build performance for dynamic scenes" (rtcSetSceneFlags(3)), and its geometry of quality REFIT, "when
-/// changing only the vertex buffer" (https://man.archlinux.org/man/rtcSetGeometryBuildQuality.3embree3.en.txt).
+/// (https://manpages.ubuntu.com/manpages/jammy/man3/rtcSetSceneBuildQuality.3.html); B's scene with the flag DYNAMIC,
+/// "better build performance for dynamic scenes"
+/// (https://man.archlinux.org/man/extra/embree3/rtcSetSceneFlags.3embree3.en); B's geometry of quality REFIT, "when
+/// changing only the vertex buffer"
+/// (https://man.archlinux.org/man/rtcSetGeometryBuildQuality.3embree3.en.txt).
 ///
 /// **Threads.** Embree spreads builds and rtcCollide() over all cores. Here both run in a task arena of one thread.
 ///
