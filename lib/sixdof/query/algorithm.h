@@ -139,6 +139,9 @@ struct Traits {
   std::string summary;  ///< One line, for lists.
   QuerySet answers;     ///< Benchmarks ask these kinds of query only; the others return Status::unsupported.
   ResponseLaw law = ResponseLaw::none;  ///< Of respond().
+  /// Whether it answers for an approximation of the bodies: Footprint::counts has how far that may lie from the true
+  /// surfaces, as "resolution" (length).
+  bool approximates = false;
   std::vector<Parameter> parameters;    ///< What a user may set; empty if nothing.
   /// Whether benchmarks have rows of its queries. False for a reference that is too slow, such as brute force.
   bool timed = true;

@@ -8,7 +8,6 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/query/ask.h>
-#include <sixdof/stability/bodies.h>
 
 namespace sixdof::stability {
 namespace {
@@ -37,13 +36,11 @@ void ask_one(Query& query, bool asked, Outcome<T> (Query::*question)(const Pose&
 
 Settings coarse_settings(const Algorithm& algorithm) {
   Settings settings = algorithm.settings();
+  if (!algorithm.traits().approximates) return settings;
   for (const Parameter& parameter : algorithm.traits().parameters) {
     if (!parameter.sweep.empty()) settings.set(parameter.name, parameter.sweep.front());
   }
-  if (settings.to_string() == algorithm.settings().to_string()) return settings;
-  const MeshPointer probe = box({1.0, 0.9, 0.8});
-  const bool declares = declared_resolution(*algorithm.prepare(*probe, *probe, settings)) > 0.0;
-  return declares ? settings : algorithm.settings();
+  return settings;
 }
 
 Answers ask(Query& query, const QuerySet& kinds, const Pose& X_AB) {

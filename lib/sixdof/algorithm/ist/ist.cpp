@@ -210,6 +210,7 @@ std::unique_ptr<Algorithm> make_ist_algorithm() {
        .summary = "inner sphere trees (Weller and Zachmann 2009): overlap volume of packed spheres along normal cones",
        .answers = {.collide = true, .distance = true, .respond = true},
        .law = ResponseLaw::volume,
+       .approximates = true,
        .parameters = ist::ist_parameters()});
 }
 
@@ -220,6 +221,7 @@ std::unique_ptr<Algorithm> make_ist_descent_algorithm() {
        .summary = "inner sphere trees: overlap volume of weighted spheres, in the direction of its steepest descent",
        .answers = {.collide = true, .distance = true, .respond = true},
        .law = ResponseLaw::volume,
+       .approximates = true,
        .parameters = ist::descent_parameters()});
 }
 

@@ -259,6 +259,7 @@ Traits traits(std::string name, std::string summary, std::vector<Parameter> para
           .summary = std::move(summary),
           .answers = {.collide = true, .respond = true},
           .law = ResponseLaw::depth,
+          .approximates = true,
           .parameters = std::move(parameters)};
 }
 
