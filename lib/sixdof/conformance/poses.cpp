@@ -119,7 +119,7 @@ std::vector<Pair> make_pairs() {
   list.push_back(with_cases(load_model("torus-300"), load_model("cone-100"), 11));
   list.push_back(with_cases(load_model("bumpy-sphere-80"), load_model("circular-box-960"), 12));
   list.push_back(with_cases(turned_plate(), small("sphere-80", 0.15), 13));
-  list.push_back(with_cases(load_model("gyroid-ball-1k"), load_model("cone-60"), 14));
+  list.push_back(with_cases(load_model("circular-box-960"), load_model("torus-100"), 14));
   list.push_back(with_cases(load_model("torus-knot-600"), load_model("torus-100"), 15));
   list.push_back(with_one_inside(load_model("sphere-1k"), small("torus-100", 0.22), 16));
   list.push_back(with_one_inside(small("torus-100", 0.22), load_model("sphere-1k"), 17));
