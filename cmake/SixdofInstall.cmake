@@ -50,6 +50,40 @@ install(FILES ${PROJECT_BINARY_DIR}/sixdof-config.cmake ${PROJECT_BINARY_DIR}/si
   ${PROJECT_SOURCE_DIR}/cmake/SixdofCommit.cmake ${PROJECT_SOURCE_DIR}/cmake/SixdofCommitHeader.cmake
   DESTINATION ${package_folder})
 
+# What a project needs that uses the package, by Debian's names. test/downstream/chroot installs these and nothing else.
+set(needed
+  "g++                 # compiler"
+  "make                # or ninja-build"
+  "cmake               # find_package(sixdof)"
+  "pkg-config          # finds libraries that have no CMake package"
+  "libeigen3-dev       # part of the interface"
+  "libtbb-dev" "libfmt-dev" "nlohmann-json3-dev" "libassimp-dev" "libhdf5-dev" "libxxhash-dev" "libhwy-dev" "libfftw3-dev")
+set(needed_by_fcl libfcl-dev)
+set(needed_by_bullet libbullet-dev)
+set(needed_by_ode libode-dev)
+set(needed_by_embree libembree-dev)
+set(needed_by_gts libgts-dev)
+set(needed_by_simbody libsimbody-dev)
+set(needed_by_ccd libccd-dev libqhull-dev)
+set(needed_by_mujoco libmujoco-dev)
+set(needed_by_cgal libcgal-dev)
+foreach(backend IN LISTS SIXDOF_BACKENDS)
+  if(SIXDOF_HAS_${backend})
+    foreach(package IN LISTS needed_by_${backend})
+      list(APPEND needed "${package}  # backend ${backend}")
+    endforeach()
+  endif()
+endforeach()
+if(SIXDOF_BUILD_BENCH)
+  list(APPEND needed "libbenchmark-dev    # programs of your own: sixdof::bench_main, sixdof::cli_main")
+endif()
+if(SIXDOF_HAS_conformance)
+  list(APPEND needed "libgtest-dev        # tests of your own: sixdof::conformance")
+endif()
+list(JOIN needed "\n" needed)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/packages.txt CONTENT "${needed}\n")
+install(FILES ${PROJECT_BINARY_DIR}/packages.txt DESTINATION ${data_folder})
+
 # pkg-config, for the core library alone.
 file(RELATIVE_PATH prefix_of_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/sixdof.pc.in ${PROJECT_BINARY_DIR}/sixdof.pc @ONLY)

@@ -138,6 +138,7 @@ void write_project(const Arguments& arguments) {
   folder.write("CMakeLists.txt", fill_in(templates / "CMakeLists.txt.in", words));
   folder.write("README.md", fill_in(templates / "README.md.in", words));
   folder.write(stem + ".cpp", fill_in(templates / "algorithm.cpp.in", words));
+  folder.write(stem + "_conformance.cpp", fill_in(templates / "conformance.cpp.in", words));
   folder.commit();
   fmt::print(
       "{0}: a project with the algorithm {1}. To build it and see its first row:\n"

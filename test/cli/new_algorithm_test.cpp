@@ -42,9 +42,11 @@ TEST_F(NewAlgorithm, WritesAProjectUnderItsName) {
   const auto result = run("fast-boxes-2 -o " + path("mine"));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("cmake -S . -B build"), HasSubstr("build/fast-boxes-2-bench --a")));
-  EXPECT_EQ(files(), 4u);  // the folder and three in it
+  EXPECT_EQ(files(), 5u);  // the folder and four in it
   const std::string build = text_of(path("mine/CMakeLists.txt")), source = text_of(path("mine/fast_boxes_2.cpp")),
-                    readme = text_of(path("mine/README.md"));
+                    readme = text_of(path("mine/README.md")),
+                    conformance = text_of(path("mine/fast_boxes_2_conformance.cpp"));
+  EXPECT_THAT(conformance, HasSubstr("SIXDOF_CONFORMANCE(\"fast-boxes-2\", "));
   EXPECT_THAT(build, AllOf(HasSubstr("project(fast-boxes-2 "), HasSubstr("sixdof::bench_main"),
                            HasSubstr(" fast_boxes_2.cpp")));
   EXPECT_THAT(source, AllOf(HasSubstr("class FastBoxes2Query final"), HasSubstr(".name = \"fast-boxes-2\"")));
@@ -53,7 +55,7 @@ TEST_F(NewAlgorithm, WritesAProjectUnderItsName) {
   const std::size_t begin = build.find(place) + place.size();
   EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(build.substr(begin, build.find('"', begin) - begin)) /
                                       "lib" / "CMakeLists.txt"));
-  for (const std::string& text : {build, source, readme}) EXPECT_THAT(text, Not(HasSubstr("@")));
+  for (const std::string& text : {build, source, readme, conformance}) EXPECT_THAT(text, Not(HasSubstr("@")));
 }
 
 TEST_F(NewAlgorithm, OverwritesNothing) {

@@ -48,6 +48,14 @@ class Project(unittest.TestCase):
             answer = json.loads(run(program, "query", *PAIR, "--pose", pose, "--algorithm", name, "--json"))
             self.assertEqual((answer["status"], answer["colliding"]), ("ok", meet))
 
+    def check_conformance(self, program, known):
+        """All checks pass or are known failures, which run."""
+        out = run(program)
+        self.assertEqual(out.count("\nknown failure: "), len(known))
+        for check in known:
+            self.assertIn(f"_{check}\nknown failure: ", re.sub(r", where .*", "", out))
+        self.assertGreaterEqual(int(re.search(r"PASSED  \] (\d+) tests", out).group(1)), 12)
+
     def check_study(self, program, name, folder):
         file = folder / "precision.json"
         run(program, "precision", *PAIR, "--question", "collide", "--algorithms", f"exact,{name}", "--sample", 16,
@@ -84,6 +92,7 @@ class Installed(Project):
         self.check_queries(build / "gimpact-sixdof", "gimpact")
         self.check_study(build / "gimpact-sixdof", "gimpact", build)
         self.check_rows(build / "gimpact-bench", "gimpact", VERSION, build)
+        self.check_conformance(build / "gimpact-conformance", ["Collide", "MotionOfCollide"])
         self.assertIn("gimpact", run(build / "gimpact-sixdof", "query", *PAIR, "--pose", APART, "--algorithm", "none",
                                      expected=1))
 
@@ -99,7 +108,7 @@ class Installed(Project):
         folder = ARGUMENTS.work / "mine"
         shutil.rmtree(folder, ignore_errors=True)
         run(program, "new-algorithm", "fast-boxes", "-o", folder)
-        self.assertEqual(sorted(path.name for path in folder.iterdir()), ["CMakeLists.txt", "README.md", "fast_boxes.cpp"])
+        self.assertEqual(sorted(path.name for path in folder.iterdir()), ["CMakeLists.txt", "README.md", "fast_boxes.cpp", "fast_boxes_conformance.cpp"])
         configure_and_build(folder, folder / "build")
         # What its README says.
         commands = re.search(r"```sh\n(.*?)```", (folder / "README.md").read_text(), re.DOTALL).group(1)
@@ -116,6 +125,7 @@ class Fetched(Project):
         configure_and_build(PROJECT, build, f"-DSIXDOF={ARGUMENTS.source}")
         self.check_lists(build / "gimpact-sixdof", "gimpact", VERSION)
         self.check_rows(build / "gimpact-bench", "gimpact", VERSION, ARGUMENTS.work)
+        self.check_conformance(build / "gimpact-conformance", ["Collide", "MotionOfCollide"])
 
 
 if __name__ == "__main__":

@@ -28,6 +28,7 @@ struct GImpactQuery final : sixdof::Query {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
   }
   sixdof::Outcome<bool> collide(const sixdof::Pose& X) override {
+    if (!is_finite(X)) return fail(sixdof::Status::non_finite, "the pose is not finite");
     b_.object.getWorldTransform().setFromOpenGLMatrix((Eigen::Matrix4d() << X.R, X.t, 0, 0, 0, 1).finished().data());
     const btCollisionObjectWrapper a(nullptr, &a_.shape, &a_.object, a_.object.getWorldTransform(), -1, -1);
     const btCollisionObjectWrapper b(nullptr, &b_.shape, &b_.object, b_.object.getWorldTransform(), -1, -1);
@@ -44,7 +45,6 @@ struct GImpactQuery final : sixdof::Query {
 };
 
 const sixdof::Registrar k_gimpact([] {
-  const std::string version = VERSION " " + std::string(k_short_commit);
   return sixdof::make_algorithm<GImpactQuery>(
-      {.name = "gimpact", .version = version, .summary = "GImpact of Bullet", .answers = {.collide = true}});
+      {"gimpact", VERSION " " + std::string(k_short_commit), "Bullet's GImpact", sixdof::QuerySet{.collide = true}});
 });
