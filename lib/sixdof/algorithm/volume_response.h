@@ -17,20 +17,24 @@ class VolumeResponse {
     const Eigen::Vector3d origin = response_.reference;
     const Eigen::Vector3d area = 0.5 * (q - p).cross(r - p);
     response_.penalty += (p - origin).dot(area) / 3.0;
+    (of_b ? has_b_ : has_a_) = true;
     if (!of_b) return;
     response_.force -= area;
     response_.torque -= ((p + q + r) / 3.0 - origin).cross(area);
   }
 
   /// Volume as penalty; force and torque are minus its gradients with respect to a translation and a rotation of B.
+  /// Both are exactly zero where the boundary is all A's or all B's: one body is inside the other.
   Response response() const {
     Response response = response_;
     response.volume = response.penalty;
+    if (!has_a_ || !has_b_) response.force = response.torque = Eigen::Vector3d::Zero();
     return response;
   }
 
  private:
   Response response_;
+  bool has_a_ = false, has_b_ = false;
 };
 
 }  // namespace sixdof

@@ -1,6 +1,7 @@
 #include <sixdof/algorithm/cgal/cgal.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/conformance/conformance.h>
 
 #include "../volume_checks.h"
 
@@ -9,6 +10,8 @@ namespace {
 
 /// CGAL's new vertices are rounded to doubles: a few roundings, of volumes of a thousandth of the cube of the diagonal.
 constexpr double k_rounding = 1e-9;
+
+SIXDOF_CONFORMANCE(make_cgal_algorithm);
 
 TEST(Cgal, AnswersAsExact) {
   test::expect_clear_yes_no(*make_cgal_algorithm());

@@ -3,11 +3,15 @@
 #include <ctime>
 
 #include <sixdof/base/error.h>
+#include <sixdof/conformance/conformance.h>
 
 #include "../contact_checks.h"
 
 namespace sixdof {
 namespace {
+
+// Both profiles have the same traversal and test of triangles; this one keeps a tree from query to query.
+SIXDOF_CONFORMANCE(make_embree_algorithm, {.settings = {"profile=tuned"}});
 
 class Embree : public ::testing::TestWithParam<const char*> {
  protected:

@@ -105,7 +105,6 @@ class CgalQuery final : public Query {
         const auto& p = common.point(v);
         corners[i++] = {p.x(), p.y(), p.z()};
       }
-      // What is copied without a visit is a whole shell inside the other body, on which the force is zero.
       sum.add(corners[0], corners[1], corners[2], is_of_b[f]);
     }
     return sum.response();

@@ -26,7 +26,8 @@ namespace sixdof {
 /// **Known failures.** Surfaces only: contacts start from triangles that intersect, so a body wholly inside the other
 /// has none. Meshes must be closed and manifold. A force can be zero although the bodies overlap, where no centroid of
 /// a triangle is inside the other body: a finer mesh answers better. The force is not the gradient of an energy where
-/// the nearest point jumps.
+/// the nearest point jumps, and on a thin body that point may be on the far side: 55 degrees from the exact force on
+/// average over the conformance kit's pairs. Forces of meshes 1000 times larger differ by up to 0.3 %.
 ///
 /// Not in suites and studies of all algorithms (Traits::by_default): a query of two meshes of 10,000 triangles takes
 /// tens of milliseconds.
