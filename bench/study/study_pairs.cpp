@@ -37,4 +37,8 @@ StudyPairs::StudyPairs(bench::Options options, const std::vector<std::string>& n
   }
 }
 
+std::string StudyPairs::argument(const std::string& mesh) const {
+  return bench::load_mesh_of(mesh, options_, catalogue_).argument;
+}
+
 }  // namespace sixdof::study

@@ -22,6 +22,8 @@ class StudyPairs {
   bench::PairCache& cache() { return cache_; }
   const std::vector<const CatalogueEntry*>& pairs() const { return pairs_; }
   const bench::Options& options() const { return options_; }
+  /// What stands for a mesh (CatalogueEntry::a) on a command line: a model's name or a file. Loads the mesh.
+  std::string argument(const std::string& mesh) const;
 
  private:
   const bench::Options options_;

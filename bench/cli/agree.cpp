@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include "bench/cli/commands.h"
+#include "bench/cli/shared.h"
+#include "bench/common/interrupt.h"
+#include "bench/common/json_text.h"
+#include "bench/common/progress_line.h"
+#include "bench/common/run_guarded.h"
+#include "bench/harness/options.h"
+#include "bench/study/set_agreement.h"
+#include "bench/study/study_pairs.h"
+
+namespace sixdof::cli {
+namespace {
+
+using study::AnswerCounts;
+using study::AskedAlgorithm;
+using study::Difference;
+using study::PairAgreement;
+
+struct Arguments {
+  std::vector<std::string> pairs, sets, algorithms, parameters;
+  std::size_t sample = 100;
+  std::uint64_t seed = 1;
+  std::size_t show = 1;
+  bool json = false;
+};
+
+constexpr const char* k_keys =
+    "An answer differs if it is not that of the set: no at a distance and yes at a volume, where bodies do not just\n"
+    "touch (0 %); a distance that is off by more than a row of sixdof-bench allows. Exit code 3 if one differs.\n"
+    "Keys of --json: seed, sample, algorithms[] {name, version, settings}, pairs[] {pair, refusals[], buckets[]\n"
+    "{bucket, configurations, split, algorithms[] {algorithm, yes, judged_collide, wrong_collide, judged_distance,\n"
+    "wrong_distance, failed, largest_distance_error}}, differences[] {algorithm, bucket, cell, question, answer, "
+    "truth,\n"
+    "pose, command}}. split: configurations where not all algorithms say the same yes or no.";
+
+/// Those of --algorithms, or all of default runs that answer yes/no or distance, but `null`.
+std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const Arguments& arguments) {
+  const auto settings = bench::parse_parameters(arguments.parameters, registry);
+  std::vector<AskedAlgorithm> chosen;
+  const auto add = [&](const Algorithm& algorithm) {
+    const std::string& name = algorithm.traits().name;
+    AskedAlgorithm asked{&algorithm, settings.at(name), {}};
+    for (const std::string& parameter : arguments.parameters) {
+      if (parameter.starts_with(name + ":")) asked.assignments.push_back(parameter.substr(name.size() + 1));
+    }
+    chosen.push_back(std::move(asked));
+  };
+  const auto asked_already = [&](const Algorithm& algorithm) {
+    return std::ranges::any_of(chosen, [&](const AskedAlgorithm& each) { return each.algorithm == &algorithm; });
+  };
+  for (const std::string& name : arguments.algorithms) {
+    const Algorithm& algorithm = registry.find(name);
+    const Traits& traits = algorithm.traits();
+    if (!traits.answers.collide && !traits.answers.distance) {
+      throw BadArgument(name + " answers neither yes/no nor distance");
+    }
+    if (traits.body != Body::mesh) throw BadArgument(name + " answers for other bodies than the sets' meshes");
+    if (!asked_already(algorithm)) add(algorithm);
+  }
+  if (!arguments.algorithms.empty()) return chosen;
+  for (const auto& algorithm : registry.all()) {
+    const Traits& traits = algorithm->traits();
+    const bool answers = traits.answers.collide || traits.answers.distance;
+    if (traits.in_default_runs() && traits.name != "null" && answers) add(*algorithm);
+  }
+  return chosen;
+}
+
+using Json = nlohmann::ordered_json;
+
+Json as_json(const AnswerCounts& counts) {
+  return {{"algorithm", counts.algorithm},
+          {"yes", counts.yes},
+          {"judged_collide", counts.judged_collide},
+          {"wrong_collide", counts.wrong_collide},
+          {"judged_distance", counts.judged_distance},
+          {"wrong_distance", counts.wrong_distance},
+          {"failed", counts.failed},
+          {"largest_distance_error", counts.largest_distance_error}};
+}
+
+Json as_json(const Difference& difference) {
+  return {{"algorithm", difference.algorithm}, {"bucket", difference.bucket.name()},
+          {"cell", difference.cell},           {"question", to_string(difference.question)},
+          {"answer", difference.answer},       {"truth", difference.truth},
+          {"pose", difference.pose.text()},    {"command", difference.command}};
+}
+
+Json as_json(const PairAgreement& pair) {
+  Json buckets = Json::array(), differences = Json::array();
+  for (const study::BucketAgreement& bucket : pair.buckets) {
+    Json algorithms = Json::array();
+    for (const AnswerCounts& counts : bucket.algorithms) algorithms.push_back(as_json(counts));
+    buckets.push_back({{"bucket", bucket.bucket.name()},
+                       {"configurations", bucket.configurations},
+                       {"split", bucket.split},
+                       {"algorithms", std::move(algorithms)}});
+  }
+  for (const Difference& difference : pair.differences) differences.push_back(as_json(difference));
+  return {{"pair", pair.pair},
+          {"refusals", pair.refusals},
+          {"buckets", std::move(buckets)},
+          {"differences", std::move(differences)}};
+}
+
+/// "12 of 400", or "-" where nothing is judged.
+std::string share(std::size_t wrong, std::size_t judged) {
+  return judged == 0 ? "-" : fmt::format("{} of {}", wrong, judged);
+}
+
+void print_totals(const PairAgreement& pair) {
+  fmt::print("{}: {} configurations in {} buckets\n", pair.pair, pair.configurations(), pair.buckets.size());
+  fmt::print("  {:<16} {:>16} {:>16} {:>8} {:>14}\n", "algorithm", "wrong yes/no", "wrong distance", "failed",
+             "largest error");
+  for (const AnswerCounts& counts : pair.totals()) {
+    const bool distances = counts.judged_distance > 0;
+    fmt::print("  {:<16} {:>16} {:>16} {:>8} {:>14}\n", counts.algorithm,
+               share(counts.wrong_collide, counts.judged_collide), share(counts.wrong_distance, counts.judged_distance),
+               counts.failed, distances ? fmt::format("{:.1e}", counts.largest_distance_error) : "-");
+  }
+  for (const std::string& refusal : pair.refusals) fmt::print("  left out: {}\n", refusal);
+}
+
+/// The differences of one algorithm, bucket and question: how many, and the first of them as commands.
+void print_differences(const PairAgreement& pair, std::size_t show) {
+  using Key = std::tuple<std::string, BucketKey, bench::Question>;
+  std::map<Key, std::vector<const Difference*>> groups;
+  for (const Difference& each : pair.differences) {
+    groups[{each.algorithm, each.bucket, each.question}].push_back(&each);
+  }
+  for (const auto& [key, list] : groups) {
+    const auto& [algorithm, bucket, question] = key;
+    fmt::print("  {} {} {}: {} differ\n", algorithm, bucket.name(), to_string(question), list.size());
+    for (std::size_t i = 0; i < std::min(show, list.size()); ++i) {
+      fmt::print("    {} instead of {}: {}\n", list[i]->answer, list[i]->truth, list[i]->command);
+    }
+  }
+}
+
+void agree(const Arguments& arguments) {
+  Registry registry;
+  register_all_algorithms(registry);
+  const std::vector<AskedAlgorithm> algorithms = chosen_algorithms(registry, arguments);
+  bench::Options options{.program = "sixdof", .sample = arguments.sample, .seed = arguments.seed};
+  for (const std::string& set : arguments.sets) options.sets.emplace_back(set);
+  if (arguments.sets.empty()) options.manifest = bench::default_manifest();
+  study::StudyPairs pairs(std::move(options), arguments.pairs);
+
+  Json json{{"seed", arguments.seed}, {"sample", arguments.sample}};
+  for (const AskedAlgorithm& asked : algorithms) {
+    const Traits& traits = asked.algorithm->traits();
+    json["algorithms"].push_back(
+        {{"name", traits.name}, {"version", traits.version}, {"settings", asked.settings.to_string()}});
+  }
+  json["pairs"] = Json::array();
+  std::size_t differences = 0;
+  for (const CatalogueEntry* const entry : pairs.pairs()) {
+    const std::string meshes = fmt::format("--a {} --b {}", pairs.argument(entry->a), pairs.argument(entry->b));
+    PairAgreement pair;
+    {
+      ProgressLine line(entry->pair);
+      pair =
+          study::compare_with_set(pairs.cache(), *entry, meshes, algorithms,
+                                  {.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
+                                   .cancelled = InterruptGuard::requested});
+    }
+    differences += pair.differences.size();
+    if (arguments.json) {
+      json["pairs"].push_back(as_json(pair));
+      continue;
+    }
+    print_totals(pair);
+    print_differences(pair, arguments.show);
+  }
+  if (arguments.json) fmt::print("{}\n", json_text(json));
+  if (differences > 0) throw DefectsFound(fmt::format("{} answers differ from the sets' truth", differences));
+}
+
+}  // namespace
+
+void add_agree_command(CLI::App& app) {
+  auto* const command =
+      app.add_subcommand("agree", "Compare yes/no and distances of several algorithms with the truth of sets");
+  const auto arguments = std::make_shared<Arguments>();
+  auto* const pairs = command->add_option("--pair", arguments->pairs,
+                                          "Pairs of the committed sets: elephant,bunny; all of them if left out");
+  pairs->delimiter(',');
+  command->add_option("--set", arguments->sets, "Configuration sets of your own; may be repeated")
+      ->allow_extra_args(false)
+      ->excludes(pairs);
+  command
+      ->add_option("--algorithms", arguments->algorithms, "exact,ode,...; all of default runs that answer if left out")
+      ->delimiter(',');
+  command
+      ->add_option("-p,--parameter", arguments->parameters,
+                   "Parameter of an algorithm: ALGORITHM:NAME=VALUE; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--sample", arguments->sample, "Configurations per bucket, drawn at random; 0 for all")
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Of the sample")->capture_default_str();
+  command
+      ->add_option("--show", arguments->show,
+                   "Differences to print of each algorithm, bucket and question; --json has all")
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "As JSON; the exit code is the same");
+  add_examples(*command, "sixdof agree --set set.h5 --algorithms exact,fcl-obbrss --sample 20",
+               "sixdof agree --set set.h5 --algorithms exact,fcl-kios --sample 0 --json", k_keys);
+  command->callback([arguments] { agree(*arguments); });
+}
+
+}  // namespace sixdof::cli

@@ -1,0 +1,175 @@
+#include "bench/study/set_agreement.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/query/ask.h>
+#include "bench/harness/check.h"
+
+namespace sixdof::study {
+namespace {
+
+using bench::Question;
+
+std::string as_word(bool answer) { return answer ? "yes" : "no"; }
+std::string as_word(const Separation& answer) { return fmt::format("{}", answer.distance); }
+
+/// What is asked of one bucket, and where differences go.
+struct Bucket {
+  const BucketSample& sample;
+  std::vector<TypedPose> poses;
+  const std::string& meshes;  ///< "--a A --b B"
+  std::vector<Difference>& differences;
+  const RunOptions& run;
+};
+
+std::string command_of(const Bucket& bucket, const AskedAlgorithm& asked, const TypedPose& pose) {
+  std::string command = fmt::format("sixdof query {} --pose '{}' --algorithm {}", bucket.meshes, pose.text(),
+                                    asked.algorithm->traits().name);
+  for (const std::string& assignment : asked.assignments) command += " -p " + assignment;
+  return command;
+}
+
+/// Asks one kind of query at every pose; `judged` gets each answer. An answer is wrong if the harness counts it so.
+template <class T, class Answered>
+bench::Check ask_bucket(const Bucket& bucket, const AskedAlgorithm& asked, Query& query, Question question,
+                        Outcome<T> (Query::*kind)(const Pose&), const T& truth, AnswerCounts& counts,
+                        const Answered& answered) {
+  bench::Check check;
+  for (std::size_t i = 0; i < bucket.poses.size(); ++i) {
+    bucket.run.check_cancelled();
+    std::string words;
+    const auto failed = [&words](const std::string& why) { words = why; };
+    Outcome<T> outcome = ask_guarded([&] { return (query.*kind)(bucket.poses[i].X_AB); }, failed);
+    if (words.empty()) examine(query, outcome, failed);
+    std::string answer;
+    if (outcome.ok()) {
+      const std::size_t wrong_before = check.mismatch;
+      bench::judge(bucket.sample, outcome.value, check);
+      answered(i, outcome.value);
+      if (check.mismatch == wrong_before) continue;
+      answer = as_word(outcome.value);
+    } else {
+      ++counts.failed;
+      answer = fmt::format("{}: {}", to_string(outcome.status), words);
+    }
+    bucket.differences.push_back({.algorithm = asked.algorithm->traits().name,
+                                  .bucket = bucket.sample.key,
+                                  .cell = bucket.sample.cells[i],
+                                  .question = question,
+                                  .answer = answer,
+                                  .truth = as_word(truth),
+                                  .pose = bucket.poses[i],
+                                  .command = command_of(bucket, asked, bucket.poses[i])});
+  }
+  return check;
+}
+
+/// Of each configuration, which yes/no the algorithms gave.
+class Votes {
+ public:
+  explicit Votes(std::size_t configurations) : yes_(configurations), no_(configurations) {}
+  void add(std::size_t i, bool answer) { (answer ? yes_ : no_)[i] = true; }
+  std::size_t split() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < yes_.size(); ++i) count += yes_[i] && no_[i];
+    return count;
+  }
+
+ private:
+  std::vector<bool> yes_, no_;
+};
+
+AnswerCounts ask_algorithm(const Bucket& bucket, const AskedAlgorithm& asked, Query& query, Votes& votes) {
+  const Traits& traits = asked.algorithm->traits();
+  const bool overlap = bucket.sample.key.kind == BucketKind::volume;
+  AnswerCounts counts{.algorithm = traits.name};
+  if (traits.answers.collide) {
+    const bench::Check check = ask_bucket(bucket, asked, query, Question::collide, &Query::collide, overlap, counts,
+                                          [&](std::size_t i, bool answer) {
+                                            votes.add(i, answer);
+                                            counts.yes += answer;
+                                          });
+    counts.judged_collide = check.judged;
+    counts.wrong_collide = check.mismatch;
+  }
+  if (traits.answers.distance) {
+    const Separation truth{.distance = overlap ? 0.0 : bucket.sample.target};
+    const bench::Check check = ask_bucket(bucket, asked, query, Question::distance, &Query::distance, truth, counts,
+                                          [](std::size_t, const Separation&) {});
+    counts.judged_distance = check.judged;
+    counts.wrong_distance = check.mismatch;
+    counts.largest_distance_error = check.errors.largest();
+  }
+  return counts;
+}
+
+/// The algorithms that can be prepared for the pair; the words of the others go to `refusals`.
+std::vector<AskedAlgorithm> usable(bench::PairCache& cache, const CatalogueEntry& pair,
+                                   const std::vector<AskedAlgorithm>& algorithms, std::vector<std::string>& refusals) {
+  std::vector<AskedAlgorithm> kept;
+  for (const AskedAlgorithm& asked : algorithms) {
+    try {
+      static_cast<void>(cache.query(*asked.algorithm, asked.settings, pair.a, pair.b));
+      kept.push_back(asked);
+    } catch (const BadMesh& e) {
+      refusals.push_back(fmt::format("{}: {}", asked.algorithm->traits().name, e.what()));
+    }
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<AnswerCounts> PairAgreement::totals() const {
+  std::vector<AnswerCounts> totals;
+  for (const BucketAgreement& bucket : buckets) {
+    totals.resize(bucket.algorithms.size());
+    for (std::size_t i = 0; i < totals.size(); ++i) {
+      const AnswerCounts& counts = bucket.algorithms[i];
+      totals[i].algorithm = counts.algorithm;
+      totals[i].yes += counts.yes;
+      totals[i].judged_collide += counts.judged_collide;
+      totals[i].wrong_collide += counts.wrong_collide;
+      totals[i].judged_distance += counts.judged_distance;
+      totals[i].wrong_distance += counts.wrong_distance;
+      totals[i].failed += counts.failed;
+      totals[i].largest_distance_error = std::max(totals[i].largest_distance_error, counts.largest_distance_error);
+    }
+  }
+  return totals;
+}
+
+std::size_t PairAgreement::configurations() const {
+  std::size_t count = 0;
+  for (const BucketAgreement& bucket : buckets) count += bucket.configurations;
+  return count;
+}
+
+PairAgreement compare_with_set(bench::PairCache& cache, const CatalogueEntry& pair, const std::string& meshes,
+                               const std::vector<AskedAlgorithm>& wanted, const RunOptions& run) {
+  PairAgreement result{.pair = pair.pair};
+  const std::vector<AskedAlgorithm> algorithms = usable(cache, pair, wanted, result.refusals);
+  std::uint64_t done = 0;
+  const std::uint64_t total = pair.buckets.size() * algorithms.size();
+  for (const BucketKey key : pair.buckets) {
+    Bucket bucket{cache.bucket(pair, key), {}, meshes, result.differences, run};
+    for (const Pose& pose : bucket.sample.poses) bucket.poses.push_back(TypedPose::of(pose));
+    Votes votes(bucket.poses.size());
+    BucketAgreement& agreement = result.buckets.emplace_back();
+    agreement.bucket = key;
+    agreement.configurations = bucket.poses.size();
+    for (const AskedAlgorithm& asked : algorithms) {
+      if (run.progress) run.progress(done++, total);
+      Query& query = cache.query(*asked.algorithm, asked.settings, pair.a, pair.b);
+      agreement.algorithms.push_back(ask_algorithm(bucket, asked, query, votes));
+    }
+    agreement.split = votes.split();
+  }
+  return result;
+}
+
+}  // namespace sixdof::study

@@ -1,0 +1,112 @@
+// `sixdof agree`: `null`, which always says no and 0, differs from the truth in known places.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/common/run_guarded.h"
+
+#include "run_program.h"
+#include "scratch_folder.h"
+
+namespace sixdof {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Agree : public test::ScratchFolder {
+ protected:
+  void SetUp() override {
+    test::ScratchFolder::SetUp();
+    const auto made = program("generate --a torus-300 --b cone-100 --grid 90 --distances 0,5 --volumes 5 -o " + set());
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  static test::ProgramResult program(const std::string& arguments) {
+    return test::run_program(std::string(SIXDOF_PROGRAM) + " " + arguments);
+  }
+  std::string set() const { return path("set.h5"); }
+  test::ProgramResult agree(const std::string& arguments) const {
+    return program("agree --set " + set() + " " + arguments);
+  }
+};
+
+TEST_F(Agree, FindsNoDifferenceBetweenExactAlgorithms) {
+  const auto result = agree("--algorithms exact,brute-force --sample 20 --json");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto pair = nlohmann::json::parse(result.out).at("pairs").at(0);
+  EXPECT_TRUE(pair.at("differences").empty());
+  ASSERT_EQ(pair.at("buckets").size(), 3u);
+  for (const auto& bucket : pair.at("buckets")) {
+    EXPECT_EQ(bucket.at("split"), 0);
+    EXPECT_EQ(bucket.at("configurations"), 20);
+    for (const auto& counts : bucket.at("algorithms")) {
+      EXPECT_EQ(counts.at("yes"), bucket.at("bucket") == "volume/05" ? 20 : 0);
+      EXPECT_EQ(counts.at("judged_collide"), bucket.at("bucket") == "distance/00" ? 0 : 20);
+      EXPECT_EQ(counts.at("judged_distance"), 20);
+      EXPECT_LT(counts.at("largest_distance_error"), 1e-9);
+    }
+  }
+}
+
+TEST_F(Agree, ListsEachDifferenceWithACommandThatAsksTheSame) {
+  const auto result = agree("--algorithms exact,null --sample 7 --json");
+  EXPECT_EQ(result.exit_code, k_exit_defects);
+  EXPECT_EQ(result.err, "sixdof: 14 answers differ from the sets' truth\n");
+  const auto pair = nlohmann::json::parse(result.out).at("pairs").at(0);
+  // No instead of yes at the volume, where distance 0 is right; 0 instead of the distance at 5 %, where no is right.
+  // At 0 % a distance of 0 is off by less than the tolerance.
+  ASSERT_EQ(pair.at("differences").size(), 14u);
+  for (const auto& difference : pair.at("differences")) {
+    const bool overlap = difference.at("bucket") == "volume/05";
+    EXPECT_EQ(difference.at("algorithm"), "null");
+    EXPECT_EQ(difference.at("question"), overlap ? "collide" : "distance");
+    EXPECT_EQ(difference.at("answer"), overlap ? "no" : "0");
+  }
+  for (const std::size_t i : {std::size_t{0}, std::size_t{13}}) {
+    const auto& difference = pair.at("differences").at(i);
+    std::string command = difference.at("command");
+    ASSERT_EQ(command.find("sixdof query --a torus-300 --b cone-100 --pose '"), 0u) << command;
+    command = command.substr(std::string("sixdof ").size());
+    const auto at_null = nlohmann::json::parse(program(command + " --json").out);
+    EXPECT_EQ(at_null.at("colliding"), false);
+    EXPECT_EQ(at_null.at("distance"), 0.0);
+    const std::size_t name = command.rfind("null");
+    const auto truth = nlohmann::json::parse(program(command.replace(name, 4, "exact") + " --json").out);
+    if (difference.at("question") == "collide") {
+      EXPECT_EQ(truth.at("colliding"), true);
+    } else {
+      EXPECT_NEAR(truth.at("distance"), std::stod(difference.at("truth").get<std::string>()), 1e-8);
+    }
+  }
+}
+
+TEST_F(Agree, PrintsTotalsAndTheFirstDifferences) {
+  const auto result = agree("--algorithms null,exact --sample 7 --show 2");
+  EXPECT_EQ(result.exit_code, k_exit_defects);
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("21 configurations in 3 buckets"), HasSubstr("null volume/05 collide: 7 differ"),
+                    HasSubstr("no instead of yes: sixdof query --a torus-300")));
+  EXPECT_THAT(result.out, Not(HasSubstr("exact volume/05")));
+  const std::string word = "instead of";
+  std::size_t lines = 0;
+  for (std::size_t at = 0; (at = result.out.find(word, at)) != std::string::npos; at += word.size()) ++lines;
+  EXPECT_EQ(lines, 4u);
+}
+
+TEST_F(Agree, RefusesWhatItCannotAsk) {
+  const auto none = agree("--algorithms no-such");
+  EXPECT_EQ(none.exit_code, k_exit_error);
+  EXPECT_THAT(none.err, HasSubstr("no-such: no such algorithm"));
+  const auto pair = program("agree --pair no-such");
+  EXPECT_EQ(pair.exit_code, k_exit_error);
+  EXPECT_THAT(pair.err, HasSubstr("pair no-such: no such pair"));
+}
+
+}  // namespace
+}  // namespace sixdof
