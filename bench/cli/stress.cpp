@@ -51,11 +51,21 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
       .silence_s = options.silence_s,
       .memory_bytes = 1e9 * options.memory_gb,
       .processes = std::max(1u, std::thread::hardware_concurrency())};
-  for (const std::string& name : options.algorithms) plan.algorithms.push_back(&registry.find(name));
+  for (const std::string& name : options.algorithms) {
+    const Algorithm& algorithm = registry.find(name);
+    if (algorithm.traits().body != Body::mesh) {
+      throw BadArgument(fmt::format("{} answers for the {} of the meshes, whose answers are not known", name,
+                                    to_string(algorithm.traits().body)));
+    }
+    plan.algorithms.push_back(&algorithm);
+  }
   if (plan.algorithms.empty()) {
     for (const auto& algorithm : registry.all()) {
-      // It answers with constants.
-      if (algorithm->traits().name != "null") plan.algorithms.push_back(algorithm.get());
+      const Traits& traits = algorithm->traits();
+      // `null` answers with constants.
+      if (traits.by_default && traits.body == Body::mesh && traits.name != "null") {
+        plan.algorithms.push_back(algorithm.get());
+      }
     }
   }
   for (const std::string& name : options.families) plan.families.push_back(&stability::find_family(name));
@@ -110,7 +120,9 @@ void add_stress_command(CLI::App& app) {
   auto* const command =
       app.add_subcommand("stress", "Ask algorithms hard cases with known answers, and show where each one breaks");
   const auto options = std::make_shared<Options>();
-  command->add_option("--algorithms,--algorithm", options->algorithms, "One or more (default: all but null)")
+  command
+      ->add_option("--algorithms,--algorithm", options->algorithms,
+                   "One or more; if left out, all but null, slow ones and those of convex hulls")
       ->delimiter(',')
       ->allow_extra_args(false);
   std::string names;
