@@ -51,9 +51,9 @@ void add_merge_command(CLI::App& app);
 /// `sixdof verify FILE [--sample N] [--seed S] [--oracle NAME]`: measures a sample of every bucket of a configuration
 /// set again and prints a table; fails if anything is wrong.
 void add_verify_command(CLI::App& app);
-/// `sixdof agree [--pair LIST | --set FILE] [--algorithms LIST] [--sample N]`: yes/no and distance of several algorithms
-/// against the truth of configuration sets and each other, a command line for each difference (study/set_agreement.h);
-/// k_exit_defects if there is one.
+/// `sixdof agree [--pair LIST | --set FILE] [--algorithms LIST] [--sample N]`: yes/no and distance of several
+/// algorithms against the truth of configuration sets and each other, a command line for each difference
+/// (study/set_agreement.h); k_exit_defects if there is one.
 void add_agree_command(CLI::App& app);
 /// `sixdof table FILE.json [MORE.json ...] [--markdown | --json]`: results of sixdof-bench, one table per pair, query
 /// and kind of bucket; several files side by side (table.h).
