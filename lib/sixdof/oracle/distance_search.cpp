@@ -243,6 +243,7 @@ class DistanceTraversal final : private CloseVisitor {
         frames_(tree_a_, tree_b_, search.X_AB),
         blurred_(k_blurred * k_blurred * frames_.slack.all * frames_.slack.all),
         blurs_leaves_(std::max(search.a.smallest_leaf, search.b.smallest_leaf) < blurred_),
+        has_planes_(!search.a.patches.empty() && !search.b.patches.empty()),
         close_bounds_(tree_a_, tree_b_, search.X_AB) {
     if (search_.direction.squaredNorm() == 0.0) search_.direction = frames_.shift;
     frames_.set_direction(search_.direction);
@@ -466,7 +467,9 @@ class DistanceTraversal final : private CloseVisitor {
     return true;
   }
 
-  bool prune_by_planes(const NodePair& pair) {
+  HWY_INLINE bool prune_by_planes(const NodePair& pair) { return has_planes_ && prune_by_their_planes(pair); }
+
+  HWY_NOINLINE bool prune_by_their_planes(const NodePair& pair) {
     const CoplanarPatches::Plane* plane_a = plane_of(search_.a.patches, pair.a);
     const CoplanarPatches::Plane* plane_b = plane_of(search_.b.patches, pair.b);
     if (!plane_a || !plane_b) return false;
@@ -543,7 +546,7 @@ class DistanceTraversal final : private CloseVisitor {
   static const Tree::Volume& volume_of(const Tree& tree, std::uint32_t volume) {
     return is_leaf(volume) ? leaf_of(tree, volume).volume : tree.nodes()[volume].volume;
   }
-  static const CoplanarPatches::Plane* plane_of(const CoplanarPatches& patches, std::uint32_t volume) {
+  HWY_INLINE static const CoplanarPatches::Plane* plane_of(const CoplanarPatches& patches, std::uint32_t volume) {
     return is_leaf(volume) ? patches.of_leaf(volume - NodePair::k_leaf) : patches.of_node(volume);
   }
 
@@ -554,6 +557,7 @@ class DistanceTraversal final : private CloseVisitor {
   Frames frames_;
   const float blurred_;      // square of a diagonal: of the largest volume that floats blur
   const bool blurs_leaves_;  // both trees have leaves that small
+  const bool has_planes_;    // both meshes have coplanar patches
   const CloseBounds close_bounds_;
   std::uint64_t thick_pairs_ = 0;
   std::uint64_t doubtful_pairs_ = 0;
