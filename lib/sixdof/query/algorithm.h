@@ -142,7 +142,7 @@ struct Traits {
   /// Whether it answers for an approximation of the bodies: Footprint::counts has how far that may lie from the true
   /// surfaces, as "resolution" (length).
   bool approximates = false;
-  std::vector<Parameter> parameters;    ///< What a user may set; empty if nothing.
+  std::vector<Parameter> parameters;  ///< What a user may set; empty if nothing.
   /// Whether benchmarks have rows of its queries. False for a reference that is too slow, such as brute force.
   bool timed = true;
   /// Never compared with the truth of the meshes, or with other algorithms, unless it is `mesh`.

@@ -20,8 +20,8 @@ struct Asked {
   std::string words;
 };
 
-/// Settings for hard cases, whose small bodies are prepared by the hundred: of an algorithm that approximates the bodies
-/// the coarsest value of each parameter that has a sweep; of others the defaults.
+/// Settings for hard cases, whose small bodies are prepared by the hundred: of an algorithm that approximates the
+/// bodies the coarsest value of each parameter that has a sweep; of others the defaults.
 Settings coarse_settings(const Algorithm& algorithm);
 
 struct Answers {
