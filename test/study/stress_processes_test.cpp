@@ -2,10 +2,12 @@
 
 #include "bench/study/stress_processes.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -36,8 +38,7 @@ class Deadly : public Query {
     if (way == Way::abort) std::abort();
     if (way == Way::exit) std::exit(0);
     if (way == Way::loop) {
-      for (volatile int i = 0;; i = i + 1) {
-      }
+      for (;;) std::this_thread::sleep_for(std::chrono::seconds(1));
     }
     if (way == Way::memory) {
       for (std::vector<std::vector<double>> all;;) all.emplace_back(1'000'000, 1.0);
@@ -54,9 +55,9 @@ std::unique_ptr<Algorithm> deadly() {
 StressCell run(const Algorithm& algorithm, const char* family, double silence_s = 20.0) {
   const StressPlan plan{.algorithms = {&algorithm},
                         .families = {&stability::find_family(family)},
-                        .effort = {},
+                        .effort = {.generations = 0},
                         .silence_s = silence_s,
-                        .memory_bytes = 5e8};
+                        .memory_bytes = 1.5e8};
   return run_stress(plan, [](std::size_t, std::size_t) {}).at(0);
 }
 
