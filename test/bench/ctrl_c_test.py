@@ -96,7 +96,7 @@ class CtrlC(unittest.TestCase):
         output = self.folder / "set.h5"
         for words in (["generate", "--a", "gyroid-ball-100k", "--grid", "10", "--distances", "0:30", "-o", output],
                       ["generate", "--a", "gyroid-ball-10k", "--grid", "10", "--volumes", "0:10", "-o", output],
-                      ["quality", "--scenario", "IV", "--algorithm", "exact"],
+                      ["quality", "--scenario", "IV", "--algorithm", "exact", "--steps", "20000"],
                       ["models", "make", "gyroid-ball", "--triangles", "20000000", "-o", self.folder / "x.off"]):
             self.interrupt([SIXDOF, *words], lambda: True)
             self.assertEqual([name for name in self.files() if not name.startswith("cache/")], [], words)

@@ -25,7 +25,7 @@ using ::testing::Not;
 TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
   const json document = result(
       "--seed 5 --sample 32 -p ist:spheres=300 -p ist-descent:spheres=300 "
-      "'--benchmark_filter=-^(scenario|kernel|generate)/'");
+      "'--benchmark_filter=-^(scenario|kernel|generate|stability)/'");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;
   std::size_t judged = 0;
@@ -247,7 +247,13 @@ TEST_F(BenchProgram, RunsTheDefaultSuiteUnlessRowsOrSetsAreChosen) {
   EXPECT_EQ(count_rows(""), standard);
   EXPECT_EQ(count_rows("--benchmark_filter=."), all);
   EXPECT_EQ(count_rows("--suite default --benchmark_filter=."), standard);
-  EXPECT_EQ(count_rows("--suite default --benchmark_filter=^scenario/"), count_rows("--benchmark_filter=^scenario/"));
+  const std::string scenarios = "'--benchmark_filter=^scenario/.*algorithm:(exact|vps|fcl-contacts)$'";
+  EXPECT_EQ(count_rows("--suite default " + scenarios), count_rows(scenarios));
+  EXPECT_GT(count_rows(scenarios), 0);
+  // Slow algorithms are measured where they are named.
+  const auto slow = test::run_program(std::string(SIXDOF_BENCH_PROGRAM) +
+                                      " --benchmark_list_tests --suite default --benchmark_filter=/algorithm:simbody");
+  EXPECT_THAT(slow.err, HasSubstr("no row matches"));
   EXPECT_GT(count_rows("--manifest " + suite->manifest().string()), 0) << "sets of the user: all rows";
 }
 
