@@ -354,7 +354,7 @@ HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough) {
 
 /// Raises the lower bounds that are not above `enough` by the nine axes across an edge of each triangle. Needles that
 /// cross have their distance along one of them, which Frank-Wolfe steps approach slowly.
-HWY_NOINLINE void bound_across_edges(LeafPair& pairs, float slack, float enough) {
+inline HWY_NOINLINE void bound_across_edges(LeafPair& pairs, float slack, float enough) {
   namespace fw = frank_wolfe;
   constexpr auto k_fused = fw::Rounding::fused;
   const V goal = set(enough);

@@ -28,149 +28,6 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {
 namespace HWY_NAMESPACE {
 
-/// A corner of a tree and its squared distance from some point.
-struct Corner {
-  float squared;
-  std::uint32_t leaf;
-  std::uint32_t triangle;  // in the leaf
-  float point[3];          // relative to the tree's centre
-};
-
-/// Finds a corner that is closer to p than `best.squared`. Returns whether there is one. It need not be the closest:
-/// squared distances that differ by about 32 times a leaf's area, or by the factor `tolerance`, count as equal.
-bool find_corner(const Tree& tree, const float* p, float tolerance, Corner& best, std::vector<NodePair>& stack) {
-  constexpr double k_leaf_areas = 32.0;  // a leaf's area is about radius^2 / leaves
-  const auto equal =
-      static_cast<float>(k_leaf_areas * tree.radius() * tree.radius() / static_cast<double>(tree.leaves().size()));
-  bool found = false;
-  stack.assign(1, {0, 0, 0.0f});  // `a` names the volume, `lower` bounds the squared distance
-  while (!stack.empty()) {
-    const NodePair top = stack.back();
-    stack.pop_back();
-    if (tolerance * top.lower + equal >= best.squared) continue;
-    if ((top.a & NodePair::k_leaf) != 0) {
-      const Tree::Leaf& leaf = tree.leaves()[top.a - NodePair::k_leaf];
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        for (std::uint32_t t = 0; t < leaf.child.count(); ++t) {
-          float squared = 0.0f;
-          for (std::size_t k = 0; k < 3; ++k) {
-            const float d = leaf.corner[corner][k][t] - p[k];
-            squared += d * d;
-          }
-          if (squared >= best.squared) continue;
-          best = {squared,
-                  top.a - NodePair::k_leaf,
-                  t,
-                  {leaf.corner[corner][0][t], leaf.corner[corner][1][t], leaf.corner[corner][2][t]}};
-          found = true;
-        }
-      }
-      continue;
-    }
-    const Tree::Node& node = tree.nodes()[top.a];
-    HWY_ALIGN float bounds[k_width];
-    for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-      V squared = hn::Zero(k_lanes);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const V at = set(p[k]);
-        const V below = hn::Sub(load(node.lower[k] + i), at);
-        const V above = hn::Sub(at, load(node.upper[k] + i));
-        const V gap = hn::Max(hn::Max(below, above), hn::Zero(k_lanes));
-        squared = hn::MulAdd(gap, gap, squared);
-      }
-      hn::Store(squared, k_lanes, bounds + i);
-    }
-    const std::size_t first = stack.size();
-    for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      if (tolerance * bounds[i] + equal >= best.squared) continue;
-      const Tree::Child child = node.child[i];
-      push_sorted(stack, first, {child.is_leaf() ? NodePair::k_leaf + node.leaf[i] : child.node(), 0, bounds[i]});
-    }
-  }
-  return found;
-}
-
-/// p_N of p_F.
-void transform(const Frame& f, const float* p, float* out) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    out[k] = f.translation[k] + f.rotation[k][0] * p[0] + f.rotation[k][1] * p[1] + f.rotation[k][2] * p[2];
-  }
-}
-
-/// Indices of the closest pair of seed corners, and their squared distance.
-struct ClosestSeeds {
-  std::size_t a = 0;
-  std::size_t b = 0;
-  float squared = std::numeric_limits<float>::infinity();
-
-  /// @param f from B's frame to A's
-  ClosestSeeds(const SeedCorners& seeds_a, const SeedCorners& seeds_b, const Frame& f) {
-    HWY_ALIGN float least[k_width];
-    HWY_ALIGN float index[k_width];  // of the corner of A: an exact small integer
-    for (std::size_t i = 0; i < SeedCorners::k_count; i += hn::Lanes(k_lanes)) {
-      V p[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        p[k] = set(f.translation[k]);
-        for (std::size_t m = 0; m < 3; ++m) {
-          p[k] = hn::MulAdd(set(f.rotation[k][m]), load(seeds_b.point[m] + i), p[k]);
-        }
-      }
-      V closest = set(std::numeric_limits<float>::infinity());
-      V which = hn::Zero(k_lanes);
-      for (std::size_t j = 0; j < SeedCorners::k_count; ++j) {
-        V sum = hn::Zero(k_lanes);
-        for (std::size_t k = 0; k < 3; ++k) {
-          const V d = hn::Sub(p[k], set(seeds_a.point[k][j]));
-          sum = hn::MulAdd(d, d, sum);
-        }
-        which = hn::IfThenElse(hn::Lt(sum, closest), set(static_cast<float>(j)), which);
-        closest = hn::Min(closest, sum);
-      }
-      hn::Store(closest, k_lanes, least);
-      hn::Store(which, k_lanes, index);
-      for (std::size_t lane = 0; lane < hn::Lanes(k_lanes); ++lane) {
-        if (least[lane] < squared) {
-          squared = least[lane];
-          a = static_cast<std::size_t>(index[lane]);
-          b = i + lane;
-        }
-      }
-    }
-  }
-};
-
-void seed_search(DistanceSearch& search) {
-  const SeedCorners& seeds_a = search.a.seeds;
-  const SeedCorners& seeds_b = search.b.seeds;
-  const Frames frames(search.a.tree, search.b.tree, search.X_AB);
-  const ClosestSeeds closest(seeds_a, seeds_b, frames.expand_a);
-  // A pair of the last query may be closer.
-  if (search.found && search.best * search.best <= static_cast<double>(closest.squared)) return;
-
-  float best = closest.squared;
-  Corner a{best, seeds_a.leaf[closest.a], 0, {}};
-  Corner b{best, seeds_b.leaf[closest.b], 0, {}};
-  for (std::size_t k = 0; k < 3; ++k) {
-    a.point[k] = seeds_a.point[k][closest.a];
-    b.point[k] = seeds_b.point[k][closest.b];
-  }
-  float from[3];
-  bool search_b = true;
-  for (const auto& [tolerance, steps] : {std::pair(1.1f, 6), std::pair(1.0f, 4)}) {  // at most; few need as many
-    int misses = 0;
-    for (int i = 0; i < steps && misses < 2; ++i, search_b = !search_b) {
-      transform(search_b ? frames.expand_b : frames.expand_a, search_b ? a.point : b.point, from);
-      Corner& corner = search_b ? b : a;
-      corner.squared = best;
-      if (!find_corner(search_b ? search.b.tree : search.a.tree, from, tolerance, corner, search.stack)) ++misses;
-      best = corner.squared;
-    }
-  }
-  const TrianglePair pair{search.a.tree.leaves()[a.leaf].child.first() + a.triangle,
-                          search.b.tree.leaves()[b.leaf].child.first() + b.triangle};
-  if (try_update(search, pair)) search.direction = search.closest.on_b - search.closest.on_a;
-}
-
 /// Square of a box's diagonal.
 HWY_INLINE float size_of(const Tree::Volume& v) {
   const float x = v.upper[0] - v.lower[0];
@@ -583,10 +440,7 @@ TriangleCorners corners_of_b(const DistanceSearch& search, std::uint32_t triangl
 
 }  // namespace
 
-HWY_EXPORT(seed_search);
 HWY_EXPORT(find_pair);
-
-void seed_search(DistanceSearch& search) { HWY_DYNAMIC_DISPATCH(seed_search)(search); }
 
 void find_pair(DistanceSearch& search, bool only_intersection) {
   HWY_DYNAMIC_DISPATCH(find_pair)(search, only_intersection);
@@ -643,13 +497,6 @@ float smallest_leaf_of(const Tree& tree) {
     smallest = std::min(smallest, size.squaredNorm());
   }
   return smallest;
-}
-
-SeedCorners::SeedCorners(const Tree& tree) {
-  for (std::size_t i = 0; i < k_count; ++i) {
-    leaf[i] = static_cast<std::uint32_t>((2 * i + 1) * tree.leaves().size() / (2 * k_count));
-    for (std::size_t k = 0; k < 3; ++k) point[k][i] = tree.leaves()[leaf[i]].corner[0][k][0];
-  }
 }
 
 }  // namespace sixdof::detail
