@@ -55,6 +55,10 @@ void run(const Options& options) {
     }
     const Suite suite = read_suite(options.suite, external, named_only);
     std::erase_if(rows, [&](const Row& row) { return !suite(row.name); });
+    const std::size_t sample = options.sample > 0 ? options.sample : Share().configurations;
+    for (Row& row : rows) {
+      if (const std::size_t most = *suite(row.name); most < sample) row.fields.sample_limit = most;
+    }
   } else if (benchmark::GetBenchmarkFilter().find(k_cold) == std::string::npos) {
     std::erase_if(rows, [&](const Row& row) { return row.fields.cache == k_cold; });
   }

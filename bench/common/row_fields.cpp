@@ -87,6 +87,7 @@ Json to_json_object(const RowFields& fields) {
   if (fields.bucket) {
     object["bucket"] = {{"kind", to_string(fields.bucket->kind)}, {"percent", percent_number(*fields.bucket)}};
   }
+  if (fields.sample_limit) object["sample_limit"] = *fields.sample_limit;
   if (fields.configurations) object["configurations"] = *fields.configurations;
   return object;
 }
@@ -106,6 +107,9 @@ RowFields row_fields_of(const Json& object) {
       const auto percent = bucket.at("percent").get<double>();
       fields.bucket = BucketKey::parse(fmt::format("{}/{}", bucket.at("kind").get<std::string>(), percent));
     });
+  }
+  if (object.contains("sample_limit")) {
+    read_key("sample_limit", [&] { fields.sample_limit = object.at("sample_limit").get<std::uint64_t>(); });
   }
   if (object.contains("configurations")) {
     read_key("configurations", [&] { fields.configurations = object.at("configurations").get<std::uint64_t>(); });

@@ -26,6 +26,8 @@ struct RowFields {
   std::string target = {};    ///< Of a generate row: "distance" or "volume".
   bool isolated = false;      ///< The algorithm runs, and is timed, in a process of its own.
   std::string question = {};  ///< Of a study's row: the kind of query that it asks.
+  /// The row asks at most so many configurations, and is compared with rows of the same limit; empty without one.
+  std::optional<std::uint64_t> sample_limit = {};
   /// How many were asked or made; empty where the row has none or could not be run.
   std::optional<std::uint64_t> configurations = {};
 };

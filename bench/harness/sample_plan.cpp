@@ -28,7 +28,8 @@ double trial(const Row& row, double seconds) {
 
 std::string group_of(const RowFields& fields) {
   if (!fields.bucket) return {};
-  return fmt::format("{}/{}/{}/{}/{}", fields.query, fields.pair, fields.bucket->name(), fields.order, fields.cache);
+  return fmt::format("{}/{}/{}/{}/{}/{}", fields.query, fields.pair, fields.bucket->name(), fields.order, fields.cache,
+                     fields.sample_limit.value_or(0));
 }
 
 SamplePlan::SamplePlan(const std::vector<const Row*>& rows) {
@@ -45,9 +46,9 @@ void SamplePlan::keep(const RowFields& measured) {
 std::size_t SamplePlan::configurations(const Row& row, const std::function<double()>& row_seconds) {
   const std::string group = group_of(row.fields);
   const auto members = rows_.find(group);
-  if (members == rows_.end()) return Share().configurations;
+  std::size_t count = row.fields.sample_limit.value_or(Share().configurations);
+  if (members == rows_.end()) return count;
   if (const auto found = configurations_.find(group); found != configurations_.end()) return found->second;
-  std::size_t count = Share().configurations;
   if (std::isfinite(row_seconds())) {
     double seconds_each = 0.0;
     for (const Row* const member : members->second) seconds_each += trial(*member, row_seconds());

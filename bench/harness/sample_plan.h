@@ -10,8 +10,8 @@
 
 namespace sixdof::bench {
 
-/// What rows have in common that differ in the algorithm alone: query, pair, bucket, order and state of the caches.
-/// Empty for rows that ask no configurations of a bucket.
+/// What rows have in common that differ in the algorithm alone: query, pair, bucket, order, state of the caches and
+/// limit of the sample. Empty for rows that ask no configurations of a bucket.
 std::string group_of(const RowFields& fields);
 
 /// How many configurations rows ask. All rows of a group ask the same ones, however fast their algorithms are: the

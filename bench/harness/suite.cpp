@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -11,6 +12,8 @@
 
 namespace sixdof::bench {
 namespace {
+
+constexpr const char* k_sample = "sample";
 
 /// The parts of a row's name by their keys: "collide/algorithm:exact/pair:ship" is {"query", "collide"}, {"algorithm",
 /// "exact"}, {"pair", "ship"}. Parts without a colon behind the first have no key and are left out.
@@ -35,14 +38,22 @@ Suite read_suite(const std::filesystem::path& file, const std::vector<std::strin
                  const std::vector<std::string>& named_only) {
   std::ifstream in(file);
   if (!in) throw BadFile(file.string(), "cannot be opened");
-  using Entry = std::map<std::string, std::vector<std::string>>;  // allowed values by key of a part; no values: all
+  struct Entry {
+    std::map<std::string, std::vector<std::string>> allowed;  // values by key of a part; no values: all
+    std::size_t sample = std::numeric_limits<std::size_t>::max();
+  };
   std::vector<Entry> entries;
   try {
     const auto json = nlohmann::json::parse(in);
     for (const auto& rows : json.at("rows")) {
       Entry& entry = entries.emplace_back();
       for (const auto& [key, values] : rows.items()) {
-        auto& allowed = entry[key];
+        if (key == k_sample) {
+          if (!values.is_number_unsigned() || values == 0) throw BadFile(file.string(), key, "not a positive integer");
+          entry.sample = values.get<std::size_t>();
+          continue;
+        }
+        auto& allowed = entry.allowed[key];
         if (values == "all") continue;
         allowed = values.get<std::vector<std::string>>();
         if (allowed.empty()) throw BadFile(file.string(), key, "an empty list");
@@ -52,16 +63,18 @@ Suite read_suite(const std::filesystem::path& file, const std::vector<std::strin
   } catch (const nlohmann::json::exception& e) {
     throw BadFile(file.string(), e.what());
   }
-  return [entries = std::move(entries), named_only](std::string_view row) {
+  return [entries = std::move(entries), named_only](std::string_view row) -> std::optional<std::size_t> {
     const auto parts = row_name_parts(row);
-    return std::ranges::any_of(entries, [&](const Entry& entry) {
+    const auto entry = std::ranges::find_if(entries, [&](const Entry& one) {
       return std::ranges::all_of(parts, [&](const auto& part) {
-        const auto found = entry.find(part.first);
-        if (found == entry.end()) return false;
+        const auto found = one.allowed.find(part.first);
+        if (found == one.allowed.end()) return false;
         if (found->second.empty()) return part.first != "algorithm" || !is_one_of(named_only, part.second);
         return is_one_of(found->second, part.second);
       });
     });
+    if (entry == entries.end()) return {};
+    return entry->sample;
   };
 }
 

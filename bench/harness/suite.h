@@ -1,21 +1,24 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace sixdof::bench {
 
-/// Whether a row, by its name, belongs to a list of rows.
-using Suite = std::function<bool(std::string_view)>;
+/// How many configurations a row, by its name, may ask in a list of rows; nothing if it does not belong to the list.
+using Suite = std::function<std::optional<std::size_t>(std::string_view)>;
 
 /// Reads a list of rows (bench/default_suite.json). A row belongs to it if one entry lists every part of the row's
 /// name. "distance/algorithm:fcl-rss/pair:bunny/volume:05" needs an entry with "distance" under "query", "fcl-rss"
 /// under "algorithm", and so on; the word "all" instead of a list allows everything, of algorithms those of default
 /// runs (Traits::in_default_runs()). Parts without a colon behind the first ("II" of "scenario/II/algorithm:exact") are
-/// free.
+/// free. "sample": 32 in an entry: its rows ask at most 32 configurations (RowFields::sample_limit). The first entry
+/// that a row belongs to counts.
 /// @param external_algorithms belong wherever an entry lists algorithms
 /// @param named_only algorithms that "all" leaves out
 /// @throws BadFile

@@ -33,6 +33,8 @@ TEST(RowFields, SayThatTheAlgorithmIsIsolated) {
   EXPECT_EQ(to_json_object({.query = "collide", .algorithm = "ode", .isolated = true}).at("isolated"), true);
   EXPECT_FALSE(to_json_object({.query = "collide", .algorithm = "ode"}).contains("isolated"));
   EXPECT_TRUE(row_fields_of(to_json_object({.query = "collide", .algorithm = "ode", .isolated = true})).isolated);
+  EXPECT_EQ(row_fields_of(to_json_object({.query = "collide", .algorithm = "ode", .sample_limit = 32})).sample_limit,
+            32u);
 }
 
 TEST(RowFields, HavePartsOfAPercent) {

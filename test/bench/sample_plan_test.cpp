@@ -48,6 +48,18 @@ TEST(GroupOf, DiffersInAllButTheAlgorithm) {
   EXPECT_EQ(group_of({.query = "prepare", .algorithm = "exact", .pair = "ship"}), "");
 }
 
+TEST(SamplePlan, RowsWithALimitAreAGroupOfTheirOwn) {
+  const Row free = row("free", 5, 1e-3);
+  Row limited = row("limited", 5, 1.0);
+  limited.fields.sample_limit = 64;
+  SamplePlan plan({&free, &limited});
+  EXPECT_EQ(plan.configurations(limited, each(1e9)), 64u);
+  EXPECT_EQ(plan.configurations(free, each(0.2)), 200u) << "the slow row takes nothing of its time";
+  SamplePlan unbounded({&free, &limited});
+  EXPECT_EQ(unbounded.configurations(limited, each(std::numeric_limits<double>::infinity())), 64u);
+  EXPECT_EQ(unbounded.configurations(free, each(std::numeric_limits<double>::infinity())), k_no_limit);
+}
+
 TEST(SamplePlan, FitsTheRowsOfAGroupIntoTheirPartsTogether) {
   const Row fast = row("fast", 5, 1e-3), slow = row("slow", 5, 0.1), alone = row("alone", 6, 1e-3);
   SamplePlan plan({&fast, &slow, &alone});

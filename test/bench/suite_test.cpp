@@ -52,8 +52,17 @@ TEST_F(SuiteFile, LeavesOutOfAllWhatMustBeNamed) {
   EXPECT_TRUE(named("collide/algorithm:slow/pair:ship"));
 }
 
+TEST_F(SuiteFile, LimitsTheSampleOfRowsByTheirFirstEntry) {
+  const Suite suite = read(R"({"query": ["collide"], "algorithm": ["slow"], "sample": 32},
+                              {"query": ["collide"], "algorithm": "all"})");
+  EXPECT_EQ(suite("collide/algorithm:slow"), 32u);
+  EXPECT_EQ(suite("collide/algorithm:fast"), std::numeric_limits<std::size_t>::max());
+  EXPECT_EQ(suite("distance/algorithm:slow"), std::nullopt);
+}
+
 TEST_F(SuiteFile, RefusesWhatItCannotRead) {
-  for (const char* bad : {R"({"query": []})", R"({"query": "some"})", R"({"query": 5})", "{"}) {
+  for (const char* bad : {R"({"query": ["a"], "sample": 0})", R"({"query": ["a"], "sample": "32"})", R"({"query": []})",
+                          R"({"query": "some"})", R"({"query": 5})", "{"}) {
     EXPECT_THROW(read(bad), BadFile) << bad;
   }
   EXPECT_THROW(read_suite("no-such-file", {}, {}), BadFile);
