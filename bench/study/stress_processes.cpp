@@ -19,7 +19,6 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -27,6 +26,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/process/child_process.h>
 
 namespace sixdof::study {
 namespace {
@@ -110,11 +110,7 @@ void read_text(const std::string& text, StressCell& cell) {
 [[noreturn]] void work(const StressPlan& plan, const StressCell& cell, Beacon& beacon, int output) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
-  const auto bytes = static_cast<rlim_t>(plan.memory_bytes);
-  const rlimit memory{bytes, bytes};
-  ::setrlimit(RLIMIT_DATA, &memory);
+  limit_resources(static_cast<std::size_t>(plan.memory_bytes));
   // Libraries print before they abort; the verdict says it.
   const int nowhere = ::open("/dev/null", O_WRONLY);
   ::dup2(nowhere, STDOUT_FILENO);

@@ -70,6 +70,12 @@ TEST(StressProcesses, WaysToDieAreToldApartAndHaveTheirPose) {
   };
   expect(run(*deadly<Way::abort>(), "offset"), Verdict::crashed);
   expect(run(*deadly<Way::loop>(), "offset", 0.5), Verdict::hung);
+}
+
+TEST(StressProcesses, AllMemoryTakenEndsACell) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "their shadow memory counts";
+#endif
   const StressCell memory = run(*deadly<Way::memory>(), "offset");
   EXPECT_EQ(memory.worst.verdict, Verdict::out_of_memory) << memory.worst.words;
 }

@@ -35,7 +35,7 @@ constexpr int k_high = 100;
 constexpr int k_not_started = 127;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool k_can_limit_memory = false;  // their shadow memory counts
+constexpr bool k_can_limit_memory = false;
 #else
 constexpr bool k_can_limit_memory = true;
 #endif
@@ -61,12 +61,7 @@ long count_kernel_kills() {
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
-  if (k_can_limit_memory && memory_bytes > 0) {
-    const rlimit memory{memory_bytes, memory_bytes};
-    ::setrlimit(RLIMIT_DATA, &memory);
-  }
+  limit_resources(memory_bytes);
   ::dup2(input, STDIN_FILENO);
   ::dup2(output, STDOUT_FILENO);
   int place = STDERR_FILENO + 1;
@@ -104,6 +99,14 @@ int high_descriptor(int descriptor) {
   errno = error;
   if (high < 0) throw_errno("file descriptor");
   return high;
+}
+
+void limit_resources(std::size_t memory_bytes) {
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  if (!k_can_limit_memory || memory_bytes == 0) return;
+  const rlimit memory{memory_bytes, memory_bytes};
+  ::setrlimit(RLIMIT_DATA, &memory);
 }
 
 std::size_t default_memory_limit() {
