@@ -37,7 +37,8 @@ if(SIXDOF_BUILD_BENCH)
     DESTINATION ${data_folder}/bench)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/fixtures DESTINATION ${data_folder}
     FILES_MATCHING PATTERN "manifest.json" PATTERN "*.h5")
-  install(FILES ${PROJECT_SOURCE_DIR}/models/models.json DESTINATION ${data_folder}/models)
+  install(FILES ${PROJECT_SOURCE_DIR}/models/models.json ${PROJECT_SOURCE_DIR}/models/collection.json
+    DESTINATION ${data_folder}/models)
   install(PROGRAMS ${PROJECT_SOURCE_DIR}/models/fetch DESTINATION ${data_folder}/models)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/linked_data_folder.cpp DESTINATION ${data_folder}/cmake)
 endif()

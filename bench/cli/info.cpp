@@ -8,6 +8,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/configuration/configuration_set.h>
+#include <sixdof/geometry/shape_facts.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/oracle/mesh_check.h>
 #include "bench/cli/info_check.h"
@@ -22,6 +23,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json as_json(const FileRepairs& repairs) { return {{"count", repairs.count}, {"first_place", repairs.first_place}}; }
+
+Json as_json(const ShapeFacts& facts) {
+  return {{"kind", name_of(kind_of(facts))}, {"genus", facts.genus},         {"box_aspect", facts.box_aspect},
+          {"box_fill", facts.box_fill},      {"thickness", facts.thickness}, {"aligned_share", facts.aligned_share},
+          {"flat_share", facts.flat_share}};
+}
 
 Json as_json(const Mesh& mesh) {
   const MeshTopology& topology = mesh.topology();
@@ -47,6 +54,7 @@ Json as_json(const Mesh& mesh) {
           {"box", {{"min", coordinates(mesh.box().min())}, {"max", coordinates(mesh.box().max())}}},
           {"diagonal", mesh.diagonal()},
           {"hash", mesh.hash()},
+          {"shape", as_json(shape_facts(mesh))},
           {"repairs",
            {{"crossing_polygons", as_json(repairs.crossing_polygons)},
             {"nonplanar_polygons", as_json(repairs.nonplanar_polygons)},
@@ -82,6 +90,11 @@ void print_text(const Mesh& mesh) {
   row("box", fmt::format("{} .. {}", as_text(mesh.box().min()), as_text(mesh.box().max())));
   row("diagonal", fmt::format("{:.9g}", mesh.diagonal()));
   row("hash", mesh.hash());
+  const ShapeFacts shape = shape_facts(mesh);
+  row("kind",
+      fmt::format("{}: genus {}, box aspect {:.3g}, box fill {:.3g}, thickness {:.3g}, aligned {:.3g}, flat {:.3g}",
+                  name_of(kind_of(shape)), shape.genus, shape.box_aspect, shape.box_fill, shape.thickness,
+                  shape.aligned_share, shape.flat_share));
   row("repairs",
       fmt::format("{} vertices welded, {} unused dropped; {} collapsed triangles dropped, {} of zero area kept",
                   repairs.welded_vertices, repairs.unreferenced_vertices, repairs.collapsed_triangles,

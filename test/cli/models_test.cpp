@@ -56,6 +56,33 @@ TEST_F(Models, MakesWhatInfoReadsInEveryFormat) {
   }
 }
 
+TEST_F(Models, ListsTheCollectionAndWhatWasLeftOut) {
+  const auto json = json_of("models list --collection paper-like");
+  std::size_t closed = 0;
+  for (const auto& object : json.at("objects")) closed += object.at("closed").get<bool>() ? 1 : 0;
+  EXPECT_GE(closed, 100u);
+  const std::string text = run("models list --collection").out;
+  EXPECT_THAT(text, HasSubstr(std::to_string(closed) + " closed objects: "));
+  for (const auto& object : json.at("objects")) {
+    EXPECT_THAT(text, HasSubstr("\n" + object.at("name").get<std::string>() + " "));
+    EXPECT_TRUE(object.at("source") != "recipe" || object.at("here").get<bool>());
+  }
+  EXPECT_THAT(text, HasSubstr("Left out: " + std::to_string(json.at("left_out").size()) + " meshes"));
+  EXPECT_THAT(text, HasSubstr("camel.off: meets itself: 20 pairs of triangles"));
+  const auto unknown = run("models list --collection paper");
+  EXPECT_EQ(unknown.exit_code, k_exit_error);
+  EXPECT_THAT(unknown.err, HasSubstr("no collection is called paper; there is paper-like"));
+}
+
+TEST_F(Models, ScalesToADiagonal) {
+  ASSERT_EQ(run("models make torus-1k --diagonal 0.25 -o " + path("t.ply")).exit_code, 0);
+  const auto whole = json_of("info torus-1k"), part = json_of("info " + path("t.ply"));
+  EXPECT_NEAR(part.at("diagonal").get<double>(), 0.25, 1e-15);
+  const double factor = 0.25 / whole.at("diagonal").get<double>();
+  EXPECT_NEAR(part.at("area").get<double>() / whole.at("area").get<double>(), factor * factor, 1e-12);
+  EXPECT_NEAR(part.at("shape").at("thickness").get<double>(), whole.at("shape").at("thickness").get<double>(), 1e-12);
+}
+
 TEST_F(Models, RefusesInWordsAndWritesNothing) {
   const auto refuses = [&](const std::string& arguments, int exit_code, const std::string& words) {
     const auto result = run("models make " + arguments);
@@ -70,6 +97,7 @@ TEST_F(Models, RefusesInWordsAndWritesNothing) {
   refuses("sphere-500 -n 500" + output, k_exit_error, "already");
   refuses("sphere -n 3" + output, k_exit_error, "3 were asked for");
   refuses("sphere -n -3" + output, k_exit_usage, "--triangles");
+  refuses("sphere-500 --diagonal 0" + output, k_exit_usage, "--diagonal");
   refuses("sphere -n many" + output, k_exit_usage, "--triangles");
   refuses("sphere -n 500 -o " + path("m.xyz"), k_exit_error, "m.xyz");
   refuses("sphere -n 500 -o " + path("no/such/m.ply"), k_exit_error, "no/such");

@@ -16,6 +16,7 @@ FETCH = pathlib.Path(sys.argv.pop()).resolve()
 PLAIN = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"
 PACKED = PLAIN.replace(b"1", b"2")
 MEMBER = PLAIN.replace(b"1", b"3")
+INNER = PLAIN.replace(b"1", b"5")
 
 
 def sha256(content):
@@ -47,9 +48,10 @@ class Fetch(unittest.TestCase):
         (data / "plain.off").write_bytes(PLAIN)
         (data / "packed.off.gz").write_bytes(gzip.compress(PACKED))
         with tarfile.open(data / "many.tar.gz", "w:gz") as archive:
-            entry = tarfile.TarInfo("meshes/member.off")
-            entry.size = len(MEMBER)
-            archive.addfile(entry, io.BytesIO(MEMBER))
+            for name, content in (("meshes/member.off", MEMBER), ("meshes/inner.off", INNER)):
+                entry = tarfile.TarInfo(name)
+                entry.size = len(content)
+                archive.addfile(entry, io.BytesIO(content))
         package = self.packages / "test-shapes_1_all.deb"
         subprocess.run(["dpkg-deb", "--root-owner-group", "-b", str(tree), str(package)],
                        check=True, capture_output=True)
@@ -83,6 +85,32 @@ class Fetch(unittest.TestCase):
     def test_fetches_only_what_is_named(self):
         self.assertEqual(self.fetch("packed").returncode, 0)
         self.assertEqual(self.files(), ["packed.off"])
+
+    def write_collection(self):
+        entry = {"package": "test-shapes", "path": "usr/share/many.tar.gz"}
+        (self.root / "collection.json").write_text(json.dumps({"objects": [
+            {"name": "torus-2k", "triangles": 2000},
+            {**entry, "name": "inner", "member": "meshes/inner.off", "file": "inner.off", "sha256": sha256(INNER)}]}))
+
+    def test_fetches_the_collection_and_needs_no_file_for_recipes(self):
+        self.write_collection()
+        self.assertEqual(self.fetch("--collection", "--list").stdout.count("missing"), 4)
+        result = self.fetch("--collection")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.files(), ["inner.off", "member.off", "packed.off", "plain.off"])
+        self.assertEqual((self.cache / "inner.off").read_bytes(), INNER)
+
+    def test_an_object_of_the_collection_is_fetched_by_its_name_only(self):
+        self.write_collection()
+        self.assertEqual(self.fetch().returncode, 0)
+        self.assertEqual(self.files(), ["member.off", "packed.off", "plain.off"])
+        self.assertEqual(self.fetch("inner").returncode, 0)
+        self.assertIn("inner.off", self.files())
+
+    def test_a_collection_that_is_not_there_is_named(self):
+        result = self.fetch("--collection")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("collection.json: no such collection", result.stderr)
 
     def test_keeps_valid_files_and_needs_no_package_for_them(self):
         self.assertEqual(self.fetch().returncode, 0)

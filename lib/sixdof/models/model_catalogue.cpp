@@ -10,8 +10,10 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/load.h>
+#include <sixdof/models/collection.h>
 #include <sixdof/models/manifest.h>
 #include <sixdof/models/recipe.h>
+#include <sixdof/models/recipe_variants.h>
 #include <sixdof/models/refine.h>
 #include <sixdof/models/surface.h>
 
@@ -30,10 +32,18 @@ std::optional<std::size_t> parse_count(std::string_view text) {
   return value * factor;
 }
 
+/// Without those of the collection, which are too many for a message.
 std::vector<std::string> model_names() {
   std::vector<std::string> names;
   for (const Recipe& recipe : recipes()) names.emplace_back(recipe.name);
   for (const FetchedModel& model : fetched_models()) names.push_back(model.name);
+  return names;
+}
+
+std::vector<std::string> all_names() {
+  std::vector<std::string> names = model_names();
+  for (const Recipe& recipe : recipe_variants()) names.emplace_back(recipe.name);
+  for (const FetchedModel& model : collection_files()) names.push_back(model.name);
   return names;
 }
 
@@ -42,6 +52,16 @@ template <class Entry>
 const Entry* find(std::span<const Entry> entries, std::string_view name) {
   const auto found = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.name == name; });
   return found == entries.end() ? nullptr : &*found;
+}
+
+const Recipe* find_recipe(std::string_view name) {
+  const Recipe* const found = find(recipes(), name);
+  return found != nullptr ? found : find(recipe_variants(), name);
+}
+
+const FetchedModel* find_fetched(std::string_view name) {
+  const FetchedModel* const found = find(fetched_models(), name);
+  return found != nullptr ? found : find(collection_files(), name);
 }
 
 /// Letters to insert, delete, exchange or swap with a neighbour to get from one word to the other (optimal string
@@ -65,9 +85,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 [[noreturn]] void throw_unknown(std::string_view name) {
-  const std::vector<std::string> near = suggestions(name, model_names());
+  const std::vector<std::string> near = suggestions(name, all_names());
   throw BadArgument(near.empty()
-                        ? fmt::format("no model is called {}; known: {}", name, fmt::join(model_names(), ", "))
+                        ? fmt::format("no model is called {}; known: {}; more: sixdof models list --collection", name,
+                                      fmt::join(model_names(), ", "))
                         : fmt::format("no model is called {}; did you mean {}?", name, fmt::join(near, " or ")));
 }
 
@@ -76,7 +97,7 @@ Mesh load_file(const std::string& file) {
   const std::filesystem::path path(file);
   if (!std::filesystem::exists(path)) {
     const std::string stem = path.stem().string();
-    if (find(fetched_models(), stem) != nullptr) {
+    if (find_fetched(stem) != nullptr) {
       throw BadFile(file, fmt::format("no such file; for the model {0} run models/fetch {0}, and name it {0}, without "
                                       "folder and extension",
                                       stem));
@@ -104,13 +125,13 @@ bool names_file(std::string_view name_or_file) { return name_or_file.find_first_
 Mesh load_model(const std::string& name_or_file) {
   if (names_file(name_or_file)) return load_file(name_or_file);
   const ModelName parts = parse_model_name(name_or_file);
-  if (const Recipe* const recipe = find(recipes(), parts.base)) {
+  if (const Recipe* const recipe = find_recipe(parts.base)) {
     if (!parts.triangles) {
       throw BadArgument(fmt::format("{0} is a recipe: say how many triangles, as in {0}-10k", parts.base));
     }
     return recipe->make(*parts.triangles).renamed(name_or_file);
   }
-  const FetchedModel* const fetched = find(fetched_models(), parts.base);
+  const FetchedModel* const fetched = find_fetched(parts.base);
   if (fetched == nullptr) throw_unknown(parts.base);
   const std::size_t triangles = parts.triangles.value_or(fetched->triangles);
   if (triangles < fetched->triangles) {

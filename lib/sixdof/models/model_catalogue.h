@@ -24,8 +24,9 @@ ModelName parse_model_name(std::string_view name);
 bool names_file(std::string_view name_or_file);
 
 /// A mesh by its name or from a file:
-/// - RECIPE-COUNT is made by a recipe: "torus-100k", "sphere-12500" (recipe.h);
-/// - NAME is a fetched model: "elephant" (manifest.h); NAME-COUNT is its subdivision: "elephant-1m" (refine.h);
+/// - RECIPE-COUNT is made by a recipe or a variant: "torus-100k", "plate-12500" (recipe.h, recipe_variants.h);
+/// - NAME is a fetched model: "elephant", "camel" (manifest.h, collection.h); NAME-COUNT is its subdivision:
+/// "elephant-1m" (refine.h);
 /// - a word with a '.' or a '/' is a file for load_mesh(): "hull.stl", "./parts/hull".
 /// The mesh has the given name, or the file's.
 /// @throws BadArgument for a name that does not exist (the message lists similar ones) or a count out of range; BadFile
