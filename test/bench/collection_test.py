@@ -1,0 +1,225 @@
+"""bench/collection: its arithmetic on synthetic pairs, and real runs on small recipes.
+
+usage: collection_test.py SIXDOF SIXDOF_BENCH
+"""
+
+import csv
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
+SIXDOF, SIXDOF_BENCH = sys.argv[1:3]
+del sys.argv[1:3]
+sys.path.insert(0, str(BENCH))
+import collection_report  # noqa: E402
+import object_runs  # noqa: E402
+
+OBJECTS = ["box-1k", "sphere-1k", "torus-2k"]
+
+
+def row(algorithm, us, percent=5, query="distance", kind="distance", **more):
+    fields = {"query": query, "algorithm": algorithm, "pair": "p", "bucket": {"kind": kind, "percent": percent}}
+    return {"name": f"{query}/algorithm:{algorithm}/pair:p/{kind}:{percent:02}", "cpu_time": us, "time_unit": "us",
+            "failed": 0, "mismatch": 0, "sixdof": fields} | more
+
+
+def unit(name, rows, partner="self", volume_unit=1.0, algorithms=None):
+    labels = {"object": name, "partner": partner, "kind": "boxy", "triangles": 1000, "total_triangles": 2000,
+              "volume_unit": volume_unit}
+    return {"unit": f"{name}.{partner}", "labels": labels, "set": {"status": "ok"}, "seconds": 1.0,
+            "algorithms": algorithms or {}, "benchmarks": rows}
+
+
+class Arithmetic(unittest.TestCase):
+    def summary(self, *units):
+        return collection_report.summary_of(list(units))
+
+    def test_mean_and_spread_are_over_objects(self):
+        summary = self.summary(*(unit(name, [row("exact", us)]) for name, us in
+                                 (("a", 1), ("b", 2), ("c", 3), ("d", 10), ("e", 4))))
+        [cell] = summary["cells"]
+        self.assertEqual((cell["objects"], cell["mean_us"], cell["median_us"]), (5, 4, 3))
+        self.assertAlmostEqual(cell["p10_us"], 1.4)
+        self.assertAlmostEqual(cell["p90_us"], 7.6)
+        self.assertEqual((cell["least_us"], cell["greatest_us"], cell["greatest_object"]), (1, 10, "d"))
+
+    def test_ratios_name_the_objects_where_an_algorithm_is_worst(self):
+        summary = self.summary(*(unit(name, [row("exact", 2), row("slow", us)]) for name, us in
+                                 (("a", 4), ("b", 64), ("c", 16), ("d", 8))))
+        [slow] = [one for one in summary["against_exact"] if one["algorithm"] == "slow"]
+        self.assertAlmostEqual(slow["ratio"], (2 * 32 * 8 * 4) ** 0.25)
+        self.assertEqual([(one["object"], round(one["ratio"])) for one in slow["worst"]],
+                         [("b", 32), ("c", 8), ("d", 4)])
+
+    def test_a_row_at_fault_counts_for_no_time_and_is_listed(self):
+        summary = self.summary(unit("a", [row("exact", 1), row("bad", 1, mismatch=2), row("lost", 1, failed=1)]))
+        self.assertEqual([cell["algorithm"] for cell in summary["cells"]], ["exact"])
+        self.assertEqual([fault["why"] for fault in summary["faults"]], ["2 wrong", "1 without an answer"])
+
+    def test_partners_are_kept_apart_and_volumes_are_in_their_unit(self):
+        summary = self.summary(unit("a", [row("exact", 1, 0.005, "respond", "volume")], "tenth", 1e-3),
+                               unit("a", [row("exact", 3, 5, "respond", "volume")]))
+        self.assertEqual([(cell["partner"], cell["bucket"]["percent"], cell["mean_us"]) for cell in summary["cells"]],
+                         [("self", 5, 3), ("tenth", 5, 1)])
+
+    def test_what_did_not_end_is_listed(self):
+        summary = self.summary(unit("a", [], algorithms={"ist": {"status": "not done in 10 s"}}))
+        self.assertEqual(summary["not_measured"], [{"unit": "a.self", "algorithm": "ist", "why": "not done in 10 s"}])
+
+    def test_percentages_and_times_of_the_command_line(self):
+        self.assertEqual(object_runs.percents_of("0,0.5,5:7"), [0, 0.5, 5, 6, 7])
+        self.assertEqual([object_runs.seconds_of(text) for text in ("90s", "25min", "2h")], [90, 1500, 7200])
+        self.assertRaises(ValueError, object_runs.seconds_of, "5")
+        self.assertRaises(ValueError, object_runs.seconds_of, "-5s")
+
+
+class Run(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="sixdof-collection-")
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        self.out = self.root / "run"
+        self.environment = os.environ | {"SIXDOF_MODELS": str(self.root), "SIXDOF_CACHE": str(self.root / "cache")}
+
+    def command(self, *words):
+        return [sys.executable, "-B", str(BENCH / "collection"), "--program", SIXDOF, "--bench", SIXDOF_BENCH, "--out",
+                str(self.out), "--algorithms", "exact", "--distances", "0,5", "--volumes", "5", "--grid", "so3:4:2",
+                "--sample", "4", "--objects", ",".join(OBJECTS), "--most-triangles", "3000", "--recipes", *words]
+
+    def collection(self, *words):
+        return subprocess.run(self.command(*words), capture_output=True, text=True, check=False, env=self.environment)
+
+    def units(self):
+        return sorted(file.stem for file in (self.out / "units").glob("*.json"))
+
+    def test_measures_all_pairs_and_reports(self):
+        done = self.collection()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.units(), sorted(f"{name}.{partner}" for name in OBJECTS
+                                              for partner in ("self", "seeded", "tenth")))
+        document = json.loads((self.out / "results.json").read_text())
+        summary = document["collection"]
+        self.assertEqual((summary["units"], summary["objects"]), (9, sorted(OBJECTS)))
+        self.assertEqual([summary[key] for key in ("faults", "sets_not_made", "not_measured")], [[], [], []])
+        names = [one["name"] for one in document["benchmarks"]]
+        self.assertEqual(len(names), len(set(names)))
+        self.assertEqual({one["sixdof"]["partner"] for one in document["benchmarks"]}, {"self", "seeded", "tenth"})
+        with open(self.out / "figure.csv", encoding="utf-8") as file:
+            lines = list(csv.DictReader(file))
+        found = [line for line in lines if (line["partner"], line["query"]) == ("self", "distance")]
+        self.assertEqual({(line["algorithm"], line["bucket"], line["percent"], line["objects"]) for line in found},
+                         {("exact", "distance", "0", "3"), ("exact", "distance", "5", "3")})
+        small = [line for line in lines if (line["partner"], line["query"], line["bucket"]) ==
+                 ("tenth", "respond", "volume")]
+        self.assertEqual({(line["percent"], line["objects"]) for line in small}, {("5", "3")})
+        self.assertIn("**distance, self**", done.stdout)
+        self.assertIn("9 pairs of 3 objects.", done.stdout)
+
+        before = {name: (self.out / "units" / f"{name}.json").stat().st_mtime_ns for name in self.units()}
+        (self.out / "units" / "box-1k.self.json").unlink()
+        again = self.collection()
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(again.stderr, "1 of 1: box-1k.self\n")
+        del before["box-1k.self"]
+        for name, changed in before.items():
+            self.assertEqual((self.out / "units" / f"{name}.json").stat().st_mtime_ns, changed)
+        other = self.collection("--sample", "8")
+        self.assertEqual(other.returncode, 1)
+        self.assertIn("holds units with sample 4, not 8", other.stderr)
+
+        plan = self.collection("--plan")
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        self.assertEqual(plan.stdout.count(" measured\n"), 9)
+        self.assertIn("0 pairs to measure", plan.stdout)
+
+    def test_shards_are_disjoint_and_complete(self):
+        words = ("--partners", "self")
+        seen = []
+        for shard in ("1/3", "2/3", "3/3"):
+            done = self.collection(*words, "--shard", shard)
+            self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+            seen += [line.split(": ")[1] for line in done.stderr.splitlines()]
+        self.assertEqual(sorted(seen), sorted(f"{name}.self" for name in OBJECTS))
+        self.assertFalse((self.out / "results.json").exists())
+        self.assertEqual(self.collection("--report").returncode, 0)
+        self.assertTrue((self.out / "results.json").exists())
+
+    def test_a_plan_estimates_every_pair_and_measures_none(self):
+        plan = self.collection("--plan", "--budget", "1s", "--jobs", "1")
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        estimates = [line.split() for line in plan.stdout.splitlines() if ".self" in line or ".seeded" in line]
+        self.assertEqual(len(estimates), 6)
+        for _, _, seconds in estimates:
+            self.assertGreater(float(seconds), 0)
+        self.assertIn("The budget of", plan.stdout)
+        self.assertFalse((self.out / "units").exists())
+
+    def test_a_budget_ends_the_run_and_the_same_command_continues(self):
+        cut = self.collection("--budget", "0.01s")
+        self.assertEqual(cut.returncode, 1)
+        self.assertIn("the budget left out 9 of 9 pairs", cut.stderr)
+        self.assertIn("no pair is measured yet", cut.stderr)
+        self.assertEqual(self.units(), [])
+        self.assertEqual(self.collection("--partners", "self").returncode, 0)
+        self.assertEqual(len(self.units()), 3)
+
+    def test_a_signal_leaves_whole_files_only(self):
+        with subprocess.Popen(self.command(), stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                              env=self.environment) as process:
+            process.stderr.readline()  # the first pair is measured
+            process.send_signal(signal.SIGTERM)
+            process.communicate()
+        self.assertEqual(process.returncode, 130)
+        self.assertGreaterEqual(len(self.units()), 1)
+        for file in (self.out / "units").iterdir():
+            json.loads(file.read_text())
+        leftovers = [file for file in self.out.rglob("*") if file.name.endswith(".partial") or ".run-" in file.name]
+        self.assertEqual(leftovers, [])
+        self.assertEqual(self.collection("--partners", "self").returncode, 0)
+
+    def test_an_algorithm_that_takes_too_long_costs_its_own_rows_only(self):
+        slow = self.root / "slow"
+        slow.write_text(f"#!/bin/sh\ncase \"$*\" in *algorithm:ist/*) exec sleep 600;; esac\nexec {SIXDOF_BENCH} \"$@\"\n")
+        slow.chmod(0o755)
+        begun = time.monotonic()
+        choice = object_runs.Choice(["exact", "ist"], "5", "", "so3:4:2", 4, 0.001, 1)
+        runner = object_runs.Runner(self.out, choice, SIXDOF, slow, object_runs.Budget(600, 1))
+        body = object_runs.Body("box-1k", "box-1k")
+        object_runs.LEAST_LIMIT_S, limit = 2.0, object_runs.LEAST_LIMIT_S
+        object_runs.UNIT_OF_SHARE, share = 1e-3, object_runs.UNIT_OF_SHARE
+        try:
+            runner.measure(object_runs.Unit("box", body, body, 2000, True, ()))
+        finally:
+            object_runs.LEAST_LIMIT_S, object_runs.UNIT_OF_SHARE = limit, share
+        [result] = object_runs.results(self.out)
+        self.assertRegex(result["algorithms"]["ist"]["status"], r"^not done in \d s$")
+        self.assertEqual({one["sixdof"]["algorithm"] for one in result["benchmarks"]}, {"exact"})
+        self.assertLess(time.monotonic() - begun, 500)
+
+    def test_wrong_words_end_in_one_line(self):
+        for words, said in ((["--objects", "no-such"], "no object of paper-like is called no-such"),
+                            (["--collection", "papers"], "no collection is called papers"),
+                            (["--algorithms", "exakt"], "no algorithm is called exakt"),
+                            (["--program", "/no/such"], "/no/such is not there")):
+            done = self.collection(*words)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(said, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1)
+        for words in (["--shard", "0/3"], ["--budget", "5"], ["--partners", "none"], ["--distances", "a:b"]):
+            done = self.collection(*words)
+            self.assertEqual(done.returncode, 2, done.stderr)
+        files = subprocess.run([word for word in self.command() if word != "--recipes"], capture_output=True,
+                               text=True, check=False, env=self.environment)
+        self.assertEqual(files.returncode, 1)
+        self.assertRegex(files.stderr, r"\d+ objects are not fetched, such as \S+: run models/fetch --collection\n$")
+
+
+if __name__ == "__main__":
+    unittest.main()
