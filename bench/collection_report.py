@@ -15,6 +15,9 @@ SHOWN = {"distance": [("distance", p) for p in (0, 1, 5, 10, 20, 30)] + [("volum
          "respond": [("volume", p) for p in (1, 2, 5, 10)]}
 REFERENCE = "exact"
 WORST = 3  # Objects that the table names per algorithm.
+# Where objects of one kind are compared with all others, and the fewest objects for that.
+COMPARED = [("distance", ("distance", 5.0)), ("collide", ("distance", 1.0)), ("respond", ("volume", 5.0))]
+FEWEST_COMPARED = 8
 
 
 def quantile(values, share):
@@ -72,6 +75,35 @@ def ratios_to_reference(times, partner, query):
             for algorithm, by_object in ratios.items()}
 
 
+def power_law(points):
+    """(c, e) of y = c x^e through (x, y), by least squares of the logarithms; e is 0 if all x are equal."""
+    xs, ys = [math.log(x) for x, _ in points], [math.log(y) for _, y in points]
+    mx, my = statistics.fmean(xs), statistics.fmean(ys)
+    spread = sum((x - mx) ** 2 for x in xs)
+    exponent = sum((x - mx) * (y - my) for x, y in zip(xs, ys)) / spread if spread > 0 else 0.0
+    return math.exp(my - exponent * mx), exponent
+
+
+def hardness(units, times):
+    """How much more time objects of a kind take than the law of the number of triangles says, which is fitted to all
+    objects: geometric means, with themselves as partners."""
+    objects = {unit["labels"]["object"]: unit["labels"] for unit in units}
+    found = []
+    for query, bucket in COMPARED:
+        for algorithm in sorted({key[3] for key in times if key[:3] == ("self", query, bucket)}):
+            by_object = times["self", query, bucket, algorithm]
+            if len(by_object) < FEWEST_COMPARED:
+                continue
+            factor, exponent = power_law([(objects[name]["triangles"], ns) for name, ns in by_object.items()])
+            kinds = collections.defaultdict(list)
+            for name, ns in by_object.items():
+                kinds[objects[name]["kind"]].append(ns / (factor * objects[name]["triangles"] ** exponent))
+            found.append({"query": query, "bucket": {"kind": bucket[0], "percent": bucket[1]}, "algorithm": algorithm,
+                          "exponent": exponent, "kinds": {kind: {"objects": len(values), "factor": geometric_mean(values)}
+                                                          for kind, values in sorted(kinds.items())}})
+    return found
+
+
 def summary_of(units):
     times, faults = times_and_faults(units)
     cells = [{"partner": partner, "query": query, "bucket": {"kind": kind, "percent": percent}, "algorithm": algorithm,
@@ -89,7 +121,7 @@ def summary_of(units):
                     for unit in units for algorithm, record in unit["algorithms"].items() if record["status"] != "ok"]
     sets = [{"unit": unit["unit"], "why": unit["set"]["status"]} for unit in units if unit["set"]["status"] != "ok"]
     return {"units": len(units), "objects": sorted({unit["labels"]["object"] for unit in units}), "cells": cells,
-            "against_" + REFERENCE: against, "sets_not_made": sets, "not_measured": not_measured,
+            "against_" + REFERENCE: against, "hardness": hardness(units, times), "sets_not_made": sets, "not_measured": not_measured,
             "faults": [{"unit": unit, "row": row, "why": why} for unit, row, why in faults]}
 
 
@@ -134,6 +166,22 @@ def table(summary):
         worst = ", ".join(f"{each['object']} {each['ratio']:.3g}" for each in one["worst"])
         lines.append(f"| {one['partner']} | {one['query']} | `{one['algorithm']}` | {one['objects']} | "
                      f"{one['ratio']:.3g} | {one['p10']:.3g}..{one['p90']:.3g} | {worst} |")
+    return lines + hardness_table(summary["hardness"])
+
+
+def hardness_table(found):
+    """Lines of Markdown, none without entries."""
+    kinds = sorted({kind for one in found for kind in one["kinds"]})
+    if not kinds:
+        return []
+    lines = ["", "What makes an object hard: time / what the number of triangles n alone says, c n^e (geometric mean over "
+             "the objects of a kind; in brackets their number):", "",
+             "| query | algorithm | e | " + " | ".join(kinds) + " |", "|---|---|---|" + "---|" * len(kinds)]
+    for one in found:
+        cells = [f"{one['kinds'][kind]['factor']:.2f} ({one['kinds'][kind]['objects']})" if kind in one["kinds"] else "-"
+                 for kind in kinds]
+        where = f"{one['query']}, {one['bucket']['kind']} {one['bucket']['percent']:g} %"
+        lines.append(f"| {where} | `{one['algorithm']}` | {one['exponent']:.2f} | " + " | ".join(cells) + " |")
     return lines
 
 

@@ -30,8 +30,8 @@ def row(algorithm, us, percent=5, query="distance", kind="distance", **more):
             "failed": 0, "mismatch": 0, "sixdof": fields} | more
 
 
-def unit(name, rows, partner="self", volume_unit=1.0, algorithms=None):
-    labels = {"object": name, "partner": partner, "kind": "boxy", "triangles": 1000, "total_triangles": 2000,
+def unit(name, rows, partner="self", volume_unit=1.0, algorithms=None, kind="boxy", triangles=1000):
+    labels = {"object": name, "partner": partner, "kind": kind, "triangles": triangles, "total_triangles": 2000,
               "volume_unit": volume_unit}
     return {"unit": f"{name}.{partner}", "labels": labels, "set": {"status": "ok"}, "seconds": 1.0,
             "algorithms": algorithms or {}, "benchmarks": rows}
@@ -68,6 +68,17 @@ class Arithmetic(unittest.TestCase):
                                unit("a", [row("exact", 3, 5, "respond", "volume")]))
         self.assertEqual([(cell["partner"], cell["bucket"]["percent"], cell["mean_us"]) for cell in summary["cells"]],
                          [("self", 5, 3), ("tenth", 5, 1)])
+
+    def test_kinds_are_compared_at_equal_numbers_of_triangles(self):
+        # Times are n^0.5, of thin objects four times as long: all factors but the geometric mean of both are removed.
+        units = [unit(f"{kind}{n}", [row("exact", (4 if kind == "thin" else 1) * n ** 0.5)], kind=kind, triangles=n)
+                 for kind in ("boxy", "thin") for n in (1000, 4000, 16000, 64000)]
+        [found] = self.summary(*units)["hardness"]
+        self.assertAlmostEqual(found["exponent"], 0.5)
+        self.assertAlmostEqual(found["kinds"]["thin"]["factor"], 2.0)
+        self.assertAlmostEqual(found["kinds"]["boxy"]["factor"], 0.5)
+        self.assertEqual(found["kinds"]["boxy"]["objects"], 4)
+        self.assertEqual(self.summary(*units[1:])["hardness"], [])  # seven objects are too few
 
     def test_what_did_not_end_is_listed(self):
         summary = self.summary(unit("a", [], algorithms={"ist": {"status": "not done in 10 s"}}))
@@ -142,8 +153,14 @@ class Run(unittest.TestCase):
     def test_shards_are_disjoint_and_complete(self):
         words = ("--partners", "self")
         seen = []
-        for shard in ("1/3", "2/3", "3/3"):
-            done = self.collection(*words, "--shard", shard)
+        batch = BENCH / "slurm" / "collection.sbatch"
+        for shard in (1, 2, 3):
+            if shard == 2:  # as a task of Slurm runs it
+                command = ["bash", str(batch), str(BENCH / "collection"), "3", *self.command(*words)[3:]]
+                done = subprocess.run(command, capture_output=True, text=True, check=False,
+                                      env=self.environment | {"SLURM_ARRAY_TASK_ID": "2"})
+            else:
+                done = self.collection(*words, "--shard", f"{shard}/3")
             self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
             seen += [line.split(": ")[1] for line in done.stderr.splitlines()]
         self.assertEqual(sorted(seen), sorted(f"{name}.self" for name in OBJECTS))
