@@ -72,6 +72,13 @@ class Help(unittest.TestCase):
         done = self.succeed([str(BENCH / "speedups"), "--program", SIXDOF_BENCH, *one[1:], "--seeds", "1", "--", *QUICK])
         self.assertIn("| `torus-knot-10k` | distance | distance 5 % |", done)
 
+    def test_collection_and_growth(self):
+        for script, said in (("collection", "6 pairs of 2 objects."), ("growth", "6 pairs.")):
+            measure, report = self.examples([str(BENCH / script)])
+            programs = ["--program", SIXDOF, "--bench", SIXDOF_BENCH]
+            self.assertIn(said, self.succeed([str(BENCH / script), *measure[1:], *programs]))
+            self.assertIn(said, self.succeed([str(BENCH / script), *report[1:], *programs]))
+
     def test_response_table(self):
         both, one = self.examples([str(BENCH / "response-table")])
         self.assertEqual(both, ["bench/response-table"], "takes minutes; the other one prints a part of it")
