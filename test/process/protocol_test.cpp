@@ -141,7 +141,43 @@ TEST(Protocol, TimesBelongToPoses) {
   EXPECT_EQ(timed_of(R"({"wall_ns": 8, "cpu_ns": 7})", 2, false).cpu_ns, 7.0);
   EXPECT_THROW(timed_of(to_line(Timed{{1}, {1}, 0, 0, {}}), 2, true), Malformed);
   EXPECT_THROW(timed_of(to_line(Timed{{1, 2}, {1, 2}, 0, 0, {{2, Status::failed, ""}}}), 2, true), Malformed);
-  EXPECT_THROW(timed_of(R"({"cpu_ns": 7})", 2, false), Malformed);
+  for (const char* const line :
+       {R"({"cpu_ns": 7})", R"({"wall_ns": -8, "cpu_ns": 7})", R"({"wall_ns": 8, "cpu_ns": "inf"})",
+        R"({"wall_ns": 8, "cpu_ns": 7, "failed": [[-1, "failed", ""]]})",
+        R"({"wall_ns": 8, "cpu_ns": 7, "failed": [[0.5, "failed", ""]]})",
+        R"({"wall_ns": 8, "cpu_ns": 7, "failed": [[1e300, "failed", ""]]})",
+        R"({"wall_ns": 8, "cpu_ns": 7, "failed": [[1, "failed", ""], [1, "failed", ""]]})"}) {
+    EXPECT_THROW(timed_of(line, 2, false), Malformed) << line;
+  }
+  EXPECT_THROW(timed_of(R"({"once_ns": {"a": 1, "b": 2}, "least_ns": [1, 2]})", 2, true), Malformed);
+}
+
+TEST(Protocol, CountsAreWholeNumbers) {
+  const auto passes_of = [](const std::string& passes) {
+    const std::string line =
+        R"({"do": "time", "query": "distance", "each": true, "evict_bytes": 0, "poses": [], "passes": )" + passes + "}";
+    return std::get<Time>(request_of(line)).passes;
+  };
+  EXPECT_EQ(passes_of("3"), 3u);
+  EXPECT_EQ(passes_of("3.0"), 3u) << "of a language without integers";
+  EXPECT_EQ(passes_of("18446744073709551615"), std::numeric_limits<std::size_t>::max());
+  for (const char* const wrong : {"-1", "2.5", "1e300", "true", "null", "\"3\"", "[3]", "18446744073709551616"}) {
+    EXPECT_THROW(passes_of(wrong), Malformed) << wrong;
+  }
+}
+
+TEST(Protocol, AnAnswerThatIsNotFiniteIsNone) {
+  for (const char* const word : {"nan", "inf", "-inf"}) {
+    const std::string number = '"' + std::string(word) + '"';
+    const auto distance = answer_of<Separation>("{\"distance\": " + number + "}");
+    EXPECT_EQ(distance.outcome.status, Status::non_finite) << word;
+    EXPECT_EQ(distance.words, "the answer is not finite");
+    const auto response = answer_of<Response>(R"({"penalty": 1, "force": [0, )" + number +
+                                              R"(, 0], "torque": [0, 0, 0], "reference": [0, 0, 0]})");
+    EXPECT_EQ(response.outcome.status, Status::non_finite) << word;
+  }
+  EXPECT_TRUE(answer_of<Separation>(R"({"distance": 2})").outcome.ok());
+  EXPECT_TRUE(answer_of<bool>(R"({"collide": true})").outcome.ok());
 }
 
 TEST(Protocol, RefusesNonsenseWithTheLine) {
@@ -155,11 +191,29 @@ TEST(Protocol, RefusesNonsenseWithTheLine) {
   };
   EXPECT_THAT(words_of("Hello, I am a library"), HasSubstr(R"("Hello, I am a library": )"));
   EXPECT_THAT(words_of("{}"), HasSubstr("key 'distance' not found"));
-  for (const char* const line :
-       {"", "7", "[]", "null", R"({"distance": "near"})", R"({"distance": null})", R"({"distance": NaN})",
-        R"({"collide": true})", R"({"distance": 1)", R"({"distance": 1, "a": [1, 2], "b": [1, 2, 3]})",
-        R"({"distance": 1, "a": [1, 2, 3]})", R"({"distance": 1, "triangle_a": "x"})", R"({"distance": 1, "ns": []})",
-        R"({"status": "fine"})", R"({"distance": 1, "work": [["points"]]})", "\xFF\xFE"}) {
+  for (const char* const line : {"",
+                                 "7",
+                                 "[]",
+                                 "null",
+                                 R"({"distance": "near"})",
+                                 R"({"distance": null})",
+                                 R"({"distance": NaN})",
+                                 R"({"collide": true})",
+                                 R"({"distance": 1)",
+                                 R"({"distance": 1, "a": [1, 2], "b": [1, 2, 3]})",
+                                 R"({"distance": 1, "a": [1, 2, 3]})",
+                                 R"({"distance": 1, "triangle_a": "x"})",
+                                 R"({"distance": 1, "ns": []})",
+                                 R"({"distance": 1, "triangle_a": 1.5})",
+                                 R"({"distance": 1, "triangle_b": -1})",
+                                 R"({"distance": 1, "triangle_b": 4294967296})",
+                                 R"({"distance": 1, "triangle_a": true})",
+                                 R"({"distance": 1, "triangle_a": 1e300})",
+                                 R"({"distance": 1, "ns": -1})",
+                                 R"({"distance": 1, "ns": "nan"})",
+                                 R"({"status": "fine"})",
+                                 R"({"distance": 1, "work": [["points"]]})",
+                                 "\xFF\xFE"}) {
     EXPECT_NE(words_of(line), "accepted") << line;
   }
   EXPECT_LT(words_of(std::string(100'000, 'x')).size(), 300u) << "long lines are cut";

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cstring>
 #include <memory>
 #include <random>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -213,6 +215,30 @@ TEST(Script, SilenceNonsenseAndAClosedPipe) {
   EXPECT_EQ(status_of("exit 3", "ended with exit code 3"), Status::crashed);
   EXPECT_EQ(status_of("kill -9 $$", "ended by signal 9"), Status::crashed);
   EXPECT_EQ(status_of("echo '{\"status\":\"non_finite\",\"words\":\"NaN\"}'", "NaN"), Status::non_finite);
+}
+
+TEST(Script, WhatIsNoAnswerIsNeverOne) {
+  const auto status_of = [](const std::string& line) {
+    const auto query = script("echo '" + line + "'")->prepare(torus(), torus(), Settings());
+    return query->distance(Pose()).status;
+  };
+  EXPECT_EQ(status_of(R"({"distance": 1})"), Status::ok);
+  EXPECT_EQ(status_of(R"({"distance": "nan"})"), Status::non_finite);
+  EXPECT_EQ(status_of(R"({"distance": "-inf"})"), Status::non_finite);
+  EXPECT_EQ(status_of(R"({"distance": 1, "triangle_a": 0.5})"), Status::failed);
+  EXPECT_EQ(status_of(R"({"distance": 1, "ns": -3})"), Status::failed);
+}
+
+TEST(Script, ALineBetweenTwoRequestsEndsTheProcess) {
+  // Two lines for the first question: the second is not the answer to the next one.
+  const auto query = script("echo '{\"distance\": 1}'; echo '{\"distance\": 2}'; sleep 0.2", {.query_s = 20.0})
+                         ->prepare(torus(), torus(), Settings());
+  const std::vector<Pose> list = poses(3);
+  EXPECT_EQ(query->distance(list[0]).value.distance, 1.0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  EXPECT_EQ(query->distance(list[1]).status, Status::failed);
+  EXPECT_THAT(query->diagnosis(), HasSubstr("wrote a line that answers no request"));
+  EXPECT_EQ(query->distance(list[2]).value.distance, 1.0) << "of a new process";
 }
 
 TEST(Script, WithoutAClockIsTimedFromOutside) {

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include <sixdof/base/cache.h>
 #include <sixdof/base/error.h>
@@ -22,6 +25,14 @@ namespace sixdof {
 inline void require_solid(const Mesh& mesh, const std::string& what) {
   if (!mesh.solid())
     throw BadMesh(mesh.name() + ": " + what + " needs a solid: " + mesh.why_not_solid() + k_repair_hint);
+}
+
+/// Whether all numbers of an array from the cache are finite.
+inline bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+inline bool all_finite(const std::vector<Eigen::Vector3d>& points) {
+  return std::all_of(points.begin(), points.end(), [](const Eigen::Vector3d& p) { return p.allFinite(); });
 }
 
 /// Copies the members of a structure to a CacheEntry, or moves them back. Reading throws BadFile where an array is
@@ -64,7 +75,7 @@ struct CacheMembers {
 /// A structure from the cache on disk (base/cache.h); if the cache has no valid entry, from build(), and then stored.
 /// @param key names everything that the structure depends on, and the version of its layout
 /// @param visit called with CacheMembers and the structure
-/// @param valid whether the arrays of a structure that was read fit together
+/// @param valid whether the arrays of a structure that was read fit together and hold what queries rely on
 template <class Build, class Visit, class Valid>
 auto load_or_build(std::string_view kind, const std::string& key, const Build& build, const Visit& visit,
                    const Valid& valid) {

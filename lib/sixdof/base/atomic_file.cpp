@@ -114,10 +114,11 @@ void remove_stale_partials(const std::filesystem::path& target) {
 void write_file_atomically(const std::filesystem::path& target, std::string_view content) {
   AtomicFile file(target);
   {
+    errno = 0;
     std::ofstream out(file.temporary_path(), std::ios::binary);
     out.write(content.data(), static_cast<std::streamsize>(content.size()));
     out.close();
-    if (!out) throw BadFile(target.string(), "cannot be written (disk full?)");
+    if (!out) throw_not_writable(target, errno == 0 ? EIO : errno);
   }
   file.commit();
 }

@@ -107,6 +107,8 @@ bool store_cached(std::string_view kind, std::string_view key, const CacheEntry&
   std::error_code error;
   std::filesystem::create_directories(path.parent_path(), error);
   if (error) return false;
+  // Of a writer that was killed. One on another machine may lose its file by this, and then keeps nothing.
+  remove_stale_partials(path);
   try {
     AtomicFile target(path);
     {

@@ -1,6 +1,8 @@
 #include <sixdof/base/hdf5.h>
 
 #include <algorithm>
+#include <fstream>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,8 +15,10 @@ namespace {
 /// Up to this many attributes stay inside the object's header, which has a checksum.
 constexpr unsigned k_compact_attributes = 64;
 constexpr unsigned k_deflate_level = 6;  ///< zlib's default.
-/// A stated size above this is an error, not a request for memory.
-constexpr std::size_t k_most_values = std::size_t{1} << 36;
+/// deflate stores no more than 1,032 bytes in one (a match of 258 bytes in 2 bits).
+constexpr double k_most_compression = 1032.0;
+/// A file's first bytes: HDF5's signature, then the version of the superblock, which libver V110 writes.
+constexpr std::string_view k_first_bytes{"\x89HDF\r\n\x1a\n\x03"};
 
 std::mutex& library_mutex() {
   static std::mutex mutex;
@@ -27,11 +31,17 @@ herr_t keep_first(unsigned /*depth*/, const H5E_error2_t* entry, void* out) {
   return 0;
 }
 
-/// The innermost entry of HDF5's error stack, e.g. "data error detected by Fletcher32 checksum"; clears the stack.
+/// The innermost entry of HDF5's error stack, e.g. "data error detected by Fletcher32 checksum"; clears the stack. Of
+/// what the system refuses, its words alone ("No space left on device"): HDF5 adds the time and addresses.
 std::string last_error() {
   std::string words;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &words);
   H5Eclear2(H5E_DEFAULT);
+  constexpr std::string_view k_systems_words = "error message = '";
+  if (const std::size_t begin = words.find(k_systems_words); begin != std::string::npos) {
+    words.erase(0, begin + k_systems_words.size());
+    words.erase(std::min(words.find('\''), words.size()));
+  }
   return words.empty() ? "no reason given" : words;
 }
 
@@ -66,6 +76,9 @@ File File::open(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw BadFile(path.string(), "no such file");
   if (!std::filesystem::is_regular_file(path, error)) throw BadFile(path.string(), "not a regular file");
+  std::string first(k_first_bytes.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(first.data(), static_cast<std::streamsize>(first.size()));
+  if (first != k_first_bytes) throw BadFile(path.string(), "not a readable HDF5 file of this project, or damaged");
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access().id()), H5Fclose);
   if (file.id() < 0) {
     throw BadFile(path.string(), fmt::format("not a readable HDF5 file, or damaged ({})", last_error()));
@@ -220,11 +233,20 @@ Handle File::open_dataset(const std::string& object, hid_t stored_type, std::spa
   return dataset;
 }
 
-std::size_t File::value_count(const std::string& object, std::span<const hsize_t> size) const {
+std::size_t File::value_count(const std::string& object, const Handle& dataset, std::span<const hsize_t> size,
+                              std::size_t value_bytes) const {
+  hsize_t file_bytes = 0;
+  check(H5Fget_filesize(file_.id(), &file_bytes), object, "has no size");
+  const hsize_t stored = std::min<hsize_t>(H5Dget_storage_size(dataset.id()), file_bytes);
+  // As doubles, which cannot overflow. What passes is far below 2^64.
+  double bytes = static_cast<double>(value_bytes);
   std::size_t count = 1;
   for (const hsize_t n : size) {
-    if (n != 0 && count > k_most_values / n) refuse(object, fmt::format("{} values?", fmt::join(size, " x ")));
+    bytes *= static_cast<double>(n);
     count *= n;
+  }
+  if (bytes > k_most_compression * static_cast<double>(stored)) {
+    refuse(object, fmt::format("{} values in {} bytes?", fmt::join(size, " x "), stored));
   }
   return count;
 }

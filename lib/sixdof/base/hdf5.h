@@ -68,7 +68,8 @@ NumberType number_type() {
 /// (format of HDF5 1.10, strings of fixed length), so that a damaged byte is an error.
 class File {
  public:
-  static File open(const std::filesystem::path& path);  ///< For reading.
+  /// For reading. A file of another layout than create() gives, which has no checksums, is refused.
+  static File open(const std::filesystem::path& path);
   /// For writing; replaces a file at `path`. Messages call the file `shown_as`.
   static File create(const std::filesystem::path& path, const std::filesystem::path& shown_as);
 
@@ -125,15 +126,16 @@ class File {
                      const void* values);
   /// @param size filled with one element for each dimension that the dataset must have
   Handle open_dataset(const std::string& object, hid_t stored_type, std::span<hsize_t> size) const;
-  /// The product of the dimensions. Throws if it is too large to be more than an error.
-  std::size_t value_count(const std::string& object, std::span<const hsize_t> size) const;
+  /// The product of the dimensions. Throws if the file has too few bytes for so many values.
+  std::size_t value_count(const std::string& object, const Handle& dataset, std::span<const hsize_t> size,
+                          std::size_t value_bytes) const;
 
   template <class T, std::size_t dimensions>
   std::vector<T> read_dataset(const std::string& object) const {
     const NumberType type = number_type<T>();
     std::array<hsize_t, dimensions> size{};
     const Handle dataset = open_dataset(object, type.stored, size);
-    std::vector<T> values(value_count(object, size));
+    std::vector<T> values(value_count(object, dataset, size, sizeof(T)));
     check(H5Dread(dataset.id(), type.native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), object, "cannot be read");
     return values;
   }

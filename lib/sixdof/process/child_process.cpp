@@ -201,18 +201,32 @@ void ChildProcess::send(std::string_view line, const TimeLimit& expired) {
   }
 }
 
+std::optional<std::string> ChildProcess::take_line() {
+  while (true) {
+    const std::size_t end_of_line = received_.find('\n', searched_);
+    if (end_of_line == std::string::npos) break;
+    std::string line = received_.substr(0, end_of_line);
+    received_.erase(0, end_of_line + 1);
+    searched_ = 0;
+    if (line != k_memory_note) return line;
+    noted_memory_ = true;
+  }
+  searched_ = received_.size();
+  return std::nullopt;
+}
+
+void ChildProcess::expect_no_line() {
+  std::array<char, 1 << 12> block;
+  ssize_t count = 0;
+  while ((count = ::read(output_, block.data(), block.size())) > 0 && received_.size() <= k_longest_line) {
+    received_.append(block.data(), static_cast<std::size_t>(count));
+  }
+  if (take_line()) give_up(Status::failed, "wrote a line that answers no request");
+}
+
 std::string ChildProcess::receive(const TimeLimit& expired) {
   while (true) {
-    if (const std::size_t end_of_line = received_.find('\n', searched_); end_of_line != std::string::npos) {
-      std::string line = received_.substr(0, end_of_line);
-      received_.erase(0, end_of_line + 1);
-      searched_ = 0;
-      if (line != k_memory_note) return line;
-      noted_memory_ = true;
-      if (expired()) give_up(Status::timed_out, "gave no answer in time");
-      continue;
-    }
-    searched_ = received_.size();
+    if (auto line = take_line()) return *std::move(line);
     if (received_.size() > k_longest_line) {
       give_up(Status::failed, fmt::format("wrote a line of more than {} bytes", k_longest_line));
     }
@@ -220,6 +234,7 @@ std::string ChildProcess::receive(const TimeLimit& expired) {
     const ssize_t count = ::read(output_, block.data(), block.size());
     if (count > 0) {
       received_.append(block.data(), static_cast<std::size_t>(count));
+      if (noted_memory_ && expired()) give_up(Status::timed_out, "gave no answer in time");  // notes without an end
     } else if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
       pollfd waiting{output_, POLLIN, 0};
       if (::poll(&waiting, 1, k_poll_ms) <= 0 && expired()) give_up(Status::timed_out, "gave no answer in time");

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +53,10 @@ class ChildProcess {
   /// The next line, without its break. @throws ChildFailure likewise; for a line longer than k_longest_line too
   std::string receive(const TimeLimit& expired);
 
+  /// Before a request: a line that is there already is the answer to none, and all later ones would be read as answers
+  /// to other requests than theirs. @throws ChildFailure likewise
+  void expect_no_line();
+
   static constexpr std::size_t k_longest_line = std::size_t{16} << 20;
 
   /// The line by which a program says that an allocation failed, any time. receive() passes over it. If the program
@@ -59,6 +64,8 @@ class ChildProcess {
   static constexpr std::string_view k_memory_note = R"({"note":"out of memory"})";
 
  private:
+  /// The next line that is no note, if a whole one is there.
+  std::optional<std::string> take_line();
   [[noreturn]] void give_up(Status status, const std::string& words);
   [[noreturn]] void closed();
   bool has_ended() const;

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/query/ask.h>
+
 namespace sixdof::protocol {
 namespace {
 
@@ -35,6 +37,28 @@ double number_of(const Json& json) {
   if (word == k_infinity) return std::numeric_limits<double>::infinity();
   if (word == k_minus_infinity) return -std::numeric_limits<double>::infinity();
   throw Malformed(fmt::format("\"{}\" is no number", word));
+}
+
+/// A whole number >= 0. A conversion would cut off what is behind the point, and wrap what is negative or too large.
+template <class Count>
+Count count_of(const Json& json) {
+  constexpr double k_exact = 0x1p53;  // doubles up to here are all whole numbers
+  if (json.is_number_unsigned()) {
+    const auto count = json.get<std::uint64_t>();
+    if (count <= std::numeric_limits<Count>::max()) return static_cast<Count>(count);
+  } else if (json.is_number_float()) {
+    const auto count = json.get<double>();
+    constexpr double k_most = std::min(k_exact, static_cast<double>(std::numeric_limits<Count>::max()));
+    if (count >= 0.0 && count <= k_most && std::floor(count) == count) return static_cast<Count>(count);
+  }
+  throw Malformed("a count is not a whole number, or out of range");
+}
+
+/// Nanoseconds.
+double time_of(const Json& json) {
+  const double ns = number_of(json);
+  if (!std::isfinite(ns) || ns < 0.0) throw Malformed("a time is negative or not finite");
+  return ns;
 }
 
 Json vector(const Eigen::Vector3d& v) { return {number(v.x()), number(v.y()), number(v.z())}; }
@@ -69,9 +93,10 @@ Json numbers(const std::vector<double>& values) {
   return list;
 }
 
-std::vector<double> numbers_of(const Json& json) {
+std::vector<double> times_of(const Json& json) {
+  if (!json.is_array()) throw Malformed("times are not a list");
   std::vector<double> values;
-  for (const Json& value : json) values.push_back(number_of(value));
+  for (const Json& value : json) values.push_back(time_of(value));
   return values;
 }
 
@@ -126,8 +151,8 @@ Json mesh(const MeshPlace& place) {
 }
 
 MeshPlace mesh_of(const Json& json) {
-  return {json.at("name"), json.at("vertices"), json.at("triangles"), json.at("vertex_count"),
-          json.at("triangle_count")};
+  return {json.at("name"), json.at("vertices"), json.at("triangles"), count_of<std::size_t>(json.at("vertex_count")),
+          count_of<std::size_t>(json.at("triangle_count"))};
 }
 
 Json parameter(const Parameter& p) {
@@ -179,8 +204,8 @@ void take(const Json& json, Separation& answer) {
     answer.witness_a = vector_of(json.at("a"));
     answer.witness_b = vector_of(json.at("b"));
   }
-  answer.triangle_a = json.value("triangle_a", Separation::k_no_triangle);
-  answer.triangle_b = json.value("triangle_b", Separation::k_no_triangle);
+  if (json.contains("triangle_a")) answer.triangle_a = count_of<std::uint32_t>(json.at("triangle_a"));
+  if (json.contains("triangle_b")) answer.triangle_b = count_of<std::uint32_t>(json.at("triangle_b"));
 }
 void take(const Json& json, Response& answer) {
   answer.penalty = number_of(json.at("penalty"));
@@ -190,8 +215,8 @@ void take(const Json& json, Response& answer) {
   answer.reference = vector_of(json.at("reference"));
 }
 
-std::optional<double> optional_number(const Json& json, const char* key) {
-  return json.contains(key) ? std::optional(number_of(json.at(key))) : std::nullopt;
+std::optional<double> optional_time(const Json& json, const char* key) {
+  return json.contains(key) ? std::optional(time_of(json.at(key))) : std::nullopt;
 }
 
 struct RequestWriter {
@@ -236,7 +261,11 @@ Request request_of(const std::string& line) {
     }
     if (what == "ask") return Ask{json.at("query"), pose_of(json.at("pose"))};
     if (what != "time") throw Malformed(fmt::format("\"{}\" is not known", what));
-    Time time{json.at("query"), {}, json.at("passes"), json.at("each"), json.at("evict_bytes")};
+    Time time{json.at("query"),
+              {},
+              count_of<std::size_t>(json.at("passes")),
+              json.at("each"),
+              count_of<std::size_t>(json.at("evict_bytes"))};
     for (const Json& each : json.at("poses")) time.poses.push_back(pose_of(each));
     return time;
   });
@@ -304,8 +333,8 @@ std::variant<Prepared, Refusal> prepared_of(const std::string& line) {
                      json.at("error")};
     }
     if (!json.at("prepared").get<bool>()) throw Malformed("nothing is prepared, and no \"error\" says why");
-    Prepared prepared{optional_number(json, "ns"), optional_number(json, "cpu_ns"), {}};
-    prepared.footprint.bytes = json.value("bytes", std::size_t{0});
+    Prepared prepared{optional_time(json, "ns"), optional_time(json, "cpu_ns"), {}};
+    if (json.contains("bytes")) prepared.footprint.bytes = count_of<std::size_t>(json.at("bytes"));
     const Json counts = json.value("counts", Json::object());
     for (const auto& [name, count] : counts.items()) {
       prepared.footprint.counts.emplace_back(name, number_of(count));
@@ -339,12 +368,22 @@ Asked<Answer> asked_of(const std::string& line) {
       take(json, answer);
       asked.outcome = answer;
     }
-    asked.ns = optional_number(json, "ns");
+    asked.ns = optional_time(json, "ns");
     for (const Json& each : json.value("work", Json::array())) {
       asked.work.push_back({each.at(0), number_of(each.at(1)), number_of(each.at(2))});
     }
     return asked;
   });
+}
+
+template <class Answer>
+Asked<Answer> answer_of(const std::string& line) {
+  auto asked = asked_of<Answer>(line);
+  if (asked.outcome.ok() && !is_finite(asked.outcome.value)) {
+    asked.outcome = Status::non_finite;
+    asked.words = "the answer is not finite";
+  }
+  return asked;
 }
 
 template std::string to_line(const Asked<bool>&);
@@ -353,6 +392,9 @@ template std::string to_line(const Asked<Response>&);
 template Asked<bool> asked_of(const std::string&);
 template Asked<Separation> asked_of(const std::string&);
 template Asked<Response> asked_of(const std::string&);
+template Asked<bool> answer_of(const std::string&);
+template Asked<Separation> answer_of(const std::string&);
+template Asked<Response> answer_of(const std::string&);
 
 std::string to_line(const Timed& timed) {
   Json failed = Json::array();
@@ -368,18 +410,22 @@ Timed timed_of(const std::string& line, std::size_t count, bool each) {
   return read_line(line, [&](const Json& json) {
     Timed timed;
     if (each) {
-      timed.once_ns = numbers_of(json.at("once_ns"));
-      timed.least_ns = numbers_of(json.at("least_ns"));
+      timed.once_ns = times_of(json.at("once_ns"));
+      timed.least_ns = times_of(json.at("least_ns"));
       if (timed.once_ns.size() != count || timed.least_ns.size() != count) {
         throw Malformed(fmt::format("not {} times for as many poses", count));
       }
     } else {
-      timed.wall_ns = number_of(json.at("wall_ns"));
-      timed.cpu_ns = number_of(json.at("cpu_ns"));
+      timed.wall_ns = time_of(json.at("wall_ns"));
+      timed.cpu_ns = time_of(json.at("cpu_ns"));
     }
+    std::vector<bool> has_failed(count);
     for (const Json& one : json.value("failed", Json::array())) {
-      timed.failed.push_back({one.at(0), status_of(one.at(1)), one.at(2)});
-      if (timed.failed.back().place >= count) throw Malformed("a place beyond the last pose");
+      timed.failed.push_back({count_of<std::size_t>(one.at(0)), status_of(one.at(1)), one.at(2)});
+      const std::size_t place = timed.failed.back().place;
+      if (place >= count) throw Malformed("a place beyond the last pose");
+      if (has_failed[place]) throw Malformed("a place is there twice");
+      has_failed[place] = true;
     }
     return timed;
   });

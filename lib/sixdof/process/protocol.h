@@ -133,7 +133,11 @@ std::variant<Prepared, Refusal> prepared_of(const std::string& line);
 /// @throws Malformed
 template <class Answer>
 Asked<Answer> asked_of(const std::string& line);
-/// @throws Malformed, also where there is not one time for each of `count` poses or a place is none of theirs
+/// The same for who asks: an answer that is not finite becomes Status::non_finite. @throws Malformed
+template <class Answer>
+Asked<Answer> answer_of(const std::string& line);
+/// @throws Malformed, also where there is not one time for each of `count` poses, or a place is none of theirs or there
+/// twice
 Timed timed_of(const std::string& line, std::size_t count, bool each);
 
 }  // namespace sixdof::protocol

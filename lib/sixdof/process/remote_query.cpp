@@ -124,6 +124,8 @@ void RemoteQuery::start() {
 /// @throws ChildFailure
 std::string RemoteQuery::exchange(const Request& request, const TimeLimit& expired) {
   try {
+    // A program may greet before it is asked.
+    if (!std::holds_alternative<Hello>(request)) process_->expect_no_line();
     process_->send(to_line(request), expired);
     return process_->receive(expired);
   } catch (const ChildFailure&) {
@@ -165,7 +167,7 @@ Asked<Answer> RemoteQuery::exchange_ask(const Pose& X_AB) {
   const std::string line = exchange(Ask{std::string(k_query<Answer>), X_AB}, expires_after(program_.limits.query_s));
   const double round_trip_ns = nanoseconds_since(sent);
   try {
-    Asked<Answer> asked = asked_of<Answer>(line);
+    Asked<Answer> asked = answer_of<Answer>(line);
     timed_inside_ = asked.ns.has_value();
     last_ns_ = asked.ns.value_or(round_trip_ns);
     return asked;

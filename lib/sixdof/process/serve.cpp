@@ -6,7 +6,9 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <new>
 #include <optional>
@@ -82,9 +84,15 @@ void write_line(int output, std::string line) {
 
 template <class Element>
 std::vector<Element> read_elements(const std::string& path, std::size_t count) {
-  std::vector<Element> elements(count);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw BadFile(path, "cannot be opened");
+  // Before anything is allocated: the count may be any.
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || count > size / sizeof(Element)) {
+    throw BadFile(path, fmt::format("fewer than {} elements of {} bytes", count, sizeof(Element)));
+  }
+  std::vector<Element> elements(count);
   const auto bytes = static_cast<std::streamsize>(count * sizeof(Element));
   file.read(reinterpret_cast<char*>(elements.data()), bytes);
   if (file.gcount() != bytes) throw BadFile(path, fmt::format("fewer than {} bytes", bytes));
@@ -180,6 +188,9 @@ class Server {
   }
 
   std::string handle(const Time& request) {
+    if (request.passes > std::numeric_limits<int>::max()) {
+      throw BadArgument(fmt::format("{} passes", request.passes));
+    }
     return with_asker(request.query, [&](auto asker) {
       return to_line(request.each ? time_each(request, asker) : time_passes_together(request, asker));
     });

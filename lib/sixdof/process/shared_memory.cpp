@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -50,6 +51,10 @@ SharedCounter::SharedCounter(const std::string& path) {
 SharedCounter::~SharedCounter() { ::munmap(value_, sizeof(*value_)); }
 
 void SharedCounter::map(int descriptor, const std::string& name) {
+  // Behind the end of a file, an access to its memory ends the process (SIGBUS).
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) throw BadFile(name, std::strerror(errno));
+  if (status.st_size < static_cast<off_t>(sizeof(*value_))) throw BadFile(name, "fewer than 8 bytes");
   void* const memory = ::mmap(nullptr, sizeof(*value_), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
   if (memory == MAP_FAILED) throw BadFile(name, std::strerror(errno));
   value_ = static_cast<std::uint64_t*>(memory);

@@ -162,7 +162,11 @@ std::vector<NormalCone> cached_normal_cones(const Mesh& mesh, std::span<const Sp
   return load_or_build(
       "ist-cones", key, [&] { return normal_cones(mesh, spheres); },
       [](CacheMembers members, std::vector<NormalCone>& cones) { members.records("cones", cones); },
-      [&](const std::vector<NormalCone>& cones) { return cones.size() == spheres.size(); });
+      [&](const std::vector<NormalCone>& cones) {
+        return cones.size() == spheres.size() && std::all_of(cones.begin(), cones.end(), [](const NormalCone& cone) {
+                 return cone.axis.allFinite() && cone.half_angle >= 0.0 && cone.half_angle <= std::numbers::pi;
+               });
+      });
 }
 
 }  // namespace sixdof::ist

@@ -353,7 +353,12 @@ Packing cached_packing(const Mesh& mesh, const PackingOptions& options) {
   };
   return load_or_build(
       "ist-packing", key, [&] { return pack_spheres(mesh, options); }, visit,
-      [](const Packing& packing) { return !packing.spheres.empty(); });
+      [&](const Packing& packing) {
+        return !packing.spheres.empty() && packing.spheres.size() <= options.spheres &&
+               std::all_of(packing.spheres.begin(), packing.spheres.end(), [&](const Sphere& s) {
+                 return mesh.box().contains(s.center) && s.radius > 0.0 && s.radius <= mesh.diagonal();
+               });
+      });
 }
 
 std::vector<double> cell_weights(const Mesh& mesh, std::span<const Sphere> spheres) {
@@ -386,7 +391,10 @@ std::vector<double> cached_cell_weights(const Mesh& mesh, std::span<const Sphere
   return load_or_build(
       "ist-cells", key, [&] { return cell_weights(mesh, spheres); },
       [](CacheMembers members, std::vector<double>& weights) { members.array("weights", weights); },
-      [&](const std::vector<double>& weights) { return weights.size() == spheres.size(); });
+      [&](const std::vector<double>& weights) {
+        return weights.size() == spheres.size() && all_finite(weights) &&
+               std::all_of(weights.begin(), weights.end(), [](double weight) { return weight > 0.0; });
+      });
 }
 
 }  // namespace sixdof::ist

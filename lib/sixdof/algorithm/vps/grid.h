@@ -31,6 +31,10 @@ struct VoxelGrid {
     return grid;
   }
 
+  bool operator==(const VoxelGrid& other) const {
+    return origin == other.origin && size == other.size && (bricks == other.bricks).all();
+  }
+
   Eigen::Array3i voxels() const { return bricks * k_edge; }  ///< Count along each axis.
   double voxel_count() const { return voxels().cast<double>().prod(); }
 

@@ -14,7 +14,6 @@ namespace sixdof::vps {
 namespace {
 
 constexpr int k_edge = VoxelGrid::k_edge;
-constexpr int k_margin = 2;  // keeps the outermost voxels empty, as FreeRuns requires
 
 /// One layer of bricks along z, built by one thread.
 struct Slab {
@@ -77,7 +76,7 @@ Slab build_slab(const VoxelMap& map, const DistanceTransform& distances, const F
 VoxelMap VoxelMap::build(const Mesh& mesh, double voxel_size, int border) {
   require_solid(mesh, "a voxelmap");
   VoxelMap map;
-  map.grid = VoxelGrid::around(mesh.box(), voxel_size, k_margin);
+  map.grid = VoxelGrid::around(mesh.box(), voxel_size, VoxelMap::k_margin);
   map.border = border;
   if (map.grid.voxel_count() > k_max_voxels) {
     throw BadArgument(fmt::format("{}: {:.3g} voxels of size {} are more than {:.0e}", mesh.name(),

@@ -41,6 +41,7 @@ struct VoxelMap {
   static VoxelMap build(const Mesh& mesh, double voxel_size, int border);
 
   static constexpr double k_max_voxels = 8e9;  ///< 16 GB while building: a larger grid is taken for a mistake.
+  static constexpr int k_margin = 2;  ///< Empty voxels around the box: the outermost ones have to be (FreeRuns).
   static constexpr std::uint64_t k_max_bricks = std::uint64_t{1} << 22;  ///< Queries index voxels with 32 bits.
 
   std::int32_t min_layer() const { return layer_bits == 8 ? INT8_MIN : INT16_MIN; }

@@ -46,9 +46,10 @@ VoxelMap prepare_voxelmap(const Mesh& mesh, const Settings& settings) {
     members.array("table", map.table);
     members.array("words", map.words);
   };
-  const auto valid = [](const VoxelMap& map) {
-    return (map.layer_bits == 8 || map.layer_bits == 16) && map.grid.bricks.minCoeff() > 0 && map.stored_bricks() > 0 &&
-           map.stored_bricks() < VoxelMap::k_max_bricks &&
+  const VoxelGrid expected = VoxelGrid::around(mesh.box(), voxel_size, VoxelMap::k_margin);
+  const auto valid = [&](const VoxelMap& map) {
+    return map.grid == expected && map.border == border && (map.layer_bits == 8 || map.layer_bits == 16) &&
+           map.stored_bricks() > 0 && map.stored_bricks() < VoxelMap::k_max_bricks &&
            fits(map.table, map.grid, map.stored_bricks(), std::numeric_limits<std::int32_t>::min());
   };
   return load_or_build(
@@ -65,7 +66,8 @@ PointShell prepare_pointshell(const Mesh& mesh, const Settings& settings) {
   };
   const auto valid = [](const PointShell& shell) {
     return !shell.points.empty() && shell.points.size() == shell.normals.size() &&
-           shell.points.size() == shell.areas.size();
+           shell.points.size() == shell.areas.size() && all_finite(shell.points) && all_finite(shell.normals) &&
+           all_finite(shell.areas);
   };
   return load_or_build(
       "vps-pointshell", key, [&] { return PointShell::build(mesh, spacing); }, visit, valid);
