@@ -37,6 +37,9 @@ if(SIXDOF_BUILD_BENCH)
     DESTINATION ${data_folder}/bench)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/fixtures DESTINATION ${data_folder}
     FILES_MATCHING PATTERN "manifest.json" PATTERN "*.h5")
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/sixdof/report/page ${PROJECT_SOURCE_DIR}/lib/sixdof/report/figures
+    ${PROJECT_BINARY_DIR}/share/sixdof/report/vendor
+    DESTINATION ${data_folder}/report)
   install(FILES ${PROJECT_SOURCE_DIR}/models/models.json ${PROJECT_SOURCE_DIR}/models/collection.json
     DESTINATION ${data_folder}/models)
   install(PROGRAMS ${PROJECT_SOURCE_DIR}/models/fetch DESTINATION ${data_folder}/models)

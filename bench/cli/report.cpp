@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/atomic_file.h>
+#include <sixdof/base/data_folder.h>
+#include <sixdof/base/error.h>
+#include <sixdof/report/figure_files.h>
+#include <sixdof/report/page.h>
+
+#include "bench/cli/commands.h"
+#include "bench/cli/shared.h"
+
+namespace sixdof::cli {
+namespace {
+
+constexpr const char* k_details =
+    R"(FILE is a result of sixdof-bench, of a study (sixdof precision, equivalent, ... -o), or of sixdof stress -o; all go into
+one page, which opens from disk without a network. Several files with the same rows are compared with the first: answers
+before times, each change with its interval. Files of --series (sixdof quality -o) are drawn as signals and
+time-frequency diagrams. A page without data says which command makes them.)";
+
+struct Arguments {
+  std::vector<std::string> files, series;
+  std::string output, csv, markdown, svg, pdf;
+};
+
+/// @throws BadFile
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw BadFile(folder.string(), "cannot be made: " + error.message());
+}
+
+void write_tables(const report::Report& report, const std::filesystem::path& folder, const std::string& extension,
+                  std::string (*as_text)(const report::DataTable&)) {
+  make_folder(folder);
+  for (const report::DataTable& table : report.tables) {
+    if (!table.rows.empty()) write_file_atomically(folder / (table.name + extension), as_text(table));
+  }
+}
+
+void run(const Arguments& arguments) {
+  if (arguments.files.empty() && arguments.series.empty()) throw BadArgument("a result file or --series is needed");
+  const std::array outputs{&arguments.output, &arguments.csv, &arguments.markdown, &arguments.svg, &arguments.pdf};
+  if (std::ranges::all_of(outputs, &std::string::empty, [](const std::string* output) { return *output; })) {
+    throw BadArgument("-o, --csv, --markdown, --svg or --pdf is needed");
+  }
+  report::Results results;
+  for (const std::string& file : arguments.files) report::read_results(file, results);
+  std::vector<report::Series> series;
+  for (const std::string& file : arguments.series) series.push_back(report::read_series(file));
+  const report::Report report = report::make_report(results, series);
+  if (!arguments.csv.empty()) write_tables(report, arguments.csv, ".csv", report::as_csv);
+  if (!arguments.markdown.empty()) write_tables(report, arguments.markdown, ".md", report::as_markdown);
+  if (arguments.output.empty() && arguments.svg.empty() && arguments.pdf.empty()) return;
+  const report::PageFiles files = report::read_page_files(data_folder() / "report");
+  if (!arguments.output.empty()) write_file_atomically(arguments.output, report::page_html(report, files));
+  if (!arguments.svg.empty()) write_figures(report, files, arguments.svg, report::FigureFormat::svg);
+  if (!arguments.pdf.empty()) write_figures(report, files, arguments.pdf, report::FigureFormat::pdf);
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app) {
+  auto* const command = app.add_subcommand("report", "Show results as one page of figures and tables");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("file", arguments->files, "Result files (JSON)");
+  command->add_option("--series", arguments->series, "Series of sixdof quality -o (HDF5)");
+  command->add_option("-o,--output", arguments->output, "Write the page to this HTML file");
+  command->add_option("--csv", arguments->csv, "Write every table to this folder as CSV");
+  command->add_option("--markdown", arguments->markdown, "Write every table to this folder as Markdown");
+  command->add_option("--svg", arguments->svg, "Write every figure to this folder as SVG (needs node)");
+  command->add_option("--pdf", arguments->pdf,
+                      "Write every figure to this folder as PDF (needs node and rsvg-convert)");
+  command->callback([arguments] { run(*arguments); });
+  add_examples(*command, "sixdof report results.json -o report.html",
+               "sixdof report results.json --csv tables --markdown tables", k_details);
+}
+
+}  // namespace sixdof::cli

@@ -1,0 +1,208 @@
+#include <sixdof/report/comparison.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
+#include <sixdof/measure/metrics.h>
+#include <sixdof/report/tables.h>
+
+namespace sixdof::report {
+namespace {
+
+/// Differences of answers below these are rounding of the printed numbers.
+constexpr double k_relative_rounding = 1e-9, k_absolute_rounding = 1e-13;
+
+struct Pair {
+  const RowGroup *before, *after;
+  double log_ratio = 0.0;
+};
+
+bool is_answer(const std::string& name) {
+  const Metric* const metric = find_metric(name);
+  return metric != nullptr && metric->better != Better::neither && metric->unit != "ns" &&
+         metric->unit != "time_unit" && metric->unit != "byte" && name != "over_1ms" &&
+         !name.starts_with(k_processor_mean) && !name.starts_with(k_wall_mean);
+}
+
+double median_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+/// Standard deviation of the logarithms, by the median of the deviations from their median: a few rows that did change
+/// do not widen it.
+double spread_of(const std::vector<Pair>& pairs) {
+  std::vector<double> ratios, deviations;
+  for (const Pair& pair : pairs) ratios.push_back(pair.log_ratio);
+  const double middle = median_of(ratios);
+  for (const double r : ratios) deviations.push_back(std::abs(r - middle));
+  constexpr double k_normal = 1.4826;  // of a normal distribution, standard deviation over median deviation
+  return std::max(k_least_spread, k_normal * median_of(deviations));
+}
+
+struct Moments {
+  double mean = 0.0, variance = 0.0, count = 0.0;
+};
+
+Moments moments_of_logs(const std::vector<double>& values) {
+  Moments m{.count = static_cast<double>(values.size())};
+  for (const double v : values) m.mean += std::log(v) / m.count;
+  for (const double v : values) m.variance += (std::log(v) - m.mean) * (std::log(v) - m.mean) / (m.count - 1.0);
+  return m;
+}
+
+/// Welch's interval of the difference of two means, as half of its width and with the difference itself.
+std::optional<std::pair<double, double>> by_repetitions(const Pair& pair, double tail) {
+  const std::vector<double> before = pair.before->all(k_processor_mean), after = pair.after->all(k_processor_mean);
+  if (before.size() < k_fewest_repetitions || after.size() < k_fewest_repetitions) return std::nullopt;
+  const Moments b = moments_of_logs(before), a = moments_of_logs(after);
+  const double vb = b.variance / b.count, va = a.variance / a.count;
+  if (vb + va == 0.0) return std::pair(a.mean - b.mean, 0.0);
+  const double freedom = (vb + va) * (vb + va) / (vb * vb / (b.count - 1.0) + va * va / (a.count - 1.0));
+  const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), tail));
+  return std::pair(a.mean - b.mean, t * std::sqrt(vb + va));
+}
+
+void compare_answers(const Pair& pair, DataTable& table) {
+  const Row &before = pair.before->row(), &after = pair.after->row();
+  if (!before.error.empty() || !after.error.empty()) {
+    if (before.error != after.error) {
+      table.rows.push_back({before.name, std::string("not run"), Cell(), Cell(),
+                            fmt::format("{} -> {}", before.error.empty() ? "ran" : before.error,
+                                        after.error.empty() ? "ran" : after.error)});
+    }
+    return;
+  }
+  if (before.value("configurations") != after.value("configurations") ||
+      before.value("steps") != after.value("steps")) {
+    return;
+  }
+  for (const auto& [name, value] : before.values) {
+    const auto other = after.value(name);
+    if (!is_answer(name) || !other) continue;
+    const double difference = std::abs(*other - value);
+    if (difference <= k_absolute_rounding + k_relative_rounding * std::abs(value)) continue;
+    table.rows.push_back({before.name, name, value, *other, std::string()});
+  }
+}
+
+std::vector<Pair> common_rows(const std::vector<RowGroup>& groups, std::size_t before, std::size_t after) {
+  std::map<std::string, const RowGroup*> by_name;
+  for (const RowGroup& group : groups) {
+    if (group.row().file == before) by_name[group.row().name] = &group;
+  }
+  std::vector<Pair> pairs;
+  for (const RowGroup& group : groups) {
+    const auto found = by_name.find(group.row().name);
+    if (group.row().file == after && found != by_name.end()) pairs.push_back({found->second, &group});
+  }
+  return pairs;
+}
+
+std::size_t rows_that_asked_others(const std::vector<Pair>& pairs) {
+  return static_cast<std::size_t>(std::ranges::count_if(pairs, [](const Pair& pair) {
+    return pair.before->row().value("configurations") != pair.after->row().value("configurations");
+  }));
+}
+
+/// Keys of the context that differ, except times and names of files.
+std::string context_sentence(const Source& before, const Source& after) {
+  std::string text;
+  for (const auto& [key, value] : before.context) {
+    const bool says_nothing = key == "date" || key == "load_avg" || key == "executable" || key == "clock_overhead_ns";
+    if (says_nothing || after.at(key) == value) continue;
+    text += fmt::format("{}{}: {} -> {}", text.empty() ? "" : "; ", key, value,
+                        after.at(key).empty() ? "none" : after.at(key));
+  }
+  return text.empty() ? "Machine, build, versions and settings are the same." : "What differs besides: " + text + ".";
+}
+
+}  // namespace
+
+Comparison compare(const Results& results, const std::vector<RowGroup>& groups, std::size_t before, std::size_t after) {
+  Comparison comparison{.before = run_name(results, before),
+                        .after = run_name(results, after),
+                        .answers = {},
+                        .changes = {},
+                        .sentences = {}};
+  comparison.answers = {.name = "answers",
+                        .title = "Answers that changed",
+                        .columns = {"row", "value", "before", "after", "words"},
+                        .rows = {}};
+  comparison.changes = {.name = "changes",
+                        .title = "Times that changed",
+                        .columns = {"comparison", "query", "pair", "algorithm", "row", "before_us", "after_us", "ratio",
+                                    "low", "high", "verdict"},
+                        .rows = {}};
+  std::vector<Pair> pairs = common_rows(groups, before, after);
+  for (const Pair& pair : pairs) compare_answers(pair, comparison.answers);
+  const std::size_t others = rows_that_asked_others(pairs);
+  std::erase_if(pairs, [](Pair& pair) {
+    const auto b = processor_time(*pair.before), a = processor_time(*pair.after);
+    if (b && a) pair.log_ratio = std::log(a->value / b->value);
+    return !b || !a;
+  });
+  if (pairs.empty()) return comparison;
+
+  const double spread = spread_of(pairs);
+  const double tail = 0.5 * (1.0 - std::pow(1.0 - k_false_alarm, 1.0 / static_cast<double>(pairs.size())));
+  const double z = boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
+  std::size_t slower = 0, faster = 0, repeated = 0;
+  std::vector<double> ratios;
+  for (const Pair& pair : pairs) {
+    const auto welch = by_repetitions(pair, tail);
+    repeated += welch ? 1 : 0;
+    const double middle = welch ? welch->first : pair.log_ratio, half = welch ? welch->second : z * spread;
+    ratios.push_back(middle);
+    const bool is_slower = middle - half > 0.0, is_faster = middle + half < 0.0;
+    slower += is_slower ? 1 : 0;
+    faster += is_faster ? 1 : 0;
+    const Row& row = pair.before->row();
+    comparison.changes.rows.push_back(
+        {comparison.before + " -> " + comparison.after, row.query, row.pair.empty() ? row.scenario : row.pair,
+         pair.before->algorithm(), row.name, processor_time(*pair.before)->value / 1e3,
+         processor_time(*pair.after)->value / 1e3, std::exp(middle), std::exp(middle - half), std::exp(middle + half),
+         std::string(is_slower   ? "slower"
+                     : is_faster ? "faster"
+                                 : "no change shown")});
+  }
+  auto& sentences = comparison.sentences;
+  sentences.push_back(
+      comparison.answers.rows.empty()
+          ? fmt::format("Answers: none of the {} common rows changed.", pairs.size())
+          : fmt::format("Answers: values that changed: {}. They stand first.", comparison.answers.rows.size()));
+  if (others > 0) {
+    sentences.push_back(
+        fmt::format("Rows that asked another number of configurations, whose answers are not compared: {}.", others));
+  }
+  sentences.push_back(
+      fmt::format("Times, by row: {} slower, {} faster, {} without a change that can be shown; the median row "
+                  "takes {:.3g} times as long.",
+                  slower, faster, pairs.size() - slower - faster, std::exp(median_of(ratios))));
+  sentences.push_back(
+      repeated == pairs.size()
+          ? std::string("Intervals come from the repetitions of each row.")
+          : fmt::format(
+                "Rows without {} repetitions get an interval from the spread of all rows, a factor of {:.3g} to either "
+                "side; repetitions (--benchmark_repetitions=10) make it narrower.",
+                k_fewest_repetitions, std::exp(z * spread)));
+  sentences.push_back(context_sentence(results.files[before], results.files[after]));
+  return comparison;
+}
+
+std::vector<Comparison> comparisons(const Results& results, const std::vector<RowGroup>& groups) {
+  std::vector<Comparison> all;
+  for (std::size_t after = 1; after < results.files.size(); ++after) {
+    Comparison comparison = compare(results, groups, 0, after);
+    if (!comparison.changes.rows.empty() || !comparison.answers.rows.empty()) all.push_back(std::move(comparison));
+  }
+  return all;
+}
+
+}  // namespace sixdof::report

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <sixdof/report/data_table.h>
+#include <sixdof/report/results.h>
+#include <sixdof/report/row_group.h>
+
+namespace sixdof::report {
+
+/// Every result file of sixdof-bench directly in a folder, in the order of their dates. Other JSON files are left out.
+/// @throws BadFile if the folder cannot be read or has no result
+Results read_history(const std::filesystem::path& folder);
+
+/// Where the level of a series of logarithms changes: indices of the first value of each later level, increasing. A
+/// change is kept if the means on both sides differ by more than k_sure standard errors and by more than a factor of
+/// k_least_factor; the noise is estimated from neighbouring differences, which a few changes do not widen. The halves
+/// are searched again.
+std::vector<std::size_t> change_points(const std::vector<double>& logarithms);
+
+inline constexpr double k_sure = 5.0, k_least_factor = 1.1;
+
+/// Column of history_table() with the factor.
+inline constexpr std::size_t k_history_change = 9;
+
+/// "history": mean processor time of every row in every file. `machine` counts the stretches of files that were
+/// measured on one machine with one kind of build: lines are broken between them, and change points are searched within
+/// them. `change` is the factor to the level before at a change point, otherwise empty.
+DataTable history_table(const Results& results, const std::vector<RowGroup>& groups);
+
+}  // namespace sixdof::report

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <sixdof/report/comparison.h>
+#include <sixdof/report/data_table.h>
+#include <sixdof/report/results.h>
+#include <sixdof/report/scene.h>
+#include <sixdof/report/series.h>
+#include <sixdof/report/summary.h>
+
+namespace sixdof::report {
+
+/// Everything that a report shows.
+struct Report {
+  Summary summary;
+  std::vector<Comparison> comparisons;
+  std::vector<DataTable> tables;  ///< Those of tables.h, then those of the comparisons.
+  Scenes scenes;
+  std::vector<std::string> algorithms;  ///< In the order of the files; figures colour them in this order.
+  std::string made_from;                ///< One line: files, commit, date.
+};
+
+/// @param results outlives the call only
+Report make_report(const Results& results, const std::vector<Series>& series);
+
+/// The times of many files in the order of their dates, and what changed from the last but one to the last. The page
+/// has nothing else of them, so that it stays small. @param results of read_history()
+Report make_history(const Results& results);
+
+/// The files of which a page consists: `page/` and `figures/` of this folder, and libraries that the build takes from
+/// npm.
+struct PageFiles {
+  std::filesystem::path folder;
+  std::string html, style;
+  std::vector<std::string> libraries, scripts;
+  std::string pages;                 ///< JSON: the pages with their figures and tables.
+  std::vector<std::string> figures;  ///< Vega-Lite, one each.
+};
+
+/// @param folder `report` in data_folder()
+/// @throws BadFile that names what is missing and, for a library, how it gets there
+PageFiles read_page_files(const std::filesystem::path& folder);
+
+/// What figures and tables are made from, as JSON text: read by the page and by page/write_svg.js.
+std::string page_data(const Report& report, const PageFiles& files);
+
+/// One HTML file that opens from disk without a network. Texts of results are data in it, never markup: the JSON has no
+/// '<', and scripts put texts into the page as text nodes.
+std::string page_html(const Report& report, const PageFiles& files);
+
+}  // namespace sixdof::report

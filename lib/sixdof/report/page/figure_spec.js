@@ -1,0 +1,192 @@
+// From a figure's data file, the tables and a reader's choices to a Vega-Lite specification that can be drawn. No page
+// is needed here: page/write_svg.js does the same under node.
+
+"use strict";
+
+var sixdofReport = globalThis.sixdofReport || {};
+globalThis.sixdofReport = sixdofReport;
+
+// Okabe and Ito's colours, told apart by colour-blind readers; the second set is for a dark background. A shape tells
+// algorithms apart that share a colour.
+sixdofReport.palettes = {
+  light: ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#b8860b", "#56b4e9", "#444444", "#7b3294"],
+  dark: ["#4ea3e0", "#ff8c42", "#2fd3a3", "#e28ad0", "#f0c419", "#8fd3ff", "#d0d0d0", "#b794f6"],
+};
+sixdofReport.shapes = ["circle", "square", "triangle-up", "diamond", "cross", "triangle-down", "triangle-right"];
+
+sixdofReport.colourOf = function (index, theme) {
+  const palette = sixdofReport.palettes[theme];
+  return palette[index % palette.length];
+};
+sixdofReport.shapeOf = function (index) {
+  return sixdofReport.shapes[index % sixdofReport.shapes.length];
+};
+
+/** Puts texts back in the place of their indices (page.cpp). */
+sixdofReport.unpack = function (data) {
+  for (const table of Object.values(data.tables)) {
+    const texts = table.columns.map((column) => table.texts[column]);
+    for (const row of table.rows) {
+      texts.forEach((list, i) => { if (list && row[i] !== null) row[i] = list[row[i]]; });
+    }
+  }
+  return data;
+};
+
+/** Rows of a table as objects. */
+sixdofReport.rowsOf = function (table) {
+  return table.rows.map((cells) => Object.fromEntries(table.columns.map((column, i) => [column, cells[i]])));
+};
+
+/** "vps (cold)" has the colour of "vps". */
+sixdofReport.baseAlgorithm = function (name) {
+  return String(name).replace(/ \((?:path order|cold)\)$/, "");
+};
+
+/** The rows of a figure before any choice. */
+sixdofReport.figureRows = function (figure, tables) {
+  const table = tables[figure.usermeta.table];
+  const where = figure.usermeta.where || {};
+  if (!table) return [];
+  return sixdofReport.rowsOf(table).filter((row) => Object.entries(where).every(([key, value]) => row[key] === value));
+};
+
+/** Values from which a reader chooses, of a filter under the choices of the filters before it. */
+sixdofReport.valuesOf = function (rows, field) {
+  return [...new Set(rows.map((row) => row[field]).filter((value) => value !== null && value !== ""))];
+};
+
+/** Completes choices: each filter offers what is left by those before it. Returns what each offers and what is chosen. */
+sixdofReport.resolveChoices = function (figure, rows, wanted) {
+  const resolved = [];
+  let left = rows;
+  for (const filter of figure.usermeta.filters || []) {
+    const values = sixdofReport.valuesOf(left, filter.field);
+    if (filter.all) values.unshift("all");
+    let value = values.find((each) => String(each) === String(wanted[filter.field]));
+    if (value === undefined) value = values.includes(filter.default) ? filter.default : values[0];
+    resolved.push({ filter, values, value });
+    if (value !== undefined && value !== "all") left = left.filter((row) => row[filter.field] === value);
+  }
+  return { resolved, rows: left };
+};
+
+/** Errors below this are rounding: they would stretch a logarithmic axis over ten decades. */
+sixdofReport.rounding = 1e-9;
+
+function floorOf(rows, field) {
+  const values = rows.map((row) => row[field]).filter((value) => value > sixdofReport.rounding);
+  return values.length ? Math.min(...values) / 3 : sixdofReport.rounding;
+}
+
+/** 1, 2 and 5 times the powers of ten between two numbers; powers alone where there are many. */
+function logTicks(from, to) {
+  const decades = Math.log10(to / from), ticks = [];
+  for (let power = Math.floor(Math.log10(from)); power <= Math.ceil(Math.log10(to)); ++power) {
+    for (const factor of decades > 4 ? [1] : [1, 2, 5]) ticks.push(Number(`${factor}e${power}`));
+  }
+  return ticks.filter((tick) => tick >= from && tick <= to);
+}
+
+/** Gives every row its place `shown`; values below rounding share the lower edge, whose tick says so. */
+function withFloor(spec, rows, field, linear) {
+  if (linear) return rows.map((row) => ({ ...row, shown: row[field] }));
+  const floor = floorOf(rows, field), top = Math.max(floor * 10, ...rows.map((row) => row[field] ?? 0)) * 1.1;
+  const isFloored = rows.some((row) => row[field] !== null && row[field] <= sixdofReport.rounding);
+  const low = isFloored ? floor : floor * 2.4;
+  visit(spec, (node) => {
+    if (!node.y || node.y.field !== "shown") return;
+    node.y.scale = { type: "log", domain: [low, top], nice: false };
+    node.y.axis = { values: [...(isFloored ? [floor] : []), ...logTicks(isFloored ? floor * 1.5 : low, top)],
+                    labelExpr: isFloored ? `datum.value < ${floor * 1.01} ? '≈ 0' : format(datum.value, '~g')` : "format(datum.value, '~g')" };
+  });
+  return rows.map((row) => ({ ...row, shown: row[field] === null ? null : Math.max(row[field], floor) }));
+}
+
+function largestOf(rows, { by, count }) {
+  const size = (row) => Math.abs(Math.log(row[by]));
+  return [...rows].sort((a, b) => size(b) - size(a)).slice(0, count);
+}
+
+/** Visits every object of a specification. */
+function visit(node, f) {
+  if (node === null || typeof node !== "object") return;
+  f(node);
+  for (const value of Object.values(node)) visit(value, f);
+}
+
+function paintAlgorithms(spec, field, algorithms, context) {
+  const index = (name) => Math.max(0, context.algorithms.indexOf(sixdofReport.baseAlgorithm(name)));
+  const colours = algorithms.map((name) => sixdofReport.colourOf(index(name), context.theme));
+  const shapes = algorithms.map((name) => sixdofReport.shapeOf(index(name)));
+  visit(spec, (node) => {
+    for (const [channel, range] of [["color", colours], ["fill", colours], ["shape", shapes]]) {
+      const encoding = node[channel];
+      if (!encoding || typeof encoding !== "object" || encoding.field !== field) continue;
+      encoding.scale = { domain: algorithms, range };
+      if (!context.legend) encoding.legend = null;
+    }
+  });
+}
+
+function useLinearAxes(spec, axes) {
+  visit(spec, (node) => {
+    for (const axis of axes) {
+      if (node[axis] && node[axis].scale && node[axis].scale.type === "log") node[axis].scale = { type: "linear" };
+    }
+  });
+}
+
+sixdofReport.themes = {
+  light: { text: "#1d2733", quiet: "#5b6775", grid: "#e6eaee", background: "#ffffff" },
+  dark: { text: "#e8edf2", quiet: "#a7b3c0", grid: "#2c3742", background: "#161d24" },
+};
+
+function configOf(theme) {
+  const { text, quiet, grid, background } = sixdofReport.themes[theme];
+  return {
+    background,
+    font: "system-ui, sans-serif",
+    view: { stroke: grid },
+    axis: { labelColor: text, titleColor: text, gridColor: grid, domainColor: quiet, tickColor: quiet, labelFontSize: 12,
+            titleFontSize: 13, titleFontWeight: "normal" },
+    legend: { labelColor: text, titleColor: text, labelFontSize: 12, symbolSize: 90, symbolOpacity: 1, orient: "bottom", columns: 4 },
+    header: { labelColor: text, titleColor: text },
+    title: { color: text, fontSize: 14 },
+    text: { color: text, fontSize: 12 },
+  };
+}
+
+/**
+ * @param figure a file of figures/
+ * @param rows already filtered by all choices
+ * @param choices value by field
+ * @param context {theme, algorithms (all of the report, in order), width (a number or "container"), legend (boolean),
+ *                 linear (boolean), title (text or nothing)}
+ */
+sixdofReport.prepareSpec = function (figure, rows, choices, context) {
+  const spec = JSON.parse(JSON.stringify(figure));
+  const meta = spec.usermeta;
+  delete spec.usermeta;
+  if (meta.floor) rows = withFloor(spec, rows, meta.floor, context.linear);
+  if (meta.largest) rows = largestOf(rows, meta.largest);
+  if (meta.order) rows = [...rows].sort((a, b) => (b[meta.order] ?? 0) - (a[meta.order] ?? 0));
+  const field = meta.algorithm || "algorithm";
+  const present = new Set(rows.map((row) => row[field]));
+  const algorithms = [...present].sort(
+    (a, b) => context.algorithms.indexOf(sixdofReport.baseAlgorithm(a)) - context.algorithms.indexOf(sixdofReport.baseAlgorithm(b)));
+  paintAlgorithms(spec, field, algorithms, context);
+  if (context.linear) useLinearAxes(spec, meta.logAxes || []);
+  visit(spec, (node) => {
+    if (node.title && node.title.from) node.title = String(choices[node.title.from] ?? node.title.from);
+  });
+  spec.data = { values: rows };
+  spec.width = context.width;
+  // A figure with a row per name grows with the names; the others have one height.
+  const names = meta.rows ? new Set(rows.map((row) => row[meta.rows])).size : 0;
+  spec.height = meta.rows ? Math.max(60, 24 * names) : meta.height || 340;
+  spec.autosize = { type: "fit-x", contains: "padding" };
+  if (context.title) spec.title = context.title;
+  spec.config = configOf(context.theme);
+  return spec;
+};

@@ -1,0 +1,236 @@
+#include <sixdof/report/results.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+#include <sixdof/measure/metrics.h>
+
+namespace sixdof::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The words of nlohmann::json's exceptions behind "[json.exception.parse_error.101] ".
+std::string words_of(const Json::exception& e) {
+  const std::string words = e.what();
+  const std::size_t end = words.find("] ");
+  return end == std::string::npos ? words : words.substr(end + 2);
+}
+
+std::string text_at(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+double number_at(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? found->get<double>() : 0.0;
+}
+
+std::string as_text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+
+/// {"voxel_size": 0.004, "culling": "on"} -> "voxel_size=0.004,culling=on".
+std::string settings_text(const Json& fields) {
+  const auto found = fields.find("settings");
+  if (found == fields.end() || !found->is_object()) return text_at(fields, "settings");
+  std::string text;
+  for (const auto& [key, value] : found->items()) {
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", key, as_text(value));
+  }
+  return text;
+}
+
+/// @throws Error
+double nanoseconds(const std::string& time_unit) {
+  static const std::map<std::string, double> units{{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
+  const auto found = units.find(time_unit);
+  if (found == units.end()) throw Error(fmt::format("time_unit \"{}\" is none of ns, us, ms, s", time_unit));
+  return found->second;
+}
+
+void take_fields(const Json& fields, Row& row) {
+  if (!fields.is_object()) throw Error("\"sixdof\" is no object");
+  row.query = text_at(fields, "query");
+  row.algorithm = text_at(fields, "algorithm");
+  if (row.query.empty() || row.algorithm.empty()) throw Error("\"sixdof\" names no query or no algorithm");
+  row.settings = settings_text(fields);
+  row.pair = text_at(fields, "pair");
+  row.order = text_at(fields, "order");
+  row.body = text_at(fields, "body");
+  row.cache = text_at(fields, "cache");
+  row.scenario = text_at(fields, "scenario");
+  row.question = text_at(fields, "question");
+  const auto bucket = fields.find("bucket");
+  if (bucket == fields.end()) return;
+  if (!bucket->is_object() || !bucket->contains("percent") || !bucket->at("percent").is_number()) {
+    throw Error("\"sixdof.bucket\" has no number \"percent\"");
+  }
+  row.kind = text_at(*bucket, "kind");
+  row.percent = bucket->at("percent").get<double>();
+}
+
+/// Means and their bounds in ns, under names that say so.
+void take_values(const Json& entry, Row& row) {
+  for (const auto& [key, value] : entry.items()) {
+    if (value.is_number() && find_metric(key) != nullptr) row.values[key] = value.get<double>();
+  }
+  for (const auto& [key, name] : {std::pair("cpu_time", k_processor_mean), std::pair("real_time", k_wall_mean)}) {
+    if (!row.values.contains(key)) throw Error(fmt::format("no number \"{}\"", key));
+    const double unit = nanoseconds(text_at(entry, "time_unit"));
+    for (const char* const suffix : {"", "_low", "_high"}) {
+      const auto found = row.values.find(std::string(key) + suffix);
+      if (found == row.values.end()) continue;
+      row.values[std::string(name) + suffix] = found->second * unit;
+      row.values.erase(found);
+    }
+  }
+}
+
+Row row_of(const Json& entry, std::size_t file) {
+  if (!entry.contains("sixdof")) throw Error("no \"sixdof\" object: not a row of sixdof-bench; measure again");
+  Row row;
+  row.file = file;
+  row.name = text_at(entry, "name");
+  row.label = text_at(entry, "label");
+  take_fields(entry.at("sixdof"), row);
+  if (entry.contains("error_occurred") && entry.at("error_occurred") == true) {
+    row.error = text_at(entry, "error_message");
+    if (row.error.empty()) row.error = "unknown error";
+  } else {
+    take_values(entry, row);
+  }
+  return row;
+}
+
+void take_rows(const Json& document, Source source, Results& results) {
+  if (document.contains("context") && document.at("context").is_object()) {
+    for (const auto& [key, value] : document.at("context").items()) source.context.emplace_back(key, as_text(value));
+  }
+  source.kind = "rows";
+  const std::size_t file = results.files.size();
+  std::vector<Row> rows;
+  std::size_t index = 0;
+  for (const Json& entry : document.at("benchmarks")) {
+    std::string place = fmt::format("benchmarks[{}]", index++);
+    if (!entry.is_object()) throw BadFile(source.path, place, "not an object");
+    if (const std::string name = text_at(entry, "name"); !name.empty()) place += fmt::format(" ({})", name);
+    try {
+      if (text_at(entry, "run_type") != "aggregate") rows.push_back(row_of(entry, file));
+    } catch (const Error& e) {
+      throw BadFile(source.path, place, e.what());
+    }
+  }
+  results.rows.insert(results.rows.end(), rows.begin(), rows.end());
+  results.files.push_back(std::move(source));
+}
+
+void take_hard_cases(const Json& document, Source source, Results& results) {
+  source.kind = "stress";
+  const std::size_t file = results.files.size();
+  std::vector<HardCase> cases;
+  std::size_t index = 0;
+  for (const Json& entry : document) {
+    const std::string place = fmt::format("[{}]", index++);
+    if (!entry.is_object()) throw BadFile(source.path, place, "not an object");
+    HardCase cell{.file = file,
+                  .family = text_at(entry, "family"),
+                  .algorithm = text_at(entry, "algorithm"),
+                  .verdict = text_at(entry, "verdict"),
+                  .metric = text_at(entry, "metric"),
+                  .name = text_at(entry, "case"),
+                  .words = text_at(entry, "words"),
+                  .reproduction = text_at(entry, "reproduction"),
+                  .unit = text_at(entry, "unit"),
+                  .settings = text_at(entry, "settings"),
+                  .cases = number_at(entry, "cases"),
+                  .worst = number_at(entry, "worst")};
+    if (cell.family.empty() || cell.algorithm.empty() || cell.verdict.empty()) {
+      throw BadFile(source.path, place, "not a cell of sixdof stress: no family, algorithm or verdict");
+    }
+    cases.push_back(std::move(cell));
+  }
+  results.hard_cases.insert(results.hard_cases.end(), cases.begin(), cases.end());
+  results.files.push_back(std::move(source));
+}
+
+}  // namespace
+
+std::optional<double> Row::value(const std::string& key) const {
+  const auto found = values.find(key);
+  return found == values.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::string Source::at(const std::string& key) const {
+  const auto found = std::ranges::find(context, key, &std::pair<std::string, std::string>::first);
+  return found == context.end() ? std::string() : found->second;
+}
+
+void parse_results(const std::string& text, const std::string& path, Results& results) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw BadFile(path, "is empty");
+  Json document;
+  try {
+    document = Json::parse(text);
+  } catch (const Json::exception& e) {
+    throw BadFile(path, "not JSON: " + words_of(e));
+  }
+  Source source{.path = path, .kind = {}, .context = {}};
+  try {
+    if (document.is_object() && document.contains("benchmarks") && document.at("benchmarks").is_array()) {
+      return take_rows(document, std::move(source), results);
+    }
+    if (document.is_array() && !document.empty()) return take_hard_cases(document, std::move(source), results);
+  } catch (const Json::exception& e) {
+    throw BadFile(path, words_of(e));
+  }
+  throw BadFile(path,
+                "neither a result of sixdof-bench or a study (an object with the array \"benchmarks\") nor of sixdof "
+                "stress (an array of cells)");
+}
+
+void read_results(const std::filesystem::path& path, Results& results) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw BadFile(path.string(), "cannot be opened");
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (in.bad()) throw BadFile(path.string(), "cannot be read");
+  parse_results(text.str(), path.string(), results);
+}
+
+std::vector<Fault> faults_of(const Row& row) {
+  if (!row.error.empty()) return {{.what = "not run: " + row.error}};
+  std::vector<Fault> faults;
+  const double asked = row.count("configurations");
+  if (row.count("failed") > 0.0) faults.push_back({"failed", row.count("failed"), asked});
+  if (row.count("mismatch") > 0.0) faults.push_back({"wrong", row.count("mismatch"), row.count("judged")});
+  if (row.query == "respond" && row.count("misses") > 0.0) {
+    faults.push_back({"without a force", row.count("misses"), asked});
+  }
+  return faults;
+}
+
+bool is_red(const HardCase& cell) {
+  return cell.verdict != "exact" && !cell.verdict.starts_with("within") && !cell.verdict.starts_with("declared");
+}
+
+std::string to_string(const Fault& fault) {
+  if (fault.count == 0.0) return fault.what;
+  return fault.of > 0.0 ? fmt::format("{:.0f} of {:.0f} {}", fault.count, fault.of, fault.what)
+                        : fmt::format("{:.0f} {}", fault.count, fault.what);
+}
+
+std::string reproduction(const Row& row, const Source& source) {
+  if (row.question.empty() && row.query != "precision" && row.query != "equivalent") {
+    std::string command = fmt::format("sixdof-bench '--benchmark_filter=^{}$'", row.name);
+    if (const auto asked = row.value("configurations")) command += fmt::format(" --sample {:.0f}", *asked);
+    if (const std::string seed = source.at("seed"); !seed.empty()) command += " --seed " + seed;
+    return command;
+  }
+  return fmt::format("sixdof {} {}", row.query, source.at("arguments"));
+}
+
+}  // namespace sixdof::report

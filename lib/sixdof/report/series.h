@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace sixdof::report {
+
+/// A recorded response along a scenario's path with its ideal: a file of `sixdof quality -o` (scenario/evaluation.h).
+struct Series {
+  std::string path, scenario, law, algorithm, version, settings, shape;
+  double rate_hz = 0.0;
+  using Vectors = std::vector<std::array<double, 3>>;
+  Vectors force, torque, ideal_force, ideal_torque;  ///< One row per step, on B in A's frame.
+  std::vector<std::array<double, 7>> poses;          ///< X_AB of each step: w, x, y, z, tx, ty, tz.
+  std::vector<double> status;                        ///< 0 where the step has an answer.
+
+  /// Time-frequency diagrams as they are in the file: rows are times in s, columns frequencies in Hz.
+  std::vector<double> times, frequencies;
+  std::vector<std::pair<std::string, std::vector<double>>> spectra;  ///< "force_signal", "force_residual", ...
+};
+
+/// @throws BadFile for a file that is none, is damaged, or whose arrays differ in length
+Series read_series(const std::filesystem::path& path);
+
+}  // namespace sixdof::report

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <sixdof/report/data_table.h>
+#include <sixdof/report/results.h>
+#include <sixdof/report/row_group.h>
+
+namespace sixdof::report {
+
+/// What a report says first.
+struct Summary {
+  std::vector<std::string> sentences;  ///< Made of the data; never empty.
+  DataTable winners;                   ///< "winners": the fastest without a fault, a line per query, pair and bucket.
+};
+
+/// An algorithm wins a bucket if its mean processor time is the least among ranked rows (is_ranked). It wins clearly if
+/// its interval (processor_time) ends below that of the next one; otherwise the two are a tie.
+Summary summarise(const Results& results, const std::vector<RowGroup>& groups);
+
+}  // namespace sixdof::report

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <vector>
+
+#include <sixdof/report/data_table.h>
+#include <sixdof/report/results.h>
+#include <sixdof/report/row_group.h>
+#include <sixdof/report/series.h>
+
+/// The tables that the figures draw, in long form: a line per value, texts in the columns by which a reader chooses. A
+/// table without rows belongs to a page without data.
+
+namespace sixdof::report {
+
+/// Name of the pair whose times are means over all pairs of a run.
+inline constexpr const char* k_all_objects = "all objects (mean)";
+
+/// "times": times of queries on buckets, in us. `low_us` and `high_us` bound the interval of a mean; of k_all_objects
+/// they are the geometric mean over the pairs divided and multiplied by its geometric standard deviation, over pairs
+/// that all algorithms of the bucket have.
+DataTable times_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "response_errors": errors of responses by overlap volume, each measure of a row in a line.
+DataTable response_errors_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "scenario_measures": measures of responses along the scenarios, in their windows.
+DataTable scenario_measures_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "frontier": time against every error of the points of `sixdof precision`, and of responses on buckets (means over a
+/// pair's buckets). `frontier` is yes for a point with no other that is faster and better by this error.
+DataTable frontier_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "equal_time": what `sixdof equivalent` found, beside the values that the paper prints (scenario/README.md).
+DataTable equal_time_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "signals": measured and ideal force and torque along a path: magnitudes, components and angles between them. At most
+/// k_most_steps lines of each signal; of neighbouring steps the one that is farthest from the ideal stays.
+DataTable signals_table(const std::vector<Series>& series);
+
+/// "spectra": time-frequency diagrams in dB below the signal's loudest piece.
+DataTable spectra_table(const std::vector<Series>& series);
+
+/// "perception": scores of force and torque (measure/perception.h), with the gain fitted to the whole path.
+DataTable perception_table(const std::vector<Series>& series);
+
+/// "perception_thresholds": what scores 1, with its source; empty without series.
+DataTable perception_thresholds_table(const std::vector<Series>& series);
+
+/// "update_rates": 1 / p99 of responses (of the longest query where a row has no p99), in Hz. `stiffness_per_damping`
+/// is the largest stiffness of a passive virtual spring over the device's damping, 2 / T in 1/s: K <= min(2 b / T, 2
+/// f_c / Delta), of which the second depends on the device only. Colgate and Schenkel 1997; Abbott and Okamura 2005.
+DataTable update_rates_table(const Results& results, const std::vector<RowGroup>& groups);
+
+inline constexpr std::size_t k_most_steps = 200;
+
+/// "stability": verdicts of hard cases with the worst one's reproduction.
+DataTable stability_table(const Results& results);
+
+/// "objects": triangles of the models that the rows are about, where the model is here.
+DataTable objects_table(const Results& results);
+
+/// "failures": rows that could not be run or have faults, each with the command that measures it again.
+DataTable failures_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "settings": version and settings of every algorithm of every file.
+DataTable settings_table(const Results& results);
+
+/// "runs": everything else that a file says about its run: machine, build, arguments, content hashes.
+DataTable runs_table(const Results& results, const std::vector<Series>& series);
+
+/// "[1] name": how tables call a file.
+std::string run_name(const Results& results, std::size_t file);
+
+}  // namespace sixdof::report

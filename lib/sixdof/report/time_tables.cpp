@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include <sixdof/report/tables.h>
+
+namespace sixdof::report {
+namespace {
+
+constexpr const char* k_mean = "mean";
+
+/// Statistics of single queries, by wall clock; the mean is of processor time.
+struct Statistic {
+  const char* name;
+  const char* value;
+};
+constexpr std::array k_statistics{Statistic{"median", "p50_ns"}, Statistic{"99th percentile", "p99_ns"},
+                                  Statistic{"longest", "max_ns"}};
+
+struct TimeLine {
+  std::string run, query, kind, pair, statistic, algorithm;
+  double percent = 0.0, us = 0.0;
+  std::optional<double> low, high;
+  std::string faults, command;
+};
+
+std::string faults_text(const Row& row) {
+  std::string text;
+  for (const Fault& fault : faults_of(row)) text += (text.empty() ? "" : ", ") + to_string(fault);
+  return text;
+}
+
+std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
+  const Row& row = group.row();
+  TimeLine line{.run = run_name(results, row.file),
+                .query = row.query,
+                .kind = row.kind,
+                .pair = row.pair,
+                .statistic = k_mean,
+                .algorithm = group.algorithm(),
+                .percent = *row.percent,
+                .low = {},
+                .high = {},
+                .faults = faults_text(row),
+                .command = reproduction(row, results.files[row.file])};
+  std::vector<TimeLine> lines;
+  if (const auto time = processor_time(group)) {
+    line.us = time->value / 1e3;
+    line.low = time->low / 1e3;
+    line.high = time->high / 1e3;
+    lines.push_back(line);
+  }
+  line.low = line.high = {};
+  for (const Statistic& statistic : k_statistics) {
+    const auto ns = group.median(statistic.value);
+    if (!ns) continue;
+    line.statistic = statistic.name;
+    line.us = *ns / 1e3;
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+/// Means over the pairs: comparable between algorithms only over pairs that all of them have.
+std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
+  using Place = std::tuple<std::string, std::string, std::string, std::string, double>;
+  std::map<Place, std::map<std::string, std::map<std::string, double>>> by_place;  // algorithm, pair
+  for (const TimeLine& line : lines) {
+    if (line.us > 0.0 && line.algorithm != "null") {
+      by_place[{line.run, line.query, line.kind, line.statistic, line.percent}][line.algorithm][line.pair] = line.us;
+    }
+  }
+  std::vector<TimeLine> means;
+  for (const auto& [place, algorithms] : by_place) {
+    std::size_t most = 0;
+    for (const auto& [algorithm, pairs] : algorithms) most = std::max(most, pairs.size());
+    if (most < 2) continue;
+    for (const auto& [algorithm, pairs] : algorithms) {
+      if (pairs.size() < most) continue;
+      double mean = 0.0, squares = 0.0;
+      const auto n = static_cast<double>(pairs.size());
+      for (const auto& [pair, us] : pairs) mean += std::log(us) / n;
+      for (const auto& [pair, us] : pairs) squares += (std::log(us) - mean) * (std::log(us) - mean);
+      const double spread = std::sqrt(squares / (n - 1.0));
+      const auto& [run, query, kind, statistic, percent] = place;
+      means.push_back({.run = run,
+                       .query = query,
+                       .kind = kind,
+                       .pair = k_all_objects,
+                       .statistic = statistic,
+                       .algorithm = algorithm,
+                       .percent = percent,
+                       .us = std::exp(mean),
+                       .low = std::exp(mean - spread),
+                       .high = std::exp(mean + spread),
+                       .faults = {},
+                       .command = {}});
+    }
+  }
+  return means;
+}
+
+Cell optional_cell(std::optional<double> value) { return value ? Cell(*value) : Cell(); }
+
+}  // namespace
+
+DataTable times_table(const Results& results, const std::vector<RowGroup>& groups) {
+  std::vector<TimeLine> lines;
+  for (const RowGroup& group : groups) {
+    if (!group.row().percent || group.row().pair.empty()) continue;
+    for (TimeLine& line : lines_of(results, group)) lines.push_back(std::move(line));
+  }
+  std::vector<TimeLine> means = means_over_pairs(lines);
+  lines.insert(lines.begin(), means.begin(), means.end());
+  DataTable table{.name = "times",
+                  .title = "Times of queries on buckets",
+                  .columns = {"run", "query", "bucket", "pair", "statistic", "algorithm", "percent", "time_us",
+                              "low_us", "high_us", "faults", "command"},
+                  .rows = {}};
+  for (const TimeLine& line : lines) {
+    table.rows.push_back({line.run, line.query, line.kind, line.pair, line.statistic, line.algorithm, line.percent,
+                          line.us, optional_cell(line.low), optional_cell(line.high), line.faults, line.command});
+  }
+  return table;
+}
+
+}  // namespace sixdof::report

@@ -1,0 +1,214 @@
+"""The page of `sixdof report` in a real browser: every figure draws without a console error, choices work, a phone has no
+sideways scroll, hostile names stay text.
+
+usage: browser_test.py SIXDOF [FOLDER FOR SCREENSHOTS]
+
+Exits with 77 (a skipped test) where Chromium or the page's libraries are missing.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from browser import Browser, find_chromium  # noqa: E402
+from sample_results import HOSTILE, STRESS, rows  # noqa: E402
+
+SIXDOF = sys.argv.pop(1)
+SHOTS = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else None
+CHROMIUM = find_chromium()
+SKIPPED = 77
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        folder = pathlib.Path(cls.folder.name)
+        cls.page = folder / "report.html"
+        context = {"date": "2026-01-02T03:04:05+00:00", "commit": HOSTILE, "seed": "1", "sample": "64", "mesh:torus-1k": "0123",
+                   "algorithm:exact": "1", "settings:exact": "warm_start=off"}
+        (folder / "run.json").write_text(json.dumps({"context": context, "benchmarks": rows()}))
+        (folder / "later.json").write_text(json.dumps({"context": context, "benchmarks": rows(1.5)}))
+        environment = os.environ | {"SIXDOF_CACHE": str(folder / "cache")}
+        mesh = folder / "a.off"
+        subprocess.run([SIXDOF, "models", "make", "torus-1k", "-o", str(mesh)], check=True, capture_output=True, env=environment)
+        real = {"family": "kissing", "algorithm": "ode", "verdict": "wrong", "cases": 1, "worst": 1.0, "unit": "size", "case": "x", "words": "",
+                "reproduction": f'sixdof query --a {mesh} --b {mesh} --pose "0.5 0 0 1 0 0 0" --algorithm ode'}
+        (folder / "stress.json").write_text(json.dumps([*STRESS, real]))
+        subprocess.run([SIXDOF, "quality", "--scenario", "II", "--algorithm", "vps", "-p", "voxel_size=0.05", "-p", "point_spacing=0.05",
+                        "--steps", "128", "-o", str(folder / "II.h5")], check=True, capture_output=True, env=environment)
+        done = subprocess.run([SIXDOF, "report", *(str(folder / name) for name in ("run.json", "later.json", "stress.json")), "--series",
+                               str(folder / "II.h5"), "-o", str(cls.page)], capture_output=True, text=True, check=False, env=environment)
+        if done.returncode != 0 and "cmake/setup report" in done.stderr:
+            print("skipped:", done.stderr)
+            sys.exit(SKIPPED)
+        assert done.returncode == 0, done.stderr
+        cls.browser = Browser(CHROMIUM)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.folder.cleanup()
+
+    def setUp(self):
+        self.browser.errors.clear()
+
+    def open(self, width=1200, dark=False):
+        self.browser.call("Page.navigate", url="about:blank")
+        self.browser.window(width, 900, dark)
+        self.browser.open(self.page)
+        self.browser.wait_for("!!sixdofReport.ready")
+
+    def pages(self):
+        return self.browser.run("sixdofReport.data.pages.map(page => page.id)")
+
+    def go_to(self, page):
+        self.browser.run(f"location.hash = {json.dumps(page)}")
+        self.browser.wait_for(f"sixdofReport.ready === {json.dumps(page)}")
+
+    def shot(self, name):
+        if SHOTS:
+            SHOTS.mkdir(parents=True, exist_ok=True)
+            self.browser.screenshot(SHOTS / f"{name}.png")
+
+    def test_every_figure_draws_without_a_console_error(self):
+        for dark in (False, True):
+            self.open(dark=dark)
+            for page in self.pages():
+                self.go_to(page)
+                cards = self.browser.run("[...document.querySelectorAll('.figure[data-drawn]')].map(f => f.id.slice(7)).filter(id => id !== 'view')")
+                for figure in cards:
+                    marks = self.browser.run(f"document.querySelectorAll('#figure-{figure} .plot svg .mark-group path, #figure-{figure} .plot svg .mark-text text').length")
+                    self.assertGreater(marks, 0, f"{page}: {figure}")
+                self.shot(f"{page}-{'dark' if dark else 'light'}")
+        self.assertEqual(self.browser.errors, [])
+
+    def test_pages_have_their_figures_from_this_data(self):
+        self.open()
+        drawn = []
+        for page in self.pages():
+            self.go_to(page)
+            drawn += self.browser.run("[...document.querySelectorAll('.figure')].filter(f => Number(f.dataset.drawn) > 0).map(f => f.id)")
+        figures = self.browser.run("Object.keys(sixdofReport.data.figures)")
+        wanted = [figure for figure in figures if figure != "history"]  # sixdof history makes that one
+        self.assertEqual(sorted(drawn), sorted("figure-" + name for name in [*wanted, "view"]))
+
+    def test_hostile_names_are_text(self):
+        self.open()
+        for page in self.pages():
+            self.go_to(page)
+            self.assertEqual(self.browser.run("document.querySelectorAll('main img:not(.pictures img), main script').length"), 0, page)
+        self.assertIsNone(self.browser.run("window.hacked ?? null"))
+        self.go_to("failures")
+        self.assertIn(HOSTILE, self.browser.run("document.querySelector('main').textContent"))
+
+    def test_choices_and_algorithms_change_the_figure(self):
+        self.open()
+        self.go_to("speed")
+        card = "document.querySelector('#figure-time_distance')"
+        before = self.browser.run(f"{card}.dataset.drawn")
+        lines = f"{card}.querySelectorAll('.plot svg .mark-line path').length"
+        self.assertEqual(self.browser.run(lines), 4)
+        self.browser.run(f"{card}.querySelector('.chips input').click()")
+        self.browser.wait_for(f"{lines} === 3")
+        self.assertLess(int(self.browser.run(f"{card}.dataset.drawn")), int(before))
+        self.assertIn("1 algorithms are switched off", self.browser.run(f"{card}.querySelector('.missing').textContent"))
+        self.browser.run(f"""(() => {{ const select = [...{card}.querySelectorAll('select')].find(s => s.textContent.includes('longest'));
+            select.value = 'longest'; select.dispatchEvent(new Event('change')); }})()""")
+        self.browser.wait_for("[...document.querySelectorAll('#figure-time_distance select')].some(s => s.value === 'longest')")
+        self.browser.wait_for(f"{lines} === 3")
+
+    def test_theme_button_redraws(self):
+        self.open()
+        self.go_to("speed")
+        colour = "document.querySelector('#figure-time_distance .plot svg .role-axis-label text')?.getAttribute('fill')"
+        light = self.browser.run(colour)
+        self.browser.run("document.getElementById('theme').click()")
+        self.browser.wait_for(f"{colour} !== {json.dumps(light)}")
+        self.assertEqual(self.browser.run("document.documentElement.dataset.theme"), "dark")
+
+    def test_click_tells_the_command(self):
+        self.open()
+        self.go_to("stability")
+        self.browser.run("sixdofReport.cards.stability.tell(sixdofReport.cards.stability.shown().rows[2])")
+        told = self.browser.run("document.querySelector('#figure-stability .detail').textContent")
+        self.assertIn("sixdof query --a a.off --b b.off", told)
+        self.assertIn(HOSTILE, told)
+
+    def test_click_on_a_mark_reaches_the_detail(self):
+        self.open()
+        self.go_to("stability")
+        place = self.browser.run("""(() => { const box = document.querySelector('#figure-stability .plot svg .mark-rect path').getBoundingClientRect();
+            return [box.x + box.width / 2, box.y + box.height / 2]; })()""")
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.call("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", clickCount=1)
+        self.browser.wait_for("document.querySelector('#figure-stability .detail code') !== null")
+
+    def see(self, figure, wanted):
+        """Clicks "show in 3D" for the first row of a figure with these values, and waits for the picture."""
+        if not self.browser.run("!!document.createElement('canvas').getContext('webgl2')"):
+            self.skipTest("this browser has no WebGL")
+        self.browser.run(f"""(() => {{ const card = sixdofReport.cards[{json.dumps(figure)}], wanted = {json.dumps(wanted)};
+            card.tell(card.all.find(row => Object.keys(wanted).every(key => row[key] === wanted[key]))); }})()""")
+        self.browser.run(f"document.querySelector('#figure-{figure} .to-scene').click()")
+        self.browser.wait_for("sixdofReport.ready === 'view' && Number(document.querySelector('#figure-view')?.dataset.drawn) > 100")
+        return self.browser.run("document.querySelector('#figure-view select').selectedOptions[0].textContent")
+
+    def test_moment_of_a_signal_opens_in_3d(self):
+        self.open()
+        self.go_to("signals")
+        time_ms = self.browser.run("sixdofReport.cards.signals.all.find(row => row.time_ms > 60).time_ms")
+        self.assertEqual(self.see("signals", {"time_ms": time_ms}), "II: vps")
+        moment = self.browser.run("Number(document.querySelector('#figure-view input[type=range]').value)")
+        self.assertEqual(moment, round(time_ms))
+        self.browser.run("document.querySelector('#figure-view .controls button').click()")
+        self.browser.wait_for(f"Number(document.querySelector('#figure-view input[type=range]').value) > {moment}")
+        self.assertEqual(self.browser.errors, [])
+
+    def test_fault_of_a_hard_case_opens_its_pose(self):
+        self.open()
+        self.go_to("stability")
+        self.assertEqual(self.see("stability", {"family": "kissing", "algorithm": "ode"}), "kissing: ode")
+        self.assertIn("--pose", self.browser.run("document.querySelector('#figure-view .command').textContent"))
+        self.assertEqual(self.browser.run("sixdofReport.view.b.position.x"), 0.5)
+
+    def test_phone_has_no_sideways_scroll(self):
+        self.open(width=390)
+        for page in self.pages():
+            self.go_to(page)
+            self.assertLessEqual(self.browser.run("document.documentElement.scrollWidth"), 390, page)
+            self.shot(f"{page}-phone")
+        self.assertEqual(self.browser.errors, [])
+
+    def test_keyboard_reaches_pages_and_controls(self):
+        self.open()
+        self.browser.call("Input.dispatchKeyEvent", type="keyDown", key="Tab", code="Tab", windowsVirtualKeyCode=9)
+        self.assertEqual(self.browser.run("document.activeElement.className"), "skip")
+        focusable = self.browser.run("[...document.querySelectorAll('nav a, .figure input, .figure button, .figure select')].every(e => e.tabIndex >= 0)")
+        self.assertTrue(focusable)
+        self.assertEqual(self.browser.run("[...document.querySelectorAll('.plot svg')].filter(s => !s.getAttribute('aria-label')).length"), 0)
+
+    def test_file_asks_no_network_and_is_small(self):
+        self.assertLess(self.page.stat().st_size, 10 << 20)
+        self.open()
+        paint = self.browser.run("performance.getEntriesByName('first-contentful-paint').map(entry => entry.startTime)[0] ?? 0")
+        self.assertLess(paint, 20000, "ten times the aim, since other work may have the processor")
+        asked = self.browser.run("performance.getEntriesByType('resource').map(entry => entry.name)")
+        self.assertEqual(asked, [])
+
+    def test_planted_regression_stands_in_the_page(self):
+        self.open()
+        self.go_to("compare")
+        self.assertIn("64 slower, 0 faster", self.browser.run("document.querySelector('.sentences').textContent"))
+
+
+if __name__ == "__main__":
+    if CHROMIUM is None:
+        print("skipped: no Chromium here (cmake/setup report installs it)")
+        sys.exit(SKIPPED)
+    unittest.main()

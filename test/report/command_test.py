@@ -1,0 +1,132 @@
+"""`sixdof report` and `sixdof history` as typed: tables and figures as files, refusals, nothing half-written.
+
+usage: command_test.py SIXDOF
+"""
+
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from sample_results import HOSTILE, STRESS, row, rows  # noqa: E402
+
+SIXDOF = sys.argv.pop(1)
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "run.json").write_text(json.dumps({"context": {"seed": "1"}, "benchmarks": rows()}))
+        (self.folder / "stress.json").write_text(json.dumps(STRESS))
+
+    def run_it(self, *words, **environment):
+        return subprocess.run([SIXDOF, *words], capture_output=True, text=True, check=False, cwd=self.folder, env=os.environ | environment)
+
+    def need_libraries(self, done):
+        if done.returncode != 0 and "cmake/setup report" in done.stderr:
+            self.skipTest(done.stderr)
+
+    def refused(self, *words, **environment):
+        done = self.run_it(*words, **environment)
+        self.assertEqual(done.returncode, 1, words)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        return done.stderr
+
+    def test_csv_has_the_values_of_the_rows(self):
+        done = self.run_it("report", "run.json", "stress.json", "--csv", "tables")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+        with open(self.folder / "tables" / "times.csv", newline="", encoding="utf-8") as file:
+            lines = list(csv.DictReader(file))
+        [line] = [line for line in lines if (line["algorithm"], line["pair"], line["query"], line["percent"], line["statistic"]) ==
+                  ("ist", "elephant", "distance", "5", "mean")]
+        self.assertEqual(float(line["time_us"]), 0.5)
+        self.assertIn("sixdof-bench '--benchmark_filter=^distance/algorithm:ist/pair:elephant/distance:5$' --sample 64 --seed 1", line["command"])
+        with open(self.folder / "tables" / "stability.csv", newline="", encoding="utf-8") as file:
+            self.assertEqual([line["verdict"] for line in csv.DictReader(file)][:2], ["exact", "within declared resolution"])
+        self.assertNotIn("signals.csv", os.listdir(self.folder / "tables"), "a table without lines is no file")
+
+    def test_markdown_has_no_markup_of_the_results(self):
+        self.assertEqual(self.run_it("report", "run.json", "--markdown", "tables").returncode, 0)
+        text = (self.folder / "tables" / "winners.md").read_text()
+        self.assertRegex(text, r"### Fastest without a fault\n\n\| run \|")
+        self.assertRegex(text, r"\| distance \| elephant \| distance 5 % \| exact \| 0\.166667 \| vps \| 2 \| clear \|")
+        self.assertNotIn("<img", (self.folder / "tables" / "failures.md").read_text())
+        self.assertIn("&lt;img", (self.folder / "tables" / "failures.md").read_text())
+
+    def test_svg_figures_have_axes_marks_and_legends(self):
+        if not shutil.which("node"):
+            self.skipTest("no node here")
+        done = self.run_it("report", "run.json", "stress.json", "--svg", "figures")
+        self.need_libraries(done)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        names = sorted(os.listdir(self.folder / "figures"))
+        for name in ("time_distance.svg", "time_volume.svg", "frontier.svg", "stability.svg", "response_errors.svg", "winners.svg"):
+            self.assertIn(name, names)
+        self.assertEqual([name for name in names if not name.endswith(".svg")], [])
+        for name in names:
+            xml.etree.ElementTree.parse(self.folder / "figures" / name)
+        text = (self.folder / "figures" / "time_distance.svg").read_text()
+        for words in ("Time against distance", "time of a query, µs", "distance of the bodies", "exact", "vps", "ist"):
+            self.assertIn(words, text)
+        self.assertEqual(len(re.findall(r"mark-line role-mark", text)), 4, "a line for each algorithm")
+        self.assertNotIn("<img", text)
+        self.assertIn("role-legend", (self.folder / "figures" / "frontier.svg").read_text())
+
+    def test_pdf_figures_are_pdf(self):
+        if not shutil.which("node") or not shutil.which("rsvg-convert"):
+            self.skipTest("no node or rsvg-convert here")
+        done = self.run_it("report", "stress.json", "--pdf", "figures")
+        self.need_libraries(done)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(os.listdir(self.folder / "figures"), ["stability.pdf"])
+        data = (self.folder / "figures" / "stability.pdf").read_bytes()
+        self.assertTrue(data.startswith(b"%PDF-"))
+        self.assertGreater(len(data), 5000)
+
+    def test_what_cannot_be_done_is_refused_in_a_line(self):
+        self.assertIn("-o, --csv, --markdown, --svg or --pdf is needed", self.refused("report", "run.json"))
+        self.assertIn("a result file or --series is needed", self.refused("report", "-o", "x.html"))
+        self.assertIn("absent.json: cannot be opened", self.refused("report", "absent.json", "-o", "x.html"))
+        (self.folder / "other.json").write_text('{"a": 1}')
+        self.assertIn("other.json: neither a result of sixdof-bench", self.refused("report", "run.json", "other.json", "-o", "x.html"))
+        self.assertIn("run.json: ", self.refused("report", "--series", "run.json", "-o", "x.html"))
+        self.assertIn("is missing", self.refused("report", "run.json", "-o", "x.html", SIXDOF_DATA=str(self.folder)))
+        # Whichever is found missing first, node or a library.
+        self.assertIn("cmake/setup report", self.refused("report", "run.json", "--svg", "figures", PATH="/nowhere"))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["other.json", "run.json", "stress.json"])
+
+    def test_history_has_a_line_for_each_row_and_file(self):
+        runs = self.folder / "runs"
+        runs.mkdir()
+        for k in range(8):
+            result = {"context": {"date": f"2026-01-{k + 1:02}", "commit": f"{k}"},
+                      "benchmarks": [row("distance", "exact", "elephant", "distance", 5, 1000.0 if k < 4 else 2000.0),
+                                     row("distance", HOSTILE, "elephant", "distance", 5, 1000.0)]}
+            (runs / f"{k}.json").write_text(json.dumps(result))
+        done = self.run_it("history", "runs", "-o", "history.html")
+        self.need_libraries(done)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = (self.folder / "history.html").read_text()
+        data = json.loads(re.search(r'<script id="report-data" type="application/json">(.*?)</script>', page, re.DOTALL).group(1))
+        self.assertEqual(len(data["tables"]["history"]["rows"]), 16)
+        self.assertIn("Changes of level over all rows: 1", data["summary"][1])
+
+    def test_history_of_nothing_is_refused(self):
+        (self.folder / "empty").mkdir()
+        self.assertIn("empty: has no result of sixdof-bench", self.refused("history", "empty", "-o", "x.html"))
+        self.assertIn("absent: cannot be read", self.refused("history", "absent", "-o", "x.html"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,73 @@
+// The words of the summary are those of the numbers.
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sixdof/report/summary.h>
+
+#include "result_text.h"
+
+namespace sixdof::report {
+namespace {
+
+using test::row;
+using test::text_in;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(Summary, WinnerIsTheFastestWithoutAFault) {
+  const Results results = test::results_of(
+      {row("distance", "null", "p", "distance", 5.0, 1.0),
+       row("distance", "wrong", "p", "distance", 5.0, 2.0, {{"mismatch", 1}}),
+       row("distance", "exact", "p", "distance", 5.0, 100.0), row("distance", "fcl-rss", "p", "distance", 5.0, 500.0),
+       row("distance", "exact", "p", "distance", 9.0, 100.0), row("distance", "fcl-rss", "p", "distance", 9.0, 110.0)});
+  const Summary summary = summarise(results, row_groups(results));
+  ASSERT_EQ(summary.winners.rows.size(), 2u);
+  EXPECT_EQ(text_in(summary.winners, summary.winners.rows[0], "fastest"), "exact");
+  EXPECT_EQ(text_in(summary.winners, summary.winners.rows[0], "verdict"), "clear");
+  EXPECT_EQ(test::number_in(summary.winners, summary.winners.rows[0], "times_faster"), 5.0);
+  EXPECT_EQ(text_in(summary.winners, summary.winners.rows[1], "verdict"), "tie") << "10 % is within two runs' noise";
+  EXPECT_THAT(
+      summary.sentences,
+      ElementsAre("Distance: exact is the fastest in 2 of 2 buckets, clearly in 1, 2.35 times faster than the next on "
+                  "average, 1.1 to 5.",
+                  HasSubstr("1 of 6 rows have failures or wrong answers and are not ranked (wrong 1)")));
+}
+
+TEST(Summary, NearestForcesAreNamed) {
+  const Results results =
+      test::results_of({row("respond", "exact", "p", "volume", 5.0, 9.0, {{"gamma_F_deg", 0.0}}),
+                        row("respond", "vps", "p", "volume", 5.0, 9.0, {{"gamma_F_deg", 12.0}}),
+                        row("respond", "ist-descent", "p", "volume", 5.0, 9.0, {{"gamma_F_deg", 2.0}})});
+  EXPECT_THAT(
+      summarise(results, row_groups(results)).sentences,
+      Contains(HasSubstr("nearest to the exact ones: ist-descent (2 degrees on average), then vps (12 degrees)")));
+}
+
+TEST(Summary, HardCasesAreCountedByAlgorithm) {
+  Results results;
+  parse_results(R"([{"family":"scale","algorithm":"ode","verdict":"wrong"},
+                    {"family":"offset","algorithm":"ode","verdict":"crashed"},
+                    {"family":"scale","algorithm":"vps","verdict":"within declared resolution"},
+                    {"family":"offset","algorithm":"vps","verdict":"declared unsupported"}])",
+                "s.json", results);
+  EXPECT_THAT(
+      summarise(results, row_groups(results)).sentences,
+      ElementsAre("Hard cases: 1 of 2 algorithms pass every family (vps); families with a wrong or missing answer: "
+                  "ode in 2."));
+}
+
+TEST(Summary, SaysThatARunWasInterruptedOrIsEmpty) {
+  const Results broken =
+      test::results_of({row("distance", "exact", "p", "distance", 5.0, 1.0)}, {{"interrupted", "true"}});
+  EXPECT_THAT(summarise(broken, row_groups(broken)).sentences, Contains("[1] run was interrupted: rows are missing."));
+  const Results empty = test::results_of({});
+  EXPECT_THAT(summarise(empty, row_groups(empty)).sentences, ElementsAre("There are no rows to compare."));
+}
+
+}  // namespace
+}  // namespace sixdof::report

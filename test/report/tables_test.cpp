@@ -1,0 +1,188 @@
+// What figures draw: tables of small result files whose values are computed by hand.
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/report/tables.h>
+
+#include "result_text.h"
+
+namespace sixdof::report {
+namespace {
+
+using test::Json;
+using test::lines_with;
+using test::number_in;
+using test::text_in;
+
+TEST(TimesTable, LineForEveryStatistic) {
+  const Results results = test::results_of({test::row("distance", "exact", "bunny", "distance", 5.0, 2000.0)});
+  const DataTable table = times_table(results, row_groups(results));
+  const auto mean = lines_with(table, {{"statistic", "mean"}});
+  ASSERT_EQ(mean.size(), 1u);
+  EXPECT_EQ(number_in(table, mean[0], "time_us"), 2.0);
+  EXPECT_DOUBLE_EQ(number_in(table, mean[0], "low_us"), 1.8);
+  EXPECT_DOUBLE_EQ(number_in(table, mean[0], "high_us"), 2.2);
+  EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "median"}}).at(0), "time_us"), 1.8);
+  EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "longest"}}).at(0), "time_us"), 18.0);
+  EXPECT_TRUE(lines_with(table, {{"statistic", "99th percentile"}}).empty()) << "the row has none";
+}
+
+TEST(TimesTable, MeanOverObjectsIsGeometricAndOverTheSameObjects) {
+  const Results results = test::results_of({test::row("distance", "exact", "a", "distance", 5.0, 1000.0),
+                                            test::row("distance", "exact", "b", "distance", 5.0, 4000.0),
+                                            test::row("distance", "fcl-rss", "a", "distance", 5.0, 9000.0)});
+  const DataTable table = times_table(results, row_groups(results));
+  const auto means = lines_with(table, {{"pair", k_all_objects}, {"statistic", "mean"}});
+  ASSERT_EQ(means.size(), 1u) << "fcl-rss has one of the two objects";
+  EXPECT_EQ(text_in(table, means[0], "algorithm"), "exact");
+  EXPECT_NEAR(number_in(table, means[0], "time_us"), 2.0, 1e-12);
+  const double spread = std::exp(std::sqrt(2.0) * std::log(2.0));  // both logarithms are log 2 from their mean
+  EXPECT_NEAR(number_in(table, means[0], "high_us"), 2.0 * spread, 1e-12);
+  EXPECT_NEAR(number_in(table, means[0], "low_us"), 2.0 / spread, 1e-12);
+}
+
+TEST(TimesTable, RepetitionsAreOneLineWithTheirInterval) {
+  const Results results = test::results_of({test::row("distance", "exact", "a", "distance", 5.0, 1000.0),
+                                            test::row("distance", "exact", "a", "distance", 5.0, 1000.0),
+                                            test::row("distance", "exact", "a", "distance", 5.0, 8000.0)});
+  const DataTable table = times_table(results, row_groups(results));
+  const auto mean = lines_with(table, {{"statistic", "mean"}});
+  ASSERT_EQ(mean.size(), 1u);
+  EXPECT_NEAR(number_in(table, mean[0], "time_us"), 2.0, 1e-12) << "geometric mean";
+  // Student's t of two degrees of freedom at 97.5 % is 4.30265; the logarithms are 0, 0 and 3 log 2.
+  const double half = 4.30265 * std::sqrt(3.0 * std::pow(std::log(2.0), 2) / 3.0);
+  EXPECT_NEAR(number_in(table, mean[0], "high_us"), 2.0 * std::exp(half), 1e-3);
+}
+
+TEST(FrontierTable, MarksPointsThatNoOtherBeats) {
+  const auto point = [](const char* algorithm, double ns, double degrees, int misses) {
+    Json json =
+        test::row("precision", algorithm, "p", "volume", 1.0, ns, {{"gamma_F_deg", degrees}, {"misses", misses}});
+    json["name"] = std::string("precision/") + algorithm;
+    json["sixdof"].erase("bucket");
+    json["sixdof"]["question"] = "respond";
+    return json;
+  };
+  const Results results = test::results_of({point("fast", 10.0, 5.0, 0), point("good", 100.0, 1.0, 0),
+                                            point("worse", 100.0, 2.0, 0), point("equal", 100.0, 1.0, 0)});
+  const DataTable table = frontier_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 4u);
+  const auto leads = [&](const char* name) {
+    return text_in(table, lines_with(table, {{"algorithm", name}}).at(0), "frontier");
+  };
+  EXPECT_EQ(leads("fast"), "yes");
+  EXPECT_EQ(leads("good"), "yes");
+  EXPECT_EQ(leads("equal"), "yes");
+  EXPECT_EQ(leads("worse"), "no");
+}
+
+TEST(FrontierTable, FaultyPointLeadsNothing) {
+  Json faulty = test::row("respond", "hollow", "p", "volume", 1.0, 1.0, {{"gamma_F_deg", 0.1}, {"misses", 5}});
+  const Results results =
+      test::results_of({faulty, test::row("respond", "vps", "p", "volume", 1.0, 50.0, {{"gamma_F_deg", 9.0}})});
+  const DataTable table = frontier_table(results, row_groups(results));
+  EXPECT_EQ(text_in(table, lines_with(table, {{"algorithm", "hollow"}}).at(0), "frontier"), "no");
+  EXPECT_EQ(text_in(table, lines_with(table, {{"algorithm", "vps"}}).at(0), "frontier"), "yes");
+}
+
+TEST(EqualTimeTable, HasThePaperValueBeside) {
+  Json json =
+      test::row("equivalent", "ist", "", "volume", 1.0, 9e5, {{"sigma_F", 0.2}, {"tau_ns", 9e5}, {"measured_ns", 8e5}});
+  json["sixdof"].erase("bucket");
+  json["sixdof"]["scenario"] = "Ia";
+  json["name"] = "equivalent/scenario:Ia/algorithm:ist/tau:0.9ms";
+  Json step = json;
+  step["name"] = "equivalent/scenario:Ia/algorithm:ist/tau:0.9ms/step:1";
+  const Results results = test::results_of({step, json});
+  const DataTable table = equal_time_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(number_in(table, table.rows[0], "ours"), 0.2);
+  EXPECT_EQ(number_in(table, table.rows[0], "paper"), 0.176);
+  EXPECT_EQ(number_in(table, table.rows[0], "tau_ms"), 0.9);
+}
+
+/// A unit force along x whose measured counterpart is turned by 30 degrees at one step.
+Series turned_series(std::size_t steps, std::size_t turned) {
+  Series series;
+  series.scenario = "II";
+  series.algorithm = "vps";
+  series.rate_hz = 1000.0;
+  for (std::size_t k = 0; k < steps; ++k) {
+    series.ideal_force.push_back({2.0, 0.0, 0.0});
+    series.force.push_back(k == turned ? std::array{std::sqrt(0.75), 0.5, 0.0} : std::array{1.0, 0.0, 0.0});
+    series.torque.push_back({0.0, 0.0, 0.0});
+    series.ideal_torque.push_back({0.0, 0.0, 0.0});
+    series.status.push_back(0.0);
+  }
+  return series;
+}
+
+TEST(SignalsTable, OutlierOfOneStepIsDrawn) {
+  const DataTable table = signals_table({turned_series(10000, 4321)});
+  const auto angles = lines_with(table, {{"signal", "force, angle to the ideal (degrees)"}, {"curve", "measured"}});
+  EXPECT_LE(angles.size(), k_most_steps);
+  double largest = 0.0, at = 0.0;
+  for (const auto& line : angles) {
+    if (number_in(table, line, "value") > largest) {
+      largest = number_in(table, line, "value");
+      at = number_in(table, line, "time_ms");
+    }
+  }
+  EXPECT_NEAR(largest, 30.0, 1e-9);
+  EXPECT_EQ(at, 4321.0);
+  const auto magnitudes = lines_with(table, {{"signal", "force, magnitude"}, {"curve", "ideal"}});
+  EXPECT_EQ(number_in(table, magnitudes.at(0), "value"), 1.0) << "over its own largest";
+}
+
+TEST(SpectraTable, LevelsAreBelowTheSignalsLoudest) {
+  Series series = turned_series(4, 9);
+  series.times = {0.032, 0.040};
+  series.frequencies = {0.0, 15.6};
+  series.spectra = {{"force_signal", {10.0, 1.0, 0.0, 5.0}}, {"force_residual", {0.1, 0.0, 0.0, 0.0}}};
+  const DataTable table = spectra_table({series});
+  const auto measured = lines_with(table, {{"signal", "force, measured"}});
+  ASSERT_EQ(measured.size(), 2u) << "pieces overlap by half";
+  EXPECT_EQ(number_in(table, measured[0], "level_db"), 0.0);
+  EXPECT_EQ(number_in(table, measured[1], "level_db"), -10.0);
+  const auto error = lines_with(table, {{"signal", "force, error (measured minus ideal)"}});
+  EXPECT_EQ(number_in(table, error[0], "level_db"), -20.0) << "on the scale of the signal";
+  EXPECT_EQ(number_in(table, error[1], "level_db"), -100.0) << "nothing at all is at the floor";
+}
+
+TEST(FailuresTable, NamesFaultAndCommand) {
+  const Results results = test::results_of({test::row("distance", "ode", "p", "distance", 5.0, 1.0, {{"mismatch", 7}}),
+                                            test::row("distance", "exact", "p", "distance", 5.0, 1.0)},
+                                           {{"seed", "1"}});
+  const DataTable table = failures_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(text_in(table, table.rows[0], "fault"), "7 of 64 wrong");
+  EXPECT_EQ(text_in(table, table.rows[0], "bucket"), "distance 5 %");
+  EXPECT_NE(text_in(table, table.rows[0], "command").find("algorithm:ode"), std::string::npos);
+}
+
+TEST(ObjectsTable, HasTrianglesOfModelsAndHashesOfAll) {
+  const Results results = test::results_of({}, {{"mesh:torus-1k", "abc"}, {"mesh:no-such-model@1", "def"}});
+  const DataTable table = objects_table(results);
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_NEAR(number_in(table, table.rows[0], "triangles"), 1000.0, 100.0);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(test::cell(table, table.rows[1], "triangles")));
+  EXPECT_EQ(text_in(table, table.rows[1], "content_hash"), "def");
+}
+
+TEST(SettingsTable, CountsTheRowsOfEveryAlgorithm) {
+  const Results results =
+      test::results_of({test::row("distance", "ode", "p", "distance", 5.0, 1.0)},
+                       {{"algorithm:ode", "0.16"}, {"settings:ode", "combine=mean"}, {"algorithm:vps", "1"}});
+  const DataTable table = settings_table(results);
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(text_in(table, table.rows[0], "settings"), "combine=mean");
+  EXPECT_EQ(number_in(table, table.rows[0], "in_rows"), 1.0);
+  EXPECT_EQ(number_in(table, table.rows[1], "in_rows"), 0.0);
+}
+
+}  // namespace
+}  // namespace sixdof::report
