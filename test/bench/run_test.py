@@ -49,8 +49,8 @@ class Run(unittest.TestCase):
         return subprocess.run(self.command(*words), capture_output=True, text=True, check=False, env=self.environment)
 
     def result(self):
-        """The only file in results/."""
-        [path] = (self.folder / "results").iterdir()
+        """The only file in results/; its report stands in a folder beside it."""
+        [path] = [path for path in (self.folder / "results").iterdir() if path.is_file()]
         return path
 
     def rows(self):
@@ -118,6 +118,10 @@ class Run(unittest.TestCase):
         self.assertEqual(context["benchmark_flags"], "--benchmark_min_time=0.2")
         self.assertEqual(context["budget_s"], "480")
         self.assertIn("collide", done.stdout, "the table")
+        if "cmake/setup report" not in done.stderr:  # the page's libraries are here
+            page = f"results/{journal.stem.removesuffix('.json')}/report.html"
+            self.assertEqual(done.stdout.splitlines()[-1], page)
+            self.assertIn("sixdof report", (self.folder / page).read_text())
         self.assertIn("cmake/setup", self.trace.read_text())
         self.assertEqual(self.run_it("--resume").returncode, 2, "nothing is unfinished any more")
 
