@@ -54,7 +54,7 @@
       node.append(element("details", { open: page.figures.length === 0 || name === "answers" },
         element("summary", {}, `${table.title}: ${table.rows.length} lines`), report.tableElement(name, table)));
     }
-    if (figures.length === 0 && tables.length === 0 && !extra && !(page.scenes && data.scenes.length > 0)) node.append(emptyNote(page));
+    if (figures.length === 0 && tables.length === 0 && !page.summary && !extra && !(page.scenes && data.scenes.length > 0)) node.append(emptyNote(page));
     return { node, figures };
   }
 
