@@ -139,6 +139,11 @@ def us(value):
     return f"{value:.3g}" if value < 1e4 else f"{value:,.0f}"
 
 
+def text_of(found, most):
+    fewer = f" [{found['objects']}]" if found["objects"] < most else ""
+    return f"{us(found['mean_us'])} ({us(found['p10_us'])}..{us(found['p90_us'])}){fewer}"
+
+
 def table(summary):
     """Lines of Markdown: mean over objects, 10 % to 90 %, by algorithm and bucket; then ratios and worst objects."""
     by_key = {(one["partner"], one["query"], one["algorithm"], one["bucket"]["kind"], one["bucket"]["percent"]): one
@@ -149,14 +154,16 @@ def table(summary):
         shown = [bucket for bucket in SHOWN[query] if any(key[:2] == one and key[3:] == bucket for key in by_key)]
         if not shown:
             continue
-        lines += ["", f"**{query}, {partner}**: mean over objects, us (10 %..90 % of the objects)", "",
+        most = max(value["objects"] for key, value in by_key.items() if key[:2] == one)
+        lines += ["", f"**{query}, {partner}**: mean over {most} objects, us (10 %..90 % of the objects); in square brackets "
+                  "the number of objects where it is less", "",
                   "| algorithm | " + " | ".join(f"{kind} {percent:g} %" for kind, percent in shown) + " |",
                   "|---|" + "---|" * len(shown)]
         for algorithm in sorted({key[2] for key in by_key if key[:2] == one}):
             cells = []
             for bucket in shown:
                 found = by_key.get((partner, query, algorithm, *bucket))
-                cells.append(f"{us(found['mean_us'])} ({us(found['p10_us'])}..{us(found['p90_us'])})" if found else "-")
+                cells.append(text_of(found, most) if found else "-")
             lines.append(f"| `{algorithm}` | " + " | ".join(cells) + " |")
     lines += ["", f"Time / time of `{REFERENCE}` on the same object (geometric mean over buckets and objects):", "",
               "| partner | query | algorithm | objects | ratio | 10 %..90 % | worst objects |", "|---|---|---|---|---|---|---|"]

@@ -80,6 +80,13 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(found["kinds"]["boxy"]["objects"], 4)
         self.assertEqual(self.summary(*units[1:])["hardness"], [])  # seven objects are too few
 
+    def test_the_table_says_where_an_algorithm_has_fewer_objects(self):
+        lines = collection_report.table(self.summary(unit("a", [row("exact", 1), row("slow", 9)]),
+                                                     unit("b", [row("exact", 3)])))
+        self.assertIn("| `exact` | 2 (1.2..2.8) |", lines)
+        self.assertIn("| `slow` | 9 (9..9) [1] |", lines)
+        self.assertTrue(any(line.startswith("**distance, self**: mean over 2 objects, us") for line in lines))
+
     def test_what_did_not_end_is_listed(self):
         summary = self.summary(unit("a", [], algorithms={"ist": {"status": "not done in 10 s"}}))
         self.assertEqual(summary["not_measured"], [{"unit": "a.self", "algorithm": "ist", "why": "not done in 10 s"}])
