@@ -316,8 +316,9 @@ double bisector(const SphereIndex& spheres, const Sphere& sphere, const Eigen::V
     const double difference = sphere.radius - other.radius;
     const double slope = 2.0 * (offset.dot(u) - difference);
     const double shorter = (offset.squaredNorm() - difference * difference) / slope;
-    if (!(shorter < length)) return length;
-    length = std::max(shorter, sphere.radius);
+    const double next = std::max(shorter, sphere.radius);
+    if (!(next < length)) return length;  // also where spheres overlap, which no packing has but a forged one
+    length = next;
   }
 }
 
@@ -351,14 +352,16 @@ Packing cached_packing(const Mesh& mesh, const PackingOptions& options) {
     members.records("spheres", packing.spheres);
     packing.fill = total_volume(packing.spheres) / mesh.volume();
   };
+  // A sphere far below the smallest one would make the cells of a SphereIndex so small that a search never ends.
+  const double smallest = 0.5 * options.smallest_radius * mesh.diagonal();
+  const auto valid = [&](const Packing& packing) {
+    return !packing.spheres.empty() && packing.spheres.size() <= options.spheres &&
+           std::all_of(packing.spheres.begin(), packing.spheres.end(), [&](const Sphere& s) {
+             return mesh.box().contains(s.center) && s.radius >= smallest && s.radius <= mesh.diagonal();
+           });
+  };
   return load_or_build(
-      "ist-packing", key, [&] { return pack_spheres(mesh, options); }, visit,
-      [&](const Packing& packing) {
-        return !packing.spheres.empty() && packing.spheres.size() <= options.spheres &&
-               std::all_of(packing.spheres.begin(), packing.spheres.end(), [&](const Sphere& s) {
-                 return mesh.box().contains(s.center) && s.radius > 0.0 && s.radius <= mesh.diagonal();
-               });
-      });
+      "ist-packing", key, [&] { return pack_spheres(mesh, options); }, visit, valid);
 }
 
 std::vector<double> cell_weights(const Mesh& mesh, std::span<const Sphere> spheres) {

@@ -1,0 +1,224 @@
+// Writes the first inputs of the fuzzers: `fuzz_seeds FOLDER` makes FOLDER/TARGET/NAME of small valid files, and of the
+// numbers of the catalogue's hard cases. Inputs that were found by fuzzing stand beside them under other names.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <span>
+#include <sstream>
+
+#include <sixdof/geometry/save.h>
+#include <sixdof/process/protocol.h>
+
+#include "../geometry/scene_files.h"
+#include "fuzz.h"
+#include "small_meshes.h"
+#include "small_set.h"
+
+namespace sixdof::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Coordinates that are hard to keep: of field cases, and next to the limits of the format.
+Mesh hard_mesh() {
+  return Mesh::build({{0.06999979436939574029, -1.708219171670e-8, 1.02781464659664711903},
+                      {-0.40000020563060423306, -2.075754440556e-8, 1.02781464312938330963},
+                      {5e-324, -0.0, 1e150},
+                      {99.9999847, 0.946687222, -2.2250738585072014e-308}},
+                     {{0, 1, 2}, {0, 2, 3}, {1, 3, 2}}, "hard");
+}
+
+class Seeds {
+ public:
+  Seeds(fs::path folder, const char* target) : folder_(std::move(folder) / target) { fs::create_directories(folder_); }
+  void add(const std::string& name, const std::string& bytes) const { write_bytes(folder_ / name, bytes); }
+
+ private:
+  fs::path folder_;
+};
+
+void write_meshes(const fs::path& folder) {
+  using namespace testing_support;
+  const Seeds seeds(folder, "mesh_file");
+  const auto saved = [&](const Mesh& mesh, const char* extension) {
+    const auto file = scratch_folder() / (std::string("seed") + extension);
+    save_mesh(mesh, file);
+    return read_bytes(file);
+  };
+  const Mesh box_mesh = box(1.0, 0.8, 0.6);
+  seeds.add("box.ply", "0" + saved(box_mesh, ".ply"));
+  seeds.add("hard.ply", "0" + saved(hard_mesh(), ".ply"));
+  seeds.add("hard.off", "1" + saved(hard_mesh(), ".off"));
+  seeds.add("hard.obj", "2" + saved(hard_mesh(), ".obj"));
+  seeds.add("box.stl", "3" + saved(box_mesh, ".stl"));
+  seeds.add("text.stl",
+            "3solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-9 0\nendloop\nendfacet\n"
+            "endsolid a\n");
+  seeds.add(
+      "text.ply",
+      "0ply\nformat ascii 1.0\ncomment c\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0.5 0.2 0\n0 0 1\n"
+      "4 0 1 2 3\n3 0 1 4\n");
+  seeds.add(
+      "big-endian.ply",
+      "0ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty short x\nproperty short y\nproperty short z\n"
+      "element face 1\nproperty list uchar ushort vertex_index\nend_header\n" +
+          std::string("\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0\1\0\0\3\0\0\0\1\0\2", 25));
+  seeds.add("polygons.obj",
+            "2# c\nmtllib x.mtl\no a\nv 0 0 0\nv 2 0 0\nv 2 2 0 1.0\nv 1 0.5 0\nv 0 2 0\nvt 0 0\nvn 0 0 1\ng b\ns 1\n"
+            "usemtl m\nf 1/1/1 2/1/1 \\\n3//1 4 5\nf -5 -4 -1\nl 1 2\n");
+  seeds.add("coloured.off",
+            "1COFF\n# c\n4 2 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1\n0 1 0 1 1 1 1\n4 0 1 2 3 9\n3 0 2 1\n");
+  seeds.add("box.glb", "4" + glb(gltf_json(box_mesh, "", R"([{"mesh":0}])"), gltf_data(box_mesh)));
+  const std::string data = R"(,"uri":"data:;base64,)" + base64(gltf_data(box_mesh)) + '"';
+  seeds.add("box.gltf",
+            "5" + gltf_json(box_mesh, data, R"([{"children":[1],"scale":[1,1,-1]},{"mesh":0,"translation":[1,2,3]}])"));
+  seeds.add("box.3ds", "6" + file_3ds(object_3ds(box_mesh, {0, 3})));
+}
+
+void write_sets(const fs::path& folder) {
+  const Seeds seeds(folder, "configuration_set");
+  seeds.add("set", "s" + read_bytes(write_small_set(scratch_folder())));
+  seeds.add("shard", "S" + read_bytes(write_small_shard(scratch_folder())));
+  seeds.add("flipped-byte", std::string("e\0\0\x40\x02\x10", 6));
+  seeds.add("cut-off", std::string("e\0\xF0\x00\x02", 5));
+  // What is edited: object, kind of edit, and what it needs (hdf5_edit.cpp).
+  for (char object = 0; object < 16; ++object) {
+    for (char kind = 0; kind < 6; ++kind) {
+      if ((object + kind) % 4 != 0) continue;
+      std::ostringstream name;
+      name << "edit-" << int{object} << "-" << int{kind};
+      const std::string edit{object, kind, 3, 9, 2, 1, 8, 0};
+      seeds.add(name.str(), (object % 8 < 4 ? "e\1" : "E\1") + edit + "0123456789abcdef");
+    }
+  }
+  seeds.add("huge-dataset", std::string("e\1\4\4\4\xE4\xE4\1\1", 9));
+}
+
+void write_structures(const fs::path& folder) {
+  const Seeds seeds(folder, "cached_structure");
+  for (char file = 0; file < 10; ++file) {
+    const std::string number = std::to_string(int{file});
+    seeds.add("flipped-byte-" + number, std::string{file, 'd', 0, 0, 0x40, 8, 0x10});
+    seeds.add("edited-" + number, std::string{file, 'd', 1, 2, 4, 4, 3, 2, 1, 5, 6, 7});
+    seeds.add("forged-" + number, std::string{file, 'f', 1, 1, 0, 0, 1, 1, 2, 3, 1, 2, 9, 0, '\x80', '\x7F'});
+  }
+}
+
+void write_lines(const fs::path& folder) {
+  using namespace protocol;
+  const Seeds seeds(folder, "protocol");
+  Pose X_AB;
+  X_AB.t = {0.1, -5e-324, std::numeric_limits<double>::infinity()};
+  const MeshPlace place{"a", "/vertices", "/triangles", 4, 4};
+  const std::string hello = to_line(Hello{}), prepare = to_line(Prepare{place, place, {}, "/progress"});
+  std::string session = "s" + hello + "\n" + prepare + "\n";
+  for (const char* query : {"collide", "distance", "respond"}) {
+    seeds.add(std::string("ask-") + query, "q" + to_line(Ask{query, X_AB}));
+    session += to_line(Ask{query, Pose()}) + "\n";
+    session += to_line(Time{query, {Pose(), X_AB}, 2, true, 64}) + "\n";
+  }
+  seeds.add("hello", "q" + hello);
+  seeds.add("prepare", "q" + prepare);
+  seeds.add("time", "q" + to_line(Time{"distance", {Pose(), X_AB}, 3, false, 0}));
+  seeds.add("session", session + "nonsense\n{}\n");
+  seeds.add("many-vertices",
+            "s" + prepare + "\n" + to_line(Prepare{{"a", "", "", std::size_t{1} << 60, 4}, place, {}, ""}) + "\n");
+  seeds.add("asked-before-prepared", "s" + to_line(Ask{"distance", Pose()}) + "\n");
+  const Separation gap{0.25, true, {0.1, 0.2, 0.3}, {1e-300, 2, 3}, 7, 4294967294u};
+  seeds.add("collides", "c" + to_line(Asked<bool>{true, "", 12.5, {}}));
+  seeds.add("distance", "d" + to_line(Asked<Separation>{gap, "", 12.5, {{"points", 1.0, 3.0}}}));
+  seeds.add("distance-not-finite", R"(d{"distance":"nan"})");
+  seeds.add("distance-of-text", R"(d{"distance":"0.5"})");
+  seeds.add("distance-of-fractional-triangle", R"(d{"distance":1,"triangle_a":1.5})");
+  seeds.add("distance-of-negative-triangle", R"(d{"distance":1,"triangle_b":-1})");
+  seeds.add("answer-to-another-query", R"(d{"collide":true})");
+  seeds.add("response", "r" + to_line(Asked<Response>{Response{1, 2, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}}, "", {}, {}}));
+  seeds.add("no-answer", "r" + to_line(Asked<Response>{Status::failed, "no \xFF convergence", {}, {}}));
+  seeds.add("times", "t" + to_line(Timed{{1, 2}, {1, 1.5}, 0, 0, {{1, Status::non_finite, "nan"}}}));
+  seeds.add("times-together", R"(T{"wall_ns":8,"cpu_ns":7})");
+  seeds.add("times-negative", R"(T{"wall_ns":-8,"cpu_ns":"inf"})");
+  seeds.add("times-failed-twice", R"(T{"wall_ns":8,"cpu_ns":7,"failed":[[1,"failed",""],[1,"failed",""]]})");
+  seeds.add("times-place-out-of-range", R"(T{"wall_ns":8,"cpu_ns":7,"failed":[[1e300,"failed",""]]})");
+  seeds.add("greeting",
+            "h" + to_line(Greeting{{.name = "x",
+                                    .version = "1.5",
+                                    .summary = "s",
+                                    .answers = {.collide = true, .respond = true},
+                                    .law = ResponseLaw::volume,
+                                    .parameters = {Parameter::count("n", "how many", "5", 1, 9).swept({"1", "5"}),
+                                                   Parameter::choice("mode", "which", "b", {"a", "b"})}},
+                                   true,
+                                   false}));
+  seeds.add("prepared", "p" + to_line(Prepared{5.0, 4.0, {.bytes = 9, .counts = {{"z", 1}, {"a", 2.5}}}}));
+  seeds.add("refusal", "p" + to_line(Refusal{Refusal::Kind::bad_mesh, "open"}));
+  seeds.add("deep", "d" + std::string(2000, '[') + std::string(2000, ']'));
+}
+
+void write_command_lines(const fs::path& folder) {
+  const Seeds seeds(folder, "command_line");
+  constexpr std::array k_lines{
+      "--version",
+      "--help",
+      "models\nlist",
+      "models\nlist\n--json",
+      "models\nmake\ncone-1k\n--triangles\n40\n-o\nx.ply",
+      "info\na.ply",
+      "info\na.ply\n--check\n--json",
+      "info\nset.h5",
+      "info\nset.h5\n--json",
+      "info\nshard.h5",
+      "info\nempty.ply",
+      "info\nabsent.off",
+      "info\nr.json",
+      "repair\nopen.off\n-o\nx.obj\n--max-hole\n3",
+      "repair\nb.obj\n-o\nb.obj",
+      "repair\nc.stl\n-o\nx.off\n--weld\n1e-6\n--json",
+      "algorithms",
+      "algorithms\n--json",
+      "query\n--a\na.ply\n--b\nb.obj\n--pose\n0.9 0 0.1 1 0 0 0",
+      "query\n--a\na.ply\n--b\nb.obj\n--pose\n0.9 0 0.1 1 0 0 0\n--algorithm\nexact\n--json",
+      "query\n--a\na.ply\n--b\nopen.off\n--pose\n0,9 0 0,1 1 0 0 0",
+      "query\n--a\na.ply\n--b\nb.obj\n--pose\n1e400 nan 0 0 0 0 0\n--set\ntolerance=1",
+      "show\n--algorithm\nexact\n--model\na.ply\n-o\nx.ply",
+      "quality\n--scenario\nII\n--algorithm\nexact",
+      "generate\n--a\na.ply\n--b\nb.obj\n--grid\n90\n--distances\n0,5\n-o\nx.h5",
+      "generate\n--a\na.ply\n--grid\nso3:10:5\n--volumes\n0.5\n-o\nx.h5\n--shards\n3\n--shard\n2",
+      "merge\n.\n-o\nx.h5",
+      "verify\nset.h5\n--a\na.ply\n--b\nb.obj\n--sample\n3",
+      "agree\n--set\nset.h5",
+      "table\nr.json",
+      "table\nr.json\n--markdown",
+      "table\nr.json\n--json",
+      "table\na.ply",
+      "precision\n--a\na.ply\n--b\nb.obj\n--budget\n1s",
+      "recommend\n--a\na.ply\n--deadline\n1ms",
+      "equivalent\n--tau\n1us",
+      "stress\n--effort\nquick\n--seed\n1",
+      "new-algorithm\nmine\n-o\nfolder",
+      "new-algorithm\n9bad name",
+      "gird",
+      "query\n--gird\n5",
+      "\xC3\xA9t\xC3\xA9\n\xFF\xFE",
+      ""};
+  for (std::size_t i = 0; i < k_lines.size(); ++i) seeds.add("line-" + std::to_string(i), k_lines[i]);
+}
+
+}  // namespace
+}  // namespace sixdof::fuzz
+
+int main(int count, char** words) {
+  if (count != 2) {
+    std::fprintf(stderr, "usage: fuzz_seeds FOLDER\n");
+    return 2;
+  }
+  using namespace sixdof::fuzz;
+  const std::filesystem::path folder = words[1];
+  write_meshes(folder);
+  write_sets(folder);
+  write_structures(folder);
+  write_lines(folder);
+  write_command_lines(folder);
+  return 0;
+}
