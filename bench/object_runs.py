@@ -270,6 +270,20 @@ def bind_to(folder, choice):
             raise Failure(f"{folder}: holds units with {field} {known.get(field)}, not {value}: choose another folder")
 
 
+def forget_cut(folder):
+    """Removes the results of units of which the time cut a step, and sets that lack their volumes for that reason, so
+    that the next run measures them again. @returns the units' names"""
+    names = []
+    for result in results(folder):
+        cut_set = "in time" in result["set"]["status"]
+        if cut_set or any(record["status"].startswith("not done") for record in result["algorithms"].values()):
+            names.append(result["unit"])
+            (folder / "units" / f"{result['unit']}.json").unlink()
+            if cut_set:
+                (folder / "sets" / f"{result['unit']}.json").unlink(missing_ok=True)
+    return names
+
+
 def done(folder, unit):
     return (folder / "units" / f"{unit.name}.json").exists()
 

@@ -227,6 +227,20 @@ class Run(unittest.TestCase):
         self.assertEqual({one["sixdof"]["algorithm"] for one in result["benchmarks"]}, {"exact"})
         self.assertLess(time.monotonic() - begun, 500)
 
+    def test_pairs_that_were_cut_are_measured_again_with_retry_only(self):
+        self.assertEqual(self.collection("--partners", "self").returncode, 0)
+        for name, change in (("box-1k", {"algorithms": {"exact": {"status": "not done in 10 s"}}, "benchmarks": []}),
+                             ("torus-2k", {"set": {"status": "no volumes: not made in time"}})):
+            file = self.out / "units" / f"{name}.self.json"
+            file.write_text(json.dumps(json.loads(file.read_text()) | change))
+        self.assertEqual(self.collection("--partners", "self").stderr, "")
+        again = self.collection("--partners", "self", "--retry")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(sorted(line.split(": ")[1] for line in again.stderr.splitlines()),
+                         ["box-1k.self", "torus-2k.self"])
+        for result in object_runs.results(self.out):
+            self.assertEqual((result["set"]["status"], result["algorithms"]["exact"]["status"]), ("ok", "ok"))
+
     def test_wrong_words_end_in_one_line(self):
         for words, said in ((["--objects", "no-such"], "no object of paper-like is called no-such"),
                             (["--collection", "papers"], "no collection is called papers"),
