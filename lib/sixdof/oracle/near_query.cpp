@@ -1,0 +1,56 @@
+#include <sixdof/oracle/near_query.h>
+
+#include <cmath>
+#include <utility>
+
+namespace sixdof {
+
+template <class Ask>
+auto NearQuery::with_search(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, const Ask& ask) {
+  detail::DistanceSearch search{.a = *a.body_, .b = *b.body_, .X_AB = X_AB};
+  search.ties = detail::TieWindow::of(search.a, search.b, X_AB);
+  const auto exchange_scratch = [&] {
+    measured_.swap(search.measured);
+    stack_.swap(search.stack);
+    deferred_.swap(search.deferred);
+    tied_.swap(search.tied);
+    ranked_.swap(search.ranked);
+    close_.swap(search.close);
+  };
+  exchange_scratch();
+  search.measured.clear();
+  const auto answer = ask(search);
+  exchange_scratch();
+  counts_.nodes += search.counts.nodes;
+  counts_.leaf_pairs += search.counts.leaf_pairs;
+  counts_.triangles += search.counts.triangles;
+  return answer;
+}
+
+std::optional<double> NearQuery::distance(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, double limit,
+                                          NearHint& hint) {
+  return with_search(a, b, X_AB, [&](detail::DistanceSearch& s) -> std::optional<double> {
+    // The answer may exceed the smallest distance by the width of ties.
+    s.best = limit + s.ties.width;
+    if (hint.known() && detail::try_update(s, hint.triangles)) s.direction = s.closest.on_b - s.closest.on_a;
+    if (!s.found && std::isinf(limit)) detail::seed_search(s);
+    if (!(s.found && s.best == 0.0)) detail::find_pair(s, false);
+    if (!s.found || !(s.closest.distance <= limit)) return std::nullopt;
+    hint.triangles = s.pair;
+    return s.closest.distance;
+  });
+}
+
+bool NearQuery::surfaces_meet(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, NearHint& hint) {
+  return with_search(a, b, X_AB, [&](detail::DistanceSearch& s) {
+    if (hint.known() && detail::intersects(s, hint.triangles)) {
+      ++s.counts.triangles;
+      return true;
+    }
+    detail::find_pair(s, true);
+    if (s.found) hint.triangles = s.pair;
+    return s.found;
+  });
+}
+
+}  // namespace sixdof

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <sixdof/geometry/mesh.h>
+#include <sixdof/geometry/pose.h>
+#include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/distance_search.h>
+
+/// Distances between any two of many meshes, of interest up to a limit. The same definitions and bits as distance.h,
+/// which has the method; a mesh is prepared once, whatever it meets, and a search ends where the limit is certain.
+namespace sixdof {
+
+/// A mesh prepared for queries with any other: immutable, shared by all threads.
+class PreparedMesh {
+ public:
+  /// The mesh need not outlive it. @throws BadMesh as Tree does
+  explicit PreparedMesh(const Mesh& mesh) : body_(std::make_shared<const detail::DistanceBody>(mesh)) {}
+
+  const Tree& tree() const { return body_->tree; }
+  const Eigen::AlignedBox3d& box() const { return body_->box; }  ///< In the mesh's frame.
+  std::size_t bytes() const { return body_->bytes(); }
+
+ private:
+  friend class NearQuery;
+  std::shared_ptr<const detail::DistanceBody> body_;
+};
+
+/// Where a search of one pair of bodies may begin: the triangles of its last answer, in tree order. It changes the time
+/// of a query, never the answer.
+struct NearHint {
+  static constexpr std::uint32_t k_none = ~std::uint32_t{0};
+  TrianglePair triangles{k_none, k_none};
+  bool known() const { return triangles.a != k_none; }
+};
+
+/// One object per thread. Poses must be finite with a rotation matrix in R; they are not checked.
+class NearQuery {
+ public:
+  static constexpr double k_no_limit = std::numeric_limits<double>::infinity();
+
+  /// The distance of the surfaces, with the bits of DistanceQuery::distance(), if it does not exceed `limit`.
+  /// @param limit a length, at least 0
+  std::optional<double> distance(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, double limit,
+                                 NearHint& hint);
+
+  /// Whether the surfaces have a point in common: distance() would be 0.
+  bool surfaces_meet(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, NearHint& hint);
+
+  /// Of all queries so far.
+  const detail::TraversalCounts& counts() const { return counts_; }
+
+ private:
+  template <class Ask>
+  auto with_search(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, const Ask& ask);
+
+  detail::TraversalCounts counts_;
+  // Scratch of the searches.
+  std::vector<detail::MeasuredPair> measured_;
+  std::vector<detail::NodePair> stack_, deferred_;
+  std::vector<detail::TiedPair> tied_;
+  std::vector<detail::RankedPair> ranked_;
+  std::vector<detail::ClosePair> close_;
+};
+
+}  // namespace sixdof
