@@ -1,0 +1,93 @@
+#include <sixdof/scene/families.h>
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/scene/family_parts.h>
+
+namespace sixdof::scene {
+namespace {
+
+constexpr std::array k_families{
+    SceneFamily{"cube",
+                "Boxes, spheres and cylinders in a cube, turned by up to 10 degrees a frame, as in FCL's own "
+                "broad-phase tests: the broad phase alone.",
+                detail::make_cube},
+    SceneFamily{"pairs",
+                "Detailed objects, two by two at the stored poses of a configuration set: a known number of "
+                "pairs at known distances, so the narrow phase.",
+                detail::make_pairs},
+    SceneFamily{"pile",
+                "Bodies heaped on a floor by a seeded rule that knows spheres only, no dynamics: most neighbours "
+                "touch and hardly move.",
+                detail::make_pile},
+    SceneFamily{"robot", "An arm of 21 bodies in a fixed world, with a margin: few movers, pairs that do not matter.",
+                detail::make_robot},
+    SceneFamily{"dust", "Specks that drift through one large fixed mesh: one box that covers all others.",
+                detail::make_dust},
+    SceneFamily{"still", "The cube, and nothing moves after the first frame: the cost of asking again.",
+                detail::make_still},
+    SceneFamily{"all-move", "The cube, every body moving by up to twice its size: nothing can be kept.",
+                detail::make_all_move},
+    SceneFamily{"giant",
+                "One slowly moving body a thousand times as large as the others, which lie about its surface: "
+                "grids and sweeps that assume like sizes.",
+                detail::make_giant},
+    SceneFamily{"clusters", "Dense clusters far apart, a few of which move as a whole: uneven density.",
+                detail::make_clusters},
+    SceneFamily{"shuffled", "The cube in another order of insertion: the same answers.", detail::make_shuffled},
+};
+
+/// Throws unless low <= value <= high or the value is the family's own.
+void check(const char* what, double value, double low, double high) {
+  if (std::isnan(value) || (value >= low && value <= high)) return;
+  throw BadArgument(fmt::format("{} {}: it must be in {} .. {}", what, value, low, high));
+}
+
+std::string recipe_of(std::string_view family, const SceneNumbers& n) {
+  std::string text = fmt::format("family={} bodies={} frames={} seed={}", family, n.bodies, n.frames, n.seed);
+  const auto add = [&text](const char* name, double value) {
+    if (!std::isnan(value)) text += fmt::format(" {}={}", name, value);
+  };
+  add("density", n.density);
+  add("size_ratio", n.size_ratio);
+  add("moving", n.moving);
+  add("step", n.step);
+  add("margin", n.margin);
+  return text;
+}
+
+}  // namespace
+
+std::span<const SceneFamily> scene_families() { return k_families; }
+
+Scene make_scene(std::string_view name, const SceneNumbers& numbers) {
+  constexpr std::size_t k_most_bodies = 1'000'000, k_most_frames = 100'000;
+  if (numbers.bodies < 2 || numbers.bodies > k_most_bodies) {
+    throw BadArgument(fmt::format("{} bodies: it must be in 2 .. {}", numbers.bodies, k_most_bodies));
+  }
+  if (numbers.frames < 1 || numbers.frames > k_most_frames) {
+    throw BadArgument(fmt::format("{} frames: it must be in 1 .. {}", numbers.frames, k_most_frames));
+  }
+  check("density", numbers.density, 1e-9, 10.0);
+  check("size ratio", numbers.size_ratio, 1.0, 1e6);
+  check("share that moves", numbers.moving, 0.0, 1.0);
+  check("step", numbers.step, 0.0, 1e3);
+  check("margin", numbers.margin, 0.0, 1e3);
+  for (const SceneFamily& family : k_families) {
+    if (family.name != name) continue;
+    Scene scene = family.make(numbers);
+    scene.name = name;
+    scene.recipe = recipe_of(name, numbers);
+    scene.check();
+    return scene;
+  }
+  std::string names;
+  for (const SceneFamily& family : k_families) names += fmt::format("{}{}", names.empty() ? "" : ", ", family.name);
+  throw BadArgument(fmt::format("no family of scenes {}; there are {}", name, names));
+}
+
+}  // namespace sixdof::scene

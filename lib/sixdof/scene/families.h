@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <sixdof/scene/scene.h>
+
+/// Families of scenes, each of which stresses something else. The same numbers give the same bits on every machine with
+/// the same C++ library.
+namespace sixdof::scene {
+
+/// The axes. What a family does not use it ignores; NaN stands for the family's own value.
+struct SceneNumbers {
+  std::size_t bodies = 1000;
+  std::size_t frames = 50;    ///< Including the first, in which nothing moves.
+  double density = k_own;     ///< Volume of the bodies' boxes over the volume of the space that they are in.
+  double size_ratio = k_own;  ///< Of the largest to the smallest body of a shape; sizes are spread by their logarithm.
+  double moving = k_own;      ///< Share of the bodies that moves in a frame, 0 to 1.
+  double step = k_own;        ///< Largest translation in a frame, in sizes of a body; coherence is its inverse.
+  double margin = k_own;      ///< In mean sizes of a body.
+  std::uint64_t seed = 1;
+  static constexpr double k_own = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct SceneFamily {
+  std::string_view name;
+  std::string_view stresses;  ///< One sentence.
+  Scene (*make)(const SceneNumbers& numbers);
+};
+
+/// All families.
+std::span<const SceneFamily> scene_families();
+
+/// A scene of a family; name and recipe say which.
+/// @throws BadArgument if there is no family of this name or a number is out of range; BadFile if a set is missing
+Scene make_scene(std::string_view family, const SceneNumbers& numbers);
+
+}  // namespace sixdof::scene

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <sixdof/scene/scene.h>
+
+/// The interface of an algorithm that finds pairs in a scene of many bodies: prepared once from the bodies, then told
+/// of each frame what has moved, and asked one question in each frame.
+namespace sixdof::scene {
+
+enum class Question {
+  touching,  ///< All pairs whose surfaces have a point in common.
+  near,      ///< All pairs whose surfaces are no further apart than the margin, with their distances.
+  closest,   ///< The closest pair of the scene; of equally close ones the first.
+  wrenches   ///< The sum of the wrenches of the volume law on each body that touches another.
+};
+inline constexpr Question k_questions[] = {Question::touching, Question::near, Question::closest, Question::wrenches};
+
+std::string_view to_string(Question question);
+/// @throws BadArgument listing the words
+Question parse_question(std::string_view word);
+
+/// Of two bodies by their identifiers, a < b. A body wholly inside another does not touch it: distances are those of
+/// the surfaces.
+struct NearPair {
+  BodyPair pair;
+  double distance = 0.0;  ///< Length; 0 where the surfaces meet.
+  auto operator<=>(const NearPair&) const = default;
+};
+
+/// In the world's frame. By the volume law (oracle/overlap.h): force in area, torque in area times length.
+struct BodyWrench {
+  std::uint32_t body = 0;  ///< Identifier.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< About the centre of the body's box.
+};
+
+/// The answer to one question in one frame.
+struct SceneAnswer {
+  std::vector<NearPair> pairs;       ///< Sorted by pair. touching: distances are 0. closest: one, or none.
+  std::vector<BodyWrench> wrenches;  ///< Question::wrenches only: sorted by body.
+
+  /// Of all bits, for comparing answers: 32 hexadecimal digits.
+  std::string hash() const;
+};
+
+/// Work since a query was made. "Looked at": the broad phase names the pair as a candidate of the frame.
+struct SceneWork {
+  std::uint64_t candidates = 0;  ///< Pairs looked at, of all frames.
+  std::uint64_t put_off = 0;     ///< Of these: not asked of the narrow phase, as motion so far cannot matter.
+  std::uint64_t narrow = 0;      ///< Of these: asked of the narrow phase.
+  std::uint64_t triangles = 0;   ///< Pairs of triangles tested exactly; 0 if the algorithm does not count them.
+};
+
+/// An algorithm prepared for one scene and one question. One thread at a time uses it.
+class SceneQuery {
+ public:
+  virtual ~SceneQuery() = default;
+
+  /// The next frame: the bodies that have moved, each once, with their poses. The first frame is known already.
+  virtual void update(std::span<const Moved> moved) = 0;
+
+  /// Of the frame at hand. Valid until the next call of either.
+  virtual const SceneAnswer& answer() = 0;
+
+  virtual SceneWork work() const { return {}; }
+  virtual std::size_t bytes() const { return 0; }  ///< Of everything prepared; 0 if unknown.
+};
+
+struct SceneTraits {
+  std::string name;     ///< Unique; a-z, 0-9 and '-'.
+  std::string version;  ///< Of the library behind it.
+  std::string summary;  ///< One line.
+  std::vector<Question> answers;
+  bool own = false;  ///< Of this project: its answers must have the bits of the truth.
+  /// Whether it is compared where all are: not the quadratic reference.
+  bool by_default = true;
+
+  bool answers_to(Question question) const;
+};
+
+/// @throws BadArgument if the question is none of those that are answered
+void check_answers(const SceneTraits& traits, Question question);
+
+class SceneAlgorithm {
+ public:
+  virtual ~SceneAlgorithm() = default;
+  virtual const SceneTraits& traits() const = 0;
+  /// @param scene outlives the query; has passed Scene::check()
+  /// @throws BadArgument if it does not answer the question; BadMesh if a mesh cannot be used
+  virtual std::unique_ptr<SceneQuery> prepare(const Scene& scene, Question question) const = 0;
+};
+
+using SceneAlgorithms = std::vector<std::unique_ptr<SceneAlgorithm>>;
+
+/// @throws BadArgument listing the names if there is none of this name
+const SceneAlgorithm& find_algorithm(const SceneAlgorithms& algorithms, std::string_view name);
+
+/// An algorithm whose prepare() returns a QueryType(scene, question, extra...).
+template <class QueryType, class... Extra>
+std::unique_ptr<SceneAlgorithm> make_scene_algorithm(SceneTraits traits, Extra... extra) {
+  class Made final : public SceneAlgorithm {
+   public:
+    Made(SceneTraits given, Extra... more) : traits_(std::move(given)), extra_(std::move(more)...) {}
+    const SceneTraits& traits() const override { return traits_; }
+    std::unique_ptr<SceneQuery> prepare(const Scene& scene, Question question) const override {
+      check_answers(traits_, question);
+      return std::apply([&](const auto&... more) { return std::make_unique<QueryType>(scene, question, more...); },
+                        extra_);
+    }
+
+   private:
+    SceneTraits traits_;
+    std::tuple<Extra...> extra_;
+  };
+  return std::make_unique<Made>(std::move(traits), std::move(extra)...);
+}
+
+/// `exact` and `all-pairs`.
+void add_own_algorithms(SceneAlgorithms& algorithms);
+
+}  // namespace sixdof::scene

@@ -1,0 +1,216 @@
+#include <sixdof/scene/score.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/base/hash.h>
+#include <sixdof/scene/bodies.h>
+
+namespace sixdof::scene {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Decides which pairs graze, at the poses of one frame after the other.
+class Judge {
+ public:
+  Judge(const Scene& scene, Question question) : scene_(scene), question_(question), bodies_(scene) {
+    for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) index_.emplace_back(scene.bodies[i].id, i);
+    std::ranges::sort(index_);
+  }
+
+  void update(const Frame& frame) {
+    for (const Moved& each : moves_of(frame)) bodies_.move(bodies_.rank(each.body), each.X_WB);
+  }
+
+  double distance(const BodyPair& pair) { return distance(pair, Vector3d::Zero()); }
+
+  bool grazes(const BodyPair& pair) {
+    const double size = 2.0 * (bodies_.radius(rank(pair.a)) + bodies_.radius(rank(pair.b)));
+    const double shift = Score::k_grazing * size;
+    const double limit = question_ == Question::near ? scene_.margin : 0.0;
+    const double here = distance(pair);
+    if (here > 0.0) return std::abs(here - limit) <= shift;
+    if (limit > 0.0) return limit <= shift;
+    for (int k = 0; k < 6; ++k) {
+      const Vector3d by = (k % 2 == 0 ? shift : -shift) * Vector3d::Unit(k / 2);
+      if (distance(pair, by) > 0.0) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::uint32_t rank(std::uint32_t id) const {
+    return bodies_.rank(std::ranges::lower_bound(index_, std::pair(id, 0u))->second);
+  }
+
+  double distance(const BodyPair& pair, const Vector3d& shift) {
+    const std::uint32_t a = rank(pair.a), b = rank(pair.b);
+    Pose X_WB = bodies_.pose(b);
+    X_WB.t += shift;
+    NearHint none;
+    return query_
+        .distance(bodies_.mesh(a), bodies_.mesh(b), bodies_.pose(a).inverse() * X_WB, NearQuery::k_no_limit, none)
+        .value_or(NearQuery::k_no_limit);
+  }
+
+  const Scene& scene_;
+  Question question_;
+  detail::Bodies bodies_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> index_;  // identifier, index into Scene::bodies
+  NearQuery query_;
+};
+
+class Scorer {
+ public:
+  Scorer(const Scene& scene, Question question, bool exactly)
+      : judge_(scene, question), question_(question), exactly_(exactly) {}
+
+  Score run(const Scene& scene, const Truth& truth, const Truth& answers) {
+    if (truth.frames.size() != scene.frames.size() || answers.frames.size() != scene.frames.size()) {
+      throw Error("answers of another number of frames");
+    }
+    for (std::size_t f = 0; f < scene.frames.size(); ++f) {
+      frame_ = f;
+      judge_.update(scene.frames[f]);
+      score_.true_pairs += truth.frames[f].pairs.size();
+      question_ == Question::closest ? compare_closest(truth.frames[f], answers.frames[f])
+                                     : compare(truth.frames[f].pairs, answers.frames[f].pairs);
+    }
+    score_.frames = scene.frames.size();
+    score_.same_bits = truth.hash == answers.hash;
+    score_.hash = answers.hash;
+    return score_;
+  }
+
+ private:
+  void compare(const std::vector<NearPair>& truth, const std::vector<NearPair>& found) {
+    auto t = truth.begin();
+    auto f = found.begin();
+    while (t != truth.end() || f != found.end()) {
+      if (f == found.end() || (t != truth.end() && t->pair < f->pair)) {
+        add(t->pair, true);
+        ++t;
+      } else if (t == truth.end() || f->pair < t->pair) {
+        add(f->pair, false);
+        ++f;
+      } else {
+        score_.largest_error = std::max(score_.largest_error, std::abs(t->distance - f->distance));
+        ++t;
+        ++f;
+      }
+    }
+  }
+
+  /// Of equally close pairs any will do.
+  void compare_closest(const SceneAnswer& truth, const SceneAnswer& found) {
+    if (truth.pairs.empty() && found.pairs.empty()) return;
+    if (truth.pairs.empty()) return add(found.pairs.front().pair, false);
+    if (found.pairs.empty()) return add(truth.pairs.front().pair, true);
+    const NearPair& t = truth.pairs.front();
+    const NearPair& f = found.pairs.front();
+    score_.largest_error = std::max(score_.largest_error, std::abs(t.distance - f.distance));
+    if (t.pair == f.pair) return;
+    // Another pair is as good if it is as close.
+    if (t.distance < judge_.distance(f.pair)) add(t.pair, true);
+  }
+
+  void add(const BodyPair& pair, bool missed) {
+    if (!exactly_ && judge_.grazes(pair)) {
+      ++score_.grazing;
+      return;
+    }
+    if (!score_.first || (missed && !score_.first->missed))
+      score_.first = {frame_, pair, judge_.distance(pair), missed};
+    ++(missed ? score_.missed : score_.wrong);
+  }
+
+  Judge judge_;
+  Question question_;
+  bool exactly_;
+  std::size_t frame_ = 0;
+  Score score_;
+};
+
+double processor_seconds() {
+  timespec now{};
+  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void check(const SceneAnswer& answer, const std::string& name) {
+  if (std::ranges::adjacent_find(answer.pairs, std::greater_equal<>(), &NearPair::pair) != answer.pairs.end()) {
+    throw Error(fmt::format("{}: the pairs of an answer are not sorted, or one comes twice", name));
+  }
+  for (const NearPair& near : answer.pairs) {
+    if (!(near.distance >= 0.0) || !std::isfinite(near.distance)) {
+      throw Error(fmt::format("{}: the distance of {} and {} is {}", name, near.pair.a, near.pair.b, near.distance));
+    }
+  }
+}
+
+Timing summary(std::vector<double> frames, double processor) {
+  Timing timing;
+  timing.first_us = frames.front();
+  frames.erase(frames.begin());
+  if (frames.empty()) return timing;
+  for (const double us : frames) timing.mean_us += us / static_cast<double>(frames.size());
+  timing.processor_us = 1e6 * processor / static_cast<double>(frames.size());
+  std::ranges::sort(frames);
+  timing.p99_us = frames[(frames.size() * 99 + 99) / 100 - 1];
+  timing.max_us = frames.back();
+  return timing;
+}
+
+}  // namespace
+
+Score score(const Scene& scene, Question question, const Truth& truth, const Truth& answers, bool exactly) {
+  return Scorer(scene, question, exactly).run(scene, truth, answers);
+}
+
+double Play::false_per_true() const {
+  if (score.true_pairs == 0) return static_cast<double>(work.narrow);
+  return std::max(0.0, static_cast<double>(work.narrow) - static_cast<double>(score.true_pairs)) /
+         static_cast<double>(score.true_pairs);
+}
+
+Play play(const Scene& scene, const SceneAlgorithm& algorithm, Question question, const Truth& truth,
+          const std::function<bool()>& cancelled) {
+  Play result;
+  const double before = wall_seconds();
+  const auto query = algorithm.prepare(scene, question);
+  const double prepared = wall_seconds();
+  std::vector<double> times;
+  double processor = 0.0;
+  for (std::size_t f = 0; f < scene.frames.size(); ++f) {
+    if (cancelled && cancelled()) throw Interrupted("interrupted");
+    const std::vector<Moved> moved = moves_of(scene.frames[f]);
+    const double used = processor_seconds();
+    const double start = wall_seconds();
+    query->update(moved);
+    const SceneAnswer& answer = query->answer();
+    times.push_back(1e6 * (wall_seconds() - start));
+    if (f > 0) processor += processor_seconds() - used;
+    check(answer, algorithm.traits().name);
+    result.answers.frames.push_back(answer);
+  }
+  result.timing = summary(std::move(times), processor);
+  result.timing.prepare_s = prepared - before;
+  result.work = query->work();
+  result.bytes = query->bytes();
+  result.pairs_in_all = PairFilter(scene).pairs() * scene.frames.size();
+  set_hash(result.answers);
+  result.score = score(scene, question, truth, result.answers, algorithm.traits().own);
+  return result;
+}
+
+}  // namespace sixdof::scene

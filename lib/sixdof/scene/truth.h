@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <sixdof/scene/scene_algorithm.h>
+
+namespace sixdof::scene {
+
+/// The answers to a question in a scene, one for each frame: what they should be, or what an algorithm says.
+struct Truth {
+  std::vector<SceneAnswer> frames;
+  std::string hash;  ///< Of all bits of all frames.
+  std::size_t pairs() const;
+};
+
+/// Sets Truth::hash from the frames.
+void set_hash(Truth& truth);
+
+/// Asks an algorithm in every frame. @param cancelled called before each frame; true ends it with Interrupted
+Truth replay(const Scene& scene, const SceneAlgorithm& algorithm, Question question,
+             const std::function<bool()>& cancelled = {});
+
+/// The answers of `all-pairs`, from the cache on disk (base/cache.h), where they are kept by the scene's content hash.
+Truth truth_of(const Scene& scene, Question question, const std::function<bool()>& cancelled = {});
+
+}  // namespace sixdof::scene

@@ -1,0 +1,96 @@
+#include <sixdof/scene/scene.h>
+
+#include <algorithm>
+
+#include "small_scenes.h"
+
+namespace sixdof::scene {
+namespace {
+
+TEST(Scene, NamesWhatIsWrong) {
+  const Scene good = row_of_spheres(4, 0.1, 0.01, 3, 0.2);
+  EXPECT_NO_THROW(good.check());
+  const auto refuses = [&](const auto& spoil) {
+    Scene bad = good;
+    spoil(bad);
+    return message_of<BadArgument>([&] { bad.check(); });
+  };
+  EXPECT_EQ(refuses([](Scene& s) { s.bodies[1].id = 13; }), "two bodies have the identifier 13");
+  EXPECT_EQ(refuses([](Scene& s) { s.bodies[2].mesh = 1; }), "body 2: mesh 1 of 1");
+  EXPECT_EQ(refuses([](Scene& s) { s.bodies[3].fixed = true; }), "frame 1: body 10 is fixed and moves");
+  EXPECT_EQ(refuses([](Scene& s) { s.frames[2].push_back(s.frames[2][0]); }), "frame 2: body 10 moves twice");
+  EXPECT_EQ(refuses([](Scene& s) { s.frames[1][0].body = 4; }), "frame 1: body number 4 of 4");
+  EXPECT_EQ(refuses([](Scene& s) { s.margin = -1.0; }), "margin -1");
+  EXPECT_EQ(refuses([](Scene& s) { s.ignored = {{10, 99}}; }), "ignored pair: no body 99");
+  EXPECT_EQ(refuses([](Scene& s) { s.ignored = {{11, 10}}; }), "ignored pair 11 10: not in order");
+  EXPECT_EQ(refuses([](Scene& s) {
+              s.ignored = {{10, 11}, {10, 11}};
+            }),
+            "the ignored pairs are not sorted, or one comes twice");
+  EXPECT_EQ(refuses([](Scene& s) { s.frames[0] = s.frames[1]; }), "the first frame must move nothing");
+  EXPECT_EQ(refuses([](Scene& s) { s.bodies.resize(1); }), "a scene of 1 bodies; it needs two");
+  EXPECT_NE(refuses([](Scene& s) { s.frames[1][0].pose.numbers[0] = 7.0; }).find("frame 1, body 10: "),
+            std::string::npos);
+  EXPECT_EQ(refuses([](Scene& s) { s.bodies[0].pose.numbers[4] = NAN; }), "body 0: a number is not finite");
+}
+
+TEST(Scene, HashKnowsEveryNumber) {
+  const Scene scene = row_of_spheres(4, 0.1, 0.01, 3, 0.2);
+  Scene same = scene;
+  same.name = "another";
+  EXPECT_EQ(same.hash(), scene.hash());
+  const auto differs = [&](const auto& change) {
+    Scene other = scene;
+    change(other);
+    return other.hash() != scene.hash();
+  };
+  EXPECT_TRUE(differs([](Scene& s) { s.margin = std::nextafter(s.margin, 1.0); }));
+  EXPECT_TRUE(differs([](Scene& s) { s.bodies[0].id = 99; }));
+  EXPECT_TRUE(differs([](Scene& s) { s.bodies[0].fixed = true; }));
+  EXPECT_TRUE(differs([](Scene& s) { s.bodies[2].pose.numbers[6] += 1e-12; }));
+  EXPECT_TRUE(differs([](Scene& s) { s.frames[2][0].pose.numbers[5] += 1e-12; }));
+  EXPECT_TRUE(differs([](Scene& s) { s.ignored = {{10, 11}}; }));
+  EXPECT_TRUE(differs([](Scene& s) { s.meshes[0] = std::make_shared<const Mesh>(make_sphere({}, 500)); }));
+}
+
+TEST(PairFilter, LeavesOutFixedAndIgnoredPairs) {
+  Scene scene = row_of_spheres(6, 0.1, 0.0, 1, 0.0);  // identifiers 15, 14, ..., 10
+  scene.bodies[0].fixed = true;
+  scene.bodies[2].fixed = true;
+  scene.ignored = {{10, 12}, {13, 15}};
+  scene.check();
+  const PairFilter filter(scene);
+  EXPECT_EQ(filter.pairs(), 15u - 1u - 1u);  // 13 and 15 are fixed: that pair counts once
+  std::uint64_t count = 0;
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    for (std::uint32_t j = i + 1; j < 6; ++j) {
+      EXPECT_EQ(filter.matters(i, j), filter.matters(j, i));
+      count += filter.matters(i, j) ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(count, filter.pairs());
+  EXPECT_FALSE(filter.matters(0, 2));
+  EXPECT_FALSE(filter.matters(3, 5));
+  EXPECT_TRUE(filter.matters(0, 1));
+}
+
+TEST(Shuffled, KeepsEveryBodyAndItsMotion) {
+  const Scene scene = make_scene("cube", {.bodies = 40, .frames = 4, .moving = 0.5, .seed = 3});
+  const Scene other = shuffled(scene, 8);
+  other.check();
+  EXPECT_NE(other.hash(), scene.hash());
+  const auto by_id = [](const Scene& s) {
+    std::vector<std::vector<std::pair<std::uint32_t, std::array<double, 7>>>> frames(1);
+    for (const Body& body : s.bodies) frames[0].emplace_back(body.id, body.pose.numbers);
+    for (const Frame& frame : s.frames) {
+      frames.emplace_back();
+      for (const Motion& motion : frame) frames.back().emplace_back(s.bodies[motion.body].id, motion.pose.numbers);
+    }
+    for (auto& frame : frames) std::ranges::sort(frame);
+    return frames;
+  };
+  EXPECT_EQ(by_id(other), by_id(scene));
+}
+
+}  // namespace
+}  // namespace sixdof::scene
