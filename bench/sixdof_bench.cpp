@@ -25,6 +25,8 @@ namespace {
 /// Rows on cold caches take seconds each. Without a suite that lists them they are taken where the filter has this
 /// word.
 constexpr const char* k_cold = "cold";
+/// So are rows of scenes, where it begins with this one.
+constexpr const char* k_scene = "scene/";
 
 void run(const Options& options) {
   Registry registry;
@@ -45,7 +47,8 @@ void run(const Options& options) {
                             .seed = options.seed};
 
   std::vector<Row> rows;
-  for (const auto family : {prepare_rows, query_rows, scenario_rows, kernel_rows, stability_rows, generate_rows}) {
+  for (const auto family :
+       {prepare_rows, query_rows, scenario_rows, kernel_rows, stability_rows, scene_rows, generate_rows}) {
     std::ranges::move(family(resources), std::back_inserter(rows));
   }
   if (!options.suite.empty()) {
@@ -59,8 +62,12 @@ void run(const Options& options) {
     for (Row& row : rows) {
       if (const std::size_t most = *suite(row.name); most < sample) row.fields.sample_limit = most;
     }
-  } else if (benchmark::GetBenchmarkFilter().find(k_cold) == std::string::npos) {
-    std::erase_if(rows, [&](const Row& row) { return row.fields.cache == k_cold; });
+  } else {
+    const std::string filter = benchmark::GetBenchmarkFilter();
+    const auto is_named = [&](const char* word) { return filter.find(word) != std::string::npos; };
+    std::erase_if(rows, [&](const Row& row) {
+      return (row.fields.cache == k_cold && !is_named(k_cold)) || (row.name.starts_with(k_scene) && !is_named(k_scene));
+    });
   }
   run_rows(rows, options, resources);
 }

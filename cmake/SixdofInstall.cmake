@@ -31,7 +31,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/sixdof DESTINATION ${CMAKE_INSTALL_I
 if(SIXDOF_BUILD_BENCH)
   install(TARGETS sixdof_program sixdof-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(FILES ${PROJECT_SOURCE_DIR}/bench/all_algorithms_suite.json ${PROJECT_SOURCE_DIR}/bench/default_suite.json
-    ${PROJECT_SOURCE_DIR}/bench/own_pair_suite.json
+    ${PROJECT_SOURCE_DIR}/bench/own_pair_suite.json ${PROJECT_SOURCE_DIR}/bench/scenes_suite.json
     DESTINATION ${data_folder}/bench)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/new_algorithm ${PROJECT_SOURCE_DIR}/bench/external
     DESTINATION ${data_folder}/bench)

@@ -11,6 +11,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "bench/cli/scene.h"
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/run_guarded.h"
@@ -85,10 +86,11 @@ int run(int argc, const char* const* argv) {
   app.set_version_flag("--version", std::string("sixdof ") + SIXDOF_VERSION);
   app.require_subcommand(1);
   for (const auto add :
-       {add_models_command, add_info_command, add_repair_command, add_algorithms_command, add_query_command,
-        add_show_command, add_quality_command, add_generate_command, add_merge_command, add_verify_command,
-        add_agree_command, add_table_command, add_report_command, add_history_command, add_precision_command,
-        add_recommend_command, add_equivalent_command, add_stress_command, add_new_algorithm_command}) {
+       {add_models_command,     add_info_command,    add_repair_command,    add_algorithms_command,
+        add_query_command,      add_show_command,    add_quality_command,   add_generate_command,
+        add_merge_command,      add_verify_command,  add_agree_command,     add_table_command,
+        add_report_command,     add_history_command, add_precision_command, add_recommend_command,
+        add_equivalent_command, add_stress_command,  add_scene_command,     add_new_algorithm_command}) {
     add(app);
   }
   add_examples(app, "sixdof models list", k_first_query);

@@ -138,6 +138,7 @@ std::filesystem::path file_of_suite(const std::string& suite) {
   if (suite == "default") return folder / "default_suite.json";
   if (suite == "own-pair") return folder / "own_pair_suite.json";
   if (suite == "all-algorithms") return folder / "all_algorithms_suite.json";
+  if (suite == "scenes") return folder / "scenes_suite.json";
   return suite;
 }
 
@@ -170,9 +171,9 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   app.add_option("--b", options.b, "Moving mesh B, likewise; a copy of A if left out");
   app.add_option(
       "--suite", suite,
-      "Rows to run: default, own-pair, all-algorithms (bench/*_suite.json), all, or a file of the same form. Without "
-      "this "
-      "option: own-pair with --a and no --set; all with a --benchmark_filter or sets of your own; default otherwise");
+      "Rows to run: default, own-pair, all-algorithms, scenes (bench/*_suite.json), all, or a file of the same form. "
+      "Without this option: own-pair with --a and no --set; all with a --benchmark_filter or sets of your own; default "
+      "otherwise");
   app.add_option("-p,--parameter", options.parameters,
                  "Parameter of an algorithm: ALGORITHM:NAME=VALUE (sixdof algorithms); may be repeated")
       ->allow_extra_args(false);

@@ -31,6 +31,11 @@ std::vector<Row> kernel_rows(const Resources& resources);
 /// algorithm answers, with the worst verdict and error as counters. Settings are the coarsest of sweeps unless given.
 std::vector<Row> stability_rows(const Resources& resources);
 
+/// `scene/FAMILY/n:1000/question:touching/algorithm:A`: a scene of many bodies (lib/sixdof/scene) replayed to an
+/// algorithm for scenes, judged against every pair in every frame. One missed pair is an error of the row. They are not
+/// in the default suite; bench/scenes_suite.json lists those of 1,000 bodies.
+std::vector<Row> scene_rows(const Resources& resources);
+
 /// What a configuration of the paper's grid and buckets costs to make, on the same seeded rays for all, as the counter
 /// ns_per_configuration (processor time):
 /// - `generate/distance/algorithm:raycast/pair:P`: make_ray_cast();

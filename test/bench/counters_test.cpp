@@ -59,7 +59,7 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
       "^(prepare|collide|distance|respond)/.*/pair:torus-1k-cone-1k(/(distance:05|volume:03))?$|"
       "^collide/algorithm:exact/pair:torus-1k-cone-1k/distance:05/cache:cold$|"
       "^scenario/(II|III)/algorithm:exact$|^kernel/(apart|map-in-cache)/algorithm:vps$|"
-      "^stability/kissing/algorithm:exact$|"
+      "^stability/kissing/algorithm:exact$|^scene/cube/n:100/question:near/algorithm:exact$|"
       "^generate/.*/pair:torus-1k-cone-1k$' --budget 10");
   std::set<std::string> families, counters;
   for (const json& entry : document.at("benchmarks")) {
@@ -74,10 +74,10 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
     }
   }
   EXPECT_EQ(families, (std::set<std::string>{"prepare", "collide", "distance", "respond", "scenario", "kernel",
-                                             "stability", "generate"}));
-  for (const char* counter :
-       {"max_least_ns", "error_rms", "gamma_F_deg", "magnitude_error_F", "gain_T", "points_tested", "ns_per_points",
-        "bytes", "sigma_F_by_depth", "steps", "ns_per_configuration", "stability_red"}) {
+                                             "stability", "scene", "generate"}));
+  for (const char* counter : {"max_least_ns", "error_rms", "gamma_F_deg", "magnitude_error_F", "gain_T",
+                              "points_tested", "ns_per_points", "bytes", "sigma_F_by_depth", "steps",
+                              "ns_per_configuration", "stability_red", "missed_pairs", "pairs_put_off"}) {
     EXPECT_TRUE(counters.contains(counter)) << counter;
   }
 }

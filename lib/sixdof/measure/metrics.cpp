@@ -31,6 +31,9 @@ constexpr std::string_view k_query_row = "bench/rows/query.cpp";
 constexpr std::string_view k_answers = "bench/study/answer_errors.h";
 constexpr std::string_view k_precision = "bench/study/precision.h";
 
+constexpr std::string_view k_scene = "lib/sixdof/scene/score.h";
+constexpr std::string_view k_scene_work = "lib/sixdof/scene/scene_algorithm.h (SceneWork)";
+
 using enum Better;
 
 /// Names with a '*' come last: find_metric() takes the first match.
@@ -91,6 +94,20 @@ constexpr std::array k_metrics{
     Metric{"stability_red", "cases", lower, "cases with a wrong, non-finite or missing answer", k_stability},
     Metric{"stability_verdict", "1", lower, "the worst verdict: 0 exact, 1 within resolution, 2 unsupported", k_stability},
     Metric{"stability_worst", "1", lower, "the largest defect, in the unit that the label says", k_stability},
+    // Scenes of many bodies.
+    Metric{"missed_pairs", "pairs", lower, "true pairs of all frames that are not reported", k_scene},
+    Metric{"wrong_pairs", "pairs", lower, "pairs of all frames that are reported and not true", k_scene},
+    Metric{"grazing_pairs", "pairs", neither, "of either, where 1e-5 of the bodies' size decides", k_scene},
+    Metric{"same_bits", "1", higher, "1: all answers have the bits of the truth", k_scene},
+    Metric{"true_pairs", "pairs", neither, "pairs per frame in the truth", k_scene},
+    Metric{"false_per_true", "1", lower, "pairs asked of the narrow phase that are not true, per true pair", k_scene},
+    Metric{"pairs_looked_at", "pairs", lower, "candidates of the broad phase per frame", k_scene_work},
+    Metric{"pairs_never_looked_at", "pairs", higher, "pairs that matter and are no candidates, per frame", k_scene_work},
+    Metric{"pairs_put_off", "pairs", higher, "candidates per frame that motion so far leaves apart", k_scene_work},
+    Metric{"triangle_pairs", "pairs", lower, "pairs of triangles tested exactly, per frame", k_scene_work},
+    Metric{"frames", "frames", neither, "frames of the scene, the first included", k_scene},
+    Metric{"first_frame_ns", "ns", lower, "wall time of the first frame, in which every pair is new", k_scene},
+    Metric{"p99_frame_ns", "ns", lower, "99 % of the further frames take no longer", k_scene},
     // Times.
     Metric{"real_time", "time_unit", lower, "mean wall-clock time of one iteration", k_google},
     Metric{"cpu_time", "time_unit", lower, "mean processor time of one iteration", k_google},

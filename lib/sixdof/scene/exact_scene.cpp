@@ -175,6 +175,7 @@ class ExactScene final : public SceneQuery {
     const std::span<KeptPair> pairs = kept_.pairs();
     order_.clear();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
+      if (best.distance == 0.0 && BodyPair{pairs[k].a, pairs[k].b} >= best.pair) break;  // pairs are sorted
       if (motions_.distance_left(pairs[k]) > best.distance || is_certainly_apart(pairs[k], best.distance)) continue;
       order_.emplace_back(motions_.distance_left(pairs[k]), k);
     }

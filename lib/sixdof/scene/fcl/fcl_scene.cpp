@@ -1,0 +1,211 @@
+#include <sixdof/scene/fcl/fcl_scene.h>
+
+#include <fcl/config.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <fcl/broadphase/broadphase_SSaP.h>
+#include <fcl/broadphase/broadphase_SaP.h>
+#include <fcl/broadphase/broadphase_bruteforce.h>
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree_array.h>
+#include <fcl/broadphase/broadphase_interval_tree.h>
+#include <fcl/broadphase/broadphase_spatialhash.h>
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
+#include <fmt/format.h>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof::scene {
+namespace {
+
+using Model = fcl::BVHModel<fcl::OBBRSSd>;
+using Object = fcl::CollisionObjectd;
+using Manager = fcl::BroadPhaseCollisionManagerd;
+/// Makes an empty manager for these bodies.
+using MakeManager = std::function<std::unique_ptr<Manager>(std::vector<Object*>&)>;
+
+std::shared_ptr<Model> build_model(const Mesh& mesh) {
+  const auto model = std::make_shared<Model>();
+  std::vector<fcl::Triangle> triangles;
+  for (const Triangle& t : mesh.triangles()) triangles.emplace_back(t[0], t[1], t[2]);
+  int code = model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices().size()));
+  if (code == fcl::BVH_OK) code = model->addSubModel(mesh.vertices(), triangles);
+  if (code == fcl::BVH_OK) code = model->endModel();
+  if (code != fcl::BVH_OK) throw BadMesh(fmt::format("{}: FCL cannot build a tree (code {})", mesh.name(), code));
+  model->computeLocalAABB();
+  return model;
+}
+
+fcl::Transform3d transform(const Pose& pose) {
+  fcl::Transform3d X = fcl::Transform3d::Identity();
+  X.linear() = pose.R;
+  X.translation() = pose.t;
+  return X;
+}
+
+class FclScene final : public SceneQuery {
+ public:
+  FclScene(const Scene& scene, Question question, const MakeManager& make)
+      : scene_(scene), question_(question), filter_(scene) {
+    std::vector<std::shared_ptr<Model>> models;
+    for (const auto& mesh : scene.meshes) models.push_back(build_model(*mesh));
+    std::vector<Object*> moving, fixed;
+    for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
+      const Body& body = scene.bodies[i];
+      auto& object = *objects_.emplace_back(std::make_unique<Object>(models[body.mesh], transform(body.pose.pose())));
+      object.computeAABB();
+      object.setUserData(reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
+      (body.fixed ? fixed : moving).push_back(&object);
+    }
+    if (!moving.empty()) moving_ = registered(make, moving);
+    if (!fixed.empty()) fixed_ = registered(make, fixed);
+  }
+
+  void update(std::span<const Moved> moved) override {
+    if (moved.empty()) return;
+    known_ = false;
+    changed_.clear();
+    for (const Moved& each : moved) {
+      Object& object = *objects_[each.body];
+      object.setTransform(transform(each.X_WB));
+      object.computeAABB();
+      changed_.push_back(&object);
+    }
+    if (changed_.size() == moving_->size()) {
+      moving_->update();
+    } else {
+      moving_->update(changed_);
+    }
+  }
+
+  const SceneAnswer& answer() override {
+    if (std::exchange(known_, true)) return answer_;
+    answer_.pairs.clear();
+    limit_ = question_ == Question::near ? scene_.margin : std::numeric_limits<double>::max();
+    if (moving_ && question_ == Question::touching) {
+      moving_->collide(this, &on_pair);
+      if (fixed_) moving_->collide(fixed_.get(), this, &on_pair);
+    } else if (moving_) {
+      moving_->distance(this, &on_distance);
+      if (fixed_) moving_->distance(fixed_.get(), this, &on_distance);
+    }
+    std::ranges::sort(answer_.pairs);
+    // Some managers name a pair twice.
+    const auto twice = std::ranges::unique(answer_.pairs, {}, &NearPair::pair);
+    answer_.pairs.erase(twice.begin(), twice.end());
+    return answer_;
+  }
+
+  SceneWork work() const override { return work_; }
+
+ private:
+  static std::unique_ptr<Manager> registered(const MakeManager& make, std::vector<Object*>& objects) {
+    std::unique_ptr<Manager> manager = make(objects);
+    manager->registerObjects(objects);
+    manager->setup();
+    return manager;
+  }
+
+  static std::uint32_t index_of(const Object* object) {
+    return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(object->getUserData()));
+  }
+
+  BodyPair ids(std::uint32_t i, std::uint32_t j) const {
+    return BodyPair::of(scene_.bodies[i].id, scene_.bodies[j].id);
+  }
+
+  /// FCL's callback: true ends the query.
+  static bool on_pair(Object* a, Object* b, void* self) {
+    auto& scene = *static_cast<FclScene*>(self);
+    const std::uint32_t i = index_of(a), j = index_of(b);
+    ++scene.work_.candidates;
+    if (!scene.filter_.matters(i, j)) return false;
+    ++scene.work_.narrow;
+    fcl::CollisionResultd result;
+    fcl::collide(a, b, fcl::CollisionRequestd(1, false), result);
+    if (result.isCollision()) scene.answer_.pairs.push_back({scene.ids(i, j), 0.0});
+    return false;
+  }
+
+  static bool on_distance(Object* a, Object* b, void* self, double& least) {
+    auto& scene = *static_cast<FclScene*>(self);
+    const std::uint32_t i = index_of(a), j = index_of(b);
+    ++scene.work_.candidates;
+    if (scene.filter_.matters(i, j)) {
+      ++scene.work_.narrow;
+      fcl::DistanceResultd result;
+      fcl::distance(a, b, fcl::DistanceRequestd(false), result);
+      scene.take({scene.ids(i, j), std::max(result.min_distance, 0.0)});
+    }
+    least = scene.limit_;
+    return scene.question_ == Question::closest && scene.limit_ == 0.0;
+  }
+
+  void take(const NearPair& found) {
+    if (found.distance > limit_) return;
+    if (question_ == Question::closest) {
+      answer_.pairs.clear();
+      limit_ = found.distance;
+    }
+    answer_.pairs.push_back(found);
+  }
+
+  const Scene& scene_;
+  const Question question_;
+  const PairFilter filter_;
+  std::vector<std::unique_ptr<Object>> objects_;
+  std::unique_ptr<Manager> moving_, fixed_;
+  std::vector<Object*> changed_;
+  double limit_ = 0.0;
+  bool known_ = false;
+  SceneAnswer answer_;
+  SceneWork work_;
+};
+
+template <class T>
+std::unique_ptr<Manager> make(std::vector<Object*>& /*objects*/) {
+  return std::make_unique<T>();
+}
+
+std::unique_ptr<Manager> make_hash(std::vector<Object*>& objects) {
+  using Table = fcl::detail::SparseHashTable<fcl::AABBd, Object*, fcl::detail::SpatialHashd>;
+  using Hashing = fcl::SpatialHashingCollisionManager<double, Table>;
+  constexpr double k_cells = 20.0;
+  fcl::Vector3d lower, upper;
+  Hashing::computeBound(objects, lower, upper);
+  const double cell = (upper - lower).minCoeff() / k_cells;
+  return std::make_unique<Hashing>(cell, lower, upper);
+}
+
+}  // namespace
+
+void add_fcl_scenes(SceneAlgorithms& algorithms) {
+  const auto add = [&](const char* name, const char* summary, MakeManager maker, bool by_default = true) {
+    algorithms.push_back(
+        make_scene_algorithm<FclScene>({.name = name,
+                                        .version = FCL_VERSION,
+                                        .summary = fmt::format("FCL, {}; narrow phase fcl-obbrss", summary),
+                                        .answers = {Question::touching, Question::near, Question::closest},
+                                        .by_default = by_default},
+                                       std::move(maker)));
+  };
+  add("fcl-naive", "all pairs of boxes", make<fcl::NaiveCollisionManagerd>, false);
+  add("fcl-ssap", "sweep along one axis, sorted anew", make<fcl::SSaPCollisionManagerd>);
+  // Not by default: FCL 0.7 may never return from its update.
+  add("fcl-sap", "sweep and prune", make<fcl::SaPCollisionManagerd>, false);
+  add("fcl-hash", "spatial hashing", make_hash);
+  add("fcl-interval-tree", "interval trees", make<fcl::IntervalTreeCollisionManagerd>);
+  add("fcl-aabb-tree", "dynamic tree of boxes", make<fcl::DynamicAABBTreeCollisionManagerd>);
+  add("fcl-aabb-tree-array", "dynamic tree of boxes in an array", make<fcl::DynamicAABBTreeCollisionManager_Arrayd>);
+}
+
+}  // namespace sixdof::scene
