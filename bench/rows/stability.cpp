@@ -27,7 +27,6 @@ Settings row_settings(const Resources& resources, const Algorithm& algorithm) {
 void run(const Resources& resources, const Algorithm& algorithm, const Family& family, benchmark::State& state) {
   const Settings settings = row_settings(resources, algorithm);
   const Prepare prepare = [&](const Mesh& a, const Mesh& b) { return algorithm.prepare(a, b, settings); };
-  const Profile profile = profile_of(algorithm.traits(), prepare);
   std::vector<Case> cases;
   for (std::size_t i = 0; i < k_samples; ++i) {
     const Genes genes = sample_genes(family, resources.seed, i, k_samples);
@@ -40,7 +39,7 @@ void run(const Resources& resources, const Algorithm& algorithm, const Family& f
     worst = {};
     red = 0;
     for (const Case& member : cases) {
-      const Finding found = judge(member, profile, prepare).worst();
+      const Finding found = judge(member, algorithm.traits(), prepare).worst();
       if (is_red(found.verdict)) ++red;
       if (found.worse_than(worst)) worst = found;
     }

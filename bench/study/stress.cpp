@@ -10,7 +10,6 @@
 
 #include <sixdof/geometry/save.h>
 #include <sixdof/stability/search.h>
-#include <sixdof/stability/shots.h>
 
 namespace sixdof::study {
 namespace {
@@ -45,18 +44,12 @@ struct Subject {
   const Algorithm& algorithm;
   Settings settings;
   Prepare prepare;
-  Profile profile;
-  bool approximate;
 
   Subject(const Algorithm& of, const StressWatch& watch)
       : algorithm(of), settings(coarse_settings(of)), prepare([this, &watch](const Mesh& a, const Mesh& b) {
           watch.prepares();
           return std::make_unique<WatchedQuery>(algorithm.prepare(a, b, settings), watch);
-        }) {
-    profile = profile_of(of.traits(), prepare);
-    const Shot probe = aligned_boxes({1.0, 0.9, 0.8}, {0.3, 0.2, 0.25}, {2.0, 0.0, 0.0});
-    approximate = PreparedPairs(prepare, {}).ask(probe).resolution > 0.0;
-  }
+        }) {}
   Subject(const Subject&) = delete;
   Subject& operator=(const Subject&) = delete;
 };
@@ -70,7 +63,7 @@ bool too_large(const Case& member, const Algorithm& algorithm) {
 }
 
 Judgement judge_case(const Case& member, const Subject& subject) {
-  if (!too_large(member, subject.algorithm)) return judge(member, subject.profile, subject.prepare);
+  if (!too_large(member, subject.algorithm)) return judge(member, subject.algorithm.traits(), subject.prepare);
   Judgement judgement;
   judgement.findings.push_back(
       {.verdict = Verdict::unsupported, .metric = "size", .unit = "1", .words = "a check for small meshes"});
@@ -141,7 +134,8 @@ StressCell run_cell(const Family& family, const Algorithm& algorithm, const Stre
   const JudgeCase judge_genes = [&](const Genes& genes, const Case& member) {
     return judge_announced({.genes = genes}, member);
   };
-  const std::size_t samples = subject.approximate ? effort.declared_samples : effort.samples;
+  const bool approximates = algorithm.traits().approximates;
+  const std::size_t samples = approximates ? effort.declared_samples : effort.samples;
   Judged worst, slowest;
   for (std::size_t i = 0; i < samples; ++i) {
     Judged sample{.genes = sample_genes(family, seed, i, samples), .member = {}, .judgement = {}};
@@ -153,7 +147,7 @@ StressCell run_cell(const Family& family, const Algorithm& algorithm, const Stre
     if (i == 0 || slower(sample.judgement, slowest.judgement)) slowest = sample;
   }
   // A check for small meshes must not be led to larger ones. What declares a resolution prepares for long.
-  const std::size_t part = subject.approximate ? 2 : 1;
+  const std::size_t part = approximates ? 2 : 1;
   const std::size_t generations = algorithm.traits().timed ? effort.generations / part : 0;
   const std::size_t children = effort.children / part;
   worst = search_worst(family, std::move(worst), judge_genes, worse_answer, generations, children, seed);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -51,6 +52,25 @@ double box_overlap(const Mesh& a, const Mesh& b, const Pose& X_AB) {
   double v = 1.0;
   for (int k = 0; k < 3; ++k) v *= interval_overlap(a.box().min()[k], a.box().max()[k], moved.min()[k], moved.max()[k]);
   return v;
+}
+
+/// A corner of a box that is barely under another one's face, far from where curves usually are: the force's direction
+/// is the face's normal, and both orders have one area.
+TEST(OverlapDegenerate, ACornerJustUnderAFaceIsPushedAlongItsNormal) {
+  const Body large(bodies::box({-1.0, -0.8, -0.6}, {1.0, 0.8, 0.6})),
+      small(bodies::box({-0.35, -0.25, -0.2}, {0.35, 0.25, 0.2}));
+  const Matrix3d R = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.41).normalized().toRotationMatrix();
+  double low = 0.0;
+  for (const Vector3d& p : small.mesh.vertices()) low = std::min(low, (R * p).z());
+  for (const double depth : {1e-6, 1e-8, 4e-10}) {
+    const Pose X{R, {0.21, -0.13, 0.6 - low - depth}};
+    const Overlap one = bodies::overlap(large, small, X), other = bodies::overlap(small, large, X.inverse());
+    // Ends of segments are off by a few 1e-16, the sides of the cap are as long as it is deep at least.
+    const double allowed = 1e-14 / depth;
+    ASSERT_GT(one.area.norm(), 0.0);
+    EXPECT_LT((one.area.normalized() + Vector3d::UnitZ()).norm(), allowed) << depth;
+    EXPECT_LT((R * other.area + one.area).norm() / one.area.norm(), allowed) << depth;
+  }
 }
 
 TEST(OverlapDegenerate, ABodyAndItself) {

@@ -17,6 +17,6 @@ inline std::unique_ptr<Query> prepare_exact(const Mesh& a, const Mesh& b) {
   return exact_algorithm().prepare(a, b, exact_algorithm().settings());
 }
 
-inline Profile exact_profile() { return profile_of(exact_algorithm().traits(), prepare_exact); }
+inline const Traits& exact_traits() { return exact_algorithm().traits(); }
 
 }  // namespace sixdof::stability

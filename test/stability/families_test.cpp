@@ -86,11 +86,10 @@ TEST(Families, TruthsAgreeWithBruteForceInLongDouble) {
 }
 
 TEST(Families, TheReferenceHasNoRedCell) {
-  const Profile profile = exact_profile();
   for (const Family& family : families()) {
     for (std::size_t i = 0; i < k_samples; ++i) {
       const Case member = sample(family, i);
-      const Finding worst = judge(member, profile, prepare_exact).worst();
+      const Finding worst = judge(member, exact_traits(), prepare_exact).worst();
       EXPECT_LE(worst.verdict, Verdict::unsupported)
           << family.name << " " << i << ": " << member.name << " at " << member.parameter << ": "
           << to_string(worst.verdict) << " " << worst.metric << " " << worst.value << " " << worst.unit << ", shot "

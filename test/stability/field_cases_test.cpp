@@ -76,9 +76,8 @@ TEST(FieldCases, TruthsAreThoseOfTheThreads) {
 }
 
 TEST(FieldCases, TheReferenceIsRight) {
-  const Profile profile = exact_profile();
   for (const Case& member : all_field_cases()) {
-    const Finding worst = judge(member, profile, prepare_exact).worst();
+    const Finding worst = judge(member, exact_traits(), prepare_exact).worst();
     EXPECT_LE(worst.verdict, Verdict::unsupported)
         << member.thread << ": " << member.name << ": " << to_string(worst.verdict) << " " << worst.metric << " "
         << worst.value << ", shot " << worst.shot << ": " << worst.words;

@@ -65,10 +65,10 @@ const Shot& inside() {
   return shot;
 }
 
-Judgement judge_script(const Script& script, const Shot& shot, const Profile& profile, const Limits& limits = {}) {
+Judgement judge_script(const Script& script, const Shot& shot, const Traits& traits, const Limits& limits = {}) {
   const Case member{.name = "test", .thread = {}, .relation = Relation::none, .shots = {shot}};
   return judge(
-      member, profile,
+      member, traits,
       [&](const Mesh&, const Mesh&) -> std::unique_ptr<Query> {
         if (script.refuses) throw BadMesh("not this one");
         return std::make_unique<Scripted>(script);
@@ -76,7 +76,14 @@ Judgement judge_script(const Script& script, const Shot& shot, const Profile& pr
       limits);
 }
 
-const Profile k_all{.answers = {.collide = true, .distance = true, .respond = true}, .law = ResponseLaw::depth};
+/// All queries, and no limit.
+Traits strict() {
+  Traits traits;
+  traits.answers = {.collide = true, .distance = true, .respond = true};
+  traits.law = ResponseLaw::depth;
+  return traits;
+}
+const Traits k_all = strict();
 
 Separation at_distance(double distance) { return {.distance = distance}; }
 Response pushing(const Eigen::Vector3d& force) { return {.penalty = 1.0, .force = force}; }
@@ -107,11 +114,19 @@ TEST(Judge, MissesAndPhantomsAreToldApart) {
 }
 
 TEST(Judge, ADeclaredResolutionExcusesAsMuchAndNoMore) {
-  // Moved inwards by volume / area = 0.0638 the smaller box vanishes.
-  EXPECT_EQ(judge_script({.collide = false, .resolution = 0.07}, deep_by_a_tenth(), k_all).worst().verdict,
-            Verdict::resolution);
-  EXPECT_EQ(judge_script({.collide = false, .resolution = 0.06}, deep_by_a_tenth(), k_all).worst().verdict,
-            Verdict::wrong);
+  Traits approximate = k_all;
+  approximate.approximates = true;
+  const auto of_miss = [](double resolution, const Shot& shot, const Traits& traits) {
+    return judge_script({.collide = false, .resolution = resolution}, shot, traits).worst().verdict;
+  };
+  EXPECT_EQ(of_miss(0.11, deep_by_a_tenth(), approximate), Verdict::resolution);
+  EXPECT_EQ(of_miss(0.09, deep_by_a_tenth(), approximate), Verdict::wrong);
+  // Twice as deep, moved inwards by 0.15 the smaller box vanishes.
+  const Shot deeper = aligned_boxes({1.0, 1.0, 1.0}, {0.5, 0.4, 0.3}, {0.1, 0.05, 0.42});
+  EXPECT_EQ(of_miss(0.16, deeper, approximate), Verdict::resolution);
+  EXPECT_EQ(of_miss(0.14, deeper, approximate), Verdict::wrong);
+  // Who does not approximate has no resolution, whatever is counted.
+  EXPECT_EQ(of_miss(0.16, deeper, k_all), Verdict::wrong);
 }
 
 TEST(Judge, YesWithADistanceIsAContradiction) {
@@ -122,22 +137,45 @@ TEST(Judge, YesWithADistanceIsAContradiction) {
   EXPECT_TRUE(seen);
 }
 
-TEST(Judge, AForceThatPullsInIsWrongAndOneAsideIsTheLaws) {
-  EXPECT_EQ(judge_script({.respond = pushing(-Eigen::Vector3d::UnitZ())}, barely_deep(), k_all).worst().verdict,
-            Verdict::wrong);
-  const Eigen::Vector3d aside(1.0, 0.0, 1.0);
-  EXPECT_EQ(judge_script({.respond = pushing(aside)}, barely_deep(), k_all).worst().verdict, Verdict::resolution);
-  Profile exact = k_all;
-  exact.law = ResponseLaw::volume;
-  EXPECT_EQ(judge_script({.respond = pushing(aside)}, barely_deep(), exact).worst().verdict, Verdict::wrong);
-  // Deeper, laws of points follow their own shortest ways; the gradient of the volume is what it is.
-  EXPECT_EQ(judge_script({.respond = pushing(aside)}, deep_by_a_tenth(), k_all).worst().verdict, Verdict::exact);
-  EXPECT_EQ(judge_script({.respond = pushing(aside)}, deep_by_a_tenth(), exact).worst().verdict, Verdict::wrong);
+TEST(Judge, AForceAsideIsALimitWhereItIsDeclared) {
+  Traits own = k_all;
+  own.limits.own_direction = true;
+  const auto verdict = [](const Eigen::Vector3d& force, const Shot& shot, const Traits& traits) {
+    return judge_script({.respond = pushing(force)}, shot, traits).worst().verdict;
+  };
+  const Eigen::Vector3d aside(1.0, 0.0, 1.0), inwards(0.0, 0.0, -1.0);
+  EXPECT_EQ(verdict(inwards, barely_deep(), own), Verdict::wrong);
+  EXPECT_EQ(verdict(aside, barely_deep(), own), Verdict::resolution);
+  EXPECT_EQ(verdict(aside, barely_deep(), k_all), Verdict::wrong);
+  // Deeper, sums of contacts follow their own shortest ways.
+  EXPECT_EQ(verdict(aside, deep_by_a_tenth(), own), Verdict::exact);
+  EXPECT_EQ(verdict(aside, deep_by_a_tenth(), k_all), Verdict::wrong);
+}
+
+TEST(Judge, ADirectionIsJudgedAsSoonAsRoundingLeavesOne) {
+  const Shot shallow = aligned_boxes({1.0, 1.0, 1.0}, {0.5, 0.4, 0.3}, {0.1, 0.05, 0.65 - 2e-9});
+  ASSERT_TRUE(shallow.truth.push);
+  const Eigen::Vector3d tilted(0.01, 0.0, 1.0);
+  EXPECT_EQ(judge_script({.respond = pushing(tilted)}, shallow, k_all).worst().verdict, Verdict::wrong);
+}
+
+TEST(Judge, WitnessesOfANearlyClosedGapMustLieAcrossIt) {
+  const Shot close = aligned_boxes({1.0, 1.0, 1.0}, {0.5, 0.4, 0.3}, {0.1, 0.05, 0.65 + 1e-7});
+  const Case member{.name = "test", .thread = {}, .relation = Relation::none, .shots = {close}, .convex = true};
+  const auto verdict = [&](const Eigen::Vector3d& between) {
+    const Separation gap{.distance = 1e-7, .has_witnesses = true, .witness_b = 1e-7 * between.normalized()};
+    return judge(member, k_all,
+                 [&](const Mesh&, const Mesh&) { return std::make_unique<Scripted>(Script{.distance = gap}); })
+        .worst()
+        .verdict;
+  };
+  EXPECT_LE(verdict({0.0, 0.0, 1.0}), Verdict::resolution);
+  EXPECT_EQ(verdict({0.1, 0.0, 1.0}), Verdict::wrong);
 }
 
 TEST(Judge, SurfacesOnlyIsALimitWhereBodiesAreInsideEachOther) {
-  Profile surfaces = k_all;
-  surfaces.finds_contained = surfaces.pushes_contained = false;
+  Traits surfaces = k_all;
+  surfaces.limits.surfaces_only = {.collide = true, .respond = true};
   EXPECT_EQ(judge_script({.collide = false, .respond = Response{}}, inside(), surfaces).worst().verdict,
             Verdict::unsupported);
   EXPECT_EQ(judge_script({.collide = false}, inside(), k_all).worst().verdict, Verdict::wrong);
@@ -147,9 +185,9 @@ TEST(Judge, SurfacesOnlyIsALimitWhereBodiesAreInsideEachOther) {
 TEST(Judge, ADistanceOfBodiesIsALimitWhereTheyAreInsideEachOther) {
   Shot known = inside();
   known.truth.distance = 0.2;
-  Profile bodies = k_all;
+  Traits bodies = k_all;
   EXPECT_EQ(judge_script({.distance = at_distance(0.0)}, known, bodies).worst().verdict, Verdict::wrong);
-  bodies.distance_of_bodies = true;
+  bodies.limits.distance_of_bodies = true;
   EXPECT_EQ(judge_script({.distance = at_distance(0.0)}, known, bodies).worst().verdict, Verdict::unsupported);
   EXPECT_EQ(judge_script({.distance = at_distance(0.1)}, known, bodies).worst().verdict, Verdict::wrong);
 }
@@ -196,14 +234,47 @@ TEST(Judge, AnAnswerToAPoseThatIsNoneIsWrong) {
   EXPECT_EQ(judged({.collide = Status::non_finite}), Verdict::exact);
 }
 
-TEST(Judge, TheReferenceFindsBodiesInsideEachOther) {
-  const Profile profile = exact_profile();
-  EXPECT_TRUE(profile.finds_contained);
-  EXPECT_TRUE(profile.pushes_contained);
-  EXPECT_FALSE(profile.distance_of_bodies);
-  const std::unique_ptr<Algorithm> surfaces = make_brute_force_algorithm();
-  const auto prepare = [&](const Mesh& a, const Mesh& b) { return surfaces->prepare(a, b, surfaces->settings()); };
-  EXPECT_FALSE(profile_of(surfaces->traits(), prepare).finds_contained);
+TEST(Judge, ANoAtDistanceZeroIsAContradictionAlsoWhereNoTruthIsGiven) {
+  Shot unknown = apart_by_a_tenth();
+  unknown.truth = {};
+  const Script script{.collide = false, .distance = at_distance(0.0)};
+  EXPECT_EQ(judge_script(script, unknown, k_all).worst().metric, "contradiction");
+  EXPECT_EQ(judge_script(script, unknown, k_all).worst().verdict, Verdict::wrong);
+}
+
+TEST(Judge, AMissAfterTheContactOfASweepIsWrong) {
+  const Shot start = apart_by_a_tenth();
+  const Case falling{.name = "test",
+                     .thread = {},
+                     .relation = Relation::sweep,
+                     .shots = {start},
+                     .convex = true,
+                     .motion = {0.0, 0.0, -1.0},
+                     .contact_time = start.truth.gap};
+  Traits yes_no = k_all;
+  yes_no.answers = {.collide = true};
+  const auto judged = [&](const Script& script, const Traits& traits) {
+    return judge(falling, traits, [&](const Mesh&, const Mesh&) { return std::make_unique<Scripted>(script); });
+  };
+  EXPECT_EQ(judged({.collide = false}, yes_no).worst().metric, "missed");
+  EXPECT_EQ(judged({.collide = false}, yes_no).worst().verdict, Verdict::wrong);
+  EXPECT_EQ(judged({.distance = Status::failed}, k_all).worst().verdict, Verdict::threw);
+}
+
+TEST(Judge, AFarPoseMustBeAnswered) {
+  Shot far = apart_by_a_tenth();
+  far.X_AB.t.x() = 1e150;
+  far.truth = {};
+  far.truth.gap = far.truth.distance = 1e150;
+  const Case member{.name = "test", .thread = {}, .relation = Relation::bad, .shots = {far}};
+  const auto judged = [&](const Script& script) {
+    return judge(member, k_all, [&](const Mesh&, const Mesh&) { return std::make_unique<Scripted>(script); })
+        .worst()
+        .verdict;
+  };
+  EXPECT_EQ(judged({.collide = false, .distance = at_distance(1e150)}), Verdict::exact);
+  EXPECT_EQ(judged({.collide = false, .distance = Status::failed}), Verdict::threw);
+  EXPECT_EQ(judged({.collide = true}), Verdict::wrong);
 }
 
 }  // namespace

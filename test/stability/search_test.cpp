@@ -26,16 +26,21 @@ class Resonant : public Query {
 };
 
 const Prepare k_prepare = [](const Mesh& a, const Mesh& b) { return std::make_unique<Resonant>(a, b); };
-const Profile k_profile{.answers = {.collide = false, .distance = true, .respond = false}};
 
-const JudgeCase k_judge = [](const Genes&, const Case& member) { return judge(member, k_profile, k_prepare); };
+Traits distances_only() {
+  Traits traits = exact_traits();
+  traits.answers = {.distance = true};
+  return traits;
+}
+
+const JudgeCase k_judge = [](const Genes&, const Case& member) { return judge(member, distances_only(), k_prepare); };
 
 Judged start() {
   const Family& family = find_family("grazing");
   Judged judged{.genes = sample_genes(family, 4, 0, 1), .member = {}, .judgement = {}};
   Draw draw(judged.genes);
   judged.member = family.make(draw);
-  judged.judgement = judge(judged.member, k_profile, k_prepare);
+  judged.judgement = judge(judged.member, distances_only(), k_prepare);
   return judged;
 }
 

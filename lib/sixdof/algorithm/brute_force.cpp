@@ -53,6 +53,7 @@ std::unique_ptr<Algorithm> make_brute_force_algorithm() {
                                           .version = SIXDOF_VERSION,
                                           .summary = "all pairs of triangles: an independent check for small meshes",
                                           .answers = {.collide = true, .distance = true},
+                                          .limits = {.surfaces_only = {.collide = true}},
                                           .timed = false});
 }
 

@@ -121,8 +121,9 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
   const Vector3d origin_B = X_AB.inverse() * origin;
   SurfacePart part_a(*a_, origin);
   SurfacePart part_b(*b_, origin_B);
+  Vector3d anchor = Vector3d::Zero();  // on a curve: however small the curves are, nothing cancels in area and moment
   Vector3d area = Vector3d::Zero();    // twice
-  Vector3d moment = Vector3d::Zero();  // minus six times, about the origin
+  Vector3d moment = Vector3d::Zero();  // minus six times, about the anchor
   for (const TrianglePair& pair : pairs) {
     const OrderedTriangle a = ordered(a_->tree().corners()[pair.a], a_->order(pair.a));
     OrderedTriangle b = ordered(b_->tree().corners()[pair.b], b_->order(pair.b));
@@ -139,8 +140,11 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
     part_a.add_segment(pair.a, local_a, x, segment->start_side, y, segment->end_side);
     // On B the part inside A lies to the right.
     part_b.add_segment(pair.b, local_b, y, side_of_b(segment->end_side), x, side_of_b(segment->start_side));
-    area += y.cross(x);
-    moment += (x.squaredNorm() + x.dot(y) + y.squaredNorm()) * (x - y);
+    if (result.crossings == 1) anchor = segment->start;
+    const Vector3d u = segment->start - anchor;
+    const Vector3d v = segment->end - anchor;
+    area += v.cross(u);
+    moment += (u.squaredNorm() + u.dot(v) + v.squaredNorm()) * (u - v);
   }
 
   for (const Solid::Piece& piece : a_->pieces()) {
@@ -154,7 +158,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
   const Solid::Moments sum_b = part_b.within_path();  // in B's frame
   result.volume = sum_a.volume + sum_b.volume + (part_a.beside_path().volume + part_b.beside_path().volume);
   result.area = 0.5 * area;
-  result.moment = -moment / 6.0 + (origin - reference).cross(result.area);
+  result.moment = -moment / 6.0 + (anchor - reference).cross(result.area);
   if (result.volume > 0.0) {
     result.centroid =
         origin + (sum_a.first + X_AB.R * sum_b.first + (part_a.beside_path().first + part_b.beside_path().first)) /

@@ -55,7 +55,9 @@ struct Overlap {
 /// Overlap queries of two solids.
 ///
 /// Error of volume: a small multiple of 1e-16 * (size + distance of the bodies from the origin of A's frame) * (area of
-/// the triangles that are crossed), however small the volume is.
+/// the triangles that are crossed), however small the volume is. Error of area: the ends of the curves' segments are
+/// off by about 1e-16 * (size + distance of the bodies from the origin of A's frame), so the direction of a force is
+/// right as soon as the curves are much longer than that.
 ///
 /// Cost: finding the crossings in the trees, then a constant per crossing.
 ///

@@ -112,6 +112,18 @@ enum class Body {
 
 constexpr std::string_view to_string(Body body) { return body == Body::mesh ? "mesh" : "convex_hull"; }
 
+/// What a method does not promise by its nature. `sixdof stress` shows an answer that one of these explains as
+/// declared; every other wrong answer counts as a failure.
+struct MethodLimits {
+  /// Where one body is inside the other and the surfaces are apart, collide() may be no and respond() zero.
+  QuerySet surfaces_only = {};
+  /// There distance() is 0, not that of the surfaces.
+  bool distance_of_bodies = false;
+  /// The force adds up what contacts, points or parts of the bodies contribute. Where the overlap is shallow it is less
+  /// than 90 degrees from the shortest way out; elsewhere no direction is promised.
+  bool own_direction = false;
+};
+
 /// What the magnitude of a response is proportional to. It selects the ideal model that scenarios compare with.
 enum class ResponseLaw {
   none,
@@ -142,6 +154,7 @@ struct Traits {
   /// Whether it answers for an approximation of the bodies: Footprint::counts has how far that may lie from the true
   /// surfaces, as "resolution" (length).
   bool approximates = false;
+  MethodLimits limits = {};           ///< Of the method, not of this code.
   std::vector<Parameter> parameters;  ///< What a user may set; empty if nothing.
   /// Whether benchmarks have rows of its queries. False for a reference that is too slow, such as brute force.
   bool timed = true;

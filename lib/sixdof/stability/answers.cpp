@@ -65,7 +65,7 @@ PreparedPairs::Pair& PreparedPairs::pair_of(const Shot& shot) {
   Pair& pair = pairs_.emplace_back(Pair{shot.a, shot.b, nullptr, 0.0, {}});
   try {
     pair.query = prepare_(*shot.a, *shot.b);
-    pair.resolution = declared_resolution(*pair.query);
+    if (approximates_) pair.resolution = declared_resolution(*pair.query);
   } catch (const BadMesh& e) {
     pair.failure.refused = true;
     pair.failure.words = e.what();

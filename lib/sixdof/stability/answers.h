@@ -33,7 +33,7 @@ struct Answers {
   bool refused = false;     ///< prepare() threw BadMesh or BadArgument, with `words`.
   bool prepare_threw = false;
   std::string words;
-  double resolution = 0.0;  ///< That the algorithm declares for this pair (length).
+  double resolution = 0.0;  ///< That the algorithm declares for this pair (length); 0 if it does not approximate.
 };
 
 /// Asks one query object.
@@ -45,7 +45,8 @@ double declared_resolution(const Query& query);
 /// A query per pair of meshes, kept while the object lives.
 class PreparedPairs {
  public:
-  PreparedPairs(Prepare prepare, QuerySet kinds) : prepare_(std::move(prepare)), kinds_(kinds) {}
+  PreparedPairs(Prepare prepare, const Traits& traits)
+      : prepare_(std::move(prepare)), kinds_(traits.answers), approximates_(traits.approximates) {}
 
   Answers ask(const Shot& shot);
 
@@ -60,6 +61,7 @@ class PreparedPairs {
 
   Prepare prepare_;
   QuerySet kinds_;
+  bool approximates_;
   std::vector<Pair> pairs_;
 };
 

@@ -63,7 +63,7 @@ enum class Relation {
   repeat,  ///< Asked again, by other objects, in other orders and on two threads.
   sweep,   ///< From the first shot along Case::motion until the bodies touch.
   time,    ///< Times of the queries are compared with their median.
-  bad,     ///< Poses that are none: a refusal, or an answer that is finite.
+  bad,     ///< Shot::raw, poses that are none: a refusal, or an answer that is finite.
 };
 
 /// A member of a family.

@@ -44,8 +44,13 @@ Case bad_poses(Draw& draw) {
   add([&](Pose& X) { X.t[axis] = k_nan; });
   add([&](Pose& X) { X.t[axis] = k_infinity; });
   add([&](Pose& X) { X.R.col(axis) *= -1.0; });
-  add([&](Pose& X) { X.t[axis] = std::numeric_limits<double>::denorm_min(); });
-  add([&](Pose& X) { X.t[axis] = 1e150; });
+  // Poses all the same: these are answered.
+  Shot denormal = without_truth(first), far = denormal;
+  denormal.X_AB.t[axis] = std::numeric_limits<double>::denorm_min();
+  far.X_AB.t[axis] = 1e150;
+  far.truth.gap = far.truth.distance = far.X_AB.t[axis];
+  result.shots.push_back(denormal);
+  result.shots.push_back(far);
   return result;
 }
 

@@ -5,7 +5,6 @@
 
 #include <sixdof/stability/judge_relations.h>
 #include <sixdof/stability/judge_shot.h>
-#include <sixdof/stability/shots.h>
 
 namespace sixdof::stability {
 namespace {
@@ -23,22 +22,22 @@ void measure_times(const std::vector<Answers>& answers, Judgement& judgement) {
   judgement.median_seconds = *middle;
 }
 
-void judge_relation(const Case& member, const std::vector<Answers>& answers, const Profile& profile,
-                    const Prepare& prepare, std::vector<Finding>& findings) {
+void judge_relation(const Case& member, const std::vector<Answers>& answers, const Traits& traits,
+                    const Prepare& prepare, const Limits& limits, std::vector<Finding>& findings) {
   switch (member.relation) {
     case Relation::none:
     case Relation::time:
       return;
     case Relation::same:
-      return judge_same(member, answers, profile, findings);
+      return judge_same(member, answers, traits, findings);
     case Relation::path:
       return judge_path(member, answers, findings);
     case Relation::loop:
-      return judge_loop(member, answers, profile, findings);
+      return judge_loop(member, answers, traits, findings);
     case Relation::repeat:
-      return judge_repeat(member, answers, profile, prepare, findings);
+      return judge_repeat(member, answers, traits, prepare, findings);
     case Relation::sweep:
-      return judge_sweep(member, profile, prepare, findings);
+      return judge_sweep(member, traits, prepare, limits, findings);
     case Relation::bad:
       return judge_bad(member, answers, findings);
   }
@@ -46,38 +45,23 @@ void judge_relation(const Case& member, const std::vector<Answers>& answers, con
 
 }  // namespace
 
-Profile profile_of(const Traits& traits, const Prepare& prepare) {
-  Profile profile{.answers = traits.answers, .law = traits.law};
-  const Shot inside = aligned_boxes({1.0, 0.9, 0.8}, {0.3, 0.2, 0.25}, {0.1, 0.05, 0.07});
-  PreparedPairs pairs(prepare, traits.answers);
-  for (const Shot& shot : {inside, swapped(inside)}) {
-    const Answers answers = pairs.ask(shot);
-    const auto& yes = answers.collide.outcome;
-    const auto& response = answers.respond.outcome;
-    const auto& distance = answers.distance.outcome;
-    if (distance.ok()) profile.distance_of_bodies = profile.distance_of_bodies || distance.value.distance == 0.0;
-    if (yes.ok()) profile.finds_contained = profile.finds_contained && yes.value;
-    if (response.ok()) profile.pushes_contained = profile.pushes_contained && response.value.penalty != 0.0;
-  }
-  return profile;
-}
-
 const Finding& Judgement::worst() const {
   return *std::ranges::max_element(findings, [](const Finding& x, const Finding& y) { return y.worse_than(x); });
 }
 
-Judgement judge(const Case& member, const Profile& profile, const Prepare& prepare, const Limits& limits) {
+Judgement judge(const Case& member, const Traits& traits, const Prepare& prepare, const Limits& limits) {
   Judgement judgement;
-  PreparedPairs pairs(prepare, profile.answers);
+  PreparedPairs pairs(prepare, traits);
   std::vector<Answers> answers;
   for (std::size_t i = 0; i < member.shots.size(); ++i) {
     answers.push_back(pairs.ask(member.shots[i]));
-    if (member.relation != Relation::bad || answers.back().refused || answers.back().prepare_threw) {
+    const bool is_pose = !member.shots[i].raw;
+    if (is_pose || answers.back().refused || answers.back().prepare_threw) {
       judge_statuses(member.shots[i], i, answers.back(), limits, judgement.findings);
     }
-    if (member.relation != Relation::bad) judge_truth(member, i, answers.back(), profile, judgement.findings);
+    if (is_pose) judge_truth(member, i, answers.back(), traits, judgement.findings);
   }
-  judge_relation(member, answers, profile, prepare, judgement.findings);
+  judge_relation(member, answers, traits, prepare, limits, judgement.findings);
   measure_times(answers, judgement);
   if (member.relation == Relation::time && judgement.median_seconds > 0.0) {
     const double ratio = judgement.slowest_seconds / judgement.median_seconds;

@@ -6,22 +6,11 @@
 #include <sixdof/stability/case.h>
 #include <sixdof/stability/verdict.h>
 
-/// Judges the answers of one algorithm. Lengths are compared with three bounds: the rounding of the input, then the
-/// algorithm's declared resolution plus k_declared_accuracy; beyond them an answer is wrong. Yes/no is not scored where
-/// the bodies are closer to contact than that.
+/// Judges the answers of one algorithm. Lengths are compared with two bounds: the rounding of the input, then what the
+/// algorithm's Traits declare, a resolution if it approximates, plus k_declared_accuracy; beyond them an answer is
+/// wrong. Yes/no is not scored where the bodies are closer to contact than that. Other limits are excused only where
+/// Traits::limits declares them.
 namespace sixdof::stability {
-
-/// What an algorithm says of itself, and what asking it about one body inside another shows.
-struct Profile {
-  QuerySet answers;
-  ResponseLaw law = ResponseLaw::none;
-  bool finds_contained = true;      ///< collide() is true for a body inside another, not only for surfaces that meet.
-  bool pushes_contained = true;     ///< respond() has a penalty there.
-  bool distance_of_bodies = false;  ///< distance() is 0 there, as of bodies, not that of the surfaces.
-};
-
-/// Asks about a small box inside a large one, in both orders.
-Profile profile_of(const Traits& traits, const Prepare& prepare);
 
 /// Limits of a judgement.
 struct Limits {
@@ -38,6 +27,6 @@ struct Judgement {
 };
 
 /// Deterministic but for times.
-Judgement judge(const Case& member, const Profile& profile, const Prepare& prepare, const Limits& limits = {});
+Judgement judge(const Case& member, const Traits& traits, const Prepare& prepare, const Limits& limits = {});
 
 }  // namespace sixdof::stability

@@ -4,7 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,23 +20,25 @@ double angle_between(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
 }
 
 Bounds sum(const Bounds& x, const Bounds& y, double scale) {
-  return {x.rounding + y.rounding / scale, x.resolution + y.resolution / scale};
+  return {x.rounding + y.rounding / scale, x.resolution + y.resolution / scale, x.slack + y.slack / scale};
 }
 
-void compare_forces(std::size_t index, const Shot& first_shot, const Shot& shot, const Response& first,
-                    const Response& other, const Bounds& bounds_first, const Bounds& bounds_other, double depth,
-                    const Profile& profile, std::vector<Finding>& findings) {
+/// Directions of two forces that should be the same but for a turn.
+void compare_directions(const Case& member, std::size_t index, const Response& first, const Response& other,
+                        const Bounds& bounds_first, const Bounds& bounds_other, const Traits& traits,
+                        std::vector<Finding>& findings) {
+  const Shot& shot = member.shots[index];
+  const double depth = -member.shots.front().truth.gap;
   if (first.force.isZero(0.0) || other.force.isZero(0.0) ||
-      !(depth > bounds_first.largest() + bounds_other.largest() / shot.scale)) {
+      !(depth > bounds_first.least_depth() + bounds_other.least_depth() / shot.scale)) {
     return;
   }
   const double angle = angle_between(shot.turn * first.force, other.force);
-  const double allowed = rounding_angle(shot, bounds_other, depth * shot.scale, other.force, profile) +
-                         rounding_angle(first_shot, bounds_first, depth, first.force, profile);
-  const bool own_direction = profile.law != ResponseLaw::volume ||
-                             bounds_first.resolution > 2.0 * k_declared_accuracy * first_shot.a->diagonal();
+  const double allowed = rounding_angle(bounds_other, depth * shot.scale) + rounding_angle(bounds_first, depth);
+  // The parts that approximate a body lie otherwise in another frame.
+  const bool excused = traits.approximates && angle < 0.5 * std::numbers::pi;
   findings.push_back({.verdict = angle <= allowed ? Verdict::exact
-                                 : own_direction  ? Verdict::resolution
+                                 : excused        ? Verdict::resolution
                                                   : Verdict::wrong,
                       .metric = "turned force",
                       .value = angle,
@@ -42,6 +46,23 @@ void compare_forces(std::size_t index, const Shot& first_shot, const Shot& shot,
                       .excess = angle / allowed,
                       .shot = index,
                       .words = "angle to the force at the case's first pose, in the same frame"});
+}
+
+/// Forces by the volume law are areas: they are the same but for a turn and the scale. Where faces lie in one plane the
+/// volume has no gradient; truths with a direction are not there.
+void compare_areas(const Case& member, std::size_t index, const Response& first, const Response& other,
+                   const Bounds& bounds, std::vector<Finding>& findings) {
+  const Shot &first_shot = member.shots.front(), &shot = member.shots[index];
+  if (!(-first_shot.truth.gap > bounds.rounding)) return;
+  const double error = (other.force / (shot.scale * shot.scale) - shot.turn * first.force).norm();
+  // The border of the area moves by the rounding; it is a few diagonals long.
+  constexpr double k_border = 4.0;
+  const double border = k_border * (first_shot.a->diagonal() + first_shot.b->diagonal()), size = member.size();
+  Finding finding = length_finding("same force", error / border, size, bounds, index,
+                                   "difference to the force at the case's first pose, in the same frame and unit");
+  finding.value = error / (size * size);
+  finding.unit = "area";
+  findings.push_back(std::move(finding));
 }
 
 template <class T>
@@ -67,8 +88,8 @@ bool same_bits(const Answers& x, const Answers& y) {
   return std::ranges::equal(a, b, {}, bits<double>, bits<double>);
 }
 
-std::vector<Answers> ask_all(const Case& member, const Profile& profile, const Prepare& prepare, bool backwards) {
-  PreparedPairs pairs(prepare, profile.answers);
+std::vector<Answers> ask_all(const Case& member, const Traits& traits, const Prepare& prepare, bool backwards) {
+  PreparedPairs pairs(prepare, traits);
   std::vector<Answers> answers(member.shots.size());
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const std::size_t k = backwards ? answers.size() - 1 - i : i;
@@ -92,9 +113,34 @@ double difference(const std::vector<Answers>& xs, const std::vector<Answers>& ys
   return largest;
 }
 
+/// Steps of Relation::sweep end as near contact as a body of this size allows.
+constexpr double k_near = 1e-7;
+
+Shot at_time(const Case& member, double time) {
+  Shot shot = member.shots.front();
+  shot.truth = {};
+  shot.X_AB.t += time * member.motion;
+  return shot;
+}
+
+/// Yes/no at the start of the sweep and just after the contact.
+void judge_contact(const Case& member, const Traits& traits, const Prepare& prepare, const Limits& limits,
+                   std::vector<Finding>& findings) {
+  const Shot& start = member.shots.front();
+  if (!traits.answers.collide || !std::isfinite(member.contact_time)) return;
+  const double closing = start.truth.gap / member.contact_time;  // speed along the shortest way
+  Shot inside = at_time(member, member.contact_time + 2.0 * k_near * start.a->diagonal() / closing);
+  inside.truth.gap = start.truth.gap - closing * (inside.X_AB.t - start.X_AB.t).norm() / member.motion.norm();
+  PreparedPairs pairs(prepare, traits);
+  const Answers answers = pairs.ask(inside);
+  const Case contact{.name = member.name, .thread = {}, .shots = {inside}};
+  judge_statuses(inside, 0, answers, limits, findings);
+  judge_truth(contact, 0, answers, traits, findings);
+}
+
 }  // namespace
 
-void judge_same(const Case& member, const std::vector<Answers>& answers, const Profile& profile,
+void judge_same(const Case& member, const std::vector<Answers>& answers, const Traits& traits,
                 std::vector<Finding>& findings) {
   const Shot& first = member.shots.front();
   const double size = first.a->diagonal();
@@ -120,9 +166,12 @@ void judge_same(const Case& member, const std::vector<Answers>& answers, const P
       findings.push_back(finding);
     }
     // Contained bodies may be pushed in any direction.
-    if (!first.truth.contained && first.truth.push)
-      compare_forces(i, first, shot, r0.value, r.value, bounds_of(first, answers[0]), bounds_of(shot, answers[i]),
-                     -first.truth.gap, profile, findings);
+    if (!first.truth.contained && first.truth.push) {
+      compare_directions(member, i, r0.value, r.value, bounds_of(first, answers[0]), bounds_of(shot, answers[i]),
+                         traits, findings);
+      if (traits.law == ResponseLaw::volume && !traits.approximates)
+        compare_areas(member, i, r0.value, r.value, bounds, findings);
+    }
   }
 }
 
@@ -146,10 +195,10 @@ void judge_path(const Case& member, const std::vector<Answers>& answers, std::ve
   }
 }
 
-void judge_loop(const Case& member, const std::vector<Answers>& answers, const Profile& profile,
+void judge_loop(const Case& member, const std::vector<Answers>& answers, const Traits& traits,
                 std::vector<Finding>& findings) {
   double work = 0.0, length = 0.0, peak = 0.0;
-  bool has_potential = profile.law == ResponseLaw::volume;
+  const bool has_potential = traits.law == ResponseLaw::volume && !traits.approximates;
   for (std::size_t i = 1; i < answers.size(); ++i) {
     const auto &r0 = answers[i - 1].respond.outcome, &r = answers[i].respond.outcome;
     if (!r0.ok() || !r.ok()) return;
@@ -157,7 +206,6 @@ void judge_loop(const Case& member, const std::vector<Answers>& answers, const P
     work += 0.5 * (r0.value.force + r.value.force).dot(step);
     length += step.norm();
     peak = std::max(peak, r.value.force.norm());
-    has_potential = has_potential && answers[i].resolution == 0.0;
   }
   if (peak == 0.0) return;
   // Sums by trapezia of a force with kinks.
@@ -173,8 +221,8 @@ void judge_loop(const Case& member, const std::vector<Answers>& answers, const P
                       .words = "work over peak force times length"});
 }
 
-void judge_repeat(const Case& member, const std::vector<Answers>& answers, const Profile& profile,
-                  const Prepare& prepare, std::vector<Finding>& findings) {
+void judge_repeat(const Case& member, const std::vector<Answers>& answers, const Traits& traits, const Prepare& prepare,
+                  std::vector<Finding>& findings) {
   // An order or a thread may change rounding only.
   constexpr double k_rounding = 1e-12;
   const auto compare = [&](const char* metric, const std::vector<Answers>& others, bool all_bits) {
@@ -189,52 +237,34 @@ void judge_repeat(const Case& member, const std::vector<Answers>& answers, const
                         .excess = by / k_rounding,
                         .words = "relative difference of the answers"});
   };
-  compare("second object", ask_all(member, profile, prepare, false), true);
-  compare("other order", ask_all(member, profile, prepare, true), false);
+  compare("second object", ask_all(member, traits, prepare, false), true);
+  compare("other order", ask_all(member, traits, prepare, true), false);
   std::vector<Answers> at_once[2];
   {
-    std::jthread one([&] { at_once[0] = ask_all(member, profile, prepare, false); });
-    std::jthread two([&] { at_once[1] = ask_all(member, profile, prepare, false); });
+    std::jthread one([&] { at_once[0] = ask_all(member, traits, prepare, false); });
+    std::jthread two([&] { at_once[1] = ask_all(member, traits, prepare, false); });
   }
   for (const auto& others : at_once) compare("two threads", others, true);
 }
 
-void judge_sweep(const Case& member, const Profile& profile, const Prepare& prepare, std::vector<Finding>& findings) {
-  PreparedPairs pairs(prepare, profile.answers);
+void judge_sweep(const Case& member, const Traits& traits, const Prepare& prepare, const Limits& limits,
+                 std::vector<Finding>& findings) {
+  if (!traits.answers.distance) return judge_contact(member, traits, prepare, limits, findings);
+  PreparedPairs pairs(prepare, traits);
   const Shot& start = member.shots.front();
   const double size = start.a->diagonal(), speed = member.motion.norm();
-  // Steps end as near contact as a body of this size allows.
-  constexpr double k_near = 1e-7;
   constexpr int k_most_steps = 2000;
-  const auto at_time = [&](double time) {
-    Shot shot = start;
-    shot.truth = {};
-    shot.X_AB.t += time * member.motion;
-    return shot;
-  };
-  if (!profile.answers.distance) {
-    const Answers before = pairs.ask(start);
-    if (!before.collide.outcome.ok() || !std::isfinite(member.contact_time)) return;
-    const Bounds bounds = bounds_of(start, before);
-    const double margin = (bounds.largest() + k_near * size) / speed;
-    const Answers inside = pairs.ask(at_time(member.contact_time + 2.0 * margin));
-    if (!inside.collide.outcome.ok()) return;
-    const bool right = inside.collide.outcome.value;
-    findings.push_back({.verdict = right ? Verdict::exact : Verdict::resolution,
-                        .metric = "contact",
-                        .unit = "size",
-                        .words = "yes/no after the contact"});
-    return;
-  }
   double time = 0.0;
   // A time after which bodies that part are far from each other.
   const double end = std::isfinite(member.contact_time) ? 2.0 * member.contact_time : 4.0 * size / speed;
   Bounds bounds{};
   int steps = 0;
   for (; steps < k_most_steps && time < end; ++steps) {
-    const Answers answers = pairs.ask(at_time(time));
+    const Shot shot = at_time(member, time);
+    const Answers answers = pairs.ask(shot);
+    judge_statuses(shot, 0, answers, limits, findings);
     if (!answers.distance.outcome.ok()) return;
-    bounds = bounds_of(at_time(time), answers);
+    bounds = bounds_of(shot, answers);
     const double distance = answers.distance.outcome.value.distance;
     if (distance <= k_near * size) break;
     time += distance / speed;
@@ -256,6 +286,7 @@ void judge_sweep(const Case& member, const Profile& profile, const Prepare& prep
 
 void judge_bad(const Case& member, const std::vector<Answers>& answers, std::vector<Finding>& findings) {
   for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (!member.shots[i].raw) continue;
     const Pose X = member.shots[i].pose();
     const bool finite = X.R.allFinite() && X.t.allFinite();
     const auto examine = [&](const char* query, Status status, const std::string& words) {

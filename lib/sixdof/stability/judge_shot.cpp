@@ -4,9 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include <sixdof/stability/reference.h>
 
 namespace sixdof::stability {
 namespace {
@@ -27,16 +30,28 @@ Verdict verdict_of(Status status) {
   return Verdict::threw;
 }
 
-/// Half the mean thickness of a body: moving its surface inwards by that makes it vanish.
-double half_thickness(const Mesh& mesh) { return mesh.solid() ? mesh.volume() / mesh.area() : 0.0; }
+/// Radius of a ball that fits into a body, 0 if it is no solid: a surface that lies deeper than that inside its body
+/// may be no surface at all. Both are lower bounds for convex bodies, and the distance of the box's centre from the
+/// planes of the faces is the radius where a body is symmetric about it.
+double inner_radius(const Mesh& mesh) {
+  if (!mesh.solid()) return 0.0;
+  const auto& points = mesh.vertices();
+  const Eigen::Vector3d center = mesh.box().center();
+  double within = std::numeric_limits<double>::infinity();
+  for (const auto& [i, j, k] : mesh.triangles()) {
+    const Eigen::Vector3d normal = (points[j] - points[i]).cross(points[k] - points[i]);
+    if (!normal.isZero(0.0)) within = std::min(within, normal.normalized().dot(points[i] - center));
+  }
+  return std::max(within, mesh.volume() / mesh.area());
+}
 
-double least_half_thickness(const Shot& shot) { return std::min(half_thickness(*shot.a), half_thickness(*shot.b)); }
+double least_radius(const Shot& shot) { return std::min(inner_radius(*shot.a), inner_radius(*shot.b)); }
 
 /// How far surfaces have to move until a miss is right: to where they no longer meet or, for an algorithm that declares
 /// a resolution, until one body has vanished.
 double distance_to_miss(const Shot& shot, const Answers& answers) {
   const double gap = std::abs(shot.truth.gap);
-  return answers.resolution > 0.0 && shot.truth.gap < 0.0 ? std::min(gap, least_half_thickness(shot)) : gap;
+  return answers.resolution > 0.0 && shot.truth.gap < 0.0 ? std::min(gap, least_radius(shot)) : gap;
 }
 
 /// Yes/no, once right and wrong are known: how far from contact the mistake is.
@@ -49,13 +64,13 @@ Finding sign_finding(const char* metric, bool right, const Shot& asked, const An
 }
 
 void judge_response(const Case& member, std::size_t index, const Response& response, const Answers& answers,
-                    const Profile& profile, std::vector<Finding>& findings) {
+                    const Traits& traits, std::vector<Finding>& findings) {
   const Shot& shot = member.shots[index];
   const Truth& truth = shot.truth;
   const Bounds bounds = bounds_of(shot, answers);
   const double size = shot.a->diagonal();
-  const bool excused = truth.contained && !profile.pushes_contained;
-  if (!std::isnan(truth.gap) && profile.law != ResponseLaw::none) {
+  const bool excused = truth.contained && traits.limits.surfaces_only.respond;
+  if (!std::isnan(truth.gap)) {
     // At a gap of 0 any answer is right.
     const bool right = truth.gap == 0.0 || pushes(response) == (truth.gap < 0.0);
     if (excused && !right) {
@@ -77,13 +92,13 @@ void judge_response(const Case& member, std::size_t index, const Response& respo
     findings.push_back(std::move(finding));
   }
   const double depth = -truth.gap;
-  // Laws that add up what each point or contact is deep follow the shortest way of the whole body where it is shallow.
-  constexpr double k_shallow = 0.5;
-  const bool own_direction = profile.law != ResponseLaw::volume || answers.resolution > 0.0;
-  const bool claimed = !own_direction || depth < k_shallow * least_half_thickness(shot);
-  if (truth.push && claimed && depth > bounds.largest() && !response.force.isZero(0.0)) {
+  // Of a body, as a part of its inner radius, up to which MethodLimits::own_direction promises a direction.
+  constexpr double k_shallow = 0.25;
+  const bool own_direction = traits.limits.own_direction;
+  const bool claimed = !own_direction || depth < k_shallow * least_radius(shot);
+  if (truth.push && claimed && depth > bounds.least_depth() && !response.force.isZero(0.0)) {
     const double angle = angle_between(response.force, *truth.push);
-    const double allowed = rounding_angle(shot, bounds, depth, response.force, profile);
+    const double allowed = rounding_angle(bounds, depth);
     const Verdict verdict = angle <= allowed                                  ? Verdict::exact
                             : own_direction && angle < 0.5 * std::numbers::pi ? Verdict::resolution
                                                                               : Verdict::wrong;
@@ -107,36 +122,42 @@ double support(const Mesh& mesh, const Pose& X, const Eigen::Vector3d& direction
 void judge_witnesses(const Case& member, std::size_t index, const Separation& gap, const Bounds& bounds,
                      std::vector<Finding>& findings) {
   const Shot& shot = member.shots[index];
-  if (!gap.has_witnesses || !(gap.distance > bounds.largest())) return;
+  if (!gap.has_witnesses) return;
   const double size = shot.a->diagonal();
   const Eigen::Vector3d between = gap.witness_b - gap.witness_a;
   findings.push_back(length_finding("witnesses", std::abs(between.norm() - gap.distance), size, bounds, index,
                                     fmt::format("points {} apart at distance {}", between.norm(), gap.distance)));
-  if (!member.convex || shot.raw || shot.truth.gap <= 0.0) return;
-  // Along the normal the supporting planes of convex bodies are as far apart as the bodies. Rounding turns the normal
-  // by rounding / distance, which moves a support by that times the body's size.
+  if (!member.convex || shot.truth.gap <= 0.0 || !(gap.distance > bounds.least_depth())) return;
+  // Along the normal the supporting planes of convex bodies are as far apart as the bodies. Where the distance d is
+  // right to e, witnesses on nearly parallel parts may be off sideways by sqrt(2 d e). That turns the normal by
+  // sqrt(2 e / d), which moves a support by that times the body's size.
   const Eigen::Vector3d n = between.normalized();
   const double width = support(*shot.b, shot.X_AB.pose(), n) + support(*shot.a, {}, -n);
   Bounds turned = bounds;
-  const double lever = 1.0 + (size + shot.b->diagonal()) / gap.distance;
-  turned.rounding *= lever;
-  turned.resolution *= lever;
+  const auto moved = [&](double error) { return (size + shot.b->diagonal()) * std::sqrt(2.0 * error / gap.distance); };
+  turned.rounding += moved(bounds.rounding);
+  turned.resolution += moved(bounds.resolution);
   findings.push_back(
       length_finding("support", std::abs(width - gap.distance), size, turned, index,
                      fmt::format("planes across the closest points are {} apart, distance {}", width, gap.distance)));
 }
 
-void judge_contradictions(std::size_t index, const Shot& shot, const Answers& answers, const Bounds& bounds,
-                          std::vector<Finding>& findings) {
+void judge_contradictions(std::size_t index, const Shot& shot, const Answers& answers, const Traits& traits,
+                          const Bounds& bounds, std::vector<Finding>& findings) {
   if (!answers.collide.outcome.ok() || !answers.distance.outcome.ok()) return;
   const double distance = answers.distance.outcome.value.distance;
   const bool yes = answers.collide.outcome.value;
   const double size = shot.a->diagonal();
-  const bool bodies = shot.truth.contained || std::isnan(shot.truth.gap) || shot.truth.gap < 0.0;
   // Inside each other bodies collide though the surfaces are apart.
-  const bool contradict = yes ? distance > 0.0 && !bodies : distance == 0.0;
+  const bool unknown = std::isnan(shot.truth.gap);
+  const bool may_be_inside = shot.truth.contained || (unknown && !traits.limits.surfaces_only.collide);
+  // A distance of bodies is 0 there, where surfaces may not collide.
+  const bool may_touch = shot.truth.contained && traits.limits.distance_of_bodies;
+  const bool contradict = yes ? distance > 0.0 && !may_be_inside : distance == 0.0 && !may_touch;
   if (!contradict) return;
-  const double by = yes ? distance : std::isnan(shot.truth.gap) ? 0.0 : std::abs(shot.truth.gap);
+  const double gap =
+      unknown ? static_cast<double>(reference_distance(*shot.a, *shot.b, shot.X_AB.pose())) : std::abs(shot.truth.gap);
+  const double by = yes ? distance : gap;
   findings.push_back(length_finding("contradiction", by, size, bounds, index,
                                     fmt::format("collide says {}, distance is {}", yes ? "yes" : "no", distance)));
 }
@@ -145,15 +166,13 @@ void judge_contradictions(std::size_t index, const Shot& shot, const Answers& an
 
 Bounds bounds_of(const Shot& shot, const Answers& answers) {
   return {.rounding = shot.truth.error + shot.rounding(),
-          .resolution = answers.resolution + k_declared_accuracy * shot.a->diagonal()};
+          .resolution = answers.resolution,
+          .slack = k_declared_accuracy * shot.a->diagonal()};
 }
 
-double rounding_angle(const Shot& shot, const Bounds& bounds, double depth, const Eigen::Vector3d& force,
-                      const Profile& profile) {
+double rounding_angle(const Bounds& bounds, double depth) {
   constexpr double k_cap = 100.0, k_exact_angle = 1e-9;
-  const double angle = k_exact_angle + k_cap * bounds.rounding / depth;
-  if (profile.law != ResponseLaw::volume) return angle;
-  return angle + bounds.rounding * (shot.a->diagonal() + shot.b->diagonal()) / force.norm();
+  return k_exact_angle + k_cap * bounds.rounding / depth;
 }
 
 double moving_area(const Shot& shot) { return shot.a->area() + shot.b->area(); }
@@ -185,7 +204,9 @@ void judge_statuses(const Shot& shot, std::size_t index, const Answers& answers,
     if (status == Status::ok || status == Status::unsupported) return;
     Verdict verdict = verdict_of(status);
     if (words == "std::bad_alloc") verdict = Verdict::out_of_memory;
-    if (verdict == Verdict::threw && !solid) verdict = Verdict::unsupported;
+    // There is no penalty without an inside.
+    const bool no_inside = !solid && query == std::string_view("respond");
+    if (verdict == Verdict::threw && no_inside) verdict = Verdict::unsupported;
     findings.push_back({.verdict = verdict, .metric = query, .unit = "1", .shot = index, .words = words});
   };
   examine("collide", answers.collide.outcome.status, answers.collide.words);
@@ -201,7 +222,7 @@ void judge_statuses(const Shot& shot, std::size_t index, const Answers& answers,
   }
 }
 
-void judge_truth(const Case& member, std::size_t index, const Answers& answers, const Profile& profile,
+void judge_truth(const Case& member, std::size_t index, const Answers& answers, const Traits& traits,
                  std::vector<Finding>& findings) {
   const Shot& shot = member.shots[index];
   const Truth& truth = shot.truth;
@@ -209,7 +230,7 @@ void judge_truth(const Case& member, std::size_t index, const Answers& answers, 
   const double size = shot.a->diagonal();
   if (answers.collide.outcome.ok() && !std::isnan(truth.gap)) {
     const bool right = answers.collide.outcome.value == (truth.gap <= 0.0);
-    if (!right && truth.contained && !profile.finds_contained) {
+    if (!right && truth.contained && traits.limits.surfaces_only.collide) {
       findings.push_back({.verdict = Verdict::unsupported,
                           .metric = "missed",
                           .unit = "size",
@@ -221,7 +242,7 @@ void judge_truth(const Case& member, std::size_t index, const Answers& answers, 
   }
   if (answers.distance.outcome.ok()) {
     const Separation& gap = answers.distance.outcome.value;
-    if (truth.contained && profile.distance_of_bodies && gap.distance == 0.0) {
+    if (truth.contained && traits.limits.distance_of_bodies && gap.distance == 0.0) {
       findings.push_back({.verdict = Verdict::unsupported,
                           .metric = "distance",
                           .unit = "size",
@@ -234,8 +255,8 @@ void judge_truth(const Case& member, std::size_t index, const Answers& answers, 
     judge_witnesses(member, index, gap, bounds, findings);
   }
   if (answers.respond.outcome.ok())
-    judge_response(member, index, answers.respond.outcome.value, answers, profile, findings);
-  judge_contradictions(index, shot, answers, bounds, findings);
+    judge_response(member, index, answers.respond.outcome.value, answers, traits, findings);
+  judge_contradictions(index, shot, answers, traits, bounds, findings);
 }
 
 }  // namespace sixdof::stability

@@ -147,6 +147,7 @@ std::unique_ptr<Algorithm> make_bullet_gimpact_algorithm() {
        .summary = "Bullet's GImpact: contacts of triangle pairs as a penalty wrench",
        .answers = {.collide = true, .respond = true},
        .law = ResponseLaw::depth,
+       .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(),
                       Parameter::number(k_margin, "triangles are thickened by this length; Bullet's own default is 0.1",
                                         "length", "0", 0.0, 1e9)}});

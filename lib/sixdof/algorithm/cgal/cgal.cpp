@@ -126,6 +126,7 @@ std::unique_ptr<Algorithm> make_cgal_algorithm() {
        .summary = "CGAL (GPL): yes/no of moving meshes; volume of the intersection by corefinement, and its gradient",
        .answers = {.collide = true, .respond = true},
        .law = ResponseLaw::volume,
+       .limits = {.surfaces_only = {.collide = true}},
        .by_default = false});
 }
 

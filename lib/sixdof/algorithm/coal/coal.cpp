@@ -183,6 +183,7 @@ std::unique_ptr<Algorithm> make_coal_obbrss_algorithm() {
        .version = version(),
        .summary = "Coal, tree of oriented boxes with rectangle-swept spheres",
        .answers = {.collide = true, .distance = true},
+       .limits = {.surfaces_only = {.collide = true}},
        .parameters = {Parameter::choice(k_profile, "default: Coal's own requests; tuned: its developers' advice",
                                         "default", {"default", "tuned"})}});
 }
@@ -194,6 +195,7 @@ std::unique_ptr<Algorithm> make_coal_contacts_algorithm() {
        .summary = "Coal's contacts of triangle pairs as a penalty wrench",
        .answers = {.respond = true},
        .law = ResponseLaw::depth,
+       .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("1000000", 1e9)}});
 }
 

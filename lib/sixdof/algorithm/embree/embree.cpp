@@ -179,6 +179,7 @@ std::unique_ptr<Algorithm> make_embree_algorithm() {
        .version = RTC_VERSION_STRING " float",
        .summary = "Embree's rtcCollide with this project's exact test of triangles; every query moves and refits B",
        .answers = {.collide = true},
+       .limits = {.surfaces_only = {.collide = true}},
        .parameters = {Parameter::choice(k_profile, "default: Embree's tutorial; tuned: its manual's advice", "default",
                                         {"default", "tuned"})}});
 }

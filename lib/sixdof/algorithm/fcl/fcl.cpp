@@ -228,6 +228,7 @@ Traits traits(std::string name, std::string summary, QuerySet answers) {
           .version = FCL_VERSION,
           .summary = std::move(summary),
           .answers = answers,
+          .limits = {.surfaces_only = {.collide = true}},
           .parameters = {Parameter::number(k_relative_error,
                                            "a distance may be too large by this fraction of the true one; 0 is exact",
                                            "1", "0", 0.0, 1.0)
@@ -256,7 +257,8 @@ std::unique_ptr<Algorithm> make_fcl_obb_algorithm() {
   return make_algorithm<FclCollideQuery<fcl::OBBd>>({.name = "fcl-obb",
                                                      .version = FCL_VERSION,
                                                      .summary = "FCL, tree of oriented boxes",
-                                                     .answers = {.collide = true}});
+                                                     .answers = {.collide = true},
+                                                     .limits = {.surfaces_only = {.collide = true}}});
 }
 
 std::unique_ptr<Algorithm> make_fcl_aabb_algorithm() {
@@ -264,7 +266,8 @@ std::unique_ptr<Algorithm> make_fcl_aabb_algorithm() {
       {.name = "fcl-aabb",
        .version = FCL_VERSION,
        .summary = "FCL, tree of axis-aligned boxes; every query copies and refits the models",
-       .answers = {.collide = true}});
+       .answers = {.collide = true},
+       .limits = {.surfaces_only = {.collide = true}}});
 }
 
 std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() {
@@ -274,6 +277,7 @@ std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() {
        .summary = "FCL's contacts of triangle pairs as a penalty wrench",
        .answers = {.respond = true},
        .law = ResponseLaw::depth,
+       .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("1000000", 1e9)}});
 }
 

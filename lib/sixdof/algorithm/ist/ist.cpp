@@ -211,6 +211,7 @@ std::unique_ptr<Algorithm> make_ist_algorithm() {
        .answers = {.collide = true, .distance = true, .respond = true},
        .law = ResponseLaw::volume,
        .approximates = true,
+       .limits = {.distance_of_bodies = true, .own_direction = true},
        .parameters = ist::ist_parameters()});
 }
 
@@ -222,6 +223,7 @@ std::unique_ptr<Algorithm> make_ist_descent_algorithm() {
        .answers = {.collide = true, .distance = true, .respond = true},
        .law = ResponseLaw::volume,
        .approximates = true,
+       .limits = {.distance_of_bodies = true, .own_direction = true},
        .parameters = ist::descent_parameters()});
 }
 

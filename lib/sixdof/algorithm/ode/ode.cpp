@@ -174,6 +174,7 @@ std::unique_ptr<Algorithm> make_ode_algorithm() {
        .summary = "ODE with OPCODE: contacts of triangle pairs as a penalty wrench",
        .answers = {.collide = true, .respond = true},
        .law = ResponseLaw::depth,
+       .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("65535", k_largest_count)}});
 }
 

@@ -96,6 +96,7 @@ std::unique_ptr<Algorithm> make_simbody_algorithm() {
        .summary = "Simbody's elastic foundation: a spring on each triangle of both meshes",
        .answers = {.collide = true, .respond = true},
        .law = ResponseLaw::depth,
+       .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .by_default = false});
 }
 

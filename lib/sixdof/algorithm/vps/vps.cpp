@@ -262,6 +262,8 @@ Traits traits(std::string name, std::string summary, std::vector<Parameter> para
           .answers = {.collide = true, .respond = true},
           .law = ResponseLaw::depth,
           .approximates = true,
+          // A is sampled at B's points only: none is in an A that lies inside B.
+          .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
           .parameters = std::move(parameters)};
 }
 
