@@ -103,6 +103,26 @@ TEST(RayCast, AgreesWithTheSphereMethodOnUnequalSizesAndThinPlates) {
   compare(boxes_mesh({{{1.0, 2.0, 0.0}, {1.0, 0.3, 0.4}}}), speck, 12, 33);
 }
 
+/// Contact of a small A is nearer than the rounding that is allowed for ties, which is relative to both sizes.
+TEST(RayCast, ContactOfASpeckIsOutsideOfALargeBody) {
+  const Mesh large = boxes_mesh({{{0.0, 0.0, 0.0}, {1.0, 0.8, 0.6}}}, "large");
+  std::mt19937_64 random(41);
+  for (const double size : {1e-3, 1e-4, 1e-5}) {
+    const Mesh speck = boxes_mesh({{{0.0, 0.0, 0.0}, {size, 0.8 * size, 0.6 * size}}}, "speck");
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3d u = random_direction(random);
+      const Eigen::Vector4d q = random_rotation(random);
+      const Ray ray = cast_ray(*make_ray_cast(), speck, large, u, q, {k_contact_target * speck.diagonal()});
+      const auto query = k_brute_force->prepare(speck, large, k_brute_force->settings());
+      const auto distance_at = [&](double s) {
+        return query->distance(ConfigurationRay(speck, large, q, u).pose(s)).value.distance;
+      };
+      EXPECT_LE(distance_at(ray.translations[0]), 2.0 * k_contact_target * speck.diagonal() + 1e-14);
+      EXPECT_GT(distance_at(ray.translations[0] + 1e-3 * size), 0.0) << size;
+    }
+  }
+}
+
 TEST(RayCast, IsExactForBoxesFaceToFace) {
   // Rotations by right angles permute the half edges; along an axis the translation is the sum of both and the target.
   const Eigen::Vector3d half_a(1.1, 0.7, 0.4), half_b(0.3, 0.55, 0.8);

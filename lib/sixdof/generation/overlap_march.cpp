@@ -166,6 +166,12 @@ std::optional<OverlapMeasurement> OverlapMarch::advance(double target) {
     } else if (std::abs(inner.volume - target) <= limits_.tolerance) {
       // The target lies between neighbouring doubles of s, closer than the volume is rounded.
       return pass();
+    } else if (inner.volume - passed_.back().volume <= limits_.rounding) {
+      throw BadMesh(
+          fmt::format("the volume is {} and {} at neighbouring translations: it is not known to the tolerance {}, "
+                      "since one body is "
+                      "too small for the other's triangles, or both for their coordinates",
+                      passed_.back().volume, inner.volume, limits_.tolerance));
     } else {
       throw Error(fmt::format("the volume jumps from {} at s = {} to {} at s = {} next to it, past the target {}",
                               passed_.back().volume, passed_.back().s, inner.volume, inner.s, target));

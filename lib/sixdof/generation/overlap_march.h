@@ -13,6 +13,7 @@ struct MarchLimits {
   double resolution = 0.0;  ///< Intervals no longer than this are not divided.
   double tolerance = 0.0;   ///< |volume - target| allowed in a hit. The search ends at k_converged times it.
   double first_step = 0.0;  ///< Displacement from contact to the first measurement.
+  double rounding = 0.0;    ///< Largest error of a measured volume.
 };
 
 /// Searches one ray inwards from contact for the first translations at which volumes are met; see volume_generator.h.
@@ -27,7 +28,8 @@ class OverlapMarch {
   OverlapMarch(Measure measure, Peak peak, double contact, const MarchLimits& limits);
 
   /// The first hit of a target; nothing if the volume stays below it down to s = 0. Targets ascend from call to call.
-  /// @throws Error if the measurements are not those of a continuous function
+  /// @throws BadMesh if volumes are rounded too coarsely for the tolerance; Error if the measurements are not those of
+  /// a continuous function
   std::optional<OverlapMeasurement> advance(double target);
 
   /// |volume - target| at which the search ends, as a fraction of the tolerance: leaves room for oracles that round

@@ -201,7 +201,9 @@ bool try_update(Cast& cast, TrianglePair pair) {
   const TriangleCorners a{-reflected[0], -reflected[1], -reflected[2]};
   const TriangleCorners b = cast.b.triangle(pair.b);  // at t = 0
   const double size = cast.size();
-  const double tie = k_cast_tie * size;
+  // Below the target, so that triangles that intersect do not tie: contact of a small A with a large B is nearer than
+  // a part of both sizes.
+  const double tie = std::min(k_cast_tie * size, 0.5 * cast.target);
   Hit& best = cast.best;
   // Triangles around the corners and edges of the closest pair tie with it along its axis.
   const auto distance_along = [&](const Eigen::Vector3d& axis) {

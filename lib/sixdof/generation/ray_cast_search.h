@@ -31,8 +31,8 @@
 namespace sixdof::ray_cast {
 
 /// Tolerance of distances, in units of Cast::size(): the error of exact distances and of their use. A pair of triangles
-/// whose distance at best.translation is less than d by no more than this ties with the best hit and does not replace
-/// it. So of many faces that tie only the first is expanded.
+/// whose distance at best.translation is less than d by no more than this, and d / 2, ties with the best hit and does
+/// not replace it. So of many faces that tie only the first is expanded.
 constexpr double k_cast_tie = 1e-14;
 
 /// A hit. Before there is one, `pair` is empty, the translation is the least of interest, and the axes are guesses.

@@ -32,6 +32,18 @@ struct VolumePair {
         body_a(std::make_shared<const Body>(a)),
         body_b(a.hash() == b.hash() ? body_a : std::make_shared<const Body>(b)) {}
 
+  /// Of a volume (overlap.h). Few triangles are as large as the largest, so one of each body stands for those crossed.
+  double rounding() const {
+    constexpr double k_multiple = 1e-15;
+    const auto largest = [](const Body& body) {
+      double square = 0.0;
+      for (const Eigen::Vector3d& area : body.areas) square = std::max(square, area.squaredNorm());
+      return std::sqrt(square);
+    };
+    const double reach = mesh_a.diagonal() + mesh_b.diagonal() + mesh_a.center().norm() + mesh_b.center().norm();
+    return k_multiple * reach * (largest(*body_a) + largest(*body_b));
+  }
+
   const Mesh& mesh_a;
   const Mesh& mesh_b;
   std::shared_ptr<const Body> body_a, body_b;  // one for two copies of one mesh
@@ -76,7 +88,8 @@ class VolumeSolver final : public RaySolver {
         [&](const OverlapMeasurement& outer, const OverlapMeasurement& inner) { return peak(outer, inner); }, contact,
         {.resolution = k_first_overlap_resolution * std::min(pair_.mesh_a.diagonal(), pair_.mesh_b.diagonal()),
          .tolerance = k_volume_tolerance * pair_.mesh_a.volume(),
-         .first_step = first_step_});
+         .first_step = first_step_,
+         .rounding = pair_.rounding()});
     const std::size_t first = k;
     for (; k < targets.size() && targets[k] <= most_; ++k) {
       const std::optional<OverlapMeasurement> hit = march.advance(targets[k]);

@@ -31,7 +31,8 @@ namespace sixdof {
 /// @return makes a solver for these meshes; may be called from several threads. Both meshes and `touching` outlive it
 /// and the solvers. Targets are volumes in the cube of the meshes' unit, ascending; 0 stands for contact, which is
 /// distance bucket 0. Measurements are those of the volume.
-/// @throws BadMesh naming the mesh that is not a solid and why.
+/// @throws BadMesh naming the mesh that is not a solid and why. So do the solvers where the rounding of a volume
+/// (overlap.h) exceeds its tolerance: A some thousand times smaller than B's triangles, or both far from their origins.
 std::function<std::unique_ptr<RaySolver>()> volume_solvers(const DistanceGenerator& touching, const Mesh& a,
                                                            const Mesh& b);
 
