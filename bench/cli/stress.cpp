@@ -15,6 +15,7 @@
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
+#include <sixdof/stability/ray_algorithm.h>
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
@@ -34,9 +35,15 @@ struct Options {
   bool json = false;
 };
 
+void add_generators(Registry& registry) {
+  registry.add(std::make_unique<stability::RayAlgorithm>(stability::TargetKind::distance));
+  registry.add(std::make_unique<stability::RayAlgorithm>(stability::TargetKind::volume));
+}
+
 std::set<std::string> own_algorithms() {
   Registry own;
   register_core_algorithms(own);
+  add_generators(own);
   std::set<std::string> names;
   for (const auto& algorithm : own.all()) names.insert(algorithm->traits().name);
   return names;
@@ -84,6 +91,7 @@ void print_red(const study::StressCell& cell, const study::StressLine& line) {
 void run_stress_command(const Options& options) {
   Registry registry;
   register_all_algorithms(registry);
+  add_generators(registry);
   const study::StressPlan plan = plan_of(options, registry);
   // Bodies are new for every seed: in the user's cache they would stay for good. Here they are shared by algorithms and
   // by the shots of a case.
@@ -121,8 +129,10 @@ void add_stress_command(CLI::App& app) {
       app.add_subcommand("stress", "Ask algorithms hard cases with known answers, and show where each one breaks");
   const auto options = std::make_shared<Options>();
   command
-      ->add_option("--algorithms,--algorithm", options->algorithms,
-                   "One or more; if left out, all but null, slow ones and those of convex hulls")
+      ->add_option(
+          "--algorithms,--algorithm", options->algorithms,
+          "One or more; if left out, all but null, slow ones and those of convex hulls. generate-distances and "
+          "generate-volumes are the generators of sets")
       ->delimiter(',')
       ->allow_extra_args(false);
   std::string names;

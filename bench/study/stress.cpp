@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include <sixdof/geometry/save.h>
+#include <sixdof/stability/bodies.h>
+#include <sixdof/stability/ray_algorithm.h>
 #include <sixdof/stability/search.h>
 
 namespace sixdof::study {
@@ -42,11 +44,12 @@ class WatchedQuery final : public Query {
 /// An algorithm, ready to be asked anything.
 struct Subject {
   const Algorithm& algorithm;
+  const StressWatch& watch;
   Settings settings;
   Prepare prepare;
 
-  Subject(const Algorithm& of, const StressWatch& watch)
-      : algorithm(of), settings(coarse_settings(of)), prepare([this, &watch](const Mesh& a, const Mesh& b) {
+  Subject(const Algorithm& of, const StressWatch& watching)
+      : algorithm(of), watch(watching), settings(coarse_settings(of)), prepare([this](const Mesh& a, const Mesh& b) {
           watch.prepares();
           return std::make_unique<WatchedQuery>(algorithm.prepare(a, b, settings), watch);
         }) {}
@@ -63,6 +66,8 @@ bool too_large(const Case& member, const Algorithm& algorithm) {
 }
 
 Judgement judge_case(const Case& member, const Subject& subject) {
+  if (const auto* const rays = dynamic_cast<const RayAlgorithm*>(&subject.algorithm))
+    return rays->judge_rays(member, subject.watch.asks);
   if (!too_large(member, subject.algorithm)) return judge(member, subject.algorithm.traits(), subject.prepare);
   Judgement judgement;
   judgement.findings.push_back(
@@ -104,6 +109,23 @@ std::string mesh_file(const Mesh& mesh, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / (mesh.hash().substr(0, k_digits) + ".off");
   if (!std::filesystem::exists(file)) save_mesh(mesh, file);
   return file.string();
+}
+
+/// The ray turned to z and B to the identity: the first configuration of the coarsest grid.
+std::string reproduction_of_ray(const Case& member, const Shot& shot, const RayAlgorithm& algorithm,
+                                const std::filesystem::path& folder) {
+  const RayProblem ray = algorithm.problem(member.shots.front(), shot);
+  const Eigen::Quaterniond q = Eigen::Quaterniond::FromTwoVectors(ray.direction, Eigen::Vector3d::UnitZ());
+  const Mesh a = *transformed(*shot.a, {Eigen::Vector3d::Zero(), q});
+  const Mesh b = *transformed(*shot.b, {Eigen::Vector3d::Zero(), (q * shot.X_AB.q).normalized()});
+  const bool distances = algorithm.kind() == TargetKind::distance;
+  std::string percents;
+  for (const double target : ray.targets) {
+    const double part = target / (distances ? a.diagonal() : std::abs(a.volume()));
+    percents += fmt::format("{}{:.3f}", percents.empty() ? "" : ",", std::min(100.0, 100.0 * part));
+  }
+  return fmt::format("sixdof generate --a {} --b {} --grid 180 --{} {} -o rays.h5", mesh_file(a, folder),
+                     mesh_file(b, folder), distances ? "distances" : "volumes", percents);
 }
 
 }  // namespace
@@ -158,8 +180,11 @@ StressCell run_cell(const Family& family, const Algorithm& algorithm, const Stre
   return cell;
 }
 
-std::string reproduction(const Shot& shot, const Algorithm& algorithm, const std::string& settings,
+std::string reproduction(const Case& member, std::size_t index, const Algorithm& algorithm, const std::string& settings,
                          const std::filesystem::path& folder) {
+  const Shot& shot = member.shots.at(index);
+  if (const auto* const rays = dynamic_cast<const RayAlgorithm*>(&algorithm))
+    return reproduction_of_ray(member, shot, *rays, folder);
   // The program refuses a pose that is none: such a line shows the meshes and the numbers.
   constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
   const bool rotates = !shot.raw || shot.raw->R.allFinite();

@@ -61,10 +61,11 @@ struct StressWatch {
 StressCell run_cell(const stability::Family& family, const Algorithm& algorithm, const StressEffort& effort,
                     std::uint64_t seed, const StressWatch& watch);
 
-/// The command that asks the same again, one line: numbers with all digits, settings that differ from the defaults.
+/// The command that asks a case's shot again, one line: numbers with all digits, settings that differ from the
+/// defaults. Of a generator: the same ray, turned to an axis, with targets to a thousandth of a percent.
 /// @param settings of StressCell
 /// @param folder gets the two meshes as OFF files named by content
-std::string reproduction(const stability::Shot& shot, const Algorithm& algorithm, const std::string& settings,
-                         const std::filesystem::path& folder);
+std::string reproduction(const stability::Case& member, std::size_t shot, const Algorithm& algorithm,
+                         const std::string& settings, const std::filesystem::path& folder);
 
 }  // namespace sixdof::study

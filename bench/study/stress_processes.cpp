@@ -188,14 +188,11 @@ class Process {
  private:
   void finish(int status) {
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && !text_.empty()) return read_text(text_, cell_);
-    if (WIFEXITED(status) && WEXITSTATUS(status) == k_exit_memory)
-      return lose(Verdict::out_of_memory, "no more memory");
-    if (WIFEXITED(status))
-      return lose(Verdict::crashed, fmt::format("ended by itself with exit code {}", WEXITSTATUS(status)));
-    const int signal = WTERMSIG(status);
-    // Not sent by this program: by the kernel, for want of memory.
-    lose(signal == SIGKILL ? Verdict::out_of_memory : Verdict::crashed,
-         fmt::format("ended by signal {} ({})", signal, ::strsignal(signal)));
+    // Nobody here sends SIGKILL to a process that has not been given up: the kernel did, for want of memory.
+    const bool killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+    const bool said_so = WIFEXITED(status) && WEXITSTATUS(status) == k_exit_memory;
+    const ChildFailure end = how_it_ended(status, killed || said_so);
+    lose(end.status == Status::out_of_memory ? Verdict::out_of_memory : Verdict::crashed, end.what());
   }
 
   /// The case and the pose that the process was asked last.

@@ -26,8 +26,8 @@ StressLine stress_line(const StressCell& cell, const std::filesystem::path& fold
           .worst = fmt::format("{:.3g} {}", worst.value, worst.unit),
           .member = member.name,
           .thread = member.thread,
-          .reproduction = reproduction(member.shots.at(worst.shot), *cell.algorithm, cell.settings, folder),
-          .slow_reproduction = reproduction(slow.shots.at(cell.slow_shot), *cell.algorithm, cell.settings, folder),
+          .reproduction = reproduction(member, worst.shot, *cell.algorithm, cell.settings, folder),
+          .slow_reproduction = reproduction(slow, cell.slow_shot, *cell.algorithm, cell.settings, folder),
           .words = worst.words,
           .parameter = member.parameter};
 }

@@ -59,6 +59,19 @@ TEST_F(Stress, EveryReproductionIsACommandThatAsksTheSameCase) {
   }
 }
 
+TEST_F(Stress, JudgesTheGeneratorsOfSets) {
+  const json list = cells("--algorithms generate-distances,generate-volumes --families kissing,contained");
+  ASSERT_EQ(list.size(), 4u);
+  for (const json& cell : list) {
+    EXPECT_THAT(cell.at("verdict"), ::testing::AnyOf("exact", "within declared resolution")) << cell;
+    EXPECT_GE(cell.at("cases"), 5);
+    const std::string line = cell.at("reproduction");
+    ASSERT_TRUE(line.starts_with("sixdof generate ")) << line;
+    const auto done = run(line.substr(std::string("sixdof ").size()));
+    EXPECT_EQ(done.exit_code, 0) << done.err << line;
+  }
+}
+
 TEST_F(Stress, IsDeterministicBySeedButForTimes) {
   const auto without_times = [&](const std::string& arguments) {
     json list = cells("--algorithms exact,brute-force --families motion,repeat,grazing " + arguments);

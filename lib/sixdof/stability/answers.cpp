@@ -12,12 +12,6 @@
 namespace sixdof::stability {
 namespace {
 
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 template <class T>
 void ask_one(Query& query, bool asked, Outcome<T> (Query::*question)(const Pose&), const Pose& X_AB, Asked<T>& result,
              Answers& answers) {
@@ -33,6 +27,12 @@ void ask_one(Query& query, bool asked, Outcome<T> (Query::*question)(const Pose&
 }
 
 }  // namespace
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 Settings coarse_settings(const Algorithm& algorithm) {
   Settings settings = algorithm.settings();

@@ -36,6 +36,9 @@ struct Answers {
   double resolution = 0.0;  ///< That the algorithm declares for this pair (length); 0 if it does not approximate.
 };
 
+/// Processor time of the calling thread (seconds).
+double thread_seconds();
+
 /// Asks one query object.
 Answers ask(Query& query, const QuerySet& kinds, const Pose& X_AB);
 
