@@ -33,7 +33,7 @@ class RaySolver {
   /// volumes, ascending)
   /// @param translations one per target: the largest s >= 0 at which it is met, NaN if there is none
   /// @param residuals one per target: |measured - target| at that s, 0 if there is none
-  /// @throws Error if a target is passed without being met within its tolerance
+  /// @throws BadMesh if coordinates are too large for the tolerance; Error if a target is passed without being met
   virtual void solve(const Eigen::Vector3d& direction, std::span<const double> targets, std::span<double> translations,
                      std::span<double> residuals) = 0;
 

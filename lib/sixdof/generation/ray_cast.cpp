@@ -80,8 +80,9 @@ class RayCastSolver final : public RaySolver {
       residual = next_residual;
     }
     if (residual > k_distance_tolerance * a_.diagonal()) {
-      throw Error(fmt::format("distance {} at s = {} instead of {}: the coordinates are too large for the meshes' size",
-                              distance, s, target));
+      throw BadMesh(
+          fmt::format("distance {} at s = {} instead of {}: the coordinates are too large for the meshes' size",
+                      distance, s, target));
     }
     return {s, residual};
   }
