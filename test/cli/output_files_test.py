@@ -1,0 +1,403 @@
+"""Every kind of file that the programs write is there whole or not at all: with a full disk, a write that kills the
+writer, a folder without permission, two writers, another locale and hard names.
+
+usage: output_files_test.py SIXDOF SIXDOF_BENCH
+"""
+
+import json
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SIXDOF, SIXDOF_BENCH = sys.argv[1:3]
+del sys.argv[1:3]
+NOBODY = 65534
+KNOWN_TEMPORARY = ".partial"
+
+A = "OFF\n4 4 6\n0 0 0\n1 0.1 0\n-0.2 1.3 0.3\n0.1 -0.3 0.9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"
+OPEN = "OFF\n4 3 6\n0 0 0\n1 0.1 0\n-0.2 1.3 0.3\n0.1 -0.3 0.9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n"
+GRID = ["--a", "a.off", "--b", "a.off", "--grid", "90/60", "--distances", "0,5", "--volumes", "1"]
+STUDY = ["--a", "a.off", "--b", "a.off", "--algorithms", "exact", "--budget", "1s"]
+
+
+class Kind:
+    """A kind of file: the words that write it, and how its content is judged."""
+
+    def __init__(self, name, file, words, times=False, program=SIXDOF, replaces=True):
+        self.name, self.file, self.words = name, file, words
+        self.times = times  # are in the file, so that two runs differ
+        self.program = program
+        self.replaces = replaces  # a file of that name that is there already
+
+    def command(self, file=None):
+        return [self.program, *[(file or self.file) if word == "OUT" else word for word in self.words]]
+
+
+KINDS = [
+    Kind("mesh, PLY", "x.ply", ["models", "make", "cone-1k", "-o", "OUT"]),
+    Kind("mesh, OBJ", "x.obj", ["models", "make", "cone-1k", "-o", "OUT"]),
+    Kind("mesh, OFF", "x.off", ["models", "make", "cone-1k", "-o", "OUT"]),
+    Kind("mesh, STL", "x.stl", ["models", "make", "cone-1k", "-o", "OUT"]),
+    Kind("repaired mesh", "x.ply", ["repair", "open.off", "-o", "OUT"]),
+    Kind("drawing of a structure", "x.ply",
+         ["show", "--algorithm", "vps", "--model", "cone-1k", "-p", "voxel_size=0.1", "-o", "OUT"]),
+    Kind("set", "x.h5", ["generate", *GRID, "-o", "OUT"]),
+    Kind("merged set", "x.h5", ["merge", "shards", "-o", "OUT"]),
+    Kind("series of a scenario", "x.h5",
+         ["quality", "--scenario", "Ia", "--algorithm", "exact", "--steps", "60", "-o", "OUT"], times=True),
+    Kind("drawing of a scenario", "x.svg", ["quality", "--scenario", "II", "--draw", "OUT"]),
+    Kind("rows of precision", "x.json", ["precision", "--question", "distance", *STUDY, "-o", "OUT"], times=True),
+    Kind("rows of equivalent", "x.json",
+         ["equivalent", "--scenario", "II", "--algorithm", "vps", "--tau", "10us", "--steps", "60", "--grid",
+          "voxel_size=0.1,0.07,0.05", "--grid", "point_spacing=0.1,0.07,0.05", "-o", "OUT"], times=True),
+    Kind("cells of stress", "x.json",
+         ["stress", "--algorithms", "exact", "--families", "kissing", "--cases", "cases", "-o", "OUT"], times=True),
+    Kind("results", "x.json",
+         ["--a", "a.off", "--b", "a.off", "--benchmark_filter=^collide/algorithm:exact/", "--benchmark_min_time=0.001",
+          "--sample", "8", "--out", "OUT"], times=True, program=SIXDOF_BENCH, replaces=False),
+]
+FOLDERS = [
+    Kind("shards", "made", ["generate", *GRID, "--shards", "3", "-o", "OUT"]),
+    Kind("project of an algorithm", "project", ["new-algorithm", "mine", "-o", "OUT"], replaces=False),
+]
+
+
+class OutputFiles(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.top = pathlib.Path(tempfile.mkdtemp(prefix="sixdof-output-"))
+        cls.addClassCleanup(shutil.rmtree, cls.top)
+        os.chmod(cls.top, 0o755)
+        cls.cache = cls.top / "cache"
+        cls.whole = {}  # what an undisturbed run writes
+        for kind in KINDS + FOLDERS:
+            folder = cls.new_folder()
+            done = cls.run_in(folder, kind.command())
+            assert done.returncode == 0, (kind.name, done.stderr)
+            cls.whole[kind.name] = cls.content(folder / kind.file)
+            assert not cls.left_overs(folder), kind.name
+
+    @classmethod
+    def new_folder(cls):
+        """Of the same name each time, since a set knows where its meshes are."""
+        folder = cls.top / "work"
+        if folder.exists():
+            shutil.rmtree(folder)
+        folder.mkdir()
+        (folder / "a.off").write_text(A)
+        (folder / "open.off").write_text(OPEN)
+        shards = cls.top / "shards-of-all"
+        if not shards.exists():
+            subprocess.run([SIXDOF, "generate", *GRID, "--shards", "3", "-o", shards], cwd=folder, check=True,
+                           capture_output=True, env=cls.environment())
+        shutil.copytree(shards, folder / "shards")
+        return folder
+
+    @classmethod
+    def environment(cls, **more):
+        return {**os.environ, "SIXDOF_CACHE": str(cls.cache), **more}
+
+    @classmethod
+    def run_in(cls, folder, command, environment=None, **options):
+        return subprocess.run(command, cwd=folder, capture_output=True, check=False, timeout=250,
+                              env=environment or cls.environment(), **options)
+
+    @staticmethod
+    def content(path):
+        """Bytes of a file, or of all files of a folder; None if there is nothing."""
+        if path.is_dir():
+            return {str(file.relative_to(path)): file.read_bytes() for file in path.rglob("*") if file.is_file()}
+        return path.read_bytes() if path.exists() else None
+
+    @staticmethod
+    def left_overs(folder):
+        return [str(path) for path in folder.rglob("*") if path.name.endswith(KNOWN_TEMPORARY)]
+
+    def is_whole(self, kind, content):
+        whole = self.whole[kind.name]
+        if not kind.times or isinstance(content, dict):
+            return content == whole
+        if kind.file.endswith(".h5"):  # HDF5's superblock: no writer has it open, and where the file ends
+            is_open, end = content[11], int.from_bytes(content[28:36], "little")
+            return not is_open and end == len(content) == len(whole)
+        content, whole = json.loads(content), json.loads(whole)
+        return isinstance(content, type(whole)) and len(content) == len(whole)
+
+    def check_error(self, done, *names):
+        """A message of the program, and an exit code."""
+        words = done.stderr.decode(errors="replace")
+        self.assertIn(done.returncode, (1, 2), words)
+        self.assertRegex(words, r"(?m)^sixdof[^:]*: ")
+        for name in names:
+            self.assertIn(name, words)
+
+    def check_full(self, done, kind):
+        words = done.stderr.decode(errors="replace")
+        self.check_error(done)
+        # What stress needs besides may be the first that has no room.
+        self.assertRegex(words.strip().split("\n")[-1],
+                         rf"^sixdof[^:]*: \S*({kind.file}|cases/)\S*: .*(File too large|No space left on device)")
+
+    @staticmethod
+    def answers(done):
+        """What was printed, without times."""
+        lines = done.stdout.decode().splitlines()
+        return done.returncode, [line for line in lines if "_ns" not in line]
+
+    # Full disks.
+
+    def limits(self, kind):
+        size = len(self.whole[kind.name])
+        return sorted({0, 1, size // 3, size - 1}) if not kind.times else [0, 64]
+
+    def limited(self, size, handler):
+        def prepare():
+            signal.signal(signal.SIGXFSZ, handler)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+        return prepare
+
+    def test_a_disk_that_is_full_leaves_the_old_file(self):
+        for kind in KINDS:
+            with self.subTest(kind.name):
+                for size in self.limits(kind):
+                    folder = self.new_folder()
+                    if kind.replaces:
+                        (folder / kind.file).write_bytes(b"old")
+                    done = self.run_in(folder, kind.command(), preexec_fn=self.limited(size, signal.SIG_IGN))
+                    self.check_full(done, kind)
+                    self.assertEqual(self.content(folder / kind.file), b"old" if kind.replaces else None)
+                    self.assertEqual(self.left_overs(folder), [])
+
+    def test_a_writer_that_is_killed_in_the_middle_leaves_the_old_file(self):
+        # SIGXFSZ ends the process at the byte, with no chance to clean up: the same as kill -9 there.
+        for kind in KINDS:
+            with self.subTest(kind.name):
+                for size in self.limits(kind):
+                    folder = self.new_folder()
+                    if kind.replaces:
+                        (folder / kind.file).write_bytes(b"old")
+                    done = self.run_in(folder, kind.command(), preexec_fn=self.limited(size, signal.SIG_DFL))
+                    self.assertEqual(done.returncode, -signal.SIGXFSZ, done.stderr)
+                    self.assertEqual(self.content(folder / kind.file), b"old" if kind.replaces else None)
+                    if kind.program is SIXDOF_BENCH:
+                        (folder / (kind.file + ".journal")).unlink(missing_ok=True)
+                    done = self.run_in(folder, kind.command())
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    self.assertTrue(self.is_whole(kind, self.content(folder / kind.file)))
+
+    def test_a_folder_is_whole_or_has_whole_files_only(self):
+        shards = self.whole["shards"]
+        for handler in (signal.SIG_IGN, signal.SIG_DFL):
+            for size in (0, 1000, min(map(len, shards.values())) - 1):
+                folder = self.new_folder()
+                done = self.run_in(folder, FOLDERS[0].command(), preexec_fn=self.limited(size, handler))
+                self.assertNotEqual(done.returncode, 0)
+                made = self.content(folder / "made") or {}
+                for name, content in made.items():
+                    self.assertTrue(name.endswith(KNOWN_TEMPORARY) or content == shards[name], name)
+                done = self.run_in(folder, [*FOLDERS[0].command(), "--resume"])
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(self.content(folder / "made"), shards)
+            folder = self.new_folder()
+            done = self.run_in(folder, FOLDERS[1].command(), preexec_fn=self.limited(100, handler))
+            self.assertNotEqual(done.returncode, 0)
+            self.assertFalse((folder / "project").exists())
+            self.assertEqual(self.run_in(folder, FOLDERS[1].command()).returncode, 0)
+            self.assertEqual(self.content(folder / "project"), self.whole[FOLDERS[1].name])
+
+    def test_a_small_disk(self):
+        if os.geteuid() != 0:
+            self.skipTest("mounting a small file system needs root")
+        folder = self.top / "disk"
+        folder.mkdir()
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "none", folder], capture_output=True,
+                                 check=False)
+        if mounted.returncode != 0:
+            self.skipTest("no small file system can be mounted: " + mounted.stderr.decode())
+        try:
+            (folder / "rest").write_bytes(bytes(4096))
+            for kind in KINDS:
+                with self.subTest(kind.name):
+                    if len(self.whole[kind.name]) <= 4096:
+                        continue
+                    done = self.run_in(self.new_folder(), kind.command(str(folder / kind.file)))
+                    self.check_full(done, kind)
+                    # A journal has finished rows.
+                    left = {path.name for path in folder.iterdir()} - {kind.file + ".journal"}
+                    self.assertEqual(left, {"rest"})
+                    (folder / (kind.file + ".journal")).unlink(missing_ok=True)
+        finally:
+            subprocess.run(["umount", folder], check=True)
+
+    def test_the_cache_does_without_what_cannot_be_written(self):
+        words = [SIXDOF, "query", "--a", "a.off", "--b", "a.off", "--pose", "0.3 0.2 0.1 1 0 0 0", "--algorithm",
+                 "vps-field", "-p", "voxel_size=0.1", "-p", "point_spacing=0.1"]
+        folder = self.new_folder()
+        cache = folder / "cache"
+        environment = self.environment(SIXDOF_CACHE=str(cache))
+        expected = self.answers(self.run_in(folder, words, environment))
+        self.assertEqual(expected[0], 0)
+        whole = self.content(cache)
+        self.assertGreaterEqual(len(whole), 3)
+        for size in (0, 1000, min(map(len, whole.values())) - 1):
+            for handler in (signal.SIG_IGN, signal.SIG_DFL):
+                shutil.rmtree(cache)
+                done = self.run_in(folder, words, environment, preexec_fn=self.limited(size, handler))
+                if handler is signal.SIG_IGN:
+                    self.assertEqual(self.answers(done), expected, done.stderr)
+                for name, content in self.content(cache).items():
+                    self.assertTrue(name.endswith(KNOWN_TEMPORARY) or content == whole[name], name)
+                done = self.run_in(folder, words, environment)
+                self.assertEqual(self.answers(done), expected, done.stderr)
+                self.assertEqual(self.content(cache), whole)
+
+    # Permissions.
+
+    def as_user(self):
+        """Options of a process without root's rights, or None where there is none."""
+        if os.geteuid() != 0:
+            return {}
+        options = {"user": NOBODY, "group": NOBODY, "extra_groups": []}
+        folder = self.new_folder()
+        try:
+            if self.run_in(folder, [SIXDOF, "info", "a.off"], **options).returncode == 0:
+                return options
+        except PermissionError:
+            pass
+        return self.skipTest("a user without rights cannot run the program where it lies")
+
+    def test_a_folder_without_permission(self):
+        options = self.as_user()
+        for kind in KINDS + FOLDERS:
+            with self.subTest(kind.name):
+                folder = self.new_folder()
+                taken = folder / "taken"
+                taken.mkdir()
+                os.chmod(taken, 0o555)
+                os.chmod(folder, 0o777)
+                environment = self.environment(SIXDOF_CACHE="off")
+                done = self.run_in(folder, kind.command("taken/" + kind.file), environment, **options)
+                self.check_error(done, "taken/" + kind.file)
+                self.assertIn(b"Permission denied", done.stderr)
+                self.assertEqual(self.content(taken), {})
+
+    def test_an_input_without_permission(self):
+        options = self.as_user()
+        folder = self.new_folder()
+        done = self.run_in(folder, KINDS[6].command("set.h5"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for file, words in self.inputs():
+            os.chmod(folder / file, 0)
+            with self.subTest(" ".join(words)):
+                done = self.run_in(folder, [SIXDOF, *words], self.environment(SIXDOF_CACHE="off"), **options)
+                self.check_error(done, file)
+            os.chmod(folder / file, 0o755)
+
+    # Inputs that are something else.
+
+    @staticmethod
+    def inputs():
+        pose = ["--pose", "0.3 0.2 0.1 1 0 0 0"]
+        return [("a.off", ["info", "a.off"]), ("a.off", ["query", "--a", "a.off", "--b", "open.off", *pose]),
+                ("open.off", ["repair", "open.off", "-o", "x.off"]),
+                ("a.off", ["generate", "--a", "a.off", "--grid", "90", "--distances", "5", "-o", "y.h5"]),
+                ("set.h5", ["info", "set.h5"]), ("set.h5", ["verify", "set.h5", "--oracle", "exact"]),
+                ("set.h5", ["table", "set.h5"]), ("shards", ["merge", "shards", "-o", "y.h5"])]
+
+    def test_inputs_that_are_missing_empty_or_folders(self):
+        for file, words in self.inputs():
+            for what in ("missing", "empty", "folder", "a loop of links"):
+                with self.subTest(f"{what}: {' '.join(words)}"):
+                    folder = self.new_folder()
+                    path = folder / file
+                    if path.is_dir():
+                        shutil.rmtree(path)
+                    path.unlink(missing_ok=True)
+                    if what == "empty":
+                        path.write_bytes(b"")
+                    elif what == "folder":
+                        path.mkdir()
+                    elif what == "a loop of links":
+                        path.symlink_to(path)
+                    done = self.run_in(folder, [SIXDOF, *words])
+                    self.check_error(done, file)
+                    self.assertFalse((folder / "y.h5").exists())
+
+    # Two writers.
+
+    def run_twice(self, folder, kind):
+        """What two processes that run at the same time say on stderr, and their exit codes."""
+        writers = [subprocess.Popen(kind.command(), cwd=folder, env=self.environment(), stdout=subprocess.DEVNULL,
+                                    stderr=subprocess.PIPE) for _ in range(2)]
+        return [(writer.communicate(timeout=250)[1], writer.returncode) for writer in writers]
+
+    def test_two_writers_of_one_file_leave_a_whole_one(self):
+        for kind in KINDS:
+            with self.subTest(kind.name):
+                if not kind.replaces:
+                    continue
+                folder = self.new_folder()
+                for words, code in self.run_twice(folder, kind):
+                    self.assertEqual(code, 0, words)
+                self.assertTrue(self.is_whole(kind, self.content(folder / kind.file)))
+                self.assertEqual(self.left_overs(folder), [])
+
+    def test_two_writers_of_results_are_told_apart(self):
+        kind = KINDS[-1]
+        folder = self.new_folder()
+        ends = self.run_twice(folder, kind)
+        self.assertIn(0, [code for _, code in ends])
+        for words, code in ends:
+            if code != 0:
+                self.assertIn(b"x.json", words)
+        self.assertTrue(self.is_whole(kind, self.content(folder / kind.file)))
+
+    # Locales and names.
+
+    def test_a_decimal_comma_changes_nothing(self):
+        locales = self.top / "locales"
+        locales.mkdir()
+        made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", locales / "de_DE.UTF-8"], capture_output=True,
+                              check=False) if shutil.which("localedef") else None
+        if made is None or not (locales / "de_DE.UTF-8" / "LC_NUMERIC").exists():
+            self.skipTest("no locale with a decimal comma can be made")
+        environment = self.environment(LOCPATH=str(locales), LC_ALL="de_DE.UTF-8")
+        for kind in KINDS + FOLDERS:
+            with self.subTest(kind.name):
+                folder = self.new_folder()
+                done = self.run_in(folder, kind.command(), environment)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertTrue(self.is_whole(kind, self.content(folder / kind.file)))
+        query = [SIXDOF, "query", "--a", "a.off", "--b", "a.off", "--pose", "0.35 0.2 0.1 1 0 0 0"]
+        folder = self.new_folder()
+        expected = self.answers(self.run_in(folder, query))
+        self.assertEqual(expected[0], 0)
+        for variable in ("LC_ALL", "LC_NUMERIC"):
+            environment = self.environment(LOCPATH=str(locales), **{variable: "de_DE.UTF-8"})
+            self.assertEqual(self.answers(self.run_in(folder, query, environment)), expected)
+
+    def test_names_with_spaces_breaks_and_other_letters(self):
+        for name in ("a b", "line\nbreak", "é-ß-日本", "'quoted' \"twice\"", "-dash", "\udcff"):
+            folder = self.new_folder()
+            shutil.copy(folder / "a.off", folder / f"{name}.off")
+            for kind in KINDS + FOLDERS:
+                with self.subTest(kind.name):
+                    file = f"./{name}.{kind.file}"
+                    done = self.run_in(folder, kind.command(file))
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    content = self.content(folder / file)
+                    self.assertTrue(self.is_whole(kind, content))
+            done = self.run_in(folder, [SIXDOF, "info", f"./{name}.off"])
+            self.assertEqual(done.returncode, 0, done.stderr)
+            done = self.run_in(folder, [SIXDOF, "info", f"./{name} absent.off"])
+            self.check_error(done)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
