@@ -5,8 +5,7 @@
 // 'f': the arrays are others, with a right hash, as another version of the program might store them. Whatever they
 // hold, preparing and asking end, and an answer that is ok is finite.
 #include <algorithm>
-#include <array>
-#include <map>
+#include <cstring>
 
 #include <sixdof/algorithm/ist/ist.h>
 #include <sixdof/algorithm/vps/vps.h>
@@ -103,14 +102,14 @@ void change_array(std::vector<T>& values, Input& input) {
 
 void check_forgery(const Stored& stored, Input& input) {
   CacheEntry forged;
-  for (const auto& [name, values] : stored.entry.arrays()) {
+  for (const auto& array : stored.entry.arrays()) {
     const bool changed = input.byte() % 2 != 0;
     std::visit(
-        [&](auto array) {
-          if (changed) change_array(array, input);
-          forged.put(name, std::move(array));
+        [&](auto values) {
+          if (changed) change_array(values, input);
+          forged.put(array.first, std::move(values));
         },
-        values);
+        array.second);
   }
   require(store_cached(stored.kind, stored.key, forged), "the scratch folder has room");
   for (const Subject& subject : subjects()) {
