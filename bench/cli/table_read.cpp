@@ -7,19 +7,16 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/measure/metrics.h>
+#include <sixdof/report/result_json.h>
 #include "bench/cli/table.h"
 
 namespace sixdof::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The words of nlohmann::json's exceptions behind "[json.exception.parse_error.101] ".
-std::string words_of(const Json::exception& e) {
-  const std::string words = e.what();
-  const std::size_t end = words.find("] ");
-  return end == std::string::npos ? words : words.substr(end + 2);
-}
+using report::nanoseconds;
+using report::text_at;
+using report::words_of;
 
 Json parse_document(const std::string& text, const std::string& path) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw BadFile(path, "is empty");
@@ -33,19 +30,6 @@ Json parse_document(const std::string& text, const std::string& path) {
     throw BadFile(path, "not a result file of sixdof-bench: it has no array \"benchmarks\"");
   }
   return document;
-}
-
-std::string text_at(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-/// @throws Error
-double nanoseconds(const std::string& time_unit) {
-  static const std::map<std::string, double> units{{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
-  const auto found = units.find(time_unit);
-  if (found == units.end()) throw Error(fmt::format("time_unit \"{}\" is none of ns, us, ms, s", time_unit));
-  return found->second;
 }
 
 /// @throws Error

@@ -9,23 +9,12 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/measure/metrics.h>
+#include <sixdof/report/result_json.h>
 
 namespace sixdof::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The words of nlohmann::json's exceptions behind "[json.exception.parse_error.101] ".
-std::string words_of(const Json::exception& e) {
-  const std::string words = e.what();
-  const std::size_t end = words.find("] ");
-  return end == std::string::npos ? words : words.substr(end + 2);
-}
-
-std::string text_at(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
 
 double number_at(const Json& object, const char* key) {
   const auto found = object.find(key);
@@ -43,14 +32,6 @@ std::string settings_text(const Json& fields) {
     text += fmt::format("{}{}={}", text.empty() ? "" : ",", key, as_text(value));
   }
   return text;
-}
-
-/// @throws Error
-double nanoseconds(const std::string& time_unit) {
-  static const std::map<std::string, double> units{{"ns", 1.0}, {"us", 1e3}, {"ms", 1e6}, {"s", 1e9}};
-  const auto found = units.find(time_unit);
-  if (found == units.end()) throw Error(fmt::format("time_unit \"{}\" is none of ns, us, ms, s", time_unit));
-  return found->second;
 }
 
 void take_fields(const Json& fields, Row& row) {

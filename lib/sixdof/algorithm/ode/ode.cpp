@@ -1,9 +1,6 @@
 #include <sixdof/algorithm/ode/ode.h>
 
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +10,7 @@
 #include <ode/ode.h>
 
 #include <sixdof/algorithm/contact_wrench.h>
+#include <sixdof/algorithm/ode/ode_lock.h>
 #include <sixdof/base/error.h>
 
 namespace sixdof {
@@ -21,39 +19,6 @@ namespace {
 constexpr const char* k_max_contacts = "max_contacts";
 /// dCollide() has the number in the lower 16 bits of its flags.
 constexpr int k_largest_count = 65535;
-
-void ignore(int /*number*/, const char* /*format*/, va_list /*arguments*/) {}
-
-/// ODE would end the process after the handler returns.
-[[noreturn]] void throw_error(int number, const char* format, va_list arguments) {
-  char text[256];
-  std::vsnprintf(text, sizeof(text), format, arguments);
-  throw std::runtime_error(fmt::format("ODE error {}: {}", number, text));
-}
-
-/// ODE's colliders, and its lists of geometries, belong to the process.
-std::mutex& ode_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-/// Holds ODE for this thread.
-class OdeLock {
- public:
-  OdeLock() : lock_(ode_mutex()) {
-    static const bool initialised = [] {
-      dSetMessageHandler(&ignore);
-      dSetErrorHandler(&throw_error);
-      dSetDebugHandler(&throw_error);
-      return dInitODE2(0) != 0;
-    }();
-    thread_local const bool has_data = initialised && dAllocateODEDataForThread(dAllocateMaskAll) != 0;
-    if (!has_data) throw std::runtime_error("ODE cannot be initialised");
-  }
-
- private:
-  std::lock_guard<std::mutex> lock_;
-};
 
 /// Refers to the arrays of a mesh, which outlives it. Made and destroyed under an OdeLock.
 class TriangleData {

@@ -1,39 +1,16 @@
 #include <sixdof/scene/ode/ode_scene.h>
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <ode/ode.h>
 
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/ode/ode_lock.h>
 
 namespace sixdof::scene {
 namespace {
-
-void ignore(int /*number*/, const char* /*format*/, va_list /*arguments*/) {}
-
-/// ODE would end the process after the handler returns.
-[[noreturn]] void throw_error(int number, const char* format, va_list arguments) {
-  char text[256];
-  std::vsnprintf(text, sizeof(text), format, arguments);
-  throw std::runtime_error(fmt::format("ODE error {}: {}", number, text));
-}
-
-void initialise() {
-  static const bool initialised = [] {
-    dSetMessageHandler(&ignore);
-    dSetErrorHandler(&throw_error);
-    dSetDebugHandler(&throw_error);
-    return dInitODE2(0) != 0;
-  }();
-  thread_local const bool has_data = initialised && dAllocateODEDataForThread(dAllocateMaskAll) != 0;
-  if (!has_data) throw std::runtime_error("ODE cannot be initialised");
-}
 
 /// Makes a space for bodies within the given bounds.
 using MakeSpace = dSpaceID (*)(const Eigen::Vector3d& center, const Eigen::Vector3d& half);
@@ -41,7 +18,7 @@ using MakeSpace = dSpaceID (*)(const Eigen::Vector3d& center, const Eigen::Vecto
 class OdeScene final : public SceneQuery {
  public:
   OdeScene(const Scene& scene, Question /*question*/, MakeSpace make) : scene_(scene), filter_(scene) {
-    initialise();
+    const OdeLock lock;
     for (const auto& mesh : scene.meshes) {
       data_.push_back(dGeomTriMeshDataCreate());
       static_assert(sizeof(dReal) == sizeof(double) && sizeof(Triangle) == 3 * sizeof(dTriIndex));
@@ -66,6 +43,7 @@ class OdeScene final : public SceneQuery {
   OdeScene& operator=(const OdeScene&) = delete;
 
   ~OdeScene() override {
+    const OdeLock lock;
     // A space destroys what is in it.
     dSpaceDestroy(moving_);
     dSpaceDestroy(fixed_);
@@ -75,11 +53,13 @@ class OdeScene final : public SceneQuery {
   void update(std::span<const Moved> moved) override {
     if (moved.empty()) return;
     known_ = false;
+    const OdeLock lock;
     for (const Moved& each : moved) place(geometries_[each.body], each.X_WB);
   }
 
   const SceneAnswer& answer() override {
     if (std::exchange(known_, true)) return answer_;
+    const OdeLock lock;
     answer_.pairs.clear();
     dSpaceCollide(moving_, this, &on_pair);
     if (dSpaceGetNumGeoms(fixed_) > 0) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace sixdof::report {
+
+/// The words of nlohmann::json's exceptions behind "[json.exception.parse_error.101] ".
+std::string words_of(const nlohmann::ordered_json::exception& e);
+
+/// The text of a member, empty where there is none.
+std::string text_at(const nlohmann::ordered_json& object, const char* key);
+
+/// How many nanoseconds a time_unit of Google Benchmark has. @throws Error
+double nanoseconds(const std::string& time_unit);
+
+}  // namespace sixdof::report
