@@ -30,8 +30,13 @@ namespace {
 using Model = fcl::BVHModel<fcl::OBBRSSd>;
 using Object = fcl::CollisionObjectd;
 using Manager = fcl::BroadPhaseCollisionManagerd;
-/// Makes an empty manager for these bodies.
-using MakeManager = std::function<std::unique_ptr<Manager>(std::vector<Object*>&)>;
+/// How one of FCL's managers is made and kept up to date.
+struct ManagerKind {
+  /// Makes an empty manager for these bodies.
+  std::function<std::unique_ptr<Manager>(std::vector<Object*>&)> make;
+  /// Whether FCL may be told which bodies moved. Else every update looks at all.
+  bool updates_some = true;
+};
 
 std::shared_ptr<Model> build_model(const Mesh& mesh) {
   const auto model = std::make_shared<Model>();
@@ -54,8 +59,8 @@ fcl::Transform3d transform(const Pose& pose) {
 
 class FclScene final : public SceneQuery {
  public:
-  FclScene(const Scene& scene, Question question, const MakeManager& make)
-      : scene_(scene), question_(question), filter_(scene) {
+  FclScene(const Scene& scene, Question question, const ManagerKind& kind)
+      : scene_(scene), question_(question), filter_(scene), updates_some_(kind.updates_some) {
     std::vector<std::shared_ptr<Model>> models;
     for (const auto& mesh : scene.meshes) models.push_back(build_model(*mesh));
     std::vector<Object*> moving, fixed;
@@ -66,8 +71,8 @@ class FclScene final : public SceneQuery {
       object.setUserData(reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
       (body.fixed ? fixed : moving).push_back(&object);
     }
-    if (!moving.empty()) moving_ = registered(make, moving);
-    if (!fixed.empty()) fixed_ = registered(make, fixed);
+    if (!moving.empty()) moving_ = registered(kind, moving);
+    if (!fixed.empty()) fixed_ = registered(kind, fixed);
   }
 
   void update(std::span<const Moved> moved) override {
@@ -80,7 +85,7 @@ class FclScene final : public SceneQuery {
       object.computeAABB();
       changed_.push_back(&object);
     }
-    if (changed_.size() == moving_->size()) {
+    if (!updates_some_ || changed_.size() == moving_->size()) {
       moving_->update();
     } else {
       moving_->update(changed_);
@@ -108,8 +113,8 @@ class FclScene final : public SceneQuery {
   SceneWork work() const override { return work_; }
 
  private:
-  static std::unique_ptr<Manager> registered(const MakeManager& make, std::vector<Object*>& objects) {
-    std::unique_ptr<Manager> manager = make(objects);
+  static std::unique_ptr<Manager> registered(const ManagerKind& kind, std::vector<Object*>& objects) {
+    std::unique_ptr<Manager> manager = kind.make(objects);
     manager->registerObjects(objects);
     manager->setup();
     return manager;
@@ -162,6 +167,7 @@ class FclScene final : public SceneQuery {
   const Scene& scene_;
   const Question question_;
   const PairFilter filter_;
+  const bool updates_some_;
   std::vector<std::unique_ptr<Object>> objects_;
   std::unique_ptr<Manager> moving_, fixed_;
   std::vector<Object*> changed_;
@@ -189,23 +195,24 @@ std::unique_ptr<Manager> make_hash(std::vector<Object*>& objects) {
 }  // namespace
 
 void add_fcl_scenes(SceneAlgorithms& algorithms) {
-  const auto add = [&](const char* name, const char* summary, MakeManager maker, bool by_default = true) {
+  const auto add = [&](const char* name, const char* summary, ManagerKind kind, bool by_default = true) {
     algorithms.push_back(
         make_scene_algorithm<FclScene>({.name = name,
                                         .version = FCL_VERSION,
                                         .summary = fmt::format("FCL, {}; narrow phase fcl-obbrss", summary),
                                         .answers = {Question::touching, Question::near, Question::closest},
                                         .by_default = by_default},
-                                       std::move(maker)));
+                                       std::move(kind)));
   };
-  add("fcl-naive", "all pairs of boxes", make<fcl::NaiveCollisionManagerd>, false);
-  add("fcl-ssap", "sweep along one axis, sorted anew", make<fcl::SSaPCollisionManagerd>);
+  add("fcl-naive", "all pairs of boxes", {make<fcl::NaiveCollisionManagerd>}, false);
+  add("fcl-ssap", "sweep along one axis, sorted anew", {make<fcl::SSaPCollisionManagerd>});
   // Not by default: FCL 0.7 may never return from its update.
-  add("fcl-sap", "sweep and prune", make<fcl::SaPCollisionManagerd>, false);
-  add("fcl-hash", "spatial hashing", make_hash);
-  add("fcl-interval-tree", "interval trees", make<fcl::IntervalTreeCollisionManagerd>);
-  add("fcl-aabb-tree", "dynamic tree of boxes", make<fcl::DynamicAABBTreeCollisionManagerd>);
-  add("fcl-aabb-tree-array", "dynamic tree of boxes in an array", make<fcl::DynamicAABBTreeCollisionManager_Arrayd>);
+  add("fcl-sap", "sweep and prune", {make<fcl::SaPCollisionManagerd>}, false);
+  add("fcl-hash", "spatial hashing", {make_hash});
+  // FCL 0.7's update of single bodies frees the sentinel of its interval tree and goes on using it.
+  add("fcl-interval-tree", "interval trees", {.make = make<fcl::IntervalTreeCollisionManagerd>, .updates_some = false});
+  add("fcl-aabb-tree", "dynamic tree of boxes", {make<fcl::DynamicAABBTreeCollisionManagerd>});
+  add("fcl-aabb-tree-array", "dynamic tree of boxes in an array", {make<fcl::DynamicAABBTreeCollisionManager_Arrayd>});
 }
 
 }  // namespace sixdof::scene
