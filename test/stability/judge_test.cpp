@@ -182,6 +182,25 @@ TEST(Judge, SurfacesOnlyIsALimitWhereBodiesAreInsideEachOther) {
   EXPECT_EQ(judge_script({.collide = false}, deep_by_a_tenth(), surfaces).worst().verdict, Verdict::wrong);
 }
 
+TEST(Judge, PointsOfOneBodyMissWhereTheOtherSticksInByLessThanTheResolution) {
+  // A box reaches 0.2 into a plate and sticks out of it by 0.02. The plate is B: its surface is 0.02 deep in the box.
+  const Shot stands_out = swapped(aligned_boxes({1.0, 1.0, 0.5}, {0.4, 0.4, 0.22}, {0.05, 0.1, 0.16}));
+  ASSERT_NEAR(stands_out.truth.depth_of_a, 0.2, 1e-15);
+  ASSERT_NEAR(stands_out.truth.depth_of_b, 0.02, 1e-15);
+  Traits all = k_all;
+  all.approximates = true;
+  Traits points = all;
+  points.limits.samples_b_only = true;
+  const auto verdict = [](const Shot& shot, const Traits& traits, double resolution) {
+    return judge_script({.respond = Response{}, .resolution = resolution}, shot, traits).worst().verdict;
+  };
+  EXPECT_EQ(verdict(stands_out, points, 0.03), Verdict::resolution);
+  EXPECT_EQ(verdict(stands_out, points, 0.001), Verdict::wrong);
+  EXPECT_EQ(verdict(stands_out, all, 0.03), Verdict::wrong);
+  EXPECT_EQ(verdict(swapped(stands_out), points, 0.03), Verdict::wrong);
+  EXPECT_EQ(verdict(deep_by_a_tenth(), points, 0.03), Verdict::wrong);
+}
+
 TEST(Judge, ADistanceOfBodiesIsALimitWhereTheyAreInsideEachOther) {
   Shot known = inside();
   known.truth.distance = 0.2;

@@ -1,5 +1,6 @@
 #include <sixdof/stability/shots.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -40,6 +41,51 @@ TEST(Shots, AlignedBoxesAgreeWithColumnsAndBruteForce) {
     EXPECT_EQ(reference(inside), 0.0);
   }
   EXPECT_GT(overlapping, 5);
+}
+
+/// Greatest depth in a box around the origin among points of a grid on the other box's surface.
+double sampled_depth(const Eigen::Vector3d& size_a, const Eigen::Vector3d& size_b, const Eigen::Vector3d& offset,
+                     int steps) {
+  double greatest = 0.0;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i <= steps; ++i) {
+      for (int j = 0; j <= steps; ++j) {
+        for (const double side : {-0.5, 0.5}) {
+          Eigen::Vector3d part;
+          part[axis] = side;
+          part[(axis + 1) % 3] = static_cast<double>(i) / steps - 0.5;
+          part[(axis + 2) % 3] = static_cast<double>(j) / steps - 0.5;
+          const Eigen::Vector3d p = offset + part.cwiseProduct(size_b);
+          greatest = std::max(greatest, (0.5 * size_a - p.cwiseAbs()).minCoeff());
+        }
+      }
+    }
+  }
+  return greatest;
+}
+
+TEST(Shots, DepthsOfSurfacesAgreeWithPointsOnThem) {
+  const Eigen::Vector3d size_a(1.1, 0.9, 0.7), size_b(0.5, 0.6, 0.4);
+  constexpr int k_steps = 60;
+  std::mt19937_64 random(13);
+  std::uniform_real_distribution<double> uniform(-0.8, 0.8);
+  int sunk = 0;
+  for (int i = 0; i < 30; ++i) {
+    const Eigen::Vector3d offset(uniform(random), uniform(random), uniform(random));
+    const Truth truth = aligned_boxes(size_a, size_b, offset).truth;
+    const double of_b = sampled_depth(size_a, size_b, offset, k_steps);
+    const double of_a = sampled_depth(size_b, size_a, -offset, k_steps);
+    EXPECT_GE(truth.depth_of_b, of_b - 1e-15);
+    EXPECT_LE(truth.depth_of_b, of_b + size_b.maxCoeff() / k_steps);
+    EXPECT_GE(truth.depth_of_a, of_a - 1e-15);
+    EXPECT_LE(truth.depth_of_a, of_a + size_a.maxCoeff() / k_steps);
+    sunk += of_b > 0.0 && of_a > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(sunk, 5);
+  const Shot shot = aligned_boxes(size_a, size_b, {0.1, 0.2, 0.45});
+  EXPECT_EQ(swapped(shot).truth.depth_of_a, shot.truth.depth_of_b);
+  EXPECT_EQ(swapped(shot).truth.depth_of_b, shot.truth.depth_of_a);
+  EXPECT_EQ(scaled(shot, 4.0).truth.depth_of_b, 4.0 * shot.truth.depth_of_b);
 }
 
 TEST(Shots, AboveAFaceAgreesWithBruteForce) {

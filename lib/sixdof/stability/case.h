@@ -35,6 +35,8 @@ struct Truth {
   double volume = k_unknown;    ///< Of the intersection (length^3).
   std::optional<Eigen::Vector3d> push;  ///< Unit direction, in A's frame, in which B leaves A on the shortest way.
   bool contained = false;               ///< One body lies inside the other; the surfaces do not meet.
+  double depth_of_a = k_unknown;        ///< Greatest depth in B of a point of A's surface; 0 if none is in B (length).
+  double depth_of_b = k_unknown;        ///< Greatest depth in A of a point of B's surface, likewise (length).
   double error = 0.0;                   ///< Of the lengths above, besides the rounding of the input (length).
 };
 

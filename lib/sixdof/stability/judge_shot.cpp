@@ -54,12 +54,19 @@ double distance_to_miss(const Shot& shot, const Answers& answers) {
   return answers.resolution > 0.0 && shot.truth.gap < 0.0 ? std::min(gap, least_radius(shot)) : gap;
 }
 
+/// The same for a response: where only points of B's surface count, until none of them is in A.
+double distance_to_no_push(const Shot& shot, const Answers& answers, const Traits& traits) {
+  const double distance = distance_to_miss(shot, answers), depth_of_b = shot.truth.depth_of_b;
+  // Without such points the miss is that of a body inside the other: MethodLimits::surfaces_only.
+  return traits.limits.samples_b_only && depth_of_b > 0.0 ? std::min(distance, depth_of_b) : distance;
+}
+
 /// Yes/no, once right and wrong are known: how far from contact the mistake is.
-Finding sign_finding(const char* metric, bool right, const Shot& asked, const Answers& answers, const Bounds& bounds,
+Finding sign_finding(const char* metric, bool right, const Shot& asked, double distance, const Bounds& bounds,
                      std::size_t shot) {
   const double size = asked.a->diagonal(), gap = asked.truth.gap;
   if (right) return {.verdict = Verdict::exact, .metric = metric, .unit = "size", .shot = shot, .words = {}};
-  return length_finding(metric, distance_to_miss(asked, answers), size, bounds, shot,
+  return length_finding(metric, distance, size, bounds, shot,
                         fmt::format("true gap {}, where the answer has the wrong sign", gap));
 }
 
@@ -80,7 +87,8 @@ void judge_response(const Case& member, std::size_t index, const Response& respo
                           .shot = index,
                           .words = "surfaces only"});
     } else {
-      findings.push_back(sign_finding(truth.gap < 0.0 ? "missed" : "phantom", right, shot, answers, bounds, index));
+      const double distance = distance_to_no_push(shot, answers, traits);
+      findings.push_back(sign_finding(truth.gap < 0.0 ? "missed" : "phantom", right, shot, distance, bounds, index));
     }
   }
   if (!std::isnan(truth.volume) && std::isfinite(response.volume)) {
@@ -237,7 +245,8 @@ void judge_truth(const Case& member, std::size_t index, const Answers& answers, 
                           .shot = index,
                           .words = "surfaces only"});
     } else {
-      findings.push_back(sign_finding(truth.gap <= 0.0 ? "missed" : "phantom", right, shot, answers, bounds, index));
+      const double distance = distance_to_miss(shot, answers);
+      findings.push_back(sign_finding(truth.gap <= 0.0 ? "missed" : "phantom", right, shot, distance, bounds, index));
     }
   }
   if (answers.distance.outcome.ok()) {

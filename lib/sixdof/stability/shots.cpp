@@ -20,6 +20,22 @@ double reach(const Mesh& mesh) {
   return std::sqrt(square);
 }
 
+/// Greatest depth in box A of a point of box B's surface; both along the axes, B's centre at `offset`. On each face of
+/// B the depths below the pairs of A's faces are greatest at the same point.
+double depth_of_surface(const Eigen::Vector3d& size_a, const Eigen::Vector3d& size_b, const Eigen::Vector3d& offset) {
+  const Eigen::Vector3d half_a = 0.5 * size_a, half_b = 0.5 * size_b;
+  const Eigen::Vector3d nearest = (offset.cwiseAbs() - half_b).cwiseMax(0.0);
+  double greatest = 0.0;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Eigen::Vector3d from_center = nearest;
+      from_center[axis] = std::abs(offset[axis] + side * half_b[axis]);
+      greatest = std::max(greatest, (half_a - from_center).minCoeff());
+    }
+  }
+  return greatest;
+}
+
 Placement product(const Placement& x, const Placement& y) { return {x.pose() * y.t, (x.q * y.q).normalized()}; }
 
 Placement inverse(const Placement& x) { return {x.pose().inverse().t, x.q.conjugate()}; }
@@ -73,6 +89,8 @@ Shot aligned_boxes(const Eigen::Vector3d& size_a, const Eigen::Vector3d& size_b,
   shot.truth.volume = static_cast<double>(volume);
   shot.truth.gap = static_cast<double>(square > 0 ? std::sqrt(square) : -depth);
   shot.truth.contained = inside;
+  shot.truth.depth_of_a = depth_of_surface(size_b, size_a, -offset);
+  shot.truth.depth_of_b = depth_of_surface(size_a, size_b, offset);
   shot.truth.distance = inside && apart_inside ? k_unknown : std::max(0.0, shot.truth.gap);
   // A direction is claimed only where the other ways out are clearly longer, and one body's face lies inside the
   // other's: else the volume decreases sideways, too.
@@ -118,6 +136,7 @@ Shot moved(const Shot& shot, const Placement& of_a, const Placement& of_b) {
 Shot swapped(const Shot& shot) {
   Shot result = shot;
   std::swap(result.a, result.b);
+  std::swap(result.truth.depth_of_a, result.truth.depth_of_b);
   result.X_AB = inverse(shot.X_AB);
   const Eigen::Matrix3d R = result.X_AB.pose().R;
   if (result.truth.push) result.truth.push = -(R * *shot.truth.push);
@@ -133,6 +152,8 @@ Shot scaled(const Shot& shot, double factor) {
   result.truth.gap *= factor;
   result.truth.distance *= factor;
   result.truth.volume *= factor * factor * factor;
+  result.truth.depth_of_a *= factor;
+  result.truth.depth_of_b *= factor;
   result.truth.error *= factor;
   result.scale *= factor;
   return result;

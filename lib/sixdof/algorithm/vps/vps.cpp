@@ -256,15 +256,16 @@ std::vector<Parameter> common_parameters(const Parameter& voxel_size, const Para
 }
 
 Traits traits(std::string name, std::string summary, std::vector<Parameter> parameters) {
-  return {.name = std::move(name),
-          .version = SIXDOF_VERSION,
-          .summary = std::move(summary),
-          .answers = {.collide = true, .respond = true},
-          .law = ResponseLaw::depth,
-          .approximates = true,
-          // A is sampled at B's points only: none is in an A that lies inside B.
-          .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
-          .parameters = std::move(parameters)};
+  return {
+      .name = std::move(name),
+      .version = SIXDOF_VERSION,
+      .summary = std::move(summary),
+      .answers = {.collide = true, .respond = true},
+      .law = ResponseLaw::depth,
+      .approximates = true,
+      // A is sampled at B's points only: none is in an A that lies inside B.
+      .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true, .samples_b_only = true},
+      .parameters = std::move(parameters)};
 }
 
 }  // namespace
