@@ -16,6 +16,7 @@
 #include <sixdof/base/data_folder.h>
 #include <sixdof/base/error.h>
 #include "bench/common/run_guarded.h"
+#include "bench/common/shell_text.h"
 #include "bench/common/unknown_word.h"
 
 namespace sixdof::bench {
@@ -36,15 +37,6 @@ constexpr const char* k_examples =
 
 bool has_flag(const std::vector<std::string>& flags, const std::string& name) {
   return std::any_of(flags.begin(), flags.end(), [&](const auto& flag) { return flag.starts_with(name); });
-}
-
-/// A word as a POSIX shell takes it.
-std::string shell_quoted(const std::string& word) {
-  constexpr const char* k_plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=./:,@%";
-  if (!word.empty() && word.find_first_not_of(k_plain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 /// The words of the command line but those that name the result file.

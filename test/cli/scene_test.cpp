@@ -80,6 +80,35 @@ TEST_F(SceneCommand, TakesMeshesAndATableOfPoses) {
   EXPECT_FALSE(std::filesystem::exists(path("t.h5")));
 }
 
+TEST_F(SceneCommand, PlaysSomeBodiesAndFrames) {
+  ASSERT_EQ(run("make pile -n 60 --frames 4 -o s.h5").exit_code, 0);
+  const auto true_pairs = [&](const std::string& part) {
+    return json_of("play s.h5 --algorithms exact " + part)[0].at("true_pairs").get<int>();
+  };
+  int sum = 0;
+  for (int frame = 0; frame < 4; ++frame) sum += true_pairs("--frames " + std::to_string(frame));
+  EXPECT_EQ(sum, true_pairs(""));
+  EXPECT_EQ(true_pairs("--frames 1:2"), true_pairs("--frames 1") + true_pairs("--frames 2"));
+  EXPECT_EQ(json_of("play s.h5 --algorithms all-pairs --bodies 3,5,8")[0].at("algorithms")[0].at("pairs_in_all"), 12);
+}
+
+/// A pile of which Bullet's GImpact reports pairs that are apart.
+TEST_F(SceneCommand, AWrongPairHasItsReproduction) {
+  ASSERT_EQ(run("make pile -n 120 --frames 4 --seed 3 -o 'my scene.h5'").exit_code, 0);
+  const auto played = run("play 'my scene.h5' --algorithms bullet-dbvt --frames 1:3 --json");
+  if (played.err.find("no algorithm for scenes bullet-dbvt") != std::string::npos) GTEST_SKIP() << played.err;
+  ASSERT_EQ(played.exit_code, 0) << played.err;
+  const json first = json::parse(played.out)[0].at("algorithms")[0].value("first_wrong", json());
+  if (first.is_null()) GTEST_SKIP() << "this build of Bullet reports no wrong pair";
+  const std::string command = first.at("reproduction");
+  const std::string prefix = "sixdof scene ";
+  ASSERT_EQ(command.find(prefix + "play 'my scene.h5' --question touching --algorithms bullet-dbvt "), 0u) << command;
+  const json again = json_of(command.substr(prefix.size()))[0].at("algorithms")[0].at("first_wrong");
+  EXPECT_EQ(again.at("bodies"), first.at("bodies"));
+  EXPECT_EQ(again.at("frame"), first.at("frame"));
+  EXPECT_EQ(again.at("distance"), first.at("distance"));
+}
+
 TEST_F(SceneCommand, RefusesInOneLine) {
   ASSERT_EQ(run("make still -n 5 --frames 2 -o s.h5").exit_code, 0);
   const auto refuses = [&](const std::string& arguments, const std::string& message) {
@@ -97,6 +126,9 @@ TEST_F(SceneCommand, RefusesInOneLine) {
   refuses("info none.h5", "none.h5: no such file");
   refuses("play s.h5 --algorithms none", "no algorithm for scenes none; there are exact, all-pairs");
   refuses("play s.h5 --question where", "no question where; there are touching, near, closest, wrenches");
+  refuses("play s.h5 --frames 2", "frames 2 to 2: the scene has 0 to 1");
+  refuses("play s.h5 --frames 1:", "--frames 1:: give a frame, or FIRST:LAST");
+  refuses("play s.h5 --bodies 1,77", "the scene has no body 77");
   EXPECT_FALSE(std::filesystem::exists(path("t.h5")));
 }
 

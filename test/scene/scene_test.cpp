@@ -1,6 +1,9 @@
 #include <sixdof/scene/scene.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <vector>
 
 #include "small_scenes.h"
 
@@ -90,6 +93,44 @@ TEST(Shuffled, KeepsEveryBodyAndItsMotion) {
     return frames;
   };
   EXPECT_EQ(by_id(other), by_id(scene));
+}
+
+/// Where each body is in a frame, by identifier.
+std::map<std::uint32_t, std::array<double, 7>> places(const Scene& scene, std::size_t frame) {
+  std::map<std::uint32_t, std::array<double, 7>> poses;
+  for (const Body& body : scene.bodies) poses[body.id] = body.pose.numbers;
+  for (std::size_t f = 1; f <= frame; ++f) {
+    for (const Motion& motion : scene.frames[f]) poses[scene.bodies[motion.body].id] = motion.pose.numbers;
+  }
+  return poses;
+}
+
+TEST(Excerpt, HasTheSamePosesInEveryFrame) {
+  const Scene scene = shuffled(make_scene("cube", {.bodies = 30, .frames = 8, .moving = 0.5, .seed = 3}), 5);
+  const std::vector<std::uint32_t> kept{scene.bodies[7].id, scene.bodies[2].id, scene.bodies[21].id};
+  const Scene part = excerpt(scene, kept, 3, 6);
+  part.check();
+  ASSERT_EQ(part.bodies.size(), 3u);
+  EXPECT_EQ(part.bodies[0].id, scene.bodies[2].id);
+  ASSERT_EQ(part.frames.size(), 4u);
+  for (std::size_t f = 0; f < part.frames.size(); ++f) {
+    const auto now = places(part, f), whole = places(scene, 3 + f);
+    for (const std::uint32_t id : kept) EXPECT_EQ(now.at(id), whole.at(id));
+  }
+  const Scene all = excerpt(scene, {}, 0, scene.frames.size() - 1);
+  EXPECT_EQ(all.hash(), scene.hash());
+}
+
+TEST(Excerpt, KeepsPairsThatAreIgnoredAndRefusesWhatIsNotThere) {
+  Scene scene = make_scene("cube", {.bodies = 10, .frames = 3, .seed = 3});
+  const std::uint32_t a = scene.bodies[1].id, b = scene.bodies[4].id, c = scene.bodies[5].id;
+  scene.ignored = {BodyPair::of(a, b), BodyPair::of(a, c)};
+  std::ranges::sort(scene.ignored);
+  const std::vector<std::uint32_t> kept{a, b};
+  EXPECT_EQ(excerpt(scene, kept, 1, 1).ignored, std::vector{BodyPair::of(a, b)});
+  EXPECT_THROW(excerpt(scene, {}, 0, 3), BadArgument);
+  EXPECT_THROW(excerpt(scene, {}, 2, 1), BadArgument);
+  EXPECT_THROW(excerpt(scene, std::vector{a, 4000000000u}, 0, 1), BadArgument);
 }
 
 }  // namespace

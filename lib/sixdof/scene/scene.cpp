@@ -175,6 +175,36 @@ Scene shuffled(const Scene& scene, std::uint64_t seed) {
   return result;
 }
 
+Scene excerpt(const Scene& scene, std::span<const std::uint32_t> ids, std::size_t first, std::size_t last) {
+  if (first > last || last >= scene.frames.size()) {
+    throw BadArgument(fmt::format("frames {} to {}: the scene has 0 to {}", first, last, scene.frames.size() - 1));
+  }
+  for (const std::uint32_t id : ids) {
+    if (std::ranges::find(scene.bodies, id, &Body::id) == scene.bodies.end()) {
+      throw BadArgument(fmt::format("the scene has no body {}", id));
+    }
+  }
+  const auto is_kept = [&](std::uint32_t id) { return ids.empty() || std::ranges::find(ids, id) != ids.end(); };
+  Scene result = scene;
+  for (std::size_t f = 1; f <= first; ++f) {
+    for (const Motion& motion : scene.frames[f]) result.bodies[motion.body].pose = motion.pose;
+  }
+  std::unordered_map<std::uint32_t, std::uint32_t> place;  // of what is kept, by its index before
+  for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
+    if (is_kept(scene.bodies[i].id)) place.emplace(i, static_cast<std::uint32_t>(place.size()));
+  }
+  std::erase_if(result.bodies, [&](const Body& body) { return !is_kept(body.id); });
+  std::erase_if(result.ignored, [&](const BodyPair& pair) { return !is_kept(pair.a) || !is_kept(pair.b); });
+  result.frames.assign(1, {});
+  for (std::size_t f = first + 1; f <= last; ++f) {
+    Frame& frame = result.frames.emplace_back();
+    for (const Motion& motion : scene.frames[f]) {
+      if (const auto at = place.find(motion.body); at != place.end()) frame.push_back({at->second, motion.pose});
+    }
+  }
+  return result;
+}
+
 std::vector<Moved> start_of(const Scene& scene) {
   std::vector<Moved> moved;
   moved.reserve(scene.bodies.size());

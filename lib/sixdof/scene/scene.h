@@ -93,6 +93,13 @@ class PairFilter {
 /// The same scene with its bodies inserted in a seeded random order.
 Scene shuffled(const Scene& scene, std::uint64_t seed);
 
+/// Part of a scene: some bodies, in their order, over some frames. The first frame kept is the start; its poses are the
+/// recorded ones, so that answers keep their bits.
+/// @param ids of the bodies to keep; empty for all
+/// @param first, last frames, both included
+/// @throws BadArgument naming an identifier that no body has, or frames that are not first <= last < Scene::frames
+Scene excerpt(const Scene& scene, std::span<const std::uint32_t> ids, std::size_t first, std::size_t last);
+
 /// Frames with their poses as matrices, as algorithms take them.
 struct Moved {
   std::uint32_t body = 0;  ///< Index into Scene::bodies.
