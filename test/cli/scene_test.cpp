@@ -92,10 +92,10 @@ TEST_F(SceneCommand, PlaysSomeBodiesAndFrames) {
   EXPECT_EQ(json_of("play s.h5 --algorithms all-pairs --bodies 3,5,8")[0].at("algorithms")[0].at("pairs_in_all"), 12);
 }
 
-/// A pile of which Bullet's GImpact reports pairs that are apart.
+/// A scene of which Bullet's GImpact reports pairs that are apart.
 TEST_F(SceneCommand, AWrongPairHasItsReproduction) {
-  ASSERT_EQ(run("make pile -n 120 --frames 4 --seed 3 -o 'my scene.h5'").exit_code, 0);
-  const auto played = run("play 'my scene.h5' --algorithms bullet-dbvt --frames 1:3 --json");
+  ASSERT_EQ(run("make clusters -n 120 --frames 6 --seed 3 -o 'my scene.h5'").exit_code, 0);
+  const auto played = run("play 'my scene.h5' --algorithms bullet-dbvt --frames 2:4 --json");
   if (played.err.find("no algorithm for scenes bullet-dbvt") != std::string::npos) GTEST_SKIP() << played.err;
   ASSERT_EQ(played.exit_code, 0) << played.err;
   const json first = json::parse(played.out)[0].at("algorithms")[0].value("first_wrong", json());
