@@ -23,17 +23,23 @@ KNOWN_TEMPORARY = ".partial"
 A = "OFF\n4 4 6\n0 0 0\n1 0.1 0\n-0.2 1.3 0.3\n0.1 -0.3 0.9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"
 OPEN = "OFF\n4 3 6\n0 0 0\n1 0.1 0\n-0.2 1.3 0.3\n0.1 -0.3 0.9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n"
 GRID = ["--a", "a.off", "--b", "a.off", "--grid", "90/60", "--distances", "0,5", "--volumes", "1"]
+BENCH = ["--a", "a.off", "--b", "a.off", "--benchmark_filter=^collide/algorithm:exact/", "--benchmark_min_time=0.001",
+         "--sample", "8"]
 STUDY = ["--a", "a.off", "--b", "a.off", "--algorithms", "exact", "--budget", "1s"]
+# A query whose preparation is kept in the cache.
+CACHED = [SIXDOF, "query", "--a", "a.off", "--b", "a.off", "--pose", "0.3 0.2 0.1 1 0 0 0", "--algorithm", "vps-field",
+          "-p", "voxel_size=0.1", "-p", "point_spacing=0.1"]
 
 
 class Kind:
-    """A kind of file: the words that write it, and how its content is judged."""
+    """A kind of file or folder: the words that write it, and how its content is judged."""
 
-    def __init__(self, name, file, words, times=False, program=SIXDOF, replaces=True):
+    def __init__(self, name, file, words, times=False, program=SIXDOF, replaces=True, resume=()):
         self.name, self.file, self.words = name, file, words
         self.times = times  # are in the file, so that two runs differ
         self.program = program
-        self.replaces = replaces  # a file of that name that is there already
+        self.replaces = replaces  # what is there already under that name
+        self.resume = resume  # words that complete a folder
 
     def command(self, file=None):
         return [self.program, *[(file or self.file) if word == "OUT" else word for word in self.words]]
@@ -58,14 +64,18 @@ KINDS = [
           "voxel_size=0.1,0.07,0.05", "--grid", "point_spacing=0.1,0.07,0.05", "-o", "OUT"], times=True),
     Kind("cells of stress", "x.json",
          ["stress", "--algorithms", "exact", "--families", "kissing", "--cases", "cases", "-o", "OUT"], times=True),
+    Kind("page of results", "x.html", ["report", "results.json", "-o", "OUT"]),
+    Kind("page of history", "x.html", ["history", "runs", "-o", "OUT"]),
     Kind("results", "x.json",
-         ["--a", "a.off", "--b", "a.off", "--benchmark_filter=^collide/algorithm:exact/", "--benchmark_min_time=0.001",
-          "--sample", "8", "--out", "OUT"], times=True, program=SIXDOF_BENCH, replaces=False),
+         [*BENCH, "--out", "OUT"], times=True, program=SIXDOF_BENCH, replaces=False),
 ]
 FOLDERS = [
-    Kind("shards", "made", ["generate", *GRID, "--shards", "3", "-o", "OUT"]),
+    Kind("shards", "made", ["generate", *GRID, "--shards", "3", "-o", "OUT"], replaces=False, resume=["--resume"]),
     Kind("project of an algorithm", "project", ["new-algorithm", "mine", "-o", "OUT"], replaces=False),
+    Kind("tables of results", "tables", ["report", "results.json", "--csv", "OUT"]),
 ]
+if shutil.which("node"):
+    FOLDERS.append(Kind("figures of results", "figures", ["report", "results.json", "--svg", "OUT"]))
 
 
 class OutputFiles(unittest.TestCase):
@@ -92,11 +102,14 @@ class OutputFiles(unittest.TestCase):
         folder.mkdir()
         (folder / "a.off").write_text(A)
         (folder / "open.off").write_text(OPEN)
-        shards = cls.top / "shards-of-all"
-        if not shards.exists():
-            subprocess.run([SIXDOF, "generate", *GRID, "--shards", "3", "-o", shards], cwd=folder, check=True,
-                           capture_output=True, env=cls.environment())
-        shutil.copytree(shards, folder / "shards")
+        inputs = cls.top / "inputs"  # that take time to make
+        if not inputs.exists():
+            (inputs / "runs").mkdir(parents=True)
+            for command in ([SIXDOF, "generate", *GRID, "--shards", "3", "-o", inputs / "shards"],
+                            [SIXDOF_BENCH, *BENCH, "--out", inputs / "results.json"]):
+                subprocess.run(command, cwd=folder, check=True, capture_output=True, env=cls.environment())
+            shutil.copy(inputs / "results.json", inputs / "runs" / "first.json")
+        shutil.copytree(inputs, folder, dirs_exist_ok=True)
         return folder
 
     @classmethod
@@ -114,6 +127,11 @@ class OutputFiles(unittest.TestCase):
         if path.is_dir():
             return {str(file.relative_to(path)): file.read_bytes() for file in path.rglob("*") if file.is_file()}
         return path.read_bytes() if path.exists() else None
+
+    @staticmethod
+    def without_left_overs(content):
+        """Files of a folder, without those of a writer that was killed."""
+        return {name: data for name, data in (content or {}).items() if KNOWN_TEMPORARY not in name}
 
     @staticmethod
     def left_overs(folder):
@@ -192,24 +210,25 @@ class OutputFiles(unittest.TestCase):
                     self.assertTrue(self.is_whole(kind, self.content(folder / kind.file)))
 
     def test_a_folder_is_whole_or_has_whole_files_only(self):
-        shards = self.whole["shards"]
-        for handler in (signal.SIG_IGN, signal.SIG_DFL):
-            for size in (0, 1000, min(map(len, shards.values())) - 1):
-                folder = self.new_folder()
-                done = self.run_in(folder, FOLDERS[0].command(), preexec_fn=self.limited(size, handler))
-                self.assertNotEqual(done.returncode, 0)
-                made = self.content(folder / "made") or {}
-                for name, content in made.items():
-                    self.assertTrue(name.endswith(KNOWN_TEMPORARY) or content == shards[name], name)
-                done = self.run_in(folder, [*FOLDERS[0].command(), "--resume"])
-                self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertEqual(self.content(folder / "made"), shards)
-            folder = self.new_folder()
-            done = self.run_in(folder, FOLDERS[1].command(), preexec_fn=self.limited(100, handler))
-            self.assertNotEqual(done.returncode, 0)
-            self.assertFalse((folder / "project").exists())
-            self.assertEqual(self.run_in(folder, FOLDERS[1].command()).returncode, 0)
-            self.assertEqual(self.content(folder / "project"), self.whole[FOLDERS[1].name])
+        for kind in FOLDERS:
+            whole = self.whole[kind.name]
+            for handler in (signal.SIG_IGN, signal.SIG_DFL):
+                for size in sorted({0, 100, min(map(len, whole.values())) - 1}):
+                    with self.subTest(f"{kind.name}, {handler.name}, {size}"):
+                        folder = self.new_folder()
+                        done = self.run_in(folder, kind.command(), preexec_fn=self.limited(size, handler))
+                        if handler is signal.SIG_IGN:
+                            self.check_error(done, "File too large")
+                            self.assertEqual(self.left_overs(folder), [])
+                        else:
+                            self.assertEqual(done.returncode, -signal.SIGXFSZ, done.stderr)
+                        made = self.without_left_overs(self.content(folder / kind.file))
+                        self.assertEqual(made, {name: whole[name] for name in made})
+                        if not kind.replaces and not kind.resume:
+                            self.assertFalse((folder / kind.file).exists())
+                        done = self.run_in(folder, [*kind.command(), *kind.resume])
+                        self.assertEqual(done.returncode, 0, done.stderr)
+                        self.assertEqual(self.without_left_overs(self.content(folder / kind.file)), whole)
 
     def test_a_small_disk(self):
         if os.geteuid() != 0:
@@ -232,28 +251,37 @@ class OutputFiles(unittest.TestCase):
                     left = {path.name for path in folder.iterdir()} - {kind.file + ".journal"}
                     self.assertEqual(left, {"rest"})
                     (folder / (kind.file + ".journal")).unlink(missing_ok=True)
+            for kind in FOLDERS[2:]:
+                for size in ("8k", "72k", "88k") if kind.file == "figures" else ("8k",):
+                    with self.subTest(f"{kind.name}, {size}"):
+                        subprocess.run(["mount", "-o", f"remount,size={size}", folder], check=True)
+                        done = self.run_in(self.new_folder(), kind.command(str(folder / kind.file)))
+                        self.check_error(done, str(folder / kind.file))
+                        self.assertRegex(done.stderr, b"[Nn]o space left on device")
+                        made = self.content(folder / kind.file)
+                        self.assertEqual(made, {name: self.whole[kind.name][name] for name in made})
+                        self.assertEqual(self.left_overs(folder), [])
+                        shutil.rmtree(folder / kind.file)
         finally:
             subprocess.run(["umount", folder], check=True)
 
     def test_the_cache_does_without_what_cannot_be_written(self):
-        words = [SIXDOF, "query", "--a", "a.off", "--b", "a.off", "--pose", "0.3 0.2 0.1 1 0 0 0", "--algorithm",
-                 "vps-field", "-p", "voxel_size=0.1", "-p", "point_spacing=0.1"]
         folder = self.new_folder()
         cache = folder / "cache"
         environment = self.environment(SIXDOF_CACHE=str(cache))
-        expected = self.answers(self.run_in(folder, words, environment))
+        expected = self.answers(self.run_in(folder, CACHED, environment))
         self.assertEqual(expected[0], 0)
         whole = self.content(cache)
         self.assertGreaterEqual(len(whole), 3)
         for size in (0, 1000, min(map(len, whole.values())) - 1):
             for handler in (signal.SIG_IGN, signal.SIG_DFL):
                 shutil.rmtree(cache)
-                done = self.run_in(folder, words, environment, preexec_fn=self.limited(size, handler))
+                done = self.run_in(folder, CACHED, environment, preexec_fn=self.limited(size, handler))
                 if handler is signal.SIG_IGN:
                     self.assertEqual(self.answers(done), expected, done.stderr)
                 for name, content in self.content(cache).items():
                     self.assertTrue(name.endswith(KNOWN_TEMPORARY) or content == whole[name], name)
-                done = self.run_in(folder, words, environment)
+                done = self.run_in(folder, CACHED, environment)
                 self.assertEqual(self.answers(done), expected, done.stderr)
                 self.assertEqual(self.content(cache), whole)
 
@@ -308,7 +336,9 @@ class OutputFiles(unittest.TestCase):
                 ("open.off", ["repair", "open.off", "-o", "x.off"]),
                 ("a.off", ["generate", "--a", "a.off", "--grid", "90", "--distances", "5", "-o", "y.h5"]),
                 ("set.h5", ["info", "set.h5"]), ("set.h5", ["verify", "set.h5", "--oracle", "exact"]),
-                ("set.h5", ["table", "set.h5"]), ("shards", ["merge", "shards", "-o", "y.h5"])]
+                ("set.h5", ["table", "set.h5"]), ("shards", ["merge", "shards", "-o", "y.h5"]),
+                ("results.json", ["report", "results.json", "-o", "y.html"]),
+                ("runs", ["history", "runs", "-o", "y.html"])]
 
     def test_inputs_that_are_missing_empty_or_folders(self):
         for file, words in self.inputs():
@@ -327,15 +357,19 @@ class OutputFiles(unittest.TestCase):
                         path.symlink_to(path)
                     done = self.run_in(folder, [SIXDOF, *words])
                     self.check_error(done, file)
-                    self.assertFalse((folder / "y.h5").exists())
+                    self.assertEqual(list(folder.glob("y.*")), [])
 
     # Two writers.
 
-    def run_twice(self, folder, kind):
-        """What two processes that run at the same time say on stderr, and their exit codes."""
-        writers = [subprocess.Popen(kind.command(), cwd=folder, env=self.environment(), stdout=subprocess.DEVNULL,
+    def run_twice(self, folder, command, environment=None):
+        """Two processes that run at the same time, when both have ended."""
+        writers = [subprocess.Popen(command, cwd=folder, env=environment or self.environment(), stdout=subprocess.PIPE,
                                     stderr=subprocess.PIPE) for _ in range(2)]
-        return [(writer.communicate(timeout=250)[1], writer.returncode) for writer in writers]
+        ended = []
+        for writer in writers:
+            printed, words = writer.communicate(timeout=250)
+            ended.append(subprocess.CompletedProcess(command, writer.returncode, printed, words))
+        return ended
 
     def test_two_writers_of_one_file_leave_a_whole_one(self):
         for kind in KINDS:
@@ -343,20 +377,54 @@ class OutputFiles(unittest.TestCase):
                 if not kind.replaces:
                     continue
                 folder = self.new_folder()
-                for words, code in self.run_twice(folder, kind):
-                    self.assertEqual(code, 0, words)
+                for done in self.run_twice(folder, kind.command()):
+                    self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertTrue(self.is_whole(kind, self.content(folder / kind.file)))
                 self.assertEqual(self.left_overs(folder), [])
+
+    def check_at_least_one_wrote(self, ends, kind):
+        self.assertIn(0, [done.returncode for done in ends], [done.stderr for done in ends])
+        for done in ends:
+            if done.returncode != 0:
+                self.check_error(done, kind.file)
 
     def test_two_writers_of_results_are_told_apart(self):
         kind = KINDS[-1]
         folder = self.new_folder()
-        ends = self.run_twice(folder, kind)
-        self.assertIn(0, [code for _, code in ends])
-        for words, code in ends:
-            if code != 0:
-                self.assertIn(b"x.json", words)
+        self.check_at_least_one_wrote(self.run_twice(folder, kind.command()), kind)
         self.assertTrue(self.is_whole(kind, self.content(folder / kind.file)))
+
+    def test_two_writers_of_one_folder_leave_a_whole_one(self):
+        for kind in FOLDERS:
+            with self.subTest(kind.name):
+                folder = self.new_folder()
+                self.check_at_least_one_wrote(self.run_twice(folder, kind.command()), kind)
+                self.assertEqual(self.content(folder / kind.file), self.whole[kind.name])
+                self.assertEqual(self.left_overs(folder), [])
+
+    def test_two_that_resume_the_same_shards_both_succeed(self):
+        kind = FOLDERS[0]
+        folder = self.new_folder()
+        self.assertEqual(self.run_in(folder, kind.command()).returncode, 0)
+        for shard in sorted((folder / kind.file).iterdir())[1:]:
+            shard.unlink()
+        for done in self.run_twice(folder, [*kind.command(), *kind.resume]):
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.content(folder / kind.file), self.whole[kind.name])
+        self.assertEqual(self.left_overs(folder), [])
+
+    def test_two_writers_of_the_cache_both_answer(self):
+        folder = self.new_folder()
+        cache = folder / "cache"
+        environment = self.environment(SIXDOF_CACHE=str(cache))
+        expected = self.answers(self.run_in(folder, CACHED, environment))
+        self.assertEqual(expected[0], 0)
+        whole = self.content(cache)
+        for _ in range(4):
+            shutil.rmtree(cache)
+            for done in self.run_twice(folder, CACHED, environment):
+                self.assertEqual(self.answers(done), expected, done.stderr)
+            self.assertEqual(self.content(cache), whole)
 
     # Locales and names.
 

@@ -1,6 +1,7 @@
 #include <sixdof/report/figure_files.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -62,13 +63,36 @@ class WorkFolder {
   std::filesystem::path path_;
 };
 
-/// Runs a program to its end; its output goes to `log`. @throws Error with its last words unless it ends with 0
-void run(const std::vector<std::string>& words, const std::filesystem::path& log) {
+/// Reads to the end of what the other end of a pipe writes.
+std::string read_all(int descriptor) {
+  std::string text;
+  std::array<char, 4096> block{};
+  for (;;) {
+    const ssize_t count = ::read(descriptor, block.data(), block.size());
+    if (count > 0) text.append(block.data(), static_cast<std::size_t>(count));
+    if (count == 0 || (count < 0 && errno != EINTR)) return text;
+  }
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+/// Runs a program to its end in `folder`, so that none of its words needs the folder's name, which may be no UTF-8.
+/// @return what it printed; by a pipe, so that a full disk does not swallow why it failed
+/// @throws BadFile with its last words unless it ends with 0
+std::string run(const std::vector<std::string>& words, const std::filesystem::path& folder) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw Error(fmt::format("pipe: {}", std::strerror(errno)));
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
+  ::posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
   ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  ::posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  ::posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
   std::vector<std::string> copies = words;
   std::vector<char*> arguments;
   for (std::string& word : copies) arguments.push_back(word.data());
@@ -76,15 +100,15 @@ void run(const std::vector<std::string>& words, const std::filesystem::path& log
   pid_t child = 0;
   const int failure = ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
+  ::close(ends[1]);
+  std::string printed = failure == 0 ? read_all(ends[0]) : "";
+  ::close(ends[0]);
   if (failure != 0) throw Error(fmt::format("{} cannot be started: {}", words[0], std::strerror(failure)));
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-  std::string last = text_of(log);
-  if (last.size() > k_last_words) last.erase(0, last.size() - k_last_words);
-  std::ranges::replace(last, '\n', ' ');
-  throw Error(fmt::format("{} failed: {}", words[0], last));
+  const int status = wait_for(child);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return printed;
+  if (printed.size() > k_last_words) printed.erase(0, printed.size() - k_last_words);
+  std::ranges::replace(printed, '\n', ' ');
+  throw BadFile(folder.string(), fmt::format("{} failed: {}", words[0], printed));
 }
 
 void need(const char* program, const char* package) {
@@ -100,23 +124,19 @@ std::vector<std::string> write_figures(const Report& report, const PageFiles& fi
   need("node", "nodejs");
   if (format == FigureFormat::pdf) need("rsvg-convert", "librsvg2-bin");
   const WorkFolder work(folder);
-  const std::filesystem::path log = work.path() / "log", data = work.path() / "data.json";
-  write_file_atomically(data, page_data(report, files));
-  run({"node", (files.folder / "page" / "write_svg.js").string(), files.folder.string(), data.string(),
-       work.path().string()},
-      log);
+  write_file_atomically(work.path() / "data.json", page_data(report, files));
+  const std::filesystem::path programs = std::filesystem::absolute(files.folder);
   std::vector<std::string> names;
-  std::istringstream lines(text_of(log));
+  std::istringstream lines(
+      run({"node", (programs / "page" / "write_svg.js").string(), programs.string(), "data.json", "."}, work.path()));
   for (std::string name; std::getline(lines, name);) names.push_back(name);
   for (std::string& name : names) {
-    std::filesystem::path made = work.path() / name;
     if (format == FigureFormat::pdf) {
-      const std::filesystem::path svg = made;
-      made.replace_extension(".pdf");
-      run({"rsvg-convert", "--format=pdf", "--output=" + made.string(), svg.string()}, log);
-      name = made.filename().string();
+      const std::string svg = name;
+      name = std::filesystem::path(svg).replace_extension(".pdf").string();
+      run({"rsvg-convert", "--format=pdf", "--output=" + name, svg}, work.path());
     }
-    write_file_atomically(folder / name, text_of(made));
+    write_file_atomically(folder / name, text_of(work.path() / name));
   }
   return names;
 }

@@ -16,8 +16,8 @@ enum class FigureFormat {
 /// Writes each figure that has data to FOLDER/NAME.svg or .pdf, at the default of each of its choices. Runs node with
 /// the page's own scripts and, for PDF, rsvg-convert. Files appear whole or not at all.
 /// @returns the names of the files
-/// @throws BadArgument if a program is not in PATH, with the package that has it; Error with a program's last words if
-/// it fails; BadFile if the folder cannot be written
+/// @throws BadArgument if a program is not in PATH, with the package that has it; BadFile if the folder cannot be
+/// written or a program fails, with its last words
 std::vector<std::string> write_figures(const Report& report, const PageFiles& files,
                                        const std::filesystem::path& folder, FigureFormat format);
 
