@@ -223,5 +223,41 @@ TEST(RaySearch, RoughFacesThatTieAreCulledInDoublePrecision) {
   EXPECT_LT(largest(aligned, &Work::distances), k_most_distances_of_ray);
 }
 
+/// A ball of the given radius about the origin, between two small boxes at plus and minus `arm`.
+Mesh ball_in_a_wide_body(double radius, const Eigen::Vector3d& arm) {
+  const Mesh ball = load_model("bumpy-sphere-1k");
+  const Mesh boxes = boxes_mesh({{-arm, {0.01, 0.01, 0.01}}, {arm, {0.01, 0.01, 0.01}}});
+  std::vector<Eigen::Vector3d> vertices(boxes.vertices().begin(), boxes.vertices().end());
+  std::vector<Triangle> triangles(boxes.triangles().begin(), boxes.triangles().end());
+  const auto base = static_cast<std::uint32_t>(vertices.size());
+  for (const Eigen::Vector3d& p : ball.vertices()) vertices.emplace_back(radius * p);
+  for (const Triangle& t : ball.triangles()) triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  return Mesh::build(std::move(vertices), std::move(triangles), "ball in a wide body");
+}
+
+constexpr std::uint64_t k_most_over_large_parts = 4;
+
+TEST(RaySearch, PartsAMillionthOfTheirBodiesTakeLittleMoreThanLargeOnes) {
+  const Eigen::Vector3d right = Eigen::Vector3d::UnitX(), up = Eigen::Vector3d::UnitY();
+  std::vector<Work> of_radius;
+  for (const double radius : {0.1, 1e-4, 1e-6, 1e-8}) {
+    const Mesh a = ball_in_a_wide_body(radius, right), b = ball_in_a_wide_body(radius, up);
+    CountedSearch search(a, b);
+    std::mt19937_64 random(6);
+    std::vector<Work> all;
+    for (int i = 0; i < 20; ++i) {
+      search.set_rotation(random_rotation(random));
+      all.push_back(search.solve(random_direction(random), {0.01 * radius})[0]);
+      EXPECT_TRUE(search.cast().best.pair.has_value());
+      EXPECT_LT(search.cast().best.translation, 3.0 * radius);  // the balls meet
+    }
+    of_radius.push_back({largest(all, &Work::expanded), largest(all, &Work::distances)});
+  }
+  for (const Work& work : of_radius) {
+    EXPECT_LT(work.expanded, k_most_over_large_parts * of_radius[0].expanded);
+    EXPECT_LT(work.distances, k_most_over_large_parts * of_radius[0].distances);
+  }
+}
+
 }  // namespace
 }  // namespace sixdof::ray_cast

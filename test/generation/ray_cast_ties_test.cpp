@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/generation/ray_cast_search.h>
+#include <sixdof/geometry/triangle_distance.h>
 #include <sixdof/models/model_catalogue.h>
 
 #include "../configuration/shapes.h"
@@ -169,6 +170,63 @@ TEST(DifferenceSupport, FindsTheSupportValueOfDifferences) {
       }
     }
   }
+}
+
+/// The least distance of the triangles below two children, B's translated by t u.
+double least_distance(const Cast& cast, std::size_t a, std::size_t b, double t) {
+  const auto triangles_below = [](const CastTree& tree, std::size_t slot) {
+    const Tree& below = tree.mesh().tree();
+    const Tree::Child child = below.nodes()[slot / Tree::k_width].child[slot % Tree::k_width];
+    const std::uint32_t first = child.is_leaf() ? child.first() : below.nodes()[child.node()].first_triangle;
+    const std::uint32_t count = child.is_leaf() ? child.count() : below.nodes()[child.node()].triangle_count;
+    std::vector<TriangleCorners> list;
+    for (std::uint32_t i = first; i < first + count; ++i) list.push_back(tree.triangle(i));
+    return list;
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (const TriangleCorners& reflected : triangles_below(cast.a, a)) {
+    for (TriangleCorners moved : triangles_below(cast.b, b)) {
+      for (Eigen::Vector3d& corner : moved) corner += t * cast.direction;
+      const TriangleCorners from{-reflected[0], -reflected[1], -reflected[2]};
+      least = std::min(least, triangle_triangle_distance(from, moved).distance);
+    }
+  }
+  return least;
+}
+
+TEST(SeparatedInDouble, HoldsForAllTrianglesAndLargerTranslations) {
+  std::mt19937_64 random(65);
+  const Mesh a = load_model("bumpy-sphere-600");
+  const Mesh b = load_model("torus-2000");
+  const CastTree tree_a = transformed(a, -Eigen::Matrix3d::Identity());
+  const CastTree tree_b = transformed(b, random_matrix(random));
+  const std::vector<std::size_t> of_a = children_of(tree_a, random), of_b = children_of(tree_b, random);
+  int separated = 0, hits = 0;
+  for (std::size_t i = 0; i < 1000; ++i) {
+    Cast cast(tree_a, tree_b);
+    const auto slot_a = static_cast<std::uint32_t>(of_a[i % of_a.size()]);
+    const auto slot_b = static_cast<std::uint32_t>(of_b[(7 * i) % of_b.size()]);
+    if (tree_a.child(slot_a).is_leaf() != tree_b.child(slot_b).is_leaf()) continue;
+    cast.direction = random_direction(random);
+    cast.target = (i % 2 == 0 ? 0.2 : 1e-3) * a.diagonal();
+    cast.best = {.translation = 0.1 * static_cast<double>(i % 8) * a.diagonal(),
+                 .pair = TrianglePair{0, 0},
+                 .axis = random_direction(random),
+                 .separating_axis = cast.direction};
+    const bool is_separated = separated_in_double(cast, slot_a, slot_b);
+    double least = std::numeric_limits<double>::infinity();
+    for (const double later : {0.0, 0.05, 0.2, 0.5, 1.0}) {
+      least = std::min(least, least_distance(cast, slot_a, slot_b, cast.best.translation + later * a.diagonal()));
+    }
+    if (is_separated) {
+      ++separated;
+      ASSERT_GE(least, cast.target - k_cast_tie * cast.size()) << "pair " << i;
+    } else if (least < cast.target) {
+      ++hits;
+    }
+  }
+  EXPECT_GT(separated, 100);
+  EXPECT_GT(hits, 20);
 }
 
 }  // namespace

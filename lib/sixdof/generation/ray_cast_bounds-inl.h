@@ -55,13 +55,13 @@ struct Ray {
   float target;
   float slack;        ///< k_slack as a length.
   float translation;  ///< Of the best hit: t0.
-  float reach;        ///< Upper bound on every t of interest.
+  float reach;        ///< Cast::reach()
   float shift[3];     ///< t0 u
 
   explicit Ray(const Cast& cast)
       : target(static_cast<float>(cast.target)),
         slack(static_cast<float>(k_slack * cast.size())),
-        reach(static_cast<float>(1.01 * cast.size())) {
+        reach(static_cast<float>(cast.reach())) {
     for (int k = 0; k < 3; ++k) u[k] = static_cast<float>(cast.direction[k]);
     set_best(cast);
   }

@@ -35,6 +35,10 @@ constexpr float k_flat_error = 2e-3f;
 constexpr std::uint64_t k_budget_near = 16;
 constexpr std::uint64_t k_budget_far = 8;
 
+/// Half the diagonals of two boxes, in units of the slack, up to which they are bounded in double precision: bounds in
+/// single precision do not tell their parts apart.
+constexpr float k_unresolved = 4.0f;
+
 /// Decides when a test is due: after ever more pairs while it fails, for each pair while it succeeds. `now` is the
 /// number of pairs that single-precision bounds did not cull.
 struct Backoff {
@@ -78,16 +82,21 @@ class TieTests {
     if (patch.is_facing(cast_.best.axis, cast_.direction)) cast_.patch = patch;
   }
 
-  /// Whether two subtrees are separated by the target along the patch's normal, or along best.separating_axis, up to
-  /// half a tie; each is tested only when it is due. Half a tie is more than the rounding of this test and of
-  /// try_update(), so that what is culled here is no hit that try_update() would take. While there is no hit to stand
-  /// for it, a tie is not culled.
+  /// Whether two subtrees are separated by the target, up to half a tie: along the patch's normal, or along
+  /// best.separating_axis, each tested only when it is due; where both are unresolved, by separated_in_double(). Half a
+  /// tie is more than the rounding of this test and of try_update(), so that what is culled here is no hit that
+  /// try_update() would take. While there is no hit to stand for it, a tie is not culled.
   /// @param near whether they may tie
   /// @param set_bound called with gap and slope if the gap is more than the rounding of single precision; otherwise a
   /// smaller target tests the pair again
   template <class SetBound>
   bool separated(std::uint32_t a, std::uint32_t b, bool near, const SetBound& set_bound) {
     if (a == CastFront::k_root || b == CastFront::k_root) return false;
+    const float unresolved = k_unresolved * ray_.slack;
+    if (std::max(cast_.a.volume(a).size, cast_.b.volume(b).size) <= unresolved * unresolved &&
+        separated_in_double(cast_, a, b)) {
+      return true;
+    }
     const auto separates = [&](DifferenceSupport& support, const Eigen::Vector3d& axis, Backoff& backoff) {
       const double slope = axis.dot(cast_.direction);
       if (slope < 0.0) return false;

@@ -126,6 +126,8 @@ struct Cast {
 
   /// Length that errors are relative to.
   double size() const { return a.radius() + b.radius() + target; }
+  /// Upper bound on every translation of interest.
+  double reach() const { return 1.01 * size(); }
 };
 
 /// Finds the pair of triangles with the largest t_ab(target) above best.translation, and sets `best`; leaves it

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <sixdof/generation/ray_cast_search.h>
+
 namespace sixdof::ray_cast {
 namespace {
 
@@ -26,6 +28,38 @@ constexpr double k_same_axis = 5e-16;
 /// Cosine of the largest angle (1.4e-3) between a patch's normal and an axis that stands on it. Triangles of a flat
 /// patch are tilted by less.
 constexpr double k_least_patch_cosine = 1.0 - 1e-6;
+
+/// Lower bound on axis . p for the points p of the volume of one lane, by its box and by its slab.
+/// @param axis in the mesh's axes
+/// @param rounding by which the bound is lowered
+double support_bound(const PreciseVolumes& volumes, std::size_t lane, const double (&axis)[3], double rounding) {
+  const double along =
+      axis[0] * volumes.normal[0][lane] + axis[1] * volumes.normal[1][lane] + axis[2] * volumes.normal[2][lane];
+  // The axis is `along` times the slab's normal plus a rest, for which the box is used.
+  double in_slab = along * volumes.middle[lane] - std::abs(along) * volumes.half[lane];
+  double in_box = -rounding;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double rest = axis[k] - along * volumes.normal[k][lane];
+    in_slab += rest * volumes.box_center[k][lane] - std::abs(rest) * volumes.box_half[k][lane];
+    in_box += axis[k] * volumes.box_center[k][lane] - std::abs(axis[k]) * volumes.box_half[k][lane];
+  }
+  return std::max(in_slab - rounding, in_box);
+}
+
+/// The same for a child's volume.
+/// @param axis in the common frame
+double support_bound(const CastTree& tree, std::uint32_t slot, const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d in_mesh = tree.matrix().transpose() * axis;
+  return support_bound(tree.mesh().precise_volumes()[slot / k_width], slot % k_width,
+                       {in_mesh[0], in_mesh[1], in_mesh[2]}, k_support_rounding * tree.radius());
+}
+
+/// In the common frame.
+Eigen::Vector3d box_center(const CastTree& tree, std::uint32_t slot) {
+  const PreciseVolumes& v = tree.mesh().precise_volumes()[slot / k_width];
+  const std::size_t lane = slot % k_width;
+  return tree.matrix() * Eigen::Vector3d(v.box_center[0][lane], v.box_center[1][lane], v.box_center[2][lane]);
+}
 
 }  // namespace
 
@@ -58,18 +92,7 @@ double TreeSupport::support_value(std::size_t slot, std::uint64_t& budget) {
 
 void TreeSupport::bound_children(const PreciseVolumes& volumes, double* bounds) const {
   const double a[3] = {axis_[0], axis_[1], axis_[2]};
-  for (std::size_t i = 0; i < k_width; ++i) {
-    const double along = a[0] * volumes.normal[0][i] + a[1] * volumes.normal[1][i] + a[2] * volumes.normal[2][i];
-    // The axis is `along` times the slab's normal plus a rest, for which the box is used.
-    double in_slab = along * volumes.middle[i] - std::abs(along) * volumes.half[i];
-    double in_box = -rounding_;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double rest = a[k] - along * volumes.normal[k][i];
-      in_slab += rest * volumes.box_center[k][i] - std::abs(rest) * volumes.box_half[k][i];
-      in_box += a[k] * volumes.box_center[k][i] - std::abs(a[k]) * volumes.box_half[k][i];
-    }
-    bounds[i] = std::max(in_slab - rounding_, in_box);
-  }
+  for (std::size_t i = 0; i < k_width; ++i) bounds[i] = support_bound(volumes, i, a, rounding_);
 }
 
 TreeSupport::Found TreeSupport::search(CastChild child, double least, std::uint64_t limit) {
@@ -117,6 +140,27 @@ double DifferenceSupport::support_value(std::size_t slot_a, std::size_t slot_b, 
   }
   const double of_a = a_.support_value(slot_a, budget_);
   return of_a == TreeSupport::k_unknown ? of_a : of_a + b_.support_value(slot_b, budget_);
+}
+
+bool separated_in_double(const Cast& cast, std::uint32_t a, std::uint32_t b) {
+  const Hit& best = cast.best;
+  const Eigen::Vector3d& u = cast.direction;
+  // As in try_update(), a tie stays below the target.
+  const double tie = std::min(k_cast_tie * cast.size(), 0.5 * cast.target);
+  const double enough = cast.target - (best.pair ? 0.5 * tie : 0.0);
+  const auto separates = [&](const Eigen::Vector3d& axis) {
+    const double rate = axis.dot(u);
+    const double least = support_bound(cast.a, a, axis) + support_bound(cast.b, b, axis) + best.translation * rate;
+    return least + cast.reach() * std::min(rate, 0.0) >= enough;
+  };
+  if (separates(best.axis) || separates(best.separating_axis)) return true;
+  const Eigen::Vector3d apart = box_center(cast.a, a) + box_center(cast.b, b) + best.translation * u;
+  const Eigen::Vector3d nearest = apart + std::max(0.0, -apart.dot(u)) * u;
+  if (separates(nearest.normalized())) return true;
+  for (const Eigen::Vector3d& normal : {cast.a.slab(a).normal, cast.b.slab(b).normal}) {
+    if (separates(normal.dot(u) < 0.0 ? Eigen::Vector3d(-normal) : normal)) return true;
+  }
+  return false;
 }
 
 }  // namespace sixdof::ray_cast

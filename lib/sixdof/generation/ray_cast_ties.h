@@ -109,4 +109,12 @@ class DifferenceSupport {
   std::uint64_t budget_ = 0;
 };
 
+struct Cast;
+
+/// Whether two subtrees are at least the target apart, up to half a tie, at the translation of the best hit and at all
+/// larger ones: by their boxes and slabs, along the axes of the best hit, between the boxes' centres and of both slabs.
+/// For volumes so small that bounds in single precision cannot tell them apart.
+/// @param a, b slots of children
+bool separated_in_double(const Cast& cast, std::uint32_t a, std::uint32_t b);
+
 }  // namespace sixdof::ray_cast
