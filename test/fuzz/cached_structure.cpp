@@ -39,11 +39,11 @@ const std::vector<Subject>& subjects() {
 }
 
 const Mesh& mesh_a() {
-  static const Mesh mesh = box(1.0, 0.8, 0.6);
+  static const Mesh mesh = box();
   return mesh;
 }
 const Mesh& mesh_b() {
-  static const Mesh mesh = tetrahedron(1.0);
+  static const Mesh mesh = tetrahedron();
   return mesh;
 }
 

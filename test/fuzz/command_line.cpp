@@ -44,9 +44,9 @@ const std::vector<std::pair<std::string, std::string>>& files() {
     std::vector<std::pair<std::string, std::string>> made;
     const auto keep = [&](const fs::path& file) { made.emplace_back(file.filename().string(), read_bytes(file)); };
     const auto& folder = scratch_folder();
-    save_mesh(box(1.0, 0.8, 0.6), folder / "a.ply");
-    save_mesh(tetrahedron(1.0), folder / "b.obj");
-    save_mesh(tetrahedron(1.0), folder / "c.stl");
+    save_mesh(box(), folder / "a.ply");
+    save_mesh(tetrahedron(), folder / "b.obj");
+    save_mesh(tetrahedron(), folder / "c.stl");
     for (const char* name : {"a.ply", "b.obj", "c.stl"}) keep(folder / name);
     keep(write_small_set(folder));
     keep(write_small_shard(folder));

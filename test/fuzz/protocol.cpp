@@ -31,7 +31,7 @@ using namespace protocol;
 
 /// Files of a pair as a program finds them.
 struct PairFiles {
-  Mesh mesh = tetrahedron(1.0);
+  Mesh mesh = tetrahedron();
   MemoryFile vertices{"vertices", std::as_bytes(std::span(mesh.vertices()))};
   MemoryFile triangles{"triangles", std::as_bytes(std::span(mesh.triangles()))};
   MemoryFile progress{"progress", std::as_bytes(std::span("1234567", 8))};

@@ -46,7 +46,7 @@ void write_meshes(const fs::path& folder) {
     save_mesh(mesh, file);
     return read_bytes(file);
   };
-  const Mesh box_mesh = box(1.0, 0.8, 0.6);
+  const Mesh box_mesh = box();
   seeds.add("box.ply", "0" + saved(box_mesh, ".ply"));
   seeds.add("hard.ply", "0" + saved(hard_mesh(), ".ply"));
   seeds.add("hard.off", "1" + saved(hard_mesh(), ".off"));

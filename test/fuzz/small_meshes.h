@@ -1,31 +1,20 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include <sixdof/geometry/mesh.h>
+
+#include "../configuration/shapes.h"
 
 namespace sixdof::fuzz {
 
 /// A solid of four triangles without symmetry.
-inline Mesh tetrahedron(double scale) {
-  return Mesh::build({{0.0, 0.0, 0.0}, {1.0 * scale, 0.1, 0.0}, {-0.2, 1.3 * scale, 0.3}, {0.1, -0.3, 0.9 * scale}},
-                     {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, "tetrahedron");
-}
+inline Mesh tetrahedron(double height = 0.9) { return test::tetrahedron_mesh(Eigen::Vector3d::Zero(), height); }
 
-/// A solid of twelve triangles, [0, 1]^3 stretched.
-inline Mesh box(double x, double y, double z) {
-  return Mesh::build({{0, 0, 0}, {x, 0, 0}, {0, y, 0}, {x, y, 0}, {0, 0, z}, {x, 0, z}, {0, y, z}, {x, y, z}},
-                     {{0, 2, 3},
-                      {0, 3, 1},
-                      {4, 5, 7},
-                      {4, 7, 6},
-                      {0, 1, 5},
-                      {0, 5, 4},
-                      {2, 6, 7},
-                      {2, 7, 3},
-                      {0, 4, 6},
-                      {0, 6, 2},
-                      {1, 3, 7},
-                      {1, 7, 5}},
-                     "box");
+/// A solid of twelve triangles with a corner at the origin.
+inline Mesh box() {
+  const Eigen::Vector3d half(0.5, 0.4, 0.3);
+  return test::boxes_mesh({{half, half}}, "box");
 }
 
 }  // namespace sixdof::fuzz

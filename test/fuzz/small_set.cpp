@@ -14,7 +14,7 @@ namespace sixdof::fuzz {
 namespace {
 
 struct SmallSet {
-  Mesh a = tetrahedron(1.0), b = tetrahedron(0.5);
+  Mesh a = tetrahedron(), b = tetrahedron(0.45);
   SetDescription description{.generator_version = "1.2.3",
                              .a = MeshIdentity::of(a),
                              .b = MeshIdentity::of(b),
