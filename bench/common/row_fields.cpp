@@ -98,7 +98,7 @@ RowFields row_fields_of(const Json& object) {
   read_key("algorithm", [&] { object.at("algorithm").get_to(fields.algorithm); });
   read_key("settings", [&] { fields.settings = settings_text(object.at("settings")); });
   for (const auto& [key, member] : k_texts) {
-    if (object.contains(key)) read_key(key, [&, to = member] { object.at(key).get_to(fields.*to); });
+    if (object.contains(key)) read_key(key, [&, name = key, to = member] { object.at(name).get_to(fields.*to); });
   }
   if (object.contains("isolated")) read_key("isolated", [&] { object.at("isolated").get_to(fields.isolated); });
   if (object.contains("bucket")) {
