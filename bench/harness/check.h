@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct Check {
   Errors errors;               ///< |answer - truth|: distances in A's diagonals, volumes in the bucket's volume.
   std::size_t misses = 0;      ///< Responses without a force although the bodies overlap.
   MeanWork work;               ///< Over the answers.
+  /// Configurations of the first wrong answer, the first miss and the largest error; empty without.
+  std::optional<Pose> first_mismatch = {}, first_miss = {}, largest_error = {};
 };
 
 /// A distance is wrong if it differs by more than the set's own tolerance plus this fraction of A's diagonal. Two exact
@@ -89,7 +92,14 @@ Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<
     const auto answer = query.ask(pose);
     check.answered.push_back(answer.ok());
     if (!answer.ok()) continue;
-    if (has_truth) judge(bucket, answer.value, check);
+    if (has_truth) {
+      const std::size_t mismatch = check.mismatch, misses = check.misses;
+      const double largest = check.errors.largest();
+      judge(bucket, answer.value, check);
+      if (check.mismatch > mismatch && !check.first_mismatch) check.first_mismatch = pose;
+      if (check.misses > misses && !check.first_miss) check.first_miss = pose;
+      if (check.errors.largest() > largest) check.largest_error = pose;
+    }
     check.work.add(query.query().work());
   }
   return check;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -18,7 +19,9 @@ class Failures {
  public:
   /// Counts a configuration once, however often it is asked. Poses are told apart by their address.
   void add(const Pose& X_AB, std::string words) {
-    if (poses_.emplace(&X_AB, Status::failed).second && poses_.size() == 1) first_ = std::move(words);
+    if (!poses_.emplace(&X_AB, Status::failed).second || poses_.size() > 1) return;
+    first_ = std::move(words);
+    first_pose_ = X_AB;
   }
   /// The status of a configuration that was added; of several the last one.
   void set_status(const Pose& X_AB, Status status) { poses_.at(&X_AB) = status; }
@@ -28,11 +31,13 @@ class Failures {
     const auto has_status = [status](const auto& entry) { return entry.second == status; };
     return static_cast<std::size_t>(std::ranges::count_if(poses_, has_status));
   }
-  const std::string& first() const { return first_; }  ///< Words of the first failure.
+  const std::string& first() const { return first_; }                    ///< Words of the first failure.
+  const std::optional<Pose>& first_pose() const { return first_pose_; }  ///< Empty without failures.
 
  private:
   std::map<const Pose*, Status> poses_;
   std::string first_;
+  std::optional<Pose> first_pose_;
 };
 
 /// A prepared query and the question that a row asks it: a callable Pose -> Outcome.

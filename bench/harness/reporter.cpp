@@ -58,7 +58,7 @@ void RowReporter::ReportRuns(const std::vector<Run>& runs) {
 }
 
 void ResultCollector::ReportRuns(const std::vector<Run>& runs) {
-  for (const Run& run : runs) store_.add(run.run_name.function_name, row_json(run, fields_));
+  for (const Run& run : runs) store_.add(run.run_name.function_name, row_json(run, fields_, outliers_));
 }
 
 Console::Console() : console_(benchmark::CreateDefaultDisplayReporter()) { console_->SetErrorStream(&context_); }

@@ -42,14 +42,16 @@ class RowReporter : public benchmark::BenchmarkReporter {
 /// Hands rows on to a store.
 class ResultCollector final : public benchmark::BenchmarkReporter {
  public:
-  /// @param fields of every row. Both outlive this object.
-  ResultCollector(ResultStore& store, const FieldsByName& fields) : store_(store), fields_(fields) {}
+  /// @param fields of every row. All outlive this object.
+  ResultCollector(ResultStore& store, const FieldsByName& fields, const OutliersByName& outliers)
+      : store_(store), fields_(fields), outliers_(outliers) {}
   bool ReportContext(const Context& /*context*/) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override;
 
  private:
   ResultStore& store_;
   const FieldsByName& fields_;
+  const OutliersByName& outliers_;
 };
 
 /// Google Benchmark's console, without its warning that Debian's build of that library has assertions: nothing of it

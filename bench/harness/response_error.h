@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -22,7 +24,8 @@ struct VectorError {
 };
 
 /// A series of forces or torques with the exact ones.
-struct VectorSeries {
+class VectorSeries {
+ public:
   std::vector<Eigen::Vector3d> exact, measured;
   std::vector<double> exact_magnitudes, magnitudes;
 
@@ -35,6 +38,25 @@ struct VectorSeries {
   }
   VectorError error() const {
     return {direction_error(exact, measured), magnitude_error(exact_magnitudes, magnitudes)};
+  }
+  /// Place of the largest angle of this series; empty where all angles are 0.
+  std::optional<std::size_t> largest_angle(const DirectionError& error) const {
+    const auto angle = [&](std::size_t k) { return angle_degrees(exact[k], measured[k]); };
+    return largest([&](std::size_t k) { return angle(k) <= error.largest_degrees ? angle(k) : 0.0; });
+  }
+  /// Place of the largest difference of a magnitude from `gain` times the exact one; empty where there is none.
+  std::optional<std::size_t> largest_difference(double gain) const {
+    return largest([&](std::size_t k) { return std::abs(magnitudes[k] - gain * exact_magnitudes[k]); });
+  }
+
+ private:
+  template <class Value>
+  std::optional<std::size_t> largest(Value value) const {
+    std::optional<std::size_t> place;
+    for (std::size_t k = 0; k < exact.size(); ++k) {
+      if (value(k) > (place ? value(*place) : 0.0)) place = k;
+    }
+    return place;
   }
 };
 

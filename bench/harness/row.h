@@ -12,6 +12,7 @@
 #include <sixdof/configuration/set_catalogue.h>
 #include <sixdof/query/registry.h>
 #include "bench/common/row_fields.h"
+#include "bench/harness/outliers.h"
 #include "bench/harness/pair_cache.h"
 
 namespace sixdof::bench {
@@ -48,6 +49,8 @@ struct Row {
   /// few; 0 if none of them has an answer. The argument is the time of the whole row, of which the estimate takes
   /// little. It may throw what `run` throws.
   std::function<double(double)> trial = {};
+  /// Of rows on a bucket's sample: where the last call of `run` found the worst answers and times.
+  std::function<Outliers()> outliers = {};
   /// Google Benchmark calls `run` once per repetition, which decides itself how often to ask, and sets the wall time of
   /// every iteration.
   bool one_round = false;

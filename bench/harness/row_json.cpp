@@ -13,7 +13,7 @@ namespace sixdof::bench {
 using Json = nlohmann::ordered_json;
 using Run = benchmark::BenchmarkReporter::Run;
 
-Json row_json(const Run& run, const FieldsByName& fields) {
+Json row_json(const Run& run, const FieldsByName& fields, const OutliersByName& outliers) {
   std::ostringstream text;
   benchmark::JSONReporter writer;
   writer.SetOutputStream(&text);
@@ -30,6 +30,10 @@ Json row_json(const Run& run, const FieldsByName& fields) {
     of_run.configurations = static_cast<std::uint64_t>(asked->second.value);
   }
   json[k_row_fields_key] = to_json_object(of_run);
+  const auto found = outliers.find(run.run_name.function_name);
+  if (found != outliers.end() && run.run_type == Run::RT_Iteration && !run.error_occurred) {
+    json[k_outliers_key] = to_json_object(found->second());
+  }
   return json;
 }
 

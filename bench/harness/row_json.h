@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -7,14 +8,19 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "bench/common/row_fields.h"
+#include "bench/harness/outliers.h"
 
 namespace sixdof::bench {
 
 /// The fields of every row by its name.
 using FieldsByName = std::map<std::string, RowFields>;
+/// Row::outliers of the rows that have it, by name.
+using OutliersByName = std::map<std::string, std::function<Outliers()>>;
 
 /// One finished row, or one aggregate of its repetitions, as it stands in a result file's "benchmarks": Google
-/// Benchmark's keys and the row's fields under k_row_fields_key. Strings are UTF-8. @throws Error for a NaN in it
-nlohmann::ordered_json row_json(const benchmark::BenchmarkReporter::Run& run, const FieldsByName& fields);
+/// Benchmark's keys, the row's fields under k_row_fields_key, and its outliers under k_outliers_key. Strings are UTF-8.
+/// @throws Error for a NaN in it
+nlohmann::ordered_json row_json(const benchmark::BenchmarkReporter::Run& run, const FieldsByName& fields,
+                                const OutliersByName& outliers);
 
 }  // namespace sixdof::bench

@@ -115,14 +115,18 @@ void print_stats(const RowCaller& caller, const PairCache::Counts& counts) {
 int measure(const std::vector<const Row*>& rows, const Options& options, const Resources& resources,
             ResultStore& store) {
   FieldsByName fields;
-  for (const Row* const row : rows) fields.emplace(row->name, row->fields);
+  OutliersByName outliers;
+  for (const Row* const row : rows) {
+    fields.emplace(row->name, row->fields);
+    if (row->outliers) outliers.emplace(row->name, row->outliers);
+  }
   const auto commit = [&] { store.commit(resources.cache.hashes()); };
   SamplePlan plan(rows);
   for (const RowFields& measured : store.fields()) plan.keep(measured);
   RowCaller caller(rows.size(), options.budget_s, plan, commit);
   Console console;
   RowReporter display(options.format ? nullptr : &console, caller.left_out);
-  ResultCollector collector(store, fields);
+  ResultCollector collector(store, fields, outliers);
   RowReporter result(&collector, caller.left_out);
   const std::function<void(const Row&, benchmark::State&)> call = [&](const Row& row, benchmark::State& state) {
     caller.call(row, state);

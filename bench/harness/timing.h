@@ -27,6 +27,8 @@ struct SingleTimes {
   Latency once;
   /// Of the least of k_latency_passes times of every query: interruptions rarely meet the same query in every pass.
   Latency least;
+  /// Places of the longest times of each among the poses; 0 for no poses.
+  std::size_t slowest_once = 0, slowest_least = 0;
 };
 
 /// Time between two successive readings of the clock in ns (median of many). The time of every query contains it.
@@ -110,7 +112,11 @@ SingleTimes time_each(std::vector<Pose>& poses, GuardedQuery<Ask> query) {
   poses.resize(kept);
   times.once_ns.resize(kept);
   times.least_ns.resize(kept);
-  return {latency(times.once_ns), latency(times.least_ns)};
+  const auto place_of_largest = [](const std::vector<double>& ns) {
+    return static_cast<std::size_t>(std::ranges::max_element(ns) - ns.begin());
+  };
+  return {latency(times.once_ns), latency(times.least_ns), place_of_largest(times.once_ns),
+          place_of_largest(times.least_ns)};
 }
 
 /// One round on cold caches in the process of an isolated algorithm. @returns times without those that failed

@@ -56,6 +56,7 @@ struct QueryRow {
   std::optional<Latency> least = {};  ///< Of several passes; none on cold caches.
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
   std::optional<std::array<VectorError, 2>> errors = {};
+  Outliers worst = {};
 
   RowFields fields() const {
     return {.query = std::string(to_string(question)),
@@ -94,6 +95,10 @@ struct QueryRow {
           const SingleTimes times = time_each(poses, query);
           latency = times.once;
           least = times.least;
+          if (!poses.empty()) {
+            worst.add("max_ns", poses[times.slowest_once]);
+            worst.add("max_least_ns", poses[times.slowest_least]);
+          }
         }
       }
       if (poses.empty()) throw Error(fmt::format("no configuration has an answer: {}", failures.first()));
@@ -105,6 +110,23 @@ struct QueryRow {
       }
     });
     report(state, bucket);
+  }
+
+  /// Row::outliers.
+  Outliers outliers() const {
+    const auto word_of = [&](const std::string& name) {
+      const CatalogueMesh* const mesh = resources.catalogue.mesh(name);
+      return mesh == nullptr || mesh->identity.path.empty() ? name : mesh->identity.path;
+    };
+    Outliers found = worst;
+    found.a = word_of(pair.a);
+    found.b = word_of(pair.b);
+    found.command = query_command(found.a, found.b, algorithm, resources.settings_of(algorithm));
+    found.add("failed", failures.first_pose());
+    found.add("mismatch", check->first_mismatch);
+    found.add("misses", check->first_miss);
+    found.add(question == Question::distance ? "error_max" : "volume_error_max", check->largest_error);
+    return found;
   }
 
   /// Row::trial.
@@ -170,14 +192,25 @@ struct QueryRow {
   template <class Ask>
   void compare_with_exact(const BucketSample& bucket, std::span<const Response> exact, GuardedQuery<Ask>& query) {
     VectorSeries forces, torques;
+    std::vector<std::size_t> places;
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const Outcome<Response> answer = query.ask(bucket.poses[i]);
       if (!answer.ok()) continue;
       const auto [response, scale] = scaled_about(answer.value, exact[i].reference);
       forces.add(exact[i].force, response.force, scale);
       torques.add(exact[i].torque, response.torque, scale);
+      places.push_back(i);
     }
     errors = {forces.error(), torques.error()};
+    const auto add = [&](const std::string& counter, std::optional<std::size_t> k) {
+      if (!k) return;
+      const ComparedResponse response{forces.measured[*k], torques.measured[*k], exact[places[*k]]};
+      worst.by_counter[counter] = {.X_AB = bucket.poses[places[*k]], .response = response};
+    };
+    add("gamma_max_F_deg", forces.largest_angle(errors->at(0).direction));
+    add("gamma_max_T_deg", torques.largest_angle(errors->at(1).direction));
+    if (errors->at(0).magnitude) add("magnitude_error_F", forces.largest_difference(errors->at(0).magnitude->gain));
+    if (errors->at(1).magnitude) add("magnitude_error_T", torques.largest_difference(errors->at(1).magnitude->gain));
   }
 
   void report(benchmark::State& state, const BucketSample& bucket) const {
@@ -248,6 +281,7 @@ std::vector<Row> query_rows(const Resources& resources) {
                           .run = [row](benchmark::State& state, const Share& share) { row->run(state, share); },
                           .fields = row->fields(),
                           .trial = [row](double seconds) { return row->trial(seconds); },
+                          .outliers = [row] { return row->outliers(); },
                           .one_round = cold,
                           .manual_time = is_isolated(*algorithm)});
         }

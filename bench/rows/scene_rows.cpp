@@ -76,6 +76,7 @@ void run(Stage& stage, const std::string& key, const scene::SceneNumbers& number
   }
   for (auto _ : state) {
     report(scene::play(stage.scene, algorithm, question, stage.truth, InterruptGuard::requested), state);
+    state.counters["bodies"] = static_cast<double>(numbers.bodies);
   }
 }
 
@@ -101,6 +102,7 @@ std::vector<Row> scene_rows(const Resources& resources) {
                               },
                           .fields = {.query = "scene",
                                      .algorithm = algorithm->traits().name,
+                                     .scenario = std::string(family.name),
                                      .question = std::string(to_string(question))},
                           .unit = benchmark::kMicrosecond,
                           .one_round = true});

@@ -17,10 +17,18 @@ using test::json;
 using ::testing::HasSubstr;
 
 /// Keys of a row in Google Benchmark's JSON that are no counters.
-const std::set<std::string> k_no_counters{"name",        "family_index", "per_family_instance_index",
-                                          "run_name",    "run_type",     "repetition_index",
-                                          "repetitions", "threads",      "time_unit",
-                                          "label",       "sixdof"};
+const std::set<std::string> k_no_counters{"outliers",
+                                          "name",
+                                          "family_index",
+                                          "per_family_instance_index",
+                                          "run_name",
+                                          "run_type",
+                                          "repetition_index",
+                                          "repetitions",
+                                          "threads",
+                                          "time_unit",
+                                          "label",
+                                          "sixdof"};
 
 /// The fields of a row say what its name says.
 void expect_fields_of_the_name(const json& entry) {

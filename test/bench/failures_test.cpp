@@ -1,6 +1,8 @@
 // What rows report of algorithms that throw, or return NaN, infinity, 1e308 or a wrong answer at one pose in 20.
 
+#include <array>
 #include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -8,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/configuration/bucket_sample.h>
+#include <sixdof/measure/direction.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/scenario/evaluation.h>
 #include "bench/common/run_guarded.h"
@@ -111,6 +114,40 @@ TEST_F(Faulty, WrongAnswersAreMismatchesAndTimed) {
   const json large = row(document, "respond", "returns-1e308", "volume:03");
   EXPECT_EQ(large.at("failed"), 0);
   EXPECT_GT(large.at("gamma_max_F_deg"), 1.0);
+}
+
+/// What `sixdof query --pose` takes, as a pose.
+Pose typed(const std::string& text) {
+  std::istringstream numbers(text);
+  std::array<double, 7> n{};
+  for (double& value : n) EXPECT_TRUE(numbers >> value) << text;
+  return Pose::from_quaternion(n[3], n[4], n[5], n[6], {n[0], n[1], n[2]});
+}
+
+TEST_F(Faulty, OutliersAreTheFaultyPoses) {
+  const json document = run(filter("exact|wrong|throws-int|returns-1e308"));
+  const auto pose = [&](const char* query, const char* algorithm, const char* bucket, const char* counter) {
+    return typed(row(document, query, algorithm, bucket).at("outliers").at("poses").at(counter).get<std::string>());
+  };
+  for (const char* const counter : {"max_ns", "max_least_ns", "error_max", "mismatch"}) {
+    EXPECT_TRUE(test::is_faulty(pose("distance", "wrong", "distance:05", counter))) << counter;
+  }
+  EXPECT_TRUE(test::is_faulty(pose("collide", "wrong", "distance:05", "mismatch")));
+  EXPECT_TRUE(test::is_faulty(pose("distance", "throws-int", "distance:05", "failed")));
+  EXPECT_FALSE(test::is_faulty(pose("distance", "throws-int", "distance:05", "max_least_ns"))) << "not timed";
+  const json large = row(document, "respond", "returns-1e308", "volume:03").at("outliers");
+  EXPECT_TRUE(test::is_faulty(typed(large.at("poses").at("gamma_max_F_deg"))));
+  EXPECT_TRUE(test::is_faulty(typed(large.at("poses").at("magnitude_error_F"))));
+  // The angle of the row, from what stands beside the pose.
+  const auto vector = [&](const char* name) {
+    const auto v = large.at("responses").at("gamma_max_F_deg").at(name).get<std::array<double, 3>>();
+    return Eigen::Vector3d(v[0], v[1], v[2]);
+  };
+  EXPECT_NEAR(angle_degrees(vector("exact_force"), vector("force")),
+              row(document, "respond", "returns-1e308", "volume:03").at("gamma_max_F_deg").get<double>(), 1e-9);
+  const json right = row(document, "distance", "exact", "distance:05").at("outliers").at("poses");
+  EXPECT_FALSE(right.contains("mismatch"));
+  EXPECT_FALSE(right.contains("failed"));
 }
 
 TEST_F(Faulty, ScenariosCountFailedStepsAndGoOn) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/library_build.h>
+#include <sixdof/models/model_catalogue.h>
 #include "bench/common/run_guarded.h"
 
 #include "bench_program.h"
@@ -233,6 +234,27 @@ TEST_F(BenchProgram, TakesParametersAndShowsThem) {
   const json exact = row(document, "distance/algorithm:fcl-obbrss/pair:torus-1k/distance:05");
   EXPECT_EQ(exact.at("mismatch"), 0);
   EXPECT_EQ(exact.at("label"), "relative_error=0");
+}
+
+TEST_F(BenchProgram, OutliersAskTheSameAgain) {
+  const json document = result(
+      "--sample 32 --parameter fcl-rss:relative_error=0.5 --isolate "
+      "--benchmark_filter=^distance/algorithm:fcl-rss/pair:torus-1k/distance:05$");
+  const json entry = document.at("benchmarks")[0], outliers = entry.at("outliers");
+  EXPECT_EQ(outliers.at("command"),
+            "sixdof query --a torus-1k --b torus-1k --algorithm fcl-rss -p relative_error=0.5 --isolate");
+  std::string command = outliers.at("command").get<std::string>();
+  command.replace(0, std::string("sixdof").size(), SIXDOF_PROGRAM);
+  const auto ask = [&](const std::string& counter) {
+    const auto asked =
+        test::run_program(command + " --json --pose '" + outliers.at("poses").at(counter).get<std::string>() + "'");
+    EXPECT_EQ(asked.exit_code, 0) << asked.err;
+    return json::parse(asked.out).at("distance").get<double>();
+  };
+  const double diagonal = load_model("torus-1k").diagonal(), truth = 0.05 * diagonal;
+  // The set's tolerance, and rounding of the pose.
+  EXPECT_NEAR(std::abs(ask("error_max") - truth) / diagonal, entry.at("error_max").get<double>(), 1e-6);
+  EXPECT_GT(std::abs(ask("mismatch") - truth), 1e-6 * diagonal);
 }
 
 TEST_F(BenchProgram, RunsTheDefaultSuiteUnlessRowsOrSetsAreChosen) {

@@ -34,7 +34,12 @@ struct Collector : ::testing::Test {
                       {"b", {.query = "prepare", .algorithm = "exact"}},
                       {"c", {.query = "scenario", .algorithm = "vps", .scenario = "II"}}};
   ResultStore store{{"a", "b", "c"}, {{"seed", "7"}}};
-  ResultCollector rows{store, fields};
+  OutliersByName outliers{{"a", [] {
+                             Outliers found{.a = "left", .b = "right", .command = "", .by_counter = {}};
+                             found.add("max_ns", Pose{.t = {0.1, 2.0, 3.0}});
+                             return found;
+                           }}};
+  ResultCollector rows{store, fields, outliers};
   RowReporter collector{&rows, left_out};
 
   /// Each call of ReportRuns() is a row of its own.
@@ -60,6 +65,20 @@ TEST_F(Collector, MakesARowWithANonFiniteCounterAnError) {
   EXPECT_EQ(json.at("benchmarks")[0].at("error_message"), "counter misses is not finite (nan)");
   EXPECT_EQ(json.at("benchmarks")[1].at("error_message"), "counter misses is not finite (inf)");
   EXPECT_FALSE(json.at("benchmarks")[0].contains("good"));
+}
+
+TEST_F(Collector, OutliersStandBesideTheFieldsOfRowsThatRan) {
+  ResultRow failed = row("a");
+  failed.error_occurred = true;
+  report({row("a")});
+  report({row("b")});
+  report({failed});
+  const auto written = document().at("benchmarks");
+  EXPECT_EQ(written[0].at("outliers").at("poses").at("max_ns"), "0.1 2 3 1 0 0 0");
+  EXPECT_EQ(written[0].at("outliers").at("b"), "right");
+  EXPECT_FALSE(written[0].at("outliers").contains("command"));
+  EXPECT_FALSE(written[1].contains("outliers"));
+  EXPECT_FALSE(written[2].contains("outliers"));
 }
 
 TEST_F(Collector, RowsOfOneRoundHaveTheirOwnNameAndTime) {

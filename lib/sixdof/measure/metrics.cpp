@@ -105,6 +105,7 @@ constexpr std::array k_metrics{
     Metric{"pairs_never_looked_at", "pairs", higher, "pairs that matter and are no candidates, per frame", k_scene_work},
     Metric{"pairs_put_off", "pairs", higher, "candidates per frame that motion so far leaves apart", k_scene_work},
     Metric{"triangle_pairs", "pairs", lower, "pairs of triangles tested exactly, per frame", k_scene_work},
+    Metric{"bodies", "bodies", neither, "bodies of the scene", k_scene},
     Metric{"frames", "frames", neither, "frames of the scene, the first included", k_scene},
     Metric{"first_frame_ns", "ns", lower, "wall time of the first frame, in which every pair is new", k_scene},
     Metric{"p99_frame_ns", "ns", lower, "99 % of the further frames take no longer", k_scene},
