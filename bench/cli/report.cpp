@@ -24,10 +24,11 @@ constexpr const char* k_details =
     R"(FILE is a result of sixdof-bench, of a study (sixdof precision, equivalent, ... -o), or of sixdof stress -o; all go into
 one page, which opens from disk without a network. Several files with the same rows are compared with the first: answers
 before times, each change with its interval. Files of --series (sixdof quality -o) are drawn as signals and
-time-frequency diagrams. A page without data says which command makes them.)";
+time-frequency diagrams. A page without data says which command makes them. --choose sets what figures show at first: one
+of the choices above them, by its column in the table: --choose pair=bunny --choose statistic=longest.)";
 
 struct Arguments {
-  std::vector<std::string> files, series;
+  std::vector<std::string> files, series, choices;
   std::string output, csv, markdown, svg, pdf;
 };
 
@@ -56,7 +57,14 @@ void run(const Arguments& arguments) {
   for (const std::string& file : arguments.files) report::read_results(file, results);
   std::vector<report::Series> series;
   for (const std::string& file : arguments.series) series.push_back(report::read_series(file));
-  const report::Report report = report::make_report(results, series);
+  report::Report report = report::make_report(results, series);
+  for (const std::string& choice : arguments.choices) {
+    const std::size_t equals = choice.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+      throw BadArgument(fmt::format("--choose {}: not COLUMN=VALUE, e.g. pair=bunny", choice));
+    }
+    report.choices[choice.substr(0, equals)] = choice.substr(equals + 1);
+  }
   if (!arguments.csv.empty()) write_tables(report, arguments.csv, ".csv", report::as_csv);
   if (!arguments.markdown.empty()) write_tables(report, arguments.markdown, ".md", report::as_markdown);
   if (arguments.output.empty() && arguments.svg.empty() && arguments.pdf.empty()) return;
@@ -79,6 +87,8 @@ void add_report_command(CLI::App& app) {
   command->add_option("--svg", arguments->svg, "Write every figure to this folder as SVG (needs node)");
   command->add_option("--pdf", arguments->pdf,
                       "Write every figure to this folder as PDF (needs node and rsvg-convert)");
+  command->add_option("--choose", arguments->choices, "COLUMN=VALUE: what figures show; may be repeated")
+      ->allow_extra_args(false);
   command->callback([arguments] { run(*arguments); });
   add_examples(*command, "sixdof report results.json -o report.html",
                "sixdof report results.json --csv tables --markdown tables", k_details);

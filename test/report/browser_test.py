@@ -16,7 +16,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from browser import Browser, find_chromium  # noqa: E402
-from sample_results import HOSTILE, STRESS, rows  # noqa: E402
+from sample_results import HOSTILE, STRESS, collection, rows, scene_rows  # noqa: E402
 
 SIXDOF = sys.argv.pop(1)
 SHOTS = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else None
@@ -33,7 +33,9 @@ class Page(unittest.TestCase):
         context = {"date": "2026-01-02T03:04:05+00:00", "commit": HOSTILE, "seed": "1", "sample": "64", "mesh:torus-1k": "0123",
                    "algorithm:exact": "1", "settings:exact": "warm_start=off"}
         (folder / "run.json").write_text(json.dumps({"context": context, "benchmarks": rows()}))
-        (folder / "later.json").write_text(json.dumps({"context": context, "benchmarks": rows(1.5)}))
+        (folder / "scenes.json").write_text(json.dumps({"context": {}, "benchmarks": scene_rows()}))
+        (folder / "objects.json").write_text(json.dumps({"context": {}, "benchmarks": [], **collection()}))
+        (folder / "later.json").write_text(json.dumps({"context": context, "benchmarks": rows(1.3)}))
         environment = os.environ | {"SIXDOF_CACHE": str(folder / "cache")}
         mesh = folder / "a.off"
         subprocess.run([SIXDOF, "models", "make", "torus-1k", "-o", str(mesh)], check=True, capture_output=True, env=environment)
@@ -42,12 +44,14 @@ class Page(unittest.TestCase):
         (folder / "stress.json").write_text(json.dumps([*STRESS, real]))
         subprocess.run([SIXDOF, "quality", "--scenario", "II", "--algorithm", "vps", "-p", "voxel_size=0.05", "-p", "point_spacing=0.05",
                         "--steps", "128", "-o", str(folder / "II.h5")], check=True, capture_output=True, env=environment)
-        done = subprocess.run([SIXDOF, "report", *(str(folder / name) for name in ("run.json", "later.json", "stress.json")), "--series",
+        done = subprocess.run([SIXDOF, "report", *(str(folder / name) for name in ("run.json", "later.json", "stress.json", "scenes.json", "objects.json")), "--series",
                                str(folder / "II.h5"), "-o", str(cls.page)], capture_output=True, text=True, check=False, env=environment)
         if done.returncode != 0 and "cmake/setup report" in done.stderr:
             print("skipped:", done.stderr)
             sys.exit(SKIPPED)
         assert done.returncode == 0, done.stderr
+        cls.plain = folder / "plain.html"
+        subprocess.run([SIXDOF, "report", str(folder / "run.json"), "-o", str(cls.plain)], check=True, capture_output=True, env=environment)
         cls.browser = Browser(CHROMIUM)
 
     @classmethod
@@ -58,10 +62,10 @@ class Page(unittest.TestCase):
     def setUp(self):
         self.browser.errors.clear()
 
-    def open(self, width=1200, dark=False):
+    def open(self, width=1200, dark=False, page=None):
         self.browser.call("Page.navigate", url="about:blank")
         self.browser.window(width, 900, dark)
-        self.browser.open(self.page)
+        self.browser.open(page or self.page)
         self.browser.wait_for("!!sixdofReport.ready")
 
     def pages(self):
@@ -98,6 +102,20 @@ class Page(unittest.TestCase):
         wanted = [figure for figure in figures if figure != "history"]  # sixdof history makes that one
         self.assertEqual(sorted(drawn), sorted("figure-" + name for name in [*wanted, "view"]))
 
+    def test_every_page_of_one_run_is_filled_or_names_its_command(self):
+        self.open(page=self.plain)
+        named = {}
+        for page in self.pages():
+            self.go_to(page)
+            is_filled = self.browser.run("document.querySelectorAll('main .plot svg, main table tbody tr, main .sentences p, main canvas').length > 0")
+            command = self.browser.run("document.querySelector('main .empty .command code')?.textContent ?? null")
+            self.assertTrue(is_filled or command, page)
+            self.assertFalse(is_filled and command, page)
+            if command:
+                named[page] = command.split()[0]
+        self.assertEqual(named, {"signals": "sixdof", "scenes": "bench/run", "collection": "bench/collection", "stability": "sixdof", "compare": "sixdof",
+                                 "history": "sixdof"})
+
     def test_hostile_names_are_text(self):
         self.open()
         for page in self.pages():
@@ -122,6 +140,82 @@ class Page(unittest.TestCase):
             select.value = 'longest'; select.dispatchEvent(new Event('change')); }})()""")
         self.browser.wait_for("[...document.querySelectorAll('#figure-time_distance select')].some(s => s.value === 'longest')")
         self.browser.wait_for(f"{lines} === 3")
+
+    def key(self, key, code, number, text=""):
+        for kind in ("keyDown", "keyUp"):
+            more = {"text": text} if text and kind == "keyDown" else {}
+            self.browser.call("Input.dispatchKeyEvent", type=kind, key=key, code=code, windowsVirtualKeyCode=number, **more)
+
+    def figures(self):
+        return self.browser.run("[...document.querySelectorAll('.figure[data-drawn]')].map(f => f.id).filter(id => id !== 'figure-view')")
+
+    def test_every_filter_of_every_figure_draws_each_of_its_values(self):
+        self.open()
+        tried = 0
+        for page in self.pages():
+            self.go_to(page)
+            for figure in self.figures():
+                tried += self.browser.run(f"""(async () => {{ const card = sixdofReport.cards[{json.dumps(figure[7:])}]; let tried = 0;
+                    for (const {{ filter }} of card.shown().resolved) {{
+                      const first = card.choices[filter.field];
+                      for (const value of card.shown().resolved.find(r => r.filter.field === filter.field).values.slice(0, 6)) {{
+                        card.choices[filter.field] = value;
+                        await card.draw();
+                        const shown = card.shown();
+                        if (String(shown.choices[filter.field]) !== String(value)) throw new Error(card.meta.id + ' has not ' + value);
+                        if (!filter.field.startsWith('axis') && value !== 'all' && shown.rows.some(row => row[filter.field] !== value)) throw new Error(card.meta.id + ' shows others');
+                        ++tried;
+                      }}
+                      card.choices[filter.field] = first;
+                    }} return tried; }})()""")
+        self.assertGreater(tried, 80)
+        self.assertEqual(self.browser.errors, [])
+
+    def test_keyboard_toggles_and_filters_in_every_figure(self):
+        self.open()
+        toggled, filtered = [], []
+        for page in self.pages():
+            self.go_to(page)
+            for figure in self.figures():
+                card = f"document.querySelector('#{figure}')"
+                if self.browser.run(f"{card}.querySelectorAll('.chips input').length") > 1:
+                    before = self.browser.run(f"{card}.dataset.drawn")
+                    self.browser.run(f"{card}.querySelectorAll('.chips input')[1].focus()")
+                    self.key(" ", "Space", 32, " ")
+                    self.browser.wait_for(f"{card}.dataset.drawn !== {json.dumps(before)}")
+                    self.assertLess(int(self.browser.run(f"{card}.dataset.drawn")), int(before), figure)
+                    self.key(" ", "Space", 32, " ")  # the focus stays on it
+                    self.browser.wait_for(f"{card}.dataset.drawn === {json.dumps(before)}")
+                    toggled.append(figure[7:])
+                if self.browser.run(f"!!{card}.querySelector('.controls select')"):
+                    value = self.browser.run(f"{card}.querySelector('.controls select').value")
+                    self.browser.run(f"{card}.querySelector('.controls select').focus()")
+                    is_last = self.browser.run(f"(select => select.selectedIndex + 1 === select.length)({card}.querySelector('.controls select'))")
+                    self.key(*(("ArrowUp", "ArrowUp", 38) if is_last else ("ArrowDown", "ArrowDown", 40)))
+                    self.browser.wait_for(f"{card}.querySelector('.controls select').value !== {json.dumps(value)}")
+                    self.assertTrue(self.browser.run(f"document.activeElement === {card}.querySelector('.controls select')"), figure)
+                    filtered.append(figure[7:])
+        for figure in ("time_distance", "time_volume", "response_errors", "scenario_measures", "frontier", "metrics", "equal_time", "update_rates",
+                       "many_bodies", "collection", "growth"):
+            self.assertIn(figure, toggled)
+        for figure in ("winners", "time_distance", "response_errors", "scenario_measures", "signals", "spectra", "frontier", "metrics", "many_bodies"):
+            self.assertIn(figure, filtered)
+        self.assertEqual(self.browser.errors, [])
+
+    def test_any_two_numbers_have_a_frontier(self):
+        self.open()
+        self.go_to("any-two")
+        card = "sixdofReport.cards.metrics"
+        self.browser.run(f"Object.assign({card}.choices, {{query: 'distance', axis_x: 'processor_mean_ns', axis_y: 'error_rms'}}) && {card}.draw()")
+        leads = f"{card}.shown().rows.filter(row => row.frontier === 'yes').map(row => row.algorithm)"
+        self.assertEqual(self.browser.run(leads), ["exact"], "the fastest has the smallest error")
+        self.browser.run(f"{card}.choices.axis_x = 'error_max', {card}.choices.axis_y = 'reachable', {card}.draw()")
+        self.assertEqual(self.browser.run(leads), [])
+        self.browser.wait_for("document.querySelector('#figure-metrics .missing').textContent.includes('reachable describes a row')")
+        # Of two numbers that disagree, each algorithm without a fault leads; the one with faults never does.
+        self.browser.run(f"""{card}.all.forEach(row => {{ if (row.algorithm === 'exact') row.error_rms = 1; }})""")
+        self.browser.run(f"{card}.choices.axis_x = 'processor_mean_ns', {card}.choices.axis_y = 'error_rms', {card}.draw()")
+        self.assertEqual(self.browser.run(leads), ["exact", "vps"])
 
     def test_theme_button_redraws(self):
         self.open()
@@ -156,8 +250,59 @@ class Page(unittest.TestCase):
         self.browser.run(f"""(() => {{ const card = sixdofReport.cards[{json.dumps(figure)}], wanted = {json.dumps(wanted)};
             card.tell(card.all.find(row => Object.keys(wanted).every(key => row[key] === wanted[key]))); }})()""")
         self.browser.run(f"document.querySelector('#figure-{figure} .to-scene').click()")
-        self.browser.wait_for("sixdofReport.ready === 'view' && Number(document.querySelector('#figure-view')?.dataset.drawn) > 100")
+        self.wait_for_view()
         return self.browser.run("document.querySelector('#figure-view select').selectedOptions[0].textContent")
+
+    def wait_for_view(self):
+        self.browser.wait_for("sixdofReport.ready === 'view' && Number(document.querySelector('#figure-view')?.dataset.drawn) > 100")
+
+    def pose_in_view(self):
+        """Translation of B as drawn, and as the command below the picture types it."""
+        drawn = self.browser.run("sixdofReport.view.b.position.toArray()")
+        command = self.browser.run("document.querySelector('#figure-view .command code').textContent")
+        return drawn, [float(number) for number in command.split('--pose "')[1].split()[:3]], command
+
+    def test_outlier_of_every_figure_opens_its_pose(self):
+        if not self.browser.run("!!document.createElement('canvas').getContext('webgl2')"):
+            self.skipTest("this browser has no WebGL")
+        self.open()
+        linked, posed = [], []
+        for page in self.pages():
+            self.go_to(page)
+            for figure in self.figures():
+                if not self.browser.run(f"!!document.querySelector('#{figure} .outlier a')"):
+                    continue
+                linked.append(figure[7:])
+                self.browser.run(f"document.querySelector('#{figure} .outlier a').click()")
+                self.wait_for_view()
+                if self.browser.run("sixdofReport.view.scene.kind") == "pose":
+                    drawn, typed, command = self.pose_in_view()
+                    for one, other in zip(drawn, typed):
+                        self.assertAlmostEqual(one, other, delta=1e-5)
+                    self.assertRegex(command, r"^sixdof query --a torus-1k .*--pose \"\d+\.1234567890\d+ \d 0 1 0 0 0\"$")
+                    posed.append(figure[7:])
+                self.go_to(page)
+        for figure in ("winners", "time_distance", "time_volume", "response_errors", "update_rates", "frontier", "metrics"):
+            self.assertIn(figure, posed)
+        for figure in ("scenario_measures", "equal_time", "signals", "perception"):
+            self.assertIn(figure, linked)
+        self.assertEqual(self.browser.errors, [])
+
+    def test_click_on_a_point_leads_to_its_pose(self):
+        self.open()
+        self.go_to("speed")
+        self.browser.run("sixdofReport.cards.time_distance.choices.pair = 'elephant', sixdofReport.cards.time_distance.draw()")
+        place = self.browser.run("""(() => { const points = document.querySelectorAll('#figure-time_distance .plot svg .mark-symbol path');
+            const box = points[points.length - 1].getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; })()""")
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.call("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], button="left", clickCount=1)
+        self.browser.wait_for("document.querySelector('#figure-time_distance .detail .to-scene') !== null")
+        self.assertEqual(self.browser.run("document.querySelectorAll('#figure-time_distance .detail .command').length"), 2)
+        command = self.browser.run("document.querySelectorAll('#figure-time_distance .detail .command code')[1].textContent")
+        self.browser.run("document.querySelector('#figure-time_distance .to-scene').click()")
+        self.browser.wait_for("sixdofReport.ready === 'view'")
+        self.assertEqual(self.browser.run("document.querySelector('#figure-view .command code').textContent"), command)
+        self.assertIn("From a figure", self.browser.run("[...document.querySelectorAll('#figure-view optgroup:not([hidden])')].map(g => g.label)"))
 
     def test_moment_of_a_signal_opens_in_3d(self):
         self.open()

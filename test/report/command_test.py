@@ -16,7 +16,7 @@ import unittest
 import xml.etree.ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from sample_results import HOSTILE, STRESS, row, rows  # noqa: E402
+from sample_results import HOSTILE, STRESS, collection, row, rows, scene_rows  # noqa: E402
 
 SIXDOF = sys.argv.pop(1)
 
@@ -82,6 +82,40 @@ class Report(unittest.TestCase):
         self.assertEqual(len(re.findall(r"mark-line role-mark", text)), 4, "a line for each algorithm")
         self.assertNotIn("<img", text)
         self.assertIn("role-legend", (self.folder / "figures" / "frontier.svg").read_text())
+
+    def test_choices_of_a_figure_are_set(self):
+        if not shutil.which("node"):
+            self.skipTest("no node here")
+        done = self.run_it("report", "run.json", "--svg", "figures", "--choose", "pair=elephant", "--choose", "statistic=longest")
+        self.need_libraries(done)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        text = (self.folder / "figures" / "time_distance.svg").read_text()
+        self.assertIn("elephant, longest", text)
+        done = self.run_it("report", "run.json", "--svg", "others", "--choose", "axis_x=p99_ns", "--choose", "axis_y=max_ns")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("99 % of the queries take no longer", (self.folder / "others" / "metrics.svg").read_text())
+        refused = self.refused("report", "run.json", "--svg", "no", "--choose", "pair=horse")
+        self.assertIn("--choose pair=horse: no figure offers it, but", refused)
+        self.assertIn("elephant; all objects (mean)", refused)
+        self.assertIn("no figure has this choice, but", self.refused("report", "run.json", "--svg", "no", "--choose", "colour=red"))
+        self.assertIn("not COLUMN=VALUE", self.refused("report", "run.json", "--svg", "no", "--choose", "red"))
+        self.assertEqual(os.listdir(self.folder / "no") if (self.folder / "no").exists() else [], [])
+
+    def test_csv_has_outliers_scenes_and_the_collection(self):
+        (self.folder / "more.json").write_text(json.dumps({"context": {}, "benchmarks": scene_rows(), **collection()}))
+        self.assertEqual(self.run_it("report", "run.json", "more.json", "--csv", "tables").returncode, 0)
+
+        def lines(name):
+            with open(self.folder / "tables" / f"{name}.csv", newline="", encoding="utf-8") as file:
+                return list(csv.DictReader(file))
+        [line] = [line for line in lines("times") if (line["algorithm"], line["pair"], line["query"], line["percent"], line["statistic"]) ==
+                  ("ist", "elephant", "distance", "5", "longest")]
+        self.assertEqual(line["worst_pose"], "sixdof query --a torus-1k --b torus-1k --algorithm 'ist' --pose \"5.123456789012345 0 0 1 0 0 0\"")
+        self.assertEqual({line["scene"] for line in lines("many_bodies")}, {"pile", HOSTILE})
+        self.assertEqual(float(lines("collection")[0]["p90_us"]), 90.0)
+        self.assertIn("bed", {line["point"] for line in lines("collection_ratios")})
+        self.assertEqual(float(lines("growth_exponents")[0]["low"]), 0.35)
+        self.assertIn("gamma_F_deg", lines("metrics")[0])
 
     def test_pdf_figures_are_pdf(self):
         if not shutil.which("node") or not shutil.which("rsvg-convert"):

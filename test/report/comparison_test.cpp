@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -74,6 +75,56 @@ TEST(Comparison, WithRepetitionsEveryPlantedRegressionIsShown) {
     EXPECT_GT(number_in(comparison.changes, planted[0], "high"), k_regression);
     EXPECT_THAT(comparison.sentences, Contains(HasSubstr("from the repetitions")));
   }
+}
+
+/// 200 rows of a run whose noise is 5 to 10 %, each row its own; `between` is noise that a row's repetitions have in
+/// common. Row k_planted takes `factor` times as long.
+std::vector<Json> uneven_run(unsigned seed, double factor, int repetitions, double between) {
+  constexpr int k_rows = 200;
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal;
+  std::vector<Json> rows;
+  for (int k = 0; k < k_rows; ++k) {
+    const double noise = 0.05 + 0.05 * k / k_rows, common = between * normal(generator);
+    for (int r = 0; r < repetitions; ++r) {
+      const double mean = 1000.0 * std::exp(common + noise * normal(generator)) * (k == k_planted ? factor : 1.0);
+      rows.push_back(test::row("distance", "a" + std::to_string(k), "p", "distance", 5.0, mean));
+    }
+  }
+  return rows;
+}
+
+/// Of `count` comparisons: those with a false alarm, and those that show the planted regression.
+std::pair<int, int> count_alarms(unsigned count, double factor, int repetitions, double between) {
+  int alarms = 0, shown = 0;
+  for (unsigned seed = 1; seed <= count; ++seed) {
+    const Comparison comparison = compare_runs(uneven_run(seed, 1.0, repetitions, between),
+                                               uneven_run(seed + 1000, factor, repetitions, between));
+    std::size_t changed = lines_with(comparison.changes, {{"verdict", "slower"}}).size() +
+                          lines_with(comparison.changes, {{"verdict", "faster"}}).size();
+    const auto planted = lines_with(comparison.changes, {{"algorithm", "a" + std::to_string(k_planted)}});
+    const bool is_shown = factor != 1.0 && text_in(comparison.changes, planted.at(0), "verdict") == "slower";
+    shown += is_shown ? 1 : 0;
+    alarms += changed > (is_shown ? 1u : 0u) ? 1 : 0;
+  }
+  return {alarms, shown};
+}
+
+TEST(Comparison, NoiseOfDifferentSizeHasTheStatedRateOfFalseAlarms) {
+  // 5 % of 40 are 2; more than 6 are one chance in a hundred.
+  EXPECT_LE(count_alarms(40, 1.0, 1, 0.0).first, 6);
+}
+
+TEST(Comparison, RepetitionsShowARegressionInUnevenNoise) {
+  const auto [alarms, shown] = count_alarms(10, k_regression, 10, 0.0);
+  EXPECT_LE(alarms, 3);
+  EXPECT_GE(shown, 9);
+}
+
+TEST(Comparison, WhatRepetitionsHaveInCommonIsNoChange) {
+  const auto [alarms, shown] = count_alarms(10, k_regression, 10, 0.03);
+  EXPECT_LE(alarms, 3);
+  EXPECT_GE(shown, 6) << "nine of ten on average";
 }
 
 TEST(Comparison, QuietRunShowsTheRegressionWithoutRepetitions) {

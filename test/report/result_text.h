@@ -49,6 +49,14 @@ inline Results results_of(const std::vector<Json>& rows, const Json& context = J
   return results;
 }
 
+/// Outliers of a row on torus-1k, at x = 0.5 or as given.
+inline Json outliers(const std::string& counter, const std::string& pose = "0.5 0 0 1 0 0 0") {
+  return {{"a", "torus-1k"},
+          {"b", "torus-1k"},
+          {"command", "sixdof query --a torus-1k --b torus-1k --algorithm exact"},
+          {"poses", {{counter, pose}}}};
+}
+
 /// The cell of a line in the named column.
 inline const Cell& cell(const DataTable& table, const std::vector<Cell>& line, const std::string& column) {
   const auto found = std::find(table.columns.begin(), table.columns.end(), column);

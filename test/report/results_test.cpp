@@ -52,6 +52,30 @@ TEST(Results, RowHasFieldsValuesAndTimesInNanoseconds) {
   EXPECT_EQ(results.files.front().at("absent"), "");
 }
 
+TEST(Results, RowHasItsOutliersAndRefusesWrongOnes) {
+  Json json = test::row("distance", "exact", "torus-1k", "distance", 5.0, 1.0);
+  json["outliers"] = test::outliers("max_ns");
+  EXPECT_EQ(test::results_of({json}).rows.front().outliers.by_counter.at("max_ns").pose, "0.5 0 0 1 0 0 0");
+  json["outliers"] = test::outliers("max_ns", "1 2");
+  EXPECT_THAT(refusal(test::file_of({json})), HasSubstr("benchmarks[0]"));
+  EXPECT_THAT(refusal(test::file_of({json})), HasSubstr("outliers.poses.max_ns is no pose"));
+}
+
+TEST(Results, PlayedSceneHasRowsLikeThoseOfSixdofBench) {
+  const Json play = {{"algorithm", "exact"}, {"processor_us", 8.0}, {"mean_us", 9.0}, {"missed", 0}, {"wrong", 0}};
+  Json lost = play;
+  lost["algorithm"] = "fcl-sap";
+  lost["missed"] = 3;
+  Results results;
+  parse_results(Json{{{"question", "near"}, {"algorithms", {play, lost}}}}.dump(), "plays/pile.json", results);
+  ASSERT_EQ(results.rows.size(), 2u);
+  EXPECT_EQ(results.rows[0].scenario, "pile");
+  EXPECT_EQ(results.rows[0].question, "near");
+  EXPECT_EQ(results.rows[0].value("processor_ns"), 8000.0);
+  EXPECT_TRUE(faults_of(results.rows[0]).empty());
+  EXPECT_EQ(to_string(faults_of(results.rows[1]).at(0)), "3 missed, 0 wrong");
+}
+
 TEST(Results, AggregatesAreLeftOutAndFailedRowsKept) {
   Json mean = test::row("collide", "exact", "p", "distance", 1.0, 1.0);
   mean["run_type"] = "aggregate";

@@ -5,10 +5,20 @@ import json
 HOSTILE = "</script><img src=x onerror=\"window.hacked=1\">'{{data}}"
 
 
+def outliers(algorithm, place):
+    """Poses on a small model, each with numbers of its own, as sixdof-bench writes them."""
+    counters = ["max_ns", "max_least_ns", "error_max", "gamma_max_F_deg", "mismatch"]
+    return {"a": "torus-1k", "b": "torus-1k", "command": f"sixdof query --a torus-1k --b torus-1k --algorithm '{algorithm}'",
+            "poses": {counter: f"{0.1234567890123456 + place} {i} 0 1 0 0 0" for i, counter in enumerate(counters)},
+            "responses": {"gamma_max_F_deg": {"force": [1, 0, 0], "torque": [0, 0, 1], "exact_force": [0, 1, 0],
+                                              "exact_torque": [0, 0, 2], "reference": [0.1, 0, 0]}}}
+
+
 def row(query, algorithm, pair, kind, percent, cpu_ns, **values):
     return {"name": f"{query}/algorithm:{algorithm}/pair:{pair}/{kind}:{percent}", "run_type": "iteration", "cpu_time": cpu_ns,
             "real_time": cpu_ns, "time_unit": "ns", "configurations": 64, "judged": 64, "failed": 0, "mismatch": 0,
-            "p50_ns": cpu_ns, "p99_ns": 3 * cpu_ns, "max_ns": 9 * cpu_ns, **values,
+            "p50_ns": cpu_ns, "p99_ns": 3 * cpu_ns, "max_ns": 9 * cpu_ns, "reachable": 1000 + len(algorithm), **values,
+            "outliers": outliers(algorithm, percent),
             "sixdof": {"query": query, "algorithm": algorithm, "settings": {"size": 1}, "pair": pair, "order": "random",
                        "cache": "warm", "bucket": {"kind": kind, "percent": percent}}}
 
@@ -36,6 +46,35 @@ def rows(factor=1.0):
             equal.update(tau_ns=9e5, measured_ns=8e5)
             made.append(equal)
     return made
+
+
+def scene_rows():
+    """Rows of `sixdof-bench --suite scenes`."""
+    made = []
+    for i, algorithm in enumerate(["exact", "fcl-ssap", HOSTILE]):
+        for scene in ("pile", HOSTILE):
+            for bodies in (100, 1000):
+                one = row("scene", algorithm, "", "distance", 0, 1e3, processor_ns=bodies * 100.0 * (i + 1), bodies=bodies, missed_pairs=0,
+                          pairs_looked_at=bodies * (i + 2), true_pairs=bodies)
+                one["name"] = f"scene/{scene}/n:{bodies}/question:near/algorithm:{algorithm}"
+                del one["sixdof"]["bucket"], one["outliers"]
+                one["sixdof"] |= {"scenario": scene, "question": "near"}
+                made.append(one)
+    return made
+
+
+def collection():
+    """What bench/collection and bench/growth write beside their rows."""
+    cells, ratios, growth = [], [], []
+    for i, algorithm in enumerate(["exact", "vps", HOSTILE]):
+        for percent in (1, 5, 10):
+            cells.append({"partner": "self", "query": "distance", "bucket": {"kind": "distance", "percent": percent}, "algorithm": algorithm,
+                          "objects": 30, "mean_us": 9.0 * (i + 1), "p10_us": 3.0, "p90_us": 90.0, "greatest_us": 200.0, "greatest_object": HOSTILE})
+        ratios.append({"partner": "self", "query": "distance", "algorithm": algorithm, "objects": 30, "ratio": 1.0 + i, "p10": 0.9, "p90": 5.0 + i,
+                       "worst": [{"object": "bed", "ratio": 12.0}, {"object": HOSTILE, "ratio": 11.0}, {"object": "cup", "ratio": 9.0}]})
+        growth.append({"algorithm": algorithm, "quantity": "distance, us", "points": {"knot": [[1000, 1.0 + i], [4000, 2.0 + i]]},
+                       "exponent": 0.4 + 0.1 * i, "half_width": 0.05})
+    return {"collection": {"cells": cells, "against_exact": ratios}, "growth": growth}
 
 
 STRESS = [{"family": family, "algorithm": algorithm, "verdict": verdict, "cases": 12, "worst": 0.1, "unit": "size", "case": HOSTILE,

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <sixdof/geometry/load.h>
 #include <sixdof/geometry/save.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/report/scene.h>
@@ -15,6 +16,8 @@
 
 namespace sixdof::report {
 namespace {
+
+using test::Json;
 
 TEST(DrawnMesh, LargeMeshHasFewTrianglesAndTheSameExtent) {
   const Mesh mesh = load_model("torus-knot-100k");
@@ -60,6 +63,48 @@ TEST(Scenes, PathHasTheSeriesPosesAndArrows) {
   EXPECT_EQ(scene.moments[10].force[2], 3.0);
   EXPECT_NE(scene.a, scene.b);
   EXPECT_FALSE(scenes.meshes[scene.a].triangles.empty());
+}
+
+TEST(Scenes, OutlierOfARowHasItsPoseMeshesAndResponse) {
+  Json row = test::row("respond", "vps", "torus-1k", "volume", 5.0, 1000.0);
+  row["outliers"] = test::outliers("max_ns", "1 2 3 0 1 0 0");
+  row["outliers"]["poses"]["gamma_max_F_deg"] = "1 2 3 0 1 0 0";
+  row["outliers"]["poses"]["misses"] = "4 5 6 1 0 0 0";
+  row["outliers"]["responses"]["gamma_max_F_deg"] = {{"force", {1, 0, 0}},
+                                                     {"torque", {0, 0, 0}},
+                                                     {"exact_force", {0, 1, 0}},
+                                                     {"exact_torque", {0, 0, 0}},
+                                                     {"reference", {1, 2, 4}}};
+  Json foreign = test::row("distance", "vps", "part", "distance", 5.0, 1000.0);
+  foreign["outliers"] = test::outliers("max_ns");
+  foreign["outliers"]["a"] = "absent.ply";
+  const Scenes scenes = make_scenes(test::results_of({row, foreign}, {{"mesh:torus-1k", "0123"}}), {});
+  ASSERT_EQ(scenes.scenes.size(), 3u) << "the object, and a pose for each command whose meshes are here";
+  const Scene& scene = scenes.scenes[1];
+  EXPECT_EQ(scene.kind, "pose");
+  EXPECT_EQ(scene.name, "respond of vps: torus-1k volume 5 %, largest angle of the force");
+  EXPECT_EQ(scene.command, "sixdof query --a torus-1k --b torus-1k --algorithm exact --pose \"1 2 3 0 1 0 0\"");
+  EXPECT_EQ(scene.a, scenes.scenes[0].a);
+  const std::array<double, 7> pose{0.0, 1.0, 0.0, 0.0, 1.0, 2.0, 3.0};
+  EXPECT_EQ(scene.moments.at(0).pose, pose);
+  EXPECT_EQ(scene.moments.at(0).ideal_force[1], 1.0);
+  // Half a turn about x takes the point over B's origin below it.
+  EXPECT_NEAR(scene.reference[2], -1.0, 1e-12);
+  EXPECT_EQ(scenes.scenes[2].moments.at(0).pose[4], 4.0);
+}
+
+TEST(Scenes, MeshOfTheUsersIsTakenByItsHash) {
+  const auto folder = std::filesystem::temp_directory_path() / "sixdof-outlier-test";
+  std::filesystem::create_directories(folder);
+  const auto file = folder / "part.off";
+  save_mesh(load_model("torus-1k"), file);
+  Json row = test::row("distance", "vps", "part", "distance", 5.0, 1000.0);
+  row["outliers"] = test::outliers("max_ns");
+  row["outliers"]["a"] = row["outliers"]["b"] = file.string();
+  const std::string hash = load_mesh(file).hash();
+  EXPECT_EQ(make_scenes(test::results_of({row}, {{"mesh:part@1", hash}}), {}).scenes.size(), 1u);
+  EXPECT_TRUE(make_scenes(test::results_of({row}, {{"mesh:part@1", "another"}}), {}).scenes.empty());
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Scenes, HardCaseWithAFaultHasItsPose) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sixdof/report/tables.h>
@@ -17,6 +18,7 @@ using test::Json;
 using test::lines_with;
 using test::number_in;
 using test::text_in;
+using ::testing::HasSubstr;
 
 TEST(TimesTable, LineForEveryStatistic) {
   const Results results = test::results_of({test::row("distance", "exact", "bunny", "distance", 5.0, 2000.0)});
@@ -56,6 +58,51 @@ TEST(TimesTable, RepetitionsAreOneLineWithTheirInterval) {
   // Student's t of two degrees of freedom at 97.5 % is 4.30265; the logarithms are 0, 0 and 3 log 2.
   const double half = 4.30265 * std::sqrt(3.0 * std::pow(std::log(2.0), 2) / 3.0);
   EXPECT_NEAR(number_in(table, mean[0], "high_us"), 2.0 * std::exp(half), 1e-3);
+}
+
+TEST(TimesTable, LongestAndOtherStatisticsHaveTheirPoses) {
+  Json row = test::row("distance", "exact", "torus-1k", "distance", 5.0, 2000.0);
+  row["outliers"] = test::outliers("max_ns", "1 0 0 1 0 0 0");
+  row["outliers"]["poses"]["max_least_ns"] = "2 0 0 1 0 0 0";
+  const Results results = test::results_of({row});
+  const DataTable table = times_table(results, row_groups(results));
+  const auto pose_of = [&](const char* statistic) {
+    return text_in(table, lines_with(table, {{"statistic", statistic}}).at(0), "worst_pose");
+  };
+  EXPECT_THAT(pose_of("longest"), HasSubstr("--pose \"1 0 0 1 0 0 0\""));
+  EXPECT_THAT(pose_of("mean"), HasSubstr("--pose \"2 0 0 1 0 0 0\""));
+}
+
+TEST(MetricsTable, HasEveryNumberAndThatOfPreparing) {
+  Json prepare = test::row("prepare", "vps", "bunny", "distance", 5.0, 3e6, {{"bytes", 77}});
+  prepare["name"] = "prepare/algorithm:vps/pair:bunny";
+  prepare["sixdof"].erase("bucket");
+  const Results results = test::results_of(
+      {test::row("respond", "vps", "bunny", "volume", 5.0, 10.0, {{"gamma_F_deg", 4.0}, {"misses", 2}}), prepare});
+  const DataTable table = metrics_table(results, row_groups(results));
+  const auto line = lines_with(table, {{"query", "respond"}}).at(0);
+  EXPECT_EQ(text_in(table, line, "where"), "bunny, volume 5 %");
+  EXPECT_EQ(text_in(table, line, "faults"), "2 of 64 without a force");
+  EXPECT_EQ(number_in(table, line, "gamma_F_deg"), 4.0);
+  EXPECT_EQ(number_in(table, line, "processor_mean_ns"), 10.0);
+  EXPECT_EQ(number_in(table, line, "bytes"), 77.0);
+  EXPECT_EQ(number_in(table, line, "prepare_ns"), 6e6) << "by wall clock";
+}
+
+TEST(ManyBodiesTable, HasTheSceneAndItsCounts) {
+  Json row = test::row("scene", "exact", "", "distance", 1.0, 1.0,
+                       {{"processor_ns", 5000.0}, {"bodies", 1000}, {"missed_pairs", 0}, {"pairs_looked_at", 12}});
+  row["name"] = "scene/pile/n:1000/question:near/algorithm:exact";
+  row["sixdof"].erase("bucket");
+  row["sixdof"]["scenario"] = "pile";
+  row["sixdof"]["question"] = "near";
+  const Results results = test::results_of({row});
+  const DataTable table = many_bodies_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(text_in(table, table.rows[0], "scene"), "pile");
+  EXPECT_EQ(number_in(table, table.rows[0], "time_us"), 5.0);
+  EXPECT_EQ(number_in(table, table.rows[0], "pairs_looked_at"), 12.0);
+  EXPECT_THAT(text_in(table, table.rows[0], "command"), HasSubstr("^scene/pile/n:1000/question:near/algorithm:exact$"));
 }
 
 TEST(FrontierTable, MarksPointsThatNoOtherBeats) {

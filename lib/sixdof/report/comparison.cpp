@@ -36,14 +36,14 @@ double median_of(std::vector<double> values) {
 }
 
 /// Standard deviation of the logarithms, by the median of the deviations from their median: a few rows that did change
-/// do not widen it.
+/// hardly widen it.
 double spread_of(const std::vector<Pair>& pairs) {
   std::vector<double> ratios, deviations;
   for (const Pair& pair : pairs) ratios.push_back(pair.log_ratio);
   const double middle = median_of(ratios);
   for (const double r : ratios) deviations.push_back(std::abs(r - middle));
   constexpr double k_normal = 1.4826;  // of a normal distribution, standard deviation over median deviation
-  return std::max(k_least_spread, k_normal * median_of(deviations));
+  return k_normal * median_of(deviations);
 }
 
 struct Moments {
@@ -57,16 +57,32 @@ Moments moments_of_logs(const std::vector<double>& values) {
   return m;
 }
 
-/// Welch's interval of the difference of two means, as half of its width and with the difference itself.
-std::optional<std::pair<double, double>> by_repetitions(const Pair& pair, double tail) {
+/// Difference of the means of a row's repetitions.
+struct Repeated {
+  double difference = 0.0;
+  double half = 0.0;      ///< Of Welch's interval.
+  double variance = 0.0;  ///< Of the difference, by the repetitions alone.
+};
+
+std::optional<Repeated> by_repetitions(const Pair& pair, double tail) {
   const std::vector<double> before = pair.before->all(k_processor_mean), after = pair.after->all(k_processor_mean);
   if (before.size() < k_fewest_repetitions || after.size() < k_fewest_repetitions) return std::nullopt;
   const Moments b = moments_of_logs(before), a = moments_of_logs(after);
   const double vb = b.variance / b.count, va = a.variance / a.count;
-  if (vb + va == 0.0) return std::pair(a.mean - b.mean, 0.0);
+  if (vb + va == 0.0) return Repeated{a.mean - b.mean, 0.0, 0.0};
   const double freedom = (vb + va) * (vb + va) / (vb * vb / (b.count - 1.0) + va * va / (a.count - 1.0));
   const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), tail));
-  return std::pair(a.mean - b.mean, t * std::sqrt(vb + va));
+  return Repeated{a.mean - b.mean, t * std::sqrt(vb + va), vb + va};
+}
+
+/// By how much more the ratios of rows differ than their repetitions say: what a run has in common with itself and not
+/// with another one, as a standard deviation of logarithms.
+double spread_between_runs(const std::vector<std::optional<Repeated>>& repeated, double spread) {
+  std::vector<double> variances;
+  for (const auto& each : repeated) {
+    if (each) variances.push_back(each->variance);
+  }
+  return variances.empty() ? 0.0 : std::sqrt(std::max(0.0, spread * spread - median_of(variances)));
 }
 
 void compare_answers(const Pair& pair, DataTable& table) {
@@ -138,7 +154,7 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
   comparison.changes = {.name = "changes",
                         .title = "Times that changed",
                         .columns = {"comparison", "query", "pair", "algorithm", "row", "before_us", "after_us", "ratio",
-                                    "low", "high", "verdict"},
+                                    "low", "high", "verdict", "worst_pose"},
                         .rows = {}};
   std::vector<Pair> pairs = common_rows(groups, before, after);
   for (const Pair& pair : pairs) compare_answers(pair, comparison.answers);
@@ -150,15 +166,21 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
   });
   if (pairs.empty()) return comparison;
 
-  const double spread = spread_of(pairs);
   const double tail = 0.5 * (1.0 - std::pow(1.0 - k_false_alarm, 1.0 / static_cast<double>(pairs.size())));
   const double z = boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
-  std::size_t slower = 0, faster = 0, repeated = 0;
+  std::vector<std::optional<Repeated>> repeated;
+  for (Pair& pair : pairs) {
+    repeated.push_back(by_repetitions(pair, tail));
+    if (repeated.back()) pair.log_ratio = repeated.back()->difference;
+  }
+  const double spread = spread_of(pairs), between = spread_between_runs(repeated, spread);
+  const double half_of_single = z * k_uneven * std::max(k_least_spread, spread);
+  std::size_t slower = 0, faster = 0;
   std::vector<double> ratios;
-  for (const Pair& pair : pairs) {
-    const auto welch = by_repetitions(pair, tail);
-    repeated += welch ? 1 : 0;
-    const double middle = welch ? welch->first : pair.log_ratio, half = welch ? welch->second : z * spread;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const Pair& pair = pairs[k];
+    const double middle = pair.log_ratio;
+    const double half = repeated[k] ? std::hypot(repeated[k]->half, z * between) : half_of_single;
     ratios.push_back(middle);
     const bool is_slower = middle - half > 0.0, is_faster = middle + half < 0.0;
     slower += is_slower ? 1 : 0;
@@ -170,7 +192,8 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
          processor_time(*pair.after)->value / 1e3, std::exp(middle), std::exp(middle - half), std::exp(middle + half),
          std::string(is_slower   ? "slower"
                      : is_faster ? "faster"
-                                 : "no change shown")});
+                                 : "no change shown"),
+         pair.after->row().outliers.command_of("max_least_ns")});
   }
   auto& sentences = comparison.sentences;
   sentences.push_back(
@@ -186,12 +209,15 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
                   "takes {:.3g} times as long.",
                   slower, faster, pairs.size() - slower - faster, std::exp(median_of(ratios))));
   sentences.push_back(
-      repeated == pairs.size()
-          ? std::string("Intervals come from the repetitions of each row.")
+      std::ranges::all_of(repeated, [](const auto& each) { return each.has_value(); })
+          ? fmt::format(
+                "Intervals come from the repetitions of each row, and from how much more the rows differ between the "
+                "runs, a factor of {:.3g} to either side.",
+                std::exp(z * between))
           : fmt::format(
                 "Rows without {} repetitions get an interval from the spread of all rows, a factor of {:.3g} to either "
                 "side; repetitions (--benchmark_repetitions=10) make it narrower.",
-                k_fewest_repetitions, std::exp(z * spread)));
+                k_fewest_repetitions, std::exp(half_of_single)));
   sentences.push_back(context_sentence(results.files[before], results.files[after]));
   return comparison;
 }

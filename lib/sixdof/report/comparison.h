@@ -26,9 +26,14 @@ inline constexpr double k_false_alarm = 0.05;
 /// Least standard deviation of the logarithm of a ratio of two means that were each measured once (k_run_to_run).
 inline constexpr double k_least_spread = 0.05;
 
+/// The noise of rows differs: that of the noisiest is twice that of the quietest (5 to 10 %). Factor on the spread of
+/// all rows with which one comparison in twenty of equal programs has a false alarm all the same (comparison_test.cpp).
+inline constexpr double k_uneven = 1.2;
+
 /// A change is shown where the interval of the ratio does not contain 1. Its width comes from the repetitions where
-/// both files have k_fewest_repetitions; otherwise from the spread of the ratios of all rows about their median, which
-/// two runs of the same program have too. Intervals are wide enough for all rows of the file together (Sidak).
+/// both files have k_fewest_repetitions, and from how much more the rows differ between the files than their
+/// repetitions do; otherwise from the spread of the ratios of all rows about their median, which two runs of the same
+/// program have too. Intervals are wide enough for all rows of the file together (Sidak).
 Comparison compare(const Results& results, const std::vector<RowGroup>& groups, std::size_t before, std::size_t after);
 
 /// Every later file with rows against the first, where they have rows in common.

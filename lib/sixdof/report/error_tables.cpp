@@ -66,6 +66,7 @@ struct Point {
   Estimate us;
   double error;
   std::optional<double> low, high;
+  std::string worst_pose;
   bool may_lead;  ///< Has no fault.
   bool leads = false;
 };
@@ -102,7 +103,7 @@ constexpr std::array k_paper_values{
 DataTable response_errors_table(const Results& results, const std::vector<RowGroup>& groups) {
   DataTable table{.name = "response_errors",
                   .title = "Errors of responses against the exact ones, by overlap volume",
-                  .columns = {"run", "pair", "measure", "algorithm", "percent", "error", "command"},
+                  .columns = {"run", "pair", "measure", "algorithm", "percent", "error", "command", "worst_pose"},
                   .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
@@ -111,7 +112,8 @@ DataTable response_errors_table(const Results& results, const std::vector<RowGro
       const auto value = row.value(measure.value);
       if (!value) continue;
       table.rows.push_back({run_name(results, row.file), row.pair, std::string(measure.title), group.algorithm(),
-                            *row.percent, *value, reproduction(row, results.files[row.file])});
+                            *row.percent, *value, reproduction(row, results.files[row.file]),
+                            row.outliers.command_of(measure.value)});
     }
   }
   return table;
@@ -158,13 +160,13 @@ DataTable frontier_table(const Results& results, const std::vector<RowGroup>& gr
                                       : 2,
              source, row.pair, run_name(results, row.file), measure.title}]
           .push_back({&row, source, in_microseconds(*time), *error, row.value(name + "_low"), row.value(name + "_high"),
-                      is_ranked(group)});
+                      row.outliers.command_of(name), is_ranked(group)});
     }
   }
   DataTable table{.name = "frontier",
                   .title = "Run time against error",
                   .columns = {"run", "pair", "measured", "measure", "algorithm", "settings", "time_us", "low_us",
-                              "high_us", "error", "low", "high", "frontier", "command"},
+                              "high_us", "error", "low", "high", "frontier", "command", "worst_pose"},
                   .rows = {}};
   for (auto& [plot, points] : plots) {
     mark_frontier(points);
@@ -173,7 +175,7 @@ DataTable frontier_table(const Results& results, const std::vector<RowGroup>& gr
       table.rows.push_back({run, pair, source, measure, point.row->algorithm, point.row->settings, point.us.value,
                             point.us.low, point.us.high, point.error, cell_of(point.low), cell_of(point.high),
                             std::string(point.leads ? "yes" : "no"),
-                            reproduction(*point.row, results.files[point.row->file])});
+                            reproduction(*point.row, results.files[point.row->file]), point.worst_pose});
     }
   }
   return table;

@@ -63,6 +63,9 @@ class WorkFolder {
   std::filesystem::path path_;
 };
 
+/// The exit code of write_svg.js for a choice that no figure offers.
+constexpr int k_no_such_choice = 3;
+
 /// Reads to the end of what the other end of a pipe writes.
 std::string read_all(int descriptor) {
   std::string text;
@@ -83,7 +86,8 @@ int wait_for(pid_t child) {
 
 /// Runs a program to its end in `folder`, so that none of its words needs the folder's name, which may be no UTF-8.
 /// @return what it printed; by a pipe, so that a full disk does not swallow why it failed
-/// @throws BadFile with its last words unless it ends with 0
+/// @throws BadArgument with its words if it ends with k_no_such_choice; BadFile with its last words for another end but
+/// 0
 std::string run(const std::vector<std::string>& words, const std::filesystem::path& folder) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw Error(fmt::format("pipe: {}", std::strerror(errno)));
@@ -107,7 +111,9 @@ std::string run(const std::vector<std::string>& words, const std::filesystem::pa
   const int status = wait_for(child);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return printed;
   if (printed.size() > k_last_words) printed.erase(0, printed.size() - k_last_words);
+  while (printed.ends_with('\n')) printed.pop_back();
   std::ranges::replace(printed, '\n', ' ');
+  if (WIFEXITED(status) && WEXITSTATUS(status) == k_no_such_choice) throw BadArgument(printed);
   throw BadFile(folder.string(), fmt::format("{} failed: {}", words[0], printed));
 }
 

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/measure/metrics.h>
 #include <sixdof/report/history.h>
 #include <sixdof/report/tables.h>
 
@@ -108,6 +109,26 @@ Json as_json(const Scene& scene) {
           {"moments", std::move(moments)}};
 }
 
+/// What a reader needs to know of the numbers in the table of metrics, by their columns.
+Json metrics_json(const Report& report) {
+  Json described = Json::object();
+  for (const DataTable& table : report.tables) {
+    if (table.name != "metrics") continue;
+    for (const std::string& column : table.columns) {
+      const bool is_mean = column == k_processor_mean || column == k_wall_mean;
+      if (is_mean) {
+        described[column] = {{"unit", "ns"},
+                             {"better", "lower"},
+                             {"meaning", column == k_wall_mean ? "mean time by wall clock" : "mean processor time"}};
+      } else if (const Metric* const metric = find_metric(column)) {
+        described[column] = {
+            {"unit", metric->unit}, {"better", to_string(metric->better)}, {"meaning", metric->meaning}};
+      }
+    }
+  }
+  return described;
+}
+
 /// Without '<', nothing in a script element can end it or open a comment.
 std::string inert(const std::string& json) {
   std::string text;
@@ -157,6 +178,8 @@ std::vector<std::string> algorithms_of(const Results& results, const std::vector
   }
   for (const HardCase& cell : results.hard_cases) add(cell.algorithm);
   for (const Series& each : series) add(each.algorithm);
+  for (const CollectionCell& cell : results.collection.cells) add(cell.algorithm);
+  for (const GrowthSeries& each : results.collection.growth) add(each.algorithm);
   return names;
 }
 
@@ -178,12 +201,27 @@ Report make_report(const Results& results, const std::vector<Series>& series) {
   const std::vector<RowGroup> groups = row_groups(results);
   Report report{.summary = summarise(results, groups),
                 .comparisons = comparisons(results, groups),
-                .tables = {times_table(results, groups), response_errors_table(results, groups),
-                           scenario_measures_table(results, groups), signals_table(series), spectra_table(series),
-                           frontier_table(results, groups), equal_time_table(results, groups), stability_table(results),
-                           objects_table(results), perception_table(series), perception_thresholds_table(series),
-                           update_rates_table(results, groups), failures_table(results, groups),
-                           settings_table(results), runs_table(results, series)},
+                .tables = {times_table(results, groups),
+                           response_errors_table(results, groups),
+                           scenario_measures_table(results, groups),
+                           metrics_table(results, groups),
+                           many_bodies_table(results, groups),
+                           collection_table(results),
+                           collection_ratios_table(results),
+                           growth_table(results),
+                           growth_exponents_table(results),
+                           signals_table(series),
+                           spectra_table(series),
+                           frontier_table(results, groups),
+                           equal_time_table(results, groups),
+                           stability_table(results),
+                           objects_table(results),
+                           perception_table(series),
+                           perception_thresholds_table(series),
+                           update_rates_table(results, groups),
+                           failures_table(results, groups),
+                           settings_table(results),
+                           runs_table(results, series)},
                 .scenes = make_scenes(results, series),
                 .algorithms = algorithms_of(results, series),
                 .made_from = made_from(results, series)};
@@ -264,6 +302,8 @@ std::string page_data(const Report& report, const PageFiles& files) {
     data["figures"][id] = std::move(spec);
   }
   for (const DataTable& table : report.tables) data["tables"][table.name] = as_json(table);
+  data["metrics"] = metrics_json(report);
+  data["choices"] = report.choices;
   data["meshes"] = Json::array();
   for (const DrawnMesh& mesh : report.scenes.meshes) data["meshes"].push_back(as_json(mesh));
   data["scenes"] = Json::array();

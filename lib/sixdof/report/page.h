@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct Report {
   Scenes scenes;
   std::vector<std::string> algorithms;  ///< In the order of the files; figures colour them in this order.
   std::string made_from;                ///< One line: files, commit, date.
+  /// What figures show at first, by the column from which a reader chooses; the default of a figure where it offers no
+  /// such value.
+  std::map<std::string, std::string> choices = {};
 };
 
 /// @param results outlives the call only

@@ -12,7 +12,8 @@ namespace sixdof::report {
 namespace {
 
 /// Update rates in Hz: the usual haptic loop; what textures need to feel stable. Choi and Tan, "Effect of update rate
-/// on perceived instability of virtual haptic texture" (IROS 2004), recommend 5 to 10 kHz.
+/// on perceived instability of virtual haptic texture" (IROS 2004), recommend 5 to 10 kHz. Longer delays:
+/// k_delay_changes_ms.
 constexpr double k_loop_hz = 1e3, k_texture_hz = 5e3;
 
 std::vector<Eigen::Vector3d> vectors_of(const Series::Vectors& values) {
@@ -38,8 +39,12 @@ void add_scores(const Series& series, const std::string& wrench, const Series::V
 }
 
 std::string words_of(double rate_hz) {
+  constexpr double k_ms = 1e3;  // per second
   if (rate_hz >= k_texture_hz) return "5 kHz: textures feel stable";
-  return rate_hz >= k_loop_hz ? "1 kHz: the usual haptic loop" : "less than 1 kHz";
+  if (rate_hz >= k_loop_hz) return "1 kHz: the usual haptic loop";
+  if (k_ms / rate_hz > perception::k_delay_noticed_ms) return "less than 1 kHz; the delay is noticed";
+  return k_ms / rate_hz > perception::k_delay_changes_ms ? "less than 1 kHz; the delay changes how textures feel"
+                                                         : "less than 1 kHz";
 }
 
 }  // namespace
@@ -72,7 +77,7 @@ DataTable update_rates_table(const Results& results, const std::vector<RowGroup>
   DataTable table{.name = "update_rates",
                   .title = "Update rates that the tail of the queries keeps",
                   .columns = {"run", "pair", "algorithm", "percent", "tail_us", "rate_hz", "keeps",
-                              "stiffness_per_damping", "command"},
+                              "stiffness_per_damping", "command", "worst_pose"},
                   .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
@@ -82,7 +87,8 @@ DataTable update_rates_table(const Results& results, const std::vector<RowGroup>
     if (!(tail_ns > 0.0)) continue;
     const double rate = 1e9 / tail_ns;
     table.rows.push_back({run_name(results, row.file), row.pair, group.algorithm(), *row.percent, tail_ns / 1e3, rate,
-                          words_of(rate), 2.0 * rate, reproduction(row, results.files[row.file])});
+                          words_of(rate), 2.0 * rate, reproduction(row, results.files[row.file]),
+                          row.outliers.command_of("max_ns")});
   }
   return table;
 }

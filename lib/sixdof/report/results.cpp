@@ -85,6 +85,7 @@ Row row_of(const Json& entry, std::size_t file) {
   } else {
     take_values(entry, row);
   }
+  if (entry.contains("outliers")) row.outliers = parse_outliers(entry.at("outliers"));
   return row;
 }
 
@@ -104,6 +105,51 @@ void take_rows(const Json& document, Source source, Results& results) {
       if (text_at(entry, "run_type") != "aggregate") rows.push_back(row_of(entry, file));
     } catch (const Error& e) {
       throw BadFile(source.path, place, e.what());
+    }
+  }
+  Collection collection = results.collection;
+  try {
+    take_collection(document, file, collection);
+  } catch (const Error& e) {
+    throw BadFile(source.path, e.what());
+  }
+  results.collection = std::move(collection);
+  results.rows.insert(results.rows.end(), rows.begin(), rows.end());
+  results.files.push_back(std::move(source));
+}
+
+/// What `sixdof scene play --json` says of one algorithm, as the row that sixdof-bench has of a scene.
+Row played_row(const Json& play, const std::string& question, const std::string& path, std::size_t file) {
+  constexpr std::pair<const char*, const char*> k_times[] = {{"processor_us", "processor_ns"},
+                                                             {"processor_us", k_processor_mean},
+                                                             {"mean_us", k_wall_mean},
+                                                             {"p99_us", "p99_frame_ns"},
+                                                             {"max_us", "max_ns"},
+                                                             {"first_us", "first_frame_ns"}};
+  constexpr std::pair<const char*, const char*> k_counts[] = {
+      {"missed", "missed_pairs"}, {"wrong", "wrong_pairs"}, {"false_per_true", "false_per_true"}, {"bytes", "bytes"}};
+  Row row{.file = file, .query = "scene", .algorithm = text_at(play, "algorithm"), .question = question};
+  row.scenario = std::filesystem::path(path).stem().string();
+  row.name = fmt::format("scene/{}/question:{}/algorithm:{}", row.scenario, question, row.algorithm);
+  if (row.algorithm.empty()) throw BadFile(path, "an algorithm without a name");
+  for (const auto& [key, name] : k_times) row.values[name] = 1e3 * number_at(play, key);
+  for (const auto& [key, name] : k_counts) row.values[name] = number_at(play, key);
+  if (row.count("missed_pairs") + row.count("wrong_pairs") > 0.0) {
+    row.error = fmt::format("{} missed, {} wrong", row.count("missed_pairs"), row.count("wrong_pairs"));
+  }
+  return row;
+}
+
+void take_plays(const Json& document, Source source, Results& results) {
+  source.kind = "play";
+  std::vector<Row> rows;
+  for (const Json& part : document) {
+    if (!part.is_object() || !part.contains("algorithms") || !part.at("algorithms").is_array()) {
+      throw BadFile(source.path, "a question without algorithms");
+    }
+    for (const Json& play : part.at("algorithms")) {
+      if (!play.is_object()) throw BadFile(source.path, "an algorithm that is no object");
+      rows.push_back(played_row(play, text_at(part, "question"), source.path, results.files.size()));
     }
   }
   results.rows.insert(results.rows.end(), rows.begin(), rows.end());
@@ -164,13 +210,16 @@ void parse_results(const std::string& text, const std::string& path, Results& re
     if (document.is_object() && document.contains("benchmarks") && document.at("benchmarks").is_array()) {
       return take_rows(document, std::move(source), results);
     }
+    if (document.is_array() && !document.empty() && document[0].is_object() && document[0].contains("question")) {
+      return take_plays(document, std::move(source), results);
+    }
     if (document.is_array() && !document.empty()) return take_hard_cases(document, std::move(source), results);
   } catch (const Json::exception& e) {
     throw BadFile(path, words_of(e));
   }
   throw BadFile(path,
                 "neither a result of sixdof-bench or a study (an object with the array \"benchmarks\") nor of sixdof "
-                "stress (an array of cells)");
+                "stress (an array of cells) or sixdof scene play --json");
 }
 
 void read_results(const std::filesystem::path& path, Results& results) {
@@ -183,13 +232,13 @@ void read_results(const std::filesystem::path& path, Results& results) {
 }
 
 std::vector<Fault> faults_of(const Row& row) {
-  if (!row.error.empty()) return {{.what = "not run: " + row.error}};
+  if (!row.error.empty()) return {{.what = row.query == "scene" ? row.error : "not run: " + row.error, .counter = {}}};
   std::vector<Fault> faults;
   const double asked = row.count("configurations");
-  if (row.count("failed") > 0.0) faults.push_back({"failed", row.count("failed"), asked});
-  if (row.count("mismatch") > 0.0) faults.push_back({"wrong", row.count("mismatch"), row.count("judged")});
+  if (row.count("failed") > 0.0) faults.push_back({"failed", "failed", row.count("failed"), asked});
+  if (row.count("mismatch") > 0.0) faults.push_back({"wrong", "mismatch", row.count("mismatch"), row.count("judged")});
   if (row.query == "respond" && row.count("misses") > 0.0) {
-    faults.push_back({"without a force", row.count("misses"), asked});
+    faults.push_back({"without a force", "misses", row.count("misses"), asked});
   }
   return faults;
 }
@@ -205,7 +254,8 @@ std::string to_string(const Fault& fault) {
 }
 
 std::string reproduction(const Row& row, const Source& source) {
-  if (row.question.empty() && row.query != "precision" && row.query != "equivalent") {
+  if (source.kind == "play") return fmt::format("sixdof scene play FILE --question {}", row.question);
+  if (row.query != "precision" && row.query != "equivalent") {
     std::string command = fmt::format("sixdof-bench '--benchmark_filter=^{}$'", row.name);
     if (const auto asked = row.value("configurations")) command += fmt::format(" --sample {:.0f}", *asked);
     if (const std::string seed = source.at("seed"); !seed.empty()) command += " --seed " + seed;

@@ -9,8 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include <sixdof/report/collection.h>
+#include <sixdof/report/outlier.h>
+
 /// Results of this project's programs as a report takes them: rows of `sixdof-bench` and of studies, hard cases of
-/// `sixdof stress`. Whatever of a row a report does not know is kept by its name, so that newer files can be read.
+/// `sixdof stress`, scenes that `sixdof scene play` replayed. Whatever of a row a report does not know is kept by its
+/// name, so that newer files can be read.
 
 namespace sixdof::report {
 
@@ -28,6 +32,7 @@ struct Row {
   std::optional<double> percent;         ///< Of the bucket.
   std::string label, error;              ///< `error`: why the row could not be run.
   std::map<std::string, double> values;  ///< Numbers by the names of the table of metrics, and the two means.
+  Outliers outliers;                     ///< Of a row on a bucket.
 
   std::optional<double> value(const std::string& key) const;
   double count(const std::string& key) const { return value(key).value_or(0.0); }
@@ -43,7 +48,7 @@ struct HardCase {
 /// What is known of a file beside its rows.
 struct Source {
   std::string path;
-  std::string kind;                                          ///< "rows" or "stress".
+  std::string kind;                                          ///< "rows", "stress" or "play".
   std::vector<std::pair<std::string, std::string>> context;  ///< In the file's order; numbers as text.
 
   /// Empty where the context has no such entry.
@@ -54,9 +59,11 @@ struct Results {
   std::vector<Source> files;
   std::vector<Row> rows;
   std::vector<HardCase> hard_cases;
+  Collection collection;
 };
 
-/// Reads a file of `sixdof-bench`, of a study (`-o`) or of `sixdof stress`, and adds what it has.
+/// Reads a file of `sixdof-bench`, of a study (`-o`), of `bench/collection` or `bench/growth`, of `sixdof stress` or of
+/// `sixdof scene play --json`, and adds what it has.
 /// @throws BadFile "FILE: PLACE: CAUSE" for a file that is empty, is no JSON, or is none of these
 void read_results(const std::filesystem::path& path, Results& results);
 
@@ -65,8 +72,9 @@ void parse_results(const std::string& text, const std::string& path, Results& re
 
 /// A reason why the times of a row are not ranked.
 struct Fault {
-  std::string what;    ///< "failed", "wrong", "without a force", "not run".
-  double count = 0.0;  ///< Of queries.
+  std::string what;     ///< "failed", "wrong", "without a force", "not run".
+  std::string counter;  ///< That counts it; empty where the row was not run.
+  double count = 0.0;   ///< Of queries.
   double of = 0.0;
 };
 

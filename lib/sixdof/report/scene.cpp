@@ -21,6 +21,8 @@ namespace {
 
 /// Hard cases that a page shows; each brings two meshes.
 constexpr std::size_t k_most_cases = 24;
+/// Meshes beyond which no file of the user's is added: a page stays below ten megabytes.
+constexpr std::size_t k_most_meshes = 30;
 
 std::array<float, 3> as_floats(const Eigen::Vector3d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
@@ -136,16 +138,6 @@ std::string option(const std::string& command, const std::string& name) {
   return command.substr(begin, command.find(is_quoted ? command[at] : ' ', begin) - begin);
 }
 
-/// "tx ty tz qw qx qy qz" in the order of Moment::pose.
-std::optional<std::array<double, 7>> typed_pose(const std::string& text) {
-  std::istringstream numbers(text);
-  std::array<double, 7> n{};
-  for (double& value : n) {
-    if (!(numbers >> value) || !std::isfinite(value)) return std::nullopt;
-  }
-  return std::array<double, 7>{n[3], n[4], n[5], n[6], n[0], n[1], n[2]};
-}
-
 void add_cases(const Results& results, Scenes& scenes) {
   std::size_t count = 0;
   for (const HardCase& cell : results.hard_cases) {
@@ -163,6 +155,82 @@ void add_cases(const Results& results, Scenes& scenes) {
       scenes.scenes.push_back(std::move(scene));
       ++count;
     } catch (const Error&) {  // The folder of cases is not here.
+    }
+  }
+}
+
+/// Meshes of the page by the names that outliers have for them. A file is taken if the results have its hash.
+class NamedMeshes {
+ public:
+  NamedMeshes(const Results& results, Scenes& scenes) : results_(results), scenes_(scenes) {
+    for (const Scene& scene : scenes.scenes) {
+      if (scene.kind == "object") index_.emplace(scene.name, scene.a);
+    }
+  }
+
+  std::optional<std::size_t> find(const std::string& name, std::size_t file) {
+    const auto [place, is_new] = index_.try_emplace(name);
+    if (!is_new || !names_file(name) || scenes_.meshes.size() >= k_most_meshes) return place->second;
+    try {
+      const Mesh mesh = load_mesh(name);
+      const auto is_of_results = [&](const auto& entry) {
+        return entry.first.starts_with("mesh:") && entry.second == mesh.hash();
+      };
+      if (!std::ranges::any_of(results_.files[file].context, is_of_results)) return std::nullopt;
+      place->second = add_mesh(mesh, scenes_);
+    } catch (const Error&) {  // The file is gone.
+    }
+    return place->second;
+  }
+
+ private:
+  const Results& results_;
+  Scenes& scenes_;
+  std::map<std::string, std::optional<std::size_t>> index_;
+};
+
+Scene pose_scene(const Row& row, const std::string& counter, const Outlier& outlier) {
+  Scene scene{.name = fmt::format("{} of {}: {} {} {:g} %, {}", row.query, row.algorithm, row.pair, row.kind,
+                                  row.percent.value_or(0.0), words_of_outlier(counter)),
+              .kind = "pose",
+              .command = row.outliers.command_of(outlier),
+              .moments = {}};
+  Moment moment{.pose = typed_pose(outlier.pose).value_or(Moment().pose)};
+  if (outlier.response) {
+    const auto& [force, exact_force, torque, exact_torque, reference] = *outlier.response;
+    moment.force = force;
+    moment.ideal_force = exact_force;
+    moment.torque = torque;
+    moment.ideal_torque = exact_torque;
+    const auto& [w, x, y, z, tx, ty, tz] = moment.pose;
+    const Eigen::Vector3d in_a(reference[0], reference[1], reference[2]);
+    const Eigen::Vector3d in_b =
+        Eigen::Quaterniond(w, x, y, z).normalized().conjugate() * (in_a - Eigen::Vector3d(tx, ty, tz));
+    scene.reference = {in_b.x(), in_b.y(), in_b.z()};
+  }
+  scene.moments.push_back(moment);
+  return scene;
+}
+
+/// One for each command: several counters of a row may have one configuration. That with a response is kept.
+void add_outliers(const Results& results, Scenes& scenes) {
+  NamedMeshes meshes(results, scenes);
+  std::map<std::string, std::size_t> index;
+  for (const Row& row : results.rows) {
+    for (const auto& [counter, outlier] : row.outliers.by_counter) {
+      const std::string command = row.outliers.command_of(outlier);
+      const auto a = meshes.find(row.outliers.a, row.file), b = meshes.find(row.outliers.b, row.file);
+      if (command.empty() || !a || !b) continue;
+      const auto [place, is_new] = index.try_emplace(command, scenes.scenes.size());
+      if (!is_new && !outlier.response) continue;
+      Scene scene = pose_scene(row, counter, outlier);
+      scene.a = *a;
+      scene.b = *b;
+      if (is_new) {
+        scenes.scenes.push_back(std::move(scene));
+      } else {
+        scenes.scenes[place->second] = std::move(scene);
+      }
     }
   }
 }
@@ -195,6 +263,7 @@ Scenes make_scenes(const Results& results, const std::vector<Series>& series) {
   add_paths(series, scenes);
   add_cases(results, scenes);
   add_objects(results, scenes);
+  add_outliers(results, scenes);
   return scenes;
 }
 

@@ -37,7 +37,7 @@ struct Moment {
 
 struct Scene {
   std::string name;
-  std::string kind;                   ///< "object", "path" or "case".
+  std::string kind;                   ///< "object", "path", "case" or "pose" (an outlier of a row).
   std::string command;                ///< That asks or measures it again.
   std::size_t a = 0, b = 0;           ///< Indices in Scenes::meshes; of an object both are the same.
   std::array<double, 3> reference{};  ///< Where arrows begin, in B's frame.
@@ -53,8 +53,8 @@ struct Scenes {
 
 inline constexpr std::size_t k_most_moments = 200;
 
-/// Objects that rows are about, where the model is here; paths of series; the worst poses of hard cases with a fault,
-/// where the meshes that the reproduction names are here.
+/// Paths of series; the worst poses of hard cases with a fault, where the meshes that the reproduction names are here;
+/// objects that rows are about, where the model is here; outliers of rows, where their meshes are here.
 Scenes make_scenes(const Results& results, const std::vector<Series>& series);
 
 }  // namespace sixdof::report

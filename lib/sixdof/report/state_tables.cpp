@@ -59,7 +59,7 @@ DataTable objects_table(const Results& results) {
 DataTable failures_table(const Results& results, const std::vector<RowGroup>& groups) {
   DataTable table{.name = "failures",
                   .title = "Rows with failures or wrong answers",
-                  .columns = {"run", "query", "pair", "algorithm", "bucket", "fault", "command"},
+                  .columns = {"run", "query", "pair", "algorithm", "bucket", "fault", "command", "worst_pose"},
                   .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
@@ -67,7 +67,8 @@ DataTable failures_table(const Results& results, const std::vector<RowGroup>& gr
     for (const Fault& fault : faults_of(row)) {
       const std::string bucket = row.percent ? fmt::format("{} {:g} %", row.kind, *row.percent) : row.scenario;
       table.rows.push_back({run_name(results, row.file), row.query, row.pair, group.algorithm(), bucket,
-                            to_string(fault), reproduction(row, results.files[row.file])});
+                            to_string(fault), reproduction(row, results.files[row.file]),
+                            row.outliers.command_of(fault.counter)});
     }
   }
   return table;

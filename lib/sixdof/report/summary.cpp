@@ -140,18 +140,18 @@ std::string stability_sentence(const Results& results) {
 Summary summarise(const Results& results, const std::vector<RowGroup>& groups) {
   const std::vector<Contest> contests = contests_of(results, groups);
   Summary summary;
-  summary.winners = {
-      .name = "winners",
-      .title = "Fastest without a fault",
-      .columns = {"run", "query", "pair", "bucket", "fastest", "time_us", "next", "times_faster", "verdict"},
-      .rows = {}};
+  summary.winners = {.name = "winners",
+                     .title = "Fastest without a fault",
+                     .columns = {"run", "query", "pair", "bucket", "fastest", "time_us", "next", "times_faster",
+                                 "verdict", "worst_pose"},
+                     .rows = {}};
   for (const Contest& contest : contests) {
     if (contest.entries.size() < 2) continue;
     const Entry& first = contest.entries[0];
-    summary.winners.rows.push_back({contest.run, contest.query, contest.pair,
-                                    fmt::format("{} {:g} %", contest.kind, contest.percent), first.group->algorithm(),
-                                    first.time.value / 1e3, contest.entries[1].group->algorithm(), contest.factor(),
-                                    std::string(contest.is_clear() ? "clear" : "tie")});
+    summary.winners.rows.push_back(
+        {contest.run, contest.query, contest.pair, fmt::format("{} {:g} %", contest.kind, contest.percent),
+         first.group->algorithm(), first.time.value / 1e3, contest.entries[1].group->algorithm(), contest.factor(),
+         std::string(contest.is_clear() ? "clear" : "tie"), first.group->row().outliers.command_of("max_least_ns")});
   }
   for (const char* const query : {"collide", "distance", "respond"}) {
     std::vector<const Contest*> of_query;

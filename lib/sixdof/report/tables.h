@@ -53,6 +53,27 @@ DataTable update_rates_table(const Results& results, const std::vector<RowGroup>
 
 inline constexpr std::size_t k_most_steps = 200;
 
+/// "metrics": a line for each row with every number that it has, for figures of any two. Memory and time of preparing
+/// stand beside queries too, where the file has the row that prepares. `where` names what rows are compared on.
+DataTable metrics_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "many_bodies": scenes of many bodies: time of a frame, pairs missed and wrong, pairs looked at.
+DataTable many_bodies_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "collection": times over the objects of a collection, by partner, query and bucket.
+DataTable collection_table(const Results& results);
+
+/// "collection_ratios": time over that of `exact`: a line for the mean over the objects (`point` is k_mean_of_objects)
+/// and one for each of the objects where it is largest, by name.
+DataTable collection_ratios_table(const Results& results);
+inline constexpr const char* k_mean_of_objects = "mean of all objects";
+
+/// "growth": times and memory by the number of triangles of a shape.
+DataTable growth_table(const Results& results);
+
+/// "growth_exponents": exponents of the number of triangles with their 95 % intervals.
+DataTable growth_exponents_table(const Results& results);
+
 /// "stability": verdicts of hard cases with the worst one's reproduction.
 DataTable stability_table(const Results& results);
 
@@ -67,6 +88,9 @@ DataTable settings_table(const Results& results);
 
 /// "runs": everything else that a file says about its run: machine, build, arguments, content hashes.
 DataTable runs_table(const Results& results, const std::vector<Series>& series);
+
+/// In a column "worst_pose": the command line that asks at the configuration where the row is at its worst. The page
+/// links it to its picture.
 
 /// "[1] name": how tables call a file.
 std::string run_name(const Results& results, std::size_t file);

@@ -18,15 +18,18 @@ constexpr const char* k_mean = "mean";
 struct Statistic {
   const char* name;
   const char* value;
+  const char* outlier;  ///< The value whose outlier stands for it.
 };
-constexpr std::array k_statistics{Statistic{"median", "p50_ns"}, Statistic{"99th percentile", "p99_ns"},
-                                  Statistic{"longest", "max_ns"}};
+constexpr const char* k_slowest = "max_least_ns";
+constexpr std::array k_statistics{Statistic{"median", "p50_ns", k_slowest},
+                                  Statistic{"99th percentile", "p99_ns", k_slowest},
+                                  Statistic{"longest", "max_ns", "max_ns"}};
 
 struct TimeLine {
   std::string run, query, kind, pair, statistic, algorithm;
   double percent = 0.0, us = 0.0;
   std::optional<double> low, high;
-  std::string faults, command;
+  std::string faults, command, worst_pose;
 };
 
 std::string faults_text(const Row& row) {
@@ -47,7 +50,8 @@ std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
                 .low = {},
                 .high = {},
                 .faults = faults_text(row),
-                .command = reproduction(row, results.files[row.file])};
+                .command = reproduction(row, results.files[row.file]),
+                .worst_pose = row.outliers.command_of(k_slowest)};
   std::vector<TimeLine> lines;
   if (const auto time = processor_time(group)) {
     line.us = time->value / 1e3;
@@ -61,18 +65,20 @@ std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
     if (!ns) continue;
     line.statistic = statistic.name;
     line.us = *ns / 1e3;
+    line.worst_pose = row.outliers.command_of(statistic.outlier);
     lines.push_back(line);
   }
   return lines;
 }
 
-/// Means over the pairs: comparable between algorithms only over pairs that all of them have.
+/// Means over the pairs: comparable between algorithms only over pairs that all of them have. The worst pose is that of
+/// the slowest pair.
 std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
   using Place = std::tuple<std::string, std::string, std::string, std::string, double>;
-  std::map<Place, std::map<std::string, std::map<std::string, double>>> by_place;  // algorithm, pair
+  std::map<Place, std::map<std::string, std::map<std::string, const TimeLine*>>> by_place;  // algorithm, pair
   for (const TimeLine& line : lines) {
     if (line.us > 0.0 && line.algorithm != "null") {
-      by_place[{line.run, line.query, line.kind, line.statistic, line.percent}][line.algorithm][line.pair] = line.us;
+      by_place[{line.run, line.query, line.kind, line.statistic, line.percent}][line.algorithm][line.pair] = &line;
     }
   }
   std::vector<TimeLine> means;
@@ -84,8 +90,12 @@ std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
       if (pairs.size() < most) continue;
       double mean = 0.0, squares = 0.0;
       const auto n = static_cast<double>(pairs.size());
-      for (const auto& [pair, us] : pairs) mean += std::log(us) / n;
-      for (const auto& [pair, us] : pairs) squares += (std::log(us) - mean) * (std::log(us) - mean);
+      const TimeLine* slowest = pairs.begin()->second;
+      for (const auto& [pair, line] : pairs) {
+        mean += std::log(line->us) / n;
+        if (line->us > slowest->us) slowest = line;
+      }
+      for (const auto& [pair, line] : pairs) squares += (std::log(line->us) - mean) * (std::log(line->us) - mean);
       const double spread = std::sqrt(squares / (n - 1.0));
       const auto& [run, query, kind, statistic, percent] = place;
       means.push_back({.run = run,
@@ -99,7 +109,8 @@ std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
                        .low = std::exp(mean - spread),
                        .high = std::exp(mean + spread),
                        .faults = {},
-                       .command = {}});
+                       .command = {},
+                       .worst_pose = slowest->worst_pose});
     }
   }
   return means;
@@ -120,11 +131,12 @@ DataTable times_table(const Results& results, const std::vector<RowGroup>& group
   DataTable table{.name = "times",
                   .title = "Times of queries on buckets",
                   .columns = {"run", "query", "bucket", "pair", "statistic", "algorithm", "percent", "time_us",
-                              "low_us", "high_us", "faults", "command"},
+                              "low_us", "high_us", "faults", "command", "worst_pose"},
                   .rows = {}};
   for (const TimeLine& line : lines) {
     table.rows.push_back({line.run, line.query, line.kind, line.pair, line.statistic, line.algorithm, line.percent,
-                          line.us, optional_cell(line.low), optional_cell(line.high), line.faults, line.command});
+                          line.us, optional_cell(line.low), optional_cell(line.high), line.faults, line.command,
+                          line.worst_pose});
   }
   return table;
 }

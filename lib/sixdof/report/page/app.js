@@ -69,7 +69,9 @@
     }
   }
 
-  async function show(id) {
+  /** @param address "PAGE", or "view/SCENE" or "view/SCENE/MOMENT" with numbers of data.scenes and its moments */
+  async function show(address) {
+    const [id, scene, moment] = address.split("/");
     const page = data.pages.find((each) => each.id === id) || data.pages[0];
     for (const link of document.querySelectorAll("nav a")) {
       if (link.hash === "#" + page.id) link.setAttribute("aria-current", "page"); else link.removeAttribute("aria-current");
@@ -82,8 +84,7 @@
     drawn[page.id].theme = report.theme;
     if (page.scenes && report.view) {
       report.view.attach();
-      if (report.wanted) report.view.choose(report.wanted.scene, report.wanted.moment);
-      report.wanted = null;
+      if (data.scenes[scene]) report.view.choose(Number(scene), moment === undefined ? undefined : Number(moment));
     } else if (report.view) {
       report.view.stop();
     }
@@ -91,12 +92,18 @@
   }
   report.show = show;
 
-  /** Opens the page of bodies at a scene and, of a path, at a time. */
-  report.showScene = function (scene, timeMs) {
+  const sceneOfCommand = new Map(data.scenes.map((scene, i) => [scene.command, i]));
+  const sceneOfName = new Map(data.scenes.map((scene, i) => [scene.name, i]));
+
+  /** Address of what a row of a table is about in the page of bodies: the configuration where it is at its worst, a path
+   * and, with a time, its moment, or a hard case; null where the page has none. */
+  report.sceneAddress = function (row) {
+    if (row.worst_pose && sceneOfCommand.has(row.worst_pose)) return "#view/" + sceneOfCommand.get(row.worst_pose);
+    const scene = sceneOfName.get(`${row.scenario ?? row.family}: ${row.algorithm}`);
+    if (scene === undefined) return null;
+    if (typeof row.time_ms !== "number") return "#view/" + scene;
     const { moments, stride, rate_hz: rate } = data.scenes[scene];
-    const moment = Math.min(moments.length - 1, Math.max(0, Math.round((timeMs || 0) / 1000 * rate / stride)));
-    report.wanted = { scene, moment };
-    location.hash = "view";
+    return `#view/${scene}/${Math.min(moments.length - 1, Math.max(0, Math.round(row.time_ms / 1000 * rate / stride)))}`;
   };
 
   function setTheme(theme) {

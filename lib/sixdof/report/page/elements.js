@@ -48,7 +48,9 @@
 
   const titles = { time_us: "time, µs", low_us: "from, µs", high_us: "to, µs", before_us: "before, µs", after_us: "after, µs",
                    times_faster: "times faster", time_ms: "time, ms", tau_ms: "wanted, ms", mean_ms: "mean, ms",
-                   content_hash: "content hash", in_rows: "rows" };
+                   content_hash: "content hash", in_rows: "rows", worst_pose: "worst pose", mean_us: "mean, µs", p10_us: "10 % of objects, µs",
+                   p90_us: "90 % of objects, µs", slowest_us: "its mean, µs", p99_us: "99 %, µs", longest_us: "longest, µs",
+                   first_frame_us: "first frame, µs", tail_us: "tail, µs" };
 
   const firstRows = 100;
 
@@ -65,10 +67,12 @@
     const format = (value) => (typeof value === "number" ? value.toLocaleString("en", { maximumSignificantDigits: 4 }) : value ?? "");
     function fill() {
       body.replaceChildren(...rows.slice(0, limit).map((row) => element("tr", {}, ...kept.map((i) => {
-        const isCommand = table.columns[i] === "command";
+        const isCommand = table.columns[i] === "command" || table.columns[i] === "worst_pose";
         const isShort = typeof row[i] === "string" && row[i].length < 30;
-        const cell = element("td", { class: typeof row[i] === "number" ? "number" : isCommand ? "code" : isShort ? "short" : null });
-        cell.append(isCommand && row[i] ? element("code", {}, row[i]) : String(format(row[i])));
+        const address = table.columns[i] === "worst_pose" && row[i] ? report.sceneAddress({ worst_pose: row[i] }) : null;
+        const cell = element("td", { class: typeof row[i] === "number" ? "number" : isCommand && !address ? "code" : isShort || address ? "short" : null });
+        if (address) cell.append(element("a", { href: address }, "show in 3D"));
+        else cell.append(isCommand && row[i] ? element("code", {}, row[i]) : String(format(row[i])));
         return cell;
       }))));
       more.hidden = rows.length <= limit;

@@ -25,13 +25,28 @@
     return parts.join("; ");
   }
 
+  /** "Longest: vps, bunny, 5 %, 812": the row that a figure's caption line names. */
+  function wordsOf(row, { field, label, unit }) {
+    const number = row[field].toLocaleString("en", { maximumSignificantDigits: 3 });
+    const parts = [row.algorithm ?? row.fastest, row.pair, row.scenario, row.percent === undefined ? null : `${row.percent} %`,
+                   row.bucket && row.percent === undefined ? row.bucket : null, row.time_ms === undefined ? null : `at ${row.time_ms} ms`];
+    return `${label}: ${parts.filter((part) => part !== null && part !== undefined && part !== "").join(", ")}: ${number} ${unit ?? ""}`.trim();
+  }
+
+  /** Puts new controls in the place of old ones. The focus stays where it was, so that a keyboard goes on from there. */
+  function replaceControls(parent, parts) {
+    const at = [...parent.children].findIndex((child) => child.contains(document.activeElement));
+    parent.replaceChildren(...parts);
+    parts[at]?.querySelector("select, input")?.focus();
+  }
+
   class FigureCard {
     constructor(figure, data) {
       this.figure = figure;
       this.meta = figure.usermeta;
       this.data = data;
       this.all = report.figureRows(figure, data.tables);
-      this.choices = {};
+      this.choices = { ...data.choices };
       this.state = { hidden: new Set() };
       this.linear = false;
       this.views = [];
@@ -40,8 +55,9 @@
       this.plots = element("div", { class: "plots" });
       this.detail = element("div", { class: "detail", "aria-live": "polite" });
       this.missing = element("p", { class: "missing" });
+      this.outlier = element("p", { class: "outlier" });
       this.element = element("section", { class: "figure", id: "figure-" + this.meta.id },
-        element("h3", {}, this.meta.title), this.controls, this.plots, this.chips, this.missing, this.detail,
+        element("h3", {}, this.meta.title), this.controls, this.plots, this.chips, this.outlier, this.missing, this.detail,
         element("p", { class: "caption" }, this.meta.caption), this.downloads());
     }
 
@@ -58,30 +74,41 @@
     field() { return this.meta.algorithm || "algorithm"; }
 
     shown() {
-      const { resolved, rows } = report.resolveChoices(this.figure, this.all, this.choices);
+      const { resolved, choices, rows } = report.resolveChoices(this.figure, this.all, this.choices, this.data.metrics);
       const visible = this.meta.noChips ? rows : rows.filter((row) => !this.state.hidden.has(row[this.field()]));
-      const choices = Object.fromEntries(resolved.map(({ filter, value }) => [filter.field, value]));
-      return { resolved, choices, before: rows, rows: visible };
+      return { resolved, choices, before: rows, rows: report.withFrontier(this.figure, visible, choices, this.data.metrics) };
     }
 
     drawControls(resolved) {
       const parts = resolved.filter(({ values }) => values.length > 1).map(({ filter, values, value }) => {
         const select = element("select", { onchange: () => { this.choices[filter.field] = select.value; this.draw(); } },
-          ...values.map((each) => element("option", { value: each, selected: each === value }, each)));
+          ...values.map((each) => element("option", { value: each, selected: each === value }, filter.names ? filter.names(each) : each)));
         return element("label", {}, filter.label + " ", select);
       });
       if (this.meta.logAxes) {
         const box = element("input", { type: "checkbox", checked: !this.linear, onchange: () => { this.linear = !box.checked; this.draw(); } });
         parts.push(element("label", { class: "chip" }, box, "logarithmic axes"));
       }
-      this.controls.replaceChildren(...parts);
+      replaceControls(this.controls, parts);
     }
 
     drawChips(rows) {
       const names = report.valuesOf(rows, this.field());
       const index = (name) => Math.max(0, this.data.algorithms.indexOf(report.baseAlgorithm(name)));
       names.sort((a, b) => index(a) - index(b));
-      this.chips.replaceChildren(...(this.meta.noChips ? [] : names.map((name) => chip(name, index(name), this.state, () => this.draw()))));
+      replaceControls(this.chips, this.meta.noChips ? [] : names.map((name) => chip(name, index(name), this.state, () => this.draw())));
+    }
+
+    /** The worst value that is drawn, with a link to its pose or moment. */
+    drawOutlier(rows) {
+      const rated = this.meta.outlier;
+      this.outlier.replaceChildren();
+      if (!rated) return;
+      const worse = (a, b) => (Math.abs(b[rated.field]) > Math.abs(a[rated.field]) ? b : a);
+      const known = report.ratedRows(rows, rated).filter((row) => Number.isFinite(row[rated.field]) && report.sceneAddress(row));
+      if (known.length === 0) return;
+      const worst = known.reduce(worse);
+      this.outlier.append(wordsOf(worst, rated), ". ", element("a", { href: report.sceneAddress(worst) }, "Show its pose in 3D"));
     }
 
     spec(rows, choices, more) {
@@ -93,7 +120,8 @@
       const { resolved, choices, before, rows } = this.shown();
       this.drawControls(resolved);
       this.drawChips(before);
-      this.missing.textContent = missingText(before, rows, this.field());
+      this.missing.textContent = [missingText(before, rows, this.field()), report.frontierNote(this.figure, choices, this.data.metrics)].filter(Boolean).join("; ");
+      this.drawOutlier(rows);
       for (const view of this.views) view.finalize();
       this.views = [];
       const facets = this.meta.facet ? report.valuesOf(rows, this.meta.facet) : [null];
@@ -117,14 +145,13 @@
     tell(datum) {
       const columns = this.data.tables[this.meta.table].columns;
       if (!datum || !columns.some((column) => datum[column] !== undefined)) return;
-      const fields = columns.filter((column) => column !== "command" && datum[column] !== null && datum[column] !== "" && datum[column] !== undefined);
+      const fields = columns.filter((column) => column !== "command" && column !== "worst_pose" && datum[column] !== null && datum[column] !== "" && datum[column] !== undefined);
       this.detail.replaceChildren(element("dl", {}, ...fields.flatMap((column) =>
         [element("dt", {}, column.replace(/_/g, " ")), element("dd", {}, datum[column])])));
       if (datum.command) this.detail.append(report.commandLine(datum.command));
-      const scene = report.findScene(`${datum.scenario ?? datum.family}: ${datum.algorithm}`);
-      if (scene >= 0) {
-        this.detail.append(element("button", { type: "button", class: "to-scene", onclick: () => report.showScene(scene, datum.time_ms) }, "show in 3D"));
-      }
+      if (datum.worst_pose) this.detail.append(element("p", {}, "The pose where it is at its worst:"), report.commandLine(datum.worst_pose));
+      const address = report.sceneAddress(datum);
+      if (address) this.detail.append(element("a", { class: "to-scene", href: address }, "Show in 3D"));
     }
 
     async downloadSvg() {

@@ -46,9 +46,10 @@ sixdofReport.baseAlgorithm = function (name) {
 /** The rows of a figure before any choice. */
 sixdofReport.figureRows = function (figure, tables) {
   const table = tables[figure.usermeta.table];
-  const where = figure.usermeta.where || {};
+  const { where = {}, need = [] } = figure.usermeta;
   if (!table) return [];
-  return sixdofReport.rowsOf(table).filter((row) => Object.entries(where).every(([key, value]) => row[key] === value));
+  return sixdofReport.rowsOf(table).filter((row) => Object.entries(where).every(([key, value]) => row[key] === value) &&
+                                                    need.every((column) => row[column] !== null));
 };
 
 /** Values from which a reader chooses, of a filter under the choices of the filters before it. */
@@ -56,24 +57,85 @@ sixdofReport.valuesOf = function (rows, field) {
   return [...new Set(rows.map((row) => row[field]).filter((value) => value !== null && value !== ""))];
 };
 
-/** Completes choices: each filter offers what is left by those before it. Returns what each offers and what is chosen. */
-sixdofReport.resolveChoices = function (figure, rows, wanted) {
+/** Completes choices: each filter offers what is left by those before it, each axis the metrics that differ in what is
+ * left then. Returns what each offers and what is chosen, all choices by field, and the rows that are left. */
+sixdofReport.resolveChoices = function (figure, rows, wanted, metrics) {
   const resolved = [];
+  const { gaps } = figure.usermeta;
+  const hasValue = (row) => gaps === undefined || row[gaps] !== null;
   let left = rows;
-  for (const filter of figure.usermeta.filters || []) {
-    const values = sixdofReport.valuesOf(left, filter.field);
-    if (filter.all) values.unshift("all");
+  const choose = (filter, values) => {
     let value = values.find((each) => String(each) === String(wanted[filter.field]));
-    if (value === undefined) value = values.includes(filter.default) ? filter.default : values[0];
+    if (value === undefined) value = [filter.default].flat().find((each) => values.includes(each)) ?? values[0];
     resolved.push({ filter, values, value });
+    return value;
+  };
+  for (const filter of figure.usermeta.filters || []) {
+    const values = sixdofReport.valuesOf(left.filter(hasValue), filter.field);
+    if (filter.all) values.unshift("all");
+    const value = choose(filter, values);
     if (value !== undefined && value !== "all") left = left.filter((row) => row[filter.field] === value);
   }
-  return { resolved, rows: left };
+  for (const axis of figure.usermeta.axes || []) {
+    choose({ ...axis, names: (name) => `${name}: ${metrics[name].meaning}` }, metricsOf(left, metrics));
+  }
+  const choices = Object.fromEntries(resolved.map(({ filter, value }) => [filter.field, value]));
+  for (const axis of figure.usermeta.axes || []) choices[axis.field + "_title"] = titleOfMetric(choices[axis.field], metrics);
+  return { resolved, choices, rows: left };
+};
+
+/** Metrics of which the rows have two values or more. */
+function metricsOf(rows, metrics) {
+  return Object.keys(metrics).filter((name) => new Set(rows.map((row) => row[name]).filter((value) => typeof value === "number")).size > 1);
+}
+
+function titleOfMetric(name, metrics) {
+  if (!name) return "";
+  const { meaning, unit } = metrics[name];
+  return unit === "1" ? meaning : `${meaning}, ${unit}`;
+}
+
+/** How bad a value is: the less the better; undefined where a metric does not rate. */
+function badness(value, { better }) {
+  if (typeof value !== "number") return undefined;
+  return { lower: Math.abs(value), higher: -value, "nearer 1": Math.abs(value - 1) }[better];
+}
+
+/** Gives rows of a figure with free axes their x, y and whether no other row without a fault is at most as bad in both
+ * and less bad in one; of the metrics they keep these two. */
+sixdofReport.withFrontier = function (figure, rows, choices, metrics) {
+  if (!figure.usermeta.axes) return rows;
+  const names = figure.usermeta.axes.map((axis) => choices[axis.field]);
+  if (names.some((name) => name === undefined)) return [];
+  const isKept = ([column]) => !metrics[column] || names.includes(column);
+  const points = rows.filter((row) => names.every((name) => typeof row[name] === "number")).map((row) => (
+    { ...Object.fromEntries(Object.entries(row).filter(isKept)), x: row[names[0]], y: row[names[1]],
+      bad: row.faults ? [] : names.map((name) => badness(row[name], metrics[name])) }));
+  const rated = points.filter(({ bad }) => bad.length === 2 && bad.every((each) => each !== undefined));
+  const beats = ([a, b], [c, d]) => a <= c && b <= d && (a < c || b < d);
+  return points.map(({ bad, ...row }) => ({
+    ...row, frontier: rated.some((each) => each.bad === bad) && !rated.some((each) => beats(each.bad, bad)) ? "yes" : "no" }));
+};
+
+/** Why a figure with free axes has no frontier; empty if it has one. */
+sixdofReport.frontierNote = function (figure, choices, metrics) {
+  const unrated = (figure.usermeta.axes || []).map((axis) => choices[axis.field]).filter((name) => name && metrics[name].better === "neither");
+  return unrated.length ? `no frontier: ${unrated.join(" and ")} describes a row and does not rate it` : "";
+};
+
+/** Rows with the value by which the worst is found: as they are or, with `against`, the difference from the row of the
+ * other curve at the same place. */
+sixdofReport.ratedRows = function (rows, { field, against }) {
+  if (!against) return rows;
+  const key = (row) => JSON.stringify(against.same.map((column) => row[column]));
+  const other = new Map(rows.filter((row) => row[against.column] === against.value).map((row) => [key(row), row[field]]));
+  return rows.filter((row) => row[against.column] !== against.value && other.has(key(row))).map((row) => ({ ...row, [field]: row[field] - other.get(key(row)) }));
 };
 
 /** Errors below this are rounding: they would stretch a logarithmic axis over ten decades. */
 sixdofReport.rounding = 1e-9;
 
+/** Smallest value that is drawn in its place, over 3. */
 function floorOf(rows, field) {
   const values = rows.map((row) => row[field]).filter((value) => value > sixdofReport.rounding);
   return values.length ? Math.min(...values) / 3 : sixdofReport.rounding;
@@ -88,19 +150,25 @@ function logTicks(from, to) {
   return ticks.filter((tick) => tick >= from && tick <= to);
 }
 
-/** Gives every row its place `shown`; values below rounding share the lower edge, whose tick says so. */
-function withFloor(spec, rows, field, linear) {
-  if (linear) return rows.map((row) => ({ ...row, shown: row[field] }));
-  const floor = floorOf(rows, field), top = Math.max(floor * 10, ...rows.map((row) => row[field] ?? 0)) * 1.1;
+/** Gives every row its place `shown` on the axis `channel`; values below rounding share the lower edge, whose tick says
+ * so. An axis with values below zero is linear. */
+function withFloor(spec, rows, { field, shown, channel, include = 0 }, linear) {
+  const isSigned = rows.some((row) => row[field] < 0);
+  if (linear || isSigned) {
+    if (isSigned) visit(spec, (node) => { if (node[channel]?.field === shown) node[channel].scale = { type: "linear" }; });
+    return rows.map((row) => ({ ...row, [shown]: row[field] }));
+  }
+  const floor = floorOf(rows, field), top = Math.max(floor * 10, include, ...rows.map((row) => row[field] ?? 0)) * 1.1;
   const isFloored = rows.some((row) => row[field] !== null && row[field] <= sixdofReport.rounding);
   const low = isFloored ? floor : floor * 2.4;
+  const label = "datum.value >= 1e6 ? format(datum.value, '~s') : datum.value >= 1e4 ? format(datum.value, ',') : format(datum.value, '~g')";
   visit(spec, (node) => {
-    if (!node.y || node.y.field !== "shown") return;
-    node.y.scale = { type: "log", domain: [low, top], nice: false };
-    node.y.axis = { values: [...(isFloored ? [floor] : []), ...logTicks(isFloored ? floor * 1.5 : low, top)],
-                    labelExpr: isFloored ? `datum.value < ${floor * 1.01} ? '≈ 0' : format(datum.value, '~g')` : "format(datum.value, '~g')" };
+    if (!node[channel] || node[channel].field !== shown) return;
+    node[channel].scale = { type: "log", domain: [low, top], nice: false };
+    node[channel].axis = { values: [...(isFloored ? [floor] : []), ...logTicks(isFloored ? floor * 1.5 : low, top)],
+                    labelExpr: isFloored ? `datum.value < ${floor * 1.01} ? '≈ 0' : ${label}` : label };
   });
-  return rows.map((row) => ({ ...row, shown: row[field] === null ? null : Math.max(row[field], floor) }));
+  return rows.map((row) => ({ ...row, [shown]: row[field] === null ? null : Math.max(row[field], floor) }));
 }
 
 function largestOf(rows, { by, count }) {
@@ -168,7 +236,10 @@ sixdofReport.prepareSpec = function (figure, rows, choices, context) {
   const spec = JSON.parse(JSON.stringify(figure));
   const meta = spec.usermeta;
   delete spec.usermeta;
-  if (meta.floor) rows = withFloor(spec, rows, meta.floor, context.linear);
+  if (meta.floor) rows = withFloor(spec, rows, { field: meta.floor, shown: "shown", channel: "y", include: meta.include }, context.linear);
+  if (meta.axes) {
+    for (const channel of ["x", "y"]) rows = withFloor(spec, rows, { field: channel, shown: "shown_" + channel, channel }, context.linear);
+  }
   if (meta.largest) rows = largestOf(rows, meta.largest);
   if (meta.order) rows = [...rows].sort((a, b) => (b[meta.order] ?? 0) - (a[meta.order] ?? 0));
   const field = meta.algorithm || "algorithm";
@@ -184,7 +255,7 @@ sixdofReport.prepareSpec = function (figure, rows, choices, context) {
   spec.width = context.width;
   // A figure with a row per name grows with the names; the others have one height.
   const names = meta.rows ? new Set(rows.map((row) => row[meta.rows])).size : 0;
-  spec.height = meta.rows ? Math.max(60, 24 * names) : meta.height || 340;
+  spec.height = meta.rows ? Math.max(60, (meta.rowHeight || 24) * names) : meta.height || 340;
   spec.autosize = { type: "fit-x", contains: "padding" };
   if (context.title) spec.title = context.title;
   spec.config = configOf(context.theme);

@@ -62,7 +62,7 @@
   }
 
   /** Scanned objects stand on their z, x plane, and so does the block of Ia and Ib (scenario/README.md). */
-  const standsOnY = (scene) => scene.kind === "object" || /^I[ab]:/.test(scene.name);
+  const standsOnY = (scene) => scene.kind === "object" || scene.kind === "pose" || /^I[ab]:/.test(scene.name);
 
   /** A camera on a sphere around a box; z is up, or y. */
   class Orbit {
@@ -115,7 +115,7 @@
     constructor(data) {
       this.data = data;
       this.select = element("select", { onchange: () => this.choose(Number(this.select.value)) },
-        ...data.scenes.map((scene, i) => element("option", { value: i }, scene.name)));
+        ...this.groups());
       this.slider = element("input", { type: "range", min: 0, value: 0, "aria-label": "moment along the path", oninput: () => this.update() });
       this.note = element("p", { class: "caption", "aria-live": "polite" });
       this.place = element("div", { class: "scene", tabindex: 0, role: "img", "aria-label": "Bodies in three dimensions; arrow keys turn, plus and minus zoom" });
@@ -124,6 +124,16 @@
       this.element = element("section", { class: "figure", id: "figure-view" },
         element("div", { class: "controls" }, element("label", {}, "Show ", this.select), this.play, this.slider), this.place, this.legend(), this.note, this.command);
       this.choose(0);
+    }
+
+    /** Choices by kind. Poses of rows are too many for a list: a link chooses one, and it stands in the list then. */
+    groups() {
+      const kinds = { path: "Paths", case: "Hard cases", object: "Objects" };
+      this.linked = element("optgroup", { label: "From a figure", hidden: true });
+      return [this.linked, ...Object.entries(kinds).map(([kind, label]) => {
+        const options = this.data.scenes.flatMap((scene, i) => (scene.kind === kind ? [element("option", { value: i }, scene.name)] : []));
+        return options.length ? element("optgroup", { label }, ...options) : null;
+      }).filter(Boolean)];
     }
 
     legend() {
@@ -174,6 +184,10 @@
     choose(index, wanted) {
       this.stop();
       const scene = this.scene = this.data.scenes[index];
+      if (scene.kind === "pose") {
+        this.linked.replaceChildren(element("option", { value: index }, scene.name));
+        this.linked.hidden = false;
+      }
       const sizes = scene.moments.map((each) => Math.hypot(...parts(each).force));
       const moment = wanted ?? Math.max(0, sizes.indexOf(Math.max(...sizes)));
       this.select.value = String(index);
@@ -230,7 +244,6 @@
       return this.peaks[name];
     }
 
-
     drawArrows(moment) {
       if (this.arrows) this.space.remove(this.arrows);
       this.arrows = new THREE.Group();
@@ -253,9 +266,10 @@
       } else {
         this.pose(scene.moments[k]);
         if (this.follows) this.orbit.centre.copy(this.b.geometry.boundingSphere.center).applyMatrix4(this.b.matrixWorld);
-        if (scene.kind === "path") this.drawArrows(scene.moments[k]);
-        this.note.textContent = scene.kind === "path" ? `${(1000 * k * scene.stride / scene.rate_hz).toFixed(0)} ms along the path. Drag to turn, wheel to zoom.`
-          : "The pose at which this algorithm's answer was the worst. Drag to turn, wheel to zoom.";
+        this.drawArrows(scene.moments[k]);
+        const what = scene.kind === "path" ? `${(1000 * k * scene.stride / scene.rate_hz).toFixed(0)} ms along the path.`
+          : scene.kind === "pose" ? `${scene.name}. The command below asks at this pose.` : "The pose at which this algorithm's answer was the worst.";
+        this.note.textContent = `${what} Drag to turn, wheel to zoom.`;
       }
       this.draw();
     }
@@ -284,7 +298,4 @@
     }
   }
   report.SceneView = SceneView;
-
-  /** Index of the scene with this name, or -1. */
-  report.findScene = (name) => report.data.scenes.findIndex((scene) => scene.name === name);
 })(globalThis.sixdofReport);

@@ -1,6 +1,8 @@
-// Draws every figure that has data as an SVG file, at the default of each choice, with its legend and a title.
+// Draws every figure that has data as an SVG file, with its legend and a title: at the choices that the data name under
+// "choices", at the default of all others.
 //   node write_svg.js REPORT_FOLDER DATA.json OUTPUT_FOLDER
-// REPORT_FOLDER has page/ and vendor/. Prints the name of every file that it wrote.
+// REPORT_FOLDER has page/ and vendor/. Prints the name of every file that it wrote. Ends with 3 and a line of why where
+// no figure offers a choice.
 
 "use strict";
 
@@ -16,6 +18,18 @@ for (const file of ["vendor/vega.min.js", "vendor/vega-lite.min.js", "page/figur
 const report = globalThis.sixdofReport;
 const data = report.unpack(JSON.parse(fs.readFileSync(dataFile, "utf8")));
 
+/** Why a wanted choice is none; empty if a figure offers it under the choices before it. */
+function refusal(field, wanted) {
+  const offered = Object.values(data.figures).flatMap((figure) => {
+    const { resolved } = report.resolveChoices(figure, report.figureRows(figure, data.tables), data.choices, data.metrics);
+    return resolved.filter(({ filter }) => filter.field === field).flatMap(({ values }) => values.map(String));
+  });
+  if (offered.includes(String(wanted))) return "";
+  if (offered.length > 0) return `--choose ${field}=${wanted}: no figure offers it, but ${[...new Set(offered)].slice(0, 12).join("; ")}`;
+  const fields = Object.values(data.figures).flatMap(({ usermeta: meta }) => [...(meta.filters || []), ...(meta.axes || [])].map((each) => each.field));
+  return `--choose ${field}=${wanted}: no figure has this choice, but ${[...new Set(fields)].sort().join(", ")}`;
+}
+
 function titleOf(meta, choices, facet) {
   const said = meta.filters.map((filter) => choices[filter.field]).filter((value) => value !== undefined && value !== "all");
   return { text: meta.title, subtitle: [...said, ...(facet === null ? [] : [facet])].join(", ") };
@@ -23,9 +37,9 @@ function titleOf(meta, choices, facet) {
 
 async function write(id, figure) {
   const meta = figure.usermeta;
-  const { resolved, rows } = report.resolveChoices(figure, report.figureRows(figure, data.tables), {});
+  const { choices, rows: chosen } = report.resolveChoices(figure, report.figureRows(figure, data.tables), data.choices, data.metrics);
+  const rows = report.withFrontier(figure, chosen, choices, data.metrics);
   if (rows.length === 0) return;
-  const choices = Object.fromEntries(resolved.map(({ filter, value }) => [filter.field, value]));
   for (const facet of meta.facet ? report.valuesOf(rows, meta.facet) : [null]) {
     const part = facet === null ? rows : rows.filter((row) => row[meta.facet] === facet);
     const spec = report.prepareSpec(figure, part, choices, { theme: "light", algorithms: data.algorithms, width: 560, legend: true,
@@ -39,6 +53,13 @@ async function write(id, figure) {
 }
 
 (async () => {
+  for (const [field, wanted] of Object.entries(data.choices)) {
+    const why = refusal(field, wanted);
+    if (why) {
+      console.error(why);
+      process.exit(3);
+    }
+  }
   for (const [id, figure] of Object.entries(data.figures)) await write(id, figure);
 })().catch((error) => {
   console.error(String(error && error.stack || error));
