@@ -115,6 +115,13 @@ TEST_F(Isolated, ThirdPartyLeavesTheProjectsOwnInThisProcess) {
   EXPECT_FALSE(none.at("context").contains("isolated"));
 }
 
+/// The poses of outliers, without those of times.
+json outliers_of_answers(const json& entry) {
+  json poses = entry.value("outliers", json::object()).value("poses", json::object());
+  for (auto each = poses.begin(); each != poses.end();) each = each.key().ends_with("_ns") ? poses.erase(each) : ++each;
+  return poses;
+}
+
 /// Everything but times is equal in both.
 TEST_F(Isolated, AnswersAndCountersAreThoseOfOneProcess) {
   for (const auto& [query, bucket] :
@@ -126,12 +133,15 @@ TEST_F(Isolated, AnswersAndCountersAreThoseOfOneProcess) {
       const json other = test::row(there, entry.at("name"));
       for (const auto& [key, value] : entry.items()) {
         const bool is_time = key.ends_with("_ns") || key.ends_with("_time") || key.starts_with("ns_per_") ||
-                             key == "over_1ms" || key == "iterations" || key == "sixdof" || key == "label";
+                             key == "over_1ms" || key == "iterations" || key == "sixdof" || key == "label" ||
+                             key == "outliers";
         if (!is_time) {
           EXPECT_EQ(other.at(key), value) << entry.at("name") << " " << key;
         }
       }
       EXPECT_EQ(other.value("label", ""), entry.value("label", ""));
+      EXPECT_EQ(outliers_of_answers(other), outliers_of_answers(entry)) << entry.at("name");
+      EXPECT_FALSE(outliers_of_answers(entry).empty() && query != std::string_view("collide")) << entry.at("name");
       EXPECT_FALSE(other.contains("processor_inside_ns"));
     }
   }

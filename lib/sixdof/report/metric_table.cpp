@@ -70,9 +70,10 @@ DataTable metrics_table(const Results& results, const std::vector<RowGroup>& gro
     if (!row.body.empty()) faults += (faults.empty() ? "" : ", ") + row.body;
     table.rows.push_back({run_name(results, row.file), row.query, place_of(row), groups[i].algorithm(), row.settings,
                           faults, reproduction(row, results.files[row.file]), row.outliers.command_of("max_least_ns")});
+    std::vector<Cell>& cells = table.rows.back();
     for (const std::string& name : names) {
-      const auto found = all[i].find(name);
-      table.rows.back().push_back(found == all[i].end() ? Cell() : Cell(found->second));
+      cells.emplace_back();
+      if (const auto found = all[i].find(name); found != all[i].end()) cells.back() = found->second;
     }
   }
   return table;
