@@ -34,11 +34,12 @@ struct Collector : ::testing::Test {
                       {"b", {.query = "prepare", .algorithm = "exact"}},
                       {"c", {.query = "scenario", .algorithm = "vps", .scenario = "II"}}};
   ResultStore store{{"a", "b", "c"}, {{"seed", "7"}}};
-  OutliersByName outliers{{"a", [] {
-                             Outliers found{.a = "left", .b = "right", .command = "", .by_counter = {}};
-                             found.add("max_ns", Pose{.t = {0.1, 2.0, 3.0}});
-                             return found;
-                           }}};
+  static Outliers one_outlier() {
+    Outliers found{.a = "left", .b = "right", .command = "", .by_counter = {}};
+    found.add("max_ns", Pose{.t = {0.1, 2.0, 3.0}});
+    return found;
+  }
+  OutliersByName outliers{{"a", one_outlier}, {"c", one_outlier}};
   ResultCollector rows{store, fields, outliers};
   RowReporter collector{&rows, left_out};
 
@@ -68,12 +69,13 @@ TEST_F(Collector, MakesARowWithANonFiniteCounterAnError) {
 }
 
 TEST_F(Collector, OutliersStandBesideTheFieldsOfRowsThatRan) {
-  ResultRow failed = row("a");
+  ResultRow failed = row("c");
   failed.error_occurred = true;
   report({row("a")});
   report({row("b")});
   report({failed});
   const auto written = document().at("benchmarks");
+  ASSERT_EQ(written.size(), 3u);
   EXPECT_EQ(written[0].at("outliers").at("poses").at("max_ns"), "0.1 2 3 1 0 0 0");
   EXPECT_EQ(written[0].at("outliers").at("b"), "right");
   EXPECT_FALSE(written[0].at("outliers").contains("command"));
