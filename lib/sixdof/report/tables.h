@@ -8,7 +8,8 @@
 #include <sixdof/report/series.h>
 
 /// The tables that the figures draw, in long form: a line per value, texts in the columns by which a reader chooses. A
-/// table without rows belongs to a page without data.
+/// table without rows belongs to a page without data. A column "worst_pose" has the command line that asks at the
+/// configuration where the row is at its worst; the page links it to its picture.
 
 namespace sixdof::report {
 
@@ -88,9 +89,6 @@ DataTable settings_table(const Results& results);
 
 /// "runs": everything else that a file says about its run: machine, build, arguments, content hashes.
 DataTable runs_table(const Results& results, const std::vector<Series>& series);
-
-/// In a column "worst_pose": the command line that asks at the configuration where the row is at its worst. The page
-/// links it to its picture.
 
 /// "[1] name": how tables call a file.
 std::string run_name(const Results& results, std::size_t file);
