@@ -78,6 +78,7 @@ std::string explain(const UnknownWord& unknown) {
 
 int run(int argc, const char* const* argv) {
   if (const auto code = serve_if_asked(argc, argv)) return *code;
+  if (const auto code = run_stress_cell_if_asked(argc, argv)) return *code;
   if (argc < 2) {
     fmt::print(stderr, k_first_steps, k_first_query);
     return k_exit_usage;

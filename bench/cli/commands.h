@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <CLI/App.hpp>
@@ -43,6 +44,8 @@ void add_equivalent_command(CLI::App& app);
 /// of hard cases with known answers; k_exit_defects if one of this project's own answers wrongly or not
 /// (study/stress.h).
 void add_stress_command(CLI::App& app);
+/// What the processes of that command run. @returns the exit code; nothing for another command line
+std::optional<int> run_stress_cell_if_asked(int argc, const char* const* argv);
 /// `sixdof generate --a A [--b B] --grid GRID [--distances LIST] [--volumes LIST] -o FILE`: makes a configuration set.
 /// With `--shards N [--shard I] -o FOLDER` in parts; with `--plan` it only prints what would be made and at what cost.
 void add_generate_command(CLI::App& app);

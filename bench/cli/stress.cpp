@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -23,6 +24,7 @@
 #include "bench/common/run_guarded.h"
 #include "bench/study/stress_processes.h"
 #include "bench/study/stress_text.h"
+#include "bench/study/stress_worker.h"
 
 namespace sixdof::cli {
 namespace {
@@ -123,6 +125,15 @@ void run_stress_command(const Options& options) {
 }
 
 }  // namespace
+
+std::optional<int> run_stress_cell_if_asked(int argc, const char* const* argv) {
+  Registry registry;
+  return study::run_stress_cell_if_asked(argc, argv, [&](const std::string& name) -> const Algorithm& {
+    register_all_algorithms(registry);
+    add_generators(registry);
+    return registry.find(name);
+  });
+}
 
 void add_stress_command(CLI::App& app) {
   auto* const command =

@@ -23,7 +23,7 @@ struct StressPlan {
 /// All cells, by family, then by algorithm. Deterministic by seed but for times and what depends on them. A cell whose
 /// process ends has the case and the pose that it was asked last, and the verdict crashed, hung or out of memory.
 ///
-/// The processes are forks of this one, which has no threads of oneTBB as long as nothing was prepared in it.
+/// The processes run this program again, which has to begin with run_stress_cell_if_asked() (stress_worker.h).
 /// @param progress is called often, with how many cells are done; what it throws ends all processes
 /// @throws Error if no process can be made
 std::vector<StressCell> run_stress(const StressPlan& plan,

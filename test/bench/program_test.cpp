@@ -310,11 +310,11 @@ TEST_F(BenchProgram, TimesSingleQueriesOnColdCaches) {
   EXPECT_EQ(cold.at("iterations"), 8) << "one round";
   EXPECT_EQ(cold.at("mismatch"), 0);
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  const char* const warm_time = "p50_ns";  // instrumented code takes longer than memory
+  constexpr double k_ratio = 1.0;  // instrumented code takes longer than memory
 #else
-  const char* const warm_time = "max_least_ns";
+  constexpr double k_ratio = 3.0;  // some forty without other work on the machine
 #endif
-  EXPECT_GT(cold.at("p50_ns"), warm.at(warm_time)) << "data comes from memory";
+  EXPECT_GT(cold.at("p50_ns").get<double>(), k_ratio * warm.at("p50_ns").get<double>()) << "data comes from memory";
   EXPECT_FALSE(cold.contains("max_least_ns")) << "of one pass";
   // The means are those of the single times.
   EXPECT_LE(cold.at("real_time"), cold.at("max_ns"));

@@ -14,6 +14,8 @@
 
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/error.h>
+#include <sixdof/query/registry.h>
+#include "bench/study/stress_worker.h"
 
 namespace sixdof::study {
 namespace {
@@ -24,15 +26,14 @@ enum class Way {
   abort,
   loop,
   memory,
-  exit,
-  none
+  exit
 };
 
 /// Ends at the first pose that is far from the origin.
 template <Way way>
 class Deadly : public Query {
  public:
-  Deadly(const Mesh&, const Mesh&, const Settings&) {}
+  Deadly(const Mesh& /*a*/, const Mesh& /*b*/, const Settings& /*settings*/) {}
   Outcome<bool> collide(const Pose& X_AB) override {
     if (X_AB.t.norm() < 20.0) return false;
     if (way == Way::abort) std::abort();
@@ -48,12 +49,25 @@ class Deadly : public Query {
 };
 
 template <Way way>
-std::unique_ptr<Algorithm> deadly() {
-  return make_algorithm<Deadly<way>>({.name = "deadly", .version = "1", .summary = "", .answers = {.collide = true}});
+std::unique_ptr<Algorithm> deadly(const char* name) {
+  return make_algorithm<Deadly<way>>({.name = name, .version = "1", .summary = "", .answers = {.collide = true}});
 }
 
-StressCell run(const Algorithm& algorithm, const char* family, double silence_s = 20.0) {
-  const StressPlan plan{.algorithms = {&algorithm},
+const Registry& algorithms() {
+  static const Registry registry = [] {
+    Registry all;
+    all.add(make_exact_algorithm());
+    all.add(deadly<Way::abort>("aborts"));
+    all.add(deadly<Way::loop>("loops"));
+    all.add(deadly<Way::memory>("allocates"));
+    all.add(deadly<Way::exit>("exits"));
+    return all;
+  }();
+  return registry;
+}
+
+StressCell run(const char* algorithm, const char* family, double silence_s = 20.0) {
+  const StressPlan plan{.algorithms = {&algorithms().find(algorithm)},
                         .families = {&stability::find_family(family)},
                         .effort = {.generations = 0},
                         .silence_s = silence_s,
@@ -68,26 +82,26 @@ TEST(StressProcesses, WaysToDieAreToldApartAndHaveTheirPose) {
     ASSERT_LT(cell.worst.shot, member.shots.size());
     EXPECT_GE(member.shots[cell.worst.shot].X_AB.t.norm(), 20.0);
   };
-  expect(run(*deadly<Way::abort>(), "offset"), Verdict::crashed);
-  expect(run(*deadly<Way::loop>(), "offset", 0.5), Verdict::hung);
+  expect(run("aborts", "offset"), Verdict::crashed);
+  expect(run("loops", "offset", 0.5), Verdict::hung);
 }
 
 TEST(StressProcesses, AllMemoryTakenEndsACell) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "their shadow memory counts";
 #endif
-  const StressCell memory = run(*deadly<Way::memory>(), "offset");
+  const StressCell memory = run("allocates", "offset");
   EXPECT_EQ(memory.worst.verdict, Verdict::out_of_memory) << memory.worst.words;
 }
 
 TEST(StressProcesses, AnEndWithoutAnAnswerIsACrash) {
-  const StressCell cell = run(*deadly<Way::exit>(), "offset");
+  const StressCell cell = run("exits", "offset");
   EXPECT_EQ(cell.worst.verdict, Verdict::crashed) << cell.worst.words;
 }
 
 TEST(StressProcesses, AFaultEndsItsCellOnly) {
-  const std::unique_ptr<Algorithm> bad = deadly<Way::abort>(), good = make_exact_algorithm();
-  const StressPlan plan{.algorithms = {bad.get(), good.get()},
+  const Algorithm& good = algorithms().find("exact");
+  const StressPlan plan{.algorithms = {&algorithms().find("aborts"), &good},
                         .families = {&stability::find_family("offset"), &stability::find_family("scale")},
                         .effort = {}};
   std::size_t last = 0;
@@ -100,14 +114,14 @@ TEST(StressProcesses, AFaultEndsItsCellOnly) {
   EXPECT_EQ(cells[0].worst.verdict, Verdict::crashed);
   EXPECT_EQ(cells[1].worst.verdict, Verdict::exact) << cells[1].worst.words;
   EXPECT_EQ(cells[3].worst.verdict, Verdict::exact) << cells[3].worst.words;
-  EXPECT_EQ(cells[3].algorithm, good.get());
+  EXPECT_EQ(cells[3].algorithm, &good);
 }
 
 TEST(StressProcesses, GivesWhatOneProcessGives) {
-  const std::unique_ptr<Algorithm> exact = make_exact_algorithm();
   const stability::Family& family = stability::find_family("motion");
   const StressWatch nobody{.begins_case = [](const CaseId&) {}, .prepares = [] {}, .asks = [](const Pose&) {}};
-  const StressCell here = run_cell(family, *exact, {}, 1, nobody), there = run(*exact, "motion");
+  const StressCell here = run_cell(family, algorithms().find("exact"), {}, 1, nobody);
+  const StressCell there = run("exact", "motion");
   EXPECT_EQ(here.cases, there.cases);
   EXPECT_EQ(here.worst.value, there.worst.value);
   EXPECT_EQ(here.worst.excess, there.worst.excess);
@@ -119,10 +133,22 @@ TEST(StressProcesses, GivesWhatOneProcessGives) {
 }
 
 TEST(StressProcesses, WhatProgressThrowsEndsTheRun) {
-  const std::unique_ptr<Algorithm> loop = deadly<Way::loop>();
-  const StressPlan plan{.algorithms = {loop.get()}, .families = {&stability::find_family("offset")}, .effort = {}};
-  EXPECT_THROW(run_stress(plan, [](std::size_t, std::size_t) { throw Interrupted("enough"); }), Interrupted);
+  const StressPlan plan{
+      .algorithms = {&algorithms().find("loops")}, .families = {&stability::find_family("offset")}, .effort = {}};
+  const auto begin = std::chrono::steady_clock::now();
+  const auto throw_while_it_runs = [&](std::size_t, std::size_t) {
+    if (std::chrono::steady_clock::now() - begin > std::chrono::milliseconds(200)) throw Interrupted("enough");
+  };
+  EXPECT_THROW(run_stress(plan, throw_while_it_runs), Interrupted);
 }
 
 }  // namespace
 }  // namespace sixdof::study
+
+int main(int argc, char** argv) {
+  using namespace sixdof;
+  const auto find = [](const std::string& name) -> const Algorithm& { return study::algorithms().find(name); };
+  if (const auto code = study::run_stress_cell_if_asked(argc, argv, find)) return *code;
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
