@@ -80,7 +80,7 @@ sixdofReport.resolveChoices = function (figure, rows, wanted, metrics) {
     choose({ ...axis, names: (name) => `${name}: ${metrics[name].meaning}` }, metricsOf(left, metrics));
   }
   const choices = Object.fromEntries(resolved.map(({ filter, value }) => [filter.field, value]));
-  for (const axis of figure.usermeta.axes || []) choices[axis.field + "_title"] = titleOfMetric(choices[axis.field], metrics);
+  for (const axis of figure.usermeta.axes || []) choices[axis.field + "_title"] = linesOf(titleOfMetric(choices[axis.field], metrics));
   return { resolved, choices, rows: left };
 };
 
@@ -93,6 +93,17 @@ function titleOfMetric(name, metrics) {
   if (!name) return "";
   const { meaning, unit } = metrics[name];
   return unit === "1" ? meaning : `${meaning}, ${unit}`;
+}
+
+/** Lines of whole words that the side of a figure has room for. */
+function linesOf(text) {
+  const longest = 44;
+  const lines = [""];
+  for (const word of text.split(" ")) {
+    if (lines.at(-1) && lines.at(-1).length + 1 + word.length > longest) lines.push(word);
+    else lines[lines.length - 1] += (lines.at(-1) ? " " : "") + word;
+  }
+  return lines;
 }
 
 /** How bad a value is: the less the better; undefined where a metric does not rate. */
@@ -249,7 +260,9 @@ sixdofReport.prepareSpec = function (figure, rows, choices, context) {
   paintAlgorithms(spec, field, algorithms, context);
   if (context.linear) useLinearAxes(spec, meta.logAxes || []);
   visit(spec, (node) => {
-    if (node.title && node.title.from) node.title = String(choices[node.title.from] ?? node.title.from);
+    if (!node.title || !node.title.from) return;
+    const title = choices[node.title.from] ?? node.title.from;
+    node.title = Array.isArray(title) ? title : String(title);
   });
   spec.data = { values: rows };
   spec.width = context.width;
