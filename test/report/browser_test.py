@@ -342,7 +342,7 @@ class Page(unittest.TestCase):
         self.assertLess(self.page.stat().st_size, 10 << 20)
         self.open()
         paint = self.browser.run("performance.getEntriesByName('first-contentful-paint').map(entry => entry.startTime)[0] ?? 0")
-        self.assertLess(paint, 20000, "ten times the aim, since other work may have the processor")
+        self.assertLess(paint, 20000, "ten times the target, since other work may have the processor")
         asked = self.browser.run("performance.getEntriesByType('resource').map(entry => entry.name)")
         self.assertEqual(asked, [])
 
