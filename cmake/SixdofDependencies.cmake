@@ -7,7 +7,7 @@ find_package(fmt 9 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(assimp 5 REQUIRED)
 find_package(nanoflann 1.4 REQUIRED)
-find_package(HDF5 1.10 REQUIRED COMPONENTS C CXX)
+find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 
 find_package(Boost 1.74 REQUIRED)
 
