@@ -23,7 +23,8 @@ ARGUMENTS = None
 def run(*words, cwd="/", expected=0):
     """Standard output of a command that ends with the expected code. Its caches are the test's own."""
     environment = {**os.environ, "SIXDOF_CACHE": str(ARGUMENTS.work / "cache")}
-    environment.pop("SIXDOF_DATA", None)
+    for name in ("SIXDOF_DATA", "SIXDOF_MODELS"):  # the package's own are looked for
+        environment.pop(name, None)
     done = subprocess.run([str(word) for word in words], cwd=cwd, env=environment, capture_output=True, text=True)
     if done.returncode != expected:
         raise AssertionError(f"{words} ended with {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
