@@ -19,9 +19,11 @@ LIMIT_S = 2.5
 FIRST = "collide/algorithm:null/pair:torus-knot-10k/distance:05"
 
 
-def handles(pid, how):
-    """Whether the process has installed a handler of the signal (proc(5), SigCgt)."""
+def handles(pid, program, how):
+    """Whether the process runs the program by now, and that has installed a handler of the signal (proc(5), SigCgt)."""
     try:
+        if os.path.realpath(f"/proc/{pid}/exe") != os.path.realpath(program):
+            return False  # still this one, which has a handler, too
         lines = pathlib.Path(f"/proc/{pid}/status").read_text(encoding="ascii").splitlines()
     except OSError:
         return False
@@ -43,7 +45,7 @@ class CtrlC(unittest.TestCase):
         with subprocess.Popen([str(word) for word in words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                               env=os.environ | {"SIXDOF_CACHE": str(self.folder / "cache")}) as program:
             deadline = time.monotonic() + 60
-            while not (begun() and handles(program.pid, how)) and time.monotonic() < deadline:
+            while not (begun() and handles(program.pid, words[0], how)) and time.monotonic() < deadline:
                 time.sleep(0.01)
             time.sleep(0.5)
             self.assertIsNone(program.poll(), "ended before the signal")
