@@ -70,7 +70,7 @@ void run_apart(const StressPlan& plan, StressCell& cell, const std::atomic<bool>
   }
 }
 
-/// Takes one cell after the other, as the other threads of the run do.
+/// Runs all cells on as many threads as processes may run at once. Each thread takes the next cell.
 class Run {
  public:
   Run(const StressPlan& plan, std::vector<StressCell>& cells) : plan_(plan), cells_(cells) {

@@ -56,16 +56,6 @@ std::string result_line(const StressCell& cell) {
   return all.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-void write_line(int output, std::string line) {
-  line += '\n';
-  for (std::size_t at = 0; at < line.size();) {
-    const ssize_t written = ::write(output, line.data() + at, line.size() - at);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) throw Error("stress: the result cannot be written");
-    at += static_cast<std::size_t>(written);
-  }
-}
-
 /// Libraries print before they abort; the verdict says it. @returns a descriptor of what was standard output
 int silence_standard_streams() {
   const int output = high_descriptor(::dup(STDOUT_FILENO));

@@ -92,6 +92,16 @@ ChildFailure how_it_ended(int wait_status, bool ran_out_of_memory) {
   return {Status::out_of_memory, "out of memory: " + words};
 }
 
+void write_line(int output, std::string line) {
+  line += '\n';
+  for (std::size_t written = 0; written < line.size();) {
+    const ssize_t count = ::write(output, line.data() + written, line.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) throw Error(fmt::format("a reply cannot be written: {}", std::strerror(errno)));
+    written += static_cast<std::size_t>(count);
+  }
+}
+
 int high_descriptor(int descriptor) {
   const int high = ::fcntl(descriptor, F_DUPFD_CLOEXEC, k_high);
   const int error = errno;

@@ -81,6 +81,9 @@ class ChildProcess {
   std::size_t searched_ = 0;  ///< Of `received_`, without a line break.
 };
 
+/// What a program writes for receive(): the line and its break. @throws Error if the other side is gone
+void write_line(int output, std::string line);
+
 /// A copy of a descriptor that stands in the way of none of those that a program finds; closed in programs that this
 /// one starts. The given one is closed. @throws Error
 int high_descriptor(int descriptor);

@@ -71,17 +71,6 @@ class LineReader {
   std::string text_;
 };
 
-/// @throws Error if the other side is gone
-void write_line(int output, std::string line) {
-  line += '\n';
-  for (std::size_t written = 0; written < line.size();) {
-    const ssize_t count = ::write(output, line.data() + written, line.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) throw Error(fmt::format("a reply cannot be written: {}", std::strerror(errno)));
-    written += static_cast<std::size_t>(count);
-  }
-}
-
 template <class Element>
 std::vector<Element> read_elements(const std::string& path, std::size_t count) {
   std::ifstream file(path, std::ios::binary);
