@@ -169,7 +169,7 @@ std::vector<NamedPlay> play_all(const Part& part, const PlayOptions& options, Qu
   std::vector<NamedPlay> plays;
   for (const SceneAlgorithm* algorithm : chosen) {
     NamedPlay& last = plays.emplace_back(
-        *algorithm, scene::play(part.scene, *algorithm, question, truth, InterruptGuard::requested), "");
+        NamedPlay{*algorithm, scene::play(part.scene, *algorithm, question, truth, InterruptGuard::requested), ""});
     if (const auto& wrong = last.play.score.first) {
       last.reproduction = reproduction(part, options, question, *algorithm, *wrong);
       // Frames are those of the file.

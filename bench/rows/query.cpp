@@ -275,8 +275,8 @@ std::vector<Row> query_rows(const Resources& resources) {
       if (!algorithm->traits().timed) continue;
       const auto add = [&](BucketKey key, Question question) {
         for (const auto& [path, cold] : {std::pair(false, false), {true, false}, {false, true}}) {
-          const auto row = std::make_shared<QueryRow>(resources, *algorithm, pair, key, question, path,
-                                                      cold ? evict : std::shared_ptr<CacheEviction>());
+          const auto row = std::make_shared<QueryRow>(QueryRow{resources, *algorithm, pair, key, question, path,
+                                                               cold ? evict : std::shared_ptr<CacheEviction>()});
           rows.push_back({.name = row->name(),
                           .run = [row](benchmark::State& state, const Share& share) { row->run(state, share); },
                           .fields = row->fields(),

@@ -53,7 +53,7 @@ DrawnMesh clustered(const Mesh& mesh, double cells) {
   for (const auto& triangle : mesh.triangles()) {
     std::array<std::uint32_t, 3> t{cell_of[triangle[0]], cell_of[triangle[1]], cell_of[triangle[2]]};
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    std::ranges::rotate(t, std::ranges::min_element(t));
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     if (seen.insert(t).second) result.triangles.push_back(t);
   }
   return result;
