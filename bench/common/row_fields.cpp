@@ -48,6 +48,12 @@ Json settings_object(const std::string& settings) {
   return object;
 }
 
+/// A conversion would wrap what is negative, and has no defined result for what is too large.
+std::uint64_t count_of(const Json& number) {
+  if (!number.is_number_unsigned()) throw BadArgument("not a whole number");
+  return number.get<std::uint64_t>();
+}
+
 std::string settings_text(const Json& object) {
   if (!object.is_object()) throw BadArgument("not an object");
   std::string text;
@@ -109,10 +115,10 @@ RowFields row_fields_of(const Json& object) {
     });
   }
   if (object.contains("sample_limit")) {
-    read_key("sample_limit", [&] { fields.sample_limit = object.at("sample_limit").get<std::uint64_t>(); });
+    read_key("sample_limit", [&] { fields.sample_limit = count_of(object.at("sample_limit")); });
   }
   if (object.contains("configurations")) {
-    read_key("configurations", [&] { fields.configurations = object.at("configurations").get<std::uint64_t>(); });
+    read_key("configurations", [&] { fields.configurations = count_of(object.at("configurations")); });
   }
   return fields;
 }

@@ -73,6 +73,8 @@ TEST(RowFields, ThatAreWrongAreNamed) {
   EXPECT_THAT(message_of("bucket", {{"kind", "volume"}, {"percent", 101}}), HasSubstr("sixdof.bucket: "));
   EXPECT_THAT(message_of("bucket", {{"kind", "volume"}, {"percent", 0.00001}}), HasSubstr("sixdof.bucket: "));
   EXPECT_THAT(message_of("configurations", "many"), HasSubstr("sixdof.configurations: "));
+  EXPECT_THAT(message_of("configurations", -1), HasSubstr("sixdof.configurations: not a whole number"));
+  EXPECT_THAT(message_of("sample_limit", 1.55e164), HasSubstr("sixdof.sample_limit: not a whole number"));
   EXPECT_THROW(row_fields_of(Json::parse("[]")), Error);
 }
 

@@ -120,11 +120,19 @@ TEST_F(LoadGltf, DamagedStructureIsRefused) {
   EXPECT_THAT(message_with(R"("mesh":0)", R"("mesh":4)"), HasSubstr("Array index 4 is out of bounds"));
   EXPECT_THAT(message_with(R"("mesh":0)", R"("mesh":0,"children":[7])"), HasSubstr("nodes[7]: is missing or shared"));
   EXPECT_THAT(message_with(R"("mesh":0)", R"("mesh":0,"children":[0])"), HasSubstr("deeper than 500 levels"));
+  for (const char* index : {"-1", "0.5", "1.55e+164", "-1e99"}) {
+    const std::string child = std::string(R"("mesh":0,"children":[)") + index + "]";
+    EXPECT_THAT(message_with(R"("mesh":0)", child), HasSubstr("nodes[0].children: an index is not a whole number"));
+    EXPECT_THAT(message_with(R"("POSITION":0)", std::string(R"("POSITION":)") + index),
+                HasSubstr("POSITION: an index is not a whole number"));
+  }
   EXPECT_THAT(message_with(R"("mesh":0)", R"("mesh":0,"scale":[1,1e300,1])"), HasSubstr("not finite"));
   EXPECT_THAT(message_with(R"("indices":1)", R"("indices":9)"), HasSubstr("a.glb: assimp cannot read it"));
   EXPECT_THAT(message_with(R"("POSITION")", R"("POSITIONS")"), HasSubstr("key 'POSITION' not found"));
   EXPECT_THAT(message_with("5126", "5122"), HasSubstr("three floats"));
   EXPECT_THAT(message_with(R"("count":54)", R"("count":54,"sparse":{})"), HasSubstr("sparse"));
+  EXPECT_THAT(message_of(write("c.gltf", gltf_json(float_torus(), R"(,"uri":"data:;base64,AA!A")", k_plain_node))),
+              HasSubstr("c.gltf: buffers[0].uri: is not base64"));
   EXPECT_THAT(message_of(write("b.gltf", gltf_json(float_torus(), R"(,"uri":"missing.bin")", k_plain_node))),
               AllOf(HasSubstr("b.gltf: assimp cannot read it"), HasSubstr("missing.bin")));
 }

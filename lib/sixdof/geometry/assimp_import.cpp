@@ -58,6 +58,29 @@ struct Files final : Assimp::DefaultIOSystem {
   }
 };
 
+/// An index in a glTF file. A conversion would wrap what is negative, and has no defined result for what is too large.
+std::size_t index_of(const Source& source, const json& number, const std::string& place) {
+  if (!number.is_number_unsigned()) source.fail(place, "an index is not a whole number");
+  return number.get<std::size_t>();
+}
+
+/// Refuses data inside a glTF file with a character that base64 has not: assimp says so, but loses what it had
+/// allocated.
+void check_base64(const Source& source, const json& document) {
+  constexpr std::string_view k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=";
+  constexpr std::string_view k_mark = ";base64,";
+  for (const char* const list : {"buffers", "images"}) {
+    const json objects = document.value(list, json::array());
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      const auto uri = objects[i].value("uri", std::string());
+      const std::size_t mark = uri.starts_with("data:") ? uri.find(k_mark) : std::string::npos;
+      if (mark != std::string::npos && uri.find_first_not_of(k_digits, mark + k_mark.size()) != std::string::npos) {
+        source.fail(fmt::format("{}[{}].uri", list, i), "is not base64");
+      }
+    }
+  }
+}
+
 /// Refuses what assimp does not check in a glTF file: the size of sparse accessors, positions that are not floats, and
 /// a graph of nodes that is very deep (assimp recurses) or no tree (copies of a node may double at every level).
 void check_gltf(const Source& source) {
@@ -74,9 +97,11 @@ void check_gltf(const Source& source) {
   for (const json& accessor : accessors) {
     if (accessor.contains("sparse")) source.fail("sparse accessors are not supported");
   }
+  check_base64(source, document);
   for (const json& mesh : document.value("meshes", json::array())) {
     for (const json& primitive : mesh.at("primitives")) {
-      const json& accessor = accessors.at(primitive.at("attributes").at("POSITION").get<std::size_t>());
+      const json& position = primitive.at("attributes").at("POSITION");
+      const json& accessor = accessors.at(index_of(source, position, "meshes[].primitives[].attributes.POSITION"));
       if (accessor.at("componentType") != k_gltf_float || accessor.at("type") != "VEC3") {
         source.fail("positions other than vectors of three floats are not supported");
       }
@@ -88,7 +113,7 @@ void check_gltf(const Source& source) {
   std::vector<std::size_t> parent(nodes.size(), k_none);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (const json& child : nodes[i].value("children", json::array())) {
-      const auto c = child.get<std::size_t>();
+      const std::size_t c = index_of(source, child, fmt::format("nodes[{}].children", i));
       if (c >= nodes.size() || parent[c] != k_none) source.fail(fmt::format("nodes[{}]", c), "is missing or shared");
       parent[c] = i;
     }
