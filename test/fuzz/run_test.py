@@ -94,6 +94,7 @@ class Run(unittest.TestCase):
         done = self.run_script("protocol", "--minutes", "1e-5")
         self.assertEqual(done.returncode, 1)
         self.assertIn("protocol ended with exit code 3", done.stdout)
+        self.assertEqual(self.rows(done)[0][-1], "1")
 
     def test_wrong_words_are_refused(self):
         for words in (["nothing"], ["--minutes", "0"], ["--parallel", "0"]):
