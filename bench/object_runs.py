@@ -199,14 +199,16 @@ class Runner:
         return None, record
 
     def measure(self, unit):
-        """Measures a unit and writes its result, also that it has no mesh or set. @raises OutOfTime"""
+        """Measures the algorithms that a unit lacks and writes its result, also that it has no mesh or set.
+        @raises OutOfTime"""
         limit = self.budget.unit_limit()
         step_limit = max(LEAST_LIMIT_S, STEP_OF_UNIT * limit)
         begun = time.monotonic()
-        result = {"unit": unit.name, "labels": {**dict(unit.labels), "total_triangles": unit.triangles,
-                                                "volume_unit": unit.volume_unit},
-                  "a": dataclasses.asdict(unit.a),
-                  "b": dataclasses.asdict(unit.b), "algorithms": {}, "benchmarks": []}
+        result = result_of(self.folder, unit.name) or {
+            "unit": unit.name, "labels": {**dict(unit.labels), "total_triangles": unit.triangles,
+                                          "volume_unit": unit.volume_unit},
+            "a": dataclasses.asdict(unit.a), "b": dataclasses.asdict(unit.b), "algorithms": {}, "benchmarks": [],
+            "seconds": 0.0}
         made = None
         try:
             a, b = self.mesh(unit.a), self.mesh(unit.b)
@@ -214,13 +216,13 @@ class Runner:
         except Failure as failure:
             result["set"] = {"status": f"no mesh: {failure}"}
         if made:
-            for algorithm in self.choice.algorithms:
+            for algorithm in missing(result, self.choice.algorithms):
                 record, document = self.ask(algorithm, made, a, b, step_limit)
                 result["algorithms"][algorithm] = record
                 if document:
                     result.setdefault("context", document["context"])
                     result["benchmarks"] += document["benchmarks"]
-        result["seconds"] = time.monotonic() - begun
+        result["seconds"] += time.monotonic() - begun
         write(self.folder / "units" / f"{unit.name}.json", result)
 
     def ask(self, algorithm, made, a, b, limit_s):
@@ -258,7 +260,7 @@ def write(file, document):
 
 
 def bind_to(folder, choice):
-    """Notes the choice in the folder. @raises Failure if it holds units of another one"""
+    """Notes the choice in the folder, which may gain algorithms. @raises Failure if it holds units of another choice"""
     file = folder / "choice.json"
     if not file.exists():
         folder.mkdir(parents=True, exist_ok=True)
@@ -266,31 +268,58 @@ def bind_to(folder, choice):
         return
     known = json.loads(file.read_text(encoding="utf-8"))
     for field, value in choice.key().items():
-        if known.get(field) != value:
+        if field != "algorithms" and known.get(field) != value:
             raise Failure(f"{folder}: holds units with {field} {known.get(field)}, not {value}: choose another folder")
+    gained = [name for name in choice.algorithms if name not in known["algorithms"]]
+    if gained:
+        write(file, known | {"algorithms": known["algorithms"] + gained})
 
 
 def forget_cut(folder):
-    """Removes the results of units of which the time cut a step, and sets that lack their volumes for that reason, so
-    that the next run measures them again. @returns the units' names"""
+    """Removes from the results what the time cut, so that the next run measures it again: algorithms that did not end,
+    and units whose set lacks its volumes, with that set. @returns the units' names"""
     names = []
     for result in results(folder):
-        cut_set = "in time" in result["set"]["status"]
-        if cut_set or any(record["status"].startswith("not done") for record in result["algorithms"].values()):
-            names.append(result["unit"])
-            (folder / "units" / f"{result['unit']}.json").unlink()
-            if cut_set:
-                (folder / "sets" / f"{result['unit']}.json").unlink(missing_ok=True)
+        file = folder / "units" / f"{result['unit']}.json"
+        kept = {name: record for name, record in result["algorithms"].items()
+                if not record["status"].startswith("not done")}
+        if "in time" in result["set"]["status"]:
+            file.unlink()
+            (folder / "sets" / f"{result['unit']}.json").unlink(missing_ok=True)
+        elif len(kept) < len(result["algorithms"]):
+            write(file, result | {"algorithms": kept})
+        else:
+            continue
+        names.append(result["unit"])
     return names
 
 
-def done(folder, unit):
-    return (folder / "units" / f"{unit.name}.json").exists()
+def result_of(folder, name):
+    """A unit's result so far; None if it has none."""
+    try:
+        return json.loads((folder / "units" / f"{name}.json").read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return None
+
+
+def missing(result, algorithms):
+    """Those of the algorithms that the result has no record of."""
+    return [name for name in algorithms if name not in result["algorithms"]]
+
+
+def done(folder, unit, algorithms):
+    """Whether nothing is left to measure: no algorithm, or there is no set to ask them about."""
+    result = result_of(folder, unit.name)
+    return result is not None and (not set_was_made(result) or not missing(result, algorithms))
+
+
+def set_was_made(result):
+    return not result["set"]["status"].startswith(("no set", "no mesh"))
 
 
 def run(runner, units, report):
-    """Measures the units that are not measured yet. @returns names of those that the budget left out"""
-    waiting = [unit for unit in units if not done(runner.folder, unit)]
+    """Measures what is not measured yet. @returns names of the units that the budget left out"""
+    waiting = [unit for unit in units if not done(runner.folder, unit, runner.choice.algorithms)]
     runner.budget.left = len(waiting)
     left_out = []
 

@@ -157,6 +157,22 @@ class Run(unittest.TestCase):
         self.assertEqual(plan.stdout.count(" measured\n"), 9)
         self.assertIn("0 pairs to measure", plan.stdout)
 
+    def test_a_folder_gains_algorithms_and_keeps_what_it_has(self):
+        words = ("--partners", "self", "--objects", "box-1k")
+        self.assertEqual(self.collection(*words).returncode, 0)
+        [before] = object_runs.results(self.out)
+        gained = self.collection(*words, "--algorithms", "ode,exact")
+        self.assertEqual((gained.returncode, gained.stderr), (0, "1 of 1: box-1k.self\n"))
+        [after] = object_runs.results(self.out)
+        self.assertEqual(list(after["algorithms"]), ["exact", "ode"])
+        self.assertEqual(after["algorithms"]["exact"], before["algorithms"]["exact"])
+        self.assertEqual(after["benchmarks"][:len(before["benchmarks"])], before["benchmarks"])
+        self.assertEqual({row["sixdof"]["algorithm"] for row in after["benchmarks"][len(before["benchmarks"]):]},
+                         {"ode"})
+        self.assertGreater(after["seconds"], before["seconds"])
+        self.assertEqual(json.loads((self.out / "choice.json").read_text())["algorithms"], ["exact", "ode"])
+        self.assertEqual(self.collection(*words, "--algorithms", "ode").stderr, "")
+
     def test_shards_are_disjoint_and_complete(self):
         words = ("--partners", "self")
         seen = []
@@ -229,7 +245,8 @@ class Run(unittest.TestCase):
 
     def test_pairs_that_were_cut_are_measured_again_with_retry_only(self):
         self.assertEqual(self.collection("--partners", "self").returncode, 0)
-        for name, change in (("box-1k", {"algorithms": {"exact": {"status": "not done in 10 s"}}, "benchmarks": []}),
+        for name, change in (("box-1k", {"algorithms": {"exact": {"status": "not done in 10 s"},
+                                                        "ode": {"status": "ok"}}, "benchmarks": []}),
                              ("torus-2k", {"set": {"status": "no volumes: not made in time"}})):
             file = self.out / "units" / f"{name}.self.json"
             file.write_text(json.dumps(json.loads(file.read_text()) | change))
@@ -240,6 +257,7 @@ class Run(unittest.TestCase):
                          ["box-1k.self", "torus-2k.self"])
         for result in object_runs.results(self.out):
             self.assertEqual((result["set"]["status"], result["algorithms"]["exact"]["status"]), ("ok", "ok"))
+        self.assertIn("ode", object_runs.result_of(self.out, "box-1k.self")["algorithms"])
 
     def test_wrong_words_end_in_one_line(self):
         for words, said in ((["--objects", "no-such"], "no object of paper-like is called no-such"),

@@ -2,6 +2,7 @@
 
 #include "bench/study/precision.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -121,15 +122,21 @@ TEST_F(Precision, WithoutAFaultIsAtRoundingLevel) {
   }
 }
 
-TEST_F(Precision, AQueryThatIsTwiceAsSlowMovesRightByTwo) {
-  const auto points = study({.repeats = 2});
-  const double ratio = value(points[1], "cpu_time") / value(points[0], "cpu_time");
-  EXPECT_GT(ratio, 1.5);
-  EXPECT_LT(ratio, 2.7);
-  EXPECT_LT(value(points[1], "gamma_max_F_deg"), 1e-9);
-  EXPECT_TRUE(frontiers_[0].overall);
-  EXPECT_FALSE(frontiers_[1].overall);
-  EXPECT_TRUE(frontiers_[1].own);
+TEST_F(Precision, AQueryThatIsFourTimesAsSlowMovesRightByFour) {
+  // A busy machine makes times longer: the least of up to five studies counts.
+  double plain = INFINITY, slow = INFINITY;
+  const auto ratio = [&] { return slow / plain; };
+  for (int attempt = 0; attempt < 5 && !(ratio() > 2.5 && ratio() < 6.0); ++attempt) {
+    const auto points = study({.repeats = 4});
+    plain = std::min(plain, value(points[0], "cpu_time"));
+    slow = std::min(slow, value(points[1], "cpu_time"));
+    EXPECT_LT(value(points[1], "gamma_max_F_deg"), 1e-9);
+    EXPECT_TRUE(frontiers_[0].overall);
+    EXPECT_FALSE(frontiers_[1].overall);
+    EXPECT_TRUE(frontiers_[1].own);
+  }
+  EXPECT_GT(ratio(), 2.5);
+  EXPECT_LT(ratio(), 6.0);
 }
 
 TEST_F(Precision, AForceThatIsTurnedHasThatAngle) {
