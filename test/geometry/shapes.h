@@ -101,6 +101,21 @@ inline Mesh box(const Eigen::Vector3d& half, const Eigen::Vector3d& center = Eig
 }
 
 /// Unconnected random triangles in a cube of the given half width.
+/// Cylinder about z from -1 to 1, closed: 2 n triangles as long as itself, and n on each end.
+inline Mesh rod(std::uint32_t n, double radius) {
+  std::vector<Eigen::Vector3d> v{{0.0, 0.0, -1.0}, {0.0, 0.0, 1.0}};
+  std::vector<Triangle> t;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / n;
+    const double x = radius * std::cos(angle), y = radius * std::sin(angle);
+    v.emplace_back(x, y, -1.0);
+    v.emplace_back(x, y, 1.0);
+    const std::uint32_t low = 2 + 2 * i, next = 2 + 2 * ((i + 1) % n);
+    t.insert(t.end(), {{low, next, next + 1}, {low, next + 1, low + 1}, {0, next, low}, {1, low + 1, next + 1}});
+  }
+  return Mesh::build(std::move(v), std::move(t), "rod");
+}
+
 inline Mesh soup(Generator& generator, std::size_t triangles, double half_width, double size) {
   std::vector<Eigen::Vector3d> v;
   std::vector<Triangle> t;

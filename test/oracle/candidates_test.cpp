@@ -2,13 +2,16 @@
 
 #include <cstdint>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <sixdof/oracle/crossing.h>
 #include <sixdof/oracle/overlap.h>
 
+#include "../geometry/shapes.h"
 #include "bodies.h"
 #include "instruction_sets.h"
 
@@ -91,6 +94,62 @@ TEST(SweptCandidates, AreFewAtOneFraction) {
     EXPECT_LT(static_cast<double>(selected.size()), 1.2 * static_cast<double>(found.size())) << x;
     EXPECT_LT(selected.size(), swept.pairs.size());
   }
+}
+
+/// Pairs of triangles that cross, in the order of the trees' triangles, by looking at all pairs.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> all_crossings(const Tree& a, const Tree& b, const Pose& X_AB) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t i = 0; i < a.corners().size(); ++i) {
+    for (std::uint32_t j = 0; j < b.corners().size(); ++j) {
+      OrderedTriangle of_b{b.corners()[j]};
+      for (Vector3d& p : of_b.corner) p = transform_point(X_AB, p);
+      if (cross({a.corners()[i]}, of_b)) pairs.emplace_back(i, j);
+    }
+  }
+  return pairs;
+}
+
+/// Rods of long strips that cross or touch.
+void expect_all_crossings_of_rods() {
+  const bodies::Body thick(shapes::rod(60, 0.2)), thin(shapes::rod(40, 0.05));
+  shapes::Generator generator(31);
+  std::size_t crossings = 0;
+  for (const auto& [a, b] : {std::pair(&thick, &thin), std::pair(&thin, &thick)}) {
+    for (int i = 0; i < 12; ++i) {
+      Pose X_AB = shapes::random_pose(generator, 0.0);
+      // Near an axis of A's frame, where two of the directions across the axes are ill-conditioned.
+      if (i % 4 == 3) X_AB.R = Eigen::AngleAxisd(1e-3 * i, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+      X_AB.t = shapes::uniform(generator, 0.0, 0.26) * shapes::unit_vector(generator);
+      std::vector<TrianglePair> candidates;
+      find_candidates(a->tree, b->tree, X_AB, candidates);
+      std::set<std::pair<std::uint32_t, std::uint32_t>> found;
+      for (const TrianglePair& pair : candidates) found.emplace(pair.a, pair.b);
+      for (const auto& pair : all_crossings(a->tree, b->tree, X_AB)) {
+        ++crossings;
+        EXPECT_TRUE(found.contains(pair)) << i << ": " << pair.first << ", " << pair.second;
+      }
+      expect_same_overlap(*a, *b, X_AB, 0.3 * shapes::unit_vector(generator));
+    }
+  }
+  EXPECT_GT(crossings, 500u);
+}
+
+TEST(Candidates, OfLongTrianglesContainAllCrossingsOnEveryInstructionSet) {
+  for_each_instruction_set(expect_all_crossings_of_rods);
+}
+
+TEST(Candidates, OfLongTrianglesThatDoNotTouchAreFew) {
+  const bodies::Body rod(shapes::rod(2000, 0.1));
+  shapes::Generator generator(33);
+  std::size_t found = 0;
+  for (int i = 0; i < 20; ++i) {
+    Pose X_AB = shapes::random_pose(generator, 0.0);
+    X_AB.t = 0.2001 * Vector3d::UnitZ().cross(X_AB.R.col(2)).normalized();
+    std::vector<TrianglePair> pairs;
+    find_candidates(rod.tree, rod.tree, X_AB, pairs);
+    found += pairs.size();
+  }
+  EXPECT_LT(found, 1000000u) << "89,311,400 without the axes across two boxes";
 }
 
 }  // namespace

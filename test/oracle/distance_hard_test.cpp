@@ -147,6 +147,37 @@ TEST(DistanceOracle, OfNeedlesThatCrossFewAreMeasured) {
   EXPECT_NEAR(query.distance(back).distance, k_gap - k_width, 1e-9);
 }
 
+TEST(DistanceOracle, OfRodsThatCrossFewNodesAreExpanded) {
+  // Strips that are as long as the bodies: nearly all boxes are apart only along an axis across both rods, which is not
+  // the one between the centres.
+  constexpr double k_radius = 0.1;
+  const Mesh a = shapes::rod(2000, k_radius);
+  const DistanceOracle oracle(a, a);
+  DistanceQuery query(oracle);
+  Generator generator(27);
+  detail::TraversalCounts far, touching;
+  for (int i = 0; i < 20; ++i) {
+    Pose pose = shapes::random_pose(generator, 0.0);
+    pose.t.setZero();
+    const Vector3d across = Vector3d::UnitZ().cross(pose.R.col(2)).normalized();
+    const Vector3d along = shapes::uniform(generator, -0.7, 0.7) * Vector3d::UnitZ() +
+                           shapes::uniform(generator, -0.7, 0.7) * pose.R.col(2);
+    pose.t = along + (2.0 * k_radius + 0.02) * across;
+    EXPECT_NEAR(query.distance(pose, false).distance, 0.02, 1e-5);
+    far.nodes += query.counts().nodes;
+    far.triangles += query.counts().triangles;
+    pose.t = along + (2.0 * k_radius + 1e-5) * across;
+    EXPECT_FALSE(query.collide(pose, false));
+    touching.nodes += query.counts().nodes;
+    touching.triangles += query.counts().triangles;
+    EXPECT_TRUE(query.collide({pose.R, along + (2.0 * k_radius - 1e-5) * across}, false));
+  }
+  EXPECT_LT(far.nodes, 8000u);
+  EXPECT_LT(far.triangles, 15000u);
+  EXPECT_LT(touching.nodes, 40000u) << "690,078 without the axes across";
+  EXPECT_LT(touching.triangles, 10000u);
+}
+
 TEST(DistanceOracle, ColdSearchesExpandFewNodes) {
   // By the seed, the order of expansion and the axis between the closest points. Sums over the poses, with a margin for
   // other trees.

@@ -64,6 +64,8 @@ class CloseTests {
   float blurred_;  // square of a diagonal
 };
 
+constexpr detail::CrossAxesUse k_use_of_cross_axes(0, 8);
+
 /// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. The order of
 /// the pairs found is that of the trees.
 /// @tparam moving the displacement is not zero
@@ -72,8 +74,9 @@ class CloseTests {
 template <bool moving, class Test>
 class DualTreeTraversal {
  public:
-  DualTreeTraversal(const Tree& a, const Tree& b, const TreeMotion& motion, const CloseTests& close, Test test)
-      : a_(a), b_(b), motion_(motion), close_(close), test_(test) {}
+  DualTreeTraversal(const Tree& a, const Tree& b, const Pose& X_AB, const TreeMotion& motion, const CloseTests& close,
+                    Test test)
+      : a_(a), b_(b), motion_(motion), close_(close), cross_axes_(X_AB.R), test_(test) {}
 
   void run() { expand(0, 0, ~0u, ~0u); }
 
@@ -96,9 +99,11 @@ class DualTreeTraversal {
       Children children_a, children_b;
       load_children<false>(node_a, motion_, children_a);
       load_children<true>(node_b, motion_, children_b);
+      const bool asks_cross_axes = use_of_cross_axes_.is_due();
       for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(rest));
         overlapping[j] = overlapping_children<moving>(children_a, node_a, children_b, j, motion_) & lanes_a;
+        if (asks_cross_axes && overlapping[j] != 0) ask_cross_axes(children_a, children_b, j, overlapping[j]);
       }
     }
     for (std::size_t i = 0; i < node_a.child_count; ++i) {
@@ -120,6 +125,12 @@ class DualTreeTraversal {
         }
       }
     }
+  }
+
+  void ask_cross_axes(const Children& a, const Children& b, std::size_t j, std::uint32_t& overlapping) {
+    const int before = std::popcount(overlapping);
+    overlapping = overlapping_across_axes(a, b, j, overlapping, cross_axes_, motion_);
+    use_of_cross_axes_.count(before, std::popcount(overlapping));
   }
 
   HWY_NOINLINE void test_leaves(const Tree::Node& node_a, const Tree::Node& node_b, std::uint32_t leaves_a,
@@ -147,6 +158,8 @@ class DualTreeTraversal {
   const Tree& b_;
   const TreeMotion& motion_;
   const CloseTests& close_;
+  const detail::CrossAxes cross_axes_;
+  detail::CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   Test test_;
 };
 
@@ -182,7 +195,7 @@ void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector
       if (!blurred || !close.apart(pair)) pairs.push_back(pair);
     });
   };
-  DualTreeTraversal<false, decltype(test)>(a, b, motion, close, test).run();
+  DualTreeTraversal<false, decltype(test)>(a, b, X_AB, motion, close, test).run();
 }
 
 // A separating-axis test of two triangles (boxes along each axis, both planes) is linear in the displacement's
@@ -261,7 +274,7 @@ void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const
       found.last.push_back(last[lane]);
     });
   };
-  DualTreeTraversal<true, decltype(test)>(a, b, motion, close, test).run();
+  DualTreeTraversal<true, decltype(test)>(a, b, X_AB, motion, close, test).run();
 }
 
 }  // namespace HWY_NAMESPACE

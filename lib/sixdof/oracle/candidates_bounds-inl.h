@@ -13,6 +13,7 @@
 
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/cross_axes.h>
 #include <sixdof/oracle/lanes-inl.h>
 
 // Separating-axis tests between the children of a node of A and those of a node of B, one child of A per SIMD lane; and
@@ -186,6 +187,39 @@ HWY_INLINE std::uint32_t overlapping_children(const Children& a, const Tree::Nod
     bits |= bits_of(hn::Not(apart), i);
   }
   return bits;
+}
+
+/// Children of A (bits), of those in `bits`, that are not separated from child j of B by an axis across an axis of A
+/// and one of B.
+inline HWY_NOINLINE std::uint32_t overlapping_across_axes(const Children& a, const Children& b, std::size_t j,
+                                                          std::uint32_t bits, const detail::CrossAxes& axes,
+                                                          const TreeMotion& x) {
+  // A scalar product with a direction of length 1 has three coordinates that are off by the slack, which are of two
+  // components of the direction only; so are the extents.
+  constexpr float k_slacks = 6.0f;
+  float radius_b[detail::CrossAxes::k_count], middle_b[detail::CrossAxes::k_count];
+  for (std::size_t n = 0; n < detail::CrossAxes::k_count; ++n) {
+    middle_b[n] = 0.0f;
+    radius_b[n] = k_slacks * x.slack;
+    for (std::size_t k = 0; k < 3; ++k) {
+      middle_b[n] += axes.in_a[n][k] * b.other_center[k][j];
+      radius_b[n] += std::abs(axes.in_b[n][k]) * b.half[k][j] + std::abs(axes.in_a[n][k] * x.half_displacement[k]);
+    }
+  }
+  std::uint32_t overlapping = 0;
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+    M apart = no_lane();
+    for (std::size_t n = 0; n < detail::CrossAxes::k_count; ++n) {
+      V offset = set(-middle_b[n]), radius = set(radius_b[n]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        offset = unfused_mul_add(set(axes.in_a[n][k]), load(a.center[k] + i), offset);
+        radius = unfused_mul_add(set(std::abs(axes.in_a[n][k])), load(a.half[k] + i), radius);
+      }
+      apart = hn::Or(apart, hn::Gt(hn::Abs(offset), radius));
+    }
+    overlapping |= bits_of(hn::Not(apart), i);
+  }
+  return bits & overlapping;
 }
 
 /// The interval of the displacement's fraction in which something may hold, per lane.

@@ -11,6 +11,7 @@
 
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/cross_axes.h>
 #include <sixdof/oracle/lanes-inl.h>
 
 // Lower bounds on the distances of one volume (the fixed one) from the eight children of a node (the expanded one),
@@ -23,7 +24,8 @@
 //     pairs that are nearly as close, so the children's slabs make the bound tight;
 //   - boxes in N, and boxes in F;
 //   - the normals of the slabs;
-//   - the line through the centres.
+//   - the line through the centres;
+//   - where volumes cross (CrossAxesUse), the nine axes across an axis of N and one of F.
 // Bounds are floats; Slack lowers them by more than their rounding, so they are bounds on every instruction set. The
 // answer does not depend on which bounds were computed: it is the smallest of triangle_triangle_distance() over all
 // pairs.
@@ -251,6 +253,46 @@ HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const FixedVolum
     kept |= bits_of(hn::Le(bound, set(best)), i);
   }
   return kept & ((1u << node.child_count) - 1);
+}
+
+/// Raises bounds of bound_children() by the axes across an axis of N and one of F. Returns a bit for each child of
+/// `kept` whose bound is still not above `best`. Bounds that stay negative are not changed: they say how deep volumes
+/// overlap, which orders the search, and compare with those of pairs that are not asked.
+/// @param axes, axes_fixed CrossAxes in N and in F
+inline HWY_NOINLINE std::uint32_t bound_across_axes(const Tree::Node& node, const FixedVolume& fixed,
+                                                    const float (&axes)[CrossAxes::k_count][3],
+                                                    const float (&axes_fixed)[CrossAxes::k_count][3],
+                                                    const Slack& slack, float best, std::uint32_t kept,
+                                                    float* HWY_RESTRICT bounds) {
+  const V half = set(0.5f);
+  std::uint32_t near = 0;
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+    V m[3], e[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V lower = load(node.lower[k] + i);
+      const V upper = load(node.upper[k] + i);
+      m[k] = hn::NegMulAdd(half, hn::Add(lower, upper), set(fixed.center[k]));
+      e[k] = hn::Mul(half, hn::Sub(upper, lower));
+    }
+    V widest = set(-Tree::k_empty);
+    for (std::size_t n = 0; n < CrossAxes::k_count; ++n) {
+      float radius_fixed = 0.0f;
+      for (std::size_t k = 0; k < 3; ++k) radius_fixed += std::abs(axes_fixed[n][k]) * fixed.half_fixed[k];
+      V middle = hn::Zero(k_lanes);
+      V radius = set(radius_fixed);
+      for (std::size_t k = 0; k < 3; ++k) {
+        middle = hn::MulAdd(set(axes[n][k]), m[k], middle);
+        radius = hn::MulAdd(set(std::abs(axes[n][k])), e[k], radius);
+      }
+      widest = hn::Max(widest, hn::Sub(hn::Abs(middle), radius));
+    }
+    const V before = load(bounds + i);
+    const V across = hn::Sub(widest, set(slack.all));
+    const V bound = hn::IfThenElse(hn::Gt(across, hn::Zero(k_lanes)), hn::Max(before, across), before);
+    hn::Store(bound, k_lanes, bounds + i);
+    near |= bits_of(hn::Le(bound, set(best)), i);
+  }
+  return kept & near;
 }
 
 constexpr std::uint32_t k_leaf = Tree::k_leaf_triangles;

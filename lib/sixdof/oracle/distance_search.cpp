@@ -86,9 +86,12 @@ constexpr std::uint64_t k_patience_with_touching = 256;  // for intersections, e
 
 /// And, in long searches, with a node whose size is less than its own divided by this.
 constexpr float k_unlike = 8.0f;
-/// A search is long after as many pairs of leaves. Then the bounds of their triangles get more axes, which take as long
-/// as all before.
+/// A search is long after as many pairs of leaves.
 constexpr std::uint64_t k_patience_with_leaves = 4096;
+/// Axes across two boxes, and across two triangles, which are measured exactly otherwise. The first boxes decide how
+/// close the first triangles are.
+constexpr CrossAxesUse k_use_of_cross_axes(16, 8);
+constexpr CrossAxesUse k_use_of_cross_edges(16, 32);
 
 class DistanceTraversal final : private CloseVisitor {
  public:
@@ -101,7 +104,8 @@ class DistanceTraversal final : private CloseVisitor {
         blurred_(k_blurred * k_blurred * frames_.slack.all * frames_.slack.all),
         blurs_leaves_(std::max(search.a.smallest_leaf, search.b.smallest_leaf) < blurred_),
         has_planes_(!search.a.patches.empty() && !search.b.patches.empty()),
-        close_bounds_(tree_a_, tree_b_, search.X_AB) {
+        close_bounds_(tree_a_, tree_b_, search.X_AB),
+        cross_axes_(search.X_AB.R) {
     if (search_.direction.squaredNorm() == 0.0) search_.direction = frames_.shift;
     frames_.set_direction(search_.direction);
     set_best();
@@ -270,8 +274,21 @@ class DistanceTraversal final : private CloseVisitor {
     if (!bound_along_direction(leaf_a, leaf_b, frames_.expand_a, frames_.slack, best_, pairs.lower)) return false;
     load_pairs(leaf_a, leaf_b, frames_.expand_a, pairs);
     bound_triangles(pairs, frames_.slack.all, best_);
-    if (search_.counts.leaf_pairs > k_patience_with_leaves) bound_across_edges(pairs, frames_.slack.all, best_);
+    if (use_of_cross_edges_.is_due()) {
+      const int before = count_near(pairs);
+      if (before > 0) {
+        bound_across_edges(pairs, frames_.slack.all, best_);
+        use_of_cross_edges_.count(before, count_near(pairs));
+      }
+    }
     return true;
+  }
+
+  /// Pairs of triangles whose bounds are not above the best.
+  HWY_INLINE int count_near(const LeafPair& pairs) const {
+    int count = 0;
+    for (const float lower : pairs.lower) count += lower <= best_ ? 1 : 0;
+    return count;
   }
 
   /// Calls keep() for the pairs of triangles of two leaves whose bounds are not above the best.
@@ -296,8 +313,14 @@ class DistanceTraversal final : private CloseVisitor {
     const Frame& frame = expands_a ? frames_.expand_a : frames_.expand_b;
     HWY_ALIGN float bounds[k_width];
     ++search_.counts.nodes;
-    std::uint32_t kept =
-        bound_children(node, FixedVolume(expands_a ? volume_b : volume_a, frame), frame, frames_.slack, best_, bounds);
+    const FixedVolume fixed(expands_a ? volume_b : volume_a, frame);
+    std::uint32_t kept = bound_children(node, fixed, frame, frames_.slack, best_, bounds);
+    if (kept != 0 && use_of_cross_axes_.is_due()) {
+      const int before = std::popcount(kept);
+      kept = bound_across_axes(node, fixed, expands_a ? cross_axes_.in_a : cross_axes_.in_b,
+                               expands_a ? cross_axes_.in_b : cross_axes_.in_a, frames_.slack, best_, kept, bounds);
+      use_of_cross_axes_.count(before, std::popcount(kept));
+    }
     for (; kept != 0; kept &= kept - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(kept));
       NodePair next{top.a, top.b, bounds[i]};
@@ -416,6 +439,9 @@ class DistanceTraversal final : private CloseVisitor {
   const bool blurs_leaves_;  // both trees have leaves that small
   const bool has_planes_;    // both meshes have coplanar patches
   const CloseBounds close_bounds_;
+  const CrossAxes cross_axes_;
+  CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
+  CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;
   std::uint64_t thick_pairs_ = 0;
   std::uint64_t doubtful_pairs_ = 0;
   float best_;      // search_.best + search_.ties.width, rounded up
