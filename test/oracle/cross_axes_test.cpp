@@ -50,10 +50,10 @@ TEST(CrossAxesUse, AsksTheFirstThenFewOrAllAsLongAsTheyTellEnoughApart) {
     }
     return count;
   };
-  EXPECT_EQ(asked(CrossAxesUse(16, 8), 8, 16), 16);
-  EXPECT_LT(asked(CrossAxesUse(16, 8), 8, 1600), 80) << "none is apart";
-  EXPECT_EQ(asked(CrossAxesUse(16, 8), 6, 1600), 1600) << "two of eight";
-  EXPECT_LT(asked(CrossAxesUse(0, 2), 6, 1600), 80) << "two of eight, worth it from one of two on";
+  EXPECT_EQ(asked(CrossAxesUse(16, 0.125), 8, 16), 16);
+  EXPECT_LT(asked(CrossAxesUse(16, 0.125), 8, 1600), 80) << "none is apart";
+  EXPECT_EQ(asked(CrossAxesUse(16, 0.125), 6, 1600), 1600) << "two of eight";
+  EXPECT_LT(asked(CrossAxesUse(0, 0.5), 6, 1600), 80) << "two of eight, worth it above one of two";
 }
 
 }  // namespace

@@ -64,7 +64,10 @@ class CloseTests {
   float blurred_;  // square of a diagonal
 };
 
-constexpr detail::CrossAxesUse k_use_of_cross_axes(0, 8);
+/// Axes across two boxes, and across two triangles: instead of cross(), once or, along a displacement, often.
+constexpr detail::CrossAxesUse k_use_of_cross_axes(0, 0.125);
+constexpr detail::CrossAxesUse k_use_of_cross_edges(0, 0.9);
+constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0, 0.5);
 
 /// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. The order of
 /// the pairs found is that of the trees.
@@ -189,9 +192,16 @@ HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, 
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<TrianglePair>& pairs) {
   const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero());
   const CloseTests close(a, b, X_AB, Eigen::Vector3d::Zero(), motion.slack);
+  detail::CrossAxesUse use_of_cross_edges = k_use_of_cross_edges;
   const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b,
                         bool blurred) {
-    for_each_pair(test_triangles(of_a, of_b, motion.slack), leaf_a, leaf_b, [&](std::uint32_t, TrianglePair pair) {
+    std::uint32_t bits = test_triangles(of_a, of_b, motion.slack);
+    if (bits != 0 && use_of_cross_edges.is_due()) {
+      const int before = std::popcount(bits);
+      bits = overlapping_across_edges(of_a, of_b, bits, motion);
+      use_of_cross_edges.count(before, std::popcount(bits));
+    }
+    for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t, TrianglePair pair) {
       if (!blurred || !close.apart(pair)) pairs.push_back(pair);
     });
   };
@@ -259,14 +269,43 @@ HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLan
   return bits;
 }
 
+/// Narrows the intervals of test_moving_triangles() by the axes across an edge of each triangle. Returns the pairs, of
+/// those in `bits`, that may still intersect.
+HWY_NOINLINE std::uint32_t narrow_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
+                                               const TreeMotion& x, float* first, float* last) {
+  std::uint32_t overlapping = 0;
+  const V one = set(1.0f), pad = set(k_fraction_rounding);
+  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
+    const PairLanes p(a, b, i, x.slack);
+    FractionInterval interval{set(-k_unbounded), set(k_unbounded)};
+    for (std::size_t edge = 0; edge < 9; ++edge) {
+      const EdgeAxis axis(p, edge, x);
+      narrow_to_linear(hn::Sub(hn::Sub(axis.low_a, axis.high_b), axis.tolerance),
+                       hn::Add(hn::Sub(axis.high_a, axis.low_b), axis.tolerance), axis.speed, interval);
+    }
+    const V low = hn::Max(load(first + i), hn::Sub(interval.first, pad));
+    const V high = hn::Min(load(last + i), hn::Add(interval.last, pad));
+    hn::StoreU(low, k_lanes, first + i);
+    hn::StoreU(high, k_lanes, last + i);
+    overlapping |= bits_of(hn::And(hn::Le(low, high), hn::And(hn::Le(low, one), hn::Ge(high, hn::Zero(k_lanes)))), i);
+  }
+  return bits & overlapping;
+}
+
 void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                            SweptCandidates& found) {
   const TreeMotion motion(a, b, X_AB, displacement);
   const CloseTests close(a, b, X_AB, displacement, motion.slack);
+  detail::CrossAxesUse use_of_cross_edges = k_use_of_moving_cross_edges;
   const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b,
                         bool blurred) {
-    float first[k_pairs], last[k_pairs];
-    const std::uint32_t bits = test_moving_triangles(of_a, of_b, motion, first, last);
+    HWY_ALIGN float first[k_pairs], last[k_pairs];
+    std::uint32_t bits = test_moving_triangles(of_a, of_b, motion, first, last);
+    if (bits != 0 && use_of_cross_edges.is_due()) {
+      const int before = std::popcount(bits);
+      bits = narrow_across_edges(of_a, of_b, bits, motion, first, last);
+      use_of_cross_edges.count(before, std::popcount(bits));
+    }
     for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t lane, TrianglePair pair) {
       if (blurred && close.apart(pair)) return;
       found.pairs.push_back(pair);

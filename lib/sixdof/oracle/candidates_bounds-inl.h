@@ -383,6 +383,59 @@ struct PlaneRange {
   }
 };
 
+/// Projections of both triangles of a pair on one of the nine directions across an edge of each, and their rounding.
+struct EdgeAxis {
+  V low_a, high_a, low_b, high_b;
+  V speed;  // of B's, per fraction of the displacement
+  V tolerance;
+
+  /// Whatever its own rounding, the direction n separates the triangles if their projections on it are apart: corners
+  /// are off by the slack along each axis, and the rounding of a difference, a scalar product and the way along the
+  /// displacement is less than that.
+  HWY_INLINE EdgeAxis(const PairLanes& p, std::size_t edge, const TreeMotion& x) {
+    const auto& a = p.corner_a;
+    const auto& b = p.corner_b;
+    const std::size_t i = edge % 3, j = edge / 3;
+    V u[3], v[3], n[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      u[k] = hn::Sub(a[(i + 1) % 3][k], a[i][k]);
+      v[k] = hn::Sub(b[(j + 1) % 3][k], b[j][k]);
+    }
+    V sum = hn::Zero(k_lanes);
+    speed = hn::Zero(k_lanes);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+      n[k] = hn::Sub(hn::Mul(u[l], v[m]), hn::Mul(u[m], v[l]));
+      sum = hn::Add(sum, hn::Abs(n[k]));
+      speed = unfused_mul_add(n[k], set(x.displacement[k]), speed);
+    }
+    tolerance = hn::Mul(sum, set(8.0f * x.slack));
+    const PlaneRange of_a(n, a[0], a), of_b(n, a[0], b);
+    low_a = of_a.low;
+    high_a = of_a.high;
+    low_b = of_b.low;
+    high_b = of_b.high;
+  }
+};
+
+/// Pairs of triangles (bits), of those in `bits`, that no axis across an edge of each separates. With the tests before,
+/// by both planes, they intersect but for rounding.
+inline HWY_NOINLINE std::uint32_t overlapping_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
+                                                           const TreeMotion& x) {
+  std::uint32_t overlapping = 0;
+  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
+    const PairLanes p(a, b, i, x.slack);
+    M apart = no_lane();
+    for (std::size_t edge = 0; edge < 9; ++edge) {
+      const EdgeAxis axis(p, edge, x);
+      apart = hn::Or(apart, hn::Gt(hn::Sub(axis.low_b, axis.high_a), axis.tolerance));
+      apart = hn::Or(apart, hn::Gt(hn::Sub(axis.low_a, axis.high_b), axis.tolerance));
+    }
+    overlapping |= bits_of(hn::Not(apart), i);
+  }
+  return bits & overlapping;
+}
+
 /// Calls take(lane, pair) for the pairs of triangles whose bits are set, but for lanes without a triangle.
 template <class Take>
 HWY_INLINE void for_each_pair(std::uint32_t bits, Tree::Child leaf_a, Tree::Child leaf_b, const Take& take) {

@@ -42,11 +42,11 @@ struct CrossAxes {
 class CrossAxesUse {
  public:
   /// @param first so many pairs are always asked
-  /// @param worth to ask pays if at least one in so many of the volumes tested is found apart
-  constexpr CrossAxesUse(std::uint32_t first, std::int64_t worth) : first_(first), worth_(worth) {}
+  /// @param worth to ask pays where more than this share of the volumes tested is found apart
+  constexpr CrossAxesUse(std::uint32_t first, double worth) : first_(first), worth_(worth) {}
 
   /// @return whether to ask them of the next pair
-  bool is_due() { return asked_++ < first_ || asked_ % k_period == 0 || worth_ * apart_ > tested_; }
+  bool is_due() { return asked_++ < first_ || asked_ % k_period == 0 || apart_ > worth_ * tested_; }
   /// @param tested volumes that the other axes left, of which `left` are left
   void count(int tested, int left) {
     tested_ += tested;
@@ -56,9 +56,9 @@ class CrossAxesUse {
  private:
   static constexpr std::uint32_t k_period = 32;
   std::uint32_t first_;
-  std::int64_t worth_;
+  double worth_;
   std::uint32_t asked_ = 0;
-  std::int64_t tested_ = 0, apart_ = 0;
+  double tested_ = 0.0, apart_ = 0.0;
 };
 
 }  // namespace sixdof::detail

@@ -90,8 +90,8 @@ constexpr float k_unlike = 8.0f;
 constexpr std::uint64_t k_patience_with_leaves = 4096;
 /// Axes across two boxes, and across two triangles, which are measured exactly otherwise. The first boxes decide how
 /// close the first triangles are.
-constexpr CrossAxesUse k_use_of_cross_axes(16, 8);
-constexpr CrossAxesUse k_use_of_cross_edges(16, 32);
+constexpr CrossAxesUse k_use_of_cross_axes(16, 0.125);
+constexpr CrossAxesUse k_use_of_cross_edges(16, 0.03);
 
 class DistanceTraversal final : private CloseVisitor {
  public:
