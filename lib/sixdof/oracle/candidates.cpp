@@ -1,5 +1,7 @@
 #include <sixdof/oracle/candidates.h>
 
+#include <optional>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/candidates.cpp"
 #include <hwy/foreach_target.h>
@@ -65,9 +67,9 @@ class CloseTests {
 };
 
 /// Axes across two boxes, and across two triangles: instead of cross(), once or, along a displacement, often.
-constexpr detail::CrossAxesUse k_use_of_cross_axes(0, 0.125);
-constexpr detail::CrossAxesUse k_use_of_cross_edges(0, 0.9);
-constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0, 0.5);
+constexpr detail::CrossAxesUse k_use_of_cross_axes(0.125);
+constexpr detail::CrossAxesUse k_use_of_cross_edges(0.9);
+constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0.5);
 
 /// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. The order of
 /// the pairs found is that of the trees.
@@ -79,7 +81,7 @@ class DualTreeTraversal {
  public:
   DualTreeTraversal(const Tree& a, const Tree& b, const Pose& X_AB, const TreeMotion& motion, const CloseTests& close,
                     Test test)
-      : a_(a), b_(b), motion_(motion), close_(close), cross_axes_(X_AB.R), test_(test) {}
+      : a_(a), b_(b), motion_(motion), close_(close), R_AB_(X_AB.R), test_(test) {}
 
   void run() { expand(0, 0, ~0u, ~0u); }
 
@@ -131,8 +133,9 @@ class DualTreeTraversal {
   }
 
   void ask_cross_axes(const Children& a, const Children& b, std::size_t j, std::uint32_t& overlapping) {
+    if (!cross_axes_) cross_axes_.emplace(R_AB_);
     const int before = std::popcount(overlapping);
-    overlapping = overlapping_across_axes(a, b, j, overlapping, cross_axes_, motion_);
+    overlapping = overlapping_across_axes(a, b, j, overlapping, *cross_axes_, motion_);
     use_of_cross_axes_.count(before, std::popcount(overlapping));
   }
 
@@ -161,7 +164,8 @@ class DualTreeTraversal {
   const Tree& b_;
   const TreeMotion& motion_;
   const CloseTests& close_;
-  const detail::CrossAxes cross_axes_;
+  const Eigen::Matrix3d& R_AB_;
+  std::optional<detail::CrossAxes> cross_axes_;  // made when they are asked for the first time
   detail::CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   Test test_;
 };

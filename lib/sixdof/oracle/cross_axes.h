@@ -37,16 +37,15 @@ struct CrossAxes {
 };
 
 /// Whether a search asks the cross axes, which takes about as long as all other axes. They pay where long volumes
-/// cross, such as strips of long triangles, and seldom elsewhere. So they are asked of the first pairs of a search,
-/// then of a few, or of all as long as enough volumes are found apart. A function of counts: the same on every machine.
+/// cross, such as strips of long triangles, and seldom elsewhere. So they are asked of a few pairs, or of all as long
+/// as enough volumes are found apart. A function of counts: the same on every machine.
 class CrossAxesUse {
  public:
-  /// @param first so many pairs are always asked
   /// @param worth to ask pays where more than this share of the volumes tested is found apart
-  constexpr CrossAxesUse(std::uint32_t first, double worth) : first_(first), worth_(worth) {}
+  explicit constexpr CrossAxesUse(double worth) : worth_(worth) {}
 
   /// @return whether to ask them of the next pair
-  bool is_due() { return asked_++ < first_ || asked_ % k_period == 0 || apart_ > worth_ * tested_; }
+  bool is_due() { return ++pairs_ % (pairs_ <= k_early ? k_early_period : k_period) == 0 || apart_ > worth_ * tested_; }
   /// @param tested volumes that the other axes left, of which `left` are left
   void count(int tested, int left) {
     tested_ += tested;
@@ -54,10 +53,9 @@ class CrossAxesUse {
   }
 
  private:
-  static constexpr std::uint32_t k_period = 32;
-  std::uint32_t first_;
+  static constexpr std::uint32_t k_early = 64, k_early_period = 8, k_period = 32;
   double worth_;
-  std::uint32_t asked_ = 0;
+  std::uint32_t pairs_ = 0;
   double tested_ = 0.0, apart_ = 0.0;
 };
 

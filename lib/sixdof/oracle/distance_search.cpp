@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -88,10 +89,9 @@ constexpr std::uint64_t k_patience_with_touching = 256;  // for intersections, e
 constexpr float k_unlike = 8.0f;
 /// A search is long after as many pairs of leaves.
 constexpr std::uint64_t k_patience_with_leaves = 4096;
-/// Axes across two boxes, and across two triangles, which are measured exactly otherwise. The first boxes decide how
-/// close the first triangles are.
-constexpr CrossAxesUse k_use_of_cross_axes(16, 0.125);
-constexpr CrossAxesUse k_use_of_cross_edges(16, 0.03);
+/// Axes across two boxes, and across two triangles, which are measured exactly otherwise.
+constexpr CrossAxesUse k_use_of_cross_axes(0.125);
+constexpr CrossAxesUse k_use_of_cross_edges(0.03);
 
 class DistanceTraversal final : private CloseVisitor {
  public:
@@ -104,8 +104,7 @@ class DistanceTraversal final : private CloseVisitor {
         blurred_(k_blurred * k_blurred * frames_.slack.all * frames_.slack.all),
         blurs_leaves_(std::max(search.a.smallest_leaf, search.b.smallest_leaf) < blurred_),
         has_planes_(!search.a.patches.empty() && !search.b.patches.empty()),
-        close_bounds_(tree_a_, tree_b_, search.X_AB),
-        cross_axes_(search.X_AB.R) {
+        close_bounds_(tree_a_, tree_b_, search.X_AB) {
     if (search_.direction.squaredNorm() == 0.0) search_.direction = frames_.shift;
     frames_.set_direction(search_.direction);
     set_best();
@@ -315,12 +314,7 @@ class DistanceTraversal final : private CloseVisitor {
     ++search_.counts.nodes;
     const FixedVolume fixed(expands_a ? volume_b : volume_a, frame);
     std::uint32_t kept = bound_children(node, fixed, frame, frames_.slack, best_, bounds);
-    if (kept != 0 && use_of_cross_axes_.is_due()) {
-      const int before = std::popcount(kept);
-      kept = bound_across_axes(node, fixed, expands_a ? cross_axes_.in_a : cross_axes_.in_b,
-                               expands_a ? cross_axes_.in_b : cross_axes_.in_a, frames_.slack, best_, kept, bounds);
-      use_of_cross_axes_.count(before, std::popcount(kept));
-    }
+    if (kept != 0 && use_of_cross_axes_.is_due()) kept = ask_cross_axes(node, fixed, expands_a, kept, bounds);
     for (; kept != 0; kept &= kept - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(kept));
       NodePair next{top.a, top.b, bounds[i]};
@@ -334,6 +328,16 @@ class DistanceTraversal final : private CloseVisitor {
       }
       keep(next);
     }
+  }
+
+  HWY_NOINLINE std::uint32_t ask_cross_axes(const Tree::Node& node, const FixedVolume& fixed, bool expands_a,
+                                            std::uint32_t kept, float* bounds) {
+    if (!cross_axes_) cross_axes_.emplace(search_.X_AB.R);
+    const auto& axes = expands_a ? cross_axes_->in_a : cross_axes_->in_b;
+    const auto& axes_fixed = expands_a ? cross_axes_->in_b : cross_axes_->in_a;
+    const std::uint32_t left = bound_across_axes(node, fixed, axes, axes_fixed, frames_.slack, best_, kept, bounds);
+    use_of_cross_axes_.count(std::popcount(kept), std::popcount(left));
+    return left;
   }
 
   /// Whether a pair whose exact distance is at least `lower` is not closer than the best. Records it if it may tie.
@@ -439,7 +443,7 @@ class DistanceTraversal final : private CloseVisitor {
   const bool blurs_leaves_;  // both trees have leaves that small
   const bool has_planes_;    // both meshes have coplanar patches
   const CloseBounds close_bounds_;
-  const CrossAxes cross_axes_;
+  std::optional<CrossAxes> cross_axes_;  // made when they are asked for the first time
   CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;
   std::uint64_t thick_pairs_ = 0;
