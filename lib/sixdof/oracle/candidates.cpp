@@ -67,7 +67,7 @@ class CloseTests {
 };
 
 /// Axes across two boxes, and across two triangles: instead of cross(), once or, along a displacement, often.
-constexpr detail::CrossAxesUse k_use_of_cross_axes(0.125);
+constexpr detail::CrossAxesUse k_use_of_cross_axes(0.3);
 constexpr detail::CrossAxesUse k_use_of_cross_edges(0.9);
 constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0.5);
 
@@ -104,12 +104,11 @@ class DualTreeTraversal {
       Children children_a, children_b;
       load_children<false>(node_a, motion_, children_a);
       load_children<true>(node_b, motion_, children_b);
-      const bool asks_cross_axes = use_of_cross_axes_.is_due();
       for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(rest));
         overlapping[j] = overlapping_children<moving>(children_a, node_a, children_b, j, motion_) & lanes_a;
-        if (asks_cross_axes && overlapping[j] != 0) ask_cross_axes(children_a, children_b, j, overlapping[j]);
       }
+      if (use_of_cross_axes_.is_due()) ask_cross_axes(children_a, children_b, lanes_b, overlapping);
     }
     for (std::size_t i = 0; i < node_a.child_count; ++i) {
       if (node_a.child[i].is_leaf()) leaves_a |= 1u << i;
@@ -132,11 +131,16 @@ class DualTreeTraversal {
     }
   }
 
-  void ask_cross_axes(const Children& a, const Children& b, std::size_t j, std::uint32_t& overlapping) {
+  HWY_NOINLINE void ask_cross_axes(const Children& a, const Children& b, std::uint32_t lanes_b,
+                                   std::uint32_t* overlapping) {
     if (!cross_axes_) cross_axes_.emplace(R_AB_);
-    const int before = std::popcount(overlapping);
-    overlapping = overlapping_across_axes(a, b, j, overlapping, *cross_axes_, motion_);
-    use_of_cross_axes_.count(before, std::popcount(overlapping));
+    for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+      if (overlapping[j] == 0) continue;
+      const int before = std::popcount(overlapping[j]);
+      overlapping[j] = overlapping_across_axes(a, b, j, overlapping[j], *cross_axes_, motion_);
+      use_of_cross_axes_.count(before, std::popcount(overlapping[j]));
+    }
   }
 
   HWY_NOINLINE void test_leaves(const Tree::Node& node_a, const Tree::Node& node_b, std::uint32_t leaves_a,

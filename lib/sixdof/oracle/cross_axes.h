@@ -45,7 +45,11 @@ class CrossAxesUse {
   explicit constexpr CrossAxesUse(double worth) : worth_(worth) {}
 
   /// @return whether to ask them of the next pair
-  bool is_due() { return ++pairs_ % (pairs_ <= k_early ? k_early_period : k_period) == 0 || apart_ > worth_ * tested_; }
+  bool is_due() {
+    ++pairs_;
+    const std::uint32_t mask = (pairs_ <= k_early ? k_early_period : k_period) - 1;
+    return (pairs_ & mask) == 0 || apart_ > worth_ * tested_;
+  }
   /// @param tested volumes that the other axes left, of which `left` are left
   void count(int tested, int left) {
     tested_ += tested;
@@ -53,7 +57,7 @@ class CrossAxesUse {
   }
 
  private:
-  static constexpr std::uint32_t k_early = 64, k_early_period = 8, k_period = 32;
+  static constexpr std::uint32_t k_early = 64, k_early_period = 8, k_period = 64;  // periods: powers of two
   double worth_;
   std::uint32_t pairs_ = 0;
   double tested_ = 0.0, apart_ = 0.0;
