@@ -100,7 +100,6 @@ inline Mesh box(const Eigen::Vector3d& half, const Eigen::Vector3d& center = Eig
                      "box");
 }
 
-/// Unconnected random triangles in a cube of the given half width.
 /// Cylinder about z from -1 to 1, closed: 2 n triangles as long as itself, and n on each end.
 inline Mesh rod(std::uint32_t n, double radius) {
   std::vector<Eigen::Vector3d> v{{0.0, 0.0, -1.0}, {0.0, 0.0, 1.0}};
@@ -116,6 +115,7 @@ inline Mesh rod(std::uint32_t n, double radius) {
   return Mesh::build(std::move(v), std::move(t), "rod");
 }
 
+/// Unconnected random triangles in a cube of the given half width.
 inline Mesh soup(Generator& generator, std::size_t triangles, double half_width, double size) {
   std::vector<Eigen::Vector3d> v;
   std::vector<Triangle> t;

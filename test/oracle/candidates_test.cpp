@@ -96,7 +96,7 @@ TEST(SweptCandidates, AreFewAtOneFraction) {
   }
 }
 
-/// Pairs of triangles that cross, in the order of the trees' triangles, by looking at all pairs.
+/// Pairs of triangles that cross, as indices in tree order, by looking at all pairs.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> all_crossings(const Tree& a, const Tree& b, const Pose& X_AB) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::uint32_t i = 0; i < a.corners().size(); ++i) {
@@ -117,7 +117,7 @@ void expect_all_crossings_of_rods() {
   for (const auto& [a, b] : {std::pair(&thick, &thin), std::pair(&thin, &thick)}) {
     for (int i = 0; i < 12; ++i) {
       Pose X_AB = shapes::random_pose(generator, 0.0);
-      // Near an axis of A's frame, where two of the directions across the axes are ill-conditioned.
+      // Frames that are nearly parallel: three of the directions across their axes are ill-conditioned.
       if (i % 4 == 3) X_AB.R = Eigen::AngleAxisd(1e-3 * i, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
       X_AB.t = shapes::uniform(generator, 0.0, 0.26) * shapes::unit_vector(generator);
       std::vector<TrianglePair> candidates;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 #include <Eigen/Core>
 
@@ -194,8 +195,8 @@ HWY_INLINE std::uint32_t overlapping_children(const Children& a, const Tree::Nod
 inline HWY_NOINLINE std::uint32_t overlapping_across_axes(const Children& a, const Children& b, std::size_t j,
                                                           std::uint32_t bits, const detail::CrossAxes& axes,
                                                           const TreeMotion& x) {
-  // A scalar product with a direction of length 1 has three coordinates that are off by the slack, which are of two
-  // components of the direction only; so are the extents.
+  // Off by the slack are the coordinates of B's centre; rounding of the directions, the products and the extents is
+  // less than a slack each. A direction of length 1 has components of at most sqrt(3) together.
   constexpr float k_slacks = 6.0f;
   float radius_b[detail::CrossAxes::k_count], middle_b[detail::CrossAxes::k_count];
   for (std::size_t n = 0; n < detail::CrossAxes::k_count; ++n) {
@@ -391,7 +392,7 @@ struct EdgeAxis {
 
   /// Whatever its own rounding, the direction n separates the triangles if their projections on it are apart: corners
   /// are off by the slack along each axis, and the rounding of a difference, a scalar product and the way along the
-  /// displacement is less than that.
+  /// displacement is less than that. Products that underflow are off by less than the smallest normal float.
   HWY_INLINE EdgeAxis(const PairLanes& p, std::size_t edge, const TreeMotion& x) {
     const auto& a = p.corner_a;
     const auto& b = p.corner_b;
@@ -409,7 +410,7 @@ struct EdgeAxis {
       sum = hn::Add(sum, hn::Abs(n[k]));
       speed = unfused_mul_add(n[k], set(x.displacement[k]), speed);
     }
-    tolerance = hn::Mul(sum, set(8.0f * x.slack));
+    tolerance = unfused_mul_add(sum, set(8.0f * x.slack), set(std::numeric_limits<float>::min()));
     const PlaneRange of_a(n, a[0], a), of_b(n, a[0], b);
     low_a = of_a.low;
     high_a = of_a.high;
