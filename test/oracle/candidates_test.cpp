@@ -101,9 +101,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> all_crossings(const Tree& a
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
   for (std::uint32_t i = 0; i < a.corners().size(); ++i) {
     for (std::uint32_t j = 0; j < b.corners().size(); ++j) {
-      OrderedTriangle of_b{b.corners()[j]};
-      for (Vector3d& p : of_b.corner) p = transform_point(X_AB, p);
-      if (cross({a.corners()[i]}, of_b)) pairs.emplace_back(i, j);
+      TriangleCorners of_b = b.corners()[j];
+      for (Vector3d& p : of_b) p = transform_point(X_AB, p);
+      if (cross(a.corners()[i], of_b)) pairs.emplace_back(i, j);
     }
   }
   return pairs;

@@ -50,11 +50,10 @@ void collect_piercings(const ExactTriangle& edges, const ExactTriangle& triangle
 }
 
 /// Lattice coordinates: faces, edges and corners coincide all the time, and triangles are often degenerate.
-OrderedTriangle lattice_triangle(std::mt19937_64& random, int top) {
+TriangleCorners lattice_triangle(std::mt19937_64& random, int top) {
   std::uniform_int_distribution<int> digit(0, top);
-  OrderedTriangle t;
-  for (Vector3d& c : t.corner) c = Vector3d(digit(random), digit(random), digit(random));
-  t.rises = digit(random) % 2 == 0;
+  TriangleCorners t;
+  for (Vector3d& c : t) c = Vector3d(digit(random), digit(random), digit(random));
   return t;
 }
 
@@ -66,11 +65,11 @@ TEST(Crossing, TiesAreThoseOfATranslatedBody) {
   std::mt19937_64 random(17);
   int crossings = 0;
   for (int i = 0; i < 5000; ++i) {
-    const OrderedTriangle a = lattice_triangle(random, 2), b = lattice_triangle(random, 2);
+    const TriangleCorners a = lattice_triangle(random, 2), b = lattice_triangle(random, 2);
     ExactTriangle exact_a, exact_b;
     for (std::size_t k = 0; k < 3; ++k) {
-      exact_a[k] = {a.corner[k].x(), a.corner[k].y(), a.corner[k].z()};
-      exact_b[k] = Point{b.corner[k].x(), b.corner[k].y(), b.corner[k].z()} + e;
+      exact_a[k] = {a[k].x(), a[k].y(), a[k].z()};
+      exact_b[k] = Point{b[k].x(), b[k].y(), b[k].z()} + e;
     }
     std::vector<Piercing> truth;
     collect_piercings(exact_a, exact_b, 0, truth);
@@ -99,13 +98,13 @@ TEST(Crossing, TiesAreThoseOfATranslatedBody) {
 }
 
 /// A triangle in the plane through the origin across (1, 2, 3), in units that round: off the plane by a few 1e-17.
-OrderedTriangle triangle_in_plane(std::mt19937_64& random, double size) {
+TriangleCorners triangle_in_plane(std::mt19937_64& random, double size) {
   std::uniform_real_distribution<double> coordinate(-1.0, 1.0);
   const Vector3d u = Vector3d(3.0, 0.0, -1.0).normalized();
   const Vector3d v = Vector3d(1.0, 2.0, 3.0).normalized().cross(u);
-  OrderedTriangle t;
+  TriangleCorners t;
   const double x = coordinate(random), y = coordinate(random);
-  for (Vector3d& c : t.corner) c = (x + size * coordinate(random)) * u + (y + size * coordinate(random)) * v;
+  for (Vector3d& c : t) c = (x + size * coordinate(random)) * u + (y + size * coordinate(random)) * v;
   return t;
 }
 
@@ -115,11 +114,11 @@ TEST(Crossing, TrianglesInOnePlaneUpToRoundingAreDecidedExactly) {
   std::mt19937_64 random(19);
   int crossings = 0, apart = 0;
   for (int i = 0; i < 6000; ++i) {
-    const OrderedTriangle a = triangle_in_plane(random, 0.7), b = triangle_in_plane(random, i % 2 == 0 ? 0.7 : 0.1);
+    const TriangleCorners a = triangle_in_plane(random, 0.7), b = triangle_in_plane(random, i % 2 == 0 ? 0.7 : 0.1);
     ExactTriangle exact_a, exact_b;
     for (std::size_t k = 0; k < 3; ++k) {
-      exact_a[k] = exact_point(a.corner[k]);
-      exact_b[k] = exact_point(b.corner[k]);
+      exact_a[k] = exact_point(a[k]);
+      exact_b[k] = exact_point(b[k]);
     }
     std::vector<Piercing> truth;
     collect_piercings(exact_a, exact_b, 0, truth);
@@ -135,26 +134,26 @@ TEST(Crossing, TrianglesInOnePlaneUpToRoundingAreDecidedExactly) {
 }
 
 /// Two fans over the same circle, from apexes beside each other on it, in a plane across no axis.
-std::vector<OrderedTriangle> fan(int corners, double turn) {
+std::vector<TriangleCorners> fan(int corners, double turn) {
   const Vector3d u = Vector3d(3.0, 0.0, -1.0).normalized();
   const Vector3d v = Vector3d(1.0, 2.0, 3.0).normalized().cross(u);
   const auto rim = [&](int i) {
     const double angle = turn + 2.0 * 3.14159265358979 * i / corners;
     return Vector3d(std::cos(angle) * u + std::sin(angle) * v);
   };
-  std::vector<OrderedTriangle> triangles;
-  for (int i = 1; i + 1 < corners; ++i) triangles.push_back({{rim(0), rim(i), rim(i + 1)}, true});
+  std::vector<TriangleCorners> triangles;
+  for (int i = 1; i + 1 < corners; ++i) triangles.push_back({rim(0), rim(i), rim(i + 1)});
   return triangles;
 }
 
 TEST(Crossing, OfFansOverEachOtherFewPairsNeedExactSigns) {
   // The apexes are half a side apart. A triangle overlaps those that it meets on the rim and those near the apexes.
   constexpr int k_corners = 256;
-  const std::vector<OrderedTriangle> a = fan(k_corners, 0.0);
-  const std::vector<OrderedTriangle> b = fan(k_corners, 3.14159265358979 / k_corners);
+  const std::vector<TriangleCorners> a = fan(k_corners, 0.0);
+  const std::vector<TriangleCorners> b = fan(k_corners, 3.14159265358979 / k_corners);
   std::size_t doubtful = 0;
-  for (const OrderedTriangle& s : a) {
-    for (const OrderedTriangle& t : b) doubtful += certainly_apart(s, t) ? 0 : 1;
+  for (const TriangleCorners& s : a) {
+    for (const TriangleCorners& t : b) doubtful += certainly_apart(s, t) ? 0 : 1;
   }
   EXPECT_GE(doubtful, a.size());
   EXPECT_LE(doubtful, a.size() * b.size() / 2 + 8 * a.size());
@@ -163,12 +162,12 @@ TEST(Crossing, OfFansOverEachOtherFewPairsNeedExactSigns) {
 TEST(Crossing, EdgesPierceWhereSegmentsEnd) {
   std::mt19937_64 random(18);
   for (int i = 0; i < 20000; ++i) {
-    const OrderedTriangle a = lattice_triangle(random, 3), b = lattice_triangle(random, 3);
+    const TriangleCorners a = lattice_triangle(random, 3), b = lattice_triangle(random, 3);
     const std::optional<Segment> segment = cross(a, b);
     int down = 0, up = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const int of_a = pierce(a.corner[k], a.corner[(k + 1) % 3], b.corner, Perturbed::triangle);
-      const int of_b = pierce(b.corner[k], b.corner[(k + 1) % 3], a.corner, Perturbed::edge);
+      const int of_a = pierce(a[k], a[(k + 1) % 3], b, Perturbed::triangle);
+      const int of_b = pierce(b[k], b[(k + 1) % 3], a, Perturbed::edge);
       const int side = static_cast<int>(k);
       for (const auto& [sign, number] : {std::pair(of_a, side), std::pair(-of_b, side + 3)}) {
         // A's sides leave the segment downwards, B's upwards.

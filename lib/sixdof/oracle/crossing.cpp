@@ -27,9 +27,9 @@ struct PlaneCrossing {
 };
 
 /// On which side the line of side i of `a` passes that of side j of `b`: side_of_perturbed_edge().
-int passing(const OrderedTriangle& a, int i, const OrderedTriangle& b, int j) {
-  const auto at = [](const OrderedTriangle& t, int k) -> const Eigen::Vector3d& {
-    return t.corner[static_cast<std::size_t>(k % 3)];
+int passing(const TriangleCorners& a, int i, const TriangleCorners& b, int j) {
+  const auto at = [](const TriangleCorners& t, int k) -> const Eigen::Vector3d& {
+    return t[static_cast<std::size_t>(k % 3)];
   };
   return side_of_perturbed_edge(at(a, i), at(a, i + 1), at(b, j), at(b, j + 1));
 }
@@ -40,10 +40,10 @@ class PlaneSides {
   /// Keeps references to both.
   /// @param tie multiplies detail::lexicographic_cross() of the plane's sides: the side on which a corner in the plane
   /// lies, 1 if the plane is A's, -1 if it is B's
-  PlaneSides(const OrderedTriangle& triangle, const OrderedTriangle& plane, int tie)
-      : triangle_(triangle), other_(plane), plane_(plane.corner[0], plane.corner[1], plane.corner[2]), tie_(tie) {
+  PlaneSides(const TriangleCorners& triangle, const TriangleCorners& plane, int tie)
+      : triangle_(triangle), other_(plane), plane_(plane[0], plane[1], plane[2]), tie_(tie) {
     for (std::size_t i = 0; i < 3; ++i) {
-      filtered_[i] = plane_.filter(triangle.corner[i]);
+      filtered_[i] = plane_.filter(triangle[i]);
       is_clear_ = is_clear_ && std::abs(filtered_[i].value) > filtered_[i].bound;
     }
   }
@@ -55,22 +55,22 @@ class PlaneSides {
   std::array<int, 3> signs() const {
     if (is_clear_) return {clear_sign(0), clear_sign(1), clear_sign(2)};
     std::array<int, 3> sign;
-    for (std::size_t i = 0; i < 3; ++i) sign[i] = plane_.sign(triangle_.corner[i], filtered_[i]);
+    for (std::size_t i = 0; i < 3; ++i) sign[i] = plane_.sign(triangle_[i], filtered_[i]);
     if (std::find(sign.begin(), sign.end(), 0) == sign.end()) return sign;
-    const auto& [p, q, r] = other_.corner;
+    const auto& [p, q, r] = other_;
     const int in_plane = tie_ * detail::lexicographic_cross(p, q, p, r);
     std::replace(sign.begin(), sign.end(), 0, in_plane);
     return sign;
   }
 
   /// Proportional to a corner's signed distance from the plane.
-  double distance(std::size_t corner) const { return plane_.value(triangle_.corner[corner], filtered_[corner]); }
+  double distance(std::size_t corner) const { return plane_.value(triangle_[corner], filtered_[corner]); }
 
  private:
   int clear_sign(std::size_t corner) const { return filtered_[corner].value > 0.0 ? 1 : -1; }
 
-  const OrderedTriangle& triangle_;
-  const OrderedTriangle& other_;
+  const TriangleCorners& triangle_;
+  const TriangleCorners& other_;
   TrianglePlane plane_;
   int tie_;
   std::array<detail::Filtered, 3> filtered_;
@@ -79,21 +79,24 @@ class PlaneSides {
 
 /// Both triangles, each with the other's plane.
 struct PlaneDistances {
-  const OrderedTriangle& a;
-  const OrderedTriangle& b;
+  const TriangleCorners& a;
+  const TriangleCorners& b;
   const PlaneSides &of_a, &of_b;
 
   /// Where a side pierces the other triangle's plane; sides 3, 4, 5 are those of b.
   Eigen::Vector3d point(int side) const {
-    const OrderedTriangle& edge = side < 3 ? a : b;
+    const TriangleCorners& edge = side < 3 ? a : b;
     const PlaneSides& sides = side < 3 ? of_a : of_b;
-    const auto low = static_cast<std::size_t>(edge.low(side % 3));
-    const auto high = static_cast<std::size_t>(edge.high(side % 3));
-    const Eigen::Vector3d& p = edge.corner[low];
-    const Eigen::Vector3d& q = edge.corner[high];
-    const double at_p = sides.distance(low), at_q = sides.distance(high);
-    // From the nearer end: if an end lies on the plane, it is the point.
-    if (std::abs(at_p) <= std::abs(at_q)) return p + (at_p / (at_p - at_q)) * (q - p);
+    const auto from = static_cast<std::size_t>(side % 3);
+    const std::size_t to = (from + 1) % 3;
+    const Eigen::Vector3d& p = edge[from];
+    const Eigen::Vector3d& q = edge[to];
+    const double at_p = sides.distance(from), at_q = sides.distance(to);
+    // From the nearer end: if an end lies on the plane, it is the point. If both are as near, from the one in front:
+    // the triangle across the edge gets the same point.
+    if (std::abs(at_p) < std::abs(at_q) || (std::abs(at_p) == std::abs(at_q) && at_p > at_q)) {
+      return p + (at_p / (at_p - at_q)) * (q - p);
+    }
     return q + (at_q / (at_q - at_p)) * (p - q);
   }
 
@@ -119,9 +122,9 @@ std::optional<Segment> cross_degenerate(const PlaneDistances& distances, const P
 
 }  // namespace
 
-bool certainly_apart(const OrderedTriangle& a, const OrderedTriangle& b) {
-  const auto edge_separates = [](const OrderedTriangle& t, const OrderedTriangle& other) {
-    const auto& c = t.corner;
+bool certainly_apart(const TriangleCorners& a, const TriangleCorners& b) {
+  const auto edge_separates = [](const TriangleCorners& t, const TriangleCorners& other) {
+    const auto& c = t;
     const Eigen::Vector3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
     for (std::size_t i = 0; i < 3; ++i) {
       const Eigen::Vector3d& from = c[i];
@@ -130,7 +133,7 @@ bool certainly_apart(const OrderedTriangle& a, const OrderedTriangle& b) {
       double highest = std::max({0.0, outwards.dot(edge), outwards.dot(c[(i + 2) % 3] - from)});
       double lowest = std::numeric_limits<double>::infinity();
       double size = edge.cwiseAbs().sum() + (c[(i + 2) % 3] - from).cwiseAbs().sum();
-      for (const Eigen::Vector3d& p : other.corner) {
+      for (const Eigen::Vector3d& p : other) {
         lowest = std::min(lowest, outwards.dot(p - from));
         size = std::max(size, (p - from).cwiseAbs().sum());
       }
@@ -143,7 +146,7 @@ bool certainly_apart(const OrderedTriangle& a, const OrderedTriangle& b) {
   return edge_separates(a, b) || edge_separates(b, a);
 }
 
-std::optional<Segment> cross(const OrderedTriangle& a, const OrderedTriangle& b) {
+std::optional<Segment> cross(const TriangleCorners& a, const TriangleCorners& b) {
   const auto on_one_side = [](const std::array<int, 3>& sign) {
     return sign[0] != 0 && sign[0] == sign[1] && sign[1] == sign[2];
   };

@@ -10,16 +10,8 @@
 /// The intersection of a triangle of A with a triangle of B, decided by signs of determinants (predicates.h).
 namespace sixdof {
 
-/// A triangle, its corners permuted cyclically so that the first has the lowest vertex index in the mesh. Sides: 0 from
-/// corner 0 to 1, 1 from corner 1 to 2, 2 from corner 2 to 0.
-struct OrderedTriangle {
-  std::array<Eigen::Vector3d, 3> corner;
-  bool rises = true;  ///< Corner 1 has a lower index than corner 2.
-
-  /// Corner of lower index of a side: the vertex that Solid moves the side's crossings to.
-  int low(int side) const { return side == 1 && !rises ? 2 : side == 1 ? 1 : 0; }
-  int high(int side) const { return side == 0 ? 1 : side == 2 ? 2 : rises ? 2 : 1; }
-};
+/// Sides: 0 from corner 0 to 1, 1 from corner 1 to 2, 2 from corner 2 to 0.
+using TriangleCorners = std::array<Eigen::Vector3d, 3>;
 
 /// Intersection of a triangle of A with a triangle of B. Its direction start -> end is that of
 /// (normal of A's triangle) x (normal of B's triangle): on A's triangle the part inside B lies to the left of it, on
@@ -32,12 +24,12 @@ struct Segment {
 
 /// Decides exactly, for B translated by the infinitesimal e of predicates.h, whether and how two triangles intersect.
 /// Corners of `b` are in A's frame.
-std::optional<Segment> cross(const OrderedTriangle& a, const OrderedTriangle& b);
+std::optional<Segment> cross(const TriangleCorners& a, const TriangleCorners& b);
 
 /// Whether two triangles are certainly separated by a plane through an edge of one of them and across that triangle.
 /// Where faces lie in one plane, up to rounding, most pairs are: fans, strips and grids over each other. cross() asks
 /// this before the exact predicates, which such pairs need to decide on which side of the plane a corner lies.
-bool certainly_apart(const OrderedTriangle& a, const OrderedTriangle& b);
+bool certainly_apart(const TriangleCorners& a, const TriangleCorners& b);
 
 /// Which of an edge and a triangle belongs to B and is translated by e; the other belongs to A.
 enum class Perturbed {
@@ -47,7 +39,6 @@ enum class Perturbed {
 
 /// Whether the edge from `p` to `q` pierces the triangle: +1 against the triangle's normal (into the body), -1 along
 /// it, 0 not at all. Exact, as cross().
-int pierce(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const std::array<Eigen::Vector3d, 3>& triangle,
-           Perturbed perturbed);
+int pierce(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const TriangleCorners& triangle, Perturbed perturbed);
 
 }  // namespace sixdof

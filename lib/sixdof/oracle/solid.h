@@ -69,6 +69,10 @@ class Solid {
   struct Order {
     std::uint8_t lowest;  ///< Corner of lowest index.
     bool rises;           ///< The corner after it has a lower index than the one after that.
+
+    std::size_t middle() const { return (lowest + (rises ? 1u : 2u)) % 3; }
+    /// Number of the side opposite the lowest corner; side k runs from corner k to the next.
+    int opposite_side() const { return (lowest + 1) % 3; }
   };
 
   /// @param mesh the tree's mesh; both outlive this object.

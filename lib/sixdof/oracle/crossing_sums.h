@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <Eigen/Core>
+
+#include <sixdof/geometry/pose.h>
+#include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/solid.h>
+
+/// Sums over the pairs of triangles that intersect, from which Overlap follows. Internal: overlap.cpp.
+namespace sixdof::detail {
+
+/// Closed path along edges of a solid's mesh, to which the curve that borders the part of its surface inside the other
+/// body is deformed (solid.h).
+struct BorderPath {
+  Solid::Potential potential;                                     ///< Flux through the region within the path.
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();                 ///< Integral of n over that region.
+  Eigen::Matrix3d first_order = Eigen::Matrix3d::Zero();          ///< Integral of p n^T, but for a multiple of the
+                                                                  ///< identity.
+  /// Adds the edge of a triangle from its lowest to its middle corner.
+  /// @param origin of p, in the solid's mesh frame
+  /// @param triangle in tree order
+  /// @param sign -1: the other way round
+  void add_edge(const Solid& solid, const Eigen::Vector3d& origin, std::uint32_t triangle, int sign);
+};
+
+struct CrossingSums {
+  std::size_t crossings = 0;                          ///< Segments of the curves.
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();   ///< Start of the first segment (A's frame).
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();     ///< Sum of start x end, from the anchor.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();   ///< Sum of (|start|^2 + start . end + |end|^2) (end - start).
+  Solid::Moments beside_paths;                        ///< Fluxes between the curves and both paths, in A's frame.
+  BorderPath path_a, path_b;                          ///< Each in its mesh's frame.
+};
+
+/// @param origin of all moments, in A's frame: near the crossings, so that little cancels
+/// @param pairs in tree order: all that intersect at X_AB, and any others
+/// The same bits on every instruction set.
+CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
+                           std::span<const TrianglePair> pairs);
+
+}  // namespace sixdof::detail
