@@ -1,6 +1,7 @@
 #include <sixdof/oracle/crossing_sums.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/crossing_sums.cpp"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
@@ -35,6 +37,11 @@ HWY_INLINE void store(const V3& v, double (&p)[3][k_batch], std::size_t i) {
   hn::Store(v.x, k_lanes, p[0] + i);
   hn::Store(v.y, k_lanes, p[1] + i);
   hn::Store(v.z, k_lanes, p[2] + i);
+}
+
+HWY_INLINE void prefetch(const Tree::Corners& corners) {
+  hwy::Prefetch(corners.data());
+  hwy::Prefetch(corners.data() + 2);
 }
 
 /// One lane.
@@ -255,11 +262,11 @@ class SegmentSums {
       if (side < 3) {
         if (side != order_a.opposite_side()) return;
         add_triangle(low_a, batch.point_a(order_a.middle(), lane) - origin_, p, sign);
-        body_a_.path.add_edge(body_a_.solid, body_a_.origin, pair.a, sign);
+        body_a_.defer(pair.a, sign);
       } else {
         if (side - 3 != order_b.opposite_side()) return;
         add_triangle(low_b, batch.point_b(order_b.middle(), lane) - origin_, p, -sign);
-        body_b_.path.add_edge(body_b_.solid, body_b_.origin, pair.b, -sign);
+        body_b_.defer(pair.b, -sign);
       }
     };
     add_end(segment.end_side, y, 1);
@@ -269,6 +276,8 @@ class SegmentSums {
   CrossingSums finish() {
     segments_.flush();
     triangles_.flush();
+    body_a_.add_edges();
+    body_b_.add_edges();
     result_.area = sums_.vector(Sums::area);
     result_.moment = sums_.vector(Sums::moment);
     result_.beside_paths = {sums_.scalar(Sums::volume), sums_.vector(Sums::first)};
@@ -276,10 +285,23 @@ class SegmentSums {
   }
 
  private:
+  /// A path's edges wait until their potentials have been fetched from memory.
   struct Body {
     const Solid& solid;
     Vector3d origin;  // in the mesh's frame
     detail::BorderPath& path;
+    std::array<std::pair<std::uint32_t, int>, 8> edges{};  // triangle, sign
+    std::size_t size = 0;
+
+    void defer(std::uint32_t triangle, int sign) {
+      if (size == edges.size()) add_edges();
+      hwy::Prefetch(&solid.potential(triangle));
+      edges[size++] = {triangle, sign};
+    }
+    void add_edges() {
+      for (std::size_t i = 0; i < size; ++i) path.add_edge(solid, origin, edges[i].first, edges[i].second);
+      size = 0;
+    }
   };
 
   /// The end p of a segment moves along the side opposite the lowest corner to the middle corner.
@@ -303,6 +325,10 @@ CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, con
   SegmentSums sums(a, b, X_AB, origin);
   Batch batch;
   for (; !pairs.empty(); pairs = pairs.subspan(std::min(pairs.size(), k_batch))) {
+    for (std::size_t i = k_batch; i < std::min(pairs.size(), 2 * k_batch); ++i) {
+      prefetch(a.tree().corners()[pairs[i].a]);
+      prefetch(b.tree().corners()[pairs[i].b]);
+    }
     batch.gather(a.tree(), b.tree(), pairs.first(std::min(pairs.size(), k_batch)));
     batch.move_to_a(X_AB);
     const BatchSegments segments(batch);

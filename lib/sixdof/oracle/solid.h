@@ -49,7 +49,7 @@ class Solid {
     Eigen::Vector3d first = Eigen::Vector3d::Zero();  ///< Integral of |p|^2 n / 2 (length^4).
   };
 
-  struct Potential {
+  struct alignas(64) Potential {
     Integer volume = 0;
     std::array<Integer, 3> first{};
 
