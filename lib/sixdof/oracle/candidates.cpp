@@ -71,8 +71,8 @@ constexpr detail::CrossAxesUse k_use_of_cross_axes(0.3);
 constexpr detail::CrossAxesUse k_use_of_cross_edges(0.9);
 constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0.5);
 
-/// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. The order of
-/// the pairs found is that of the trees.
+/// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. Pairs wait
+/// on a stack, and those of leaves in a queue, while their memory is fetched.
 /// @tparam moving the displacement is not zero
 /// @tparam Test called as test(leaf of A, its lanes, leaf of B, its lanes, whether floats blur them) for leaves that
 /// may intersect
@@ -81,19 +81,41 @@ class DualTreeTraversal {
  public:
   DualTreeTraversal(const Tree& a, const Tree& b, const Pose& X_AB, const TreeMotion& motion, const CloseTests& close,
                     Test test)
-      : a_(a), b_(b), motion_(motion), close_(close), R_AB_(X_AB.R), test_(test) {}
+      : a_(a), b_(b), motion_(motion), close_(close), R_AB_(X_AB.R), leaves_a_(a), leaves_b_(b), test_(test) {}
 
-  void run() { expand(0, 0, ~0u, ~0u); }
+  void run() {
+    stack_.push_back({0, 0, k_all, k_all});
+    while (!stack_.empty()) {
+      const NodePair pair = stack_.back();
+      stack_.pop_back();
+      expand(pair);
+      if (queue_.size() >= k_queued) test_leaves();
+    }
+    test_leaves();
+  }
 
  private:
-  /// Expands all pairs of the given children (bits) of two nodes.
-  void expand(std::uint32_t index_a, std::uint32_t index_b, std::uint32_t lanes_a, std::uint32_t lanes_b) {
-    const Tree::Node& node_a = a_.nodes()[index_a];
-    const Tree::Node& node_b = b_.nodes()[index_b];
+  static constexpr std::uint8_t k_all = 0xff;
+  static constexpr std::size_t k_queued = 16;
+  static constexpr std::uint32_t k_none = ~0u;
+
+  /// Children (bits) of two nodes.
+  struct NodePair {
+    std::uint32_t a, b;
+    std::uint8_t lanes_a, lanes_b;
+  };
+  /// Indices into leaves().
+  struct LeafPair {
+    std::uint32_t a, b;
+    bool blurred;
+  };
+
+  void expand(const NodePair& pair) {
+    const Tree::Node& node_a = a_.nodes()[pair.a];
+    const Tree::Node& node_b = b_.nodes()[pair.b];
     std::uint32_t overlapping[k_width] = {};  // children of A, for each child of B
-    std::uint32_t leaves_a = 0;
-    lanes_a &= (1u << node_a.child_count) - 1;
-    lanes_b &= (1u << node_b.child_count) - 1;
+    const std::uint32_t lanes_a = pair.lanes_a & ((1u << node_a.child_count) - 1);
+    std::uint32_t lanes_b = pair.lanes_b & ((1u << node_b.child_count) - 1);
     const bool blurred = close_.are_due(node_a, node_b);
     if (blurred) {
       for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
@@ -101,67 +123,66 @@ class DualTreeTraversal {
         overlapping[j] = close_.overlapping_children(node_a, lanes_a, node_b, j);
       }
     } else {
-      Children children_a, children_b;
-      load_children<false>(node_a, motion_, children_a);
-      load_children<true>(node_b, motion_, children_b);
+      load(pair);
+      lanes_b &= overlapping_volume(children_b_, node_a.volume);
       for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-        overlapping[j] = overlapping_children<moving>(children_a, node_a, children_b, j, motion_) & lanes_a;
+        overlapping[j] = overlapping_children<moving>(children_a_, node_a, children_b_, j, motion_) & lanes_a;
       }
-      if (use_of_cross_axes_.is_due()) ask_cross_axes(children_a, children_b, lanes_b, overlapping);
+      if (use_of_cross_axes_.is_due()) ask_cross_axes(lanes_b, overlapping);
     }
-    for (std::size_t i = 0; i < node_a.child_count; ++i) {
-      if (node_a.child[i].is_leaf()) leaves_a |= 1u << i;
-    }
-    test_leaves(node_a, node_b, leaves_a, lanes_b, overlapping, blurred);
     for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-      const Tree::Child child_b = node_b.child[j];
-      for (std::uint32_t m = child_b.is_leaf() ? overlapping[j] & ~leaves_a : overlapping[j]; m != 0; m &= m - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(m));
-        const Tree::Child child_a = node_a.child[i];
-        if (child_b.is_leaf()) {
-          expand(child_a.node(), index_b, ~0u, 1u << j);
-        } else if (child_a.is_leaf()) {
-          expand(index_a, child_b.node(), 1u << i, ~0u);
-        } else {
-          expand(child_a.node(), child_b.node(), ~0u, ~0u);
-        }
+      for (std::uint32_t m = overlapping[j]; m != 0; m &= m - 1) {
+        descend(pair, node_a, static_cast<std::size_t>(std::countr_zero(m)), node_b, j, blurred);
       }
     }
   }
 
-  HWY_NOINLINE void ask_cross_axes(const Children& a, const Children& b, std::uint32_t lanes_b,
-                                   std::uint32_t* overlapping) {
+  /// To child i of A's node and child j of B's.
+  HWY_INLINE void descend(const NodePair& pair, const Tree::Node& node_a, std::size_t i, const Tree::Node& node_b,
+                          std::size_t j, bool blurred) {
+    const Tree::Child a = node_a.child[i], b = node_b.child[j];
+    if (a.is_leaf() && b.is_leaf()) {
+      queue_.push_back({node_a.leaf[i], node_b.leaf[j], blurred});
+      prefetch(a_.leaves()[node_a.leaf[i]]);
+      prefetch(b_.leaves()[node_b.leaf[j]]);
+      return;
+    }
+    NodePair next = pair;
+    next.lanes_a = a.is_leaf() ? static_cast<std::uint8_t>(1u << i) : k_all;
+    next.lanes_b = b.is_leaf() ? static_cast<std::uint8_t>(1u << j) : k_all;
+    if (!a.is_leaf()) prefetch(a_.nodes()[next.a = a.node()]);
+    if (!b.is_leaf()) prefetch(b_.nodes()[next.b = b.node()]);
+    stack_.push_back(next);
+  }
+
+  /// The volumes of the children of both nodes, unless they are those of the last pair.
+  HWY_INLINE void load(const NodePair& pair) {
+    if (pair.a != loaded_a_) load_children<false>(a_.nodes()[loaded_a_ = pair.a], motion_, children_a_);
+    if (pair.b != loaded_b_) load_children<true>(b_.nodes()[loaded_b_ = pair.b], motion_, children_b_);
+  }
+
+  HWY_NOINLINE void ask_cross_axes(std::uint32_t lanes_b, std::uint32_t* overlapping) {
     if (!cross_axes_) cross_axes_.emplace(R_AB_);
     for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(rest));
       if (overlapping[j] == 0) continue;
       const int before = std::popcount(overlapping[j]);
-      overlapping[j] = overlapping_across_axes(a, b, j, overlapping[j], *cross_axes_, motion_);
+      overlapping[j] = overlapping_across_axes(children_a_, children_b_, j, overlapping[j], *cross_axes_, motion_);
       use_of_cross_axes_.count(before, std::popcount(overlapping[j]));
     }
   }
 
-  HWY_NOINLINE void test_leaves(const Tree::Node& node_a, const Tree::Node& node_b, std::uint32_t leaves_a,
-                                std::uint32_t lanes_b, const std::uint32_t* overlapping, bool blurred) {
-    LeafLanes of_a[k_width], of_b;
-    std::uint32_t loaded = 0;
-    for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
-      const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-      const Tree::Child leaf_b = node_b.child[j];
-      if (!leaf_b.is_leaf() || (overlapping[j] & leaves_a) == 0) continue;
-      load_leaf_of_b(b_.leaves()[node_b.leaf[j]], motion_, of_b);
-      std::uint32_t left = overlapping[j] & leaves_a;
-      if constexpr (moving) left &= overlapping_boxes(node_a, of_b, motion_);
-      for (std::uint32_t m = left; m != 0; m &= m - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(m));
-        const Tree::Child leaf_a = node_a.child[i];
-        if ((loaded & 1u << i) == 0) load_leaf_of_a(a_.leaves()[node_a.leaf[i]], of_a[i]);
-        loaded |= 1u << i;
-        test_(leaf_a, of_a[i], leaf_b, of_b, blurred);
-      }
+  HWY_NOINLINE void test_leaves() {
+    for (const LeafPair& pair : queue_) {
+      const LeafLanes& of_b = leaves_b_.get(pair.b, [&](const Tree::Leaf& leaf, LeafLanes& out) {
+        load_leaf_of_b(leaf, motion_, out);
+      });
+      const LeafLanes& of_a = leaves_a_.get(pair.a, load_leaf_of_a);
+      test_(a_.leaves()[pair.a].child, of_a, b_.leaves()[pair.b].child, of_b, pair.blurred);
     }
+    queue_.clear();
   }
 
   const Tree& a_;
@@ -169,6 +190,11 @@ class DualTreeTraversal {
   const TreeMotion& motion_;
   const CloseTests& close_;
   const Eigen::Matrix3d& R_AB_;
+  std::vector<NodePair> stack_;
+  std::vector<LeafPair> queue_;
+  Children children_a_, children_b_;
+  std::uint32_t loaded_a_ = k_none, loaded_b_ = k_none;
+  LeafCache leaves_a_, leaves_b_;
   std::optional<detail::CrossAxes> cross_axes_;  // made when they are asked for the first time
   detail::CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   Test test_;

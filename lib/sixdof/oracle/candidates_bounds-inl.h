@@ -190,6 +190,21 @@ HWY_INLINE std::uint32_t overlapping_children(const Children& a, const Tree::Nod
   return bits;
 }
 
+/// B's children (bits) whose boxes overlap the box of a node of A.
+HWY_INLINE std::uint32_t overlapping_volume(const Children& b, const Tree::Volume& a) {
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+    M apart = no_lane();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V center = load(b.other_center[k] + i), half = load(b.other_half[k] + i);
+      apart = hn::Or(apart, hn::Gt(hn::Sub(center, half), set(a.upper[k])));
+      apart = hn::Or(apart, hn::Lt(hn::Add(center, half), set(a.lower[k])));
+    }
+    bits |= bits_of(hn::Not(apart), i);
+  }
+  return bits;
+}
+
 /// Children of A (bits), of those in `bits`, that are not separated from child j of B by an axis across an axis of A
 /// and one of B.
 inline HWY_NOINLINE std::uint32_t overlapping_across_axes(const Children& a, const Children& b, std::size_t j,
@@ -299,25 +314,27 @@ HWY_INLINE void load_leaf_of_a(const Tree::Leaf& from, LeafLanes& out) {
   compute_from_corners(out, 0.0f);
 }
 
-/// Children of A (bits) whose boxes overlap a leaf of B at some fraction of the displacement.
-HWY_INLINE std::uint32_t overlapping_boxes(const Tree::Node& node_a, const LeafLanes& b, const TreeMotion& x) {
-  float lower[3], upper[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    lower[k] = *std::min_element(b.lower[k], b.lower[k] + k_leaf);
-    upper[k] = *std::max_element(b.upper[k], b.upper[k] + k_leaf);
-  }
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    FractionInterval interval{hn::Zero(k_lanes), set(1.0f)};
-    for (std::size_t k = 0; k < 3; ++k) {
-      interval.narrow_to_boxes(load(node_a.lower[k] + i), load(node_a.upper[k] + i), set(lower[k]), set(upper[k]), k,
-                               x);
+/// The lanes of leaves, made when they are asked for and kept for a while: the leaves of one node do not displace each
+/// other.
+class LeafCache {
+ public:
+  explicit LeafCache(const Tree& tree) : tree_(tree) { std::fill_n(index_, k_width, ~0u); }
+
+  template <class Load>
+  HWY_INLINE const LeafLanes& get(std::uint32_t leaf, const Load& load_leaf) {
+    const std::size_t slot = leaf % k_width;
+    if (index_[slot] != leaf) {
+      load_leaf(tree_.leaves()[leaf], lanes_[slot]);
+      index_[slot] = leaf;
     }
-    const V last = hn::Add(interval.last, set(2.0f * k_fraction_rounding));
-    bits |= bits_of(hn::Le(interval.first, last), i);
+    return lanes_[slot];
   }
-  return bits;
-}
+
+ private:
+  const Tree& tree_;
+  std::uint32_t index_[k_width];
+  LeafLanes lanes_[k_width];
+};
 
 /// Values of A's and of B's triangles for the lanes i, i + 1, ... of the pairs.
 HWY_INLINE V load_of_a(const float* p, std::size_t i) {
