@@ -124,7 +124,7 @@ class DualTreeTraversal {
       }
     } else {
       load(pair);
-      lanes_b &= overlapping_volume(children_b_, node_a.volume);
+      lanes_b &= overlapping_node(children_b_, node_a, lanes_a);
       for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(rest));
         overlapping[j] = overlapping_children<moving>(children_a_, node_a, children_b_, j, motion_) & lanes_a;
@@ -201,8 +201,8 @@ class DualTreeTraversal {
 };
 
 /// Lanes in which all corners lie on one side of a plane, by more than `tolerance`.
-HWY_INLINE M on_one_side(const PlaneRange& range, V tolerance) {
-  return hn::Or(hn::Gt(range.low, tolerance), hn::Lt(range.high, hn::Neg(tolerance)));
+HWY_INLINE M on_one_side(const Projection& range, V offset, V tolerance) {
+  return hn::Or(hn::Gt(range.low, hn::Add(offset, tolerance)), hn::Lt(range.high, hn::Sub(offset, tolerance)));
 }
 
 /// Pairs of triangles (bits) that may intersect: by their boxes, and by both planes.
@@ -216,8 +216,8 @@ HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, 
     }
     if (hn::AllTrue(k_lanes, apart)) continue;
     const PairLanes p(a, b, i, slack);
-    apart = hn::Or(apart, on_one_side({p.normal_a, p.corner_a[0], p.corner_b}, p.tolerance_a));
-    apart = hn::Or(apart, on_one_side({p.normal_b, p.corner_b[0], p.corner_a}, p.tolerance_b));
+    apart = hn::Or(apart, on_one_side({p.normal_a, p.corner_b}, p.offset_a, p.tolerance_a));
+    apart = hn::Or(apart, on_one_side({p.normal_b, p.corner_a}, p.offset_b, p.tolerance_b));
     bits |= bits_of(hn::Not(apart), i);
   }
   return bits;
@@ -289,13 +289,15 @@ HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLan
     p.tolerance_a = unfused_mul_add(rounding, hn::Mul(of_a(a.size), of_a(a.size)), p.tolerance_a);
     p.tolerance_b = unfused_mul_add(rounding, hn::Mul(of_b(b.size), of_b(b.size)), p.tolerance_b);
     {  // B's corners and A's plane: distances increase by the displacement along the normal.
-      const PlaneRange range(p.normal_a, p.corner_a[0], p.corner_b);
-      narrow_to_linear(hn::Sub(hn::Neg(p.tolerance_a), range.high), hn::Sub(p.tolerance_a, range.low),
+      const Projection range(p.normal_a, p.corner_b);
+      narrow_to_linear(hn::Sub(hn::Sub(p.offset_a, range.high), p.tolerance_a),
+                       hn::Add(hn::Sub(p.offset_a, range.low), p.tolerance_a),
                        dot(p.normal_a, displacement), interval);
     }
     {  // A's corners and B's plane: they decrease.
-      const PlaneRange range(p.normal_b, p.corner_b[0], p.corner_a);
-      narrow_to_linear(hn::Sub(range.low, p.tolerance_b), hn::Add(range.high, p.tolerance_b),
+      const Projection range(p.normal_b, p.corner_a);
+      narrow_to_linear(hn::Sub(hn::Sub(range.low, p.offset_b), p.tolerance_b),
+                       hn::Add(hn::Sub(range.high, p.offset_b), p.tolerance_b),
                        dot(p.normal_b, displacement), interval);
     }
     bits |= bits_of(store(), i);

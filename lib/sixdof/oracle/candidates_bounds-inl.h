@@ -190,15 +190,24 @@ HWY_INLINE std::uint32_t overlapping_children(const Children& a, const Tree::Nod
   return bits;
 }
 
-/// B's children (bits) whose boxes overlap the box of a node of A.
-HWY_INLINE std::uint32_t overlapping_volume(const Children& b, const Tree::Volume& a) {
+/// B's children (bits) whose boxes overlap the box of a node of A, or of its only child in `lanes_a`.
+HWY_INLINE std::uint32_t overlapping_node(const Children& b, const Tree::Node& a, std::uint32_t lanes_a) {
+  const float* lower[3] = {&a.volume.lower[0], &a.volume.lower[1], &a.volume.lower[2]};
+  const float* upper[3] = {&a.volume.upper[0], &a.volume.upper[1], &a.volume.upper[2]};
+  if ((lanes_a & (lanes_a - 1)) == 0) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(lanes_a));
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower[k] = &a.lower[k][i];
+      upper[k] = &a.upper[k][i];
+    }
+  }
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
     M apart = no_lane();
     for (std::size_t k = 0; k < 3; ++k) {
       const V center = load(b.other_center[k] + i), half = load(b.other_half[k] + i);
-      apart = hn::Or(apart, hn::Gt(hn::Sub(center, half), set(a.upper[k])));
-      apart = hn::Or(apart, hn::Lt(hn::Add(center, half), set(a.lower[k])));
+      apart = hn::Or(apart, hn::Gt(hn::Sub(center, half), set(*upper[k])));
+      apart = hn::Or(apart, hn::Lt(hn::Add(center, half), set(*lower[k])));
     }
     bits |= bits_of(hn::Not(apart), i);
   }
@@ -267,6 +276,7 @@ constexpr std::size_t k_pairs = k_leaf * k_leaf;
 struct alignas(64) LeafLanes {
   float corner[3][3][k_leaf];  // [corner][axis]
   float normal[3][k_leaf];     // (c1 - c0) x (c2 - c0)
+  float offset[k_leaf];        // normal . c0
   float lower[3][k_leaf], upper[3][k_leaf];
   float size[k_leaf];  // sum of the absolute components of both edges from corner 0
 };
@@ -287,10 +297,14 @@ HWY_INLINE void compute_from_corners(LeafLanes& leaf, float slack) {
       hn::Store(hn::Add(upper, hn::Set(k_leaf_lanes, slack)), k_leaf_lanes, leaf.upper[k] + i);
     }
     hn::Store(size, k_leaf_lanes, leaf.size + i);
+    LeafV offset = hn::Zero(k_leaf_lanes);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-      hn::Store(hn::Sub(hn::Mul(u[l], v[m]), hn::Mul(u[m], v[l])), k_leaf_lanes, leaf.normal[k] + i);
+      const LeafV normal = hn::Sub(hn::Mul(u[l], v[m]), hn::Mul(u[m], v[l]));
+      hn::Store(normal, k_leaf_lanes, leaf.normal[k] + i);
+      offset = unfused_mul_add(normal, corner[0][k], offset);
     }
+    hn::Store(offset, k_leaf_lanes, leaf.offset + i);
   }
 }
 
@@ -362,12 +376,13 @@ HWY_INLINE V load_of_b(const float* p, std::size_t i) {
 struct PairLanes {
   V corner_a[3][3], corner_b[3][3];  // [corner][axis]
   V normal_a[3], normal_b[3];
+  V offset_a, offset_b;
   V tolerance_a, tolerance_b;
 
-  /// Tolerances: errors of normal . (corner of the other triangle - corner 0), wherever the boxes overlap. A normal is
+  /// Tolerances: errors of normal . (corner of the other triangle) - offset, wherever the boxes overlap. A normal is
   /// a sum of products of edges (size E) whose coordinates are off by twice the slack s: 8 s E. A corner of the other
   /// triangle (size E') is at most E + E' + 6 s away, off by 2 s: together below 16 s E (2 E + E' + 6 s), which
-  /// includes the rounding of the products.
+  /// includes the rounding of the products with the normal, below s E^2.
   HWY_INLINE PairLanes(const LeafLanes& a, const LeafLanes& b, std::size_t i, float slack) {
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t c = 0; c < 3; ++c) {
@@ -377,6 +392,8 @@ struct PairLanes {
       normal_a[k] = load_of_a(a.normal[k], i);
       normal_b[k] = load_of_b(b.normal[k], i);
     }
+    offset_a = load_of_a(a.offset, i);
+    offset_b = load_of_b(b.offset, i);
     const V size_a = load_of_a(a.size, i), size_b = load_of_b(b.size, i);
     const V s = set(16.0f * slack);
     const V both = hn::Add(hn::Add(size_a, size_b), set(6.0f * slack));
@@ -385,19 +402,14 @@ struct PairLanes {
   }
 };
 
-/// Range of normal . (p - origin) over three corners p.
-struct PlaneRange {
+/// Range of normal . p over three corners p.
+struct Projection {
   V low, high;
 
-  HWY_INLINE PlaneRange(const V (&normal)[3], const V (&origin)[3], const V (&corner)[3][3]) {
-    V distance[3];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const V p[3] = {hn::Sub(corner[c][0], origin[0]), hn::Sub(corner[c][1], origin[1]),
-                      hn::Sub(corner[c][2], origin[2])};
-      distance[c] = dot(normal, p);
-    }
-    low = hn::Min(hn::Min(distance[0], distance[1]), distance[2]);
-    high = hn::Max(hn::Max(distance[0], distance[1]), distance[2]);
+  HWY_INLINE Projection(const V (&normal)[3], const V (&corner)[3][3]) {
+    const V x = dot(normal, corner[0]), y = dot(normal, corner[1]), z = dot(normal, corner[2]);
+    low = hn::Min(hn::Min(x, y), z);
+    high = hn::Max(hn::Max(x, y), z);
   }
 };
 
@@ -408,8 +420,8 @@ struct EdgeAxis {
   V tolerance;
 
   /// Whatever its own rounding, the direction n separates the triangles if their projections on it are apart: corners
-  /// are off by the slack along each axis, and the rounding of a difference, a scalar product and the way along the
-  /// displacement is less than that. Products that underflow are off by less than the smallest normal float.
+  /// are off by the slack along each axis, and the rounding of a scalar product and of the way along the displacement is
+  /// less than that. Products that underflow are off by less than the smallest normal float.
   HWY_INLINE EdgeAxis(const PairLanes& p, std::size_t edge, const TreeMotion& x) {
     const auto& a = p.corner_a;
     const auto& b = p.corner_b;
@@ -428,7 +440,7 @@ struct EdgeAxis {
       speed = unfused_mul_add(n[k], set(x.displacement[k]), speed);
     }
     tolerance = unfused_mul_add(sum, set(8.0f * x.slack), set(std::numeric_limits<float>::min()));
-    const PlaneRange of_a(n, a[0], a), of_b(n, a[0], b);
+    const Projection of_a(n, a), of_b(n, b);
     low_a = of_a.low;
     high_a = of_a.high;
     low_b = of_b.low;

@@ -80,10 +80,10 @@ HWY_INLINE V3 cross(const V3& u, const V3& v) { return Minors(u, v).value; }
 struct Filtered {
   V value, bound;
 
-  /// Of w and the two vectors of the minors.
-  HWY_INLINE Filtered(const V3& w, const Minors& minors)
-      : value(dot(w, minors.value)),
-        bound(hn::Add(hn::Mul(set(detail::k_orient3d_bound), dot(abs(w), minors.magnitude)),
+  /// Of u and the two vectors of the minors.
+  HWY_INLINE Filtered(const V3& u, const Minors& minors)
+      : value(dot(u, minors.value)),
+        bound(hn::Add(hn::Mul(set(detail::k_orient3d_bound), dot(abs(u), minors.magnitude)),
                       set(detail::k_underflow_bound))) {}
 
   HWY_INLINE M positive() const { return hn::Gt(value, bound); }
@@ -185,11 +185,9 @@ struct Crossing {
     // Both triangles meet the line of intersection of their planes, in intervals. The side on which one line passes
     // another orders their ends, as in cross().
     const V3 between = of_b.lone - of_a.lone;
-    const auto passing = [&](const CrossingSide& x, const CrossingSide& y) {
-      return Filtered(between, Minors(y.direction, x.direction));
-    };
-    const Filtered up_up = passing(of_a.up, of_b.up), down_down = passing(of_a.down, of_b.down);
-    const Filtered up_down = passing(of_a.up, of_b.down), down_up = passing(of_a.down, of_b.up);
+    const Minors up_of_b(between, of_b.up.direction), down_of_b(between, of_b.down.direction);
+    const Filtered up_up(of_a.up.direction, up_of_b), down_down(of_a.down.direction, down_of_b);
+    const Filtered up_down(of_a.up.direction, down_of_b), down_up(of_a.down.direction, up_of_b);
     const M misses = hn::Or(up_up.negative(), down_down.positive());
     const M before = hn::And(up_up.positive(), down_down.negative());
     const M start_is_clear = hn::Or(up_down.positive(), up_down.negative());

@@ -39,9 +39,11 @@ HWY_INLINE void store(const V3& v, double (&p)[3][k_batch], std::size_t i) {
   hn::Store(v.z, k_lanes, p[2] + i);
 }
 
-HWY_INLINE void prefetch(const Tree::Corners& corners) {
+HWY_INLINE void prefetch(const Solid& solid, std::uint32_t triangle) {
+  const Tree::Corners& corners = solid.tree().corners()[triangle];
   hwy::Prefetch(corners.data());
   hwy::Prefetch(corners.data() + 2);
+  hwy::Prefetch(&solid.order(triangle));
 }
 
 /// One lane.
@@ -52,36 +54,42 @@ HWY_INLINE void put(const Vector3d& x, double (&p)[3][k_batch], std::size_t lane
 
 /// Up to eight pairs of triangles; lanes beyond the count repeat the last.
 struct alignas(64) Batch {
-  double corner_a[3][3][k_batch];  ///< [corner][axis][pair], in A's frame.
-  double corner_b[3][3][k_batch];  ///< In B's mesh frame until move_to_a().
-  std::uint32_t lanes = 0;         ///< Bits of the lanes that hold a pair of their own.
+  double corner[2][3][3][k_batch];  ///< [body][corner][axis][pair], in A's frame; B's in its own until move_to_a().
+  std::uint32_t lanes = 0;          ///< Bits of the lanes that hold a pair of their own.
 
-  void gather(const Tree& a, const Tree& b, std::span<const TrianglePair> pairs) {
+  /// Takes the first pairs, and prefetches those after them.
+  void gather(const Solid& a, const Solid& b, std::span<const TrianglePair> pairs) {
+    const std::size_t count = std::min(pairs.size(), k_batch);
     for (std::size_t lane = 0; lane < k_batch; ++lane) {
-      const TrianglePair pair = pairs[std::min(lane, pairs.size() - 1)];
-      put(a.corners()[pair.a], lane, corner_a);
-      put(b.corners()[pair.b], lane, corner_b);
+      if (lane + k_batch < pairs.size()) {
+        prefetch(a, pairs[lane + k_batch].a);
+        prefetch(b, pairs[lane + k_batch].b);
+      }
+      const TrianglePair pair = pairs[std::min(lane, count - 1)];
+      put(a.tree().corners()[pair.a], lane, corner[0]);
+      put(b.tree().corners()[pair.b], lane, corner[1]);
     }
-    lanes = (1u << pairs.size()) - 1;
+    lanes = (1u << count) - 1;
   }
 
   /// transform_point() of B's corners.
   HWY_INLINE void move_to_a(const Pose& X_AB) {
-    for (auto& corner : corner_b) {
+    for (auto& of_b : corner[1]) {
       for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
-        const V3 p = load(corner, i);
+        const V3 p = load(of_b, i);
         const auto coordinate = [&](int k) {
           const V xy = hn::Add(hn::Mul(set(X_AB.R(k, 0)), p.x), hn::Mul(set(X_AB.R(k, 1)), p.y));
           const V x = hn::Add(hn::Add(xy, hn::Mul(set(X_AB.R(k, 2)), p.z)), set(X_AB.t[k]));
           return hn::IfThenElseZero(hn::Ge(hn::Abs(x), set(k_smallest_exact_coordinate)), x);
         };
-        store({coordinate(0), coordinate(1), coordinate(2)}, corner, i);
+        store({coordinate(0), coordinate(1), coordinate(2)}, of_b, i);
       }
     }
   }
 
-  Vector3d point_a(std::size_t corner, std::size_t lane) const { return point(corner_a[corner], lane); }
-  Vector3d point_b(std::size_t corner, std::size_t lane) const { return point(corner_b[corner], lane); }
+  TriangleCorners triangle(std::size_t body, std::size_t lane) const {
+    return {point(corner[body][0], lane), point(corner[body][1], lane), point(corner[body][2], lane)};
+  }
 
  private:
   static void put(const Tree::Corners& from, std::size_t lane, double (&to)[3][3][k_batch]) {
@@ -97,10 +105,11 @@ struct alignas(64) BatchSegments {
   double start_side[k_batch], end_side[k_batch];
   std::uint32_t lanes = 0;  ///< Bits of the lanes that have one.
 
-  HWY_INLINE explicit BatchSegments(const Batch& batch) {
+  HWY_INLINE void find(const Batch& batch) {
     std::uint32_t doubtful = 0;
+    lanes = 0;
     for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
-      const Crossing crossing(load(batch.corner_a, i), load(batch.corner_b, i));
+      const Crossing crossing(load(batch.corner[0], i), load(batch.corner[1], i));
       store(crossing.start, start, i);
       store(crossing.end, end, i);
       hn::Store(crossing.start_side, k_lanes, start_side + i);
@@ -114,16 +123,9 @@ struct alignas(64) BatchSegments {
     }
   }
 
-  Segment segment(std::size_t lane) const {
-    return {point(start, lane), point(end, lane), static_cast<int>(start_side[lane]),
-            static_cast<int>(end_side[lane])};
-  }
-
  private:
   void decide(const Batch& batch, std::size_t lane) {
-    const std::optional<Segment> segment =
-        sixdof::cross({batch.point_a(0, lane), batch.point_a(1, lane), batch.point_a(2, lane)},
-                      {batch.point_b(0, lane), batch.point_b(1, lane), batch.point_b(2, lane)});
+    const std::optional<Segment> segment = sixdof::cross(batch.triangle(0, lane), batch.triangle(1, lane));
     if (!segment) return;
     lanes |= 1u << lane;
     put(segment->start, start, lane);
@@ -191,6 +193,15 @@ struct alignas(64) SegmentTerms {
   double low_a[3][k_batch], low_b[3][k_batch];                  ///< Lowest corners of both triangles.
   double start_from_anchor[3][k_batch], end_from_anchor[3][k_batch];
 
+  void copy_lane(const SegmentTerms& from, std::size_t i) {
+    put(point(from.start, i), start, i);
+    put(point(from.end, i), end, i);
+    put(point(from.low_a, i), low_a, i);
+    put(point(from.low_b, i), low_b, i);
+    put(point(from.start_from_anchor, i), start_from_anchor, i);
+    put(point(from.end_from_anchor, i), end_from_anchor, i);
+  }
+
   /// On A's triangle a segment has the part inside B on its left; on B's it has the part inside A on its right.
   HWY_INLINE void add_to(Sums& sums) const {
     for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
@@ -208,6 +219,10 @@ struct alignas(64) SegmentTerms {
 struct alignas(64) TriangleTerms {
   double corner[3][3][k_batch];
 
+  void copy_lane(const TriangleTerms& from, std::size_t i) {
+    for (std::size_t c = 0; c < 3; ++c) put(point(from.corner[c], i), corner[c], i);
+  }
+
   HWY_INLINE void add_to(Sums& sums) const {
     for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
       sums.add(Moments(load(corner[0], i), load(corner[1], i), load(corner[2], i)), i);
@@ -221,20 +236,65 @@ class Collector {
  public:
   explicit Collector(Sums& sums) : sums_(sums) {}
 
-  /// The terms to fill, and the lane.
+  /// The terms, and the lane to fill. The lane is free again unless it is kept.
   std::pair<Terms&, std::size_t> next() {
-    if (size_ == k_batch) flush();
-    return {terms_, size_++};
+    if (size_ == k_batch) {
+      terms_.add_to(sums_);
+      size_ = 0;
+    }
+    return {terms_, size_};
   }
-  void flush() {
+  void keep(bool is_kept = true) { size_ += is_kept ? 1 : 0; }
+
+  void finish() {
+    Terms rest{};  // zeros add nothing
+    std::swap(rest, terms_);
+    for (std::size_t i = 0; i < size_; ++i) terms_.copy_lane(rest, i);
     terms_.add_to(sums_);
-    terms_ = {};
     size_ = 0;
   }
 
  private:
   Sums& sums_;
-  Terms terms_{};  // zeros add nothing
+  Terms terms_{};
+  std::size_t size_ = 0;
+};
+
+/// Edges of both paths. They wait until their potentials have been fetched from memory.
+class PathEdges {
+ public:
+  struct Body {
+    const Solid& solid;
+    Vector3d origin;  ///< In the mesh's frame.
+    detail::BorderPath& path;
+  };
+
+  PathEdges(const Body& a, const Body& b) : bodies_{a, b} {}
+
+  /// @param is_kept false: the edge is none
+  HWY_INLINE void add(std::size_t body, std::uint32_t triangle, int sign, bool is_kept) {
+    if (size_ == k_batch) flush();
+    edges_[size_] = {body, triangle, sign};
+    const auto* const potential = &bodies_[body].solid.potential(triangle);
+    hwy::Prefetch(is_kept ? static_cast<const void*>(potential) : edges_);
+    size_ += is_kept ? 1 : 0;
+  }
+  void flush() {
+    for (std::size_t i = 0; i < size_; ++i) {
+      const auto& [solid, origin, path] = bodies_[edges_[i].body];
+      path.add_edge(solid, origin, edges_[i].triangle, edges_[i].sign);
+    }
+    size_ = 0;
+  }
+
+ private:
+  struct Edge {
+    std::size_t body;
+    std::uint32_t triangle;
+    int sign;
+  };
+  Body bodies_[2];
+  Edge edges_[k_batch];
   std::size_t size_ = 0;
 };
 
@@ -242,42 +302,42 @@ class Collector {
 class SegmentSums {
  public:
   SegmentSums(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin)
-      : body_a_{a, origin, result_.path_a}, body_b_{b, X_AB.inverse() * origin, result_.path_b}, origin_(origin) {}
+      : a_(a), b_(b), edges_({a, origin, result_.path_a}, {b, X_AB.inverse() * origin, result_.path_b}),
+        origin_(origin) {}
 
-  HWY_INLINE void add(TrianglePair pair, const Batch& batch, std::size_t lane, const Segment& segment) {
-    if (result_.crossings++ == 0) result_.anchor = segment.start;
-    const Vector3d x = segment.start - origin_, y = segment.end - origin_;
-    const Solid::Order order_a = body_a_.solid.order(pair.a), order_b = body_b_.solid.order(pair.b);
-    const Vector3d low_a = batch.point_a(order_a.lowest, lane) - origin_;
-    const Vector3d low_b = batch.point_b(order_b.lowest, lane) - origin_;
+  HWY_INLINE void add(TrianglePair pair, const Batch& batch, std::size_t lane, const BatchSegments& segments) {
+    const Vector3d start = point(segments.start, lane), end = point(segments.end, lane);
+    if (result_.crossings++ == 0) result_.anchor = start;
+    const Vector3d x = start - origin_, y = end - origin_;
+    const Solid::Order order_a = a_.order(pair.a), order_b = b_.order(pair.b);
     const auto [terms, i] = segments_.next();
     put(x, terms.start, i);
     put(y, terms.end, i);
-    put(low_a, terms.low_a, i);
-    put(low_b, terms.low_b, i);
-    put(segment.start - result_.anchor, terms.start_from_anchor, i);
-    put(segment.end - result_.anchor, terms.end_from_anchor, i);
-    // On A's triangle the border comes in at the start.
-    const auto add_end = [&](int side, const Vector3d& p, int sign) {
-      if (side < 3) {
-        if (side != order_a.opposite_side()) return;
-        add_triangle(low_a, batch.point_a(order_a.middle(), lane) - origin_, p, sign);
-        body_a_.defer(pair.a, sign);
-      } else {
-        if (side - 3 != order_b.opposite_side()) return;
-        add_triangle(low_b, batch.point_b(order_b.middle(), lane) - origin_, p, -sign);
-        body_b_.defer(pair.b, -sign);
-      }
+    put(point(batch.corner[0][order_a.lowest], lane) - origin_, terms.low_a, i);
+    put(point(batch.corner[1][order_b.lowest], lane) - origin_, terms.low_b, i);
+    put(start - result_.anchor, terms.start_from_anchor, i);
+    put(end - result_.anchor, terms.end_from_anchor, i);
+    segments_.keep();
+    // On A's triangle the border comes in at the start, on B's it leaves there. Ends on other sides are taken like
+    // those on the side opposite the lowest corner, but not kept: that costs less than branches no one can predict.
+    const auto add_end = [&](double number, const Vector3d& p, int sign_on_a) {
+      const auto side = static_cast<std::size_t>(number);
+      const std::size_t body = side / 3;
+      const Solid::Order order = body == 0 ? order_a : order_b;
+      const bool is_opposite = side % 3 == order.opposite_side();
+      const int sign = body == 0 ? sign_on_a : -sign_on_a;
+      add_triangle(point(batch.corner[body][order.lowest], lane) - origin_,
+                   point(batch.corner[body][order.middle()], lane) - origin_, p, sign, is_opposite);
+      edges_.add(body, body == 0 ? pair.a : pair.b, sign, is_opposite);
     };
-    add_end(segment.end_side, y, 1);
-    add_end(segment.start_side, x, -1);
+    add_end(segments.end_side[lane], y, 1);
+    add_end(segments.start_side[lane], x, -1);
   }
 
   CrossingSums finish() {
-    segments_.flush();
-    triangles_.flush();
-    body_a_.add_edges();
-    body_b_.add_edges();
+    segments_.finish();
+    triangles_.finish();
+    edges_.flush();
     result_.area = sums_.vector(Sums::area);
     result_.moment = sums_.vector(Sums::moment);
     result_.beside_paths = {sums_.scalar(Sums::volume), sums_.vector(Sums::first)};
@@ -285,35 +345,19 @@ class SegmentSums {
   }
 
  private:
-  /// A path's edges wait until their potentials have been fetched from memory.
-  struct Body {
-    const Solid& solid;
-    Vector3d origin;  // in the mesh's frame
-    detail::BorderPath& path;
-    std::array<std::pair<std::uint32_t, int>, 8> edges{};  // triangle, sign
-    std::size_t size = 0;
-
-    void defer(std::uint32_t triangle, int sign) {
-      if (size == edges.size()) add_edges();
-      hwy::Prefetch(&solid.potential(triangle));
-      edges[size++] = {triangle, sign};
-    }
-    void add_edges() {
-      for (std::size_t i = 0; i < size; ++i) path.add_edge(solid, origin, edges[i].first, edges[i].second);
-      size = 0;
-    }
-  };
-
   /// The end p of a segment moves along the side opposite the lowest corner to the middle corner.
-  void add_triangle(const Vector3d& low, const Vector3d& middle, const Vector3d& p, int sign) {
+  HWY_INLINE void add_triangle(const Vector3d& low, const Vector3d& middle, const Vector3d& p, int sign, bool is_kept) {
     const auto [terms, i] = triangles_.next();
     put(low, terms.corner[0], i);
-    put(sign > 0 ? p : middle, terms.corner[1], i);
-    put(sign > 0 ? middle : p, terms.corner[2], i);
+    put(p, terms.corner[sign > 0 ? 1 : 2], i);
+    put(middle, terms.corner[sign > 0 ? 2 : 1], i);
+    triangles_.keep(is_kept);
   }
 
   CrossingSums result_;
-  Body body_a_, body_b_;
+  const Solid& a_;
+  const Solid& b_;
+  PathEdges edges_;
   Vector3d origin_;
   Sums sums_;
   Collector<SegmentTerms> segments_{sums_};
@@ -322,20 +366,25 @@ class SegmentSums {
 
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin,
                            std::span<const TrianglePair> pairs) {
+  // Several batches first, then their segments: neither waits for the other's results.
+  constexpr std::size_t k_batches = 8;
   SegmentSums sums(a, b, X_AB, origin);
-  Batch batch;
-  for (; !pairs.empty(); pairs = pairs.subspan(std::min(pairs.size(), k_batch))) {
-    for (std::size_t i = k_batch; i < std::min(pairs.size(), 2 * k_batch); ++i) {
-      prefetch(a.tree().corners()[pairs[i].a]);
-      prefetch(b.tree().corners()[pairs[i].b]);
+  Batch batches[k_batches];
+  BatchSegments segments[k_batches];
+  while (!pairs.empty()) {
+    const std::size_t count = std::min((pairs.size() + k_batch - 1) / k_batch, k_batches);
+    for (std::size_t i = 0; i < count; ++i) {
+      batches[i].gather(a, b, pairs.subspan(i * k_batch));
+      batches[i].move_to_a(X_AB);
+      segments[i].find(batches[i]);
     }
-    batch.gather(a.tree(), b.tree(), pairs.first(std::min(pairs.size(), k_batch)));
-    batch.move_to_a(X_AB);
-    const BatchSegments segments(batch);
-    for (std::uint32_t bits = segments.lanes; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-      sums.add(pairs[lane], batch, lane, segments.segment(lane));
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::uint32_t bits = segments[i].lanes; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+        sums.add(pairs[i * k_batch + lane], batches[i], lane, segments[i]);
+      }
     }
+    pairs = pairs.subspan(std::min(pairs.size(), count * k_batch));
   }
   return sums.finish();
 }

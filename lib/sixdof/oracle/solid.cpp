@@ -148,7 +148,7 @@ Solid::Solid(const Mesh& mesh, const Tree& tree) : mesh_(&mesh), tree_(&tree) {
     const Triangle& v = mesh.triangles()[t];
     const auto lowest = static_cast<std::uint8_t>(std::min_element(v.begin(), v.end()) - v.begin());
     const bool rises = v[(lowest + 1u) % 3] < v[(lowest + 2u) % 3];
-    orders_[i] = {lowest, rises};
+    orders_[i] = {static_cast<std::uint8_t>(lowest & 3u), rises};
     // The side from lowest to middle index: half-edge h, or its reverse if the middle corner comes last.
     const std::uint32_t h = 3 * t + (rises ? lowest : (lowest + 2u) % 3);
     const int sign = rises ? 1 : -1;

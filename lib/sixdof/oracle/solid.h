@@ -67,12 +67,12 @@ class Solid {
 
   /// How a triangle's corners are ordered by vertex index.
   struct Order {
-    std::uint8_t lowest;  ///< Corner of lowest index.
-    bool rises;           ///< The corner after it has a lower index than the one after that.
+    std::uint8_t lowest : 2;  ///< Corner of lowest index.
+    bool rises : 1;           ///< The corner after it has a lower index than the one after that.
 
     std::size_t middle() const { return (lowest + (rises ? 1u : 2u)) % 3; }
     /// Number of the side opposite the lowest corner; side k runs from corner k to the next.
-    int opposite_side() const { return (lowest + 1) % 3; }
+    std::size_t opposite_side() const { return (lowest + 1u) % 3; }
   };
 
   /// @param mesh the tree's mesh; both outlive this object.
@@ -86,7 +86,7 @@ class Solid {
 
   /// Potential of the side from lowest to middle index, per triangle in tree order.
   const Potential& potential(std::uint32_t triangle) const { return potentials_[triangle]; }
-  Order order(std::uint32_t triangle) const { return orders_[triangle]; }
+  const Order& order(std::uint32_t triangle) const { return orders_[triangle]; }
 
   /// A sum of potentials as fluxes about Tree::center().
   Moments to_moments(const Potential& sum) const;
