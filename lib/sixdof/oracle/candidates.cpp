@@ -10,10 +10,15 @@
 // After foreach_target.h: this is compiled once per instruction set, too.
 #include <sixdof/oracle/candidates_bounds-inl.h>
 #include <sixdof/oracle/close_search.h>
+#include <sixdof/oracle/triangle_pairs-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::candidates {
 namespace HWY_NAMESPACE {
+
+namespace leaves = triangle_pairs::HWY_NAMESPACE;
+using leaves::LeafCache;
+using leaves::LeafLanes;
 
 /// Square of a box's diagonal.
 HWY_INLINE float size_of(const Tree::Volume& v) {
@@ -177,9 +182,9 @@ class DualTreeTraversal {
   HWY_NOINLINE void test_leaves() {
     for (const LeafPair& pair : queue_) {
       const LeafLanes& of_b = leaves_b_.get(pair.b, [&](const Tree::Leaf& leaf, LeafLanes& out) {
-        load_leaf_of_b(leaf, motion_, out);
+        leaves::load_leaf_of_b(leaf, motion_, out);
       });
-      const LeafLanes& of_a = leaves_a_.get(pair.a, load_leaf_of_a);
+      const LeafLanes& of_a = leaves_a_.get(pair.a, leaves::load_leaf_of_a);
       test_(a_.leaves()[pair.a].child, of_a, b_.leaves()[pair.b].child, of_b, pair.blurred);
     }
     queue_.clear();
@@ -200,132 +205,23 @@ class DualTreeTraversal {
   Test test_;
 };
 
-/// Lanes in which all corners lie on one side of a plane, by more than `tolerance`.
-HWY_INLINE M on_one_side(const Projection& range, V offset, V tolerance) {
-  return hn::Or(hn::Gt(range.low, hn::Add(offset, tolerance)), hn::Lt(range.high, hn::Sub(offset, tolerance)));
-}
-
-/// Pairs of triangles (bits) that may intersect: by their boxes, and by both planes.
-HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, float slack) {
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
-    M apart = no_lane();
-    for (std::size_t k = 0; k < 3; ++k) {
-      apart = hn::Or(apart, hn::Gt(load_of_a(a.lower[k], i), load_of_b(b.upper[k], i)));
-      apart = hn::Or(apart, hn::Gt(load_of_b(b.lower[k], i), load_of_a(a.upper[k], i)));
-    }
-    if (hn::AllTrue(k_lanes, apart)) continue;
-    const PairLanes p(a, b, i, slack);
-    apart = hn::Or(apart, on_one_side({p.normal_a, p.corner_b}, p.offset_a, p.tolerance_a));
-    apart = hn::Or(apart, on_one_side({p.normal_b, p.corner_a}, p.offset_b, p.tolerance_b));
-    bits |= bits_of(hn::Not(apart), i);
-  }
-  return bits;
-}
-
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<TrianglePair>& pairs) {
   const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero());
   const CloseTests close(a, b, X_AB, Eigen::Vector3d::Zero(), motion.slack);
   detail::CrossAxesUse use_of_cross_edges = k_use_of_cross_edges;
   const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b,
                         bool blurred) {
-    std::uint32_t bits = test_triangles(of_a, of_b, motion.slack);
+    std::uint32_t bits = leaves::test_triangles(of_a, of_b, motion.slack);
     if (bits != 0 && use_of_cross_edges.is_due()) {
       const int before = std::popcount(bits);
-      bits = overlapping_across_edges(of_a, of_b, bits, motion);
+      bits = leaves::overlapping_across_edges(of_a, of_b, bits, motion);
       use_of_cross_edges.count(before, std::popcount(bits));
     }
-    for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t, TrianglePair pair) {
+    leaves::for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t, TrianglePair pair) {
       if (!blurred || !close.apart(pair)) pairs.push_back(pair);
     });
   };
   DualTreeTraversal<false, decltype(test)>(a, b, X_AB, motion, close, test).run();
-}
-
-// A separating-axis test of two triangles (boxes along each axis, both planes) is linear in the displacement's
-// fraction, so each test gives the interval of fractions at which it does not separate the triangles. They may
-// intersect in the intersection of these intervals.
-
-/// Magnitude of a fraction that is not bounded.
-constexpr float k_unbounded = 1e9f;
-
-/// To the fractions x with low <= speed x <= high. Lanes with a speed so small that rounding loses speed x stay.
-HWY_INLINE void narrow_to_linear(V low, V high, V speed, FractionInterval& interval) {
-  constexpr float k_lost = 1e-30f;
-  const M still = hn::Le(hn::Abs(speed), set(k_lost));
-  const V inverse = hn::Div(set(1.0f), hn::IfThenElse(still, set(1.0f), speed));
-  const V x = hn::Mul(low, inverse), y = hn::Mul(high, inverse);
-  interval.first = hn::Max(interval.first, hn::IfThenElse(still, set(-k_unbounded), hn::Min(x, y)));
-  interval.last = hn::Min(interval.last, hn::IfThenElse(still, set(k_unbounded), hn::Max(x, y)));
-}
-
-/// Pairs of triangles (bits) that may intersect at a fraction in 0 .. 1, and the intervals of all pairs.
-HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLanes& b, const TreeMotion& x,
-                                               float* first, float* last) {
-  std::uint32_t bits = 0;
-  const V zero = hn::Zero(k_lanes);
-  const V one = set(1.0f);
-  const V displacement[3] = {set(x.displacement[0]), set(x.displacement[1]), set(x.displacement[2])};
-  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
-    const auto of_a = [i](const float* p) { return load_of_a(p, i); };
-    const auto of_b = [i](const float* p) { return load_of_b(p, i); };
-    FractionInterval interval{set(-k_unbounded), set(k_unbounded)};
-    for (std::size_t k = 0; k < 3; ++k) {  // B's boxes include the slack
-      interval.narrow_to_boxes(of_a(a.lower[k]), of_a(a.upper[k]), of_b(b.lower[k]), of_b(b.upper[k]), k, x);
-    }
-    const auto store = [&] {  // returns the lanes whose interval contains a fraction in 0 .. 1
-      const V pad = set(k_fraction_rounding);
-      const V low = hn::Sub(hn::Max(interval.first, hn::Neg(one)), pad);
-      const V high = hn::Add(hn::Min(interval.last, hn::Add(one, one)), pad);
-      hn::StoreU(low, k_lanes, first + i);
-      hn::StoreU(high, k_lanes, last + i);
-      return hn::And(hn::Le(low, high), hn::And(hn::Le(low, one), hn::Ge(high, zero)));
-    };
-    if (hn::AllFalse(k_lanes, store())) continue;
-    PairLanes p(a, b, i, x.slack);
-    // Rounding of the products of normals, of up to the square of a size, with differences as long as the displacement.
-    const V rounding = hn::Set(
-        k_lanes, 1e-6f * (std::abs(x.displacement[0]) + std::abs(x.displacement[1]) + std::abs(x.displacement[2])));
-    p.tolerance_a = unfused_mul_add(rounding, hn::Mul(of_a(a.size), of_a(a.size)), p.tolerance_a);
-    p.tolerance_b = unfused_mul_add(rounding, hn::Mul(of_b(b.size), of_b(b.size)), p.tolerance_b);
-    {  // B's corners and A's plane: distances increase by the displacement along the normal.
-      const Projection range(p.normal_a, p.corner_b);
-      narrow_to_linear(hn::Sub(hn::Sub(p.offset_a, range.high), p.tolerance_a),
-                       hn::Add(hn::Sub(p.offset_a, range.low), p.tolerance_a),
-                       dot(p.normal_a, displacement), interval);
-    }
-    {  // A's corners and B's plane: they decrease.
-      const Projection range(p.normal_b, p.corner_a);
-      narrow_to_linear(hn::Sub(hn::Sub(range.low, p.offset_b), p.tolerance_b),
-                       hn::Add(hn::Sub(range.high, p.offset_b), p.tolerance_b),
-                       dot(p.normal_b, displacement), interval);
-    }
-    bits |= bits_of(store(), i);
-  }
-  return bits;
-}
-
-/// Narrows the intervals of test_moving_triangles() by the axes across an edge of each triangle. Returns the pairs, of
-/// those in `bits`, that may still intersect.
-HWY_NOINLINE std::uint32_t narrow_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
-                                               const TreeMotion& x, float* first, float* last) {
-  std::uint32_t overlapping = 0;
-  const V one = set(1.0f), pad = set(k_fraction_rounding);
-  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
-    const PairLanes p(a, b, i, x.slack);
-    FractionInterval interval{set(-k_unbounded), set(k_unbounded)};
-    for (std::size_t edge = 0; edge < 9; ++edge) {
-      const EdgeAxis axis(p, edge, x);
-      narrow_to_linear(hn::Sub(hn::Sub(axis.low_a, axis.high_b), axis.tolerance),
-                       hn::Add(hn::Sub(axis.high_a, axis.low_b), axis.tolerance), axis.speed, interval);
-    }
-    const V low = hn::Max(load(first + i), hn::Sub(interval.first, pad));
-    const V high = hn::Min(load(last + i), hn::Add(interval.last, pad));
-    hn::StoreU(low, k_lanes, first + i);
-    hn::StoreU(high, k_lanes, last + i);
-    overlapping |= bits_of(hn::And(hn::Le(low, high), hn::And(hn::Le(low, one), hn::Ge(high, hn::Zero(k_lanes)))), i);
-  }
-  return bits & overlapping;
 }
 
 void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
@@ -335,14 +231,14 @@ void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const
   detail::CrossAxesUse use_of_cross_edges = k_use_of_moving_cross_edges;
   const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b,
                         bool blurred) {
-    HWY_ALIGN float first[k_pairs], last[k_pairs];
-    std::uint32_t bits = test_moving_triangles(of_a, of_b, motion, first, last);
+    HWY_ALIGN float first[leaves::k_pairs], last[leaves::k_pairs];
+    std::uint32_t bits = leaves::test_moving_triangles(of_a, of_b, motion, first, last);
     if (bits != 0 && use_of_cross_edges.is_due()) {
       const int before = std::popcount(bits);
-      bits = narrow_across_edges(of_a, of_b, bits, motion, first, last);
+      bits = leaves::narrow_across_edges(of_a, of_b, bits, motion, first, last);
       use_of_cross_edges.count(before, std::popcount(bits));
     }
-    for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t lane, TrianglePair pair) {
+    leaves::for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t lane, TrianglePair pair) {
       if (blurred && close.apart(pair)) return;
       found.pairs.push_back(pair);
       found.first.push_back(first[lane]);

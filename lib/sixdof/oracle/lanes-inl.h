@@ -1,5 +1,11 @@
-// Part of the *_bounds-inl.h of this room and of generation/: SIMD lanes as the traversals of two trees use them. Each
-// source includes it once per instruction set: it has no include guard.
+// Part of the other *-inl.h of this room and of generation/: SIMD lanes as the traversals of two trees use them. Taken
+// once per instruction set: the guard is Highway's for that.
+#if defined(SIXDOF_ORACLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIXDOF_ORACLE_LANES_INL_H_
+#undef SIXDOF_ORACLE_LANES_INL_H_
+#else
+#define SIXDOF_ORACLE_LANES_INL_H_
+#endif
 
 #include <cstddef>
 #include <cstdint>
@@ -143,3 +149,5 @@ HWY_INLINE void step(V (&x)[3], const V (&s)[3]) {
 }  // namespace HWY_NAMESPACE
 }  // namespace sixdof::lanes
 HWY_AFTER_NAMESPACE();
+
+#endif  // guard per instruction set
