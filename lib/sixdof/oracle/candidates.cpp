@@ -1,6 +1,8 @@
 #include <sixdof/oracle/candidates.h>
 
+#include <array>
 #include <optional>
+#include <span>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/candidates.cpp"
@@ -90,18 +92,23 @@ class DualTreeTraversal {
 
   void run() {
     stack_.push_back({0, 0, k_all, k_all});
-    while (!stack_.empty()) {
-      const NodePair pair = stack_.back();
-      stack_.pop_back();
-      expand(pair);
-      if (queue_.size() >= k_queued) test_leaves();
+    std::array<NodePair, k_ahead> next;  // a ring
+    for (std::size_t first = 0, count = 0; count > 0 || !stack_.empty(); first = (first + 1) % k_ahead, --count) {
+      for (; count < k_ahead && !stack_.empty(); ++count) {
+        next[(first + count) % k_ahead] = stack_.back();
+        stack_.pop_back();
+        prefetch(a_.nodes()[next[(first + count) % k_ahead].a]);
+        prefetch(b_.nodes()[next[(first + count) % k_ahead].b]);
+      }
+      expand(next[first]);
+      if (queue_.size() >= 2 * k_ahead) test_leaves(queue_.size() - k_ahead);
     }
-    test_leaves();
+    test_leaves(queue_.size());
   }
 
  private:
   static constexpr std::uint8_t k_all = 0xff;
-  static constexpr std::size_t k_queued = 16;
+  static constexpr std::size_t k_ahead = 8;  // pairs whose memory is fetched before they are looked at
   static constexpr std::uint32_t k_none = ~0u;
 
   /// Children (bits) of two nodes.
@@ -157,8 +164,8 @@ class DualTreeTraversal {
     NodePair next = pair;
     next.lanes_a = a.is_leaf() ? static_cast<std::uint8_t>(1u << i) : k_all;
     next.lanes_b = b.is_leaf() ? static_cast<std::uint8_t>(1u << j) : k_all;
-    if (!a.is_leaf()) prefetch(a_.nodes()[next.a = a.node()]);
-    if (!b.is_leaf()) prefetch(b_.nodes()[next.b = b.node()]);
+    if (!a.is_leaf()) next.a = a.node();
+    if (!b.is_leaf()) next.b = b.node();
     stack_.push_back(next);
   }
 
@@ -179,15 +186,16 @@ class DualTreeTraversal {
     }
   }
 
-  HWY_NOINLINE void test_leaves() {
-    for (const LeafPair& pair : queue_) {
+  /// Tests the first pairs of the queue.
+  HWY_NOINLINE void test_leaves(std::size_t count) {
+    for (const LeafPair& pair : std::span(queue_).first(count)) {
       const LeafLanes& of_b = leaves_b_.get(pair.b, [&](const Tree::Leaf& leaf, LeafLanes& out) {
         leaves::load_leaf_of_b(leaf, motion_, out);
       });
       const LeafLanes& of_a = leaves_a_.get(pair.a, leaves::load_leaf_of_a);
       test_(a_.leaves()[pair.a].child, of_a, b_.leaves()[pair.b].child, of_b, pair.blurred);
     }
-    queue_.clear();
+    queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(count));
   }
 
   const Tree& a_;
