@@ -1,6 +1,5 @@
 #include <sixdof/oracle/candidates.h>
 
-#include <array>
 #include <optional>
 #include <span>
 
@@ -79,7 +78,8 @@ constexpr detail::CrossAxesUse k_use_of_cross_edges(0.9);
 constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0.5);
 
 /// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. Pairs wait
-/// on a stack, and those of leaves in a queue, while their memory is fetched.
+/// on a stack, and those of leaves in a queue, while their memory is fetched. Which of two pairs is found first depends
+/// on the trees alone, not on which others are found: sums over them have the same bits whatever was pruned.
 /// @tparam moving the displacement is not zero
 /// @tparam Test called as test(leaf of A, its lanes, leaf of B, its lanes, whether floats blur them) for leaves that
 /// may intersect
@@ -92,15 +92,10 @@ class DualTreeTraversal {
 
   void run() {
     stack_.push_back({0, 0, k_all, k_all});
-    std::array<NodePair, k_ahead> next;  // a ring
-    for (std::size_t first = 0, count = 0; count > 0 || !stack_.empty(); first = (first + 1) % k_ahead, --count) {
-      for (; count < k_ahead && !stack_.empty(); ++count) {
-        next[(first + count) % k_ahead] = stack_.back();
-        stack_.pop_back();
-        prefetch(a_.nodes()[next[(first + count) % k_ahead].a]);
-        prefetch(b_.nodes()[next[(first + count) % k_ahead].b]);
-      }
-      expand(next[first]);
+    while (!stack_.empty()) {
+      const NodePair pair = stack_.back();
+      stack_.pop_back();
+      expand(pair);
       if (queue_.size() >= 2 * k_ahead) test_leaves(queue_.size() - k_ahead);
     }
     test_leaves(queue_.size());
@@ -108,7 +103,7 @@ class DualTreeTraversal {
 
  private:
   static constexpr std::uint8_t k_all = 0xff;
-  static constexpr std::size_t k_ahead = 8;  // pairs whose memory is fetched before they are looked at
+  static constexpr std::size_t k_ahead = 8;  // pairs of leaves that wait while their memory is fetched
   static constexpr std::uint32_t k_none = ~0u;
 
   /// Children (bits) of two nodes.
@@ -164,8 +159,8 @@ class DualTreeTraversal {
     NodePair next = pair;
     next.lanes_a = a.is_leaf() ? static_cast<std::uint8_t>(1u << i) : k_all;
     next.lanes_b = b.is_leaf() ? static_cast<std::uint8_t>(1u << j) : k_all;
-    if (!a.is_leaf()) next.a = a.node();
-    if (!b.is_leaf()) next.b = b.node();
+    if (!a.is_leaf()) prefetch(a_.nodes()[next.a = a.node()]);
+    if (!b.is_leaf()) prefetch(b_.nodes()[next.b = b.node()]);
     stack_.push_back(next);
   }
 
