@@ -108,6 +108,22 @@ TriangleCorners triangle_in_plane(std::mt19937_64& random, double size) {
   return t;
 }
 
+TEST(Crossing, TrianglesAcrossAnEdgeGetTheSamePoint) {
+  std::mt19937_64 random(20);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const TriangleCorners b{Vector3d(-9.0, -9.0, 0.0), Vector3d(9.0, -9.0, 0.0), Vector3d(0.0, 9.0, 0.0)};
+  for (int i = 0; i < 500; ++i) {
+    // The edge from p to q is bisected by the plane of b in every other case.
+    const Vector3d p(u(random), u(random), 0.3), q(u(random), u(random), i % 2 == 0 ? -0.3 : -0.4);
+    const TriangleCorners left{p, q, Vector3d(u(random), u(random), 0.5)};
+    const TriangleCorners right{q, p, Vector3d(u(random), u(random), -0.5)};
+    const std::optional<Segment> of_left = cross(left, b), of_right = cross(right, b);
+    ASSERT_TRUE(of_left && of_right);
+    EXPECT_EQ(of_left->start_side == 0 ? of_left->start : of_left->end,
+              of_right->start_side == 0 ? of_right->start : of_right->end);
+  }
+}
+
 Point exact_point(const Vector3d& p) { return {Rational(p.x()), Rational(p.y()), Rational(p.z())}; }
 
 TEST(Crossing, TrianglesInOnePlaneUpToRoundingAreDecidedExactly) {

@@ -184,9 +184,8 @@ class DualTreeTraversal {
   /// Tests the first pairs of the queue.
   HWY_NOINLINE void test_leaves(std::size_t count) {
     for (const LeafPair& pair : std::span(queue_).first(count)) {
-      const LeafLanes& of_b = leaves_b_.get(pair.b, [&](const Tree::Leaf& leaf, LeafLanes& out) {
-        leaves::load_leaf_of_b(leaf, motion_, out);
-      });
+      const LeafLanes& of_b = leaves_b_.get(
+          pair.b, [&](const Tree::Leaf& leaf, LeafLanes& out) { leaves::load_leaf_of_b(leaf, motion_, out); });
       const LeafLanes& of_a = leaves_a_.get(pair.a, leaves::load_leaf_of_a);
       test_(a_.leaves()[pair.a].child, of_a, b_.leaves()[pair.b].child, of_b, pair.blurred);
     }

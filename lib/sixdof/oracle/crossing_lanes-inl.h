@@ -43,12 +43,8 @@ struct V3 {
   V x, y, z;
 };
 
-HWY_INLINE V3 operator-(const V3& a, const V3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE V3 operator+(const V3& a, const V3& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
+HWY_INLINE V3 operator-(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
+HWY_INLINE V3 operator+(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
 HWY_INLINE V3 operator*(V s, const V3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
 HWY_INLINE V3 operator-(const V3& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
 HWY_INLINE V dot(const V3& a, const V3& b) {
@@ -127,10 +123,10 @@ struct PlaneSides {
 /// One of the two sides of a triangle that cross a plane. It runs from the corner that is alone on its side of the
 /// plane, or to it.
 struct CrossingSide {
-  V3 end;         ///< Its other corner,
-  V at_end;       ///< with its distance from the plane.
-  V3 direction;   ///< Along the triangle's border.
-  V number;       ///< 0, 1 or 2: of side 0 from corner 0 to 1, and so on.
+  V3 end;        ///< Its other corner,
+  V at_end;      ///< with its distance from the plane.
+  V3 direction;  ///< Along the triangle's border.
+  V number;      ///< 0, 1 or 2: of side 0 from corner 0 to 1, and so on.
 };
 
 /// A triangle whose corners lie on both sides of a plane.

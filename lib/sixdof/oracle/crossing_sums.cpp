@@ -13,8 +13,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/crossing_sums.cpp"
-#include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
@@ -24,8 +24,8 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::crossings {
 namespace HWY_NAMESPACE {
 
-using Eigen::Vector3d;
 using detail::CrossingSums;
+using Eigen::Vector3d;
 
 HWY_INLINE V3 load(const double (&p)[3][k_batch], std::size_t i) {
   return {hn::Load(k_lanes, p[0] + i), hn::Load(k_lanes, p[1] + i), hn::Load(k_lanes, p[2] + i)};
@@ -47,7 +47,9 @@ HWY_INLINE void prefetch(const Solid& solid, std::uint32_t triangle) {
 }
 
 /// One lane.
-HWY_INLINE Vector3d point(const double (&p)[3][k_batch], std::size_t lane) { return {p[0][lane], p[1][lane], p[2][lane]}; }
+HWY_INLINE Vector3d point(const double (&p)[3][k_batch], std::size_t lane) {
+  return {p[0][lane], p[1][lane], p[2][lane]};
+}
 HWY_INLINE void put(const Vector3d& x, double (&p)[3][k_batch], std::size_t lane) {
   for (int k = 0; k < 3; ++k) p[k][lane] = x[k];
 }
@@ -179,9 +181,7 @@ class Sums {
     for (const double x : sum_[quantity]) sum += x;
     return sum;
   }
-  Vector3d vector(std::size_t quantity) const {
-    return {scalar(quantity), scalar(quantity + 1), scalar(quantity + 2)};
-  }
+  Vector3d vector(std::size_t quantity) const { return {scalar(quantity), scalar(quantity + 1), scalar(quantity + 2)}; }
 
  private:
   alignas(64) double sum_[count][k_batch] = {};
@@ -190,7 +190,7 @@ class Sums {
 /// Eight segments whose terms are added together. Points are relative to the origin of the moments.
 struct alignas(64) SegmentTerms {
   double start[3][k_batch], end[3][k_batch];
-  double low_a[3][k_batch], low_b[3][k_batch];                  ///< Lowest corners of both triangles.
+  double low_a[3][k_batch], low_b[3][k_batch];  ///< Lowest corners of both triangles.
   double start_from_anchor[3][k_batch], end_from_anchor[3][k_batch];
 
   void copy_lane(const SegmentTerms& from, std::size_t i) {
@@ -302,7 +302,9 @@ class PathEdges {
 class SegmentSums {
  public:
   SegmentSums(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin)
-      : a_(a), b_(b), edges_({a, origin, result_.path_a}, {b, X_AB.inverse() * origin, result_.path_b}),
+      : a_(a),
+        b_(b),
+        edges_({a, origin, result_.path_a}, {b, X_AB.inverse() * origin, result_.path_b}),
         origin_(origin) {}
 
   HWY_INLINE void add(TrianglePair pair, const Batch& batch, std::size_t lane, const BatchSegments& segments) {

@@ -16,10 +16,10 @@ namespace sixdof::detail {
 /// Closed path along edges of a solid's mesh, to which the curve that borders the part of its surface inside the other
 /// body is deformed (solid.h).
 struct BorderPath {
-  Solid::Potential potential;                                     ///< Flux through the region within the path.
-  Eigen::Vector3d area = Eigen::Vector3d::Zero();                 ///< Integral of n over that region.
-  Eigen::Matrix3d first_order = Eigen::Matrix3d::Zero();          ///< Integral of p n^T, but for a multiple of the
-                                                                  ///< identity.
+  Solid::Potential potential;                             ///< Flux through the region within the path.
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();         ///< Integral of n over that region.
+  Eigen::Matrix3d first_order = Eigen::Matrix3d::Zero();  ///< Integral of p n^T, but for a multiple of the
+                                                          ///< identity.
   /// Adds the edge of a triangle from its lowest to its middle corner.
   /// @param origin of p, in the solid's mesh frame
   /// @param triangle in tree order
@@ -28,12 +28,12 @@ struct BorderPath {
 };
 
 struct CrossingSums {
-  std::size_t crossings = 0;                          ///< Segments of the curves.
-  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();   ///< Start of the first segment (A's frame).
-  Eigen::Vector3d area = Eigen::Vector3d::Zero();     ///< Sum of start x end, from the anchor.
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();   ///< Sum of (|start|^2 + start . end + |end|^2) (end - start).
-  Solid::Moments beside_paths;                        ///< Fluxes between the curves and both paths, in A's frame.
-  BorderPath path_a, path_b;                          ///< Each in its mesh's frame.
+  std::size_t crossings = 0;                         ///< Segments of the curves.
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< Start of the first segment (A's frame).
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();    ///< Sum of start x end, from the anchor.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< Sum of (|start|^2 + start . end + |end|^2) (end - start).
+  Solid::Moments beside_paths;                       ///< Fluxes between the curves and both paths, in A's frame.
+  BorderPath path_a, path_b;                         ///< Each in its mesh's frame.
 };
 
 /// @param origin of all moments, in A's frame: near the crossings, so that little cancels

@@ -80,8 +80,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
   result.area = -0.5 * sums.area;
   result.moment = sums.moment / 6.0 + (sums.anchor - reference).cross(result.area);
   if (result.volume > 0.0) {
-    result.centroid =
-        origin + (within_a.first + X_AB.R * within_b.first + sums.beside_paths.first) / result.volume;
+    result.centroid = origin + (within_a.first + X_AB.R * within_b.first + sums.beside_paths.first) / result.volume;
   }
   return result;
 }

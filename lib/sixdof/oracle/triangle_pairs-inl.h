@@ -148,8 +148,9 @@ HWY_INLINE V load_of_a(const float* p, std::size_t i) {
   } else {
     // Each block of 128 bits repeats one of the four values.
     alignas(64) static constexpr std::uint8_t k_bytes[4 * k_pairs] = {
-        0, 1, 2,  3,  0, 1, 2,  3,  0, 1, 2,  3,  0, 1, 2,  3,  4,  5,  6,  7,  4,  5,  6,  7,  4,  5,  6,  7,  4,  5,  6,  7,
-        8, 9, 10, 11, 8, 9, 10, 11, 8, 9, 10, 11, 8, 9, 10, 11, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15};
+        0, 1, 2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  4,  5,  6,  7, 4,  5,
+        6, 7, 4,  5,  6,  7,  4,  5,  6,  7,  8,  9,  10, 11, 8,  9,  10, 11, 8,  9, 10, 11,
+        8, 9, 10, 11, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15};
     const hn::Repartition<std::uint8_t, Lanes> bytes;
     const auto four = hn::BitCast(bytes, hn::LoadDup128(k_lanes, p));
     return hn::BitCast(k_lanes, hn::TableLookupBytes(four, hn::Load(bytes, k_bytes + 4 * i)));
@@ -213,8 +214,8 @@ struct EdgeAxis {
   V tolerance;
 
   /// Whatever its own rounding, the direction n separates the triangles if their projections on it are apart: corners
-  /// are off by the slack along each axis, and the rounding of a scalar product and of the way along the displacement is
-  /// less than that. Products that underflow are off by less than the smallest normal float.
+  /// are off by the slack along each axis, and the rounding of a scalar product and of the way along the displacement
+  /// is less than that. Products that underflow are off by less than the smallest normal float.
   HWY_INLINE EdgeAxis(const PairLanes& p, std::size_t edge, const TreeMotion& x) {
     const auto& a = p.corner_a;
     const auto& b = p.corner_b;
@@ -349,14 +350,13 @@ HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLan
     {  // B's corners and A's plane: distances increase by the displacement along the normal.
       const Projection range(p.normal_a, p.corner_b);
       narrow_to_linear(hn::Sub(hn::Sub(p.offset_a, range.high), p.tolerance_a),
-                       hn::Add(hn::Sub(p.offset_a, range.low), p.tolerance_a),
-                       dot(p.normal_a, displacement), interval);
+                       hn::Add(hn::Sub(p.offset_a, range.low), p.tolerance_a), dot(p.normal_a, displacement), interval);
     }
     {  // A's corners and B's plane: they decrease.
       const Projection range(p.normal_b, p.corner_a);
       narrow_to_linear(hn::Sub(hn::Sub(range.low, p.offset_b), p.tolerance_b),
-                       hn::Add(hn::Sub(range.high, p.offset_b), p.tolerance_b),
-                       dot(p.normal_b, displacement), interval);
+                       hn::Add(hn::Sub(range.high, p.offset_b), p.tolerance_b), dot(p.normal_b, displacement),
+                       interval);
     }
     bits |= bits_of(store(), i);
   }
@@ -366,7 +366,7 @@ HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLan
 /// Narrows the intervals of test_moving_triangles() by the axes across an edge of each triangle. Returns the pairs, of
 /// those in `bits`, that may still intersect.
 inline HWY_NOINLINE std::uint32_t narrow_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
-                                               const TreeMotion& x, float* first, float* last) {
+                                                      const TreeMotion& x, float* first, float* last) {
   std::uint32_t overlapping = 0;
   const V one = set(1.0f), pad = set(k_fraction_rounding);
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
