@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include <sixdof/geometry/predicates.h>
+
 namespace sixdof {
 namespace {
 

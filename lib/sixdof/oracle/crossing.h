@@ -1,24 +1,21 @@
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include <Eigen/Core>
 
-#include <sixdof/geometry/predicates.h>
+#include <sixdof/geometry/triangle_distance.h>
 
 /// The intersection of a triangle of A with a triangle of B, decided by signs of determinants (predicates.h).
 namespace sixdof {
-
-/// Sides: 0 from corner 0 to 1, 1 from corner 1 to 2, 2 from corner 2 to 0.
-using TriangleCorners = std::array<Eigen::Vector3d, 3>;
 
 /// Intersection of a triangle of A with a triangle of B. Its direction start -> end is that of
 /// (normal of A's triangle) x (normal of B's triangle): on A's triangle the part inside B lies to the left of it, on
 /// B's triangle the part inside A to the right.
 struct Segment {
   Eigen::Vector3d start, end;
-  /// The side that pierces the other triangle at that end: 0, 1, 2 for A's triangle, 3, 4, 5 for B's.
+  /// The side that pierces the other triangle at that end: 0, 1, 2 for A's triangle, 3, 4, 5 for B's. Side 0 runs from
+  /// corner 0 to 1, side 1 from corner 1 to 2, side 2 from corner 2 to 0.
   int start_side = 0, end_side = 0;
 };
 
