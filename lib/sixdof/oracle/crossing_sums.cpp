@@ -193,13 +193,11 @@ struct alignas(64) SegmentTerms {
   double low_a[3][k_batch], low_b[3][k_batch];  ///< Lowest corners of both triangles.
   double start_from_anchor[3][k_batch], end_from_anchor[3][k_batch];
 
-  void copy_lane(const SegmentTerms& from, std::size_t i) {
-    put(point(from.start, i), start, i);
-    put(point(from.end, i), end, i);
-    put(point(from.low_a, i), low_a, i);
-    put(point(from.low_b, i), low_b, i);
-    put(point(from.start_from_anchor, i), start_from_anchor, i);
-    put(point(from.end_from_anchor, i), end_from_anchor, i);
+  /// Zeros add nothing.
+  void clear(std::size_t lane) {
+    for (auto* points : {&start, &end, &low_a, &low_b, &start_from_anchor, &end_from_anchor}) {
+      put(Vector3d::Zero(), *points, lane);
+    }
   }
 
   /// On A's triangle a segment has the part inside B on its left; on B's it has the part inside A on its right.
@@ -219,8 +217,8 @@ struct alignas(64) SegmentTerms {
 struct alignas(64) TriangleTerms {
   double corner[3][3][k_batch];
 
-  void copy_lane(const TriangleTerms& from, std::size_t i) {
-    for (std::size_t c = 0; c < 3; ++c) put(point(from.corner[c], i), corner[c], i);
+  void clear(std::size_t lane) {
+    for (auto& points : corner) put(Vector3d::Zero(), points, lane);
   }
 
   HWY_INLINE void add_to(Sums& sums) const {
@@ -247,16 +245,13 @@ class Collector {
   void keep(bool is_kept = true) { size_ += is_kept ? 1 : 0; }
 
   void finish() {
-    Terms rest{};  // zeros add nothing
-    std::swap(rest, terms_);
-    for (std::size_t i = 0; i < size_; ++i) terms_.copy_lane(rest, i);
+    for (; size_ < k_batch; ++size_) terms_.clear(size_);
     terms_.add_to(sums_);
-    size_ = 0;
   }
 
  private:
   Sums& sums_;
-  Terms terms_{};
+  Terms terms_;
   std::size_t size_ = 0;
 };
 

@@ -36,9 +36,9 @@ struct CrossingSums {
   BorderPath path_a, path_b;                         ///< Each in its mesh's frame.
 };
 
+/// The same bits on every instruction set, and whatever pairs that do not intersect are among `pairs`.
 /// @param origin of all moments, in A's frame: near the crossings, so that little cancels
-/// @param pairs in tree order: all that intersect at X_AB, and any others
-/// The same bits on every instruction set.
+/// @param pairs in the order of find_candidates(): all that intersect at X_AB, and any others
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
                            std::span<const TrianglePair> pairs);
 

@@ -11,7 +11,7 @@ namespace sixdof::scene {
 namespace {
 
 constexpr const char* k_kind = "scene-truth";
-constexpr int k_version = 1;  // of definitions and of this layout
+constexpr int k_version = 2;  // of definitions, of the last bits of answers and of this layout
 
 std::string key_of(const Scene& scene, Question question) {
   return fmt::format("version {} scene {} question {}", k_version, scene.hash(), to_string(question));
