@@ -107,9 +107,6 @@ struct PlaneDistances {
   }
 };
 
-/// Rounding of a projection's difference, relative to the largest coordinate and the axis: a dozen roundings.
-constexpr double k_projection_rounding = 1e-14;
-
 /// For a triangle with collinear corners: only the other triangle can be pierced, by two sides at one point.
 std::optional<Segment> cross_degenerate(const PlaneDistances& distances, const PlaneCrossing& in_a,
                                         const PlaneCrossing& in_b) {
@@ -139,7 +136,8 @@ bool certainly_apart(const TriangleCorners& a, const TriangleCorners& b) {
         lowest = std::min(lowest, outwards.dot(p - from));
         size = std::max(size, (p - from).cwiseAbs().sum());
       }
-      if (lowest - highest > k_projection_rounding * size * outwards.cwiseAbs().sum() + detail::k_underflow_bound) {
+      if (lowest - highest >
+          detail::k_projection_rounding * size * outwards.cwiseAbs().sum() + detail::k_underflow_bound) {
         return true;
       }
     }

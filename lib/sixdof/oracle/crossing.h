@@ -23,6 +23,11 @@ struct Segment {
 /// Corners of `b` are in A's frame.
 std::optional<Segment> cross(const TriangleCorners& a, const TriangleCorners& b);
 
+namespace detail {
+/// Rounding of a projection's difference, relative to the largest coordinate and the axis: a dozen roundings.
+inline constexpr double k_projection_rounding = 1e-14;
+}  // namespace detail
+
 /// Whether two triangles are certainly separated by a plane through an edge of one of them and across that triangle.
 /// Where faces lie in one plane, up to rounding, most pairs are: fans, strips and grids over each other. cross() asks
 /// this before the exact predicates, which such pairs need to decide on which side of the plane a corner lies.

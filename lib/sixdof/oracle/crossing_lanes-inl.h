@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include <sixdof/geometry/predicates.h>
+#include <sixdof/oracle/crossing.h>
 
 // Eight pairs of triangles at once, one per lane, in doubles: which pairs cross, and where. Signs of determinants are
 // those of predicates.h where its filters decide them. A pair for which one does not is doubtful: cross() decides it.
@@ -165,6 +166,39 @@ HWY_INLINE V3 pierced_point(const V3& p, V at_p, const V3& q, V at_q) {
   const V3 near = select(from_p, p, q), far = select(from_p, q, p);
   const V at_near = select(from_p, at_p, at_q), at_far = select(from_p, at_q, at_p);
   return near + hn::Div(at_near, hn::Sub(at_near, at_far)) * (far - near);
+}
+
+/// Sum of the magnitudes of the components.
+HWY_INLINE V size_of(const V3& a) {
+  const V3 m = abs(a);
+  return hn::Add(hn::Add(m.x, m.y), m.z);
+}
+
+/// Whether a plane through an edge of t and across it certainly separates t from the other triangle.
+HWY_INLINE M edge_separates(const Corners& t, const Corners& other) {
+  const V3 normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
+  M apart = hn::Lt(hn::Zero(k_lanes), hn::Zero(k_lanes));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const V3& from = t.corner[i];
+    const V3 edge = t.corner[(i + 1) % 3] - from, third = t.corner[(i + 2) % 3] - from;
+    const V3 outwards = cross(edge, normal);
+    const V highest = hn::Max(hn::Zero(k_lanes), hn::Max(dot(outwards, edge), dot(outwards, third)));
+    V size = hn::Add(size_of(edge), size_of(third)), lowest = hn::Zero(k_lanes);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V3 p = other.corner[k] - from;
+      const V along = dot(outwards, p);
+      lowest = k == 0 ? along : hn::Min(lowest, along);
+      size = hn::Max(size, size_of(p));
+    }
+    const V rounding = hn::Mul(hn::Mul(set(detail::k_projection_rounding), size), size_of(outwards));
+    apart = hn::Or(apart, hn::Gt(hn::Sub(lowest, highest), hn::Add(rounding, set(detail::k_underflow_bound))));
+  }
+  return apart;
+}
+
+/// sixdof::certainly_apart() in lanes.
+HWY_INLINE M certainly_apart(const Corners& a, const Corners& b) {
+  return hn::Or(edge_separates(a, b), edge_separates(b, a));
 }
 
 /// What cross() says of pairs of triangles: Segment in lanes.
