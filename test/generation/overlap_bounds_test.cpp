@@ -121,8 +121,9 @@ double expect_bounded(const BoundedRay& bounded, double outer_s, double inner_s)
   // The interval is a part of the displacement for which candidates are collected.
   const double margin = 0.3 * (outer_s - inner_s);
   const double begin = outer_s + margin, length = outer_s - inner_s + 2.0 * margin;
+  CandidateScratch scratch;
   find_swept_candidates(bounded.tree_a, bounded.tree_b, bounded.ray.pose(begin), -length * bounded.ray.direction,
-                        swept);
+                        scratch, swept);
   const OverlapMeasurement outer = bounded.measure(outer_s), inner = bounded.measure(inner_s);
   SlopeBounds bounds(bounded.areas_a, bounded.areas_b);
   std::array<SlopeRange, SlopeBounds::k_parts> ranges;

@@ -27,7 +27,8 @@ Pose moved(const Pose& X_AB, const Vector3d& by) { return {X_AB.R, X_AB.t + by};
 std::size_t expect_same_overlap(const bodies::Body& a, const bodies::Body& b, const Pose& X_AB,
                                 const Vector3d& displacement) {
   SweptCandidates swept;
-  find_swept_candidates(a.tree, b.tree, X_AB, displacement, swept);
+  CandidateScratch scratch;
+  find_swept_candidates(a.tree, b.tree, X_AB, displacement, scratch, swept);
   EXPECT_EQ(swept.first.size(), swept.pairs.size());
   EXPECT_EQ(swept.last.size(), swept.pairs.size());
   OverlapQuery query(a.solid, b.solid);
@@ -86,11 +87,12 @@ TEST(SweptCandidates, AreFewAtOneFraction) {
   const Pose X_AB = bodies::random_pose(random, 0.5);
   const Vector3d displacement = 0.3 * Vector3d(2, -1, 1).normalized();
   SweptCandidates swept;
-  find_swept_candidates(torus.tree, torus.tree, X_AB, displacement, swept);
+  CandidateScratch scratch;
+  find_swept_candidates(torus.tree, torus.tree, X_AB, displacement, scratch, swept);
   std::vector<TrianglePair> selected, found;
   for (const double x : {0.1, 0.4, 0.9}) {
     select_candidates(swept, x, selected);
-    find_candidates(torus.tree, torus.tree, moved(X_AB, x * displacement), found);
+    find_candidates(torus.tree, torus.tree, moved(X_AB, x * displacement), scratch, found);
     EXPECT_LT(static_cast<double>(selected.size()), 1.2 * static_cast<double>(found.size())) << x;
     EXPECT_LT(selected.size(), swept.pairs.size());
   }
@@ -121,7 +123,8 @@ void expect_all_crossings_of_rods() {
       if (i % 4 == 3) X_AB.R = Eigen::AngleAxisd(1e-3 * i, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
       X_AB.t = shapes::uniform(generator, 0.0, 0.26) * shapes::unit_vector(generator);
       std::vector<TrianglePair> candidates;
-      find_candidates(a->tree, b->tree, X_AB, candidates);
+      CandidateScratch scratch;
+      find_candidates(a->tree, b->tree, X_AB, scratch, candidates);
       std::set<std::pair<std::uint32_t, std::uint32_t>> found;
       for (const TrianglePair& pair : candidates) found.emplace(pair.a, pair.b);
       for (const auto& pair : all_crossings(a->tree, b->tree, X_AB)) {
@@ -146,7 +149,8 @@ TEST(Candidates, OfLongTrianglesThatDoNotTouchAreFew) {
     Pose X_AB = shapes::random_pose(generator, 0.0);
     X_AB.t = 0.2001 * Vector3d::UnitZ().cross(X_AB.R.col(2)).normalized();
     std::vector<TrianglePair> pairs;
-    find_candidates(rod.tree, rod.tree, X_AB, pairs);
+    CandidateScratch scratch;
+    find_candidates(rod.tree, rod.tree, X_AB, scratch, pairs);
     found += pairs.size();
   }
   EXPECT_LT(found, 1000000u) << "89,311,400 without the axes across two boxes";

@@ -323,13 +323,14 @@ TEST(CloseSearch, OverlapsOfSmallPartsHaveFewCandidates) {
   EXPECT_NEAR(overlap.volume, truth.volume, k_relative * truth.volume);
   EXPECT_LE((overlap.area - truth.area).norm(), k_relative * truth.area.norm());
   std::vector<TrianglePair> candidates;
-  find_candidates(tree, tree, pose, candidates);
+  CandidateScratch scratch;
+  find_candidates(tree, tree, pose, scratch, candidates);
   EXPECT_LE(candidates.size(), 10 * truth.crossings);
 
   // While B moves by a tenth of a radius: every candidate at a fraction of the way is among those of the whole way.
   SweptCandidates swept;
   const Vector3d displacement(-6e-4, 8e-4, 0.0);
-  find_swept_candidates(tree, tree, pose, displacement, swept);
+  find_swept_candidates(tree, tree, pose, displacement, scratch, swept);
   EXPECT_LE(swept.pairs.size(), 400 * truth.crossings);
   for (const double x : {0.0, 0.4, 1.0}) {
     const Pose moved{pose.R, pose.t + x * displacement};

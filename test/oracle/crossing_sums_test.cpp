@@ -162,7 +162,8 @@ TEST(CrossingSums, PairsThatDoNotCrossChangeNoBit) {
   for (int i = 0; i < 12; ++i) {
     const Pose X_AB = bodies::random_pose(random, 0.4);
     std::vector<TrianglePair> crossing, found;
-    find_candidates(a.tree, b.tree, X_AB, found);
+    CandidateScratch scratch;
+    find_candidates(a.tree, b.tree, X_AB, scratch, found);
     for (const TrianglePair& pair : found) {
       if (segment_of(a, b, X_AB, pair)) crossing.push_back(pair);
     }

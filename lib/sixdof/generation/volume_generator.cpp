@@ -126,7 +126,7 @@ class VolumeSolver final : public RaySolver {
     inner_ = inner;
     outer_ = outer;
     find_swept_candidates(pair_.body_a->tree, pair_.body_b->tree, ray_.pose(outer), (inner - outer) * ray_.direction,
-                          swept_);
+                          scratch_, swept_);
   }
   double fraction(double s) const { return outer_ > inner_ ? (outer_ - s) / (outer_ - inner_) : 0.0; }
 
@@ -145,6 +145,7 @@ class VolumeSolver final : public RaySolver {
   OverlapQuery query_;
   SlopeBounds bounds_;
   double outer_ = -1.0, inner_ = -1.0;  ///< Candidates are collected between these translations of the ray.
+  CandidateScratch scratch_;
   SweptCandidates swept_;
   std::vector<TrianglePair> pairs_;
 };

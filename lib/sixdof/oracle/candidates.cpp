@@ -87,11 +87,21 @@ template <bool moving, class Test>
 class DualTreeTraversal {
  public:
   DualTreeTraversal(const Tree& a, const Tree& b, const Pose& X_AB, const TreeMotion& motion, const CloseTests& close,
-                    Test test)
-      : a_(a), b_(b), motion_(motion), close_(close), R_AB_(X_AB.R), leaves_a_(a), leaves_b_(b), test_(test) {}
+                    CandidateScratch& scratch, Test test)
+      : a_(a),
+        b_(b),
+        motion_(motion),
+        close_(close),
+        R_AB_(X_AB.R),
+        stack_(scratch.nodes),
+        queue_(scratch.leaves),
+        leaves_a_(a),
+        leaves_b_(b),
+        test_(test) {}
 
   void run() {
-    stack_.push_back({0, 0, k_all, k_all});
+    queue_.clear();
+    stack_.assign(1, {0, 0, k_all, k_all});
     while (!stack_.empty()) {
       const NodePair pair = stack_.back();
       stack_.pop_back();
@@ -106,16 +116,8 @@ class DualTreeTraversal {
   static constexpr std::size_t k_ahead = 8;  // pairs of leaves that wait while their memory is fetched
   static constexpr std::uint32_t k_none = ~0u;
 
-  /// Children (bits) of two nodes.
-  struct NodePair {
-    std::uint32_t a, b;
-    std::uint8_t lanes_a, lanes_b;
-  };
-  /// Indices into leaves().
-  struct LeafPair {
-    std::uint32_t a, b;
-    bool blurred;
-  };
+  using NodePair = CandidateScratch::NodePair;
+  using LeafPair = CandidateScratch::LeafPair;
 
   void expand(const NodePair& pair) {
     const Tree::Node& node_a = a_.nodes()[pair.a];
@@ -197,8 +199,8 @@ class DualTreeTraversal {
   const TreeMotion& motion_;
   const CloseTests& close_;
   const Eigen::Matrix3d& R_AB_;
-  std::vector<NodePair> stack_;
-  std::vector<LeafPair> queue_;
+  std::vector<NodePair>& stack_;
+  std::vector<LeafPair>& queue_;
   Children children_a_, children_b_;
   std::uint32_t loaded_a_ = k_none, loaded_b_ = k_none;
   LeafCache leaves_a_, leaves_b_;
@@ -207,7 +209,8 @@ class DualTreeTraversal {
   Test test_;
 };
 
-void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<TrianglePair>& pairs) {
+void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
+                     std::vector<TrianglePair>& pairs) {
   const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero());
   const CloseTests close(a, b, X_AB, Eigen::Vector3d::Zero(), motion.slack);
   detail::CrossAxesUse use_of_cross_edges = k_use_of_cross_edges;
@@ -223,11 +226,11 @@ void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector
       if (!blurred || !close.apart(pair)) pairs.push_back(pair);
     });
   };
-  DualTreeTraversal<false, decltype(test)>(a, b, X_AB, motion, close, test).run();
+  DualTreeTraversal<false, decltype(test)>(a, b, X_AB, motion, close, scratch, test).run();
 }
 
 void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
-                           SweptCandidates& found) {
+                           CandidateScratch& scratch, SweptCandidates& found) {
   const TreeMotion motion(a, b, X_AB, displacement);
   const CloseTests close(a, b, X_AB, displacement, motion.slack);
   detail::CrossAxesUse use_of_cross_edges = k_use_of_moving_cross_edges;
@@ -247,7 +250,7 @@ void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const
       found.last.push_back(last[lane]);
     });
   };
-  DualTreeTraversal<true, decltype(test)>(a, b, X_AB, motion, close, test).run();
+  DualTreeTraversal<true, decltype(test)>(a, b, X_AB, motion, close, scratch, test).run();
 }
 
 }  // namespace HWY_NAMESPACE
@@ -261,17 +264,18 @@ HWY_EXPORT(find_candidates);
 HWY_EXPORT(find_swept_candidates);
 }  // namespace candidates
 
-void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<TrianglePair>& pairs) {
+void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
+                     std::vector<TrianglePair>& pairs) {
   pairs.clear();
-  HWY_DYNAMIC_DISPATCH(candidates::find_candidates)(a, b, X_AB, pairs);
+  HWY_DYNAMIC_DISPATCH(candidates::find_candidates)(a, b, X_AB, scratch, pairs);
 }
 
 void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
-                           SweptCandidates& found) {
+                           CandidateScratch& scratch, SweptCandidates& found) {
   found.pairs.clear();
   found.first.clear();
   found.last.clear();
-  HWY_DYNAMIC_DISPATCH(candidates::find_swept_candidates)(a, b, X_AB, displacement, found);
+  HWY_DYNAMIC_DISPATCH(candidates::find_swept_candidates)(a, b, X_AB, displacement, scratch, found);
 }
 
 void select_candidates(const SweptCandidates& swept, double x, std::vector<TrianglePair>& pairs) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -23,9 +25,28 @@ inline Eigen::Vector3d transform_point(const Pose& X_AB, const Eigen::Vector3d& 
   return q;
 }
 
+/// Memory of a search, for the next one.
+struct CandidateScratch {
+  /// Two nodes, and the children of each (bits).
+  struct NodePair {
+    std::uint32_t a, b;
+    std::uint8_t lanes_a, lanes_b;
+  };
+  /// Two leaves; whether floats blur them.
+  struct LeafPair {
+    std::uint32_t a, b;
+    bool blurred;
+  };
+  std::vector<NodePair> nodes;
+  std::vector<LeafPair> leaves;
+
+  std::size_t bytes() const { return nodes.capacity() * sizeof(NodePair) + leaves.capacity() * sizeof(LeafPair); }
+};
+
 /// Finds the pairs of triangles of A and of B at X_AB that may intersect: all that intersect in the sense of
 /// crossing.h, and few others. The same pairs in the same order on every instruction set.
-void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, std::vector<TrianglePair>& pairs);
+void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
+                     std::vector<TrianglePair>& pairs);
 
 /// Pairs of triangles that may intersect during a translation of B, in the order of find_candidates().
 struct SweptCandidates {
@@ -39,7 +60,7 @@ struct SweptCandidates {
 /// (A's frame), 0 <= x <= 1. Conservative as find_candidates(): every pair that intersects at x is found, and
 /// first <= x <= last.
 void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
-                           SweptCandidates& found);
+                           CandidateScratch& scratch, SweptCandidates& found);
 
 /// The pairs that may intersect at the fraction x of the displacement.
 void select_candidates(const SweptCandidates& swept, double x, std::vector<TrianglePair>& pairs);

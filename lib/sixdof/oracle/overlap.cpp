@@ -48,7 +48,7 @@ bool apart(const Solid& a, const Solid& b, const Pose& X_AB) {
 Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference) {
   pairs_.clear();
   if (X_AB.R.allFinite() && X_AB.t.allFinite() && !apart(*a_, *b_, X_AB)) {
-    find_candidates(a_->tree(), b_->tree(), X_AB, pairs_);
+    find_candidates(a_->tree(), b_->tree(), X_AB, scratch_, pairs_);
   }
   return evaluate(X_AB, reference, pairs_);
 }
@@ -86,7 +86,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
 }
 
 std::size_t OverlapQuery::bytes() const {
-  return pairs_.capacity() * sizeof(TrianglePair) + triangles_.capacity() * sizeof(std::uint32_t);
+  return scratch_.bytes() + pairs_.capacity() * sizeof(TrianglePair) + triangles_.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace sixdof

@@ -10,6 +10,7 @@
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/candidates.h>
 #include <sixdof/oracle/solid.h>
 
 /// Exact overlap of two solids: volume of the intersection, its centroid, and the volume's gradient.
@@ -83,6 +84,7 @@ class OverlapQuery {
  private:
   const Solid* a_;
   const Solid* b_;
+  CandidateScratch scratch_;
   std::vector<TrianglePair> pairs_;       // scratch
   std::vector<std::uint32_t> triangles_;  // scratch
 };

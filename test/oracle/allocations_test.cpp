@@ -1,0 +1,55 @@
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/oracle/overlap.h>
+
+#include "bodies.h"
+
+namespace {
+std::atomic<std::size_t> allocations{0};
+}  // namespace
+
+// These count for the whole program.
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* const p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto unit = static_cast<std::size_t>(alignment);
+  if (void* const p = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+namespace sixdof {
+namespace {
+
+TEST(Allocations, OverlapQueriesMakeNoneOnceTheirScratchHasGrown) {
+  const bodies::Body a(bodies::bumpy_torus(61, 33)), b(bodies::bumpy_torus(43, 25, 0.2, 0.8));
+  std::mt19937_64 random(41);
+  std::vector<Pose> poses;
+  for (int i = 0; i < 20; ++i) poses.push_back(bodies::random_pose(random, 0.4));
+  OverlapQuery query(a.solid, b.solid);
+  std::size_t crossings = 0;
+  const std::size_t before = allocations;
+  for (const Pose& X_AB : poses) crossings += query.evaluate(X_AB).crossings;
+  EXPECT_GT(allocations, before);
+  const std::size_t grown = allocations;
+  for (const Pose& X_AB : poses) crossings -= query.evaluate(X_AB).crossings;
+  EXPECT_EQ(allocations, grown);
+  EXPECT_EQ(crossings, 0u);
+}
+
+}  // namespace
+}  // namespace sixdof
