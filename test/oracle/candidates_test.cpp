@@ -1,6 +1,7 @@
 #include <sixdof/oracle/candidates.h>
 
 #include <cstdint>
+#include <map>
 #include <random>
 #include <set>
 #include <utility>
@@ -96,6 +97,32 @@ TEST(SweptCandidates, AreFewAtOneFraction) {
     EXPECT_LT(static_cast<double>(selected.size()), 1.2 * static_cast<double>(found.size())) << x;
     EXPECT_LT(selected.size(), swept.pairs.size());
   }
+}
+
+TEST(SweptCandidates, ComeInTheOrderOfThePairsAtOnePose) {
+  // Large enough for hundreds of pairs of nodes to wait at a time.
+  const bodies::Body a(bodies::bumpy_torus(121, 65)), b(bodies::bumpy_torus(91, 47, 0.2, 0.8));
+  std::mt19937_64 random(25);
+  std::size_t common = 0;
+  for (int i = 0; i < 6; ++i) {
+    const Pose X_AB = bodies::random_pose(random, 0.4);
+    SweptCandidates swept;
+    CandidateScratch scratch;
+    find_swept_candidates(a.tree, b.tree, X_AB, 0.3 * X_AB.R.col(0), scratch, swept);
+    std::vector<TrianglePair> found;
+    find_candidates(a.tree, b.tree, moved(X_AB, 0.15 * X_AB.R.col(0)), scratch, found);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> place;
+    for (const TrianglePair& pair : swept.pairs) place.emplace(std::pair(pair.a, pair.b), place.size());
+    std::size_t last = 0;
+    for (const TrianglePair& pair : found) {
+      const auto at = place.find({pair.a, pair.b});
+      if (at == place.end()) continue;  // a candidate at one pose alone, that does not cross
+      ASSERT_GE(at->second, last);
+      last = at->second;
+      ++common;
+    }
+  }
+  EXPECT_GT(common, 1000u);
 }
 
 /// Pairs of triangles that cross, as indices in tree order, by looking at all pairs.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -62,6 +63,7 @@ std::size_t expect_segments_of_cross(const Body& a, const Body& b, const Pose& X
   const CrossingSums sums = sums_of(a, b, X_AB, pairs);
   EXPECT_EQ(sums.crossings, count);
   EXPECT_EQ(sums.anchor, anchor);
+  // A few units in the last place of each term, a product of two lengths, or a sum of three products of three.
   const double rounding = 1e-15 * static_cast<double>(count + 1);
   EXPECT_LE((sums.area - area).norm(), rounding * size * size);
   EXPECT_LE((sums.moment - moment).norm(), 10.0 * rounding * size * size * size);

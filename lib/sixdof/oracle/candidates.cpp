@@ -1,5 +1,9 @@
 #include <sixdof/oracle/candidates.h>
 
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 

@@ -1,18 +1,12 @@
 // Part of candidates.cpp, which includes it once per instruction set: it has no include guard.
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <limits>
-
-#include <Eigen/Core>
 
 #include <hwy/highway.h>
 
-#include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/cross_axes.h>
 #include <sixdof/oracle/lanes-inl.h>

@@ -29,15 +29,11 @@ constexpr Lanes k_lanes;
 
 HWY_INLINE V set(double x) { return hn::Set(k_lanes, x); }
 
-/// The bits of the lanes of `mask`, from bit `i` on; and the other way round.
+/// The bits of the lanes of `mask`, from bit `i` on.
 HWY_INLINE std::uint32_t bits_of(M mask, std::size_t i) {
   HWY_ALIGN std::uint8_t stored[8] = {};  // as many as StoreMaskBits may write
   hn::StoreMaskBits(k_lanes, mask, stored);
   return static_cast<std::uint32_t>(stored[0]) << i;
-}
-HWY_INLINE M mask_of(std::uint32_t bits, std::size_t i) {
-  HWY_ALIGN const std::uint8_t stored[8] = {static_cast<std::uint8_t>(bits >> i)};
-  return hn::LoadMaskBits(k_lanes, stored);
 }
 
 struct V3 {
@@ -47,7 +43,6 @@ struct V3 {
 HWY_INLINE V3 operator-(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
 HWY_INLINE V3 operator+(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
 HWY_INLINE V3 operator*(V s, const V3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
-HWY_INLINE V3 operator-(const V3& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
 HWY_INLINE V dot(const V3& a, const V3& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }

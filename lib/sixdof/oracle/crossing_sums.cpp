@@ -1,7 +1,6 @@
 #include <sixdof/oracle/crossing_sums.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <optional>
 #include <utility>
