@@ -25,22 +25,11 @@ namespace sixdof {
 namespace {
 
 using Eigen::Vector3d;
+using namespace detail;
 
-constexpr double k_roundoff = 0x1p-53;
-/// Below this sine of the angle between two edges they count as parallel: the error is the sine times the edge.
-constexpr double k_parallel_sine = 2.0 * k_roundoff;
 /// A step gains four digits at an angle of 1e-12. It gains little at the smallest angles, where the interior gains
 /// little over the border.
 constexpr int k_refinements = 3;
-/// Above this sine one refinement is enough: the error of the first solution is about roundoff / sine^2 = 1e-10 times
-/// (distance / edge).
-constexpr double k_wide_sine = 1e-3;
-/// A first solution farther than this outside of [0, 1] is not brought back by refinement: that would take a distance
-/// of 1e9 edges, where the interior gains nothing over the border.
-constexpr double k_margin = 0.125;
-/// Triangles are disjoint if their projections on the line through the closest points have a gap of more than this
-/// times the size: the rounding of a dot product of differences is less than 8 units.
-constexpr double k_safe_gap = 16.0 * k_roundoff;
 /// Error of triangle_gap() per size: three products, their sum, and the error of the distance that it bounds.
 constexpr double k_gap_error = 5e-15;
 

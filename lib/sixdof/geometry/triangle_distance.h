@@ -39,4 +39,21 @@ double triangle_gap(const TriangleCorners& a, const TriangleCorners& b);
 /// predicates.h), also where triangles touch, are coplanar or degenerate.
 bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b);
 
+/// Limits of triangle_triangle_distance() and of oracle/triangle_distances.cpp.
+namespace detail {
+
+/// Below this sine of the angle between two edges they count as parallel: the error is the sine times the edge.
+inline constexpr double k_parallel_sine = 2.0 * 0x1p-53;
+/// Above this sine one refinement is enough: the error of the first solution is about roundoff / sine^2 = 1e-10 times
+/// (distance / edge).
+inline constexpr double k_wide_sine = 1e-3;
+/// A first solution farther than this outside of [0, 1] is not brought back by refinement: that would take a distance
+/// of 1e9 edges, where the interior gains nothing over the border.
+inline constexpr double k_margin = 0.125;
+/// Triangles are disjoint if their projections on the line through the closest points have a gap of more than this
+/// times the size: the rounding of a dot product of differences is less than 8 units.
+inline constexpr double k_safe_gap = 16.0 * 0x1p-53;
+
+}  // namespace detail
+
 }  // namespace sixdof

@@ -7,6 +7,7 @@
 
 #include <sixdof/geometry/predicates.h>
 #include <sixdof/oracle/crossing.h>
+#include <sixdof/oracle/double_lanes-inl.h>
 
 // Eight pairs of triangles at once, one per lane, in doubles: which pairs cross, and where. Signs of determinants are
 // those of predicates.h where its filters decide them. A pair for which one does not is doubtful: cross() decides it.
@@ -17,39 +18,10 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::crossings {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
+using namespace double_lanes::HWY_NAMESPACE;
 
-constexpr std::size_t k_batch = 8;  ///< Pairs.
-
-/// Where a vector holds fewer lanes, loops take several.
-using Lanes = hn::CappedTag<double, k_batch>;
-using V = hn::Vec<Lanes>;
-using M = hn::Mask<Lanes>;
-constexpr Lanes k_lanes;
-
-HWY_INLINE V set(double x) { return hn::Set(k_lanes, x); }
-
-/// The bits of the lanes of `mask`, from bit `i` on.
-HWY_INLINE std::uint32_t bits_of(M mask, std::size_t i) {
-  HWY_ALIGN std::uint8_t stored[8] = {};  // as many as StoreMaskBits may write
-  hn::StoreMaskBits(k_lanes, mask, stored);
-  return static_cast<std::uint32_t>(stored[0]) << i;
-}
-
-struct V3 {
-  V x, y, z;
-};
-
-HWY_INLINE V3 operator-(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
-HWY_INLINE V3 operator+(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
-HWY_INLINE V3 operator*(V s, const V3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
 HWY_INLINE V dot(const V3& a, const V3& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE V3 abs(const V3& a) { return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)}; }
-HWY_INLINE V select(M mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
-HWY_INLINE V3 select(M mask, const V3& yes, const V3& no) {
-  return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 
 /// A cross product, and the sums of the magnitudes of its products.
@@ -80,11 +52,6 @@ struct Filtered {
 
   HWY_INLINE M positive() const { return hn::Gt(value, bound); }
   HWY_INLINE M negative() const { return hn::Lt(value, hn::Neg(bound)); }
-};
-
-/// Corners of one body's triangle of each pair.
-struct Corners {
-  V3 corner[3];
 };
 
 /// Distances of a triangle's corners from the plane of the other triangle, times twice that triangle's area.
@@ -172,7 +139,7 @@ HWY_INLINE V size_of(const V3& a) {
 /// Whether a plane through an edge of t and across it certainly separates t from the other triangle.
 HWY_INLINE M edge_separates(const Corners& t, const Corners& other) {
   const V3 normal = cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0]);
-  M apart = hn::Lt(hn::Zero(k_lanes), hn::Zero(k_lanes));
+  M apart = no_lane();
   for (std::size_t i = 0; i < 3; ++i) {
     const V3& from = t.corner[i];
     const V3 edge = t.corner[(i + 1) % 3] - from, third = t.corner[(i + 2) % 3] - from;

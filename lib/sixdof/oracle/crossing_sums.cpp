@@ -26,31 +26,11 @@ namespace HWY_NAMESPACE {
 using detail::CrossingSums;
 using Eigen::Vector3d;
 
-HWY_INLINE V3 load(const double (&p)[3][k_batch], std::size_t i) {
-  return {hn::Load(k_lanes, p[0] + i), hn::Load(k_lanes, p[1] + i), hn::Load(k_lanes, p[2] + i)};
-}
-HWY_INLINE Corners load(const double (&p)[3][3][k_batch], std::size_t i) {
-  return {{load(p[0], i), load(p[1], i), load(p[2], i)}};
-}
-HWY_INLINE void store(const V3& v, double (&p)[3][k_batch], std::size_t i) {
-  hn::Store(v.x, k_lanes, p[0] + i);
-  hn::Store(v.y, k_lanes, p[1] + i);
-  hn::Store(v.z, k_lanes, p[2] + i);
-}
-
 HWY_INLINE void prefetch(const Solid& solid, std::uint32_t triangle) {
   const Tree::Corners& corners = solid.tree().corners()[triangle];
   hwy::Prefetch(corners.data());
   hwy::Prefetch(corners.data() + 2);
   hwy::Prefetch(&solid.order(triangle));
-}
-
-/// One lane.
-HWY_INLINE Vector3d point(const double (&p)[3][k_batch], std::size_t lane) {
-  return {p[0][lane], p[1][lane], p[2][lane]};
-}
-HWY_INLINE void put(const Vector3d& x, double (&p)[3][k_batch], std::size_t lane) {
-  for (int k = 0; k < 3; ++k) p[k][lane] = x[k];
 }
 
 /// Up to eight pairs of triangles; lanes beyond the count repeat the last.

@@ -86,19 +86,21 @@ Separation DistanceQuery::distance(const Pose& X_AB, bool warm_start) {
   prepare(X_AB, warm_start);
   detail::DistanceSearch& s = search_;
   s.best = std::numeric_limits<double>::infinity();
-  if (closest_pair_ && detail::try_update(s, *closest_pair_)) s.direction = s.closest.on_b - s.closest.on_a;
+  s.closest.reset();
+  if (closest_pair_) detail::try_update(s, *closest_pair_);
   if (s.best != 0.0) detail::seed_search(s);
   if (s.best != 0.0) detail::find_pair(s, false);
   Separation result;
-  result.has_witnesses = !std::isnan(s.closest.distance);  // NaN: coordinates that overflow
+  const ClosestPoints& closest = detail::points_of(s);
+  result.has_witnesses = !std::isnan(closest.distance);  // NaN: coordinates that overflow
   if (!result.has_witnesses) {
     result.distance = std::numeric_limits<double>::infinity();
     return result;
   }
   closest_pair_ = s.pair;
-  result.distance = s.closest.distance;
-  result.witness_a = s.closest.on_a;
-  result.witness_b = s.closest.on_b;
+  result.distance = closest.distance;
+  result.witness_a = closest.on_a;
+  result.witness_b = closest.on_b;
   result.triangle_a = s.a.tree.mesh_triangle()[s.pair.a];
   result.triangle_b = s.b.tree.mesh_triangle()[s.pair.b];
   return result;

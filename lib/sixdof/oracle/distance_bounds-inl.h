@@ -18,14 +18,19 @@
 // one child per SIMD lane.
 //
 // N is the frame of the expanded node's tree, F that of the fixed volume's tree, both with the origin at the tree's
-// centre. w is a unit vector from the body of N to the body of F. Each bound is a separating-axis bound, the gap
-// between the projections on an axis, or the distance of two axis-aligned boxes:
-//   - axis w, the direction between the closest points so far: on smooth surfaces it is close to the normals of all
-//     pairs that are nearly as close, so the children's slabs make the bound tight;
-//   - boxes in N, and boxes in F;
+// centre. w is a unit vector from the body of N to the body of F. Each bound is a separating-axis bound: the gap
+// between the projections of both volumes on an axis,
+//   - w, the direction between the closest points so far: on smooth surfaces it is close to the normals of all pairs
+//     that are nearly as close;
+//   - the line through the centres of the boxes: it turns with a pair that lies aside of the closest points, as the
+//     direction between its own closest points does;
 //   - the normals of the slabs;
-//   - the line through the centres;
+//   - the axes of N and of F;
 //   - where volumes cross (CrossAxesUse), the nine axes across an axis of N and one of F.
+// A volume's projection is bounded by its box, and by its slab for the part of the axis along the slab's normal and its
+// box for the rest (Reach). On a smooth surface the second shrinks with the square of the volume's size where the axis
+// is close to its normal, the first only linearly.
+//
 // Bounds are floats; Slack lowers them by more than their rounding, so they are bounds on every instruction set. The
 // answer does not depend on which bounds were computed: it is the smallest of triangle_triangle_distance() over all
 // pairs.
@@ -94,51 +99,129 @@ struct Frames {
   }
 };
 
-/// The fixed volume in both frames.
+HWY_INLINE V dot_fused(const V (&x)[3], const V (&y)[3]) {
+  return hn::MulAdd(x[2], y[2], hn::MulAdd(x[1], y[1], hn::Mul(x[0], y[0])));
+}
+
+/// How far volumes reach from the centres of their boxes along an axis x and against it.
+struct Reach {
+  V up, down;
+
+  /// @param box, rest half widths along x of the box, and along x - (normal . x) normal
+  /// @param along normal . x
+  /// @param slab_lower, slab_upper of the slab, from the centre of the box
+  HWY_INLINE Reach(V box, V rest, V along, V slab_lower, V slab_upper) {
+    const V to_lower = hn::Mul(along, slab_lower), to_upper = hn::Mul(along, slab_upper);
+    up = hn::Min(box, hn::Add(rest, hn::Max(to_lower, to_upper)));
+    down = hn::Min(box, hn::Sub(rest, hn::Min(to_lower, to_upper)));
+  }
+};
+
+/// The fixed volume.
 struct FixedVolume {
-  float center[3];        // of the box, in N
-  float axis[3][3];       // axis[k]: half extent along F's axis k, in N
-  float half[3];          // half extents of the axis-aligned box around it in N
-  float center_fixed[3];  // in F
-  float half_fixed[3];    // in F
-  float normal[3];        // of the slab, in N
-  float slab_lower;
+  float center[3];          // of the box, in N
+  float axis[3][3];         // axis[k]: half extent along F's axis k, in N
+  float half[3];            // half extents of the axis-aligned box around it in N
+  float half_fixed[3];      // half extents in F
+  float normal[3];          // of the slab, in N
+  float normal_on_axis[3];  // normal . axis[k]
+  float slab_lower;         // from the centre of the box
   float slab_upper;
   float least_along;  // smallest p . w over the volume, p in F
 
   FixedVolume(const Tree::Volume& v, const Frame& f) {
+    float center_fixed[3];
+    float on_normal = 0.0f;  // the centre of the box
     for (std::size_t k = 0; k < 3; ++k) {
       center_fixed[k] = 0.5f * (v.lower[k] + v.upper[k]);
       half_fixed[k] = 0.5f * (v.upper[k] - v.lower[k]);
+      normal_on_axis[k] = v.normal[k] * half_fixed[k];
+      on_normal += v.normal[k] * center_fixed[k];
     }
-    float normal_shift = 0.0f;
+    slab_lower = v.slab_lower - on_normal;
+    slab_upper = v.slab_upper - on_normal;
     for (std::size_t i = 0; i < 3; ++i) {
       const float* r = f.rotation[i];
       center[i] = f.translation[i] + r[0] * center_fixed[0] + r[1] * center_fixed[1] + r[2] * center_fixed[2];
       normal[i] = r[0] * v.normal[0] + r[1] * v.normal[1] + r[2] * v.normal[2];
-      normal_shift += normal[i] * f.translation[i];
       half[i] = 0.0f;
       for (std::size_t k = 0; k < 3; ++k) {
         axis[k][i] = r[k] * half_fixed[k];
         half[i] += std::abs(axis[k][i]);
       }
     }
-    slab_lower = v.slab_lower + normal_shift;
-    slab_upper = v.slab_upper + normal_shift;
-
-    // The larger of two bounds: p . w over the box; and its part along the slab's normal over the slab, the rest over
-    // the box.
+    // As Reach, but from the origin: the rounding of the slab's distance from the centre of the box would blur layers.
     const float* w = f.direction_fixed;
     const float along = w[0] * v.normal[0] + w[1] * v.normal[1] + w[2] * v.normal[2];
     float over_box = 0.0f;
-    float over_rest = 0.0f;
+    float over_rest = std::min(along * v.slab_lower, along * v.slab_upper);
     for (std::size_t k = 0; k < 3; ++k) {
       over_box += w[k] * center_fixed[k] - std::abs(w[k]) * half_fixed[k];
       const float rest = w[k] - along * v.normal[k];
       over_rest += rest * center_fixed[k] - std::abs(rest) * half_fixed[k];
     }
-    over_rest += std::min(along * v.slab_lower, along * v.slab_upper);
     least_along = std::max(over_box, over_rest);
+  }
+
+  /// @param along normal . x
+  HWY_INLINE Reach reach(const V (&x)[3], V along) const {
+    V box = hn::Zero(k_lanes);
+    V rest = hn::Zero(k_lanes);
+    for (std::size_t k = 0; k < 3; ++k) {
+      V on_axis = hn::Zero(k_lanes);
+      for (std::size_t j = 0; j < 3; ++j) on_axis = hn::MulAdd(set(axis[k][j]), x[j], on_axis);
+      box = hn::Add(box, hn::Abs(on_axis));
+      rest = hn::Add(rest, hn::Abs(hn::NegMulAdd(along, set(normal_on_axis[k]), on_axis)));
+    }
+    return {box, rest, along, set(slab_lower), set(slab_upper)};
+  }
+};
+
+/// Children i, i + 1, ... of the expanded node, in N.
+struct ChildVolumes {
+  V center[3], half[3];      // of the boxes
+  V normal[3];               // of the slabs
+  V slab_lower, slab_upper;  // from the origin
+  V below, above;            // from the centres of the boxes
+
+  HWY_INLINE ChildVolumes(const Tree::Node& node, std::size_t i) {
+    V on_normal = hn::Zero(k_lanes);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V lower = load(node.lower[k] + i);
+      const V upper = load(node.upper[k] + i);
+      center[k] = hn::Mul(set(0.5f), hn::Add(lower, upper));
+      half[k] = hn::Mul(set(0.5f), hn::Sub(upper, lower));
+      normal[k] = load(node.normal[k] + i);
+      on_normal = hn::MulAdd(normal[k], center[k], on_normal);
+    }
+    slab_lower = load(node.slab_lower + i);
+    slab_upper = load(node.slab_upper + i);
+    below = hn::Sub(slab_lower, on_normal);
+    above = hn::Sub(slab_upper, on_normal);
+  }
+
+  /// The largest p . w over the volumes: as reach(), but from the origin.
+  HWY_INLINE V greatest_along(const V (&w)[3]) const {
+    const V along = dot_fused(w, normal);
+    V over_box = hn::Zero(k_lanes);
+    V over_rest = hn::Max(hn::Mul(along, slab_lower), hn::Mul(along, slab_upper));
+    for (std::size_t k = 0; k < 3; ++k) {
+      over_box = hn::MulAdd(w[k], center[k], hn::MulAdd(hn::Abs(w[k]), half[k], over_box));
+      const V rest = hn::NegMulAdd(along, normal[k], w[k]);
+      over_rest = hn::MulAdd(rest, center[k], hn::MulAdd(hn::Abs(rest), half[k], over_rest));
+    }
+    return hn::Min(over_box, over_rest);
+  }
+
+  /// @param along normal . x
+  HWY_INLINE Reach reach(const V (&x)[3], V along) const {
+    V box = hn::Zero(k_lanes);
+    V rest = hn::Zero(k_lanes);
+    for (std::size_t k = 0; k < 3; ++k) {
+      box = hn::MulAdd(hn::Abs(x[k]), half[k], box);
+      rest = hn::MulAdd(hn::Abs(hn::NegMulAdd(along, normal[k], x[k])), half[k], rest);
+    }
+    return {box, rest, along, below, above};
   }
 };
 
@@ -147,106 +230,52 @@ struct FixedVolume {
 HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const FixedVolume& fixed, const Frame& f,
                                         const Slack& slack, float best, float* HWY_RESTRICT bounds) {
   std::uint32_t kept = 0;
-  const V half = set(0.5f);
-  const V zero = hn::Zero(k_lanes);
+  const V w[3] = {set(f.direction[0]), set(f.direction[1]), set(f.direction[2])};
+  const V normal_fixed[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
+  const V least_along =
+      set(static_cast<float>(static_cast<double>(fixed.least_along) + f.translation_along) - slack.local);
+  const auto all_exceed_best = [&](V bound) { return hn::AllTrue(k_lanes, hn::Gt(bound, set(best))); };
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    V c[3], e[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const V lower = load(node.lower[k] + i);
-      const V upper = load(node.upper[k] + i);
-      c[k] = hn::Mul(half, hn::Add(lower, upper));
-      e[k] = hn::Mul(half, hn::Sub(upper, lower));
-    }
-    const V n[3] = {load(node.normal[0] + i), load(node.normal[1] + i), load(node.normal[2] + i)};
-    const V slab_lower = load(node.slab_lower + i);
-    const V slab_upper = load(node.slab_upper + i);
+    const ChildVolumes child(node, i);
+    const V gap_along = hn::Sub(least_along, child.greatest_along(w));
+    if (all_exceed_best(gap_along)) continue;
 
-    // Axis w: the children's largest p . w, bounded as in FixedVolume.
-    V along = zero;
-    V over_box = zero;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const V w = set(f.direction[k]);
-      along = hn::MulAdd(w, n[k], along);
-      over_box = hn::MulAdd(w, c[k], hn::MulAdd(hn::Abs(w), e[k], over_box));
-    }
-    V over_rest = hn::Max(hn::Mul(along, slab_lower), hn::Mul(along, slab_upper));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const V rest = hn::NegMulAdd(along, n[k], set(f.direction[k]));
-      over_rest = hn::MulAdd(rest, c[k], hn::MulAdd(hn::Abs(rest), e[k], over_rest));
-    }
-    const V gap_along =
-        hn::Sub(set(static_cast<float>(static_cast<double>(fixed.least_along) + f.translation_along) - slack.local),
-                hn::Min(over_box, over_rest));
-
-    // Boxes in N.
+    // Axes of N and F. m: from the children's centres to the fixed volume's.
     V m[3];
-    V widest = set(-Tree::k_empty);
-    V squared = zero;
+    V gap = set(-Tree::k_empty);
     for (std::size_t k = 0; k < 3; ++k) {
-      m[k] = hn::Sub(set(fixed.center[k]), c[k]);
-      const V gap = hn::Sub(hn::Abs(m[k]), hn::Add(e[k], set(fixed.half[k])));
-      widest = hn::Max(widest, gap);
-      const V positive = hn::Max(gap, zero);
-      squared = hn::MulAdd(positive, positive, squared);
+      m[k] = hn::Sub(set(fixed.center[k]), child.center[k]);
+      gap = hn::Max(gap, hn::Sub(hn::Abs(m[k]), hn::Add(child.half[k], set(fixed.half[k]))));
     }
-    // Boxes in F: m and e rotated back.
-    V widest_fixed = set(-Tree::k_empty);
-    V squared_fixed = zero;
     for (std::size_t k = 0; k < 3; ++k) {
-      V center = zero;
+      V middle = hn::Zero(k_lanes);
       V extent = set(fixed.half_fixed[k]);
       for (std::size_t j = 0; j < 3; ++j) {
         const V r = set(f.rotation[j][k]);
-        center = hn::MulAdd(r, m[j], center);
-        extent = hn::MulAdd(hn::Abs(r), e[j], extent);
+        middle = hn::MulAdd(r, m[j], middle);
+        extent = hn::MulAdd(hn::Abs(r), child.half[j], extent);
       }
-      const V gap = hn::Sub(hn::Abs(center), extent);
-      widest_fixed = hn::Max(widest_fixed, gap);
-      const V positive = hn::Max(gap, zero);
-      squared_fixed = hn::MulAdd(positive, positive, squared_fixed);
+      gap = hn::Max(gap, hn::Sub(hn::Abs(middle), extent));
     }
-    V gap = hn::Max(widest, widest_fixed);
-    gap = hn::Max(gap, hn::Sub(hn::Sqrt(hn::Max(squared, squared_fixed)),
-                               hn::IfThenZeroElse(hn::Gt(gap, zero), set(Tree::k_empty))));
 
-    // The fixed volume's slab.
-    {
-      V middle = zero;
-      V radius = zero;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const V axis = set(fixed.normal[k]);
-        middle = hn::MulAdd(axis, c[k], middle);
-        radius = hn::MulAdd(hn::Abs(axis), e[k], radius);
-      }
-      const V above = hn::Sub(hn::Sub(middle, radius), set(fixed.slab_upper));
-      const V below = hn::Sub(set(fixed.slab_lower), hn::Add(middle, radius));
-      gap = hn::Max(gap, hn::Max(above, below));
-    }
-    // The children's slabs, and the line through the centres.
-    V middle = zero;
-    V length2 = zero;
-    V reach = zero;
-    for (std::size_t k = 0; k < 3; ++k) {
-      middle = hn::MulAdd(n[k], set(fixed.center[k]), middle);
-      length2 = hn::MulAdd(m[k], m[k], length2);
-      reach = hn::MulAdd(hn::Abs(m[k]), e[k], reach);
-    }
-    V radius = zero;
-    for (std::size_t k = 0; k < 3; ++k) {
-      V on_normal = zero;
-      V on_line = zero;
-      for (std::size_t j = 0; j < 3; ++j) {
-        const V axis = set(fixed.axis[k][j]);
-        on_normal = hn::MulAdd(axis, n[j], on_normal);
-        on_line = hn::MulAdd(axis, m[j], on_line);
-      }
-      radius = hn::Add(radius, hn::Abs(on_normal));
-      reach = hn::Add(reach, hn::Abs(on_line));
-    }
-    gap = hn::Max(gap,
-                  hn::Max(hn::Sub(hn::Sub(middle, radius), slab_upper), hn::Sub(slab_lower, hn::Add(middle, radius))));
-    const V length = hn::Sqrt(hn::Max(length2, set(k_smallest_square)));
-    gap = hn::Max(gap, hn::Sub(length, hn::Div(reach, length)));
+    // The line through the centres.
+    const V squared = dot_fused(m, m);
+    const V inverse = hn::Div(set(1.0f), hn::Sqrt(hn::Max(squared, set(k_smallest_square))));
+    const V u[3] = {hn::Mul(m[0], inverse), hn::Mul(m[1], inverse), hn::Mul(m[2], inverse)};
+    const Reach own = child.reach(u, dot_fused(u, child.normal)), other = fixed.reach(u, dot_fused(u, normal_fixed));
+    gap = hn::Max(gap, hn::Sub(hn::Mul(squared, inverse), hn::Add(own.up, other.down)));
+    if (all_exceed_best(hn::Max(gap_along, hn::Sub(gap, set(slack.all))))) continue;
+
+    // Normals of the slabs.
+    const V normals = dot_fused(normal_fixed, child.normal);
+    const V on_child = dot_fused(child.normal, m);
+    const V on_fixed = dot_fused(normal_fixed, m);
+    const Reach of_fixed = fixed.reach(child.normal, normals);
+    const Reach of_child = child.reach(normal_fixed, normals);
+    gap = hn::Max(gap, hn::Sub(hn::Sub(on_child, of_fixed.down), child.above));
+    gap = hn::Max(gap, hn::Sub(child.below, hn::Add(on_child, of_fixed.up)));
+    gap = hn::Max(gap, hn::Sub(hn::Add(on_fixed, set(fixed.slab_lower)), of_child.up));
+    gap = hn::Max(gap, hn::Sub(hn::Neg(hn::Add(on_fixed, set(fixed.slab_upper))), of_child.down));
 
     const V bound = hn::Max(gap_along, hn::Sub(gap, set(slack.all)));
     hn::Store(bound, k_lanes, bounds + i);

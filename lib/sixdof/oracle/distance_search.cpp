@@ -1,11 +1,15 @@
 #include <sixdof/oracle/distance_search.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include <Eigen/Geometry>
+
+#include <sixdof/oracle/triangle_distances.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/distance_search.cpp"
@@ -82,13 +86,15 @@ constexpr float k_thick = 4.0f;
 /// Where doubles may prune more but are not the only way, they are used only after as many such pairs in a search. Most
 /// searches have fewer, and to bound a pair again takes as long as to expand it.
 constexpr std::uint64_t k_patience_with_thick = 256;
-constexpr std::uint64_t k_patience_with_doubtful = 2048;
+constexpr std::uint64_t k_patience_with_doubtful = 1024;
 constexpr std::uint64_t k_patience_with_touching = 256;  // for intersections, exact tests of triangles are spared, too
 
 /// And, in long searches, with a node whose size is less than its own divided by this.
 constexpr float k_unlike = 8.0f;
 /// A search is long after as many pairs of leaves.
 constexpr std::uint64_t k_patience_with_leaves = 4096;
+/// After as many exact distances of triangles their gap along the normals is asked first. Most searches need fewer.
+constexpr std::uint64_t k_patience_with_triangles = 256;
 /// Axes across two boxes, and across two triangles, which are measured exactly otherwise.
 constexpr CrossAxesUse k_use_of_cross_axes(0.125);
 constexpr CrossAxesUse k_use_of_cross_edges(0.03);
@@ -131,9 +137,14 @@ class DistanceTraversal final : private CloseVisitor {
     std::vector<NodePair>& rest = search_.deferred;
     std::erase_if(rest, [this](const NodePair& x) { return x.lower > best_; });
     std::sort(rest.begin(), rest.end(), [](const NodePair& x, const NodePair& y) { return x.lower < y.lower; });
-    for (const NodePair& x : rest) {
-      if (x.lower > best_) return false;
-      if (measure(triangles_of(x))) return true;
+    for (std::size_t first = 0; first < rest.size();) {
+      std::array<TrianglePair, TriangleDistances::k_most> next;
+      std::size_t count = 0;
+      for (; first < rest.size() && count < next.size() && rest[first].lower <= best_; ++first) {
+        next[count++] = triangles_of(rest[first]);
+      }
+      if (count == 0) return false;
+      if (measure(std::span(next).first(count))) return true;
     }
     return false;
   }
@@ -217,24 +228,50 @@ class DistanceTraversal final : private CloseVisitor {
   bool prune_volumes(std::uint32_t a, std::uint32_t b) override {
     return tie_pruning_ == TiePruning::planes && prune_by_planes({a, b, 0.0f});
   }
-  bool visit_triangles(TrianglePair pair) override { return measure(pair); }
+  bool visit_triangles(TrianglePair pair) override { return measure({&pair, 1}); }
   void count_expansion() override { ++search_.counts.nodes; }
 
-  /// Tests two triangles exactly. Returns true if they intersect.
-  bool measure(TrianglePair pair) {
-    if (prune(node_pair(pair, 0.0f), gap_of(search_, pair))) return false;
-    ++search_.counts.triangles;
-    if (only_intersection_) {
-      if (!intersects(search_, pair)) return false;
+  /// Tests pairs of triangles exactly, up to TriangleDistances::k_most. Returns true if one intersects.
+  bool measure(std::span<const TrianglePair> pairs) {
+    std::array<TrianglePair, TriangleDistances::k_most> left;
+    std::size_t count = 0;
+    for (const TrianglePair pair : pairs) {
+      if (!prune_by_gap(pair)) left[count++] = pair;
+    }
+    search_.counts.triangles += count;
+    const std::span<const TrianglePair> rest = std::span(left).first(count);
+    if (only_intersection_) return test_intersections(rest);
+    const bool closer = count > 1 ? measure_several(rest) : count == 1 && try_update(search_, rest[0]);
+    if (!closer) return false;
+    if (search_.best == 0.0) return true;
+    frames_.set_direction(search_.direction);
+    set_best();
+    return false;
+  }
+
+  /// Returns whether the distance decreased.
+  HWY_NOINLINE bool measure_several(std::span<const TrianglePair> pairs) {
+    TriangleDistances several;
+    for (const TrianglePair& pair : pairs) several.add(tree_a_.corners()[pair.a], corners_of_b(search_, pair.b));
+    several.measure();
+    bool closer = false;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (!several.is_measured(i)) {
+        closer |= try_update(search_, pairs[i]);
+      } else if (try_update(search_, pairs[i], several.distance(i))) {
+        search_.direction = several.direction(i);
+        closer = true;
+      }
+    }
+    return closer;
+  }
+
+  bool test_intersections(std::span<const TrianglePair> pairs) {
+    for (const TrianglePair pair : pairs) {
+      if (!intersects(search_, pair)) continue;
       search_.found = true;
       search_.pair = pair;
       return true;
-    }
-    if (try_update(search_, pair)) {
-      if (search_.best == 0.0) return true;
-      search_.direction = search_.closest.on_b - search_.closest.on_a;
-      frames_.set_direction(search_.direction);
-      set_best();
     }
     return false;
   }
@@ -245,26 +282,43 @@ class DistanceTraversal final : private CloseVisitor {
     const Tree::Leaf& leaf_b = leaf_of(tree_b_, leaves.b);
     LeafPair pairs;
     if (!bound_pairs(leaf_a, leaf_b, pairs)) return false;
-    // Pairs that improve on the best for certain, or may intersect, are measured now, the smallest upper bound first.
+    // Pairs that improve on the best for certain, or may intersect, are measured now, the smallest upper bounds first.
     // The others are deferred: most of them are pruned later. Between coplanar patches pairs at the distance of the
-    // best count as improving, as the first exact distance shows that the rest tie.
+    // best count as improving, one at a time, as the first exact distance shows that the rest tie.
     const bool coplanar = plane_of(search_.a.patches, leaves.a) && plane_of(search_.b.patches, leaves.b);
-    const float improving = coplanar ? best_ + frames_.slack.all : best_;
-    for (;;) {
-      std::uint32_t next = LeafPair::k_pairs;
-      for (std::uint32_t i = 0; i < leaf_a.child.count(); ++i) {
-        for (std::uint32_t j = 0; j < leaf_b.child.count(); ++j) {
-          const std::uint32_t lane = k_leaf * i + j;
-          if (pairs.lower[lane] > best_ || (pairs.lower[lane] > 0.0f && pairs.upper[lane] >= improving)) continue;
-          if (next == LeafPair::k_pairs || pairs.upper[lane] < pairs.upper[next]) next = lane;
-        }
-      }
-      if (next == LeafPair::k_pairs) break;
-      pairs.lower[next] = Tree::k_empty;
-      if (measure({leaf_a.child.first() + next / k_leaf, leaf_b.child.first() + next % k_leaf})) return true;
+    while (true) {
+      std::array<TrianglePair, TriangleDistances::k_most> next;
+      const float improving = coplanar ? best_ + frames_.slack.all : best_;
+      const std::span<TrianglePair> most = std::span(next).first(coplanar ? 1 : next.size());
+      const std::span<TrianglePair> taken = take_improving(leaf_a, leaf_b, pairs, improving, most);
+      if (taken.empty()) break;
+      if (measure(taken)) return true;
     }
     for_each_kept(leaf_a, leaf_b, pairs, [this](const NodePair& pair) { search_.deferred.push_back(pair); });
     return false;
+  }
+
+  /// Moves the pairs with the smallest upper bounds, of those that may intersect or are below `improving`, from `pairs`
+  /// to `taken` as far as there is space. Returns them.
+  std::span<TrianglePair> take_improving(const Tree::Leaf& leaf_a, const Tree::Leaf& leaf_b, LeafPair& pairs,
+                                         float improving, std::span<TrianglePair> taken) const {
+    std::size_t count = 0;
+    std::array<std::uint32_t, LeafPair::k_pairs> lanes;
+    for (std::uint32_t i = 0; i < leaf_a.child.count(); ++i) {
+      for (std::uint32_t j = 0; j < leaf_b.child.count(); ++j) {
+        const std::uint32_t lane = k_leaf * i + j;
+        if (pairs.lower[lane] > best_ || (pairs.lower[lane] > 0.0f && pairs.upper[lane] >= improving)) continue;
+        std::size_t at = count++;
+        for (; at > 0 && pairs.upper[lanes[at - 1]] > pairs.upper[lane]; --at) lanes[at] = lanes[at - 1];
+        lanes[at] = lane;
+      }
+    }
+    taken = taken.first(std::min(count, taken.size()));
+    for (std::size_t k = 0; k < taken.size(); ++k) {
+      taken[k] = {leaf_a.child.first() + lanes[k] / k_leaf, leaf_b.child.first() + lanes[k] % k_leaf};
+      pairs.lower[lanes[k]] = Tree::k_empty;
+    }
+    return taken;
   }
 
   /// Lower bounds for all pairs of triangles of two leaves. Returns false if all are above the best.
@@ -351,6 +405,14 @@ class DistanceTraversal final : private CloseVisitor {
     return true;
   }
 
+  /// The same by the planes of two triangles, where it may be a tie or spare an exact test of an intersection; and in
+  /// long searches.
+  bool prune_by_gap(TrianglePair pair) {
+    const bool is_asked =
+        only_intersection_ || search_.ties.margin > 0.0 || search_.counts.triangles > k_patience_with_triangles;
+    return is_asked && prune(node_pair(pair, 0.0f), gap_of(search_, pair));
+  }
+
   HWY_INLINE bool prune_by_planes(const NodePair& pair) { return has_planes_ && prune_by_their_planes(pair); }
 
   HWY_NOINLINE bool prune_by_their_planes(const NodePair& pair) {
@@ -401,7 +463,7 @@ class DistanceTraversal final : private CloseVisitor {
     if (first.uncertain < first.rank) return false;
     if (std::pair(first.pair.a, first.pair.b) != std::pair(search_.pair.a, search_.pair.b)) {
       search_.pair = first.pair;
-      search_.closest = distance_of(search_, first.pair);
+      search_.closest.reset();
     }
     return true;
   }
@@ -461,14 +523,11 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sixdof::detail {
-namespace {
 
 TriangleCorners corners_of_b(const DistanceSearch& search, std::uint32_t triangle) {
   const Tree::Corners& corners = search.b.tree.corners()[triangle];
   return {search.X_AB * corners[0], search.X_AB * corners[1], search.X_AB * corners[2]};
 }
-
-}  // namespace
 
 HWY_EXPORT(find_pair);
 
@@ -506,17 +565,29 @@ bool intersects(const DistanceSearch& search, TrianglePair pair) {
   return triangles_intersect(search.a.tree.corners()[pair.a], corners_of_b(search, pair.b));
 }
 
-bool try_update(DistanceSearch& search, TrianglePair pair) {
-  const ClosestPoints closest = distance_of(search, pair);
-  if (closest.distance > search.best + search.ties.width) return false;
-  search.measured.push_back({pair, closest.distance});
-  if (closest.distance > search.best || (search.found && closest.distance == search.best)) return false;
-  const bool closer = closest.distance < search.best;
-  search.best = closest.distance;
+bool try_update(DistanceSearch& search, TrianglePair pair, double distance) {
+  if (distance > search.best + search.ties.width) return false;
+  search.measured.push_back({pair, distance});
+  if (distance > search.best || (search.found && distance == search.best)) return false;
+  const bool closer = distance < search.best;
+  search.best = distance;
   search.found = true;
   search.pair = pair;
-  search.closest = closest;
+  search.closest.reset();
   return closer;
+}
+
+bool try_update(DistanceSearch& search, TrianglePair pair) {
+  const ClosestPoints closest = distance_of(search, pair);
+  if (!try_update(search, pair, closest.distance)) return false;
+  search.closest = closest;
+  search.direction = closest.on_b - closest.on_a;
+  return true;
+}
+
+const ClosestPoints& points_of(DistanceSearch& search) {
+  if (!search.closest) search.closest = distance_of(search, search.pair);
+  return *search.closest;
 }
 
 float smallest_leaf_of(const Tree& tree) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -105,9 +106,9 @@ struct DistanceSearch {
   Pose X_AB;
   TieWindow ties;
   double best = std::numeric_limits<double>::infinity();  ///< The smallest distance found.
-  bool found = false;                                     ///< `pair` and `closest` are set.
+  bool found = false;                                     ///< `pair` is set.
   TrianglePair pair;
-  ClosestPoints closest;
+  std::optional<ClosestPoints> closest;                 ///< Of `pair`, if they are known: see points_of().
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< Guess of the direction from A to B at the closest points.
   TraversalCounts counts;
   std::vector<MeasuredPair> measured;  ///< Those not above best + ties.width, as best was then.
@@ -118,14 +119,24 @@ struct DistanceSearch {
   std::vector<ClosePair> close;        ///< Scratch.
 };
 
-/// Measures one pair exactly and keeps it if it is closer. Returns whether the distance decreased.
+/// Measures one pair exactly and keeps it if it is closer. Then sets `direction`, too, and returns true.
 bool try_update(DistanceSearch& search, TrianglePair pair);
+
+/// Keeps a pair if it is closer. Returns whether the distance decreased.
+/// @param distance triangle_triangle_distance()
+bool try_update(DistanceSearch& search, TrianglePair pair, double distance);
+
+/// Corners of one of B's triangles in A's frame.
+TriangleCorners corners_of_b(const DistanceSearch& search, std::uint32_t triangle);
 
 /// Exact distance of one pair, a lower bound on it (triangle_gap()), the exact intersection test, and the pair's rank.
 ClosestPoints distance_of(const DistanceSearch& search, TrianglePair pair);
 double gap_of(const DistanceSearch& search, TrianglePair pair);
 bool intersects(const DistanceSearch& search, TrianglePair pair);
 Rank rank_of(const DistanceSearch& search, TrianglePair pair);
+
+/// The closest points of search.pair; computed if they are not known.
+const ClosestPoints& points_of(DistanceSearch& search);
 
 /// Calls try_update() for one pair that is probably close: starts at the closest pair of seed corners and alternately
 /// searches the corner of one mesh that is closest to that of the other. Does nothing if a pair closer than the seed

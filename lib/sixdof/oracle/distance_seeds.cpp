@@ -159,7 +159,7 @@ void seed_search(DistanceSearch& search) {
   }
   const TrianglePair pair{search.a.tree.leaves()[a.leaf].child.first() + a.triangle,
                           search.b.tree.leaves()[b.leaf].child.first() + b.triangle};
-  if (try_update(search, pair)) search.direction = search.closest.on_b - search.closest.on_a;
+  try_update(search, pair);
 }
 
 }  // namespace HWY_NAMESPACE

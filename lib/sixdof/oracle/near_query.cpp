@@ -32,12 +32,14 @@ std::optional<double> NearQuery::distance(const PreparedMesh& a, const PreparedM
   return with_search(a, b, X_AB, [&](detail::DistanceSearch& s) -> std::optional<double> {
     // The answer may exceed the smallest distance by the width of ties.
     s.best = limit + s.ties.width;
-    if (hint.known() && detail::try_update(s, hint.triangles)) s.direction = s.closest.on_b - s.closest.on_a;
+    if (hint.known()) detail::try_update(s, hint.triangles);
     if (!s.found && std::isinf(limit)) detail::seed_search(s);
     if (!(s.found && s.best == 0.0)) detail::find_pair(s, false);
-    if (!s.found || !(s.closest.distance <= limit)) return std::nullopt;
+    if (!s.found) return std::nullopt;
+    const double distance = detail::points_of(s).distance;
+    if (!(distance <= limit)) return std::nullopt;
     hint.triangles = s.pair;
-    return s.closest.distance;
+    return distance;
   });
 }
 

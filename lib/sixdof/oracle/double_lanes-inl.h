@@ -1,0 +1,86 @@
+// Part of crossing_lanes-inl.h and triangle_distances.cpp: eight pairs of triangles, one per SIMD lane, in
+// doubles. Taken once per instruction set: the guard is Highway's for that.
+#if defined(SIXDOF_ORACLE_DOUBLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIXDOF_ORACLE_DOUBLE_LANES_INL_H_
+#undef SIXDOF_ORACLE_DOUBLE_LANES_INL_H_
+#else
+#define SIXDOF_ORACLE_DOUBLE_LANES_INL_H_
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include <hwy/highway.h>
+
+// No multiplication is fused, so every instruction set finds the same bits.
+
+HWY_BEFORE_NAMESPACE();
+namespace sixdof::double_lanes {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t k_batch = 8;  ///< Pairs.
+
+/// Where a vector holds fewer lanes, loops take several.
+using Lanes = hn::CappedTag<double, k_batch>;
+using V = hn::Vec<Lanes>;
+using M = hn::Mask<Lanes>;
+constexpr Lanes k_lanes;
+
+HWY_INLINE V set(double x) { return hn::Set(k_lanes, x); }
+HWY_INLINE M no_lane() { return hn::Lt(hn::Zero(k_lanes), hn::Zero(k_lanes)); }
+
+/// The bits of the lanes of `mask`, from bit `i` on.
+HWY_INLINE std::uint32_t bits_of(M mask, std::size_t i) {
+  HWY_ALIGN std::uint8_t stored[8] = {};  // as many as StoreMaskBits may write
+  hn::StoreMaskBits(k_lanes, mask, stored);
+  return static_cast<std::uint32_t>(stored[0]) << i;
+}
+
+struct V3 {
+  V x, y, z;
+};
+
+HWY_INLINE V3 operator-(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
+HWY_INLINE V3 operator+(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
+HWY_INLINE V3 operator*(V s, const V3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
+HWY_INLINE V3 abs(const V3& a) { return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)}; }
+HWY_INLINE V select(M mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
+HWY_INLINE V3 select(M mask, const V3& yes, const V3& no) {
+  return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
+}
+
+HWY_INLINE V3 load(const double (&p)[3][k_batch], std::size_t i) {
+  return {hn::Load(k_lanes, p[0] + i), hn::Load(k_lanes, p[1] + i), hn::Load(k_lanes, p[2] + i)};
+}
+HWY_INLINE void store(const V3& v, double (&p)[3][k_batch], std::size_t i) {
+  hn::Store(v.x, k_lanes, p[0] + i);
+  hn::Store(v.y, k_lanes, p[1] + i);
+  hn::Store(v.z, k_lanes, p[2] + i);
+}
+
+/// One lane.
+HWY_INLINE Eigen::Vector3d point(const double (&p)[3][k_batch], std::size_t lane) {
+  return {p[0][lane], p[1][lane], p[2][lane]};
+}
+HWY_INLINE void put(const Eigen::Vector3d& x, double (&p)[3][k_batch], std::size_t lane) {
+  for (int k = 0; k < 3; ++k) p[k][lane] = x[k];
+}
+
+/// Corners of one body's triangle of each pair.
+struct Corners {
+  V3 corner[3];
+};
+
+HWY_INLINE Corners load(const double (&p)[3][3][k_batch], std::size_t i) {
+  return {{load(p[0], i), load(p[1], i), load(p[2], i)}};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sixdof::double_lanes
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard per instruction set
