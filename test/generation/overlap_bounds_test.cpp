@@ -114,18 +114,23 @@ struct BoundedRay {
   }
 };
 
-/// Compares slopes and volumes in an interval with their bounds. Returns the excess of the peak over the largest
-/// volume.
-double expect_bounded(const BoundedRay& bounded, double outer_s, double inner_s) {
-  SweptCandidates swept;
-  // The interval is a part of the displacement for which candidates are collected.
+/// Compares slopes and volumes in an interval with their bounds by leaves or by triangles. Returns the excess of the
+/// peak over the largest volume.
+double expect_bounded(const BoundedRay& bounded, SlopeBounds::Items items, double outer_s, double inner_s) {
+  std::vector<SweptPair> swept;
+  // The interval is a part of the displacement for which pairs of leaves are collected.
   const double margin = 0.3 * (outer_s - inner_s);
   const double begin = outer_s + margin, length = outer_s - inner_s + 2.0 * margin;
   CandidateScratch scratch;
-  find_swept_candidates(bounded.tree_a, bounded.tree_b, bounded.ray.pose(begin), -length * bounded.ray.direction,
-                        scratch, swept);
+  find_swept_leaves(bounded.tree_a, bounded.tree_b, bounded.ray.pose(begin), -length * bounded.ray.direction, scratch,
+                    swept);
+  if (items == SlopeBounds::Items::triangles) {
+    const std::vector<SweptPair> leaves = swept;
+    find_swept_triangles(bounded.tree_a, bounded.tree_b, bounded.ray.pose(begin), -length * bounded.ray.direction,
+                         leaves, swept);
+  }
   const OverlapMeasurement outer = bounded.measure(outer_s), inner = bounded.measure(inner_s);
-  SlopeBounds bounds(bounded.areas_a, bounded.areas_b);
+  SlopeBounds bounds(items, bounded.tree_a, bounded.areas_a, bounded.tree_b, bounded.areas_b);
   std::array<SlopeRange, SlopeBounds::k_parts> ranges;
   for (int again = 0; again < 2; ++again) {  // The second call does not depend on the first.
     ranges = bounds.bound(swept, bounded.ray.direction, bounded.ray.R.transpose() * bounded.ray.direction,
@@ -149,6 +154,14 @@ double expect_bounded(const BoundedRay& bounded, double outer_s, double inner_s)
     largest = std::max(largest, measured.volume);
   }
   return peak.volume - std::max(largest, inner.volume);
+}
+
+/// The same by both. Returns the excess by triangles, which is no larger.
+double expect_bounded(const BoundedRay& bounded, double outer_s, double inner_s) {
+  const double by_leaves = expect_bounded(bounded, SlopeBounds::Items::leaves, outer_s, inner_s);
+  const double by_triangles = expect_bounded(bounded, SlopeBounds::Items::triangles, outer_s, inner_s);
+  EXPECT_LE(by_triangles, by_leaves + 1e-5 * bounded.a.volume());
+  return by_triangles;
 }
 
 TEST(SlopeBounds, HoldInEveryDirection) {

@@ -17,7 +17,7 @@ namespace {
 struct Wave {
   double amplitude = 1.0;
   int calls = 0;
-  OverlapMeasurement operator()(double s, double /*outer*/) {
+  OverlapMeasurement operator()(double s) {
     ++calls;
     const double x = 4.0 - s;
     return {
@@ -27,7 +27,7 @@ struct Wave {
 
 /// Bounds that are the same everywhere.
 OverlapMarch::Peak within(double rise, double fall) {
-  return [=](const OverlapMeasurement& outer, const OverlapMeasurement& inner) {
+  return [=](const OverlapMeasurement& outer, const OverlapMeasurement& inner, double) {
     return volume_peak(outer, inner, std::array{SlopeRange{.low = -fall, .high = rise}});
   };
 }
@@ -41,7 +41,7 @@ TEST(OverlapMarch, TakesTheFirstOfSeveralCrossings) {
                        {.resolution = k_resolution, .tolerance = k_tolerance, .first_step = 0.1});
     // The first upward crossing, by steps far below the resolution.
     double expected = 4.0;
-    while (Wave{}(expected, 4.0).volume < target) expected -= 1e-5;
+    while (Wave{}(expected).volume < target) expected -= 1e-5;
     const std::optional<OverlapMeasurement> hit = march.advance(target);
     ASSERT_TRUE(hit);
     EXPECT_NEAR(hit->volume, target, k_tolerance);
@@ -54,7 +54,7 @@ TEST(OverlapMarch, FindsABumpThatItsStepsWouldPassOver) {
   constexpr double k_width = 0.1, k_bump = 0.8, k_target = 1.5, k_tolerance = 1e-9;
   for (int i = 0; i < 12; ++i) {
     const double center = 0.85 + 0.04 * i;
-    const auto bump = [&](double s, double /*outer*/) {
+    const auto bump = [&](double s) {
       const double x = 4.0 - s;
       const double y = std::clamp((x - center) / k_width, -1.0, 1.0);
       const double rest = 1.0 - y * y;
@@ -82,7 +82,7 @@ TEST(OverlapMarch, EndsAtTheCentre) {
 }
 
 TEST(OverlapMarch, RefusesAFunctionThatJumps) {
-  OverlapMarch march([](double s, double) { return OverlapMeasurement{.s = s, .volume = s < 1.0 / 3.0 ? 1.0 : 0.0}; },
+  OverlapMarch march([](double s) { return OverlapMeasurement{.s = s, .volume = s < 1.0 / 3.0 ? 1.0 : 0.0}; },
                      within(1.0, 0.0), 4.0, {.resolution = 1e-3, .tolerance = 1e-9, .first_step = 0.1});
   EXPECT_THROW(march.advance(0.5), Error);
 }

@@ -1,5 +1,6 @@
 #include <sixdof/oracle/candidates.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <random>
@@ -15,44 +16,17 @@
 #include "../geometry/shapes.h"
 #include "bodies.h"
 #include "instruction_sets.h"
+#include "swept_pairs.h"
 
 namespace sixdof {
 namespace {
 
 using Eigen::Vector3d;
+using swept::expect_swept;
+using swept::leaves_of;
+using swept::moved;
 
-Pose moved(const Pose& X_AB, const Vector3d& by) { return {X_AB.R, X_AB.t + by}; }
-
-/// At many fractions of the displacement: the selected pairs give the same bits as the pairs found at that pose.
-/// Returns the number of crossings.
-std::size_t expect_same_overlap(const bodies::Body& a, const bodies::Body& b, const Pose& X_AB,
-                                const Vector3d& displacement) {
-  SweptCandidates swept;
-  CandidateScratch scratch;
-  find_swept_candidates(a.tree, b.tree, X_AB, displacement, scratch, swept);
-  EXPECT_EQ(swept.first.size(), swept.pairs.size());
-  EXPECT_EQ(swept.last.size(), swept.pairs.size());
-  OverlapQuery query(a.solid, b.solid);
-  std::vector<TrianglePair> pairs;
-  std::size_t crossings = 0;
-  constexpr int k_fractions = 23;
-  for (int i = 0; i <= k_fractions; ++i) {
-    const double x = static_cast<double>(i) / k_fractions;
-    const Pose pose = moved(X_AB, x * displacement);
-    const Vector3d reference(0.1, -0.4, 0.2);
-    const Overlap expected = query.evaluate(pose, reference);
-    select_candidates(swept, x, pairs);
-    const Overlap selected = query.evaluate(pose, reference, pairs);
-    EXPECT_EQ(selected.crossings, expected.crossings) << x;
-    EXPECT_EQ(selected.volume, expected.volume) << x;
-    EXPECT_EQ(selected.area, expected.area) << x;
-    EXPECT_EQ(selected.moment, expected.moment) << x;
-    crossings += expected.crossings;
-  }
-  return crossings;
-}
-
-void expect_same_overlap_of_tori() {
+void expect_swept_of_tori() {
   const bodies::Body torus(bodies::bumpy_torus(31, 17));
   const bodies::Body small(bodies::bumpy_torus(13, 9, 0.2, 0.6));
   std::mt19937_64 random(23);
@@ -61,62 +35,73 @@ void expect_same_overlap_of_tori() {
     for (int i = 0; i < 8; ++i) {
       const Pose X_AB = bodies::random_pose(random, 0.5);
       const Vector3d displacement = 0.4 * bodies::random_pose(random, 1.0).R.col(0);
-      crossings += expect_same_overlap(*a, *b, X_AB, displacement);
+      crossings += expect_swept(a->tree, b->tree, X_AB, displacement);
     }
     EXPECT_GT(crossings, 0u);
   }
 }
 
-TEST(SweptCandidates, ContainThePairsOfEveryFractionOnEveryInstructionSet) {
-  for_each_instruction_set(expect_same_overlap_of_tori);
+TEST(SweptPairs, ContainTheCrossingsOfEveryFractionOnEveryInstructionSet) {
+  for_each_instruction_set(expect_swept_of_tori);
 }
 
-TEST(SweptCandidates, ContainThemForDisplacementsAlongFaces) {
+TEST(SweptPairs, ContainThemForDisplacementsAlongFaces) {
   const bodies::Body box(bodies::box({-0.5, -0.3, -0.4}, {0.5, 0.3, 0.4}));
   const bodies::Body other(bodies::box({-0.2, -0.6, -0.1}, {0.3, 0.2, 0.5}, true));
   const Pose X_AB{Eigen::Matrix3d::Identity(), Vector3d(0.25, 0.125, 0.0)};
   for (const Vector3d& displacement : {Vector3d(0.4, 0, 0), Vector3d(0, -0.3, 0), Vector3d(0, 0, 0.2),
                                        Vector3d(-0.2, 0.1, 0), Vector3d(1e-9, 0, 0), Vector3d(0, 0, 0)}) {
-    EXPECT_GT(expect_same_overlap(box, other, X_AB, displacement), 0u);
-    EXPECT_GT(expect_same_overlap(other, box, X_AB, displacement), 0u);
+    EXPECT_GT(expect_swept(box.tree, other.tree, X_AB, displacement), 0u);
+    EXPECT_GT(expect_swept(other.tree, box.tree, X_AB, displacement), 0u);
   }
 }
 
-TEST(SweptCandidates, AreFewAtOneFraction) {
+TEST(SweptPairs, AreFewAtOneFraction) {
   const bodies::Body torus(bodies::bumpy_torus(61, 31));
+  const Tree& tree = torus.tree;
   std::mt19937_64 random(5);
   const Pose X_AB = bodies::random_pose(random, 0.5);
   const Vector3d displacement = 0.3 * Vector3d(2, -1, 1).normalized();
-  SweptCandidates swept;
+  std::vector<SweptPair> of_leaves, of_triangles;
   CandidateScratch scratch;
-  find_swept_candidates(torus.tree, torus.tree, X_AB, displacement, scratch, swept);
-  std::vector<TrianglePair> selected, found;
+  find_swept_leaves(tree, tree, X_AB, displacement, scratch, of_leaves);
+  find_swept_triangles(tree, tree, X_AB, displacement, of_leaves, of_triangles);
+  const std::vector<std::uint32_t> leaves = leaves_of(tree);
   for (const double x : {0.1, 0.4, 0.9}) {
-    select_candidates(swept, x, selected);
-    find_candidates(torus.tree, torus.tree, moved(X_AB, x * displacement), scratch, found);
-    EXPECT_LT(static_cast<double>(selected.size()), 1.2 * static_cast<double>(found.size())) << x;
-    EXPECT_LT(selected.size(), swept.pairs.size());
+    const auto at_x = [&](const SweptPair& pair) {
+      return static_cast<double>(pair.first) <= x && x <= static_cast<double>(pair.last);
+    };
+    std::vector<TrianglePair> found;
+    find_candidates(tree, tree, moved(X_AB, x * displacement), scratch, found);
+    const auto triangles = std::count_if(of_triangles.begin(), of_triangles.end(), at_x);
+    EXPECT_LT(static_cast<double>(triangles), 1.2 * static_cast<double>(found.size())) << x;
+    EXPECT_LT(triangles, static_cast<std::ptrdiff_t>(of_triangles.size()));
+    // Of leaves, boxes and slabs know less.
+    std::set<std::pair<std::uint32_t, std::uint32_t>> leaves_found;
+    for (const TrianglePair& pair : found) leaves_found.emplace(leaves[pair.a], leaves[pair.b]);
+    const auto pairs_of_leaves = static_cast<double>(std::count_if(of_leaves.begin(), of_leaves.end(), at_x));
+    EXPECT_LT(pairs_of_leaves, 4.0 * static_cast<double>(leaves_found.size())) << x;
+    EXPECT_LT(pairs_of_leaves, 0.5 * static_cast<double>(of_leaves.size())) << x;
   }
 }
 
-TEST(SweptCandidates, ComeInTheOrderOfThePairsAtOnePose) {
+TEST(Candidates, ComeInAnOrderThatDependsOnTheTreesAlone) {
   // Large enough for hundreds of pairs of nodes to wait at a time.
   const bodies::Body a(bodies::bumpy_torus(121, 65)), b(bodies::bumpy_torus(91, 47, 0.2, 0.8));
   std::mt19937_64 random(25);
   std::size_t common = 0;
   for (int i = 0; i < 6; ++i) {
     const Pose X_AB = bodies::random_pose(random, 0.4);
-    SweptCandidates swept;
     CandidateScratch scratch;
-    find_swept_candidates(a.tree, b.tree, X_AB, 0.3 * X_AB.R.col(0), scratch, swept);
-    std::vector<TrianglePair> found;
-    find_candidates(a.tree, b.tree, moved(X_AB, 0.15 * X_AB.R.col(0)), scratch, found);
+    std::vector<TrianglePair> before, after;
+    find_candidates(a.tree, b.tree, X_AB, scratch, before);
+    find_candidates(a.tree, b.tree, moved(X_AB, 0.02 * X_AB.R.col(0)), scratch, after);
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> place;
-    for (const TrianglePair& pair : swept.pairs) place.emplace(std::pair(pair.a, pair.b), place.size());
+    for (const TrianglePair& pair : before) place.emplace(std::pair(pair.a, pair.b), place.size());
     std::size_t last = 0;
-    for (const TrianglePair& pair : found) {
+    for (const TrianglePair& pair : after) {
       const auto at = place.find({pair.a, pair.b});
-      if (at == place.end()) continue;  // a candidate at one pose alone, that does not cross
+      if (at == place.end()) continue;
       ASSERT_GE(at->second, last);
       last = at->second;
       ++common;
@@ -158,7 +143,7 @@ void expect_all_crossings_of_rods() {
         ++crossings;
         EXPECT_TRUE(found.contains(pair)) << i << ": " << pair.first << ", " << pair.second;
       }
-      expect_same_overlap(*a, *b, X_AB, 0.3 * shapes::unit_vector(generator));
+      expect_swept(a->tree, b->tree, X_AB, 0.3 * shapes::unit_vector(generator));
     }
   }
   EXPECT_GT(crossings, 500u);

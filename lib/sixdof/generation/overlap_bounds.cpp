@@ -65,32 +65,58 @@ VolumePeak volume_peak(const OverlapMeasurement& outer, const OverlapMeasurement
   return peak;
 }
 
-SlopeBounds::TriangleContacts& SlopeBounds::Contacts::of(std::uint32_t triangle, const Eigen::Vector3d& outwards) {
-  TriangleContacts& contacts = contacts_[triangle];
-  if (contacts.round != round_) {
-    const double area = areas_[triangle].dot(outwards);
-    const double least = k_least_sine * areas_[triangle].lpNorm<1>();
-    const int side = area > least ? 1 : area < -least ? -1 : 0;
-    contacts = {static_cast<float>(std::abs(area)), round_, PartRange::none(), PartRange::none(),
-                static_cast<std::int8_t>(side)};
-    touched_.push_back(triangle);
+void SlopeBounds::Contacts::start(const Eigen::Vector3d& outwards) {
+  if (outwards != outwards_) {
+    outwards_ = outwards;
+    ++ray_;
   }
+  ++round_;
+  touched_.clear();
+}
+
+std::span<const Eigen::Vector3d> SlopeBounds::Contacts::areas_of(std::uint32_t item) const {
+  if (leaves_.empty()) return areas_.subspan(item, 1);
+  const Tree::Child triangles = leaves_[item].child;
+  return areas_.subspan(triangles.first(), triangles.count());
+}
+
+SlopeBounds::ItemContacts& SlopeBounds::Contacts::of(std::uint32_t item) {
+  ItemContacts& contacts = contacts_[item];
+  if (contacts.round == round_) return contacts;
+  contacts.round = round_;
+  touched_.push_back(item);
+  if (contacts.ray != ray_) {
+    contacts.ray = ray_;
+    double ahead = 0.0, behind = 0.0;
+    for (const Eigen::Vector3d& triangle : areas_of(item)) {
+      const double area = triangle.dot(outwards_);
+      const double least = k_least_sine * triangle.lpNorm<1>();
+      if (area > least) ahead += area;
+      if (area < -least) behind -= area;
+    }
+    contacts.outwards.area = static_cast<float>(ahead);
+    contacts.inwards.area = static_cast<float>(behind);
+  }
+  for (Side* side : {&contacts.outwards, &contacts.inwards}) side->raising = side->lowering = PartRange::none();
   return contacts;
 }
 
 SlopeBounds::SlopeChange SlopeBounds::Contacts::change() const {
   SlopeChange change;
-  for (const std::uint32_t t : touched_) {
-    const TriangleContacts& contacts = contacts_[t];
-    const auto area = static_cast<double>(contacts.area);
-    if (contacts.raising.any()) {
-      change.raised_since_outer[contacts.raising.first] += area;
-      change.raised_until_inner[contacts.raising.last] += area;
+  const auto add = [&](const Side& side) {
+    const auto area = static_cast<double>(side.area);
+    if (side.raising.any()) {
+      change.raised_since_outer[side.raising.first] += area;
+      change.raised_until_inner[side.raising.last] += area;
     }
-    if (contacts.lowering.any()) {
-      change.lowered_since_outer[contacts.lowering.first] += area;
-      change.lowered_until_inner[contacts.lowering.last] += area;
+    if (side.lowering.any()) {
+      change.lowered_since_outer[side.lowering.first] += area;
+      change.lowered_until_inner[side.lowering.last] += area;
     }
+  };
+  for (const std::uint32_t item : touched_) {
+    add(contacts_[item].outwards);
+    add(contacts_[item].inwards);
   }
   for (std::size_t j = 1; j < k_parts; ++j) {
     change.raised_since_outer[j] += change.raised_since_outer[j - 1];
@@ -101,33 +127,32 @@ SlopeBounds::SlopeChange SlopeBounds::Contacts::change() const {
   return change;
 }
 
-std::array<SlopeRange, SlopeBounds::k_parts> SlopeBounds::bound(const SweptCandidates& swept,
+std::array<SlopeRange, SlopeBounds::k_parts> SlopeBounds::bound(std::span<const SweptPair> swept,
                                                                 const Eigen::Vector3d& outwards_A,
                                                                 const Eigen::Vector3d& outwards_B, double first,
                                                                 double last, double outer_slope, double inner_slope) {
-  a_.clear();
-  b_.clear();
+  a_.start(outwards_A);
+  b_.start(outwards_B);
   const double parts_per_fraction = static_cast<double>(k_parts) / (last - first);
   const auto part = [&](float fraction) {
     const double at = (static_cast<double>(fraction) - first) * parts_per_fraction;
     return static_cast<std::uint8_t>(std::clamp(at, 0.0, static_cast<double>(k_parts - 1)));
   };
-  for (std::size_t i = 0; i < swept.pairs.size(); ++i) {
-    if (swept.first[i] > last || swept.last[i] < first) continue;
-    TriangleContacts& a = a_.of(swept.pairs[i].a, outwards_A);
-    TriangleContacts& b = b_.of(swept.pairs[i].b, outwards_B);
-    const PartRange parts{part(swept.first[i]), part(swept.last[i])};
-    const auto extend = [&](PartRange& known) {
-      known = {std::min(known.first, parts.first), std::max(known.last, parts.last)};
+  for (const SweptPair& pair : swept) {
+    if (static_cast<double>(pair.first) > last || static_cast<double>(pair.last) < first) continue;
+    ItemContacts& a = a_.of(pair.a);
+    ItemContacts& b = b_.of(pair.b);
+    const PartRange parts{part(pair.first), part(pair.last)};
+    const auto meet = [&](const Side& x, const Side& y, PartRange& of_x, PartRange& of_y) {
+      if (!x.any() || !y.any()) return;
+      for (PartRange* known : {&of_x, &of_y}) {
+        *known = {std::min(known->first, parts.first), std::max(known->last, parts.last)};
+      }
     };
-    const int both = a.side * b.side;
-    if (both < 0) {
-      extend(a.raising);
-      extend(b.raising);
-    } else if (both > 0) {
-      extend(a.lowering);
-      extend(b.lowering);
-    }
+    meet(a.outwards, b.inwards, a.outwards.raising, b.inwards.raising);
+    meet(a.inwards, b.outwards, a.inwards.raising, b.outwards.raising);
+    meet(a.outwards, b.outwards, a.outwards.lowering, b.outwards.lowering);
+    meet(a.inwards, b.inwards, a.inwards.lowering, b.inwards.lowering);
   }
   const SlopeChange of_a = a_.change(), of_b = b_.change();
   const auto least = [](double x, double y) { return (1.0 + k_rounding) * std::min(x, y); };

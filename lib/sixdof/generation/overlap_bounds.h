@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/candidates.h>
 
 namespace sixdof {
@@ -53,7 +54,7 @@ VolumePeak volume_peak(const OverlapMeasurement& outer, const OverlapMeasurement
 /// The normals of two triangles that meet tell whether one enters or leaves, so whether the pair can only raise the
 /// slope or only lower it. From either end of the interval to a point inside, the slope rises by at most the area of
 /// the triangles that take part in a raising pair in between, and falls likewise. A face parallel to the ray is neither
-/// entered nor left through.
+/// entered nor left through. A pair of leaves stands for the pairs of their triangles.
 ///
 /// Holds for meshes that do not intersect themselves.
 class SlopeBounds {
@@ -61,15 +62,22 @@ class SlopeBounds {
   /// Parts of an interval, each with bounds of its own.
   static constexpr std::size_t k_parts = 32;
 
-  /// @param areas_a, areas_b area vectors of all triangles in tree order, in each mesh's own frame; they outlive this
-  SlopeBounds(std::span<const Eigen::Vector3d> areas_a, std::span<const Eigen::Vector3d> areas_b)
-      : a_(areas_a), b_(areas_b) {}
+  /// What bounds know of a mesh.
+  enum class Items {
+    leaves,
+    triangles
+  };
 
-  /// @param swept candidates of a displacement that contains the interval
+  /// @param areas_a, areas_b area vectors of all triangles in tree order, in each mesh's own frame; all outlive this
+  SlopeBounds(Items items, const Tree& tree_a, std::span<const Eigen::Vector3d> areas_a, const Tree& tree_b,
+              std::span<const Eigen::Vector3d> areas_b)
+      : a_(items, tree_a, areas_a), b_(items, tree_b, areas_b) {}
+
+  /// @param swept pairs of items, of a displacement that contains the interval
   /// @param outwards_A, outwards_B direction from which B comes (unit), in each mesh's frame
   /// @param first, last outer and inner end of the interval as fractions of the displacement
   /// @param outer_slope, inner_slope slopes there
-  std::array<SlopeRange, k_parts> bound(const SweptCandidates& swept, const Eigen::Vector3d& outwards_A,
+  std::array<SlopeRange, k_parts> bound(std::span<const SweptPair> swept, const Eigen::Vector3d& outwards_A,
                                         const Eigen::Vector3d& outwards_B, double first, double last,
                                         double outer_slope, double inner_slope);
 
@@ -90,29 +98,39 @@ class SlopeBounds {
     bool any() const { return first <= last; }
   };
 
-  struct TriangleContacts {
-    float area;  ///< Projected.
-    std::uint32_t round = 0;
+  /// The triangles of an item that look outwards, or those that look inwards.
+  struct Side {
+    float area;                   ///< Projected.
     PartRange raising, lowering;  ///< Where pairs of either kind may meet.
-    std::int8_t side;             ///< 1: the normal points outwards, -1: inwards; 0: the face is parallel to the ray.
+    bool any() const { return area > 0.0f; }
+  };
+  struct ItemContacts {
+    std::uint32_t ray = 0;    ///< The areas are those of this ray.
+    std::uint32_t round = 0;  ///< The parts are those of this call of bound().
+    Side outwards, inwards;
   };
 
-  /// The triangles of one mesh that may meet a triangle of the other.
+  /// The items of one mesh that may meet one of the other.
   class Contacts {
    public:
-    explicit Contacts(std::span<const Eigen::Vector3d> areas) : areas_(areas), contacts_(areas.size()) {}
-    void clear() {
-      ++round_;
-      touched_.clear();
-    }
-    TriangleContacts& of(std::uint32_t triangle, const Eigen::Vector3d& outwards);
+    Contacts(Items items, const Tree& tree, std::span<const Eigen::Vector3d> areas)
+        : leaves_(items == Items::leaves ? tree.leaves() : std::span<const Tree::Leaf>()),
+          areas_(areas),
+          contacts_(items == Items::leaves ? leaves_.size() : areas.size()) {}
+    /// @param outwards in the mesh's frame
+    void start(const Eigen::Vector3d& outwards);
+    ItemContacts& of(std::uint32_t item);
     SlopeChange change() const;
 
    private:
+    std::span<const Eigen::Vector3d> areas_of(std::uint32_t item) const;
+
+    std::span<const Tree::Leaf> leaves_;  ///< Empty if the items are triangles.
     std::span<const Eigen::Vector3d> areas_;
-    std::vector<TriangleContacts> contacts_;  ///< Of all triangles; valid if their round is the current one.
-    std::vector<std::uint32_t> touched_;      ///< Triangles whose round is the current one.
-    std::uint32_t round_ = 0;
+    std::vector<ItemContacts> contacts_;  ///< Of all items.
+    std::vector<std::uint32_t> touched_;  ///< Items whose round is the current one.
+    Eigen::Vector3d outwards_ = Eigen::Vector3d::Zero();
+    std::uint32_t ray_ = 0, round_ = 0;
   };
 
   Contacts a_;

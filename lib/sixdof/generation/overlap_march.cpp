@@ -61,15 +61,16 @@ void OverlapMarch::measure_at(double s) {
   if (++measurements_ > k_most_measurements) {
     throw Error(fmt::format("no end after {} measurements of the volume", k_most_measurements));
   }
-  inner_.push_back(measure_(s, passed_.back().s));
+  inner_.push_back(measure_(s));
 }
 
 /// Where to divide the interval from the front to `inner`; nothing if it cannot contain a hit.
 std::optional<double> OverlapMarch::division(const OverlapMeasurement& inner, double target) const {
   const OverlapMeasurement& outer = passed_.back();
   if (outer.s - inner.s <= limits_.resolution) return std::nullopt;
-  const VolumePeak peak = peak_(outer, inner);
-  if (peak.volume <= target + converged_) return std::nullopt;
+  const double enough = target + converged_;
+  const VolumePeak peak = peak_(outer, inner, enough);
+  if (peak.volume <= enough) return std::nullopt;
   const double clearance = std::min(k_clearance * limits_.resolution, 0.5 * (outer.s - inner.s));
   return std::clamp(peak.s, inner.s + clearance, outer.s - clearance);
 }

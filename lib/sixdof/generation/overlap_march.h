@@ -19,10 +19,11 @@ struct MarchLimits {
 /// Searches one ray inwards from contact for the first translations at which volumes are met; see volume_generator.h.
 class OverlapMarch {
  public:
-  /// Measures at `s`. Neither a measurement nor a peak will be asked for at a greater translation than `outer`.
-  using Measure = std::function<OverlapMeasurement(double s, double outer)>;
-  /// The largest volume possible between two measurements.
-  using Peak = std::function<VolumePeak(const OverlapMeasurement& outer, const OverlapMeasurement& inner)>;
+  /// Measures at `s`.
+  using Measure = std::function<OverlapMeasurement(double s)>;
+  /// An upper bound on the volume between two measurements: the least known, unless another is not above `enough`.
+  using Peak =
+      std::function<VolumePeak(const OverlapMeasurement& outer, const OverlapMeasurement& inner, double enough)>;
 
   /// @param contact translation at which the surfaces meet first
   OverlapMarch(Measure measure, Peak peak, double contact, const MarchLimits& limits);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include <sixdof/algorithm/preparation.h>
 #include <sixdof/generation/overlap_bounds.h>
@@ -57,7 +58,8 @@ class VolumeSolver final : public RaySolver {
         touching_(std::move(touching)),
         touching_target_(distance_bucket(pair_.mesh_a, 0).target),
         query_(pair_.body_a->solid, pair_.body_b->solid),
-        bounds_(pair_.body_a->areas, pair_.body_b->areas) {}
+        by_leaves_(bounds(SlopeBounds::Items::leaves)),
+        by_triangles_(bounds(SlopeBounds::Items::triangles)) {}
 
   void set_rotation(const Eigen::Vector4d& rotation) override {
     ray_ = ConfigurationRay(pair_.mesh_a, pair_.mesh_b, rotation);
@@ -84,8 +86,11 @@ class VolumeSolver final : public RaySolver {
 
     outer_ = inner_ = -1.0;  // nothing is collected
     OverlapMarch march(
-        [&](double s, double outer) { return measure(s, outer); },
-        [&](const OverlapMeasurement& outer, const OverlapMeasurement& inner) { return peak(outer, inner); }, contact,
+        [&](double s) { return measure(s); },
+        [&](const OverlapMeasurement& outer, const OverlapMeasurement& inner, double enough) {
+          return peak(outer, inner, enough);
+        },
+        contact,
         {.resolution = k_first_overlap_resolution * std::min(pair_.mesh_a.diagonal(), pair_.mesh_b.diagonal()),
          .tolerance = k_volume_tolerance * pair_.mesh_a.volume(),
          .first_step = first_step_,
@@ -103,31 +108,46 @@ class VolumeSolver final : public RaySolver {
   std::uint64_t measurements() const override { return measurements_; }
 
  private:
-  OverlapMeasurement measure(double s, double outer) {
+  OverlapMeasurement measure(double s) {
     ++measurements_;
-    if (s < inner_ || s > outer_) collect(std::max(0.0, s - k_margin * (outer - s)), outer);
-    select_candidates(swept_, fraction(s), pairs_);
-    const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a, pairs_);
+    const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a);
     return {.s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray_.direction)};
   }
 
-  VolumePeak peak(const OverlapMeasurement& outer, const OverlapMeasurement& inner) {
-    if (inner.s < inner_ || outer.s > outer_) collect(inner.s, outer.s);
-    const auto ranges = bounds_.bound(swept_, ray_.direction, ray_.R.transpose() * ray_.direction, fraction(outer.s),
-                                      fraction(inner.s), outer.slope, inner.slope);
+  SlopeBounds bounds(SlopeBounds::Items items) const {
+    return {items, pair_.body_a->tree, pair_.body_a->areas, pair_.body_b->tree, pair_.body_b->areas};
+  }
+
+  /// Leaves mostly suffice, and are fewer.
+  VolumePeak peak(const OverlapMeasurement& outer, const OverlapMeasurement& inner, double enough) {
+    if (inner.s < inner_ || outer.s > outer_) collect_leaves(inner.s, outer.s);
+    const VolumePeak of_leaves = peak(outer, inner, by_leaves_, leaves_);
+    if (of_leaves.volume <= enough) return of_leaves;
+    if (!has_triangles_) collect_triangles();
+    return peak(outer, inner, by_triangles_, triangles_);
+  }
+
+  VolumePeak peak(const OverlapMeasurement& outer, const OverlapMeasurement& inner, SlopeBounds& bounds,
+                  std::span<const SweptPair> swept) const {
+    const auto ranges = bounds.bound(swept, ray_.direction, ray_.R.transpose() * ray_.direction, fraction(outer.s),
+                                     fraction(inner.s), outer.slope, inner.slope);
     return volume_peak(outer, inner, ranges);
   }
 
-  /// Candidates are collected this much farther inwards than a measurement needs, for the next ones. A fraction of the
-  /// displacement to it.
-  static constexpr double k_margin = 0.03;
-
-  void collect(double inner, double outer) {
+  void collect_leaves(double inner, double outer) {
     inner_ = inner;
     outer_ = outer;
-    find_swept_candidates(pair_.body_a->tree, pair_.body_b->tree, ray_.pose(outer), (inner - outer) * ray_.direction,
-                          scratch_, swept_);
+    has_triangles_ = false;
+    find_swept_leaves(pair_.body_a->tree, pair_.body_b->tree, ray_.pose(outer), (inner - outer) * ray_.direction,
+                      scratch_, leaves_);
   }
+
+  void collect_triangles() {
+    has_triangles_ = true;
+    find_swept_triangles(pair_.body_a->tree, pair_.body_b->tree, ray_.pose(outer_), (inner_ - outer_) * ray_.direction,
+                         leaves_, triangles_);
+  }
+
   double fraction(double s) const { return outer_ > inner_ ? (outer_ - s) / (outer_ - inner_) : 0.0; }
 
   /// Displacement from contact to the first measurement in a rotation's first direction, in units of the smaller box's
@@ -143,11 +163,11 @@ class VolumeSolver final : public RaySolver {
   double most_ = 0.0;  ///< Upper bound on the overlap in this rotation.
   std::uint64_t measurements_ = 0;
   OverlapQuery query_;
-  SlopeBounds bounds_;
-  double outer_ = -1.0, inner_ = -1.0;  ///< Candidates are collected between these translations of the ray.
+  SlopeBounds by_leaves_, by_triangles_;
+  double outer_ = -1.0, inner_ = -1.0;  ///< Pairs are collected between these translations of the ray.
   CandidateScratch scratch_;
-  SweptCandidates swept_;
-  std::vector<TrianglePair> pairs_;
+  std::vector<SweptPair> leaves_, triangles_;
+  bool has_triangles_ = false;
 };
 
 }  // namespace

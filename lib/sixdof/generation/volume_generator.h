@@ -19,8 +19,8 @@ namespace sixdof {
 /// that the triangles intersecting in it can cause (overlap_bounds.h). Where the bounds do not suffice, the interval is
 /// divided, down to k_first_overlap_resolution.
 ///
-/// The triangles that may intersect are collected once for a displacement (candidates.h) and serve all measurements and
-/// bounds in it. A ray takes about three measurements per target.
+/// The leaves whose triangles may intersect are collected for the displacement between two measurements (candidates.h)
+/// and serve all bounds in it. A ray takes about three measurements per target.
 ///
 /// Not found are hits that begin and end within the resolution, where the bounds allow them at all; and, in meshes that
 /// intersect themselves, longer ones.

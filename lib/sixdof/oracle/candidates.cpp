@@ -76,93 +76,101 @@ class CloseTests {
   float blurred_;  // square of a diagonal
 };
 
-/// Axes across two boxes, and across two triangles: instead of cross(), once or, along a displacement, often.
+/// Axes across two boxes, and across two triangles: instead of cross().
 constexpr detail::CrossAxesUse k_use_of_cross_axes(0.3);
 constexpr detail::CrossAxesUse k_use_of_cross_edges(0.9);
-constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0.5);
 
 /// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. Pairs wait
-/// on a stack, and those of leaves in a queue, while their memory is fetched. Which of two pairs is found first depends
-/// on the trees alone, not on which others are found: sums over them have the same bits whatever was pruned.
+/// on a stack while their memory is fetched. Which of two pairs is found first depends on the trees alone, not on which
+/// others are found: sums over them have the same bits whatever was pruned.
 /// @tparam moving the displacement is not zero
-/// @tparam Test called as test(leaf of A, its lanes, leaf of B, its lanes, whether floats blur them) for leaves that
-/// may intersect
-template <bool moving, class Test>
+/// @tparam Take called for leaves that may intersect: as take(leaf of A, leaf of B, whether floats blur them) or, if
+/// `moving`, take(SweptPair)
+template <bool moving, class Take>
 class DualTreeTraversal {
  public:
   DualTreeTraversal(const Tree& a, const Tree& b, const Pose& X_AB, const TreeMotion& motion, const CloseTests& close,
-                    CandidateScratch& scratch, Test test)
-      : a_(a),
-        b_(b),
-        motion_(motion),
-        close_(close),
-        R_AB_(X_AB.R),
-        stack_(scratch.nodes),
-        queue_(scratch.leaves),
-        leaves_a_(a),
-        leaves_b_(b),
-        test_(test) {}
+                    CandidateScratch& scratch, Take take)
+      : a_(a), b_(b), motion_(motion), close_(close), R_AB_(X_AB.R), stack_(scratch.nodes), take_(take) {}
 
   void run() {
-    queue_.clear();
     stack_.assign(1, {0, 0, k_all, k_all});
     while (!stack_.empty()) {
       const NodePair pair = stack_.back();
       stack_.pop_back();
       expand(pair);
-      if (queue_.size() >= 2 * k_ahead) test_leaves(queue_.size() - k_ahead);
     }
-    test_leaves(queue_.size());
   }
 
  private:
   static constexpr std::uint8_t k_all = 0xff;
-  static constexpr std::size_t k_ahead = 8;  // pairs of leaves that wait while their memory is fetched
   static constexpr std::uint32_t k_none = ~0u;
 
   using NodePair = CandidateScratch::NodePair;
-  using LeafPair = CandidateScratch::LeafPair;
+
+  /// What is known about the children of two nodes.
+  struct Expansion {
+    const NodePair& pair;
+    const Tree::Node& node_a;
+    const Tree::Node& node_b;
+    bool blurred;
+    std::uint32_t overlapping[k_width] = {};  // children of A, for each child of B
+    HWY_ALIGN float first[k_width][k_width];  // if moving: fractions, [child of B][child of A]
+    HWY_ALIGN float last[k_width][k_width];
+  };
 
   void expand(const NodePair& pair) {
-    const Tree::Node& node_a = a_.nodes()[pair.a];
-    const Tree::Node& node_b = b_.nodes()[pair.b];
-    std::uint32_t overlapping[k_width] = {};  // children of A, for each child of B
-    const std::uint32_t lanes_a = pair.lanes_a & ((1u << node_a.child_count) - 1);
-    std::uint32_t lanes_b = pair.lanes_b & ((1u << node_b.child_count) - 1);
-    const bool blurred = close_.are_due(node_a, node_b);
-    if (blurred) {
-      for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
-        const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-        overlapping[j] = close_.overlapping_children(node_a, lanes_a, node_b, j);
-      }
+    Expansion x{.pair = pair, .node_a = a_.nodes()[pair.a], .node_b = b_.nodes()[pair.b], .blurred = false};
+    const std::uint32_t lanes_a = pair.lanes_a & ((1u << x.node_a.child_count) - 1);
+    std::uint32_t lanes_b = pair.lanes_b & ((1u << x.node_b.child_count) - 1);
+    x.blurred = close_.are_due(x.node_a, x.node_b);
+    if (x.blurred) {
+      test_closely(x, lanes_a, lanes_b);
     } else {
       load(pair);
-      lanes_b &= overlapping_node(children_b_, node_a, lanes_a);
+      lanes_b &= overlapping_node(children_b_, x.node_a, lanes_a, motion_);
       for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-        overlapping[j] = overlapping_children<moving>(children_a_, node_a, children_b_, j, motion_) & lanes_a;
+        if constexpr (moving) {
+          x.overlapping[j] =
+              lanes_a & overlap_intervals(children_a_, x.node_a, children_b_, j, motion_, x.first[j], x.last[j]);
+        } else {
+          x.overlapping[j] = lanes_a & overlapping_children(children_a_, x.node_a, children_b_, j);
+        }
       }
-      if (use_of_cross_axes_.is_due()) ask_cross_axes(lanes_b, overlapping);
+      if (use_of_cross_axes_.is_due()) ask_cross_axes(lanes_b, x.overlapping);
     }
     for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-      for (std::uint32_t m = overlapping[j]; m != 0; m &= m - 1) {
-        descend(pair, node_a, static_cast<std::size_t>(std::countr_zero(m)), node_b, j, blurred);
+      for (std::uint32_t m = x.overlapping[j]; m != 0; m &= m - 1) {
+        descend(x, static_cast<std::size_t>(std::countr_zero(m)), j);
+      }
+    }
+  }
+
+  HWY_NOINLINE void test_closely(Expansion& x, std::uint32_t lanes_a, std::uint32_t lanes_b) const {
+    for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+      x.overlapping[j] = close_.overlapping_children(x.node_a, lanes_a, x.node_b, j);
+      if constexpr (moving) {
+        std::fill_n(x.first[j], k_width, detail::k_first_fraction);
+        std::fill_n(x.last[j], k_width, detail::k_last_fraction);
       }
     }
   }
 
   /// To child i of A's node and child j of B's.
-  HWY_INLINE void descend(const NodePair& pair, const Tree::Node& node_a, std::size_t i, const Tree::Node& node_b,
-                          std::size_t j, bool blurred) {
-    const Tree::Child a = node_a.child[i], b = node_b.child[j];
+  HWY_INLINE void descend(const Expansion& x, std::size_t i, std::size_t j) {
+    const Tree::Child a = x.node_a.child[i], b = x.node_b.child[j];
     if (a.is_leaf() && b.is_leaf()) {
-      queue_.push_back({node_a.leaf[i], node_b.leaf[j], blurred});
-      prefetch(a_.leaves()[node_a.leaf[i]]);
-      prefetch(b_.leaves()[node_b.leaf[j]]);
+      if constexpr (moving) {
+        take_(SweptPair{x.node_a.leaf[i], x.node_b.leaf[j], x.first[j][i], x.last[j][i]});
+      } else {
+        take_(x.node_a.leaf[i], x.node_b.leaf[j], x.blurred);
+      }
       return;
     }
-    NodePair next = pair;
+    NodePair next = x.pair;
     next.lanes_a = a.is_leaf() ? static_cast<std::uint8_t>(1u << i) : k_all;
     next.lanes_b = b.is_leaf() ? static_cast<std::uint8_t>(1u << j) : k_all;
     if (!a.is_leaf()) prefetch(a_.nodes()[next.a = a.node()]);
@@ -172,8 +180,8 @@ class DualTreeTraversal {
 
   /// The volumes of the children of both nodes, unless they are those of the last pair.
   HWY_INLINE void load(const NodePair& pair) {
-    if (pair.a != loaded_a_) load_children<false>(a_.nodes()[loaded_a_ = pair.a], motion_, children_a_);
-    if (pair.b != loaded_b_) load_children<true>(b_.nodes()[loaded_b_ = pair.b], motion_, children_b_);
+    if (pair.a != loaded_a_) load_children<false, moving>(a_.nodes()[loaded_a_ = pair.a], motion_, children_a_);
+    if (pair.b != loaded_b_) load_children<true, moving>(b_.nodes()[loaded_b_ = pair.b], motion_, children_b_);
   }
 
   HWY_NOINLINE void ask_cross_axes(std::uint32_t lanes_b, std::uint32_t* overlapping) {
@@ -187,13 +195,62 @@ class DualTreeTraversal {
     }
   }
 
+  const Tree& a_;
+  const Tree& b_;
+  const TreeMotion& motion_;
+  const CloseTests& close_;
+  const Eigen::Matrix3d& R_AB_;
+  std::vector<NodePair>& stack_;
+  Children children_a_, children_b_;
+  std::uint32_t loaded_a_ = k_none, loaded_b_ = k_none;
+  std::optional<detail::CrossAxes> cross_axes_;  // made when they are asked for the first time
+  detail::CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
+  Take take_;
+};
+
+/// Tests the triangles of pairs of leaves, which wait in a queue while their memory is fetched.
+class LeafTests {
+ public:
+  LeafTests(const Tree& a, const Tree& b, const TreeMotion& motion, const CloseTests& close, CandidateScratch& scratch,
+            std::vector<TrianglePair>& pairs)
+      : a_(a),
+        b_(b),
+        motion_(motion),
+        close_(close),
+        queue_(scratch.leaves),
+        pairs_(pairs),
+        leaves_a_(a),
+        leaves_b_(b) {
+    queue_.clear();
+  }
+
+  HWY_INLINE void add(std::uint32_t a, std::uint32_t b, bool blurred) {
+    queue_.push_back({a, b, blurred});
+    prefetch(a_.leaves()[a]);
+    prefetch(b_.leaves()[b]);
+    if (queue_.size() >= k_most) test(queue_.size() - k_ahead);
+  }
+  void finish() { test(queue_.size()); }
+
+ private:
+  static constexpr std::size_t k_ahead = 8, k_most = 32;  // pairs of leaves that wait
+
   /// Tests the first pairs of the queue.
-  HWY_NOINLINE void test_leaves(std::size_t count) {
-    for (const LeafPair& pair : std::span(queue_).first(count)) {
+  HWY_NOINLINE void test(std::size_t count) {
+    for (const CandidateScratch::LeafPair& pair : std::span(queue_).first(count)) {
       const LeafLanes& of_b = leaves_b_.get(
           pair.b, [&](const Tree::Leaf& leaf, LeafLanes& out) { leaves::load_leaf_of_b(leaf, motion_, out); });
       const LeafLanes& of_a = leaves_a_.get(pair.a, leaves::load_leaf_of_a);
-      test_(a_.leaves()[pair.a].child, of_a, b_.leaves()[pair.b].child, of_b, pair.blurred);
+      std::uint32_t bits = leaves::test_triangles(of_a, of_b, motion_.slack);
+      if (bits != 0 && use_of_cross_edges_.is_due()) {
+        const int before = std::popcount(bits);
+        bits = leaves::overlapping_across_edges(of_a, of_b, bits, motion_.slack);
+        use_of_cross_edges_.count(before, std::popcount(bits));
+      }
+      leaves::for_each_pair(bits, a_.leaves()[pair.a].child, b_.leaves()[pair.b].child,
+                            [&](TrianglePair triangles, std::uint32_t) {
+                              if (!pair.blurred || !close_.apart(triangles)) pairs_.push_back(triangles);
+                            });
     }
     queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(count));
   }
@@ -202,59 +259,46 @@ class DualTreeTraversal {
   const Tree& b_;
   const TreeMotion& motion_;
   const CloseTests& close_;
-  const Eigen::Matrix3d& R_AB_;
-  std::vector<NodePair>& stack_;
-  std::vector<LeafPair>& queue_;
-  Children children_a_, children_b_;
-  std::uint32_t loaded_a_ = k_none, loaded_b_ = k_none;
+  std::vector<CandidateScratch::LeafPair>& queue_;
+  std::vector<TrianglePair>& pairs_;
   LeafCache leaves_a_, leaves_b_;
-  std::optional<detail::CrossAxes> cross_axes_;  // made when they are asked for the first time
-  detail::CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
-  Test test_;
+  detail::CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;
 };
 
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
                      std::vector<TrianglePair>& pairs) {
   const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero());
   const CloseTests close(a, b, X_AB, Eigen::Vector3d::Zero(), motion.slack);
-  detail::CrossAxesUse use_of_cross_edges = k_use_of_cross_edges;
-  const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b,
-                        bool blurred) {
-    std::uint32_t bits = leaves::test_triangles(of_a, of_b, motion.slack);
-    if (bits != 0 && use_of_cross_edges.is_due()) {
-      const int before = std::popcount(bits);
-      bits = leaves::overlapping_across_edges(of_a, of_b, bits, motion);
-      use_of_cross_edges.count(before, std::popcount(bits));
-    }
-    leaves::for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t, TrianglePair pair) {
-      if (!blurred || !close.apart(pair)) pairs.push_back(pair);
-    });
+  LeafTests tests(a, b, motion, close, scratch, pairs);
+  const auto take = [&](std::uint32_t leaf_a, std::uint32_t leaf_b, bool blurred) {
+    tests.add(leaf_a, leaf_b, blurred);
   };
-  DualTreeTraversal<false, decltype(test)>(a, b, X_AB, motion, close, scratch, test).run();
+  DualTreeTraversal<false, decltype(take)>(a, b, X_AB, motion, close, scratch, take).run();
+  tests.finish();
 }
 
-void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
-                           CandidateScratch& scratch, SweptCandidates& found) {
+void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+                       CandidateScratch& scratch, std::vector<SweptPair>& pairs) {
   const TreeMotion motion(a, b, X_AB, displacement);
   const CloseTests close(a, b, X_AB, displacement, motion.slack);
-  detail::CrossAxesUse use_of_cross_edges = k_use_of_moving_cross_edges;
-  const auto test = [&](Tree::Child leaf_a, const LeafLanes& of_a, Tree::Child leaf_b, const LeafLanes& of_b,
-                        bool blurred) {
+  const auto take = [&](const SweptPair& pair) { pairs.push_back(pair); };
+  DualTreeTraversal<true, decltype(take)>(a, b, X_AB, motion, close, scratch, take).run();
+}
+
+void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+                          std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs) {
+  const TreeMotion motion(a, b, X_AB, displacement);
+  LeafCache leaves_a(a), leaves_b(b);
+  const auto load_b = [&](const Tree::Leaf& leaf, LeafLanes& out) { leaves::load_leaf_of_b(leaf, motion, out); };
+  for (const SweptPair& pair : leaf_pairs) {
     HWY_ALIGN float first[leaves::k_pairs], last[leaves::k_pairs];
-    std::uint32_t bits = leaves::test_moving_triangles(of_a, of_b, motion, first, last);
-    if (bits != 0 && use_of_cross_edges.is_due()) {
-      const int before = std::popcount(bits);
-      bits = leaves::narrow_across_edges(of_a, of_b, bits, motion, first, last);
-      use_of_cross_edges.count(before, std::popcount(bits));
-    }
-    leaves::for_each_pair(bits, leaf_a, leaf_b, [&](std::uint32_t lane, TrianglePair pair) {
-      if (blurred && close.apart(pair)) return;
-      found.pairs.push_back(pair);
-      found.first.push_back(first[lane]);
-      found.last.push_back(last[lane]);
-    });
-  };
-  DualTreeTraversal<true, decltype(test)>(a, b, X_AB, motion, close, scratch, test).run();
+    const std::uint32_t bits = leaves::test_moving_triangles(leaves_a.get(pair.a, leaves::load_leaf_of_a),
+                                                             leaves_b.get(pair.b, load_b), motion, first, last);
+    leaves::for_each_pair(bits, a.leaves()[pair.a].child, b.leaves()[pair.b].child,
+                          [&](TrianglePair triangles, std::uint32_t lane) {
+                            pairs.push_back({triangles.a, triangles.b, first[lane], last[lane]});
+                          });
+  }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -265,7 +309,8 @@ HWY_AFTER_NAMESPACE();
 namespace sixdof {
 namespace candidates {
 HWY_EXPORT(find_candidates);
-HWY_EXPORT(find_swept_candidates);
+HWY_EXPORT(find_swept_leaves);
+HWY_EXPORT(find_swept_triangles);
 }  // namespace candidates
 
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
@@ -274,23 +319,16 @@ void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateSc
   HWY_DYNAMIC_DISPATCH(candidates::find_candidates)(a, b, X_AB, scratch, pairs);
 }
 
-void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
-                           CandidateScratch& scratch, SweptCandidates& found) {
-  found.pairs.clear();
-  found.first.clear();
-  found.last.clear();
-  HWY_DYNAMIC_DISPATCH(candidates::find_swept_candidates)(a, b, X_AB, displacement, scratch, found);
+void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+                       CandidateScratch& scratch, std::vector<SweptPair>& pairs) {
+  pairs.clear();
+  HWY_DYNAMIC_DISPATCH(candidates::find_swept_leaves)(a, b, X_AB, displacement, scratch, pairs);
 }
 
-void select_candidates(const SweptCandidates& swept, double x, std::vector<TrianglePair>& pairs) {
-  const auto fraction = static_cast<float>(x);  // intervals are padded by more than this rounds
-  pairs.resize(swept.pairs.size());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < swept.pairs.size(); ++i) {
-    pairs[count] = swept.pairs[i];
-    count += swept.first[i] <= fraction && fraction <= swept.last[i] ? 1 : 0;
-  }
-  pairs.resize(count);
+void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+                          std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs) {
+  pairs.clear();
+  HWY_DYNAMIC_DISPATCH(candidates::find_swept_triangles)(a, b, X_AB, displacement, leaf_pairs, pairs);
 }
 
 }  // namespace sixdof

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,21 +49,22 @@ struct CandidateScratch {
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
                      std::vector<TrianglePair>& pairs);
 
-/// Pairs of triangles that may intersect during a translation of B, in the order of find_candidates().
-struct SweptCandidates {
-  std::vector<TrianglePair> pairs;
-  /// Of each pair: the interval of the displacement's fraction in which it may intersect. Extends below 0 and above 1
-  /// where the pair does.
-  std::vector<float> first, last;
+/// Two leaves or two triangles that may intersect during a translation of B: indices into Tree::leaves(), or in tree
+/// order.
+struct SweptPair {
+  std::uint32_t a, b;
+  /// The interval of the displacement's fraction in which they may. Extends below 0 and above 1 where the pair does.
+  float first, last;
 };
 
-/// Finds the pairs of triangles of A and B that may intersect while B is translated from X_AB by x * displacement
-/// (A's frame), 0 <= x <= 1. Conservative as find_candidates(): every pair that intersects at x is found, and
-/// first <= x <= last.
-void find_swept_candidates(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
-                           CandidateScratch& scratch, SweptCandidates& found);
+/// Finds the pairs of leaves of A and B that may intersect while B is translated from X_AB by x * displacement (A's
+/// frame), 0 <= x <= 1. Conservative as find_candidates(): the leaves of every two triangles that intersect at x are
+/// found, and first <= x <= last.
+void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+                       CandidateScratch& scratch, std::vector<SweptPair>& pairs);
 
-/// The pairs that may intersect at the fraction x of the displacement.
-void select_candidates(const SweptCandidates& swept, double x, std::vector<TrianglePair>& pairs);
+/// The pairs of triangles of these leaves that may intersect during the same translation, likewise.
+void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+                          std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs);
 
 }  // namespace sixdof

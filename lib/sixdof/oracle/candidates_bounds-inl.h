@@ -14,8 +14,9 @@
 
 // Separating-axis tests between the children of a node of A and those of a node of B, one child of A per SIMD lane.
 //
-// B may be translated by a displacement meanwhile; the tests then hold for all fractions x in 0 .. 1 of it. For that,
-// B's boxes are taken at x = 1/2 and enlarged by half of the displacement.
+// B may be translated by a displacement meanwhile. A test is linear in the displacement's fraction, so each gives the
+// interval of fractions at which it does not separate two volumes: they may intersect in the intersection of these
+// intervals. Fractions are counted from the displacement's middle, at which B's volumes are taken: -1/2 .. 1/2.
 //
 // Coordinates are floats relative to the centre of A's tree; half extents include the rounding, so a test never
 // separates volumes that intersect. No multiplication is fused and nothing is summed across lanes, so every instruction
@@ -34,14 +35,15 @@ using detail::TreeMotion;
 /// Volumes of a node's children in their own frame and in the other tree's; boxes as centre and half extents.
 struct alignas(64) Children {
   float center[3][k_width], half[3][k_width];              // in the own frame
-  float other_center[3][k_width], other_half[3][k_width];  // box around it in the other frame, for all fractions
-  float unswept_half[3][k_width];                          // of that box at one fraction; like other_half with slack
+  float other_center[3][k_width], other_half[3][k_width];  // box around it in the other frame, with slack
   float normal[3][k_width];                                // in the other frame
   float slab_lower[k_width], slab_upper[k_width];          // along the normals, from A's centre, with slack
+  float slab_inverse[k_width];                             // TreeMotion::Speed of B along the normals
 };
 
 /// @tparam of_b true for children of B (the other frame is A's), false for those of A.
-template <bool of_b>
+/// @tparam moving the displacement is not zero
+template <bool of_b, bool moving>
 HWY_INLINE void load_children(const Tree::Node& node, const TreeMotion& x, Children& out) {
   const V half = set(0.5f);
   const V slack = set(x.slack);
@@ -67,19 +69,20 @@ HWY_INLINE void load_children(const Tree::Node& node, const TreeMotion& x, Child
         normal = unfused_mul_add(r, n[j], normal);
       }
       hn::Store(center, k_lanes, out.other_center[k] + i);
-      hn::Store(extent, k_lanes, out.unswept_half[k] + i);
-      const V swept = hn::Add(extent, set(of_b ? std::abs(x.half_displacement[k]) : x.half_sweep_in_b[k]));
-      hn::Store(swept, k_lanes, out.other_half[k] + i);
+      hn::Store(extent, k_lanes, out.other_half[k] + i);
       hn::Store(normal, k_lanes, out.normal[k] + i);
     }
-    // Slabs: a scalar product has three coordinates that are off by the slack, and moves by half of the displacement
-    // along the normal.
-    V along_displacement = hn::Zero(k_lanes);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const V normal = of_b ? load(out.normal[k] + i) : n[k];
-      along_displacement = unfused_mul_add(normal, set(x.half_displacement[k]), along_displacement);
+    // Slabs: a scalar product has three coordinates that are off by the slack.
+    V slab_slack = hn::Mul(set(3.0f), slack);
+    if constexpr (moving) {
+      V speed = hn::Zero(k_lanes);
+      for (std::size_t k = 0; k < 3; ++k) {
+        speed = unfused_mul_add(of_b ? load(out.normal[k] + i) : n[k], set(x.displacement[k]), speed);
+      }
+      const M slow = hn::Le(hn::Abs(speed), slack);
+      hn::Store(hn::Div(set(1.0f), hn::IfThenElse(slow, slack, speed)), k_lanes, out.slab_inverse + i);
+      slab_slack = hn::Add(slab_slack, hn::IfThenElseZero(slow, slack));
     }
-    const V slab_slack = unfused_mul_add(set(3.0f), slack, hn::Abs(along_displacement));
     V lower = hn::Sub(load(node.slab_lower + i), slab_slack);
     V upper = hn::Add(load(node.slab_upper + i), slab_slack);
     if (of_b) {
@@ -94,30 +97,9 @@ HWY_INLINE void load_children(const Tree::Node& node, const TreeMotion& x, Child
   }
 }
 
-/// Lanes of A's children that are separated from B's child j by an axis perpendicular to the displacement and to an
-/// axis of A.
-HWY_INLINE M separated_across_displacement(const Children& a, const Children& b, std::size_t j, std::size_t i,
-                                           const TreeMotion& x) {
-  M apart = no_lane();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-    const V move_l = set(x.displacement[l]), move_m = set(x.displacement[m]);
-    const V l_off = hn::Sub(load(a.center[l] + i), set(b.other_center[l][j]));
-    const V m_off = hn::Sub(load(a.center[m] + i), set(b.other_center[m][j]));
-    const V l_half = hn::Add(load(a.half[l] + i), set(b.unswept_half[l][j]));
-    const V m_half = hn::Add(load(a.half[m] + i), set(b.unswept_half[m][j]));
-    const V across = hn::Sub(hn::Mul(l_off, move_m), hn::Mul(m_off, move_l));
-    const V radius = unfused_mul_add(l_half, hn::Abs(move_m), hn::Mul(m_half, hn::Abs(move_l)));
-    apart = hn::Or(apart, hn::Gt(hn::Abs(across), radius));
-  }
-  return apart;
-}
-
 /// Children of A (bits) that are not separated from child j of B.
-/// @tparam moving the displacement is not zero.
-template <bool moving>
 HWY_INLINE std::uint32_t overlapping_children(const Children& a, const Tree::Node& node_a, const Children& b,
-                                              std::size_t j, const TreeMotion& x) {
+                                              std::size_t j) {
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
     M apart = no_lane();
@@ -141,14 +123,67 @@ HWY_INLINE std::uint32_t overlapping_children(const Children& a, const Tree::Nod
     apart = hn::Or(apart, hn::Lt(hn::Add(middle_b, radius_b), load(a.slab_lower + i)));
     apart = hn::Or(apart, hn::Gt(hn::Sub(middle_a, radius_a), set(b.slab_upper[j])));
     apart = hn::Or(apart, hn::Lt(hn::Add(middle_a, radius_a), set(b.slab_lower[j])));
-    if constexpr (moving) apart = hn::Or(apart, separated_across_displacement(a, b, j, i, x));
     bits |= bits_of(hn::Not(apart), i);
   }
   return bits;
 }
 
-/// B's children (bits) whose boxes overlap the box of a node of A, or of its only child in `lanes_a`.
-HWY_INLINE std::uint32_t overlapping_node(const Children& b, const Tree::Node& a, std::uint32_t lanes_a) {
+/// Fractions of the displacement at which something may hold, per lane.
+struct FractionInterval {
+  V first, last;
+
+  /// To the fractions x at which |offset - speed x| <= radius.
+  HWY_INLINE void narrow(V offset, V radius, V inverse_speed) {
+    const V x = hn::Mul(hn::Sub(offset, radius), inverse_speed), y = hn::Mul(hn::Add(offset, radius), inverse_speed);
+    first = hn::Max(first, hn::Min(x, y));
+    last = hn::Min(last, hn::Max(x, y));
+  }
+};
+
+/// The intervals of the displacement's fractions (0 .. 1) in which children of A may intersect child j of B. Returns
+/// the children (bits) whose interval contains one in 0 .. 1.
+HWY_INLINE std::uint32_t overlap_intervals(const Children& a, const Tree::Node& node_a, const Children& b,
+                                           std::size_t j, const TreeMotion& x, float* HWY_RESTRICT first,
+                                           float* HWY_RESTRICT last) {
+  std::uint32_t bits = 0;
+  const V half = set(0.5f);
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
+    FractionInterval interval{set(detail::k_first_fraction - 0.5f), set(detail::k_last_fraction - 0.5f)};
+    V middle_a = hn::Zero(k_lanes), radius_a = hn::Zero(k_lanes);  // of A's boxes along the normal of j
+    V middle_b = hn::Zero(k_lanes), radius_b = hn::Zero(k_lanes);  // of j's box along A's normals
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V center = load(a.center[k] + i), extent = load(a.half[k] + i);
+      interval.narrow(hn::Sub(center, set(b.other_center[k][j])),
+                      hn::Add(extent, set(b.other_half[k][j] + x.along_a[k].pad)), set(x.along_a[k].inverse));
+      interval.narrow(hn::Sub(set(b.center[k][j]), load(a.other_center[k] + i)),
+                      hn::Add(load(a.other_half[k] + i), set(b.half[k][j] + x.along_b[k].pad)),
+                      set(x.along_b[k].inverse));
+      const V normal_b = set(b.normal[k][j]);
+      middle_a = unfused_mul_add(normal_b, center, middle_a);
+      radius_a = unfused_mul_add(hn::Abs(normal_b), extent, radius_a);
+      middle_b = unfused_mul_add(load(node_a.normal[k] + i), set(b.other_center[k][j]), middle_b);
+      radius_b = unfused_mul_add(hn::Abs(load(a.normal[k] + i)), set(b.half[k][j]), radius_b);
+    }
+    const auto narrow_to_slab = [&](V middle, V radius, V lower, V upper, V inverse_speed) {
+      interval.narrow(hn::Sub(hn::Mul(half, hn::Add(lower, upper)), middle),
+                      hn::Add(hn::Mul(half, hn::Sub(upper, lower)), radius), inverse_speed);
+    };
+    narrow_to_slab(middle_b, radius_b, load(a.slab_lower + i), load(a.slab_upper + i), load(a.slab_inverse + i));
+    narrow_to_slab(middle_a, radius_a, set(b.slab_lower[j]), set(b.slab_upper[j]), set(-b.slab_inverse[j]));
+    const V low = hn::Add(interval.first, set(0.5f - detail::k_fraction_rounding));
+    const V high = hn::Add(interval.last, set(0.5f + detail::k_fraction_rounding));
+    hn::Store(low, k_lanes, first + i);
+    hn::Store(high, k_lanes, last + i);
+    const M meets = hn::And(hn::Le(low, set(1.0f)), hn::Ge(high, hn::Zero(k_lanes)));
+    bits |= bits_of(hn::And(hn::Le(low, high), meets), i);
+  }
+  return bits;
+}
+
+/// B's children (bits) whose boxes, along all of the displacement, overlap the box of a node of A, or of its only child
+/// in `lanes_a`.
+HWY_INLINE std::uint32_t overlapping_node(const Children& b, const Tree::Node& a, std::uint32_t lanes_a,
+                                          const TreeMotion& x) {
   const float* lower[3] = {&a.volume.lower[0], &a.volume.lower[1], &a.volume.lower[2]};
   const float* upper[3] = {&a.volume.upper[0], &a.volume.upper[1], &a.volume.upper[2]};
   if ((lanes_a & (lanes_a - 1)) == 0) {
@@ -162,7 +197,8 @@ HWY_INLINE std::uint32_t overlapping_node(const Children& b, const Tree::Node& a
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
     M apart = no_lane();
     for (std::size_t k = 0; k < 3; ++k) {
-      const V center = load(b.other_center[k] + i), half = load(b.other_half[k] + i);
+      const V center = load(b.other_center[k] + i);
+      const V half = hn::Add(load(b.other_half[k] + i), set(std::abs(x.half_displacement[k])));
       apart = hn::Or(apart, hn::Gt(hn::Sub(center, half), set(*upper[k])));
       apart = hn::Or(apart, hn::Lt(hn::Add(center, half), set(*lower[k])));
     }

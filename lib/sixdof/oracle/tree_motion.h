@@ -9,17 +9,32 @@
 
 namespace sixdof::detail {
 
+/// Rounding of a fraction of a displacement, a quotient of differences.
+inline constexpr float k_fraction_rounding = 2e-6f;
+/// Intervals of fractions are not longer than from here to there.
+inline constexpr float k_first_fraction = -1.0f, k_last_fraction = 2.0f;
+
 /// The motion of B in the frames of the trees: p_A - center_A = rotation (p_B - center_B) + shift + x displacement.
 struct TreeMotion {
+  /// Of a coordinate, per fraction of the displacement. Where it is below the slack it is taken to be the slack, and
+  /// the coordinate to be known up to `pad`.
+  struct Speed {
+    float inverse;
+    float pad;
+
+    Speed() = default;
+    Speed(float speed, float slack)
+        : inverse(1.0f / (std::abs(speed) > slack ? speed : slack)), pad(std::abs(speed) > slack ? 0.0f : slack) {}
+  };
+
   float rotation[3][3];
   float shift[3];
   float displacement[3];
   float slack;                 ///< Largest error of a transformed coordinate.
   float middle[3];             ///< shift + displacement / 2
   float half_displacement[3];  ///< displacement / 2
-  float half_sweep_in_b[3];    ///< Half extents of the displacement along B's axes.
-  float inverse[3];  ///< 1 / displacement, per axis of A; 1 / slack where the displacement is below the slack.
-  float pad[3];      ///< 0; the slack where the displacement is below the slack.
+  Speed along_a[3];            ///< Of B along A's axes,
+  Speed along_b[3];            ///< and of A along B's: the negative displacement in B's frame.
 
   TreeMotion(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement_A) {
     const Eigen::Vector3d d = X_AB.R * b.center() + X_AB.t - a.center();
@@ -39,10 +54,8 @@ struct TreeMotion {
       displacement[i] = static_cast<float>(displacement_A[i]);
       half_displacement[i] = 0.5f * displacement[i];
       middle[i] = static_cast<float>(d[i] + 0.5 * displacement_A[i]);
-      half_sweep_in_b[i] = static_cast<float>(0.5 * std::abs(displacement_B[i]));
-      const bool moves = std::abs(displacement[i]) > slack;
-      inverse[i] = 1.0f / (moves ? displacement[i] : slack);
-      pad[i] = moves ? 0.0f : slack;
+      along_a[i] = Speed(displacement[i], slack);
+      along_b[i] = Speed(static_cast<float>(-displacement_B[i]), slack);
     }
   }
 };
