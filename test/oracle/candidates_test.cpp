@@ -35,7 +35,7 @@ void expect_swept_of_tori() {
     for (int i = 0; i < 8; ++i) {
       const Pose X_AB = bodies::random_pose(random, 0.5);
       const Vector3d displacement = 0.4 * bodies::random_pose(random, 1.0).R.col(0);
-      crossings += expect_swept(a->tree, b->tree, X_AB, displacement);
+      crossings += expect_swept(a->solid, b->solid, X_AB, displacement);
     }
     EXPECT_GT(crossings, 0u);
   }
@@ -51,8 +51,8 @@ TEST(SweptPairs, ContainThemForDisplacementsAlongFaces) {
   const Pose X_AB{Eigen::Matrix3d::Identity(), Vector3d(0.25, 0.125, 0.0)};
   for (const Vector3d& displacement : {Vector3d(0.4, 0, 0), Vector3d(0, -0.3, 0), Vector3d(0, 0, 0.2),
                                        Vector3d(-0.2, 0.1, 0), Vector3d(1e-9, 0, 0), Vector3d(0, 0, 0)}) {
-    EXPECT_GT(expect_swept(box.tree, other.tree, X_AB, displacement), 0u);
-    EXPECT_GT(expect_swept(other.tree, box.tree, X_AB, displacement), 0u);
+    EXPECT_GT(expect_swept(box.solid, other.solid, X_AB, displacement), 0u);
+    EXPECT_GT(expect_swept(other.solid, box.solid, X_AB, displacement), 0u);
   }
 }
 
@@ -85,23 +85,26 @@ TEST(SweptPairs, AreFewAtOneFraction) {
   }
 }
 
-TEST(Candidates, ComeInAnOrderThatDependsOnTheTreesAlone) {
+TEST(SweptPairs, OfTrianglesComeInTheOrderOfThoseAtOnePose) {
   // Large enough for hundreds of pairs of nodes to wait at a time.
   const bodies::Body a(bodies::bumpy_torus(121, 65)), b(bodies::bumpy_torus(91, 47, 0.2, 0.8));
   std::mt19937_64 random(25);
   std::size_t common = 0;
   for (int i = 0; i < 6; ++i) {
     const Pose X_AB = bodies::random_pose(random, 0.4);
+    const Vector3d displacement = 0.3 * X_AB.R.col(0);
+    std::vector<SweptPair> leaves, swept;
     CandidateScratch scratch;
-    std::vector<TrianglePair> before, after;
-    find_candidates(a.tree, b.tree, X_AB, scratch, before);
-    find_candidates(a.tree, b.tree, moved(X_AB, 0.02 * X_AB.R.col(0)), scratch, after);
+    find_swept_leaves(a.tree, b.tree, X_AB, displacement, scratch, leaves);
+    find_swept_triangles(a.tree, b.tree, X_AB, displacement, leaves, swept);
+    std::vector<TrianglePair> found;
+    find_candidates(a.tree, b.tree, moved(X_AB, 0.5 * displacement), scratch, found);
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> place;
-    for (const TrianglePair& pair : before) place.emplace(std::pair(pair.a, pair.b), place.size());
+    for (const SweptPair& pair : swept) place.emplace(std::pair(pair.a, pair.b), place.size());
     std::size_t last = 0;
-    for (const TrianglePair& pair : after) {
+    for (const TrianglePair& pair : found) {
       const auto at = place.find({pair.a, pair.b});
-      if (at == place.end()) continue;
+      if (at == place.end()) continue;  // a candidate at one pose alone, that does not cross
       ASSERT_GE(at->second, last);
       last = at->second;
       ++common;
@@ -143,7 +146,7 @@ void expect_all_crossings_of_rods() {
         ++crossings;
         EXPECT_TRUE(found.contains(pair)) << i << ": " << pair.first << ", " << pair.second;
       }
-      expect_swept(a->tree, b->tree, X_AB, 0.3 * shapes::unit_vector(generator));
+      expect_swept(a->solid, b->solid, X_AB, 0.3 * shapes::unit_vector(generator));
     }
   }
   EXPECT_GT(crossings, 500u);

@@ -333,7 +333,8 @@ TEST(CloseSearch, OverlapsOfSmallPartsHaveFewCandidates) {
   std::vector<SweptPair> swept;
   find_swept_leaves(tree, tree, pose, displacement, scratch, swept);
   EXPECT_LE(swept.size(), 400 * truth.crossings);
-  EXPECT_GT(swept::expect_swept(tree, tree, pose, displacement), 5000u);
+  const Solid solid(both, tree);
+  EXPECT_GT(swept::expect_swept(solid, solid, pose, displacement), 5000u);
 }
 
 /// `count` square sheets of 10 x 10 squares, `spacing` apart.

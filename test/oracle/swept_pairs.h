@@ -10,6 +10,8 @@
 
 #include <sixdof/oracle/candidates.h>
 #include <sixdof/oracle/crossing.h>
+#include <sixdof/oracle/overlap.h>
+#include <sixdof/oracle/solid.h>
 
 /// What find_swept_leaves() and find_swept_triangles() have to find, shared by tests.
 namespace sixdof::swept {
@@ -61,9 +63,25 @@ class Intervals {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<float, float>> intervals_;
 };
 
+/// Expects the overlap of the pairs of triangles that may intersect at x to have the bits of that of a search at x.
+inline void expect_same_bits(OverlapQuery& query, const Pose& pose, const std::vector<SweptPair>& triangles, double x) {
+  const Eigen::Vector3d reference(0.1, -0.4, 0.2);
+  const Overlap expected = query.evaluate(pose, reference);
+  std::vector<TrianglePair> pairs;
+  select_pairs(triangles, x, pairs);
+  const Overlap selected = query.evaluate(pose, reference, pairs);
+  EXPECT_EQ(selected.crossings, expected.crossings) << x;
+  EXPECT_EQ(selected.volume, expected.volume) << x;
+  EXPECT_EQ(selected.area, expected.area) << x;
+  EXPECT_EQ(selected.moment, expected.moment) << x;
+}
+
 /// At many fractions of the displacement: every two triangles that cross are a pair, and so are their leaves, whose
 /// interval contains the fraction. Returns the number of crossings.
-inline std::size_t expect_swept(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement) {
+inline std::size_t expect_swept(const Solid& solid_a, const Solid& solid_b, const Pose& X_AB,
+                                const Eigen::Vector3d& displacement) {
+  const Tree &a = solid_a.tree(), &b = solid_b.tree();
+  OverlapQuery query(solid_a, solid_b);
   std::vector<SweptPair> leaves, triangles;
   CandidateScratch scratch;
   find_swept_leaves(a, b, X_AB, displacement, scratch, leaves);
@@ -75,6 +93,7 @@ inline std::size_t expect_swept(const Tree& a, const Tree& b, const Pose& X_AB, 
   for (int i = 0; i <= k_fractions; ++i) {
     const double x = static_cast<double>(i) / k_fractions;
     const Pose pose = moved(X_AB, x * displacement);
+    expect_same_bits(query, pose, triangles, x);
     std::vector<TrianglePair> pairs;
     find_candidates(a, b, pose, scratch, pairs);
     for (const TrianglePair& pair : crossings_among(a, b, pose, pairs)) {

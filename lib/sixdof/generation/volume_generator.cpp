@@ -85,6 +85,7 @@ class VolumeSolver final : public RaySolver {
     if (k == targets.size() || targets[k] > most_) return;
 
     outer_ = inner_ = -1.0;  // nothing is collected
+    has_triangles_ = false;
     OverlapMarch march(
         [&](double s) { return measure(s); },
         [&](const OverlapMeasurement& outer, const OverlapMeasurement& inner, double enough) {
@@ -110,7 +111,10 @@ class VolumeSolver final : public RaySolver {
  private:
   OverlapMeasurement measure(double s) {
     ++measurements_;
-    const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a);
+    const bool known = has_triangles_ && inner_ <= s && s <= outer_;  // where an interval is divided
+    if (known) select_pairs(triangles_, fraction(s), pairs_);
+    const Overlap overlap =
+        known ? query_.evaluate(ray_.pose(s), ray_.center_a, pairs_) : query_.evaluate(ray_.pose(s), ray_.center_a);
     return {.s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray_.direction)};
   }
 
@@ -168,6 +172,7 @@ class VolumeSolver final : public RaySolver {
   CandidateScratch scratch_;
   std::vector<SweptPair> leaves_, triangles_;
   bool has_triangles_ = false;
+  std::vector<TrianglePair> pairs_;
 };
 
 }  // namespace

@@ -76,9 +76,10 @@ class CloseTests {
   float blurred_;  // square of a diagonal
 };
 
-/// Axes across two boxes, and across two triangles: instead of cross().
+/// Axes across two boxes, and across two triangles: instead of cross(), once or, along a displacement, often.
 constexpr detail::CrossAxesUse k_use_of_cross_axes(0.3);
 constexpr detail::CrossAxesUse k_use_of_cross_edges(0.9);
+constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0.5);
 
 /// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. Pairs wait
 /// on a stack while their memory is fetched. Which of two pairs is found first depends on the trees alone, not on which
@@ -244,7 +245,7 @@ class LeafTests {
       std::uint32_t bits = leaves::test_triangles(of_a, of_b, motion_.slack);
       if (bits != 0 && use_of_cross_edges_.is_due()) {
         const int before = std::popcount(bits);
-        bits = leaves::overlapping_across_edges(of_a, of_b, bits, motion_.slack);
+        bits = leaves::overlapping_across_edges(of_a, of_b, bits, motion_);
         use_of_cross_edges_.count(before, std::popcount(bits));
       }
       leaves::for_each_pair(bits, a_.leaves()[pair.a].child, b_.leaves()[pair.b].child,
@@ -290,10 +291,17 @@ void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const 
   const TreeMotion motion(a, b, X_AB, displacement);
   LeafCache leaves_a(a), leaves_b(b);
   const auto load_b = [&](const Tree::Leaf& leaf, LeafLanes& out) { leaves::load_leaf_of_b(leaf, motion, out); };
+  detail::CrossAxesUse use_of_cross_edges = k_use_of_moving_cross_edges;
   for (const SweptPair& pair : leaf_pairs) {
     HWY_ALIGN float first[leaves::k_pairs], last[leaves::k_pairs];
-    const std::uint32_t bits = leaves::test_moving_triangles(leaves_a.get(pair.a, leaves::load_leaf_of_a),
-                                                             leaves_b.get(pair.b, load_b), motion, first, last);
+    const LeafLanes& of_a = leaves_a.get(pair.a, leaves::load_leaf_of_a);
+    const LeafLanes& of_b = leaves_b.get(pair.b, load_b);
+    std::uint32_t bits = leaves::test_moving_triangles(of_a, of_b, motion, first, last);
+    if (bits != 0 && use_of_cross_edges.is_due()) {
+      const int before = std::popcount(bits);
+      bits = leaves::narrow_across_edges(of_a, of_b, bits, motion, first, last);
+      use_of_cross_edges.count(before, std::popcount(bits));
+    }
     leaves::for_each_pair(bits, a.leaves()[pair.a].child, b.leaves()[pair.b].child,
                           [&](TrianglePair triangles, std::uint32_t lane) {
                             pairs.push_back({triangles.a, triangles.b, first[lane], last[lane]});
@@ -329,6 +337,13 @@ void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const 
                           std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs) {
   pairs.clear();
   HWY_DYNAMIC_DISPATCH(candidates::find_swept_triangles)(a, b, X_AB, displacement, leaf_pairs, pairs);
+}
+
+void select_pairs(std::span<const SweptPair> swept, double x, std::vector<TrianglePair>& pairs) {
+  pairs.clear();
+  for (const SweptPair& pair : swept) {
+    if (static_cast<double>(pair.first) <= x && x <= static_cast<double>(pair.last)) pairs.push_back({pair.a, pair.b});
+  }
 }
 
 }  // namespace sixdof

@@ -63,8 +63,12 @@ struct SweptPair {
 void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                        CandidateScratch& scratch, std::vector<SweptPair>& pairs);
 
-/// The pairs of triangles of these leaves that may intersect during the same translation, likewise.
+/// The pairs of triangles of these leaves that may intersect during the same translation, likewise, in the order of
+/// find_candidates().
 void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                           std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs);
+
+/// The pairs that may intersect at the fraction x of the displacement.
+void select_pairs(std::span<const SweptPair> swept, double x, std::vector<TrianglePair>& pairs);
 
 }  // namespace sixdof

@@ -210,12 +210,13 @@ struct Projection {
 /// Projections of both triangles of a pair on one of the nine directions across an edge of each, and their rounding.
 struct EdgeAxis {
   V low_a, high_a, low_b, high_b;
+  V speed;  // of B's, per fraction of the displacement
   V tolerance;
 
   /// Whatever its own rounding, the direction n separates the triangles if their projections on it are apart: corners
-  /// are off by the slack along each axis, and the rounding of a scalar product is less than that. Products that
-  /// underflow are off by less than the smallest normal float.
-  HWY_INLINE EdgeAxis(const PairLanes& p, std::size_t edge, float slack) {
+  /// are off by the slack along each axis, and the rounding of a scalar product and of the way along the displacement
+  /// is less than that. Products that underflow are off by less than the smallest normal float.
+  HWY_INLINE EdgeAxis(const PairLanes& p, std::size_t edge, const TreeMotion& x) {
     const auto& a = p.corner_a;
     const auto& b = p.corner_b;
     const std::size_t i = edge % 3, j = edge / 3;
@@ -225,12 +226,14 @@ struct EdgeAxis {
       v[k] = hn::Sub(b[(j + 1) % 3][k], b[j][k]);
     }
     V sum = hn::Zero(k_lanes);
+    speed = hn::Zero(k_lanes);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
       n[k] = hn::Sub(hn::Mul(u[l], v[m]), hn::Mul(u[m], v[l]));
       sum = hn::Add(sum, hn::Abs(n[k]));
+      speed = unfused_mul_add(n[k], set(x.displacement[k]), speed);
     }
-    tolerance = unfused_mul_add(sum, set(8.0f * slack), set(std::numeric_limits<float>::min()));
+    tolerance = unfused_mul_add(sum, set(8.0f * x.slack), set(std::numeric_limits<float>::min()));
     const Projection of_a(n, a), of_b(n, b);
     low_a = of_a.low;
     high_a = of_a.high;
@@ -265,13 +268,13 @@ HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, 
 /// Pairs of triangles (bits), of those in `bits`, that no axis across an edge of each separates. With the tests before,
 /// by both planes, they intersect but for rounding.
 inline HWY_NOINLINE std::uint32_t overlapping_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
-                                                           float slack) {
+                                                           const TreeMotion& x) {
   std::uint32_t overlapping = 0;
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
-    const PairLanes p(a, b, i, slack);
+    const PairLanes p(a, b, i, x.slack);
     M apart = no_lane();
     for (std::size_t edge = 0; edge < 9; ++edge) {
-      const EdgeAxis axis(p, edge, slack);
+      const EdgeAxis axis(p, edge, x);
       apart = hn::Or(apart, hn::Gt(hn::Sub(axis.low_b, axis.high_a), axis.tolerance));
       apart = hn::Or(apart, hn::Gt(hn::Sub(axis.low_a, axis.high_b), axis.tolerance));
     }
@@ -355,6 +358,29 @@ HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLan
     bits |= bits_of(store(), i);
   }
   return bits;
+}
+
+/// Narrows the intervals of test_moving_triangles() by the axes across an edge of each triangle. Returns the pairs, of
+/// those in `bits`, that may still intersect.
+inline HWY_NOINLINE std::uint32_t narrow_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
+                                                      const TreeMotion& x, float* first, float* last) {
+  std::uint32_t overlapping = 0;
+  const V one = set(1.0f), pad = set(detail::k_fraction_rounding);
+  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
+    const PairLanes p(a, b, i, x.slack);
+    FractionInterval interval{set(-k_unbounded), set(k_unbounded)};
+    for (std::size_t edge = 0; edge < 9; ++edge) {
+      const EdgeAxis axis(p, edge, x);
+      narrow_to_linear(hn::Sub(hn::Sub(axis.low_a, axis.high_b), axis.tolerance),
+                       hn::Add(hn::Sub(axis.high_a, axis.low_b), axis.tolerance), axis.speed, interval);
+    }
+    const V low = hn::Max(load(first + i), hn::Sub(interval.first, pad));
+    const V high = hn::Min(load(last + i), hn::Add(interval.last, pad));
+    hn::StoreU(low, k_lanes, first + i);
+    hn::StoreU(high, k_lanes, last + i);
+    overlapping |= bits_of(hn::And(hn::Le(low, high), hn::And(hn::Le(low, one), hn::Ge(high, hn::Zero(k_lanes)))), i);
+  }
+  return bits & overlapping;
 }
 
 /// Calls take(pair, lane) for the pairs of triangles whose bits are set, but for lanes without a triangle.
