@@ -18,14 +18,14 @@
 // one child per SIMD lane.
 //
 // N is the frame of the expanded node's tree, F that of the fixed volume's tree, both with the origin at the tree's
-// centre. w is a unit vector from the body of N to the body of F. Each bound is a separating-axis bound: the gap
-// between the projections of both volumes on an axis,
+// centre. w is a unit vector from the body of N to the body of F. Bounds are the gaps between the projections of both
+// volumes on an axis:
 //   - w, the direction between the closest points so far: on smooth surfaces it is close to the normals of all pairs
 //     that are nearly as close;
 //   - the line through the centres of the boxes: it turns with a pair that lies aside of the closest points, as the
 //     direction between its own closest points does;
 //   - the normals of the slabs;
-//   - the axes of N and of F;
+//   - the axes of N and of F; where these are apart, the distance of two boxes aligned with N's, or with F's;
 //   - where volumes cross (CrossAxesUse), the nine axes across an axis of N and one of F.
 // A volume's projection is bounded by its box, and by its slab for the part of the axis along the slab's normal and its
 // box for the rest (Reach). On a smooth surface the second shrinks with the square of the volume's size where the axis
@@ -240,12 +240,18 @@ HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const FixedVolum
     const V gap_along = hn::Sub(least_along, child.greatest_along(w));
     if (all_exceed_best(gap_along)) continue;
 
-    // Axes of N and F. m: from the children's centres to the fixed volume's.
+    // Boxes. m: from the children's centres to the fixed volume's.
     V m[3];
     V gap = set(-Tree::k_empty);
+    V squared_n = hn::Zero(k_lanes), squared_f = hn::Zero(k_lanes);  // of the distances of the boxes
+    const auto keep = [&gap](V along_axis, V& squared_distance) {
+      gap = hn::Max(gap, along_axis);
+      const V positive = hn::Max(along_axis, hn::Zero(k_lanes));
+      squared_distance = hn::MulAdd(positive, positive, squared_distance);
+    };
     for (std::size_t k = 0; k < 3; ++k) {
       m[k] = hn::Sub(set(fixed.center[k]), child.center[k]);
-      gap = hn::Max(gap, hn::Sub(hn::Abs(m[k]), hn::Add(child.half[k], set(fixed.half[k]))));
+      keep(hn::Sub(hn::Abs(m[k]), hn::Add(child.half[k], set(fixed.half[k]))), squared_n);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       V middle = hn::Zero(k_lanes);
@@ -255,8 +261,9 @@ HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const FixedVolum
         middle = hn::MulAdd(r, m[j], middle);
         extent = hn::MulAdd(hn::Abs(r), child.half[j], extent);
       }
-      gap = hn::Max(gap, hn::Sub(hn::Abs(middle), extent));
+      keep(hn::Sub(hn::Abs(middle), extent), squared_f);
     }
+    gap = hn::IfThenElse(hn::Gt(gap, hn::Zero(k_lanes)), hn::Sqrt(hn::Max(squared_n, squared_f)), gap);
 
     // The line through the centres.
     const V squared = dot_fused(m, m);
