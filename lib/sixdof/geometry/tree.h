@@ -65,6 +65,12 @@ class Tree {
     float normal[3];
     float slab_lower;
     float slab_upper;
+
+    /// Of the box (length^2).
+    float squared_diagonal() const {
+      const float x = upper[0] - lower[0], y = upper[1] - lower[1], z = upper[2] - lower[2];
+      return x * x + y * y + z * z;
+    }
   };
 
   struct alignas(64) Node {

@@ -25,14 +25,6 @@ namespace leaves = triangle_pairs::HWY_NAMESPACE;
 using leaves::LeafCache;
 using leaves::LeafLanes;
 
-/// Square of a box's diagonal.
-HWY_INLINE float size_of(const Tree::Volume& v) {
-  const float x = v.upper[0] - v.lower[0];
-  const float y = v.upper[1] - v.lower[1];
-  const float z = v.upper[2] - v.lower[2];
-  return x * x + y * y + z * z;
-}
-
 /// Nodes smaller than this many times the slack are tested in doubles: floats would not separate most of their
 /// children.
 constexpr float k_blurred = 64.0f;
@@ -47,7 +39,7 @@ class CloseTests {
         blurred_(k_blurred * k_blurred * slack * slack) {}
 
   bool are_due(const Tree::Node& a, const Tree::Node& b) const {
-    return std::max(size_of(a.volume), size_of(b.volume)) < blurred_;
+    return std::max(a.volume.squared_diagonal(), b.volume.squared_diagonal()) < blurred_;
   }
 
   /// Children of A's node (bits), of those in `lanes`, that may intersect child j of B's node.

@@ -33,14 +33,6 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {
 namespace HWY_NAMESPACE {
 
-/// Square of a box's diagonal.
-HWY_INLINE float size_of(const Tree::Volume& v) {
-  const float x = v.upper[0] - v.lower[0];
-  const float y = v.upper[1] - v.lower[1];
-  const float z = v.upper[2] - v.lower[2];
-  return x * x + y * y + z * z;
-}
-
 float rounded_up(double x) {
   return std::nextafter(static_cast<float>(std::min(x, 1e30)), std::numeric_limits<float>::infinity());
 }
@@ -185,8 +177,8 @@ class DistanceTraversal final : private CloseVisitor {
   HWY_INLINE Choice choose(const NodePair& pair) {
     const Tree::Volume& a = volume_of(tree_a_, pair.a);
     const Tree::Volume& b = volume_of(tree_b_, pair.b);
-    const float size_a = size_of(a);
-    const float size_b = size_of(b);
+    const float size_a = a.squared_diagonal();
+    const float size_b = b.squared_diagonal();
     const bool expands_a = is_leaf(pair.b) || (!is_leaf(pair.a) && size_a >= size_b);
     const float expanded = expands_a ? size_a : size_b;
     if (expanded < blurred_) return {expands_a, true};
@@ -204,8 +196,8 @@ class DistanceTraversal final : private CloseVisitor {
   }
 
   bool are_blurred(const NodePair& leaves) const {
-    return blurs_leaves_ &&
-           std::max(size_of(volume_of(tree_a_, leaves.a)), size_of(volume_of(tree_b_, leaves.b))) < blurred_;
+    return blurs_leaves_ && std::max(volume_of(tree_a_, leaves.a).squared_diagonal(),
+                                     volume_of(tree_b_, leaves.b).squared_diagonal()) < blurred_;
   }
 
   HWY_NOINLINE bool search_in_doubles(const NodePair& top) {
@@ -593,9 +585,7 @@ const ClosestPoints& points_of(DistanceSearch& search) {
 float smallest_leaf_of(const Tree& tree) {
   float smallest = std::numeric_limits<float>::infinity();
   for (const Tree::Leaf& leaf : tree.leaves()) {
-    const Tree::Volume& v = leaf.volume;
-    const Eigen::Vector3f size(v.upper[0] - v.lower[0], v.upper[1] - v.lower[1], v.upper[2] - v.lower[2]);
-    smallest = std::min(smallest, size.squaredNorm());
+    smallest = std::min(smallest, leaf.volume.squared_diagonal());
   }
   return smallest;
 }
