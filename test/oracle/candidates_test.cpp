@@ -76,7 +76,7 @@ TEST(SweptPairs, AreFewAtOneFraction) {
     const auto triangles = std::count_if(of_triangles.begin(), of_triangles.end(), at_x);
     EXPECT_LT(static_cast<double>(triangles), 1.2 * static_cast<double>(found.size())) << x;
     EXPECT_LT(triangles, static_cast<std::ptrdiff_t>(of_triangles.size()));
-    // Of leaves, boxes and slabs know less.
+    // The box and slab of a leaf hold more than its triangles: 2.5 to 2.8 times as many pairs, a quarter of all.
     std::set<std::pair<std::uint32_t, std::uint32_t>> leaves_found;
     for (const TrianglePair& pair : found) leaves_found.emplace(leaves[pair.a], leaves[pair.b]);
     const auto pairs_of_leaves = static_cast<double>(std::count_if(of_leaves.begin(), of_leaves.end(), at_x));

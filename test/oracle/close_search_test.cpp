@@ -333,6 +333,9 @@ TEST(CloseSearch, OverlapsOfSmallPartsHaveFewCandidates) {
   std::vector<SweptPair> swept;
   find_swept_leaves(tree, tree, pose, displacement, scratch, swept);
   EXPECT_LE(swept.size(), 400 * truth.crossings);
+  std::vector<SweptPair> triangles;
+  find_swept_triangles(tree, tree, pose, displacement, swept, triangles);
+  EXPECT_LE(triangles.size(), 400 * truth.crossings);
   const Solid solid(both, tree);
   EXPECT_GT(swept::expect_swept(solid, solid, pose, displacement), 5000u);
 }

@@ -20,7 +20,8 @@ namespace sixdof {
 /// divided, down to k_first_overlap_resolution.
 ///
 /// The leaves whose triangles may intersect are collected for the displacement between two measurements (candidates.h)
-/// and serve all bounds in it. A ray takes about three measurements per target.
+/// and serve all bounds in it; where they do not suffice, so do their triangles, which then serve the measurements in
+/// it, too. A ray takes about three measurements per target.
 ///
 /// Not found are hits that begin and end within the resolution, where the bounds allow them at all; and, in meshes that
 /// intersect themselves, longer ones.

@@ -108,8 +108,6 @@ class DualTreeTraversal {
     const Tree::Node& node_b;
     bool blurred;
     std::uint32_t overlapping[k_width] = {};  // children of A, for each child of B
-    HWY_ALIGN float first[k_width][k_width];  // if moving: fractions, [child of B][child of A]
-    HWY_ALIGN float last[k_width][k_width];
   };
 
   void expand(const NodePair& pair) {
@@ -126,7 +124,7 @@ class DualTreeTraversal {
         const auto j = static_cast<std::size_t>(std::countr_zero(rest));
         if constexpr (moving) {
           x.overlapping[j] =
-              lanes_a & overlap_intervals(children_a_, x.node_a, children_b_, j, motion_, x.first[j], x.last[j]);
+              lanes_a & overlap_intervals(children_a_, x.node_a, children_b_, j, motion_, first_[j], last_[j]);
         } else {
           x.overlapping[j] = lanes_a & overlapping_children(children_a_, x.node_a, children_b_, j);
         }
@@ -141,13 +139,13 @@ class DualTreeTraversal {
     }
   }
 
-  HWY_NOINLINE void test_closely(Expansion& x, std::uint32_t lanes_a, std::uint32_t lanes_b) const {
+  HWY_NOINLINE void test_closely(Expansion& x, std::uint32_t lanes_a, std::uint32_t lanes_b) {
     for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(rest));
       x.overlapping[j] = close_.overlapping_children(x.node_a, lanes_a, x.node_b, j);
       if constexpr (moving) {
-        std::fill_n(x.first[j], k_width, detail::k_first_fraction);
-        std::fill_n(x.last[j], k_width, detail::k_last_fraction);
+        std::fill_n(first_[j], k_width, detail::k_first_fraction);
+        std::fill_n(last_[j], k_width, detail::k_last_fraction);
       }
     }
   }
@@ -157,7 +155,7 @@ class DualTreeTraversal {
     const Tree::Child a = x.node_a.child[i], b = x.node_b.child[j];
     if (a.is_leaf() && b.is_leaf()) {
       if constexpr (moving) {
-        take_(SweptPair{x.node_a.leaf[i], x.node_b.leaf[j], x.first[j][i], x.last[j][i]});
+        take_(SweptPair{x.node_a.leaf[i], x.node_b.leaf[j], first_[j][i], last_[j][i]});
       } else {
         take_(x.node_a.leaf[i], x.node_b.leaf[j], x.blurred);
       }
@@ -196,6 +194,9 @@ class DualTreeTraversal {
   std::vector<NodePair>& stack_;
   Children children_a_, children_b_;
   std::uint32_t loaded_a_ = k_none, loaded_b_ = k_none;
+  /// If moving: intervals of fractions of the last expansion, [child of B][child of A].
+  HWY_ALIGN float first_[k_width][k_width];
+  HWY_ALIGN float last_[k_width][k_width];
   std::optional<detail::CrossAxes> cross_axes_;  // made when they are asked for the first time
   detail::CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   Take take_;

@@ -128,18 +128,6 @@ HWY_INLINE std::uint32_t overlapping_children(const Children& a, const Tree::Nod
   return bits;
 }
 
-/// Fractions of the displacement at which something may hold, per lane.
-struct FractionInterval {
-  V first, last;
-
-  /// To the fractions x at which |offset - speed x| <= radius.
-  HWY_INLINE void narrow(V offset, V radius, V inverse_speed) {
-    const V x = hn::Mul(hn::Sub(offset, radius), inverse_speed), y = hn::Mul(hn::Add(offset, radius), inverse_speed);
-    first = hn::Max(first, hn::Min(x, y));
-    last = hn::Min(last, hn::Max(x, y));
-  }
-};
-
 /// The intervals of the displacement's fractions (0 .. 1) in which children of A may intersect child j of B. Returns
 /// the children (bits) whose interval contains one in 0 .. 1.
 HWY_INLINE std::uint32_t overlap_intervals(const Children& a, const Tree::Node& node_a, const Children& b,
@@ -148,16 +136,20 @@ HWY_INLINE std::uint32_t overlap_intervals(const Children& a, const Tree::Node& 
   std::uint32_t bits = 0;
   const V half = set(0.5f);
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    FractionInterval interval{set(detail::k_first_fraction - 0.5f), set(detail::k_last_fraction - 0.5f)};
+    lanes::HWY_NAMESPACE::FractionInterval<V> interval{set(detail::k_first_fraction - 0.5f),
+                                                       set(detail::k_last_fraction - 0.5f)};
+    // To |offset - speed x| <= radius.
+    const auto narrow = [&](V offset, V radius, V inverse_speed) {
+      interval.narrow(hn::Sub(offset, radius), hn::Add(offset, radius), inverse_speed);
+    };
     V middle_a = hn::Zero(k_lanes), radius_a = hn::Zero(k_lanes);  // of A's boxes along the normal of j
     V middle_b = hn::Zero(k_lanes), radius_b = hn::Zero(k_lanes);  // of j's box along A's normals
     for (std::size_t k = 0; k < 3; ++k) {
       const V center = load(a.center[k] + i), extent = load(a.half[k] + i);
-      interval.narrow(hn::Sub(center, set(b.other_center[k][j])),
-                      hn::Add(extent, set(b.other_half[k][j] + x.along_a[k].pad)), set(x.along_a[k].inverse));
-      interval.narrow(hn::Sub(set(b.center[k][j]), load(a.other_center[k] + i)),
-                      hn::Add(load(a.other_half[k] + i), set(b.half[k][j] + x.along_b[k].pad)),
-                      set(x.along_b[k].inverse));
+      narrow(hn::Sub(center, set(b.other_center[k][j])), hn::Add(extent, set(b.other_half[k][j] + x.along_a[k].pad)),
+             set(x.along_a[k].inverse));
+      narrow(hn::Sub(set(b.center[k][j]), load(a.other_center[k] + i)),
+             hn::Add(load(a.other_half[k] + i), set(b.half[k][j] + x.along_b[k].pad)), set(x.along_b[k].inverse));
       const V normal_b = set(b.normal[k][j]);
       middle_a = unfused_mul_add(normal_b, center, middle_a);
       radius_a = unfused_mul_add(hn::Abs(normal_b), extent, radius_a);
@@ -165,8 +157,8 @@ HWY_INLINE std::uint32_t overlap_intervals(const Children& a, const Tree::Node& 
       radius_b = unfused_mul_add(hn::Abs(load(a.normal[k] + i)), set(b.half[k][j]), radius_b);
     }
     const auto narrow_to_slab = [&](V middle, V radius, V lower, V upper, V inverse_speed) {
-      interval.narrow(hn::Sub(hn::Mul(half, hn::Add(lower, upper)), middle),
-                      hn::Add(hn::Mul(half, hn::Sub(upper, lower)), radius), inverse_speed);
+      narrow(hn::Sub(hn::Mul(half, hn::Add(lower, upper)), middle),
+             hn::Add(hn::Mul(half, hn::Sub(upper, lower)), radius), inverse_speed);
     };
     narrow_to_slab(middle_b, radius_b, load(a.slab_lower + i), load(a.slab_upper + i), load(a.slab_inverse + i));
     narrow_to_slab(middle_a, radius_a, set(b.slab_lower[j]), set(b.slab_upper[j]), set(-b.slab_inverse[j]));

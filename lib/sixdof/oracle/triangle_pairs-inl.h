@@ -283,20 +283,7 @@ inline HWY_NOINLINE std::uint32_t overlapping_across_edges(const LeafLanes& a, c
   return bits & overlapping;
 }
 
-/// The interval of the displacement's fraction in which something may hold, per lane.
-struct FractionInterval {
-  V first, last;
-
-  /// To the fractions at which a box of B overlaps a box of A along an axis of A; bounds are those at fraction 0.
-  HWY_INLINE void narrow_to_boxes(V lower_a, V upper_a, V lower_b, V upper_b, std::size_t axis, const TreeMotion& x) {
-    const V pad = set(x.along_a[axis].pad);
-    const V inverse = set(x.along_a[axis].inverse);
-    const V low = hn::Mul(hn::Sub(hn::Sub(lower_a, upper_b), pad), inverse);
-    const V high = hn::Mul(hn::Add(hn::Sub(upper_a, lower_b), pad), inverse);
-    first = hn::Max(first, x.along_a[axis].inverse < 0.0f ? high : low);
-    last = hn::Min(last, x.along_a[axis].inverse < 0.0f ? low : high);
-  }
-};
+using FractionInterval = lanes::HWY_NAMESPACE::FractionInterval<V>;
 
 // A separating-axis test of two triangles (boxes along each axis, both planes) is linear in the displacement's
 // fraction, so each test gives the interval of fractions at which it does not separate the triangles. They may
@@ -327,7 +314,9 @@ HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLan
     const auto of_b = [i](const float* p) { return load_of_b(p, i); };
     FractionInterval interval{set(-k_unbounded), set(k_unbounded)};
     for (std::size_t k = 0; k < 3; ++k) {  // B's boxes include the slack
-      interval.narrow_to_boxes(of_a(a.lower[k]), of_a(a.upper[k]), of_b(b.lower[k]), of_b(b.upper[k]), k, x);
+      const V pad = set(x.along_a[k].pad);
+      interval.narrow(hn::Sub(hn::Sub(of_a(a.lower[k]), of_b(b.upper[k])), pad),
+                      hn::Add(hn::Sub(of_a(a.upper[k]), of_b(b.lower[k])), pad), set(x.along_a[k].inverse));
     }
     const auto store = [&] {  // returns the lanes whose interval contains a fraction in 0 .. 1
       const V pad = set(detail::k_fraction_rounding);
