@@ -29,13 +29,11 @@ constexpr double k_largest_growth = 2.0;
 /// that are shorter than unit vectors, and as much again for the tilt of parts of a rough face.
 constexpr float k_flat_error = 2e-3f;
 
-/// What one query of a DifferenceSupport adds to its budget: for pairs that may tie, and for others. Support values
-/// cull some of the others because volumes reach beyond their triangles: on smooth surfaces they halve the number of
-/// expanded nodes. Of 1, 2, 4 .. 64, 8 is the fastest for the others.
-constexpr std::uint64_t k_budget_near = 16;
-constexpr std::uint64_t k_budget_far = 8;
+/// What one query of a DifferenceSupport adds to its budget. Support values cull pairs because volumes reach beyond
+/// their triangles: on smooth surfaces they halve the number of expanded nodes. Of 0, 2, 4, 8 .. 64, 16 is the fastest.
+constexpr std::uint64_t k_budget = 16;
 
-/// Half the diagonals of two boxes, in units of the slack, up to which they are bounded in double precision: bounds in
+/// Diagonals of two boxes, in units of the slack, up to which they are bounded in double precision: bounds in
 /// single precision do not tell their parts apart.
 constexpr float k_unresolved = 4.0f;
 
@@ -58,24 +56,22 @@ class TieTests {
  public:
   TieTests(Cast& cast, const Ray& ray) : cast_(cast), ray_(ray), tie_(k_cast_tie * cast.size()) {}
 
+  /// Whether the slabs of two children tie with the best hit or are farther apart.
+  bool slabs_tie(std::uint32_t a, std::uint32_t b) const {
+    return a != CastVolume::k_root && b != CastVolume::k_root && ray_cast::slabs_tie(cast_, a, b);
+  }
+
   /// Counts a pair that single-precision bounds did not cull.
   void count_pair() { ++pairs_; }
 
-  /// Whether the slabs of two volumes, given by slots, tie with the best hit or are farther apart.
-  bool slabs_tie(std::uint32_t a, std::uint32_t b) const {
-    if (a == CastFront::k_root || b == CastFront::k_root) return false;
-    const CastSlab slab_a = cast_.a.slab(a);
-    const CastSlab slab_b = cast_.b.slab(b);
-    return slab_separates(slab_a, slab_b, cast_.b.volume(b)) || slab_separates(slab_b, slab_a, cast_.a.volume(a));
-  }
-
   /// Takes the larger of two flat volumes for cast.patch if it is larger than that.
-  void note_patch(std::uint32_t a, std::uint32_t b) {
-    if (!cast_.best.pair || a == CastFront::k_root || b == CastFront::k_root) return;
-    const bool larger_a = cast_.a.volume(a).size >= cast_.b.volume(b).size;
+  /// @param size_a, size_b squared diagonals
+  void note_patch(std::uint32_t a, float size_a, std::uint32_t b, float size_b) {
+    if (!cast_.best.pair || a == CastVolume::k_root || b == CastVolume::k_root) return;
+    const bool larger_a = size_a >= size_b;
     const CastTree& tree = larger_a ? cast_.a : cast_.b;
     const std::uint32_t larger = larger_a ? a : b;
-    const float size = tree.volume(larger).size;
+    const float size = std::max(size_a, size_b);
     if (size <= cast_.patch.size && cast_.patch.is_facing(cast_.best.axis, cast_.direction)) return;
     const Eigen::Vector3d normal = tree.slab(larger).normal;
     const CoplanarPatch patch{normal.dot(cast_.direction) < 0.0 ? Eigen::Vector3d(-normal) : normal, size};
@@ -86,25 +82,24 @@ class TieTests {
   /// best.separating_axis, each tested only when it is due; where both are unresolved, by separated_in_double(). Half a
   /// tie is more than the rounding of this test and of try_update(), so that what is culled here is no hit that
   /// try_update() would take. While there is no hit to stand for it, a tie is not culled.
-  /// @param near whether they may tie
+  /// @param a, b slots of children
+  /// @param size the larger of their squared diagonals
   /// @param set_bound called with gap and slope if the gap is more than the rounding of single precision; otherwise a
   /// smaller target tests the pair again
   template <class SetBound>
-  bool separated(std::uint32_t a, std::uint32_t b, bool near, const SetBound& set_bound) {
-    if (a == CastFront::k_root || b == CastFront::k_root) return false;
+  bool separated(std::uint32_t a, std::uint32_t b, float size, const SetBound& set_bound) {
+    if (a == CastVolume::k_root || b == CastVolume::k_root) return false;
     const float unresolved = k_unresolved * ray_.slack;
-    if (std::max(cast_.a.volume(a).size, cast_.b.volume(b).size) <= unresolved * unresolved &&
-        separated_in_double(cast_, a, b)) {
-      return true;
-    }
+    if (size <= unresolved * unresolved && separated_in_double(cast_, a, b)) return true;
     const auto separates = [&](DifferenceSupport& support, const Eigen::Vector3d& axis, Backoff& backoff) {
       const double slope = axis.dot(cast_.direction);
       if (slope < 0.0) return false;
-      const double gap = cast_.best.translation * slope +
-                         support.support_value(a, b, axis, near ? k_budget_near : k_budget_far) - cast_.target;
+      const double gap = cast_.best.translation * slope + support.support_value(a, b, axis, k_budget) - cast_.target;
       const bool culled = gap >= (cast_.best.pair ? -0.5 * tie_ : 0.0);
       backoff.record(culled, pairs_);
-      if (gap > ray_.slack) set_bound(static_cast<float>(gap), static_cast<float>(slope));
+      if (gap > static_cast<double>(ray_.slack)) {
+        set_bound(static_cast<float>(cast_.target + gap) - ray_.slack, static_cast<float>(slope));
+      }
       return culled;
     };
     if (patch_backoff_.due(pairs_) && cast_.patch.is_facing(cast_.best.axis, cast_.direction) &&
@@ -115,28 +110,15 @@ class TieTests {
   }
 
  private:
-  /// Whether slab `x` is separated along its normal by the target, up to a tie, from slab `y` with a box around it.
-  bool slab_separates(const CastSlab& x, const CastSlab& y, const CastVolume& box) const {
-    const double rate = x.normal.dot(cast_.direction);
-    const double sign = rate < 0.0 ? -1.0 : 1.0;
-    const Eigen::Vector3d n = sign * x.normal;
-    const double along = n.dot(y.normal);
-    // n is `along` times y's normal plus a rest, for which the box is used.
-    double least = sign * x.middle - x.half + along * y.middle - std::abs(along) * y.half;
-    const Eigen::Vector3d rest = n - along * y.normal;
-    for (int k = 0; k < 3; ++k) {
-      const double half = static_cast<double>(box.half[k]) + static_cast<double>(ray_.slack);
-      least += rest[k] * static_cast<double>(box.center[k]) - std::abs(rest[k]) * half;
-    }
-    return least + cast_.best.translation * std::abs(rate) >= cast_.target - tie_;
-  }
-
   Cast& cast_;
   const Ray& ray_;
   const double tie_;
   std::uint64_t pairs_ = 0;
   Backoff patch_backoff_, axis_backoff_;
 };
+
+/// The whole tree.
+constexpr CastVolume k_root{CastVolume::k_root, CastChild::node(0)};
 
 class DualTreeTraversal {
  public:
@@ -151,7 +133,7 @@ class DualTreeTraversal {
     front_.target = cast_.target;
     front_.pending.clear();
     if (front_.expansions.empty()) {
-      expand_larger({CastFront::k_root, CastFront::k_root});
+      expand_larger({k_root, k_root});
       process_pending();
       front_.initial_size = front_.expansions.size();
     } else {
@@ -161,37 +143,30 @@ class DualTreeTraversal {
   }
 
  private:
-  /// Slots of a pair of volumes.
+  /// A pair of volumes.
   struct VolumePair {
-    std::uint32_t a, b;
+    CastVolume a, b;
   };
 
-  static const CastVolume& volume_of(const CastTree& tree, std::uint32_t slot) {
-    return slot == CastFront::k_root ? tree.root_volume() : tree.volume(slot);
-  }
-
-  static CastChild child_of(const CastTree& tree, std::uint32_t slot) {
-    return slot == CastFront::k_root ? CastChild::node(0) : tree.child(slot);
-  }
-
-  static VolumePair pair_of(const CastFront::Expansion& expansion, std::uint32_t lane) {
-    const auto own = static_cast<std::uint32_t>(expansion.node * k_width + lane);
+  static VolumePair pair_of(const CastFront::Expansion& expansion, std::uint32_t lane, CastChild child) {
+    const CastVolume own{static_cast<std::uint32_t>(expansion.node * k_width + lane), child};
     return expansion.expands_a ? VolumePair{own, expansion.other} : VolumePair{expansion.other, own};
   }
 
+  /// @param gap at the translation of the best hit
   void set_bound(const CastFront::Pending& child, float gap, float slope) {
     CastFront::AxisBounds& bounds = front_.bounds[child.expansion];
-    bounds.offset[child.lane] = gap + ray_.target - slope * ray_.translation;
+    bounds.offset[child.lane] = gap - slope * ray_.translation;
     bounds.slope[child.lane] = slope;
   }
 
-  /// By how much a child's bound exceeds the target.
+  /// A child's bound.
   float gap_of(const CastFront::Pending& child) const {
     const CastFront::AxisBounds& bounds = front_.bounds[child.expansion];
-    return bounds.offset[child.lane] + bounds.slope[child.lane] * ray_.translation - ray_.target;
+    return bounds.offset[child.lane] + bounds.slope[child.lane] * ray_.translation;
   }
 
-  /// By how much the least of an expansion's bounds exceeds the target.
+  /// The least of an expansion's bounds.
   float least_gap(std::uint32_t expansion) const {
     const CastFront::AxisBounds& bounds = front_.bounds[expansion];
     V least = set(CastFront::k_not_in_front);
@@ -199,22 +174,21 @@ class DualTreeTraversal {
       const V slope = load(bounds.slope + i);
       least = hn::Min(least, unfused_mul_add(slope, set(ray_.translation), load(bounds.offset + i)));
     }
-    return hn::GetLane(hn::MinOfLanes(k_lanes, least)) - ray_.target;
+    return hn::GetLane(hn::MinOfLanes(k_lanes, least));
   }
 
   /// Whether a pair that single-precision bounds do not cull is separated in double precision.
-  /// @param near whether it may tie
-  bool separated(const CastFront::Pending& child, VolumePair pair, bool near) {
-    return ties_.separated(pair.a, pair.b, near, [&](float gap, float slope) { set_bound(child, gap, slope); });
+  bool separated(const CastFront::Pending& child, VolumePair pair) {
+    return ties_.separated(pair.a.slot, pair.b.slot, child.size,
+                           [&](float gap, float slope) { set_bound(child, gap, slope); });
   }
 
   /// Expands the larger of two volumes, or the one that is no leaf.
   void expand_larger(VolumePair pair) {
-    const CastChild child_a = child_of(tree_a_, pair.a);
-    const CastChild child_b = child_of(tree_b_, pair.b);
+    const CastChild a = pair.a.child, b = pair.b.child;
     const bool expands_a =
-        child_b.is_leaf() || (!child_a.is_leaf() && volume_of(tree_a_, pair.a).size >= volume_of(tree_b_, pair.b).size);
-    const std::uint32_t index = (expands_a ? child_a : child_b).index();
+        b.is_leaf() || (!a.is_leaf() && tree_a_.volume(a).squared_diagonal() >= tree_b_.volume(b).squared_diagonal());
+    const std::uint32_t index = (expands_a ? a : b).index();
     front_.expansions.push_back({index, expands_a ? pair.b : pair.a, expands_a});
     CastFront::AxisBounds& bounds = front_.bounds.emplace_back();
     const std::uint32_t count = (expands_a ? tree_a_ : tree_b_).nodes()[index].child_count;
@@ -230,28 +204,35 @@ class DualTreeTraversal {
     ++cast_.counts.nodes;
     const CastFront::Expansion from = front_.expansions[expansion];
     const CastTree& tree = from.expands_a ? tree_a_ : tree_b_;
-    const CastNode& node = tree.nodes()[from.node];
-    const CastVolume& fixed = volume_of(from.expands_a ? tree_b_ : tree_a_, from.other);
+    const CastTree& other = from.expands_a ? tree_b_ : tree_a_;
+    const Tree::Node& node = tree.nodes()[from.node];
+    const Tree::Volume& fixed_volume = other.volume(from.other.child);
+    const Frame& frame = from.expands_a ? ray_.frames.expand_a : ray_.frames.expand_b;
+    if (!from.other.child.is_leaf()) prefetch(other.nodes()[from.other.child.index()]);
+    const FixedVolume fixed(fixed_volume, frame);
     HWY_ALIGN float gaps[k_width], slopes[k_width], projections[k_width];
-    bound_children(node, fixed, ray_, gaps, slopes, projections);
-    std::uint32_t left = raise_bounds(front_.bounds[expansion], gaps, slopes);
+    bound_children(node, fixed, frame, from.expands_a ? ray_.expand_a : ray_.expand_b, ray_, gaps, slopes, projections);
+    std::uint32_t left = raise_bounds(front_.bounds[expansion], node.child_count, gaps, slopes);
     std::vector<CastFront::Pending>& pending = front_.pending;
     const std::size_t first = pending.size();
-    const bool fixed_flat = fixed.slab_half <= ray_.slack;
+    const float fixed_size = fixed_volume.squared_diagonal();
+    const bool fixed_flat = is_flat(fixed_volume.slab_lower, fixed_volume.slab_upper);
     for (; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
-      const bool flat = fixed_flat && node.slab_half[lane] <= ray_.slack;
-      const float error = flat ? k_flat_error * (node.ball_radius[lane] + fixed.ball_radius) : 0.0f;
-      const bool near = gaps[lane] > -ray_.slack - error;
+      const float size = squared_diagonal(node, lane);
+      const bool flat = fixed_flat && is_flat(node.slab_lower[lane], node.slab_upper[lane]);
+      const float error = flat ? k_flat_error * 0.5f * (std::sqrt(size) + std::sqrt(fixed_size)) : 0.0f;
+      const bool near = gaps[lane] > ray_.target - 2.0f * ray_.slack - error;
       ties_.count_pair();
-      const VolumePair pair = pair_of(from, lane);
+      const CastChild child = child_of(node, lane);
+      const VolumePair pair = pair_of(from, lane, child);
       if (near && flat) {
-        if (ties_.slabs_tie(pair.a, pair.b)) continue;
-        ties_.note_patch(pair.a, pair.b);
+        if (ties_.slabs_tie(pair.a.slot, pair.b.slot)) continue;
+        const float size_a = from.expands_a ? size : fixed_size, size_b = from.expands_a ? fixed_size : size;
+        ties_.note_patch(pair.a.slot, size_a, pair.b.slot, size_b);
       }
-      const CastFront::Pending next{expansion, lane, projections[lane]};
-      if (separated(next, pair, near)) continue;
-      const CastChild child = node.child[lane];
+      const CastFront::Pending next{expansion, lane, child, projections[lane], std::max(size, fixed_size)};
+      if (separated(next, pair)) continue;
       child.is_leaf() ? prefetch(tree.leaves()[child.index()]) : prefetch(tree.nodes()[child.index()]);
       std::size_t at = pending.size();
       pending.push_back(next);
@@ -260,21 +241,35 @@ class DualTreeTraversal {
     }
   }
 
+  /// Whether a slab is so thin that it may tie with one that faces it.
+  bool is_flat(float slab_lower, float slab_upper) const { return slab_upper - slab_lower <= 2.0f * ray_.slack; }
+
+  static float squared_diagonal(const Tree::Node& node, std::size_t lane) {
+    float squared = 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float side = node.upper[k][lane] - node.lower[k][lane];
+      squared += side * side;
+    }
+    return squared;
+  }
+
   /// Replaces bounds by those with the given gaps and slopes where these are larger.
+  /// @param count children of the node
   /// @return bits of the lanes that no bound culls
-  std::uint32_t raise_bounds(CastFront::AxisBounds& bounds, const float* gaps, const float* slopes) const {
+  std::uint32_t raise_bounds(CastFront::AxisBounds& bounds, std::uint32_t count, const float* gaps,
+                             const float* slopes) const {
     std::uint32_t left = 0;
     for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
       const V offset = load(bounds.offset + i);
       const V slope = load(bounds.slope + i);
-      const V known = hn::Sub(unfused_mul_add(slope, set(ray_.translation), offset), set(ray_.target));
+      const V known = unfused_mul_add(slope, set(ray_.translation), offset);
       const V gap = load(gaps + i);
       const V new_slope = load(slopes + i);
-      const V new_offset = hn::Add(unfused_sub_mul(gap, new_slope, set(ray_.translation)), set(ray_.target));
-      const auto raises = hn::Gt(gap, known);
+      const V new_offset = unfused_sub_mul(gap, new_slope, set(ray_.translation));
+      const M raises = hn::And(hn::Gt(gap, known), hn::FirstN(k_lanes, count > i ? count - i : 0));
       hn::Store(hn::IfThenElse(raises, new_offset, offset), k_lanes, bounds.offset + i);
       hn::Store(hn::IfThenElse(raises, new_slope, slope), k_lanes, bounds.slope + i);
-      left |= bits_of(hn::Le(hn::Max(gap, known), set(ray_.slack)), i);
+      left |= bits_of(hn::Le(hn::Max(gap, known), set(ray_.target)), i);
     }
     return left;
   }
@@ -284,13 +279,11 @@ class DualTreeTraversal {
       const CastFront::Pending top = front_.pending.back();
       front_.pending.pop_back();
       const float gap = gap_of(top);
-      if (gap > ray_.slack) continue;  // the best hit may have changed since
-      const VolumePair pair = pair_of(front_.expansions[top.expansion], top.lane);
-      if (separated(top, pair, gap > -ray_.slack)) continue;
-      const CastChild child_a = child_of(tree_a_, pair.a);
-      const CastChild child_b = child_of(tree_b_, pair.b);
-      if (child_a.is_leaf() && child_b.is_leaf()) {
-        expand_leaves(child_a.index(), child_b.index(), top);
+      if (gap > ray_.target) continue;  // the best hit may have changed since
+      const VolumePair pair = pair_of(front_.expansions[top.expansion], top.lane, top.child);
+      if (separated(top, pair)) continue;
+      if (pair.a.child.is_leaf() && pair.b.child.is_leaf()) {
+        expand_leaves(pair.a.child.index(), pair.b.child.index(), top);
       } else {
         set_bound(top, CastFront::k_not_in_front, 0.0f);
         expand_larger(pair);
@@ -301,13 +294,13 @@ class DualTreeTraversal {
   /// Sets the bound of two leaves, and updates the best hit by those of their pairs of triangles that it does not cull.
   void expand_leaves(std::uint32_t a, std::uint32_t b, const CastFront::Pending& pending) {
     ++cast_.counts.leaf_pairs;
-    const CastLeaf& leaf_a = tree_a_.leaves()[a];
-    const CastLeaf& leaf_b = tree_b_.leaves()[b];
+    const Tree::Leaf& leaf_a = tree_a_.leaves()[a];
+    const Tree::Leaf& leaf_b = tree_b_.leaves()[b];
     const LeafBounds bounds = bound_leaves(leaf_a, leaf_b, ray_);
     set_bound(pending, bounds.gap, bounds.slope);
     for (std::size_t n = 0; n < bounds.count; ++n) {
-      const std::uint32_t i = bounds.pairs[n] / k_leaf_triangles;
-      const std::uint32_t j = bounds.pairs[n] % k_leaf_triangles;
+      const std::uint32_t i = bounds.pairs[n] / k_leaf;
+      const std::uint32_t j = bounds.pairs[n] % k_leaf;
       if (try_update(cast_, {leaf_a.child.first() + i, leaf_b.child.first() + j})) {
         ray_.set_best(cast_);
       } else {
@@ -318,7 +311,7 @@ class DualTreeTraversal {
 
   void find_uncovered() {
     front_.uncovered.clear();
-    const V enough = set(ray_.target + ray_.slack);
+    const V enough = set(ray_.target);
     const V translation = set(ray_.translation);
     const auto count = static_cast<std::uint32_t>(front_.expansions.size());
     for (std::uint32_t expansion = 0; expansion < count; ++expansion) {
@@ -361,7 +354,7 @@ class DualTreeTraversal {
     std::vector<std::uint32_t>& all = front_.uncovered;
     for (const std::uint32_t expansion : all) {
       const float gap = least_gap(expansion);
-      if (gap > ray_.slack) continue;
+      if (gap > ray_.target) continue;
       if (few == k_few && gap >= least[k_few - 1].gap) {
         all[left++] = expansion;
         continue;
@@ -373,7 +366,7 @@ class DualTreeTraversal {
     }
     all.resize(left);
     for (std::size_t i = 0; i < few; ++i) {
-      if (i > 0 && least_gap(least[i].expansion) > ray_.slack) continue;
+      if (i > 0 && least_gap(least[i].expansion) > ray_.target) continue;
       expand(least[i].expansion);
       process_pending();
     }

@@ -20,8 +20,8 @@
 /// first hit of the ray with the difference of the meshes, grown by d, is t(d) = max over all pairs of triangles of
 /// t_ab(d).
 ///
-/// Trees are in A's axes, A's reflected in the centre of its box, so that S is a sum: a point of the one tree plus a
-/// point of the other.
+/// Triangles are in A's axes, A's reflected in the centre of its box, so that S is a sum: a point of the one mesh plus
+/// a point of the other. Volumes stay in the frames of their trees.
 ///
 /// Search. `best` holds the largest t_ab(d) found so far. A dual-tree traversal expands pairs of volumes, until a
 /// separating axis n with n . u >= 0 shows that the distance is at least d at that t, and so at every larger one:
@@ -64,13 +64,10 @@ struct CastFront {
   static constexpr float k_no_bound = -1e30f;     ///< Offset of a pair that no axis is known to separate.
   static constexpr float k_not_in_front = 1e30f;  ///< Offset of a lane without a child, or whose pair was expanded.
 
-  /// Stands for the whole tree where volumes are given by their slots.
-  static constexpr std::uint32_t k_root = 0xffffffffu;
-
   struct Expansion {
-    std::uint32_t node;   ///< Its children were bounded
-    std::uint32_t other;  ///< against this volume of the other tree (a slot).
-    bool expands_a;       ///< Whether the node is of tree A.
+    std::uint32_t node;  ///< Its children were bounded
+    CastVolume other;    ///< against this volume of the other tree.
+    bool expands_a;      ///< Whether the node is of tree A.
   };
 
   /// Separating-axis bounds of the children of one expansion, [lane].
@@ -83,7 +80,9 @@ struct CastFront {
   struct Pending {
     std::uint32_t expansion;
     std::uint32_t lane;
-    float projection;  ///< Of the difference of the balls' centres on the axis of the best hit: the least first.
+    CastChild child;
+    float projection;  ///< Of the difference of the volumes' centres on the axis of the best hit: the least first.
+    float size;        ///< Of the larger volume: squared diagonal.
   };
 
   std::vector<Expansion> expansions;

@@ -1,11 +1,138 @@
 #include <sixdof/generation/ray_cast_ties.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include <sixdof/generation/ray_cast_search.h>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_ties.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+// After foreach_target.h: this is compiled once per instruction set, too.
+#include <sixdof/oracle/double_lanes-inl.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
+namespace HWY_NAMESPACE {
+
+using namespace double_lanes::HWY_NAMESPACE;
+
+/// For each child of a node, a lower bound on axis . p for the points p of its volume: support_bound() below.
+void support_bounds(const PreciseVolumes& volumes, const Eigen::Vector3d& axis, double rounding, double* bounds) {
+  const V3 n{set(axis[0]), set(axis[1]), set(axis[2])};
+  for (std::size_t i = 0; i < Tree::k_width; i += hn::Lanes(k_lanes)) {
+    const V3 normal = load(volumes.normal, i), center = load(volumes.box_center, i), half = load(volumes.box_half, i);
+    const V along = hn::Add(hn::Add(hn::Mul(n.x, normal.x), hn::Mul(n.y, normal.y)), hn::Mul(n.z, normal.z));
+    V in_slab = hn::Sub(hn::Mul(along, hn::Load(k_lanes, volumes.middle + i)),
+                        hn::Mul(hn::Abs(along), hn::Load(k_lanes, volumes.half + i)));
+    V in_box = set(-rounding);
+    const auto add = [&](V axis_k, V normal_k, V center_k, V half_k) {
+      const V rest = hn::Sub(axis_k, hn::Mul(along, normal_k));
+      in_slab = hn::Add(in_slab, hn::Sub(hn::Mul(rest, center_k), hn::Mul(hn::Abs(rest), half_k)));
+      in_box = hn::Add(in_box, hn::Sub(hn::Mul(axis_k, center_k), hn::Mul(hn::Abs(axis_k), half_k)));
+    };
+    add(n.x, normal.x, center.x, half.x);
+    add(n.y, normal.y, center.y, half.y);
+    add(n.z, normal.z, center.z, half.z);
+    hn::Store(hn::Max(hn::Sub(in_slab, set(rounding)), in_box), k_lanes, bounds + i);
+  }
+}
+
+/// The least axis . (p - center) of some triangles' corners p.
+double least_of_corners(std::span<const Tree::Corners> triangles, const Eigen::Vector3d& center,
+                        const Eigen::Vector3d& axis) {
+  constexpr hn::CappedTag<double, 4> d;
+  const double* const p = triangles[0][0].data();  // x, y, z of each corner in turn
+  const std::size_t count = 3 * triangles.size();
+  const std::size_t lanes = hn::Lanes(d);
+  double least = std::numeric_limits<double>::infinity();
+  if (count < lanes) {
+    for (const Eigen::Vector3d& corner : triangles[0]) least = std::min(least, axis.dot(corner - center));
+    return least;
+  }
+  auto value = hn::Set(d, least);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    auto x = hn::Undefined(d), y = x, z = x;
+    hn::LoadInterleaved3(d, p + 3 * std::min(i, count - lanes), x, y, z);
+    const auto along = [&](auto coordinate, int k) {
+      return hn::Mul(hn::Set(d, axis[k]), hn::Sub(coordinate, hn::Set(d, center[k])));
+    };
+    value = hn::Min(value, hn::Add(hn::Add(along(x, 0), along(y, 1)), along(z, 2)));
+  }
+  return hn::GetLane(hn::MinOfLanes(d, value));
+}
+
+/// The lane of the least bound, the first of equal ones.
+std::size_t lane_of_least(const double* bounds) {
+  V least = set(TreeSupport::k_infinity);
+  for (std::size_t i = 0; i < Tree::k_width; i += hn::Lanes(k_lanes)) {
+    least = hn::Min(least, hn::Load(k_lanes, bounds + i));
+  }
+  least = hn::MinOfLanes(k_lanes, least);
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < Tree::k_width; i += hn::Lanes(k_lanes)) {
+    bits |= bits_of(hn::Eq(hn::Load(k_lanes, bounds + i), least), i);
+  }
+  return static_cast<std::size_t>(std::countr_zero(bits));
+}
+
+/// Result of the search of a subtree.
+struct Found {
+  double bound = TreeSupport::k_infinity;  ///< Lower bound on all that was not evaluated.
+  double least = TreeSupport::k_infinity;  ///< The least axis . p of what was.
+};
+
+/// @param least found elsewhere: what is not less need not be evaluated
+Found search(TreeSupport::Search& x, Tree::Child child, double least) {
+  Found found;
+  if (child.is_leaf()) {
+    const Tree& tree = x.mesh.tree();
+    x.evaluations += child.count();
+    found.least = least_of_corners(tree.corners().subspan(child.first(), child.count()), tree.center(), x.axis);
+    return found;
+  }
+  const PreciseVolumes& volumes = x.mesh.precise_volumes()[child.node()];
+  HWY_ALIGN double bounds[Tree::k_width];
+  support_bounds(volumes, x.axis, x.rounding, bounds);
+  std::fill(bounds + volumes.child_count, bounds + Tree::k_width, TreeSupport::k_infinity);
+  x.evaluations += volumes.child_count;
+  for (std::size_t i = 0; i < volumes.child_count; ++i) {
+    const std::size_t lane = lane_of_least(bounds);
+    least = std::min(least, found.least);
+    if (bounds[lane] >= least - x.tolerance || x.evaluations >= x.limit) {
+      found.bound = std::min(found.bound, bounds[lane]);
+      break;
+    }
+    bounds[lane] = TreeSupport::k_infinity;
+    const Found below = search(x, volumes.child[lane], least);
+    if (below.least <= below.bound + x.tolerance) {
+      x.known[Tree::k_width * child.node() + lane] = {std::min(below.bound, below.least), x.axis_number};
+    }
+    found.bound = std::min(found.bound, below.bound);
+    found.least = std::min(found.least, below.least);
+  }
+  return found;
+}
+
+double find_support_value(TreeSupport::Search& x, Tree::Child child) {
+  const Found found = search(x, child, TreeSupport::k_infinity);
+  return std::min(found.bound, found.least);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sixdof::ray_cast
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sixdof::ray_cast {
+
+HWY_EXPORT(find_support_value);
+
 namespace {
 
 constexpr std::size_t k_width = Tree::k_width;
@@ -79,54 +206,23 @@ double TreeSupport::support_value(std::size_t slot, std::uint64_t& budget) {
   if (known_.empty()) known_.resize(k_width * tree_->nodes().size());
   Known& known = known_[slot];
   if (known.axis_number == axis_number_) return known.value;
-  const CastChild child = tree_->child(slot);
-  const std::uint64_t triangles = child.is_leaf() ? tree_->leaves()[child.index()].child.count()
-                                                  : tree_->mesh().tree().nodes()[child.index()].triangle_count;
-  if (budget < std::min(triangles, k_smallest_budget)) return k_unknown;
-  const std::uint64_t before = evaluations_;
-  const Found found = search(child, k_infinity, before + budget);
-  budget -= std::min(budget, evaluations_ - before);
-  known = {std::min(found.bound, found.least), axis_number_};
+  const Tree::Child child = tree_->mesh().precise_volumes()[slot / k_width].child[slot % k_width];
+  if (budget < k_smallest_budget) {
+    const std::uint64_t triangles = child.is_leaf() ? child.count() : tree_->nodes()[child.node()].triangle_count;
+    if (budget < triangles) return k_unknown;
+  }
+  Search search{.mesh = tree_->mesh(),
+                .axis = axis_,
+                .tolerance = tolerance_,
+                .rounding = rounding_,
+                .known = known_.data(),
+                .axis_number = axis_number_,
+                .evaluations = 0,
+                .limit = budget};
+  known = {HWY_DYNAMIC_DISPATCH(find_support_value)(search, child), axis_number_};
+  evaluations_ += search.evaluations;
+  budget -= std::min(budget, search.evaluations);
   return known.value;
-}
-
-void TreeSupport::bound_children(const PreciseVolumes& volumes, double* bounds) const {
-  const double a[3] = {axis_[0], axis_[1], axis_[2]};
-  for (std::size_t i = 0; i < k_width; ++i) bounds[i] = support_bound(volumes, i, a, rounding_);
-}
-
-TreeSupport::Found TreeSupport::search(CastChild child, double least, std::uint64_t limit) {
-  Found found;
-  if (child.is_leaf()) {
-    const Tree::Child leaf = tree_->leaves()[child.index()].child;
-    const Tree& tree = tree_->mesh().tree();
-    for (std::uint32_t t = leaf.first(); t < leaf.first() + leaf.count(); ++t) {
-      for (const Eigen::Vector3d& corner : tree.corners()[t]) {
-        found.least = std::min(found.least, axis_.dot(corner - tree.center()));
-      }
-    }
-    evaluations_ += leaf.count();
-    return found;
-  }
-  const std::size_t count = tree_->nodes()[child.index()].child_count;
-  alignas(64) double bounds[k_width];
-  bound_children(tree_->mesh().precise_volumes()[child.index()], bounds);
-  evaluations_ += count;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto lane = static_cast<std::size_t>(std::min_element(bounds, bounds + count) - bounds);
-    least = std::min(least, found.least);
-    if (bounds[lane] >= least - tolerance_ || evaluations_ >= limit) {
-      found.bound = std::min(found.bound, bounds[lane]);
-      break;
-    }
-    bounds[lane] = k_infinity;
-    const std::size_t slot = k_width * child.index() + lane;
-    const Found below = search(tree_->child(slot), least, limit);
-    if (below.least <= below.bound + tolerance_) known_[slot] = {std::min(below.bound, below.least), axis_number_};
-    found.bound = std::min(found.bound, below.bound);
-    found.least = std::min(found.least, below.least);
-  }
-  return found;
 }
 
 double DifferenceSupport::support_value(std::size_t slot_a, std::size_t slot_b, const Eigen::Vector3d& axis,
@@ -140,6 +236,18 @@ double DifferenceSupport::support_value(std::size_t slot_a, std::size_t slot_b, 
   }
   const double of_a = a_.support_value(slot_a, budget_);
   return of_a == TreeSupport::k_unknown ? of_a : of_a + b_.support_value(slot_b, budget_);
+}
+
+bool slabs_tie(const Cast& cast, std::uint32_t a, std::uint32_t b) {
+  const double tie = k_cast_tie * cast.size();
+  const auto separates = [&](const CastTree& x, std::uint32_t slot_x, const CastTree& y, std::uint32_t slot_y) {
+    const CastSlab slab = x.slab(slot_x);
+    const double rate = slab.normal.dot(cast.direction);
+    const double sign = rate < 0.0 ? -1.0 : 1.0;
+    const double least = sign * slab.middle - slab.half + support_bound(y, slot_y, sign * slab.normal);
+    return least + cast.best.translation * std::abs(rate) >= cast.target - tie;
+  };
+  return separates(cast.a, a, cast.b, b) || separates(cast.b, b, cast.a, a);
 }
 
 bool separated_in_double(const Cast& cast, std::uint32_t a, std::uint32_t b) {
@@ -164,3 +272,4 @@ bool separated_in_double(const Cast& cast, std::uint32_t a, std::uint32_t b) {
 }
 
 }  // namespace sixdof::ray_cast
+#endif  // HWY_ONCE

@@ -27,7 +27,7 @@ namespace sixdof::ray_cast {
 /// values along it are computed once.
 struct CoplanarPatch {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Unit vector.
-  float size = 0.0f;                                 ///< As CastVolume::size; 0 if there is no patch.
+  float size = 0.0f;                                 ///< Squared diagonal of its box; 0 if there is no patch.
 
   /// Whether there is a patch, its normal is nearly parallel to `axis` and does not point against `direction`.
   /// @param axis unit vector from A to B between closest points
@@ -54,25 +54,26 @@ class TreeSupport {
 
   std::uint64_t evaluations() const { return evaluations_; }  ///< Of triangles and volumes so far.
 
- private:
   static constexpr double k_infinity = -k_unknown;
 
-  /// Result of the search of a subtree.
-  struct Found {
-    double bound = k_infinity;  ///< Lower bound on all that was not evaluated.
-    double least = k_infinity;  ///< The least axis . p of what was.
-  };
+  /// A support value that was found.
   struct Known {
     double value;
     std::uint64_t axis_number;
   };
 
-  /// @param bounds for each child, a lower bound on axis . p of its points
-  void bound_children(const PreciseVolumes& volumes, double* bounds) const;
-  /// @param least found elsewhere: what is not less need not be evaluated
-  /// @param limit ends the search with bounds when evaluations_ reaches it
-  Found search(CastChild child, double least, std::uint64_t limit);
+  /// What the search of subtrees takes.
+  struct Search {
+    const CastMesh& mesh;
+    Eigen::Vector3d axis;  ///< In the mesh's frame.
+    double tolerance, rounding;
+    Known* known;  ///< Of each slot.
+    std::uint64_t axis_number;
+    std::uint64_t evaluations;
+    std::uint64_t limit;  ///< Ends the search with bounds when evaluations reaches it.
+  };
 
+ private:
   const CastTree* tree_;
   double tolerance_;                                // k_support_tolerance of the radius
   double rounding_;                                 // k_support_rounding of it
@@ -110,6 +111,10 @@ class DifferenceSupport {
 };
 
 struct Cast;
+
+/// Whether the slabs of two children tie with the best hit or are farther apart: along the normal of one of them.
+/// @param a, b slots
+bool slabs_tie(const Cast& cast, std::uint32_t a, std::uint32_t b);
 
 /// Whether two subtrees are at least the target apart, up to half a tie, at the translation of the best hit and at all
 /// larger ones: by their boxes and slabs, along the axes of the best hit, between the boxes' centres and of both slabs.

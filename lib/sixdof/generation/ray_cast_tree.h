@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,9 +12,9 @@
 #include <sixdof/geometry/tree.h>
 #include <sixdof/geometry/triangle_distance.h>
 
-/// Both meshes' trees in one common frame, for the ray cast. Internal: use distance_generator.h.
+/// Both meshes as the ray cast takes them: trees with volumes in double precision, and a common frame. Internal: use
+/// distance_generator.h.
 ///
-/// The volume of a subtree is the intersection of a box, a ball and a slab (the points between two parallel planes).
 /// The slot Tree::k_width * node + lane stands for the child `lane` of node `node`, and for that child's volume.
 namespace sixdof::ray_cast {
 
@@ -21,46 +22,29 @@ namespace sixdof::ray_cast {
 class CastChild {
  public:
   CastChild() = default;
-  static CastChild node(std::uint32_t index) { return CastChild(index); }
-  static CastChild leaf(std::uint32_t index) { return CastChild(k_leaf | index); }
+  static constexpr CastChild node(std::uint32_t index) { return CastChild(index); }
+  static constexpr CastChild leaf(std::uint32_t index) { return CastChild(k_leaf | index); }
   bool is_leaf() const { return (bits_ & k_leaf) != 0; }
   std::uint32_t index() const { return bits_ & ~k_leaf; }  ///< Into nodes or leaves.
 
  private:
-  explicit CastChild(std::uint32_t bits) : bits_(bits) {}
+  explicit constexpr CastChild(std::uint32_t bits) : bits_(bits) {}
   static constexpr std::uint32_t k_leaf = 1u << 31;
   std::uint32_t bits_ = 0;
 };
 
-/// Volumes of up to eight children, [axis][lane]; lanes without a child repeat the first.
-struct alignas(64) CastNode {
-  float center[3][Tree::k_width];  ///< Boxes.
-  float half[3][Tree::k_width];    ///< Boxes: half extents.
-  float normal[3][Tree::k_width];  ///< Slabs: a little shorter than unit vectors, as in Tree.
-  float ball_center[3][Tree::k_width];
-  float ball_radius[Tree::k_width];
-  float slab_offset[Tree::k_width];  ///< Slabs: signed distance of the middle plane from the ball's centre.
-  float slab_half[Tree::k_width];    ///< Slabs: half the thickness.
-  CastChild child[Tree::k_width];
-  std::uint32_t child_count;
-};
+inline CastChild child_of(const Tree::Node& node, std::size_t lane) {
+  const Tree::Child child = node.child[lane];
+  return child.is_leaf() ? CastChild::leaf(node.leaf[lane]) : CastChild::node(child.node());
+}
 
-/// The volume of one child by itself, as in CastNode: one cache line.
-struct alignas(64) CastVolume {
-  float center[3];
-  float half[3];
-  float normal[3];
-  float ball_center[3];
-  float ball_radius;
-  float slab_offset;
-  float slab_half;
-  float size;  ///< Square of half the box's diagonal.
-};
+/// The volume of a child of a tree.
+struct CastVolume {
+  /// Slot of the whole tree.
+  static constexpr std::uint32_t k_root = 0xffffffffu;
 
-/// A leaf's corners, [corner][axis][triangle], and its triangles; lanes without a triangle are as in Tree::Leaf.
-struct CastLeaf {
-  float corner[3][3][Tree::k_leaf_triangles];
-  Tree::Child child;
+  std::uint32_t slot;
+  CastChild child;
 };
 
 /// |normal . p - middle| <= half
@@ -71,49 +55,51 @@ struct CastSlab {
 };
 
 /// Slabs and boxes of a node's children in double precision, [axis][lane], in the mesh's axes: |normal . p - middle|
-/// <= half, |p - box_center| <= box_half. Lanes without a child are zero.
+/// <= half, |p - box_center| <= box_half. Lanes without a child are zero. With the children, so that a search in double
+/// precision reads nothing else but corners.
 struct alignas(64) PreciseVolumes {
   double normal[3][Tree::k_width];  ///< Unit vectors.
   double middle[Tree::k_width];
   double half[Tree::k_width];
   double box_center[3][Tree::k_width];
   double box_half[3][Tree::k_width];
+  Tree::Child child[Tree::k_width];
+  std::uint32_t child_count;
 };
 
-/// What does not depend on the rotation. All coordinates are relative to the centre of the mesh's box. Immutable.
+/// What does not depend on the rotation. Coordinates are relative to the centre of the mesh's box. Immutable.
 class CastMesh {
  public:
   explicit CastMesh(std::shared_ptr<const Tree> tree);
 
   const Tree& tree() const { return *tree_; }
-  std::span<const CastNode> nodes() const { return nodes_; }                            ///< Without boxes.
   std::span<const PreciseVolumes> precise_volumes() const { return precise_volumes_; }  ///< Of each node's children.
 
  private:
   std::shared_ptr<const Tree> tree_;
-  std::vector<CastNode> nodes_;
   std::vector<PreciseVolumes> precise_volumes_;
 };
 
-/// A mesh in the common frame: p -> M (p - centre), where M is a rotation or minus the identity. Its boxes are fitted
-/// to the transformed triangles, axis-aligned in the common frame. Floats are off by a few roundings of the radius.
+/// A mesh in the common frame: p -> M (p - centre), where M is a rotation or minus the identity.
 class CastTree {
  public:
-  explicit CastTree(std::shared_ptr<const CastMesh> mesh);
+  explicit CastTree(std::shared_ptr<const CastMesh> mesh) : mesh_(std::move(mesh)) {}
 
-  /// Sets M and transforms all volumes and leaves.
-  void transform(const Eigen::Matrix3d& M);
+  /// Sets M.
+  void transform(const Eigen::Matrix3d& M) { matrix_ = M; }
 
   const CastMesh& mesh() const { return *mesh_; }
   const Eigen::Matrix3d& matrix() const { return matrix_; }
-  std::span<const CastNode> nodes() const { return nodes_; }
-  std::span<const CastLeaf> leaves() const { return leaves_; }
-  const CastVolume& volume(std::size_t slot) const { return volumes_[slot]; }
-  /// The whole tree's: its slab is empty, with the normal 0.
-  const CastVolume& root_volume() const { return root_volume_; }
+  std::span<const Tree::Node> nodes() const { return mesh_->tree().nodes(); }
+  std::span<const Tree::Leaf> leaves() const { return mesh_->tree().leaves(); }
   double radius() const { return mesh_->tree().radius(); }
 
-  CastChild child(std::size_t slot) const { return nodes_[slot / Tree::k_width].child[slot % Tree::k_width]; }
+  CastChild child(std::size_t slot) const { return child_of(nodes()[slot / Tree::k_width], slot % Tree::k_width); }
+
+  /// In the tree's frame.
+  const Tree::Volume& volume(CastChild child) const {
+    return child.is_leaf() ? leaves()[child.index()].volume : nodes()[child.index()].volume;
+  }
 
   /// The slab of a child in double precision, in the common frame.
   CastSlab slab(std::size_t slot) const {
@@ -127,19 +113,8 @@ class CastTree {
   TriangleCorners triangle(std::uint32_t t) const;
 
  private:
-  struct Bounds {
-    float lower[3];
-    float upper[3];
-  };
-  Bounds transform_leaf(std::uint32_t leaf, const float (&m)[3][3]);
-
   std::shared_ptr<const CastMesh> mesh_;
   Eigen::Matrix3d matrix_ = Eigen::Matrix3d::Identity();
-  std::vector<CastNode> nodes_;
-  std::vector<CastVolume> volumes_;
-  std::vector<CastLeaf> leaves_;
-  std::vector<Bounds> bounds_;  // of each node
-  CastVolume root_volume_{};
 };
 
 }  // namespace sixdof::ray_cast

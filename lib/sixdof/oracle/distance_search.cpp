@@ -316,8 +316,11 @@ class DistanceTraversal final : private CloseVisitor {
   /// Lower bounds for all pairs of triangles of two leaves. Returns false if all are above the best.
   bool bound_pairs(const Tree::Leaf& leaf_a, const Tree::Leaf& leaf_b, LeafPair& pairs) {
     ++search_.counts.leaf_pairs;
-    if (!bound_along_direction(leaf_a, leaf_b, frames_.expand_a, frames_.slack, best_, pairs.lower)) return false;
-    load_pairs(leaf_a, leaf_b, frames_.expand_a, pairs);
+    const Frame& frame = frames_.expand_a;
+    if (bound_along_direction<k_rounding>(leaf_a, leaf_b, frame, frames_.slack.local, best_, pairs.lower) > best_) {
+      return false;
+    }
+    load_pairs<k_rounding>(leaf_a, leaf_b, frame, pairs);
     bound_triangles(pairs, frames_.slack.all, best_);
     if (use_of_cross_edges_.is_due()) {
       const int before = count_near(pairs);
@@ -492,7 +495,7 @@ class DistanceTraversal final : private CloseVisitor {
   const Tree& tree_a_;
   const Tree& tree_b_;
   const bool only_intersection_;
-  Frames frames_;
+  QueryFrames frames_;
   const float blurred_;      // square of a diagonal: of the largest volume that floats blur
   const bool blurs_leaves_;  // both trees have leaves that small
   const bool has_planes_;    // both meshes have coplanar patches

@@ -133,7 +133,7 @@ struct ClosestSeeds {
 void seed_search(DistanceSearch& search) {
   const SeedCorners& seeds_a = search.a.seeds;
   const SeedCorners& seeds_b = search.b.seeds;
-  const Frames frames(search.a.tree, search.b.tree, search.X_AB);
+  const QueryFrames frames(search.a.tree, search.b.tree, search.X_AB);
   const ClosestSeeds closest(seeds_a, seeds_b, frames.expand_a);
   // A pair of the last query may be closer.
   if (search.found && search.best * search.best <= static_cast<double>(closest.squared)) return;

@@ -35,6 +35,12 @@ constexpr float k_smallest_square = 1e-36f;
 HWY_INLINE V set(float x) { return hn::Set(k_lanes, x); }
 HWY_INLINE V load(const float* p) { return hn::Load(k_lanes, p); }
 
+/// Fused: with one rounding where the instruction set has it, so bits depend on the instruction set.
+enum class Rounding {
+  fused,
+  unfused
+};
+
 /// x y + z and z - x y, with two roundings: the same bits on every instruction set.
 template <class Vec>
 HWY_INLINE Vec unfused_mul_add(Vec x, Vec y, Vec z) {
@@ -45,9 +51,22 @@ HWY_INLINE Vec unfused_sub_mul(Vec z, Vec x, Vec y) {
   return hn::Sub(z, hn::Mul(x, y));
 }
 
-/// x . y, unfused.
-HWY_INLINE V dot(const V* HWY_RESTRICT x, const V* HWY_RESTRICT y) {
-  return unfused_mul_add(x[2], y[2], unfused_mul_add(x[1], y[1], hn::Mul(x[0], y[0])));
+/// x y + z and z - x y.
+template <Rounding rounding, class Vec>
+HWY_INLINE Vec mul_add(Vec x, Vec y, Vec z) {
+  if constexpr (rounding == Rounding::fused) return hn::MulAdd(x, y, z);
+  return unfused_mul_add(x, y, z);
+}
+template <Rounding rounding, class Vec>
+HWY_INLINE Vec sub_mul(Vec z, Vec x, Vec y) {
+  if constexpr (rounding == Rounding::fused) return hn::NegMulAdd(x, y, z);
+  return unfused_sub_mul(z, x, y);
+}
+
+/// x . y
+template <Rounding rounding = Rounding::unfused>
+HWY_INLINE V dot(const V (&x)[3], const V (&y)[3]) {
+  return mul_add<rounding>(x[2], y[2], mul_add<rounding>(x[1], y[1], hn::Mul(x[0], y[0])));
 }
 
 /// The bits of the lanes of `mask`, from bit `i` on.
@@ -83,24 +102,6 @@ HWY_INLINE void prefetch(const T& x) {
 /// bound on the distance of the triangles; the step moves x to the point of the segment from x to s that is nearest to
 /// the origin. (M. Frank and P. Wolfe, "An algorithm for quadratic programming", Naval Research Logistics 3, 1956.)
 namespace frank_wolfe {
-
-/// Fused: with one rounding where the instruction set has it, so bits depend on the instruction set.
-enum class Rounding {
-  fused,
-  unfused
-};
-
-template <Rounding rounding>
-HWY_INLINE V mul_add(V x, V y, V z) {
-  if constexpr (rounding == Rounding::fused) return hn::MulAdd(x, y, z);
-  return unfused_mul_add(x, y, z);
-}
-
-template <Rounding rounding>
-HWY_INLINE V sub_mul(V z, V x, V y) {
-  if constexpr (rounding == Rounding::fused) return hn::NegMulAdd(x, y, z);
-  return unfused_sub_mul(z, x, y);
-}
 
 enum class Extreme {
   least,
