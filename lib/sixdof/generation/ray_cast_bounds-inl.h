@@ -137,7 +137,7 @@ HWY_INLINE void bound_closely(const ChildVolumes& child, const FixedVolume& fixe
     V middle = zero;
     V extent = set(fixed.half_fixed[k]);
     for (std::size_t j = 0; j < 3; ++j) {
-      const V r = set(f.rotation[j][k]);
+      const V r = set(f.axis[k][j]);
       middle = unfused_mul_add(r, near[j], middle);
       extent = unfused_mul_add(hn::Abs(r), child.half[j], extent);
     }
@@ -159,28 +159,27 @@ HWY_INLINE void bound_closely(const ChildVolumes& child, const FixedVolume& fixe
 
 /// Sets gap and slope of each child of a node against the fixed volume along the best of the axes.
 /// @param f, velocity of the expanded node
-/// @param projections of the vectors from A's volume to B's on w: the child with the least is the most likely to be hit
-/// first
-HWY_INLINE void bound_children(const Tree::Node& node, const FixedVolume& fixed, const Frame& f,
+/// @param projections of the vectors from A's volume to B's on w, but for a constant: the child with the least is the
+/// most likely to be hit first
+HWY_INLINE void bound_children(const Tree::Node& node, const Tree::Volume& fixed_volume, const Frame& f,
                                const Ray::Velocity& velocity, const Ray& ray, float* HWY_RESTRICT gaps,
                                float* HWY_RESTRICT slopes, float* HWY_RESTRICT projections) {
   constexpr std::size_t k_step = hn::MaxLanes(k_lanes);
   const V w[3] = {set(f.direction[0]), set(f.direction[1]), set(f.direction[2])};
-  const V fixed_on_w =
-      set(fixed.center[0] * f.direction[0] + fixed.center[1] * f.direction[1] + fixed.center[2] * f.direction[2]);
-  const V least_along =
-      set(static_cast<float>(static_cast<double>(fixed.least_along) + f.translation_along) - ray.slack);
+  const auto along = static_cast<double>(least_along(fixed_volume, f)) + f.translation_along;
+  const V fixed_along = set(static_cast<float>(along) - ray.slack);
   // If w culls all children, whatever the number of lanes, the others are not tried.
   bool all = true;
   for (std::size_t i = 0; i < k_width; i += k_step) {
     const ChildVolumes child(node, i);
-    const V gap = hn::Sub(least_along, child.greatest_along(w));
-    hn::Store(hn::Sub(fixed_on_w, dot(w, child.center)), k_lanes, projections + i);
+    const V gap = hn::Sub(fixed_along, child.greatest_along(w));
+    hn::Store(hn::Neg(dot(w, child.center)), k_lanes, projections + i);
     hn::Store(gap, k_lanes, gaps + i);
     hn::Store(set(ray.axis_slope), k_lanes, slopes + i);
     all = all && hn::AllTrue(k_lanes, hn::Gt(gap, set(ray.target)));
   }
   if (all) return;
+  const FixedVolume fixed(fixed_volume, f);
   for (std::size_t i = 0; i < k_width; i += k_step) {
     BestAxes best{load(gaps + i), load(slopes + i)};
     bound_closely(ChildVolumes(node, i), fixed, f, velocity, ray, best);

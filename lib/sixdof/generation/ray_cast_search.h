@@ -81,7 +81,7 @@ struct CastFront {
     std::uint32_t expansion;
     std::uint32_t lane;
     CastChild child;
-    float projection;  ///< Of the difference of the volumes' centres on the axis of the best hit: the least first.
+    float projection;  ///< Orders the children of an expansion: the least first.
     float size;        ///< Of the larger volume: squared diagonal.
   };
 

@@ -62,20 +62,21 @@ struct QueryFrames : Frames {
   }
 };
 
-/// Lower bounds on the distances of the children of `node` from `fixed`; negative where they may overlap. Returns a bit
+/// Lower bounds on the distances of the children of `node` from a fixed volume; negative where they may overlap. Returns a bit
 /// for each child whose bound is not above `best`.
-HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const FixedVolume& fixed, const Frame& f,
+HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const Tree::Volume& fixed_volume, const Frame& f,
                                         const Slack& slack, float best, float* HWY_RESTRICT bounds) {
   std::uint32_t kept = 0;
   const V w[3] = {set(f.direction[0]), set(f.direction[1]), set(f.direction[2])};
-  const V normal_fixed[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
-  const V least_along =
-      set(static_cast<float>(static_cast<double>(fixed.least_along) + f.translation_along) - slack.local);
+  const auto along = static_cast<double>(least_along(fixed_volume, f)) + f.translation_along;
+  const V fixed_along = set(static_cast<float>(along) - slack.local);
   const auto all_exceed_best = [&](V bound) { return hn::AllTrue(k_lanes, hn::Gt(bound, set(best))); };
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
     const ChildVolumes child(node, i);
-    const V gap_along = hn::Sub(least_along, child.greatest_along(w));
+    const V gap_along = hn::Sub(fixed_along, child.greatest_along(w));
     if (all_exceed_best(gap_along)) continue;
+    const FixedVolume fixed(fixed_volume, f);
+    const V normal_fixed[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
 
     // Boxes. m: from the children's centres to the fixed volume's.
     V m[3];
@@ -94,7 +95,7 @@ HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const FixedVolum
       V middle = hn::Zero(k_lanes);
       V extent = set(fixed.half_fixed[k]);
       for (std::size_t j = 0; j < 3; ++j) {
-        const V r = set(f.rotation[j][k]);
+        const V r = set(f.axis[k][j]);
         middle = hn::MulAdd(r, m[j], middle);
         extent = hn::MulAdd(hn::Abs(r), child.half[j], extent);
       }
@@ -133,11 +134,12 @@ HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const FixedVolum
 /// `kept` whose bound is still not above `best`. Bounds that stay negative are not changed: they say how deep volumes
 /// overlap, which orders the search, and compare with those of pairs that are not asked.
 /// @param axes, axes_fixed CrossAxes in N and in F
-inline HWY_NOINLINE std::uint32_t bound_across_axes(const Tree::Node& node, const FixedVolume& fixed,
-                                                    const float (&axes)[CrossAxes::k_count][3],
+inline HWY_NOINLINE std::uint32_t bound_across_axes(const Tree::Node& node, const Tree::Volume& fixed_volume,
+                                                    const Frame& f, const float (&axes)[CrossAxes::k_count][3],
                                                     const float (&axes_fixed)[CrossAxes::k_count][3],
                                                     const Slack& slack, float best, std::uint32_t kept,
                                                     float* HWY_RESTRICT bounds) {
+  const FixedVolume fixed(fixed_volume, f);
   const V half = set(0.5f);
   std::uint32_t near = 0;
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {

@@ -361,7 +361,7 @@ class DistanceTraversal final : private CloseVisitor {
     const Frame& frame = expands_a ? frames_.expand_a : frames_.expand_b;
     HWY_ALIGN float bounds[k_width];
     ++search_.counts.nodes;
-    const FixedVolume fixed(expands_a ? volume_b : volume_a, frame);
+    const Tree::Volume& fixed = expands_a ? volume_b : volume_a;
     std::uint32_t kept = bound_children(node, fixed, frame, frames_.slack, best_, bounds);
     if (kept != 0 && use_of_cross_axes_.is_due()) kept = ask_cross_axes(node, fixed, expands_a, kept, bounds);
     for (; kept != 0; kept &= kept - 1) {
@@ -379,12 +379,13 @@ class DistanceTraversal final : private CloseVisitor {
     }
   }
 
-  HWY_NOINLINE std::uint32_t ask_cross_axes(const Tree::Node& node, const FixedVolume& fixed, bool expands_a,
+  HWY_NOINLINE std::uint32_t ask_cross_axes(const Tree::Node& node, const Tree::Volume& fixed, bool expands_a,
                                             std::uint32_t kept, float* bounds) {
     if (!cross_axes_) cross_axes_.emplace(search_.X_AB.R);
+    const Frame& frame = expands_a ? frames_.expand_a : frames_.expand_b;
     const auto& axes = expands_a ? cross_axes_->in_a : cross_axes_->in_b;
     const auto& axes_fixed = expands_a ? cross_axes_->in_b : cross_axes_->in_a;
-    const std::uint32_t left = bound_across_axes(node, fixed, axes, axes_fixed, frames_.slack, best_, kept, bounds);
+    const std::uint32_t left = bound_across_axes(node, fixed, frame, axes, axes_fixed, frames_.slack, best_, kept, bounds);
     use_of_cross_axes_.count(std::popcount(kept), std::popcount(left));
     return left;
   }

@@ -84,7 +84,7 @@ bool find_corner(const Tree& tree, const float* p, float tolerance, Corner& best
 /// p_N of p_F.
 void transform(const Frame& f, const float* p, float* out) {
   for (std::size_t k = 0; k < 3; ++k) {
-    out[k] = f.translation[k] + f.rotation[k][0] * p[0] + f.rotation[k][1] * p[1] + f.rotation[k][2] * p[2];
+    out[k] = f.translation[k] + f.axis[0][k] * p[0] + f.axis[1][k] * p[1] + f.axis[2][k] * p[2];
   }
 }
 
@@ -103,7 +103,7 @@ struct ClosestSeeds {
       for (std::size_t k = 0; k < 3; ++k) {
         p[k] = set(f.translation[k]);
         for (std::size_t m = 0; m < 3; ++m) {
-          p[k] = hn::MulAdd(set(f.rotation[k][m]), load(seeds_b.point[m] + i), p[k]);
+          p[k] = hn::MulAdd(set(f.axis[m][k]), load(seeds_b.point[m] + i), p[k]);
         }
       }
       V closest = set(std::numeric_limits<float>::infinity());

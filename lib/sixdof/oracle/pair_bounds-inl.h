@@ -46,9 +46,12 @@ using namespace lanes::HWY_NAMESPACE;
 /// Rounding of a bound, relative to the lengths that enter it: fewer than 30 roundings of 6e-8 each.
 constexpr float k_slack = 4e-6f;
 
+/// Three coordinates and a zero.
+constexpr hn::CappedTag<float, 4> k_vector;
+
 struct Frame {
-  float rotation[3][3];  // p_N = rotation p_F + translation
-  float translation[3];
+  HWY_ALIGN float axis[3][4] = {};       // F's axes in N: p_N = sum of axis[k] p_F[k] + translation
+  HWY_ALIGN float translation[4] = {};
   double translation_along;  // translation . w
   float direction[3];        // w in N
   float direction_fixed[3];  // w in F
@@ -64,8 +67,8 @@ struct Frames {
   explicit Frames(const Eigen::Matrix3d& R_AB) : R(R_AB) {
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) {
-        expand_a.rotation[i][k] = static_cast<float>(R(i, k));
-        expand_b.rotation[i][k] = static_cast<float>(R(k, i));
+        expand_a.axis[k][i] = static_cast<float>(R(i, k));
+        expand_b.axis[k][i] = static_cast<float>(R(k, i));
       }
     }
   }
@@ -108,20 +111,36 @@ struct Reach {
   }
 };
 
+/// The smallest p . w over a fixed volume, p in F. As Reach, but from the origin: the rounding of the slab's distance
+/// from the centre of the box would blur layers.
+HWY_INLINE float least_along(const Tree::Volume& v, const Frame& f) {
+  const float* w = f.direction_fixed;
+  const float along = w[0] * v.normal[0] + w[1] * v.normal[1] + w[2] * v.normal[2];
+  float over_box = 0.0f;
+  float over_rest = std::min(along * v.slab_lower, along * v.slab_upper);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float center = 0.5f * (v.lower[k] + v.upper[k]);
+    const float half = 0.5f * (v.upper[k] - v.lower[k]);
+    over_box += w[k] * center - std::abs(w[k]) * half;
+    const float rest = w[k] - along * v.normal[k];
+    over_rest += rest * center - std::abs(rest) * half;
+  }
+  return std::max(over_box, over_rest);
+}
+
 /// The fixed volume.
 template <Rounding rounding>
 struct FixedVolume {
-  float center[3];          // of the box, in N
-  float axis[3][3];         // axis[k]: half extent along F's axis k, in N
-  float half[3];            // half extents of the axis-aligned box around it in N
-  float half_fixed[3];      // half extents in F
-  float normal[3];          // of the slab, in N
-  float normal_on_axis[3];  // normal . axis[k]
-  float slab_lower;         // from the centre of the box
+  HWY_ALIGN float center[4];   // of the box, in N
+  HWY_ALIGN float half[4];     // half extents of the axis-aligned box around it in N
+  HWY_ALIGN float normal[4];   // of the slab, in N
+  HWY_ALIGN float axis[3][4];  // axis[k]: half extent along F's axis k, in N
+  float half_fixed[3];         // half extents in F
+  float normal_on_axis[3];     // normal . axis[k]
+  float slab_lower;            // from the centre of the box
   float slab_upper;
-  float least_along;  // smallest p . w over the volume, p in F
 
-  FixedVolume(const Tree::Volume& v, const Frame& f) {
+  HWY_INLINE FixedVolume(const Tree::Volume& v, const Frame& f) {
     float center_fixed[3];
     float on_normal = 0.0f;  // the centre of the box
     for (std::size_t k = 0; k < 3; ++k) {
@@ -132,27 +151,21 @@ struct FixedVolume {
     }
     slab_lower = v.slab_lower - on_normal;
     slab_upper = v.slab_upper - on_normal;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const float* r = f.rotation[i];
-      center[i] = f.translation[i] + r[0] * center_fixed[0] + r[1] * center_fixed[1] + r[2] * center_fixed[2];
-      normal[i] = r[0] * v.normal[0] + r[1] * v.normal[1] + r[2] * v.normal[2];
-      half[i] = 0.0f;
+    for (std::size_t i = 0; i < 4; i += hn::Lanes(k_vector)) {
+      auto center_N = hn::Load(k_vector, f.translation + i);
+      auto normal_N = hn::Zero(k_vector), half_N = hn::Zero(k_vector);
       for (std::size_t k = 0; k < 3; ++k) {
-        axis[k][i] = r[k] * half_fixed[k];
-        half[i] += std::abs(axis[k][i]);
+        const auto axis_N = hn::Load(k_vector, f.axis[k] + i);
+        center_N = mul_add<rounding>(axis_N, hn::Set(k_vector, center_fixed[k]), center_N);
+        normal_N = mul_add<rounding>(axis_N, hn::Set(k_vector, v.normal[k]), normal_N);
+        const auto extent = hn::Mul(axis_N, hn::Set(k_vector, half_fixed[k]));
+        half_N = hn::Add(half_N, hn::Abs(extent));
+        hn::Store(extent, k_vector, axis[k] + i);
       }
+      hn::Store(center_N, k_vector, center + i);
+      hn::Store(normal_N, k_vector, normal + i);
+      hn::Store(half_N, k_vector, half + i);
     }
-    // As Reach, but from the origin: the rounding of the slab's distance from the centre of the box would blur layers.
-    const float* w = f.direction_fixed;
-    const float along = w[0] * v.normal[0] + w[1] * v.normal[1] + w[2] * v.normal[2];
-    float over_box = 0.0f;
-    float over_rest = std::min(along * v.slab_lower, along * v.slab_upper);
-    for (std::size_t k = 0; k < 3; ++k) {
-      over_box += w[k] * center_fixed[k] - std::abs(w[k]) * half_fixed[k];
-      const float rest = w[k] - along * v.normal[k];
-      over_rest += rest * center_fixed[k] - std::abs(rest) * half_fixed[k];
-    }
-    least_along = std::max(over_box, over_rest);
   }
 
   /// @param along normal . x
@@ -274,7 +287,7 @@ HWY_INLINE void load_pairs(const Tree::Leaf& a, const Tree::Leaf& b, const Frame
       for (std::size_t j = 0; j < k_leaf; j += hn::Lanes(d)) {
         auto p = hn::Set(d, f.translation[k]);
         for (std::size_t m = 0; m < 3; ++m) {
-          p = mul_add<rounding>(hn::Set(d, f.rotation[k][m]), hn::Load(d, b.corner[corner][m] + j), p);
+          p = mul_add<rounding>(hn::Set(d, f.axis[m][k]), hn::Load(d, b.corner[corner][m] + j), p);
         }
         for (std::size_t i = 0; i < k_leaf; ++i) {
           hn::Store(p, d, pairs.b[corner][k] + k_leaf * i + j);
