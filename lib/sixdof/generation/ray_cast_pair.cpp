@@ -6,12 +6,64 @@
 
 #include <Eigen/Geometry>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_pair.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
 // The distance of two triangles that do not intersect is the least of the distances of 3 x 3 pairs of edges and of 6
 // corners from the faces that they lie over. The loops over both have no branches, so that the compiler vectorizes
-// them. Where edges are nearly parallel, the positions of the closest points along them are ill-conditioned, but their
-// distance is not: whatever the parameters s and r in 0 .. 1, both are points of the triangles.
+// them for each instruction set; it fuses no operations. Where edges are nearly parallel, the positions of the closest
+// points along them are ill-conditioned, but their distance is not: whatever the parameters s and r in 0 .. 1, both are
+// points of the triangles.
 
+HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
+namespace HWY_NAMESPACE {
+
+HWY_INLINE double clamp(double x) {
+  x = x > 0.0 ? x : 0.0;
+  return x < 1.0 ? x : 1.0;
+}
+
+void separate(const MovingPair::Features& HWY_RESTRICT pair, double t, const Eigen::Vector3d& direction,
+              MovingPair::Separations& HWY_RESTRICT out) {
+  const double shift[3] = {t * direction[0], t * direction[1], t * direction[2]};
+  for (std::size_t n = 0; n < MovingPair::k_edges; ++n) {
+    const double x = pair.from[0][n] + shift[0];
+    const double y = pair.from[1][n] + shift[1];
+    const double z = pair.from[2][n] + shift[2];
+    const double c = pair.u[0][n] * x + pair.u[1][n] * y + pair.u[2][n] * z;
+    const double f = pair.v[0][n] * x + pair.v[1][n] * y + pair.v[2][n] * z;
+    // Closest points of two lines, then of each segment to the other's point.
+    double s = clamp((c * pair.vv[n] - pair.uv[n] * f) * pair.per_nn[n]);
+    const double r = clamp((pair.uv[n] * s - f) * pair.per_vv[n]);
+    s = clamp((c + pair.uv[n] * r) * pair.per_uu[n]);
+    out.w[0][n] = x + r * pair.v[0][n] - s * pair.u[0][n];
+    out.w[1][n] = y + r * pair.v[1][n] - s * pair.u[1][n];
+    out.w[2][n] = z + r * pair.v[2][n] - s * pair.u[2][n];
+    out.squared[n] = out.w[0][n] * out.w[0][n] + out.w[1][n] * out.w[1][n] + out.w[2][n] * out.w[2][n];
+  }
+  for (std::size_t n = 0; n < MovingPair::k_corners; ++n) {
+    const double x = pair.offset[0][n] + t * pair.velocity[0][n];
+    const double y = pair.offset[1][n] + t * pair.velocity[1][n];
+    const double z = pair.offset[2][n] + t * pair.velocity[2][n];
+    out.signed_distance[n] = pair.normal[0][n] * x + pair.normal[1][n] * y + pair.normal[2][n] * z;
+    const double first = pair.dual_1[0][n] * x + pair.dual_1[1][n] * y + pair.dual_1[2][n] * z;
+    const double second = pair.dual_2[0][n] * x + pair.dual_2[1][n] * y + pair.dual_2[2][n] * z;
+    out.outside[n] = std::max(std::max(-first, -second), first + second - 1.0);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace sixdof::ray_cast
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sixdof::ray_cast {
+
+HWY_EXPORT(separate);
+
 namespace {
 
 using Eigen::Vector3d;
@@ -23,15 +75,12 @@ constexpr double k_least_sine = 1e-6;
 constexpr double k_plane_error = 1e-9;
 
 double inverse(double x) { return x > 0.0 ? 1.0 / x : 0.0; }
-double clamp(double x) {
-  x = x > 0.0 ? x : 0.0;
-  return x < 1.0 ? x : 1.0;
-}
 
 }  // namespace
 
 MovingPair::MovingPair(const TriangleCorners& a, const TriangleCorners& b, const Vector3d& direction)
     : a_(a), b_(b), direction_(direction) {
+  Features& f = features_;
   const TriangleCorners edge_a{a[1] - a[0], a[2] - a[1], a[0] - a[2]};
   const TriangleCorners edge_b{b[1] - b[0], b[2] - b[1], b[0] - b[2]};
   for (std::size_t n = 0; n < k_edges; ++n) {
@@ -39,21 +88,21 @@ MovingPair::MovingPair(const TriangleCorners& a, const TriangleCorners& b, const
     const std::size_t j = n % 3;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
-      from_[k][n] = b[j][axis] - a[i][axis];
-      u_[k][n] = edge_a[i][axis];
-      v_[k][n] = edge_b[j][axis];
+      f.from[k][n] = b[j][axis] - a[i][axis];
+      f.u[k][n] = edge_a[i][axis];
+      f.v[k][n] = edge_b[j][axis];
     }
   }
   for (std::size_t n = 0; n < k_edges; ++n) {
-    uu_[n] = u_[0][n] * u_[0][n] + u_[1][n] * u_[1][n] + u_[2][n] * u_[2][n];
-    vv_[n] = v_[0][n] * v_[0][n] + v_[1][n] * v_[1][n] + v_[2][n] * v_[2][n];
-    uv_[n] = u_[0][n] * v_[0][n] + u_[1][n] * v_[1][n] + u_[2][n] * v_[2][n];
-    per_uu_[n] = inverse(uu_[n]);
-    per_vv_[n] = inverse(vv_[n]);
-    per_nn_[n] = inverse(uu_[n] * vv_[n] - uv_[n] * uv_[n]);
+    f.uu[n] = f.u[0][n] * f.u[0][n] + f.u[1][n] * f.u[1][n] + f.u[2][n] * f.u[2][n];
+    f.vv[n] = f.v[0][n] * f.v[0][n] + f.v[1][n] * f.v[1][n] + f.v[2][n] * f.v[2][n];
+    f.uv[n] = f.u[0][n] * f.v[0][n] + f.u[1][n] * f.v[1][n] + f.u[2][n] * f.v[2][n];
+    f.per_uu[n] = inverse(f.uu[n]);
+    f.per_vv[n] = inverse(f.vv[n]);
+    f.per_nn[n] = inverse(f.uu[n] * f.vv[n] - f.uv[n] * f.uv[n]);
   }
-  plane_error_ =
-      k_plane_error * std::sqrt(std::max(*std::max_element(uu_, uu_ + k_edges), *std::max_element(vv_, vv_ + k_edges)));
+  plane_error_ = k_plane_error *
+                 std::sqrt(std::max(*std::max_element(f.uu, f.uu + k_edges), *std::max_element(f.vv, f.vv + k_edges)));
   for (std::size_t n = 0; n < k_corners; ++n) {
     const bool of_a = n < 3;
     const TriangleCorners& face = of_a ? b : a;
@@ -70,50 +119,22 @@ MovingPair::MovingPair(const TriangleCorners& a, const TriangleCorners& b, const
     const Vector3d offset = corner - face[0];
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
-      offset_[k][n] = offset[axis];
-      normal_[k][n] = unit[axis];
-      dual_1_[k][n] = dual_1[axis];
-      dual_2_[k][n] = dual_2[axis];
-      velocity_[k][n] = of_a ? -direction[axis] : direction[axis];
+      f.offset[k][n] = offset[axis];
+      f.normal[k][n] = unit[axis];
+      f.dual_1[k][n] = dual_1[axis];
+      f.dual_2[k][n] = dual_2[axis];
+      f.velocity[k][n] = of_a ? -direction[axis] : direction[axis];
     }
   }
 }
 
 MovingPair::Distance MovingPair::distance_at(double t) const {
-  const double shift[3] = {t * direction_[0], t * direction_[1], t * direction_[2]};
-  double squared[k_edges];
-  double w[3][k_edges];
-  for (std::size_t n = 0; n < k_edges; ++n) {
-    const double x = from_[0][n] + shift[0];
-    const double y = from_[1][n] + shift[1];
-    const double z = from_[2][n] + shift[2];
-    const double c = u_[0][n] * x + u_[1][n] * y + u_[2][n] * z;
-    const double f = v_[0][n] * x + v_[1][n] * y + v_[2][n] * z;
-    // Closest points of two lines, then of each segment to the other's point.
-    double s = clamp((c * vv_[n] - uv_[n] * f) * per_nn_[n]);
-    const double r = clamp((uv_[n] * s - f) * per_vv_[n]);
-    s = clamp((c + uv_[n] * r) * per_uu_[n]);
-    w[0][n] = x + r * v_[0][n] - s * u_[0][n];
-    w[1][n] = y + r * v_[1][n] - s * u_[1][n];
-    w[2][n] = z + r * v_[2][n] - s * u_[2][n];
-    squared[n] = w[0][n] * w[0][n] + w[1][n] * w[1][n] + w[2][n] * w[2][n];
-  }
-  double signed_distance[k_corners];  // of the corner from the face's plane
-  double outside[k_corners];          // at most 0 where the corner's projection onto the plane lies in the face
-  for (std::size_t n = 0; n < k_corners; ++n) {
-    const double x = offset_[0][n] + t * velocity_[0][n];
-    const double y = offset_[1][n] + t * velocity_[1][n];
-    const double z = offset_[2][n] + t * velocity_[2][n];
-    signed_distance[n] = normal_[0][n] * x + normal_[1][n] * y + normal_[2][n] * z;
-    const double first = dual_1_[0][n] * x + dual_1_[1][n] * y + dual_1_[2][n] * z;
-    const double second = dual_2_[0][n] * x + dual_2_[1][n] * y + dual_2_[2][n] * z;
-    outside[n] = std::max(std::max(-first, -second), first + second - 1.0);
-  }
-
+  Separations x;
+  HWY_DYNAMIC_DISPATCH(separate)(features_, t, direction_, x);
   Distance closest{.value = 0.0, .axis = Vector3d::Zero(), .slope = 0.0};
   // Whether corners n .. n + 2 may lie on both sides of the other triangle's plane.
   const auto straddles = [&](std::size_t n) {
-    const auto [low, high] = std::minmax({signed_distance[n], signed_distance[n + 1], signed_distance[n + 2]});
+    const auto [low, high] = std::minmax({x.signed_distance[n], x.signed_distance[n + 1], x.signed_distance[n + 2]});
     return low <= plane_error_ && high >= -plane_error_;
   };
   if (degenerate_ || (straddles(0) && straddles(3))) {  // they may intersect
@@ -123,14 +144,14 @@ MovingPair::Distance MovingPair::distance_at(double t) const {
     closest.axis = points.on_b - points.on_a;
   } else {
     std::size_t best = 0;
-    for (std::size_t n = 1; n < k_edges; ++n) best = squared[n] < squared[best] ? n : best;
-    closest.axis = Vector3d(w[0][best], w[1][best], w[2][best]);
-    closest.value = std::sqrt(squared[best]);
+    for (std::size_t n = 1; n < k_edges; ++n) best = x.squared[n] < x.squared[best] ? n : best;
+    closest.axis = Vector3d(x.w[0][best], x.w[1][best], x.w[2][best]);
+    closest.value = std::sqrt(x.squared[best]);
     for (std::size_t n = 0; n < k_corners; ++n) {
-      const double distance = std::abs(signed_distance[n]);
-      if (outside[n] > 0.0 || !(distance < closest.value)) continue;
-      const double from_a_to_b = n < 3 ? -signed_distance[n] : signed_distance[n];
-      const Vector3d normal(normal_[0][n], normal_[1][n], normal_[2][n]);
+      const double distance = std::abs(x.signed_distance[n]);
+      if (x.outside[n] > 0.0 || !(distance < closest.value)) continue;
+      const double from_a_to_b = n < 3 ? -x.signed_distance[n] : x.signed_distance[n];
+      const Vector3d normal(features_.normal[0][n], features_.normal[1][n], features_.normal[2][n]);
       closest.value = distance;
       closest.axis = from_a_to_b * normal;
     }
@@ -262,3 +283,4 @@ bool try_update(Cast& cast, TrianglePair pair) {
 }
 
 }  // namespace sixdof::ray_cast
+#endif  // HWY_ONCE

@@ -26,30 +26,42 @@ class MovingPair {
   };
   Distance distance_at(double t) const;
 
- private:
-  static constexpr std::size_t k_edges = 10;   // 3 x 3 pairs of edges, padded to an even number
-  static constexpr std::size_t k_corners = 6;  // A's corners against B's face, then B's against A's
+  static constexpr std::size_t k_edges = 10;   ///< 3 x 3 pairs of edges, padded to an even number.
+  static constexpr std::size_t k_corners = 6;  ///< A's corners against B's face, then B's against A's.
 
+  /// Edges and corners, in arrays for SIMD.
+  struct Features {
+    // Pairs of edges, [axis][pair]: points p + s u of A, q + r v of B, with s and r in 0 .. 1.
+    double from[3][k_edges];  // q - p at t = 0
+    double u[3][k_edges];
+    double v[3][k_edges];
+    double uv[k_edges];  // u . v
+    double uu[k_edges];  // u . u
+    double vv[k_edges];
+    double per_uu[k_edges];  // 1 / (u . u); 0 if u is zero
+    double per_vv[k_edges];
+    double per_nn[k_edges];  // 1 / |u x v|^2; 0 for parallel edges
+    // Corners against faces, [axis][corner].
+    double offset[3][k_corners];    // corner - the face's first corner, at t = 0
+    double velocity[3][k_corners];  // d offset / d t
+    double normal[3][k_corners];    // the face's; unit vector
+    double dual_1[3][k_corners];    // barycentric coordinates are dual . (corner - the face's first corner)
+    double dual_2[3][k_corners];
+  };
+
+  /// At one translation.
+  struct Separations {
+    double w[3][k_edges];  // from A's closest point of each pair of edges to B's
+    double squared[k_edges];
+    double signed_distance[k_corners];  // of the corner from the face's plane
+    double outside[k_corners];          // at most 0 where the corner's projection onto the plane lies in the face
+  };
+
+ private:
   TriangleCorners a_;
   TriangleCorners b_;
   Eigen::Vector3d direction_;
-
-  // Pairs of edges, [axis][pair]: points p + s u of A, q + r v of B, with s and r in 0 .. 1.
-  double from_[3][k_edges];  // q - p at t = 0
-  double u_[3][k_edges];
-  double v_[3][k_edges];
-  double uv_[k_edges];  // u . v
-  double uu_[k_edges];  // u . u
-  double vv_[k_edges];
-  double per_uu_[k_edges];  // 1 / (u . u); 0 if u is zero
-  double per_vv_[k_edges];
-  double per_nn_[k_edges];  // 1 / |u x v|^2; 0 for parallel edges
-  // Corners against faces, [axis][corner].
-  double offset_[3][k_corners];    // corner - the face's first corner, at t = 0
-  double velocity_[3][k_corners];  // d offset / d t
-  double normal_[3][k_corners];    // the face's; unit vector
-  double dual_1_[3][k_corners];    // barycentric coordinates are dual . (corner - the face's first corner)
-  double dual_2_[3][k_corners];
+  Features features_;
   bool degenerate_ = false;   // one of the triangles has no normal
   double plane_error_ = 0.0;  // error of a corner's signed distance from a face's plane
 };

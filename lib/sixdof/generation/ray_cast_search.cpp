@@ -210,7 +210,8 @@ class DualTreeTraversal {
     const Frame& frame = from.expands_a ? ray_.frames.expand_a : ray_.frames.expand_b;
     if (!from.other.child.is_leaf()) prefetch(other.nodes()[from.other.child.index()]);
     HWY_ALIGN float gaps[k_width], slopes[k_width], projections[k_width];
-    bound_children(node, fixed_volume, frame, from.expands_a ? ray_.expand_a : ray_.expand_b, ray_, gaps, slopes, projections);
+    bound_children(node, fixed_volume, frame, from.expands_a ? ray_.expand_a : ray_.expand_b, ray_, gaps, slopes,
+                   projections);
     std::uint32_t left = raise_bounds(front_.bounds[expansion], node.child_count, gaps, slopes);
     std::vector<CastFront::Pending>& pending = front_.pending;
     const std::size_t first = pending.size();

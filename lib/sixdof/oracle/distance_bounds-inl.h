@@ -62,8 +62,8 @@ struct QueryFrames : Frames {
   }
 };
 
-/// Lower bounds on the distances of the children of `node` from a fixed volume; negative where they may overlap. Returns a bit
-/// for each child whose bound is not above `best`.
+/// Lower bounds on the distances of the children of `node` from a fixed volume; negative where they may overlap.
+/// Returns a bit for each child whose bound is not above `best`.
 HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const Tree::Volume& fixed_volume, const Frame& f,
                                         const Slack& slack, float best, float* HWY_RESTRICT bounds) {
   std::uint32_t kept = 0;

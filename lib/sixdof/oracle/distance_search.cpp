@@ -385,7 +385,8 @@ class DistanceTraversal final : private CloseVisitor {
     const Frame& frame = expands_a ? frames_.expand_a : frames_.expand_b;
     const auto& axes = expands_a ? cross_axes_->in_a : cross_axes_->in_b;
     const auto& axes_fixed = expands_a ? cross_axes_->in_b : cross_axes_->in_a;
-    const std::uint32_t left = bound_across_axes(node, fixed, frame, axes, axes_fixed, frames_.slack, best_, kept, bounds);
+    const std::uint32_t left =
+        bound_across_axes(node, fixed, frame, axes, axes_fixed, frames_.slack, best_, kept, bounds);
     use_of_cross_axes_.count(std::popcount(kept), std::popcount(left));
     return left;
   }

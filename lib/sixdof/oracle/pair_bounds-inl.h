@@ -50,7 +50,7 @@ constexpr float k_slack = 4e-6f;
 constexpr hn::CappedTag<float, 4> k_vector;
 
 struct Frame {
-  HWY_ALIGN float axis[3][4] = {};       // F's axes in N: p_N = sum of axis[k] p_F[k] + translation
+  HWY_ALIGN float axis[3][4] = {};  // F's axes in N: p_N = sum of axis[k] p_F[k] + translation
   HWY_ALIGN float translation[4] = {};
   double translation_along;  // translation . w
   float direction[3];        // w in N
