@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <sixdof/generation/ray_cast_pair.h>
+#include <sixdof/generation/ray_cast_seeds.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_search.cpp"
@@ -423,6 +424,7 @@ const Hit* RaySearch::find_next(double target) {
   search_from(-k_cast_tie * cast_.size(), cast_.direction);
   if (last_) try_update(cast_, *last_->hit.pair);
   if (last_ray_[index]) try_update(cast_, *last_ray_[index]);
+  if (!last_) seed_first_hit(cast_);
   if (!last_ || !find_behind(*last_)) find_first_hit(cast_);
   reachable_ = cast_.best.pair.has_value();
   if (!reachable_) return nullptr;

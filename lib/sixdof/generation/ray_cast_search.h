@@ -118,10 +118,11 @@ struct Cast {
   double target = 0.0;                                   ///< d
   Hit best;
   CastCounts counts;
-  CastFront front;                  ///< Of this direction; to be cleared when it changes.
-  CoplanarPatch patch;              ///< Of A or B, over one of the other.
-  DifferenceSupport patch_support;  ///< Along its normal.
-  DifferenceSupport axis_support;   ///< Along best.separating_axis.
+  CastFront front;                            ///< Of this direction; to be cleared when it changes.
+  CoplanarPatch patch;                        ///< Of A or B, over one of the other.
+  DifferenceSupport patch_support;            ///< Along its normal.
+  DifferenceSupport axis_support;             ///< Along best.separating_axis.
+  std::vector<detail::CornerVolume> corners;  ///< Scratch.
 
   /// Length that errors are relative to.
   double size() const { return a.radius() + b.radius() + target; }

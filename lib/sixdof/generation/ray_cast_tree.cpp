@@ -49,7 +49,7 @@ void fit_precise_volume(Triangles triangles, const Eigen::Vector3d& origin, Prec
 
 }  // namespace
 
-CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
+CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)), seeds_(*tree_) {
   precise_volumes_.resize(tree_->nodes().size());
   for (std::size_t n = 0; n < precise_volumes_.size(); ++n) {
     const Tree::Node& node = tree_->nodes()[n];

@@ -11,6 +11,7 @@
 
 #include <sixdof/geometry/tree.h>
 #include <sixdof/geometry/triangle_distance.h>
+#include <sixdof/oracle/seed_corners.h>
 
 /// Both meshes as the ray cast takes them: trees with volumes in double precision, and a common frame. Internal: use
 /// distance_generator.h.
@@ -73,10 +74,12 @@ class CastMesh {
   explicit CastMesh(std::shared_ptr<const Tree> tree);
 
   const Tree& tree() const { return *tree_; }
+  const detail::SeedCorners& seeds() const { return seeds_; }
   std::span<const PreciseVolumes> precise_volumes() const { return precise_volumes_; }  ///< Of each node's children.
 
  private:
   std::shared_ptr<const Tree> tree_;
+  detail::SeedCorners seeds_;
   std::vector<PreciseVolumes> precise_volumes_;
 };
 

@@ -16,6 +16,7 @@
 #include <sixdof/geometry/triangle_distance.h>
 #include <sixdof/oracle/close_search.h>
 #include <sixdof/oracle/coplanar_patches.h>
+#include <sixdof/oracle/seed_corners.h>
 
 /// The state of one distance query. Internal: use distance.h.
 namespace sixdof::detail {
@@ -29,14 +30,6 @@ struct NodePair {
   std::uint32_t b;
   float lower;  ///< Lower bound on the distance; negative where the volumes may overlap.
 };
-
-/// Inserts a pair into stack[first], stack[first + 1], ..., which is sorted: the smallest lower bound is on top.
-inline void push_sorted(std::vector<NodePair>& stack, std::size_t first, const NodePair& pair) {
-  std::size_t at = stack.size();
-  stack.push_back(pair);
-  for (; at > first && stack[at - 1].lower < pair.lower; --at) stack[at] = stack[at - 1];
-  stack[at] = pair;
-}
 
 /// A pair of triangles and its exact distance.
 struct MeasuredPair {
@@ -58,14 +51,6 @@ struct TiedPair {
 struct RankedPair {
   Rank smallest;
   NodePair pair;
-};
-
-/// Corners spread over a surface: where a search may start.
-struct SeedCorners {
-  static constexpr std::size_t k_count = 64;
-  explicit SeedCorners(const Tree& tree);
-  alignas(64) float point[3][k_count];  ///< [axis][corner], relative to the tree's centre.
-  std::uint32_t leaf[k_count];          ///< The corner is the first one of the first triangle of this leaf.
 };
 
 float smallest_leaf_of(const Tree& tree);
@@ -117,6 +102,7 @@ struct DistanceSearch {
   std::vector<TiedPair> tied;          ///< Scratch.
   std::vector<RankedPair> ranked;      ///< Scratch.
   std::vector<ClosePair> close;        ///< Scratch.
+  std::vector<CornerVolume> corners;   ///< Scratch.
 };
 
 /// Measures one pair exactly and keeps it if it is closer. Then sets `direction`, too, and returns true.

@@ -19,68 +19,6 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {
 namespace HWY_NAMESPACE {
 
-/// A corner of a tree and its squared distance from some point.
-struct Corner {
-  float squared;
-  std::uint32_t leaf;
-  std::uint32_t triangle;  // in the leaf
-  float point[3];          // relative to the tree's centre
-};
-
-/// Finds a corner that is closer to p than `best.squared`. Returns whether there is one. It need not be the closest:
-/// squared distances that differ by about 32 times a leaf's area, or by the factor `tolerance`, count as equal.
-bool find_corner(const Tree& tree, const float* p, float tolerance, Corner& best, std::vector<NodePair>& stack) {
-  constexpr double k_leaf_areas = 32.0;  // a leaf's area is about radius^2 / leaves
-  const auto equal =
-      static_cast<float>(k_leaf_areas * tree.radius() * tree.radius() / static_cast<double>(tree.leaves().size()));
-  bool found = false;
-  stack.assign(1, {0, 0, 0.0f});  // `a` names the volume, `lower` bounds the squared distance
-  while (!stack.empty()) {
-    const NodePair top = stack.back();
-    stack.pop_back();
-    if (tolerance * top.lower + equal >= best.squared) continue;
-    if ((top.a & NodePair::k_leaf) != 0) {
-      const Tree::Leaf& leaf = tree.leaves()[top.a - NodePair::k_leaf];
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        for (std::uint32_t t = 0; t < leaf.child.count(); ++t) {
-          float squared = 0.0f;
-          for (std::size_t k = 0; k < 3; ++k) {
-            const float d = leaf.corner[corner][k][t] - p[k];
-            squared += d * d;
-          }
-          if (squared >= best.squared) continue;
-          best = {squared,
-                  top.a - NodePair::k_leaf,
-                  t,
-                  {leaf.corner[corner][0][t], leaf.corner[corner][1][t], leaf.corner[corner][2][t]}};
-          found = true;
-        }
-      }
-      continue;
-    }
-    const Tree::Node& node = tree.nodes()[top.a];
-    HWY_ALIGN float bounds[k_width];
-    for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-      V squared = hn::Zero(k_lanes);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const V at = set(p[k]);
-        const V below = hn::Sub(load(node.lower[k] + i), at);
-        const V above = hn::Sub(at, load(node.upper[k] + i));
-        const V gap = hn::Max(hn::Max(below, above), hn::Zero(k_lanes));
-        squared = hn::MulAdd(gap, gap, squared);
-      }
-      hn::Store(squared, k_lanes, bounds + i);
-    }
-    const std::size_t first = stack.size();
-    for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      if (tolerance * bounds[i] + equal >= best.squared) continue;
-      const Tree::Child child = node.child[i];
-      push_sorted(stack, first, {child.is_leaf() ? NodePair::k_leaf + node.leaf[i] : child.node(), 0, bounds[i]});
-    }
-  }
-  return found;
-}
-
 /// p_N of p_F.
 void transform(const Frame& f, const float* p, float* out) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -153,13 +91,11 @@ void seed_search(DistanceSearch& search) {
       transform(search_b ? frames.expand_b : frames.expand_a, search_b ? a.point : b.point, from);
       Corner& corner = search_b ? b : a;
       corner.squared = best;
-      if (!find_corner(search_b ? search.b.tree : search.a.tree, from, tolerance, corner, search.stack)) ++misses;
+      if (!find_corner(search_b ? search.b.tree : search.a.tree, from, tolerance, corner, search.corners)) ++misses;
       best = corner.squared;
     }
   }
-  const TrianglePair pair{search.a.tree.leaves()[a.leaf].child.first() + a.triangle,
-                          search.b.tree.leaves()[b.leaf].child.first() + b.triangle};
-  try_update(search, pair);
+  try_update(search, TrianglePair{triangle_of(search.a.tree, a), triangle_of(search.b.tree, b)});
 }
 
 }  // namespace HWY_NAMESPACE
@@ -172,13 +108,6 @@ namespace sixdof::detail {
 HWY_EXPORT(seed_search);
 
 void seed_search(DistanceSearch& search) { HWY_DYNAMIC_DISPATCH(seed_search)(search); }
-
-SeedCorners::SeedCorners(const Tree& tree) {
-  for (std::size_t i = 0; i < k_count; ++i) {
-    leaf[i] = static_cast<std::uint32_t>((2 * i + 1) * tree.leaves().size() / (2 * k_count));
-    for (std::size_t k = 0; k < 3; ++k) point[k][i] = tree.leaves()[leaf[i]].corner[0][k][0];
-  }
-}
 
 }  // namespace sixdof::detail
 #endif  // HWY_ONCE
