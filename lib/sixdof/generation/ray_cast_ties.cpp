@@ -46,7 +46,8 @@ void support_bounds(const PreciseVolumes& volumes, const Eigen::Vector3d& axis, 
 /// The least axis . (p - center) of some triangles' corners p.
 double least_of_corners(std::span<const Tree::Corners> triangles, const Eigen::Vector3d& center,
                         const Eigen::Vector3d& axis) {
-  constexpr hn::CappedTag<double, 4> d;
+  using Points = hn::CappedTag<double, 4>;
+  constexpr Points d;
   const double* const p = triangles[0][0].data();  // x, y, z of each corner in turn
   const std::size_t count = 3 * triangles.size();
   const std::size_t lanes = hn::Lanes(d);
@@ -57,7 +58,7 @@ double least_of_corners(std::span<const Tree::Corners> triangles, const Eigen::V
   }
   auto value = hn::Set(d, least);
   for (std::size_t i = 0; i < count; i += lanes) {
-    auto x = hn::Undefined(d), y = x, z = x;
+    hn::Vec<Points> x, y, z;
     hn::LoadInterleaved3(d, p + 3 * std::min(i, count - lanes), x, y, z);
     const auto along = [&](auto coordinate, int k) {
       return hn::Mul(hn::Set(d, axis[k]), hn::Sub(coordinate, hn::Set(d, center[k])));
