@@ -101,6 +101,9 @@ TEST(ChildProcess, NoteOfMemoryDecidesWhyItEnded) {
   EXPECT_EQ(killed.status, Status::out_of_memory);
   EXPECT_STREQ(killed.what(), "out of memory: ended by signal 6 (Aborted)");
   EXPECT_STREQ(failure_of(note + "echo answer; sleep 600").what(), "answer") << "the note is no answer";
+  ChildProcess early(shell(note + "kill -ABRT $$"), {}, 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it most likely ends before it is asked
+  EXPECT_EQ(failure_of(early).status, Status::out_of_memory);
 }
 
 TEST(ChildProcess, LimitsMemory) {

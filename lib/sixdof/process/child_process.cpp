@@ -189,6 +189,14 @@ void ChildProcess::closed() {
   while (!has_ended() && Clock::now() < end_of_patience) std::this_thread::sleep_for(milliseconds(1));
   if (!has_ended()) give_up(Status::crashed, "closed its standard streams");
   end();
+  // Its note may be unread: of a program that ended before it was asked.
+  std::array<char, 1 << 12> block;
+  ssize_t count = 0;
+  while ((count = ::read(output_, block.data(), block.size())) > 0 && received_.size() <= k_longest_line) {
+    received_.append(block.data(), static_cast<std::size_t>(count));
+  }
+  while (take_line()) {
+  }
   const bool killed = WIFSIGNALED(wait_status_) && WTERMSIG(wait_status_) == SIGKILL;
   const ChildFailure failure =
       how_it_ended(wait_status_, noted_memory_ || (killed && count_kernel_kills() > kernel_kills_));
