@@ -206,7 +206,10 @@ TEST(SeparatedInDouble, HoldsForAllTrianglesAndLargerTranslations) {
     Cast cast(tree_a, tree_b);
     const auto slot_a = static_cast<std::uint32_t>(of_a[i % of_a.size()]);
     const auto slot_b = static_cast<std::uint32_t>(of_b[(7 * i) % of_b.size()]);
-    if (tree_a.child(slot_a).is_leaf() != tree_b.child(slot_b).is_leaf()) continue;
+    const auto is_leaf = [](const CastTree& tree, std::size_t slot) {
+      return child_of(tree.nodes()[slot / Tree::k_width], slot % Tree::k_width).is_leaf();
+    };
+    if (is_leaf(tree_a, slot_a) != is_leaf(tree_b, slot_b)) continue;
     cast.direction = random_direction(random);
     cast.target = (i % 2 == 0 ? 0.2 : 1e-3) * a.diagonal();
     cast.best = {.translation = 0.1 * static_cast<double>(i % 8) * a.diagonal(),

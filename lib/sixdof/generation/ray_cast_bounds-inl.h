@@ -54,7 +54,8 @@ struct Ray {
   float target;
   /// What gaps are lowered by, k_slack of Cast::size(). Lengths that enter a bound are at most twice that size, but
   /// most roundings are of volumes, which are smaller: with the rounding of slopes, up to eight, times a translation of
-  /// at most that size, and that of a bound from where it is made to where it is read they come to half of the slack.
+  /// at most that size, and that of a bound from where it is made to where it is read they come to three quarters of
+  /// the slack.
   float slack;
   float translation;  ///< Of the best hit: t0.
   float reach;        ///< Cast::reach()

@@ -26,8 +26,8 @@ namespace HWY_NAMESPACE {
 /// hits of earlier targets are never undone otherwise.
 constexpr double k_largest_growth = 2.0;
 
-/// Error of single-precision bounds of flat patches that lie face to face, in units of their radii: 1.3e-3 for normals
-/// that are shorter than unit vectors, and as much again for the tilt of parts of a rough face.
+/// Error of single-precision bounds of flat patches that lie face to face, in units of half their diagonals: 1.3e-3 for
+/// normals that are shorter than unit vectors, and as much again for the tilt of parts of a rough face.
 constexpr float k_flat_error = 2e-3f;
 
 /// What one query of a DifferenceSupport adds to its budget. Support values cull pairs because volumes reach beyond

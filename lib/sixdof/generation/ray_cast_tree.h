@@ -97,8 +97,6 @@ class CastTree {
   std::span<const Tree::Leaf> leaves() const { return mesh_->tree().leaves(); }
   double radius() const { return mesh_->tree().radius(); }
 
-  CastChild child(std::size_t slot) const { return child_of(nodes()[slot / Tree::k_width], slot % Tree::k_width); }
-
   /// In the tree's frame.
   const Tree::Volume& volume(CastChild child) const {
     return child.is_leaf() ? leaves()[child.index()].volume : nodes()[child.index()].volume;

@@ -189,12 +189,7 @@ void ChildProcess::closed() {
   while (!has_ended() && Clock::now() < end_of_patience) std::this_thread::sleep_for(milliseconds(1));
   if (!has_ended()) give_up(Status::crashed, "closed its standard streams");
   end();
-  // Its note may be unread: of a program that ended before it was asked.
-  std::array<char, 1 << 12> block;
-  ssize_t count = 0;
-  while ((count = ::read(output_, block.data(), block.size())) > 0 && received_.size() <= k_longest_line) {
-    received_.append(block.data(), static_cast<std::size_t>(count));
-  }
+  read_what_is_there();  // its note may be unread: of a program that ended before it was asked
   while (take_line()) {
   }
   const bool killed = WIFSIGNALED(wait_status_) && WTERMSIG(wait_status_) == SIGKILL;
@@ -233,12 +228,16 @@ std::optional<std::string> ChildProcess::take_line() {
   return std::nullopt;
 }
 
-void ChildProcess::expect_no_line() {
+void ChildProcess::read_what_is_there() {
   std::array<char, 1 << 12> block;
   ssize_t count = 0;
   while ((count = ::read(output_, block.data(), block.size())) > 0 && received_.size() <= k_longest_line) {
     received_.append(block.data(), static_cast<std::size_t>(count));
   }
+}
+
+void ChildProcess::expect_no_line() {
+  read_what_is_there();
   if (take_line()) give_up(Status::failed, "wrote a line that answers no request");
 }
 

@@ -64,6 +64,8 @@ class ChildProcess {
   static constexpr std::string_view k_memory_note = R"({"note":"out of memory"})";
 
  private:
+  /// Takes what the program has written so far into `received_`.
+  void read_what_is_there();
   /// The next line that is no note, if a whole one is there.
   std::optional<std::string> take_line();
   [[noreturn]] void give_up(Status status, const std::string& words);
