@@ -12,6 +12,7 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/cross_axes.h>
+#include <sixdof/oracle/children-inl.h>
 #include <sixdof/oracle/pair_bounds-inl.h>
 
 // Lower bounds on distances: of one volume from the eight children of a node, and of the triangles of two leaves.
@@ -29,8 +30,7 @@ namespace HWY_NAMESPACE {
 using namespace pair_bounds::HWY_NAMESPACE;
 
 constexpr Rounding k_rounding = Rounding::fused;
-using FixedVolume = pair_bounds::HWY_NAMESPACE::FixedVolume<k_rounding>;
-using ChildVolumes = pair_bounds::HWY_NAMESPACE::ChildVolumes<k_rounding>;
+using Shape = pair_bounds::HWY_NAMESPACE::Shape<k_rounding>;
 
 /// By how much a bound is lowered (lengths).
 struct Slack {
@@ -62,103 +62,116 @@ struct QueryFrames : Frames {
   }
 };
 
-/// Lower bounds on the distances of the children of `node` from a fixed volume; negative where they may overlap.
-/// Returns a bit for each child whose bound is not above `best`.
-HWY_INLINE std::uint32_t bound_children(const Tree::Node& node, const Tree::Volume& fixed_volume, const Frame& f,
-                                        const Slack& slack, float best, float* HWY_RESTRICT bounds) {
+/// Lower bounds on the distances of the volumes x from volume j of y; negative where they may overlap. Returns a bit for
+/// each whose bound is not above `best`.
+/// @param f whose N is the frame of x
+HWY_INLINE std::uint32_t bound_volumes(const Volumes& x, const Volumes& y, std::size_t j, const Frame& f,
+                                       const Slack& slack, float best, float* HWY_RESTRICT bounds) {
   std::uint32_t kept = 0;
-  const V w[3] = {set(f.direction[0]), set(f.direction[1]), set(f.direction[2])};
-  const auto along = static_cast<double>(least_along(fixed_volume, f)) + f.translation_along;
-  const V fixed_along = set(static_cast<float>(along) - slack.local);
+  const V y_along = set(static_cast<float>(f.translation_along - static_cast<double>(y.front[j])) - slack.local);
   const auto all_exceed_best = [&](V bound) { return hn::AllTrue(k_lanes, hn::Gt(bound, set(best))); };
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    const ChildVolumes child(node, i);
-    const V gap_along = hn::Sub(fixed_along, child.greatest_along(w));
+    const V gap_along = hn::Sub(y_along, load(x.front + i));
     if (all_exceed_best(gap_along)) continue;
-    const FixedVolume fixed(fixed_volume, f);
-    const V normal_fixed[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
 
-    // Boxes. m: from the children's centres to the fixed volume's.
+    // Boxes. m: from the centres of x to that of y.
     V m[3];
     V gap = set(-Tree::k_empty);
-    V squared_n = hn::Zero(k_lanes), squared_f = hn::Zero(k_lanes);  // of the distances of the boxes
+    V squared_x = hn::Zero(k_lanes), squared_y = hn::Zero(k_lanes);  // of the distances of the boxes
     const auto keep = [&gap](V along_axis, V& squared_distance) {
       gap = hn::Max(gap, along_axis);
       const V positive = hn::Max(along_axis, hn::Zero(k_lanes));
       squared_distance = hn::MulAdd(positive, positive, squared_distance);
     };
     for (std::size_t k = 0; k < 3; ++k) {
-      m[k] = hn::Sub(set(fixed.center[k]), child.center[k]);
-      keep(hn::Sub(hn::Abs(m[k]), hn::Add(child.half[k], set(fixed.half[k]))), squared_n);
+      m[k] = hn::Sub(set(y.other_center[k][j]), load(x.center[k] + i));
+      keep(hn::Sub(hn::Abs(m[k]), hn::Add(load(x.half[k] + i), set(y.other_half[k][j]))), squared_x);
+      const V other = hn::Sub(set(y.center[k][j]), load(x.other_center[k] + i));
+      keep(hn::Sub(hn::Abs(other), hn::Add(load(x.other_half[k] + i), set(y.half[k][j]))), squared_y);
     }
-    for (std::size_t k = 0; k < 3; ++k) {
-      V middle = hn::Zero(k_lanes);
-      V extent = set(fixed.half_fixed[k]);
-      for (std::size_t j = 0; j < 3; ++j) {
-        const V r = set(f.axis[k][j]);
-        middle = hn::MulAdd(r, m[j], middle);
-        extent = hn::MulAdd(hn::Abs(r), child.half[j], extent);
-      }
-      keep(hn::Sub(hn::Abs(middle), extent), squared_f);
-    }
-    gap = hn::IfThenElse(hn::Gt(gap, hn::Zero(k_lanes)), hn::Sqrt(hn::Max(squared_n, squared_f)), gap);
+    gap = hn::IfThenElse(hn::Gt(gap, hn::Zero(k_lanes)), hn::Sqrt(hn::Max(squared_x, squared_y)), gap);
+
+    if (all_exceed_best(hn::Max(gap_along, hn::Sub(gap, set(slack.all))))) continue;
 
     // The line through the centres.
+    const Shape shape_x = Shape::lanes(x, i), shape_y = Shape::one(y, j);
     const V squared = dot<k_rounding>(m, m);
     const V inverse = hn::Div(set(1.0f), hn::Sqrt(hn::Max(squared, set(k_smallest_square))));
     const V u[3] = {hn::Mul(m[0], inverse), hn::Mul(m[1], inverse), hn::Mul(m[2], inverse)};
-    const Reach own = child.reach(u, dot<k_rounding>(u, child.normal)),
-                other = fixed.reach(u, dot<k_rounding>(u, normal_fixed));
+    V u_y[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      u_y[k] = hn::Mul(set(f.axis[k][0]), u[0]);
+      for (std::size_t l = 1; l < 3; ++l) u_y[k] = hn::MulAdd(set(f.axis[k][l]), u[l], u_y[k]);
+    }
+    const Reach own = shape_x.reach(u, dot<k_rounding>(u, shape_x.normal)),
+                other = shape_y.reach(u_y, dot<k_rounding>(u_y, shape_y.normal));
     gap = hn::Max(gap, hn::Sub(hn::Mul(squared, inverse), hn::Add(own.up, other.down)));
     if (all_exceed_best(hn::Max(gap_along, hn::Sub(gap, set(slack.all))))) continue;
 
     // Normals of the slabs.
-    const V normals = dot<k_rounding>(normal_fixed, child.normal);
-    const V on_child = dot<k_rounding>(child.normal, m);
-    const V on_fixed = dot<k_rounding>(normal_fixed, m);
-    const Reach of_fixed = fixed.reach(child.normal, normals);
-    const Reach of_child = child.reach(normal_fixed, normals);
-    gap = hn::Max(gap, hn::Sub(hn::Sub(on_child, of_fixed.down), child.above));
-    gap = hn::Max(gap, hn::Sub(child.below, hn::Add(on_child, of_fixed.up)));
-    gap = hn::Max(gap, hn::Sub(hn::Add(on_fixed, set(fixed.slab_lower)), of_child.up));
-    gap = hn::Max(gap, hn::Sub(hn::Neg(hn::Add(on_fixed, set(fixed.slab_upper))), of_child.down));
+    const V normal_x[3] = {load(x.other_normal[0] + i), load(x.other_normal[1] + i), load(x.other_normal[2] + i)};
+    const V normal_y[3] = {set(y.other_normal[0][j]), set(y.other_normal[1][j]), set(y.other_normal[2][j])};
+    const V normals = dot<k_rounding>(shape_x.normal, normal_y);
+    const V on_x = dot<k_rounding>(shape_x.normal, m), on_y = dot<k_rounding>(normal_y, m);
+    const Reach of_y = shape_y.reach(normal_x, normals), of_x = shape_x.reach(normal_y, normals);
+    gap = hn::Max(gap, hn::Sub(hn::Sub(on_x, of_y.down), shape_x.above));
+    gap = hn::Max(gap, hn::Sub(shape_x.below, hn::Add(on_x, of_y.up)));
+    gap = hn::Max(gap, hn::Sub(hn::Add(on_y, shape_y.below), of_x.up));
+    gap = hn::Max(gap, hn::Sub(hn::Neg(hn::Add(on_y, shape_y.above)), of_x.down));
 
     const V bound = hn::Max(gap_along, hn::Sub(gap, set(slack.all)));
     hn::Store(bound, k_lanes, bounds + i);
     kept |= bits_of(hn::Le(bound, set(best)), i);
   }
-  return kept & ((1u << node.child_count) - 1);
+  return kept;
 }
 
-/// Raises bounds of bound_children() by the axes across an axis of N and one of F. Returns a bit for each child of
-/// `kept` whose bound is still not above `best`. Bounds that stay negative are not changed: they say how deep volumes
+/// Volumes of y (bits) that neither w nor boxes separate from all volumes of x by more than `best`.
+/// @param whole the volume around those of x
+HWY_INLINE std::uint32_t near_volumes(const Volumes& x, const Tree::Volume& whole, const Volumes& y, const Frame& f,
+                                      const Slack& slack, float best) {
+  V greatest = set(-Tree::k_empty);
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) greatest = hn::Max(greatest, load(x.front + i));
+  const auto front = static_cast<double>(hn::GetLane(hn::MaxOfLanes(k_lanes, greatest)));
+  const V along = set(static_cast<float>(f.translation_along - front) - slack.all);
+  const V enough = set(best + slack.all);
+  std::uint32_t near = 0;
+  for (std::size_t j = 0; j < k_width; j += hn::Lanes(k_lanes)) {
+    V squared = hn::Zero(k_lanes);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V center = load(y.other_center[k] + j), half = load(y.other_half[k] + j);
+      const V above = hn::Sub(hn::Sub(center, half), set(whole.upper[k]));
+      const V below = hn::Sub(set(whole.lower[k]), hn::Add(center, half));
+      const V gap = hn::Max(hn::Max(above, below), hn::Zero(k_lanes));
+      squared = hn::MulAdd(gap, gap, squared);
+    }
+    const M far = hn::Or(hn::Gt(hn::Sub(along, load(y.front + j)), set(best)), hn::Gt(squared, hn::Mul(enough, enough)));
+    near |= bits_of(hn::Not(far), j);
+  }
+  return near;
+}
+
+/// Raises bounds of bound_volumes() by the axes across an axis of each frame. Returns a bit for each volume of `kept`
+/// whose bound is still not above `best`. Bounds that stay negative are not changed: they say how deep volumes
 /// overlap, which orders the search, and compare with those of pairs that are not asked.
-/// @param axes, axes_fixed CrossAxes in N and in F
-inline HWY_NOINLINE std::uint32_t bound_across_axes(const Tree::Node& node, const Tree::Volume& fixed_volume,
-                                                    const Frame& f, const float (&axes)[CrossAxes::k_count][3],
-                                                    const float (&axes_fixed)[CrossAxes::k_count][3],
-                                                    const Slack& slack, float best, std::uint32_t kept,
-                                                    float* HWY_RESTRICT bounds) {
-  const FixedVolume fixed(fixed_volume, f);
-  const V half = set(0.5f);
+/// @param axes_x, axes_y CrossAxes in both frames
+inline HWY_NOINLINE std::uint32_t bound_across_axes(const Volumes& x, const Volumes& y, std::size_t j,
+                                                    const float (&axes_x)[CrossAxes::k_count][3],
+                                                    const float (&axes_y)[CrossAxes::k_count][3], const Slack& slack,
+                                                    float best, std::uint32_t kept, float* HWY_RESTRICT bounds) {
   std::uint32_t near = 0;
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    V m[3], e[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const V lower = load(node.lower[k] + i);
-      const V upper = load(node.upper[k] + i);
-      m[k] = hn::NegMulAdd(half, hn::Add(lower, upper), set(fixed.center[k]));
-      e[k] = hn::Mul(half, hn::Sub(upper, lower));
-    }
     V widest = set(-Tree::k_empty);
     for (std::size_t n = 0; n < CrossAxes::k_count; ++n) {
-      float radius_fixed = 0.0f;
-      for (std::size_t k = 0; k < 3; ++k) radius_fixed += std::abs(axes_fixed[n][k]) * fixed.half_fixed[k];
-      V middle = hn::Zero(k_lanes);
-      V radius = set(radius_fixed);
+      float radius_y = 0.0f, middle_y = 0.0f;
       for (std::size_t k = 0; k < 3; ++k) {
-        middle = hn::MulAdd(set(axes[n][k]), m[k], middle);
-        radius = hn::MulAdd(set(std::abs(axes[n][k])), e[k], radius);
+        radius_y += std::abs(axes_y[n][k]) * y.half[k][j];
+      }
+      V middle = set(middle_y);
+      V radius = set(radius_y);
+      for (std::size_t k = 0; k < 3; ++k) {
+        middle = hn::MulAdd(set(axes_x[n][k]), hn::Sub(set(y.other_center[k][j]), load(x.center[k] + i)), middle);
+        radius = hn::MulAdd(set(std::abs(axes_x[n][k])), load(x.half[k] + i), radius);
       }
       widest = hn::Max(widest, hn::Sub(hn::Abs(middle), radius));
     }

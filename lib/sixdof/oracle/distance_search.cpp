@@ -87,6 +87,11 @@ constexpr float k_unlike = 8.0f;
 constexpr std::uint64_t k_patience_with_leaves = 4096;
 /// After as many exact distances of triangles their gap along the normals is asked first. Most searches need fewer.
 constexpr std::uint64_t k_patience_with_triangles = 256;
+/// So many pairs of leaves are early in a search.
+constexpr std::uint64_t k_early = 16;
+/// Of two volumes the smaller is expanded, too, if the square of its size is not below that of the other divided by
+/// this.
+constexpr float k_alike = 4.0f;
 /// Axes across two boxes, and across two triangles, which are measured exactly otherwise.
 constexpr CrossAxesUse k_use_of_cross_axes(0.125);
 constexpr CrossAxesUse k_use_of_cross_edges(0.03);
@@ -154,38 +159,38 @@ class DistanceTraversal final : private CloseVisitor {
         if (are_blurred(top) ? search_in_doubles(top) : measure_leaves(top)) return true;
         continue;
       }
-      const Choice choice = choose(top);
-      if (choice.needs_doubles) {
+      if (needs_doubles(top)) {
         if (search_in_doubles(top)) return true;
         continue;
       }
       const std::size_t first = stack.size();
-      expand(top, choice.expands_a, [&](const NodePair& next) { push_sorted(stack, first, next); });
+      const bool is_early = search_.counts.leaf_pairs < k_early;
+      expand(top, [&](const NodePair& next) {
+        std::size_t at = stack.size();
+        const std::size_t lowest = is_early ? first : std::max(first + 1, at) - 1;
+        stack.push_back(next);
+        for (; at > lowest && stack[at - 1].lower < next.lower; --at) stack[at] = stack[at - 1];
+        stack[at] = next;
+      });
     }
     return false;
   }
 
-  /// Which of two volumes is expanded, and whether in doubles.
-  struct Choice {
-    bool expands_a;
-    bool needs_doubles;
-  };
-
-  /// Expands the larger, or the one that is no leaf. In doubles if it is so small that floats blur it, or if the other
-  /// is a leaf whose volume is much larger than its triangles in comparison: a thick one, or slices of a fan that lie
-  /// across all axes.
-  HWY_INLINE Choice choose(const NodePair& pair) {
+  /// Whether a pair, not of two leaves, is searched in doubles: if the larger is so small that floats blur it, or if the
+  /// other is a leaf whose volume is much larger than its triangles in comparison: a thick one, or slices of a fan that
+  /// lie across all axes.
+  HWY_INLINE bool needs_doubles(const NodePair& pair) {
     const Tree::Volume& a = volume_of(tree_a_, pair.a);
     const Tree::Volume& b = volume_of(tree_b_, pair.b);
     const float size_a = a.squared_diagonal();
     const float size_b = b.squared_diagonal();
     const bool expands_a = is_leaf(pair.b) || (!is_leaf(pair.a) && size_a >= size_b);
     const float expanded = expands_a ? size_a : size_b;
-    if (expanded < blurred_) return {expands_a, true};
-    if (!is_leaf(expands_a ? pair.b : pair.a)) return {expands_a, false};
+    if (expanded < blurred_) return true;
+    if (!is_leaf(expands_a ? pair.b : pair.a)) return false;
     const bool is_long_search = search_.counts.leaf_pairs > k_patience_with_leaves;
-    if (is_long_search && k_unlike * k_unlike * expanded < (expands_a ? size_b : size_a)) return {expands_a, true};
-    return {expands_a, is_thick(expands_a ? b : a, expanded) && ++thick_pairs_ > k_patience_with_thick};
+    if (is_long_search && k_unlike * k_unlike * expanded < (expands_a ? size_b : size_a)) return true;
+    return is_thick(expands_a ? b : a, expanded) && ++thick_pairs_ > k_patience_with_thick;
   }
 
   /// @param size square of a diagonal
@@ -237,6 +242,7 @@ class DistanceTraversal final : private CloseVisitor {
     if (!closer) return false;
     if (search_.best == 0.0) return true;
     frames_.set_direction(search_.direction);
+    loaded_a_ = loaded_b_ = k_none;
     set_best();
     return false;
   }
@@ -350,43 +356,87 @@ class DistanceTraversal final : private CloseVisitor {
     }
   }
 
-  /// Expands one of two volumes that are not both leaves: calls keep() for each pair of a child and the other volume
-  /// whose bound is not above the best.
-  template <class Keep>
-  HWY_INLINE void expand(const NodePair& top, bool expands_a, const Keep& keep) {
-    const Tree::Volume& volume_a = volume_of(tree_a_, top.a);
-    const Tree::Volume& volume_b = volume_of(tree_b_, top.b);
-    const Tree& tree = expands_a ? tree_a_ : tree_b_;
-    const Tree::Node& node = tree.nodes()[expands_a ? top.a : top.b];
-    const Frame& frame = expands_a ? frames_.expand_a : frames_.expand_b;
-    HWY_ALIGN float bounds[k_width];
-    ++search_.counts.nodes;
-    const Tree::Volume& fixed = expands_a ? volume_b : volume_a;
-    std::uint32_t kept = bound_children(node, fixed, frame, frames_.slack, best_, bounds);
-    if (kept != 0 && use_of_cross_axes_.is_due()) kept = ask_cross_axes(node, fixed, expands_a, kept, bounds);
-    for (; kept != 0; kept &= kept - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(kept));
-      NodePair next{top.a, top.b, bounds[i]};
-      std::uint32_t& expanded = expands_a ? next.a : next.b;
-      if (node.child[i].is_leaf()) {
-        expanded = NodePair::k_leaf + node.leaf[i];
-        prefetch(tree.leaves()[node.leaf[i]]);
+  /// One of two volumes that are expanded.
+  struct Side {
+    const Tree& tree;
+    std::uint32_t volume;
+    bool splits;
+    Volumes& volumes;
+    std::uint64_t& loaded;
+
+    std::uint32_t lanes() const { return splits ? (1u << tree.nodes()[volume].child_count) - 1 : 1u; }
+    const Tree::Volume& whole() const { return volume_of(tree, volume); }
+    /// The volume in lane i.
+    std::uint32_t child(std::size_t i) const {
+      if (!splits) return volume;
+      const Tree::Node& node = tree.nodes()[volume];
+      return node.child[i].is_leaf() ? NodePair::k_leaf + node.leaf[i] : node.child[i].node();
+    }
+    HWY_INLINE void load(const Frame& own, const Frame& other) {
+      const std::uint64_t key = 2 * static_cast<std::uint64_t>(volume) + (splits ? 1 : 0);
+      if (loaded == key) return;
+      loaded = key;
+      if (splits) {
+        volumes.load_from<k_rounding>(NodeLanes{tree.nodes()[volume]}, own, other);
       } else {
-        expanded = node.child[i].node();
-        prefetch(tree.nodes()[expanded]);
+        volumes.load_from<k_rounding>(SameInAllLanes{volume_of(tree, volume)}, own, other);
       }
-      keep(next);
+    }
+  };
+
+  /// Expands two volumes that are not both leaves, or only the larger one if it is much larger: calls keep() for each
+  /// pair of their children whose bound is not above the best.
+  template <class Keep>
+  HWY_INLINE void expand(const NodePair& top, const Keep& keep) {
+    const float size_a = volume_of(tree_a_, top.a).squared_diagonal();
+    const float size_b = volume_of(tree_b_, top.b).squared_diagonal();
+    const bool splits_a = !is_leaf(top.a) && (is_leaf(top.b) || k_alike * size_a >= size_b);
+    const bool splits_b = !is_leaf(top.b) && (is_leaf(top.a) || k_alike * size_b >= size_a);
+    const Side a{tree_a_, top.a, splits_a, volumes_a_, loaded_a_};
+    const Side b{tree_b_, top.b, splits_b, volumes_b_, loaded_b_};
+    Side(a).load(frames_.expand_a, frames_.expand_b);
+    Side(b).load(frames_.expand_b, frames_.expand_a);
+    std::uint32_t near_a = a.lanes(), near_b = b.lanes();
+    if (splits_b) near_b &= near_volumes(volumes_a_, a.whole(), volumes_b_, frames_.expand_a, frames_.slack, best_);
+    if (splits_a) near_a &= near_volumes(volumes_b_, b.whole(), volumes_a_, frames_.expand_b, frames_.slack, best_);
+    const bool x_is_a = std::popcount(near_a) >= std::popcount(near_b);
+    const Side& x = x_is_a ? a : b;
+    const Side& y = x_is_a ? b : a;
+    const std::uint32_t near_x = x_is_a ? near_a : near_b;
+    std::uint32_t rest = x_is_a ? near_b : near_a;
+    const Frame& frame = x_is_a ? frames_.expand_a : frames_.expand_b;
+    for (; rest != 0; rest &= rest - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(rest));
+      HWY_ALIGN float bounds[k_width];
+      ++search_.counts.nodes;
+      std::uint32_t kept = near_x & bound_volumes(x.volumes, y.volumes, j, frame, frames_.slack, best_, bounds);
+      if (kept != 0 && use_of_cross_axes_.is_due()) kept = ask_cross_axes(x.volumes, y.volumes, j, x_is_a, kept, bounds);
+      if (kept == 0) continue;
+      const std::uint32_t child_y = y.child(j);
+      if (y.splits) prefetch_volume(y.tree, child_y);
+      for (; kept != 0; kept &= kept - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(kept));
+        const std::uint32_t child_x = x.child(i);
+        prefetch_volume(x.tree, child_x);
+        keep(x_is_a ? NodePair{child_x, child_y, bounds[i]} : NodePair{child_y, child_x, bounds[i]});
+      }
     }
   }
 
-  HWY_NOINLINE std::uint32_t ask_cross_axes(const Tree::Node& node, const Tree::Volume& fixed, bool expands_a,
+  static HWY_INLINE void prefetch_volume(const Tree& tree, std::uint32_t volume) {
+    if (is_leaf(volume)) {
+      prefetch(leaf_of(tree, volume));
+    } else {
+      prefetch(tree.nodes()[volume]);
+    }
+  }
+
+  HWY_NOINLINE std::uint32_t ask_cross_axes(const Volumes& x, const Volumes& y, std::size_t j, bool x_is_a,
                                             std::uint32_t kept, float* bounds) {
     if (!cross_axes_) cross_axes_.emplace(search_.X_AB.R);
-    const Frame& frame = expands_a ? frames_.expand_a : frames_.expand_b;
-    const auto& axes = expands_a ? cross_axes_->in_a : cross_axes_->in_b;
-    const auto& axes_fixed = expands_a ? cross_axes_->in_b : cross_axes_->in_a;
-    const std::uint32_t left =
-        bound_across_axes(node, fixed, frame, axes, axes_fixed, frames_.slack, best_, kept, bounds);
+    const auto& axes_x = x_is_a ? cross_axes_->in_a : cross_axes_->in_b;
+    const auto& axes_y = x_is_a ? cross_axes_->in_b : cross_axes_->in_a;
+    const std::uint32_t left = bound_across_axes(x, y, j, axes_x, axes_y, frames_.slack, best_, kept, bounds);
     use_of_cross_axes_.count(std::popcount(kept), std::popcount(left));
     return left;
   }
@@ -454,7 +504,7 @@ class DistanceTraversal final : private CloseVisitor {
         if (!bound_pairs(leaf_a, leaf_b, pairs)) continue;
         for_each_kept(leaf_a, leaf_b, pairs, push);
       } else {
-        expand(top, choose(top).expands_a, push);
+        expand(top, push);
       }
     }
     if (first.uncertain < first.rank) return false;
@@ -502,6 +552,9 @@ class DistanceTraversal final : private CloseVisitor {
   const bool blurs_leaves_;  // both trees have leaves that small
   const bool has_planes_;    // both meshes have coplanar patches
   const CloseBounds close_bounds_;
+  static constexpr std::uint64_t k_none = ~std::uint64_t{0};
+  Volumes volumes_a_, volumes_b_;
+  std::uint64_t loaded_a_ = k_none, loaded_b_ = k_none;
   std::optional<CrossAxes> cross_axes_;  // made when they are asked for the first time
   CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;

@@ -29,8 +29,26 @@ void bound_corners(const Tree::Node& node, const float (&p)[3], float* HWY_RESTR
   }
 }
 
+/// Square of the distance of p from the closest corner of a leaf.
+float least_squared(const Tree::Leaf& leaf, const float (&p)[3]) {
+  const hn::CappedTag<float, Tree::k_leaf_triangles> d;
+  auto least = hn::Set(d, Tree::k_empty);
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    for (std::size_t t = 0; t < Tree::k_leaf_triangles; t += hn::Lanes(d)) {
+      auto squared = hn::Zero(d);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto offset = hn::Sub(hn::Load(d, leaf.corner[corner][k] + t), hn::Set(d, p[k]));
+        squared = unfused_mul_add(offset, offset, squared);
+      }
+      least = hn::Min(least, squared);
+    }
+  }
+  return hn::GetLane(hn::MinOfLanes(d, least));
+}
+
 /// Takes a corner of a leaf that is closer than `best`.
 bool take_closer_corner(const Tree::Leaf& leaf, std::uint32_t index, const float (&p)[3], Corner& best) {
+  if (least_squared(leaf, p) >= best.squared) return false;
   bool found = false;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     for (std::uint32_t t = 0; t < leaf.child.count(); ++t) {
