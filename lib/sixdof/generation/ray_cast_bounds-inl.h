@@ -9,20 +9,21 @@
 
 #include <sixdof/generation/ray_cast_search.h>
 #include <sixdof/generation/ray_cast_tree.h>
-#include <sixdof/oracle/pair_bounds-inl.h>
+#include <sixdof/oracle/frames.h>
+#include <sixdof/oracle/leaf_pairs-inl.h>
+#include <sixdof/oracle/volumes-inl.h>
 
-// Separating-axis bounds for one volume against the eight children of a node, one child per SIMD lane, and for the
-// triangles of two leaves. Notation: see ray_cast_search.h, and pair_bounds-inl.h for frames and volumes. For a unit
+// Separating-axis bounds for volumes of one tree, x, against a volume of the other, y, one of x per SIMD lane, and for
+// the triangles of two leaves. Notation: see ray_cast_search.h, and volumes-inl.h for volumes and axes. For a unit
 // vector n from A to B, the gap along n at t0 = ray.translation is a lower bound on the distance there, and n . u is
 // its slope. Where the gap exceeds the target and the slope is not negative, the pair is farther apart than the target
 // at t0 and at every larger t. No ray parameter is divided by n . u, so grazing rays are no special case.
 //
-// The axes are those of pair_bounds-inl.h, each with the sign for which its slope is not negative. w is the axis of the
-// best hit.
-// Where the centres of two volumes come nearer as t grows beyond t0, the line through them and the axis between their
-// boxes are those at the t where they are nearest, t0 + `later`, and the gap there is lowered by later times the slope,
-// to t0. At that t the line through the centres has n . u = 0 up to rounding: if rounding makes it negative, the gap is
-// lowered by what that takes up to the largest t.
+// The axes are those of volumes-inl.h but for the nine across, each with the sign for which its slope is not negative.
+// w is the axis of the best hit. Where the centres of two volumes come nearer as t grows beyond t0, the line through
+// them and the axis between their boxes are those at the t where they are nearest, t0 + `later`, and the gap there is
+// lowered by later times the slope, to t0. At that t the line through the centres has n . u = 0 up to rounding: if
+// rounding makes it negative, the gap is lowered by what that takes up to the largest t.
 //
 // Nothing here uses fused multiply-add, and all operations (+ - * / sqrt min max) are rounded by IEEE rules lane by
 // lane. So which pairs are expanded, and in what order, is the same on every instruction set.
@@ -31,11 +32,10 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
 namespace HWY_NAMESPACE {
 
-using namespace pair_bounds::HWY_NAMESPACE;
+using namespace volumes::HWY_NAMESPACE;
+using namespace leaf_pairs::HWY_NAMESPACE;
 
 constexpr Rounding k_rounding = Rounding::unfused;
-using FixedVolume = pair_bounds::HWY_NAMESPACE::FixedVolume<k_rounding>;
-using ChildVolumes = pair_bounds::HWY_NAMESPACE::ChildVolumes<k_rounding>;
 
 /// Length of axes. They are shorter than unit vectors by more than their rounding, so that a gap along them never
 /// exceeds the distance.
@@ -43,14 +43,15 @@ constexpr double k_axis_length = 1.0 - 4e-7;
 
 /// The ray in single precision.
 struct Ray {
-  /// How the fixed volume moves against the expanded node, as t grows: in N and in F.
+  /// How y moves against x as t grows, in the frames of x and of y.
   struct Velocity {
-    float in_n[3];
-    float in_f[3];
+    float in_x[3];
+    float in_y[3];
   };
 
   Frames frames;  ///< At t0; w is k_axis_length long.
-  Velocity expand_a, expand_b;
+  Velocity of_b;  ///< x = A
+  Velocity of_a;  ///< x = B
   float target;
   /// What gaps are lowered by, k_slack of Cast::size(). Lengths that enter a bound are at most twice that size, but
   /// most roundings are of volumes, which are smaller: with the rounding of slopes, up to eight, times a translation of
@@ -68,10 +69,10 @@ struct Ray {
         reach(static_cast<float>(cast.reach())) {
     const Eigen::Vector3d in_b = cast.b.matrix().transpose() * cast.direction;
     for (int k = 0; k < 3; ++k) {
-      expand_a.in_n[k] = static_cast<float>(cast.direction[k]);
-      expand_a.in_f[k] = static_cast<float>(in_b[k]);
-      expand_b.in_n[k] = -expand_a.in_f[k];
-      expand_b.in_f[k] = -expand_a.in_n[k];
+      of_b.in_x[k] = static_cast<float>(cast.direction[k]);
+      of_b.in_y[k] = static_cast<float>(in_b[k]);
+      of_a.in_x[k] = -of_b.in_y[k];
+      of_a.in_y[k] = -of_b.in_x[k];
     }
     set_best(cast);
   }
@@ -95,16 +96,14 @@ struct BestAxes {
   }
 };
 
-/// Axes other than w, for some children.
-/// @param f, velocity of the expanded node
-HWY_INLINE void bound_closely(const ChildVolumes& child, const FixedVolume& fixed, const Frame& f,
-                              const Ray::Velocity& velocity, const Ray& ray, BestAxes& best) {
+/// Axes other than w.
+/// @param f whose N is the frame of x
+HWY_INLINE void bound_closely(const VolumePairs<k_rounding>& pairs, const Frame& f, const Ray::Velocity& velocity,
+                              const Ray& ray, BestAxes& best) {
   const V zero = hn::Zero(k_lanes);
   const V slack = set(ray.slack);
-  const V u[3] = {set(velocity.in_n[0]), set(velocity.in_n[1]), set(velocity.in_n[2])};
-  const V normal_fixed[3] = {set(fixed.normal[0]), set(fixed.normal[1]), set(fixed.normal[2])};
-  V m[3];  // from the children's centres to the fixed volume's, at t0
-  for (std::size_t k = 0; k < 3; ++k) m[k] = hn::Sub(set(fixed.center[k]), child.center[k]);
+  const V u[3] = {set(velocity.in_x[0]), set(velocity.in_x[1]), set(velocity.in_x[2])};
+  const V m[3] = {pairs.offset_in_x(0), pairs.offset_in_x(1), pairs.offset_in_x(2)};  // at t0
   const V later = hn::Max(hn::Neg(dot(m, u)), zero);
   V near[3];
   for (std::size_t k = 0; k < 3; ++k) near[k] = unfused_mul_add(later, u[k], m[k]);
@@ -113,10 +112,9 @@ HWY_INLINE void bound_closely(const ChildVolumes& child, const FixedVolume& fixe
     const V inverse =
         hn::Div(set(static_cast<float>(k_axis_length)), hn::Sqrt(hn::Max(squared, set(k_smallest_square))));
     const V n[3] = {hn::Mul(near[0], inverse), hn::Mul(near[1], inverse), hn::Mul(near[2], inverse)};
-    const Reach own = child.reach(n, dot(n, child.normal)), other = fixed.reach(n, dot(n, normal_fixed));
     const V rate = dot(n, u);
     const V drop = hn::Max(hn::Mul(later, rate), hn::Mul(set(ray.reach), hn::Neg(rate)));
-    const V gap = hn::Sub(hn::Sub(hn::Mul(squared, inverse), hn::Add(own.up, other.down)), drop);
+    const V gap = hn::Sub(hn::Sub(hn::Mul(squared, inverse), pairs.reach_along(n, f)), drop);
     best.keep_larger(hn::Sub(gap, slack), hn::Max(rate, zero));
   }
   const auto keep_boxes = [&](V squared, V length_times_rate) {
@@ -125,67 +123,73 @@ HWY_INLINE void bound_closely(const ChildVolumes& child, const FixedVolume& fixe
     const V gap = hn::Sub(hn::Sub(length, hn::Mul(later, rate)), slack);
     best.keep_larger(hn::IfThenElse(hn::Ge(length_times_rate, zero), gap, set(CastFront::k_no_bound)), rate);
   };
-  V squared = zero, length_times_rate = zero;
-  const auto add_axis = [&](V middle, V extent, V rate) {
-    const V apart = hn::Max(hn::Sub(hn::Abs(middle), extent), zero);
+  V squared_x = zero, rate_x = zero, squared_y = zero, rate_y = zero;  // rates: times the lengths
+  const auto add_axis = [&](V offset, V extent, V rate, V& squared, V& length_times_rate) {
+    const V apart = hn::Max(hn::Sub(hn::Abs(offset), extent), zero);
     squared = unfused_mul_add(apart, apart, squared);
-    length_times_rate = unfused_mul_add(hn::CopySign(apart, middle), rate, length_times_rate);
+    length_times_rate = unfused_mul_add(hn::CopySign(apart, offset), rate, length_times_rate);
   };
-  for (std::size_t k = 0; k < 3; ++k) add_axis(near[k], hn::Add(child.half[k], set(fixed.half[k])), u[k]);
-  keep_boxes(squared, length_times_rate);
-  squared = length_times_rate = zero;
   for (std::size_t k = 0; k < 3; ++k) {
-    V middle = zero;
-    V extent = set(fixed.half_fixed[k]);
-    for (std::size_t j = 0; j < 3; ++j) {
-      const V r = set(f.axis[k][j]);
-      middle = unfused_mul_add(r, near[j], middle);
-      extent = unfused_mul_add(hn::Abs(r), child.half[j], extent);
-    }
-    add_axis(middle, extent, set(velocity.in_f[k]));
+    const V u_y = set(velocity.in_y[k]);
+    add_axis(near[k], pairs.extent_in_x(k), u[k], squared_x, rate_x);
+    add_axis(unfused_mul_add(later, u_y, pairs.offset_in_y(k)), pairs.extent_in_y(k), u_y, squared_y, rate_y);
   }
-  keep_boxes(squared, length_times_rate);
-  // The normals of both slabs.
-  const V normals = dot(normal_fixed, child.normal);
-  const auto keep_normal = [&](V up, V down, V rate) {
-    best.keep_larger(hn::Sub(hn::IfThenElse(hn::Lt(rate, zero), down, up), slack), hn::Abs(rate));
+  keep_boxes(squared_x, rate_x);
+  keep_boxes(squared_y, rate_y);
+  const auto normals = pairs.along_normals(m);
+  const auto keep_normal = [&](const AxisRange& range, V rate) {
+    best.keep_larger(hn::Sub(hn::IfThenElse(hn::Lt(rate, zero), hn::Neg(range.high), range.low), slack), hn::Abs(rate));
   };
-  const V on_child = dot(child.normal, m), on_fixed = dot(normal_fixed, m);
-  const Reach of_fixed = fixed.reach(child.normal, normals), of_child = child.reach(normal_fixed, normals);
-  keep_normal(hn::Sub(hn::Sub(on_child, of_fixed.down), child.above),
-              hn::Sub(child.below, hn::Add(on_child, of_fixed.up)), dot(child.normal, u));
-  keep_normal(hn::Sub(hn::Add(on_fixed, set(fixed.slab_lower)), of_child.up),
-              hn::Sub(hn::Neg(hn::Add(on_fixed, set(fixed.slab_upper))), of_child.down), dot(normal_fixed, u));
+  V rate_of_x = zero, rate_of_y = zero;
+  for (std::size_t k = 0; k < 3; ++k) {
+    rate_of_x = unfused_mul_add(load(pairs.x.normal[k] + pairs.i), u[k], rate_of_x);
+    rate_of_y = unfused_mul_add(set(pairs.y.other_normal[k][pairs.j]), u[k], rate_of_y);
+  }
+  keep_normal(normals.of_x, rate_of_x);
+  keep_normal(normals.of_y, rate_of_y);
 }
 
-/// Sets gap and slope of each child of a node against the fixed volume along the best of the axes.
-/// @param f, velocity of the expanded node
-/// @param projections of the vectors from A's volume to B's on w, but for a constant: the child with the least is the
-/// most likely to be hit first
-HWY_INLINE void bound_children(const Tree::Node& node, const Tree::Volume& fixed_volume, const Frame& f,
-                               const Ray::Velocity& velocity, const Ray& ray, float* HWY_RESTRICT gaps,
-                               float* HWY_RESTRICT slopes, float* HWY_RESTRICT projections) {
+/// What bounds say about the volumes of x.
+struct VolumeBounds {
+  HWY_ALIGN float gap[k_width];
+  HWY_ALIGN float slope[k_width];
+  /// Of the vectors from A's volume to B's on w, but for a constant: the volume with the least is the most likely to be
+  /// hit first.
+  HWY_ALIGN float projection[k_width];
+};
+
+/// Sets gap and slope of each child of a node against a volume of the other tree along the best of the axes.
+/// @param x_is_a whether the node is A's
+/// @param x, y scratch
+HWY_INLINE void bound_children(const Tree::Node& node, const Tree::Volume& volume, bool x_is_a, const Ray& ray,
+                               Volumes& x, Volumes& y, VolumeBounds& bounds) {
   constexpr std::size_t k_step = hn::MaxLanes(k_lanes);
+  const Frame& f = x_is_a ? ray.frames.a : ray.frames.b;
+  const Frame& other = x_is_a ? ray.frames.b : ray.frames.a;
+  x.load_own<k_rounding>(ChildrenOf{node});
+  x.set_front<k_rounding>(ChildrenOf{node}, f);
+  y.load_own<k_rounding>(Whole{volume});
+  y.set_front<k_rounding>(Whole{volume}, other);
   const V w[3] = {set(f.direction[0]), set(f.direction[1]), set(f.direction[2])};
-  const auto along = static_cast<double>(least_along(fixed_volume, f)) + f.translation_along;
-  const V fixed_along = set(static_cast<float>(along) - ray.slack);
+  const V along = set(static_cast<float>(ray.frames.shift_along - static_cast<double>(y.front[0])) - ray.slack);
   // If w culls all children, whatever the number of lanes, the others are not tried.
   bool all = true;
   for (std::size_t i = 0; i < k_width; i += k_step) {
-    const ChildVolumes child(node, i);
-    const V gap = hn::Sub(fixed_along, child.greatest_along(w));
-    hn::Store(hn::Neg(dot(w, child.center)), k_lanes, projections + i);
-    hn::Store(gap, k_lanes, gaps + i);
-    hn::Store(set(ray.axis_slope), k_lanes, slopes + i);
+    const V center[3] = {load(x.center[0] + i), load(x.center[1] + i), load(x.center[2] + i)};
+    const V gap = hn::Sub(along, load(x.front + i));
+    hn::Store(hn::Neg(dot(w, center)), k_lanes, bounds.projection + i);
+    hn::Store(gap, k_lanes, bounds.gap + i);
+    hn::Store(set(ray.axis_slope), k_lanes, bounds.slope + i);
     all = all && hn::AllTrue(k_lanes, hn::Gt(gap, set(ray.target)));
   }
   if (all) return;
-  const FixedVolume fixed(fixed_volume, f);
+  x.turn<k_rounding>(other);
+  y.turn<k_rounding>(f);
   for (std::size_t i = 0; i < k_width; i += k_step) {
-    BestAxes best{load(gaps + i), load(slopes + i)};
-    bound_closely(ChildVolumes(node, i), fixed, f, velocity, ray, best);
-    hn::Store(best.gap, k_lanes, gaps + i);
-    hn::Store(best.slope, k_lanes, slopes + i);
+    BestAxes best{load(bounds.gap + i), load(bounds.slope + i)};
+    bound_closely({x, y, i, 0}, f, x_is_a ? ray.of_b : ray.of_a, ray, best);
+    hn::Store(best.gap, k_lanes, bounds.gap + i);
+    hn::Store(best.slope, k_lanes, bounds.slope + i);
   }
 }
 
@@ -246,8 +250,8 @@ HWY_INLINE void bound_across_ray(const LeafPair& pairs, std::size_t i, const V (
 /// the end.
 HWY_INLINE void bound_triangles(CastLeafPair& pairs, const Ray& ray) {
   constexpr int k_steps = 5;
-  const Frame& f = ray.frames.expand_a;
-  const V u[3] = {set(ray.expand_a.in_n[0]), set(ray.expand_a.in_n[1]), set(ray.expand_a.in_n[2])};
+  const Frame& f = ray.frames.a;
+  const V u[3] = {set(ray.of_b.in_x[0]), set(ray.of_b.in_x[1]), set(ray.of_b.in_x[2])};
   const V zero = hn::Zero(k_lanes);
   const V target = set(ray.target);
   for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
@@ -289,11 +293,10 @@ struct LeafBounds {
 HWY_INLINE LeafBounds bound_leaves(const Tree::Leaf& a, const Tree::Leaf& b, const Ray& ray) {
   LeafBounds result;
   CastLeafPair pairs;
-  const Frame& f = ray.frames.expand_a;
   result.slope = ray.axis_slope;
-  result.gap = bound_along_direction<k_rounding>(a, b, f, ray.slack, ray.target, pairs.lower);
+  result.gap = bound_along_direction<k_rounding>(a, b, ray.frames, ray.slack, ray.target, pairs.lower);
   if (result.gap > ray.target) return result;
-  load_pairs<k_rounding>(a, b, f, pairs);
+  load_pairs<k_rounding>(a, b, ray.frames.a, pairs);
   bound_triangles(pairs, ray);
   // The line with the least gap and the largest slope bounds all pairs that are culled.
   result.gap = CastFront::k_not_in_front;

@@ -208,12 +208,10 @@ class DualTreeTraversal {
     const CastTree& other = from.expands_a ? tree_b_ : tree_a_;
     const Tree::Node& node = tree.nodes()[from.node];
     const Tree::Volume& fixed_volume = other.volume(from.other.child);
-    const Frame& frame = from.expands_a ? ray_.frames.expand_a : ray_.frames.expand_b;
     if (!from.other.child.is_leaf()) prefetch(other.nodes()[from.other.child.index()]);
-    HWY_ALIGN float gaps[k_width], slopes[k_width], projections[k_width];
-    bound_children(node, fixed_volume, frame, from.expands_a ? ray_.expand_a : ray_.expand_b, ray_, gaps, slopes,
-                   projections);
-    std::uint32_t left = raise_bounds(front_.bounds[expansion], node.child_count, gaps, slopes);
+    VolumeBounds found;
+    bound_children(node, fixed_volume, from.expands_a, ray_, expanded_, fixed_, found);
+    std::uint32_t left = raise_bounds(front_.bounds[expansion], node.child_count, found);
     std::vector<CastFront::Pending>& pending = front_.pending;
     const std::size_t first = pending.size();
     const float fixed_size = fixed_volume.squared_diagonal();
@@ -223,7 +221,7 @@ class DualTreeTraversal {
       const float size = squared_diagonal(node, lane);
       const bool flat = fixed_flat && is_flat(node.slab_lower[lane], node.slab_upper[lane]);
       const float error = flat ? k_flat_error * 0.5f * (std::sqrt(size) + std::sqrt(fixed_size)) : 0.0f;
-      const bool near = gaps[lane] > ray_.target - 2.0f * ray_.slack - error;
+      const bool near = found.gap[lane] > ray_.target - 2.0f * ray_.slack - error;
       ties_.count_pair();
       const CastChild child = child_of(node, lane);
       const VolumePair pair = pair_of(from, lane, child);
@@ -232,7 +230,7 @@ class DualTreeTraversal {
         const float size_a = from.expands_a ? size : fixed_size, size_b = from.expands_a ? fixed_size : size;
         ties_.note_patch(pair.a.slot, size_a, pair.b.slot, size_b);
       }
-      const CastFront::Pending next{expansion, lane, child, projections[lane], std::max(size, fixed_size)};
+      const CastFront::Pending next{expansion, lane, child, found.projection[lane], std::max(size, fixed_size)};
       if (separated(next, pair)) continue;
       child.is_leaf() ? prefetch(tree.leaves()[child.index()]) : prefetch(tree.nodes()[child.index()]);
       std::size_t at = pending.size();
@@ -254,18 +252,17 @@ class DualTreeTraversal {
     return squared;
   }
 
-  /// Replaces bounds by those with the given gaps and slopes where these are larger.
+  /// Replaces bounds by those found where these are larger.
   /// @param count children of the node
   /// @return bits of the lanes that no bound culls
-  std::uint32_t raise_bounds(CastFront::AxisBounds& bounds, std::uint32_t count, const float* gaps,
-                             const float* slopes) const {
+  std::uint32_t raise_bounds(CastFront::AxisBounds& bounds, std::uint32_t count, const VolumeBounds& found) const {
     std::uint32_t left = 0;
     for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
       const V offset = load(bounds.offset + i);
       const V slope = load(bounds.slope + i);
       const V known = unfused_mul_add(slope, set(ray_.translation), offset);
-      const V gap = load(gaps + i);
-      const V new_slope = load(slopes + i);
+      const V gap = load(found.gap + i);
+      const V new_slope = load(found.slope + i);
       const V new_offset = unfused_sub_mul(gap, new_slope, set(ray_.translation));
       const M raises = hn::And(hn::Gt(gap, known), hn::FirstN(k_lanes, count > i ? count - i : 0));
       hn::Store(hn::IfThenElse(raises, new_offset, offset), k_lanes, bounds.offset + i);
@@ -379,6 +376,7 @@ class DualTreeTraversal {
   const CastTree& tree_b_;
   Ray ray_;
   TieTests ties_;
+  Volumes expanded_, fixed_;  // scratch of expand()
 };
 
 void find_first_hit(Cast& cast) { DualTreeTraversal(cast).run(); }

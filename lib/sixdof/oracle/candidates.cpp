@@ -22,6 +22,7 @@ namespace sixdof::candidates {
 namespace HWY_NAMESPACE {
 
 namespace leaves = triangle_pairs::HWY_NAMESPACE;
+using detail::TreeMotion;
 using leaves::LeafCache;
 using leaves::LeafLanes;
 
@@ -38,21 +39,12 @@ class CloseTests {
         half_displacement_((0.5 + 1e-14) * displacement.norm()),  // with the rounding of positions on the way
         blurred_(k_blurred * k_blurred * slack * slack) {}
 
-  bool are_due(const Tree::Node& a, const Tree::Node& b) const {
-    return std::max(a.volume.squared_diagonal(), b.volume.squared_diagonal()) < blurred_;
+  bool are_due(const Tree::Volume& a, const Tree::Volume& b) const {
+    return std::max(a.squared_diagonal(), b.squared_diagonal()) < blurred_;
   }
 
-  /// Children of A's node (bits), of those in `lanes`, that may intersect child j of B's node.
-  std::uint32_t overlapping_children(const Tree::Node& node_a, std::uint32_t lanes, const Tree::Node& node_b,
-                                     std::size_t j) const {
-    const detail::CloseShape shape_b = bounds_.shape_of_b(detail::CloseVolume::child_of(node_b, j));
-    std::uint32_t bits = 0;
-    for (; lanes != 0; lanes &= lanes - 1) {
-      const auto i = static_cast<std::size_t>(std::countr_zero(lanes));
-      if (!apart(bounds_.shape_of_a(detail::CloseVolume::child_of(node_a, i)), shape_b)) bits |= 1u << i;
-    }
-    return bits;
-  }
+  /// Whether two volumes are apart.
+  bool apart(std::uint32_t a, std::uint32_t b) const { return apart(bounds_.shape_of_a({a}), bounds_.shape_of_b({b})); }
 
   bool apart(TrianglePair pair) const {
     return apart(bounds_.shape_of_a({0, pair.a}), bounds_.shape_of_b({0, pair.b}));
@@ -73,9 +65,9 @@ constexpr detail::CrossAxesUse k_use_of_cross_axes(0.3);
 constexpr detail::CrossAxesUse k_use_of_cross_edges(0.9);
 constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0.5);
 
-/// Depth-first traversal of pairs of nodes. All 8 x 8 pairs of children of two nodes are tested together. Pairs wait
-/// on a stack while their memory is fetched. Which of two pairs is found first depends on the trees alone, not on which
-/// others are found: sums over them have the same bits whatever was pruned.
+/// Depth-first traversal of pairs of volumes. Pairs wait on a stack while their memory is fetched. Which of two pairs
+/// is found first depends on the trees alone, not on which others are found: sums over them have the same bits whatever
+/// was pruned.
 /// @tparam moving the displacement is not zero
 /// @tparam Take called for leaves that may intersect: as take(leaf of A, leaf of B, whether floats blur them) or, if
 /// `moving`, take(SweptPair)
@@ -84,106 +76,99 @@ class DualTreeTraversal {
  public:
   DualTreeTraversal(const Tree& a, const Tree& b, const Pose& X_AB, const TreeMotion& motion, const CloseTests& close,
                     CandidateScratch& scratch, Take take)
-      : a_(a), b_(b), motion_(motion), close_(close), R_AB_(X_AB.R), stack_(scratch.nodes), take_(take) {}
+      : a_(a),
+        b_(b),
+        motion_(motion),
+        close_(close),
+        R_AB_(X_AB.R),
+        stack_(scratch.volumes),
+        expansion_(a, b),
+        take_(take) {}
 
   void run() {
-    stack_.assign(1, {0, 0, k_all, k_all});
+    stack_.assign(1, {0, 0});
     while (!stack_.empty()) {
-      const NodePair pair = stack_.back();
+      const VolumePair pair = stack_.back();
       stack_.pop_back();
       expand(pair);
     }
   }
 
  private:
-  static constexpr std::uint8_t k_all = 0xff;
-  static constexpr std::uint32_t k_none = ~0u;
+  using VolumePair = CandidateScratch::VolumePair;
 
-  using NodePair = CandidateScratch::NodePair;
-
-  /// What is known about the children of two nodes.
-  struct Expansion {
-    const NodePair& pair;
-    const Tree::Node& node_a;
-    const Tree::Node& node_b;
-    bool blurred;
-    std::uint32_t overlapping[k_width] = {};  // children of A, for each child of B
-  };
-
-  void expand(const NodePair& pair) {
-    Expansion x{.pair = pair, .node_a = a_.nodes()[pair.a], .node_b = b_.nodes()[pair.b], .blurred = false};
-    const std::uint32_t lanes_a = pair.lanes_a & ((1u << x.node_a.child_count) - 1);
-    std::uint32_t lanes_b = pair.lanes_b & ((1u << x.node_b.child_count) - 1);
-    x.blurred = close_.are_due(x.node_a, x.node_b);
-    if (x.blurred) {
-      test_closely(x, lanes_a, lanes_b);
-    } else {
-      load(pair);
-      lanes_b &= overlapping_node(children_b_, x.node_a, lanes_a, motion_);
-      for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
-        const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-        if constexpr (moving) {
-          x.overlapping[j] =
-              lanes_a & overlap_intervals(children_a_, x.node_a, children_b_, j, motion_, first_[j], last_[j]);
-        } else {
-          x.overlapping[j] = lanes_a & overlapping_children(children_a_, x.node_a, children_b_, j);
-        }
-      }
-      if (use_of_cross_axes_.is_due()) ask_cross_axes(lanes_b, x.overlapping);
-    }
-    for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
+  void expand(const VolumePair& pair) {
+    expansion_.take(a_, pair.a, b_, pair.b, motion_.frames);
+    const auto& [a, b] = expansion_;
+    const bool blurred = close_.are_due(a.whole(), b.whole());
+    // One volume after the other of B or, if B's is whole, of A.
+    const bool x_is_a = a.splits();
+    const auto& x = x_is_a ? a : b;
+    const auto& y = x_is_a ? b : a;
+    const Passage& passage = x_is_a ? motion_.of_b : motion_.of_a;
+    std::uint32_t rest = y.lanes();
+    if (y.splits()) rest &= near_boxes<k_rounding>(x.whole(), y.volumes(), k_slacks * motion_.slack, passage.half_in_x);
+    for (; rest != 0; rest &= rest - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-      for (std::uint32_t m = x.overlapping[j]; m != 0; m &= m - 1) {
-        descend(x, static_cast<std::size_t>(std::countr_zero(m)), j);
+      std::uint32_t bits = blurred ? test_closely(x_is_a, j) : test(x.volumes(), y.volumes(), j, passage);
+      bits &= x.lanes();
+      if (!blurred && bits != 0 && use_of_cross_axes_.is_due())
+        bits = ask_cross_axes(x.volumes(), y.volumes(), j, x_is_a, bits);
+      if (bits == 0) continue;
+      const std::uint32_t child_y = y.child(j);
+      for (; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+        const std::uint32_t child_x = x.child(i);
+        descend(x_is_a ? child_x : child_y, x_is_a ? child_y : child_x, i, blurred);
       }
     }
   }
 
-  HWY_NOINLINE void test_closely(Expansion& x, std::uint32_t lanes_a, std::uint32_t lanes_b) {
-    for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
-      const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-      x.overlapping[j] = close_.overlapping_children(x.node_a, lanes_a, x.node_b, j);
-      if constexpr (moving) {
-        std::fill_n(first_[j], k_width, detail::k_first_fraction);
-        std::fill_n(last_[j], k_width, detail::k_last_fraction);
-      }
-    }
+  HWY_INLINE std::uint32_t test(const Volumes& x, const Volumes& y, std::size_t j, const Passage& passage) {
+    if constexpr (moving) return overlap_intervals(x, y, j, passage, motion_.slack, first_, last_);
+    return overlapping_volumes(x, y, j, motion_.slack);
   }
 
-  /// To child i of A's node and child j of B's.
-  HWY_INLINE void descend(const Expansion& x, std::size_t i, std::size_t j) {
-    const Tree::Child a = x.node_a.child[i], b = x.node_b.child[j];
-    if (a.is_leaf() && b.is_leaf()) {
+  /// In doubles.
+  HWY_NOINLINE std::uint32_t test_closely(bool x_is_a, std::size_t j) {
+    const auto& [a, b] = expansion_;
+    std::uint32_t bits = 0;
+    for (std::uint32_t rest = (x_is_a ? a : b).lanes(); rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      if (!close_.apart(a.child(x_is_a ? i : j), b.child(x_is_a ? j : i))) bits |= 1u << i;
+    }
+    if constexpr (moving) {
+      std::fill_n(first_, k_width, detail::k_first_fraction);
+      std::fill_n(last_, k_width, detail::k_last_fraction);
+    }
+    return bits;
+  }
+
+  /// @param i lane of the fractions
+  HWY_INLINE void descend(std::uint32_t a, std::uint32_t b, std::size_t i, bool blurred) {
+    if (is_leaf(a) && is_leaf(b)) {
+      const std::uint32_t leaf_a = a - detail::CloseVolume::k_leaf, leaf_b = b - detail::CloseVolume::k_leaf;
       if constexpr (moving) {
-        take_(SweptPair{x.node_a.leaf[i], x.node_b.leaf[j], first_[j][i], last_[j][i]});
+        take_(SweptPair{leaf_a, leaf_b, first_[i], last_[i]});
       } else {
-        take_(x.node_a.leaf[i], x.node_b.leaf[j], x.blurred);
+        take_(leaf_a, leaf_b, blurred);
       }
       return;
     }
-    NodePair next = x.pair;
-    next.lanes_a = a.is_leaf() ? static_cast<std::uint8_t>(1u << i) : k_all;
-    next.lanes_b = b.is_leaf() ? static_cast<std::uint8_t>(1u << j) : k_all;
-    if (!a.is_leaf()) prefetch(a_.nodes()[next.a = a.node()]);
-    if (!b.is_leaf()) prefetch(b_.nodes()[next.b = b.node()]);
-    stack_.push_back(next);
+    prefetch_volume(a_, a);
+    prefetch_volume(b_, b);
+    stack_.push_back({a, b});
   }
 
-  /// The volumes of the children of both nodes, unless they are those of the last pair.
-  HWY_INLINE void load(const NodePair& pair) {
-    if (pair.a != loaded_a_) load_children<false, moving>(a_.nodes()[loaded_a_ = pair.a], motion_, children_a_);
-    if (pair.b != loaded_b_) load_children<true, moving>(b_.nodes()[loaded_b_ = pair.b], motion_, children_b_);
-  }
-
-  HWY_NOINLINE void ask_cross_axes(std::uint32_t lanes_b, std::uint32_t* overlapping) {
+  HWY_NOINLINE std::uint32_t ask_cross_axes(const Volumes& x, const Volumes& y, std::size_t j, bool x_is_a,
+                                            std::uint32_t bits) {
     if (!cross_axes_) cross_axes_.emplace(R_AB_);
-    for (std::uint32_t rest = lanes_b; rest != 0; rest &= rest - 1) {
-      const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-      if (overlapping[j] == 0) continue;
-      const int before = std::popcount(overlapping[j]);
-      overlapping[j] = overlapping_across_axes(children_a_, children_b_, j, overlapping[j], *cross_axes_, motion_);
-      use_of_cross_axes_.count(before, std::popcount(overlapping[j]));
-    }
+    const auto& axes_x = x_is_a ? cross_axes_->in_a : cross_axes_->in_b;
+    const auto& axes_y = x_is_a ? cross_axes_->in_b : cross_axes_->in_a;
+    const std::uint32_t left =
+        overlapping_across_axes(x, y, j, axes_x, axes_y, bits, x_is_a ? motion_.of_b : motion_.of_a, motion_.slack);
+    use_of_cross_axes_.count(std::popcount(bits), std::popcount(left));
+    return left;
   }
 
   const Tree& a_;
@@ -191,12 +176,11 @@ class DualTreeTraversal {
   const TreeMotion& motion_;
   const CloseTests& close_;
   const Eigen::Matrix3d& R_AB_;
-  std::vector<NodePair>& stack_;
-  Children children_a_, children_b_;
-  std::uint32_t loaded_a_ = k_none, loaded_b_ = k_none;
-  /// If moving: intervals of fractions of the last expansion, [child of B][child of A].
-  HWY_ALIGN float first_[k_width][k_width];
-  HWY_ALIGN float last_[k_width][k_width];
+  std::vector<VolumePair>& stack_;
+  Expansion<k_rounding, false> expansion_;
+  /// If moving: intervals of fractions of the volumes of x.
+  HWY_ALIGN float first_[k_width];
+  HWY_ALIGN float last_[k_width];
   std::optional<detail::CrossAxes> cross_axes_;  // made when they are asked for the first time
   detail::CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   Take take_;

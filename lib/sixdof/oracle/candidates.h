@@ -28,20 +28,19 @@ inline Eigen::Vector3d transform_point(const Pose& X_AB, const Eigen::Vector3d& 
 
 /// Memory of a search, for the next one.
 struct CandidateScratch {
-  /// Two nodes, and the children of each (bits).
-  struct NodePair {
+  /// Two volumes: CloseVolume::volume.
+  struct VolumePair {
     std::uint32_t a, b;
-    std::uint8_t lanes_a, lanes_b;
   };
   /// Two leaves; whether floats blur them.
   struct LeafPair {
     std::uint32_t a, b;
     bool blurred;
   };
-  std::vector<NodePair> nodes;
+  std::vector<VolumePair> volumes;
   std::vector<LeafPair> leaves;
 
-  std::size_t bytes() const { return nodes.capacity() * sizeof(NodePair) + leaves.capacity() * sizeof(LeafPair); }
+  std::size_t bytes() const { return volumes.capacity() * sizeof(VolumePair) + leaves.capacity() * sizeof(LeafPair); }
 };
 
 /// Finds the pairs of triangles of A and of B at X_AB that may intersect: all that intersect in the sense of

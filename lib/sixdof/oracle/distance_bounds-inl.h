@@ -12,12 +12,12 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/cross_axes.h>
-#include <sixdof/oracle/children-inl.h>
-#include <sixdof/oracle/pair_bounds-inl.h>
+#include <sixdof/oracle/expansion-inl.h>
+#include <sixdof/oracle/frames.h>
+#include <sixdof/oracle/leaf_pairs-inl.h>
+#include <sixdof/oracle/volumes-inl.h>
 
-// Lower bounds on distances: of one volume from the eight children of a node, and of the triangles of two leaves.
-// Notation and axes: see pair_bounds-inl.h; where volumes cross (CrossAxesUse), there are the nine axes across an axis
-// of N and one of F as well.
+// Lower bounds on distances: of volumes of two trees (volumes-inl.h), and of the triangles of two leaves.
 //
 // Bounds are floats; Slack lowers them by more than their rounding, so they are bounds on every instruction set. The
 // answer does not depend on which bounds were computed: it is the smallest of triangle_triangle_distance() over all
@@ -27,10 +27,10 @@ HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {
 namespace HWY_NAMESPACE {
 
-using namespace pair_bounds::HWY_NAMESPACE;
+using namespace volumes::HWY_NAMESPACE;
+using namespace leaf_pairs::HWY_NAMESPACE;
 
 constexpr Rounding k_rounding = Rounding::fused;
-using Shape = pair_bounds::HWY_NAMESPACE::Shape<k_rounding>;
 
 /// By how much a bound is lowered (lengths).
 struct Slack {
@@ -50,9 +50,9 @@ struct Slack {
 struct QueryFrames : Frames {
   Slack slack;
 
-  QueryFrames(const Tree& a, const Tree& b, const Pose& X_AB)
-      : Frames(X_AB.R), slack(a, b, X_AB, X_AB * b.center() - a.center()) {
-    set_shift(X_AB * b.center() - a.center());
+  QueryFrames(const Tree& tree_a, const Tree& tree_b, const Pose& X_AB)
+      : Frames(X_AB.R), slack(tree_a, tree_b, X_AB, X_AB * tree_b.center() - tree_a.center()) {
+    set_shift(X_AB * tree_b.center() - tree_a.center());
   }
 
   /// Sets w to the direction from A to B given by a vector of any length in A's frame.
@@ -62,21 +62,22 @@ struct QueryFrames : Frames {
   }
 };
 
-/// Lower bounds on the distances of the volumes x from volume j of y; negative where they may overlap. Returns a bit for
-/// each whose bound is not above `best`.
+/// Lower bounds on the distances of the volumes x from volume j of y; negative where they may overlap. Returns a bit
+/// for each whose bound is not above `best`.
 /// @param f whose N is the frame of x
 HWY_INLINE std::uint32_t bound_volumes(const Volumes& x, const Volumes& y, std::size_t j, const Frame& f,
-                                       const Slack& slack, float best, float* HWY_RESTRICT bounds) {
+                                       double shift_along, const Slack& slack, float best, float* HWY_RESTRICT bounds) {
   std::uint32_t kept = 0;
-  const V y_along = set(static_cast<float>(f.translation_along - static_cast<double>(y.front[j])) - slack.local);
-  const auto all_exceed_best = [&](V bound) { return hn::AllTrue(k_lanes, hn::Gt(bound, set(best))); };
+  const V y_along = set(static_cast<float>(shift_along - static_cast<double>(y.front[j])) - slack.local);
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    const V gap_along = hn::Sub(y_along, load(x.front + i));
-    if (all_exceed_best(gap_along)) continue;
-
-    // Boxes. m: from the centres of x to that of y.
-    V m[3];
+    const VolumePairs<k_rounding> pairs{x, y, i, j};
+    const V gap_along = hn::Sub(y_along, load(x.front + i));  // w
     V gap = set(-Tree::k_empty);
+    const auto bound = [&] { return hn::Max(gap_along, hn::Sub(gap, set(slack.all))); };
+    const auto all_exceed_best = [&] { return hn::AllTrue(k_lanes, hn::Gt(bound(), set(best))); };
+    if (all_exceed_best()) continue;
+
+    V offset[3];
     V squared_x = hn::Zero(k_lanes), squared_y = hn::Zero(k_lanes);  // of the distances of the boxes
     const auto keep = [&gap](V along_axis, V& squared_distance) {
       gap = hn::Max(gap, along_axis);
@@ -84,99 +85,57 @@ HWY_INLINE std::uint32_t bound_volumes(const Volumes& x, const Volumes& y, std::
       squared_distance = hn::MulAdd(positive, positive, squared_distance);
     };
     for (std::size_t k = 0; k < 3; ++k) {
-      m[k] = hn::Sub(set(y.other_center[k][j]), load(x.center[k] + i));
-      keep(hn::Sub(hn::Abs(m[k]), hn::Add(load(x.half[k] + i), set(y.other_half[k][j]))), squared_x);
-      const V other = hn::Sub(set(y.center[k][j]), load(x.other_center[k] + i));
-      keep(hn::Sub(hn::Abs(other), hn::Add(load(x.other_half[k] + i), set(y.half[k][j]))), squared_y);
+      offset[k] = pairs.offset_in_x(k);
+      keep(hn::Sub(hn::Abs(offset[k]), pairs.extent_in_x(k)), squared_x);
+      keep(hn::Sub(hn::Abs(pairs.offset_in_y(k)), pairs.extent_in_y(k)), squared_y);
     }
     gap = hn::IfThenElse(hn::Gt(gap, hn::Zero(k_lanes)), hn::Sqrt(hn::Max(squared_x, squared_y)), gap);
+    if (all_exceed_best()) continue;
 
-    if (all_exceed_best(hn::Max(gap_along, hn::Sub(gap, set(slack.all))))) continue;
-
-    // The line through the centres.
-    const Shape shape_x = Shape::lanes(x, i), shape_y = Shape::one(y, j);
-    const V squared = dot<k_rounding>(m, m);
+    const V squared = dot<k_rounding>(offset, offset);
     const V inverse = hn::Div(set(1.0f), hn::Sqrt(hn::Max(squared, set(k_smallest_square))));
-    const V u[3] = {hn::Mul(m[0], inverse), hn::Mul(m[1], inverse), hn::Mul(m[2], inverse)};
-    V u_y[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      u_y[k] = hn::Mul(set(f.axis[k][0]), u[0]);
-      for (std::size_t l = 1; l < 3; ++l) u_y[k] = hn::MulAdd(set(f.axis[k][l]), u[l], u_y[k]);
-    }
-    const Reach own = shape_x.reach(u, dot<k_rounding>(u, shape_x.normal)),
-                other = shape_y.reach(u_y, dot<k_rounding>(u_y, shape_y.normal));
-    gap = hn::Max(gap, hn::Sub(hn::Mul(squared, inverse), hn::Add(own.up, other.down)));
-    if (all_exceed_best(hn::Max(gap_along, hn::Sub(gap, set(slack.all))))) continue;
+    const V line[3] = {hn::Mul(offset[0], inverse), hn::Mul(offset[1], inverse), hn::Mul(offset[2], inverse)};
+    gap = hn::Max(gap, hn::Sub(hn::Mul(squared, inverse), pairs.reach_along(line, f)));
+    if (all_exceed_best()) continue;
 
-    // Normals of the slabs.
-    const V normal_x[3] = {load(x.other_normal[0] + i), load(x.other_normal[1] + i), load(x.other_normal[2] + i)};
-    const V normal_y[3] = {set(y.other_normal[0][j]), set(y.other_normal[1][j]), set(y.other_normal[2][j])};
-    const V normals = dot<k_rounding>(shape_x.normal, normal_y);
-    const V on_x = dot<k_rounding>(shape_x.normal, m), on_y = dot<k_rounding>(normal_y, m);
-    const Reach of_y = shape_y.reach(normal_x, normals), of_x = shape_x.reach(normal_y, normals);
-    gap = hn::Max(gap, hn::Sub(hn::Sub(on_x, of_y.down), shape_x.above));
-    gap = hn::Max(gap, hn::Sub(shape_x.below, hn::Add(on_x, of_y.up)));
-    gap = hn::Max(gap, hn::Sub(hn::Add(on_y, shape_y.below), of_x.up));
-    gap = hn::Max(gap, hn::Sub(hn::Neg(hn::Add(on_y, shape_y.above)), of_x.down));
-
-    const V bound = hn::Max(gap_along, hn::Sub(gap, set(slack.all)));
-    hn::Store(bound, k_lanes, bounds + i);
-    kept |= bits_of(hn::Le(bound, set(best)), i);
+    const auto normals = pairs.along_normals(offset);
+    gap = hn::Max(gap, hn::Max(normals.of_x.gap(), normals.of_y.gap()));
+    hn::Store(bound(), k_lanes, bounds + i);
+    kept |= bits_of(hn::Le(bound(), set(best)), i);
   }
   return kept;
 }
 
 /// Volumes of y (bits) that neither w nor boxes separate from all volumes of x by more than `best`.
-/// @param whole the volume around those of x
-HWY_INLINE std::uint32_t near_volumes(const Volumes& x, const Tree::Volume& whole, const Volumes& y, const Frame& f,
+/// @param whole around the volumes of x
+HWY_INLINE std::uint32_t near_volumes(const Volumes& x, const Tree::Volume& whole, const Volumes& y, double shift_along,
                                       const Slack& slack, float best) {
-  V greatest = set(-Tree::k_empty);
-  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) greatest = hn::Max(greatest, load(x.front + i));
-  const auto front = static_cast<double>(hn::GetLane(hn::MaxOfLanes(k_lanes, greatest)));
-  const V along = set(static_cast<float>(f.translation_along - front) - slack.all);
-  const V enough = set(best + slack.all);
-  std::uint32_t near = 0;
+  constexpr float k_still[3] = {};
+  V front = set(-Tree::k_empty);
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) front = hn::Max(front, load(x.front + i));
+  const auto front_x = static_cast<double>(hn::GetLane(hn::MaxOfLanes(k_lanes, front)));
+  const V along = set(static_cast<float>(shift_along - front_x) - slack.all);
+  std::uint32_t near = near_boxes<k_rounding>(whole, y, best + slack.all, k_still);
   for (std::size_t j = 0; j < k_width; j += hn::Lanes(k_lanes)) {
-    V squared = hn::Zero(k_lanes);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const V center = load(y.other_center[k] + j), half = load(y.other_half[k] + j);
-      const V above = hn::Sub(hn::Sub(center, half), set(whole.upper[k]));
-      const V below = hn::Sub(set(whole.lower[k]), hn::Add(center, half));
-      const V gap = hn::Max(hn::Max(above, below), hn::Zero(k_lanes));
-      squared = hn::MulAdd(gap, gap, squared);
-    }
-    const M far = hn::Or(hn::Gt(hn::Sub(along, load(y.front + j)), set(best)), hn::Gt(squared, hn::Mul(enough, enough)));
-    near |= bits_of(hn::Not(far), j);
+    near &= ~bits_of(hn::Gt(hn::Sub(along, load(y.front + j)), set(best)), j);
   }
   return near;
 }
 
 /// Raises bounds of bound_volumes() by the axes across an axis of each frame. Returns a bit for each volume of `kept`
-/// whose bound is still not above `best`. Bounds that stay negative are not changed: they say how deep volumes
-/// overlap, which orders the search, and compare with those of pairs that are not asked.
+/// whose bound is still not above `best`. Bounds that stay negative are not changed: they say how deep volumes overlap,
+/// which orders the search, and compare with those of pairs that are not asked.
 /// @param axes_x, axes_y CrossAxes in both frames
 inline HWY_NOINLINE std::uint32_t bound_across_axes(const Volumes& x, const Volumes& y, std::size_t j,
                                                     const float (&axes_x)[CrossAxes::k_count][3],
                                                     const float (&axes_y)[CrossAxes::k_count][3], const Slack& slack,
                                                     float best, std::uint32_t kept, float* HWY_RESTRICT bounds) {
+  constexpr float k_still[3] = {};
   std::uint32_t near = 0;
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    V widest = set(-Tree::k_empty);
-    for (std::size_t n = 0; n < CrossAxes::k_count; ++n) {
-      float radius_y = 0.0f, middle_y = 0.0f;
-      for (std::size_t k = 0; k < 3; ++k) {
-        radius_y += std::abs(axes_y[n][k]) * y.half[k][j];
-      }
-      V middle = set(middle_y);
-      V radius = set(radius_y);
-      for (std::size_t k = 0; k < 3; ++k) {
-        middle = hn::MulAdd(set(axes_x[n][k]), hn::Sub(set(y.other_center[k][j]), load(x.center[k] + i)), middle);
-        radius = hn::MulAdd(set(std::abs(axes_x[n][k])), load(x.half[k] + i), radius);
-      }
-      widest = hn::Max(widest, hn::Sub(hn::Abs(middle), radius));
-    }
+    const V gap = VolumePairs<k_rounding>{x, y, i, j}.gap_across_axes(axes_x, axes_y, k_still);
     const V before = load(bounds + i);
-    const V across = hn::Sub(widest, set(slack.all));
+    const V across = hn::Sub(gap, set(slack.all));
     const V bound = hn::IfThenElse(hn::Gt(across, hn::Zero(k_lanes)), hn::Max(before, across), before);
     hn::Store(bound, k_lanes, bounds + i);
     near |= bits_of(hn::Le(bound, set(best)), i);

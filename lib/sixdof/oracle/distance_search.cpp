@@ -89,9 +89,6 @@ constexpr std::uint64_t k_patience_with_leaves = 4096;
 constexpr std::uint64_t k_patience_with_triangles = 256;
 /// So many pairs of leaves are early in a search.
 constexpr std::uint64_t k_early = 16;
-/// Of two volumes the smaller is expanded, too, if the square of its size is not below that of the other divided by
-/// this.
-constexpr float k_alike = 4.0f;
 /// Axes across two boxes, and across two triangles, which are measured exactly otherwise.
 constexpr CrossAxesUse k_use_of_cross_axes(0.125);
 constexpr CrossAxesUse k_use_of_cross_edges(0.03);
@@ -107,7 +104,8 @@ class DistanceTraversal final : private CloseVisitor {
         blurred_(k_blurred * k_blurred * frames_.slack.all * frames_.slack.all),
         blurs_leaves_(std::max(search.a.smallest_leaf, search.b.smallest_leaf) < blurred_),
         has_planes_(!search.a.patches.empty() && !search.b.patches.empty()),
-        close_bounds_(tree_a_, tree_b_, search.X_AB) {
+        close_bounds_(tree_a_, tree_b_, search.X_AB),
+        expansion_(tree_a_, tree_b_) {
     if (search_.direction.squaredNorm() == 0.0) search_.direction = frames_.shift;
     frames_.set_direction(search_.direction);
     set_best();
@@ -176,9 +174,9 @@ class DistanceTraversal final : private CloseVisitor {
     return false;
   }
 
-  /// Whether a pair, not of two leaves, is searched in doubles: if the larger is so small that floats blur it, or if the
-  /// other is a leaf whose volume is much larger than its triangles in comparison: a thick one, or slices of a fan that
-  /// lie across all axes.
+  /// Whether a pair, not of two leaves, is searched in doubles: if the larger is so small that floats blur it, or if
+  /// the other is a leaf whose volume is much larger than its triangles in comparison: a thick one, or slices of a fan
+  /// that lie across all axes.
   HWY_INLINE bool needs_doubles(const NodePair& pair) {
     const Tree::Volume& a = volume_of(tree_a_, pair.a);
     const Tree::Volume& b = volume_of(tree_b_, pair.b);
@@ -242,7 +240,7 @@ class DistanceTraversal final : private CloseVisitor {
     if (!closer) return false;
     if (search_.best == 0.0) return true;
     frames_.set_direction(search_.direction);
-    loaded_a_ = loaded_b_ = k_none;
+    expansion_.forget();
     set_best();
     return false;
   }
@@ -322,11 +320,10 @@ class DistanceTraversal final : private CloseVisitor {
   /// Lower bounds for all pairs of triangles of two leaves. Returns false if all are above the best.
   bool bound_pairs(const Tree::Leaf& leaf_a, const Tree::Leaf& leaf_b, LeafPair& pairs) {
     ++search_.counts.leaf_pairs;
-    const Frame& frame = frames_.expand_a;
-    if (bound_along_direction<k_rounding>(leaf_a, leaf_b, frame, frames_.slack.local, best_, pairs.lower) > best_) {
+    if (bound_along_direction<k_rounding>(leaf_a, leaf_b, frames_, frames_.slack.local, best_, pairs.lower) > best_) {
       return false;
     }
-    load_pairs<k_rounding>(leaf_a, leaf_b, frame, pairs);
+    load_pairs<k_rounding>(leaf_a, leaf_b, frames_.a, pairs);
     bound_triangles(pairs, frames_.slack.all, best_);
     if (use_of_cross_edges_.is_due()) {
       const int before = count_near(pairs);
@@ -356,78 +353,39 @@ class DistanceTraversal final : private CloseVisitor {
     }
   }
 
-  /// One of two volumes that are expanded.
-  struct Side {
-    const Tree& tree;
-    std::uint32_t volume;
-    bool splits;
-    Volumes& volumes;
-    std::uint64_t& loaded;
-
-    std::uint32_t lanes() const { return splits ? (1u << tree.nodes()[volume].child_count) - 1 : 1u; }
-    const Tree::Volume& whole() const { return volume_of(tree, volume); }
-    /// The volume in lane i.
-    std::uint32_t child(std::size_t i) const {
-      if (!splits) return volume;
-      const Tree::Node& node = tree.nodes()[volume];
-      return node.child[i].is_leaf() ? NodePair::k_leaf + node.leaf[i] : node.child[i].node();
-    }
-    HWY_INLINE void load(const Frame& own, const Frame& other) {
-      const std::uint64_t key = 2 * static_cast<std::uint64_t>(volume) + (splits ? 1 : 0);
-      if (loaded == key) return;
-      loaded = key;
-      if (splits) {
-        volumes.load_from<k_rounding>(NodeLanes{tree.nodes()[volume]}, own, other);
-      } else {
-        volumes.load_from<k_rounding>(SameInAllLanes{volume_of(tree, volume)}, own, other);
-      }
-    }
-  };
-
-  /// Expands two volumes that are not both leaves, or only the larger one if it is much larger: calls keep() for each
-  /// pair of their children whose bound is not above the best.
+  /// Expands two volumes that are not both leaves: calls keep() for each pair of volumes whose bound is not above the
+  /// best.
   template <class Keep>
   HWY_INLINE void expand(const NodePair& top, const Keep& keep) {
-    const float size_a = volume_of(tree_a_, top.a).squared_diagonal();
-    const float size_b = volume_of(tree_b_, top.b).squared_diagonal();
-    const bool splits_a = !is_leaf(top.a) && (is_leaf(top.b) || k_alike * size_a >= size_b);
-    const bool splits_b = !is_leaf(top.b) && (is_leaf(top.a) || k_alike * size_b >= size_a);
-    const Side a{tree_a_, top.a, splits_a, volumes_a_, loaded_a_};
-    const Side b{tree_b_, top.b, splits_b, volumes_b_, loaded_b_};
-    Side(a).load(frames_.expand_a, frames_.expand_b);
-    Side(b).load(frames_.expand_b, frames_.expand_a);
-    std::uint32_t near_a = a.lanes(), near_b = b.lanes();
-    if (splits_b) near_b &= near_volumes(volumes_a_, a.whole(), volumes_b_, frames_.expand_a, frames_.slack, best_);
-    if (splits_a) near_a &= near_volumes(volumes_b_, b.whole(), volumes_a_, frames_.expand_b, frames_.slack, best_);
+    expansion_.take(tree_a_, top.a, tree_b_, top.b, frames_);
+    const auto& [a, b] = expansion_;
+    const auto near_b =
+        b.lanes() & near_volumes(a.volumes(), a.whole(), b.volumes(), frames_.shift_along, frames_.slack, best_);
+    const auto near_a =
+        a.lanes() & near_volumes(b.volumes(), b.whole(), a.volumes(), frames_.shift_along, frames_.slack, best_);
+    // One volume after the other of the side that has fewer.
     const bool x_is_a = std::popcount(near_a) >= std::popcount(near_b);
-    const Side& x = x_is_a ? a : b;
-    const Side& y = x_is_a ? b : a;
+    const auto& x = x_is_a ? a : b;
+    const auto& y = x_is_a ? b : a;
     const std::uint32_t near_x = x_is_a ? near_a : near_b;
-    std::uint32_t rest = x_is_a ? near_b : near_a;
-    const Frame& frame = x_is_a ? frames_.expand_a : frames_.expand_b;
-    for (; rest != 0; rest &= rest - 1) {
+    const Frame& frame = x_is_a ? frames_.a : frames_.b;
+    for (std::uint32_t rest = x_is_a ? near_b : near_a; rest != 0; rest &= rest - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(rest));
       HWY_ALIGN float bounds[k_width];
       ++search_.counts.nodes;
-      std::uint32_t kept = near_x & bound_volumes(x.volumes, y.volumes, j, frame, frames_.slack, best_, bounds);
-      if (kept != 0 && use_of_cross_axes_.is_due()) kept = ask_cross_axes(x.volumes, y.volumes, j, x_is_a, kept, bounds);
+      std::uint32_t kept =
+          near_x & bound_volumes(x.volumes(), y.volumes(), j, frame, frames_.shift_along, frames_.slack, best_, bounds);
+      if (kept != 0 && use_of_cross_axes_.is_due())
+        kept = ask_cross_axes(x.volumes(), y.volumes(), j, x_is_a, kept, bounds);
       if (kept == 0) continue;
       const std::uint32_t child_y = y.child(j);
-      if (y.splits) prefetch_volume(y.tree, child_y);
+      y.prefetch_child(child_y);
       for (; kept != 0; kept &= kept - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(kept));
         const std::uint32_t child_x = x.child(i);
-        prefetch_volume(x.tree, child_x);
+        x.prefetch_child(child_x);
         keep(x_is_a ? NodePair{child_x, child_y, bounds[i]} : NodePair{child_y, child_x, bounds[i]});
       }
-    }
-  }
-
-  static HWY_INLINE void prefetch_volume(const Tree& tree, std::uint32_t volume) {
-    if (is_leaf(volume)) {
-      prefetch(leaf_of(tree, volume));
-    } else {
-      prefetch(tree.nodes()[volume]);
     }
   }
 
@@ -525,19 +483,12 @@ class DistanceTraversal final : private CloseVisitor {
     return {smallest(search_.a.patches, pair.a), smallest(search_.b.patches, pair.b)};
   }
 
-  static bool is_leaf(std::uint32_t volume) { return (volume & NodePair::k_leaf) != 0; }
   static bool is_triangle(std::uint32_t volume) { return !is_leaf(volume) && (volume & NodePair::k_triangle) != 0; }
   static NodePair node_pair(TrianglePair pair, float lower) {
     return {NodePair::k_triangle + pair.a, NodePair::k_triangle + pair.b, lower};
   }
   static TrianglePair triangles_of(const NodePair& pair) {
     return {pair.a - NodePair::k_triangle, pair.b - NodePair::k_triangle};
-  }
-  static const Tree::Leaf& leaf_of(const Tree& tree, std::uint32_t volume) {
-    return tree.leaves()[volume - NodePair::k_leaf];
-  }
-  static const Tree::Volume& volume_of(const Tree& tree, std::uint32_t volume) {
-    return is_leaf(volume) ? leaf_of(tree, volume).volume : tree.nodes()[volume].volume;
   }
   HWY_INLINE static const CoplanarPatches::Plane* plane_of(const CoplanarPatches& patches, std::uint32_t volume) {
     return is_leaf(volume) ? patches.of_leaf(volume - NodePair::k_leaf) : patches.of_node(volume);
@@ -552,9 +503,7 @@ class DistanceTraversal final : private CloseVisitor {
   const bool blurs_leaves_;  // both trees have leaves that small
   const bool has_planes_;    // both meshes have coplanar patches
   const CloseBounds close_bounds_;
-  static constexpr std::uint64_t k_none = ~std::uint64_t{0};
-  Volumes volumes_a_, volumes_b_;
-  std::uint64_t loaded_a_ = k_none, loaded_b_ = k_none;
+  Expansion<k_rounding, true> expansion_;
   std::optional<CrossAxes> cross_axes_;  // made when they are asked for the first time
   CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;

@@ -72,7 +72,7 @@ void seed_search(DistanceSearch& search) {
   const SeedCorners& seeds_a = search.a.seeds;
   const SeedCorners& seeds_b = search.b.seeds;
   const QueryFrames frames(search.a.tree, search.b.tree, search.X_AB);
-  const ClosestSeeds closest(seeds_a, seeds_b, frames.expand_a);
+  const ClosestSeeds closest(seeds_a, seeds_b, frames.a);
   // A pair of the last query may be closer.
   if (search.found && search.best * search.best <= static_cast<double>(closest.squared)) return;
 
@@ -88,7 +88,7 @@ void seed_search(DistanceSearch& search) {
   for (const auto& [tolerance, steps] : {std::pair(1.1f, 6), std::pair(1.0f, 4)}) {  // at most; few need as many
     int misses = 0;
     for (int i = 0; i < steps && misses < 2; ++i, search_b = !search_b) {
-      transform(search_b ? frames.expand_b : frames.expand_a, search_b ? a.point : b.point, from);
+      transform(search_b ? frames.b : frames.a, search_b ? a.point : b.point, from);
       Corner& corner = search_b ? b : a;
       corner.squared = best;
       if (!find_corner(search_b ? search.b.tree : search.a.tree, from, tolerance, corner, search.corners)) ++misses;

@@ -6,6 +6,7 @@
 
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/frames.h>
 
 namespace sixdof::detail {
 
@@ -14,49 +15,66 @@ inline constexpr float k_fraction_rounding = 2e-6f;
 /// Intervals of fractions are not longer than from here to there.
 inline constexpr float k_first_fraction = -1.0f, k_last_fraction = 2.0f;
 
-/// The motion of B in the frames of the trees: p_A - center_A = rotation (p_B - center_B) + shift + x displacement.
+/// Speed of a coordinate, per fraction of a displacement. Where it is below the slack it is taken to be the slack, and
+/// the coordinate to be known up to `pad`.
+struct Speed {
+  float inverse;
+  float pad;
+
+  Speed() = default;
+  Speed(float speed, float slack)
+      : inverse(1.0f / (std::abs(speed) > slack ? speed : slack)), pad(std::abs(speed) > slack ? 0.0f : slack) {}
+};
+
+/// How one tree passes the other: a displacement of y in the frames of x and of y.
+struct Passage {
+  float in_x[3], in_y[3];
+  float half_in_x[3];
+  Speed along_x[3], along_y[3];
+
+  Passage(const Eigen::Vector3d& displacement_x, const Eigen::Vector3d& displacement_y, float slack) {
+    for (int k = 0; k < 3; ++k) {
+      in_x[k] = static_cast<float>(displacement_x[k]);
+      in_y[k] = static_cast<float>(displacement_y[k]);
+      half_in_x[k] = 0.5f * in_x[k];
+      along_x[k] = Speed(in_x[k], slack);
+      along_y[k] = Speed(in_y[k], slack);
+    }
+  }
+};
+
+/// A pose and a displacement of B between the frames of both trees.
 struct TreeMotion {
-  /// Of a coordinate, per fraction of the displacement. Where it is below the slack it is taken to be the slack, and
-  /// the coordinate to be known up to `pad`.
-  struct Speed {
-    float inverse;
-    float pad;
+  float slack;     ///< Largest error of a transformed coordinate.
+  Frames frames;   ///< B at the displacement's middle.
+  float start[3];  ///< From A's centre to B's, before the displacement.
+  Passage of_b;    ///< Of B, x = A,
+  Passage of_a;    ///< and of A past B, x = B.
 
-    Speed() = default;
-    Speed(float speed, float slack)
-        : inverse(1.0f / (std::abs(speed) > slack ? speed : slack)), pad(std::abs(speed) > slack ? 0.0f : slack) {}
-  };
+  TreeMotion(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement)
+      : slack(slack_of(a, b, X_AB, displacement)),
+        frames(X_AB.R),
+        of_b(displacement, X_AB.R.transpose() * displacement, slack),
+        of_a(-(X_AB.R.transpose() * displacement), -displacement, slack) {
+    const Eigen::Vector3d shift = shift_of(a, b, X_AB);
+    frames.set_shift(shift + 0.5 * displacement);
+    for (int k = 0; k < 3; ++k) start[k] = static_cast<float>(shift[k]);
+  }
 
-  float rotation[3][3];
-  float shift[3];
-  float displacement[3];
-  float slack;                 ///< Largest error of a transformed coordinate.
-  float middle[3];             ///< shift + displacement / 2
-  float half_displacement[3];  ///< displacement / 2
-  Speed along_a[3];            ///< Of B along A's axes,
-  Speed along_b[3];            ///< and of A along B's: the negative displacement in B's frame.
-
-  TreeMotion(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement_A) {
-    const Eigen::Vector3d d = X_AB.R * b.center() + X_AB.t - a.center();
+ private:
+  static Eigen::Vector3d shift_of(const Tree& a, const Tree& b, const Pose& X_AB) {
+    return X_AB.R * b.center() + X_AB.t - a.center();
+  }
+  static float slack_of(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement) {
     // A coordinate is the sum of seven products and sums of lengths of this size, each rounded by 6e-8.
     constexpr double k_float_rounding = 6e-7;
     // Rounding of the doubles, which matters where the bodies are far from their origins.
     constexpr double k_double_rounding = 1e-14;
-    const double size =
-        a.radius() + b.radius() + d.lpNorm<Eigen::Infinity>() + displacement_A.lpNorm<Eigen::Infinity>();
-    slack =
-        static_cast<float>(k_float_rounding * size +
-                           k_double_rounding * (X_AB.t.lpNorm<1>() + b.center().lpNorm<1>() + a.center().lpNorm<1>()));
-    const Eigen::Vector3d displacement_B = X_AB.R.transpose() * displacement_A;
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) rotation[i][k] = static_cast<float>(X_AB.R(i, k));
-      shift[i] = static_cast<float>(d[i]);
-      displacement[i] = static_cast<float>(displacement_A[i]);
-      half_displacement[i] = 0.5f * displacement[i];
-      middle[i] = static_cast<float>(d[i] + 0.5 * displacement_A[i]);
-      along_a[i] = Speed(displacement[i], slack);
-      along_b[i] = Speed(static_cast<float>(-displacement_B[i]), slack);
-    }
+    const double size = a.radius() + b.radius() + shift_of(a, b, X_AB).lpNorm<Eigen::Infinity>() +
+                        displacement.lpNorm<Eigen::Infinity>();
+    return static_cast<float>(k_float_rounding * size +
+                              k_double_rounding *
+                                  (X_AB.t.lpNorm<1>() + b.center().lpNorm<1>() + a.center().lpNorm<1>()));
   }
 };
 

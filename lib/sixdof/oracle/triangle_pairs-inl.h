@@ -101,8 +101,8 @@ HWY_INLINE void load_leaf_of_b(const Tree::Leaf& from, const TreeMotion& x, Leaf
       LeafV p[3];
       for (std::size_t k = 0; k < 3; ++k) p[k] = hn::Load(k_leaf_lanes, from.corner[c][k] + i);
       for (std::size_t k = 0; k < 3; ++k) {
-        LeafV q = hn::Set(k_leaf_lanes, x.shift[k]);
-        for (std::size_t j = 0; j < 3; ++j) q = unfused_mul_add(hn::Set(k_leaf_lanes, x.rotation[k][j]), p[j], q);
+        LeafV q = hn::Set(k_leaf_lanes, x.start[k]);
+        for (std::size_t j = 0; j < 3; ++j) q = unfused_mul_add(hn::Set(k_leaf_lanes, x.frames.a.axis[j][k]), p[j], q);
         hn::Store(q, k_leaf_lanes, out.corner[c][k] + i);
       }
     }
@@ -231,7 +231,7 @@ struct EdgeAxis {
       const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
       n[k] = hn::Sub(hn::Mul(u[l], v[m]), hn::Mul(u[m], v[l]));
       sum = hn::Add(sum, hn::Abs(n[k]));
-      speed = unfused_mul_add(n[k], set(x.displacement[k]), speed);
+      speed = unfused_mul_add(n[k], set(x.of_b.in_x[k]), speed);
     }
     tolerance = unfused_mul_add(sum, set(8.0f * x.slack), set(std::numeric_limits<float>::min()));
     const Projection of_a(n, a), of_b(n, b);
@@ -308,15 +308,15 @@ HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLan
   std::uint32_t bits = 0;
   const V zero = hn::Zero(k_lanes);
   const V one = set(1.0f);
-  const V displacement[3] = {set(x.displacement[0]), set(x.displacement[1]), set(x.displacement[2])};
+  const V displacement[3] = {set(x.of_b.in_x[0]), set(x.of_b.in_x[1]), set(x.of_b.in_x[2])};
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
     const auto of_a = [i](const float* p) { return load_of_a(p, i); };
     const auto of_b = [i](const float* p) { return load_of_b(p, i); };
     FractionInterval interval{set(-k_unbounded), set(k_unbounded)};
     for (std::size_t k = 0; k < 3; ++k) {  // B's boxes include the slack
-      const V pad = set(x.along_a[k].pad);
+      const V pad = set(x.of_b.along_x[k].pad);
       interval.narrow(hn::Sub(hn::Sub(of_a(a.lower[k]), of_b(b.upper[k])), pad),
-                      hn::Add(hn::Sub(of_a(a.upper[k]), of_b(b.lower[k])), pad), set(x.along_a[k].inverse));
+                      hn::Add(hn::Sub(of_a(a.upper[k]), of_b(b.lower[k])), pad), set(x.of_b.along_x[k].inverse));
     }
     const auto store = [&] {  // returns the lanes whose interval contains a fraction in 0 .. 1
       const V pad = set(detail::k_fraction_rounding);
@@ -329,8 +329,8 @@ HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLan
     if (hn::AllFalse(k_lanes, store())) continue;
     PairLanes p(a, b, i, x.slack);
     // Rounding of the products of normals, of up to the square of a size, with differences as long as the displacement.
-    const V rounding = hn::Set(
-        k_lanes, 1e-6f * (std::abs(x.displacement[0]) + std::abs(x.displacement[1]) + std::abs(x.displacement[2])));
+    const V rounding =
+        hn::Set(k_lanes, 1e-6f * (std::abs(x.of_b.in_x[0]) + std::abs(x.of_b.in_x[1]) + std::abs(x.of_b.in_x[2])));
     p.tolerance_a = unfused_mul_add(rounding, hn::Mul(of_a(a.size), of_a(a.size)), p.tolerance_a);
     p.tolerance_b = unfused_mul_add(rounding, hn::Mul(of_b(b.size), of_b(b.size)), p.tolerance_b);
     {  // B's corners and A's plane: distances increase by the displacement along the normal.
