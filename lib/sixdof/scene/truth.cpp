@@ -11,10 +11,9 @@ namespace sixdof::scene {
 namespace {
 
 constexpr const char* k_kind = "scene-truth";
-constexpr int k_version = 2;  // of definitions, of the last bits of answers and of this layout
 
 std::string key_of(const Scene& scene, Question question) {
-  return fmt::format("version {} scene {} question {}", k_version, scene.hash(), to_string(question));
+  return fmt::format("version {} scene {} question {}", k_truth_version, scene.hash(), to_string(question));
 }
 
 CacheEntry pack(const Truth& truth) {
