@@ -110,7 +110,9 @@ class DualTreeTraversal {
     if (y.splits()) rest &= near_boxes<k_rounding>(x.whole(), y.volumes(), k_slacks * motion_.slack, passage.half_in_x);
     for (; rest != 0; rest &= rest - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-      std::uint32_t bits = blurred ? test_closely(x_is_a, j) : test(x.volumes(), y.volumes(), j, passage);
+      std::uint32_t bits =
+          blurred ? test_closely(x_is_a, j)
+                  : overlapping_volumes<moving>(x.volumes(), y.volumes(), j, passage, motion_.slack, first_, last_);
       bits &= x.lanes();
       if (!blurred && bits != 0 && use_of_cross_axes_.is_due())
         bits = ask_cross_axes(x.volumes(), y.volumes(), j, x_is_a, bits);
@@ -122,11 +124,6 @@ class DualTreeTraversal {
         descend(x_is_a ? child_x : child_y, x_is_a ? child_y : child_x, i, blurred);
       }
     }
-  }
-
-  HWY_INLINE std::uint32_t test(const Volumes& x, const Volumes& y, std::size_t j, const Passage& passage) {
-    if constexpr (moving) return overlap_intervals(x, y, j, passage, motion_.slack, first_, last_);
-    return overlapping_volumes(x, y, j, motion_.slack);
   }
 
   /// In doubles.
@@ -186,19 +183,49 @@ class DualTreeTraversal {
   Take take_;
 };
 
-/// Tests the triangles of pairs of leaves, which wait in a queue while their memory is fetched.
+/// Tests the triangles of pairs of leaves.
+/// @tparam moving the displacement is not zero
+template <bool moving>
 class LeafTests {
  public:
-  LeafTests(const Tree& a, const Tree& b, const TreeMotion& motion, const CloseTests& close, CandidateScratch& scratch,
+  LeafTests(const Tree& a, const Tree& b, const TreeMotion& motion)
+      : a_(a), b_(b), motion_(motion), leaves_a_(a), leaves_b_(b) {}
+
+  /// Calls take(pair of triangles, lane of first() and last()) for those that may intersect.
+  template <class Take>
+  HWY_INLINE void test(std::uint32_t a, std::uint32_t b, const Take& take) {
+    const LeafLanes& of_b =
+        leaves_b_.get(b, [&](const Tree::Leaf& leaf, LeafLanes& out) { leaves::load_leaf_of_b(leaf, motion_, out); });
+    const LeafLanes& of_a = leaves_a_.get(a, leaves::load_leaf_of_a);
+    std::uint32_t bits = leaves::test_triangles<moving>(of_a, of_b, motion_, first_, last_);
+    if (bits != 0 && use_of_cross_edges_.is_due()) {
+      const int before = std::popcount(bits);
+      bits = leaves::test_across_edges<moving>(of_a, of_b, bits, motion_, first_, last_);
+      use_of_cross_edges_.count(before, std::popcount(bits));
+    }
+    leaves::for_each_pair(bits, a_.leaves()[a].child, b_.leaves()[b].child, take);
+  }
+
+  /// If moving: the fractions between which a pair may intersect.
+  float first(std::uint32_t lane) const { return first_[lane]; }
+  float last(std::uint32_t lane) const { return last_[lane]; }
+
+ private:
+  const Tree& a_;
+  const Tree& b_;
+  const TreeMotion& motion_;
+  LeafCache leaves_a_, leaves_b_;
+  detail::CrossAxesUse use_of_cross_edges_ = moving ? k_use_of_moving_cross_edges : k_use_of_cross_edges;
+  HWY_ALIGN float first_[leaves::k_pairs];
+  HWY_ALIGN float last_[leaves::k_pairs];
+};
+
+/// Pairs of leaves that are tested later, when their memory has been fetched.
+class LeafQueue {
+ public:
+  LeafQueue(const Tree& a, const Tree& b, const TreeMotion& motion, const CloseTests& close, CandidateScratch& scratch,
             std::vector<TrianglePair>& pairs)
-      : a_(a),
-        b_(b),
-        motion_(motion),
-        close_(close),
-        queue_(scratch.leaves),
-        pairs_(pairs),
-        leaves_a_(a),
-        leaves_b_(b) {
+      : a_(a), b_(b), close_(close), queue_(scratch.leaves), pairs_(pairs), tests_(a, b, motion) {
     queue_.clear();
   }
 
@@ -213,46 +240,34 @@ class LeafTests {
  private:
   static constexpr std::size_t k_ahead = 8, k_most = 32;  // pairs of leaves that wait
 
-  /// Tests the first pairs of the queue.
+  /// Tests the first pairs.
   HWY_NOINLINE void test(std::size_t count) {
     for (const CandidateScratch::LeafPair& pair : std::span(queue_).first(count)) {
-      const LeafLanes& of_b = leaves_b_.get(
-          pair.b, [&](const Tree::Leaf& leaf, LeafLanes& out) { leaves::load_leaf_of_b(leaf, motion_, out); });
-      const LeafLanes& of_a = leaves_a_.get(pair.a, leaves::load_leaf_of_a);
-      std::uint32_t bits = leaves::test_triangles(of_a, of_b, motion_.slack);
-      if (bits != 0 && use_of_cross_edges_.is_due()) {
-        const int before = std::popcount(bits);
-        bits = leaves::overlapping_across_edges(of_a, of_b, bits, motion_);
-        use_of_cross_edges_.count(before, std::popcount(bits));
-      }
-      leaves::for_each_pair(bits, a_.leaves()[pair.a].child, b_.leaves()[pair.b].child,
-                            [&](TrianglePair triangles, std::uint32_t) {
-                              if (!pair.blurred || !close_.apart(triangles)) pairs_.push_back(triangles);
-                            });
+      tests_.test(pair.a, pair.b, [&](TrianglePair triangles, std::uint32_t) {
+        if (!pair.blurred || !close_.apart(triangles)) pairs_.push_back(triangles);
+      });
     }
     queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(count));
   }
 
   const Tree& a_;
   const Tree& b_;
-  const TreeMotion& motion_;
   const CloseTests& close_;
   std::vector<CandidateScratch::LeafPair>& queue_;
   std::vector<TrianglePair>& pairs_;
-  LeafCache leaves_a_, leaves_b_;
-  detail::CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;
+  LeafTests<false> tests_;
 };
 
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
                      std::vector<TrianglePair>& pairs) {
   const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero());
   const CloseTests close(a, b, X_AB, Eigen::Vector3d::Zero(), motion.slack);
-  LeafTests tests(a, b, motion, close, scratch, pairs);
+  LeafQueue queue(a, b, motion, close, scratch, pairs);
   const auto take = [&](std::uint32_t leaf_a, std::uint32_t leaf_b, bool blurred) {
-    tests.add(leaf_a, leaf_b, blurred);
+    queue.add(leaf_a, leaf_b, blurred);
   };
   DualTreeTraversal<false, decltype(take)>(a, b, X_AB, motion, close, scratch, take).run();
-  tests.finish();
+  queue.finish();
 }
 
 void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
@@ -266,23 +281,11 @@ void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eig
 void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                           std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs) {
   const TreeMotion motion(a, b, X_AB, displacement);
-  LeafCache leaves_a(a), leaves_b(b);
-  const auto load_b = [&](const Tree::Leaf& leaf, LeafLanes& out) { leaves::load_leaf_of_b(leaf, motion, out); };
-  detail::CrossAxesUse use_of_cross_edges = k_use_of_moving_cross_edges;
+  LeafTests<true> tests(a, b, motion);
   for (const SweptPair& pair : leaf_pairs) {
-    HWY_ALIGN float first[leaves::k_pairs], last[leaves::k_pairs];
-    const LeafLanes& of_a = leaves_a.get(pair.a, leaves::load_leaf_of_a);
-    const LeafLanes& of_b = leaves_b.get(pair.b, load_b);
-    std::uint32_t bits = leaves::test_moving_triangles(of_a, of_b, motion, first, last);
-    if (bits != 0 && use_of_cross_edges.is_due()) {
-      const int before = std::popcount(bits);
-      bits = leaves::narrow_across_edges(of_a, of_b, bits, motion, first, last);
-      use_of_cross_edges.count(before, std::popcount(bits));
-    }
-    leaves::for_each_pair(bits, a.leaves()[pair.a].child, b.leaves()[pair.b].child,
-                          [&](TrianglePair triangles, std::uint32_t lane) {
-                            pairs.push_back({triangles.a, triangles.b, first[lane], last[lane]});
-                          });
+    tests.test(pair.a, pair.b, [&](TrianglePair triangles, std::uint32_t lane) {
+      pairs.push_back({triangles.a, triangles.b, tests.first(lane), tests.last(lane)});
+    });
   }
 }
 

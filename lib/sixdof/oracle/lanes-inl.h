@@ -76,19 +76,6 @@ HWY_INLINE std::uint32_t bits_of(M mask, std::size_t i) {
   return static_cast<std::uint32_t>(stored[0]) << i;
 }
 
-/// Fractions of a displacement at which something may hold, per lane.
-template <class Vec>
-struct FractionInterval {
-  Vec first, last;
-
-  /// To the fractions x at which low <= speed x <= high.
-  HWY_INLINE void narrow(Vec low, Vec high, Vec inverse_speed) {
-    const Vec x = hn::Mul(low, inverse_speed), y = hn::Mul(high, inverse_speed);
-    first = hn::Max(first, hn::Min(x, y));
-    last = hn::Min(last, hn::Max(x, y));
-  }
-};
-
 /// Prefetches what one of the next steps reads: large trees are not in the caches.
 template <class T>
 HWY_INLINE void prefetch(const T& x) {

@@ -12,6 +12,7 @@
 
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/lanes-inl.h>
+#include <sixdof/oracle/overlap_tests-inl.h>
 #include <sixdof/oracle/tree_motion.h>
 
 // Separating-axis tests of the 4 x 4 pairs of triangles of two leaves, one pair per lane: lane 4 i + j is that of
@@ -39,11 +40,9 @@ using M = hn::Mask<Lanes>;
 constexpr Lanes k_lanes;
 
 HWY_INLINE V set(float x) { return hn::Set(k_lanes, x); }
-HWY_INLINE V load(const float* p) { return hn::Load(k_lanes, p); }
-HWY_INLINE M no_lane() { return hn::Lt(hn::Zero(k_lanes), hn::Zero(k_lanes)); }
 
 /// x . y, unfused.
-HWY_INLINE V dot(const V* HWY_RESTRICT x, const V* HWY_RESTRICT y) {
+HWY_INLINE V dot(const V (&x)[3], const V (&y)[3]) {
   return unfused_mul_add(x[2], y[2], unfused_mul_add(x[1], y[1], hn::Mul(x[0], y[0])));
 }
 
@@ -194,6 +193,15 @@ struct PairLanes {
     tolerance_a = hn::Mul(hn::Mul(s, size_a), hn::Add(both, size_a));
     tolerance_b = hn::Mul(hn::Mul(s, size_b), hn::Add(both, size_b));
   }
+
+  /// Adds the rounding of the products of normals, of up to the square of a size, with differences as long as the
+  /// displacement.
+  HWY_INLINE void widen(V size_a, V size_b, const V (&displacement)[3]) {
+    V rounding = hn::Zero(k_lanes);
+    for (const V d : displacement) rounding = hn::Add(rounding, hn::Mul(set(1e-6f), hn::Abs(d)));
+    tolerance_a = unfused_mul_add(rounding, hn::Mul(size_a, size_a), tolerance_a);
+    tolerance_b = unfused_mul_add(rounding, hn::Mul(size_b, size_b), tolerance_b);
+  }
 };
 
 /// Range of normal . p over three corners p.
@@ -242,132 +250,56 @@ struct EdgeAxis {
   }
 };
 
-/// Lanes in which all corners lie on one side of a plane, by more than `tolerance`.
-HWY_INLINE M on_one_side(const Projection& range, V offset, V tolerance) {
-  return hn::Or(hn::Gt(range.low, hn::Add(offset, tolerance)), hn::Lt(range.high, hn::Sub(offset, tolerance)));
-}
+using Rate = overlap_tests::HWY_NAMESPACE::Rate<Lanes>;
+template <bool moving>
+using Overlaps = overlap_tests::HWY_NAMESPACE::Overlaps<Lanes, moving>;
+
+/// Ranges along axes of any length. Where rounding loses their motion, they do not separate.
+HWY_INLINE Rate rate_of(V rate) { return Rate::of(rate, 1e-30f, Tree::k_empty); }
 
 /// Pairs of triangles (bits) that may intersect: by their boxes, and by both planes.
-HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, float slack) {
+/// @param first, last if moving: the fractions between which they may, of all pairs
+template <bool moving>
+HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, const TreeMotion& x, float* first,
+                                        float* last) {
+  const detail::Passage& passage = x.of_b;
+  const V displacement[3] = {set(passage.in_x[0]), set(passage.in_x[1]), set(passage.in_x[2])};
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
-    M apart = no_lane();
-    for (std::size_t k = 0; k < 3; ++k) {
-      apart = hn::Or(apart, hn::Gt(load_of_a(a.lower[k], i), load_of_b(b.upper[k], i)));
-      apart = hn::Or(apart, hn::Gt(load_of_b(b.lower[k], i), load_of_a(a.upper[k], i)));
-    }
-    if (hn::AllTrue(k_lanes, apart)) continue;
-    const PairLanes p(a, b, i, slack);
-    apart = hn::Or(apart, on_one_side({p.normal_a, p.corner_b}, p.offset_a, p.tolerance_a));
-    apart = hn::Or(apart, on_one_side({p.normal_b, p.corner_a}, p.offset_b, p.tolerance_b));
-    bits |= bits_of(hn::Not(apart), i);
-  }
-  return bits;
-}
-
-/// Pairs of triangles (bits), of those in `bits`, that no axis across an edge of each separates. With the tests before,
-/// by both planes, they intersect but for rounding.
-inline HWY_NOINLINE std::uint32_t overlapping_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
-                                                           const TreeMotion& x) {
-  std::uint32_t overlapping = 0;
-  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
-    const PairLanes p(a, b, i, x.slack);
-    M apart = no_lane();
-    for (std::size_t edge = 0; edge < 9; ++edge) {
-      const EdgeAxis axis(p, edge, x);
-      apart = hn::Or(apart, hn::Gt(hn::Sub(axis.low_b, axis.high_a), axis.tolerance));
-      apart = hn::Or(apart, hn::Gt(hn::Sub(axis.low_a, axis.high_b), axis.tolerance));
-    }
-    overlapping |= bits_of(hn::Not(apart), i);
-  }
-  return bits & overlapping;
-}
-
-using FractionInterval = lanes::HWY_NAMESPACE::FractionInterval<V>;
-
-// A separating-axis test of two triangles (boxes along each axis, both planes) is linear in the displacement's
-// fraction, so each test gives the interval of fractions at which it does not separate the triangles. They may
-// intersect in the intersection of these intervals.
-
-/// Magnitude of a fraction that is not bounded.
-constexpr float k_unbounded = 1e9f;
-
-/// To the fractions x with low <= speed x <= high. Lanes with a speed so small that rounding loses speed x stay.
-HWY_INLINE void narrow_to_linear(V low, V high, V speed, FractionInterval& interval) {
-  constexpr float k_lost = 1e-30f;
-  const M still = hn::Le(hn::Abs(speed), set(k_lost));
-  const V inverse = hn::Div(set(1.0f), hn::IfThenElse(still, set(1.0f), speed));
-  const V x = hn::Mul(low, inverse), y = hn::Mul(high, inverse);
-  interval.first = hn::Max(interval.first, hn::IfThenElse(still, set(-k_unbounded), hn::Min(x, y)));
-  interval.last = hn::Min(interval.last, hn::IfThenElse(still, set(k_unbounded), hn::Max(x, y)));
-}
-
-/// Pairs of triangles (bits) that may intersect at a fraction in 0 .. 1, and the intervals of all pairs.
-HWY_INLINE std::uint32_t test_moving_triangles(const LeafLanes& a, const LeafLanes& b, const TreeMotion& x,
-                                               float* first, float* last) {
-  std::uint32_t bits = 0;
-  const V zero = hn::Zero(k_lanes);
-  const V one = set(1.0f);
-  const V displacement[3] = {set(x.of_b.in_x[0]), set(x.of_b.in_x[1]), set(x.of_b.in_x[2])};
-  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
-    const auto of_a = [i](const float* p) { return load_of_a(p, i); };
-    const auto of_b = [i](const float* p) { return load_of_b(p, i); };
-    FractionInterval interval{set(-k_unbounded), set(k_unbounded)};
+    Overlaps<moving> overlaps(0.0f);
     for (std::size_t k = 0; k < 3; ++k) {  // B's boxes include the slack
-      const V pad = set(x.of_b.along_x[k].pad);
-      interval.narrow(hn::Sub(hn::Sub(of_a(a.lower[k]), of_b(b.upper[k])), pad),
-                      hn::Add(hn::Sub(of_a(a.upper[k]), of_b(b.lower[k])), pad), set(x.of_b.along_x[k].inverse));
+      overlaps.axis(load_of_a(a.lower[k], i), load_of_a(a.upper[k], i), load_of_b(b.lower[k], i),
+                    load_of_b(b.upper[k], i), Rate(passage.along_x[k]));
     }
-    const auto store = [&] {  // returns the lanes whose interval contains a fraction in 0 .. 1
-      const V pad = set(detail::k_fraction_rounding);
-      const V low = hn::Sub(hn::Max(interval.first, set(detail::k_first_fraction)), pad);
-      const V high = hn::Add(hn::Min(interval.last, set(detail::k_last_fraction)), pad);
-      hn::StoreU(low, k_lanes, first + i);
-      hn::StoreU(high, k_lanes, last + i);
-      return hn::And(hn::Le(low, high), hn::And(hn::Le(low, one), hn::Ge(high, zero)));
-    };
-    if (hn::AllFalse(k_lanes, store())) continue;
+    if (hn::AllFalse(k_lanes, overlaps.store(first + i, last + i))) continue;
     PairLanes p(a, b, i, x.slack);
-    // Rounding of the products of normals, of up to the square of a size, with differences as long as the displacement.
-    const V rounding =
-        hn::Set(k_lanes, 1e-6f * (std::abs(x.of_b.in_x[0]) + std::abs(x.of_b.in_x[1]) + std::abs(x.of_b.in_x[2])));
-    p.tolerance_a = unfused_mul_add(rounding, hn::Mul(of_a(a.size), of_a(a.size)), p.tolerance_a);
-    p.tolerance_b = unfused_mul_add(rounding, hn::Mul(of_b(b.size), of_b(b.size)), p.tolerance_b);
-    {  // B's corners and A's plane: distances increase by the displacement along the normal.
-      const Projection range(p.normal_a, p.corner_b);
-      narrow_to_linear(hn::Sub(hn::Sub(p.offset_a, range.high), p.tolerance_a),
-                       hn::Add(hn::Sub(p.offset_a, range.low), p.tolerance_a), dot(p.normal_a, displacement), interval);
-    }
-    {  // A's corners and B's plane: they decrease.
-      const Projection range(p.normal_b, p.corner_a);
-      narrow_to_linear(hn::Sub(hn::Sub(range.low, p.offset_b), p.tolerance_b),
-                       hn::Add(hn::Sub(range.high, p.offset_b), p.tolerance_b), dot(p.normal_b, displacement),
-                       interval);
-    }
-    bits |= bits_of(store(), i);
+    if constexpr (moving) p.widen(load_of_a(a.size, i), load_of_b(b.size, i), displacement);
+    const Projection on_a(p.normal_a, p.corner_b), on_b(p.normal_b, p.corner_a);
+    overlaps.axis(hn::Sub(p.offset_a, p.tolerance_a), hn::Add(p.offset_a, p.tolerance_a), on_a.low, on_a.high,
+                  rate_of(dot(p.normal_a, displacement)));
+    overlaps.axis(on_b.low, on_b.high, hn::Sub(p.offset_b, p.tolerance_b), hn::Add(p.offset_b, p.tolerance_b),
+                  rate_of(dot(p.normal_b, displacement)));
+    bits |= bits_of(overlaps.store(first + i, last + i), i);
   }
   return bits;
 }
 
-/// Narrows the intervals of test_moving_triangles() by the axes across an edge of each triangle. Returns the pairs, of
-/// those in `bits`, that may still intersect.
-inline HWY_NOINLINE std::uint32_t narrow_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
-                                                      const TreeMotion& x, float* first, float* last) {
+/// Pairs of triangles (bits), of those in `bits`, that no axis across an edge of each separates; narrows the fractions.
+/// With the tests before, by both planes, they intersect but for rounding.
+template <bool moving>
+HWY_NOINLINE std::uint32_t test_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
+                                             const TreeMotion& x, float* first, float* last) {
   std::uint32_t overlapping = 0;
-  const V one = set(1.0f), pad = set(detail::k_fraction_rounding);
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
     const PairLanes p(a, b, i, x.slack);
-    FractionInterval interval{set(-k_unbounded), set(k_unbounded)};
+    Overlaps<moving> overlaps(0.0f);
+    overlaps.take(first + i, last + i);
     for (std::size_t edge = 0; edge < 9; ++edge) {
       const EdgeAxis axis(p, edge, x);
-      narrow_to_linear(hn::Sub(hn::Sub(axis.low_a, axis.high_b), axis.tolerance),
-                       hn::Add(hn::Sub(axis.high_a, axis.low_b), axis.tolerance), axis.speed, interval);
+      overlaps.axis(hn::Sub(axis.low_a, axis.tolerance), hn::Add(axis.high_a, axis.tolerance), axis.low_b, axis.high_b,
+                    rate_of(axis.speed));
     }
-    const V low = hn::Max(load(first + i), hn::Sub(interval.first, pad));
-    const V high = hn::Min(load(last + i), hn::Add(interval.last, pad));
-    hn::StoreU(low, k_lanes, first + i);
-    hn::StoreU(high, k_lanes, last + i);
-    overlapping |= bits_of(hn::And(hn::Le(low, high), hn::And(hn::Le(low, one), hn::Ge(high, hn::Zero(k_lanes)))), i);
+    overlapping |= bits_of(overlaps.store(first + i, last + i), i);
   }
   return bits & overlapping;
 }
