@@ -20,11 +20,6 @@ struct BorderPath {
   Eigen::Vector3d area = Eigen::Vector3d::Zero();         ///< Integral of n over that region.
   Eigen::Matrix3d first_order = Eigen::Matrix3d::Zero();  ///< Integral of p n^T, but for a multiple of the
                                                           ///< identity.
-  /// Adds the edge of a triangle from its lowest to its middle corner.
-  /// @param origin of p, in the solid's mesh frame
-  /// @param triangle in tree order
-  /// @param sign -1: the other way round
-  void add_edge(const Solid& solid, const Eigen::Vector3d& origin, std::uint32_t triangle, int sign);
 };
 
 struct CrossingSums {

@@ -53,6 +53,10 @@ class Solid {
     Integer volume = 0;
     std::array<Integer, 3> first{};
 
+    void add(const Potential& x) {
+      volume += x.volume;
+      for (std::size_t k = 0; k < 3; ++k) first[k] += x.first[k];
+    }
     void add(const Potential& x, int factor) {
       volume += factor * x.volume;
       for (std::size_t k = 0; k < 3; ++k) first[k] += factor * x.first[k];
@@ -70,9 +74,12 @@ class Solid {
     std::uint8_t lowest : 2;  ///< Corner of lowest index.
     bool rises : 1;           ///< The corner after it has a lower index than the one after that.
 
-    std::size_t middle() const { return (lowest + (rises ? 1u : 2u)) % 3; }
+    std::size_t middle() const { return k_remainder[lowest + (rises ? 1u : 2u)]; }
     /// Number of the side opposite the lowest corner; side k runs from corner k to the next.
-    std::size_t opposite_side() const { return (lowest + 1u) % 3; }
+    std::size_t opposite_side() const { return k_remainder[lowest + 1u]; }
+
+   private:
+    static constexpr std::uint8_t k_remainder[] = {0, 1, 2, 0, 1};  // of a division by 3
   };
 
   /// @param mesh the tree's mesh; both outlive this object.
