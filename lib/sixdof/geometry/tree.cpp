@@ -358,13 +358,17 @@ std::uint32_t Tree::store_nodes(const tree_builder::Subtree& subtree) {
     }
     if (i < children.size() && !subtree.nodes[i]) {
       node.leaf[i] = static_cast<std::uint32_t>(leaves_.size());
+      node.number[i] = k_leaf_number + node.leaf[i];
       node.child[i] =
           Child::leaf(static_cast<std::uint32_t>(children[i].first), static_cast<std::uint32_t>(children[i].count()));
       leaves_.emplace_back();
     }
   }
   for (std::size_t i = 0; i < children.size(); ++i) {
-    if (subtree.nodes[i]) nodes_[index].child[i] = Child::node(store_nodes(*subtree.nodes[i]));
+    if (!subtree.nodes[i]) continue;
+    const std::uint32_t child = store_nodes(*subtree.nodes[i]);
+    nodes_[index].child[i] = Child::node(child);
+    nodes_[index].number[i] = child;
   }
   return index;
 }

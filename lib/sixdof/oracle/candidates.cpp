@@ -23,8 +23,6 @@ namespace HWY_NAMESPACE {
 
 namespace leaves = triangle_pairs::HWY_NAMESPACE;
 using detail::TreeMotion;
-using leaves::LeafCache;
-using leaves::LeafLanes;
 
 /// Nodes smaller than this many times the slack are tested in doubles: floats would not separate most of their
 /// children.
@@ -39,9 +37,8 @@ class CloseTests {
         half_displacement_((0.5 + 1e-14) * displacement.norm()),  // with the rounding of positions on the way
         blurred_(k_blurred * k_blurred * slack * slack) {}
 
-  bool are_due(const Tree::Volume& a, const Tree::Volume& b) const {
-    return std::max(a.squared_diagonal(), b.squared_diagonal()) < blurred_;
-  }
+  /// @param size_a, size_b squares of the volumes' diagonals
+  bool are_due(float size_a, float size_b) const { return std::max(size_a, size_b) < blurred_; }
 
   /// Whether two volumes are apart.
   bool apart(std::uint32_t a, std::uint32_t b) const { return apart(bounds_.shape_of_a({a}), bounds_.shape_of_b({b})); }
@@ -86,7 +83,7 @@ class DualTreeTraversal {
         take_(take) {}
 
   void run() {
-    stack_.assign(1, {0, 0});
+    stack_.assign(1, {0, 0, a_.nodes()[0].volume.squared_diagonal(), b_.nodes()[0].volume.squared_diagonal()});
     while (!stack_.empty()) {
       const VolumePair pair = stack_.back();
       stack_.pop_back();
@@ -98,9 +95,9 @@ class DualTreeTraversal {
   using VolumePair = CandidateScratch::VolumePair;
 
   void expand(const VolumePair& pair) {
-    expansion_.take(a_, pair.a, b_, pair.b, motion_.frames);
+    expansion_.take(pair.a, pair.size_a, pair.b, pair.size_b, motion_.frames);
     const auto& [a, b] = expansion_;
-    const bool blurred = close_.are_due(a.whole(), b.whole());
+    const bool blurred = close_.are_due(pair.size_a, pair.size_b);
     // One volume after the other of B or, if B's is whole, of A.
     const bool x_is_a = a.splits();
     const auto& x = x_is_a ? a : b;
@@ -117,11 +114,9 @@ class DualTreeTraversal {
       if (!blurred && bits != 0 && use_of_cross_axes_.is_due())
         bits = ask_cross_axes(x.volumes(), y.volumes(), j, x_is_a, bits);
       if (bits == 0) continue;
-      const std::uint32_t child_y = y.child(j);
       for (; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(bits));
-        const std::uint32_t child_x = x.child(i);
-        descend(x_is_a ? child_x : child_y, x_is_a ? child_y : child_x, i, blurred);
+        x_is_a ? descend(i, j, i, blurred) : descend(j, i, i, blurred);
       }
     }
   }
@@ -141,20 +136,23 @@ class DualTreeTraversal {
     return bits;
   }
 
-  /// @param i lane of the fractions
-  HWY_INLINE void descend(std::uint32_t a, std::uint32_t b, std::size_t i, bool blurred) {
-    if (is_leaf(a) && is_leaf(b)) {
-      const std::uint32_t leaf_a = a - detail::CloseVolume::k_leaf, leaf_b = b - detail::CloseVolume::k_leaf;
+  /// @param i, j lanes of the volumes of A and of B
+  /// @param lane of the fractions
+  HWY_INLINE void descend(std::size_t i, std::size_t j, std::size_t lane, bool blurred) {
+    const auto& [of_a, of_b] = expansion_;
+    const std::uint32_t a = of_a.child(i), b = of_b.child(j);
+    if ((a & b & Tree::k_leaf_number) != 0) {
+      const std::uint32_t leaf_a = a - Tree::k_leaf_number, leaf_b = b - Tree::k_leaf_number;
       if constexpr (moving) {
-        take_(SweptPair{leaf_a, leaf_b, first_[i], last_[i]});
+        take_(SweptPair{leaf_a, leaf_b, first_[lane], last_[lane]});
       } else {
         take_(leaf_a, leaf_b, blurred);
       }
       return;
     }
-    prefetch_volume(a_, a);
-    prefetch_volume(b_, b);
-    stack_.push_back({a, b});
+    of_a.prefetch_child(a);
+    of_b.prefetch_child(b);
+    stack_.push_back({a, b, of_a.volumes().size[i], of_b.volumes().size[j]});
   }
 
   HWY_NOINLINE std::uint32_t ask_cross_axes(const Volumes& x, const Volumes& y, std::size_t j, bool x_is_a,
@@ -174,7 +172,9 @@ class DualTreeTraversal {
   const CloseTests& close_;
   const Eigen::Matrix3d& R_AB_;
   std::vector<VolumePair>& stack_;
-  Expansion<k_rounding, false> expansion_;
+  /// Kept volumes: 4 of 10 are loaded again without, 1 of 8 with 64, which do not fit the first cache.
+  static constexpr std::size_t k_kept = 16;
+  Expansion<k_rounding, false, k_kept> expansion_;
   /// If moving: intervals of fractions of the volumes of x.
   HWY_ALIGN float first_[k_width];
   HWY_ALIGN float last_[k_width];
@@ -189,21 +189,21 @@ template <bool moving>
 class LeafTests {
  public:
   LeafTests(const Tree& a, const Tree& b, const TreeMotion& motion)
-      : a_(a), b_(b), motion_(motion), leaves_a_(a), leaves_b_(b) {}
+      : motion_(motion), leaves_a_(a), leaves_b_(b) {}
 
   /// Calls take(pair of triangles, lane of first() and last()) for those that may intersect.
   template <class Take>
   HWY_INLINE void test(std::uint32_t a, std::uint32_t b, const Take& take) {
-    const LeafLanes& of_b =
-        leaves_b_.get(b, [&](const Tree::Leaf& leaf, LeafLanes& out) { leaves::load_leaf_of_b(leaf, motion_, out); });
-    const LeafLanes& of_a = leaves_a_.get(a, leaves::load_leaf_of_a);
-    std::uint32_t bits = leaves::test_triangles<moving>(of_a, of_b, motion_, first_, last_);
+    const leaves::SideA& of_a = leaves_a_.get(a, motion_);
+    const leaves::SideB& of_b = leaves_b_.get(b, motion_);
+    std::uint32_t bits =
+        leaves::lanes_of(of_a, of_b) & leaves::test_triangles<moving>(of_a, of_b, motion_, first_, last_);
     if (bits != 0 && use_of_cross_edges_.is_due()) {
       const int before = std::popcount(bits);
       bits = leaves::test_across_edges<moving>(of_a, of_b, bits, motion_, first_, last_);
       use_of_cross_edges_.count(before, std::popcount(bits));
     }
-    leaves::for_each_pair(bits, a_.leaves()[a].child, b_.leaves()[b].child, take);
+    leaves::for_each_pair(bits, of_a, of_b, take);
   }
 
   /// If moving: the fractions between which a pair may intersect.
@@ -211,10 +211,9 @@ class LeafTests {
   float last(std::uint32_t lane) const { return last_[lane]; }
 
  private:
-  const Tree& a_;
-  const Tree& b_;
   const TreeMotion& motion_;
-  LeafCache leaves_a_, leaves_b_;
+  leaves::LeafCache<true> leaves_a_;
+  leaves::LeafCache<false> leaves_b_;
   detail::CrossAxesUse use_of_cross_edges_ = moving ? k_use_of_moving_cross_edges : k_use_of_cross_edges;
   HWY_ALIGN float first_[leaves::k_pairs];
   HWY_ALIGN float last_[leaves::k_pairs];

@@ -28,9 +28,10 @@ inline Eigen::Vector3d transform_point(const Pose& X_AB, const Eigen::Vector3d& 
 
 /// Memory of a search, for the next one.
 struct CandidateScratch {
-  /// Two volumes: CloseVolume::volume.
+  /// Two volumes, by their numbers (Tree::Node::number), and the squares of their boxes' diagonals.
   struct VolumePair {
     std::uint32_t a, b;
+    float size_a, size_b;
   };
   /// Two leaves; whether floats blur them.
   struct LeafPair {

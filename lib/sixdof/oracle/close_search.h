@@ -21,13 +21,13 @@ namespace sixdof::detail {
 
 /// A node, or k_leaf plus the index of a leaf, or one triangle of that leaf.
 struct CloseVolume {
-  static constexpr std::uint32_t k_leaf = 1u << 31;
+  static constexpr std::uint32_t k_leaf = Tree::k_leaf_number;
   static constexpr std::uint32_t k_whole = ~std::uint32_t{0};
   std::uint32_t volume;
   std::uint32_t triangle = k_whole;  ///< In tree order; k_whole for the whole volume.
 
   static CloseVolume child_of(const Tree::Node& node, std::size_t i) {
-    return {node.child[i].is_leaf() ? k_leaf + node.leaf[i] : node.child[i].node()};
+    return {node.number[i]};
   }
 };
 

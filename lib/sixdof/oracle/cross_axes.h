@@ -46,20 +46,24 @@ class CrossAxesUse {
 
   /// @return whether to ask them of the next pair
   bool is_due() {
-    ++pairs_;
-    const std::uint32_t mask = (pairs_ <= k_early ? k_early_period : k_period) - 1;
-    return (pairs_ & mask) == 0 || apart_ > worth_ * tested_;
+    if (++pairs_ == next_) {
+      next_ += pairs_ < k_early ? k_early_period : k_period;
+      return true;
+    }
+    return pays_;
   }
   /// @param tested volumes that the other axes left, of which `left` are left
   void count(int tested, int left) {
     tested_ += tested;
     apart_ += tested - left;
+    pays_ = apart_ > worth_ * tested_;
   }
 
  private:
-  static constexpr std::uint32_t k_early = 64, k_early_period = 8, k_period = 64;  // periods: powers of two
+  static constexpr std::uint32_t k_early = 64, k_early_period = 8, k_period = 64;
   double worth_;
-  std::uint32_t pairs_ = 0;
+  std::uint32_t pairs_ = 0, next_ = k_early_period;
+  bool pays_ = false;
   double tested_ = 0.0, apart_ = 0.0;
 };
 

@@ -35,71 +35,96 @@ HWY_INLINE void prefetch_volume(const Tree& tree, std::uint32_t volume) {
 }
 
 /// The children of a node, or one volume that stays whole.
-template <Rounding rounding>
+/// @tparam kept how many of those loaded last are kept, for volumes that meet several of the other tree
+template <Rounding rounding, std::size_t kept = 1>
 class Side {
  public:
-  explicit Side(const Tree& tree) : tree_(&tree) {}
+  explicit Side(const Tree& tree) : nodes_(tree.nodes().data()), leaves_(tree.leaves().data()) {}
 
   /// Loads what it has not loaded already.
   /// @param own, other whose N is the tree's frame, and the other tree's
   template <bool with_front>
   HWY_INLINE void take(std::uint32_t volume, bool splits, const Frame& own, const Frame& other) {
-    if (volume == volume_ && splits == splits_) return;
-    volume_ = volume;
-    splits_ = splits;
+    now_ = &kept_[volume % kept];
+    if (HWY_LIKELY(volume == now_->volume && splits == now_->splits)) return;
+    now_->volume = volume;
+    now_->splits = splits;
     if (splits) {
-      load<with_front>(ChildrenOf{tree_->nodes()[volume]}, own, other);
+      now_->whole = &nodes_[volume].volume;
+      now_->lanes = (1u << nodes_[volume].child_count) - 1;
+      load<with_front>(ChildrenOf{nodes_[volume]}, own, other);
     } else {
+      now_->whole = is_leaf(volume) ? &leaves_[volume - Tree::k_leaf_number].volume : &nodes_[volume].volume;
+      now_->lanes = 1;
       load<with_front>(Whole{whole()}, own, other);
     }
   }
   /// After a frame changed.
-  void forget() { volume_ = k_none; }
-
-  bool splits() const { return splits_; }
-  const Volumes& volumes() const { return volumes_; }
-  /// The volume around all.
-  const Tree::Volume& whole() const { return volume_of(*tree_, volume_); }
-  /// Bits of the lanes in use.
-  std::uint32_t lanes() const { return splits_ ? (1u << tree_->nodes()[volume_].child_count) - 1 : 1u; }
-  /// The volume in a lane.
-  std::uint32_t child(std::size_t i) const {
-    return splits_ ? detail::CloseVolume::child_of(tree_->nodes()[volume_], i).volume : volume_;
+  void forget() {
+    for (Loaded& loaded : kept_) loaded.volume = k_none;
   }
-  void prefetch_child(std::uint32_t child) const { prefetch_volume(*tree_, child); }
+
+  bool splits() const { return now_->splits; }
+  const Volumes& volumes() const { return now_->volumes; }
+  /// The volume around all.
+  const Tree::Volume& whole() const { return *now_->whole; }
+  /// Bits of the lanes in use.
+  std::uint32_t lanes() const { return now_->lanes; }
+  /// The volume in a lane.
+  HWY_INLINE std::uint32_t child(std::size_t i) const {
+    return now_->splits ? nodes_[now_->volume].number[i] : now_->volume;
+  }
+  /// Fetches what a child's children, or its triangles, are loaded from.
+  HWY_INLINE void prefetch_child(std::uint32_t child) const {
+    is_leaf(child) ? prefetch(leaves_[child - Tree::k_leaf_number]) : prefetch(nodes_[child]);
+  }
 
  private:
+  static constexpr std::uint32_t k_none = ~std::uint32_t{0};
+
+  struct Loaded {
+    std::uint32_t volume = k_none;
+    bool splits = false;
+    std::uint32_t lanes = 0;
+    const Tree::Volume* whole = nullptr;
+    Volumes volumes;
+  };
+
   template <bool with_front, class Source>
   HWY_INLINE void load(const Source& source, const Frame& own, const Frame& other) {
-    volumes_.load_own<rounding>(source);
-    volumes_.turn<rounding>(other);
-    if constexpr (with_front) volumes_.set_front<rounding>(source, own);
+    Volumes& volumes = now_->volumes;
+    volumes.load_own<rounding>(source);
+    volumes.turn<rounding>(other);
+    if constexpr (with_front) volumes.set_front<rounding>(source, own);
   }
 
-  static constexpr std::uint32_t k_none = ~std::uint32_t{0};
-  const Tree* tree_;
-  std::uint32_t volume_ = k_none;
-  bool splits_ = false;
-  Volumes volumes_;
+  const Tree::Node* nodes_;
+  const Tree::Leaf* leaves_;
+  Loaded kept_[kept];
+  Loaded* now_ = kept_;
 };
 
 /// Two volumes that are not both leaves.
-template <Rounding rounding, bool with_front>
+template <Rounding rounding, bool with_front, std::size_t kept = 1>
 struct Expansion {
-  Side<rounding> a, b;
+  Side<rounding, kept> a, b;
 
   Expansion(const Tree& tree_a, const Tree& tree_b) : a(tree_a), b(tree_b) {}
 
-  HWY_INLINE void take(const Tree& tree_a, std::uint32_t volume_a, const Tree& tree_b, std::uint32_t volume_b,
+  /// @param size_a, size_b squares of their boxes' diagonals
+  HWY_INLINE void take(std::uint32_t volume_a, float size_a, std::uint32_t volume_b, float size_b,
                        const Frames& frames) {
     // Of two volumes the smaller is split, too, if the square of its size is not below that of the larger divided by
     // this: from 2 to 24 the same within 3 %.
     constexpr float k_alike = 4.0f;
-    const float size_a = volume_of(tree_a, volume_a).squared_diagonal();
-    const float size_b = volume_of(tree_b, volume_b).squared_diagonal();
     const bool leaf_a = is_leaf(volume_a), leaf_b = is_leaf(volume_b);
     a.template take<with_front>(volume_a, !leaf_a && (leaf_b || k_alike * size_a >= size_b), frames.a, frames.b);
     b.template take<with_front>(volume_b, !leaf_b && (leaf_a || k_alike * size_b >= size_a), frames.b, frames.a);
+  }
+  HWY_INLINE void take(const Tree& tree_a, std::uint32_t volume_a, const Tree& tree_b, std::uint32_t volume_b,
+                       const Frames& frames) {
+    take(volume_a, volume_of(tree_a, volume_a).squared_diagonal(), volume_b,
+         volume_of(tree_b, volume_b).squared_diagonal(), frames);
   }
   void forget() {
     a.forget();

@@ -58,112 +58,102 @@ using LeafV = hn::Vec<LeafLanesTag>;
 
 constexpr LeafLanesTag k_leaf_lanes;
 
-/// A leaf's triangles in A's frame, relative to the centre of A's tree. Missing triangles repeat the last.
-struct alignas(64) LeafLanes {
-  float corner[3][3][k_leaf];  // [corner][axis]
-  float normal[3][k_leaf];     // (c1 - c0) x (c2 - c0)
-  float offset[k_leaf];        // normal . c0
-  float lower[3][k_leaf], upper[3][k_leaf];
-  float size[k_leaf];  // sum of the absolute components of both edges from corner 0
-};
+/// The triangles of one leaf for the lanes of all pairs with another leaf's, in A's frame, relative to the centre of A's
+/// tree. Missing triangles repeat the last.
+/// @tparam of_a whether the leaf is A's
+template <bool of_a>
+struct alignas(64) PairSide {
+  float corner[3][3][k_pairs];  // [corner][axis]
+  float normal[3][k_pairs];     // (c1 - c0) x (c2 - c0)
+  float offset[k_pairs];        // normal . c0
+  float lower[3][k_pairs], upper[3][k_pairs];  // of the box; B's is enlarged by the slack
+  float size[k_pairs];  // sum of the absolute components of both edges from corner 0
+  std::uint32_t first;  // triangle, in tree order
+  std::uint32_t count;
 
-/// Fills everything but the corners, from the corners. Boxes are enlarged by `slack`.
-HWY_INLINE void compute_from_corners(LeafLanes& leaf, float slack) {
-  for (std::size_t i = 0; i < k_leaf; i += hn::Lanes(k_leaf_lanes)) {
-    LeafV corner[3][3], u[3], v[3];
-    LeafV size = hn::Zero(k_leaf_lanes);
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t c = 0; c < 3; ++c) corner[c][k] = hn::Load(k_leaf_lanes, leaf.corner[c][k] + i);
-      u[k] = hn::Sub(corner[1][k], corner[0][k]);
-      v[k] = hn::Sub(corner[2][k], corner[0][k]);
-      size = hn::Add(size, hn::Add(hn::Abs(u[k]), hn::Abs(v[k])));
-      const LeafV lower = hn::Min(hn::Min(corner[0][k], corner[1][k]), corner[2][k]);
-      const LeafV upper = hn::Max(hn::Max(corner[0][k], corner[1][k]), corner[2][k]);
-      hn::Store(hn::Sub(lower, hn::Set(k_leaf_lanes, slack)), k_leaf_lanes, leaf.lower[k] + i);
-      hn::Store(hn::Add(upper, hn::Set(k_leaf_lanes, slack)), k_leaf_lanes, leaf.upper[k] + i);
-    }
-    hn::Store(size, k_leaf_lanes, leaf.size + i);
-    LeafV offset = hn::Zero(k_leaf_lanes);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-      const LeafV normal = hn::Sub(hn::Mul(u[l], v[m]), hn::Mul(u[m], v[l]));
-      hn::Store(normal, k_leaf_lanes, leaf.normal[k] + i);
-      offset = unfused_mul_add(normal, corner[0][k], offset);
-    }
-    hn::Store(offset, k_leaf_lanes, leaf.offset + i);
-  }
-}
-
-HWY_INLINE void load_leaf_of_b(const Tree::Leaf& from, const TreeMotion& x, LeafLanes& out) {
-  for (std::size_t i = 0; i < k_leaf; i += hn::Lanes(k_leaf_lanes)) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      LeafV p[3];
-      for (std::size_t k = 0; k < 3; ++k) p[k] = hn::Load(k_leaf_lanes, from.corner[c][k] + i);
+  HWY_NOINLINE void load(const Tree::Leaf& leaf, const TreeMotion& x) {
+    first = leaf.child.first();
+    count = leaf.child.count();
+    for (std::size_t i = 0; i < k_leaf; i += hn::Lanes(k_leaf_lanes)) {
+      LeafV p[3][3];
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t k = 0; k < 3; ++k) p[c][k] = hn::Load(k_leaf_lanes, leaf.corner[c][k] + i);
+        if constexpr (!of_a) move_to_a(p[c], x);
+        for (std::size_t k = 0; k < 3; ++k) write(p[c][k], corner[c][k], i);
+      }
+      const LeafV slack = hn::Set(k_leaf_lanes, of_a ? 0.0f : x.slack);
+      LeafV u[3], v[3], length = hn::Zero(k_leaf_lanes), along = length;
       for (std::size_t k = 0; k < 3; ++k) {
-        LeafV q = hn::Set(k_leaf_lanes, x.start[k]);
-        for (std::size_t j = 0; j < 3; ++j) q = unfused_mul_add(hn::Set(k_leaf_lanes, x.frames.a.axis[j][k]), p[j], q);
-        hn::Store(q, k_leaf_lanes, out.corner[c][k] + i);
+        u[k] = hn::Sub(p[1][k], p[0][k]);
+        v[k] = hn::Sub(p[2][k], p[0][k]);
+        length = hn::Add(length, hn::Add(hn::Abs(u[k]), hn::Abs(v[k])));
+        write(hn::Sub(hn::Min(hn::Min(p[0][k], p[1][k]), p[2][k]), slack), lower[k], i);
+        write(hn::Add(hn::Max(hn::Max(p[0][k], p[1][k]), p[2][k]), slack), upper[k], i);
+      }
+      write(length, size, i);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+        const LeafV n = hn::Sub(hn::Mul(u[l], v[m]), hn::Mul(u[m], v[l]));
+        write(n, normal[k], i);
+        along = unfused_mul_add(n, p[0][k], along);
+      }
+      write(along, offset, i);
+    }
+  }
+
+ private:
+  static HWY_INLINE void move_to_a(LeafV (&p)[3], const TreeMotion& x) {
+    const LeafV q[3] = {p[0], p[1], p[2]};
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = hn::Set(k_leaf_lanes, x.start[k]);
+      for (std::size_t j = 0; j < 3; ++j) {
+        p[k] = unfused_mul_add(hn::Set(k_leaf_lanes, x.frames.a.axis[j][k]), q[j], p[k]);
       }
     }
   }
-  compute_from_corners(out, x.slack);
-}
 
-HWY_INLINE void load_leaf_of_a(const Tree::Leaf& from, LeafLanes& out) {
-  std::memcpy(out.corner, from.corner, sizeof(out.corner));
-  compute_from_corners(out, 0.0f);
-}
+  /// Writes values of triangles i, i + 1, ... to the lanes of their pairs.
+  static HWY_INLINE void write(LeafV x, float* to, std::size_t i) {
+#if HWY_TARGET == HWY_SCALAR
+    for (std::size_t other = 0; other < k_leaf; ++other) {
+      hn::Store(x, k_leaf_lanes, to + (of_a ? k_leaf * i + other : k_leaf * other + i));
+    }
+#else
+    (void)i;
+    hn::Store(of_a ? hn::Broadcast<0>(x) : x, k_leaf_lanes, to);
+    hn::Store(of_a ? hn::Broadcast<1>(x) : x, k_leaf_lanes, to + k_leaf);
+    hn::Store(of_a ? hn::Broadcast<2>(x) : x, k_leaf_lanes, to + 2 * k_leaf);
+    hn::Store(of_a ? hn::Broadcast<3>(x) : x, k_leaf_lanes, to + 3 * k_leaf);
+#endif
+  }
+};
+using SideA = PairSide<true>;
+using SideB = PairSide<false>;
 
-/// The lanes of leaves, made when they are asked for and kept for a while: the leaves of one node do not displace each
+/// Leaves of one tree, made when they are asked for and kept for a while: the leaves of one node do not displace each
 /// other.
+template <bool of_a>
 class LeafCache {
  public:
-  explicit LeafCache(const Tree& tree) : tree_(tree) { std::fill_n(index_, k_slots, ~0u); }
+  explicit LeafCache(const Tree& tree) : leaves_(tree.leaves().data()) { std::fill_n(index_, k_slots, ~0u); }
 
-  template <class Load>
-  HWY_INLINE const LeafLanes& get(std::uint32_t leaf, const Load& load_leaf) {
+  HWY_INLINE const PairSide<of_a>& get(std::uint32_t leaf, const TreeMotion& motion) {
     const std::size_t slot = leaf % k_slots;
     if (index_[slot] != leaf) {
-      load_leaf(tree_.leaves()[leaf], lanes_[slot]);
       index_[slot] = leaf;
+      sides_[slot].load(leaves_[leaf], motion);
     }
-    return lanes_[slot];
+    return sides_[slot];
   }
 
  private:
   static constexpr std::size_t k_slots = Tree::k_width;
-  const Tree& tree_;
+  const Tree::Leaf* leaves_;
   std::uint32_t index_[k_slots];
-  LeafLanes lanes_[k_slots];
+  PairSide<of_a> sides_[k_slots];
 };
 
-/// Values of A's and of B's triangles for the lanes i, i + 1, ... of the pairs.
-HWY_INLINE V load_of_a(const float* p, std::size_t i) {
-#if HWY_TARGET == HWY_SCALAR
-  return set(p[i / k_leaf]);
-#else
-  if constexpr (hn::MaxLanes(k_lanes) <= k_leaf) {
-    return set(p[i / k_leaf]);
-  } else {
-    // Each block of 128 bits repeats one of the four values.
-    alignas(64) static constexpr std::uint8_t k_bytes[4 * k_pairs] = {
-        0, 1, 2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  0,  1,  2,  3,  4,  5,  6,  7, 4,  5,
-        6, 7, 4,  5,  6,  7,  4,  5,  6,  7,  8,  9,  10, 11, 8,  9,  10, 11, 8,  9, 10, 11,
-        8, 9, 10, 11, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15, 12, 13, 14, 15};
-    const hn::Repartition<std::uint8_t, Lanes> bytes;
-    const auto four = hn::BitCast(bytes, hn::LoadDup128(k_lanes, p));
-    return hn::BitCast(k_lanes, hn::TableLookupBytes(four, hn::Load(bytes, k_bytes + 4 * i)));
-  }
-#endif
-}
-HWY_INLINE V load_of_b(const float* p, std::size_t i) {
-#if HWY_TARGET == HWY_SCALAR
-  return set(p[i % k_leaf]);
-#else
-  (void)i;
-  return hn::LoadDup128(k_lanes, p);
-#endif
-}
+HWY_INLINE V load(const float* p) { return hn::Load(k_lanes, p); }
 
 /// Corners and normals for the lanes i, i + 1, ... of the pairs, and the tolerances of their plane distances.
 struct PairLanes {
@@ -176,18 +166,18 @@ struct PairLanes {
   /// a sum of products of edges (size E) whose coordinates are off by twice the slack s: 8 s E. A corner of the other
   /// triangle (size E') is at most E + E' + 6 s away, off by 2 s: together below 16 s E (2 E + E' + 6 s), which
   /// includes the rounding of the products with the normal, below s E^2.
-  HWY_INLINE PairLanes(const LeafLanes& a, const LeafLanes& b, std::size_t i, float slack) {
+  HWY_INLINE PairLanes(const SideA& a, const SideB& b, std::size_t i, float slack) {
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t c = 0; c < 3; ++c) {
-        corner_a[c][k] = load_of_a(a.corner[c][k], i);
-        corner_b[c][k] = load_of_b(b.corner[c][k], i);
+        corner_a[c][k] = load(a.corner[c][k] + i);
+        corner_b[c][k] = load(b.corner[c][k] + i);
       }
-      normal_a[k] = load_of_a(a.normal[k], i);
-      normal_b[k] = load_of_b(b.normal[k], i);
+      normal_a[k] = load(a.normal[k] + i);
+      normal_b[k] = load(b.normal[k] + i);
     }
-    offset_a = load_of_a(a.offset, i);
-    offset_b = load_of_b(b.offset, i);
-    const V size_a = load_of_a(a.size, i), size_b = load_of_b(b.size, i);
+    offset_a = load(a.offset + i);
+    offset_b = load(b.offset + i);
+    const V size_a = load(a.size + i), size_b = load(b.size + i);
     const V s = set(16.0f * slack);
     const V both = hn::Add(hn::Add(size_a, size_b), set(6.0f * slack));
     tolerance_a = hn::Mul(hn::Mul(s, size_a), hn::Add(both, size_a));
@@ -260,7 +250,7 @@ HWY_INLINE Rate rate_of(V rate) { return Rate::of(rate, 1e-30f, Tree::k_empty); 
 /// Pairs of triangles (bits) that may intersect: by their boxes, and by both planes.
 /// @param first, last if moving: the fractions between which they may, of all pairs
 template <bool moving>
-HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, const TreeMotion& x, float* first,
+HWY_INLINE std::uint32_t test_triangles(const SideA& a, const SideB& b, const TreeMotion& x, float* first,
                                         float* last) {
   const detail::Passage& passage = x.of_b;
   const V displacement[3] = {set(passage.in_x[0]), set(passage.in_x[1]), set(passage.in_x[2])};
@@ -268,12 +258,12 @@ HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, 
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
     Overlaps<moving> overlaps(0.0f);
     for (std::size_t k = 0; k < 3; ++k) {  // B's boxes include the slack
-      overlaps.axis(load_of_a(a.lower[k], i), load_of_a(a.upper[k], i), load_of_b(b.lower[k], i),
-                    load_of_b(b.upper[k], i), Rate(passage.along_x[k]));
+      overlaps.axis(load(a.lower[k] + i), load(a.upper[k] + i), load(b.lower[k] + i),
+                    load(b.upper[k] + i), Rate(passage.along_x[k]));
     }
     if (hn::AllFalse(k_lanes, overlaps.store(first + i, last + i))) continue;
     PairLanes p(a, b, i, x.slack);
-    if constexpr (moving) p.widen(load_of_a(a.size, i), load_of_b(b.size, i), displacement);
+    if constexpr (moving) p.widen(load(a.size + i), load(b.size + i), displacement);
     const Projection on_a(p.normal_a, p.corner_b), on_b(p.normal_b, p.corner_a);
     overlaps.axis(hn::Sub(p.offset_a, p.tolerance_a), hn::Add(p.offset_a, p.tolerance_a), on_a.low, on_a.high,
                   rate_of(dot(p.normal_a, displacement)));
@@ -287,7 +277,7 @@ HWY_INLINE std::uint32_t test_triangles(const LeafLanes& a, const LeafLanes& b, 
 /// Pairs of triangles (bits), of those in `bits`, that no axis across an edge of each separates; narrows the fractions.
 /// With the tests before, by both planes, they intersect but for rounding.
 template <bool moving>
-HWY_NOINLINE std::uint32_t test_across_edges(const LeafLanes& a, const LeafLanes& b, std::uint32_t bits,
+HWY_NOINLINE std::uint32_t test_across_edges(const SideA& a, const SideB& b, std::uint32_t bits,
                                              const TreeMotion& x, float* first, float* last) {
   std::uint32_t overlapping = 0;
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
@@ -304,13 +294,19 @@ HWY_NOINLINE std::uint32_t test_across_edges(const LeafLanes& a, const LeafLanes
   return bits & overlapping;
 }
 
-/// Calls take(pair, lane) for the pairs of triangles whose bits are set, but for lanes without a triangle.
+/// The bits of the lanes that hold a pair of their own.
+HWY_INLINE std::uint32_t lanes_of(const SideA& a, const SideB& b) {
+  const std::uint32_t row = (1u << b.count) - 1;
+  return 0x1111u * row & ((1u << k_leaf * a.count) - 1);
+}
+
+/// Calls take(pair, lane) for the pairs of triangles whose bits are set.
 template <class Take>
-HWY_INLINE void for_each_pair(std::uint32_t bits, Tree::Child leaf_a, Tree::Child leaf_b, const Take& take) {
+HWY_INLINE void for_each_pair(std::uint32_t bits, const SideA& a, const SideB& b, const Take& take) {
   for (; bits != 0; bits &= bits - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-    const std::uint32_t t = lane / k_leaf, u = lane % k_leaf;
-    if (t < leaf_a.count() && u < leaf_b.count()) take(TrianglePair{leaf_a.first() + t, leaf_b.first() + u}, lane);
+    constexpr auto k_row = static_cast<std::uint32_t>(k_leaf);
+    take(TrianglePair{a.first + lane / k_row, b.first + lane % k_row}, lane);
   }
 }
 

@@ -74,20 +74,23 @@ struct alignas(64) Volumes {
   float normal[3][k_width], other_normal[3][k_width];      // of the slabs
   float below[k_width], above[k_width];                    // of the slabs, from the centres of the boxes
   float front[k_width];                                    // greatest p . direction
+  float size[k_width];                                     // squares of the boxes' diagonals
 
   /// Sets what is in the own frame, but for `front`.
   template <Rounding rounding, class Source>
   HWY_INLINE void load_own(const Source& from) {
     for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-      V on_normal = hn::Zero(k_lanes);
+      V on_normal = hn::Zero(k_lanes), squared = hn::Zero(k_lanes);
       for (std::size_t k = 0; k < 3; ++k) {
         const V lower = from.lower(k, i), upper = from.upper(k, i), n = from.normal(k, i);
-        const V c = hn::Mul(set(0.5f), hn::Add(lower, upper));
+        const V c = hn::Mul(set(0.5f), hn::Add(lower, upper)), edge = hn::Sub(upper, lower);
         on_normal = mul_add<rounding>(n, c, on_normal);
+        squared = unfused_mul_add(edge, edge, squared);
         hn::Store(c, k_lanes, center[k] + i);
-        hn::Store(hn::Mul(set(0.5f), hn::Sub(upper, lower)), k_lanes, half[k] + i);
+        hn::Store(hn::Mul(set(0.5f), edge), k_lanes, half[k] + i);
         hn::Store(n, k_lanes, normal[k] + i);
       }
+      hn::Store(squared, k_lanes, size + i);
       hn::Store(hn::Sub(from.slab_lower(i), on_normal), k_lanes, below + i);
       hn::Store(hn::Sub(from.slab_upper(i), on_normal), k_lanes, above + i);
     }
