@@ -11,48 +11,69 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+// After foreach_target.h: this is compiled once per instruction set, too.
+#include <sixdof/oracle/double_lanes-inl.h>
+
 // The distance of two triangles that do not intersect is the least of the distances of 3 x 3 pairs of edges and of 6
-// corners from the faces that they lie over. The loops over both have no branches, so that the compiler vectorizes
-// them for each instruction set; it fuses no operations. Where edges are nearly parallel, the positions of the closest
-// points along them are ill-conditioned, but their distance is not: whatever the parameters s and r in 0 .. 1, both are
-// points of the triangles.
+// corners from the faces that they lie over. Whatever the parameters s and r of a feature, both points are points of
+// the triangles; so where edges are nearly parallel, and the positions of the closest points are ill-conditioned, their
+// distance is not. Triangles that are farther apart along the line through the closest points than the rounding do not
+// intersect.
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE double clamp(double x) {
-  x = x > 0.0 ? x : 0.0;
-  return x < 1.0 ? x : 1.0;
-}
+using namespace double_lanes::HWY_NAMESPACE;
 
-void separate(const MovingPair::Features& HWY_RESTRICT pair, double t, const Eigen::Vector3d& direction,
-              MovingPair::Separations& HWY_RESTRICT out) {
-  const double shift[3] = {t * direction[0], t * direction[1], t * direction[2]};
-  for (std::size_t n = 0; n < MovingPair::k_edges; ++n) {
-    const double x = pair.from[0][n] + shift[0];
-    const double y = pair.from[1][n] + shift[1];
-    const double z = pair.from[2][n] + shift[2];
-    const double c = pair.u[0][n] * x + pair.u[1][n] * y + pair.u[2][n] * z;
-    const double f = pair.v[0][n] * x + pair.v[1][n] * y + pair.v[2][n] * z;
-    // Closest points of two lines, then of each segment to the other's point.
-    double s = clamp((c * pair.vv[n] - pair.uv[n] * f) * pair.per_nn[n]);
-    const double r = clamp((pair.uv[n] * s - f) * pair.per_vv[n]);
-    s = clamp((c + pair.uv[n] * r) * pair.per_uu[n]);
-    out.w[0][n] = x + r * pair.v[0][n] - s * pair.u[0][n];
-    out.w[1][n] = y + r * pair.v[1][n] - s * pair.u[1][n];
-    out.w[2][n] = z + r * pair.v[2][n] - s * pair.u[2][n];
-    out.squared[n] = out.w[0][n] * out.w[0][n] + out.w[1][n] * out.w[1][n] + out.w[2][n] * out.w[2][n];
+HWY_INLINE V dot(const V3& a, const V3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE V clamp(V x) { return hn::Min(hn::Max(x, hn::Zero(k_lanes)), set(1.0)); }
+
+/// x / y for y >= 0; whatever it is where both are zero, it is finite.
+HWY_INLINE V quotient(V x, V y) { return hn::Div(x, hn::Max(y, set(std::numeric_limits<double>::min()))); }
+
+/// Sets w to the shortest vector from A to B by their features. Returns whether it shows that they are disjoint.
+bool closest_by_features(const MovingPair::Features (&pairs)[2], const Eigen::Vector3d& shift, Eigen::Vector3d& w) {
+  struct alignas(64) {
+    double w[3][k_batch], squared[k_batch];
+  } found[2];
+  const V3 move{set(shift[0]), set(shift[1]), set(shift[2])};
+  for (std::size_t half = 0; half < 2; ++half) {
+    const MovingPair::Features& pair = pairs[half];
+    for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
+      const V3 from = load(pair.from, i) + move, u = load(pair.u, i), v = load(pair.v, i);
+      const V c = dot(u, from), f = dot(v, from), uu = dot(u, u), vv = dot(v, v), uv = dot(u, v);
+      // Closest points of two lines, then of each segment to the other's point. Of parallel lines any points will do.
+      const V first =
+          clamp(quotient(hn::Sub(hn::Mul(c, vv), hn::Mul(uv, f)), hn::Sub(hn::Mul(uu, vv), hn::Mul(uv, uv))));
+      const V r = clamp(quotient(hn::Sub(hn::Mul(uv, first), f), vv));
+      const V s = clamp(quotient(hn::Add(hn::Mul(uv, r), c), uu));
+      const V3 to = from + r * v - s * u;
+      const M possible = hn::Le(hn::Add(s, r), hn::Load(k_lanes, pair.most + i));
+      store(to, found[half].w, i);
+      hn::Store(select(possible, dot(to, to), set(std::numeric_limits<double>::max())), k_lanes,
+                found[half].squared + i);
+    }
   }
-  for (std::size_t n = 0; n < MovingPair::k_corners; ++n) {
-    const double x = pair.offset[0][n] + t * pair.velocity[0][n];
-    const double y = pair.offset[1][n] + t * pair.velocity[1][n];
-    const double z = pair.offset[2][n] + t * pair.velocity[2][n];
-    out.signed_distance[n] = pair.normal[0][n] * x + pair.normal[1][n] * y + pair.normal[2][n] * z;
-    const double first = pair.dual_1[0][n] * x + pair.dual_1[1][n] * y + pair.dual_1[2][n] * z;
-    const double second = pair.dual_2[0][n] * x + pair.dual_2[1][n] * y + pair.dual_2[2][n] * z;
-    out.outside[n] = std::max(std::max(-first, -second), first + second - 1.0);
+  std::size_t closest = 0;
+  for (std::size_t n = 1; n < 2 * k_batch; ++n) {
+    if (found[n / k_batch].squared[n % k_batch] < found[closest / k_batch].squared[closest % k_batch]) closest = n;
   }
+  w = point(found[closest / k_batch].w, closest % k_batch);
+  // `from` has all differences of two corners.
+  const V3 axis{set(w[0]), set(w[1]), set(w[2])};
+  V least = set(std::numeric_limits<double>::max()), farthest = hn::Zero(k_lanes);
+  for (std::size_t half = 0; half < 2; ++half) {
+    for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
+      const V3 from = load(pairs[half].from, i) + move;
+      least = hn::Min(least, dot(axis, from));
+      farthest = hn::Max(farthest, dot(from, from));
+    }
+  }
+  return hn::GetLane(hn::MinOfLanes(k_lanes, least)) >
+         detail::k_safe_gap * std::sqrt(w.squaredNorm() * hn::GetLane(hn::MaxOfLanes(k_lanes, farthest)));
 }
 
 }  // namespace HWY_NAMESPACE
@@ -62,101 +83,57 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sixdof::ray_cast {
 
-HWY_EXPORT(separate);
+HWY_EXPORT(closest_by_features);
 
 namespace {
 
 using Eigen::Vector3d;
 
-/// Triangles whose edges meet at a smaller sine are left to triangle_triangle_distance(): rounding may rotate their
-/// normal by more than 1e-10.
+/// Triangles whose edges meet at a smaller sine are left to triangle_triangle_distance().
 constexpr double k_least_sine = 1e-6;
-/// Error of a corner's signed distance from a plane, in units of the longest edge: ten times that of the normal.
-constexpr double k_plane_error = 1e-9;
 
-double inverse(double x) { return x > 0.0 ? 1.0 / x : 0.0; }
+Vector3d edge(const TriangleCorners& t, std::size_t i) { return t[(i + 1) % 3] - t[i]; }
+
+bool is_degenerate(const TriangleCorners& t) {
+  const Vector3d u = edge(t, 0), v = edge(t, 1);
+  return u.cross(v).squaredNorm() <= k_least_sine * k_least_sine * u.squaredNorm() * v.squaredNorm();
+}
 
 }  // namespace
 
 MovingPair::MovingPair(const TriangleCorners& a, const TriangleCorners& b, const Vector3d& direction)
-    : a_(a), b_(b), direction_(direction) {
-  Features& f = features_;
-  const TriangleCorners edge_a{a[1] - a[0], a[2] - a[1], a[0] - a[2]};
-  const TriangleCorners edge_b{b[1] - b[0], b[2] - b[1], b[0] - b[2]};
-  for (std::size_t n = 0; n < k_edges; ++n) {
-    const std::size_t i = n < 9 ? n / 3 : 2;
-    const std::size_t j = n % 3;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      f.from[k][n] = b[j][axis] - a[i][axis];
-      f.u[k][n] = edge_a[i][axis];
-      f.v[k][n] = edge_b[j][axis];
+    : a_(a), b_(b), direction_(direction), degenerate_(is_degenerate(a) || is_degenerate(b)) {
+  std::size_t n = 0;
+  const auto add = [&](const Vector3d& from, const Vector3d& u, const Vector3d& v, double most) {
+    Features& features = features_[n / Features::k_count];
+    const std::size_t lane = n++ % Features::k_count;
+    for (int k = 0; k < 3; ++k) {
+      features.from[k][lane] = from[k];
+      features.u[k][lane] = u[k];
+      features.v[k][lane] = v[k];
     }
+    features.most[lane] = most;
+  };
+  const Vector3d edges_a[3] = {edge(a, 0), edge(a, 1), edge(a, 2)}, edges_b[3] = {edge(b, 0), edge(b, 1), edge(b, 2)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) add(b[j] - a[i], edges_a[i], edges_b[j], 2.0);
+    add(b[0] - a[i], edges_b[2], edges_b[0], 1.0);
+    add(b[i] - a[0], edges_a[0], edges_a[2], 1.0);
   }
-  for (std::size_t n = 0; n < k_edges; ++n) {
-    f.uu[n] = f.u[0][n] * f.u[0][n] + f.u[1][n] * f.u[1][n] + f.u[2][n] * f.u[2][n];
-    f.vv[n] = f.v[0][n] * f.v[0][n] + f.v[1][n] * f.v[1][n] + f.v[2][n] * f.v[2][n];
-    f.uv[n] = f.u[0][n] * f.v[0][n] + f.u[1][n] * f.v[1][n] + f.u[2][n] * f.v[2][n];
-    f.per_uu[n] = inverse(f.uu[n]);
-    f.per_vv[n] = inverse(f.vv[n]);
-    f.per_nn[n] = inverse(f.uu[n] * f.vv[n] - f.uv[n] * f.uv[n]);
-  }
-  plane_error_ = k_plane_error *
-                 std::sqrt(std::max(*std::max_element(f.uu, f.uu + k_edges), *std::max_element(f.vv, f.vv + k_edges)));
-  for (std::size_t n = 0; n < k_corners; ++n) {
-    const bool of_a = n < 3;
-    const TriangleCorners& face = of_a ? b : a;
-    const Vector3d& corner = of_a ? a[n] : b[n - 3];
-    const Vector3d first = face[1] - face[0];
-    const Vector3d second = face[2] - face[0];
-    const Vector3d normal = first.cross(second);
-    const double length2 = normal.squaredNorm();
-    degenerate_ = degenerate_ || length2 <= k_least_sine * k_least_sine * first.squaredNorm() * second.squaredNorm();
-    const double per_length2 = inverse(length2);
-    const Vector3d unit = normal * std::sqrt(per_length2);
-    const Vector3d dual_1 = second.cross(normal) * per_length2;
-    const Vector3d dual_2 = normal.cross(first) * per_length2;
-    const Vector3d offset = corner - face[0];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      f.offset[k][n] = offset[axis];
-      f.normal[k][n] = unit[axis];
-      f.dual_1[k][n] = dual_1[axis];
-      f.dual_2[k][n] = dual_2[axis];
-      f.velocity[k][n] = of_a ? -direction[axis] : direction[axis];
-    }
-  }
+  add(b[2] - a[2], edges_a[2], edges_b[2], 2.0);
 }
 
 MovingPair::Distance MovingPair::distance_at(double t) const {
-  Separations x;
-  HWY_DYNAMIC_DISPATCH(separate)(features_, t, direction_, x);
-  Distance closest{.value = 0.0, .axis = Vector3d::Zero(), .slope = 0.0};
-  // Whether corners n .. n + 2 may lie on both sides of the other triangle's plane.
-  const auto straddles = [&](std::size_t n) {
-    const auto [low, high] = std::minmax({x.signed_distance[n], x.signed_distance[n + 1], x.signed_distance[n + 2]});
-    return low <= plane_error_ && high >= -plane_error_;
-  };
-  if (degenerate_ || (straddles(0) && straddles(3))) {  // they may intersect
-    const Vector3d move = t * direction_;
+  const Vector3d move = t * direction_;
+  Distance closest;
+  const bool disjoint = HWY_DYNAMIC_DISPATCH(closest_by_features)(features_, move, closest.axis) && !degenerate_;
+  if (!disjoint) {
     const ClosestPoints points = triangle_triangle_distance(a_, {b_[0] + move, b_[1] + move, b_[2] + move});
-    closest.value = points.distance;
     closest.axis = points.on_b - points.on_a;
-  } else {
-    std::size_t best = 0;
-    for (std::size_t n = 1; n < k_edges; ++n) best = x.squared[n] < x.squared[best] ? n : best;
-    closest.axis = Vector3d(x.w[0][best], x.w[1][best], x.w[2][best]);
-    closest.value = std::sqrt(x.squared[best]);
-    for (std::size_t n = 0; n < k_corners; ++n) {
-      const double distance = std::abs(x.signed_distance[n]);
-      if (x.outside[n] > 0.0 || !(distance < closest.value)) continue;
-      const double from_a_to_b = n < 3 ? -x.signed_distance[n] : x.signed_distance[n];
-      const Vector3d normal(features_.normal[0][n], features_.normal[1][n], features_.normal[2][n]);
-      closest.value = distance;
-      closest.axis = from_a_to_b * normal;
-    }
+    closest.value = points.distance;
   }
   const double length = closest.axis.norm();
+  if (disjoint) closest.value = length;
   if (length > 0.0) closest.axis /= length;
   closest.slope = closest.axis.dot(direction_);
   return closest;
@@ -206,7 +183,6 @@ Eigen::Vector3d sharp_axis(const TriangleCorners& reflected, const TriangleCorne
     best_value = value;
     best = n;
   };
-  const auto edge = [](const TriangleCorners& t, std::size_t i) -> Eigen::Vector3d { return t[(i + 1) % 3] - t[i]; };
   try_cross_product(edge(reflected, 0), edge(reflected, 1));
   try_cross_product(edge(b, 0), edge(b, 1));
   for (std::size_t i = 0; i < 3; ++i) {
