@@ -12,12 +12,14 @@
 #include <sixdof/models/model_catalogue.h>
 
 #include "../configuration/shapes.h"
+#include "triangles_of.h"
 
 namespace sixdof::ray_cast {
 namespace {
 
 using test::random_direction;
 using test::random_rotation;
+using test::triangles_of;
 
 /// A bound may be above the distance by the rounding of keeping and reading it, in units of Cast::size(), less what it
 /// is lowered by where it is made.
@@ -25,18 +27,18 @@ constexpr double k_rounding = 1e-7;
 /// Of translations along one ray, found with and without a front: the error of exact distances.
 constexpr double k_same_translation = 1e-12;
 
-struct Trees {
-  Trees(const Mesh& mesh_a, const Mesh& mesh_b, const Eigen::Vector4d& q)
-      : a(std::make_shared<CastMesh>(std::make_shared<Tree>(mesh_a))),
-        b(std::make_shared<CastMesh>(std::make_shared<Tree>(mesh_b))) {
-    a.transform(-Eigen::Matrix3d::Identity());
-    b.transform(ConfigurationRay(mesh_a, mesh_b, q).R);
-  }
-  CastTree a, b;
+struct Meshes {
+  Meshes(const Mesh& mesh_a, const Mesh& mesh_b, const Eigen::Vector4d& q)
+      : a(std::make_shared<Tree>(mesh_a)),
+        b(std::make_shared<Tree>(mesh_b)),
+        R(ConfigurationRay(mesh_a, mesh_b, q).R) {}
+  CastMesh a, b;
+  Eigen::Matrix3d R;
 };
 
-Cast cast_along(const Trees& trees, const Eigen::Vector3d& u) {
-  Cast cast(trees.a, trees.b);
+Cast cast_along(const Meshes& meshes, const Eigen::Vector3d& u) {
+  Cast cast(meshes.a, meshes.b);
+  cast.set_rotation(meshes.R);
   cast.direction = u;
   return cast;
 }
@@ -49,27 +51,15 @@ double find(Cast& cast, double target) {
   return cast.best.pair ? cast.best.translation : -1.0;
 }
 
-/// The triangles of a slot's volume, in tree order: first and count.
-std::pair<std::uint32_t, std::uint32_t> triangles_of(const CastTree& cast_tree, std::uint32_t slot) {
-  const Tree& tree = cast_tree.mesh().tree();
-  if (slot == CastVolume::k_root) return {0, static_cast<std::uint32_t>(tree.corners().size())};
-  const Tree::Child child = tree.nodes()[slot / Tree::k_width].child[slot % Tree::k_width];
-  if (child.is_leaf()) return {child.first(), child.count()};
-  const Tree::Node& node = tree.nodes()[child.node()];
-  return {node.first_triangle, node.triangle_count};
-}
-
-double distance(const Cast& cast, std::uint32_t slot_a, std::uint32_t slot_b, double t) {
-  const auto [first_a, count_a] = triangles_of(cast.a, slot_a);
-  const auto [first_b, count_b] = triangles_of(cast.b, slot_b);
+double distance(const Cast& cast, std::uint32_t a, std::uint32_t b, double t) {
+  const auto [first_a, count_a] = triangles_of(cast.a.tree(), a);
+  const auto [first_b, count_b] = triangles_of(cast.b.tree(), b);
   double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = first_a; i < first_a + count_a; ++i) {
-    const TriangleCorners reflected = cast.a.triangle(i);
-    const TriangleCorners a{-reflected[0], -reflected[1], -reflected[2]};
     for (std::uint32_t j = first_b; j < first_b + count_b; ++j) {
-      TriangleCorners b = cast.b.triangle(j);
-      for (Eigen::Vector3d& corner : b) corner += t * cast.direction;
-      least = std::min(least, triangle_triangle_distance(a, b).distance);
+      TriangleCorners moved = cast.b.triangle(j);
+      for (Eigen::Vector3d& corner : moved) corner = cast.R * corner + t * cast.direction;
+      least = std::min(least, triangle_triangle_distance(cast.a.triangle(i), moved).distance);
     }
   }
   return least;
@@ -87,10 +77,12 @@ int check_bounds(const Cast& cast) {
       if (offset == CastFront::k_no_bound || offset == CastFront::k_not_in_front) continue;
       EXPECT_GE(slope, 0.0f);
       EXPECT_LE(slope, 1.0f + 1e-6f);
-      const auto own = static_cast<std::uint32_t>(Tree::k_width * expansion.node + lane);
-      const std::uint32_t a = expansion.expands_a ? own : expansion.other.slot;
-      const std::uint32_t b = expansion.expands_a ? expansion.other.slot : own;
-      if (std::uint64_t{triangles_of(cast.a, a).second} * triangles_of(cast.b, b).second > k_most_pairs) continue;
+      const Tree& tree = (expansion.expands_a ? cast.a : cast.b).tree();
+      const std::uint32_t own = detail::CloseVolume::child_of(tree.nodes()[expansion.node], lane).volume;
+      const std::uint32_t a = expansion.expands_a ? own : expansion.other;
+      const std::uint32_t b = expansion.expands_a ? expansion.other : own;
+      if (std::uint64_t{triangles_of(cast.a.tree(), a).second} * triangles_of(cast.b.tree(), b).second > k_most_pairs)
+        continue;
       // At translations above that at which the bound was made, it says no more than that the target is exceeded.
       for (const double fraction : {0.0, 0.31, 0.77, 0.95, 1.0, 1.04}) {
         const double t = fraction * cast.best.translation;
@@ -115,9 +107,9 @@ TEST(CastFront, BoundsAreNeverAboveTheDistance) {
   };
   int checked = 0;
   for (const auto& [a, b] : pairs) {
-    for (int i = 0; i < 3; ++i) {
-      const Trees trees(a, b, random_rotation(random));
-      Cast cast = cast_along(trees, random_direction(random));
+    for (int i = 0; i < 5; ++i) {
+      const Meshes meshes(a, b, random_rotation(random));
+      Cast cast = cast_along(meshes, random_direction(random));
       for (const double percent : {22.0, 21.0, 4.0, 1e-9}) {
         if (find(cast, 0.01 * percent * a.diagonal()) < 0.0) break;
         checked += check_bounds(cast);
@@ -135,12 +127,12 @@ TEST(CastFront, FindsTheSameHitsAndSavesMostOfTheWork) {
   std::uint64_t without = 0;
   for (const auto& [first, second] : {std::pair(&a, &b), std::pair(&b, &a)}) {
     for (int i = 0; i < 4; ++i) {
-      const Trees trees(*first, *second, random_rotation(random));
+      const Meshes meshes(*first, *second, random_rotation(random));
       const Eigen::Vector3d u = random_direction(random);
-      Cast cast = cast_along(trees, u);
+      Cast cast = cast_along(meshes, u);
       for (int percent = 30; percent >= 0; --percent) {
         const double target = distance_bucket(*first, percent).target;
-        Cast fresh = cast_along(trees, u);
+        Cast fresh = cast_along(meshes, u);
         EXPECT_NEAR(find(cast, target), find(fresh, target), k_same_translation * cast.size()) << percent;
         without += fresh.counts.nodes + fresh.counts.leaf_pairs;
       }
@@ -156,12 +148,12 @@ TEST(CastFront, TakesTargetsInAnyOrder) {
   const Mesh a = load_model("torus-knot-2000");
   const Mesh b = load_model("bumpy-sphere-600");
   for (int i = 0; i < 10; ++i) {
-    const Trees trees(a, b, random_rotation(random));
+    const Meshes meshes(a, b, random_rotation(random));
     const Eigen::Vector3d u = random_direction(random);
-    Cast cast = cast_along(trees, u);
+    Cast cast = cast_along(meshes, u);
     for (const double percent : {3.0, 12.0, 0.5, 0.5, 30.0, 1.0}) {
       const double target = 0.01 * percent * a.diagonal();
-      Cast fresh = cast_along(trees, u);
+      Cast fresh = cast_along(meshes, u);
       EXPECT_NEAR(find(cast, target), find(fresh, target), k_same_translation * cast.size()) << percent;
     }
   }

@@ -38,16 +38,11 @@ class CountedSearch {
   CountedSearch(const Mesh& a, const Mesh& b)
       : a_(a),
         b_(b),
-        tree_a_(std::make_shared<CastMesh>(std::make_shared<Tree>(a))),
-        tree_b_(std::make_shared<CastMesh>(std::make_shared<Tree>(b))),
-        search_(tree_a_, tree_b_) {
-    tree_a_.transform(-Eigen::Matrix3d::Identity());
-  }
+        cast_a_(std::make_shared<Tree>(a)),
+        cast_b_(std::make_shared<Tree>(b)),
+        search_(cast_a_, cast_b_) {}
 
-  void set_rotation(const Eigen::Vector4d& rotation) {
-    tree_b_.transform(ConfigurationRay(a_, b_, rotation).R);
-    search_.clear();
-  }
+  void set_rotation(const Eigen::Vector4d& rotation) { search_.set_rotation(ConfigurationRay(a_, b_, rotation).R); }
 
   /// Work of each target.
   std::vector<Work> solve(const Eigen::Vector3d& direction, const std::vector<double>& targets) {
@@ -68,7 +63,7 @@ class CountedSearch {
  private:
   const Mesh& a_;
   const Mesh& b_;
-  CastTree tree_a_, tree_b_;
+  CastMesh cast_a_, cast_b_;
   RaySearch search_;
 };
 

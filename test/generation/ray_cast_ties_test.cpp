@@ -14,52 +14,48 @@
 #include <sixdof/models/model_catalogue.h>
 
 #include "../configuration/shapes.h"
+#include "triangles_of.h"
 
 namespace sixdof::ray_cast {
 namespace {
 
 using test::random_direction;
 using test::random_rotation;
+using test::triangles_of;
 
 /// Error of support values, in units of the tree's radius: k_support_tolerance and k_support_rounding. Less than half
 /// of k_cast_tie, which culls allow for.
 constexpr double k_support_error = 3e-15;
 constexpr std::uint64_t k_plenty = 1'000'000'000;
 
-CastTree transformed(const Mesh& mesh, const Eigen::Matrix3d& M) {
-  CastTree tree(std::make_shared<CastMesh>(std::make_shared<Tree>(mesh)));
-  tree.transform(M);
-  return tree;
-}
-
 Eigen::Matrix3d random_matrix(std::mt19937_64& random) {
   const Eigen::Vector4d q = random_rotation(random);
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
 }
 
-/// The least axis . p over the triangles below a child, one by one.
-double least_projection(const CastTree& tree, std::size_t slot, const Eigen::Vector3d& axis) {
-  const Tree& below = tree.mesh().tree();
-  const Tree::Child child = below.nodes()[slot / Tree::k_width].child[slot % Tree::k_width];
-  const std::uint32_t first = child.is_leaf() ? child.first() : below.nodes()[child.node()].first_triangle;
-  const std::uint32_t count = child.is_leaf() ? child.count() : below.nodes()[child.node()].triangle_count;
+std::uint32_t child_of(const Tree& tree, std::size_t lane) {
+  return detail::CloseVolume::child_of(tree.nodes()[0], lane).volume;
+}
+
+/// The least axis . p over the triangles of a volume, one by one.
+double least_projection(const CastMesh& mesh, std::uint32_t volume, const Eigen::Vector3d& axis) {
+  const auto [first, count] = triangles_of(mesh.tree(), volume);
   double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t t = first; t < first + count; ++t) {
-    for (const Eigen::Vector3d& corner : tree.triangle(t)) least = std::min(least, axis.dot(corner));
+    for (const Eigen::Vector3d& corner : mesh.triangle(t)) least = std::min(least, axis.dot(corner));
   }
   return least;
 }
 
-/// The slots of all children of all nodes, shuffled: values found for one may be used for others.
-std::vector<std::size_t> children_of(const CastTree& tree, std::mt19937_64& random) {
-  std::vector<std::size_t> children;
-  for (std::size_t node = 0; node < tree.nodes().size(); ++node) {
-    for (std::size_t lane = 0; lane < tree.nodes()[node].child_count; ++lane) {
-      children.push_back(Tree::k_width * node + lane);
-    }
+/// All nodes and leaves, shuffled: values found for one may be used for others.
+std::vector<std::uint32_t> volumes_of(const CastMesh& mesh, std::mt19937_64& random) {
+  std::vector<std::uint32_t> volumes;
+  for (std::uint32_t node = 0; node < mesh.tree().nodes().size(); ++node) volumes.push_back(node);
+  for (std::uint32_t leaf = 0; leaf < mesh.tree().leaves().size(); ++leaf) {
+    volumes.push_back(detail::CloseVolume::k_leaf + leaf);
   }
-  std::shuffle(children.begin(), children.end(), random);
-  return children;
+  std::shuffle(volumes.begin(), volumes.end(), random);
+  return volumes;
 }
 
 struct Body {
@@ -86,18 +82,18 @@ std::vector<Body> bodies(std::mt19937_64& random) {
 TEST(TreeSupport, FindsTheSupportValueOfEverySubtree) {
   std::mt19937_64 random(61);
   for (const Body& body : bodies(random)) {
+    const CastMesh mesh(std::make_shared<Tree>(body.mesh));
+    TreeSupport support(mesh);
     const Eigen::Matrix3d R = random_matrix(random);
     for (const Eigen::Matrix3d& M : {Eigen::Matrix3d(-Eigen::Matrix3d::Identity()), R}) {
-      const CastTree tree = transformed(body.mesh, M);
-      TreeSupport support(tree);
-      for (const Eigen::Vector3d& of_mesh : body.axes) {
-        const Eigen::Vector3d axis = (M * of_mesh).normalized();
+      for (const Eigen::Vector3d& along : body.axes) {
+        const Eigen::Vector3d axis = M.transpose() * (M * along).normalized();  // with the rounding of a rotation
         support.set_axis(axis);
-        for (const std::size_t child : children_of(tree, random)) {
+        for (const std::uint32_t volume : volumes_of(mesh, random)) {
           std::uint64_t budget = k_plenty;
-          ASSERT_NEAR(support.support_value(child, budget), least_projection(tree, child, axis),
-                      k_support_error * tree.radius())
-              << body.mesh.name() << ", child " << child << ", axis " << of_mesh.transpose();
+          ASSERT_NEAR(support.support_value(volume, budget), least_projection(mesh, volume, axis),
+                      k_support_error * mesh.tree().radius())
+              << body.mesh.name() << ", volume " << volume << ", axis " << along.transpose();
         }
       }
     }
@@ -109,22 +105,23 @@ TEST(TreeSupport, IsNeverTooLargeWhereTheBudgetRunsOut) {
   int cut_short = 0;
   for (const Body& body : bodies(random)) {
     const Eigen::Matrix3d R = random_matrix(random);
-    const CastTree tree = transformed(body.mesh, R);
-    TreeSupport support(tree);
-    for (const Eigen::Vector3d& of_mesh : body.axes) {
-      const Eigen::Vector3d axis = (R * of_mesh).normalized();
+    const CastMesh mesh(std::make_shared<Tree>(body.mesh));
+    const double error = k_support_error * mesh.tree().radius();
+    TreeSupport support(mesh);
+    for (const Eigen::Vector3d& along : body.axes) {
+      const Eigen::Vector3d axis = R.transpose() * (R * along).normalized();
       for (const std::uint64_t most : {3u, 10u, 70u, 90u}) {
         support.set_axis(axis);
-        for (const std::size_t child : children_of(tree, random)) {
+        for (const std::uint32_t volume : volumes_of(mesh, random)) {
           std::uint64_t budget = most;
           const std::uint64_t before = support.evaluations();
-          const double value = support.support_value(child, budget);
+          const double value = support.support_value(volume, budget);
           EXPECT_LE(budget, most);
           // The children of a node are evaluated together.
           EXPECT_LE(support.evaluations() - before, most + Tree::k_width);
-          const double least = least_projection(tree, child, axis);
-          EXPECT_LE(value, least + k_support_error * tree.radius()) << body.mesh.name() << ", child " << child;
-          if (std::isfinite(value) && value < least - k_support_error * tree.radius()) ++cut_short;
+          const double least = least_projection(mesh, volume, axis);
+          EXPECT_LE(value, least + error) << body.mesh.name() << ", volume " << volume;
+          if (std::isfinite(value) && value < least - error) ++cut_short;
         }
       }
     }
@@ -134,18 +131,19 @@ TEST(TreeSupport, IsNeverTooLargeWhereTheBudgetRunsOut) {
 
 TEST(TreeSupport, EvaluatesAFractionOfTheTriangles) {
   const Mesh box = load_model("box-20000");
-  const CastTree tree = transformed(box, -Eigen::Matrix3d::Identity());
+  const CastMesh mesh(std::make_shared<Tree>(box));
+  const Tree& tree = mesh.tree();
   std::mt19937_64 random(63);
   std::vector<Eigen::Vector3d> axes{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ(),
                                     Eigen::Vector3d(0.6, 0.0, -0.8)};
   for (int i = 0; i < 10; ++i) axes.push_back(random_direction(random));
-  TreeSupport support(tree);
+  TreeSupport support(mesh);
   std::uint64_t before = 0;
   for (const Eigen::Vector3d& axis : axes) {
     support.set_axis(axis);
     for (std::size_t lane = 0; lane < tree.nodes()[0].child_count; ++lane) {
       std::uint64_t budget = k_plenty;
-      support.support_value(lane, budget);
+      support.support_value(child_of(tree, lane), budget);
     }
     // Counts are the same on every machine: at most 249.
     EXPECT_LT(support.evaluations() - before, box.triangles().size() / 40) << axis.transpose();
@@ -155,40 +153,35 @@ TEST(TreeSupport, EvaluatesAFractionOfTheTriangles) {
 
 TEST(DifferenceSupport, FindsTheSupportValueOfDifferences) {
   std::mt19937_64 random(64);
-  const Mesh a = load_model("circular-box-1000");
-  const Mesh b = load_model("box-2000");
-  const CastTree tree_a = transformed(a, -Eigen::Matrix3d::Identity());
-  const CastTree tree_b = transformed(b, random_matrix(random));
-  const double size = tree_a.radius() + tree_b.radius();
-  DifferenceSupport support(tree_a, tree_b);
+  const CastMesh a(std::make_shared<Tree>(load_model("circular-box-1000")));
+  const CastMesh b(std::make_shared<Tree>(load_model("box-2000")));
+  const double size = a.tree().radius() + b.tree().radius();
+  const Eigen::Matrix3d R = random_matrix(random);
+  DifferenceSupport support(a, b);
+  support.set_rotation(R);
   for (int i = 0; i < 5; ++i) {
     const Eigen::Vector3d axis = random_direction(random);
-    for (std::size_t lane_a = 0; lane_a < tree_a.nodes()[0].child_count; ++lane_a) {
-      for (std::size_t lane_b = 0; lane_b < tree_b.nodes()[0].child_count; ++lane_b) {
-        const double expected = least_projection(tree_a, lane_a, axis) + least_projection(tree_b, lane_b, axis);
-        EXPECT_NEAR(support.support_value(lane_a, lane_b, axis, k_plenty), expected, k_support_error * size);
+    for (std::size_t lane_a = 0; lane_a < a.tree().nodes()[0].child_count; ++lane_a) {
+      for (std::size_t lane_b = 0; lane_b < b.tree().nodes()[0].child_count; ++lane_b) {
+        const std::uint32_t child_a = child_of(a.tree(), lane_a), child_b = child_of(b.tree(), lane_b);
+        const double expected =
+            least_projection(a, child_a, -axis) + least_projection(b, child_b, R.transpose() * axis);
+        EXPECT_NEAR(support.support_value(child_a, child_b, axis, k_plenty), expected, k_support_error * size);
       }
     }
   }
 }
 
-/// The least distance of the triangles below two children, B's translated by t u.
-double least_distance(const Cast& cast, std::size_t a, std::size_t b, double t) {
-  const auto triangles_below = [](const CastTree& tree, std::size_t slot) {
-    const Tree& below = tree.mesh().tree();
-    const Tree::Child child = below.nodes()[slot / Tree::k_width].child[slot % Tree::k_width];
-    const std::uint32_t first = child.is_leaf() ? child.first() : below.nodes()[child.node()].first_triangle;
-    const std::uint32_t count = child.is_leaf() ? child.count() : below.nodes()[child.node()].triangle_count;
-    std::vector<TriangleCorners> list;
-    for (std::uint32_t i = first; i < first + count; ++i) list.push_back(tree.triangle(i));
-    return list;
-  };
+/// The least distance of the triangles of two volumes, B's translated by t u.
+double least_distance(const Cast& cast, std::uint32_t a, std::uint32_t b, double t) {
+  const auto [first_a, count_a] = triangles_of(cast.a.tree(), a);
+  const auto [first_b, count_b] = triangles_of(cast.b.tree(), b);
   double least = std::numeric_limits<double>::infinity();
-  for (const TriangleCorners& reflected : triangles_below(cast.a, a)) {
-    for (TriangleCorners moved : triangles_below(cast.b, b)) {
-      for (Eigen::Vector3d& corner : moved) corner += t * cast.direction;
-      const TriangleCorners from{-reflected[0], -reflected[1], -reflected[2]};
-      least = std::min(least, triangle_triangle_distance(from, moved).distance);
+  for (std::uint32_t i = first_a; i < first_a + count_a; ++i) {
+    for (std::uint32_t j = first_b; j < first_b + count_b; ++j) {
+      TriangleCorners moved = cast.b.triangle(j);
+      for (Eigen::Vector3d& corner : moved) corner = cast.R * corner + t * cast.direction;
+      least = std::min(least, triangle_triangle_distance(cast.a.triangle(i), moved).distance);
     }
   }
   return least;
@@ -196,30 +189,29 @@ double least_distance(const Cast& cast, std::size_t a, std::size_t b, double t) 
 
 TEST(SeparatedInDouble, HoldsForAllTrianglesAndLargerTranslations) {
   std::mt19937_64 random(65);
-  const Mesh a = load_model("bumpy-sphere-600");
-  const Mesh b = load_model("torus-2000");
-  const CastTree tree_a = transformed(a, -Eigen::Matrix3d::Identity());
-  const CastTree tree_b = transformed(b, random_matrix(random));
-  const std::vector<std::size_t> of_a = children_of(tree_a, random), of_b = children_of(tree_b, random);
+  const CastMesh a(std::make_shared<Tree>(load_model("bumpy-sphere-600")));
+  const CastMesh b(std::make_shared<Tree>(load_model("torus-2000")));
+  const double diagonal = 2.0 * a.tree().radius();
+  const Eigen::Matrix3d R = random_matrix(random);
+  const std::vector<std::uint32_t> of_a = volumes_of(a, random), of_b = volumes_of(b, random);
   int separated = 0, hits = 0;
   for (std::size_t i = 0; i < 1000; ++i) {
-    Cast cast(tree_a, tree_b);
-    const auto slot_a = static_cast<std::uint32_t>(of_a[i % of_a.size()]);
-    const auto slot_b = static_cast<std::uint32_t>(of_b[(7 * i) % of_b.size()]);
-    const auto is_leaf = [](const CastTree& tree, std::size_t slot) {
-      return child_of(tree.nodes()[slot / Tree::k_width], slot % Tree::k_width).is_leaf();
-    };
-    if (is_leaf(tree_a, slot_a) != is_leaf(tree_b, slot_b)) continue;
+    Cast cast(a, b);
+    cast.set_rotation(R);
+    const std::uint32_t volume_a = of_a[i % of_a.size()], volume_b = of_b[(7 * i) % of_b.size()];
+    // A leaf with a large node: all pairs of triangles would take long.
+    const auto is_leaf = [](std::uint32_t volume) { return volume >= detail::CloseVolume::k_leaf; };
+    if (is_leaf(volume_a) != is_leaf(volume_b)) continue;
     cast.direction = random_direction(random);
-    cast.target = (i % 2 == 0 ? 0.2 : 1e-3) * a.diagonal();
-    cast.best = {.translation = 0.1 * static_cast<double>(i % 8) * a.diagonal(),
+    cast.target = (i % 2 == 0 ? 0.2 : 1e-3) * diagonal;
+    cast.best = {.translation = 0.1 * static_cast<double>(i % 8) * diagonal,
                  .pair = TrianglePair{0, 0},
                  .axis = random_direction(random),
                  .separating_axis = cast.direction};
-    const bool is_separated = separated_in_double(cast, slot_a, slot_b);
+    const bool is_separated = separated_in_double(cast, volume_a, volume_b);
     double least = std::numeric_limits<double>::infinity();
     for (const double later : {0.0, 0.05, 0.2, 0.5, 1.0}) {
-      least = std::min(least, least_distance(cast, slot_a, slot_b, cast.best.translation + later * a.diagonal()));
+      least = std::min(least, least_distance(cast, volume_a, volume_b, cast.best.translation + later * diagonal));
     }
     if (is_separated) {
       ++separated;

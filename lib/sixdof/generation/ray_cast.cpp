@@ -28,14 +28,11 @@ class RayCastSolver final : public RaySolver {
  public:
   RayCastSolver(const Mesh& a, std::shared_ptr<const ray_cast::CastMesh> cast_a, const Mesh& b,
                 std::shared_ptr<const ray_cast::CastMesh> cast_b)
-      : a_(a), b_(b), tree_a_(std::move(cast_a)), tree_b_(std::move(cast_b)), search_(tree_a_, tree_b_) {
-    tree_a_.transform(-Eigen::Matrix3d::Identity());
-  }
+      : a_(a), b_(b), cast_a_(std::move(cast_a)), cast_b_(std::move(cast_b)), search_(*cast_a_, *cast_b_) {}
 
   void set_rotation(const Eigen::Vector4d& rotation) override {
     ray_ = ConfigurationRay(a_, b_, rotation);
-    tree_b_.transform(ray_.R);
-    search_.clear();
+    search_.set_rotation(ray_.R);
   }
 
   void solve(const Eigen::Vector3d& direction, std::span<const double> targets, std::span<double> translations,
@@ -58,8 +55,8 @@ class RayCastSolver final : public RaySolver {
   /// from the search's by rounding that depends on the meshes' positions in their frames.
   /// @return translation and residual
   std::pair<double, double> refine(const ray_cast::Hit& hit, double target) {
-    const Tree::Corners& a = tree_a_.mesh().tree().corners()[hit.pair->a];
-    const Tree::Corners& b = tree_b_.mesh().tree().corners()[hit.pair->b];
+    const Tree::Corners& a = cast_a_->tree().corners()[hit.pair->a];
+    const Tree::Corners& b = cast_b_->tree().corners()[hit.pair->b];
     const auto measure = [&](double translation) {
       const Pose X_AB = ray_.pose(translation);
       ++refine_distances_;
@@ -89,8 +86,7 @@ class RayCastSolver final : public RaySolver {
 
   const Mesh& a_;
   const Mesh& b_;
-  ray_cast::CastTree tree_a_;  // reflected
-  ray_cast::CastTree tree_b_;
+  std::shared_ptr<const ray_cast::CastMesh> cast_a_, cast_b_;
   ray_cast::RaySearch search_;
   ConfigurationRay ray_;
   std::uint64_t refine_distances_ = 0;

@@ -8,7 +8,7 @@
 #include <hwy/highway.h>
 
 #include <sixdof/generation/ray_cast_search.h>
-#include <sixdof/generation/ray_cast_tree.h>
+#include <sixdof/oracle/expansion-inl.h>
 #include <sixdof/oracle/frames.h>
 #include <sixdof/oracle/leaf_pairs-inl.h>
 #include <sixdof/oracle/volumes-inl.h>
@@ -63,11 +63,11 @@ struct Ray {
   float axis_slope;   ///< w . u
 
   explicit Ray(const Cast& cast)
-      : frames(cast.b.matrix()),
+      : frames(cast.R),
         target(static_cast<float>(cast.target)),
         slack(static_cast<float>(static_cast<double>(k_slack) * cast.size())),
         reach(static_cast<float>(cast.reach())) {
-    const Eigen::Vector3d in_b = cast.b.matrix().transpose() * cast.direction;
+    const Eigen::Vector3d in_b = cast.R.transpose() * cast.direction;
     for (int k = 0; k < 3; ++k) {
       of_b.in_x[k] = static_cast<float>(cast.direction[k]);
       of_b.in_y[k] = static_cast<float>(in_b[k]);
@@ -96,15 +96,28 @@ struct BestAxes {
   }
 };
 
+/// Orders pairs by when they are probably hit, the first first: minus the largest t - t0 at which the centres are as
+/// far apart as the target. Centres that pass each other farther apart come later by as much.
+/// @param squared of the distance in which the centres pass each other
+/// @param along from the centre of x to that of y, along the ray
+HWY_INLINE V order_of(V squared, V along, float target) {
+  const V zero = hn::Zero(k_lanes);
+  const V before = hn::Sqrt(hn::Max(hn::Sub(set(target * target), squared), zero));
+  const V aside = hn::Max(hn::Sub(hn::Sqrt(hn::Max(squared, zero)), set(target)), zero);
+  return hn::Add(hn::Sub(along, before), aside);
+}
+
 /// Axes other than w.
 /// @param f whose N is the frame of x
 HWY_INLINE void bound_closely(const VolumePairs<k_rounding>& pairs, const Frame& f, const Ray::Velocity& velocity,
-                              const Ray& ray, BestAxes& best) {
+                              const Ray& ray, BestAxes& best, float* HWY_RESTRICT order) {
   const V zero = hn::Zero(k_lanes);
   const V slack = set(ray.slack);
   const V u[3] = {set(velocity.in_x[0]), set(velocity.in_x[1]), set(velocity.in_x[2])};
   const V m[3] = {pairs.offset_in_x(0), pairs.offset_in_x(1), pairs.offset_in_x(2)};  // at t0
-  const V later = hn::Max(hn::Neg(dot(m, u)), zero);
+  const V along = dot(m, u);
+  hn::Store(order_of(hn::Sub(dot(m, m), hn::Mul(along, along)), along, ray.target), k_lanes, order + pairs.i);
+  const V later = hn::Max(hn::Neg(along), zero);
   V near[3];
   for (std::size_t k = 0; k < 3; ++k) near[k] = unfused_mul_add(later, u[k], m[k]);
   {  // The line through the centres.
@@ -153,132 +166,108 @@ HWY_INLINE void bound_closely(const VolumePairs<k_rounding>& pairs, const Frame&
 struct VolumeBounds {
   HWY_ALIGN float gap[k_width];
   HWY_ALIGN float slope[k_width];
-  /// Of the vectors from A's volume to B's on w, but for a constant: the volume with the least is the most likely to be
-  /// hit first.
-  HWY_ALIGN float projection[k_width];
+  HWY_ALIGN float order[k_width];  ///< order_of(), of volumes that w does not cull.
 };
 
-/// Sets gap and slope of each child of a node against a volume of the other tree along the best of the axes.
-/// @param x_is_a whether the node is A's
-/// @param x, y scratch
-HWY_INLINE void bound_children(const Tree::Node& node, const Tree::Volume& volume, bool x_is_a, const Ray& ray,
-                               Volumes& x, Volumes& y, VolumeBounds& bounds) {
-  constexpr std::size_t k_step = hn::MaxLanes(k_lanes);
-  const Frame& f = x_is_a ? ray.frames.a : ray.frames.b;
-  const Frame& other = x_is_a ? ray.frames.b : ray.frames.a;
-  x.load_own<k_rounding>(ChildrenOf{node});
-  x.set_front<k_rounding>(ChildrenOf{node}, f);
-  y.load_own<k_rounding>(Whole{volume});
-  y.set_front<k_rounding>(Whole{volume}, other);
-  const V w[3] = {set(f.direction[0]), set(f.direction[1]), set(f.direction[2])};
-  const V along = set(static_cast<float>(ray.frames.shift_along - static_cast<double>(y.front[0])) - ray.slack);
-  // If w culls all children, whatever the number of lanes, the others are not tried.
+/// Sets gap and slope of each volume x against volume j of y along the best of the axes.
+/// @param x_is_a whether x is of tree A
+HWY_INLINE void bound_volumes(const Volumes& x, const Volumes& y, std::size_t j, bool x_is_a, const Ray& ray,
+                              VolumeBounds& bounds) {
+  const V along = set(static_cast<float>(ray.frames.shift_along - static_cast<double>(y.front[j])) - ray.slack);
+  // If w culls all, whatever the number of lanes, the others are not tried.
   bool all = true;
-  for (std::size_t i = 0; i < k_width; i += k_step) {
-    const V center[3] = {load(x.center[0] + i), load(x.center[1] + i), load(x.center[2] + i)};
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
     const V gap = hn::Sub(along, load(x.front + i));
-    hn::Store(hn::Neg(dot(w, center)), k_lanes, bounds.projection + i);
     hn::Store(gap, k_lanes, bounds.gap + i);
     hn::Store(set(ray.axis_slope), k_lanes, bounds.slope + i);
     all = all && hn::AllTrue(k_lanes, hn::Gt(gap, set(ray.target)));
   }
   if (all) return;
-  x.turn<k_rounding>(other);
-  y.turn<k_rounding>(f);
-  for (std::size_t i = 0; i < k_width; i += k_step) {
+  for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
     BestAxes best{load(bounds.gap + i), load(bounds.slope + i)};
-    bound_closely({x, y, i, 0}, f, x_is_a ? ray.of_b : ray.of_a, ray, best);
+    bound_closely({x, y, i, j}, x_is_a ? ray.frames.a : ray.frames.b, x_is_a ? ray.of_b : ray.of_a, ray, best,
+                  bounds.order);
     hn::Store(best.gap, k_lanes, bounds.gap + i);
     hn::Store(best.slope, k_lanes, bounds.slope + i);
   }
 }
-
-namespace fw = frank_wolfe;
 
 /// The triangles of two leaves. LeafPair::lower holds their gaps.
 struct CastLeafPair : LeafPair {
   HWY_ALIGN float slopes[k_pairs];
 };
 
-/// Gaps of pairs of triangles. One that culls is not replaced.
-struct BestTriangleAxes {
-  V gap;
-  V slope;
+/// The largest gaps so far of pairs of triangles. One that culls is not replaced.
+struct TriangleGaps {
+  const Ray& ray;
+  const V u[3];
+  V gap, slope;
+  V forward;  ///< By how much shift() moved x last.
+
+  TriangleGaps(const Ray& from, V first_gap)
+      : ray(from),
+        u{set(ray.of_b.in_x[0]), set(ray.of_b.in_x[1]), set(ray.of_b.in_x[2])},
+        gap(first_gap),
+        slope(set(ray.axis_slope)),
+        forward(hn::Zero(k_lanes)) {}
+
+  HWY_INLINE M are_near() const { return hn::Le(gap, set(ray.target)); }
+  HWY_INLINE bool is_enough() const { return hn::AllFalse(k_lanes, are_near()); }
+
+  /// To the point of x + {t u, t >= 0} that is nearest to the origin.
+  HWY_INLINE void shift(V (&x)[3]) {
+    forward = hn::Max(hn::Neg(dot(x, u)), hn::Zero(k_lanes));
+    for (std::size_t k = 0; k < 3; ++k) x[k] = unfused_mul_add(forward, u[k], x[k]);
+  }
+
+  HWY_INLINE void keep(V value, const V (&x)[3]) { keep(value, dot(x, u), frank_wolfe::length<k_rounding>(x)); }
 
   /// Takes an axis n of any length.
-  /// @param support the least n . (q - p)
+  /// @param value the least n . (q - p)
   /// @param along n . u; may be below 0 by rounding
-  HWY_INLINE void keep_larger(V support, V along, V length, const Ray& ray) {
-    const V zero = hn::Zero(k_lanes);
+  HWY_INLINE void keep(V value, V along, V length) {
     const V new_slope = hn::Div(along, length);
-    const V drop = hn::Mul(set(ray.reach), hn::Min(new_slope, zero));
-    const V new_gap = hn::Add(hn::Sub(hn::Div(support, length), set(ray.slack)), drop);
-    const M better = hn::And(hn::Le(gap, set(ray.target)), hn::Gt(new_gap, gap));
-    slope = hn::IfThenElse(better, hn::Max(new_slope, zero), slope);
+    const V drop = hn::Mul(set(ray.reach), hn::Min(new_slope, hn::Zero(k_lanes)));
+    const V new_gap = hn::Add(hn::Sub(hn::Div(value, length), set(ray.slack)), drop);
+    const M better = hn::And(are_near(), hn::Gt(new_gap, gap));
+    slope = hn::IfThenElse(better, hn::Max(new_slope, hn::Zero(k_lanes)), slope);
     gap = hn::IfThenElse(better, new_gap, gap);
+  }
+
+  /// Takes the cross products of the ray and each edge. Triangles that pass each other, seen along the ray, are
+  /// separated along one of them, unless their nearest points are corners.
+  HWY_INLINE void keep_across_ray(const LeafPair& pairs, std::size_t i) {
+    for (const auto* corners : {pairs.a, pairs.b}) {
+      for (std::size_t edge = 0; edge < 3; ++edge) {
+        V e[3], n[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+          e[k] = hn::Sub(load(corners[(edge + 1) % 3][k] + i), load(corners[edge][k] + i));
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+          n[k] = unfused_sub_mul(hn::Mul(e[l], u[m]), e[m], u[l]);
+        }
+        const Projections range = Projections::along<k_rounding>(n, pairs, i);
+        const V along = dot(n, u), length = frank_wolfe::length<k_rounding>(n);
+        keep(range.low, along, length);
+        keep(hn::Neg(range.high), hn::Neg(along), length);
+      }
+    }
   }
 };
 
-/// Applies the cross products of the ray and each edge as axes, for pairs i .. i + Lanes - 1. Triangles that pass each
-/// other, seen along the ray, are separated along one of them, unless their nearest points are corners.
-HWY_INLINE void bound_across_ray(const LeafPair& pairs, std::size_t i, const V (&u)[3], const Ray& ray,
-                                 BestTriangleAxes& best) {
-  for (const auto* corners : {pairs.a, pairs.b}) {
-    for (std::size_t edge = 0; edge < 3; ++edge) {
-      V e[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        e[k] = hn::Sub(load(corners[(edge + 1) % 3][k] + i), load(corners[edge][k] + i));
-      }
-      const V n[3] = {unfused_sub_mul(hn::Mul(e[1], u[2]), e[2], u[1]),
-                      unfused_sub_mul(hn::Mul(e[2], u[0]), e[0], u[2]),
-                      unfused_sub_mul(hn::Mul(e[0], u[1]), e[1], u[0])};
-      const auto value = [&](const auto& support) { return support.value; };
-      const V most_a = value(fw::support<k_rounding, fw::Extreme::greatest>(n, pairs.a, i));
-      const V least_a = value(fw::support<k_rounding, fw::Extreme::least>(n, pairs.a, i));
-      const V most_b = value(fw::support<k_rounding, fw::Extreme::greatest>(n, pairs.b, i));
-      const V least_b = value(fw::support<k_rounding, fw::Extreme::least>(n, pairs.b, i));
-      const V length = fw::length<k_rounding>(n);
-      const V along = dot(n, u);
-      best.keep_larger(hn::Sub(least_b, most_a), along, length, ray);
-      best.keep_larger(hn::Sub(least_a, most_b), hn::Neg(along), length, ray);
-    }
-  }
-}
-
-/// Raises gaps by Frank-Wolfe steps towards the point of S + {t u, t >= t0} that is nearest to the origin. Each iterate
-/// x is an axis. Where the nearest point is one with t > t0 they converge slowly: then axes across the ray are tried at
-/// the end.
+/// Raises gaps by Frank-Wolfe steps towards the point of S + {t u, t >= t0} that is nearest to the origin. Where that
+/// is one with t > t0 they converge slowly: then axes across the ray are tried at the end.
 HWY_INLINE void bound_triangles(CastLeafPair& pairs, const Ray& ray) {
-  constexpr int k_steps = 5;
-  const Frame& f = ray.frames.a;
-  const V u[3] = {set(ray.of_b.in_x[0]), set(ray.of_b.in_x[1]), set(ray.of_b.in_x[2])};
-  const V zero = hn::Zero(k_lanes);
-  const V target = set(ray.target);
   for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
-    BestTriangleAxes best{load(pairs.lower + i), set(ray.axis_slope)};
-    V x[3] = {set(f.direction[0]), set(f.direction[1]), set(f.direction[2])};
-    V forward = zero;  // the step along u from S to x
-    for (int step = 0; !hn::AllTrue(k_lanes, hn::Gt(best.gap, target)); ++step) {
-      const auto a = fw::support<k_rounding, fw::Extreme::greatest>(x, pairs.a, i);
-      const auto b = fw::support<k_rounding, fw::Extreme::least>(x, pairs.b, i);
-      // The first x is w, which gave the gaps so far.
-      if (step > 0) best.keep_larger(hn::Sub(b.value, a.value), dot(x, u), fw::length<k_rounding>(x), ray);
-      if (step == k_steps) break;
-      const V s[3] = {hn::Sub(b.point[0], a.point[0]), hn::Sub(b.point[1], a.point[1]),
-                      hn::Sub(b.point[2], a.point[2])};
-      if (step == 0) {  // w is no point of S; s is
-        for (std::size_t k = 0; k < 3; ++k) x[k] = s[k];
-      } else {
-        fw::step<k_rounding>(x, s);
-      }
-      forward = hn::Max(hn::Neg(dot(x, u)), zero);
-      for (std::size_t k = 0; k < 3; ++k) x[k] = unfused_mul_add(forward, u[k], x[k]);
-    }
-    const M later = hn::And(hn::Le(best.gap, target), hn::Gt(forward, zero));
-    BestTriangleAxes across = best;
-    if (!hn::AllFalse(k_lanes, later)) bound_across_ray(pairs, i, u, ray, across);
-    hn::Store(hn::IfThenElse(later, across.gap, best.gap), k_lanes, pairs.lower + i);
-    hn::Store(hn::IfThenElse(later, across.slope, best.slope), k_lanes, pairs.slopes + i);
+    TriangleGaps gaps(ray, load(pairs.lower + i));
+    if (!gaps.is_enough()) take_steps<k_rounding>(pairs, i, gaps);
+    const M later = hn::And(gaps.are_near(), hn::Gt(gaps.forward, hn::Zero(k_lanes)));
+    TriangleGaps across = gaps;
+    if (!hn::AllFalse(k_lanes, later)) across.keep_across_ray(pairs, i);
+    // Whatever the number of lanes, a pair has only the axes that it needs.
+    hn::Store(hn::IfThenElse(later, across.gap, gaps.gap), k_lanes, pairs.lower + i);
+    hn::Store(hn::IfThenElse(later, across.slope, gaps.slope), k_lanes, pairs.slopes + i);
   }
 }
 

@@ -154,12 +154,14 @@ constexpr double k_small_target = 1e-3;
 /// by some 1e-5.
 constexpr double k_least_cosine = 1.0 - 1e-8;
 
-/// The least axis . (q - p) of two triangles.
-/// @param reflected A's corners, reflected in the origin
-/// @param b B's corners where it stands
-double support_value(const TriangleCorners& reflected, const TriangleCorners& b, const Eigen::Vector3d& axis) {
-  return std::min({axis.dot(reflected[0]), axis.dot(reflected[1]), axis.dot(reflected[2])}) +
-         std::min({axis.dot(b[0]), axis.dot(b[1]), axis.dot(b[2])});
+TriangleCorners moved(const TriangleCorners& t, const Vector3d& move) {
+  return {t[0] + move, t[1] + move, t[2] + move};
+}
+
+/// The least axis . (q - p) of the points p of one triangle and q of another.
+double gap_along(const Vector3d& axis, const TriangleCorners& a, const TriangleCorners& b) {
+  return std::min({axis.dot(b[0]), axis.dot(b[1]), axis.dot(b[2])}) -
+         std::max({axis.dot(a[0]), axis.dot(a[1]), axis.dot(a[2])});
 }
 
 /// The axis between the closest points of two triangles that nearly touch, without the rounding of these points: at
@@ -168,95 +170,105 @@ double support_value(const TriangleCorners& reflected, const TriangleCorners& b,
 /// @param tolerance by which the triangles may be closer along the new axis
 /// @return the normal of a triangle or cross product of two edges near `axis` along which the triangles are farthest
 /// apart; `axis` if there is none
-Eigen::Vector3d sharp_axis(const TriangleCorners& reflected, const TriangleCorners& b, const Eigen::Vector3d& axis,
-                           double tolerance) {
-  Eigen::Vector3d best = axis;
-  double best_value = support_value(reflected, b, axis) - tolerance;
-  const auto try_cross_product = [&](const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
-    const Eigen::Vector3d product = u.cross(v);
+Vector3d sharp_axis(const TriangleCorners& a, const TriangleCorners& b, const Vector3d& axis, double tolerance) {
+  Vector3d best = axis;
+  double best_gap = gap_along(axis, a, b) - tolerance;
+  const auto try_cross_product = [&](const Vector3d& u, const Vector3d& v) {
+    const Vector3d product = u.cross(v);
     const double along = product.dot(axis);
     const double length = product.norm();
     if (!(std::abs(along) >= k_least_cosine * length) || !(length > 0.0)) return;
-    const Eigen::Vector3d n = product / std::copysign(length, along);
-    const double value = support_value(reflected, b, n);
-    if (!(value > best_value)) return;
-    best_value = value;
+    const Vector3d n = product / std::copysign(length, along);
+    const double gap = gap_along(n, a, b);
+    if (!(gap > best_gap)) return;
+    best_gap = gap;
     best = n;
   };
-  try_cross_product(edge(reflected, 0), edge(reflected, 1));
+  try_cross_product(edge(a, 0), edge(a, 1));
   try_cross_product(edge(b, 0), edge(b, 1));
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) try_cross_product(edge(reflected, i), edge(b, j));
+    for (std::size_t j = 0; j < 3; ++j) try_cross_product(edge(a, i), edge(b, j));
   }
   return best;
 }
 
+/// One pair of triangles against the best hit.
+class PairUpdate {
+ public:
+  PairUpdate(Cast& cast, TrianglePair pair) : cast_(cast), pair_(pair), a_(cast.a.triangle(pair.a)) {
+    const TriangleCorners b = cast.b.triangle(pair.b);
+    b_ = {cast.R * b[0], cast.R * b[1], cast.R * b[2]};
+  }
+
+  bool run() {
+    Hit& best = cast_.best;
+    const double enough = cast_.target - cast_.tie();
+    // Triangles around the corners and edges of the closest pair tie with it along its axis.
+    const auto separates = [&](const Vector3d& axis) {
+      return best.translation * axis.dot(cast_.direction) + gap_along(axis, a_, b_) >= enough;
+    };
+    if (best.pair && (separates(best.axis) || separates(best.separating_axis))) return false;
+    const MovingPair moving(a_, b_, cast_.direction);
+    double t = best.translation;
+    MovingPair::Distance distance = distance_at(moving, t);
+    if (distance.value >= enough && distance.slope >= 0.0) {
+      if (best.pair) best.separating_axis = separating_axis(distance.axis, t);
+      return false;
+    }
+    if (!find_hit(moving, t, distance)) return false;
+    best.translation = t;
+    best.pair = pair_;
+    best.axis = best.separating_axis = separating_axis(distance.axis, t);
+    return true;
+  }
+
+ private:
+  MovingPair::Distance distance_at(const MovingPair& moving, double t) {
+    ++cast_.counts.distances;
+    return moving.distance_at(t);
+  }
+
+  Vector3d separating_axis(const Vector3d& axis, double t) const {
+    if (cast_.target >= k_small_target * cast_.size()) return axis;
+    const Vector3d sharp = sharp_axis(a_, moved(b_, t * cast_.direction), axis, 0.25 * cast_.tie());
+    return sharp.dot(cast_.direction) >= 0.0 ? sharp : axis;
+  }
+
+  /// The distance is convex in t. If it is the target at some larger t, Newton's method converges to the largest such
+  /// t: from any t with a positive slope one step ends at or beyond it, and no step from there goes past it.
+  /// @param t, distance where to begin; set to the hit
+  /// @return whether there is a hit beyond the best one
+  bool find_hit(const MovingPair& moving, double& t, MovingPair::Distance& distance) {
+    const double target = cast_.target;
+    const double least = cast_.best.translation;
+    if (distance.value >= target || !(distance.slope > 0.0)) {
+      // There is no positive slope here: begin where the triangles are apart by the target along the ray.
+      t = target - gap_along(cast_.direction, a_, b_);
+      if (t <= least) return false;
+      distance = distance_at(moving, t);
+    }
+    for (int step = 0; step < k_most_steps; ++step) {
+      const double excess = distance.value - target;
+      if (std::abs(excess) <= k_converged * cast_.size()) break;
+      if (!(distance.slope > 0.0)) return false;  // the least distance is above the target
+      const double next = t - excess / distance.slope;
+      if (next <= least) return false;
+      if (next == t) break;
+      t = next;
+      distance = distance_at(moving, t);
+    }
+    return distance.slope >= 0.0;
+  }
+
+  Cast& cast_;
+  const TrianglePair pair_;
+  const TriangleCorners a_;
+  TriangleCorners b_;  // at t = 0
+};
+
 }  // namespace
 
-bool try_update(Cast& cast, TrianglePair pair) {
-  const TriangleCorners reflected = cast.a.triangle(pair.a);
-  const TriangleCorners a{-reflected[0], -reflected[1], -reflected[2]};
-  const TriangleCorners b = cast.b.triangle(pair.b);  // at t = 0
-  const double size = cast.size();
-  // Below the target, so that triangles that intersect do not tie: contact of a small A with a large B is nearer than
-  // a part of both sizes.
-  const double tie = std::min(k_cast_tie * size, 0.5 * cast.target);
-  Hit& best = cast.best;
-  // Triangles around the corners and edges of the closest pair tie with it along its axis.
-  const auto distance_along = [&](const Eigen::Vector3d& axis) {
-    return best.translation * axis.dot(cast.direction) + support_value(reflected, b, axis);
-  };
-  const double enough = cast.target - tie;
-  if (best.pair && (distance_along(best.axis) >= enough || distance_along(best.separating_axis) >= enough)) {
-    return false;
-  }
-  const MovingPair moving(a, b, cast.direction);
-  const auto distance_at = [&](double t) {
-    ++cast.counts.distances;
-    return moving.distance_at(t);
-  };
-  const auto separating_axis = [&](const MovingPair::Distance& at, double t) -> Eigen::Vector3d {
-    if (cast.target >= k_small_target * size) return at.axis;
-    const Eigen::Vector3d move = t * cast.direction;
-    const Eigen::Vector3d axis = sharp_axis(reflected, {b[0] + move, b[1] + move, b[2] + move}, at.axis, 0.25 * tie);
-    return axis.dot(cast.direction) >= 0.0 ? axis : at.axis;
-  };
-  double t = best.translation;
-  MovingPair::Distance distance = distance_at(t);
-  if (distance.value >= cast.target - tie && distance.slope >= 0.0) {
-    if (best.pair) best.separating_axis = separating_axis(distance, t);
-    return false;
-  }
-  // The distance is convex in t. If it is the target at some larger t, Newton's method converges to the largest such t:
-  // from any t with a positive slope one step ends at or beyond it, and no step from there goes past it.
-  if (distance.value >= cast.target || !(distance.slope > 0.0)) {
-    // There is no positive slope here: begin where the triangles are apart by the target along the ray.
-    double max_a = -std::numeric_limits<double>::infinity();
-    double min_b = -max_a;
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      max_a = std::max(max_a, a[corner].dot(cast.direction));
-      min_b = std::min(min_b, b[corner].dot(cast.direction));
-    }
-    t = max_a - min_b + cast.target;
-    if (t <= best.translation) return false;
-    distance = distance_at(t);
-  }
-  for (int step = 0; step < k_most_steps; ++step) {
-    const double excess = distance.value - cast.target;
-    if (std::abs(excess) <= k_converged * size) break;
-    if (!(distance.slope > 0.0)) return false;  // the least distance is above the target
-    const double next = t - excess / distance.slope;
-    if (next <= best.translation) return false;
-    if (next == t) break;
-    t = next;
-    distance = distance_at(t);
-  }
-  if (!(distance.slope >= 0.0)) return false;
-  best.translation = t;
-  best.pair = pair;
-  best.axis = best.separating_axis = separating_axis(distance, t);
-  return true;
-}
+bool try_update(Cast& cast, TrianglePair pair) { return PairUpdate(cast, pair).run(); }
 
 }  // namespace sixdof::ray_cast
 #endif  // HWY_ONCE

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,8 +22,8 @@
 /// first hit of the ray with the difference of the meshes, grown by d, is t(d) = max over all pairs of triangles of
 /// t_ab(d).
 ///
-/// Triangles are in A's axes, A's reflected in the centre of its box, so that S is a sum: a point of the one mesh plus
-/// a point of the other. Volumes stay in the frames of their trees.
+/// Triangles are in A's axes, relative to the centres of the meshes' boxes. Volumes stay in the frames of their trees,
+/// and are numbered as in detail::CloseVolume.
 ///
 /// Search. `best` holds the largest t_ab(d) found so far. A dual-tree traversal expands pairs of volumes, until a
 /// separating axis n with n . u >= 0 shows that the distance is at least d at that t, and so at every larger one:
@@ -65,9 +67,9 @@ struct CastFront {
   static constexpr float k_not_in_front = 1e30f;  ///< Offset of a lane without a child, or whose pair was expanded.
 
   struct Expansion {
-    std::uint32_t node;  ///< Its children were bounded
-    CastVolume other;    ///< against this volume of the other tree.
-    bool expands_a;      ///< Whether the node is of tree A.
+    std::uint32_t node;   ///< Its children were bounded
+    std::uint32_t other;  ///< against this volume of the other tree.
+    bool expands_a;       ///< Whether the node is of tree A.
   };
 
   /// Separating-axis bounds of the children of one expansion, [lane].
@@ -78,11 +80,10 @@ struct CastFront {
 
   /// A pair of volumes still to be expanded: a child of an expansion's node, and its other volume.
   struct Pending {
-    std::uint32_t expansion;
-    std::uint32_t lane;
-    CastChild child;
-    float projection;  ///< Orders the children of an expansion: the least first.
-    float size;        ///< Of the larger volume: squared diagonal.
+    std::uint32_t a, b;
+    std::uint32_t expansion, lane;
+    float lower;  ///< Orders the children of an expansion: the least first.
+    float size;   ///< Of the larger volume: squared diagonal.
   };
 
   std::vector<Expansion> expansions;
@@ -90,8 +91,9 @@ struct CastFront {
   std::size_t initial_size = 0;    ///< Number of expansions after the first target.
   double target = 0.0;             ///< The last one.
 
-  std::vector<Pending> pending;          ///< Scratch: a stack.
-  std::vector<std::uint32_t> uncovered;  ///< Scratch: expansions with a child whose bound no longer reaches the target.
+  std::vector<Pending> pending;  ///< Scratch: a stack.
+  /// Scratch: expansions with a child whose bound no longer reaches the target, and the least bound.
+  std::vector<std::pair<float, std::uint32_t>> uncovered;
 
   void clear() {
     expansions.clear();
@@ -101,33 +103,39 @@ struct CastFront {
 
 /// One ray, and what is known about it.
 struct Cast {
-  Cast(const CastTree& tree_a, const CastTree& tree_b)
-      : a(tree_a), b(tree_b), patch_support(tree_a, tree_b), axis_support(tree_a, tree_b) {}
+  /// Both meshes outlive it.
+  Cast(const CastMesh& mesh_a, const CastMesh& mesh_b)
+      : a(mesh_a), b(mesh_b), patch_support(mesh_a, mesh_b), axis_support(mesh_a, mesh_b) {}
 
-  /// After a tree was transformed.
-  void clear() {
+  /// Forgets everything.
+  /// @param R_AB from B's axes to A's
+  void set_rotation(const Eigen::Matrix3d& R_AB) {
+    R = R_AB;
     patch.size = 0.0f;
-    patch_support.clear();
-    axis_support.clear();
+    patch_support.set_rotation(R);
+    axis_support.set_rotation(R);
     front.clear();
   }
 
-  const CastTree& a;
-  const CastTree& b;
+  const CastMesh& a;
+  const CastMesh& b;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< u
   double target = 0.0;                                   ///< d
   Hit best;
   CastCounts counts;
-  CastFront front;                            ///< Of this direction; to be cleared when it changes.
-  CoplanarPatch patch;                        ///< Of A or B, over one of the other.
-  DifferenceSupport patch_support;            ///< Along its normal.
-  DifferenceSupport axis_support;             ///< Along best.separating_axis.
-  std::vector<detail::CornerVolume> corners;  ///< Scratch.
+  CastFront front;                  ///< Of this direction; to be cleared when it changes.
+  CoplanarPatch patch;              ///< Of A or B, over one of the other.
+  DifferenceSupport patch_support;  ///< Along its normal.
+  DifferenceSupport axis_support;   ///< Along best.separating_axis.
 
   /// Length that errors are relative to.
-  double size() const { return a.radius() + b.radius() + target; }
+  double size() const { return a.tree().radius() + b.tree().radius() + target; }
   /// Upper bound on every translation of interest.
   double reach() const { return 1.01 * size(); }
+  /// By how much the distance of a pair that ties may be below the target. Triangles that intersect do not tie: contact
+  /// of a small A with a large B is nearer than a part of both sizes.
+  double tie() const { return std::min(k_cast_tie * size(), 0.5 * target); }
 };
 
 /// Finds the pair of triangles with the largest t_ab(target) above best.translation, and sets `best`; leaves it
@@ -139,11 +147,12 @@ void find_first_hit(Cast& cast);
 /// the ray before it.
 class RaySearch {
  public:
-  /// Both trees outlive the search.
-  RaySearch(const CastTree& tree_a, const CastTree& tree_b) : cast_(tree_a, tree_b) {}
+  /// Both meshes outlive the search.
+  RaySearch(const CastMesh& a, const CastMesh& b) : cast_(a, b) {}
 
-  /// After a tree was transformed: forgets everything.
-  void clear();
+  /// Forgets everything.
+  /// @param R_AB from B's axes to A's
+  void set_rotation(const Eigen::Matrix3d& R_AB);
 
   /// @param direction unit vector
   /// @param targets number of targets that follow

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -19,6 +18,8 @@
 /// separating axis n, for which the support values of both subtrees and the translation add up to the target:
 ///   min over A's points p of n . (-p) + min over B's points q of n . q + t n . u >= d.
 /// The support value of a set along n is the least n . p of its points p.
+///
+/// Volumes are numbered as in detail::CloseVolume.
 namespace sixdof::ray_cast {
 
 /// The largest coplanar patch of A or B that was met face to face with the other body. Rounded coordinates tilt the
@@ -26,7 +27,7 @@ namespace sixdof::ray_cast {
 /// farther away. The mean normal of a large patch does. It is the same for many directions and targets, so that support
 /// values along it are computed once.
 struct CoplanarPatch {
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Unit vector.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Unit vector, in A's frame, from A to B.
   float size = 0.0f;                                 ///< Squared diagonal of its box; 0 if there is no patch.
 
   /// Whether there is a patch, its normal is nearly parallel to `axis` and does not point against `direction`.
@@ -38,23 +39,21 @@ struct CoplanarPatch {
 /// axis changes.
 class TreeSupport {
  public:
-  explicit TreeSupport(const CastTree& tree);
+  explicit TreeSupport(const CastMesh& mesh);
 
-  /// @param axis unit vector in the common frame
+  /// @param axis unit vector in the mesh's axes
   void set_axis(const Eigen::Vector3d& axis);
 
-  static constexpr double k_unknown = -std::numeric_limits<double>::infinity();
+  static constexpr double k_infinity = std::numeric_limits<double>::infinity();
+  static constexpr double k_unknown = -k_infinity;
 
-  /// The support value of a child: exact, or too small by at most a few roundings of the tree's radius
+  /// The support value of a volume's triangles: exact, or too small by at most a few roundings of the tree's radius
   /// (k_support_tolerance, k_support_rounding), or by more where the budget ran out.
-  /// @param slot of the child
   /// @param budget triangles and volumes that may be evaluated; those that were are subtracted
   /// @return k_unknown if the budget is too small to begin
-  double support_value(std::size_t slot, std::uint64_t& budget);
+  double support_value(std::uint32_t volume, std::uint64_t& budget);
 
   std::uint64_t evaluations() const { return evaluations_; }  ///< Of triangles and volumes so far.
-
-  static constexpr double k_infinity = -k_unknown;
 
   /// A support value that was found.
   struct Known {
@@ -65,21 +64,19 @@ class TreeSupport {
   /// What the search of subtrees takes.
   struct Search {
     const CastMesh& mesh;
-    Eigen::Vector3d axis;  ///< In the mesh's frame.
+    Eigen::Vector3d axis;
     double tolerance, rounding;
-    Known* known;  ///< Of each slot.
+    Known* known;  ///< Of each node.
     std::uint64_t axis_number;
     std::uint64_t evaluations;
     std::uint64_t limit;  ///< Ends the search with bounds when evaluations reaches it.
   };
 
  private:
-  const CastTree* tree_;
-  double tolerance_;                                // k_support_tolerance of the radius
-  double rounding_;                                 // k_support_rounding of it
-  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();  // in the mesh's frame
+  const CastMesh& mesh_;
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
   std::uint64_t axis_number_ = 0;
-  std::vector<Known> known_;  // of each slot, valid if its axis_number is axis_number_; empty until needed
+  std::vector<Known> known_;  // of nodes, then leaves; valid if its axis_number is axis_number_; empty until needed
   std::uint64_t evaluations_ = 0;
 };
 
@@ -89,22 +86,27 @@ class TreeSupport {
 /// evaluate no more than the sum of what they add.
 class DifferenceSupport {
  public:
-  DifferenceSupport(const CastTree& a, const CastTree& b) : a_(a), b_(b) {}
+  DifferenceSupport(const CastMesh& a, const CastMesh& b) : a_(a), b_(b) {}
 
-  /// After a tree was transformed.
-  void clear() {
+  /// Forgets everything.
+  /// @param R_AB from B's axes to A's
+  void set_rotation(const Eigen::Matrix3d& R_AB) {
+    R_ = R_AB;
     has_axis_ = false;
     budget_ = 0;
   }
 
-  /// Support value of the differences b - a of two children, as TreeSupport::support_value().
+  /// Support value of the differences q - p of the points p of a volume of A and q of one of B, as
+  /// TreeSupport::support_value().
+  /// @param axis in A's frame
   /// @param budget is added to what may be evaluated, in triangles and volumes
-  double support_value(std::size_t slot_a, std::size_t slot_b, const Eigen::Vector3d& axis, std::uint64_t budget);
+  double support_value(std::uint32_t a, std::uint32_t b, const Eigen::Vector3d& axis, std::uint64_t budget);
 
   std::uint64_t evaluations() const { return a_.evaluations() + b_.evaluations(); }  ///< Of triangles and volumes.
 
  private:
   TreeSupport a_, b_;
+  Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();
   bool has_axis_ = false;
   std::uint64_t budget_ = 0;
@@ -112,14 +114,8 @@ class DifferenceSupport {
 
 struct Cast;
 
-/// Whether the slabs of two children tie with the best hit or are farther apart: along the normal of one of them.
-/// @param a, b slots
-bool slabs_tie(const Cast& cast, std::uint32_t a, std::uint32_t b);
-
-/// Whether two subtrees are at least the target apart, up to half a tie, at the translation of the best hit and at all
-/// larger ones: by their boxes and slabs, along the axes of the best hit, between the boxes' centres and of both slabs.
-/// For volumes so small that bounds in single precision cannot tell them apart.
-/// @param a, b slots of children
+/// Whether two volumes are at least the target apart, up to half a tie, at the translation of the best hit and at all
+/// larger ones. For volumes so small that bounds in single precision cannot tell them apart.
 bool separated_in_double(const Cast& cast, std::uint32_t a, std::uint32_t b);
 
 }  // namespace sixdof::ray_cast

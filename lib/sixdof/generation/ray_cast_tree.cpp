@@ -49,7 +49,7 @@ void fit_precise_volume(Triangles triangles, const Eigen::Vector3d& origin, Prec
 
 }  // namespace
 
-CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)), seeds_(*tree_) {
+CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)) {
   precise_volumes_.resize(tree_->nodes().size());
   for (std::size_t n = 0; n < precise_volumes_.size(); ++n) {
     const Tree::Node& node = tree_->nodes()[n];
@@ -59,13 +59,6 @@ CastMesh::CastMesh(std::shared_ptr<const Tree> tree) : tree_(std::move(tree)), s
       fit_precise_volume(triangles_of(*tree_, node.child[lane]), tree_->center(), precise_volumes_[n], lane);
     }
   }
-}
-
-TriangleCorners CastTree::triangle(std::uint32_t t) const {
-  const Tree& tree = mesh_->tree();
-  const Tree::Corners& corners = tree.corners()[t];
-  return {matrix_ * (corners[0] - tree.center()), matrix_ * (corners[1] - tree.center()),
-          matrix_ * (corners[2] - tree.center())};
 }
 
 }  // namespace sixdof::ray_cast

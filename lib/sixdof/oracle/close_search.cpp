@@ -86,11 +86,11 @@ double CloseShape::reach(const Vector3d& n) const {
   return std::min(along_arms.cwiseAbs().sum(), in_slab);
 }
 
-CloseBounds::CloseBounds(const Tree& a, const Tree& b, const Pose& X_AB)
-    : a_(a), b_(b), X_AB_(X_AB), shift_(X_AB * b.center() - a.center()) {
+CloseBounds::CloseBounds(const Tree& a, const Tree& b, const Pose& X_AB, const Vector3d& sweep)
+    : a_(a), b_(b), X_AB_(X_AB), shift_(X_AB * b.center() - a.center()), sweep_(sweep) {
   // Slabs of B are rotated as if R were exactly orthogonal.
   const double defect = (X_AB.R.transpose() * X_AB.R - Matrix3d::Identity()).cwiseAbs().sum();
-  slack_ = k_rounding * (a.radius() + b.radius() + shift_.norm()) + defect * b.radius() +
+  slack_ = k_rounding * (a.radius() + b.radius() + shift_.norm() + sweep.norm()) + defect * b.radius() +
            k_offset_rounding * (a.center().norm() + b.center().norm() + X_AB.t.norm());
 }
 
@@ -115,14 +115,19 @@ CloseShape CloseBounds::shape_of_b(const CloseVolume& v) const {
 }
 
 double CloseBounds::lower_bound(const CloseShape& a, const CloseShape& b, const Vector3d& guess, double enough) const {
-  const Vector3d d = b.center - a.center;
+  const Vector3d start = b.center - a.center;
+  const double squared_sweep = sweep_.squaredNorm();
+  // Where the centres are closest.
+  const double fraction = squared_sweep > 0.0 ? std::clamp(-start.dot(sweep_) / squared_sweep, 0.0, 1.0) : 0.0;
+  const Vector3d d = start + fraction * sweep_;
   double lower = -std::numeric_limits<double>::infinity();
   // Returns true if the gap along n, taken with the sign that points from A to B, is enough.
   const auto try_axis = [&](const Vector3d& n) {
     const double length = n.norm();
     if (!(length > std::numeric_limits<double>::min())) return false;
     const Vector3d unit = (d.dot(n) < 0.0 ? -1.0 / length : 1.0 / length) * n;
-    lower = std::max(lower, unit.dot(d) - a.reach(unit) - b.reach(-unit) - slack_);
+    const double back = std::min(unit.dot(sweep_), 0.0);
+    lower = std::max(lower, unit.dot(start) + back - a.reach(unit) - b.reach(-unit) - slack_);
     return lower > enough;
   };
   if (try_axis(guess)) return lower;

@@ -53,10 +53,11 @@ struct CloseShape {
   double reach(const Eigen::Vector3d& n) const;
 };
 
-/// Lower bounds on distances between volumes of two trees at one pose.
+/// Lower bounds on distances between volumes of two trees at one pose, or at all that a translation of B passes.
 class CloseBounds {
  public:
-  CloseBounds(const Tree& a, const Tree& b, const Pose& X_AB);
+  /// @param sweep B's translation, in A's frame
+  CloseBounds(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& sweep = Eigen::Vector3d::Zero());
 
   CloseShape shape_of_a(const CloseVolume& v) const;
   CloseShape shape_of_b(const CloseVolume& v) const;
@@ -72,6 +73,7 @@ class CloseBounds {
   const Tree& b_;
   Pose X_AB_;
   Eigen::Vector3d shift_;  // from A's centre to B's, in A's frame
+  Eigen::Vector3d sweep_;
   double slack_;
 };
 

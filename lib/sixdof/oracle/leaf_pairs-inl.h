@@ -90,6 +90,43 @@ HWY_INLINE void load_pairs(const Tree::Leaf& a, const Tree::Leaf& b, const Frame
   }
 }
 
+/// n . (q - p) over the triangles of pairs i, i + 1, ...
+struct Projections {
+  V low, high;
+
+  template <Rounding rounding>
+  static HWY_INLINE Projections along(const V (&n)[3], const LeafPair& pairs, std::size_t i) {
+    using frank_wolfe::Extreme;
+    const auto most = [&](const auto& t) { return frank_wolfe::support<rounding, Extreme::greatest>(n, t, i).value; };
+    const auto least = [&](const auto& t) { return frank_wolfe::support<rounding, Extreme::least>(n, t, i).value; };
+    return {hn::Sub(least(pairs.b), most(pairs.a)), hn::Sub(most(pairs.b), least(pairs.a))};
+  }
+};
+
+/// Frank-Wolfe steps from the difference of the centroids. Each iterate x is an axis.
+/// @param bound is told of each: shift(x) may move it before it is used, keep(value, x) takes the least x . (q - p),
+/// and is_enough() ends the steps
+template <Rounding rounding, class Bound>
+HWY_INLINE void take_steps(const LeafPair& pairs, std::size_t i, Bound& bound) {
+  constexpr int k_steps = 5;
+  V x[3];  // a difference q - p of points of the triangles
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto sum = [&](const auto& t) {
+      return hn::Add(hn::Add(load(t[0][k] + i), load(t[1][k] + i)), load(t[2][k] + i));
+    };
+    x[k] = hn::Mul(set(1.0f / 3.0f), hn::Sub(sum(pairs.b), sum(pairs.a)));
+  }
+  for (int step = 0;; ++step) {
+    bound.shift(x);
+    const auto p = frank_wolfe::support<rounding, frank_wolfe::Extreme::greatest>(x, pairs.a, i);
+    const auto q = frank_wolfe::support<rounding, frank_wolfe::Extreme::least>(x, pairs.b, i);
+    bound.keep(hn::Sub(q.value, p.value), x);
+    if (step == k_steps || bound.is_enough()) return;
+    const V s[3] = {hn::Sub(q.point[0], p.point[0]), hn::Sub(q.point[1], p.point[1]), hn::Sub(q.point[2], p.point[2])};
+    frank_wolfe::step<rounding>(x, s);
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace sixdof::leaf_pairs
 HWY_AFTER_NAMESPACE();
