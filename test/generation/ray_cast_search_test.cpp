@@ -47,7 +47,7 @@ class CountedSearch {
   /// Work of each target.
   std::vector<Work> solve(const Eigen::Vector3d& direction, const std::vector<double>& targets) {
     std::vector<Work> work;
-    search_.start_ray(direction, targets.size());
+    search_.start_ray(direction);
     for (const double target : targets) {
       const CastCounts before = cast().counts;
       search_.find_next(target);
@@ -215,6 +215,30 @@ TEST(RaySearch, RoughFacesThatTieAreCulledInDoublePrecision) {
   const std::vector<Work> aligned = work_of_rays(rough, make_grid("45/90"));
   EXPECT_LT(largest(aligned, &Work::expanded), k_most_expanded_by_ray);
   EXPECT_LT(largest(aligned, &Work::distances), k_most_distances_of_ray);
+}
+
+/// Exact distances per ray for its first target, at 30 and at 5 % of A's diagonal.
+constexpr double k_most_first_distances_far = 31.0;   // 22 to 24; 39 to 51 where pairs are ordered by depth along w
+constexpr double k_most_first_distances_near = 42.0;  // 34 to 38; 46 to 63
+
+TEST(RaySearch, FirstTargetsTakeFewExactDistances) {
+  std::mt19937_64 random(81);
+  const Mesh knot = load_model("torus-knot-10k");
+  const Mesh gyroid = load_model("gyroid-ball-10k");
+  for (const auto& [percent, most] :
+       {std::pair(30.0, k_most_first_distances_far), {5.0, k_most_first_distances_near}}) {
+    for (const auto& [a, b] : {std::pair(&knot, &gyroid), {&gyroid, &knot}, {&knot, &knot}}) {
+      CountedSearch search(*a, *b);
+      std::uint64_t distances = 0;
+      constexpr int k_rays = 60;
+      for (int i = 0; i < k_rays; ++i) {
+        search.set_rotation(random_rotation(random));
+        distances += search.solve(random_direction(random), {0.01 * percent * a->diagonal()})[0].distances;
+        ASSERT_TRUE(search.cast().best.pair.has_value());
+      }
+      EXPECT_LT(static_cast<double>(distances) / k_rays, most) << a->name() << ", " << b->name() << ", " << percent;
+    }
+  }
 }
 
 /// A ball of the given radius about the origin, between two small boxes at plus and minus `arm`.

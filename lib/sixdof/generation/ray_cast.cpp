@@ -14,7 +14,6 @@
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
 #include <sixdof/generation/ray_cast_search.h>
-#include <sixdof/generation/ray_cast_tree.h>
 #include <sixdof/geometry/triangle_distance.h>
 
 namespace sixdof {
@@ -38,7 +37,7 @@ class RayCastSolver final : public RaySolver {
   void solve(const Eigen::Vector3d& direction, std::span<const double> targets, std::span<double> translations,
              std::span<double> residuals) override {
     ray_.direction = direction;
-    search_.start_ray(direction, targets.size());
+    search_.start_ray(direction);
     for (std::size_t k = 0; k < targets.size(); ++k) {
       translations[k] = std::numeric_limits<double>::quiet_NaN();
       residuals[k] = 0.0;

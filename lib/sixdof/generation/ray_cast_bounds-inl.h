@@ -22,8 +22,7 @@
 // The axes are those of volumes-inl.h but for the nine across, each with the sign for which its slope is not negative.
 // w is the axis of the best hit. Where the centres of two volumes come nearer as t grows beyond t0, the line through
 // them and the axis between their boxes are those at the t where they are nearest, t0 + `later`, and the gap there is
-// lowered by later times the slope, to t0. At that t the line through the centres has n . u = 0 up to rounding: if
-// rounding makes it negative, the gap is lowered by what that takes up to the largest t.
+// lowered by later times the slope, to t0.
 //
 // Nothing here uses fused multiply-add, and all operations (+ - * / sqrt min max) are rounded by IEEE rules lane by
 // lane. So which pairs are expanded, and in what order, is the same on every instruction set.
@@ -85,14 +84,20 @@ struct Ray {
   }
 };
 
-/// Gaps along the best axes so far, and their slopes.
-struct BestAxes {
-  V gap;
-  V slope;
+/// The largest gaps so far, one per lane, and their slopes.
+struct Gaps {
+  const Ray& ray;
+  const V u[3];    ///< How y moves against x, in x's frame.
+  const V enough;  ///< A gap above this is not replaced.
+  V gap, slope;
 
-  HWY_INLINE void keep_larger(V other_gap, V other_slope) {
-    slope = hn::IfThenElse(hn::Gt(other_gap, gap), other_slope, slope);
-    gap = hn::Max(gap, other_gap);
+  /// Takes the gap along an axis n at t0, and n . u. Where that is below 0 the gap is what is left at the largest t.
+  HWY_INLINE void keep(V along_axis, V rate) {
+    const V zero = hn::Zero(k_lanes);
+    const V least = hn::Add(hn::Sub(along_axis, set(ray.slack)), hn::Mul(set(ray.reach), hn::Min(rate, zero)));
+    const M better = hn::And(hn::Le(gap, enough), hn::Gt(least, gap));
+    slope = hn::IfThenElse(better, hn::Max(rate, zero), slope);
+    gap = hn::IfThenElse(better, least, gap);
   }
 };
 
@@ -107,51 +112,48 @@ HWY_INLINE V order_of(V squared, V along, float target) {
   return hn::Add(hn::Sub(along, before), aside);
 }
 
-/// Axes other than w.
+/// Takes the axes other than w.
 /// @param f whose N is the frame of x
-HWY_INLINE void bound_closely(const VolumePairs<k_rounding>& pairs, const Frame& f, const Ray::Velocity& velocity,
-                              const Ray& ray, BestAxes& best, float* HWY_RESTRICT order) {
+/// @param in_y how y moves, in y's frame
+/// @param order set to order_of()
+HWY_INLINE void bound_closely(const VolumePairs<k_rounding>& pairs, const Frame& f, const float (&in_y)[3], Gaps& best,
+                              float* HWY_RESTRICT order) {
   const V zero = hn::Zero(k_lanes);
-  const V slack = set(ray.slack);
-  const V u[3] = {set(velocity.in_x[0]), set(velocity.in_x[1]), set(velocity.in_x[2])};
+  const auto& u = best.u;
   const V m[3] = {pairs.offset_in_x(0), pairs.offset_in_x(1), pairs.offset_in_x(2)};  // at t0
   const V along = dot(m, u);
-  hn::Store(order_of(hn::Sub(dot(m, m), hn::Mul(along, along)), along, ray.target), k_lanes, order + pairs.i);
+  hn::Store(order_of(hn::Sub(dot(m, m), hn::Mul(along, along)), along, best.ray.target), k_lanes, order + pairs.i);
   const V later = hn::Max(hn::Neg(along), zero);
   V near[3];
   for (std::size_t k = 0; k < 3; ++k) near[k] = unfused_mul_add(later, u[k], m[k]);
+  const auto keep_later = [&](V gap, V rate) { best.keep(unfused_sub_mul(gap, later, rate), rate); };
   {  // The line through the centres.
     const V squared = dot(near, near);
     const V inverse =
         hn::Div(set(static_cast<float>(k_axis_length)), hn::Sqrt(hn::Max(squared, set(k_smallest_square))));
     const V n[3] = {hn::Mul(near[0], inverse), hn::Mul(near[1], inverse), hn::Mul(near[2], inverse)};
-    const V rate = dot(n, u);
-    const V drop = hn::Max(hn::Mul(later, rate), hn::Mul(set(ray.reach), hn::Neg(rate)));
-    const V gap = hn::Sub(hn::Sub(hn::Mul(squared, inverse), pairs.reach_along(n, f)), drop);
-    best.keep_larger(hn::Sub(gap, slack), hn::Max(rate, zero));
+    keep_later(hn::Sub(hn::Mul(squared, inverse), pairs.reach_along(n, f)), dot(n, u));
   }
-  const auto keep_boxes = [&](V squared, V length_times_rate) {
-    const V length = hn::Sqrt(hn::Max(squared, set(k_smallest_square)));
-    const V rate = hn::Div(length_times_rate, length);
-    const V gap = hn::Sub(hn::Sub(length, hn::Mul(later, rate)), slack);
-    best.keep_larger(hn::IfThenElse(hn::Ge(length_times_rate, zero), gap, set(CastFront::k_no_bound)), rate);
-  };
-  V squared_x = zero, rate_x = zero, squared_y = zero, rate_y = zero;  // rates: times the lengths
-  const auto add_axis = [&](V offset, V extent, V rate, V& squared, V& length_times_rate) {
-    const V apart = hn::Max(hn::Sub(hn::Abs(offset), extent), zero);
-    squared = unfused_mul_add(apart, apart, squared);
-    length_times_rate = unfused_mul_add(hn::CopySign(apart, offset), rate, length_times_rate);
-  };
+  struct Between {  // boxes: the square of their distance, and the rate times the distance
+    V squared, rate;
+    HWY_INLINE void add_axis(V offset, V extent, V along_axis) {
+      const V apart = hn::Max(hn::Sub(hn::Abs(offset), extent), hn::Zero(k_lanes));
+      squared = unfused_mul_add(apart, apart, squared);
+      rate = unfused_mul_add(hn::CopySign(apart, offset), along_axis, rate);
+    }
+  } in_frame_x{zero, zero}, in_frame_y{zero, zero};
   for (std::size_t k = 0; k < 3; ++k) {
-    const V u_y = set(velocity.in_y[k]);
-    add_axis(near[k], pairs.extent_in_x(k), u[k], squared_x, rate_x);
-    add_axis(unfused_mul_add(later, u_y, pairs.offset_in_y(k)), pairs.extent_in_y(k), u_y, squared_y, rate_y);
+    const V u_y = set(in_y[k]);
+    in_frame_x.add_axis(near[k], pairs.extent_in_x(k), u[k]);
+    in_frame_y.add_axis(unfused_mul_add(later, u_y, pairs.offset_in_y(k)), pairs.extent_in_y(k), u_y);
   }
-  keep_boxes(squared_x, rate_x);
-  keep_boxes(squared_y, rate_y);
+  for (const Between* boxes : {&in_frame_x, &in_frame_y}) {
+    const V length = hn::Sqrt(hn::Max(boxes->squared, set(k_smallest_square)));
+    keep_later(length, hn::Div(boxes->rate, length));
+  }
   const auto normals = pairs.along_normals(m);
   const auto keep_normal = [&](const AxisRange& range, V rate) {
-    best.keep_larger(hn::Sub(hn::IfThenElse(hn::Lt(rate, zero), hn::Neg(range.high), range.low), slack), hn::Abs(rate));
+    best.keep(hn::IfThenElse(hn::Lt(rate, zero), hn::Neg(range.high), range.low), hn::Abs(rate));
   };
   V rate_of_x = zero, rate_of_y = zero;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -183,10 +185,14 @@ HWY_INLINE void bound_volumes(const Volumes& x, const Volumes& y, std::size_t j,
     all = all && hn::AllTrue(k_lanes, hn::Gt(gap, set(ray.target)));
   }
   if (all) return;
+  const Ray::Velocity& v = x_is_a ? ray.of_b : ray.of_a;
   for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
-    BestAxes best{load(bounds.gap + i), load(bounds.slope + i)};
-    bound_closely({x, y, i, j}, x_is_a ? ray.frames.a : ray.frames.b, x_is_a ? ray.of_b : ray.of_a, ray, best,
-                  bounds.order);
+    Gaps best{ray,
+              {set(v.in_x[0]), set(v.in_x[1]), set(v.in_x[2])},
+              set(Tree::k_empty),
+              load(bounds.gap + i),
+              load(bounds.slope + i)};
+    bound_closely({x, y, i, j}, x_is_a ? ray.frames.a : ray.frames.b, v.in_y, best, bounds.order);
     hn::Store(best.gap, k_lanes, bounds.gap + i);
     hn::Store(best.slope, k_lanes, bounds.slope + i);
   }
@@ -197,21 +203,19 @@ struct CastLeafPair : LeafPair {
   HWY_ALIGN float slopes[k_pairs];
 };
 
-/// The largest gaps so far of pairs of triangles. One that culls is not replaced.
-struct TriangleGaps {
-  const Ray& ray;
-  const V u[3];
-  V gap, slope;
+/// Gaps of pairs of triangles, as take_steps() takes them.
+struct TriangleGaps : Gaps {
   V forward;  ///< By how much shift() moved x last.
 
-  TriangleGaps(const Ray& from, V first_gap)
-      : ray(from),
-        u{set(ray.of_b.in_x[0]), set(ray.of_b.in_x[1]), set(ray.of_b.in_x[2])},
-        gap(first_gap),
-        slope(set(ray.axis_slope)),
+  TriangleGaps(const Ray& from, V along_w)
+      : Gaps{from,
+             {set(from.of_b.in_x[0]), set(from.of_b.in_x[1]), set(from.of_b.in_x[2])},
+             set(from.target),
+             along_w,
+             set(from.axis_slope)},
         forward(hn::Zero(k_lanes)) {}
 
-  HWY_INLINE M are_near() const { return hn::Le(gap, set(ray.target)); }
+  HWY_INLINE M are_near() const { return hn::Le(gap, enough); }
   HWY_INLINE bool is_enough() const { return hn::AllFalse(k_lanes, are_near()); }
 
   /// To the point of x + {t u, t >= 0} that is nearest to the origin.
@@ -220,18 +224,10 @@ struct TriangleGaps {
     for (std::size_t k = 0; k < 3; ++k) x[k] = unfused_mul_add(forward, u[k], x[k]);
   }
 
-  HWY_INLINE void keep(V value, const V (&x)[3]) { keep(value, dot(x, u), frank_wolfe::length<k_rounding>(x)); }
-
-  /// Takes an axis n of any length.
-  /// @param value the least n . (q - p)
-  /// @param along n . u; may be below 0 by rounding
-  HWY_INLINE void keep(V value, V along, V length) {
-    const V new_slope = hn::Div(along, length);
-    const V drop = hn::Mul(set(ray.reach), hn::Min(new_slope, hn::Zero(k_lanes)));
-    const V new_gap = hn::Add(hn::Sub(hn::Div(value, length), set(ray.slack)), drop);
-    const M better = hn::And(are_near(), hn::Gt(new_gap, gap));
-    slope = hn::IfThenElse(better, hn::Max(new_slope, hn::Zero(k_lanes)), slope);
-    gap = hn::IfThenElse(better, new_gap, gap);
+  using Gaps::keep;
+  HWY_INLINE void keep(V value, const V (&x)[3]) {
+    const V length = frank_wolfe::length<k_rounding>(x);
+    keep(hn::Div(value, length), hn::Div(dot(x, u), length));
   }
 
   /// Takes the cross products of the ray and each edge. Triangles that pass each other, seen along the ray, are
@@ -248,9 +244,9 @@ struct TriangleGaps {
           n[k] = unfused_sub_mul(hn::Mul(e[l], u[m]), e[m], u[l]);
         }
         const Projections range = Projections::along<k_rounding>(n, pairs, i);
-        const V along = dot(n, u), length = frank_wolfe::length<k_rounding>(n);
-        keep(range.low, along, length);
-        keep(hn::Neg(range.high), hn::Neg(along), length);
+        const V length = frank_wolfe::length<k_rounding>(n), rate = hn::Div(dot(n, u), length);
+        keep(hn::Div(range.low, length), rate);
+        keep(hn::Neg(hn::Div(range.high, length)), hn::Neg(rate));
       }
     }
   }

@@ -154,13 +154,13 @@ class DualTreeTraversal {
     return unfused_mul_add(load(bounds.slope + i), set(ray_.translation), load(bounds.offset + i));
   }
 
-  /// The least of an expansion's bounds.
-  float least_gap(std::uint32_t expansion) const {
+  /// The bounds of the children of an expansion, but for the larger ones.
+  V least_gaps(std::uint32_t expansion) const {
     V least = set(CastFront::k_not_in_front);
     for (std::size_t i = 0; i < k_width; i += hn::Lanes(k_lanes)) {
       least = hn::Min(least, gaps_of(front_.bounds[expansion], i));
     }
-    return hn::GetLane(hn::MinOfLanes(k_lanes, least));
+    return least;
   }
 
   bool separated(const CastFront::Pending& pair) {
@@ -282,8 +282,9 @@ class DualTreeTraversal {
     front_.uncovered.clear();
     const auto count = static_cast<std::uint32_t>(front_.expansions.size());
     for (std::uint32_t expansion = 0; expansion < count; ++expansion) {
-      const float gap = least_gap(expansion);
-      if (gap <= ray_.target) front_.uncovered.emplace_back(gap, expansion);
+      const V least = least_gaps(expansion);
+      if (hn::AllTrue(k_lanes, hn::Gt(least, set(ray_.target)))) continue;
+      front_.uncovered.emplace_back(hn::GetLane(hn::MinOfLanes(k_lanes, least)), expansion);
     }
   }
 
@@ -293,7 +294,7 @@ class DualTreeTraversal {
     auto& all = front_.uncovered;
     std::partial_sort(all.begin(), all.begin() + std::min(k_few, std::ssize(all)), all.end());
     for (const auto& [gap, expansion] : all) {
-      if (least_gap(expansion) > ray_.target) continue;
+      if (hn::AllTrue(k_lanes, hn::Gt(least_gaps(expansion), set(ray_.target)))) continue;
       expand(expansion);
       process_pending();
     }
@@ -330,32 +331,22 @@ HWY_EXPORT(find_first_hit);
 
 void find_first_hit(Cast& cast) { HWY_DYNAMIC_DISPATCH(find_first_hit)(cast); }
 
-void RaySearch::set_rotation(const Eigen::Matrix3d& R_AB) {
-  cast_.set_rotation(R_AB);
-  last_ray_.clear();
-}
-
-void RaySearch::start_ray(const Eigen::Vector3d& direction, std::size_t targets) {
+void RaySearch::start_ray(const Eigen::Vector3d& direction) {
   cast_.direction = direction;
   cast_.front.clear();
   last_.reset();
-  last_ray_.resize(targets);
-  next_ = 0;
   reachable_ = true;
 }
 
 const Hit* RaySearch::find_next(double target) {
-  const std::size_t index = next_++;
   if (!reachable_) return nullptr;  // a larger target has no hit, so this has none
   cast_.target = target;
   search_from(-k_cast_tie * cast_.size(), cast_.direction);
   if (last_) try_update(cast_, *last_->hit.pair);
-  if (last_ray_[index]) try_update(cast_, *last_ray_[index]);
   if (!last_ || !find_behind(*last_)) find_first_hit(cast_);
   reachable_ = cast_.best.pair.has_value();
   if (!reachable_) return nullptr;
   last_ = {target, cast_.best};
-  last_ray_[index] = cast_.best.pair;
   return &cast_.best;
 }
 

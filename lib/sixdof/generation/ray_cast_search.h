@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 
 #include <sixdof/generation/ray_cast_ties.h>
-#include <sixdof/generation/ray_cast_tree.h>
 #include <sixdof/geometry/tree.h>
 
 /// The branch and bound of the ray cast. Internal: use distance_generator.h.
@@ -143,8 +142,7 @@ struct Cast {
 /// set does the same floating-point operations in the same order, so all find the same pair.
 void find_first_hit(Cast& cast);
 
-/// Finds the first hits of rays for descending targets. Each search starts from the hits of the target before it and of
-/// the ray before it.
+/// Finds the first hits of rays for descending targets. Each search starts from the hit of the target before it.
 class RaySearch {
  public:
   /// Both meshes outlive the search.
@@ -152,11 +150,10 @@ class RaySearch {
 
   /// Forgets everything.
   /// @param R_AB from B's axes to A's
-  void set_rotation(const Eigen::Matrix3d& R_AB);
+  void set_rotation(const Eigen::Matrix3d& R_AB) { cast_.set_rotation(R_AB); }
 
   /// @param direction unit vector
-  /// @param targets number of targets that follow
-  void start_ray(const Eigen::Vector3d& direction, std::size_t targets);
+  void start_ray(const Eigen::Vector3d& direction);
 
   /// Finds the first hit for the ray's next target.
   /// @param target positive, and not larger than the one before
@@ -176,10 +173,8 @@ class RaySearch {
   bool find_behind(const LastTarget& last);
 
   Cast cast_;
-  std::size_t next_ = 0;  // target of this ray
   bool reachable_ = true;
   std::optional<LastTarget> last_;
-  std::vector<std::optional<TrianglePair>> last_ray_;  // pair of each target
 };
 
 }  // namespace sixdof::ray_cast

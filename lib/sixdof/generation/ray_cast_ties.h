@@ -1,12 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include <sixdof/generation/ray_cast_tree.h>
+#include <sixdof/geometry/tree.h>
+#include <sixdof/geometry/triangle_distance.h>
 
 /// Tests in double precision of pairs of subtrees that tie. Notation: see ray_cast_search.h. Internal: use
 /// distance_generator.h.
@@ -21,6 +25,39 @@
 ///
 /// Volumes are numbered as in detail::CloseVolume.
 namespace sixdof::ray_cast {
+
+/// Slabs and boxes of a node's children in double precision, [axis][lane], in the mesh's axes: |normal . p - middle|
+/// <= half, |p - box_center| <= box_half. Lanes without a child are zero. With the children, so that a search in double
+/// precision reads nothing else but corners.
+struct alignas(64) PreciseVolumes {
+  double normal[3][Tree::k_width];  ///< Unit vectors.
+  double middle[Tree::k_width];
+  double half[Tree::k_width];
+  double box_center[3][Tree::k_width];
+  double box_half[3][Tree::k_width];
+  Tree::Child child[Tree::k_width];
+  std::uint32_t child_count;
+};
+
+/// A mesh as the ray cast takes it. Coordinates are relative to the centre of the mesh's box. Immutable.
+class CastMesh {
+ public:
+  explicit CastMesh(std::shared_ptr<const Tree> tree);
+
+  const Tree& tree() const { return *tree_; }
+  std::span<const PreciseVolumes> precise_volumes() const { return precise_volumes_; }  ///< Of each node's children.
+
+  /// Triangle `t` in tree order, in double precision.
+  TriangleCorners triangle(std::uint32_t t) const {
+    const Tree::Corners& corners = tree_->corners()[t];
+    const Eigen::Vector3d& center = tree_->center();
+    return {corners[0] - center, corners[1] - center, corners[2] - center};
+  }
+
+ private:
+  std::shared_ptr<const Tree> tree_;
+  std::vector<PreciseVolumes> precise_volumes_;
+};
 
 /// The largest coplanar patch of A or B that was met face to face with the other body. Rounded coordinates tilt the
 /// triangles of a flat face, and with them the axes between closest points, which then do not separate triangles

@@ -1,4 +1,5 @@
-// Part of distance_search.cpp and candidates.cpp. Taken once per instruction set: the guard is Highway's for that.
+// Part of distance_search.cpp, candidates.cpp and generation/ray_cast_search.cpp. Taken once per instruction set: the
+// guard is Highway's for that.
 #if defined(SIXDOF_ORACLE_EXPANSION_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SIXDOF_ORACLE_EXPANSION_INL_H_
 #undef SIXDOF_ORACLE_EXPANSION_INL_H_

@@ -6,7 +6,7 @@
 
 #include <sixdof/geometry/tree.h>
 
-/// Where searches of two trees may start. Internal: distance_search.h, generation/ray_cast_seeds.h.
+/// Where searches of two trees may start. Internal: distance_search.h.
 namespace sixdof::detail {
 
 /// Corners spread over a surface.
