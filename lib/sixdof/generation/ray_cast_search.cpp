@@ -198,7 +198,7 @@ class DualTreeTraversal {
     for (std::uint32_t left = raise_bounds(front_.bounds[expansion], found); left != 0; left &= left - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(left));
       const std::uint32_t child = x.child(lane);
-      const float size = squared_diagonal(x.volumes(), lane), size_y = squared_diagonal(y.volumes(), 0);
+      const float size = x.volumes().size[lane], size_y = y.volumes().size[0];
       ties_.count_pair();
       if (is_flat(x.volumes(), lane) && is_flat(y.volumes(), 0)) {
         const float error = k_flat_error * 0.5f * (std::sqrt(size) + std::sqrt(size_y));
@@ -218,10 +218,6 @@ class DualTreeTraversal {
 
   /// Whether a slab is so thin that it may tie with one that faces it.
   bool is_flat(const Volumes& x, std::size_t i) const { return x.above[i] - x.below[i] <= 2.0f * ray_.slack; }
-
-  static float squared_diagonal(const Volumes& x, std::size_t i) {
-    return 4.0f * (x.half[0][i] * x.half[0][i] + x.half[1][i] * x.half[1][i] + x.half[2][i] * x.half[2][i]);
-  }
 
   void note_patch(const CastFront::Expansion& from, std::size_t lane, float size) {
     const auto& normals = (from.expands_a ? cast_.a : cast_.b).precise_volumes()[from.node].normal;
