@@ -151,6 +151,28 @@ TEST(CloseSearch, BoundsDoNotExceedTheDistanceOfAnyPair) {
   EXPECT_EQ(tight, pairs);
 }
 
+TEST(CloseSearch, TheGapOfTrianglesAlongTheirClosestPointsIsTheirDistance) {
+  Generator generator(37);
+  for (const double apart : {3.0, 1e3, 1e6}) {
+    const Mesh a = shapes::bumpy_sphere(2, 0.2, 1.0, shapes::uniform_vector(generator, 3.0));
+    const Mesh b = shapes::bumpy_sphere(2, 0.3, 0.1, shapes::uniform_vector(generator, 3.0));
+    Pose pose = shapes::random_pose(generator, 0.0);
+    pose.t = a.center() - pose.R * b.center() + apart * shapes::unit_vector(generator);
+    const Tree tree_a(a), tree_b(b);
+    const CloseBounds bounds(tree_a, tree_b, pose);
+    for (int k = 0; k < 500; ++k) {
+      const TrianglePair pair{static_cast<std::uint32_t>(generator() % a.triangles().size()),
+                              static_cast<std::uint32_t>(generator() % b.triangles().size())};
+      const ClosestPoints closest = triangle_triangle_distance(
+          tree_a.corners()[pair.a], distance_truth::corners_of(b, tree_b.mesh_triangle()[pair.b], pose));
+      const double gap = bounds.gap_along((closest.on_b - closest.on_a).normalized(), pair);
+      ASSERT_LE(gap, closest.distance);
+      ASSERT_GE(gap, closest.distance - 1e-13 * (10.0 + apart));  // the rounding that CloseBounds allows for, and more
+      ASSERT_LE(bounds.gap_along(shapes::unit_vector(generator), pair), closest.distance);
+    }
+  }
+}
+
 TEST(CloseSearch, SmallBodiesInsideLargeOnesTakeFewPairs) {
   const Mesh a = sphere(90, 45);
   Generator generator(32);

@@ -14,6 +14,7 @@
 namespace sixdof {
 namespace {
 
+using detail::CloseVolume;
 using detail::CoplanarPatches;
 using Eigen::Vector3d;
 using shapes::Generator;
@@ -46,18 +47,17 @@ std::uint32_t check_patches(const Mesh& mesh) {
   std::uint32_t in_patches = 0;
   for (std::uint32_t i = 0; i < tree.nodes().size(); ++i) {
     const Tree::Node& node = tree.nodes()[i];
-    check_volume(mesh, tree, patches.of_node(i), patches.smallest_index_of_node(i), node.first_triangle,
-                 node.triangle_count);
-    if (!patches.of_node(i)) continue;
+    check_volume(mesh, tree, patches.of(i), patches.smallest_index(i), node.first_triangle, node.triangle_count);
+    if (!patches.of(i)) continue;
     for (std::uint32_t k = 0; k < node.child_count; ++k) {  // all below lies in the same plane
-      EXPECT_EQ(node.child[k].is_leaf() ? patches.of_leaf(node.leaf[k]) : patches.of_node(node.child[k].node()),
-                patches.of_node(i));
+      EXPECT_EQ(patches.of(CloseVolume::child_of(node, k).volume), patches.of(i));
     }
   }
   for (std::uint32_t i = 0; i < tree.leaves().size(); ++i) {
     const Tree::Child leaf = tree.leaves()[i].child;
+    const std::uint32_t volume = CloseVolume::k_leaf + i;
     in_patches +=
-        check_volume(mesh, tree, patches.of_leaf(i), patches.smallest_index_of_leaf(i), leaf.first(), leaf.count());
+        check_volume(mesh, tree, patches.of(volume), patches.smallest_index(volume), leaf.first(), leaf.count());
   }
   EXPECT_GE(patches.bytes(), 8 * (tree.nodes().size() + tree.leaves().size()));
   return in_patches;

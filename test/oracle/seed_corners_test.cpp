@@ -56,6 +56,26 @@ TEST(FindCorner, FindsACornerAboutAsCloseAsTheClosest) {
   }
 }
 
+TEST(FindCorner, OfFewLeavesFindsOneThatIsNotMuchFarther) {
+  std::mt19937_64 random(72);
+  std::vector<CornerVolume> stack;
+  const Tree tree(load_model("torus-knot-2000"));
+  double sum = 0.0, sum_of_all = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d p = 1.5 * tree.radius() * test::random_direction(random);
+    const float at[3] = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+    Corner of_all{1e30f, 0, 0, {}}, of_few = of_all;
+    ASSERT_TRUE(find_corner(tree, at, CornerEffort{.leaf_areas = 0.0f}, of_all, stack));
+    ASSERT_TRUE(find_corner(tree, at, CornerEffort{.leaf_areas = 0.0f, .most_leaves = 2}, of_few, stack));
+    EXPECT_NEAR(static_cast<double>(of_all.squared), least_squared(tree, p), 1e-5 * tree.radius() * tree.radius());
+    EXPECT_GE(of_few.squared, of_all.squared);
+    sum += std::sqrt(static_cast<double>(of_few.squared));
+    sum_of_all += std::sqrt(static_cast<double>(of_all.squared));
+  }
+  EXPECT_GT(sum, sum_of_all);  // the limit holds
+  EXPECT_LT(sum, 1.2 * sum_of_all);
+}
+
 TEST(SeedCorners, AreCornersSpreadOverTheSurface) {
   for (const char* name : {"torus-knot-2000", "box-300", "bumpy-sphere-600"}) {
     const Tree tree(load_model(name));

@@ -9,6 +9,7 @@
 
 #include <sixdof/geometry/closest_point.h>
 #include <sixdof/geometry/triangle_distance.h>
+#include <sixdof/oracle/sorted_stack.h>
 
 namespace sixdof::detail {
 namespace {
@@ -147,6 +148,16 @@ double CloseBounds::lower_bound(const CloseShape& a, const CloseShape& b, const 
   return lower;
 }
 
+double CloseBounds::gap_along(const Vector3d& unit, TrianglePair pair) const {
+  const auto reach = [](const Tree& tree, std::uint32_t triangle, const Vector3d& n) {
+    double greatest = -std::numeric_limits<double>::infinity();
+    for (const Vector3d& corner : tree.corners()[triangle])
+      greatest = std::max(greatest, n.dot(corner - tree.center()));
+    return greatest;
+  };
+  return unit.dot(shift_) - reach(a_, pair.a, unit) - reach(b_, pair.b, -(X_AB_.R.transpose() * unit)) - slack_;
+}
+
 bool search_closely(const Tree& tree_a, const Tree& tree_b, const CloseBounds& bounds, std::uint32_t a, std::uint32_t b,
                     CloseVisitor& visitor, std::vector<ClosePair>& stack) {
   stack.assign(1, {{a}, {b}, -std::numeric_limits<double>::infinity()});
@@ -182,11 +193,8 @@ bool search_closely(const Tree& tree_a, const Tree& tree_b, const CloseBounds& b
           expands_a ? bounds.lower_bound(bounds.shape_of_a(children[i]), shape_b, visitor.direction(), limit)
                     : bounds.lower_bound(shape_a, bounds.shape_of_b(children[i]), visitor.direction(), limit);
       if (lower > limit) continue;
-      const ClosePair next = expands_a ? ClosePair{children[i], top.b, lower} : ClosePair{top.a, children[i], lower};
-      std::size_t at = stack.size();
-      stack.push_back(next);
-      for (; at > first && stack[at - 1].lower < next.lower; --at) stack[at] = stack[at - 1];
-      stack[at] = next;
+      push_sorted(stack, first,
+                  expands_a ? ClosePair{children[i], top.b, lower} : ClosePair{top.a, children[i], lower});
     }
   }
   return false;

@@ -69,6 +69,9 @@ class CloseBounds {
   /// @param guess of the direction from A to B at their closest points, of any length
   double lower_bound(const CloseShape& a, const CloseShape& b, const Eigen::Vector3d& guess, double enough) const;
 
+  /// The same for two triangles (tree order) along one axis, from A to B.
+  double gap_along(const Eigen::Vector3d& unit, TrianglePair pair) const;
+
  private:
   const Tree& a_;
   const Tree& b_;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/close_search.h>
 
 namespace sixdof::detail {
 
@@ -29,18 +30,21 @@ class CoplanarPatches {
 
   bool empty() const { return planes_.empty(); }
 
-  /// Plane of the patch that contains all of a node or leaf; null if there is none.
-  const Plane* of_node(std::uint32_t node) const { return plane(node_plane_, node); }
-  const Plane* of_leaf(std::uint32_t leaf) const { return plane(leaf_plane_, leaf); }
+  /// Plane of the patch that contains all of a node or leaf (CloseVolume::volume); null if there is none.
+  const Plane* of(std::uint32_t volume) const {
+    return is_leaf(volume) ? plane(leaf_plane_, volume - CloseVolume::k_leaf) : plane(node_plane_, volume);
+  }
 
   /// Smallest index into Mesh::triangles() of the triangles of a node or leaf. Only if not empty().
-  std::uint32_t smallest_index_of_node(std::uint32_t node) const { return node_smallest_index_[node]; }
-  std::uint32_t smallest_index_of_leaf(std::uint32_t leaf) const { return leaf_smallest_index_[leaf]; }
+  std::uint32_t smallest_index(std::uint32_t volume) const {
+    return is_leaf(volume) ? leaf_smallest_index_[volume - CloseVolume::k_leaf] : node_smallest_index_[volume];
+  }
 
   std::size_t bytes() const;
 
  private:
   static constexpr std::uint32_t k_none = ~std::uint32_t{0};
+  static bool is_leaf(std::uint32_t volume) { return (volume & CloseVolume::k_leaf) != 0; }
   const Plane* plane(const std::vector<std::uint32_t>& index, std::uint32_t i) const {
     return index.empty() || index[i] == k_none ? nullptr : &planes_[index[i]];
   }

@@ -66,7 +66,7 @@ class DistanceOracle {
 /// the object's last answer: it changes the time, never the answer.
 class DistanceQuery {
  public:
-  explicit DistanceQuery(const DistanceOracle& oracle) : search_{.a = *oracle.a_, .b = *oracle.b_} {}
+  explicit DistanceQuery(const DistanceOracle& oracle) : search_{{}, *oracle.a_, *oracle.b_} {}
 
   /// The distance of the surfaces with witnesses and their triangles. 0 if and only if the surfaces have a point in
   /// common; then the witnesses are one such point.

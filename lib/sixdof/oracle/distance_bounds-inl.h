@@ -143,10 +143,103 @@ inline HWY_NOINLINE std::uint32_t bound_across_axes(const Volumes& x, const Volu
   return kept & near;
 }
 
-/// Raises the lower bounds by Frank-Wolfe steps, until they are above `enough` or k_steps are done.
-HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough) {
+/// The shortest difference b - a of points of two triangles found so far, one pair of triangles per lane.
+struct Shortest {
+  V x[3];
+  V squared;
+
+  HWY_INLINE Shortest() : x{hn::Zero(k_lanes), hn::Zero(k_lanes), hn::Zero(k_lanes)}, squared(set(Tree::k_empty)) {}
+
+  HWY_INLINE void update(const V (&other)[3], M valid) {
+    const V d = dot<k_rounding>(other, other);
+    const M shorter = hn::And(valid, hn::Lt(d, squared));
+    squared = hn::IfThenElse(shorter, d, squared);
+    for (std::size_t k = 0; k < 3; ++k) x[k] = hn::IfThenElse(shorter, other[k], x[k]);
+  }
+};
+
+/// Corners, [corner][axis].
+using Triangles = V[3][3];
+
+HWY_INLINE void subtract(const V (&p)[3], const V (&q)[3], V (&difference)[3]) {
+  for (std::size_t k = 0; k < 3; ++k) difference[k] = hn::Sub(p[k], q[k]);
+}
+HWY_INLINE V clamp(V x) { return hn::Min(hn::Max(x, hn::Zero(k_lanes)), set(1.0f)); }
+HWY_INLINE V inverse_of(V x) { return hn::Div(set(1.0f), hn::Max(x, set(k_smallest_square))); }
+
+/// From faces to the corners of the other triangles above them.
+/// @param sign 1 for faces of A, -1 for those of B
+HWY_INLINE void update_above_faces(const Triangles& face, const Triangles& corners, float sign, Shortest& shortest) {
+  V u[3], v[3], p[3], d[3];
+  subtract(face[1], face[0], u);
+  subtract(face[2], face[0], v);
+  const V uu = dot<k_rounding>(u, u), uv = dot<k_rounding>(u, v), vv = dot<k_rounding>(v, v);
+  const V whole = hn::NegMulAdd(uv, uv, hn::Mul(uu, vv)), inverse = inverse_of(whole);
+  for (const V(&corner)[3] : corners) {
+    subtract(corner, face[0], p);
+    const V on_u = dot<k_rounding>(p, u), on_v = dot<k_rounding>(p, v);
+    // The foot s u + t v is a point of the face whatever the rounding: the length is an upper bound.
+    const V s = hn::NegMulAdd(uv, on_v, hn::Mul(vv, on_u)), t = hn::NegMulAdd(uv, on_u, hn::Mul(uu, on_v));
+    const M is_above = hn::And(hn::Gt(hn::Min(s, t), hn::Zero(k_lanes)), hn::Lt(hn::Add(s, t), whole));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V foot = hn::MulAdd(hn::Mul(s, inverse), u[k], hn::Mul(hn::Mul(t, inverse), v[k]));
+      d[k] = hn::Mul(set(sign), hn::Sub(p[k], foot));
+    }
+    shortest.update(d, is_above);
+  }
+}
+
+/// Between all edges. (C. Ericson, "Real-Time Collision Detection", 2005, 5.1.9.)
+HWY_INLINE void update_between_edges(const Triangles& a, const Triangles& b, Shortest& shortest) {
+  constexpr float k_parallel = 1e-6f;  // square of a sine; raised to this, nothing is divided by zero
+  const M all = hn::Ge(shortest.squared, hn::Zero(k_lanes));
+  V v[3][3], inverse_vv[3];
+  for (std::size_t j = 0; j < 3; ++j) {
+    subtract(b[(j + 1) % 3], b[j], v[j]);
+    inverse_vv[j] = inverse_of(dot<k_rounding>(v[j], v[j]));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    V u[3], r[3], d[3];
+    subtract(a[(i + 1) % 3], a[i], u);
+    const V uu = dot<k_rounding>(u, u), inverse_uu = inverse_of(uu);
+    for (std::size_t j = 0; j < 3; ++j) {
+      // r + t v - s u: shortest on both lines, then with t and with s on the edges.
+      subtract(b[j], a[i], r);
+      const V ur = dot<k_rounding>(u, r), vr = dot<k_rounding>(v[j], r), uv = dot<k_rounding>(u, v[j]);
+      const V along = hn::Mul(uv, inverse_vv[j]);
+      const V across = hn::Max(hn::NegMulAdd(along, uv, uu), hn::MulAdd(set(k_parallel), uu, set(k_smallest_square)));
+      const V on_line = clamp(hn::Div(hn::NegMulAdd(along, vr, ur), across));
+      const V t = clamp(hn::Mul(hn::MulSub(on_line, uv, vr), inverse_vv[j]));
+      const V s = clamp(hn::Mul(hn::MulAdd(t, uv, ur), inverse_uu));
+      for (std::size_t k = 0; k < 3; ++k) d[k] = hn::NegMulAdd(s, u[k], hn::MulAdd(t, v[j][k], r[k]));
+      shortest.update(d, all);
+    }
+  }
+}
+
+/// Of lanes i, i + 1, ...; longer by rounding or, where triangles intersect, of any length.
+HWY_INLINE void shortest_difference(const LeafPair& pairs, std::size_t i, V (&x)[3]) {
+  Triangles a, b;
+  const V origin[3] = {load(pairs.a[0][0] + i), load(pairs.a[0][1] + i), load(pairs.a[0][2] + i)};
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      a[c][k] = hn::Sub(load(pairs.a[c][k] + i), origin[k]);
+      b[c][k] = hn::Sub(load(pairs.b[c][k] + i), origin[k]);
+    }
+  }
+  Shortest shortest;
+  update_between_edges(a, b, shortest);
+  update_above_faces(a, b, 1.0f, shortest);
+  update_above_faces(b, a, -1.0f, shortest);
+  for (std::size_t k = 0; k < 3; ++k) x[k] = shortest.x[k];
+}
+
+/// Raises the lower bounds until they are above `enough` or as good as floats are: first by Frank-Wolfe steps, then
+/// along the shortest difference of points of both triangles, whose length is the upper bound.
+HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough,
+                                float (*HWY_RESTRICT difference)[LeafPair::k_pairs]) {
   namespace fw = frank_wolfe;
-  constexpr int k_steps = 5;
+  constexpr int k_steps = 2;
   const V goal = set(enough);
   for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
     const auto at = [i](const float* p) { return load(p + i); };
@@ -167,18 +260,23 @@ HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough) {
       const auto of_b = fw::support<k_rounding, fw::Extreme::least>(x, pairs.b, i);
       length = fw::length<k_rounding>(x);
       lower = hn::Max(lower, hn::Sub(hn::Div(hn::Sub(of_b.value, of_a.value), length), set(slack)));
-      if (step == k_steps || hn::AllTrue(k_lanes, hn::Gt(lower, goal))) break;
-      const V s[3] = {hn::Sub(of_b.point[0], of_a.point[0]), hn::Sub(of_b.point[1], of_a.point[1]),
-                      hn::Sub(of_b.point[2], of_a.point[2])};
-      fw::step<k_rounding>(x, s);
+      if (step > k_steps || hn::AllTrue(k_lanes, hn::Gt(lower, goal))) break;
+      if (step == k_steps) {
+        shortest_difference(pairs, i, x);
+      } else {
+        const V s[3] = {hn::Sub(of_b.point[0], of_a.point[0]), hn::Sub(of_b.point[1], of_a.point[1]),
+                        hn::Sub(of_b.point[2], of_a.point[2])};
+        fw::step<k_rounding>(x, s);
+      }
     }
     hn::Store(lower, k_lanes, pairs.lower + i);
     hn::Store(length, k_lanes, pairs.upper + i);
+    for (std::size_t k = 0; k < 3; ++k) hn::Store(x[k], k_lanes, difference[k] + i);
   }
 }
 
-/// Raises the lower bounds that are not above `enough` by the nine axes across an edge of each triangle. Needles that
-/// cross have their distance along one of them, which Frank-Wolfe steps approach slowly.
+/// Raises the lower bounds that are not above `enough` by the nine axes across an edge of each triangle. Of needles
+/// that cross, the shortest difference is short next to the needles: rounding turns it away from such an axis.
 inline HWY_NOINLINE void bound_across_edges(LeafPair& pairs, float slack, float enough) {
   namespace fw = frank_wolfe;
   const V goal = set(enough);

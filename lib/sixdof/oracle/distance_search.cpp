@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include <sixdof/oracle/distance_ties.h>
+#include <sixdof/oracle/sorted_stack.h>
 #include <sixdof/oracle/triangle_distances.h>
 
 #undef HWY_TARGET_INCLUDE
@@ -25,9 +27,10 @@
 // Bounds are floats. A pair whose bound is not above the best, but less than its rounding below, is bounded once more
 // in doubles; and where floats cannot tell the parts of a pair apart, the pair is searched in doubles (close_search.h).
 //
-// Ties: between coplanar patches the distances of thousands of pairs of triangles count as equal (TieWindow), and the
-// answer is the pair of smallest rank. A pair that can at most tie with the best is pruned and recorded in `tied`.
-// resolve_ties() expands the recorded pairs in the order of their ranks, so only a few of them.
+// Triangles are bounded by floats from both sides. The least upper bound prunes as an exact distance would, so only
+// what is left at the end is measured exactly.
+//
+// A pair that can at most tie with the best is pruned and recorded (distance_ties.h).
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {
@@ -36,32 +39,6 @@ namespace HWY_NAMESPACE {
 float rounded_up(double x) {
   return std::nextafter(static_cast<float>(std::min(x, 1e30)), std::numeric_limits<float>::infinity());
 }
-
-/// The pair of the smallest rank among those whose distances count as equal to the smallest distance. That distance is
-/// not above search.best, and may be as small as the least lower bound of the tied pairs.
-struct FirstOfTies {
-  const DistanceSearch& search;
-  double certain;              // up to here a distance counts as equal, whatever the smallest is
-  double possible;             // beyond, it does not
-  Rank rank = k_no_rank;       // of `pair`
-  Rank uncertain = k_no_rank;  // smallest of those in between
-  TrianglePair pair{};
-
-  explicit FirstOfTies(const DistanceSearch& s) : search(s), certain(s.best + s.ties.width), possible(certain) {
-    for (const TiedPair& x : s.tied) certain = std::min(certain, x.lower + s.ties.width);
-  }
-
-  void update(const MeasuredPair& x) {
-    if (x.distance > possible) return;
-    const Rank other = rank_of(search, x.pair);
-    if (x.distance > certain) {
-      uncertain = std::min(uncertain, other);
-    } else if (other < rank) {
-      rank = other;
-      pair = x.pair;
-    }
-  }
-};
 
 /// Which pairs are pruned although they may tie: pairs of patches by their planes and pairs of triangles by
 /// triangle_gap(); only the latter, whose bounds are tighter; none.
@@ -104,39 +81,56 @@ class DistanceTraversal final : private CloseVisitor {
         blurred_(k_blurred * k_blurred * frames_.slack.all * frames_.slack.all),
         blurs_leaves_(std::max(search.a.smallest_leaf, search.b.smallest_leaf) < blurred_),
         has_planes_(!search.a.patches.empty() && !search.b.patches.empty()),
+        width_(rounded_up(search.ties.width)),
         close_bounds_(tree_a_, tree_b_, search.X_AB),
         expansion_(tree_a_, tree_b_) {
-    if (search_.direction.squaredNorm() == 0.0) search_.direction = frames_.shift;
-    frames_.set_direction(search_.direction);
-    set_best();
+    turn_to(search_.direction.squaredNorm() == 0.0 ? frames_.shift : search_.direction);
+    lower_best(only_intersection_ ? 0.0f : rounded_up(search_.best + search_.ties.width));
   }
 
   void run() {
     for (const TiePruning next : {TiePruning::planes, TiePruning::triangles, TiePruning::none}) {
       tie_pruning_ = next;
       search_.tied.clear();
-      if (find() || only_intersection_ || resolve_ties()) return;
+      if (find() || only_intersection_) return;
+      if (resolve_ties(search_, [this](const NodePair& pair, std::vector<NodePair>& parts) { split(pair, parts); }))
+        return;
     }
   }
 
  private:
-  void set_best() {
-    best_ = only_intersection_ ? 0.0f : rounded_up(search_.best + search_.ties.width);
+  /// Sets what bounds are compared with, if it is less than before.
+  void lower_best(float best) {
+    best_ = std::min(best_, best);
     doubtful_ = best_ - frames_.slack.all;
+  }
+
+  /// Sets the direction from A to B.
+  void turn_to(const Eigen::Vector3d& direction) {
+    search_.direction = direction;
+    frames_.set_direction(direction);
+    expansion_.forget();
   }
 
   /// Returns true if an intersecting pair was found.
   bool find() {
     search_.deferred.clear();
     if (traverse()) return true;
-    std::vector<NodePair>& rest = search_.deferred;
-    std::erase_if(rest, [this](const NodePair& x) { return x.lower > best_; });
-    std::sort(rest.begin(), rest.end(), [](const NodePair& x, const NodePair& y) { return x.lower < y.lower; });
+    // Doubles tell apart what floats do not: most of what is left is farther along the direction of the closest.
+    std::vector<TiedPair>& rest = search_.bounded;
+    rest.clear();
+    const Eigen::Vector3d direction = search_.direction.normalized();
+    for (const NodePair& pair : search_.deferred) {
+      if (pair.lower <= best_) rest.push_back({pair, close_bounds_.gap_along(direction, pair.triangles())});
+    }
+    std::sort(rest.begin(), rest.end(), [](const TiedPair& x, const TiedPair& y) { return x.lower < y.lower; });
     for (std::size_t first = 0; first < rest.size();) {
+      // After a few the best is exact, and the others are farther for certain or tie.
+      const std::size_t most = first == 0 ? TriangleDistances::k_most / 2 : TriangleDistances::k_most;
       std::array<TrianglePair, TriangleDistances::k_most> next;
       std::size_t count = 0;
-      for (; first < rest.size() && count < next.size() && rest[first].lower <= best_; ++first) {
-        next[count++] = triangles_of(rest[first]);
+      for (; first < rest.size() && count < most && !(rest[first].lower > largest_of_interest()); ++first) {
+        next[count++] = rest[first].pair.triangles();
       }
       if (count == 0) return false;
       if (measure(std::span(next).first(count))) return true;
@@ -161,14 +155,11 @@ class DistanceTraversal final : private CloseVisitor {
         if (search_in_doubles(top)) return true;
         continue;
       }
+      // Children by their bounds: all of them early in a search, later the smallest one only.
       const std::size_t first = stack.size();
       const bool is_early = search_.counts.leaf_pairs < k_early;
       expand(top, [&](const NodePair& next) {
-        std::size_t at = stack.size();
-        const std::size_t lowest = is_early ? first : std::max(first + 1, at) - 1;
-        stack.push_back(next);
-        for (; at > lowest && stack[at - 1].lower < next.lower; --at) stack[at] = stack[at - 1];
-        stack[at] = next;
+        push_sorted(stack, is_early ? first : std::max(first + 1, stack.size()) - 1, next);
       });
     }
     return false;
@@ -218,7 +209,9 @@ class DistanceTraversal final : private CloseVisitor {
                                      search_.direction, largest_of_interest());
   }
 
-  double largest_of_interest() const override { return only_intersection_ ? 0.0 : search_.best + search_.ties.width; }
+  double largest_of_interest() const override {
+    return std::min(static_cast<double>(best_), search_.best + search_.ties.width);
+  }
   const Eigen::Vector3d& direction() const override { return search_.direction; }
   bool prune_volumes(std::uint32_t a, std::uint32_t b) override {
     return tie_pruning_ == TiePruning::planes && prune_by_planes({a, b, 0.0f});
@@ -239,9 +232,8 @@ class DistanceTraversal final : private CloseVisitor {
     const bool closer = count > 1 ? measure_several(rest) : count == 1 && try_update(search_, rest[0]);
     if (!closer) return false;
     if (search_.best == 0.0) return true;
-    frames_.set_direction(search_.direction);
-    expansion_.forget();
-    set_best();
+    turn_to(search_.direction);
+    lower_best(rounded_up(search_.best + search_.ties.width));
     return false;
   }
 
@@ -278,20 +270,35 @@ class DistanceTraversal final : private CloseVisitor {
     const Tree::Leaf& leaf_b = leaf_of(tree_b_, leaves.b);
     LeafPair pairs;
     if (!bound_pairs(leaf_a, leaf_b, pairs)) return false;
-    // Pairs that improve on the best for certain, or may intersect, are measured now, the smallest upper bounds first.
-    // The others are deferred: most of them are pruned later. Between coplanar patches pairs at the distance of the
-    // best count as improving, one at a time, as the first exact distance shows that the rest tie.
-    const bool coplanar = plane_of(search_.a.patches, leaves.a) && plane_of(search_.b.patches, leaves.b);
+    // Pairs that may intersect are measured now, the others last: most of them are pruned by then. Where an exact best
+    // tells more than the least upper bound, pairs that improve on it are measured now, too: between meshes with
+    // planes, as ties are pruned by exact distances, and where bounds are asked in doubles. Between coplanar patches
+    // pairs at the distance of the best count as improving, one at a time, as the first exact distance shows that the
+    // rest tie.
+    const bool coplanar = has_planes_ && search_.a.patches.of(leaves.a) && search_.b.patches.of(leaves.b);
+    const bool one_by_one = coplanar || doubtful_pairs_ > k_patience_with_doubtful;
+    const float improving = one_by_one ? best_ + frames_.slack.all : has_planes_ ? best_ : -Tree::k_empty;
+    if (!has_planes_) take_upper_bound(pairs);
     while (true) {
       std::array<TrianglePair, TriangleDistances::k_most> next;
-      const float improving = coplanar ? best_ + frames_.slack.all : best_;
-      const std::span<TrianglePair> most = std::span(next).first(coplanar ? 1 : next.size());
+      const std::span<TrianglePair> most = std::span(next).first(one_by_one ? 1 : next.size());
       const std::span<TrianglePair> taken = take_improving(leaf_a, leaf_b, pairs, improving, most);
       if (taken.empty()) break;
       if (measure(taken)) return true;
     }
     for_each_kept(leaf_a, leaf_b, pairs, [this](const NodePair& pair) { search_.deferred.push_back(pair); });
     return false;
+  }
+
+  /// Takes the shortest difference of points for the direction and, unless only intersections are of interest, for an
+  /// upper bound on the distance.
+  HWY_INLINE void take_upper_bound(const LeafPair& pairs) {
+    const auto least =
+        static_cast<std::size_t>(std::min_element(pairs.upper, pairs.upper + LeafPair::k_pairs) - pairs.upper);
+    if (!(pairs.upper[least] < shortest_)) return;
+    shortest_ = pairs.upper[least];
+    turn_to({difference_[0][least], difference_[1][least], difference_[2][least]});
+    if (!only_intersection_) lower_best(shortest_ + frames_.slack.all + width_);
   }
 
   /// Moves the pairs with the smallest upper bounds, of those that may intersect or are below `improving`, from `pairs`
@@ -324,7 +331,7 @@ class DistanceTraversal final : private CloseVisitor {
       return false;
     }
     load_pairs<k_rounding>(leaf_a, leaf_b, frames_.a, pairs);
-    bound_triangles(pairs, frames_.slack.all, best_);
+    bound_triangles(pairs, frames_.slack.all, best_, difference_);
     if (use_of_cross_edges_.is_due()) {
       const int before = count_near(pairs);
       if (before > 0) {
@@ -337,9 +344,8 @@ class DistanceTraversal final : private CloseVisitor {
 
   /// Pairs of triangles whose bounds are not above the best.
   HWY_INLINE int count_near(const LeafPair& pairs) const {
-    int count = 0;
-    for (const float lower : pairs.lower) count += lower <= best_ ? 1 : 0;
-    return count;
+    return static_cast<int>(
+        std::count_if(pairs.lower, pairs.lower + LeafPair::k_pairs, [this](float x) { return x <= best_; }));
   }
 
   /// Calls keep() for the pairs of triangles of two leaves whose bounds are not above the best.
@@ -348,7 +354,7 @@ class DistanceTraversal final : private CloseVisitor {
     for (std::uint32_t i = 0; i < leaf_a.child.count(); ++i) {
       for (std::uint32_t j = 0; j < leaf_b.child.count(); ++j) {
         const float lower = pairs.lower[k_leaf * i + j];
-        if (lower <= best_) keep(node_pair({leaf_a.child.first() + i, leaf_b.child.first() + j}, lower));
+        if (lower <= best_) keep(NodePair::of({leaf_a.child.first() + i, leaf_b.child.first() + j}, lower));
       }
     }
   }
@@ -415,83 +421,28 @@ class DistanceTraversal final : private CloseVisitor {
   bool prune_by_gap(TrianglePair pair) {
     const bool is_asked =
         only_intersection_ || search_.ties.margin > 0.0 || search_.counts.triangles > k_patience_with_triangles;
-    return is_asked && prune(node_pair(pair, 0.0f), gap_of(search_, pair));
+    return is_asked && prune(NodePair::of(pair, 0.0f), gap_of(search_, pair));
   }
 
   HWY_INLINE bool prune_by_planes(const NodePair& pair) { return has_planes_ && prune_by_their_planes(pair); }
 
   HWY_NOINLINE bool prune_by_their_planes(const NodePair& pair) {
-    const CoplanarPatches::Plane* plane_a = plane_of(search_.a.patches, pair.a);
-    const CoplanarPatches::Plane* plane_b = plane_of(search_.b.patches, pair.b);
+    const CoplanarPatches::Plane* plane_a = search_.a.patches.of(pair.a);
+    const CoplanarPatches::Plane* plane_b = search_.b.patches.of(pair.b);
     if (!plane_a || !plane_b) return false;
     const double gap =
         plane_gap(*plane_a, volume_of(tree_a_, pair.a), *plane_b, volume_of(tree_b_, pair.b), frames_.R, frames_.shift);
     return prune(pair, gap - search_.ties.error);
   }
 
-  /// Takes the pair of smallest rank whose distance counts as equal to the smallest, of those measured and of those in
-  /// `tied`. Returns false if it cannot be decided: a pair in `tied` may have a smaller distance than the best, and
-  /// whether a pair of small rank counts as equal depends on that distance.
-  bool resolve_ties() {
-    std::erase_if(search_.tied, [&](const TiedPair& x) { return x.lower > search_.best + search_.ties.width; });
-    FirstOfTies first(search_);
-    for (const MeasuredPair& x : search_.measured) first.update(x);
-    std::vector<RankedPair>& heap = search_.ranked;
-    const auto later = [](const RankedPair& x, const RankedPair& y) { return x.smallest > y.smallest; };
-    const auto push = [&](const NodePair& pair) {
-      const Rank smallest = smallest_rank(pair);
-      if (smallest >= first.rank) return;
-      heap.push_back({smallest, pair});
-      std::push_heap(heap.begin(), heap.end(), later);
-    };
-    heap.clear();
-    for (const TiedPair& x : search_.tied) push(x.pair);
-    while (!heap.empty() && heap.front().smallest < first.rank) {
-      const NodePair top = heap.front().pair;
-      std::pop_heap(heap.begin(), heap.end(), later);
-      heap.pop_back();
-      if (is_triangle(top.a)) {
-        ++search_.counts.triangles;
-        first.update({triangles_of(top), distance_of(search_, triangles_of(top)).distance});
-        continue;
-      }
-      if (is_leaf(top.a) && is_leaf(top.b)) {
-        const Tree::Leaf& leaf_a = leaf_of(tree_a_, top.a);
-        const Tree::Leaf& leaf_b = leaf_of(tree_b_, top.b);
-        LeafPair pairs;
-        if (!bound_pairs(leaf_a, leaf_b, pairs)) continue;
-        for_each_kept(leaf_a, leaf_b, pairs, push);
-      } else {
-        expand(top, push);
-      }
-    }
-    if (first.uncertain < first.rank) return false;
-    if (std::pair(first.pair.a, first.pair.b) != std::pair(search_.pair.a, search_.pair.b)) {
-      search_.pair = first.pair;
-      search_.closest.reset();
-    }
-    return true;
-  }
-
-  /// Smallest rank that a pair of triangles in `pair` can have.
-  Rank smallest_rank(const NodePair& pair) const {
-    if (is_triangle(pair.a)) return rank_of(search_, triangles_of(pair));
-    const auto smallest = [](const CoplanarPatches& patches, std::uint32_t volume) {
-      return is_leaf(volume) ? patches.smallest_index_of_leaf(volume - NodePair::k_leaf)
-                             : patches.smallest_index_of_node(volume);
-    };
-    return {smallest(search_.a.patches, pair.a), smallest(search_.b.patches, pair.b)};
-  }
-
-  static bool is_triangle(std::uint32_t volume) { return !is_leaf(volume) && (volume & NodePair::k_triangle) != 0; }
-  static NodePair node_pair(TrianglePair pair, float lower) {
-    return {NodePair::k_triangle + pair.a, NodePair::k_triangle + pair.b, lower};
-  }
-  static TrianglePair triangles_of(const NodePair& pair) {
-    return {pair.a - NodePair::k_triangle, pair.b - NodePair::k_triangle};
-  }
-  HWY_INLINE static const CoplanarPatches::Plane* plane_of(const CoplanarPatches& patches, std::uint32_t volume) {
-    return is_leaf(volume) ? patches.of_leaf(volume - NodePair::k_leaf) : patches.of_node(volume);
+  /// The pairs of children of volumes, or of triangles of leaves, whose bounds are not above the best.
+  void split(const NodePair& pair, std::vector<NodePair>& parts) {
+    const auto keep = [&parts](const NodePair& part) { parts.push_back(part); };
+    if (!is_leaf(pair.a) || !is_leaf(pair.b)) return expand(pair, keep);
+    const Tree::Leaf& leaf_a = leaf_of(tree_a_, pair.a);
+    const Tree::Leaf& leaf_b = leaf_of(tree_b_, pair.b);
+    LeafPair pairs;
+    if (bound_pairs(leaf_a, leaf_b, pairs)) for_each_kept(leaf_a, leaf_b, pairs, keep);
   }
 
   DistanceSearch& search_;
@@ -502,6 +453,7 @@ class DistanceTraversal final : private CloseVisitor {
   const float blurred_;      // square of a diagonal: of the largest volume that floats blur
   const bool blurs_leaves_;  // both trees have leaves that small
   const bool has_planes_;    // both meshes have coplanar patches
+  const float width_;        // search_.ties.width, rounded up
   const CloseBounds close_bounds_;
   Expansion<k_rounding, true> expansion_;
   std::optional<CrossAxes> cross_axes_;  // made when they are asked for the first time
@@ -509,8 +461,10 @@ class DistanceTraversal final : private CloseVisitor {
   CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;
   std::uint64_t thick_pairs_ = 0;
   std::uint64_t doubtful_pairs_ = 0;
-  float best_;      // search_.best + search_.ties.width, rounded up
-  float doubtful_;  // bounds above this may exceed the best but for rounding
+  HWY_ALIGN float difference_[3][LeafPair::k_pairs];         // of points of the triangles that bound_pairs() left
+  float shortest_ = std::numeric_limits<float>::infinity();  // of the differences so far
+  float best_ = std::numeric_limits<float>::infinity();      // search_.best, or less, + search_.ties.width, rounded up
+  float doubtful_;                                           // bounds above this may exceed the best but for rounding
   TiePruning tie_pruning_ = TiePruning::planes;
 };
 
@@ -532,24 +486,6 @@ HWY_EXPORT(find_pair);
 
 void find_pair(DistanceSearch& search, bool only_intersection) {
   HWY_DYNAMIC_DISPATCH(find_pair)(search, only_intersection);
-}
-
-TieWindow TieWindow::of(const DistanceBody& body_a, const DistanceBody& body_b, const Pose& X_AB) {
-  if (body_a.patches.empty() || body_b.patches.empty()) return {};
-  const Tree &a = body_a.tree, &b = body_b.tree;
-  // Relative to the radii: n . p of a plane's corners rounds by a dozen units in the last place at most; rotating a
-  // normal and transforming a corner, by a dozen more; a triangle's distance by k_triangle_distance_error times its
-  // size. Offsets from the origins enter by the transformed corners and the centres alone.
-  const Eigen::Vector3d shift = X_AB * b.center() - a.center();
-  const double error = 4e-15 * (a.radius() + b.radius() + shift.norm()) +
-                       1.5e-15 * (a.center().norm() + b.center().norm() + X_AB.t.norm());
-  // A bound between planes is lowered by the error and may be off by as much, so at a tie it comes within twice the
-  // error of every distance. Distances of ties differ by less than the error.
-  return {.error = error, .margin = 2.0 * error, .width = 3.0 * error};
-}
-
-Rank rank_of(const DistanceSearch& search, TrianglePair pair) {
-  return {search.a.tree.mesh_triangle()[pair.a], search.b.tree.mesh_triangle()[pair.b]};
 }
 
 ClosestPoints distance_of(const DistanceSearch& search, TrianglePair pair) {

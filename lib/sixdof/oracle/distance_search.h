@@ -29,6 +29,10 @@ struct NodePair {
   std::uint32_t a;
   std::uint32_t b;
   float lower;  ///< Lower bound on the distance; negative where the volumes may overlap.
+
+  static NodePair of(TrianglePair pair, float lower) { return {k_triangle + pair.a, k_triangle + pair.b, lower}; }
+  bool is_of_triangles() const { return (a & k_leaf) == 0 && (a & k_triangle) != 0; }
+  TrianglePair triangles() const { return {a - k_triangle, b - k_triangle}; }
 };
 
 /// A pair of triangles and its exact distance.
@@ -41,7 +45,8 @@ struct MeasuredPair {
 using Rank = std::pair<std::uint32_t, std::uint32_t>;
 inline constexpr Rank k_no_rank{~std::uint32_t{0}, ~std::uint32_t{0}};
 
-/// A pair that was pruned as a tie: its distance is above the smallest one found less ties.margin.
+/// A pair and a bound in doubles. Of a pair that was pruned as a tie it is above the smallest distance less
+/// ties.margin.
 struct TiedPair {
   NodePair pair;
   double lower;  ///< Lower bound on the distance.
@@ -84,8 +89,20 @@ struct TraversalCounts {
   std::uint64_t triangles = 0;   ///< Pairs of triangles tested exactly.
 };
 
+/// Memory that searches use again.
+struct DistanceScratch {
+  std::vector<MeasuredPair> measured;  ///< Those not above best + ties.width, as best was then.
+  std::vector<NodePair> stack;
+  std::vector<NodePair> deferred;  ///< Triangles measured last, if their bounds are still small enough,
+  std::vector<TiedPair> bounded;   ///< and these by bounds in doubles.
+  std::vector<TiedPair> tied;
+  std::vector<RankedPair> ranked;
+  std::vector<ClosePair> close;
+  std::vector<CornerVolume> corners;
+};
+
 /// Input, output and scratch of one search.
-struct DistanceSearch {
+struct DistanceSearch : DistanceScratch {
   const DistanceBody& a;
   const DistanceBody& b;
   Pose X_AB;
@@ -96,13 +113,6 @@ struct DistanceSearch {
   std::optional<ClosestPoints> closest;                 ///< Of `pair`, if they are known: see points_of().
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< Guess of the direction from A to B at the closest points.
   TraversalCounts counts;
-  std::vector<MeasuredPair> measured;  ///< Those not above best + ties.width, as best was then.
-  std::vector<NodePair> stack;         ///< Scratch.
-  std::vector<NodePair> deferred;      ///< Scratch: triangles measured last, if their bound is still small enough.
-  std::vector<TiedPair> tied;          ///< Scratch.
-  std::vector<RankedPair> ranked;      ///< Scratch.
-  std::vector<ClosePair> close;        ///< Scratch.
-  std::vector<CornerVolume> corners;   ///< Scratch.
 };
 
 /// Measures one pair exactly and keeps it if it is closer. Then sets `direction`, too, and returns true.

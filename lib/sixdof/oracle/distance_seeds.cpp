@@ -1,7 +1,6 @@
 #include <sixdof/oracle/distance_search.h>
 
 #include <limits>
-#include <utility>
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
@@ -85,15 +84,15 @@ void seed_search(DistanceSearch& search) {
   }
   float from[3];
   bool search_b = true;
-  for (const auto& [tolerance, steps] : {std::pair(1.1f, 6), std::pair(1.0f, 4)}) {  // at most; few need as many
-    int misses = 0;
-    for (int i = 0; i < steps && misses < 2; ++i, search_b = !search_b) {
-      transform(search_b ? frames.b : frames.a, search_b ? a.point : b.point, from);
-      Corner& corner = search_b ? b : a;
-      corner.squared = best;
-      if (!find_corner(search_b ? search.b.tree : search.a.tree, from, tolerance, corner, search.corners)) ++misses;
-      best = corner.squared;
-    }
+  // The nearest corner of a few leaves: a step that looks at more takes longer than it spares in the search.
+  constexpr CornerEffort k_effort{.leaf_areas = 2.0f, .most_leaves = 6};
+  constexpr int k_steps = 16;  // at most; few need as many
+  for (int i = 0, misses = 0; i < k_steps && misses < 2; ++i, search_b = !search_b) {
+    transform(search_b ? frames.b : frames.a, search_b ? a.point : b.point, from);
+    Corner& corner = search_b ? b : a;
+    corner.squared = best;
+    if (!find_corner(search_b ? search.b.tree : search.a.tree, from, k_effort, corner, search.corners)) ++misses;
+    best = corner.squared;
   }
   try_update(search, TrianglePair{triangle_of(search.a.tree, a), triangle_of(search.b.tree, b)});
 }

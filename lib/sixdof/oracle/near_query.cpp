@@ -7,20 +7,11 @@ namespace sixdof {
 
 template <class Ask>
 auto NearQuery::with_search(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, const Ask& ask) {
-  detail::DistanceSearch search{.a = *a.body_, .b = *b.body_, .X_AB = X_AB};
+  detail::DistanceSearch search{std::move(scratch_), *a.body_, *b.body_, X_AB};
   search.ties = detail::TieWindow::of(search.a, search.b, X_AB);
-  const auto exchange_scratch = [&] {
-    measured_.swap(search.measured);
-    stack_.swap(search.stack);
-    deferred_.swap(search.deferred);
-    tied_.swap(search.tied);
-    ranked_.swap(search.ranked);
-    close_.swap(search.close);
-  };
-  exchange_scratch();
   search.measured.clear();
   const auto answer = ask(search);
-  exchange_scratch();
+  scratch_ = std::move(static_cast<detail::DistanceScratch&>(search));
   counts_.nodes += search.counts.nodes;
   counts_.leaf_pairs += search.counts.leaf_pairs;
   counts_.triangles += search.counts.triangles;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
@@ -60,12 +59,7 @@ class NearQuery {
   auto with_search(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, const Ask& ask);
 
   detail::TraversalCounts counts_;
-  // Scratch of the searches.
-  std::vector<detail::MeasuredPair> measured_;
-  std::vector<detail::NodePair> stack_, deferred_;
-  std::vector<detail::TiedPair> tied_;
-  std::vector<detail::RankedPair> ranked_;
-  std::vector<detail::ClosePair> close_;
+  detail::DistanceScratch scratch_;
 };
 
 }  // namespace sixdof

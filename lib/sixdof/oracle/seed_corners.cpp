@@ -63,18 +63,21 @@ bool take_closer_corner(const Tree::Leaf& leaf, std::uint32_t index, const float
   return found;
 }
 
-bool find_corner(const Tree& tree, const float (&p)[3], float tolerance, Corner& best,
+bool find_corner(const Tree& tree, const float (&p)[3], const CornerEffort& effort, Corner& best,
                  std::vector<CornerVolume>& stack) {
-  constexpr double k_leaf_areas = 32.0;  // a leaf's area is about radius^2 / leaves
-  const auto equal =
-      static_cast<float>(k_leaf_areas * tree.radius() * tree.radius() / static_cast<double>(tree.leaves().size()));
+  // A leaf's area is about radius^2 / leaves.
+  const float equal =
+      effort.leaf_areas * static_cast<float>(tree.radius() * tree.radius() / static_cast<double>(tree.leaves().size()));
+  const float tolerance = effort.tolerance;
+  int leaves = 0;
   bool found = false;
   stack.assign(1, {Tree::Child::node(0), 0, 0.0f});
-  while (!stack.empty()) {
+  while (!stack.empty() && leaves < effort.most_leaves) {
     const CornerVolume top = stack.back();
     stack.pop_back();
     if (tolerance * top.lower + equal >= best.squared) continue;
     if (top.child.is_leaf()) {
+      ++leaves;
       found |= take_closer_corner(tree.leaves()[top.leaf], top.leaf, p, best);
       continue;
     }
@@ -99,9 +102,9 @@ namespace sixdof::detail {
 
 HWY_EXPORT(find_corner);
 
-bool find_corner(const Tree& tree, const float (&p)[3], float tolerance, Corner& best,
+bool find_corner(const Tree& tree, const float (&p)[3], const CornerEffort& effort, Corner& best,
                  std::vector<CornerVolume>& stack) {
-  return HWY_DYNAMIC_DISPATCH(find_corner)(tree, p, tolerance, best, stack);
+  return HWY_DYNAMIC_DISPATCH(find_corner)(tree, p, effort, best, stack);
 }
 
 SeedCorners::SeedCorners(const Tree& tree) {

@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/sorted_stack.h>
 
 /// Where searches of two trees may start. Internal: distance_search.h.
 namespace sixdof::detail {
@@ -36,21 +38,22 @@ struct CornerVolume {
   float lower;
 };
 
-/// Finds a corner that is closer to p than `best.squared`. Returns whether there is one. It need not be the closest:
-/// squared distances that differ by about 32 times a leaf's area, or by the factor `tolerance`, count as equal. The
-/// same corner on every instruction set.
+/// How closely find_corner() looks.
+struct CornerEffort {
+  float tolerance = 1.0f;                             ///< Squared distances that differ by this factor count as equal,
+  float leaf_areas = 32.0f;                           ///< and those that differ by so many times a leaf's area.
+  int most_leaves = std::numeric_limits<int>::max();  ///< Nearer ones first, as far as a depth-first search finds them.
+};
+
+/// Finds a corner that is closer to p than `best.squared`. Returns whether there is one. The same corner on every
+/// instruction set.
 /// @param p relative to the tree's centre
 /// @param stack scratch
-bool find_corner(const Tree& tree, const float (&p)[3], float tolerance, Corner& best,
+bool find_corner(const Tree& tree, const float (&p)[3], const CornerEffort& effort, Corner& best,
                  std::vector<CornerVolume>& stack);
-
-/// Inserts a pair or volume into stack[first], stack[first + 1], ..., which is sorted: the smallest `lower` is on top.
-template <class T>
-void push_sorted(std::vector<T>& stack, std::size_t first, const T& x) {
-  std::size_t at = stack.size();
-  stack.push_back(x);
-  for (; at > first && stack[at - 1].lower < x.lower; --at) stack[at] = stack[at - 1];
-  stack[at] = x;
+inline bool find_corner(const Tree& tree, const float (&p)[3], float tolerance, Corner& best,
+                        std::vector<CornerVolume>& stack) {
+  return find_corner(tree, p, CornerEffort{.tolerance = tolerance}, best, stack);
 }
 
 }  // namespace sixdof::detail

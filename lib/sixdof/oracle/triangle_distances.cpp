@@ -181,10 +181,10 @@ struct Distances {
 };
 
 /// Returns the pairs (bits) whose results hold.
-std::uint32_t measure(const TriangleDistances::Corners& corner, double (&distance)[k_batch],
+std::uint32_t measure(const TriangleDistances::Corners& corner, std::size_t count, double (&distance)[k_batch],
                       double (&direction)[3][k_batch]) {
   std::uint32_t certain = 0;
-  for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
+  for (std::size_t i = 0; i < count; i += hn::Lanes(k_lanes)) {
     const Distances x(load(corner[0], i), load(corner[1], i));
     hn::Store(x.distance, k_lanes, distance + i);
     store(-x.difference, direction, i);
@@ -220,7 +220,7 @@ void TriangleDistances::measure() {
       for (auto& of_axis : of_corner) std::fill(of_axis + count_, of_axis + k_most, of_axis[0]);
     }
   }
-  measured_ = HWY_DYNAMIC_DISPATCH(triangle_distances::measure)(corner_, distance_, direction_);
+  measured_ = HWY_DYNAMIC_DISPATCH(triangle_distances::measure)(corner_, count_, distance_, direction_);
 }
 
 }  // namespace sixdof
