@@ -65,7 +65,7 @@ void check_tree(const Mesh& mesh, const Tree& tree) {
         ASSERT_EQ(node.child[i].first(), first);
         count = node.child[i].count();
         for (std::uint32_t t = first; t < first + count; ++t) ++covered[t];
-        const Tree::Leaf& leaf = tree.leaves()[node.leaf[i]];
+        const Tree::Leaf& leaf = tree.leaves()[node.leaf(i)];
         EXPECT_EQ(leaf.child.first(), first);
         EXPECT_EQ(leaf.child.count(), count);
         check_volume(leaf.volume, node, i);

@@ -357,8 +357,7 @@ std::uint32_t Tree::store_nodes(const tree_builder::Subtree& subtree) {
       node.upper[k][i] = box.upper[k];
     }
     if (i < children.size() && !subtree.nodes[i]) {
-      node.leaf[i] = static_cast<std::uint32_t>(leaves_.size());
-      node.number[i] = k_leaf_number + node.leaf[i];
+      node.number[i] = k_leaf_number + static_cast<std::uint32_t>(leaves_.size());
       node.child[i] =
           Child::leaf(static_cast<std::uint32_t>(children[i].first), static_cast<std::uint32_t>(children[i].count()));
       leaves_.emplace_back();
@@ -437,7 +436,7 @@ void Tree::store_volumes() {
         nodes_[child.node()].volume = volume;
         continue;
       }
-      Leaf& leaf = leaves_[node.leaf[i]];
+      Leaf& leaf = leaves_[node.leaf(i)];
       leaf.volume = volume;
       leaf.child = child;
       for (std::uint32_t t = 0; t < k_leaf_triangles; ++t) {

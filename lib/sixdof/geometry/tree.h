@@ -31,10 +31,10 @@ struct Subtree;
 /// bytes, a leaf 192, a triangle 76; a row `prepare/algorithm:exact` reports a pair's bytes.
 class Tree {
  public:
-  static constexpr std::size_t k_width = 8;           ///< Children per node, at most.
-  static constexpr std::size_t k_leaf_triangles = 4;  ///< Triangles per leaf, at most.
+  static constexpr std::size_t k_width = 8;                 ///< Children per node, at most.
+  static constexpr std::size_t k_leaf_triangles = 4;        ///< Triangles per leaf, at most.
   static constexpr std::uint32_t k_leaf_number = 1u << 31;  ///< What numbers of leaves begin with.
-  static constexpr float k_empty = 1e30f;             ///< Bound of the empty boxes in lanes without a child.
+  static constexpr float k_empty = 1e30f;                   ///< Bound of the empty boxes in lanes without a child.
 
   /// Limits of the mesh's diagonal (length): squares and products of floats neither underflow nor overflow.
   static constexpr double k_smallest_diagonal = 1e-15;
@@ -81,12 +81,15 @@ class Tree {
     float slab_lower[k_width];  ///< Slabs: lower <= normal . (p - center) <= upper for every point p of the child.
     float slab_upper[k_width];
     Child child[k_width];
-    std::uint32_t leaf[k_width];   ///< Index into leaves() of the children that are leaves.
-    std::uint32_t number[k_width];  ///< Of the children: an index into nodes(), or k_leaf_number plus one into leaves().
+    /// Of the children: an index into nodes(), or k_leaf_number plus one into leaves().
+    std::uint32_t number[k_width];
     Volume volume;                 ///< Of this node; the root's has normal zero and a slab from 0 to 0.
     std::uint32_t child_count;     ///< 1 .. 8 (1 only in the root of a mesh of up to four triangles).
     std::uint32_t first_triangle;  ///< The subtree's triangles in tree order: first_triangle + 0 .. triangle_count - 1.
     std::uint32_t triangle_count;
+
+    /// Index into leaves() of a child that is a leaf.
+    std::uint32_t leaf(std::size_t i) const { return number[i] - k_leaf_number; }
   };
 
   /// A leaf's corners, rounded to floats relative to center(); lanes beyond the count repeat the last triangle.

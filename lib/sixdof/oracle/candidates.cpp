@@ -188,8 +188,7 @@ class DualTreeTraversal {
 template <bool moving>
 class LeafTests {
  public:
-  LeafTests(const Tree& a, const Tree& b, const TreeMotion& motion)
-      : motion_(motion), leaves_a_(a), leaves_b_(b) {}
+  LeafTests(const Tree& a, const Tree& b, const TreeMotion& motion) : motion_(motion), leaves_a_(a), leaves_b_(b) {}
 
   /// Calls take(pair of triangles, lane of first() and last()) for those that may intersect.
   template <class Take>

@@ -27,9 +27,7 @@ struct CloseVolume {
   std::uint32_t volume;
   std::uint32_t triangle = k_whole;  ///< In tree order; k_whole for the whole volume.
 
-  static CloseVolume child_of(const Tree::Node& node, std::size_t i) {
-    return {node.number[i]};
-  }
+  static CloseVolume child_of(const Tree::Node& node, std::size_t i) { return {node.number[i]}; }
 };
 
 struct ClosePair {

@@ -99,7 +99,7 @@ void CoplanarPatches::find_planes(const Tree& tree) {
     const Tree::Node& node = tree.nodes()[index];
     for (std::size_t i = 0; i < node.child_count; ++i) {
       const Tree::Child child = node.child[i];
-      std::uint32_t& plane = child.is_leaf() ? leaf_plane_[node.leaf[i]] : node_plane_[child.node()];
+      std::uint32_t& plane = child.is_leaf() ? leaf_plane_[node.leaf(i)] : node_plane_[child.node()];
       plane = node_plane_[index];
       if (plane != k_none) continue;
       const std::uint32_t first = child.is_leaf() ? child.first() : tree.nodes()[child.node()].first_triangle;
@@ -123,8 +123,8 @@ void CoplanarPatches::find_smallest_indices(const Tree& tree) {
     for (std::size_t k = 0; k < node.child_count; ++k) {
       if (node.child[k].is_leaf()) {
         const auto triangles = tree.mesh_triangle().subspan(node.child[k].first(), node.child[k].count());
-        leaf_smallest_index_[node.leaf[k]] = *std::min_element(triangles.begin(), triangles.end());
-        smallest = std::min(smallest, leaf_smallest_index_[node.leaf[k]]);
+        leaf_smallest_index_[node.leaf(k)] = *std::min_element(triangles.begin(), triangles.end());
+        smallest = std::min(smallest, leaf_smallest_index_[node.leaf(k)]);
       } else {
         smallest = std::min(smallest, node_smallest_index_[node.child[k].node()]);
       }

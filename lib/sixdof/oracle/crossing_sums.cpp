@@ -292,9 +292,9 @@ struct alignas(64) TriangleTerms {
   HWY_NOINLINE void add_to(CurveSums& sums, const Vector3d& origin) const {
     const V3 from_origin = in_all_lanes(origin);
     for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
-      sums.add_moments(Moments(load(corner[0], i) - from_origin, load(corner[1], i) - from_origin,
-                               load(corner[2], i) - from_origin),
-                       i);
+      sums.add_moments(
+          Moments(load(corner[0], i) - from_origin, load(corner[1], i) - from_origin, load(corner[2], i) - from_origin),
+          i);
     }
   }
 };

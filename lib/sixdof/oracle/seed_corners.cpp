@@ -87,7 +87,7 @@ bool find_corner(const Tree& tree, const float (&p)[3], const CornerEffort& effo
     const std::size_t first = stack.size();
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
       if (tolerance * bounds[i] + equal >= best.squared) continue;
-      push_sorted(stack, first, {node.child[i], node.leaf[i], bounds[i]});
+      push_sorted(stack, first, {node.child[i], node.leaf(i), bounds[i]});
     }
   }
   return found;

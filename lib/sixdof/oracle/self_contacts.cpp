@@ -94,7 +94,7 @@ class Search {
       const Tree::Child child = node.child[i];
       if (!child.is_leaf()) {
         descend(tree_.nodes()[child.node()], leaf, found);
-      } else if (node.leaf[i] > leaf) {
+      } else if (node.leaf(i) > leaf) {
         compare(tree_.leaves()[leaf].child, child, found);
       }
     }

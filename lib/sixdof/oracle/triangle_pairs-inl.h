@@ -58,17 +58,17 @@ using LeafV = hn::Vec<LeafLanesTag>;
 
 constexpr LeafLanesTag k_leaf_lanes;
 
-/// The triangles of one leaf for the lanes of all pairs with another leaf's, in A's frame, relative to the centre of A's
-/// tree. Missing triangles repeat the last.
+/// The triangles of one leaf for the lanes of all pairs with another leaf's, in A's frame, relative to the centre of
+/// A's tree. Missing triangles repeat the last.
 /// @tparam of_a whether the leaf is A's
 template <bool of_a>
 struct alignas(64) PairSide {
-  float corner[3][3][k_pairs];  // [corner][axis]
-  float normal[3][k_pairs];     // (c1 - c0) x (c2 - c0)
-  float offset[k_pairs];        // normal . c0
+  float corner[3][3][k_pairs];                 // [corner][axis]
+  float normal[3][k_pairs];                    // (c1 - c0) x (c2 - c0)
+  float offset[k_pairs];                       // normal . c0
   float lower[3][k_pairs], upper[3][k_pairs];  // of the box; B's is enlarged by the slack
-  float size[k_pairs];  // sum of the absolute components of both edges from corner 0
-  std::uint32_t first;  // triangle, in tree order
+  float size[k_pairs];                         // sum of the absolute components of both edges from corner 0
+  std::uint32_t first;                         // triangle, in tree order
   std::uint32_t count;
 
   HWY_NOINLINE void load(const Tree::Leaf& leaf, const TreeMotion& x) {
@@ -258,8 +258,8 @@ HWY_INLINE std::uint32_t test_triangles(const SideA& a, const SideB& b, const Tr
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
     Overlaps<moving> overlaps(0.0f);
     for (std::size_t k = 0; k < 3; ++k) {  // B's boxes include the slack
-      overlaps.axis(load(a.lower[k] + i), load(a.upper[k] + i), load(b.lower[k] + i),
-                    load(b.upper[k] + i), Rate(passage.along_x[k]));
+      overlaps.axis(load(a.lower[k] + i), load(a.upper[k] + i), load(b.lower[k] + i), load(b.upper[k] + i),
+                    Rate(passage.along_x[k]));
     }
     if (hn::AllFalse(k_lanes, overlaps.store(first + i, last + i))) continue;
     PairLanes p(a, b, i, x.slack);
@@ -277,8 +277,8 @@ HWY_INLINE std::uint32_t test_triangles(const SideA& a, const SideB& b, const Tr
 /// Pairs of triangles (bits), of those in `bits`, that no axis across an edge of each separates; narrows the fractions.
 /// With the tests before, by both planes, they intersect but for rounding.
 template <bool moving>
-HWY_NOINLINE std::uint32_t test_across_edges(const SideA& a, const SideB& b, std::uint32_t bits,
-                                             const TreeMotion& x, float* first, float* last) {
+HWY_NOINLINE std::uint32_t test_across_edges(const SideA& a, const SideB& b, std::uint32_t bits, const TreeMotion& x,
+                                             float* first, float* last) {
   std::uint32_t overlapping = 0;
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
     const PairLanes p(a, b, i, x.slack);
