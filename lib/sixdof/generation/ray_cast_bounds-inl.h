@@ -255,9 +255,11 @@ struct TriangleGaps : Gaps {
 /// Raises gaps by Frank-Wolfe steps towards the point of S + {t u, t >= t0} that is nearest to the origin. Where that
 /// is one with t > t0 they converge slowly: then axes across the ray are tried at the end.
 HWY_INLINE void bound_triangles(CastLeafPair& pairs, const Ray& ray) {
+  constexpr int k_steps = 5;
   for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
     TriangleGaps gaps(ray, load(pairs.lower + i));
-    if (!gaps.is_enough()) take_steps<k_rounding>(pairs, i, gaps);
+    V x[3];
+    if (!gaps.is_enough()) take_steps<k_rounding, k_steps>(pairs, i, gaps, x);
     const M later = hn::And(gaps.are_near(), hn::Gt(gaps.forward, hn::Zero(k_lanes)));
     TriangleGaps across = gaps;
     if (!hn::AllFalse(k_lanes, later)) across.keep_across_ray(pairs, i);

@@ -234,43 +234,34 @@ HWY_INLINE void shortest_difference(const LeafPair& pairs, std::size_t i, V (&x)
   for (std::size_t k = 0; k < 3; ++k) x[k] = shortest.x[k];
 }
 
+/// Lower bounds on the distances of pairs of triangles, as take_steps() raises them.
+struct TriangleBounds {
+  const V enough, slack;
+  V lower, length;  ///< Length: of the last difference.
+
+  HWY_INLINE bool is_enough() const { return hn::AllTrue(k_lanes, hn::Gt(lower, enough)); }
+  HWY_INLINE void shift(V (&)[3]) const {}
+  HWY_INLINE void keep(V value, const V (&x)[3]) {
+    length = frank_wolfe::length<k_rounding>(x);
+    lower = hn::Max(lower, hn::Sub(hn::Div(value, length), slack));
+  }
+};
+
 /// Raises the lower bounds until they are above `enough` or as good as floats are: first by Frank-Wolfe steps, then
 /// along the shortest difference of points of both triangles, whose length is the upper bound.
 HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough,
                                 float (*HWY_RESTRICT difference)[LeafPair::k_pairs]) {
-  namespace fw = frank_wolfe;
   constexpr int k_steps = 2;
-  const V goal = set(enough);
   for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
-    const auto at = [i](const float* p) { return load(p + i); };
-    V lower = at(pairs.lower);
-    if (hn::AllTrue(k_lanes, hn::Gt(lower, goal))) {
-      hn::Store(set(Tree::k_empty), k_lanes, pairs.upper + i);
-      continue;
+    TriangleBounds bounds{set(enough), set(slack), load(pairs.lower + i), set(Tree::k_empty)};
+    V x[3] = {hn::Zero(k_lanes), hn::Zero(k_lanes), hn::Zero(k_lanes)};
+    if (!bounds.is_enough()) take_steps<k_rounding, k_steps>(pairs, i, bounds, x);
+    if (!bounds.is_enough()) {
+      shortest_difference(pairs, i, x);
+      bounds.keep(Projections::along<k_rounding>(x, pairs, i).low, x);
     }
-    V x[3];  // a difference b - a of points of the triangles: first of the centroids, then ever shorter
-    for (std::size_t k = 0; k < 3; ++k) {
-      const V p = hn::Add(hn::Add(at(pairs.a[0][k]), at(pairs.a[1][k])), at(pairs.a[2][k]));
-      const V q = hn::Add(hn::Add(at(pairs.b[0][k]), at(pairs.b[1][k])), at(pairs.b[2][k]));
-      x[k] = hn::Mul(set(1.0f / 3.0f), hn::Sub(q, p));
-    }
-    V length;
-    for (int step = 0;; ++step) {
-      const auto of_a = fw::support<k_rounding, fw::Extreme::greatest>(x, pairs.a, i);
-      const auto of_b = fw::support<k_rounding, fw::Extreme::least>(x, pairs.b, i);
-      length = fw::length<k_rounding>(x);
-      lower = hn::Max(lower, hn::Sub(hn::Div(hn::Sub(of_b.value, of_a.value), length), set(slack)));
-      if (step > k_steps || hn::AllTrue(k_lanes, hn::Gt(lower, goal))) break;
-      if (step == k_steps) {
-        shortest_difference(pairs, i, x);
-      } else {
-        const V s[3] = {hn::Sub(of_b.point[0], of_a.point[0]), hn::Sub(of_b.point[1], of_a.point[1]),
-                        hn::Sub(of_b.point[2], of_a.point[2])};
-        fw::step<k_rounding>(x, s);
-      }
-    }
-    hn::Store(lower, k_lanes, pairs.lower + i);
-    hn::Store(length, k_lanes, pairs.upper + i);
+    hn::Store(bounds.lower, k_lanes, pairs.lower + i);
+    hn::Store(bounds.length, k_lanes, pairs.upper + i);
     for (std::size_t k = 0; k < 3; ++k) hn::Store(x[k], k_lanes, difference[k] + i);
   }
 }
@@ -278,30 +269,22 @@ HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough,
 /// Raises the lower bounds that are not above `enough` by the nine axes across an edge of each triangle. Of needles
 /// that cross, the shortest difference is short next to the needles: rounding turns it away from such an axis.
 inline HWY_NOINLINE void bound_across_edges(LeafPair& pairs, float slack, float enough) {
-  namespace fw = frank_wolfe;
-  const V goal = set(enough);
   for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
-    V lower = load(pairs.lower + i);
-    for (std::size_t edge = 0; edge < 9 && !hn::AllTrue(k_lanes, hn::Gt(lower, goal)); ++edge) {
-      V u[3], v[3];
+    TriangleBounds bounds{set(enough), set(slack), load(pairs.lower + i), set(Tree::k_empty)};
+    for (std::size_t edge = 0; edge < 9 && !bounds.is_enough(); ++edge) {
+      V u[3], v[3], n[3];
       for (std::size_t k = 0; k < 3; ++k) {
         u[k] = hn::Sub(load(pairs.a[(edge + 1) % 3][k] + i), load(pairs.a[edge % 3][k] + i));
         v[k] = hn::Sub(load(pairs.b[(edge / 3 + 1) % 3][k] + i), load(pairs.b[edge / 3][k] + i));
       }
-      V n[3];
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
         n[k] = hn::NegMulAdd(u[m], v[l], hn::Mul(u[l], v[m]));
       }
-      const auto value = [](const auto& support) { return support.value; };
-      const V most_a = value(fw::support<k_rounding, fw::Extreme::greatest>(n, pairs.a, i));
-      const V least_a = value(fw::support<k_rounding, fw::Extreme::least>(n, pairs.a, i));
-      const V most_b = value(fw::support<k_rounding, fw::Extreme::greatest>(n, pairs.b, i));
-      const V least_b = value(fw::support<k_rounding, fw::Extreme::least>(n, pairs.b, i));
-      const V gap = hn::Max(hn::Sub(least_b, most_a), hn::Sub(least_a, most_b));
-      lower = hn::Max(lower, hn::Sub(hn::Div(gap, fw::length<k_rounding>(n)), set(slack)));
+      const Projections range = Projections::along<k_rounding>(n, pairs, i);
+      bounds.keep(hn::Max(range.low, hn::Neg(range.high)), n);
     }
-    hn::Store(lower, k_lanes, pairs.lower + i);
+    hn::Store(bounds.lower, k_lanes, pairs.lower + i);
   }
 }
 

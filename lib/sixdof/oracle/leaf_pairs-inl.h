@@ -106,10 +106,9 @@ struct Projections {
 /// Frank-Wolfe steps from the difference of the centroids. Each iterate x is an axis.
 /// @param bound is told of each: shift(x) may move it before it is used, keep(value, x) takes the least x . (q - p),
 /// and is_enough() ends the steps
-template <Rounding rounding, class Bound>
-HWY_INLINE void take_steps(const LeafPair& pairs, std::size_t i, Bound& bound) {
-  constexpr int k_steps = 5;
-  V x[3];  // a difference q - p of points of the triangles
+/// @param x set to the last iterate: a difference q - p of points of the triangles, but for shifts
+template <Rounding rounding, int steps, class Bound>
+HWY_INLINE void take_steps(const LeafPair& pairs, std::size_t i, Bound& bound, V (&x)[3]) {
   for (std::size_t k = 0; k < 3; ++k) {
     const auto sum = [&](const auto& t) {
       return hn::Add(hn::Add(load(t[0][k] + i), load(t[1][k] + i)), load(t[2][k] + i));
@@ -121,7 +120,7 @@ HWY_INLINE void take_steps(const LeafPair& pairs, std::size_t i, Bound& bound) {
     const auto p = frank_wolfe::support<rounding, frank_wolfe::Extreme::greatest>(x, pairs.a, i);
     const auto q = frank_wolfe::support<rounding, frank_wolfe::Extreme::least>(x, pairs.b, i);
     bound.keep(hn::Sub(q.value, p.value), x);
-    if (step == k_steps || bound.is_enough()) return;
+    if (step == steps || bound.is_enough()) return;
     const V s[3] = {hn::Sub(q.point[0], p.point[0]), hn::Sub(q.point[1], p.point[1]), hn::Sub(q.point[2], p.point[2])};
     frank_wolfe::step<rounding>(x, s);
   }
