@@ -336,7 +336,7 @@ class PathEdges {
   /// @param origin of the integrals, in the mesh's frame
   PathEdges(const Solid& solid, const Vector3d& origin) : solid_(solid), origin_(origin) {}
 
-  /// @param forth -1: from the middle to the lowest corner
+  /// @param sign -1: from the middle to the lowest corner
   /// @param is_kept false: the edge is none
   HWY_INLINE void add(std::uint32_t triangle, int sign, bool is_kept) {
     if (HWY_UNLIKELY(size_ == k_batch)) flush();
