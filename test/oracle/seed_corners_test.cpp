@@ -36,7 +36,7 @@ TEST(FindCorner, FindsACornerAboutAsCloseAsTheClosest) {
       const double least = least_squared(tree, p);
       for (const float tolerance : {1.0f, 1.1f}) {
         Corner corner{1e30f, 0, 0, {}};
-        ASSERT_TRUE(find_corner(tree, at, tolerance, corner, stack)) << name;
+        ASSERT_TRUE(find_corner(tree, at, CornerEffort{.tolerance = tolerance}, corner, stack)) << name;
         EXPECT_LE(static_cast<double>(corner.squared), 1.0001 * static_cast<double>(tolerance) * least + equal) << name;
         // It is a corner of the triangle that it names, at that distance.
         double nearest = std::numeric_limits<double>::infinity();
@@ -49,7 +49,7 @@ TEST(FindCorner, FindsACornerAboutAsCloseAsTheClosest) {
         // Nothing is closer than that by more than the tolerance.
         Corner closer = corner;
         closer.squared = static_cast<float>(0.999 * least);
-        EXPECT_FALSE(find_corner(tree, at, tolerance, closer, stack));
+        EXPECT_FALSE(find_corner(tree, at, CornerEffort{.tolerance = tolerance}, closer, stack));
         EXPECT_EQ(closer.leaf, corner.leaf);
       }
     }

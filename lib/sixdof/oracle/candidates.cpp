@@ -172,7 +172,8 @@ class DualTreeTraversal {
   const CloseTests& close_;
   const Eigen::Matrix3d& R_AB_;
   std::vector<VolumePair>& stack_;
-  /// Kept volumes: 4 of 10 are loaded again without, 1 of 8 with 64, which do not fit the first cache.
+  /// Of the volumes that are taken 80 % are loaded if one is kept, 45 % with 16, 36 % with 64, which do not fit the
+  /// first cache (elephants, overlap of 10 %).
   static constexpr std::size_t k_kept = 16;
   Expansion<k_rounding, false, k_kept> expansion_;
   /// If moving: intervals of fractions of the volumes of x.

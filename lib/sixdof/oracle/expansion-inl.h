@@ -31,9 +31,6 @@ HWY_INLINE const Tree::Leaf& leaf_of(const Tree& tree, std::uint32_t volume) {
 HWY_INLINE const Tree::Volume& volume_of(const Tree& tree, std::uint32_t volume) {
   return is_leaf(volume) ? leaf_of(tree, volume).volume : tree.nodes()[volume].volume;
 }
-HWY_INLINE void prefetch_volume(const Tree& tree, std::uint32_t volume) {
-  is_leaf(volume) ? prefetch(leaf_of(tree, volume)) : prefetch(tree.nodes()[volume]);
-}
 
 /// The children of a node, or one volume that stays whole.
 /// @tparam kept how many of those loaded last are kept, for volumes that meet several of the other tree

@@ -51,9 +51,5 @@ struct CornerEffort {
 /// @param stack scratch
 bool find_corner(const Tree& tree, const float (&p)[3], const CornerEffort& effort, Corner& best,
                  std::vector<CornerVolume>& stack);
-inline bool find_corner(const Tree& tree, const float (&p)[3], float tolerance, Corner& best,
-                        std::vector<CornerVolume>& stack) {
-  return find_corner(tree, p, CornerEffort{.tolerance = tolerance}, best, stack);
-}
 
 }  // namespace sixdof::detail
