@@ -17,7 +17,8 @@ namespace {
 struct Wave {
   double amplitude = 1.0;
   int calls = 0;
-  OverlapMeasurement operator()(double s) {
+  OverlapMeasurement operator()(double s, double front = 5.0) {
+    EXPECT_LT(s, front);
     ++calls;
     const double x = 4.0 - s;
     return {
@@ -54,7 +55,7 @@ TEST(OverlapMarch, FindsABumpThatItsStepsWouldPassOver) {
   constexpr double k_width = 0.1, k_bump = 0.8, k_target = 1.5, k_tolerance = 1e-9;
   for (int i = 0; i < 12; ++i) {
     const double center = 0.85 + 0.04 * i;
-    const auto bump = [&](double s) {
+    const auto bump = [&](double s, double) {
       const double x = 4.0 - s;
       const double y = std::clamp((x - center) / k_width, -1.0, 1.0);
       const double rest = 1.0 - y * y;
@@ -82,7 +83,7 @@ TEST(OverlapMarch, EndsAtTheCentre) {
 }
 
 TEST(OverlapMarch, RefusesAFunctionThatJumps) {
-  OverlapMarch march([](double s) { return OverlapMeasurement{.s = s, .volume = s < 1.0 / 3.0 ? 1.0 : 0.0}; },
+  OverlapMarch march([](double s, double) { return OverlapMeasurement{.s = s, .volume = s < 1.0 / 3.0 ? 1.0 : 0.0}; },
                      within(1.0, 0.0), 4.0, {.resolution = 1e-3, .tolerance = 1e-9, .first_step = 0.1});
   EXPECT_THROW(march.advance(0.5), Error);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -63,17 +64,33 @@ class Intervals {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<float, float>> intervals_;
 };
 
-/// Expects the overlap of the pairs of triangles that may intersect at x to have the bits of that of a search at x.
-inline void expect_same_bits(OverlapQuery& query, const Pose& pose, const std::vector<SweptPair>& triangles, double x) {
+/// Expects the overlap of these pairs of triangles to have the bits of that of a search.
+inline void expect_same_bits(OverlapQuery& query, const Pose& pose, const std::vector<TrianglePair>& pairs) {
   const Eigen::Vector3d reference(0.1, -0.4, 0.2);
   const Overlap expected = query.evaluate(pose, reference);
-  std::vector<TrianglePair> pairs;
-  select_pairs(triangles, x, pairs);
   const Overlap selected = query.evaluate(pose, reference, pairs);
-  EXPECT_EQ(selected.crossings, expected.crossings) << x;
-  EXPECT_EQ(selected.volume, expected.volume) << x;
-  EXPECT_EQ(selected.area, expected.area) << x;
-  EXPECT_EQ(selected.moment, expected.moment) << x;
+  EXPECT_EQ(selected.crossings, expected.crossings);
+  EXPECT_EQ(selected.volume, expected.volume);
+  EXPECT_EQ(selected.area, expected.area);
+  EXPECT_EQ(selected.moment, expected.moment);
+}
+
+/// Expects select_pairs() and select_triangles() to find what intersects at the fraction x and within a margin of it.
+inline void expect_selected(OverlapQuery& query, const Tree& a, const Tree& b, const Pose& X_AB,
+                            const Eigen::Vector3d& displacement, const std::vector<SweptPair>& leaves,
+                            const std::vector<SweptPair>& triangles, double x) {
+  for (const double margin : {0.0, 1e-7, 0.02}) {  // fractions
+    const FractionRange range{std::max(0.0, x - margin), std::min(1.0, x + margin)};
+    std::vector<TrianglePair> of_triangles, of_leaves;
+    select_pairs(triangles, range, of_triangles);
+    select_triangles(a, b, moved(X_AB, x * displacement), margin * displacement.norm(), leaves, range, of_leaves);
+    for (const double at : {range.first, x, range.last}) {
+      SCOPED_TRACE(::testing::Message() << at << ", within " << margin << " of " << x);
+      expect_same_bits(query, moved(X_AB, at * displacement), of_triangles);
+      expect_same_bits(query, moved(X_AB, at * displacement), of_leaves);
+      if (margin == 0.0) break;
+    }
+  }
 }
 
 /// At many fractions of the displacement: every two triangles that cross are a pair, and so are their leaves, whose
@@ -93,7 +110,7 @@ inline std::size_t expect_swept(const Solid& solid_a, const Solid& solid_b, cons
   for (int i = 0; i <= k_fractions; ++i) {
     const double x = static_cast<double>(i) / k_fractions;
     const Pose pose = moved(X_AB, x * displacement);
-    expect_same_bits(query, pose, triangles, x);
+    expect_selected(query, a, b, X_AB, displacement, leaves, triangles, x);
     std::vector<TrianglePair> pairs;
     find_candidates(a, b, pose, scratch, pairs);
     for (const TrianglePair& pair : crossings_among(a, b, pose, pairs)) {

@@ -61,7 +61,7 @@ void OverlapMarch::measure_at(double s) {
   if (++measurements_ > k_most_measurements) {
     throw Error(fmt::format("no end after {} measurements of the volume", k_most_measurements));
   }
-  inner_.push_back(measure_(s));
+  inner_.push_back(measure_(s, passed_.back().s));
 }
 
 /// Where to divide the interval from the front to `inner`; nothing if it cannot contain a hit.

@@ -19,8 +19,8 @@ struct MarchLimits {
 /// Searches one ray inwards from contact for the first translations at which volumes are met; see volume_generator.h.
 class OverlapMarch {
  public:
-  /// Measures at `s`.
-  using Measure = std::function<OverlapMeasurement(double s)>;
+  /// Measures at `s`, after the front has come to `front`.
+  using Measure = std::function<OverlapMeasurement(double s, double front)>;
   /// An upper bound on the volume between two measurements: the least known, unless another is not above `enough`.
   using Peak =
       std::function<VolumePeak(const OverlapMeasurement& outer, const OverlapMeasurement& inner, double enough)>;

@@ -84,10 +84,9 @@ class VolumeSolver final : public RaySolver {
     for (; k < targets.size() && targets[k] == 0.0; ++k) translations[k] = contact;
     if (k == targets.size() || targets[k] > most_) return;
 
-    outer_ = inner_ = -1.0;  // nothing is collected
-    has_triangles_ = false;
+    forget_pairs();
     OverlapMarch march(
-        [&](double s) { return measure(s); },
+        [&](double s, double front) { return measure(s, front); },
         [&](const OverlapMeasurement& outer, const OverlapMeasurement& inner, double enough) {
           return peak(outer, inner, enough);
         },
@@ -109,13 +108,27 @@ class VolumeSolver final : public RaySolver {
   std::uint64_t measurements() const override { return measurements_; }
 
  private:
-  OverlapMeasurement measure(double s) {
+  /// What may intersect is collected first, from the front to a little beyond s, and from there the candidates: the
+  /// bounds between the front and the hit need the same pairs, and other measurements lie close by.
+  OverlapMeasurement measure(double s, double front) {
     ++measurements_;
-    const bool known = has_triangles_ && inner_ <= s && s <= outer_;  // where an interval is divided
-    if (known) select_pairs(triangles_, fraction(s), pairs_);
-    const Overlap overlap =
-        known ? query_.evaluate(ray_.pose(s), ray_.center_a, pairs_) : query_.evaluate(ray_.pose(s), ray_.center_a);
+    if (!is_collected(s, front)) collect_leaves(std::max(0.0, s - k_beyond * (front - s)), front);
+    if (!(selected_from_ >= s && s >= selected_to_)) select_candidates(s);
+    const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a, candidates_);
     return {.s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray_.direction)};
+  }
+
+  /// The candidates within a margin of s.
+  void select_candidates(double s) {
+    const double margin = k_margin * std::min(pair_.mesh_a.diagonal(), pair_.mesh_b.diagonal());
+    selected_from_ = std::min(outer_, s + margin);
+    selected_to_ = std::max(inner_, s - margin);
+    const FractionRange range{fraction(selected_from_), fraction(selected_to_)};
+    if (has_triangles_) {
+      select_pairs(triangles_, range, candidates_);
+    } else {
+      select_triangles(pair_.body_a->tree, pair_.body_b->tree, ray_.pose(s), margin, leaves_, range, candidates_);
+    }
   }
 
   SlopeBounds bounds(SlopeBounds::Items items) const {
@@ -124,11 +137,20 @@ class VolumeSolver final : public RaySolver {
 
   /// Leaves mostly suffice, and are fewer.
   VolumePeak peak(const OverlapMeasurement& outer, const OverlapMeasurement& inner, double enough) {
-    if (inner.s < inner_ || outer.s > outer_) collect_leaves(inner.s, outer.s);
+    if (!is_collected(inner.s, outer.s)) collect_leaves(inner.s, outer.s);
     const VolumePeak of_leaves = peak(outer, inner, by_leaves_, leaves_);
-    if (of_leaves.volume <= enough) return of_leaves;
+    if (of_leaves.volume <= enough || is_cheaper_divided()) return of_leaves;
     if (!has_triangles_) collect_triangles();
     return peak(outer, inner, by_triangles_, triangles_);
+  }
+
+  /// Where leaves leave an interval in doubt, it is divided as long as those measurements have had fewer candidates
+  /// than half as many as there are pairs of leaves, whose triangles would be the alternative.
+  bool is_cheaper_divided() {
+    if (has_triangles_) return false;
+    const bool is_cheaper = 2 * of_doubts_ < leaves_.size();
+    of_doubts_ += candidates_.size();
+    return is_cheaper;
   }
 
   VolumePeak peak(const OverlapMeasurement& outer, const OverlapMeasurement& inner, SlopeBounds& bounds,
@@ -138,10 +160,19 @@ class VolumeSolver final : public RaySolver {
     return volume_peak(outer, inner, ranges);
   }
 
+  bool is_collected(double inner, double outer) const { return inner >= inner_ && outer <= outer_; }
+
+  void forget_pairs() {
+    inner_ = selected_to_ = std::numeric_limits<double>::infinity();
+    outer_ = selected_from_ = -inner_;
+    has_triangles_ = false;
+    of_doubts_ = 0;
+  }
+
   void collect_leaves(double inner, double outer) {
+    forget_pairs();
     inner_ = inner;
     outer_ = outer;
-    has_triangles_ = false;
     find_swept_leaves(pair_.body_a->tree, pair_.body_b->tree, ray_.pose(outer), (inner - outer) * ray_.direction,
                       scratch_, leaves_);
   }
@@ -158,6 +189,11 @@ class VolumeSolver final : public RaySolver {
   /// diagonal. Other directions take the displacement at which the direction before met its first target.
   static constexpr double k_first_step = 0.02;
 
+  /// Pairs are collected from the front to the next measurement and beyond by this fraction of the step.
+  static constexpr double k_beyond = 0.05;
+  /// Candidates serve measurements within this fraction of the smaller box's diagonal.
+  static constexpr double k_margin = 4e-6;
+
   const std::shared_ptr<const VolumePair> shared_;
   const VolumePair& pair_;
   std::unique_ptr<RaySolver> touching_;
@@ -168,11 +204,13 @@ class VolumeSolver final : public RaySolver {
   std::uint64_t measurements_ = 0;
   OverlapQuery query_;
   SlopeBounds by_leaves_, by_triangles_;
-  double outer_ = -1.0, inner_ = -1.0;  ///< Pairs are collected between these translations of the ray.
+  double outer_ = 0.0, inner_ = 0.0;  ///< Pairs are collected between these translations of the ray.
   CandidateScratch scratch_;
   std::vector<SweptPair> leaves_, triangles_;
   bool has_triangles_ = false;
-  std::vector<TrianglePair> pairs_;
+  std::size_t of_doubts_ = 0;  ///< Candidates of the measurements by which intervals of these were divided.
+  double selected_from_ = 0.0, selected_to_ = 0.0;  ///< The candidates are those between these translations.
+  std::vector<TrianglePair> candidates_;
 };
 
 }  // namespace

@@ -277,6 +277,22 @@ void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eig
   DualTreeTraversal<true, decltype(take)>(a, b, X_AB, motion, close, scratch, take).run();
 }
 
+void select_triangles(const Tree& a, const Tree& b, const Pose& X_AB, double margin,
+                      std::span<const SweptPair> leaf_pairs, FractionRange range, std::vector<TrianglePair>& pairs) {
+  const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero(), margin);
+  LeafTests<false> tests(a, b, motion);
+  constexpr std::size_t k_ahead = 16;
+  for (std::size_t i = 0; i < leaf_pairs.size(); ++i) {
+    if (i + k_ahead < leaf_pairs.size() && range.meets(leaf_pairs[i + k_ahead])) {
+      prefetch(a.leaves()[leaf_pairs[i + k_ahead].a]);
+      prefetch(b.leaves()[leaf_pairs[i + k_ahead].b]);
+    }
+    if (!range.meets(leaf_pairs[i])) continue;
+    tests.test(leaf_pairs[i].a, leaf_pairs[i].b,
+               [&](TrianglePair triangles, std::uint32_t) { pairs.push_back(triangles); });
+  }
+}
+
 void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                           std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs) {
   const TreeMotion motion(a, b, X_AB, displacement);
@@ -298,6 +314,7 @@ namespace candidates {
 HWY_EXPORT(find_candidates);
 HWY_EXPORT(find_swept_leaves);
 HWY_EXPORT(find_swept_triangles);
+HWY_EXPORT(select_triangles);
 }  // namespace candidates
 
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
@@ -318,10 +335,16 @@ void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const 
   HWY_DYNAMIC_DISPATCH(candidates::find_swept_triangles)(a, b, X_AB, displacement, leaf_pairs, pairs);
 }
 
-void select_pairs(std::span<const SweptPair> swept, double x, std::vector<TrianglePair>& pairs) {
+void select_triangles(const Tree& a, const Tree& b, const Pose& X_AB, double margin,
+                      std::span<const SweptPair> leaf_pairs, FractionRange range, std::vector<TrianglePair>& pairs) {
+  pairs.clear();
+  HWY_DYNAMIC_DISPATCH(candidates::select_triangles)(a, b, X_AB, margin, leaf_pairs, range, pairs);
+}
+
+void select_pairs(std::span<const SweptPair> swept, FractionRange range, std::vector<TrianglePair>& pairs) {
   pairs.clear();
   for (const SweptPair& pair : swept) {
-    if (static_cast<double>(pair.first) <= x && x <= static_cast<double>(pair.last)) pairs.push_back({pair.a, pair.b});
+    if (range.meets(pair)) pairs.push_back({pair.a, pair.b});
   }
 }
 

@@ -68,7 +68,21 @@ void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eig
 void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                           std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs);
 
-/// The pairs that may intersect at the fraction x of the displacement.
-void select_pairs(std::span<const SweptPair> swept, double x, std::vector<TrianglePair>& pairs);
+/// An interval of fractions of a displacement.
+struct FractionRange {
+  double first, last;
+  bool meets(const SweptPair& pair) const {
+    return static_cast<double>(pair.first) <= last && first <= static_cast<double>(pair.last);
+  }
+};
+
+/// The pairs that may intersect at one of these fractions of the displacement, which lie in 0 .. 1.
+void select_pairs(std::span<const SweptPair> swept, FractionRange range, std::vector<TrianglePair>& pairs);
+
+/// The pairs of triangles of those of these leaves that may intersect at one of the fractions. Conservative as
+/// find_candidates() for B at X_AB and wherever it is translated from there by at most `margin` (length), provided that
+/// the fractions contain those poses; in the same order.
+void select_triangles(const Tree& a, const Tree& b, const Pose& X_AB, double margin,
+                      std::span<const SweptPair> leaf_pairs, FractionRange range, std::vector<TrianglePair>& pairs);
 
 }  // namespace sixdof

@@ -45,14 +45,15 @@ struct Passage {
 
 /// A pose and a displacement of B between the frames of both trees.
 struct TreeMotion {
-  float slack;     ///< Largest error of a transformed coordinate.
+  float slack;     ///< Largest error of a transformed coordinate, and the margin.
   Frames frames;   ///< B at the displacement's middle.
   float start[3];  ///< From A's centre to B's, before the displacement.
   Passage of_b;    ///< Of B, x = A,
   Passage of_a;    ///< and of A past B, x = B.
 
-  TreeMotion(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement)
-      : slack(slack_of(a, b, X_AB, displacement)),
+  /// @param margin B may be farther away by as much, in any direction
+  TreeMotion(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement, double margin = 0.0)
+      : slack(slack_of(a, b, X_AB, displacement) + static_cast<float>((1.0 + 1e-6) * margin)),
         frames(X_AB.R),
         of_b(displacement, X_AB.R.transpose() * displacement, slack),
         of_a(-(X_AB.R.transpose() * displacement), -displacement, slack) {

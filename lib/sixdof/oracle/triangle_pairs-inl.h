@@ -64,9 +64,8 @@ template <bool of_a>
 struct alignas(64) PairSide {
   float corner[3][3][k_pairs];                 // [corner][axis]
   float normal[3][k_pairs];                    // (c1 - c0) x (c2 - c0)
-  float offset[k_pairs];                       // normal . c0
+  float low[k_pairs], high[k_pairs];           // range of normal . c of the corners c, with the rounding of both sides
   float lower[3][k_pairs], upper[3][k_pairs];  // of the box; B's is enlarged by the slack
-  float size[k_pairs];                         // sum of the absolute components of both edges from corner 0
   std::uint32_t first;                         // triangle, in tree order
   std::uint32_t count;
 
@@ -81,26 +80,40 @@ struct alignas(64) PairSide {
         for (std::size_t k = 0; k < 3; ++k) write(p[c][k], corner[c][k], i);
       }
       const LeafV slack = hn::Set(k_leaf_lanes, of_a ? 0.0f : x.slack);
-      LeafV u[3], v[3], length = hn::Zero(k_leaf_lanes), along = length;
+      LeafV u[3], v[3], size = hn::Zero(k_leaf_lanes), sum = size, along = size;
       for (std::size_t k = 0; k < 3; ++k) {
         u[k] = hn::Sub(p[1][k], p[0][k]);
         v[k] = hn::Sub(p[2][k], p[0][k]);
-        length = hn::Add(length, hn::Add(hn::Abs(u[k]), hn::Abs(v[k])));
+        size = hn::Add(size, hn::Add(hn::Abs(u[k]), hn::Abs(v[k])));
         write(hn::Sub(hn::Min(hn::Min(p[0][k], p[1][k]), p[2][k]), slack), lower[k], i);
         write(hn::Add(hn::Max(hn::Max(p[0][k], p[1][k]), p[2][k]), slack), upper[k], i);
       }
-      write(length, size, i);
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
         const LeafV n = hn::Sub(hn::Mul(u[l], v[m]), hn::Mul(u[m], v[l]));
         write(n, normal[k], i);
         along = unfused_mul_add(n, p[0][k], along);
+        sum = hn::Add(sum, hn::Abs(n));
       }
-      write(along, offset, i);
+      const LeafV tolerance = plane_tolerance(size, sum, x.slack);
+      write(hn::Sub(along, tolerance), low, i);
+      write(hn::Add(along, tolerance), high, i);
     }
   }
 
  private:
+  /// Whatever its own rounding, the normal n separates two triangles if their projections on it are apart. Corners are
+  /// off by the slack along each axis, and scalar products with n are rounded by less than that. The triangle's own
+  /// corners have the same projection but for the rounding of n, 2e-7 of the squared size, times an edge. Products that
+  /// underflow are off by less than the smallest normal float.
+  /// @param size sum of the absolute components of both edges from corner 0
+  /// @param sum of the absolute components of n
+  static HWY_INLINE LeafV plane_tolerance(LeafV size, LeafV sum, float slack) {
+    const auto set = [](float x) { return hn::Set(k_leaf_lanes, x); };
+    const LeafV rounding = hn::Mul(hn::Mul(set(1e-6f), size), hn::Mul(size, size));
+    return hn::Add(unfused_mul_add(sum, set(4.0f * slack), rounding), set(std::numeric_limits<float>::min()));
+  }
+
   static HWY_INLINE void move_to_a(LeafV (&p)[3], const TreeMotion& x) {
     const LeafV q[3] = {p[0], p[1], p[2]};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -154,42 +167,17 @@ class LeafCache {
 
 HWY_INLINE V load(const float* p) { return hn::Load(k_lanes, p); }
 
-/// Corners and normals for the lanes i, i + 1, ... of the pairs, and the tolerances of their plane distances.
+/// Corners for the lanes i, i + 1, ... of the pairs.
 struct PairLanes {
   V corner_a[3][3], corner_b[3][3];  // [corner][axis]
-  V normal_a[3], normal_b[3];
-  V offset_a, offset_b;
-  V tolerance_a, tolerance_b;
 
-  /// Tolerances: errors of normal . (corner of the other triangle) - offset, wherever the boxes overlap. A normal is
-  /// a sum of products of edges (size E) whose coordinates are off by twice the slack s: 8 s E. A corner of the other
-  /// triangle (size E') is at most E + E' + 6 s away, off by 2 s: together below 16 s E (2 E + E' + 6 s), which
-  /// includes the rounding of the products with the normal, below s E^2.
-  HWY_INLINE PairLanes(const SideA& a, const SideB& b, std::size_t i, float slack) {
+  HWY_INLINE PairLanes(const SideA& a, const SideB& b, std::size_t i) {
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t c = 0; c < 3; ++c) {
         corner_a[c][k] = load(a.corner[c][k] + i);
         corner_b[c][k] = load(b.corner[c][k] + i);
       }
-      normal_a[k] = load(a.normal[k] + i);
-      normal_b[k] = load(b.normal[k] + i);
     }
-    offset_a = load(a.offset + i);
-    offset_b = load(b.offset + i);
-    const V size_a = load(a.size + i), size_b = load(b.size + i);
-    const V s = set(16.0f * slack);
-    const V both = hn::Add(hn::Add(size_a, size_b), set(6.0f * slack));
-    tolerance_a = hn::Mul(hn::Mul(s, size_a), hn::Add(both, size_a));
-    tolerance_b = hn::Mul(hn::Mul(s, size_b), hn::Add(both, size_b));
-  }
-
-  /// Adds the rounding of the products of normals, of up to the square of a size, with differences as long as the
-  /// displacement.
-  HWY_INLINE void widen(V size_a, V size_b, const V (&displacement)[3]) {
-    V rounding = hn::Zero(k_lanes);
-    for (const V d : displacement) rounding = hn::Add(rounding, hn::Mul(set(1e-6f), hn::Abs(d)));
-    tolerance_a = unfused_mul_add(rounding, hn::Mul(size_a, size_a), tolerance_a);
-    tolerance_b = unfused_mul_add(rounding, hn::Mul(size_b, size_b), tolerance_b);
   }
 };
 
@@ -261,13 +249,12 @@ HWY_INLINE std::uint32_t test_triangles(const SideA& a, const SideB& b, const Tr
                     Rate(passage.along_x[k]));
     }
     if (hn::AllFalse(k_lanes, overlaps.store(first + i, last + i))) continue;
-    PairLanes p(a, b, i, x.slack);
-    if constexpr (moving) p.widen(load(a.size + i), load(b.size + i), displacement);
-    const Projection on_a(p.normal_a, p.corner_b), on_b(p.normal_b, p.corner_a);
-    overlaps.axis(hn::Sub(p.offset_a, p.tolerance_a), hn::Add(p.offset_a, p.tolerance_a), on_a.low, on_a.high,
-                  rate_of(dot(p.normal_a, displacement)));
-    overlaps.axis(on_b.low, on_b.high, hn::Sub(p.offset_b, p.tolerance_b), hn::Add(p.offset_b, p.tolerance_b),
-                  rate_of(dot(p.normal_b, displacement)));
+    const PairLanes p(a, b, i);
+    const V normal_a[3] = {load(a.normal[0] + i), load(a.normal[1] + i), load(a.normal[2] + i)};
+    const V normal_b[3] = {load(b.normal[0] + i), load(b.normal[1] + i), load(b.normal[2] + i)};
+    const Projection on_a(normal_a, p.corner_b), on_b(normal_b, p.corner_a);
+    overlaps.axis(load(a.low + i), load(a.high + i), on_a.low, on_a.high, rate_of(dot(normal_a, displacement)));
+    overlaps.axis(on_b.low, on_b.high, load(b.low + i), load(b.high + i), rate_of(dot(normal_b, displacement)));
     bits |= bits_of(overlaps.store(first + i, last + i), i);
   }
   return bits;
@@ -280,7 +267,7 @@ HWY_NOINLINE std::uint32_t test_across_edges(const SideA& a, const SideB& b, std
                                              float* first, float* last) {
   std::uint32_t overlapping = 0;
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
-    const PairLanes p(a, b, i, x.slack);
+    const PairLanes p(a, b, i);
     Overlaps<moving> overlaps(0.0f);
     overlaps.take(first + i, last + i);
     for (std::size_t edge = 0; edge < 9; ++edge) {
