@@ -21,8 +21,10 @@ struct Wave {
     EXPECT_LT(s, front);
     ++calls;
     const double x = 4.0 - s;
-    return {
-        .s = s, .volume = amplitude * (x - std::sin(3.0 * x)), .slope = amplitude * (1.0 - 3.0 * std::cos(3.0 * x))};
+    return {.s = s,
+            .volume = amplitude * (x - std::sin(3.0 * x)),
+            .slope = amplitude * (1.0 - 3.0 * std::cos(3.0 * x)),
+            .curvature = amplitude * 9.0 * std::sin(3.0 * x)};
   }
 };
 
@@ -48,6 +50,31 @@ TEST(OverlapMarch, TakesTheFirstOfSeveralCrossings) {
     EXPECT_NEAR(hit->volume, target, k_tolerance);
     EXPECT_NEAR(hit->s, expected, 2e-5) << target;
   }
+}
+
+TEST(OverlapMarch, TheCurvatureSparesMeasurements) {
+  // A cubic is met where its curvature predicts it; without, the first prediction after contact is off.
+  const auto measurements = [](double curvature) {
+    int calls = 0;
+    const auto cubic = [&](double s, double) {
+      ++calls;
+      const double x = 4.0 - s;
+      return OverlapMeasurement{.s = s,
+                                .volume = x * x * (1.0 + 0.3 * x),
+                                .slope = x * (2.0 + 0.9 * x),
+                                .curvature = curvature * (2.0 + 1.8 * x)};
+    };
+    OverlapMarch march(cubic, within(20.0, 0.0), 4.0, {.resolution = 1e-3, .tolerance = 1e-9, .first_step = 0.1});
+    for (int i = 1; i <= 10; ++i) {
+      const std::optional<OverlapMeasurement> hit = march.advance(0.5 * i);
+      EXPECT_NEAR(hit.value().volume, 0.5 * i, 1e-9);
+    }
+    return calls;
+  };
+  const int with = measurements(1.0), without = measurements(0.0), wrong = measurements(-30.0);
+  EXPECT_LE(with, 15);
+  EXPECT_GT(without, with);
+  EXPECT_LT(wrong, 100);
 }
 
 TEST(OverlapMarch, FindsABumpThatItsStepsWouldPassOver) {

@@ -24,11 +24,12 @@ namespace sixdof {
 /// @param R_AB rotates directions from B's frame to A's
 double overlap_upper_bound(const Eigen::Vector3d& size_a, const Eigen::Vector3d& size_b, const Eigen::Matrix3d& R_AB);
 
-/// The overlap at translation s.
+/// The overlap V at translation s.
 struct OverlapMeasurement {
   double s = 0.0;
   double volume = 0.0;
-  double slope = 0.0;
+  double slope = 0.0;      ///< -dV/ds
+  double curvature = 0.0;  ///< d2V/ds2; approximate
 };
 
 /// Bounds on the slope: the derivative of the volume by the displacement inwards, -dV/ds.

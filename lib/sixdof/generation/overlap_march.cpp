@@ -12,7 +12,7 @@
 // - Nothing beyond: predict where the target is met from the last measurements, and measure there.
 // - V below the target at the next measurement: if the bounds allow a peak above the target in between, divide the
 //   interval; else the measurement becomes the front.
-// - V above the target there: the interval brackets a hit. Refine it by the Hermite cubic through both ends.
+// - V above the target there: the interval brackets a hit. Refine it by a polynomial through both ends.
 //
 // Only + - * / and square roots, which round alike on every instruction set: where V is measured decides the last bits.
 
@@ -29,6 +29,9 @@ constexpr double k_step_growth = 3.0;
 /// The step where the volume cannot be predicted, as a fraction of the displacement since contact.
 constexpr double k_unpredicted_step = 0.5;
 
+/// Steps shorter than this many times the one before are predicted with the curvature.
+constexpr double k_curved_steps = 1.5;
+
 /// Number of steps shorter than the resolution towards one target. Later ones have at least its length.
 constexpr int k_most_short_steps = 5;
 
@@ -38,14 +41,37 @@ constexpr double k_clearance = 0.9;
 /// Every so many refinements of one bracket the interval is halved, so that the slowest case is bisection.
 constexpr int k_halve_every = 4;
 
-/// Cubic with the values and slopes of two measurements, at fraction x of the displacement from outer to inner.
-double hermite(const OverlapMeasurement& outer, const OverlapMeasurement& inner, double x) {
-  const double length = outer.s - inner.s;
-  const double a = length * outer.slope - (inner.volume - outer.volume);
-  const double b = -length * inner.slope + (inner.volume - outer.volume);
-  const double y = 1.0 - x;
-  return y * outer.volume + x * inner.volume + x * y * (y * a + x * b);
-}
+/// Polynomial with the values and slopes of two measurements and the curvature of one, by the fraction x of the
+/// displacement from outer to inner.
+class Quartic {
+ public:
+  Quartic(const OverlapMeasurement& outer, const OverlapMeasurement& inner, bool curved_at_inner)
+      : outer_(outer.volume), inner_(inner.volume) {
+    const double length = outer.s - inner.s;
+    a_ = length * outer.slope - (inner_ - outer_);
+    b_ = -length * inner.slope + (inner_ - outer_);
+    const double curvature = length * length * (curved_at_inner ? inner : outer).curvature;
+    k_ = 0.5 * (curvature - (curved_at_inner ? 2.0 * a_ - 4.0 * b_ : 2.0 * b_ - 4.0 * a_));
+  }
+
+  double operator()(double x) const {
+    const double y = 1.0 - x;
+    return y * outer_ + x * inner_ + x * y * (y * a_ + x * b_ + x * y * k_);
+  }
+
+  /// Where it meets a target between low and high, below it at low and above at high.
+  double solve(double target, double low, double high) const {
+    constexpr int k_halvings = 54;  // One more than the bits of a double's significand.
+    for (int i = 0; i < k_halvings; ++i) {
+      const double x = 0.5 * (low + high);
+      ((*this)(x) < target ? low : high) = x;
+    }
+    return 0.5 * (low + high);
+  }
+
+ private:
+  double outer_, inner_, a_, b_, k_;
+};
 
 }  // namespace
 
@@ -78,7 +104,8 @@ std::optional<double> OverlapMarch::division(const OverlapMeasurement& inner, do
 /// Displacement inwards from the front at which the target is predicted to be met; 0 without a prediction. Newton's
 /// form of the polynomial for the displacement in the root of the volume, which is nearly linear where bodies begin to
 /// overlap. Nodes are the front and an earlier measurement about as far away as the step is long, each with its
-/// derivative; at contact only the value is known.
+/// derivative; at contact only the value is known. Steps that are not much longer than the way between both follow the
+/// polynomial that has the front's curvature, too.
 double OverlapMarch::predicted_step(double target) const {
   const OverlapMeasurement& front = passed_.back();
   if (!(front.volume > 0.0 && front.slope > 0.0)) return 0.0;
@@ -98,7 +125,11 @@ double OverlapMarch::predicted_step(double target) const {
     const double past_second = (length / behind - past_derivative) / behind;
     step += (second - past_second) / behind * ahead * ahead * (ahead + behind);
   }
-  return step > 0.0 ? step : derivative * ahead;
+  if (!(step > 0.0)) return derivative * ahead;
+  if (!(past.volume > 0.0 && step < k_curved_steps * length)) return step;
+  const Quartic quartic(past, front, true);
+  const double most = 1.0 + 2.0 * step / length;
+  return quartic(most) > target ? (quartic.solve(target, 1.0, most) - 1.0) * length : step;
 }
 
 /// Where to measure if there is no measurement beyond the front.
@@ -119,20 +150,16 @@ double OverlapMarch::next_translation(double target) {
   return std::max(0.0, front - step);
 }
 
-/// Where the cubic through the front and `inner` meets the target; nothing between neighbouring doubles.
+/// Where the polynomial through the front and `inner` meets the target; nothing between neighbouring doubles.
 std::optional<double> OverlapMarch::refine(const OverlapMeasurement& inner, double target) {
   const OverlapMeasurement& outer = passed_.back();
   const double length = outer.s - inner.s;
-  double low = 0.0, high = 1.0;
+  double x = 0.5;
   if (++refinements_ % k_halve_every != 0) {
-    // The cubic is below the target at 0 and above at 1.
-    constexpr int k_halvings = 54;  // One more than the bits of a double's significand.
-    for (int i = 0; i < k_halvings; ++i) {
-      const double x = 0.5 * (low + high);
-      (hermite(outer, inner, x) < target ? low : high) = x;
-    }
+    const bool is_nearer_inner = inner.volume - target < target - outer.volume;
+    x = Quartic(outer, inner, is_nearer_inner || outer.s == contact_).solve(target, 0.0, 1.0);
   }
-  double s = outer.s - 0.5 * (low + high) * length;
+  double s = outer.s - x * length;
   if (!(s > inner.s && s < outer.s)) s = 0.5 * (inner.s + outer.s);
   if (!(s > inner.s && s < outer.s)) return std::nullopt;
   return s;

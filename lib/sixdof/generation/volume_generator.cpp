@@ -114,8 +114,9 @@ class VolumeSolver final : public RaySolver {
     ++measurements_;
     if (!is_collected(s, front)) collect_leaves(std::max(0.0, s - k_beyond * (front - s)), front);
     if (!(selected_from_ >= s && s >= selected_to_)) select_candidates(s);
-    const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a, candidates_);
-    return {.s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray_.direction)};
+    const Overlap overlap = query_.evaluate(ray_.pose(s), ray_.center_a, candidates_, ray_.direction);
+    return {
+        .s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray_.direction), .curvature = overlap.curvature};
   }
 
   /// The candidates within a margin of s.

@@ -176,11 +176,12 @@ struct alignas(64) BatchSegments {
 
 /// triangle_moments() in lanes.
 struct Moments {
+  V3 area;
   V volume;
   V3 first;
 
   HWY_INLINE Moments(const V3& a, const V3& b, const V3& c) {
-    const V3 area = set(0.5) * cross(b - a, c - a);
+    area = set(0.5) * cross(b - a, c - a);
     const V3 sum = a + b + c;
     const V squares = hn::Add(hn::Add(dot(a, a), dot(b, b)), hn::Add(dot(c, c), dot(sum, sum)));
     volume = hn::Mul(set(1.0 / 3.0), dot(a, area));
@@ -243,18 +244,29 @@ class Collector {
 };
 
 /// Integrals that follow from the segments, and from the triangles between the curves and the paths.
-struct CurveSums : Sums<10> {
+struct CurveSums : Sums<11> {
   enum Quantity : std::size_t {
     volume,
     first,  // and the next two, as those below
     area = first + 3,
-    moment = area + 3
+    moment = area + 3,
+    curvature = moment + 3
   };
   HWY_INLINE void add_moments(const Moments& m, std::size_t i) {
     add(volume, m.volume, i);
     add(first, m.first, i);
   }
 };
+
+/// What a segment adds to the curvature of the volume along a direction d (Overlap::curvature). While B moves, the
+/// segment, of length l, sweeps an area l (n_a . d) / |n_a x n_b| of B's triangle; times n_b . d that is what the
+/// gradient's component changes. n_a x n_b has the segment's direction, by which its sign is that of the true normals.
+/// @param area_a, area_b normals of any length and either sign; where one vanishes, nothing is added
+HWY_INLINE V curvature(const V3& segment, const V3& area_a, const V3& area_b, const V3& along) {
+  const V sine = dot(segment, cross(area_a, area_b));
+  const V change = hn::Div(hn::Mul(hn::Mul(dot(area_a, along), dot(area_b, along)), dot(segment, segment)), sine);
+  return hn::IfThenZeroElse(hn::Eq(sine, hn::Zero(k_lanes)), change);
+}
 
 /// Eight segments whose terms are added together, in A's frame.
 struct alignas(64) SegmentTerms {
@@ -267,16 +279,21 @@ struct alignas(64) SegmentTerms {
 
   /// On A's triangle a segment has the part inside B on its left; on B's it has the part inside A on its right.
   /// @param anchor, origin of `area` and `moment`, and of the fluxes
-  HWY_NOINLINE void add_to(CurveSums& sums, const Vector3d& anchor, const Vector3d& origin) const {
+  /// @param along of the curvature; zero: none
+  HWY_NOINLINE void add_to(CurveSums& sums, const Vector3d& anchor, const Vector3d& origin,
+                           const Vector3d& along) const {
     const V3 from_anchor = in_all_lanes(anchor), from_origin = in_all_lanes(origin);
+    const bool is_curved = !along.isZero(0.0);
     for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
       const V3 p = load(start, i), q = load(end, i);
       const V3 u = p - from_anchor, v = q - from_anchor;
       sums.add(CurveSums::area, cross(u, v), i);
       sums.add(CurveSums::moment, hn::Add(hn::Add(dot(u, u), dot(u, v)), dot(v, v)) * (v - u), i);
       const V3 x = p - from_origin, y = q - from_origin;
-      sums.add_moments(Moments(load(low_a, i) - from_origin, x, y), i);
-      sums.add_moments(Moments(load(low_b, i) - from_origin, y, x), i);
+      const Moments of_a(load(low_a, i) - from_origin, x, y), of_b(load(low_b, i) - from_origin, y, x);
+      sums.add_moments(of_a, i);
+      sums.add_moments(of_b, i);
+      if (is_curved) sums.add(CurveSums::curvature, curvature(q - p, of_a.area, of_b.area, in_all_lanes(along)), i);
     }
   }
 };
@@ -389,13 +406,17 @@ class PathEdges {
 /// Takes the segments one after the other.
 class SegmentSums {
  public:
-  SegmentSums(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin)
-      : a_(a), b_(b), edges_{PathEdges(a, origin), PathEdges(b, X_AB.inverse() * origin)}, origin_(origin) {}
+  SegmentSums(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin, const Vector3d& along)
+      : a_(a),
+        b_(b),
+        edges_{PathEdges(a, origin), PathEdges(b, X_AB.inverse() * origin)},
+        origin_(origin),
+        along_(along) {}
 
   HWY_INLINE void add(TrianglePair pair, const Batch& batch, std::size_t lane, const BatchSegments& segments) {
     if (HWY_UNLIKELY(crossings_++ == 0)) anchor_ = point(segments.start, lane);
     const Solid::Order order[2] = {a_.order(pair.a), b_.order(pair.b)};
-    const auto [terms, i] = segments_.next(sums_, anchor_, origin_);
+    const auto [terms, i] = segments_.next(sums_, anchor_, origin_, along_);
     const double* const start = segments.start[0] + lane;
     const double* const end = segments.end[0] + lane;
     copy(start, terms.start, i);
@@ -424,7 +445,7 @@ class SegmentSums {
   }
 
   CrossingSums finish() {
-    segments_.finish(origin_, sums_, anchor_, origin_);
+    segments_.finish(origin_, sums_, anchor_, origin_, along_);
     triangles_.finish(origin_, sums_, origin_);
     return {.crossings = crossings_,
             .anchor = anchor_,
@@ -432,14 +453,15 @@ class SegmentSums {
             .moment = sums_.vector(CurveSums::moment),
             .beside_paths = {sums_.scalar(CurveSums::volume), sums_.vector(CurveSums::first)},
             .path_a = edges_[0].finish(),
-            .path_b = edges_[1].finish()};
+            .path_b = edges_[1].finish(),
+            .curvature = sums_.scalar(CurveSums::curvature)};
   }
 
  private:
   const Solid& a_;
   const Solid& b_;
   PathEdges edges_[2];
-  Vector3d origin_, anchor_ = Vector3d::Zero();
+  Vector3d origin_, along_, anchor_ = Vector3d::Zero();
   std::size_t crossings_ = 0;
   CurveSums sums_;
   Collector<SegmentTerms> segments_;
@@ -447,10 +469,10 @@ class SegmentSums {
 };
 
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin,
-                           std::span<const TrianglePair> pairs) {
+                           std::span<const TrianglePair> pairs, const Vector3d& along) {
   // Several batches first, then their segments: neither waits for the other's results.
   constexpr std::size_t k_batches = 8;
-  SegmentSums sums(a, b, X_AB, origin);
+  SegmentSums sums(a, b, X_AB, origin, along);
   Batch batches[k_batches];
   BatchSegments segments[k_batches];
   while (!pairs.empty()) {
@@ -484,8 +506,8 @@ HWY_EXPORT(sum_crossings);
 namespace detail {
 
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
-                           std::span<const TrianglePair> pairs) {
-  return HWY_DYNAMIC_DISPATCH(crossings::sum_crossings)(a, b, X_AB, origin, pairs);
+                           std::span<const TrianglePair> pairs, const Eigen::Vector3d& along) {
+  return HWY_DYNAMIC_DISPATCH(crossings::sum_crossings)(a, b, X_AB, origin, pairs, along);
 }
 
 }  // namespace detail

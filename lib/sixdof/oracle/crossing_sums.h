@@ -29,12 +29,14 @@ struct CrossingSums {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< Sum of (|start|^2 + start . end + |end|^2) (end - start).
   Solid::Moments beside_paths;                       ///< Fluxes between the curves and both paths, in A's frame.
   BorderPath path_a, path_b;                         ///< Each in its mesh's frame.
+  double curvature = 0.0;                            ///< Overlap::curvature
 };
 
 /// The same bits on every instruction set, and whatever pairs that do not intersect are among `pairs`.
 /// @param origin of all moments, in A's frame: near the crossings, so that little cancels
 /// @param pairs in the order of find_candidates(): all that intersect at X_AB, and any others
+/// @param along direction of the curvature, in A's frame; zero: none
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
-                           std::span<const TrianglePair> pairs);
+                           std::span<const TrianglePair> pairs, const Eigen::Vector3d& along = Eigen::Vector3d::Zero());
 
 }  // namespace sixdof::detail

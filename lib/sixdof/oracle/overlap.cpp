@@ -53,7 +53,8 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference) {
   return evaluate(X_AB, reference, pairs_);
 }
 
-Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std::span<const TrianglePair> pairs) {
+Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std::span<const TrianglePair> pairs,
+                               const Vector3d& along) {
   if (!X_AB.R.allFinite() || !X_AB.t.allFinite() || !reference.allFinite()) {
     throw BadArgument("overlap: pose and reference point must be finite");
   }
@@ -64,7 +65,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
 
   const Vector3d origin = common_box(*a_, *b_, X_AB, 0.0).center();  // near all crossings
   const Vector3d origin_B = X_AB.inverse() * origin;
-  detail::CrossingSums sums = detail::sum_crossings(*a_, *b_, X_AB, origin, pairs);
+  detail::CrossingSums sums = detail::sum_crossings(*a_, *b_, X_AB, origin, pairs, along);
   for (const Solid::Piece& piece : a_->pieces()) {
     sums.path_a.potential.add(piece.total,
                               detail::winding_of_b(b_->tree(), X_AB, transform_point, piece.pole, triangles_));
@@ -78,6 +79,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
   result.crossings = sums.crossings;
   result.volume = within_a.volume + within_b.volume + sums.beside_paths.volume;
   result.area = -0.5 * sums.area;
+  result.curvature = -sums.curvature;
   result.moment = sums.moment / 6.0 + (sums.anchor - reference).cross(result.area);
   if (result.volume > 0.0) {
     result.centroid = origin + (within_a.first + X_AB.R * within_b.first + sums.beside_paths.first) / result.volume;

@@ -50,6 +50,9 @@ struct Overlap {
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();
   /// Centre of mass of the intersection (length); NaN where volume is not positive.
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  /// Second derivative of volume by a translation of B along a direction that was asked for (length); else 0. A
+  /// triangle whose lowest corner lies on the line of its segment adds a wrong term: good for predictions only.
+  double curvature = 0.0;
   std::size_t crossings = 0;  ///< Pairs of triangles that intersect: segments of the curves.
 };
 
@@ -74,7 +77,9 @@ class OverlapQuery {
 
   /// The same bits from known candidates: in the order of find_candidates(), all pairs of triangles that intersect, and
   /// any others.
-  Overlap evaluate(const Pose& X_AB, const Eigen::Vector3d& reference, std::span<const TrianglePair> pairs);
+  /// @param along direction of the curvature (unit, A's frame); zero: none
+  Overlap evaluate(const Pose& X_AB, const Eigen::Vector3d& reference, std::span<const TrianglePair> pairs,
+                   const Eigen::Vector3d& along = Eigen::Vector3d::Zero());
 
   /// About the centre of B's bounding box.
   Overlap evaluate(const Pose& X_AB) { return evaluate(X_AB, X_AB * b_->mesh().center()); }
