@@ -119,16 +119,23 @@ class VolumeSolver final : public RaySolver {
         .s = s, .volume = overlap.volume, .slope = -overlap.area.dot(ray_.direction), .curvature = overlap.curvature};
   }
 
-  /// The candidates within a margin of s.
+  /// The candidates within a margin of s. Where parts are so small that floats and the margin blur them, nearly all
+  /// triangles of their pairs of leaves are candidates: there only those at s, by a search in doubles.
   void select_candidates(double s) {
     const double margin = k_margin * std::min(pair_.mesh_a.diagonal(), pair_.mesh_b.diagonal());
     selected_from_ = std::min(outer_, s + margin);
     selected_to_ = std::max(inner_, s - margin);
     const FractionRange range{fraction(selected_from_), fraction(selected_to_)};
+    const Tree &tree_a = pair_.body_a->tree, &tree_b = pair_.body_b->tree;
     if (has_triangles_) {
       select_pairs(triangles_, range, candidates_);
-    } else {
-      select_triangles(pair_.body_a->tree, pair_.body_b->tree, ray_.pose(s), margin, leaves_, range, candidates_);
+    } else if (!are_blurred_) {
+      select_triangles(tree_a, tree_b, ray_.pose(s), margin, leaves_, range, candidates_);
+    }
+    are_blurred_ = are_blurred_ || candidates_.size() > k_most_per_leaves * leaves_.size();
+    if (are_blurred_) {
+      find_candidates(tree_a, tree_b, ray_.pose(s), scratch_, candidates_);
+      selected_from_ = selected_to_ = s;
     }
   }
 
@@ -166,7 +173,7 @@ class VolumeSolver final : public RaySolver {
   void forget_pairs() {
     inner_ = selected_to_ = std::numeric_limits<double>::infinity();
     outer_ = selected_from_ = -inner_;
-    has_triangles_ = false;
+    has_triangles_ = are_blurred_ = false;
     of_doubts_ = 0;
   }
 
@@ -194,6 +201,8 @@ class VolumeSolver final : public RaySolver {
   static constexpr double k_beyond = 0.05;
   /// Candidates serve measurements within this fraction of the smaller box's diagonal.
   static constexpr double k_margin = 4e-6;
+  /// Candidates per pair of leaves, more than which mean that they are blurred. Elsewhere there are at most 1.2.
+  static constexpr std::size_t k_most_per_leaves = 4;
 
   const std::shared_ptr<const VolumePair> shared_;
   const VolumePair& pair_;
@@ -210,6 +219,7 @@ class VolumeSolver final : public RaySolver {
   std::vector<SweptPair> leaves_, triangles_;
   bool has_triangles_ = false;
   std::size_t of_doubts_ = 0;  ///< Candidates of the measurements by which intervals of these were divided.
+  bool are_blurred_ = false;
   double selected_from_ = 0.0, selected_to_ = 0.0;  ///< The candidates are those between these translations.
   std::vector<TrianglePair> candidates_;
 };
