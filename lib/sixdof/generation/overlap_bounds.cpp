@@ -1,6 +1,7 @@
 #include <sixdof/generation/overlap_bounds.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -94,10 +95,11 @@ SlopeBounds::ItemContacts& SlopeBounds::Contacts::of(std::uint32_t item) {
       if (area > least) ahead += area;
       if (area < -least) behind -= area;
     }
-    contacts.outwards.area = static_cast<float>(ahead);
-    contacts.inwards.area = static_cast<float>(behind);
+    contacts.side[0].area = static_cast<float>(ahead);
+    contacts.side[1].area = static_cast<float>(behind);
+    contacts.sides = (contacts.side[0].area > 0.0f ? 1u : 0u) | (contacts.side[1].area > 0.0f ? 2u : 0u);
   }
-  for (Side* side : {&contacts.outwards, &contacts.inwards}) side->raising = side->lowering = PartRange::none();
+  for (Side& side : contacts.side) side.raising = side.lowering = PartRange::none();
   return contacts;
 }
 
@@ -115,8 +117,7 @@ SlopeBounds::SlopeChange SlopeBounds::Contacts::change() const {
     }
   };
   for (const std::uint32_t item : touched_) {
-    add(contacts_[item].outwards);
-    add(contacts_[item].inwards);
+    for (const Side& side : contacts_[item].side) add(side);
   }
   for (std::size_t j = 1; j < k_parts; ++j) {
     change.raised_since_outer[j] += change.raised_since_outer[j - 1];
@@ -143,16 +144,14 @@ std::array<SlopeRange, SlopeBounds::k_parts> SlopeBounds::bound(std::span<const 
     ItemContacts& a = a_.of(pair.a);
     ItemContacts& b = b_.of(pair.b);
     const PartRange parts{part(pair.first), part(pair.last)};
-    const auto meet = [&](const Side& x, const Side& y, PartRange& of_x, PartRange& of_y) {
-      if (!x.any() || !y.any()) return;
-      for (PartRange* known : {&of_x, &of_y}) {
-        *known = {std::min(known->first, parts.first), std::max(known->last, parts.last)};
+    // Mostly one side of each: the loops cost fewer branches that no one can predict than four conditions.
+    for (std::uint32_t x = a.sides; x != 0; x &= x - 1) {
+      for (std::uint32_t y = b.sides; y != 0; y &= y - 1) {
+        const int i = std::countr_zero(x), j = std::countr_zero(y);
+        (i == j ? a.side[i].lowering : a.side[i].raising).extend(parts);
+        (i == j ? b.side[j].lowering : b.side[j].raising).extend(parts);
       }
-    };
-    meet(a.outwards, b.inwards, a.outwards.raising, b.inwards.raising);
-    meet(a.inwards, b.outwards, a.inwards.raising, b.outwards.raising);
-    meet(a.outwards, b.outwards, a.outwards.lowering, b.outwards.lowering);
-    meet(a.inwards, b.inwards, a.inwards.lowering, b.inwards.lowering);
+    }
   }
   const SlopeChange of_a = a_.change(), of_b = b_.change();
   const auto least = [](double x, double y) { return (1.0 + k_rounding) * std::min(x, y); };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -97,18 +98,19 @@ class SlopeBounds {
     std::uint8_t first, last;
     static constexpr PartRange none() { return {k_parts, 0}; }
     bool any() const { return first <= last; }
+    void extend(const PartRange& by) { *this = {std::min(first, by.first), std::max(last, by.last)}; }
   };
 
-  /// The triangles of an item that look outwards, or those that look inwards.
+  /// Of an item: 0 its triangles that look outwards, 1 those that look inwards.
   struct Side {
     float area;                   ///< Projected.
     PartRange raising, lowering;  ///< Where pairs of either kind may meet.
-    bool any() const { return area > 0.0f; }
   };
   struct ItemContacts {
     std::uint32_t ray = 0;    ///< The areas are those of this ray.
     std::uint32_t round = 0;  ///< The parts are those of this call of bound().
-    Side outwards, inwards;
+    std::uint32_t sides = 0;  ///< Bits of the sides that have an area.
+    Side side[2];
   };
 
   /// The items of one mesh that may meet one of the other.

@@ -113,7 +113,10 @@ class Overlaps<D, true> {
     last_ = hn::Min(last_, hn::Max(x, y));
   }
   HWY_INLINE void symmetric_axis(V middle, V half, const Rate<D>& rate) {
-    axis(hn::Sub(middle, half), hn::Add(middle, half), rate);
+    const V at = hn::Neg(hn::Mul(middle, rate.inverse));
+    const V around = hn::Mul(hn::Add(half, hn::Add(tolerance_, rate.pad)), hn::Abs(rate.inverse));
+    first_ = hn::Max(first_, hn::Sub(at, around));
+    last_ = hn::Min(last_, hn::Add(at, around));
   }
   HWY_INLINE void axis(V low_x, V high_x, V low_y, V high_y, const Rate<D>& rate) {
     axis(hn::Sub(low_y, high_x), hn::Sub(high_y, low_x), rate);
