@@ -152,8 +152,8 @@ class VolumeSolver final : public RaySolver {
     return peak(outer, inner, by_triangles_, triangles_);
   }
 
-  /// Where leaves leave an interval in doubt, it is divided as long as those measurements have had fewer candidates
-  /// than half as many as there are pairs of leaves, whose triangles would be the alternative.
+  /// Where leaves leave an interval in doubt, it is divided as long as the candidates of such measurements are fewer
+  /// than half of the pairs of leaves, whose triangles would be the alternative.
   bool is_cheaper_divided() {
     if (has_triangles_) return false;
     const bool is_cheaper = 2 * of_doubts_ < leaves_.size();
