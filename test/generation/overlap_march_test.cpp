@@ -72,9 +72,9 @@ TEST(OverlapMarch, TheCurvatureSparesMeasurements) {
     return calls;
   };
   const int with = measurements(1.0), without = measurements(0.0), wrong = measurements(-30.0);
-  EXPECT_LE(with, 15);
-  EXPECT_GT(without, with);
-  EXPECT_LT(wrong, 100);
+  EXPECT_LE(with, 15);       // 13
+  EXPECT_GT(without, with);  // 29
+  EXPECT_LT(wrong, 60);      // 32: a wrong curvature costs measurements, no answer
 }
 
 TEST(OverlapMarch, FindsABumpThatItsStepsWouldPassOver) {

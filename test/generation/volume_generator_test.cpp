@@ -267,6 +267,38 @@ TEST(VolumeGenerator, EveryInstructionSetGivesTheSameBits) {
   EXPECT_GE(tried, 2);  // At least a SIMD and a scalar target.
 }
 
+TEST(VolumeGenerator, BodiesWithPartsThatFloatsBlurMeetTheirTargets) {
+  // A block, and away from it a ball of a hundred-thousandth of its size: floats do not tell the ball's triangles
+  // apart, so that candidates are searched in doubles where two balls meet on the way.
+  const Mesh block = make_box({.size = {1000.0, 1000.0, 1000.0}}, 12);
+  const Mesh ball = ball_mesh(0.01, 30, {1500.0, 0.0, 0.0}, "ball");
+  std::vector<Eigen::Vector3d> vertices = block.vertices();
+  std::vector<Triangle> triangles = block.triangles();
+  const auto first = static_cast<std::uint32_t>(vertices.size());
+  vertices.insert(vertices.end(), ball.vertices().begin(), ball.vertices().end());
+  for (const Triangle& t : ball.triangles()) triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  const Mesh body = Mesh::build(vertices, triangles);
+
+  const auto touching = make_ray_cast();
+  const std::vector<double> percents{0.001};
+  const Grid grid = make_grid("90");
+  const Generated result = generate_volumes(*touching, body, body, grid, percents);
+  const Tree tree(body);
+  const Solid solid(body, tree);
+  OverlapQuery query(solid, solid);
+  const double target = 1e-5 * body.volume();
+  std::size_t reachable = 0;
+  for (std::size_t i = 0; i < result.buckets[0].translations.size(); ++i) {
+    const double s = result.buckets[0].translations[i];
+    if (std::isnan(s)) continue;
+    ++reachable;
+    ConfigurationRay ray(body, body, grid.rotations[i / grid.directions.size()]);
+    ray.direction = grid.directions[i % grid.directions.size()];
+    EXPECT_NEAR(query.evaluate(ray.pose(s)).volume, target, k_volume_tolerance * body.volume()) << i;
+  }
+  EXPECT_GT(reachable, 100u);
+}
+
 TEST(VolumeGenerator, FewMeasurementsMeetABucket) {
   // A bucket takes one measurement where it is predicted and one or two where the cubics meet it. The others divide
   // intervals in which the bounds do not exclude an earlier hit, most of them in coarse meshes of many parts.
