@@ -256,7 +256,7 @@ struct TriangleGaps : Gaps {
 /// is one with t > t0 they converge slowly: then axes across the ray are tried at the end.
 HWY_INLINE void bound_triangles(CastLeafPair& pairs, const Ray& ray) {
   constexpr int k_steps = 5;
-  for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
+  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
     TriangleGaps gaps(ray, load(pairs.lower + i));
     V x[3];
     if (!gaps.is_enough()) take_steps<k_rounding, k_steps>(pairs, i, gaps, x);
@@ -273,8 +273,8 @@ HWY_INLINE void bound_triangles(CastLeafPair& pairs, const Ray& ray) {
 struct LeafBounds {
   float gap;  ///< Together with the slope a bound for all pairs; CastFront::k_no_bound if one is left.
   float slope;
-  std::size_t count = 0;                   ///< Pairs that are left,
-  std::uint32_t pairs[LeafPair::k_pairs];  ///< 4 i + j each, the smallest gap first.
+  std::size_t count = 0;         ///< Pairs that are left,
+  std::uint32_t pairs[k_pairs];  ///< 4 i + j each, the smallest gap first.
 };
 
 HWY_INLINE LeafBounds bound_leaves(const Tree::Leaf& a, const Tree::Leaf& b, const Ray& ray) {
@@ -285,24 +285,16 @@ HWY_INLINE LeafBounds bound_leaves(const Tree::Leaf& a, const Tree::Leaf& b, con
   if (result.gap > ray.target) return result;
   load_pairs<k_rounding>(a, b, ray.frames.a, pairs);
   bound_triangles(pairs, ray);
-  // The line with the least gap and the largest slope bounds all pairs that are culled.
+  const std::uint32_t left = pairs_of(a.child.count(), b.child.count()) & pairs_within(pairs.lower, ray.target);
+  result.count = sort_pairs(left, pairs.lower, result.pairs);
+  result.gap = CastFront::k_no_bound;
+  if (result.count != 0) return result;
+  // The line with the least gap and the largest slope bounds all pairs.
   result.gap = CastFront::k_not_in_front;
-  for (std::uint32_t i = 0; i < a.child.count(); ++i) {
-    for (std::uint32_t j = 0; j < b.child.count(); ++j) {
-      const std::uint32_t pair = k_leaf * i + j;
-      if (pairs.lower[pair] > ray.target) {
-        result.gap = std::min(result.gap, pairs.lower[pair]);
-        result.slope = std::max(result.slope, pairs.slopes[pair]);
-        continue;
-      }
-      std::size_t at = result.count++;
-      for (; at > 0 && pairs.lower[result.pairs[at - 1]] > pairs.lower[pair]; --at) {
-        result.pairs[at] = result.pairs[at - 1];
-      }
-      result.pairs[at] = pair;
-    }
+  for (std::size_t pair = 0; pair < k_pairs; ++pair) {
+    result.gap = std::min(result.gap, pairs.lower[pair]);
+    result.slope = std::max(result.slope, pairs.slopes[pair]);
   }
-  if (result.count != 0) result.gap = CastFront::k_no_bound;
   return result;
 }
 

@@ -31,8 +31,9 @@ constexpr double k_largest_growth = 2.0;
 constexpr float k_flat_error = 2e-3f;
 
 /// What one query of a DifferenceSupport adds to its budget. Support values cull pairs because volumes reach beyond
-/// their triangles: on smooth surfaces they halve the number of expanded nodes. Of 0, 2, 4, 8 .. 64, 16 is the fastest.
-constexpr std::uint64_t k_budget = 16;
+/// their triangles: on smooth surfaces they halve the number of expanded nodes. Of 0, 2, 4, 8 .. 64, 16 is the fastest;
+/// 15 instead takes 3 % more nodes and 4 % fewer evaluations where the flat faces of a box tie.
+constexpr std::uint64_t k_budget = 15;
 
 /// Diagonals of two boxes, in units of the slack, up to which they are bounded in double precision: bounds in
 /// single precision do not tell their parts apart.

@@ -16,8 +16,9 @@ namespace sixdof {
 /// How the triangles of a mesh are partitioned into the nodes of a Tree: the first half of its construction.
 ///
 /// A range of triangles is split in two again and again, always the part with the largest box, until a node has eight
-/// children. Large ranges are split at one of 16 bins along an axis, by the surface-area heuristic. The two levels next
-/// to the leaves are split exactly, at multiples of full leaves and full nodes, so that most leaves and nodes are full.
+/// children. Each split is the best by the surface-area heuristic of those at multiples of a block: of a full leaf, of
+/// a full node above leaves, or of a full node above those. So nearly all leaves and all nodes of the two levels above
+/// them are full. Ranges of up to eight blocks are split exactly, larger ones near one of 16 bins along an axis.
 namespace tree_builder {
 
 /// Axis-aligned box in single precision, relative to the tree's centre; contains its triangles.
@@ -63,8 +64,18 @@ float round_up(double x) { return std::nextafter(static_cast<float>(x), std::num
 constexpr std::size_t k_bins = 16;
 constexpr std::size_t k_full_node = Tree::k_width * Tree::k_leaf_triangles;  // triangles of a node with full leaves
 constexpr std::size_t k_full_two_levels = Tree::k_width * k_full_node;       // of a node with full nodes
-constexpr std::size_t k_parallel_subtree = 4096;                             // smaller subtrees are built by one task
-constexpr std::size_t k_parallel_bins = 1 << 17;                             // larger ranges are binned by several
+
+/// How much more a cut may cost that leaves full nodes.
+constexpr float k_worth = 1.1f;
+
+/// What a range of triangles is split at multiples of. Smaller parts stay whole while its node has room.
+std::size_t block_of(std::size_t triangles) {
+  if (triangles <= k_full_node) return Tree::k_leaf_triangles;
+  return triangles <= k_full_two_levels ? k_full_node : k_full_two_levels;
+}
+
+constexpr std::size_t k_parallel_subtree = 4096;  // smaller subtrees are built by one task
+constexpr std::size_t k_parallel_bins = 1 << 17;  // larger ranges are binned by several
 
 /// A triangle while the tree is built.
 struct Primitive {
@@ -165,8 +176,9 @@ class Builder {
     });
   }
 
-  /// The best cut between two bins.
-  std::array<Range, 2> split(const Range& range) {
+  /// Cuts at the multiple of `block` triangles that is nearest to the best cut between two bins, unless that costs more
+  /// than full nodes are worth: parts that lie far from each other.
+  std::array<Range, 2> split_by_bins(const Range& range, std::size_t block) {
     const Box centers = fold_in_parallel<Box>(range.first, range.last, [this](std::size_t i, std::size_t end) {
       Box box;
       for (; i < end; ++i) box.add({primitives_[i].twice_center(), primitives_[i].twice_center()});
@@ -215,37 +227,48 @@ class Builder {
       }
     }
 
-    std::size_t middle = range.first + range.count() / 2;  // all centres agree: any halves will do
-    if (best_axis < 3) {
-      const auto begin = primitives_.begin();
-      const auto boundary = std::partition(
-          begin + static_cast<std::ptrdiff_t>(range.first), begin + static_cast<std::ptrdiff_t>(range.last),
-          [&](const Primitive& p) { return binning.bin(p.twice_center()[best_axis], best_axis) < best_bin; });
-      middle = static_cast<std::size_t>(boundary - begin);
-    }
-    return {Range{range.first, middle, bounds(range.first, middle)},
-            Range{middle, range.last, bounds(middle, range.last)}};
+    const auto cut_after = [&](std::size_t count) {
+      const std::size_t middle = range.first + count;
+      return std::array{Range{range.first, middle, bounds(range.first, middle)},
+                        Range{middle, range.last, bounds(middle, range.last)}};
+    };
+    const auto aligned = [&](std::size_t count) {
+      return std::clamp<std::size_t>((count + block / 2) / block, 1, (range.count() - 1) / block) * block;
+    };
+    if (best_axis == 3) return cut_after(aligned(range.count() / 2));  // all centres agree: any halves will do
+    const auto begin = primitives_.begin() + static_cast<std::ptrdiff_t>(range.first);
+    const auto end = primitives_.begin() + static_cast<std::ptrdiff_t>(range.last);
+    const auto between = std::partition(
+        begin, end, [&](const Primitive& p) { return binning.bin(p.twice_center()[best_axis], best_axis) < best_bin; });
+    const auto count = static_cast<std::size_t>(between - begin);
+    const auto cut = begin + static_cast<std::ptrdiff_t>(aligned(count));
+    const auto key = [&](const Primitive& p) { return std::pair(p.twice_center()[best_axis], p.triangle); };
+    const auto is_before = [&](const Primitive& x, const Primitive& y) { return key(x) < key(y); };
+    if (cut < between) std::nth_element(begin, cut, between, is_before);
+    if (cut > between) std::nth_element(between, cut, end, is_before);
+    const std::array<Range, 2> halves = cut_after(aligned(count));
+    const float sum =
+        cost(halves[0].box.half_area(), halves[0].count()) + cost(halves[1].box.half_area(), halves[1].count());
+    return sum <= k_worth * best_cost ? halves : cut_after(count);
   }
 
-  /// The best of all cuts at multiples of `block` triangles; for ranges of up to k_full_two_levels.
-  std::array<Range, 2> split_aligned(const Range& range, std::size_t block) {
+  /// The best of all cuts at multiples of `block` triangles, for ranges of up to k_width blocks.
+  std::array<Range, 2> split_exactly(const Range& range, std::size_t block) {
     const std::size_t n = range.count();
     const auto begin = primitives_.begin() + static_cast<std::ptrdiff_t>(range.first);
-    std::array<Primitive, k_full_two_levels> sorted;
-    std::array<Primitive, k_full_two_levels> best;
+    std::vector<Primitive> sorted(n), best(n);
+    std::vector<std::pair<float, std::uint32_t>> order(n);
     float best_cost = std::numeric_limits<float>::infinity();
     Range left{range.first, range.first, {}};
     Range right{range.last, range.last, {}};
     for (std::size_t k = 0; k < 3; ++k) {
-      std::array<std::pair<float, std::uint32_t>, k_full_two_levels> order;
       for (std::size_t i = 0; i < n; ++i) {
         order[i] = {begin[static_cast<std::ptrdiff_t>(i)].twice_center()[k], static_cast<std::uint32_t>(i)};
       }
-      std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
+      std::sort(order.begin(), order.end());
       for (std::size_t i = 0; i < n; ++i) sorted[i] = begin[static_cast<std::ptrdiff_t>(order[i].second)];
 
-      constexpr std::size_t k_cuts = k_full_two_levels / k_full_node;
-      std::array<Box, k_cuts + 1> tail;  // boxes of the triangles right of each cut
+      std::array<Box, Tree::k_width + 1> tail;  // boxes of the triangles right of each cut
       const std::size_t last_cut = (n - 1) / block;
       std::size_t end = n;
       for (std::size_t cut = last_cut; cut > 0; --cut) {
@@ -276,9 +299,7 @@ class Builder {
     auto subtree = std::make_unique<Subtree>();
     std::vector<Range>& children = subtree->children;
     children.push_back(range);
-    // Children of up to `block` triangles stay whole: a leaf if this node's children are leaves, else a full node.
-    const std::size_t block = range.count() <= k_full_node ? Tree::k_leaf_triangles : k_full_node;
-    const bool aligned = range.count() <= k_full_two_levels;
+    const std::size_t block = block_of(range.count());
     while (children.size() < Tree::k_width) {
       std::size_t widest = children.size();
       float widest_area = -1.0f;
@@ -289,7 +310,9 @@ class Builder {
         }
       }
       if (widest == children.size()) break;
-      const std::array<Range, 2> halves = aligned ? split_aligned(children[widest], block) : split(children[widest]);
+      const Range whole = children[widest];
+      const std::array<Range, 2> halves =
+          whole.count() <= k_full_two_levels ? split_exactly(whole, block) : split_by_bins(whole, block);
       children[widest] = halves[0];
       children.push_back(halves[1]);
     }

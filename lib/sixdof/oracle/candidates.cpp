@@ -197,13 +197,16 @@ class LeafTests {
     const leaves::SideA& of_a = leaves_a_.get(a, motion_);
     const leaves::SideB& of_b = leaves_b_.get(b, motion_);
     std::uint32_t bits =
-        leaves::lanes_of(of_a, of_b) & leaves::test_triangles<moving>(of_a, of_b, motion_, first_, last_);
+        pairs_of(of_a.count, of_b.count) & leaves::test_triangles<moving>(of_a, of_b, motion_, first_, last_);
     if (bits != 0 && use_of_cross_edges_.is_due()) {
       const int before = std::popcount(bits);
       bits = leaves::test_across_edges<moving>(of_a, of_b, bits, motion_, first_, last_);
       use_of_cross_edges_.count(before, std::popcount(bits));
     }
-    leaves::for_each_pair(bits, of_a, of_b, take);
+    for (; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      take(pair_of(of_a.first, of_b.first, lane), lane);
+    }
   }
 
   /// If moving: the fractions between which a pair may intersect.

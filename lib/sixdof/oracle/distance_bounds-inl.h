@@ -249,10 +249,9 @@ struct TriangleBounds {
 
 /// Raises the lower bounds until they are above `enough` or as good as floats are: first by Frank-Wolfe steps, then
 /// along the shortest difference of points of both triangles, whose length is the upper bound.
-HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough,
-                                float (*HWY_RESTRICT difference)[LeafPair::k_pairs]) {
+HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough, float (&difference)[3][k_pairs]) {
   constexpr int k_steps = 2;
-  for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
+  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
     TriangleBounds bounds{set(enough), set(slack), load(pairs.lower + i), set(Tree::k_empty)};
     V x[3] = {hn::Zero(k_lanes), hn::Zero(k_lanes), hn::Zero(k_lanes)};
     if (!bounds.is_enough()) take_steps<k_rounding, k_steps>(pairs, i, bounds, x);
@@ -269,7 +268,7 @@ HWY_INLINE void bound_triangles(LeafPair& pairs, float slack, float enough,
 /// Raises the lower bounds that are not above `enough` by the nine axes across an edge of each triangle. Of needles
 /// that cross, the shortest difference is short next to the needles: rounding turns it away from such an axis.
 inline HWY_NOINLINE void bound_across_edges(LeafPair& pairs, float slack, float enough) {
-  for (std::size_t i = 0; i < LeafPair::k_pairs; i += hn::Lanes(k_lanes)) {
+  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
     TriangleBounds bounds{set(enough), set(slack), load(pairs.lower + i), set(Tree::k_empty)};
     for (std::size_t edge = 0; edge < 9 && !bounds.is_enough(); ++edge) {
       V u[3], v[3], n[3];

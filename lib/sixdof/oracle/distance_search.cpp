@@ -293,9 +293,9 @@ class DistanceTraversal final : private CloseVisitor {
   /// Takes the shortest difference of points for the direction and, unless only intersections are of interest, for an
   /// upper bound on the distance.
   HWY_INLINE void take_upper_bound(const LeafPair& pairs) {
-    const auto least =
-        static_cast<std::size_t>(std::min_element(pairs.upper, pairs.upper + LeafPair::k_pairs) - pairs.upper);
-    if (!(pairs.upper[least] < shortest_)) return;
+    std::uint32_t sorted[k_pairs];
+    if (sort_pairs(pairs_below(pairs.upper, shortest_), pairs.upper, sorted) == 0) return;
+    const std::uint32_t least = sorted[0];
     shortest_ = pairs.upper[least];
     turn_to({difference_[0][least], difference_[1][least], difference_[2][least]});
     if (!only_intersection_) lower_best(shortest_ + frames_.slack.all + width_);
@@ -303,23 +303,15 @@ class DistanceTraversal final : private CloseVisitor {
 
   /// Moves the pairs with the smallest upper bounds, of those that may intersect or are below `improving`, from `pairs`
   /// to `taken` as far as there is space. Returns them.
-  std::span<TrianglePair> take_improving(const Tree::Leaf& leaf_a, const Tree::Leaf& leaf_b, LeafPair& pairs,
-                                         float improving, std::span<TrianglePair> taken) const {
-    std::size_t count = 0;
-    std::array<std::uint32_t, LeafPair::k_pairs> lanes;
-    for (std::uint32_t i = 0; i < leaf_a.child.count(); ++i) {
-      for (std::uint32_t j = 0; j < leaf_b.child.count(); ++j) {
-        const std::uint32_t lane = k_leaf * i + j;
-        if (pairs.lower[lane] > best_ || (pairs.lower[lane] > 0.0f && pairs.upper[lane] >= improving)) continue;
-        std::size_t at = count++;
-        for (; at > 0 && pairs.upper[lanes[at - 1]] > pairs.upper[lane]; --at) lanes[at] = lanes[at - 1];
-        lanes[at] = lane;
-      }
-    }
-    taken = taken.first(std::min(count, taken.size()));
+  HWY_INLINE std::span<TrianglePair> take_improving(const Tree::Leaf& leaf_a, const Tree::Leaf& leaf_b, LeafPair& pairs,
+                                                    float improving, std::span<TrianglePair> taken) const {
+    const std::uint32_t bits =
+        near_pairs(leaf_a, leaf_b, pairs) & (pairs_within(pairs.lower, 0.0f) | pairs_below(pairs.upper, improving));
+    std::uint32_t sorted[k_pairs];
+    taken = taken.first(std::min(sort_pairs(bits, pairs.upper, sorted), taken.size()));
     for (std::size_t k = 0; k < taken.size(); ++k) {
-      taken[k] = {leaf_a.child.first() + lanes[k] / k_leaf, leaf_b.child.first() + lanes[k] % k_leaf};
-      pairs.lower[lanes[k]] = Tree::k_empty;
+      taken[k] = pair_of(leaf_a.child.first(), leaf_b.child.first(), sorted[k]);
+      pairs.lower[sorted[k]] = Tree::k_empty;
     }
     return taken;
   }
@@ -333,29 +325,27 @@ class DistanceTraversal final : private CloseVisitor {
     load_pairs<k_rounding>(leaf_a, leaf_b, frames_.a, pairs);
     bound_triangles(pairs, frames_.slack.all, best_, difference_);
     if (use_of_cross_edges_.is_due()) {
-      const int before = count_near(pairs);
+      const int before = std::popcount(near_pairs(leaf_a, leaf_b, pairs));
       if (before > 0) {
         bound_across_edges(pairs, frames_.slack.all, best_);
-        use_of_cross_edges_.count(before, count_near(pairs));
+        use_of_cross_edges_.count(before, std::popcount(near_pairs(leaf_a, leaf_b, pairs)));
       }
     }
     return true;
   }
 
-  /// Pairs of triangles whose bounds are not above the best.
-  HWY_INLINE int count_near(const LeafPair& pairs) const {
-    return static_cast<int>(
-        std::count_if(pairs.lower, pairs.lower + LeafPair::k_pairs, [this](float x) { return x <= best_; }));
+  /// Pairs of triangles (bits) whose bounds are not above the best.
+  HWY_INLINE std::uint32_t near_pairs(const Tree::Leaf& leaf_a, const Tree::Leaf& leaf_b, const LeafPair& pairs) const {
+    return pairs_of(leaf_a.child.count(), leaf_b.child.count()) & pairs_within(pairs.lower, best_);
   }
 
   /// Calls keep() for the pairs of triangles of two leaves whose bounds are not above the best.
   template <class Keep>
-  void for_each_kept(const Tree::Leaf& leaf_a, const Tree::Leaf& leaf_b, const LeafPair& pairs, const Keep& keep) {
-    for (std::uint32_t i = 0; i < leaf_a.child.count(); ++i) {
-      for (std::uint32_t j = 0; j < leaf_b.child.count(); ++j) {
-        const float lower = pairs.lower[k_leaf * i + j];
-        if (lower <= best_) keep(NodePair::of({leaf_a.child.first() + i, leaf_b.child.first() + j}, lower));
-      }
+  HWY_INLINE void for_each_kept(const Tree::Leaf& leaf_a, const Tree::Leaf& leaf_b, const LeafPair& pairs,
+                                const Keep& keep) {
+    for (std::uint32_t bits = near_pairs(leaf_a, leaf_b, pairs); bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+      keep(NodePair::of(pair_of(leaf_a.child.first(), leaf_b.child.first(), lane), pairs.lower[lane]));
     }
   }
 
@@ -455,13 +445,13 @@ class DistanceTraversal final : private CloseVisitor {
   const bool has_planes_;    // both meshes have coplanar patches
   const float width_;        // search_.ties.width, rounded up
   const CloseBounds close_bounds_;
-  Expansion<k_rounding, true> expansion_;
+  Expansion<k_rounding, true, 8> expansion_;
   std::optional<CrossAxes> cross_axes_;  // made when they are asked for the first time
   CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;
   std::uint64_t thick_pairs_ = 0;
   std::uint64_t doubtful_pairs_ = 0;
-  HWY_ALIGN float difference_[3][LeafPair::k_pairs];         // of points of the triangles that bound_pairs() left
+  HWY_ALIGN float difference_[3][k_pairs];                   // of points of the triangles that bound_pairs() left
   float shortest_ = std::numeric_limits<float>::infinity();  // of the differences so far
   float best_ = std::numeric_limits<float>::infinity();      // search_.best, or less, + search_.ties.width, rounded up
   float doubtful_;                                           // bounds above this may exceed the best but for rounding

@@ -76,6 +76,18 @@ HWY_INLINE std::uint32_t bits_of(M mask, std::size_t i) {
   return static_cast<std::uint32_t>(stored[0]) << i;
 }
 
+constexpr std::uint32_t k_leaf = Tree::k_leaf_triangles;
+constexpr std::size_t k_pairs = std::size_t{k_leaf} * k_leaf;
+
+/// Bits of the pairs of triangles of two leaves: k_leaf i + j is that of triangle i of A's leaf and triangle j of B's.
+HWY_INLINE std::uint32_t pairs_of(std::uint32_t count_a, std::uint32_t count_b) {
+  return 0x1111u * ((1u << count_b) - 1) & ((1u << k_leaf * count_a) - 1);
+}
+/// One of them.
+HWY_INLINE TrianglePair pair_of(std::uint32_t first_a, std::uint32_t first_b, std::uint32_t bit) {
+  return {first_a + bit / k_leaf, first_b + bit % k_leaf};
+}
+
 /// Prefetches what one of the next steps reads: large trees are not in the caches.
 template <class T>
 HWY_INLINE void prefetch(const T& x) {

@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -25,16 +26,42 @@ using namespace lanes::HWY_NAMESPACE;
 using detail::Frame;
 using detail::Frames;
 
-constexpr std::uint32_t k_leaf = Tree::k_leaf_triangles;
-
 /// All pairs of triangles of two leaves, in A's frame relative to its centre. Lane 4 i + j holds pair (i, j).
 struct LeafPair {
-  static constexpr std::size_t k_pairs = k_leaf * k_leaf;
   HWY_ALIGN float a[3][3][k_pairs];  // [corner][axis][pair]
   HWY_ALIGN float b[3][3][k_pairs];
   HWY_ALIGN float lower[k_pairs];  // bounds on the distance
   HWY_ALIGN float upper[k_pairs];  // but for rounding; set for pairs whose lower bound is not above the best
 };
+
+/// Bits of the pairs for which x is below the limit,
+HWY_INLINE std::uint32_t pairs_below(const float (&x)[k_pairs], float limit) {
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
+    bits |= bits_of(hn::Lt(load(x + i), set(limit)), i);
+  }
+  return bits;
+}
+/// and for which it is not above.
+HWY_INLINE std::uint32_t pairs_within(const float (&x)[k_pairs], float limit) {
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
+    bits |= bits_of(hn::Le(load(x + i), set(limit)), i);
+  }
+  return bits;
+}
+
+/// Sorts pairs (bits) by x, the smallest first. Returns their number.
+HWY_INLINE std::size_t sort_pairs(std::uint32_t bits, const float (&x)[k_pairs], std::uint32_t (&sorted)[k_pairs]) {
+  std::size_t count = 0;
+  for (; bits != 0; bits &= bits - 1) {
+    const auto pair = static_cast<std::uint32_t>(std::countr_zero(bits));
+    std::size_t at = count++;
+    for (; at > 0 && x[sorted[at - 1]] > x[pair]; --at) sorted[at] = sorted[at - 1];
+    sorted[at] = pair;
+  }
+  return count;
+}
 
 /// Lower bounds by the axis w alone, less `slack`. Returns the least; if that is above `best` it sets none.
 template <Rounding rounding>

@@ -27,10 +27,9 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using detail::TreeMotion;
+using lanes::HWY_NAMESPACE::k_leaf;
+using lanes::HWY_NAMESPACE::k_pairs;
 using lanes::HWY_NAMESPACE::unfused_mul_add;
-
-constexpr std::size_t k_leaf = Tree::k_leaf_triangles;
-constexpr std::size_t k_pairs = k_leaf * k_leaf;
 
 /// All pairs of two leaves. Where a vector holds fewer lanes, loops take several.
 using Lanes = hn::CappedTag<float, k_pairs>;
@@ -278,22 +277,6 @@ HWY_NOINLINE std::uint32_t test_across_edges(const SideA& a, const SideB& b, std
     overlapping |= bits_of(overlaps.store(first + i, last + i), i);
   }
   return bits & overlapping;
-}
-
-/// The bits of the lanes that hold a pair of their own.
-HWY_INLINE std::uint32_t lanes_of(const SideA& a, const SideB& b) {
-  const std::uint32_t row = (1u << b.count) - 1;
-  return 0x1111u * row & ((1u << k_leaf * a.count) - 1);
-}
-
-/// Calls take(pair, lane) for the pairs of triangles whose bits are set.
-template <class Take>
-HWY_INLINE void for_each_pair(std::uint32_t bits, const SideA& a, const SideB& b, const Take& take) {
-  for (; bits != 0; bits &= bits - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-    constexpr auto k_row = static_cast<std::uint32_t>(k_leaf);
-    take(TrianglePair{a.first + lane / k_row, b.first + lane % k_row}, lane);
-  }
 }
 
 }  // namespace HWY_NAMESPACE
