@@ -165,7 +165,7 @@ TEST(Tree, IsTheSameBitsForEveryThreadCount) {
 }
 
 TEST(Tree, IsFilledWell) {
-  // Memory and speed depend on it. Typical: 4.0 triangles per leaf, 7.9 children per node.
+  // Memory and speed depend on it. Typical: 4.0 triangles per leaf, 7.8 children per node.
   constexpr double k_triangles_per_leaf = 3.9;
   constexpr double k_children_per_node = 7.5;
   const Mesh mesh = shapes::bumpy_sphere(5, 0.2);
@@ -180,6 +180,24 @@ TEST(Tree, IsFilledWell) {
   EXPECT_GE(children / static_cast<double>(tree.nodes().size()), k_children_per_node);
   RecordProperty("triangles_per_leaf", std::to_string(static_cast<double>(mesh.triangles().size()) / leaves));
   RecordProperty("children_per_node", std::to_string(children / static_cast<double>(tree.nodes().size())));
+}
+
+TEST(Tree, SeparatesPartsThatLieFarFromEachOther) {
+  // Their numbers of triangles are no multiples of what a full node holds.
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Triangle> triangles;
+  for (const int level : {3, 1, 2}) {  // 1280, 80 and 320 triangles
+    const Mesh ball = shapes::bumpy_sphere(level, 0.2, 1.0, {1000.0 * level, 0.0, 0.0});
+    const auto base = static_cast<std::uint32_t>(vertices.size());
+    vertices.insert(vertices.end(), ball.vertices().begin(), ball.vertices().end());
+    for (const Triangle& t : ball.triangles()) triangles.push_back({base + t[0], base + t[1], base + t[2]});
+  }
+  const Mesh mesh = Mesh::build(vertices, triangles);
+  const Tree tree(mesh);
+  check_tree(mesh, tree);
+  for (const Tree::Node& node : tree.nodes()) {
+    for (std::size_t i = 0; i < node.child_count; ++i) EXPECT_LT(node.upper[0][i] - node.lower[0][i], 10.0f);
+  }
 }
 
 TEST(Tree, RefusesDiagonalsOutOfRange) {

@@ -16,9 +16,10 @@ namespace sixdof {
 /// How the triangles of a mesh are partitioned into the nodes of a Tree: the first half of its construction.
 ///
 /// A range of triangles is split in two again and again, always the part with the largest box, until a node has eight
-/// children. Each split is the best by the surface-area heuristic of those at multiples of a block: of a full leaf, of
-/// a full node above leaves, or of a full node above those. So nearly all leaves and all nodes of the two levels above
-/// them are full. Ranges of up to eight blocks are split exactly, larger ones near one of 16 bins along an axis.
+/// children. A split is the best by the surface-area heuristic of those at multiples of a block: of a full leaf, of a
+/// full node of leaves, or of a full node of those. So nearly all leaves and most nodes are full. Ranges of up to a
+/// full node of nodes of leaves are split exactly; larger ones at the block next to the best of 15 cuts along each
+/// axis, or at that cut itself where parts lie far from each other.
 namespace tree_builder {
 
 /// Axis-aligned box in single precision, relative to the tree's centre; contains its triangles.
@@ -68,7 +69,7 @@ constexpr std::size_t k_full_two_levels = Tree::k_width * k_full_node;       // 
 /// How much more a cut may cost that leaves full nodes.
 constexpr float k_worth = 1.1f;
 
-/// What a range of triangles is split at multiples of. Smaller parts stay whole while its node has room.
+/// What a range of triangles is split at multiples of. Parts that are not larger stay whole.
 std::size_t block_of(std::size_t triangles) {
   if (triangles <= k_full_node) return Tree::k_leaf_triangles;
   return triangles <= k_full_two_levels ? k_full_node : k_full_two_levels;
@@ -176,31 +177,15 @@ class Builder {
     });
   }
 
-  /// Cuts at the multiple of `block` triangles that is nearest to the best cut between two bins, unless that costs more
-  /// than full nodes are worth: parts that lie far from each other.
-  std::array<Range, 2> split_by_bins(const Range& range, std::size_t block) {
-    const Box centers = fold_in_parallel<Box>(range.first, range.last, [this](std::size_t i, std::size_t end) {
-      Box box;
-      for (; i < end; ++i) box.add({primitives_[i].twice_center(), primitives_[i].twice_center()});
-      return box;
-    });
-    const Binning binning(centers);
-    const Bins bins = fold_in_parallel<Bins>(range.first, range.last, [&](std::size_t i, std::size_t end) {
-      Bins sum;
-      for (; i < end; ++i) {
-        const std::array<float, 3> center = primitives_[i].twice_center();
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::size_t bin = binning.bin(center[k], k);
-          sum.box[k][bin].add(primitives_[i].box);
-          ++sum.count[k][bin];
-        }
-      }
-      return sum;
-    });
+  /// A cut between two bins of an axis.
+  struct BinCut {
+    std::size_t axis = 3;  ///< 3: none, as all centres agree.
+    std::size_t bin = 0;   ///< The first bin of the right part.
+    float cost = std::numeric_limits<float>::infinity();
+  };
 
-    std::size_t best_axis = 3;
-    std::size_t best_bin = 0;
-    float best_cost = std::numeric_limits<float>::infinity();
+  static BinCut best_cut(const Binning& binning, const Bins& bins) {
+    BinCut best;
     for (std::size_t k = 0; k < 3; ++k) {
       if (binning.scale[k] == 0.0f) continue;
       std::array<float, k_bins> right_cost{};
@@ -219,53 +204,78 @@ class Builder {
         left_count += bins.count[k][i - 1];
         if (left_count == 0) continue;
         const float sum = cost(left.half_area(), left_count) + right_cost[i];
-        if (sum < best_cost) {
-          best_cost = sum;
-          best_axis = k;
-          best_bin = i;
-        }
+        if (sum < best.cost) best = {k, i, sum};
       }
     }
+    return best;
+  }
 
-    const auto cut_after = [&](std::size_t count) {
-      const std::size_t middle = range.first + count;
-      return std::array{Range{range.first, middle, bounds(range.first, middle)},
-                        Range{middle, range.last, bounds(middle, range.last)}};
-    };
-    const auto aligned = [&](std::size_t count) {
-      return std::clamp<std::size_t>((count + block / 2) / block, 1, (range.count() - 1) / block) * block;
-    };
-    if (best_axis == 3) return cut_after(aligned(range.count() / 2));  // all centres agree: any halves will do
+  /// Cuts at the multiple of k_full_two_levels triangles that is nearest to the best cut between two bins, unless that
+  /// costs more than full nodes are worth: where parts lie far from each other.
+  std::array<Range, 2> split_by_bins(const Range& range) {
+    const Box centers = fold_in_parallel<Box>(range.first, range.last, [this](std::size_t i, std::size_t end) {
+      Box box;
+      for (; i < end; ++i) box.add({primitives_[i].twice_center(), primitives_[i].twice_center()});
+      return box;
+    });
+    const Binning binning(centers);
+    const Bins bins = fold_in_parallel<Bins>(range.first, range.last, [&](std::size_t i, std::size_t end) {
+      Bins sum;
+      for (; i < end; ++i) {
+        const std::array<float, 3> center = primitives_[i].twice_center();
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::size_t bin = binning.bin(center[k], k);
+          sum.box[k][bin].add(primitives_[i].box);
+          ++sum.count[k][bin];
+        }
+      }
+      return sum;
+    });
+    const BinCut best = best_cut(binning, bins);
+    if (best.axis == 3) return cut_after(range, aligned(range, range.count() / 2));  // any halves will do
+
     const auto begin = primitives_.begin() + static_cast<std::ptrdiff_t>(range.first);
     const auto end = primitives_.begin() + static_cast<std::ptrdiff_t>(range.last);
     const auto between = std::partition(
-        begin, end, [&](const Primitive& p) { return binning.bin(p.twice_center()[best_axis], best_axis) < best_bin; });
+        begin, end, [&](const Primitive& p) { return binning.bin(p.twice_center()[best.axis], best.axis) < best.bin; });
     const auto count = static_cast<std::size_t>(between - begin);
-    const auto cut = begin + static_cast<std::ptrdiff_t>(aligned(count));
-    const auto key = [&](const Primitive& p) { return std::pair(p.twice_center()[best_axis], p.triangle); };
+    const auto cut = begin + static_cast<std::ptrdiff_t>(aligned(range, count));
+    const auto key = [&](const Primitive& p) { return std::pair(p.twice_center()[best.axis], p.triangle); };
     const auto is_before = [&](const Primitive& x, const Primitive& y) { return key(x) < key(y); };
     if (cut < between) std::nth_element(begin, cut, between, is_before);
     if (cut > between) std::nth_element(between, cut, end, is_before);
-    const std::array<Range, 2> halves = cut_after(aligned(count));
-    const float sum =
-        cost(halves[0].box.half_area(), halves[0].count()) + cost(halves[1].box.half_area(), halves[1].count());
-    return sum <= k_worth * best_cost ? halves : cut_after(count);
+    const std::array<Range, 2> halves = cut_after(range, aligned(range, count));
+    const auto cost_of = [](const Range& half) { return cost(half.box.half_area(), half.count()); };
+    return cost_of(halves[0]) + cost_of(halves[1]) <= k_worth * best.cost ? halves : cut_after(range, count);
   }
 
-  /// The best of all cuts at multiples of `block` triangles, for ranges of up to k_width blocks.
+  std::array<Range, 2> cut_after(const Range& range, std::size_t count) const {
+    const std::size_t middle = range.first + count;
+    return {Range{range.first, middle, bounds(range.first, middle)},
+            Range{middle, range.last, bounds(middle, range.last)}};
+  }
+
+  /// The multiple of k_full_two_levels that is nearest to `count` and leaves triangles on both sides.
+  static std::size_t aligned(const Range& range, std::size_t count) {
+    constexpr std::size_t k_block = k_full_two_levels;
+    return std::clamp<std::size_t>((count + k_block / 2) / k_block, 1, (range.count() - 1) / k_block) * k_block;
+  }
+
+  /// The best of all cuts at multiples of `block` triangles, for ranges of up to k_width blocks and k_full_two_levels.
   std::array<Range, 2> split_exactly(const Range& range, std::size_t block) {
     const std::size_t n = range.count();
     const auto begin = primitives_.begin() + static_cast<std::ptrdiff_t>(range.first);
-    std::vector<Primitive> sorted(n), best(n);
-    std::vector<std::pair<float, std::uint32_t>> order(n);
+    std::array<Primitive, k_full_two_levels> sorted;
+    std::array<Primitive, k_full_two_levels> best;
     float best_cost = std::numeric_limits<float>::infinity();
     Range left{range.first, range.first, {}};
     Range right{range.last, range.last, {}};
     for (std::size_t k = 0; k < 3; ++k) {
+      std::array<std::pair<float, std::uint32_t>, k_full_two_levels> order;
       for (std::size_t i = 0; i < n; ++i) {
         order[i] = {begin[static_cast<std::ptrdiff_t>(i)].twice_center()[k], static_cast<std::uint32_t>(i)};
       }
-      std::sort(order.begin(), order.end());
+      std::sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n));
       for (std::size_t i = 0; i < n; ++i) sorted[i] = begin[static_cast<std::ptrdiff_t>(order[i].second)];
 
       std::array<Box, Tree::k_width + 1> tail;  // boxes of the triangles right of each cut
@@ -312,7 +322,7 @@ class Builder {
       if (widest == children.size()) break;
       const Range whole = children[widest];
       const std::array<Range, 2> halves =
-          whole.count() <= k_full_two_levels ? split_exactly(whole, block) : split_by_bins(whole, block);
+          whole.count() <= k_full_two_levels ? split_exactly(whole, block) : split_by_bins(whole);
       children[widest] = halves[0];
       children.push_back(halves[1]);
     }
