@@ -42,11 +42,11 @@ HWY_INLINE std::uint32_t pairs_below(const float (&x)[k_pairs], float limit) {
   }
   return bits;
 }
-/// and for which it is not above.
+/// and for which it is not above. A bound that is no number excludes nothing.
 HWY_INLINE std::uint32_t pairs_within(const float (&x)[k_pairs], float limit) {
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < k_pairs; i += hn::Lanes(k_lanes)) {
-    bits |= bits_of(hn::Le(load(x + i), set(limit)), i);
+    bits |= bits_of(hn::Not(hn::Gt(load(x + i), set(limit))), i);
   }
   return bits;
 }
