@@ -168,7 +168,10 @@ TEST(Tree, IsFilledWell) {
   // Memory and speed depend on it. Typical: 4.0 triangles per leaf, 7.8 children per node.
   constexpr double k_triangles_per_leaf = 3.9;
   constexpr double k_children_per_node = 7.5;
-  const Mesh mesh = shapes::bumpy_sphere(5, 0.2);
+  const Mesh sphere = shapes::bumpy_sphere(5, 0.2);
+  std::vector<Triangle> triangles(sphere.triangles().begin(), sphere.triangles().end());
+  triangles.resize(triangles.size() - 77);  // no multiple of what a full node holds
+  const Mesh mesh = Mesh::build({sphere.vertices().begin(), sphere.vertices().end()}, triangles);
   const Tree tree(mesh);
   double children = 0.0;
   double leaves = 0.0;
