@@ -1,14 +1,9 @@
 #include <sixdof/oracle/crossing_sums.h>
 
-#include <algorithm>
 #include <bit>
 #include <optional>
-#include <utility>
 
 #include <Eigen/Geometry>
-
-#include <sixdof/oracle/candidates.h>
-#include <sixdof/oracle/crossing.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/crossing_sums.cpp"
@@ -17,7 +12,7 @@
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
-#include <sixdof/oracle/crossing_lanes-inl.h>
+#include <sixdof/oracle/crossing_batch-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::crossings {
@@ -26,166 +21,49 @@ namespace HWY_NAMESPACE {
 using detail::CrossingSums;
 using Eigen::Vector3d;
 
-HWY_INLINE void prefetch(const Solid& solid, std::uint32_t triangle) {
-  const Tree::Corners& corners = solid.tree().corners()[triangle];
-  hwy::Prefetch(corners.data());
-  hwy::Prefetch(corners.data() + 2);
-  hwy::Prefetch(&solid.order(triangle));
-}
-
-/// Writes the corners of four triangles to the lanes lane .. lane + 3.
-HWY_INLINE void gather_four(const double* const (&from)[4], double (&to)[9][k_batch], std::size_t lane) {
-#if HWY_TARGET != HWY_SCALAR
-  constexpr hn::CappedTag<double, 4> d;
-  if constexpr (hn::MaxLanes(d) == 4) {
-    for (std::size_t k = 0; k < 8; k += 4) {  // transposed
-      const auto row_0 = hn::LoadU(d, from[0] + k), row_1 = hn::LoadU(d, from[1] + k);
-      const auto row_2 = hn::LoadU(d, from[2] + k), row_3 = hn::LoadU(d, from[3] + k);
-      const auto even_01 = hn::InterleaveLower(d, row_0, row_1), odd_01 = hn::InterleaveUpper(d, row_0, row_1);
-      const auto even_23 = hn::InterleaveLower(d, row_2, row_3), odd_23 = hn::InterleaveUpper(d, row_2, row_3);
-      hn::Store(hn::ConcatLowerLower(d, even_23, even_01), d, to[k] + lane);
-      hn::Store(hn::ConcatLowerLower(d, odd_23, odd_01), d, to[k + 1] + lane);
-      hn::Store(hn::ConcatUpperUpper(d, even_23, even_01), d, to[k + 2] + lane);
-      hn::Store(hn::ConcatUpperUpper(d, odd_23, odd_01), d, to[k + 3] + lane);
-    }
-    for (std::size_t i = 0; i < 4; ++i) to[8][lane + i] = from[i][8];
-    return;
-  }
-#endif
-  for (std::size_t k = 0; k < 9; ++k) {
-    for (std::size_t i = 0; i < 4; ++i) to[k][lane + i] = from[i][k];
-  }
-}
-
-/// Up to eight pairs of triangles; lanes beyond the count repeat the last.
-struct alignas(64) Batch {
-  double coordinate[2][9][k_batch];  ///< [body][3 corner + axis][pair], in A's frame; B's in its own until move_to_a().
-  std::uint32_t lanes = 0;           ///< Bits of the lanes that hold a pair of their own.
-
-  /// Takes the first pairs, and prefetches those after them.
-  HWY_INLINE void gather(const Solid& a, const Solid& b, std::span<const TrianglePair> pairs) {
-    const std::size_t count = std::min(pairs.size(), k_batch);
-    for (std::size_t lane = k_batch; lane < std::min(pairs.size(), 2 * k_batch); ++lane) {
-      prefetch(a, pairs[lane].a);
-      prefetch(b, pairs[lane].b);
-    }
-    const Tree::Corners* const corners_a = a.tree().corners().data();
-    const Tree::Corners* const corners_b = b.tree().corners().data();
-    for (std::size_t lane = 0; lane < k_batch; lane += 4) {
-      const double* of_a[4];
-      const double* of_b[4];
-      for (std::size_t i = 0; i < 4; ++i) {
-        const TrianglePair pair = pairs[std::min(lane + i, count - 1)];
-        of_a[i] = corners_a[pair.a][0].data();
-        of_b[i] = corners_b[pair.b][0].data();
-      }
-      gather_four(of_a, coordinate[0], lane);
-      gather_four(of_b, coordinate[1], lane);
-    }
-    lanes = (1u << count) - 1;
-  }
-
-  /// transform_point() of B's corners.
-  HWY_INLINE void move_to_a(const Pose& X_AB) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
-        const V3 p = corner(1, c, i);
-        for (int k = 0; k < 3; ++k) {
-          const V xy = hn::Add(hn::Mul(set(X_AB.R(k, 0)), p.x), hn::Mul(set(X_AB.R(k, 1)), p.y));
-          const V x = hn::Add(hn::Add(xy, hn::Mul(set(X_AB.R(k, 2)), p.z)), set(X_AB.t[k]));
-          hn::Store(hn::IfThenElseZero(hn::Ge(hn::Abs(x), set(k_smallest_exact_coordinate)), x), k_lanes,
-                    coordinate[1][3 * c + static_cast<std::size_t>(k)] + i);
-        }
-      }
-    }
-  }
-
-  HWY_INLINE V3 corner(std::size_t body, std::size_t c, std::size_t i) const {
-    const auto at = [&](std::size_t k) { return hn::Load(k_lanes, coordinate[body][3 * c + k] + i); };
-    return {at(0), at(1), at(2)};
-  }
-  HWY_INLINE Corners corners(std::size_t body, std::size_t i) const {
-    return {{corner(body, 0, i), corner(body, 1, i), corner(body, 2, i)}};
-  }
-  /// The first coordinate of one corner; the others are k_batch and twice k_batch behind.
-  HWY_INLINE const double* point(std::size_t body, std::size_t c, std::size_t lane) const {
-    return coordinate[body][3 * c] + lane;
-  }
-  TriangleCorners triangle(std::size_t body, std::size_t lane) const {
-    const auto at = [&](std::size_t c) {
-      const double* const p = point(body, c, lane);
-      return Vector3d(p[0], p[k_batch], p[2 * k_batch]);
-    };
-    return {at(0), at(1), at(2)};
-  }
-};
-
-/// Copies one lane of three arrays of k_batch numbers, one behind the other.
-HWY_INLINE void copy(const double* from, double (&to)[3][k_batch], std::size_t lane) {
-  for (std::size_t k = 0; k < 3; ++k) to[k][lane] = from[k * k_batch];
-}
-
-/// The segments of a batch.
+/// Where the triangles of eight pairs that intersect do so.
 struct alignas(64) BatchSegments {
   double start[3][k_batch], end[3][k_batch];
   double start_side[k_batch], end_side[k_batch];
-  std::uint32_t lanes = 0;  ///< Bits of the lanes that have one.
 
-  HWY_INLINE void find(const Batch& batch) {
-    std::uint32_t doubtful = 0;
-    lanes = 0;
+  /// @param corners of the pairs from `first` on, of which those in `lanes` (bits) matter
+  HWY_INLINE void find(const auto& corners, std::size_t first, std::uint32_t lanes) {
+    std::uint32_t accurate = 0;
     for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
-      const Crossing crossing(batch.corners(0, i), batch.corners(1, i));
-      store(crossing.start, start, i);
-      store(crossing.end, end, i);
-      hn::Store(crossing.start_side, k_lanes, start_side + i);
-      hn::Store(crossing.end_side, k_lanes, end_side + i);
-      lanes |= bits_of(crossing.crosses, i);
-      doubtful |= bits_of(crossing.is_doubtful, i);
+      const Crossing<DoubleFilter> crossing(corners.corners(0, first + i), corners.corners(1, first + i), {});
+      store(crossing.start(), start, i);
+      store(crossing.end(), end, i);
+      hn::Store(crossing.start_side(), k_lanes, start_side + i);
+      hn::Store(crossing.end_side(), k_lanes, end_side + i);
+      accurate |= bits_of(crossing.is_accurate(), i);
     }
-    lanes &= batch.lanes;
-    doubtful &= batch.lanes;
-    if (std::popcount(doubtful) >= k_many) doubtful &= ~certainly_apart_lanes(batch);
-    for (; doubtful != 0; doubtful &= doubtful - 1) {
-      decide(batch, static_cast<std::size_t>(std::countr_zero(doubtful)));
+    for (std::uint32_t bits = lanes & ~accurate; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      take(sixdof::cross(corners.triangle(0, first + lane), corners.triangle(1, first + lane)).value(), lane);
     }
   }
 
  private:
-  /// So many doubtful pairs take longer one by one than eight at once. They abound where faces lie in one plane.
-  static constexpr int k_many = 2;
-
-  static HWY_NOINLINE std::uint32_t certainly_apart_lanes(const Batch& batch) {
-    std::uint32_t bits = 0;
-    for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
-      bits |= bits_of(certainly_apart(batch.corners(0, i), batch.corners(1, i)), i);
-    }
-    return bits;
-  }
-
-  HWY_NOINLINE void decide(const Batch& batch, std::size_t lane) {
-    const std::optional<Segment> segment = sixdof::cross(batch.triangle(0, lane), batch.triangle(1, lane));
-    if (!segment) return;
-    lanes |= 1u << lane;
-    put(segment->start, start, lane);
-    put(segment->end, end, lane);
-    start_side[lane] = segment->start_side;
-    end_side[lane] = segment->end_side;
+  HWY_NOINLINE void take(const Segment& segment, std::size_t lane) {
+    put(segment.start, start, lane);
+    put(segment.end, end, lane);
+    start_side[lane] = segment.start_side;
+    end_side[lane] = segment.end_side;
   }
 };
 
-/// triangle_moments() in lanes.
+/// Multiples of triangle_moments() in lanes.
 struct Moments {
-  V3 area;
+  static constexpr double k_volume = 6.0, k_first = 48.0;  ///< These multiples.
+  V3 area;                                                 ///< Twice the triangle's.
   V volume;
   V3 first;
 
-  HWY_INLINE Moments(const V3& a, const V3& b, const V3& c) {
-    area = set(0.5) * cross(b - a, c - a);
+  HWY_INLINE Moments(const V3& a, const V3& b, const V3& c) : area(cross(b - a, c - a)) {
     const V3 sum = a + b + c;
     const V squares = hn::Add(hn::Add(dot(a, a), dot(b, b)), hn::Add(dot(c, c), dot(sum, sum)));
-    volume = hn::Mul(set(1.0 / 3.0), dot(a, area));
-    first = hn::Mul(set(1.0 / 24.0), squares) * area;
+    volume = dot(a, area);
+    first = squares * area;
   }
 };
 
@@ -215,48 +93,8 @@ class Sums {
 };
 
 HWY_INLINE V3 in_all_lanes(const Vector3d& p) { return {set(p.x()), set(p.y()), set(p.z())}; }
-
-/// Collects terms and adds eight at a time.
-/// @tparam Terms with add_to(sums, ...) and clear(lane, point), after which a lane adds nothing
-template <class Terms>
-class Collector {
- public:
-  /// The terms, and the lane to fill. The lane is free again unless it is kept.
-  template <class... Arguments>
-  HWY_INLINE std::pair<Terms&, std::size_t> next(Arguments&... arguments) {
-    if (HWY_UNLIKELY(size_ == k_batch)) {
-      terms_.add_to(arguments...);
-      size_ = 0;
-    }
-    return {terms_, size_};
-  }
-  HWY_INLINE void keep(bool is_kept = true) { size_ += is_kept ? 1 : 0; }
-
-  template <class... Arguments>
-  void finish(const Vector3d& point, Arguments&... arguments) {
-    for (; size_ < k_batch; ++size_) terms_.clear(size_, point);
-    terms_.add_to(arguments...);
-  }
-
- private:
-  Terms terms_;
-  std::size_t size_ = 0;
-};
-
-/// Integrals that follow from the segments, and from the triangles between the curves and the paths.
-struct CurveSums : Sums<11> {
-  enum Quantity : std::size_t {
-    volume,
-    first,  // and the next two, as those below
-    area = first + 3,
-    moment = area + 3,
-    curvature = moment + 3
-  };
-  HWY_INLINE void add_moments(const Moments& m, std::size_t i) {
-    add(volume, m.volume, i);
-    add(first, m.first, i);
-  }
-};
+HWY_INLINE V only(M mask, V x) { return hn::IfThenElseZero(mask, x); }
+HWY_INLINE V3 only(M mask, const V3& a) { return {only(mask, a.x), only(mask, a.y), only(mask, a.z)}; }
 
 /// What a segment adds to the curvature of the volume along a direction d (Overlap::curvature). While B moves, the
 /// segment, of length l, sweeps an area l (n_a . d) / |n_a x n_b| of B's triangle; times n_b . d that is what the
@@ -268,82 +106,12 @@ HWY_INLINE V curvature(const V3& segment, const V3& area_a, const V3& area_b, co
   return hn::IfThenZeroElse(hn::Eq(sine, hn::Zero(k_lanes)), change);
 }
 
-/// Eight segments whose terms are added together, in A's frame.
-struct alignas(64) SegmentTerms {
-  double start[3][k_batch], end[3][k_batch];
-  double low_a[3][k_batch], low_b[3][k_batch];  ///< Lowest corners of both triangles.
-
-  void clear(std::size_t lane, const Vector3d& point) {
-    for (auto* points : {&start, &end, &low_a, &low_b}) put(point, *points, lane);
-  }
-
-  /// On A's triangle a segment has the part inside B on its left; on B's it has the part inside A on its right.
-  /// @param anchor, origin of `area` and `moment`, and of the fluxes
-  /// @param along of the curvature; zero: none
-  HWY_NOINLINE void add_to(CurveSums& sums, const Vector3d& anchor, const Vector3d& origin,
-                           const Vector3d& along) const {
-    const V3 from_anchor = in_all_lanes(anchor), from_origin = in_all_lanes(origin);
-    const bool is_curved = !along.isZero(0.0);
-    for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
-      const V3 p = load(start, i), q = load(end, i);
-      const V3 u = p - from_anchor, v = q - from_anchor;
-      sums.add(CurveSums::area, cross(u, v), i);
-      sums.add(CurveSums::moment, hn::Add(hn::Add(dot(u, u), dot(u, v)), dot(v, v)) * (v - u), i);
-      const V3 x = p - from_origin, y = q - from_origin;
-      const Moments of_a(load(low_a, i) - from_origin, x, y), of_b(load(low_b, i) - from_origin, y, x);
-      sums.add_moments(of_a, i);
-      sums.add_moments(of_b, i);
-      if (is_curved) sums.add(CurveSums::curvature, curvature(q - p, of_a.area, of_b.area, in_all_lanes(along)), i);
-    }
-  }
-};
-
-/// Eight triangles between the curves and the paths, in A's frame.
-struct alignas(64) TriangleTerms {
-  double corner[3][3][k_batch];
-
-  void clear(std::size_t lane, const Vector3d& point) {
-    for (auto& points : corner) put(point, points, lane);
-  }
-
-  HWY_NOINLINE void add_to(CurveSums& sums, const Vector3d& origin) const {
-    const V3 from_origin = in_all_lanes(origin);
-    for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
-      sums.add_moments(
-          Moments(load(corner[0], i) - from_origin, load(corner[1], i) - from_origin, load(corner[2], i) - from_origin),
-          i);
-    }
-  }
-};
-
 /// Integrals along a path.
 struct PathSums : Sums<12> {
   enum Quantity : std::size_t {
     area,             // 2 BorderPath::area
     first_order = 3,  // 6 BorderPath::first_order, row by row
   };
-};
-
-/// Eight edges of a path, in the mesh's frame.
-struct alignas(64) EdgeTerms {
-  double from[3][k_batch], to[3][k_batch];
-
-  void clear(std::size_t lane, const Vector3d& point) {
-    put(point, from, lane);
-    put(point, to, lane);
-  }
-
-  HWY_NOINLINE void add_to(PathSums& sums, const Vector3d& origin) const {
-    const V3 from_origin = in_all_lanes(origin);
-    for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
-      const V3 p = load(from, i) - from_origin, q = load(to, i) - from_origin;
-      const V3 area = cross(p, q), middle = p + q;
-      sums.add(PathSums::area, area, i);
-      sums.add(PathSums::first_order, middle.x * area, i);
-      sums.add(PathSums::first_order + 3, middle.y * area, i);
-      sums.add(PathSums::first_order + 6, middle.z * area, i);
-    }
-  }
 };
 
 /// Edges of one body's path: from a triangle's lowest to its middle corner, or back. They wait until their potentials
@@ -353,18 +121,15 @@ class PathEdges {
   /// @param origin of the integrals, in the mesh's frame
   PathEdges(const Solid& solid, const Vector3d& origin) : solid_(solid), origin_(origin) {}
 
-  /// @param sign -1: from the middle to the lowest corner
-  /// @param is_kept false: the edge is none
-  HWY_INLINE void add(std::uint32_t triangle, int sign, bool is_kept) {
+  /// @param goes_back from the middle to the lowest corner
+  HWY_INLINE void add(std::uint32_t triangle, bool goes_back) {
+    hwy::Prefetch(&solid_.potential(triangle));
+    edges_[size_++] = {triangle, goes_back ? 1u : 0u};
     if (HWY_UNLIKELY(size_ == k_batch)) flush();
-    edges_[size_] = {triangle, sign > 0 ? 0u : 1u};
-    hwy::Prefetch(is_kept ? static_cast<const void*>(&solid_.potential(triangle)) : edges_);
-    size_ += is_kept ? 1 : 0;
   }
 
   detail::BorderPath finish() {
     flush();
-    terms_.finish(origin_, sums_, origin_);
     detail::BorderPath path;
     path.potential = forth_and_back_[0];
     path.potential.add(forth_and_back_[1], -1);
@@ -376,120 +141,240 @@ class PathEdges {
   }
 
  private:
+  struct Edge {
+    std::uint32_t triangle, back;
+  };
+
   HWY_NOINLINE void flush() {
-    for (std::size_t i = 0; i < size_; ++i) {
-      const auto [triangle, back] = edges_[i];
+    alignas(64) double from[3][k_batch], to[3][k_batch];  // in the mesh's frame
+    for (std::size_t lane = 0; lane < size_; ++lane) {
+      const auto [triangle, back] = edges_[lane];
       forth_and_back_[back].add(solid_.potential(triangle));
       const Tree::Corners& corners = solid_.tree().corners()[triangle];
       const Solid::Order order = solid_.order(triangle);
       const std::size_t ends[2] = {order.lowest, order.middle()};
-      const auto [terms, lane] = terms_.next(sums_, origin_);
-      put(corners[ends[back]], terms.from, lane);
-      put(corners[ends[1 - back]], terms.to, lane);
-      terms_.keep();
+      put(corners[ends[back]], from, lane);
+      put(corners[ends[1 - back]], to, lane);
+    }
+    for (; size_ < k_batch; ++size_) {  // these add nothing
+      put(origin_, from, size_);
+      put(origin_, to, size_);
     }
     size_ = 0;
+    const V3 from_origin = in_all_lanes(origin_);
+    for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
+      const V3 p = load(from, i) - from_origin, q = load(to, i) - from_origin;
+      const V3 area = cross(p, q), middle = p + q;
+      sums_.add(PathSums::area, area, i);
+      sums_.add(PathSums::first_order, middle.x * area, i);
+      sums_.add(PathSums::first_order + 3, middle.y * area, i);
+      sums_.add(PathSums::first_order + 6, middle.z * area, i);
+    }
   }
 
-  struct Edge {
-    std::uint32_t triangle, back;
-  };
   const Solid& solid_;
   Vector3d origin_;
   Edge edges_[k_batch];
   std::size_t size_ = 0;
   Solid::Potential forth_and_back_[2];
   PathSums sums_;
-  Collector<EdgeTerms> terms_;
 };
 
-/// Takes the segments one after the other.
+/// Solid::Order of the triangles of one body.
+class Orders {
+ public:
+  HWY_INLINE void put(Solid::Order order, std::size_t lane) {
+    number_[lane] = order.lowest + (order.rises ? k_rises : 0);
+  }
+
+  /// In lanes.
+  struct Lowest {
+    M is_0, is_1, rises;
+    V opposite_side;  ///< Solid::Order::opposite_side()
+
+    HWY_INLINE V3 lowest(const Corners& t) const { return pick(t.corner[0], t.corner[1], t.corner[2]); }
+    HWY_INLINE V3 middle(const Corners& t) const {
+      return select(rises, pick(t.corner[1], t.corner[2], t.corner[0]), pick(t.corner[2], t.corner[0], t.corner[1]));
+    }
+
+   private:
+    HWY_INLINE V3 pick(const V3& if_0, const V3& if_1, const V3& if_2) const {
+      return select(is_0, if_0, select(is_1, if_1, if_2));
+    }
+  };
+  HWY_INLINE Lowest at(std::size_t i) const {
+    const V number = hn::Load(k_lanes, number_ + i);
+    const M rises = hn::Ge(number, set(k_rises));
+    const V lowest = hn::Sub(number, only(rises, set(k_rises)));
+    const M is_0 = hn::Eq(lowest, hn::Zero(k_lanes)), is_1 = hn::Eq(lowest, set(1.0));
+    return {is_0, is_1, rises, hn::IfThenElseZero(hn::Or(is_0, is_1), hn::Add(lowest, set(1.0)))};
+  }
+
+ private:
+  static constexpr int k_rises = 4;
+  alignas(64) double number_[k_batch];
+};
+
+/// Integrals that follow from the segments, and from the triangles between the curves and the paths.
+struct CurveSums : Sums<11> {
+  enum Quantity : std::size_t {
+    volume,
+    first,  // and the next two, as those below
+    area = first + 3,
+    moment = area + 3,
+    curvature = moment + 3
+  };
+};
+
+/// Takes the pairs that intersect, eight at a time.
 class SegmentSums {
  public:
+  /// @param origin, along as of sum_crossings()
   SegmentSums(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin, const Vector3d& along)
       : a_(a),
         b_(b),
         edges_{PathEdges(a, origin), PathEdges(b, X_AB.inverse() * origin)},
         origin_(origin),
-        along_(along) {}
+        along_(along),
+        is_curved_(!along.isZero(0.0)) {}
 
-  HWY_INLINE void add(TrianglePair pair, const Batch& batch, std::size_t lane, const BatchSegments& segments) {
-    if (HWY_UNLIKELY(crossings_++ == 0)) anchor_ = point(segments.start, lane);
-    const Solid::Order order[2] = {a_.order(pair.a), b_.order(pair.b)};
-    const auto [terms, i] = segments_.next(sums_, anchor_, origin_, along_);
-    const double* const start = segments.start[0] + lane;
-    const double* const end = segments.end[0] + lane;
-    copy(start, terms.start, i);
-    copy(end, terms.end, i);
-    copy(batch.point(0, order[0].lowest, lane), terms.low_a, i);
-    copy(batch.point(1, order[1].lowest, lane), terms.low_b, i);
-    segments_.keep();
-    // On A's triangle the border comes in at the start, on B's it leaves there. Ends on other sides are taken like
-    // those on the side opposite the lowest corner, but not kept: that costs less than branches no one can predict.
-    const auto add_end = [&](double number, const double* p, int sign_on_a) {
-      const auto side = static_cast<std::uint32_t>(static_cast<std::int32_t>(number));
-      const std::size_t body = side >= 3 ? 1 : 0;
-      const Solid::Order of_body = order[body];
-      const bool is_opposite = side - 3 * body == of_body.opposite_side();
-      const int sign = body == 0 ? sign_on_a : -sign_on_a;
-      // The end moves along its side to the triangle's middle corner.
-      const auto [triangle, j] = triangles_.next(sums_, origin_);
-      copy(batch.point(body, of_body.lowest, lane), triangle.corner[0], j);
-      copy(p, triangle.corner[sign > 0 ? 1 : 2], j);
-      copy(batch.point(body, of_body.middle(), lane), triangle.corner[sign > 0 ? 2 : 1], j);
-      triangles_.keep(is_opposite);
-      edges_[body].add(body == 0 ? pair.a : pair.b, sign, is_opposite);
-    };
-    add_end(segments.end_side[lane], end, 1);
-    add_end(segments.start_side[lane], start, -1);
+  /// @param first, count pairs of the queue; count is at most k_batch
+  HWY_NOINLINE void add(const CrossingQueue& queue, std::size_t first, std::size_t count) {
+    const std::uint32_t lanes = (1u << count) - 1;
+    const TrianglePair* const pairs = queue.pairs() + first;
+    Orders orders[2];
+    for (std::size_t lane = 0; lane < k_batch; ++lane) {
+      const TrianglePair pair = pairs[lane < count ? lane : 0];
+      orders[0].put(a_.order(pair.a), lane);
+      orders[1].put(b_.order(pair.b), lane);
+    }
+    segments_.find(queue.corners(), first, lanes);
+    if (HWY_UNLIKELY(crossings_ == 0)) anchor_ = point(segments_.start, 0);
+    crossings_ += count;
+    std::uint32_t ends = 0;
+    for (std::size_t i = 0; i < k_batch; i += hn::Lanes(k_lanes)) {
+      const M is_used = hn::Lt(hn::Iota(k_lanes, static_cast<double>(i)), set(static_cast<double>(count)));
+      const Side of_a(queue.corners().corners(0, first + i), orders[0].at(i), origin_);
+      const Side of_b(queue.corners().corners(1, first + i), orders[1].at(i), origin_);
+      V volume;
+      V3 first_moment;
+      add_segments(of_a, of_b, is_used, i, volume, first_moment);
+      ends |= add_ends(of_a, of_b, is_used, i, volume, first_moment);
+      sums_.add(CurveSums::volume, volume, i);
+      sums_.add(CurveSums::first, first_moment, i);
+    }
+    for (; ends != 0; ends &= ends - 1) {
+      const auto end = static_cast<std::size_t>(std::countr_zero(ends));
+      const TrianglePair pair = pairs[end % k_batch];
+      const bool is_b = (end & k_of_b) != 0, is_start = (end & k_at_start) != 0;
+      edges_[is_b ? 1 : 0].add(is_b ? pair.b : pair.a, is_b != is_start);
+    }
   }
 
   CrossingSums finish() {
-    segments_.finish(origin_, sums_, anchor_, origin_, along_);
-    triangles_.finish(origin_, sums_, origin_);
     return {.crossings = crossings_,
             .anchor = anchor_,
             .area = sums_.vector(CurveSums::area),
             .moment = sums_.vector(CurveSums::moment),
-            .beside_paths = {sums_.scalar(CurveSums::volume), sums_.vector(CurveSums::first)},
+            .beside_paths = {sums_.scalar(CurveSums::volume) / Moments::k_volume,
+                             sums_.vector(CurveSums::first) / Moments::k_first},
             .path_a = edges_[0].finish(),
             .path_b = edges_[1].finish(),
             .curvature = sums_.scalar(CurveSums::curvature)};
   }
 
  private:
+  /// Ends of segments on sides opposite the lowest corner, as bits: lane + k_of_b, if that is B's + k_at_start.
+  static constexpr std::size_t k_of_b = k_batch, k_at_start = 2 * k_batch;
+
+  /// One body's triangles: two of their corners, from the origin.
+  struct Side {
+    V3 lowest, middle;
+    V opposite_side;
+
+    HWY_INLINE Side(const Corners& t, const Orders::Lowest& order, const Vector3d& origin)
+        : lowest(order.lowest(t) - in_all_lanes(origin)),
+          middle(order.middle(t) - in_all_lanes(origin)),
+          opposite_side(order.opposite_side) {}
+  };
+
+  /// On A's triangle a segment has the part inside B on its left; on B's it has the part inside A on its right.
+  /// @param volume, first_moment set to those of the triangles (lowest corner, start, end)
+  HWY_INLINE void add_segments(const Side& of_a, const Side& of_b, M is_used, std::size_t i, V& volume,
+                               V3& first_moment) {
+    const V3 p = load(segments_.start, i), q = load(segments_.end, i);
+    const V3 u = p - in_all_lanes(anchor_), v = q - in_all_lanes(anchor_);
+    sums_.add(CurveSums::area, only(is_used, cross(u, v)), i);
+    sums_.add(CurveSums::moment, only(is_used, hn::Add(hn::Add(dot(u, u), dot(u, v)), dot(v, v)) * (v - u)), i);
+    const V3 x = p - in_all_lanes(origin_), y = q - in_all_lanes(origin_);
+    const Moments on_a(of_a.lowest, x, y), on_b(of_b.lowest, y, x);
+    volume = only(is_used, hn::Add(on_a.volume, on_b.volume));
+    first_moment = only(is_used, on_a.first + on_b.first);
+    if (is_curved_) {
+      sums_.add(CurveSums::curvature, only(is_used, curvature(q - p, on_a.area, on_b.area, in_all_lanes(along_))), i);
+    }
+  }
+
+  /// On A's triangle the border comes in at the start, on B's it leaves there. An end on the side opposite the lowest
+  /// corner moves along its side to the triangle's middle corner. Returns these ends.
+  /// @param volume, first_moment to which those of the triangles between are added
+  HWY_INLINE std::uint32_t add_ends(const Side& of_a, const Side& of_b, M is_used, std::size_t i, V& volume,
+                                    V3& first_moment) {
+    std::uint32_t ends = 0;
+    const V sides[2] = {hn::Load(k_lanes, segments_.end_side + i), hn::Load(k_lanes, segments_.start_side + i)};
+    const V3 points[2] = {load(segments_.end, i), load(segments_.start, i)};
+    for (std::size_t at_start = 0; at_start < 2; ++at_start) {
+      const M on_a = hn::Lt(sides[at_start], set(3.0));
+      const M of_opposite_a = hn::And(is_used, hn::Eq(sides[at_start], of_a.opposite_side));
+      const M of_opposite_b = hn::And(is_used, hn::Eq(sides[at_start], hn::Add(of_b.opposite_side, set(3.0))));
+      const V3 lowest = select(on_a, of_a.lowest, of_b.lowest), middle = select(on_a, of_a.middle, of_b.middle);
+      const V3 end = points[at_start] - in_all_lanes(origin_);
+      const M comes_in = at_start == 0 ? on_a : hn::Not(on_a);
+      const Moments between(lowest, select(comes_in, end, middle), select(comes_in, middle, end));
+      const M is_opposite = hn::Or(of_opposite_a, of_opposite_b);
+      volume = hn::Add(volume, only(is_opposite, between.volume));
+      first_moment = first_moment + only(is_opposite, between.first);
+      ends |= bits_of(of_opposite_a, i) << (at_start * k_at_start);
+      ends |= bits_of(of_opposite_b, i) << (at_start * k_at_start + k_of_b);
+    }
+    return ends;
+  }
+
   const Solid& a_;
   const Solid& b_;
   PathEdges edges_[2];
   Vector3d origin_, along_, anchor_ = Vector3d::Zero();
+  bool is_curved_;
   std::size_t crossings_ = 0;
+  BatchSegments segments_;
   CurveSums sums_;
-  Collector<SegmentTerms> segments_;
-  Collector<TriangleTerms> triangles_;
 };
 
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin,
                            std::span<const TrianglePair> pairs, const Vector3d& along) {
-  // Several batches first, then their segments: neither waits for the other's results.
-  constexpr std::size_t k_batches = 8;
+  // Several batches take each step together, and the pairs that intersect are summed a step later: what was written a
+  // moment ago in other pieces than it is read in takes long to read.
+  constexpr std::size_t k_batches = CrossingQueue::k_most_batches;
   SegmentSums sums(a, b, X_AB, origin, along);
+  CrossingQueue queue;
+  const auto sum_whole_batches = [&] {
+    std::size_t count = 0;
+    for (; count + k_batch <= queue.size(); count += k_batch) sums.add(queue, count, k_batch);
+    if (count != 0) queue.remove(count);
+  };
   Batch batches[k_batches];
-  BatchSegments segments[k_batches];
   while (!pairs.empty()) {
     const std::size_t count = std::min((pairs.size() + k_batch - 1) / k_batch, k_batches);
     for (std::size_t i = 0; i < count; ++i) batches[i].gather(a, b, pairs.subspan(i * k_batch));
+    for (std::size_t i = 0; i < count; ++i) batches[i].move(X_AB);
+    sum_whole_batches();
     for (std::size_t i = 0; i < count; ++i) {
-      batches[i].move_to_a(X_AB);
-      segments[i].find(batches[i]);
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::uint32_t bits = segments[i].lanes; bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-        sums.add(pairs[i * k_batch + lane], batches[i], lane, segments[i]);
-      }
+      if (const std::uint32_t lanes = batches[i].crossing()) queue.add(batches[i], pairs.subspan(i * k_batch), lanes);
     }
     pairs = pairs.subspan(std::min(pairs.size(), count * k_batch));
   }
+  sum_whole_batches();
+  if (queue.size() != 0) sums.add(queue, 0, queue.size());
   return sums.finish();
 }
 

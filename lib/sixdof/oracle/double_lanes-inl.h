@@ -34,22 +34,43 @@ HWY_INLINE V set(double x) { return hn::Set(k_lanes, x); }
 HWY_INLINE M no_lane() { return hn::Lt(hn::Zero(k_lanes), hn::Zero(k_lanes)); }
 
 /// The bits of the lanes of `mask`, from bit `i` on.
-HWY_INLINE std::uint32_t bits_of(M mask, std::size_t i) {
+template <class D>
+HWY_INLINE std::uint32_t bits_of(D d, hn::Mask<D> mask, std::size_t i) {
   HWY_ALIGN std::uint8_t stored[8] = {};  // as many as StoreMaskBits may write
-  hn::StoreMaskBits(k_lanes, mask, stored);
+  hn::StoreMaskBits(d, mask, stored);
   return static_cast<std::uint32_t>(stored[0]) << i;
 }
+HWY_INLINE std::uint32_t bits_of(M mask, std::size_t i) { return bits_of(k_lanes, mask, i); }
 
-struct V3 {
-  V x, y, z;
+/// A vector per lane, of doubles or of floats.
+template <class Vec>
+struct Vector3 {
+  Vec x, y, z;
 };
+using V3 = Vector3<V>;
 
-HWY_INLINE V3 operator-(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
-HWY_INLINE V3 operator+(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
-HWY_INLINE V3 operator*(V s, const V3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
-HWY_INLINE V3 abs(const V3& a) { return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)}; }
-HWY_INLINE V select(M mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
-HWY_INLINE V3 select(M mask, const V3& yes, const V3& no) {
+template <class Vec>
+HWY_INLINE Vector3<Vec> operator-(const Vector3<Vec>& a, const Vector3<Vec>& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class Vec>
+HWY_INLINE Vector3<Vec> operator+(const Vector3<Vec>& a, const Vector3<Vec>& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+template <class Vec>
+HWY_INLINE Vector3<Vec> operator*(Vec s, const Vector3<Vec>& a) {
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+template <class Vec>
+HWY_INLINE Vector3<Vec> abs(const Vector3<Vec>& a) {
+  return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)};
+}
+template <class Mask, class Vec>
+HWY_INLINE Vec select(Mask mask, Vec yes, Vec no) {
+  return hn::IfThenElse(mask, yes, no);
+}
+template <class Mask, class Vec>
+HWY_INLINE Vector3<Vec> select(Mask mask, const Vector3<Vec>& yes, const Vector3<Vec>& no) {
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 
@@ -71,9 +92,11 @@ HWY_INLINE void put(const Eigen::Vector3d& x, double (&p)[3][k_batch], std::size
 }
 
 /// Corners of one body's triangle of each pair.
-struct Corners {
-  V3 corner[3];
+template <class Vec>
+struct CornersOf {
+  Vector3<Vec> corner[3];
 };
+using Corners = CornersOf<V>;
 
 HWY_INLINE Corners load(const double (&p)[3][3][k_batch], std::size_t i) {
   return {{load(p[0], i), load(p[1], i), load(p[2], i)}};
