@@ -1,6 +1,7 @@
 #include <sixdof/oracle/crossing_sums.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <random>
@@ -156,6 +157,27 @@ void expect_generic_pairs_of_cross() {
 
 TEST(CrossingSums, GenericPairsAreDecidedAsPairByPairOnEveryInstructionSet) {
   for_each_instruction_set(expect_generic_pairs_of_cross);
+}
+
+/// Determinants of all sizes from what floats decide to what doubles leave in doubt, and bodies so large or so small
+/// that floats decide nothing.
+void expect_pairs_of_all_sizes_of_cross() {
+  std::mt19937_64 random(35);
+  std::size_t segments = 0;
+  for (const double size : {1.0, 3e-10, 1e-14, 1e14}) {
+    const Body torus(bodies::bumpy_torus(11, 6, 0.1, size));
+    for (int exponent = 1; exponent <= 12; ++exponent) {
+      const double small = std::pow(10.0, -exponent);
+      const Pose X_AB = bodies::random_pose(random, 0.4);
+      const Pose near{Eigen::AngleAxisd(small, X_AB.R.col(0)).toRotationMatrix(), size * small * X_AB.t};
+      segments += expect_segments_of_cross(torus, torus, near);
+    }
+  }
+  EXPECT_GT(segments, 5000u);
+}
+
+TEST(CrossingSums, PairsOfAllSizesAreDecidedAsPairByPairOnEveryInstructionSet) {
+  for_each_instruction_set(expect_pairs_of_all_sizes_of_cross);
 }
 
 TEST(CrossingSums, PairsThatDoNotCrossChangeNoBit) {
