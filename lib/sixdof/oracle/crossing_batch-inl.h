@@ -163,11 +163,12 @@ class alignas(64) Batch {
     return {at(0), at(1), at(2)};
   }
   HWY_INLINE FloatCorners rounded_corners(std::size_t body, std::size_t i) const {
-    const Vector3<FloatV> origin{zero<FloatV>(), zero<FloatV>(), zero<FloatV>()};
+    const FloatV zero = number<FloatV>(0);
+    const Vector3<FloatV> origin{zero, zero, zero};
     return {{body == 0 ? origin : rounded_corner(1, 0, i), rounded_corner(body, 1, i), rounded_corner(body, 2, i)}};
   }
   static HWY_INLINE FloatV greatest_magnitude(const FloatCorners& a, const FloatCorners& b) {
-    FloatV greatest = zero<FloatV>();
+    FloatV greatest = number<FloatV>(0);
     for (const Vector3<FloatV>& p : {a.corner[1], a.corner[2], b.corner[0], b.corner[1], b.corner[2]}) {
       const Vector3<FloatV> m = abs(p);
       greatest = hn::Max(hn::Max(greatest, m.x), hn::Max(m.y, m.z));
@@ -226,7 +227,7 @@ class CrossingQueue {
     }
   }
 
-  /// Removes the first pairs, of which at most k_batch - 1 are left.
+  /// Removes the first `count` pairs, a multiple of k_batch, after which less than k_batch are left.
   HWY_INLINE void remove(std::size_t count) {
     size_ -= count;
     std::copy_n(pairs_ + count, size_, pairs_);

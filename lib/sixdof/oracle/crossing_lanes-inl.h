@@ -10,9 +10,10 @@
 #include <sixdof/oracle/double_lanes-inl.h>
 
 // Eight pairs of triangles at once, one per lane: which pairs cross, and where. Signs of determinants are those of
-// predicates.h where a filter decides them. A pair for which one does not is doubtful: cross() decides it.
+// predicates.h where a filter decides them. A pair for which one does not is doubtful.
 //
-// Written for lanes of doubles and of floats. Floats decide nearly all pairs, and twice as many at once.
+// Written for lanes of floats and of doubles. Floats decide nearly all pairs, twice as many at once; pairs that they
+// leave in doubt are left to doubles, and what these leave to cross().
 //
 // No multiplication is fused, so every instruction set finds the same bits.
 
@@ -27,10 +28,6 @@ using FloatLanes = hn::CappedTag<float, k_batch>;
 using FloatV = hn::Vec<FloatLanes>;
 constexpr FloatLanes k_float_lanes;
 
-template <class Vec>
-HWY_INLINE Vec zero() {
-  return hn::Zero(hn::DFromV<Vec>());
-}
 template <class Vec>
 HWY_INLINE Vec number(int x) {
   return hn::Set(hn::DFromV<Vec>(), static_cast<hn::TFromV<Vec>>(x));
@@ -96,7 +93,7 @@ class FloatFilter {
   FloatV bound_;
 };
 
-/// A determinant of three differences of points, and the largest error of its sign.
+/// A determinant of three differences of points, and its largest error.
 template <class Filter>
 struct Filtered {
   using Vec = typename Filter::Vec;
@@ -124,7 +121,7 @@ struct PlaneSides {
                    Minors<Vec>(plane.corner[1] - plane.corner[0], plane.corner[2] - plane.corner[0]), filter) {}
 
   /// Lanes with a corner in front of the plane; meaningful where are_clear().
-  HWY_INLINE auto front(std::size_t corner) const { return hn::Gt(distance[corner].value, zero<Vec>()); }
+  HWY_INLINE auto front(std::size_t corner) const { return hn::Gt(distance[corner].value, number<Vec>(0)); }
   /// Lanes in which every sign is certain,
   HWY_INLINE auto are_clear() const {
     return hn::And(hn::And(distance[0].is_clear(), distance[1].is_clear()), distance[2].is_clear());
@@ -178,7 +175,7 @@ struct CrossingSides {
     const Vec at_next = pick(distance, 1), at_previous = pick(distance, 2);
     const Vector3<Vec> to_next = next - lone, from_previous = lone - previous;
     const Vec index = pick(indices, 0), index_before = pick(indices, 2);
-    const auto front = hn::Gt(at_lone, zero<Vec>());
+    const auto front = hn::Gt(at_lone, number<Vec>(0));
     const auto side = [&](auto leaves) {  // to the next corner, or from the previous one
       return CrossingSide<Vec>{select(leaves, next, previous), select(leaves, at_next, at_previous),
                                select(leaves, to_next, from_previous), select(leaves, index, index_before)};

@@ -1,7 +1,9 @@
 #include <sixdof/oracle/crossing_sums.h>
 
+#include <algorithm>
 #include <bit>
 #include <optional>
+#include <span>
 
 #include <Eigen/Geometry>
 
