@@ -104,7 +104,7 @@ TEST(ExactAlgorithm, RefusesPosesThatAreNotRigid) {
   EXPECT_EQ(query->distance(pose).status, Status::failed);
 }
 
-TEST(ExactAlgorithm, WarmStartChangesNoDistance) {
+TEST(ExactAlgorithm, WarmStartChangesNoDistanceAndNoResponse) {
   const Mesh mesh = shapes::bumpy_sphere(4, 0.25);
   const auto exact = make_exact_algorithm();
   Settings warm = exact->settings();
@@ -117,6 +117,16 @@ TEST(ExactAlgorithm, WarmStartChangesNoDistance) {
     EXPECT_EQ(warm_query->distance(pose).value.distance, cold_query->distance(pose).value.distance);
     EXPECT_EQ(warm_query->collide(pose).value, cold_query->collide(pose).value);
   }
+  std::size_t touching = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Pose pose{Eigen::Matrix3d::Identity(), {1.9 - 1e-3 * i, 0.3, 0.2}};
+    const Response warm_response = warm_query->respond(pose).value, response = cold_query->respond(pose).value;
+    EXPECT_EQ(warm_response.volume, response.volume);
+    EXPECT_EQ(warm_response.force, response.force);
+    EXPECT_EQ(warm_response.torque, response.torque);
+    if (response.volume > 0.0) ++touching;
+  }
+  EXPECT_GT(touching, 100u);
 }
 
 }  // namespace

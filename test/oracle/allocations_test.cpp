@@ -51,5 +51,25 @@ TEST(Allocations, OverlapQueriesMakeNoneOnceTheirScratchHasGrown) {
   EXPECT_EQ(crossings, 0u);
 }
 
+TEST(Allocations, OverlapQueriesWithAWarmStartMakeNoneOnceTheirScratchHasGrown) {
+  const bodies::Body a(bodies::bumpy_torus(61, 33)), b(bodies::bumpy_torus(43, 25, 0.2, 0.8));
+  const Pose start{Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(), {0.4, 0.1, 0.0}};
+  OverlapQuery query(a.solid, b.solid);
+  const auto move = [&] {
+    std::size_t crossings = 0;
+    for (int i = 0; i < 200; ++i) {
+      const Pose pose{start.R, start.t + 2e-4 * i * Eigen::Vector3d(-1, 1, 1)};
+      crossings += query.evaluate(pose, true).crossings;
+    }
+    return crossings;
+  };
+  const std::size_t crossings = move();
+  move();
+  const std::size_t grown = allocations;
+  EXPECT_EQ(move(), crossings);
+  EXPECT_EQ(allocations, grown);
+  EXPECT_GT(crossings, 1000u);
+}
+
 }  // namespace
 }  // namespace sixdof

@@ -39,7 +39,7 @@ class ExactQuery final : public Query {
   Outcome<Response> respond(const Pose& X_AB) override {
     if (const Status status = check(X_AB); status != Status::ok) return status;
     if (!overlap_query_) return fail(Status::failed, why_no_response_);
-    const Overlap overlap = overlap_query_->evaluate(X_AB);
+    const Overlap overlap = overlap_query_->evaluate(X_AB, warm_start_);
     return Response{.penalty = overlap.volume,
                     .volume = overlap.volume,
                     .force = -overlap.area,
@@ -82,9 +82,11 @@ std::unique_ptr<Algorithm> make_exact_algorithm() {
        .summary = "exact distance, yes/no and overlap volume with its gradient: the reference for the others",
        .answers = {.collide = true, .distance = true, .respond = true},
        .law = ResponseLaw::volume,
-       .parameters = {Parameter::choice(
-           "warm_start", "start each query from the closest triangles of the last one; changes no distance", "off",
-           {"off", "on"})}});
+       .parameters = {Parameter::choice("warm_start",
+                                        "start each query from the closest triangles of the last one, and keep "
+                                        "candidates for poses near by; changes "
+                                        "no distance and no response",
+                                        "off", {"off", "on"})}});
 }
 
 }  // namespace sixdof

@@ -22,20 +22,21 @@ namespace sixdof::candidates {
 namespace HWY_NAMESPACE {
 
 namespace leaves = triangle_pairs::HWY_NAMESPACE;
-using detail::TreeMotion;
 
-/// Nodes smaller than this many times the slack are tested in doubles: floats would not separate most of their
-/// children.
+/// Nodes smaller than this many times the rounding of floats are tested in doubles: floats would not separate most of
+/// their children.
 constexpr float k_blurred = 64.0f;
 
 /// Tests in doubles, for volumes that are small next to the rounding of floats. They hold for all fractions of the
-/// displacement: B is taken at half of it, and has to be farther away than half of it.
+/// displacement: B is taken at half of it, and has to be farther away than half of it and the margin.
 class CloseTests {
  public:
-  CloseTests(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement, float slack)
+  CloseTests(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+             const TreeMotion& motion)
       : bounds_(a, b, {X_AB.R, X_AB.t + 0.5 * displacement}),
-        half_displacement_((0.5 + 1e-14) * displacement.norm()),  // with the rounding of positions on the way
-        blurred_(k_blurred * k_blurred * slack * slack) {}
+        enough_((0.5 + 1e-14) * displacement.norm() +  // with the rounding of positions on the way
+                static_cast<double>(motion.margin)),
+        blurred_(k_blurred * k_blurred * motion.rounding * motion.rounding) {}
 
   /// @param size_a, size_b squares of the volumes' diagonals
   bool are_due(float size_a, float size_b) const { return std::max(size_a, size_b) < blurred_; }
@@ -49,11 +50,11 @@ class CloseTests {
 
  private:
   bool apart(const detail::CloseShape& a, const detail::CloseShape& b) const {
-    return bounds_.lower_bound(a, b, Eigen::Vector3d::Zero(), half_displacement_) > half_displacement_;
+    return bounds_.lower_bound(a, b, Eigen::Vector3d::Zero(), enough_) > enough_;
   }
 
   detail::CloseBounds bounds_;
-  double half_displacement_;
+  double enough_;  // a distance
   float blurred_;  // square of a diagonal
 };
 
@@ -82,13 +83,15 @@ class DualTreeTraversal {
         expansion_(a, b),
         take_(take) {}
 
-  void run() {
-    stack_.assign(1, {0, 0, a_.nodes()[0].volume.squared_diagonal(), b_.nodes()[0].volume.squared_diagonal()});
-    while (!stack_.empty()) {
+  /// Expands up to `most` pairs. Returns how many it did.
+  std::size_t run(std::size_t most) {
+    std::size_t count = 0;
+    for (; count < most && !stack_.empty(); ++count) {
       const VolumePair pair = stack_.back();
       stack_.pop_back();
       expand(pair);
     }
+    return count;
   }
 
  private:
@@ -104,12 +107,12 @@ class DualTreeTraversal {
     const auto& y = x_is_a ? b : a;
     const Passage& passage = x_is_a ? motion_.of_b : motion_.of_a;
     std::uint32_t rest = y.lanes();
-    if (y.splits()) rest &= near_boxes<k_rounding>(x.whole(), y.volumes(), k_slacks * motion_.slack, passage.half_in_x);
+    if (y.splits()) rest &= near_boxes<k_rounding>(x.whole(), y.volumes(), motion_.slack(k_units), passage.half_in_x);
     for (; rest != 0; rest &= rest - 1) {
       const auto j = static_cast<std::size_t>(std::countr_zero(rest));
       std::uint32_t bits =
           blurred ? test_closely(x_is_a, j)
-                  : overlapping_volumes<moving>(x.volumes(), y.volumes(), j, passage, motion_.slack, first_, last_);
+                  : overlapping_volumes<moving>(x.volumes(), y.volumes(), j, passage, motion_, first_, last_);
       bits &= x.lanes();
       if (!blurred && bits != 0 && use_of_cross_axes_.is_due())
         bits = ask_cross_axes(x.volumes(), y.volumes(), j, x_is_a, bits);
@@ -161,7 +164,7 @@ class DualTreeTraversal {
     const auto& axes_x = x_is_a ? cross_axes_->in_a : cross_axes_->in_b;
     const auto& axes_y = x_is_a ? cross_axes_->in_b : cross_axes_->in_a;
     const std::uint32_t left =
-        overlapping_across_axes(x, y, j, axes_x, axes_y, bits, x_is_a ? motion_.of_b : motion_.of_a, motion_.slack);
+        overlapping_across_axes(x, y, j, axes_x, axes_y, bits, x_is_a ? motion_.of_b : motion_.of_a, motion_);
     use_of_cross_axes_.count(std::popcount(bits), std::popcount(left));
     return left;
   }
@@ -260,24 +263,27 @@ class LeafQueue {
   LeafTests<false> tests_;
 };
 
-void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
-                     std::vector<TrianglePair>& pairs) {
-  const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero());
-  const CloseTests close(a, b, X_AB, Eigen::Vector3d::Zero(), motion.slack);
+/// Expands up to `most` of the pairs in `scratch`. Returns how many it did.
+std::size_t continue_search(const Tree& a, const Tree& b, const Pose& X_AB, double margin, CandidateScratch& scratch,
+                            std::vector<TrianglePair>& pairs, std::size_t most) {
+  const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero(), margin);
+  const CloseTests close(a, b, X_AB, Eigen::Vector3d::Zero(), motion);
   LeafQueue queue(a, b, motion, close, scratch, pairs);
   const auto take = [&](std::uint32_t leaf_a, std::uint32_t leaf_b, bool blurred) {
     queue.add(leaf_a, leaf_b, blurred);
   };
-  DualTreeTraversal<false, decltype(take)>(a, b, X_AB, motion, close, scratch, take).run();
+  const std::size_t count =
+      DualTreeTraversal<false, decltype(take)>(a, b, X_AB, motion, close, scratch, take).run(most);
   queue.finish();
+  return count;
 }
 
 void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                        CandidateScratch& scratch, std::vector<SweptPair>& pairs) {
   const TreeMotion motion(a, b, X_AB, displacement);
-  const CloseTests close(a, b, X_AB, displacement, motion.slack);
+  const CloseTests close(a, b, X_AB, displacement, motion);
   const auto take = [&](const SweptPair& pair) { pairs.push_back(pair); };
-  DualTreeTraversal<true, decltype(take)>(a, b, X_AB, motion, close, scratch, take).run();
+  DualTreeTraversal<true, decltype(take)>(a, b, X_AB, motion, close, scratch, take).run(CandidateSearch::k_whole);
 }
 
 void select_triangles(const Tree& a, const Tree& b, const Pose& X_AB, double margin,
@@ -314,21 +320,48 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sixdof {
 namespace candidates {
-HWY_EXPORT(find_candidates);
+HWY_EXPORT(continue_search);
 HWY_EXPORT(find_swept_leaves);
 HWY_EXPORT(find_swept_triangles);
 HWY_EXPORT(select_triangles);
 }  // namespace candidates
 
+namespace {
+
+std::size_t continue_search(const Tree& a, const Tree& b, const Pose& X_AB, double margin, CandidateScratch& scratch,
+                            std::vector<TrianglePair>& pairs, std::size_t most) {
+  return HWY_DYNAMIC_DISPATCH(candidates::continue_search)(a, b, X_AB, margin, scratch, pairs, most);
+}
+
+}  // namespace
+
+void CandidateScratch::start(const Tree& a, const Tree& b) {
+  volumes.assign(1, {0, 0, a.nodes()[0].volume.squared_diagonal(), b.nodes()[0].volume.squared_diagonal()});
+}
+
+void CandidateSearch::start(const Tree& a, const Tree& b, const Pose& pose, double length) {
+  X_AB = pose;
+  margin = length;
+  scratch.start(a, b);
+  pairs.clear();
+  expansions = 0;
+}
+
+void CandidateSearch::advance(const Tree& a, const Tree& b, std::size_t most) {
+  expansions += continue_search(a, b, X_AB, margin, scratch, pairs, most);
+}
+
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
                      std::vector<TrianglePair>& pairs) {
   pairs.clear();
-  HWY_DYNAMIC_DISPATCH(candidates::find_candidates)(a, b, X_AB, scratch, pairs);
+  scratch.start(a, b);
+  continue_search(a, b, X_AB, 0.0, scratch, pairs, CandidateSearch::k_whole);
 }
 
 void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                        CandidateScratch& scratch, std::vector<SweptPair>& pairs) {
   pairs.clear();
+  scratch.start(a, b);
   HWY_DYNAMIC_DISPATCH(candidates::find_swept_leaves)(a, b, X_AB, displacement, scratch, pairs);
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct CandidateScratch {
   std::vector<VolumePair> volumes;
   std::vector<LeafPair> leaves;
 
+  /// With the roots of both trees.
+  void start(const Tree& a, const Tree& b);
   std::size_t bytes() const { return volumes.capacity() * sizeof(VolumePair) + leaves.capacity() * sizeof(LeafPair); }
 };
 
@@ -48,6 +51,24 @@ struct CandidateScratch {
 /// crossing.h, and few others. The same pairs in the same order on every instruction set.
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
                      std::vector<TrianglePair>& pairs);
+
+/// The same in parts, and for the poses near X_AB: a search finds all pairs that intersect at any pose which takes no
+/// point of B farther than `margin` from where X_AB takes it. Those of one pose come in the order of find_candidates().
+struct CandidateSearch {
+  static constexpr std::size_t k_whole = std::numeric_limits<std::size_t>::max();
+
+  Pose X_AB;
+  double margin = 0.0;              ///< A length.
+  CandidateScratch scratch;         ///< What is left to do.
+  std::vector<TrianglePair> pairs;  ///< Found so far.
+  std::size_t expansions = 0;       ///< Of pairs of volumes, so far.
+
+  void start(const Tree& a, const Tree& b, const Pose& pose, double length);
+  /// Expands up to `most` pairs of volumes, k_whole for all.
+  /// @param a, b those of start()
+  void advance(const Tree& a, const Tree& b, std::size_t most);
+  bool is_complete() const { return scratch.volumes.empty(); }
+};
 
 /// Two leaves or two triangles that may intersect during a translation of B: indices into Tree::leaves(), or in tree
 /// order.

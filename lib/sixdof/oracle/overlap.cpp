@@ -1,6 +1,7 @@
 #include <sixdof/oracle/overlap.h>
 
 #include <limits>
+#include <span>
 
 #include <Eigen/Geometry>
 
@@ -45,12 +46,16 @@ bool apart(const Solid& a, const Solid& b, const Pose& X_AB) {
 
 }  // namespace
 
-Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference) {
-  pairs_.clear();
-  if (X_AB.R.allFinite() && X_AB.t.allFinite() && !apart(*a_, *b_, X_AB)) {
+Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, bool warm_start) {
+  if (!X_AB.R.allFinite() || !X_AB.t.allFinite() || apart(*a_, *b_, X_AB))
+    return evaluate(X_AB, reference, std::span<const TrianglePair>{});
+  if (!warm_start) {
     find_candidates(a_->tree(), b_->tree(), X_AB, scratch_, pairs_);
+    return evaluate(X_AB, reference, pairs_);
   }
-  return evaluate(X_AB, reference, pairs_);
+  const Overlap overlap = evaluate(X_AB, reference, kept_.at(a_->tree(), b_->tree(), X_AB));
+  kept_.count_crossings(overlap.crossings);
+  return overlap;
 }
 
 Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std::span<const TrianglePair> pairs,
@@ -88,7 +93,8 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
 }
 
 std::size_t OverlapQuery::bytes() const {
-  return scratch_.bytes() + pairs_.capacity() * sizeof(TrianglePair) + triangles_.capacity() * sizeof(std::uint32_t);
+  return scratch_.bytes() + pairs_.capacity() * sizeof(TrianglePair) + kept_.bytes() +
+         triangles_.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace sixdof

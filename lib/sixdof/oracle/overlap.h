@@ -11,6 +11,7 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/candidates.h>
+#include <sixdof/oracle/kept_candidates.h>
 #include <sixdof/oracle/solid.h>
 
 /// Exact overlap of two solids: volume of the intersection, its centroid, and the volume's gradient.
@@ -72,8 +73,10 @@ class OverlapQuery {
   OverlapQuery(const Solid& a, const Solid& b) : a_(&a), b_(&b) {}
 
   /// @param reference the point (A's frame) about which the moment is taken.
+  /// @param warm_start for poses that follow each other closely: candidates are kept for the poses near by. The bits
+  /// are the same
   /// @throws BadArgument if the pose or the reference is not finite.
-  Overlap evaluate(const Pose& X_AB, const Eigen::Vector3d& reference);
+  Overlap evaluate(const Pose& X_AB, const Eigen::Vector3d& reference, bool warm_start = false);
 
   /// The same bits from known candidates: in the order of find_candidates(), all pairs of triangles that intersect, and
   /// any others.
@@ -82,15 +85,20 @@ class OverlapQuery {
                    const Eigen::Vector3d& along = Eigen::Vector3d::Zero());
 
   /// About the centre of B's bounding box.
-  Overlap evaluate(const Pose& X_AB) { return evaluate(X_AB, X_AB * b_->mesh().center()); }
+  Overlap evaluate(const Pose& X_AB, bool warm_start = false) {
+    return evaluate(X_AB, X_AB * b_->mesh().center(), warm_start);
+  }
 
+  /// Pairs of volumes that queries with a warm start have expanded so far.
+  std::size_t warm_expansions() const { return kept_.expansions(); }
   std::size_t bytes() const;
 
  private:
   const Solid* a_;
   const Solid* b_;
   CandidateScratch scratch_;
-  std::vector<TrianglePair> pairs_;       // scratch
+  std::vector<TrianglePair> pairs_;  // scratch
+  detail::KeptCandidates kept_;
   std::vector<std::uint32_t> triangles_;  // scratch
 };
 

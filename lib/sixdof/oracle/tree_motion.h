@@ -45,28 +45,33 @@ struct Passage {
 
 /// A pose and a displacement of B between the frames of both trees.
 struct TreeMotion {
-  float slack;     ///< Largest error of a transformed coordinate, and the margin.
+  float rounding;  ///< Largest error of a transformed coordinate.
+  float margin;    ///< How far points of B may be from where the pose takes them, in any direction.
   Frames frames;   ///< B at the displacement's middle.
   float start[3];  ///< From A's centre to B's, before the displacement.
   Passage of_b;    ///< Of B, x = A,
   Passage of_a;    ///< and of A past B, x = B.
 
-  /// @param margin B may be farther away by as much, in any direction
-  TreeMotion(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement, double margin = 0.0)
-      : slack(slack_of(a, b, X_AB, displacement) + static_cast<float>((1.0 + 1e-6) * margin)),
+  TreeMotion(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
+             double distance_of_points = 0.0)
+      : rounding(rounding_of(a, b, X_AB, displacement)),
+        margin(static_cast<float>((1.0 + 1e-6) * distance_of_points)),
         frames(X_AB.R),
-        of_b(displacement, X_AB.R.transpose() * displacement, slack),
-        of_a(-(X_AB.R.transpose() * displacement), -displacement, slack) {
+        of_b(displacement, X_AB.R.transpose() * displacement, rounding),
+        of_a(-(X_AB.R.transpose() * displacement), -displacement, rounding) {
     const Eigen::Vector3d shift = shift_of(a, b, X_AB);
     frames.set_shift(shift + 0.5 * displacement);
     for (int k = 0; k < 3; ++k) start[k] = static_cast<float>(shift[k]);
   }
 
+  /// By how much a coordinate along any axis may be off, if it is rounded like `times` transformed ones.
+  float slack(float times = 1.0f) const { return times * rounding + margin; }
+
  private:
   static Eigen::Vector3d shift_of(const Tree& a, const Tree& b, const Pose& X_AB) {
     return X_AB.R * b.center() + X_AB.t - a.center();
   }
-  static float slack_of(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement) {
+  static float rounding_of(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement) {
     // A coordinate is the sum of seven products and sums of lengths of this size, each rounded by 6e-8.
     constexpr double k_float_rounding = 6e-7;
     // Rounding of the doubles, which matters where the bodies are far from their origins.

@@ -78,7 +78,7 @@ struct alignas(64) PairSide {
         if constexpr (!of_a) move_to_a(p[c], x);
         for (std::size_t k = 0; k < 3; ++k) write(p[c][k], corner[c][k], i);
       }
-      const LeafV slack = hn::Set(k_leaf_lanes, of_a ? 0.0f : x.slack);
+      const LeafV slack = hn::Set(k_leaf_lanes, of_a ? 0.0f : x.slack());
       LeafV u[3], v[3], size = hn::Zero(k_leaf_lanes), sum = size, along = size;
       for (std::size_t k = 0; k < 3; ++k) {
         u[k] = hn::Sub(p[1][k], p[0][k]);
@@ -94,7 +94,7 @@ struct alignas(64) PairSide {
         along = unfused_mul_add(n, p[0][k], along);
         sum = hn::Add(sum, hn::Abs(n));
       }
-      const LeafV tolerance = plane_tolerance(size, sum, x.slack);
+      const LeafV tolerance = plane_tolerance(size, sum, x.slack(4.0f));
       write(hn::Sub(along, tolerance), low, i);
       write(hn::Add(along, tolerance), high, i);
     }
@@ -110,7 +110,7 @@ struct alignas(64) PairSide {
   static HWY_INLINE LeafV plane_tolerance(LeafV size, LeafV sum, float slack) {
     const auto set = [](float x) { return hn::Set(k_leaf_lanes, x); };
     const LeafV rounding = hn::Mul(hn::Mul(set(1e-6f), size), hn::Mul(size, size));
-    return hn::Add(unfused_mul_add(sum, set(4.0f * slack), rounding), set(std::numeric_limits<float>::min()));
+    return hn::Add(unfused_mul_add(sum, set(slack), rounding), set(std::numeric_limits<float>::min()));
   }
 
   static HWY_INLINE void move_to_a(LeafV (&p)[3], const TreeMotion& x) {
@@ -217,7 +217,7 @@ struct EdgeAxis {
       sum = hn::Add(sum, hn::Abs(n[k]));
       speed = unfused_mul_add(n[k], set(x.of_b.in_x[k]), speed);
     }
-    tolerance = unfused_mul_add(sum, set(8.0f * x.slack), set(std::numeric_limits<float>::min()));
+    tolerance = unfused_mul_add(sum, set(x.slack(8.0f)), set(std::numeric_limits<float>::min()));
     const Projection of_a(n, a), of_b(n, b);
     low_a = of_a.low;
     high_a = of_a.high;
