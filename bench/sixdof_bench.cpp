@@ -22,9 +22,10 @@
 namespace sixdof::bench {
 namespace {
 
-/// Rows on cold caches take seconds each. Without a suite that lists them they are taken where the filter has this
-/// word.
+/// Rows on cold caches take seconds each, and those of motions matter to algorithms that keep something from query to
+/// query. Without a suite that lists them they are taken where the filter has these words.
 constexpr const char* k_cold = "cold";
+constexpr const char* k_motion = "motion";
 /// So are rows of scenes, where it begins with this one.
 constexpr const char* k_scene = "scene/";
 
@@ -66,7 +67,9 @@ void run(const Options& options) {
     const std::string filter = benchmark::GetBenchmarkFilter();
     const auto is_named = [&](const char* word) { return filter.find(word) != std::string::npos; };
     std::erase_if(rows, [&](const Row& row) {
-      return (row.fields.cache == k_cold && !is_named(k_cold)) || (row.name.starts_with(k_scene) && !is_named(k_scene));
+      return (row.fields.cache == k_cold && !is_named(k_cold)) ||
+             (row.fields.order == k_motion && !is_named(k_motion)) ||
+             (row.name.starts_with(k_scene) && !is_named(k_scene));
     });
   }
   run_rows(rows, options, resources);

@@ -15,6 +15,7 @@
 #include "bench/harness/cache_eviction.h"
 #include "bench/harness/check.h"
 #include "bench/harness/failure_counters.h"
+#include "bench/harness/motion.h"
 #include "bench/harness/question.h"
 #include "bench/harness/response_error.h"
 #include "bench/harness/timing.h"
@@ -38,6 +39,25 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// How a row's poses follow each other.
+enum class Order {
+  random,
+  path,    ///< In the grid's own order.
+  motion,  ///< From a few of the configurations on, in small steps: poses_of_motions().
+};
+
+constexpr const char* to_string(Order order) {
+  switch (order) {
+    case Order::random:
+      return "random";
+    case Order::path:
+      return "path";
+    case Order::motion:
+      return "motion";
+  }
+  return "";
+}
+
 /// One row, and what its first call measured.
 struct QueryRow {
   const Resources& resources;
@@ -45,13 +65,13 @@ struct QueryRow {
   const CatalogueEntry& pair;
   BucketKey key;
   Question question;
-  bool path;  ///< In the grid's own order instead of a random one.
+  Order order;
   /// Called before each query; empty for a row on warm caches.
   std::shared_ptr<CacheEviction> evict;
   Failures failures = {};
   bool timed_outside = false;  ///< By this process, of an algorithm in another one that does not say how long it took.
   std::optional<Check> check = {};
-  std::vector<Pose> poses = {};  ///< Those with an answer, in this row's order.
+  std::vector<Pose> poses = {};  ///< That are timed.
   Latency latency = {};
   std::optional<Latency> least = {};  ///< Of several passes; none on cold caches.
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
@@ -64,7 +84,7 @@ struct QueryRow {
             .settings = resources.settings_of(algorithm).to_string(),
             .pair = pair.pair,
             .bucket = key,
-            .order = path ? "path" : "random",
+            .order = to_string(order),
             .body = is_judged() ? "" : std::string(to_string(algorithm.traits().body)),
             .cache = evict ? "cold" : "warm",
             .isolated = is_isolated(algorithm)};
@@ -74,7 +94,8 @@ struct QueryRow {
     std::string bucket = key.name();
     bucket.at(bucket.find('/')) = ':';
     return fmt::format("{}/algorithm:{}/pair:{}/{}{}{}", to_string(question), algorithm.traits().name, pair.pair,
-                       bucket, path ? "/order:path" : "", evict ? "/cache:cold" : "");
+                       bucket, order == Order::random ? "" : fmt::format("/order:{}", to_string(order)),
+                       evict ? "/cache:cold" : "");
   }
 
   void run(benchmark::State& state, const Share& share) {
@@ -87,10 +108,7 @@ struct QueryRow {
       if (!check) {
         if constexpr (requires { query.ask(poses[0]).value.force; }) compare_with_exact(bucket, exact, query);
         check = check_answers(bucket, count, query, is_judged());
-        const auto order = path ? grid_order(bucket, count) : random_order(count, resources.seed);
-        for (const std::size_t i : order) {
-          if (check->answered[i]) poses.push_back(bucket.poses[i]);
-        }
+        poses = poses_to_time(bucket, count);
         if (!evict) {
           const SingleTimes times = time_each(poses, query);
           latency = times.once;
@@ -164,6 +182,20 @@ struct QueryRow {
     if (bucket.poses.empty()) throw BadArgument(key.name() + ": no configuration of this bucket can be reached");
     if (key.kind == BucketKind::volume) require_solids(resources.cache.mesh(pair.a), resources.cache.mesh(pair.b));
     return bucket;
+  }
+
+  /// Of the first `count` configurations those with an answer, in this row's order; or of as many poses of motions from
+  /// some of them.
+  std::vector<Pose> poses_to_time(const BucketSample& bucket, std::size_t count) const {
+    std::vector<Pose> found;
+    for (const std::size_t i : order == Order::path ? grid_order(bucket, count) : random_order(count, resources.seed)) {
+      if (order == Order::motion || check->answered[i]) found.push_back(bucket.poses[i]);
+    }
+    if (order != Order::motion) return found;
+    found = poses_of_motions(found, resources.cache.mesh(pair.a), resources.cache.mesh(pair.b), resources.seed);
+    Failures ignored;
+    with_query(ignored, [&](auto query) { std::erase_if(found, [&](const Pose& x) { return !query.ask(x).ok(); }); });
+    return found;
   }
 
   /// Calls use(GuardedQuery) with this row's question.
@@ -274,8 +306,9 @@ std::vector<Row> query_rows(const Resources& resources) {
     for (const auto& algorithm : resources.registry.all()) {
       if (!algorithm->traits().timed) continue;
       const auto add = [&](BucketKey key, Question question) {
-        for (const auto& [path, cold] : {std::pair(false, false), {true, false}, {false, true}}) {
-          const auto row = std::make_shared<QueryRow>(QueryRow{resources, *algorithm, pair, key, question, path,
+        for (const auto& [order, cold] :
+             {std::pair(Order::random, false), {Order::path, false}, {Order::motion, false}, {Order::random, true}}) {
+          const auto row = std::make_shared<QueryRow>(QueryRow{resources, *algorithm, pair, key, question, order,
                                                                cold ? evict : std::shared_ptr<CacheEviction>()});
           rows.push_back({.name = row->name(),
                           .run = [row](benchmark::State& state, const Share& share) { row->run(state, share); },

@@ -301,6 +301,17 @@ TEST_F(BenchProgram, TakesRowsOnColdCachesOnRequestOnly) {
   EXPECT_THAT(bench("--benchmark_list_tests --suite " + file.string()).out, HasSubstr(cold));
 }
 
+TEST_F(BenchProgram, TakesRowsOfMotionsOnRequestOnly) {
+  const std::string motion = "distance/algorithm:exact/pair:torus-1k/distance:05/order:motion";
+  EXPECT_THAT(bench("--benchmark_list_tests --benchmark_filter=^distance/").out, Not(HasSubstr("order:motion")));
+  EXPECT_THAT(bench("--benchmark_list_tests --benchmark_filter=order:motion").out, HasSubstr(motion));
+  const json found = row(result("--sample 200 -p exact:warm_start=on '--benchmark_filter=^" + motion + "$'"), motion);
+  EXPECT_EQ(found.at("configurations"), 200);
+  EXPECT_EQ(found.at("mismatch"), 0);
+  EXPECT_EQ(found.at("sixdof").at("order"), "motion");
+  EXPECT_EQ(found.at("iterations").get<int>() % 200, 0) << "whole rounds of as many poses";
+}
+
 TEST_F(BenchProgram, TimesSingleQueriesOnColdCaches) {
   const std::string name = "collide/algorithm:exact/pair:torus-1k/distance:05";
   const json document = result("--sample 8 '--benchmark_filter=^" + name + "(/cache:cold)?$'");

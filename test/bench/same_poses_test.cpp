@@ -66,13 +66,14 @@ struct SamePoses : test::BenchProgram {
 
 constexpr const char* k_random = "^[a-z]+/algorithm:records.*/(distance|volume):[0-9]+$";
 constexpr const char* k_path = "^[a-z]+/algorithm:records.*/order:path$";
+constexpr const char* k_motion = "^[a-z]+/algorithm:records.*/order:motion$";
 /// Two pairs with 3 buckets to collide, 2 with distances and one with responses.
 constexpr std::size_t k_groups = 2 * (3 + 2 + 1);
 /// As the poses tell them apart: two pairs, three questions.
 constexpr std::size_t k_questions = 2 * 3;
 
 TEST_F(SamePoses, WithoutABudget) {
-  for (const char* const rows : {k_random, k_path}) {
+  for (const char* const rows : {k_random, k_path, k_motion}) {
     const json document = run("--sample 50 --benchmark_out=" + out.string(), rows);
     expect_equal_poses(asked(), k_questions);
     const auto counts = configurations(document);
@@ -82,7 +83,7 @@ TEST_F(SamePoses, WithoutABudget) {
 }
 
 TEST_F(SamePoses, WithinABudgetThatTheSlowOneWouldExceed) {
-  for (const char* const rows : {k_random, k_path}) {
+  for (const char* const rows : {k_random, k_path, k_motion}) {
     const json document = run("--sample 0 --budget 1 --benchmark_out=" + out.string(), rows);
     expect_equal_poses(asked(), k_questions);
     const auto counts = configurations(document);

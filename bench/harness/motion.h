@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <sixdof/geometry/mesh.h>
+#include <sixdof/geometry/pose.h>
+
+namespace sixdof::bench {
+
+/// Successive poses of a body in motion, as a haptic loop or a simulation asks them.
+struct Motion {
+  /// Poses of one motion. From the end of one to the beginning of the next B jumps: less than one query of 100.
+  static constexpr std::size_t k_poses = 128;
+  /// How far B moves from one pose to the next, in diagonals of A's box. At 1 kHz and a diagonal of 0.3 m that is 30
+  /// mm/s.
+  static constexpr double k_step = 1e-4;
+
+  Eigen::Vector3d axis, direction;  ///< Unit vectors, in A's frame.
+  double angle;                     ///< Per step, in radians.
+  double length;                    ///< Per step, of the centre of B's box.
+
+  /// About a random axis and in a random direction: the centre of B's box moves by half a step, and the corners of the
+  /// box turn about it by another half at most.
+  Motion(const Mesh& a, const Mesh& b, std::uint64_t seed);
+
+  /// @param center of B's box, in B's frame
+  Pose pose(const Pose& start, const Eigen::Vector3d& center, std::size_t step) const;
+};
+
+/// As many poses as `starts`: motions from the first of them, one after the other.
+std::vector<Pose> poses_of_motions(std::span<const Pose> starts, const Mesh& a, const Mesh& b, std::uint64_t seed);
+
+}  // namespace sixdof::bench
