@@ -81,15 +81,17 @@ TEST(CandidateSearch, FindsWhatIntersectsWithinTheMarginOnEveryInstructionSet) {
 }
 
 TEST(CandidateSearch, FindsItWhereFloatsCannotTellVolumesApart) {
-  // Seen from the large body's centre, floats round the small body's coordinates by a tenth of its triangles.
-  const Body large(bodies::bumpy_sphere(4, 0.1)), small(bodies::bumpy_torus(43, 25, 0.2, 4e-6));
+  // Both have a part far away, so that floats round their coordinates by more than a triangle's size.
+  const auto with_far_part = [](const Mesh& mesh) {
+    const Pose far{Eigen::Matrix3d::Identity(), Vector3d(1, 0.2, 0.1)};
+    return bodies::together(mesh, bodies::moved(bodies::bumpy_sphere(1, 0.1, 4e-6), far));
+  };
+  const Body a(with_far_part(bodies::bumpy_torus(31, 17, 0.2, 4e-6)));
+  const Body b(with_far_part(bodies::bumpy_torus(21, 13, 0.2, 3e-6)));
   std::mt19937_64 random(9);
   std::size_t crossings = 0;
-  for (int i = 0; i < 12; ++i) {
-    Pose X_AB = bodies::random_pose(random, 1e-6);
-    X_AB.t += large.tree.corners()[static_cast<std::size_t>(500 + 100 * i)][0];
-    crossings += expect_all_within(large, small, X_AB, 2e-8, random);
-    crossings += expect_all_within(small, large, X_AB.inverse(), 2e-8, random);
+  for (const double margin : {1e-9, 5e-8, 5e-7}) {
+    for (int i = 0; i < 6; ++i) crossings += expect_all_within(a, b, bodies::random_pose(random, 1e-6), margin, random);
   }
   EXPECT_GT(crossings, 500u);
 }
@@ -106,13 +108,15 @@ void expect_equal(const Overlap& x, const Overlap& y) {
 }
 
 /// Poses of a screw motion.
-std::vector<Pose> screw(std::mt19937_64& random, const Pose& X_AB, const Tree& b, double step, int count) {
+/// @param turn the share of a step that is rotation
+std::vector<Pose> screw(std::mt19937_64& random, const Pose& X_AB, const Tree& b, double step, int count,
+                        double turn = 0.5) {
   const Vector3d axis = bodies::random_pose(random, 1.0).R.col(0), along = bodies::random_pose(random, 1.0).R.col(1);
   const Vector3d center = X_AB * b.center();
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) {
-    const Eigen::Matrix3d R = Eigen::AngleAxisd(0.5 * i * step / b.radius(), axis).toRotationMatrix() * X_AB.R;
-    poses.push_back({R, center + 0.5 * i * step * along - R * b.center()});
+    const Eigen::Matrix3d R = Eigen::AngleAxisd(turn * i * step / b.radius(), axis).toRotationMatrix() * X_AB.R;
+    poses.push_back({R, center + (1.0 - turn) * i * step * along - R * b.center()});
   }
   return poses;
 }
@@ -127,6 +131,8 @@ TEST(WarmStart, OfOverlapsChangesNoBit) {
     std::size_t crossings = 0;
     for (const double step : {0.0, 1e-12, 1e-6, 1e-4, 1e-3, 0.03, 0.3}) {
       std::vector<Pose> poses = screw(random, bodies::random_pose(random, 0.4), b->tree, step, 40);
+      const std::vector<Pose> shifted = screw(random, bodies::random_pose(random, 0.4), b->tree, step, 40, 0.0);
+      poses.insert(poses.end(), shifted.begin(), shifted.end());
       poses.insert(poses.end(), poses.rbegin(), poses.rend());  // there and back
       poses.push_back({Eigen::Matrix3d::Identity(), Vector3d(30, 0, 0)});
       poses.push_back({Eigen::Matrix3d::Identity(), Vector3d::Zero()});  // faces and edges in common
