@@ -94,7 +94,7 @@ double KeptCandidates::next_margin(const Tree& a, const Tree& b, double step) {
     growth_ = std::max(k_forgotten * growth_, k_first_growth);  // where candidates abounded, they may no longer
   }
   const double margin = std::min(std::sqrt(k_search / growth_ * size * step), k_most_sizes * size);
-  return margin < k_least_steps * step ? 0.0 : margin;
+  return margin >= k_least_steps * step ? margin : 0.0;
 }
 
 Pose KeptCandidates::pose_ahead(const Tree& b, const Pose& X_AB, double length) const {
