@@ -4,7 +4,7 @@
 #include <utility>
 
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/close_search.h>
+#include <sixdof/proximity/close_search.h>
 
 namespace sixdof::test {
 

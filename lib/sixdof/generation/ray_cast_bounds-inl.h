@@ -8,10 +8,10 @@
 #include <hwy/highway.h>
 
 #include <sixdof/generation/ray_cast_search.h>
-#include <sixdof/oracle/expansion-inl.h>
-#include <sixdof/oracle/frames.h>
-#include <sixdof/oracle/leaf_pairs-inl.h>
-#include <sixdof/oracle/volumes-inl.h>
+#include <sixdof/proximity/expansion-inl.h>
+#include <sixdof/proximity/frames.h>
+#include <sixdof/proximity/leaf_pairs-inl.h>
+#include <sixdof/proximity/volumes-inl.h>
 
 // Separating-axis bounds for volumes of one tree, x, against a volume of the other, y, one of x per SIMD lane, and for
 // the triangles of two leaves. Notation: see ray_cast_search.h, and volumes-inl.h for volumes and axes. For a unit

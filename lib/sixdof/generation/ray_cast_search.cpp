@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include <sixdof/generation/ray_cast_pair.h>
-#include <sixdof/oracle/sorted_stack.h>
+#include <sixdof/proximity/sorted_stack.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_search.cpp"

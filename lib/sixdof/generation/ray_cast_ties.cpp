@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <sixdof/generation/ray_cast_search.h>
-#include <sixdof/oracle/close_search.h>
+#include <sixdof/proximity/close_search.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_ties.cpp"

@@ -14,8 +14,8 @@
 
 // After foreach_target.h: this is compiled once per instruction set, too.
 #include <sixdof/oracle/candidates_bounds-inl.h>
-#include <sixdof/oracle/close_search.h>
 #include <sixdof/oracle/triangle_pairs-inl.h>
+#include <sixdof/proximity/close_search.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::candidates {

@@ -6,11 +6,11 @@
 #include <hwy/highway.h>
 
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/cross_axes.h>
-#include <sixdof/oracle/expansion-inl.h>
 #include <sixdof/oracle/overlap_tests-inl.h>
 #include <sixdof/oracle/tree_motion.h>
-#include <sixdof/oracle/volumes-inl.h>
+#include <sixdof/proximity/cross_axes.h>
+#include <sixdof/proximity/expansion-inl.h>
+#include <sixdof/proximity/volumes-inl.h>
 
 // Separating-axis tests of volumes of two trees (volumes-inl.h).
 //

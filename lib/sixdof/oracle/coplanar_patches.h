@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/close_search.h>
+#include <sixdof/proximity/close_search.h>
 
 namespace sixdof::detail {
 

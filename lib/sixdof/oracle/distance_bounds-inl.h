@@ -11,11 +11,11 @@
 
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/cross_axes.h>
-#include <sixdof/oracle/expansion-inl.h>
-#include <sixdof/oracle/frames.h>
-#include <sixdof/oracle/leaf_pairs-inl.h>
-#include <sixdof/oracle/volumes-inl.h>
+#include <sixdof/proximity/cross_axes.h>
+#include <sixdof/proximity/expansion-inl.h>
+#include <sixdof/proximity/frames.h>
+#include <sixdof/proximity/leaf_pairs-inl.h>
+#include <sixdof/proximity/volumes-inl.h>
 
 // Lower bounds on distances: of volumes of two trees (volumes-inl.h), and of the triangles of two leaves.
 //

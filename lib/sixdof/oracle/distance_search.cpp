@@ -10,8 +10,8 @@
 #include <Eigen/Geometry>
 
 #include <sixdof/oracle/distance_ties.h>
-#include <sixdof/oracle/sorted_stack.h>
 #include <sixdof/oracle/triangle_distances.h>
+#include <sixdof/proximity/sorted_stack.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/distance_search.cpp"

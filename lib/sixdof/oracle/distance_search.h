@@ -14,9 +14,9 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 #include <sixdof/geometry/triangle_distance.h>
-#include <sixdof/oracle/close_search.h>
 #include <sixdof/oracle/coplanar_patches.h>
 #include <sixdof/oracle/seed_corners.h>
+#include <sixdof/proximity/close_search.h>
 
 /// The state of one distance query. Internal: use distance.h.
 namespace sixdof::detail {

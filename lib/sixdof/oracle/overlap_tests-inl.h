@@ -13,8 +13,8 @@
 #include <hwy/highway.h>
 
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/lanes-inl.h>
 #include <sixdof/oracle/tree_motion.h>
+#include <sixdof/proximity/lanes-inl.h>
 
 // What separating axes say about pairs of volumes or of triangles, one pair per SIMD lane. An axis gives a range of
 // coordinates of y against x: the pair is apart along it where 0 is not in the range. If y is displaced, the range

@@ -6,7 +6,7 @@
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
-#include <sixdof/oracle/lanes-inl.h>
+#include <sixdof/proximity/lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::detail {

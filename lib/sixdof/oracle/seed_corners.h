@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/sorted_stack.h>
+#include <sixdof/proximity/sorted_stack.h>
 
 /// Where searches of two trees may start. Internal: distance_search.h.
 namespace sixdof::detail {

@@ -6,7 +6,7 @@
 
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/frames.h>
+#include <sixdof/proximity/frames.h>
 
 namespace sixdof::detail {
 

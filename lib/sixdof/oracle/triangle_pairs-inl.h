@@ -10,9 +10,9 @@
 #include <hwy/highway.h>
 
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/lanes-inl.h>
 #include <sixdof/oracle/overlap_tests-inl.h>
 #include <sixdof/oracle/tree_motion.h>
+#include <sixdof/proximity/lanes-inl.h>
 
 // Separating-axis tests of the 4 x 4 pairs of triangles of two leaves, one pair per lane: lane 4 i + j is that of
 // triangle i of A's leaf and triangle j of B's. Boxes, both planes and, where they pay, the nine directions across two

@@ -1,10 +1,10 @@
-// Part of the other *-inl.h of this room and of generation/: SIMD lanes as the traversals of two trees use them. Taken
+// Part of other *-inl.h, here, in oracle/ and in generation/: SIMD lanes as the searches of two trees use them. Taken
 // once per instruction set: the guard is Highway's for that.
-#if defined(SIXDOF_ORACLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIXDOF_ORACLE_LANES_INL_H_
-#undef SIXDOF_ORACLE_LANES_INL_H_
+#if defined(SIXDOF_PROXIMITY_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIXDOF_PROXIMITY_LANES_INL_H_
+#undef SIXDOF_PROXIMITY_LANES_INL_H_
 #else
-#define SIXDOF_ORACLE_LANES_INL_H_
+#define SIXDOF_PROXIMITY_LANES_INL_H_
 #endif
 
 #include <cstddef>

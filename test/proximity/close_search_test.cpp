@@ -1,4 +1,4 @@
-#include <sixdof/oracle/close_search.h>
+#include <sixdof/proximity/close_search.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@
 #include <sixdof/oracle/overlap.h>
 
 #include "../geometry/shapes.h"
-#include "distance_truth.h"
-#include "swept_pairs.h"
+#include "../oracle/distance_truth.h"
+#include "../oracle/swept_pairs.h"
 
 // Bounds in doubles against all triangles that they stand for; and searches where floats cannot tell volumes apart:
 // bodies of unlike size, bodies far apart, layers. Answers are compared with closed forms, the work with the number of

@@ -1,10 +1,10 @@
-// Part of the searches of two trees: distances, candidates (here) and the ray cast (generation/). Taken once per
+// Part of the searches of two trees: distances and candidates (oracle/) and the ray cast (generation/). Taken once per
 // instruction set: the guard is Highway's for that.
-#if defined(SIXDOF_ORACLE_VOLUMES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIXDOF_ORACLE_VOLUMES_INL_H_
-#undef SIXDOF_ORACLE_VOLUMES_INL_H_
+#if defined(SIXDOF_PROXIMITY_VOLUMES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIXDOF_PROXIMITY_VOLUMES_INL_H_
+#undef SIXDOF_PROXIMITY_VOLUMES_INL_H_
 #else
-#define SIXDOF_ORACLE_VOLUMES_INL_H_
+#define SIXDOF_PROXIMITY_VOLUMES_INL_H_
 #endif
 
 #include <cmath>
@@ -14,9 +14,9 @@
 #include <hwy/highway.h>
 
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/cross_axes.h>
-#include <sixdof/oracle/frames.h>
-#include <sixdof/oracle/lanes-inl.h>
+#include <sixdof/proximity/cross_axes.h>
+#include <sixdof/proximity/frames.h>
+#include <sixdof/proximity/lanes-inl.h>
 
 // Volumes of one tree, x, against a volume of the other, y: one of x per SIMD lane.
 //

@@ -9,8 +9,8 @@
 #include <sixdof/geometry/tree.h>
 
 /// Branch and bound in double precision, for pairs of volumes whose distances floats cannot tell apart. Internal: for
-/// distance_search.cpp, candidates.cpp and generation/ray_cast_ties.cpp, which call it where a float bound is too
-/// coarse:
+/// oracle/distance_search.cpp, oracle/candidates.cpp and generation/ray_cast_ties.cpp, which call it where a float
+/// bound is too coarse:
 ///   - bodies of unlike size: what is small next to the rounding of the large body's coordinates;
 ///   - bodies that are far apart: all of both is small next to the rounding of their distance;
 ///   - layers closer to each other than that rounding;

@@ -1,10 +1,9 @@
-// Part of distance_search.cpp, candidates.cpp and generation/ray_cast_search.cpp. Taken once per instruction set: the
-// guard is Highway's for that.
-#if defined(SIXDOF_ORACLE_EXPANSION_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIXDOF_ORACLE_EXPANSION_INL_H_
-#undef SIXDOF_ORACLE_EXPANSION_INL_H_
+// Part of the searches of oracle/ and generation/. Taken once per instruction set: the guard is Highway's for that.
+#if defined(SIXDOF_PROXIMITY_EXPANSION_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIXDOF_PROXIMITY_EXPANSION_INL_H_
+#undef SIXDOF_PROXIMITY_EXPANSION_INL_H_
 #else
-#define SIXDOF_ORACLE_EXPANSION_INL_H_
+#define SIXDOF_PROXIMITY_EXPANSION_INL_H_
 #endif
 
 #include <cstddef>
@@ -13,8 +12,8 @@
 #include <hwy/highway.h>
 
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/close_search.h>
-#include <sixdof/oracle/volumes-inl.h>
+#include <sixdof/proximity/close_search.h>
+#include <sixdof/proximity/volumes-inl.h>
 
 // A step of a traversal of two trees: a pair of volumes is replaced by the pairs of their children, up to 8 x 8. If one
 // of the two is a leaf, or much smaller than the other, it stays whole.

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-/// Separating axes of boxes that cross. Internal: distance_bounds-inl.h, candidates_bounds-inl.h.
+/// Separating axes of boxes that cross. Internal: for oracle/distance_bounds-inl.h and oracle/candidates_bounds-inl.h.
 namespace sixdof::detail {
 
 /// The nine directions across an axis of A's frame and an axis of B's, of length 1; zero where the two are nearly

@@ -1,10 +1,10 @@
-// Part of distance_bounds-inl.h and of generation/ray_cast_bounds-inl.h: the pairs of triangles of two leaves. Taken
-// once per instruction set: the guard is Highway's for that.
-#if defined(SIXDOF_ORACLE_LEAF_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIXDOF_ORACLE_LEAF_PAIRS_INL_H_
-#undef SIXDOF_ORACLE_LEAF_PAIRS_INL_H_
+// Part of oracle/distance_bounds-inl.h and of generation/ray_cast_bounds-inl.h: the pairs of triangles of two leaves.
+// Taken once per instruction set: the guard is Highway's for that.
+#if defined(SIXDOF_PROXIMITY_LEAF_PAIRS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIXDOF_PROXIMITY_LEAF_PAIRS_INL_H_
+#undef SIXDOF_PROXIMITY_LEAF_PAIRS_INL_H_
 #else
-#define SIXDOF_ORACLE_LEAF_PAIRS_INL_H_
+#define SIXDOF_PROXIMITY_LEAF_PAIRS_INL_H_
 #endif
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 #include <hwy/highway.h>
 
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/frames.h>
-#include <sixdof/oracle/lanes-inl.h>
+#include <sixdof/proximity/frames.h>
+#include <sixdof/proximity/lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::leaf_pairs {

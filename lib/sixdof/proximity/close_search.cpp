@@ -1,4 +1,4 @@
-#include <sixdof/oracle/close_search.h>
+#include <sixdof/proximity/close_search.h>
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include <sixdof/geometry/closest_point.h>
 #include <sixdof/geometry/triangle_distance.h>
-#include <sixdof/oracle/sorted_stack.h>
+#include <sixdof/proximity/sorted_stack.h>
 
 namespace sixdof::detail {
 namespace {

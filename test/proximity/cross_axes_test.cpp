@@ -1,4 +1,4 @@
-#include <sixdof/oracle/cross_axes.h>
+#include <sixdof/proximity/cross_axes.h>
 
 #include <gtest/gtest.h>
 #include <Eigen/Core>
