@@ -9,8 +9,10 @@
 namespace sixdof::detail {
 namespace {
 
-/// Queries among which a search ahead is divided.
-constexpr std::size_t k_parts = 8;
+/// Queries among which a search ahead is divided, at most.
+constexpr double k_most_parts = 8.0;
+/// Candidates with a margin over those without, more than which it is not worth.
+constexpr double k_most_candidates = 4.0;
 /// A search is made for a pose as far ahead as this share of its margin.
 constexpr double k_ahead = 0.8;
 
@@ -45,8 +47,14 @@ std::span<const TrianglePair> KeptCandidates::at(const Tree& a, const Tree& b, c
 }
 
 void KeptCandidates::search(const Tree& a, const Tree& b, const Pose& X_AB) {
+  constexpr std::size_t k_part = 512;  // after as many expansions it looks whether there are too many candidates
   const double margin = has_now_ ? next_margin(a, b, largest_displacement(b, X_AB, last_)) : 0.0;
   now_.start(a, b, margin > 0.0 ? pose_ahead(b, X_AB, k_ahead * margin) : X_AB, margin);
+  while (margin > 0.0 && !now_.is_complete() && !abounds(now_)) advance(now_, a, b, k_part);
+  if (margin > 0.0 && abounds(now_)) {
+    growth_ *= k_punished;
+    now_.start(a, b, X_AB, 0.0);
+  }
   advance(now_, a, b, CandidateSearch::k_whole);
   has_now_ = true;
   has_next_ = false;
@@ -60,13 +68,24 @@ void KeptCandidates::search_ahead(const Tree& a, const Tree& b, const Pose& X_AB
     const double from_center = largest_displacement(b, X_AB, now_.X_AB);
     const bool recedes = from_center > largest_displacement(b, last_, now_.X_AB);
     const double left = recedes ? now_.margin - from_center : now_.margin + from_center;
-    if (left > (static_cast<double>(k_parts) + k_more) * step) return;
+    if (left > (k_most_parts + k_more) * step) return;
     const double margin = next_margin(a, b, step);
     if (margin == 0.0) return;
     next_.start(a, b, pose_ahead(b, X_AB, left + k_ahead * margin), margin);
     has_next_ = true;
+    const double parts = std::clamp(left / step - 1.0, 1.0, k_most_parts);
+    part_ = static_cast<std::size_t>(static_cast<double>(now_.expansions) / parts) + 1;
   }
-  if (!next_.is_complete()) advance(next_, a, b, now_.expansions / k_parts + 1);
+  if (next_.is_complete()) return;
+  advance(next_, a, b, part_);
+  if (abounds(next_)) {
+    growth_ *= k_punished;
+    has_next_ = false;
+  }
+}
+
+bool KeptCandidates::abounds(const CandidateSearch& search) const {
+  return static_cast<double>(search.pairs.size()) > k_most_candidates * std::max(without_margin(), k_few);
 }
 
 void KeptCandidates::advance(CandidateSearch& search, const Tree& a, const Tree& b, std::size_t most) {
@@ -84,16 +103,15 @@ double KeptCandidates::next_margin(const Tree& a, const Tree& b, double step) {
   // Elephants with an overlap of 10 %: a search takes as long as deciding ten times as many candidates as there are
   // without a margin, and lasts for nearly twice the margin.
   constexpr double k_search = 6.0;
-  constexpr double k_most_sizes = 0.5, k_least_steps = 4.0;
+  constexpr double k_least_steps = 3.0;
   const double size = std::min(triangle_size(a), triangle_size(b));
+  double measured = k_first_growth;
   if (now_.margin > 0.0) {
-    const double without = std::max(per_crossing_ * crossings_, 1.0);
-    const double more = static_cast<double>(now_.pairs.size()) / without - 1.0;
-    growth_ = std::max(more * size / now_.margin, k_least_growth);
-  } else {
-    growth_ = std::max(k_forgotten * growth_, k_first_growth);  // where candidates abounded, they may no longer
+    const double more = static_cast<double>(now_.pairs.size()) / std::max(without_margin(), k_few) - 1.0;
+    measured = std::max(more * size / now_.margin, k_least_growth);
   }
-  const double margin = std::min(std::sqrt(k_search / growth_ * size * step), k_most_sizes * size);
+  growth_ = std::max(measured, k_forgotten * growth_);  // where candidates abounded, they may no longer
+  const double margin = std::sqrt(k_search / growth_ * size * step);
   return margin >= k_least_steps * step ? margin : 0.0;
 }
 

@@ -34,11 +34,17 @@ class KeptCandidates {
   std::size_t bytes() const;
 
  private:
-  /// The growth of candidates at first, and the least and the forgetting of it: of elephants with an overlap of 10 %.
-  static constexpr double k_first_growth = 6.0, k_least_growth = 0.6, k_forgotten = 0.95;
+  /// The growth of candidates at first, of elephants with an overlap of 10 %; and the least.
+  static constexpr double k_first_growth = 6.0, k_least_growth = 0.6;
+  /// Where candidates abound within a margin, none is tried for the next hundred searches.
+  static constexpr double k_punished = 8.0, k_forgotten = 0.98;
+  static constexpr double k_few = 64.0;  ///< Candidates that cost next to nothing.
 
   void search(const Tree& a, const Tree& b, const Pose& X_AB);
   void search_ahead(const Tree& a, const Tree& b, const Pose& X_AB);
+  /// Whether it has found so many candidates that its margin is too wide.
+  bool abounds(const CandidateSearch& search) const;
+  double without_margin() const { return per_crossing_ * crossings_; }
   void advance(CandidateSearch& search, const Tree& a, const Tree& b, std::size_t most);
   double next_margin(const Tree& a, const Tree& b, double step);
   /// Where B will be after moving on from X_AB, as from last_ to there, by at most `length`.
@@ -46,6 +52,7 @@ class KeptCandidates {
 
   CandidateSearch now_, next_;
   bool has_now_ = false, has_next_ = false;
+  std::size_t part_ = 0;                         ///< Expansions of a search ahead in one query.
   Pose last_;                                    ///< For which pairs were asked last.
   double crossings_ = 1.0, per_crossing_ = 2.0;  ///< There, and candidates for each without a margin.
   double growth_ = k_first_growth;               ///< By which share candidates grow per margin, in sizes of a triangle.
