@@ -1,7 +1,9 @@
 #include <sixdof/oracle/kept_candidates.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <random>
 #include <utility>
@@ -205,6 +207,61 @@ TEST_F(WarmStartOfFineMeshes, TurnsBackWithoutHarm) {
     cold_sum += expansions_at(a, b, poses[static_cast<std::size_t>(place)]);
   }
   EXPECT_LT(static_cast<double>(warm.warm_expansions()), 0.4 * static_cast<double>(cold_sum));
+}
+
+/// A box whose faces are grids of n by n squares.
+Mesh grid_box(const Vector3d& low, const Vector3d& high, std::uint32_t n) {
+  std::map<std::array<std::uint32_t, 3>, std::uint32_t> numbers;
+  std::vector<Vector3d> points;
+  const auto number_of = [&](const std::array<std::uint32_t, 3>& at) {
+    const auto [found, is_new] = numbers.emplace(at, static_cast<std::uint32_t>(points.size()));
+    if (is_new) points.push_back(low + (high - low).cwiseProduct(Vector3d(at[0], at[1], at[2])) / n);
+    return found->second;
+  };
+  std::vector<Triangle> triangles;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const bool upper : {false, true}) {
+      for (std::uint32_t i = 0; i < n; ++i) {
+        for (std::uint32_t j = 0; j < n; ++j) {
+          const auto corner = [&](std::uint32_t u, std::uint32_t v) {
+            std::array<std::uint32_t, 3> at{};
+            at[axis] = upper ? n : 0;
+            at[(axis + 1) % 3] = i + (upper ? u : v);
+            at[(axis + 2) % 3] = j + (upper ? v : u);
+            return number_of(at);
+          };
+          triangles.push_back({corner(0, 0), corner(1, 0), corner(1, 1)});
+          triangles.push_back({corner(0, 0), corner(1, 1), corner(0, 1)});
+        }
+      }
+    }
+  }
+  return Mesh::build(std::move(points), std::move(triangles), "grid box");
+}
+
+TEST(KeptCandidates, GiveUpAMarginThatFlushFacesFill) {
+  // A plate slides over another at a distance that a margin contains, and a peg of it through the other.
+  const Body a(grid_box({-1, -1, -0.2}, {1, 1, 0}, 32));
+  const Body b(bodies::together(grid_box({-0.8, -0.8, 5e-4}, {0.8, 0.8, 0.2}, 32),
+                                grid_box({0.855, 0.05, -0.1}, {0.955, 0.15, 0.1}, 8)));
+  detail::KeptCandidates kept;
+  CandidateScratch scratch;
+  std::vector<TrianglePair> found;
+  std::size_t most = 0, sum = 0, without = 0, crossings = 0;
+  for (int i = 0; i < 150; ++i) {
+    const Pose pose{Eigen::Matrix3d::Identity(), 4e-4 * i * Vector3d(0.6, 0.8, 0.0)};
+    const auto pairs = kept.at(a.tree, b.tree, pose);
+    find_candidates(a.tree, b.tree, pose, scratch, found);
+    crossings = swept::crossings_among(a.tree, b.tree, pose, found).size();
+    EXPECT_EQ(swept::crossings_among(a.tree, b.tree, pose, {pairs.begin(), pairs.end()}).size(), crossings);
+    kept.count_crossings(crossings);
+    most = std::max(most, pairs.size());
+    sum += pairs.size();
+    without += found.size();
+  }
+  EXPECT_GT(crossings, 20u);
+  EXPECT_LT(most, 8 * without / 150) << "62 times as many without giving up";
+  EXPECT_LT(sum, 2 * without);
 }
 
 }  // namespace
