@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
 

@@ -185,16 +185,15 @@ struct QueryRow {
   }
 
   /// Of the first `count` configurations those with an answer, in this row's order; or of as many poses of motions from
-  /// some of them.
-  std::vector<Pose> poses_to_time(const BucketSample& bucket, std::size_t count) const {
+  /// some of them. Of these, too, those without an answer count as failed.
+  std::vector<Pose> poses_to_time(const BucketSample& bucket, std::size_t count) {
     std::vector<Pose> found;
     for (const std::size_t i : order == Order::path ? grid_order(bucket, count) : random_order(count, resources.seed)) {
       if (order == Order::motion || check->answered[i]) found.push_back(bucket.poses[i]);
     }
     if (order != Order::motion) return found;
     found = poses_of_motions(found, resources.cache.mesh(pair.a), resources.cache.mesh(pair.b), resources.seed);
-    Failures ignored;
-    with_query(ignored, [&](auto query) { std::erase_if(found, [&](const Pose& x) { return !query.ask(x).ok(); }); });
+    with_query(failures, [&](auto query) { std::erase_if(found, [&](const Pose& x) { return !query.ask(x).ok(); }); });
     return found;
   }
 

@@ -34,7 +34,7 @@ Pose near(std::mt19937_64& random, const Pose& X_AB, const Tree& b, double lengt
 }
 
 /// Every pair that intersects at a pose within the margin is found, in the order of a search at that pose, whether the
-/// search is done at once or in parts. Returns how many do at most poses.
+/// search is done at once or in parts. Returns the largest number of them at one pose.
 std::size_t expect_all_within(const Body& a, const Body& b, const Pose& X_AB, double margin, std::mt19937_64& random) {
   CandidateSearch whole, in_parts;
   whole.start(a.tree, b.tree, X_AB, margin);

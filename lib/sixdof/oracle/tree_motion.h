@@ -52,6 +52,7 @@ struct TreeMotion {
   Passage of_b;    ///< Of B, x = A,
   Passage of_a;    ///< and of A past B, x = B.
 
+  /// @param distance_of_points the margin (length)
   TreeMotion(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
              double distance_of_points = 0.0)
       : rounding(rounding_of(a, b, X_AB, displacement)),
