@@ -59,7 +59,7 @@ void add_notes(const PrecisionStudy& study, Sheet& sheet) {
     if (!point.left_out.empty()) sheet.notes.push_back(fmt::format("left out: {}: {}", name, point.left_out));
     if (point.measured() && point.errors.failed > 0) {
       sheet.notes.push_back(fmt::format("! {}: {} of {} failed, first: {}", name, point.errors.failed,
-                                        study.sample().poses.size(), point.errors.first_failure));
+                                        study.sample().asked(), point.errors.first_failure));
     }
   }
   if (const std::size_t undecided = study.undecided(); undecided > 0) {

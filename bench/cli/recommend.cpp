@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct Options {
   StudyOptions study{.budget = "3min"};
   std::string deadline = "1ms";
   std::string metric = "gamma_F_deg";
+  std::string order = "random";
+
+  bool in_motion() const { return order == "motion"; }
 };
 
 /// The question that has the metric among its errors. @throws BadArgument, which lists them
@@ -82,8 +86,9 @@ std::string command_again(const Candidate& candidate, const Options& options, co
   for (const std::string& assignment : candidate.point->sweep.assignments) {
     text += fmt::format(" -p {}:{}", algorithm, assignment);
   }
-  return text + fmt::format(" --suite all --benchmark_filter='^{}/algorithm:{}/pair:{}/[^/]*$'",
-                            to_string(question_of(options.metric)), algorithm, pair.pair);
+  return text + fmt::format(" --suite all --benchmark_filter='^{}/algorithm:{}/pair:{}/[^/]*{}$'",
+                            to_string(question_of(options.metric)), algorithm, pair.pair,
+                            options.in_motion() ? "/order:motion" : "");
 }
 
 nlohmann::ordered_json as_json(const Candidate& candidate, const std::string& metric) {
@@ -98,15 +103,16 @@ nlohmann::ordered_json as_json(const Candidate& candidate, const std::string& me
 
 void print_text(const Options& options, double deadline_s, const Recommendation& found,
                 const study::PrecisionStudy& study) {
-  fmt::print("pair        {}: {} configurations of each algorithm, of {}\n", study.pair().pair,
-             study.sample().poses.size(),
-             fmt::join(
-                 [&] {
-                   std::vector<std::string> names;
-                   for (const BucketKey key : study.sample().buckets) names.push_back(key.name());
-                   return names;
-                 }(),
-                 " "));
+  const study::StudySample& sample = study.sample();
+  std::vector<std::string> buckets;
+  for (const BucketKey key : sample.buckets) buckets.push_back(key.name());
+  fmt::print("pair        {}: {} configurations of each algorithm, of {}\n", study.pair().pair, sample.poses.size(),
+             fmt::join(buckets, " "));
+  if (options.in_motion()) {
+    fmt::print("timed       {} motions from these, {} poses each, after its first {}\n",
+               sample.motions.poses.size() / sample.motions.period, sample.motions.period - sample.motions.lead,
+               sample.motions.lead);
+  }
   fmt::print("deadline    {}, for the {} of a query (the least of three times of each)\n", options.deadline,
              found.tail);
   if (found.best) {
@@ -124,8 +130,8 @@ void print_text(const Options& options, double deadline_s, const Recommendation&
     const std::string name = name_of({.point = &point});
     if (!point.left_out.empty()) fmt::print("left out    {}: {}\n", name, point.left_out);
     if (point.measured() && point.faulty()) {
-      fmt::print("fault       {}: {} of {} failed, {} without a force\n", name, point.errors.failed,
-                 study.sample().poses.size(), point.metric("misses").value_or(study::Estimate{}).value);
+      fmt::print("fault       {}: {} of {} failed, {} without a force\n", name, point.errors.failed, sample.asked(),
+                 point.metric("misses").value_or(study::Estimate{}).value);
     }
   }
   if (found.best) fmt::print("again       {}\n", command_again(*found.best, options, study.pair()));
@@ -133,8 +139,11 @@ void print_text(const Options& options, double deadline_s, const Recommendation&
 
 void print_json(const Options& options, double deadline_s, const Recommendation& found,
                 const study::PrecisionStudy& study) {
-  nlohmann::ordered_json json = {
-      {"pair", study.pair().pair}, {"deadline_ns", 1e9 * deadline_s}, {"tail", found.tail}, {"metric", options.metric}};
+  nlohmann::ordered_json json = {{"pair", study.pair().pair},
+                                 {"order", options.order},
+                                 {"deadline_ns", 1e9 * deadline_s},
+                                 {"tail", found.tail},
+                                 {"metric", options.metric}};
   json["best"] = found.best ? as_json(*found.best, options.metric) : nlohmann::ordered_json();
   json["second"] = found.second ? as_json(*found.second, options.metric) : nlohmann::ordered_json();
   json["too_slow"] = nlohmann::ordered_json::array();
@@ -158,17 +167,22 @@ void run(const Options& options) {
   plan.most_rounds = 1;
   plan.algorithms = study_algorithms(registry, options.study.algorithms, plan.question);
   plan.values = swept_values(options.study, plan.algorithms);
+  if (options.in_motion())
+    std::ranges::move(study::warm_starts(plan.algorithms, plan.values), std::back_inserter(plan.values));
   if (options.study.pairs.size() + options.study.sets.size() > 1) throw BadArgument("one pair at a time");
-  study::StudyPairs pairs(
-      harness_options(options.study, k_queries,
-                      arguments_of("recommend", options.study) +
-                          fmt::format(" --deadline {} --metric {}", options.deadline, options.metric)),
-      options.study.pairs);
+  study::StudyPairs pairs(harness_options(options.study, k_queries,
+                                          arguments_of("recommend", options.study) +
+                                              fmt::format(" --deadline {} --metric {} --order {}", options.deadline,
+                                                          options.metric, options.order)),
+                          options.study.pairs);
   const CatalogueEntry& pair = *pairs.pairs().front();
   const auto started = bench::run_context(pairs.options(), registry, bench::parse_parameters({}, registry));
   StatusLine status;
   status.show("truth");
-  const study::StudySample sample = study::draw_sample(pairs.cache(), pair, plan.question, pair.buckets, k_queries);
+  study::StudySample sample = study::draw_sample(pairs.cache(), pair, plan.question, pair.buckets, k_queries);
+  if (options.in_motion()) {
+    sample.motions = study::draw_motions(sample, pairs.cache().mesh(pair.a), pairs.cache().mesh(pair.b), plan.seed);
+  }
   plan.budget_s = budget_s - std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   study::PrecisionStudy study(plan, pairs.cache(), pair, sample);
   const auto write = [&](bool interrupted) {
@@ -200,10 +214,17 @@ void add_recommend_command(CLI::App& app) {
       ->add_option("--metric", options->metric,
                    "Error that is to be small: gamma_F_deg, magnitude_error_F, error_rms, ...")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--order", options->order,
+          "Poses that are timed: random, the configurations, far apart; or motion, poses that follow each other "
+          "as in a haptic loop, from some of the configurations on, where warm starts are tried, too")
+      ->check(CLI::IsMember({"random", "motion"}))
+      ->capture_default_str();
   command->callback([options] { run(*options); });
   add_examples(
       *command, "sixdof recommend --a cone-1k --b torus-1k --deadline 1ms --algorithms exact,vps --budget 30s",
-      "sixdof recommend --a cone-1k --b torus-1k --metric error_rms --deadline 10ms --algorithms exact,fcl-rss");
+      "sixdof recommend --a cone-1k --b torus-1k --order motion --metric error_rms --algorithms exact,fcl-rss");
 }
 
 }  // namespace sixdof::cli

@@ -35,14 +35,13 @@ Pose Motion::pose(const Pose& start, const Eigen::Vector3d& center, std::size_t 
   return {R, start * center + steps * length * direction - R * center};
 }
 
-std::vector<Pose> poses_of_motions(std::span<const Pose> starts, const Mesh& a, const Mesh& b, std::uint64_t seed) {
+std::vector<Pose> poses_of_motions(std::span<const Pose> starts, std::size_t length, const Mesh& a, const Mesh& b,
+                                   std::uint64_t seed) {
   std::vector<Pose> poses;
-  poses.reserve(starts.size());
-  for (std::size_t i = 0; poses.size() < starts.size(); ++i) {
+  poses.reserve(starts.size() * length);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
     const Motion motion(a, b, seed + i);
-    for (std::size_t step = 0; step < Motion::k_poses && poses.size() < starts.size(); ++step) {
-      poses.push_back(motion.pose(starts[i], b.center(), step));
-    }
+    for (std::size_t step = 0; step < length; ++step) poses.push_back(motion.pose(starts[i], b.center(), step));
   }
   return poses;
 }

@@ -14,7 +14,8 @@ namespace sixdof::bench {
 
 /// Successive poses of a body in motion, as a haptic loop or a simulation asks them.
 struct Motion {
-  /// Poses of one motion. From the end of one to the beginning of the next B jumps: less than one query of 100.
+  /// Poses of one motion of a row. From the end of one to the beginning of the next B jumps: less than one query of
+  /// 100.
   static constexpr std::size_t k_poses = 128;
   /// How far B moves from one pose to the next, in diagonals of A's box. At 1 kHz and a diagonal of 0.3 m that is 30
   /// mm/s.
@@ -32,7 +33,8 @@ struct Motion {
   Pose pose(const Pose& start, const Eigen::Vector3d& center, std::size_t step) const;
 };
 
-/// As many poses as `starts`: motions from the first of them, one after the other.
-std::vector<Pose> poses_of_motions(std::span<const Pose> starts, const Mesh& a, const Mesh& b, std::uint64_t seed);
+/// A motion of `length` poses from every start, one after the other.
+std::vector<Pose> poses_of_motions(std::span<const Pose> starts, std::size_t length, const Mesh& a, const Mesh& b,
+                                   std::uint64_t seed);
 
 }  // namespace sixdof::bench

@@ -192,7 +192,10 @@ struct QueryRow {
       if (order == Order::motion || check->answered[i]) found.push_back(bucket.poses[i]);
     }
     if (order != Order::motion) return found;
-    found = poses_of_motions(found, resources.cache.mesh(pair.a), resources.cache.mesh(pair.b), resources.seed);
+    const std::size_t size = found.size(), motions = (size + Motion::k_poses - 1) / Motion::k_poses;
+    found = poses_of_motions(std::span(found).first(motions), Motion::k_poses, resources.cache.mesh(pair.a),
+                             resources.cache.mesh(pair.b), resources.seed);
+    found.resize(size);
     with_query(failures, [&](auto query) { std::erase_if(found, [&](const Pose& x) { return !query.ask(x).ok(); }); });
     return found;
   }

@@ -226,6 +226,13 @@ std::vector<std::string> error_metrics(bench::Question question) {
           "failed"};
 }
 
+void AnswerErrors::add_failures(std::size_t count, const std::string& first) {
+  if (count == 0) return;
+  if (failed == 0) first_failure = first;
+  failed += count;
+  values["failed"] = Estimate::exactly(static_cast<double>(failed));
+}
+
 AnswerErrors measure_errors(Query& query, const StudySample& sample, std::uint64_t seed) {
   AnswerErrors errors;
   errors.forces.assign(sample.truths.size(), Eigen::Vector3d::Zero());

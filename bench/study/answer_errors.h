@@ -32,6 +32,9 @@ struct AnswerErrors {
   std::vector<Eigen::Vector3d> forces;
   std::size_t failed = 0;
   std::string first_failure;  ///< Words of it.
+
+  /// Counts poses without an answer that are no configurations of the sample.
+  void add_failures(std::size_t count, const std::string& first);
 };
 
 /// The names of the values, those of which the table of metrics knows what is better.

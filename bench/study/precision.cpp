@@ -141,9 +141,9 @@ std::string PrecisionStudy::why_left_out(const PrecisionPoint& point) const {
 /// @throws Error if the plan's deadline cannot be kept
 void PrecisionStudy::check_deadline(Query& query) const {
   if (std::isinf(plan_.deadline_ns)) return;
-  constexpr std::size_t k_trial = 16;
-  const auto first = std::span(sample_.poses).first(std::min(k_trial, sample_.poses.size()));
-  const double p50 = time_single_queries(query, sample_.question, {first.begin(), first.end()}).least.p50;
+  const TimedPoses first =
+      sample_.motions.poses.empty() ? TimedPoses{sample_.poses}.first(16) : sample_.motions.first(2);
+  const double p50 = time_single_queries(query, sample_.question, first).least.p50;
   if (p50 > plan_.deadline_ns) {
     throw Error(fmt::format("half of its queries take longer than {}, over the deadline", duration_text(1e-9 * p50)));
   }
@@ -165,8 +165,11 @@ void PrecisionStudy::measure(PrecisionPoint& point) {
     if (point.errors.answered.empty()) {
       throw Error(fmt::format("no configuration has an answer: {}", point.errors.first_failure));
     }
-    if (plan_.single_queries) point.single = time_single_queries(query, sample_.question, point.errors.answered);
-    point.times.add(query, sample_.question, point.errors.answered);
+    if (plan_.single_queries) {
+      point.single = time_single_queries(query, sample_.question, timed_poses(point));
+      point.errors.add_failures(point.single->failed, point.single->first_failure);
+    }
+    time_once(point);
   } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& e) {
@@ -178,13 +181,17 @@ void PrecisionStudy::measure(PrecisionPoint& point) {
 /// only if that takes a small part of what is left.
 bool PrecisionStudy::affordable(const PrecisionPoint& point) const {
   constexpr double k_small = 0.1;
-  const double round_s = 1e-9 * point.times.wall_ns().value * static_cast<double>(point.errors.answered.size());
+  const double round_s = 1e-9 * point.times.wall_ns().value * static_cast<double>(timed_poses(point).poses.size());
   const bool prepared = cache_.is_prepared(*point.algorithm, point.sweep.settings, pair_.a, pair_.b);
   return round_s <= left_s() && (prepared || point.prepare_s <= k_small * left_s());
 }
 
 void PrecisionStudy::time_once(PrecisionPoint& point) {
-  point.times.add(query_of(point), sample_.question, point.errors.answered);
+  point.times.add(query_of(point), sample_.question, timed_poses(point).poses);
+}
+
+TimedPoses PrecisionStudy::timed_poses(const PrecisionPoint& point) const {
+  return sample_.motions.poses.empty() ? TimedPoses{point.errors.answered} : sample_.motions;
 }
 
 std::vector<std::size_t> PrecisionStudy::timed_points() const {

@@ -121,6 +121,7 @@ class PrecisionStudy {
   void measure(PrecisionPoint& point);
   bool affordable(const PrecisionPoint& point) const;
   void time_once(PrecisionPoint& point);
+  TimedPoses timed_poses(const PrecisionPoint& point) const;
   std::vector<std::size_t> timed_points() const;
   std::vector<std::size_t> uncertain_points() const;
   StudyRow row(const PrecisionPoint& point, OnFrontier on, std::optional<double> to_finest) const;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include "bench/harness/motion.h"
 
 namespace sixdof::study {
 namespace {
@@ -65,6 +66,20 @@ StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, Que
   }
   if (sample.poses.empty()) throw BadArgument(fmt::format("{}: no configuration can be reached", pair.pair));
   return sample;
+}
+
+TimedPoses TimedPoses::first(std::size_t count) const {
+  TimedPoses some = *this;
+  some.poses.resize(std::min(poses.size(), count * period));
+  return some;
+}
+
+TimedPoses draw_motions(const StudySample& sample, const Mesh& a, const Mesh& b, std::uint64_t seed) {
+  // Two motions of this length instead of one twice as long meet twice as many places; what an algorithm keeps from
+  // query to query it has found after the first few.
+  constexpr std::size_t k_length = 64, k_lead = 8, k_counted = k_length - k_lead;
+  const std::size_t count = (sample.poses.size() + k_counted - 1) / k_counted;
+  return {bench::poses_of_motions(std::span(sample.poses).first(count), k_length, a, b, seed), k_length, k_lead};
 }
 
 }  // namespace sixdof::study

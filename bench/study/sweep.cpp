@@ -44,6 +44,21 @@ SweptValues parse_swept_values(const std::string& text) {
   return swept;
 }
 
+std::vector<SweptValues> warm_starts(const std::vector<const Algorithm*>& algorithms,
+                                     const std::vector<SweptValues>& values) {
+  std::vector<SweptValues> all;
+  for (const Algorithm* const algorithm : algorithms) {
+    const Traits& traits = algorithm->traits();
+    const auto is_its = [&](const SweptValues& swept) { return swept.algorithm == traits.name; };
+    const auto is_swept = [](const Parameter& parameter) { return !parameter.sweep.empty(); };
+    const auto is_warm_start = [](const Parameter& parameter) { return parameter.name == "warm_start"; };
+    if (std::ranges::any_of(values, is_its) || std::ranges::any_of(traits.parameters, is_swept)) continue;
+    if (std::ranges::any_of(traits.parameters, is_warm_start))
+      all.push_back({traits.name, "warm_start", {"on", "off"}});
+  }
+  return all;
+}
+
 std::vector<SweepPoint> sweep_points(const Algorithm& algorithm, const std::vector<SweptValues>& values) {
   std::vector<SweepPoint> points{{algorithm.settings(), {}}};
   bool chosen = false;

@@ -24,6 +24,11 @@ struct SweptValues {
 /// Reads "ALGORITHM:NAME=VALUE,VALUE,...". @throws BadArgument
 SweptValues parse_swept_values(const std::string& text);
 
+/// A warm start on and off (the slower is taken to be the finer), for the algorithms that have the parameter
+/// `warm_start`, no sweep, and none among `values`.
+std::vector<SweptValues> warm_starts(const std::vector<const Algorithm*>& algorithms,
+                                     const std::vector<SweptValues>& values);
+
 /// The points of an algorithm, from coarse to fine: the k-th values of all its sweeps together or, where `values` has
 /// some of this algorithm, every combination of these, with defaults for what they do not name.
 /// @throws BadArgument for a parameter that does not exist or a value that it does not allow

@@ -82,12 +82,18 @@ Estimate TimingRounds::median(std::vector<double> values) {
           std::max(values[high], (1.0 + k_least_spread) * middle)};
 }
 
-SingleQueries time_single_queries(Query& query, bench::Question question, std::vector<Pose> poses) {
+SingleQueries time_single_queries(Query& query, bench::Question question, const TimedPoses& timed) {
   SingleQueries result;
-  bench::Failures ignored;
-  bench::with_question(query, question, ignored, [&](auto guarded) {
-    const bench::SingleTimes times = bench::time_each(poses, guarded);
-    result = {times.once, times.least};
+  bench::Failures failures;
+  bench::with_question(query, question, failures, [&](auto guarded) {
+    const auto [times, failed] = bench::time_latency_passes(timed.poses, guarded);
+    std::vector<double> once_ns, least_ns;
+    for (std::size_t i = 0; i < timed.poses.size(); ++i) {
+      if (failed[i] || !timed.counts(i)) continue;
+      once_ns.push_back(times.once_ns[i]);
+      least_ns.push_back(times.least_ns[i]);
+    }
+    result = {latency(once_ns), latency(least_ns), failures.count(), failures.first()};
   });
   return result;
 }

@@ -9,6 +9,7 @@
 #include <sixdof/query/algorithm.h>
 #include "bench/harness/question.h"
 #include "bench/study/estimate.h"
+#include "bench/study/study_sample.h"
 
 namespace sixdof::study {
 
@@ -37,10 +38,12 @@ class TimingRounds {
   std::vector<double> cpu_ns_, wall_ns_;
 };
 
-/// Times of single queries: of one pass, and of the least of three (bench/harness/timing.h).
+/// Times of single queries that count: of one pass, and of the least of three (bench/harness/timing.h).
 struct SingleQueries {
   Latency once, least;
+  std::size_t failed = 0;  ///< Poses, counted or not, without an answer in one of the passes.
+  std::string first_failure;
 };
-SingleQueries time_single_queries(Query& query, bench::Question question, std::vector<Pose> poses);
+SingleQueries time_single_queries(Query& query, bench::Question question, const TimedPoses& timed);
 
 }  // namespace sixdof::study

@@ -111,6 +111,22 @@ TEST_F(Studies, RecommendNamesAnAlgorithmAndTheCommandThatMeasuresItAgain) {
   EXPECT_THAT(none.out, HasSubstr("no algorithm keeps this deadline"));
 }
 
+TEST_F(Studies, RecommendTriesWarmStartsInMotion) {
+  const std::string arguments =
+      "recommend --a cone-1k --b torus-1k --order motion --deadline 1s --budget 60s --algorithms exact -o " +
+      path("r.json");
+  const auto done = run(arguments);
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("motions from these, 56 poses each, after its first 8\n"));
+  EXPECT_THAT(done.out, ::testing::ContainsRegex("take        exact warm_start=o[nf]+: p99.9 "));
+  EXPECT_THAT(done.out, ::testing::ContainsRegex("-p exact:warm_start=o[nf]+ .*/order:motion\\$'"));
+  std::ifstream file(path("r.json"));
+  const json rows = json::parse(file).at("benchmarks");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_THAT(rows[0].at("name").get<std::string>(), HasSubstr("warm_start:on"));
+  EXPECT_THAT(rows[1].at("name").get<std::string>(), HasSubstr("warm_start:off"));
+}
+
 TEST_F(Studies, RefuseBadArguments) {
   const std::map<std::string, std::string> cases{
       {"precision", "--pair, --set or --a is needed"},
@@ -127,6 +143,7 @@ TEST_F(Studies, RefuseBadArguments) {
       {"precision --a cone-1k --algorithms exact --params vps:voxel_size=0.1", "vps is not among the algorithms"},
       {"recommend --a cone-1k --deadline 0ms", "--deadline 0ms"},
       {"recommend --pair elephant,bunny", "one pair at a time"},
+      {"recommend --a cone-1k --order path", "--order: path not in {random,motion}"},
   };
   for (const auto& [arguments, words] : cases) {
     const auto done = run(arguments);

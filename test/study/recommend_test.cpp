@@ -11,6 +11,12 @@
 namespace sixdof::study {
 namespace {
 
+void wait(int microseconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(microseconds);
+  while (std::chrono::steady_clock::now() < end) {
+  }
+}
+
 /// Takes a time and answers with an error in the distance that both follow from its resolution: fine is slow and exact.
 class TunableQuery final : public Query {
  public:
@@ -18,15 +24,34 @@ class TunableQuery final : public Query {
       : steps_(settings.number("steps")), diagonal_(a.diagonal()) {}
 
   Outcome<Separation> distance(const Pose&) override {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(static_cast<int>(20 * steps_));
-    while (std::chrono::steady_clock::now() < end) {
-    }
+    wait(static_cast<int>(20 * steps_));
     return Separation{.distance = 0.05 * diagonal_ * (1.0 + 1.0 / steps_)};
   }
 
  private:
   const double steps_;
   const double diagonal_;
+};
+
+/// Takes 3 ms, but 20 us with a warm start if B is near where it was before. There it fails if `fails` is set.
+class WarmQuery final : public Query {
+ public:
+  WarmQuery(const Mesh& a, const Mesh&, const Settings& settings)
+      : near_(settings.choice("warm_start") == "on" ? 1e-3 * a.diagonal() : 0.0), target_(0.05 * a.diagonal()) {}
+
+  Outcome<Separation> distance(const Pose& X_AB) override {
+    const bool is_near = (X_AB.t - last_.t).norm() < near_;
+    last_ = X_AB;
+    wait(is_near ? 20 : 3'000);
+    if (is_near && fails) return Status::failed;
+    return Separation{.distance = target_};
+  }
+
+  static inline bool fails = false;
+
+ private:
+  const double near_, target_;
+  Pose last_;
 };
 
 std::unique_ptr<Algorithm> tunable(const std::string& name, std::vector<std::string> steps) {
@@ -39,7 +64,8 @@ class Recommend : public ::testing::Test {
  protected:
   /// A query takes 20 us a step.
   Recommendation within(double deadline_s) {
-    PrecisionPlan plan{.question = bench::Question::distance, .algorithms = {fine_.get(), coarse_.get()}};
+    PrecisionPlan plan{.question = bench::Question::distance, .algorithms = algorithms_};
+    plan.values = warm_starts(algorithms_, {});
     plan.error = "error_rms";
     plan.single_queries = true;
     plan.deadline_ns = 1e9 * deadline_s;
@@ -56,6 +82,7 @@ class Recommend : public ::testing::Test {
 
   std::unique_ptr<Algorithm> fine_ = tunable("fine", {"2", "20", "200", "400"});
   std::unique_ptr<Algorithm> coarse_ = tunable("coarse", {"3", "10"});
+  std::vector<const Algorithm*> algorithms_{fine_.get(), coarse_.get()};
   bench::PairCache cache_{32, 1, [](const std::string& key) { return bench::LoadedMesh{load_model(key), key}; }};
   SetCatalogue catalogue_ = SetCatalogue::read(std::filesystem::path(SIXDOF_SMALL_SUITE) / "manifest.json");
   const CatalogueEntry& pair_ = catalogue_.sets().front();
@@ -81,6 +108,48 @@ TEST_F(Recommend, TakesNoneWhereNoneKeepsIt) {
   const Recommendation found = within(30e-6);
   EXPECT_FALSE(found.best);
   EXPECT_FALSE(found.second);
+}
+
+/// With motions from the sample's configurations.
+class RecommendInMotion : public Recommend {
+ protected:
+  RecommendInMotion() {
+    algorithms_ = {warm_.get(), coarse_.get()};
+    sample_.motions = draw_motions(sample_, cache_.mesh(pair_.a), cache_.mesh(pair_.b), 1);
+  }
+  ~RecommendInMotion() override { WarmQuery::fails = false; }
+
+  std::unique_ptr<Algorithm> warm_ = make_algorithm<WarmQuery>(
+      {.name = "warm",
+       .answers = {.distance = true},
+       .parameters = {Parameter::choice("warm_start", "from the last answer", "off", {"off", "on"})}});
+};
+
+TEST_F(RecommendInMotion, HasAsManyTimesThatCountAsConfigurations) {
+  std::size_t counted = 0;
+  for (std::size_t i = 0; i < sample_.motions.poses.size(); ++i) counted += sample_.motions.counts(i) ? 1 : 0;
+  EXPECT_GE(counted, sample_.poses.size());
+  EXPECT_LT(counted, sample_.poses.size() + sample_.motions.period);
+  EXPECT_FALSE(sample_.motions.counts(0)) << "where B has jumped to";
+  EXPECT_EQ(sample_.motions.poses[0].t, sample_.poses[0].t);
+}
+
+TEST_F(RecommendInMotion, TakesWhatIsFastFromPoseToPose) {
+  const Recommendation found = within(1e-3);
+  EXPECT_EQ(name(found.best), "warm warm_start=on");
+  EXPECT_NE(study_->points()[1].left_out.find("over the deadline"), std::string::npos) << "without a warm start";
+  sample_.motions = {};
+  EXPECT_EQ(name(within(1e-3).best), "coarse steps=10") << "where poses are far apart";
+}
+
+TEST_F(RecommendInMotion, TakesNothingThatFailsOnTheWay) {
+  WarmQuery::fails = true;
+  const Recommendation found = within(1e-3);
+  EXPECT_EQ(name(found.best), "coarse steps=10");
+  const PrecisionPoint& point = study_->points()[0];
+  EXPECT_TRUE(point.faulty());
+  EXPECT_EQ(point.metric("failed")->value, static_cast<double>(point.errors.failed));
+  EXPECT_GE(point.errors.failed, sample_.poses.size());
 }
 
 }  // namespace

@@ -50,6 +50,18 @@ TEST(Sweep, IsReplacedByEveryCombinationOfGivenValues) {
                                                "voxel=0.01,law=b,points=5", "voxel=0.01,law=b,points=7"));
 }
 
+TEST(Sweep, TriesWarmStartsWhereNothingElseIsChosen) {
+  const Parameter warm_start = Parameter::choice("warm_start", "start from the last answer", "off", {"off", "on"});
+  const Parameter steps = Parameter::count("steps", "steps", "1", 1, 9).swept({"1", "9"});
+  const auto warm = make_algorithm<NoQuery>({.name = "warm", .parameters = {warm_start}});
+  const auto swept = make_algorithm<NoQuery>({.name = "swept", .parameters = {steps, warm_start}});
+  const auto mine = algorithm();
+  const auto found = warm_starts({warm.get(), swept.get(), mine.get()}, {});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(settings_of(sweep_points(*warm, found)), ElementsAre("warm_start=on", "warm_start=off"));
+  EXPECT_TRUE(warm_starts({warm.get()}, {parse_swept_values("warm:warm_start=on")}).empty());
+}
+
 TEST(Sweep, RefusesWhatItCannotRead) {
   const auto mine = algorithm();
   for (const char* text : {"", "mine", "mine:law", "mine:law=", "law=a,b"}) {
