@@ -109,9 +109,8 @@ void print_text(const Options& options, double deadline_s, const Recommendation&
   fmt::print("pair        {}: {} configurations of each algorithm, of {}\n", study.pair().pair, sample.poses.size(),
              fmt::join(buckets, " "));
   if (options.in_motion()) {
-    fmt::print("timed       {} motions from these, {} poses each, after its first {}\n",
-               sample.motions.poses.size() / sample.motions.period, sample.motions.period - sample.motions.lead,
-               sample.motions.lead);
+    fmt::print("timed       {} motions from some of these, poses {} to {} of each\n",
+               sample.motions.poses.size() / sample.motions.period, sample.motions.lead + 1, sample.motions.period);
   }
   fmt::print("deadline    {}, for the {} of a query (the least of three times of each)\n", options.deadline,
              found.tail);
@@ -167,8 +166,9 @@ void run(const Options& options) {
   plan.most_rounds = 1;
   plan.algorithms = study_algorithms(registry, options.study.algorithms, plan.question);
   plan.values = swept_values(options.study, plan.algorithms);
-  if (options.in_motion())
+  if (options.in_motion()) {
     std::ranges::move(study::warm_starts(plan.algorithms, plan.values), std::back_inserter(plan.values));
+  }
   if (options.study.pairs.size() + options.study.sets.size() > 1) throw BadArgument("one pair at a time");
   study::StudyPairs pairs(harness_options(options.study, k_queries,
                                           arguments_of("recommend", options.study) +

@@ -18,7 +18,7 @@ struct RowFields {
   std::string settings = {};  ///< Of the algorithm: "name=value,name=value".
   std::string pair = {};      ///< Empty where the row belongs to none.
   std::optional<BucketKey> bucket = {};
-  std::string order = {};     ///< Of a query's configurations: "random" or "path", the grid's own order.
+  std::string order = {};     ///< Of a query's poses: "random", "path" (the grid's own order) or "motion".
   std::string body = {};      ///< "convex_hull" where answers are not about the meshes; empty where they are.
   std::string cache = {};     ///< Of a query: "warm", or "cold" where data leaves the caches before each.
   std::string scenario = {};  ///< "II"; of a scene row its family.

@@ -98,8 +98,8 @@ class PrecisionStudy {
   /// Points of the frontier whose costs are not told apart from those of others on it.
   std::size_t undecided() const;
 
-  /// One row per point, "precision/QUESTION/algorithm:NAME/pair:PAIR/PARAMETER:VALUE...". Bounds of the intervals of
-  /// METRIC are METRIC_low and METRIC_high.
+  /// One row per point, "precision/QUESTION/algorithm:NAME/pair:PAIR/PARAMETER:VALUE...", with "/order:motion" if
+  /// motions were timed. Bounds of the intervals of METRIC are METRIC_low and METRIC_high.
   std::vector<StudyRow> rows() const;
 
   const PrecisionPlan& plan() const { return plan_; }

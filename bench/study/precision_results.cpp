@@ -75,6 +75,7 @@ StudyRow PrecisionStudy::row(const PrecisionPoint& point, OnFrontier on, std::op
     std::ranges::replace(assignment, '=', ':');
     row.name += "/" + assignment;
   }
+  if (!sample_.motions.poses.empty()) row.name += "/order:motion";
   if (!point.measured()) {
     row.error = "left out: " + (point.left_out.empty() ? "the run was interrupted" : point.left_out);
     return row;

@@ -13,6 +13,7 @@
 namespace sixdof::report {
 namespace {
 
+using test::Json;
 using test::row;
 using test::text_in;
 using ::testing::Contains;
@@ -36,6 +37,26 @@ TEST(Summary, WinnerIsTheFastestWithoutAFault) {
       ElementsAre("Distance: exact is the fastest in 2 of 2 buckets, clearly in 1, 2.35 times faster than the next on "
                   "average, 1.1 to 5.",
                   HasSubstr("1 of 6 rows have failures or wrong answers and are not ranked (wrong 1)")));
+}
+
+TEST(Summary, RowsOfOtherOrdersAndOfColdCachesAreNotRanked) {
+  Json motion = row("distance", "exact", "p", "distance", 5.0, 1.0), path = motion, cold = motion;
+  motion["sixdof"]["order"] = "motion";
+  path["sixdof"]["order"] = "path";
+  cold["sixdof"]["cache"] = "cold";
+  motion["name"] = motion["name"].get<std::string>() + "/order:motion";
+  path["name"] = path["name"].get<std::string>() + "/order:path";
+  cold["name"] = cold["name"].get<std::string>() + "/cache:cold";
+  const Results results = test::results_of({row("distance", "exact", "p", "distance", 5.0, 300.0),
+                                            row("distance", "vps", "p", "distance", 5.0, 100.0), motion, path, cold});
+  const auto groups = row_groups(results);
+  std::vector<std::string> names;
+  for (const RowGroup& group : groups) names.push_back(group.algorithm());
+  EXPECT_THAT(names, ElementsAre("exact", "vps", "exact (motion)", "exact (path order)", "exact (cold)"));
+  const Summary summary = summarise(results, groups);
+  ASSERT_EQ(summary.winners.rows.size(), 1u);
+  EXPECT_EQ(text_in(summary.winners, summary.winners.rows[0], "fastest"), "vps");
+  EXPECT_EQ(test::number_in(summary.winners, summary.winners.rows[0], "times_faster"), 3.0);
 }
 
 TEST(Summary, NearestForcesAreNamed) {

@@ -21,9 +21,12 @@ double median_of(std::vector<double> values) {
 std::string RowGroup::algorithm() const {
   std::string text = row().algorithm;
   if (row().order == "path") text += " (path order)";
+  if (row().order == "motion") text += " (motion)";
   if (row().cache == "cold") text += " (cold)";
   return text;
 }
+
+bool RowGroup::is_special() const { return row().order == "path" || row().order == "motion" || row().cache == "cold"; }
 
 std::vector<double> RowGroup::all(const std::string& name) const {
   std::vector<double> values;

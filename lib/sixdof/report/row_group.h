@@ -13,8 +13,10 @@ struct RowGroup {
   std::vector<const Row*> repetitions;  ///< At least one; the answers of all are the same.
 
   const Row& row() const { return *repetitions.front(); }
-  /// The algorithm as a figure names it: with "(path order)", "(cold)" where the row is about these.
+  /// The algorithm as a figure names it: with "(path order)", "(motion)", "(cold)" where the row is about these.
   std::string algorithm() const;
+  /// Whether it is about one of these, so that it is compared with no other row.
+  bool is_special() const;
   /// Median over the repetitions; empty where none has the value.
   std::optional<double> median(const std::string& name) const;
   /// The values of all repetitions that have it and are above zero.

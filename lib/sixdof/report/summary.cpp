@@ -36,7 +36,7 @@ std::vector<Contest> contests_of(const Results& results, const std::vector<RowGr
     const Row& row = group.row();
     const bool is_query = row.query == "collide" || row.query == "distance" || row.query == "respond";
     const auto time = processor_time(group);
-    if (!is_query || !row.percent || !time || !is_ranked(group) || row.order == "path" || row.cache == "cold") continue;
+    if (!is_query || !row.percent || !time || !is_ranked(group) || group.is_special()) continue;
     const auto [place, is_new] =
         index.try_emplace({row.file, row.query, row.pair, row.kind, *row.percent}, contests.size());
     if (is_new) contests.push_back({run_name(results, row.file), row.query, row.pair, row.kind, *row.percent, {}});
@@ -84,6 +84,7 @@ std::string speed_sentence(const std::string& query, const std::vector<const Con
 std::string accuracy_sentence(const std::vector<RowGroup>& groups) {
   std::map<std::string, std::pair<double, double>> sums;  // algorithm: degrees, rows
   for (const RowGroup& group : groups) {
+    if (group.is_special()) continue;
     const auto angle = group.row().query == "respond" ? group.row().value("gamma_F_deg") : std::nullopt;
     if (!angle || group.row().algorithm == "exact" || group.row().algorithm == "brute-force") continue;
     auto& [degrees, rows] = sums[group.algorithm()];

@@ -40,7 +40,7 @@ sixdofReport.rowsOf = function (table) {
 
 /** "vps (cold)" has the colour of "vps". */
 sixdofReport.baseAlgorithm = function (name) {
-  return String(name).replace(/ \((?:path order|cold)\)$/, "");
+  return String(name).replace(/ \((?:path order|motion|cold)\)$/, "");
 };
 
 /** The rows of a figure before any choice. */
