@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
-#include <sixdof/oracle/double_lanes-inl.h>
+#include <sixdof/proximity/double_lanes-inl.h>
 
 // The distance of two triangles that do not intersect is the least of the distances of 3 x 3 pairs of edges and of 6
 // corners from the faces that they lie over. Whatever the parameters s and r of a feature, both points are points of
@@ -26,9 +26,6 @@ namespace HWY_NAMESPACE {
 
 using namespace double_lanes::HWY_NAMESPACE;
 
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
 HWY_INLINE V clamp(V x) { return hn::Min(hn::Max(x, hn::Zero(k_lanes)), set(1.0)); }
 
 /// x / y for y >= 0; whatever it is where both are zero, it is finite.

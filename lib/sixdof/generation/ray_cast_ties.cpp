@@ -15,17 +15,13 @@
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
-#include <sixdof/oracle/double_lanes-inl.h>
+#include <sixdof/proximity/double_lanes-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::ray_cast {
 namespace HWY_NAMESPACE {
 
 using namespace double_lanes::HWY_NAMESPACE;
-
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
 
 /// For each child of a node, a lower bound on axis . p for the points p of its volume, by its box and by its slab.
 /// Infinite in lanes without a child.

@@ -7,7 +7,7 @@
 
 #include <sixdof/geometry/predicates.h>
 #include <sixdof/oracle/crossing.h>
-#include <sixdof/oracle/double_lanes-inl.h>
+#include <sixdof/proximity/double_lanes-inl.h>
 
 // Eight pairs of triangles at once, one per lane: which pairs cross, and where. Signs of determinants are those of
 // predicates.h where a filter decides them. A pair for which one does not is doubtful.
@@ -33,11 +33,6 @@ HWY_INLINE Vec number(int x) {
   return hn::Set(hn::DFromV<Vec>(), static_cast<hn::TFromV<Vec>>(x));
 }
 
-template <class Vec>
-HWY_INLINE Vec dot(const Vector3<Vec>& a, const Vector3<Vec>& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-
 /// A cross product, and the sums of the magnitudes of its products.
 template <class Vec>
 struct Minors {
@@ -52,11 +47,6 @@ struct Minors {
       : value{hn::Sub(yz, zy), hn::Sub(zx, xz), hn::Sub(xy, yx)},
         magnitude(abs(Vector3<Vec>{yz, zx, xy}) + abs(Vector3<Vec>{zy, xz, yx})) {}
 };
-
-template <class Vec>
-HWY_INLINE Vector3<Vec> cross(const Vector3<Vec>& u, const Vector3<Vec>& v) {
-  return Minors<Vec>(u, v).value;
-}
 
 /// The largest error of a determinant of three differences of points given in doubles: detail::Filtered in lanes.
 struct DoubleFilter {

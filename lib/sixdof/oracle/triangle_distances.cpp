@@ -9,7 +9,7 @@
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
-#include <sixdof/oracle/double_lanes-inl.h>
+#include <sixdof/proximity/double_lanes-inl.h>
 
 // The same operations in the same order as triangle_distance.cpp, which says why they are these.
 
@@ -18,15 +18,6 @@ namespace sixdof::triangle_distances {
 namespace HWY_NAMESPACE {
 
 using namespace double_lanes::HWY_NAMESPACE;
-
-/// In the order of Eigen.
-HWY_INLINE V sum(const V3& a) { return hn::Add(hn::Add(a.x, a.y), a.z); }
-HWY_INLINE V dot(const V3& a, const V3& b) { return sum({hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)}); }
-HWY_INLINE V3 cross(const V3& a, const V3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-HWY_INLINE V3 operator-(const V3& a) { return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)}; }
 
 /// Whether 0 < x < 1.
 HWY_INLINE M is_inside(V x) { return hn::And(hn::Gt(x, hn::Zero(k_lanes)), hn::Lt(x, set(1.0))); }

@@ -1,10 +1,10 @@
-// Part of crossing_lanes-inl.h and triangle_distances.cpp: eight pairs of triangles, one per SIMD lane, in
-// doubles. Taken once per instruction set: the guard is Highway's for that.
-#if defined(SIXDOF_ORACLE_DOUBLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef SIXDOF_ORACLE_DOUBLE_LANES_INL_H_
-#undef SIXDOF_ORACLE_DOUBLE_LANES_INL_H_
+// Eight pairs of triangles or eight volumes, one per SIMD lane, in doubles: for crossings and distances of triangles
+// (oracle/) and the ray cast (generation/). Taken once per instruction set: the guard is Highway's for that.
+#if defined(SIXDOF_PROXIMITY_DOUBLE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef SIXDOF_PROXIMITY_DOUBLE_LANES_INL_H_
+#undef SIXDOF_PROXIMITY_DOUBLE_LANES_INL_H_
 #else
-#define SIXDOF_ORACLE_DOUBLE_LANES_INL_H_
+#define SIXDOF_PROXIMITY_DOUBLE_LANES_INL_H_
 #endif
 
 #include <cstddef>
@@ -60,6 +60,24 @@ HWY_INLINE Vector3<Vec> operator+(const Vector3<Vec>& a, const Vector3<Vec>& b) 
 template <class Vec>
 HWY_INLINE Vector3<Vec> operator*(Vec s, const Vector3<Vec>& a) {
   return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+template <class Vec>
+HWY_INLINE Vector3<Vec> operator-(const Vector3<Vec>& a) {
+  return {hn::Neg(a.x), hn::Neg(a.y), hn::Neg(a.z)};
+}
+/// In the order of Eigen.
+template <class Vec>
+HWY_INLINE Vec sum(const Vector3<Vec>& a) {
+  return hn::Add(hn::Add(a.x, a.y), a.z);
+}
+template <class Vec>
+HWY_INLINE Vec dot(const Vector3<Vec>& a, const Vector3<Vec>& b) {
+  return sum(Vector3<Vec>{hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)});
+}
+template <class Vec>
+HWY_INLINE Vector3<Vec> cross(const Vector3<Vec>& a, const Vector3<Vec>& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 template <class Vec>
 HWY_INLINE Vector3<Vec> abs(const Vector3<Vec>& a) {
