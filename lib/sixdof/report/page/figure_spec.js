@@ -38,7 +38,7 @@ sixdofReport.rowsOf = function (table) {
   return table.rows.map((cells) => Object.fromEntries(table.columns.map((column, i) => [column, cells[i]])));
 };
 
-/** "vps (cold)" has the colour of "vps". */
+/** "vps (cold)" has the colour of "vps", and a dashed line. */
 sixdofReport.baseAlgorithm = function (name) {
   return String(name).replace(/ \((?:path order|motion|cold)\)$/, "");
 };
@@ -198,8 +198,9 @@ function paintAlgorithms(spec, field, algorithms, context) {
   const index = (name) => Math.max(0, context.algorithms.indexOf(sixdofReport.baseAlgorithm(name)));
   const colours = algorithms.map((name) => sixdofReport.colourOf(index(name), context.theme));
   const shapes = algorithms.map((name) => sixdofReport.shapeOf(index(name)));
+  const dashes = algorithms.map((name) => (sixdofReport.baseAlgorithm(name) === name ? [1, 0] : [6, 4]));
   visit(spec, (node) => {
-    for (const [channel, range] of [["color", colours], ["fill", colours], ["shape", shapes]]) {
+    for (const [channel, range] of [["color", colours], ["fill", colours], ["shape", shapes], ["strokeDash", dashes]]) {
       const encoding = node[channel];
       if (!encoding || typeof encoding !== "object" || encoding.field !== field) continue;
       encoding.scale = { domain: algorithms, range };
@@ -229,7 +230,7 @@ function configOf(theme) {
     view: { stroke: grid },
     axis: { labelColor: text, titleColor: text, gridColor: grid, domainColor: quiet, tickColor: quiet, labelFontSize: 12,
             titleFontSize: 13, titleFontWeight: "normal" },
-    legend: { labelColor: text, titleColor: text, labelFontSize: 12, symbolSize: 90, symbolOpacity: 1, orient: "bottom", columns: 4 },
+    legend: { labelColor: text, titleColor: text, labelFontSize: 12, symbolSize: 90, symbolOpacity: 1, orient: "bottom", columns: 4, labelLimit: 220 },
     header: { labelColor: text, titleColor: text },
     title: { color: text, fontSize: 14 },
     text: { color: text, fontSize: 12 },
@@ -272,5 +273,6 @@ sixdofReport.prepareSpec = function (figure, rows, choices, context) {
   spec.autosize = { type: "fit-x", contains: "padding" };
   if (context.title) spec.title = context.title;
   spec.config = configOf(context.theme);
+  if (algorithms.some((name) => String(name).length > 16)) spec.config.legend.columns = 3;  // as many as fit
   return spec;
 };
