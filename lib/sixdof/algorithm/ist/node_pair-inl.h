@@ -1,11 +1,13 @@
 // Compiled once per instruction set: part of traversal.cpp. It has no include guard.
 
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include <hwy/highway.h>
 
 #include <sixdof/algorithm/ist/traversal.h>
+#include <sixdof/base/set_bits.h>
 
 // Tests a node of A against a node of B: their 4 x 4 pairs of balls in lanes 4 i + j, i a slot of A's node and j one of
 // B's. Products and sums are separate operations (no fused multiply-add), so all instruction sets round alike.
@@ -180,20 +182,18 @@ struct ChildPairs {
 
   /// Writes the members of the pairs, followed by up to k_pairs undefined values. @return the number of pairs
   HWY_INLINE std::size_t write(std::int32_t* out_a, std::int32_t* out_b) const {
-    const I mask_a = hn::Set(k_ints, slot_mask_a), mask_b = hn::Set(k_ints, slot_mask_b);
-    const I from_a = hn::Set(k_ints, first_a), from_b = hn::Set(k_ints, first_b);
+    constexpr hn::CappedTag<std::int32_t, 8> d;  // as many as k_set_bits has
+    constexpr hn::Rebind<std::uint8_t, decltype(d)> d_bytes;
+    const auto set = [&](std::int32_t x) HWY_ATTR { return hn::Set(d, x); };
     std::size_t count = 0;
-    for (std::size_t l = 0; l < k_pairs; l += hn::Lanes(k_ints)) {
-      const I lane = hn::Iota(k_ints, static_cast<std::int32_t>(l));
-      const I slot_a = hn::ShiftRight<2>(lane), slot_b = hn::And(lane, hn::Set(k_ints, 3));
-      const unsigned part = pairs >> l & ((1u << hn::Lanes(k_ints)) - 1u);
-      const std::uint64_t word = part;
-      std::uint8_t bytes[8];
-      std::memcpy(bytes, &word, sizeof bytes);
-      const auto mask = hn::LoadMaskBits(k_ints, bytes);
-      hn::StoreU(hn::Compress(hn::Add(from_a, hn::And(slot_a, mask_a)), mask), k_ints, out_a + count);
-      hn::StoreU(hn::Compress(hn::Add(from_b, hn::And(slot_b, mask_b)), mask), k_ints, out_b + count);
-      count += static_cast<std::size_t>(__builtin_popcount(part));
+    for (std::size_t l = 0; l < k_pairs; l += hn::Lanes(d)) {
+      const unsigned part = pairs >> l & ((1u << hn::Lanes(d)) - 1u);
+      const auto bits = hn::PromoteTo(d, hn::LoadU(d_bytes, k_set_bits[part].data()));
+      const auto lane = hn::Add(bits, set(static_cast<std::int32_t>(l)));
+      const auto slot_a = hn::ShiftRight<2>(lane), slot_b = hn::And(lane, set(3));
+      hn::StoreU(hn::Add(set(first_a), hn::And(slot_a, set(slot_mask_a))), d, out_a + count);
+      hn::StoreU(hn::Add(set(first_b), hn::And(slot_b, set(slot_mask_b))), d, out_b + count);
+      count += static_cast<std::size_t>(std::popcount(part));
     }
     return count;
   }

@@ -1,6 +1,7 @@
 #include <sixdof/algorithm/vps/point_tree.h>
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -16,6 +17,7 @@
 #include <hwy/highway.h>
 
 #include <sixdof/algorithm/vps/lookup-inl.h>
+#include <sixdof/base/set_bits.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace sixdof::vps {
@@ -24,6 +26,8 @@ namespace HWY_NAMESPACE {
 /// Slack for the rounding of voxel coordinates, in voxels: in single precision those below 2^12 round to 2^-12.
 constexpr float k_rounding = 1e-3f;
 constexpr float k_half_diagonal = 0.8660254f;  // of a voxel
+
+constexpr hn::Rebind<std::uint8_t, Words> k_bytes;
 
 /// Which of a node's children may hold points in contact.
 class NodeTest {
@@ -43,10 +47,11 @@ class NodeTest {
     std::size_t count = 0;
     for (std::size_t l = 0; l < PointTree::k_width; l += hn::Lanes(k_floats)) {
       const auto row = [&](std::size_t r) HWY_ATTR { return hn::Load(k_floats, node.sphere[r] + l); };
-      const auto near = hn::RebindMask(k_words, is_near({row(0), row(1), row(2)}, row(3)));
-      const auto child = hn::Iota(k_words, first + static_cast<std::uint32_t>(l));
-      hn::StoreU(hn::Compress(child, near), k_words, out + count);
-      count += hn::CountTrue(k_words, near);
+      HWY_ALIGN std::uint8_t near[8] = {};  // as many as StoreMaskBits may write
+      hn::StoreMaskBits(k_floats, is_near({row(0), row(1), row(2)}, row(3)), near);
+      const auto bits = hn::PromoteTo(k_words, hn::LoadU(k_bytes, k_set_bits[near[0]].data()));
+      hn::StoreU(hn::Add(bits, hn::Set(k_words, first + static_cast<std::uint32_t>(l))), k_words, out + count);
+      count += static_cast<std::size_t>(std::popcount(near[0]));
     }
     return count;
   }
