@@ -77,6 +77,7 @@ TEST_F(Interrupt, EndsAtOnceAtTheSecondSignal) {
 }
 
 TEST_F(Interrupt, GivesTheSignalsBack) {
+  std::signal(SIGINT, SIG_DFL);  // a script's background jobs ignore it
   { const InterruptGuard guard("program"); }
   EXPECT_EQ(exit_code_of([] { std::raise(SIGINT); }), 128 + SIGINT);
   EXPECT_FALSE(InterruptGuard::requested());
