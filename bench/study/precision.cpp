@@ -141,8 +141,9 @@ std::string PrecisionStudy::why_left_out(const PrecisionPoint& point) const {
 /// @throws Error if the plan's deadline cannot be kept
 void PrecisionStudy::check_deadline(Query& query) const {
   if (std::isinf(plan_.deadline_ns)) return;
+  constexpr std::size_t k_trial = 16, k_trial_motions = 2;
   const TimedPoses first =
-      sample_.motions.poses.empty() ? TimedPoses{sample_.poses}.first(16) : sample_.motions.first(2);
+      sample_.motions.poses.empty() ? TimedPoses{sample_.poses}.first(k_trial) : sample_.motions.first(k_trial_motions);
   const double p50 = time_single_queries(query, sample_.question, first).least.p50;
   if (p50 > plan_.deadline_ns) {
     throw Error(fmt::format("half of its queries take longer than {}, over the deadline", duration_text(1e-9 * p50)));
