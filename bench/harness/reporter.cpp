@@ -36,7 +36,7 @@ void RowReporter::ReportRuns(const std::vector<Run>& runs) {
   std::vector<Run> kept;
   for (Run run : runs) {
     if (left_out_.contains(run.run_name.function_name)) continue;
-    if (!run.run_name.time_type.empty()) run.cpu_accumulated_time = run.real_accumulated_time;
+    if (run.run_name.time_type.ends_with("manual_time")) run.cpu_accumulated_time = run.real_accumulated_time;
     take_processor_time(run);
     run.run_name.time_type.clear();
     run.run_name.iterations.clear();

@@ -52,7 +52,7 @@ std::vector<const Row*> choose_rows(const std::vector<Row>& rows) {
 }
 
 /// Registers rows with Google Benchmark while it exists. The library keeps references to them. It adds words to
-/// the name of a row of one round, which RowReporter removes.
+/// names, which RowReporter removes.
 class Registration {
  public:
   Registration(const std::vector<const Row*>& rows, const std::function<void(const Row&, benchmark::State&)>& call) {
@@ -60,6 +60,7 @@ class Registration {
       auto* const registered =
           benchmark::RegisterBenchmark(row->name.c_str(), [row, &call](benchmark::State& state) { call(*row, state); });
       registered->Unit(row->unit);
+      registered->MeasureProcessCPUTime();  // a query may use several threads
       if (row->one_round) registered->Iterations(1);
       if (row->one_round || row->manual_time) registered->UseManualTime();
     }

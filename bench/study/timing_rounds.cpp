@@ -60,14 +60,14 @@ void TimingRounds::add(Query& query, bench::Question question, std::span<const P
       wall_ns_.push_back(wall_ns);
       return;
     }
-    const double cpu_start = thread_processor_ns(), wall_start = wall_clock_ns();
+    const double cpu_start = processor_ns(), wall_start = wall_clock_ns();
     double queries = 0.0;
     do {
       ask_all(poses.size(), [&](std::size_t i) { return guarded.ask_timed(poses[i]); });
       queries += static_cast<double>(poses.size());
       InterruptGuard::check();
     } while (wall_clock_ns() - wall_start < 1e9 * k_shortest_s);
-    cpu_ns_.push_back((thread_processor_ns() - cpu_start) / queries);
+    cpu_ns_.push_back((processor_ns() - cpu_start) / queries);
     wall_ns_.push_back((wall_clock_ns() - wall_start) / queries);
   });
 }

@@ -86,13 +86,26 @@ TEST_F(Collector, OutliersStandBesideTheFieldsOfRowsThatRan) {
 TEST_F(Collector, RowsOfOneRoundHaveTheirOwnNameAndTime) {
   ResultRow run = row("a");
   run.run_name.iterations = "iterations:1";
-  run.run_name.time_type = "manual_time";
+  run.run_name.time_type = "process_time/manual_time";
   run.cpu_accumulated_time = 7.0;
   report({run});
   const auto written = document().at("benchmarks")[0];
   EXPECT_EQ(written.at("name"), "a");
   EXPECT_EQ(written.at("run_name"), "a");
   EXPECT_EQ(written.at("cpu_time"), written.at("real_time"));
+}
+
+TEST_F(Collector, OtherRowsHaveTheProcessorTimeOfAllThreads) {
+  ResultRow run = row("a");
+  run.run_name.time_type = "process_time";
+  run.iterations = 1;
+  run.real_accumulated_time = 4e-6;
+  run.cpu_accumulated_time = 7e-6;
+  report({run});
+  const auto written = document().at("benchmarks")[0];
+  EXPECT_EQ(written.at("name"), "a");
+  EXPECT_DOUBLE_EQ(written.at("cpu_time"), 7000.0);
+  EXPECT_DOUBLE_EQ(written.at("real_time"), 4000.0);
 }
 
 TEST_F(Collector, IsolatedRowsHaveTheProcessorTimeOfTheirProcess) {

@@ -11,6 +11,8 @@ namespace {
 /// Largest deviation of R^T R from the identity that counts as rounding of a rotation.
 constexpr double k_rotation_tolerance = 1e-9;
 
+constexpr double k_most_threads = 64.0;
+
 class ExactQuery final : public Query {
  public:
   ExactQuery(const Mesh& a, const Mesh& b, const Settings& settings)
@@ -23,7 +25,8 @@ class ExactQuery final : public Query {
     }
     solid_a_.emplace(a, oracle_.tree_a());
     if (&a != &b) solid_b_.emplace(b, oracle_.tree_b());
-    overlap_query_.emplace(*solid_a_, solid_b_ ? *solid_b_ : *solid_a_);
+    overlap_query_.emplace(*solid_a_, solid_b_ ? *solid_b_ : *solid_a_,
+                           static_cast<unsigned>(settings.number("threads")));
   }
 
   Outcome<bool> collide(const Pose& X_AB) override {
@@ -82,11 +85,14 @@ std::unique_ptr<Algorithm> make_exact_algorithm() {
        .summary = "exact distance, yes/no and overlap volume with its gradient: the reference for the others",
        .answers = {.collide = true, .distance = true, .respond = true},
        .law = ResponseLaw::volume,
-       .parameters = {Parameter::choice("warm_start",
-                                        "start each query from the closest triangles of the last one, and keep "
-                                        "candidates for poses near by; changes "
-                                        "no distance and no response",
-                                        "off", {"off", "on"})}});
+       .parameters = {
+           Parameter::choice("warm_start",
+                             "start each query from the closest triangles of the last one, and keep "
+                             "candidates for poses near by; changes "
+                             "no distance and no response",
+                             "off", {"off", "on"}),
+           Parameter::count("threads", "threads that a response without a warm start may use; changes no response", "1",
+                            1.0, k_most_threads)}});
 }
 
 }  // namespace sixdof

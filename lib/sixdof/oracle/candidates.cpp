@@ -58,9 +58,7 @@ class CloseTests {
   float blurred_;  // square of a diagonal
 };
 
-/// Axes across two boxes, and across two triangles: instead of cross(), once or, along a displacement, often.
-constexpr detail::CrossAxesUse k_use_of_cross_axes(0.3);
-constexpr detail::CrossAxesUse k_use_of_cross_edges(0.9);
+/// Axes across two triangles along a displacement: instead of many cross(), so they pay sooner than CandidateAxes says.
 constexpr detail::CrossAxesUse k_use_of_moving_cross_edges(0.5);
 
 /// Depth-first traversal of pairs of volumes. Pairs wait on a stack while their memory is fetched. Which of two pairs
@@ -80,6 +78,7 @@ class DualTreeTraversal {
         close_(close),
         R_AB_(X_AB.R),
         stack_(scratch.volumes),
+        use_of_cross_axes_(scratch.axes.volumes),
         expansion_(a, b),
         take_(take) {}
 
@@ -175,6 +174,7 @@ class DualTreeTraversal {
   const CloseTests& close_;
   const Eigen::Matrix3d& R_AB_;
   std::vector<VolumePair>& stack_;
+  detail::CrossAxesUse& use_of_cross_axes_;
   /// Of the volumes that are taken 80 % are loaded if one is kept, 45 % with 16, 36 % with 64, which do not fit the
   /// first cache (elephants, overlap of 10 %).
   static constexpr std::size_t k_kept = 16;
@@ -183,7 +183,6 @@ class DualTreeTraversal {
   HWY_ALIGN float first_[k_width];
   HWY_ALIGN float last_[k_width];
   std::optional<detail::CrossAxes> cross_axes_;  // made when they are asked for the first time
-  detail::CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
   Take take_;
 };
 
@@ -192,7 +191,8 @@ class DualTreeTraversal {
 template <bool moving>
 class LeafTests {
  public:
-  LeafTests(const Tree& a, const Tree& b, const TreeMotion& motion) : motion_(motion), leaves_a_(a), leaves_b_(b) {}
+  LeafTests(const Tree& a, const Tree& b, const TreeMotion& motion, detail::CrossAxesUse& use_of_cross_edges)
+      : motion_(motion), leaves_a_(a), leaves_b_(b), use_of_cross_edges_(use_of_cross_edges) {}
 
   /// Calls take(pair of triangles, lane of first() and last()) for those that may intersect.
   template <class Take>
@@ -220,7 +220,7 @@ class LeafTests {
   const TreeMotion& motion_;
   leaves::LeafCache<true> leaves_a_;
   leaves::LeafCache<false> leaves_b_;
-  detail::CrossAxesUse use_of_cross_edges_ = moving ? k_use_of_moving_cross_edges : k_use_of_cross_edges;
+  detail::CrossAxesUse& use_of_cross_edges_;
   HWY_ALIGN float first_[leaves::k_pairs];
   HWY_ALIGN float last_[leaves::k_pairs];
 };
@@ -230,7 +230,12 @@ class LeafQueue {
  public:
   LeafQueue(const Tree& a, const Tree& b, const TreeMotion& motion, const CloseTests& close, CandidateScratch& scratch,
             std::vector<TrianglePair>& pairs)
-      : a_(a), b_(b), close_(close), queue_(scratch.leaves), pairs_(pairs), tests_(a, b, motion) {
+      : a_(a),
+        b_(b),
+        close_(close),
+        queue_(scratch.leaves),
+        pairs_(pairs),
+        tests_(a, b, motion, scratch.axes.triangles) {
     queue_.clear();
   }
 
@@ -278,6 +283,29 @@ std::size_t continue_search(const Tree& a, const Tree& b, const Pose& X_AB, doub
   return count;
 }
 
+void divide_search(const Tree& a, const Tree& b, const Pose& X_AB, std::size_t enough, CandidateScratch& scratch,
+                   std::vector<CandidateScratch::VolumePair>& pairs, std::vector<CandidateScratch::VolumePair>& wider) {
+  const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero(), 0.0);
+  const CloseTests close(a, b, X_AB, Eigen::Vector3d::Zero(), motion);
+  bool meets_leaves = false;
+  const auto take = [&](std::uint32_t, std::uint32_t, bool) { meets_leaves = true; };
+  DualTreeTraversal<false, decltype(take)> traversal(a, b, X_AB, motion, close, scratch, take);
+  scratch.start(a, b);
+  pairs = scratch.volumes;
+  for (bool divides = true; divides && pairs.size() < enough; pairs.swap(wider)) {
+    divides = false;
+    wider.clear();
+    for (const CandidateScratch::VolumePair& pair : pairs) {
+      scratch.volumes.assign(1, pair);
+      meets_leaves = false;
+      traversal.run(1);
+      if (meets_leaves) scratch.volumes.assign(1, pair);  // pairs of leaves come before the pairs of volumes
+      wider.insert(wider.end(), scratch.volumes.begin(), scratch.volumes.end());
+      divides = divides || !meets_leaves;
+    }
+  }
+}
+
 void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                        CandidateScratch& scratch, std::vector<SweptPair>& pairs) {
   const TreeMotion motion(a, b, X_AB, displacement);
@@ -289,7 +317,8 @@ void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eig
 void select_triangles(const Tree& a, const Tree& b, const Pose& X_AB, double margin,
                       std::span<const SweptPair> leaf_pairs, FractionRange range, std::vector<TrianglePair>& pairs) {
   const TreeMotion motion(a, b, X_AB, Eigen::Vector3d::Zero(), margin);
-  LeafTests<false> tests(a, b, motion);
+  CandidateAxes axes;
+  LeafTests<false> tests(a, b, motion, axes.triangles);
   constexpr std::size_t k_ahead = 16;
   for (std::size_t i = 0; i < leaf_pairs.size(); ++i) {
     if (i + k_ahead < leaf_pairs.size() && range.meets(leaf_pairs[i + k_ahead])) {
@@ -305,7 +334,8 @@ void select_triangles(const Tree& a, const Tree& b, const Pose& X_AB, double mar
 void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                           std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs) {
   const TreeMotion motion(a, b, X_AB, displacement);
-  LeafTests<true> tests(a, b, motion);
+  detail::CrossAxesUse use_of_cross_edges = k_use_of_moving_cross_edges;
+  LeafTests<true> tests(a, b, motion, use_of_cross_edges);
   for (const SweptPair& pair : leaf_pairs) {
     tests.test(pair.a, pair.b, [&](TrianglePair triangles, std::uint32_t lane) {
       pairs.push_back({triangles.a, triangles.b, tests.first(lane), tests.last(lane)});
@@ -321,6 +351,7 @@ HWY_AFTER_NAMESPACE();
 namespace sixdof {
 namespace candidates {
 HWY_EXPORT(continue_search);
+HWY_EXPORT(divide_search);
 HWY_EXPORT(find_swept_leaves);
 HWY_EXPORT(find_swept_triangles);
 HWY_EXPORT(select_triangles);
@@ -337,12 +368,22 @@ std::size_t continue_search(const Tree& a, const Tree& b, const Pose& X_AB, doub
 
 void CandidateScratch::start(const Tree& a, const Tree& b) {
   volumes.assign(1, {0, 0, a.nodes()[0].volume.squared_diagonal(), b.nodes()[0].volume.squared_diagonal()});
+  axes = {};
 }
 
 void CandidateSearch::start(const Tree& a, const Tree& b, const Pose& pose, double length) {
   X_AB = pose;
   margin = length;
   scratch.start(a, b);
+  pairs.clear();
+  expansions = 0;
+}
+
+void CandidateSearch::start(const Pose& pose, const CandidateScratch::VolumePair& pair, const CandidateAxes& axes) {
+  X_AB = pose;
+  margin = 0.0;
+  scratch.volumes.assign(1, pair);
+  scratch.axes = axes;
   pairs.clear();
   expansions = 0;
 }
@@ -356,6 +397,11 @@ void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateSc
   pairs.clear();
   scratch.start(a, b);
   continue_search(a, b, X_AB, 0.0, scratch, pairs, CandidateSearch::k_whole);
+}
+
+void divide_search(const Tree& a, const Tree& b, const Pose& X_AB, std::size_t enough, CandidateScratch& scratch,
+                   std::vector<CandidateScratch::VolumePair>& pairs, std::vector<CandidateScratch::VolumePair>& wider) {
+  HWY_DYNAMIC_DISPATCH(candidates::divide_search)(a, b, X_AB, enough, scratch, pairs, wider);
 }
 
 void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,

@@ -12,6 +12,7 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/predicates.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/proximity/cross_axes.h>
 
 namespace sixdof {
 
@@ -27,6 +28,11 @@ inline Eigen::Vector3d transform_point(const Pose& X_AB, const Eigen::Vector3d& 
   return q;
 }
 
+/// What a search has seen of axes across two volumes, and across two triangles: whether they pay.
+struct CandidateAxes {
+  detail::CrossAxesUse volumes{0.3}, triangles{0.9};
+};
+
 /// Memory of a search, for the next one.
 struct CandidateScratch {
   /// Two volumes, by their numbers (Tree::Node::number), and the squares of their boxes' diagonals.
@@ -41,6 +47,7 @@ struct CandidateScratch {
   };
   std::vector<VolumePair> volumes;
   std::vector<LeafPair> leaves;
+  CandidateAxes axes;
 
   /// With the roots of both trees.
   void start(const Tree& a, const Tree& b);
@@ -64,11 +71,20 @@ struct CandidateSearch {
   std::size_t expansions = 0;       ///< Of pairs of volumes, so far.
 
   void start(const Tree& a, const Tree& b, const Pose& pose, double length);
+  /// Of one pair of volumes and all below it, without a margin.
+  void start(const Pose& pose, const CandidateScratch::VolumePair& pair, const CandidateAxes& axes);
   /// Expands up to `most` pairs of volumes, k_whole for all.
   /// @param a, b those of start()
   void advance(const Tree& a, const Tree& b, std::size_t most);
   bool is_complete() const { return scratch.volumes.empty(); }
 };
+
+/// Replaces the pair of both roots by the pairs of volumes below, level by level, until there are `enough` or no more
+/// without coming to leaves. Searching them one after the other, the last one first, finds the candidates of
+/// find_candidates() in their order.
+/// @param scratch, wider memory, for the next call
+void divide_search(const Tree& a, const Tree& b, const Pose& X_AB, std::size_t enough, CandidateScratch& scratch,
+                   std::vector<CandidateScratch::VolumePair>& pairs, std::vector<CandidateScratch::VolumePair>& wider);
 
 /// Two leaves or two triangles that may intersect during a translation of B: indices into Tree::leaves(), or in tree
 /// order.

@@ -4,6 +4,7 @@
 #include <bit>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -353,7 +354,7 @@ class SegmentSums {
 };
 
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin,
-                           std::span<const TrianglePair> pairs, const Vector3d& along) {
+                           const detail::PairSource& next, const Vector3d& along) {
   // Several batches take each step together, and the pairs that intersect are summed a step later: what was written a
   // moment ago in other pieces than it is read in takes long to read.
   constexpr std::size_t k_batches = CrossingQueue::k_most_batches;
@@ -365,7 +366,8 @@ CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, con
     if (count != 0) queue.remove(count);
   };
   Batch batches[k_batches];
-  while (!pairs.empty()) {
+  std::span<const TrianglePair> pairs = next();
+  for (; !pairs.empty(); pairs = pairs.empty() ? next() : pairs) {
     const std::size_t count = std::min((pairs.size() + k_batch - 1) / k_batch, k_batches);
     for (std::size_t i = 0; i < count; ++i) batches[i].gather(a, b, pairs.subspan(i * k_batch));
     for (std::size_t i = 0; i < count; ++i) batches[i].move(X_AB);
@@ -393,8 +395,14 @@ HWY_EXPORT(sum_crossings);
 namespace detail {
 
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
+                           const PairSource& next, const Eigen::Vector3d& along) {
+  return HWY_DYNAMIC_DISPATCH(crossings::sum_crossings)(a, b, X_AB, origin, next, along);
+}
+
+CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
                            std::span<const TrianglePair> pairs, const Eigen::Vector3d& along) {
-  return HWY_DYNAMIC_DISPATCH(crossings::sum_crossings)(a, b, X_AB, origin, pairs, along);
+  return sum_crossings(
+      a, b, X_AB, origin, [&] { return std::exchange(pairs, {}); }, along);
 }
 
 }  // namespace detail

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include <Eigen/Core>
@@ -32,10 +33,18 @@ struct CrossingSums {
   double curvature = 0.0;                            ///< Overlap::curvature
 };
 
-/// The same bits on every instruction set, and whatever pairs that do not intersect are among `pairs`.
+/// Gives pairs of triangles piece by piece; none after the last.
+using PairSource = std::function<std::span<const TrianglePair>()>;
+
+/// The same bits on every instruction set, whatever pairs that do not intersect are among those given, and however they
+/// are divided.
 /// @param origin of all moments, in A's frame: near the crossings, so that little cancels
-/// @param pairs in the order of find_candidates(): all that intersect at X_AB, and any others
+/// @param next gives, in the order of find_candidates(), all that intersect at X_AB, and any others
 /// @param along direction of the curvature, in A's frame; zero: none
+CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
+                           const PairSource& next, const Eigen::Vector3d& along = Eigen::Vector3d::Zero());
+
+/// The same of these pairs.
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
                            std::span<const TrianglePair> pairs, const Eigen::Vector3d& along = Eigen::Vector3d::Zero());
 

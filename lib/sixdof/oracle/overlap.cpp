@@ -2,12 +2,12 @@
 
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <Eigen/Geometry>
 
 #include <sixdof/base/error.h>
-#include <sixdof/oracle/candidates.h>
-#include <sixdof/oracle/crossing_sums.h>
+#include <sixdof/base/parallel.h>
 #include <sixdof/oracle/winding.h>
 
 namespace sixdof {
@@ -50,6 +50,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, bool
   if (!X_AB.R.allFinite() || !X_AB.t.allFinite() || apart(*a_, *b_, X_AB))
     return evaluate(X_AB, reference, std::span<const TrianglePair>{});
   if (!warm_start) {
+    if (threads_ > 1) return evaluate_by_threads(X_AB, reference);
     find_candidates(a_->tree(), b_->tree(), X_AB, scratch_, pairs_);
     return evaluate(X_AB, reference, pairs_);
   }
@@ -58,8 +59,28 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, bool
   return overlap;
 }
 
+/// One thread sums up the crossings of the parts that are searched, and searches itself while there is none; the others
+/// search. Isolated: no other query of this object may begin on a thread that waits.
+Overlap OverlapQuery::evaluate_by_threads(const Pose& X_AB, const Vector3d& reference) {
+  parts_.start(a_->tree(), b_->tree(), X_AB);
+  Overlap overlap;
+  const auto work = [&](std::size_t i) {
+    if (i != 0) return parts_.help();
+    overlap = sum_up(
+        X_AB, reference, [this] { return parts_.next(); }, Vector3d::Zero());
+  };
+  parallel::isolated([&] { parallel::for_each(threads_, work); });
+  return overlap;
+}
+
 Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std::span<const TrianglePair> pairs,
                                const Vector3d& along) {
+  return sum_up(
+      X_AB, reference, [&] { return std::exchange(pairs, {}); }, along);
+}
+
+Overlap OverlapQuery::sum_up(const Pose& X_AB, const Vector3d& reference, const detail::PairSource& next,
+                             const Vector3d& along) {
   if (!X_AB.R.allFinite() || !X_AB.t.allFinite() || !reference.allFinite()) {
     throw BadArgument("overlap: pose and reference point must be finite");
   }
@@ -70,7 +91,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
 
   const Vector3d origin = common_box(*a_, *b_, X_AB, 0.0).center();  // near all crossings
   const Vector3d origin_B = X_AB.inverse() * origin;
-  detail::CrossingSums sums = detail::sum_crossings(*a_, *b_, X_AB, origin, pairs, along);
+  detail::CrossingSums sums = detail::sum_crossings(*a_, *b_, X_AB, origin, next, along);
   for (const Solid::Piece& piece : a_->pieces()) {
     sums.path_a.potential.add(piece.total,
                               detail::winding_of_b(b_->tree(), X_AB, transform_point, piece.pole, triangles_));
@@ -93,7 +114,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std:
 }
 
 std::size_t OverlapQuery::bytes() const {
-  return scratch_.bytes() + pairs_.capacity() * sizeof(TrianglePair) + kept_.bytes() +
+  return scratch_.bytes() + pairs_.capacity() * sizeof(TrianglePair) + parts_.bytes() + kept_.bytes() +
          triangles_.capacity() * sizeof(std::uint32_t);
 }
 

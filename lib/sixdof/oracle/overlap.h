@@ -10,7 +10,9 @@
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
+#include <sixdof/oracle/candidate_parts.h>
 #include <sixdof/oracle/candidates.h>
+#include <sixdof/oracle/crossing_sums.h>
 #include <sixdof/oracle/kept_candidates.h>
 #include <sixdof/oracle/solid.h>
 
@@ -66,11 +68,13 @@ struct Overlap {
 ///
 /// Cost: finding the crossings in the trees, then a constant per crossing.
 ///
-/// One object per thread; any number may share the solids. No allocation once the scratch has grown.
+/// One object per calling thread; any number may share the solids. No allocation once the scratch has grown, but by
+/// oneTBB where a query uses several threads.
 class OverlapQuery {
  public:
   /// Both solids outlive this object.
-  OverlapQuery(const Solid& a, const Solid& b) : a_(&a), b_(&b) {}
+  /// @param threads that a query without a warm start may use, this one included. The bits are the same
+  OverlapQuery(const Solid& a, const Solid& b, unsigned threads = 1) : a_(&a), b_(&b), threads_(threads) {}
 
   /// @param reference the point (A's frame) about which the moment is taken.
   /// @param warm_start for poses that follow each other closely: candidates are kept for the poses near by. The bits
@@ -94,10 +98,17 @@ class OverlapQuery {
   std::size_t bytes() const;
 
  private:
+  /// @param next as that of detail::sum_crossings()
+  Overlap sum_up(const Pose& X_AB, const Eigen::Vector3d& reference, const detail::PairSource& next,
+                 const Eigen::Vector3d& along);
+  Overlap evaluate_by_threads(const Pose& X_AB, const Eigen::Vector3d& reference);
+
   const Solid* a_;
   const Solid* b_;
+  unsigned threads_;
   CandidateScratch scratch_;
   std::vector<TrianglePair> pairs_;  // scratch
+  detail::CandidateParts parts_;     // if it uses several threads
   detail::KeptCandidates kept_;
   std::vector<std::uint32_t> triangles_;  // scratch
 };

@@ -158,9 +158,9 @@ class Server {
     b_ = copies ? nullptr : std::make_unique<const Mesh>(read_mesh(request.b));
     Settings settings = algorithm_.settings();
     for (const auto& [name, value] : request.settings) settings.set(name, value);
-    const double cpu_start = thread_processor_ns();
+    const double cpu_start = processor_ns();
     auto [query, wall_ns] = with_clock([&] { return algorithm_.prepare(*a_, copies ? *a_ : *b_, settings); });
-    const double cpu_ns = thread_processor_ns() - cpu_start;
+    const double cpu_ns = processor_ns() - cpu_start;
     if (!query) throw Error("prepare() returned a null pointer");
     query_ = std::move(query);
     return to_line(Prepared{wall_ns, cpu_ns, query_->footprint()});
@@ -227,12 +227,12 @@ class Server {
       progress_->set(++begun);
       return asker(request.poses[i]);
     };
-    const double cpu_start = thread_processor_ns();
+    const double cpu_start = processor_ns();
     const auto [done, wall_ns] = with_clock([&] {
       for (std::size_t pass = 0; pass < request.passes; ++pass) ask_all(request.poses.size(), ask);
       return true;
     });
-    timed.cpu_ns = thread_processor_ns() - cpu_start;
+    timed.cpu_ns = processor_ns() - cpu_start;
     timed.wall_ns = wall_ns;
     return timed;
   }

@@ -22,10 +22,10 @@ void keep(T& value) {
   asm volatile("" : "+m"(value) : : "memory");
 }
 
-/// Processor time of the calling thread in ns.
-inline double thread_processor_ns() {
+/// Processor time of all threads of this process in ns.
+inline double processor_ns() {
   timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
 }
 

@@ -1,0 +1,65 @@
+#include <sixdof/oracle/candidate_parts.h>
+
+namespace sixdof::detail {
+namespace {
+
+/// Parts of a search, at least, where its trees have as many pairs of volumes: so many that threads end at about the
+/// same time, and so few that a part takes longer than its start.
+constexpr std::size_t k_parts = 64;
+
+}  // namespace
+
+void CandidateParts::start(const Tree& a, const Tree& b, const Pose& X_AB) {
+  a_ = &a;
+  b_ = &b;
+  divide_search(a, b, X_AB, k_parts, scratch_, pairs_, wider_);
+  count_ = pairs_.size();
+  while (parts_.size() < count_) parts_.emplace_back();
+  for (std::size_t i = 0; i < count_; ++i) {
+    parts_[i].pair = pairs_[count_ - 1 - i];  // a search takes the last of its pairs first
+    parts_[i].is_done.store(false, std::memory_order_relaxed);
+  }
+  X_AB_ = X_AB;
+  axes_ = scratch_.axes;
+  given_ = 0;
+  taken_.store(0, std::memory_order_relaxed);
+}
+
+bool CandidateParts::search_one(CandidateAxes& axes) {
+  const std::size_t i = taken_.fetch_add(1, std::memory_order_relaxed);
+  if (i >= count_) return false;
+  Part& part = parts_[i];
+  part.search.start(X_AB_, part.pair, axes);
+  part.search.advance(*a_, *b_, CandidateSearch::k_whole);
+  axes = part.search.scratch.axes;
+  part.is_done.store(true, std::memory_order_release);
+  part.is_done.notify_one();
+  return true;
+}
+
+void CandidateParts::help() {
+  CandidateAxes axes = scratch_.axes;
+  while (search_one(axes)) {
+  }
+}
+
+std::span<const TrianglePair> CandidateParts::next() {
+  for (; given_ < count_; ++given_) {
+    Part& part = parts_[given_];
+    while (!part.is_done.load(std::memory_order_acquire) && search_one(axes_)) {
+    }
+    part.is_done.wait(false, std::memory_order_acquire);
+    if (!part.search.pairs.empty()) return parts_[given_++].search.pairs;
+  }
+  return {};
+}
+
+std::size_t CandidateParts::bytes() const {
+  std::size_t sum = scratch_.bytes() + (pairs_.capacity() + wider_.capacity()) * sizeof(pairs_[0]);
+  for (const Part& part : parts_) {
+    sum += sizeof(Part) + part.search.scratch.bytes() + part.search.pairs.capacity() * sizeof(TrianglePair);
+  }
+  return sum;
+}
+
+}  // namespace sixdof::detail
