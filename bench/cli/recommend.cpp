@@ -30,12 +30,14 @@ using study::Recommendation;
 
 /// Enough for a p99.9.
 constexpr std::size_t k_queries = 2100;
+constexpr unsigned k_most_threads = 64;
 
 struct Options {
   StudyOptions study{.budget = "3min"};
   std::string deadline = "1ms";
   std::string metric = "gamma_F_deg";
   std::string order = "random";
+  unsigned threads = 1;
 
   bool in_motion() const { return order == "motion"; }
 };
@@ -169,12 +171,15 @@ void run(const Options& options) {
   if (options.in_motion()) {
     std::ranges::move(study::warm_starts(plan.algorithms, plan.values), std::back_inserter(plan.values));
   }
+  std::ranges::move(study::thread_counts(plan.algorithms, plan.values, options.threads),
+                    std::back_inserter(plan.values));
   if (options.study.pairs.size() + options.study.sets.size() > 1) throw BadArgument("one pair at a time");
-  study::StudyPairs pairs(harness_options(options.study, k_queries,
-                                          arguments_of("recommend", options.study) +
-                                              fmt::format(" --deadline {} --metric {} --order {}", options.deadline,
-                                                          options.metric, options.order)),
-                          options.study.pairs);
+  study::StudyPairs pairs(
+      harness_options(options.study, k_queries,
+                      arguments_of("recommend", options.study) +
+                          fmt::format(" --deadline {} --metric {} --order {} --threads {}", options.deadline,
+                                      options.metric, options.order, options.threads)),
+      options.study.pairs);
   const CatalogueEntry& pair = *pairs.pairs().front();
   const auto started = bench::run_context(pairs.options(), registry, bench::parse_parameters({}, registry));
   StatusLine status;
@@ -220,6 +225,12 @@ void add_recommend_command(CLI::App& app) {
           "Poses that are timed: random, the configurations, far apart; or motion, poses that follow each other "
           "as in a haptic loop, from some of the configurations on, where warm starts are tried, too")
       ->check(CLI::IsMember({"random", "motion"}))
+      ->capture_default_str();
+  command
+      ->add_option("--threads", options->threads,
+                   "Threads that a query may use: algorithms with a parameter `threads` are tried with as many, with "
+                   "half of them and so on, and with one")
+      ->check(CLI::Range(1u, k_most_threads))
       ->capture_default_str();
   command->callback([options] { run(*options); });
   add_examples(

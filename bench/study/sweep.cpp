@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -30,6 +31,12 @@ std::vector<SweepPoint> joint_sweep(const Algorithm& algorithm) {
   return points;
 }
 
+/// Whether it has this parameter, and no parameter is swept without a word: values of one would end the joint sweep.
+bool has_but_sweeps_none(const Traits& traits, const std::string& name) {
+  return std::ranges::any_of(traits.parameters, [&](const Parameter& x) { return x.name == name; }) &&
+         std::ranges::all_of(traits.parameters, [](const Parameter& x) { return x.sweep.empty(); });
+}
+
 }  // namespace
 
 SweptValues parse_swept_values(const std::string& text) {
@@ -50,11 +57,23 @@ std::vector<SweptValues> warm_starts(const std::vector<const Algorithm*>& algori
   for (const Algorithm* const algorithm : algorithms) {
     const Traits& traits = algorithm->traits();
     const auto is_its = [&](const SweptValues& swept) { return swept.algorithm == traits.name; };
-    const auto is_swept = [](const Parameter& parameter) { return !parameter.sweep.empty(); };
-    const auto is_warm_start = [](const Parameter& parameter) { return parameter.name == "warm_start"; };
-    if (std::ranges::any_of(values, is_its) || std::ranges::any_of(traits.parameters, is_swept)) continue;
-    if (std::ranges::any_of(traits.parameters, is_warm_start))
+    if (std::ranges::none_of(values, is_its) && has_but_sweeps_none(traits, "warm_start"))
       all.push_back({traits.name, "warm_start", {"on", "off"}});
+  }
+  return all;
+}
+
+std::vector<SweptValues> thread_counts(const std::vector<const Algorithm*>& algorithms,
+                                       const std::vector<SweptValues>& values, unsigned most) {
+  std::vector<std::string> counts;
+  for (unsigned count = most; count > 1; count /= 2) counts.push_back(std::to_string(count));
+  counts.emplace_back("1");
+  std::vector<SweptValues> all;
+  for (const Algorithm* const algorithm : algorithms) {
+    const Traits& traits = algorithm->traits();
+    const auto has_them = [&](const SweptValues& x) { return x.algorithm == traits.name && x.parameter == "threads"; };
+    if (most > 1 && std::ranges::none_of(values, has_them) && has_but_sweeps_none(traits, "threads"))
+      all.push_back({traits.name, "threads", counts});
   }
   return all;
 }

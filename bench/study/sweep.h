@@ -29,6 +29,11 @@ SweptValues parse_swept_values(const std::string& text);
 std::vector<SweptValues> warm_starts(const std::vector<const Algorithm*>& algorithms,
                                      const std::vector<SweptValues>& values);
 
+/// From `most` threads down to one by halves, for the algorithms that have the parameter `threads`, no sweep, and no
+/// such values among `values`; none if `most` is 1.
+std::vector<SweptValues> thread_counts(const std::vector<const Algorithm*>& algorithms,
+                                       const std::vector<SweptValues>& values, unsigned most);
+
 /// The points of an algorithm, from coarse to fine: the k-th values of all its sweeps together or, where `values` has
 /// some of this algorithm, every combination of these, with defaults for what they do not name.
 /// @throws BadArgument for a parameter that does not exist or a value that it does not allow

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sixdof/base/error.h>
+
 #include "../geometry/shapes.h"
 #include "../oracle/bodies.h"
 
@@ -102,6 +104,27 @@ TEST(ExactAlgorithm, RefusesPosesThatAreNotRigid) {
   EXPECT_EQ(query->distance(pose).status, Status::failed);
   pose.R = -Eigen::Matrix3d::Identity();
   EXPECT_EQ(query->distance(pose).status, Status::failed);
+}
+
+TEST(ExactAlgorithm, ThreadsChangeNoResponse) {
+  const Mesh mesh = shapes::bumpy_sphere(4, 0.25), other = shapes::bumpy_sphere(3, 0.1);
+  const auto exact = make_exact_algorithm();
+  Settings wide = exact->settings();
+  wide.set("threads", "3");
+  EXPECT_THROW(wide.set("threads", "0"), BadArgument);
+  const auto query = exact->prepare(mesh, other, exact->settings()), wide_query = exact->prepare(mesh, other, wide);
+  shapes::Generator generator(4);
+  std::size_t touching = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Pose pose = shapes::random_pose(generator, 1.0);
+    const Response expected = query->respond(pose).value, response = wide_query->respond(pose).value;
+    EXPECT_EQ(response.volume, expected.volume);
+    EXPECT_EQ(response.force, expected.force);
+    EXPECT_EQ(response.torque, expected.torque);
+    EXPECT_EQ(wide_query->distance(pose).value.distance, query->distance(pose).value.distance);
+    if (expected.volume > 0.0 && !expected.force.isZero()) ++touching;
+  }
+  EXPECT_GT(touching, 20u);
 }
 
 TEST(ExactAlgorithm, WarmStartChangesNoDistanceAndNoResponse) {

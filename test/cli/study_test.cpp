@@ -128,6 +128,20 @@ TEST_F(Studies, RecommendTriesWarmStartsInMotion) {
   EXPECT_THAT(rows[1].at("name").get<std::string>(), EndsWith("/warm_start:off/order:motion"));
 }
 
+TEST_F(Studies, RecommendTriesAsManyThreadsAsAllowed) {
+  const auto done =
+      run("recommend --a cone-1k --b torus-1k --deadline 1s --budget 60s --algorithms exact --threads 2 -o " +
+          path("r.json"));
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, ::testing::ContainsRegex("take        exact threads=[12]: p99.9 "));
+  std::ifstream file(path("r.json"));
+  const json rows = json::parse(file).at("benchmarks");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_THAT(rows[0].at("name").get<std::string>(), EndsWith("/threads:2"));
+  EXPECT_THAT(rows[1].at("name").get<std::string>(), EndsWith("/threads:1"));
+  EXPECT_EQ(rows[0].at("gamma_F_deg"), rows[1].at("gamma_F_deg"));
+}
+
 TEST_F(Studies, RefuseBadArguments) {
   const std::map<std::string, std::string> cases{
       {"precision", "--pair, --set or --a is needed"},
@@ -144,6 +158,8 @@ TEST_F(Studies, RefuseBadArguments) {
       {"precision --a cone-1k --algorithms exact --params vps:voxel_size=0.1", "vps is not among the algorithms"},
       {"recommend --a cone-1k --deadline 0ms", "--deadline 0ms"},
       {"recommend --pair elephant,bunny", "one pair at a time"},
+      {"recommend --a cone-1k --threads 0", "--threads"},
+      {"recommend --a cone-1k --threads 65", "--threads"},
       {"recommend --a cone-1k --order path", "--order: path not in {random,motion}"},
   };
   for (const auto& [arguments, words] : cases) {

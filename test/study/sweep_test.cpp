@@ -62,6 +62,27 @@ TEST(Sweep, TriesWarmStartsWhereNothingElseIsChosen) {
   EXPECT_TRUE(warm_starts({warm.get()}, {parse_swept_values("warm:warm_start=on")}).empty());
 }
 
+TEST(Sweep, TriesThreadsFromTheMostToOne) {
+  const Parameter threads = Parameter::count("threads", "threads of a query", "1", 1, 64);
+  const Parameter warm_start = Parameter::choice("warm_start", "start from the last answer", "off", {"off", "on"});
+  const Parameter steps = Parameter::count("steps", "steps", "1", 1, 9).swept({"1", "9"});
+  const auto wide = make_algorithm<NoQuery>({.name = "wide", .parameters = {warm_start, threads}});
+  const auto swept = make_algorithm<NoQuery>({.name = "swept", .parameters = {steps, threads}});
+  const auto mine = algorithm();
+  const std::vector<const Algorithm*> all{wide.get(), swept.get(), mine.get()};
+  const auto settings = [&](std::vector<SweptValues> values, unsigned most) {
+    for (const SweptValues& more : thread_counts(all, values, most)) values.push_back(more);
+    return settings_of(sweep_points(*wide, values));
+  };
+  EXPECT_EQ(thread_counts(all, {}, 6).size(), 1u);
+  EXPECT_THAT(settings({}, 6),
+              ElementsAre("warm_start=off,threads=6", "warm_start=off,threads=3", "warm_start=off,threads=1"));
+  EXPECT_THAT(settings({parse_swept_values("wide:warm_start=on")}, 2),
+              ElementsAre("warm_start=on,threads=2", "warm_start=on,threads=1"));
+  EXPECT_THAT(settings({parse_swept_values("wide:threads=5")}, 2), ElementsAre("warm_start=off,threads=5"));
+  EXPECT_TRUE(thread_counts(all, {}, 1).empty());
+}
+
 TEST(Sweep, RefusesWhatItCannotRead) {
   const auto mine = algorithm();
   for (const char* text : {"", "mine", "mine:law", "mine:law=", "law=a,b"}) {
