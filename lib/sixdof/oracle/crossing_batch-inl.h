@@ -71,6 +71,8 @@ struct alignas(64) PairCorners {
   }
 };
 
+constexpr std::size_t k_most_batches = 4;  ///< That take a step together.
+
 /// Up to eight pairs of triangles; lanes beyond the count repeat the last.
 class alignas(64) Batch {
  public:
@@ -124,6 +126,8 @@ class alignas(64) Batch {
   }
 
   const PairCorners<k_batch>& corners() const { return corners_; }
+  /// Bits of the lanes that hold a pair of their own.
+  std::uint32_t lanes() const { return lanes_; }
 
  private:
   using FloatCorners = CornersOf<FloatV>;
@@ -204,11 +208,25 @@ class alignas(64) Batch {
   std::uint32_t lanes_ = 0;                   ///< Bits of the lanes that hold a pair of their own.
 };
 
+/// take(batch, place of its first pair) for all pairs, in their order. Several batches take each step together, and
+/// between() what was taken before is used, a step later: what was written a moment ago in other pieces than it is read
+/// in takes long to read.
+template <class Between, class Take>
+HWY_INLINE void for_each_batch(const Solid& a, const Solid& b, const Pose& X_AB, std::span<const TrianglePair> pairs,
+                               const Between& between, const Take& take) {
+  Batch batches[k_most_batches];
+  for (std::size_t first = 0; first < pairs.size(); first += k_most_batches * k_batch) {
+    const std::size_t count = std::min((pairs.size() - first + k_batch - 1) / k_batch, k_most_batches);
+    for (std::size_t i = 0; i < count; ++i) batches[i].gather(a, b, pairs.subspan(first + i * k_batch));
+    for (std::size_t i = 0; i < count; ++i) batches[i].move(X_AB);
+    between();
+    for (std::size_t i = 0; i < count; ++i) take(batches[i], first + i * k_batch);
+  }
+}
+
 /// Pairs that intersect, in their order, whatever others were between them.
 class CrossingQueue {
  public:
-  static constexpr std::size_t k_most_batches = 4;  ///< That are added before the next remove().
-
   std::size_t size() const { return size_; }
   const TrianglePair* pairs() const { return pairs_; }
   const auto& corners() const { return corners_; }

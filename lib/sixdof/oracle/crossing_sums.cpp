@@ -353,11 +353,20 @@ class SegmentSums {
   CurveSums sums_;
 };
 
+void keep_crossings(const Solid& a, const Solid& b, const Pose& X_AB, std::vector<TrianglePair>& pairs) {
+  std::size_t kept = 0;
+  for_each_batch(
+      a, b, X_AB, pairs, [] {},
+      [&](const Batch& batch, std::size_t first) {
+        for (std::uint32_t lanes = batch.crossing(); lanes != 0; lanes &= lanes - 1) {
+          pairs[kept++] = pairs[first + static_cast<std::size_t>(std::countr_zero(lanes))];
+        }
+      });
+  pairs.resize(kept);
+}
+
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Vector3d& origin,
                            const detail::PairSource& next, const Vector3d& along) {
-  // Several batches take each step together, and the pairs that intersect are summed a step later: what was written a
-  // moment ago in other pieces than it is read in takes long to read.
-  constexpr std::size_t k_batches = CrossingQueue::k_most_batches;
   SegmentSums sums(a, b, X_AB, origin, along);
   CrossingQueue queue;
   const auto sum_whole_batches = [&] {
@@ -365,17 +374,11 @@ CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, con
     for (; count + k_batch <= queue.size(); count += k_batch) sums.add(queue, count, k_batch);
     if (count != 0) queue.remove(count);
   };
-  Batch batches[k_batches];
-  std::span<const TrianglePair> pairs = next();
-  for (; !pairs.empty(); pairs = pairs.empty() ? next() : pairs) {
-    const std::size_t count = std::min((pairs.size() + k_batch - 1) / k_batch, k_batches);
-    for (std::size_t i = 0; i < count; ++i) batches[i].gather(a, b, pairs.subspan(i * k_batch));
-    for (std::size_t i = 0; i < count; ++i) batches[i].move(X_AB);
-    sum_whole_batches();
-    for (std::size_t i = 0; i < count; ++i) {
-      if (const std::uint32_t lanes = batches[i].crossing()) queue.add(batches[i], pairs.subspan(i * k_batch), lanes);
-    }
-    pairs = pairs.subspan(std::min(pairs.size(), count * k_batch));
+  for (detail::PairPiece piece = next(); !piece.pairs.empty(); piece = next()) {
+    for_each_batch(a, b, X_AB, piece.pairs, sum_whole_batches, [&](const Batch& batch, std::size_t first) {
+      const std::uint32_t lanes = piece.intersect ? batch.lanes() : batch.crossing();
+      if (lanes != 0) queue.add(batch, piece.pairs.subspan(first), lanes);
+    });
   }
   sum_whole_batches();
   if (queue.size() != 0) sums.add(queue, 0, queue.size());
@@ -389,10 +392,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sixdof {
 namespace crossings {
+HWY_EXPORT(keep_crossings);
 HWY_EXPORT(sum_crossings);
 }  // namespace crossings
 
 namespace detail {
+
+void keep_crossings(const Solid& a, const Solid& b, const Pose& X_AB, std::vector<TrianglePair>& pairs) {
+  HWY_DYNAMIC_DISPATCH(crossings::keep_crossings)(a, b, X_AB, pairs);
+}
 
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
                            const PairSource& next, const Eigen::Vector3d& along) {
@@ -402,7 +410,7 @@ CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, con
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
                            std::span<const TrianglePair> pairs, const Eigen::Vector3d& along) {
   return sum_crossings(
-      a, b, X_AB, origin, [&] { return std::exchange(pairs, {}); }, along);
+      a, b, X_AB, origin, [&] { return PairPiece{std::exchange(pairs, {})}; }, along);
 }
 
 }  // namespace detail

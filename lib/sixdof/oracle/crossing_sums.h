@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -33,13 +34,22 @@ struct CrossingSums {
   double curvature = 0.0;                            ///< Overlap::curvature
 };
 
-/// Gives pairs of triangles piece by piece; none after the last.
-using PairSource = std::function<std::span<const TrianglePair>()>;
+/// Pairs of triangles, in the order of find_candidates().
+struct PairPiece {
+  std::span<const TrianglePair> pairs;
+  bool intersect = false;  ///< Whether all of them are known to.
+};
+
+/// Gives pairs of triangles piece by piece; an empty piece ends them.
+using PairSource = std::function<PairPiece()>;
+
+/// Removes the pairs that do not intersect at X_AB.
+void keep_crossings(const Solid& a, const Solid& b, const Pose& X_AB, std::vector<TrianglePair>& pairs);
 
 /// The same bits on every instruction set, whatever pairs that do not intersect are among those given, and however they
 /// are divided.
 /// @param origin of all moments, in A's frame: near the crossings, so that little cancels
-/// @param next gives, in the order of find_candidates(), all that intersect at X_AB, and any others
+/// @param next gives all pairs that intersect at X_AB, and any others
 /// @param along direction of the curvature, in A's frame; zero: none
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
                            const PairSource& next, const Eigen::Vector3d& along = Eigen::Vector3d::Zero());

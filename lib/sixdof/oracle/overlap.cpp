@@ -62,7 +62,7 @@ Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, bool
 /// One thread sums up the crossings of the parts that are searched, and searches itself while there is none; the others
 /// search. Isolated: no other query of this object may begin on a thread that waits.
 Overlap OverlapQuery::evaluate_by_threads(const Pose& X_AB, const Vector3d& reference) {
-  parts_.start(a_->tree(), b_->tree(), X_AB);
+  parts_.start(*a_, *b_, X_AB);
   Overlap overlap;
   const auto work = [&](std::size_t i) {
     if (i != 0) return parts_.help();
@@ -76,7 +76,7 @@ Overlap OverlapQuery::evaluate_by_threads(const Pose& X_AB, const Vector3d& refe
 Overlap OverlapQuery::evaluate(const Pose& X_AB, const Vector3d& reference, std::span<const TrianglePair> pairs,
                                const Vector3d& along) {
   return sum_up(
-      X_AB, reference, [&] { return std::exchange(pairs, {}); }, along);
+      X_AB, reference, [&] { return detail::PairPiece{std::exchange(pairs, {})}; }, along);
 }
 
 Overlap OverlapQuery::sum_up(const Pose& X_AB, const Vector3d& reference, const detail::PairSource& next,

@@ -10,8 +10,8 @@
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
-#include <sixdof/oracle/candidate_parts.h>
 #include <sixdof/oracle/candidates.h>
+#include <sixdof/oracle/crossing_parts.h>
 #include <sixdof/oracle/crossing_sums.h>
 #include <sixdof/oracle/kept_candidates.h>
 #include <sixdof/oracle/solid.h>
@@ -108,7 +108,7 @@ class OverlapQuery {
   unsigned threads_;
   CandidateScratch scratch_;
   std::vector<TrianglePair> pairs_;  // scratch
-  detail::CandidateParts parts_;     // if it uses several threads
+  detail::CrossingParts parts_;      // if it uses several threads
   detail::KeptCandidates kept_;
   std::vector<std::uint32_t> triangles_;  // scratch
 };

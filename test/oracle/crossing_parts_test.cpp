@@ -1,4 +1,4 @@
-#include <sixdof/oracle/candidate_parts.h>
+#include <sixdof/oracle/crossing_parts.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -28,19 +28,23 @@ using Eigen::Vector3d;
 /// All pairs that the parts give, and in how many pieces.
 struct Given {
   std::vector<TrianglePair> pairs;
-  std::size_t pieces = 0;
+  std::size_t pieces = 0, decided = 0;
 
-  explicit Given(detail::CandidateParts& parts) {
-    for (std::span<const TrianglePair> piece = parts.next(); !piece.empty(); piece = parts.next()) {
-      pairs.insert(pairs.end(), piece.begin(), piece.end());
+  Given(detail::CrossingParts& parts, const Body& a, const Body& b, const Pose& X_AB) {
+    for (detail::PairPiece piece = parts.next(); !piece.pairs.empty(); piece = parts.next()) {
+      pairs.insert(pairs.end(), piece.pairs.begin(), piece.pairs.end());
       ++pieces;
+      if (!piece.intersect) continue;
+      ++decided;
+      const std::vector<TrianglePair> these(piece.pairs.begin(), piece.pairs.end());
+      EXPECT_EQ(swept::crossings_among(a.tree, b.tree, X_AB, these).size(), these.size());
     }
-    EXPECT_TRUE(parts.next().empty());
+    EXPECT_TRUE(parts.next().pairs.empty());
   }
 };
 
-/// The pairs that intersect come in the order of find_candidates(), whoever searches. Returns the pieces.
-std::size_t expect_order_of_one_search(const Body& a, const Body& b, const Pose& X_AB, detail::CandidateParts& parts) {
+/// The pairs that intersect come in the order of find_candidates(), whoever searches.
+Given expect_order_of_one_search(const Body& a, const Body& b, const Pose& X_AB, detail::CrossingParts& parts) {
   CandidateScratch scratch;
   std::vector<TrianglePair> found;
   find_candidates(a.tree, b.tree, X_AB, scratch, found);
@@ -53,45 +57,54 @@ std::size_t expect_order_of_one_search(const Body& a, const Body& b, const Pose&
       EXPECT_EQ(std::pair(crossing[i].a, crossing[i].b), std::pair(expected[i].a, expected[i].b));
     }
   };
-  parts.start(a.tree, b.tree, X_AB);
-  const Given alone(parts);
+  parts.start(a.solid, b.solid, X_AB);
+  const Given alone(parts, a, b, X_AB);
   expect_same(alone);
-  parts.start(a.tree, b.tree, X_AB);
+  parts.start(a.solid, b.solid, X_AB);
   parts.help();  // does all
-  const Given after(parts);
+  const Given after(parts, a, b, X_AB);
   expect_same(after);
   EXPECT_EQ(after.pieces, alone.pieces);
-  parts.start(a.tree, b.tree, X_AB);
+  parts.start(a.solid, b.solid, X_AB);
   {
     std::vector<std::jthread> helpers;
     for (int i = 0; i < 3; ++i) helpers.emplace_back([&] { parts.help(); });
-    expect_same(Given(parts));
+    expect_same(Given(parts, a, b, X_AB));
   }
-  return alone.pieces;
+  return alone;
 }
 
-TEST(CandidateParts, GiveTheOrderOfOneSearch) {
+TEST(CrossingParts, GiveTheOrderOfOneSearch) {
   const Body torus(bodies::bumpy_torus(121, 65)), small(bodies::bumpy_torus(43, 25, 0.2, 0.6));
   for_each_instruction_set([&] {
     std::mt19937_64 random(5);
-    detail::CandidateParts parts;
+    detail::CrossingParts parts;
     std::size_t most = 0;
     for (int i = 0; i < 6; ++i) {
       const Pose X_AB = bodies::random_pose(random, 0.4);
-      most = std::max(most, expect_order_of_one_search(torus, small, X_AB, parts));
-      most = std::max(most, expect_order_of_one_search(small, torus, X_AB.inverse(), parts));
+      most = std::max(most, expect_order_of_one_search(torus, small, X_AB, parts).pieces);
+      most = std::max(most, expect_order_of_one_search(small, torus, X_AB.inverse(), parts).pieces);
     }
     EXPECT_GT(most, 16u);
   });
 }
 
-TEST(CandidateParts, AreOneWhereTreesAreTooSmallToDivide) {
+TEST(CrossingParts, WithManyCandidatesAreDecidedWhereTheyAreSearched) {
+  const Body torus(bodies::bumpy_torus(61, 33));
+  detail::CrossingParts parts;
+  const Pose flush{Eigen::Matrix3d::Identity(), Vector3d::Zero()};
+  EXPECT_GT(expect_order_of_one_search(torus, torus, flush, parts).decided, 8u);
+  const Pose generic{Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix(), {0.4, 0.1, 0.0}};
+  EXPECT_EQ(expect_order_of_one_search(torus, torus, generic, parts).decided, 0u);
+}
+
+TEST(CrossingParts, AreOneWhereTreesAreTooSmallToDivide) {
   const Body a(bodies::box({-0.51, -0.32, -0.43}, {0.37, 0.61, 0.29}));
   const Body b(bodies::box({-0.33, -0.42, -0.23}, {0.47, 0.31, 0.39}, true));
   std::mt19937_64 random(6);
-  detail::CandidateParts parts;
+  detail::CrossingParts parts;
   for (int i = 0; i < 20; ++i) {
-    EXPECT_LE(expect_order_of_one_search(a, b, bodies::random_pose(random, 0.4), parts), 1u);
+    EXPECT_LE(expect_order_of_one_search(a, b, bodies::random_pose(random, 0.4), parts).pieces, 1u);
   }
 }
 

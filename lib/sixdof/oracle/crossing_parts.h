@@ -3,30 +3,30 @@
 #include <atomic>
 #include <cstddef>
 #include <deque>
-#include <span>
 #include <vector>
 
 #include <sixdof/geometry/pose.h>
-#include <sixdof/geometry/predicates.h>
-#include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/candidates.h>
+#include <sixdof/oracle/crossing_sums.h>
+#include <sixdof/oracle/solid.h>
 
 namespace sixdof::detail {
 
 /// find_candidates() by several threads: the first pairs of volumes are divided into parts, which threads search in
-/// their order. One thread takes the candidates part by part, and searches itself while the next part is not there.
+/// their order. One thread takes the candidates part by part, and searches itself while the next part is not there. Of
+/// a part with many candidates, as faces in one plane have, those that intersect are picked by who searched it.
 ///
 /// No allocation once the vectors have grown.
-class CandidateParts {
+class CrossingParts {
  public:
   /// Divides the search at X_AB. No thread may be in help() or next().
-  void start(const Tree& a, const Tree& b, const Pose& X_AB);
+  void start(const Solid& a, const Solid& b, const Pose& X_AB);
 
   /// Searches parts until none is left. Any number of threads at once.
   void help();
 
-  /// The next candidates in the order of find_candidates(); none after the last. One thread.
-  std::span<const TrianglePair> next();
+  /// The next candidates; none after the last. One thread.
+  PairPiece next();
 
   std::size_t bytes() const;
 
@@ -34,6 +34,7 @@ class CandidateParts {
   struct Part {
     CandidateScratch::VolumePair pair;
     CandidateSearch search;
+    bool is_decided = false;  // all pairs that are left intersect
     std::atomic<bool> is_done = false;
   };
 
@@ -41,8 +42,8 @@ class CandidateParts {
   /// @param axes what this thread has seen so far
   bool search_one(CandidateAxes& axes);
 
-  const Tree* a_ = nullptr;
-  const Tree* b_ = nullptr;
+  const Solid* a_ = nullptr;
+  const Solid* b_ = nullptr;
   Pose X_AB_;
   CandidateAxes axes_;  // as the thread of next() has seen them
   CandidateScratch scratch_;

@@ -1,4 +1,4 @@
-#include <sixdof/oracle/candidate_parts.h>
+#include <sixdof/oracle/crossing_parts.h>
 
 namespace sixdof::detail {
 namespace {
@@ -7,12 +7,15 @@ namespace {
 /// same time, and so few that a part takes longer than its start.
 constexpr std::size_t k_parts = 64;
 
+/// Candidates of a part, more than which would keep the thread that sums up. The others are fetched once, not twice.
+constexpr std::size_t k_many = 256;
+
 }  // namespace
 
-void CandidateParts::start(const Tree& a, const Tree& b, const Pose& X_AB) {
+void CrossingParts::start(const Solid& a, const Solid& b, const Pose& X_AB) {
   a_ = &a;
   b_ = &b;
-  divide_search(a, b, X_AB, k_parts, scratch_, pairs_, wider_);
+  divide_search(a.tree(), b.tree(), X_AB, k_parts, scratch_, pairs_, wider_);
   count_ = pairs_.size();
   while (parts_.size() < count_) parts_.emplace_back();
   for (std::size_t i = 0; i < count_; ++i) {
@@ -25,36 +28,40 @@ void CandidateParts::start(const Tree& a, const Tree& b, const Pose& X_AB) {
   taken_.store(0, std::memory_order_relaxed);
 }
 
-bool CandidateParts::search_one(CandidateAxes& axes) {
+bool CrossingParts::search_one(CandidateAxes& axes) {
   const std::size_t i = taken_.fetch_add(1, std::memory_order_relaxed);
   if (i >= count_) return false;
   Part& part = parts_[i];
   part.search.start(X_AB_, part.pair, axes);
-  part.search.advance(*a_, *b_, CandidateSearch::k_whole);
+  part.search.advance(a_->tree(), b_->tree(), CandidateSearch::k_whole);
+  part.is_decided = part.search.pairs.size() > k_many;
+  if (part.is_decided) keep_crossings(*a_, *b_, X_AB_, part.search.pairs);
   axes = part.search.scratch.axes;
   part.is_done.store(true, std::memory_order_release);
   part.is_done.notify_one();
   return true;
 }
 
-void CandidateParts::help() {
+void CrossingParts::help() {
   CandidateAxes axes = scratch_.axes;
   while (search_one(axes)) {
   }
 }
 
-std::span<const TrianglePair> CandidateParts::next() {
+PairPiece CrossingParts::next() {
   for (; given_ < count_; ++given_) {
     Part& part = parts_[given_];
     while (!part.is_done.load(std::memory_order_acquire) && search_one(axes_)) {
     }
     part.is_done.wait(false, std::memory_order_acquire);
-    if (!part.search.pairs.empty()) return parts_[given_++].search.pairs;
+    if (part.search.pairs.empty()) continue;
+    ++given_;
+    return {part.search.pairs, part.is_decided};
   }
   return {};
 }
 
-std::size_t CandidateParts::bytes() const {
+std::size_t CrossingParts::bytes() const {
   std::size_t sum = scratch_.bytes() + (pairs_.capacity() + wider_.capacity()) * sizeof(pairs_[0]);
   for (const Part& part : parts_) {
     sum += sizeof(Part) + part.search.scratch.bytes() + part.search.pairs.capacity() * sizeof(TrianglePair);
