@@ -10,6 +10,21 @@ constexpr std::size_t k_parts = 64;
 /// Candidates of a part, more than which would keep the thread that sums up. The others are fetched once, not twice.
 constexpr std::size_t k_many = 256;
 
+/// States at its end that a part is done, also if its search throws: else the thread of next() would wait forever.
+class Completion {
+ public:
+  explicit Completion(std::atomic<bool>& is_done) : is_done_(is_done) {}
+  ~Completion() {
+    is_done_.store(true, std::memory_order_release);
+    is_done_.notify_one();
+  }
+  Completion(const Completion&) = delete;
+  Completion& operator=(const Completion&) = delete;
+
+ private:
+  std::atomic<bool>& is_done_;
+};
+
 }  // namespace
 
 void CrossingParts::start(const Solid& a, const Solid& b, const Pose& X_AB) {
@@ -32,13 +47,12 @@ bool CrossingParts::search_one(CandidateAxes& axes) {
   const std::size_t i = taken_.fetch_add(1, std::memory_order_relaxed);
   if (i >= count_) return false;
   Part& part = parts_[i];
+  const Completion completion(part.is_done);
   part.search.start(X_AB_, part.pair, axes);
   part.search.advance(a_->tree(), b_->tree(), CandidateSearch::k_whole);
   part.is_decided = part.search.pairs.size() > k_many;
   if (part.is_decided) keep_crossings(*a_, *b_, X_AB_, part.search.pairs);
   axes = part.search.scratch.axes;
-  part.is_done.store(true, std::memory_order_release);
-  part.is_done.notify_one();
   return true;
 }
 

@@ -22,7 +22,7 @@ class CrossingParts {
   /// Divides the search at X_AB. No thread may be in help() or next().
   void start(const Solid& a, const Solid& b, const Pose& X_AB);
 
-  /// Searches parts until none is left. Any number of threads at once.
+  /// Searches parts until none is left. Any number of threads at once. If it throws, what next() gives is incomplete.
   void help();
 
   /// The next candidates; none after the last. One thread.
