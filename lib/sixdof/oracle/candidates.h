@@ -28,7 +28,8 @@ inline Eigen::Vector3d transform_point(const Pose& X_AB, const Eigen::Vector3d& 
   return q;
 }
 
-/// What a search has seen of axes across two volumes, and across two triangles: whether they pay.
+/// What a search has seen of axes across two volumes, and across two triangles: whether they pay. They have to find
+/// more than these shares apart; those of triangles spare a cross() each.
 struct CandidateAxes {
   detail::CrossAxesUse volumes{0.3}, triangles{0.9};
 };
