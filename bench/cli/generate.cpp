@@ -168,6 +168,12 @@ void generate(const Arguments& arguments) {
 
 }  // namespace
 
+std::unique_ptr<DistanceGenerator> generator_of(const std::string& oracle, const Registry& registry) {
+  auto ray_cast = make_ray_cast();
+  if (oracle.empty() || oracle == ray_cast->oracle_name()) return ray_cast;
+  return make_sphere_method(registry.find(oracle));
+}
+
 void add_generate_command(CLI::App& app) {
   auto* const command = app.add_subcommand("generate", "Make a configuration set of two meshes");
   const auto arguments = std::make_shared<Arguments>();

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <string>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -10,6 +12,7 @@
 #include <sixdof/configuration/generation_job.h>
 #include <sixdof/generation/distance_generator.h>
 #include <sixdof/geometry/mesh.h>
+#include <sixdof/query/registry.h>
 
 /// What `sixdof generate` does: plan a set (generate_plan.cpp) or make it (generate_shards.cpp).
 
@@ -25,6 +28,10 @@ struct GenerationWork {
   unsigned threads = 1;
   bool progress = false;  ///< Show it where stderr is not a terminal, too.
 };
+
+/// The generator whose distances `oracle` measures: the ray cast for its own name and for an empty one, otherwise the
+/// march by the distances of an algorithm. @throws BadArgument
+std::unique_ptr<DistanceGenerator> generator_of(const std::string& oracle, const Registry& registry);
 
 /// Prints the size of a set: grids, distinct rotations, buckets, configurations, bytes.
 /// @param distances, volumes numbers of buckets

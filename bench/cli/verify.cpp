@@ -1,5 +1,7 @@
 #include "bench/cli/commands.h"
 
+#include <charconv>
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -10,11 +12,14 @@
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/set_meshes.h>
 #include <sixdof/configuration/verification.h>
+#include <sixdof/generation/repetition.h>
+#include "bench/cli/generate.h"
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
 #include "bench/common/pair_warnings.h"
 #include "bench/common/progress_line.h"
+#include "bench/common/run_guarded.h"
 
 namespace sixdof::cli {
 namespace {
@@ -24,13 +29,17 @@ struct Arguments {
   std::string oracle = "fcl-obbrss";
   std::size_t sample = 50;
   std::uint64_t seed = 1;
+  std::string again;  // A count or "all"; empty: not given.
   bool json = false;
 };
 
 constexpr const char* k_keys =
     "Keys of --json: file, a, b, grid, oracle {name, version}, seed, ok, problems[], buckets[] {bucket, sampled,\n"
     "reachable, largest_residual, tolerance (both in diagonals of A's box or in A's volumes), wrong_value,\n"
-    "earlier_hit, false_nan, measured_by}.";
+    "earlier_hit, false_nan, measured_by}. With --again: file, generator_version, program_version, seed, ok, values,\n"
+    "changed, differences[], buckets[] {bucket, values, changed, and of the largest change rotation, direction, "
+    "stored,\n"
+    "made}.";
 
 void print_table(const Verdict& verdict) {
   fmt::print("{:<13} {:>8} {:>10} {:>13} {:>10} {:>8} {:>8} {:>8}  {}\n", "bucket", "sampled", "reachable", "residual",
@@ -78,6 +87,73 @@ void print_text(const Arguments& arguments, const ConfigurationSet& set, const T
   for (const std::string& problem : verdict.problems) fmt::print("{}\n", problem);
 }
 
+/// A translation as JSON takes it: null if the target is not met.
+nlohmann::ordered_json translation_as_json(double s) {
+  return std::isnan(s) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s);
+}
+
+void print_repetition(const Arguments& arguments, const ConfigurationSet& set, const Repetition& repetition) {
+  const std::string& version = set.description().generator_version;
+  if (!arguments.json) {
+    for (const BucketRepetition& bucket : repetition.buckets) {
+      if (bucket.changed == 0) continue;
+      fmt::print("{}: {} of {} values have other bits; most at rotation {}, direction {}: {} is now {}\n",
+                 bucket.key.name(), bucket.changed, bucket.values, bucket.largest.rotation, bucket.largest.direction,
+                 bucket.largest.stored, bucket.largest.made);
+    }
+    for (const std::string& difference : repetition.differences) fmt::print("{}\n", difference);
+    fmt::print("{}: {} values made again, {} with other bits (set by sixdof {}, this is {})\n", arguments.file,
+               repetition.values(), repetition.changed(), version, SIXDOF_VERSION);
+    return;
+  }
+  auto buckets = nlohmann::ordered_json::array();
+  for (const BucketRepetition& bucket : repetition.buckets) {
+    nlohmann::ordered_json entry{{"bucket", bucket.key.name()}, {"values", bucket.values}, {"changed", bucket.changed}};
+    if (bucket.changed != 0) {
+      entry["rotation"] = bucket.largest.rotation;
+      entry["direction"] = bucket.largest.direction;
+      entry["stored"] = translation_as_json(bucket.largest.stored);
+      entry["made"] = translation_as_json(bucket.largest.made);
+    }
+    buckets.push_back(std::move(entry));
+  }
+  fmt::print("{}\n", json_text({{"file", arguments.file},
+                                {"generator_version", version},
+                                {"program_version", SIXDOF_VERSION},
+                                {"seed", arguments.seed},
+                                {"ok", repetition.same()},
+                                {"values", repetition.values()},
+                                {"changed", repetition.changed()},
+                                {"differences", repetition.differences},
+                                {"buckets", std::move(buckets)}}));
+}
+
+/// The number of rotations that --again asks for; 0: all.
+std::size_t parse_again(const std::string& text) {
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error == std::errc() && end == text.data() + text.size() && count > 0) return count;
+  if (text == "all") return 0;
+  throw BadArgument(fmt::format("--again {}: is neither a positive number of rotations nor all", text));
+}
+
+void verify_again(const Arguments& arguments, const ConfigurationSet& set, const Mesh& a, const Mesh& b) {
+  Registry registry;
+  register_all_algorithms(registry);
+  Repetition repetition;
+  {
+    ProgressLine line("made again");
+    repetition = make_again(set, a, b, *generator_of(distance_oracle(set), registry),
+                            {.rotations = parse_again(arguments.again), .seed = arguments.seed},
+                            {.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
+                             .cancelled = InterruptGuard::requested});
+  }
+  print_repetition(arguments, set, repetition);
+  if (!repetition.same()) {
+    throw DefectsFound(fmt::format("{}: this build does not make the same set", arguments.file));
+  }
+}
+
 void verify(const Arguments& arguments) {
   const ConfigurationSet set(arguments.file);
   const SelectedAlgorithm selected = select_algorithm({.name = arguments.oracle, .parameters = {}});
@@ -88,6 +164,7 @@ void verify(const Arguments& arguments) {
   const bool copy = arguments.b.empty() && a_identity.hash == b_identity.hash;
   const Mesh b = copy ? a : find_mesh(b_identity, set.path(), arguments.b);
   warn_of_sizes("sixdof", a_identity, b_identity);
+  if (!arguments.again.empty()) return verify_again(arguments, set, a, b);
   Verdict verdict;
   {
     ProgressLine line("verified");
@@ -102,19 +179,26 @@ void verify(const Arguments& arguments) {
 }  // namespace
 
 void add_verify_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("verify", "Measure a sample of a configuration set again");
+  auto* const command = app.add_subcommand("verify", "Measure a sample of a configuration set again, or make it again");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("file", arguments->file, "The set")->required();
   command->add_option("--a", arguments->a, "Mesh A, a model's name or a file, if it is not where the set says");
   command->add_option("--b", arguments->b, "Mesh B, likewise");
-  command->add_option("--sample", arguments->sample, "Configurations per bucket, drawn at random")
-      ->capture_default_str();
+  auto* const sample = command->add_option("--sample", arguments->sample, "Configurations per bucket, drawn at random")
+                           ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Of the sample")->capture_default_str();
-  command->add_option("--oracle", arguments->oracle, "Algorithm with exact distances that measures them")
-      ->capture_default_str();
+  auto* const measuring =
+      command->add_option("--oracle", arguments->oracle, "Algorithm with exact distances that measures them")
+          ->capture_default_str();
+  command
+      ->add_option("--again", arguments->again,
+                   "Make all configurations of this many rotations again instead, drawn at random, or of all, and "
+                   "compare bits; exit code 3 if any differ")
+      ->excludes(sample)
+      ->excludes(measuring);
   command->add_flag("--json", arguments->json, "As JSON; the exit code is the same");
   add_examples(*command, "sixdof generate --a torus-knot-10k --grid 90 --distances 0,10 -o set.h5",
-               "sixdof verify set.h5 --sample 20 --seed 7", k_keys);
+               "sixdof verify set.h5 --again 2", k_keys);
   command->callback([arguments] { verify(*arguments); });
 }
 
