@@ -62,7 +62,8 @@ Json as_json(const Mesh& mesh) {
             {"welded_vertices", repairs.welded_vertices},
             {"unreferenced_vertices", repairs.unreferenced_vertices},
             {"collapsed_triangles", repairs.collapsed_triangles},
-            {"zero_area_triangles", repairs.zero_area_triangles.size()}}}};
+            {"zero_area_triangles", repairs.zero_area_triangles.size()}}},
+          {"notes", repairs.notes}};
 }
 
 std::string as_text(const Eigen::Vector3d& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x(), p.y(), p.z()); }
@@ -105,6 +106,7 @@ void print_text(const Mesh& mesh) {
   file_row(repairs.crossing_polygons, "polygons that cross themselves, triangulated");
   file_row(repairs.nonplanar_polygons, "polygons that are not flat, triangulated");
   file_row(repairs.skipped_statements, "unknown statements skipped");
+  for (const std::string& note : repairs.notes) row("note", note);
 }
 
 Json as_json(const MeshIdentity& mesh) {

@@ -30,6 +30,8 @@ struct MeshRepairs {
   /// Indices into Mesh::triangles() of triangles whose area is zero in double precision (three distinct but collinear
   /// vertices). They are kept because the surface may need them to stay closed.
   std::vector<std::uint32_t> zero_area_triangles;
+  /// What else a reader of the file has to say, one line each: its unit and axes, what was left out.
+  std::vector<std::string> notes;
 };
 
 /// How the triangles are connected.
