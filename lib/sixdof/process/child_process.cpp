@@ -78,16 +78,9 @@ TimeLimit expires_after(double seconds) {
 }
 
 ChildFailure how_it_ended(int wait_status, bool ran_out_of_memory) {
-  std::string words;
-  if (WIFSIGNALED(wait_status)) {
-    const int signal = WTERMSIG(wait_status);
-    const char* const name = ::sigdescr_np(signal);
-    words = fmt::format("ended by signal {} ({})", signal, name == nullptr ? "unknown" : name);
-  } else if (WEXITSTATUS(wait_status) == k_not_started) {
-    words = fmt::format("could not be started (exit code {})", k_not_started);
-  } else {
-    words = fmt::format("ended with exit code {}", WEXITSTATUS(wait_status));
-  }
+  const bool started = WIFSIGNALED(wait_status) || WEXITSTATUS(wait_status) != k_not_started;
+  const std::string words =
+      started ? words_of_end(wait_status) : fmt::format("could not be started (exit code {})", k_not_started);
   if (!ran_out_of_memory) return {Status::crashed, words};
   return {Status::out_of_memory, "out of memory: " + words};
 }
@@ -117,12 +110,6 @@ void limit_resources(std::size_t memory_bytes) {
   if (!k_can_limit_memory || memory_bytes == 0) return;
   const rlimit memory{memory_bytes, memory_bytes};
   ::setrlimit(RLIMIT_DATA, &memory);
-}
-
-std::size_t default_memory_limit() {
-  constexpr double k_share = 0.8;
-  const double bytes = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-  return static_cast<std::size_t>(k_share * bytes);
 }
 
 ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::vector<int>& files,

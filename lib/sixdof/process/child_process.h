@@ -10,6 +10,7 @@
 #include <sys/types.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/separate_process.h>
 #include <sixdof/query/algorithm.h>
 
 namespace sixdof {
@@ -93,8 +94,5 @@ int high_descriptor(int descriptor);
 /// Limits this process and what it starts: no core file, and no more data than that (RLIMIT_DATA; 0 for no limit). In
 /// sanitized programs the data are not limited, since their shadow memory counts. A signal handler may call it.
 void limit_resources(std::size_t memory_bytes);
-
-/// A part of the machine's memory that leaves enough for other programs.
-std::size_t default_memory_limit();
 
 }  // namespace sixdof
