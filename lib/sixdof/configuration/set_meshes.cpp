@@ -38,7 +38,7 @@ std::vector<fs::path> stated_places(const MeshIdentity& wanted, const fs::path& 
 
 bool is_there(const fs::path& file) {
   std::error_code ignored;
-  return fs::exists(file, ignored);
+  return fs::exists(mesh_file_of(file), ignored);
 }
 
 /// The wanted mesh by load(); nothing if there is none, or it cannot be had.

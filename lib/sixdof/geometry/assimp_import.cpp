@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
-#include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/load_formats.h>
@@ -20,7 +19,6 @@ namespace sixdof::loading {
 namespace {
 
 using Eigen::Matrix4d;
-using nlohmann::json;
 
 /// Assimp drops or changes a face with an index out of range, and says so only in its log.
 struct DamageLog final : Assimp::Logger {
@@ -57,73 +55,6 @@ struct Files final : Assimp::DefaultIOSystem {
     return DefaultIOSystem::Open(decoded.c_str(), mode);
   }
 };
-
-/// An index in a glTF file. A conversion would wrap what is negative, and has no defined result for what is too large.
-std::size_t index_of(const Source& source, const json& number, const std::string& place) {
-  if (!number.is_number_unsigned()) source.fail(place, "an index is not a whole number");
-  return number.get<std::size_t>();
-}
-
-/// Refuses data inside a glTF file with a character that base64 has not: assimp says so, but loses what it had
-/// allocated.
-void check_base64(const Source& source, const json& document) {
-  constexpr std::string_view k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=";
-  constexpr std::string_view k_mark = ";base64,";
-  for (const char* const list : {"buffers", "images"}) {
-    const json objects = document.value(list, json::array());
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      const auto uri = objects[i].value("uri", std::string());
-      const std::size_t mark = uri.starts_with("data:") ? uri.find(k_mark) : std::string::npos;
-      if (mark != std::string::npos && uri.find_first_not_of(k_digits, mark + k_mark.size()) != std::string::npos) {
-        source.fail(fmt::format("{}[{}].uri", list, i), "is not base64");
-      }
-    }
-  }
-}
-
-/// Refuses what assimp does not check in a glTF file: the size of sparse accessors, positions that are not floats, and
-/// a graph of nodes that is very deep (assimp recurses) or no tree (copies of a node may double at every level).
-void check_gltf(const Source& source) {
-  std::string_view text = source.bytes;
-  constexpr std::size_t k_header = 20;  // magic, version, size of the file, size and type of the JSON chunk
-  constexpr int k_gltf_float = 5126;
-  if (text.starts_with("glTF") && text.size() > k_header) {
-    if (load_bytes<std::uint32_t>(text.data() + 8) != text.size()) source.fail("byte 8", "not the file's size");
-    text = text.substr(k_header, load_bytes<std::uint32_t>(text.data() + 12));
-  }
-  const json document = json::parse(text);
-  if (!document.at("asset").at("version").get<std::string>().starts_with("2.")) source.fail("version 2 is expected");
-  const json accessors = document.value("accessors", json::array());
-  for (const json& accessor : accessors) {
-    if (accessor.contains("sparse")) source.fail("sparse accessors are not supported");
-  }
-  check_base64(source, document);
-  for (const json& mesh : document.value("meshes", json::array())) {
-    for (const json& primitive : mesh.at("primitives")) {
-      const json& position = primitive.at("attributes").at("POSITION");
-      const json& accessor = accessors.at(index_of(source, position, "meshes[].primitives[].attributes.POSITION"));
-      if (accessor.at("componentType") != k_gltf_float || accessor.at("type") != "VEC3") {
-        source.fail("positions other than vectors of three floats are not supported");
-      }
-    }
-  }
-  constexpr std::size_t k_deepest_node = 500;
-  constexpr auto k_none = static_cast<std::size_t>(-1);
-  const json nodes = document.value("nodes", json::array());
-  std::vector<std::size_t> parent(nodes.size(), k_none);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    for (const json& child : nodes[i].value("children", json::array())) {
-      const std::size_t c = index_of(source, child, fmt::format("nodes[{}].children", i));
-      if (c >= nodes.size() || parent[c] != k_none) source.fail(fmt::format("nodes[{}]", c), "is missing or shared");
-      parent[c] = i;
-    }
-  }
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    for (std::size_t at = i, depth = 0; parent[at] != k_none; at = parent[at]) {
-      if (++depth > k_deepest_node) source.fail(fmt::format("nodes[{}]", i), "lies deeper than 500 levels");
-    }
-  }
-}
 
 /// Renames the chunks of a 3DS file that make assimp move vertices (the key framer) or reorder triangles (materials).
 /// A chunk is a number (2 bytes), a length (4 bytes, these 6 included), then data or chunks.
@@ -167,12 +98,76 @@ void add_mesh(const Source& source, const aiScene& scene, unsigned number, const
   }
 }
 
+Matrix4d transform_of(const aiNode& node) {
+  return Eigen::Map<const Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>>(&node.mTransformation.a1).cast<double>();
+}
+
 void add_node(const Source& source, const aiScene& scene, const aiNode& node, const Matrix4d& parent,
               Surface& surface) {
-  const Eigen::Map<const Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>> local(&node.mTransformation.a1);
-  const Matrix4d transform = parent * local.cast<double>();
+  const Matrix4d transform = parent * transform_of(node);
   for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(source, scene, node.mMeshes[i], transform, surface);
   for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(source, scene, *node.mChildren[i], transform, surface);
+}
+
+/// A transform of COLLADA's root, as assimp makes it of the file's unit and axes: which axis points up, scaled.
+struct ColladaFrame {
+  char up = 'y';
+  double unit_m = 1.0;
+};
+
+ColladaFrame collada_frame(const Source& source, const Matrix4d& root) {
+  const auto turned = [](std::initializer_list<double> rows) {
+    return Matrix4d(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(rows.begin()));
+  };
+  const double unit = root.topLeftCorner<3, 3>().cwiseAbs().maxCoeff();
+  if (!(unit > 0.0)) source.fail("the file's unit is 0 m");
+  const Matrix4d scale = Eigen::Vector4d(unit, unit, unit, 1.0).asDiagonal();
+  for (const auto& [up, rotation] : {std::pair('y', Matrix4d(Matrix4d::Identity())),
+                                     {'z', turned({1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1})},
+                                     {'x', turned({0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1})}}) {
+    if (root == scale * rotation) return {up, unit};
+  }
+  source.fail("the scene has a transform of its own beside its unit and axes");
+}
+
+/// The transform of a scene's root, or what is asked for in its place, with a note of what it is.
+Matrix4d root_transform(const Source& source, const aiScene& scene, FileFrame frame, std::vector<std::string>& notes) {
+  const std::string extension = lower_case_extension(source.path);
+  const Matrix4d root = transform_of(*scene.mRootNode);
+  const char* const stored = "; read as stored";
+  if (extension == ".dae" || extension == ".zae") {
+    const auto [up, unit] = collada_frame(source, root);
+    const std::string states = fmt::format("the file's unit is {} m and {} points up", static_cast<float>(unit), up);
+    if (frame == FileFrame::as_stored) {
+      notes.push_back(states + stored);
+      return Matrix4d::Identity();
+    }
+    const bool turned = frame == FileFrame::y_up && up != 'y';
+    notes.push_back(states + (unit == 1.0 ? "" : "; scaled to metres") +
+                    (turned ? "; turned so that y points up" : "; axes kept"));
+    return turned ? root : Matrix4d(Eigen::Vector4d(unit, unit, unit, 1.0).asDiagonal());
+  }
+  if (extension == ".fbx") {
+    int axis = 1;
+    float centimetres = 1.0f;
+    if (scene.mMetaData != nullptr) {
+      scene.mMetaData->Get("UpAxis", axis);
+      scene.mMetaData->Get("UnitScaleFactor", centimetres);
+    }
+    notes.push_back(fmt::format("the file's unit is {} cm and {} points up{}", centimetres,
+                                axis == 0   ? 'x'
+                                : axis == 1 ? 'y'
+                                            : 'z',
+                                stored));
+  }
+  if (root == Matrix4d::Identity()) return root;
+  // Assimp turns and scales some formats by the root.
+  if (frame == FileFrame::as_stored) {
+    notes.push_back("the transform of the scene's root is left out; read as stored");
+    return Matrix4d::Identity();
+  }
+  notes.push_back("the scene's root has a transform, of the file or by assimp, which is applied");
+  return root;
 }
 
 /// Leaves the importers of one extension registered: others would read the file by its content.
@@ -189,37 +184,44 @@ void keep_only(Assimp::Importer& importer, const std::string& extension) {
 
 }  // namespace
 
-Surface read_by_assimp(const std::filesystem::path& file) {
-  const std::string extension = lower_case_extension(file);
-  if (extension.empty()) {
-    throw BadFile(file.string(),
-                  "has no extension, which would say its mesh format (.ply, .obj, .stl, .off, .glb and others)");
-  }
+bool assimp_reads(const std::string& extension) {
+  if (extension.size() < 2) return false;
   Assimp::Importer importer;
   keep_only(importer, extension.substr(1));
-  if (importer.GetImporterCount() == 0) throw BadFile(file.string(), "'" + extension + "' is no mesh format");
-  Source source = read_source(file);
-  try {
-    if (extension == ".3ds") hide_3ds_scene(source, 0, source.bytes.size());
-    if (extension == ".gltf" || extension == ".glb") check_gltf(source);
-  } catch (const json::exception& e) {
-    source.fail(fmt::format("the JSON is malformed: {}", e.what()));
+  return importer.GetImporterCount() > 0;
+}
+
+Surface read_by_assimp(const Source& original, FileFrame frame) {
+  const std::string extension = lower_case_extension(original.path);
+  Source without_scene;
+  if (extension == ".3ds") {
+    without_scene = original;
+    hide_3ds_scene(without_scene, 0, without_scene.bytes.size());
   }
+  const Source& source = extension == ".3ds" ? without_scene : original;
+  Assimp::Importer importer;
+  keep_only(importer, extension.substr(1));
+#ifdef AI_CONFIG_IMPORT_FBX_IGNORE_UP_DIRECTION  // later versions would turn FBX
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_IGNORE_UP_DIRECTION, true);
+#endif
   static std::once_flag once;
   std::call_once(once, [] {
     if (Assimp::DefaultLogger::isNullLogger()) Assimp::DefaultLogger::set(new DamageLog);
   });
   DamageLog::first.clear();
   importer.SetIOHandler(new Files(source));  // deleted by the importer
-  const aiScene* const scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+  const aiScene* const scene = importer.ReadFile(source.path.string(), aiProcess_ValidateDataStructure);
   if (scene == nullptr) source.fail(fmt::format("assimp cannot read it: {}", importer.GetErrorString()));
   if (!DamageLog::first.empty()) source.fail("assimp finds it damaged: " + DamageLog::first);
   Surface surface;
   if (extension == ".3ds") {
     for (unsigned i = 0; i < scene->mNumMeshes; ++i) add_mesh(source, *scene, i, Matrix4d::Identity(), surface);
-  } else {
-    add_node(source, *scene, *scene->mRootNode, Matrix4d::Identity(), surface);
+    return surface;
   }
+  const aiNode& root = *scene->mRootNode;
+  const Matrix4d transform = root_transform(source, *scene, frame, surface.repairs.notes);
+  for (unsigned i = 0; i < root.mNumMeshes; ++i) add_mesh(source, *scene, root.mMeshes[i], transform, surface);
+  for (unsigned i = 0; i < root.mNumChildren; ++i) add_node(source, *scene, *root.mChildren[i], transform, surface);
   return surface;
 }
 

@@ -3,12 +3,14 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -162,21 +164,54 @@ void TextLines::expect_end() {
 
 namespace {
 
-Surface read_surface(const std::filesystem::path& file) {
+/// A file, and what is done with its unit and axes.
+struct Named {
+  std::filesystem::path file;
+  FileFrame frame = FileFrame::metres;
+};
+
+constexpr std::array k_frames{std::pair("#as-stored", FileFrame::as_stored), std::pair("#y-up", FileFrame::y_up)};
+
+/// The parts of "part.dae#as-stored". Any file may have such a name itself.
+Named parse_name(const std::filesystem::path& name) {
+  const std::string text = name.string();
+  std::error_code ignored;
+  for (const auto& [words, frame] : k_frames) {
+    if (!text.ends_with(words) || std::filesystem::exists(name, ignored)) continue;
+    return {text.substr(0, text.size() - std::string_view(words).size()), frame};
+  }
+  return {name};
+}
+
+Surface read_surface(const Named& named) {
+  const auto& [file, frame] = named;
   const std::string extension = lower_case_extension(file);
+  if (frame == FileFrame::y_up && extension != ".dae" && extension != ".zae") {
+    throw BadFile(file.string(), "#y-up is for COLLADA, the only format whose axes are known and may be others");
+  }
   if (extension == ".ply") return read_ply(read_source(file));
   if (extension == ".off") return read_off(read_source(file));
   if (extension == ".obj") return read_obj(read_source(file));
   if (extension == ".stl") return read_stl(read_source(file));
-  return read_by_assimp(file);
+  if (extension == ".gltf" || extension == ".glb") return read_gltf(read_source(file));
+  if (extension.empty()) {
+    throw BadFile(file.string(),
+                  "has no extension, which would say its mesh format (.ply, .obj, .stl, .off, .glb and others)");
+  }
+  if (!assimp_reads(extension)) throw BadFile(file.string(), "'" + visible_text(extension) + "' is no mesh format");
+  return read_by_assimp_separately(read_source(file), frame);
 }
 
 }  // namespace
 }  // namespace loading
 
-Mesh load_mesh(const std::filesystem::path& file) {
+std::filesystem::path mesh_file_of(const std::filesystem::path& name) { return loading::parse_name(name).file; }
+
+Mesh load_mesh(const std::filesystem::path& name) {
+  const loading::Named named = loading::parse_name(name);
+  const std::filesystem::path& file = named.file;
   try {
-    loading::Surface surface = loading::read_surface(file);
+    loading::Surface surface = loading::read_surface(named);
     return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), file.stem().string(),
                        std::move(surface.repairs));
   } catch (const BadMesh& e) {

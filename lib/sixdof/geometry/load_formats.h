@@ -130,15 +130,31 @@ class TextLines {
   std::vector<std::string_view> words_;
 };
 
-// OBJ, OFF, PLY and STL are not left to assimp (5.2): it holds coordinates in single precision only, does not return
-// from a PLY file without end_header, and accepts a truncated OFF file.
+/// What is done with the unit and the axes that a file states (load.h).
+enum class FileFrame {
+  metres,
+  as_stored,
+  y_up
+};
+
+// These formats are not left to assimp (5.2): it holds coordinates in single precision only, does not return from a PLY
+// file without end_header, accepts a truncated OFF file, and knows neither the instances, nor the integer coordinates
+// of glTF.
+Surface read_gltf(const Source& source);
 Surface read_obj(const Source& source);
 Surface read_off(const Source& source);
 Surface read_ply(const Source& source);
 Surface read_stl(const Source& source);
 
-/// Reads a file of any other format by assimp, as load.h says. All meshes of the scene become one surface.
+/// Whether assimp has a reader for files with this extension.
+bool assimp_reads(const std::string& extension);
+
+/// Reads a file of any other format by assimp, as load.h says. All meshes of the scene become one surface. A damaged
+/// file may crash it, or make it never return.
 /// @throws BadFile
-Surface read_by_assimp(const std::filesystem::path& file);
+Surface read_by_assimp(const Source& source, FileFrame frame);
+
+/// The same surface, read in a process of its own. @throws BadFile also for what ends that process
+Surface read_by_assimp_separately(const Source& source, FileFrame frame);
 
 }  // namespace sixdof::loading

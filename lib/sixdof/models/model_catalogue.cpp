@@ -94,7 +94,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 /// Reads a file. If it does not exist, but has a model's name, the message says how to name the model.
 Mesh load_file(const std::string& file) {
-  const std::filesystem::path path(file);
+  const std::filesystem::path path = mesh_file_of(file);
   if (!std::filesystem::exists(path)) {
     const std::string stem = path.stem().string();
     if (find_fetched(stem) != nullptr) {
@@ -103,7 +103,7 @@ Mesh load_file(const std::string& file) {
                                       stem));
     }
   }
-  return load_mesh(path);
+  return load_mesh(file);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ bool names_file(std::string_view name_or_file);
 /// - RECIPE-COUNT is made by a recipe or a variant: "torus-100k", "plate-12500" (recipe.h, recipe_variants.h);
 /// - NAME is a fetched model: "elephant", "camel" (manifest.h, collection.h); NAME-COUNT is its subdivision:
 /// "elephant-1m" (refine.h);
-/// - a word with a '.' or a '/' is a file for load_mesh(): "hull.stl", "./parts/hull".
+/// - a word with a '.' or a '/' is a file for load_mesh(): "hull.stl", "./parts/hull", "hull.dae#as-stored".
 /// The mesh has the given name, or the file's.
 /// @throws BadArgument for a name that does not exist (the message lists similar ones) or a count out of range; BadFile
 /// for a file that cannot be read or a model that is not fetched.
