@@ -148,6 +148,8 @@ void run_query(const Arguments& arguments) {
 
   const Mesh a = load_model(arguments.a);
   const Mesh b = arguments.b == arguments.a ? a : load_model(arguments.b);
+  say_notes("sixdof", a, arguments.a);
+  if (arguments.b != arguments.a) say_notes("sixdof", b, arguments.b);
   warn_of_sizes("sixdof", MeshIdentity::of(a), MeshIdentity::of(b));
   Answers answers = ask(*algorithm, a, b, settings, X_AB);
   if (!about.empty() && answers.respond.ok()) {

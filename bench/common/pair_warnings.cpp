@@ -18,6 +18,10 @@ void warn_of_sizes(std::string_view program, const MeshIdentity& a, const MeshId
                             large.name, ratio, small.name, large.diagonal(), small.diagonal()));
 }
 
+void say_notes(std::string_view program, const Mesh& mesh, std::string_view argument) {
+  for (const std::string& note : mesh.repairs().notes) print_message(program, fmt::format("{}: {}", argument, note));
+}
+
 void warn_of_unreached(std::string_view program, const ConfigurationSet& set) {
   for (const BucketSummary& bucket : set.buckets()) {
     if (bucket.reachable > 0) continue;

@@ -4,8 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include <sixdof/geometry/pose.h>
-
+#include "float_torus.h"
 #include "mesh_files.h"
 #include "scene_files.h"
 
@@ -15,169 +14,6 @@ namespace {
 using namespace testing_support;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-/// The torus with coordinates that a float can hold.
-const Mesh& float_torus() {
-  static const Mesh mesh = [] {
-    const Mesh exact = bumpy_torus(9, 6, 0.73, 99);
-    std::vector<Eigen::Vector3d> vertices;
-    for (const auto& p : exact.vertices()) vertices.emplace_back(as_float(p.x()), as_float(p.y()), as_float(p.z()));
-    return Mesh::build(std::move(vertices), exact.triangles());
-  }();
-  return mesh;
-}
-
-const std::string k_plain_node = R"([{"mesh":0}])";
-
-class LoadGltf : public TestFolder {
- protected:
-  std::string message(const std::string& json) const {
-    return message_of(write("a.glb", glb(json, gltf_data(float_torus()))));
-  }
-  /// The message after one part of a good file has been replaced.
-  std::string message_with(const std::string& part, const std::string& other) const {
-    std::string json = gltf_json(float_torus(), "", k_plain_node);
-    const std::size_t at = json.find(part);
-    EXPECT_NE(at, std::string::npos) << part;
-    return message(json.replace(at, part.size(), other));
-  }
-};
-
-TEST_F(LoadGltf, GlbEmbeddedAndBesideGiveTheSameBits) {
-  const std::string data = gltf_data(float_torus());
-  write("some data.bin", data);
-  const std::vector<std::filesystem::path> files{
-      write("a.glb", glb(gltf_json(float_torus(), "", k_plain_node), data)),
-      write("b.gltf", gltf_json(float_torus(), R"(,"uri":"data:application/octet-stream;base64,)" + base64(data) + '"',
-                                k_plain_node)),
-      write("c.gltf", gltf_json(float_torus(), R"(,"uri":"some%20data.bin")", k_plain_node))};
-  for (const auto& file : files) {
-    ASSERT_EQ(message_of(file), "accepted") << file;
-    EXPECT_EQ(load_mesh(file).hash(), float_torus().hash()) << file;
-  }
-}
-
-TEST_F(LoadGltf, TransformsAreAppliedAndMirrorsKeepOutsideOutside) {
-  // A generic rotation above a translation with a mirroring, unequal scale; the mesh appears twice.
-  const Pose rotation = Pose::from_quaternion(0.5, -0.1, 0.7, 0.5, {0, 0, 0});
-  const std::string nodes =
-      R"([{"rotation":[-0.1,0.7,0.5,0.5],"children":[1,2]},{"translation":[1.5,-2.25,0.75],"scale":[2,-1.5,3],"mesh":0},)"
-      R"({"matrix":[0,2,0,0,-1,0,0,0,0,0,0.5,0,10,20,30,1],"mesh":0}])";
-  const Mesh mesh = load_mesh(write("a.glb", glb(gltf_json(float_torus(), "", nodes), gltf_data(float_torus()))));
-  const Mesh& torus = float_torus();
-  const std::size_t n = torus.vertices().size();
-  ASSERT_EQ(mesh.vertices().size(), 2 * n);
-  EXPECT_TRUE(mesh.solid()) << mesh.why_not_solid();
-  EXPECT_EQ(mesh.topology().components, 2u);
-  // Assimp keeps transforms in single precision; coordinates reach 40.
-  constexpr double k_tolerance = 40.0 * 4.0 * 6e-8;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d& p = torus.vertices()[i];
-    const Eigen::Vector3d first = rotation * Eigen::Vector3d(2 * p.x() + 1.5, -1.5 * p.y() - 2.25, 3 * p.z() + 0.75);
-    const Eigen::Vector3d second = rotation * Eigen::Vector3d(-p.y() + 10, 2 * p.x() + 20, 0.5 * p.z() + 30);
-    EXPECT_LE((mesh.vertices()[i] - first).cwiseAbs().maxCoeff(), k_tolerance);
-    EXPECT_LE((mesh.vertices()[n + i] - second).cwiseAbs().maxCoeff(), k_tolerance);
-  }
-  EXPECT_NEAR(mesh.volume(), (9.0 + 1.0) * torus.volume(), 10.0 * torus.volume() * 1e-5);
-}
-
-TEST_F(LoadGltf, StridesOffsetsOtherIndexTypesAndOtherScenes) {
-  const Mesh& torus = float_torus();
-  std::string data = "padding!";
-  for (const auto& p : torus.vertices()) {
-    for (const double x : p) data += little(static_cast<float>(x));
-    data += little(17.5f) + little(18.5f);
-  }
-  const std::size_t n = torus.vertices().size();
-  const std::size_t m = 3 * torus.triangles().size();
-  const std::string view =
-      R"({"buffer":0,"byteOffset":4,"byteLength":)" + std::to_string(4 + 20 * n) + R"(,"byteStride":20})";
-  for (const auto& [type, bytes] :
-       {std::pair{5121, indices<std::uint8_t>(torus)}, {5125, indices<std::uint32_t>(torus)}}) {
-    const std::string json =
-        R"({"asset":{"version":"2.0"},"scene":1,"scenes":[{"nodes":[0]},{"nodes":[1]}],"nodes":[{"mesh":1},{"mesh":2}],)"
-        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":0}]},{"primitives":[{"attributes":{"POSITION":0},"mode":5}]},)"
-        R"({"primitives":[{"attributes":{"POSITION":0},"mode":1},{"attributes":{"POSITION":0},"indices":1}]}],)"
-        R"("accessors":[{"bufferView":0,"byteOffset":4,"componentType":5126,"count":)" +
-        std::to_string(n) + R"(,"type":"VEC3"},{"bufferView":1,"componentType":)" + std::to_string(type) +
-        R"(,"count":)" + std::to_string(m) + R"(,"type":"SCALAR"}],"bufferViews":[)" + view +
-        R"(,{"buffer":0,"byteOffset":)" + std::to_string(data.size()) + R"(,"byteLength":)" +
-        std::to_string(bytes.size()) + R"(}],"buffers":[{"byteLength":)" + std::to_string(data.size() + bytes.size()) +
-        "}]}";
-    const auto file = write("a.glb", glb(json, data + bytes));
-    ASSERT_EQ(message_of(file), "accepted");
-    EXPECT_EQ(load_mesh(file).hash(), torus.hash()) << type;
-  }
-}
-
-TEST_F(LoadGltf, DamagedStructureIsRefused) {
-  const std::string good = gltf_json(float_torus(), "", k_plain_node);
-  ASSERT_EQ(message(good), "accepted");
-  EXPECT_THAT(message("{"), HasSubstr("a.glb: the JSON is malformed"));
-  EXPECT_THAT(message("[]"), HasSubstr("a.glb: the JSON is malformed"));
-  EXPECT_THAT(message(std::string(100'000, '[')), HasSubstr("malformed"));
-  EXPECT_THAT(message_with("\"2.0\"", "\"1.0\""), HasSubstr("version 2 is expected"));
-  EXPECT_THAT(message_with(R"("mesh":0)", R"("mesh":4)"), HasSubstr("Array index 4 is out of bounds"));
-  EXPECT_THAT(message_with(R"("mesh":0)", R"("mesh":0,"children":[7])"), HasSubstr("nodes[7]: is missing or shared"));
-  EXPECT_THAT(message_with(R"("mesh":0)", R"("mesh":0,"children":[0])"), HasSubstr("deeper than 500 levels"));
-  for (const char* index : {"-1", "0.5", "1.55e+164", "-1e99"}) {
-    const std::string child = std::string(R"("mesh":0,"children":[)") + index + "]";
-    EXPECT_THAT(message_with(R"("mesh":0)", child), HasSubstr("nodes[0].children: an index is not a whole number"));
-    EXPECT_THAT(message_with(R"("POSITION":0)", std::string(R"("POSITION":)") + index),
-                HasSubstr("POSITION: an index is not a whole number"));
-  }
-  EXPECT_THAT(message_with(R"("mesh":0)", R"("mesh":0,"scale":[1,1e300,1])"), HasSubstr("not finite"));
-  EXPECT_THAT(message_with(R"("indices":1)", R"("indices":9)"), HasSubstr("a.glb: assimp cannot read it"));
-  EXPECT_THAT(message_with(R"("POSITION")", R"("POSITIONS")"), HasSubstr("key 'POSITION' not found"));
-  EXPECT_THAT(message_with("5126", "5122"), HasSubstr("three floats"));
-  EXPECT_THAT(message_with(R"("count":54)", R"("count":54,"sparse":{})"), HasSubstr("sparse"));
-  EXPECT_THAT(message_of(write("c.gltf", gltf_json(float_torus(), R"(,"uri":"data:;base64,AA!A")", k_plain_node))),
-              HasSubstr("c.gltf: buffers[0].uri: is not base64"));
-  EXPECT_THAT(message_of(write("b.gltf", gltf_json(float_torus(), R"(,"uri":"missing.bin")", k_plain_node))),
-              AllOf(HasSubstr("b.gltf: assimp cannot read it"), HasSubstr("missing.bin")));
-}
-
-TEST_F(LoadGltf, CountsThatDoNotFitTheFileAreRefused) {
-  for (const char* count : {"55", "2000000000", "281474976710656", "18446744073709551615"}) {
-    EXPECT_THAT(message_with(R"("count":54)", std::string(R"("count":)") + count), HasSubstr("assimp cannot read it"));
-    EXPECT_THAT(message_with(R"("count":324)", std::string(R"("count":)") + count), HasSubstr("a.glb: assimp"));
-  }
-  EXPECT_THAT(message_with(R"("count":324)", R"("count":323)"), HasSubstr("assimp finds it damaged"));
-  EXPECT_THAT(message_with(R"("byteOffset":648)", R"("byteOffset":649)"), HasSubstr("out of range"));
-  const std::string whole = glb(gltf_json(float_torus(), "", k_plain_node), gltf_data(float_torus()));
-  EXPECT_THAT(message_of(write("a.glb", whole + "tail")), HasSubstr("byte 8: not the file's size"));
-}
-
-TEST_F(LoadGltf, BadDataAreRefused) {
-  const std::string json = gltf_json(float_torus(), "", k_plain_node);
-  std::string data = gltf_data(float_torus());
-  const std::size_t first_index = 12 * float_torus().vertices().size();
-  std::string bad = data;
-  bad.replace(first_index + 2 * 7, 2, little(std::uint16_t{54}));
-  for (int repeat = 0; repeat < 2; ++repeat) {
-    EXPECT_THAT(message_of(write("a.glb", glb(json, bad))), HasSubstr("a.glb: assimp finds it damaged"));
-  }
-  EXPECT_EQ(message(json), "accepted") << "the damage of the file before must be forgotten";
-  bad = data;
-  bad.replace(12 * 5 + 4, 4, little(std::nanf("")));
-  EXPECT_THAT(message_of(write("a.glb", glb(json, bad))), HasSubstr("a.glb: mesh 0: vertex 5: not finite"));
-}
-
-TEST_F(LoadGltf, AGraphThatExhaustsStackOrMemoryIsRefused) {
-  const auto chain = [](std::size_t length) {
-    std::string nodes = "[";
-    for (std::size_t i = 0; i + 1 < length; ++i) nodes += R"({"children":[)" + std::to_string(i + 1) + "]},";
-    return nodes + R"({"mesh":0}])";
-  };
-  EXPECT_EQ(message(gltf_json(float_torus(), "", chain(400))), "accepted");
-  EXPECT_THAT(message(gltf_json(float_torus(), "", chain(20'000))), HasSubstr("lies deeper than 500 levels"));
-  std::string doubling = "[";
-  for (int i = 1; i < 40; ++i) {
-    const std::string next = std::to_string(i);
-    doubling += R"({"children":[)" + next + "," + next + "]},";
-  }
-  EXPECT_THAT(message(gltf_json(float_torus(), "", doubling + R"({"mesh":0}])")), HasSubstr("shared"));
-}
 
 class Load3ds : public TestFolder {};
 
@@ -259,10 +95,96 @@ TEST_F(LoadOthers, Collada) {
   EXPECT_THAT(message_of(write("d.dae", "<COLLADA")), HasSubstr("d.dae: assimp cannot read it"));
 }
 
+/// A box of 1 x 2 x 3 whose COLLADA file states unit and axes in these words.
+std::string collada_box(const std::string& asset) {
+  return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>)" +
+         asset +
+         R"(</asset><library_geometries><geometry id="g"><mesh><source id="p"><float_array id="pa" count="24">)"
+         R"(0 0 0 1 0 0 0 2 0 1 2 0 0 0 3 1 0 3 0 2 3 1 2 3</float_array><technique_common><accessor source="#pa" count="8" )"
+         R"(stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor>)"
+         R"(</technique_common></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>)"
+         R"(<triangles count="12"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 3 0 3 1 4 5 7 4 7 6 0 1 5 0 5 4 )"
+         R"(2 6 7 2 7 3 0 4 6 0 6 2 1 3 7 1 7 5</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>)"
+         R"(<visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>)"
+         R"(<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+class LoadColladaFrame : public TestFolder {
+ protected:
+  struct Expected {
+    const char* words;          ///< Behind the file's name.
+    Eigen::Vector3d low, high;  ///< Of the box.
+    const char* note;
+  };
+  void expect(const std::string& asset, const std::vector<Expected>& cases) const {
+    const auto file = write("part.dae", collada_box(asset));
+    for (const Expected& wanted : cases) {
+      const Mesh mesh = load_mesh(file.string() + wanted.words);
+      EXPECT_TRUE(mesh.solid());
+      EXPECT_EQ(mesh.name(), "part");
+      // Assimp holds the unit in single precision.
+      constexpr double k_rounding = 3.0 * 6e-8;
+      EXPECT_LT((mesh.box().min() - wanted.low).norm(), k_rounding) << wanted.note;
+      EXPECT_LT((mesh.box().max() - wanted.high).norm(), k_rounding) << wanted.note;
+      ASSERT_EQ(mesh.repairs().notes.size(), 1u);
+      EXPECT_EQ(mesh.repairs().notes[0], wanted.note);
+    }
+  }
+};
+
+TEST_F(LoadColladaFrame, IsScaledToMetresAndTurnedOnlyIfAsked) {
+  const Eigen::Vector3d zero(0, 0, 0), as_stored(1, 2, 3);
+  expect(R"(<unit name="meter" meter="1"/><up_axis>Z_UP</up_axis>)",
+         {{"", zero, as_stored, "the file's unit is 1 m and z points up; axes kept"},
+          {"#as-stored", zero, as_stored, "the file's unit is 1 m and z points up; read as stored"},
+          {"#y-up", {0, 0, -2}, {1, 3, 0}, "the file's unit is 1 m and z points up; turned so that y points up"}});
+  expect(R"(<unit name="centimeter" meter="0.01"/><up_axis>Z_UP</up_axis>)",
+         {{"", zero, 0.01 * as_stored, "the file's unit is 0.01 m and z points up; scaled to metres; axes kept"},
+          {"#as-stored", zero, as_stored, "the file's unit is 0.01 m and z points up; read as stored"},
+          {"#y-up",
+           {0, 0, -0.02},
+           {0.01, 0.03, 0},
+           "the file's unit is 0.01 m and z points up; scaled to metres; turned so that y points up"}});
+  expect(R"(<unit name="inch" meter="0.0254"/><up_axis>Y_UP</up_axis>)",
+         {{"", zero, 0.0254 * as_stored, "the file's unit is 0.0254 m and y points up; scaled to metres; axes kept"},
+          {"#y-up", zero, 0.0254 * as_stored,
+           "the file's unit is 0.0254 m and y points up; scaled to metres; axes kept"}});
+  expect("<up_axis>X_UP</up_axis>",
+         {{"", zero, as_stored, "the file's unit is 1 m and x points up; axes kept"},
+          {"#y-up", {-2, 0, 0}, {0, 1, 3}, "the file's unit is 1 m and x points up; turned so that y points up"}});
+  expect("", {{"", zero, as_stored, "the file's unit is 1 m and y points up; axes kept"}});
+}
+
+TEST_F(LoadColladaFrame, WordsBehindANameThatMakeNoSenseAreRefused) {
+  const auto file = write("part.dae", collada_box(R"(<unit meter="0"/>)"));
+  EXPECT_THAT(message_of(file), HasSubstr("part.dae: the file's unit is 0 m"));
+  EXPECT_THAT(message_of(file.string() + "#z-up"), HasSubstr("part.dae#z-up: '.dae#z-up' is no mesh format"));
+  const auto off = write("part.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  EXPECT_EQ(load_mesh(off.string() + "#as-stored").hash(), load_mesh(off).hash());
+  EXPECT_THAT(message_of(off.string() + "#y-up"), HasSubstr("part.off: #y-up is for COLLADA"));
+  EXPECT_EQ(mesh_file_of(file.string() + "#as-stored"), file);
+  EXPECT_EQ(mesh_file_of(file), file);
+}
+
+TEST_F(LoadColladaFrame, AFileMayHaveSuchANameItself) {
+  const auto named = write("part.dae#as-stored", "text");
+  EXPECT_EQ(mesh_file_of(named), named);
+}
+
 TEST_F(LoadOthers, X3d) { expect_pyramid(load_mesh(write("a.x3d", x3d_pyramid()))); }
 
 TEST_F(LoadOthers, Fbx) {
-  expect_pyramid(load_mesh(write("a.fbx", fbx_pyramid("-5"))));
+  const Mesh mesh = load_mesh(write("a.fbx", fbx_pyramid("-5")));
+  expect_pyramid(mesh);
+  EXPECT_EQ(mesh.repairs().notes, std::vector<std::string>{"the file's unit is 1 cm and y points up; read as stored"});
+  std::string metres = fbx_pyramid("-5");
+  metres.replace(metres.find("Definitions:"), 0,
+                 "GlobalSettings: {\n Version: 1000\n Properties70: {\n P: \"UpAxis\", \"int\", \"Integer\", \"\",2\n"
+                 " P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",100\n }\n}\n");
+  const Mesh large = load_mesh(write("c.fbx", metres));
+  expect_pyramid(large);
+  EXPECT_EQ(large.repairs().notes,
+            std::vector<std::string>{"the file's unit is 100 cm and z points up; read as stored"});
   EXPECT_THAT(message_of(write("b.fbx", fbx_pyramid("-9"))), HasSubstr("vertex index out of range"));
 }
 

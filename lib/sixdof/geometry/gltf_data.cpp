@@ -259,6 +259,7 @@ std::vector<double> GltfData::numbers(std::size_t accessor, std::size_t width) {
     const json& sparse = layout.accessor->at("sparse");
     const std::string place = layout.place + ".sparse";
     const std::size_t count = whole(sparse.at("count"), place + ".count");
+    if (count > layout.count) source_.fail(place, fmt::format("{} elements of {}", count, layout.count));
     const json &where = sparse.at("indices"), &values = sparse.at("values");
     const auto part = [&](const json& object, std::size_t element_bytes) {
       const std::string_view bytes = view(whole(object.at("bufferView"), place), place);

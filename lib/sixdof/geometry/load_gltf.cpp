@@ -16,8 +16,9 @@ namespace {
 using Eigen::Matrix4d;
 using nlohmann::json;
 
-/// A small file may place a mesh very often. So many vertices, or triangles, take a few GB.
-constexpr std::size_t k_most_elements = 100'000'000;
+/// Vertices and triangles that a file may have beyond what its accessors hold, by using meshes several times. A small
+/// file could use one often enough to fill the memory.
+constexpr std::size_t k_most_copies = 20'000'000;
 
 constexpr const char* k_instancing = "EXT_mesh_gpu_instancing";
 
@@ -162,6 +163,7 @@ class Reader {
     if (mesh == node.end()) return;
     skinned_ = skinned_ || node.contains("skin");
     const std::size_t number = data_.whole(*mesh, here + ".mesh");
+    data_.element("meshes", number, here + ".mesh");
     const Part placed = part(number);
     const json& extensions = GltfData::member(node, "extensions");
     const auto instancing = extensions.find(k_instancing);
@@ -184,6 +186,8 @@ class Reader {
     const std::vector<double> translations = values("TRANSLATION", 3), rotations = values("ROTATION", 4),
                               scales = values("SCALE", 3);
     if (!count) source_.fail(here, std::string(k_instancing) + " states no instances");
+    visits_ += *count;
+    check_size({}, 0);
     std::vector<Matrix4d> transforms;
     for (std::size_t i = 0; i < *count; ++i) {
       const auto triple = [i](const std::vector<double>& list, double otherwise) -> Eigen::Vector3d {
@@ -197,10 +201,18 @@ class Reader {
     return transforms;
   }
 
-  void check_size(std::size_t vertices, std::size_t triangles) const {
-    if (vertices <= k_most_elements && triangles <= k_most_elements) return;
-    source_.fail(
-        fmt::format("its meshes, as often as they are used, have more than {} vertices or triangles", k_most_elements));
+  /// Before `more` vertices or triangles are added to a part, or to the surface.
+  void check_size(const Part& part, std::size_t more) const {
+    const std::size_t size =
+        part.vertices.size() + part.triangles.size() + surface_.vertices.size() + surface_.triangles.size() + more;
+    if (size <= k_most_copies + accessors_size_) return;
+    source_.fail(fmt::format(
+        "its meshes, as often as they are used, have more than {} vertices and triangles of copies", k_most_copies));
+  }
+
+  /// An accessor has been read.
+  void count_accessor(std::size_t accessor, std::size_t size) {
+    if (sizes_.try_emplace(accessor, size).second) accessors_size_ += size;
   }
 
   Part part(std::size_t number) {
@@ -217,27 +229,33 @@ class Reader {
   void add_primitive(const json& primitive, const std::string& here, Part& part,
                      std::map<std::size_t, std::uint32_t>& first_of) {
     constexpr std::size_t k_triangles = 4, k_strip = 5, k_fan = 6;
+    ++visits_;
     const std::size_t mode = data_.whole(primitive, "mode", k_triangles, here);
     if (mode > k_fan) source_.fail(here, fmt::format("mode {} is unknown", mode));
+    check_size(part, 0);
     if (mode < k_triangles) return;  // points or lines
     morphed_ = morphed_ || primitive.contains("targets");
     const std::size_t accessor = data_.whole(primitive.at("attributes").at("POSITION"), here + ".attributes.POSITION");
+    data_.element("accessors", accessor, here + ".attributes.POSITION");
     refuse_compressed(primitive, accessor, here);
     const std::size_t before = part.vertices.size();
     const auto [known, is_new] = first_of.try_emplace(accessor, static_cast<std::uint32_t>(before));
     if (is_new) {
       const std::vector<double> positions = data_.numbers(accessor, 3);
-      check_size(before + positions.size() / 3, 0);
+      count_accessor(accessor, positions.size() / 3);
+      check_size(part, positions.size() / 3);
       for (std::size_t i = 0; i < positions.size(); i += 3) {
         part.vertices.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
         if (!part.vertices.back().allFinite()) source_.fail(here, fmt::format("vertex {}: not finite", i / 3));
       }
-      sizes_[accessor] = positions.size() / 3;
     }
     const std::size_t size = sizes_.at(accessor);
     std::vector<std::uint32_t> corners;
     if (const auto found = primitive.find("indices"); found != primitive.end()) {
-      corners = data_.indices(data_.whole(*found, here + ".indices"));
+      const std::size_t of_corners = data_.whole(*found, here + ".indices");
+      data_.element("accessors", of_corners, here + ".indices");
+      corners = data_.indices(of_corners);
+      count_accessor(of_corners, corners.size());
     } else {
       for (std::uint32_t i = 0; i < size; ++i) corners.push_back(i);
     }
@@ -247,6 +265,7 @@ class Reader {
     if (mode == k_triangles && corners.size() % 3 != 0) {
       source_.fail(here, fmt::format("{} corners are no whole number of triangles", corners.size()));
     }
+    check_size(part, corners.size());
     const std::uint32_t first = known->second;
     const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
       part.triangles.push_back({first + corners[a], first + corners[b], first + corners[c]});
@@ -260,7 +279,6 @@ class Reader {
         add(i + turn, i + 1 - turn, i + 2);
       }
     }
-    check_size(0, part.triangles.size());
   }
 
   void refuse_compressed(const json& primitive, std::size_t accessor, const std::string& here) const {
@@ -271,7 +289,7 @@ class Reader {
 
   void place(const Part& part, std::size_t number, const Matrix4d& transform) {
     const std::size_t first = surface_.vertices.size();
-    check_size(first + part.vertices.size(), surface_.triangles.size() + part.triangles.size());
+    check_size(part, 0);
     for (std::size_t i = 0; i < part.vertices.size(); ++i) {
       surface_.vertices.push_back((transform * part.vertices[i].homogeneous()).head<3>());
       if (!surface_.vertices.back().allFinite()) {
@@ -290,7 +308,9 @@ class Reader {
   const Source& source_;
   GltfData data_;
   Surface surface_;
-  std::map<std::size_t, std::size_t> sizes_;  ///< Vertices of the accessors that were read.
+  std::map<std::size_t, std::size_t> sizes_;  ///< Elements of the accessors that were read,
+  std::size_t accessors_size_ = 0;            ///< and their sum.
+  std::size_t visits_ = 0;                    ///< Of primitives and instances, which may all be empty: they take time.
   bool morphed_ = false, skinned_ = false;
 };
 
