@@ -22,7 +22,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json as_json(const FileRepairs& repairs) { return {{"count", repairs.count}, {"first_place", repairs.first_place}}; }
+/// What reading the file forgave by kind, and what building the mesh repaired.
+Json as_json(const MeshRepairs& repairs) {
+  Json json;
+  for (std::size_t k = 0; k < k_forgiven_kinds; ++k) {
+    const auto kind = static_cast<Forgiven>(k);
+    const FileRepairs& of_kind = repairs.forgiven.of(kind);
+    json[key_of(kind)] = {{"count", of_kind.count}, {"first_place", of_kind.first_place}};
+  }
+  json["welded_vertices"] = repairs.welded_vertices;
+  json["unreferenced_vertices"] = repairs.unreferenced_vertices;
+  json["collapsed_triangles"] = repairs.collapsed_triangles;
+  json["zero_area_triangles"] = repairs.zero_area_triangles.size();
+  return json;
+}
 
 Json as_json(const ShapeFacts& facts) {
   return {{"kind", name_of(kind_of(facts))}, {"genus", facts.genus},         {"box_aspect", facts.box_aspect},
@@ -32,7 +45,6 @@ Json as_json(const ShapeFacts& facts) {
 
 Json as_json(const Mesh& mesh) {
   const MeshTopology& topology = mesh.topology();
-  const MeshRepairs& repairs = mesh.repairs();
   return {{"kind", "mesh"},
           {"name", mesh.name()},
           {"triangles", mesh.triangles().size()},
@@ -55,15 +67,9 @@ Json as_json(const Mesh& mesh) {
           {"diagonal", mesh.diagonal()},
           {"hash", mesh.hash()},
           {"shape", as_json(shape_facts(mesh))},
-          {"repairs",
-           {{"crossing_polygons", as_json(repairs.crossing_polygons)},
-            {"nonplanar_polygons", as_json(repairs.nonplanar_polygons)},
-            {"skipped_statements", as_json(repairs.skipped_statements)},
-            {"welded_vertices", repairs.welded_vertices},
-            {"unreferenced_vertices", repairs.unreferenced_vertices},
-            {"collapsed_triangles", repairs.collapsed_triangles},
-            {"zero_area_triangles", repairs.zero_area_triangles.size()}}},
-          {"notes", repairs.notes}};
+          {"forgiven", text_of(mesh.repairs().forgiven)},
+          {"notes", mesh.repairs().notes},
+          {"repairs", as_json(mesh.repairs())}};
 }
 
 std::string as_text(const Eigen::Vector3d& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x(), p.y(), p.z()); }
@@ -100,12 +106,8 @@ void print_text(const Mesh& mesh) {
       fmt::format("{} vertices welded, {} unused dropped; {} collapsed triangles dropped, {} of zero area kept",
                   repairs.welded_vertices, repairs.unreferenced_vertices, repairs.collapsed_triangles,
                   repairs.zero_area_triangles.size()));
-  const auto file_row = [&](const FileRepairs& of_kind, const char* what) {
-    if (of_kind.count > 0) row("", fmt::format("{}: {}, the first at {}", what, of_kind.count, of_kind.first_place));
-  };
-  file_row(repairs.crossing_polygons, "polygons that cross themselves, triangulated");
-  file_row(repairs.nonplanar_polygons, "polygons that are not flat, triangulated");
-  file_row(repairs.skipped_statements, "unknown statements skipped");
+  const std::string forgiven = text_of(repairs.forgiven);
+  row("forgiven", forgiven.empty() ? "nothing" : forgiven);
   for (const std::string& note : repairs.notes) row("note", note);
 }
 

@@ -82,15 +82,15 @@ class LoadOthers : public TestFolder {
     EXPECT_EQ(mesh.volume(), 4.0);
     EXPECT_EQ(mesh.box().min(), Eigen::Vector3d(10, 0, 0));
     EXPECT_EQ(mesh.box().max(), Eigen::Vector3d(12, 2, 3));
-    EXPECT_EQ(mesh.repairs().nonplanar_polygons.count, 0u);
+    EXPECT_EQ(mesh.repairs().forgiven.of(Forgiven::nonplanar_polygons).count, 0u);
   }
 };
 
 TEST_F(LoadOthers, Collada) {
   expect_pyramid(load_mesh(write("a.dae", collada_pyramid("2 2 0"))));
   const Mesh lifted = load_mesh(write("b.DAE", collada_pyramid("2 2 0.5")));
-  EXPECT_EQ(lifted.repairs().nonplanar_polygons.count, 1u);
-  EXPECT_EQ(lifted.repairs().nonplanar_polygons.first_place, "mesh 0: face 0");
+  EXPECT_EQ(lifted.repairs().forgiven.of(Forgiven::nonplanar_polygons).count, 1u);
+  EXPECT_EQ(lifted.repairs().forgiven.of(Forgiven::nonplanar_polygons).first_place, "mesh 0: face 0");
   EXPECT_THAT(message_of(write("c.dae", collada_pyramid("2 nan 0"))), HasSubstr("c.dae: mesh 0: vertex 2: not finite"));
   EXPECT_THAT(message_of(write("d.dae", "<COLLADA")), HasSubstr("d.dae: assimp cannot read it"));
 }

@@ -216,15 +216,18 @@ std::vector<PolygonFile> pyramid_files() {
 TEST_F(Load, PolygonsThatAreNotFlatAreCountedWithTheirPlace) {
   for (const PolygonFile& file : pyramid_files()) {
     const Mesh flat = load_mesh(write(file.name, file.begin + file.base + file.end));
-    EXPECT_EQ(flat.repairs().nonplanar_polygons.count, 0u) << file.name;
-    EXPECT_EQ(flat.repairs().nonplanar_polygons.first_place, "");
+    EXPECT_EQ(flat.repairs().forgiven.of(Forgiven::nonplanar_polygons).count, 0u) << file.name;
+    EXPECT_EQ(flat.repairs().forgiven.of(Forgiven::nonplanar_polygons).first_place, "");
     // Six digits are flat enough, a corner lifted by a hundredth is not.
-    EXPECT_EQ(load_mesh(write(file.name, file.begin + "2 2 1.00001" + file.end)).repairs().nonplanar_polygons.count,
+    EXPECT_EQ(load_mesh(write(file.name, file.begin + "2 2 1.00001" + file.end))
+                  .repairs()
+                  .forgiven.of(Forgiven::nonplanar_polygons)
+                  .count,
               0u);
     const Mesh warped = load_mesh(write(file.name, file.begin + "2 2 1.01" + file.end));
-    EXPECT_EQ(warped.repairs().nonplanar_polygons.count, 1u) << file.name;
-    EXPECT_EQ(warped.repairs().nonplanar_polygons.first_place, file.place) << file.name;
-    EXPECT_EQ(warped.repairs().crossing_polygons.count, 0u) << file.name;
+    EXPECT_EQ(warped.repairs().forgiven.of(Forgiven::nonplanar_polygons).count, 1u) << file.name;
+    EXPECT_EQ(warped.repairs().forgiven.of(Forgiven::nonplanar_polygons).first_place, file.place) << file.name;
+    EXPECT_EQ(warped.repairs().forgiven.of(Forgiven::crossing_polygons).count, 0u) << file.name;
     EXPECT_TRUE(warped.solid()) << warped.why_not_solid();
   }
 }
@@ -232,16 +235,16 @@ TEST_F(Load, PolygonsThatAreNotFlatAreCountedWithTheirPlace) {
 TEST_F(Load, PolygonsThatCrossThemselvesAreCountedWithTheirPlace) {
   const Mesh face = load_mesh(std::filesystem::path(SIXDOF_TEST_DATA) / "repaired" / "crossing_face.obj");
   EXPECT_EQ(face.triangles().size(), 3u);
-  EXPECT_EQ(face.repairs().crossing_polygons.count, 1u);
-  EXPECT_EQ(face.repairs().crossing_polygons.first_place, "line 6");
+  EXPECT_EQ(face.repairs().forgiven.of(Forgiven::crossing_polygons).count, 1u);
+  EXPECT_EQ(face.repairs().forgiven.of(Forgiven::crossing_polygons).first_place, "line 6");
   // A prism over two triangles that touch in their tips; the second, of unequal triangles.
   for (const char* corner : {"2 2", "2 3"}) {
     const std::string foot = std::string("v 0 0 0\nv ") + corner + " 0\nv 2 0 0\nv 0 2 0\n";
     const std::string top = std::string("v 0 0 1\nv ") + corner + " 1\nv 2 0 1\nv 0 2 1\n";
     const Mesh mesh =
         load_mesh(write("a.obj", foot + top + "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 4 3 2 1\nf 5 6 7 8\n"));
-    EXPECT_EQ(mesh.repairs().crossing_polygons.count, 2u) << corner;
-    EXPECT_EQ(mesh.repairs().crossing_polygons.first_place, "line 13") << corner;
+    EXPECT_EQ(mesh.repairs().forgiven.of(Forgiven::crossing_polygons).count, 2u) << corner;
+    EXPECT_EQ(mesh.repairs().forgiven.of(Forgiven::crossing_polygons).first_place, "line 13") << corner;
     EXPECT_EQ(mesh.triangles().size(), 12u) << corner;
     EXPECT_TRUE(mesh.topology().closed) << corner;
     EXPECT_TRUE(mesh.topology().oriented) << corner;
@@ -251,10 +254,12 @@ TEST_F(Load, PolygonsThatCrossThemselvesAreCountedWithTheirPlace) {
 TEST_F(Load, UnknownObjStatementsAreSkippedAndCounted) {
   const Mesh mesh = load_mesh(std::filesystem::path(SIXDOF_TEST_DATA) / "repaired" / "free_form.obj");
   EXPECT_EQ(mesh.hash(), load_mesh(write("a.off", k_off)).hash());
-  EXPECT_EQ(mesh.repairs().skipped_statements.count, 6u);
-  EXPECT_EQ(mesh.repairs().skipped_statements.first_place, "line 15");
+  EXPECT_EQ(mesh.repairs().forgiven.of(Forgiven::skipped_statements).count, 6u);
+  EXPECT_EQ(mesh.repairs().forgiven.of(Forgiven::skipped_statements).first_place, "line 15");
   EXPECT_EQ(mesh.repairs().unreferenced_vertices, 3u);
-  EXPECT_EQ(load_mesh(write("a.obj", "o a\nvn 0 0 1\n" + k_obj)).repairs().skipped_statements.count, 0u);
+  EXPECT_EQ(
+      load_mesh(write("a.obj", "o a\nvn 0 0 1\n" + k_obj)).repairs().forgiven.of(Forgiven::skipped_statements).count,
+      0u);
 }
 
 TEST_F(Load, AByteOrderMarkBeforeATextIsSkipped) {
@@ -331,14 +336,15 @@ constexpr BadCase k_bad_cases[] = {
     {"negative_index.obj", "line 6: ", "vertex -5 of the 4 read so far"},
     {"zero_index.obj", "line 5: ", "vertex 0 of the 4"},
     {"index_seven_of_six.obj", "line 8: ", "vertex 7 of the 6"},
-    {"two_corners.obj", "line 5: ", "a face of 2 corners"},
+    {"cut_off_face.obj", "line 5: ", "a face of 2 corners"},
+    {"weight.obj", "line 4: ", "a vertex of weight 2, which faces use (line 6)"},
     {"comma.obj", "line 1: ", "'0,3' is not a number"},
-    {"not_a_number.obj", "line 4: ", "'nan' is not finite"},
+    {"not_a_number.obj", "line 4: ", "nan) of a face's corner are not finite"},
     {"huge_index.obj", "line 5: ", "out of range"},
     {"overflow.obj", "line 4: ", "outside the range of double"},
     {"free_form.obj", "line 5: ", "no triangles: the file has no faces"},
     {"no_faces.obj", "", "no triangles"},
-    {"one_word.off", "line 1: ", "missing behind the keyword OFF"},
+    {"one_word.off", "line 1: ", "216 vertices do not fit"},
     {"huge_counts.off", "line 2: ", "4294967295 vertices do not fit"},
     {"overflowing_counts.off", "line 2: ", "out of range"},
     {"negative_count.off", "line 2: ", "-4 vertices do not fit"},
@@ -347,10 +353,9 @@ constexpr BadCase k_bad_cases[] = {
     {"more_faces.off", "line 10: ", "behind the last element"},
     {"index_out_of_range.off", "line 9: ", "vertex index 4 of 4"},
     {"negative_index.off", "line 9: ", "vertex index -2 of 4"},
-    {"two_corners.off", "line 9: ", "face 2 has 2 corners"},
     {"list_longer_than_line.off", "line 9: ", "face 2 has 7 corners, but 3 indices"},
-    {"infinite.off", "line 6: ", "'inf' is not finite"},
-    {"no_keyword.off", "line 1: ", "not OFF, COFF, NOFF, CNOFF or STOFF"},
+    {"infinite.off", "line 6: ", "inf) of a face's corner are not finite"},
+    {"other_keyword.off", "line 1: ", "begins with 'GOFF', not OFF, COFF"},
     {"binary.off", "line 1: ", "binary OFF is not supported"},
     {"count_against_size.stl", "byte 80: ", "the count is 1769221948 triangles"},
     {"count_too_large.stl", "byte 80: ", "the count is 5 triangles, which take 250 bytes, but 200 follow"},
@@ -365,7 +370,7 @@ constexpr BadCase k_bad_cases[] = {
     {"no_end_header.ply", "", "no 'end_header'"},
     {"unknown_type.ply", "line 6: ", "'quad' is no type"},
     {"index_out_of_range.ply", "line 16: face 2: ", "vertex index 4 of 4"},
-    {"list_longer_than_data.ply", "line 17: face 3: ", "a list of 200 values, but 3 follow"},
+    {"list_longer_than_data.ply", "line 17: face 3: ", "a list of 200 values, but at most 3 follow"},
     {"list_shorter_than_line.ply", "line 16: face 2: ", "5 values where 4 are expected"},
     {"negative_list.ply", "line 16: face 2: ", "a list of -3 values"},
     {"nan.ply", "line 13: ", "not finite"},
@@ -382,7 +387,8 @@ constexpr BadCase k_bad_cases[] = {
     {"binary_nan.ply", "vertex 3: ", "not finite"},
     {"binary_cut_off.ply", "face 3: ", "bytes are left"},
     {"binary_bytes_behind_end.ply", "", "1 bytes behind the last element"},
-    {"tristrips.ply", "", "strips are not supported"},
+    {"tristrips.ply", "line 14: tristrips 0: ", "vertex index 4 of 4"},
+    {"binary_long.ply", "element face: ", "programs do not agree on the bytes of 'long'"},
     {"float_indices.ply", "element face: ", "no list of integers"},
     {"no_properties.ply", "element ghost: ", "has no properties"},
     {"missing_axis.ply", "element vertex: ", "has no properties x, y and z"},

@@ -6,12 +6,17 @@
 
 namespace sixdof {
 
+struct LoadOptions {
+  /// PLY, OBJ, OFF, STL: drops faces with a corner that is not finite, and counts them, instead of refusing the file.
+  bool drop_faces_not_finite = false;
+};
+
 /// Reads a triangle mesh; the format follows from the file name's extension (any case):
 ///
 /// | extension    | precision of coordinates | notes                                                              |
 /// |--------------|--------------------------|--------------------------------------------------------------------|
-/// | .ply         | as stored, up to double  | ascii, binary of both byte orders                                  |
-/// | .off         | double                   | OFF, and COFF, NOFF, STOFF (colours, normals ignored); ascii       |
+/// | .ply         | as stored, up to double  | ascii, binary of both byte orders; faces and triangle strips       |
+/// | .off         | double                   | OFF with ST, C, N (ignored), 4 (divided by it), n (3 only); ascii  |
 /// | .obj         | double                   | statements that hold no polygons are skipped                       |
 /// | .stl         | ascii double, binary float | normals are ignored: the order of the corners says what is outside |
 /// | .gltf, .glb  | float, transforms double | version 2.0; the default scene (below)                        |
@@ -25,10 +30,14 @@ namespace sixdof {
 /// file states and what was done (COLLADA, FBX). `#as-stored` is allowed behind any name. Faces with more than three
 /// corners are triangulated as triangulate.h says. A byte order mark before a text is skipped.
 ///
-/// Errors are: a count, index or number that is wrong, and bytes behind the end. The last line needs no line break, so
-/// a text that is cut off within its last number is read with what is left of that number. OBJ holds no counts: a file
-/// cut off between two faces is a valid file of fewer faces. Nothing is repaired in silence: polygons that are not flat
-/// or cross themselves, skipped statements, and what Mesh::build welded or dropped are counted in Mesh::repairs().
+/// Errors are: a count, index or number that is wrong, and bytes behind the end that are not blank. The last line needs
+/// no line break, so a text that is cut off within its last number is read with what is left of that number. OBJ holds
+/// no counts: a file cut off between two faces is a valid file of fewer faces. A vertex that is not finite is an error
+/// where a face uses it; so is an OBJ vertex whose fourth value, the weight of rational curves, is not 1.
+///
+/// What a format does not foresee, but has one meaning, is read: forgiven.h lists the kinds. Nothing is forgiven or
+/// repaired in silence: Mesh::repairs() counts that, polygons that are not flat or cross themselves, skipped
+/// statements, and what Mesh::build welded or dropped.
 ///
 /// glTF: sparse accessors, integer coordinates (KHR_mesh_quantization), strips and fans are read,
 /// EXT_mesh_gpu_instancing makes copies. Extensions that may change the surface and that the file requires are refused
@@ -48,7 +57,7 @@ namespace sixdof {
 /// depend on the process's locale.
 /// Mesh::name() becomes the file's name without its folder and extension.
 /// @throws BadFile naming the file, the place (element from 0, or line from 1) and the cause.
-Mesh load_mesh(const std::filesystem::path& file);
+Mesh load_mesh(const std::filesystem::path& file, const LoadOptions& options = {});
 
 /// The file that load_mesh() reads for a name: "part.dae" for "part.dae#as-stored".
 std::filesystem::path mesh_file_of(const std::filesystem::path& name);

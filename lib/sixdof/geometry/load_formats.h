@@ -12,10 +12,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include <sixdof/geometry/load.h>
 #include <sixdof/geometry/mesh.h>
 
 namespace sixdof::loading {
@@ -27,6 +29,7 @@ std::string lower_case_extension(const std::filesystem::path& file);
 struct Source {
   std::filesystem::path path;
   std::string bytes;
+  LoadOptions options = {};
 
   /// Throws a BadFile that names the file. @param place in the file: "line 7", "face 3".
   [[noreturn]] void fail(const std::string& cause) const;
@@ -53,21 +56,69 @@ void append_little_endian(std::string& bytes, T value) {
   bytes.append(raw.data(), raw.size());
 }
 
-/// What a reader returns: indices are in range and coordinates finite, nothing is welded yet.
+/// A vertex that no face can use.
+struct UnusableVertex {
+  std::uint32_t vertex;
+  std::size_t line;     ///< Of a text; 0 in a binary file.
+  double weight = 1.0;  ///< Of an OBJ vertex; 1: the coordinates are not finite.
+};
+
+/// What a reader returns: indices are in range, coordinates of triangles finite, nothing is welded yet.
 struct Surface {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Triangle> triangles;
   MeshRepairs repairs;
+  std::vector<UnusableVertex> unusable;  ///< By vertex.
+
+  /// @param line of a text; 0 in a binary file
+  void add_vertex(const Eigen::Vector3d& p, std::size_t line) {
+    if (!p.allFinite()) unusable.push_back({static_cast<std::uint32_t>(vertices.size()), line});
+    vertices.push_back(p);
+  }
 };
 
-/// Counts one repair. @param place of what was repaired in the file.
-void count_repair(FileRepairs& repairs, const std::string& place);
+/// For a face with a corner that is not finite: counts it if the options say so. @throws BadFile otherwise
+/// @param face, corner: their places in the file
+void drop_face(const Source& source, Surface& surface, const std::function<std::string()>& face,
+               const std::string& corner, const Eigen::Vector3d& p);
 
-/// Triangulates a polygon of vertices of the surface, and counts it if it is other than simple.
+/// Triangulates a polygon of vertices of the surface, and counts it if it is other than simple. One of fewer than three
+/// corners is skipped and counted.
 /// @param place names the polygon's place in the file; called only if it is needed
-/// @throws BadFile if the polygon is too large to be triangulated.
+/// @throws BadFile if the polygon is too large to be triangulated, or has an unusable corner.
 void add_polygon(const Source& source, std::span<const std::uint32_t> corners,
                  const std::function<std::string()>& place, Surface& surface);
+
+/// Polygons that stand before their vertices in the file, kept until these are read.
+class LatePolygons {
+ public:
+  bool empty() const { return polygons_.empty(); }
+  /// @param line, number: say where it is in the file
+  void add(std::span<const std::uint32_t> corners, std::size_t line, std::uint64_t number) {
+    polygons_.push_back({corners_.size(), line, number});
+    corners_.insert(corners_.end(), corners.begin(), corners.end());
+  }
+  /// visit(corners, line, number) for each, in their order.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (std::size_t i = 0; i < polygons_.size(); ++i) {
+      const std::size_t end = i + 1 < polygons_.size() ? polygons_[i + 1].begin : corners_.size();
+      visit(std::span(corners_).subspan(polygons_[i].begin, end - polygons_[i].begin), polygons_[i].line,
+            polygons_[i].number);
+    }
+  }
+
+ private:
+  struct Polygon {
+    std::size_t begin, line;
+    std::uint64_t number;
+  };
+  std::vector<std::uint32_t> corners_;
+  std::vector<Polygon> polygons_;
+};
+
+/// Whether there is nothing but white space.
+bool is_blank_text(std::string_view text);
 
 /// The first byte of a text: behind a UTF-8 byte order mark if there is one.
 std::size_t text_begin(std::string_view bytes);
@@ -76,8 +127,8 @@ std::size_t text_begin(std::string_view bytes);
 void refuse_utf16(const Source& source);
 
 /// Reads the lines of a text file that hold data, as words separated by blanks. Numbers are read by std::from_chars,
-/// which no locale changes. Lines end in LF or CR LF, the last one also at the end of the file; a UTF-8 byte order mark
-/// at the file's start is skipped.
+/// which no locale changes. Lines end in LF, CR LF or CR, the last one also at the end of the file; a UTF-8 byte order
+/// mark at the file's start is skipped.
 class TextLines {
  public:
   struct Syntax {
@@ -96,7 +147,8 @@ class TextLines {
 
   // Each of these throws a BadFile that names the line if a word is not what it reads.
 
-  /// Word i as a finite number.
+  /// A word as a number, which may be infinite or not a number.
+  double number(std::string_view word) const;
   double number(std::size_t i) const;
   /// Words first .. first + 2 as a point.
   Eigen::Vector3d point(std::size_t first) const { return {number(first), number(first + 1), number(first + 2)}; }
@@ -106,6 +158,10 @@ class TextLines {
 
   std::size_t line() const { return line_; }
   std::string place() const;  ///< The current line, for messages: "line 7".
+  /// Whether the current line has a line break behind it.
+  bool ended() const { return ended_; }
+  /// The lines so far that end in CR alone.
+  const FileRepairs& lone_returns() const { return lone_returns_; }
   /// Bytes behind the current line.
   std::size_t remaining() const { return text_.size() - next_; }
   /// Byte behind the current line.
@@ -125,8 +181,11 @@ class TextLines {
   std::string_view text_;
   Syntax syntax_;
   std::size_t next_;
-  std::size_t line_;       // of the first line of words_
-  std::size_t next_line_;  // of next_
+  std::size_t line_feed_, return_;  // the first ones at or behind next_
+  std::size_t line_;                // of the first line of words_
+  std::size_t next_line_;           // of next_
+  bool ended_ = true;
+  FileRepairs lone_returns_;
   std::vector<std::string_view> words_;
 };
 
@@ -135,6 +194,73 @@ enum class FileFrame {
   metres,
   as_stored,
   y_up
+};
+
+/// The values of a text's elements (vertices, faces), which white space separates. Line breaks do not count, but tell
+/// where a value is missing or too many. The first line of a kind of elements says how they are laid out:
+/// - one element, or the beginning of one: each begins on a line and ends at a line's end, perhaps a later one;
+/// - several elements: others may begin in the middle of a line as well, and end on it;
+/// - several, of which the last goes on on the next line: they are divided anywhere, and end at a line's end. Elements
+///   of any number of values then have the same number of them on every line but the last.
+class TextValues {
+ public:
+  /// @param element names the current one, for messages: "face 3"
+  TextValues(TextLines& lines, std::function<std::string()> element) : lines_(lines), element_(std::move(element)) {}
+
+  /// Values left on the current line, or on the next one if there are none; 0 at the end of the file.
+  std::size_t on_line() {
+    if (next_ >= lines_.size() && lines_.next()) next_ = 0;
+    return left_on_line();
+  }
+  std::size_t left_on_line() const { return lines_.size() - std::min(next_, lines_.size()); }
+  /// The most values that the rest of the file can hold.
+  std::size_t most_left() const { return left_on_line() + (lines_.remaining() + 1) / 2; }
+
+  /// Elements of another kind follow. @param any_size they may have any number of values. @throws BadFile
+  void begin_kind(bool any_size);
+  /// Before an element's first word; false at the end of the file.
+  bool begin_element() {
+    from_middle_ = next_ > 0 && next_ < lines_.size();
+    divided_ = false;
+    if (next_ < lines_.size()) return true;
+    if (anywhere_) leave_line();
+    if (!lines_.next()) return false;
+    next_ = 0;
+    return true;
+  }
+  /// The next word of the element. @throws BadFile if there is none
+  std::string_view word() {
+    if (next_ >= lines_.size()) continue_on_next_line();
+    return lines_.words()[next_++];
+  }
+  /// Behind an element's last word. @throws BadFile if it must end where the line does, but does not
+  void end_element() {
+    if (from_middle_ || divided_ || first_ || next_ < lines_.size()) check_layout();
+  }
+
+  /// Elements that do not stand on one line of their own.
+  const FileRepairs& loose_elements() const { return loose_elements_; }
+  /// @throws BadFile if there are more words
+  void expect_end();
+
+ private:
+  void continue_on_next_line();
+  void leave_line() const;
+  void check_layout();
+  [[noreturn]] void fail(const std::string& cause) const { lines_.fail(element_() + ": " + cause); }
+
+  TextLines& lines_;
+  std::function<std::string()> element_;
+  FileRepairs loose_elements_;
+  std::size_t next_ = std::string_view::npos;  // word of the line; the line at first is none of the values'
+  bool first_ = true;                          // the element is the first of its kind
+  bool several_ = false;                       // layout: more than one element on a line
+  bool anywhere_ = false;                      // layout: divided anywhere
+  bool any_size_ = false;                      // of the elements
+  std::size_t on_first_line_ = 0;              // values of the kind's first line, where that matters
+  std::size_t first_line_ = 0;                 // of the kind
+  bool from_middle_ = false;                   // the element begins in the middle of a line
+  bool divided_ = false;                       // it goes on on another
 };
 
 // These formats are not left to assimp (5.2): it holds coordinates in single precision only, does not return from a PLY

@@ -9,21 +9,15 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <sixdof/geometry/forgiven.h>
+
 namespace sixdof {
 
 using Triangle = std::array<std::uint32_t, 3>;  ///< Vertex indices, counter-clockwise seen from outside.
 
-/// Repairs of one kind that reading a mesh file made.
-struct FileRepairs {
-  std::size_t count = 0;
-  std::string first_place;  ///< Where in the file the first one is: "line 6", "face 2"; empty if there is none.
-};
-
 /// What reading and validation changed or found, so that nothing is repaired in silence.
 struct MeshRepairs {
-  FileRepairs crossing_polygons;          ///< Polygons that cross themselves, triangulated (triangulate.h).
-  FileRepairs nonplanar_polygons;         ///< Polygons that are not flat, triangulated.
-  FileRepairs skipped_statements;         ///< OBJ statements that this project does not know, skipped.
+  ForgivenKinds forgiven;                 ///< By reading the file.
   std::size_t welded_vertices = 0;        ///< Vertices merged because all three coordinates are equal.
   std::size_t unreferenced_vertices = 0;  ///< Vertices that no triangle uses, dropped.
   std::size_t collapsed_triangles = 0;    ///< Triangles with a repeated vertex after welding, dropped.

@@ -37,8 +37,7 @@ std::string to_bytes(const Surface& surface) {
   bytes.reserve(surface.vertices.size() * sizeof(Eigen::Vector3d) + surface.triangles.size() * sizeof(Triangle) + 4096);
   append(bytes, surface.vertices);
   append(bytes, surface.triangles);
-  append(bytes, surface.repairs.crossing_polygons);
-  append(bytes, surface.repairs.nonplanar_polygons);
+  for (const FileRepairs& of_kind : surface.repairs.forgiven.kinds) append(bytes, of_kind);
   append(bytes, surface.repairs.notes.size());
   for (const std::string& note : surface.repairs.notes) append(bytes, note);
   return bytes;
@@ -86,8 +85,7 @@ Surface to_surface(std::string_view given) {
   Surface surface;
   surface.vertices = bytes.values<Eigen::Vector3d>();
   surface.triangles = bytes.values<Triangle>();
-  surface.repairs.crossing_polygons = bytes.repairs();
-  surface.repairs.nonplanar_polygons = bytes.repairs();
+  for (FileRepairs& of_kind : surface.repairs.forgiven.kinds) of_kind = bytes.repairs();
   for (std::size_t n = bytes.number(); n > 0; --n) surface.repairs.notes.push_back(bytes.text());
   return surface;
 }

@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/geometry/load.h>
 #include <sixdof/models/collection.h>
 #include <sixdof/models/manifest.h>
 #include <sixdof/models/recipe.h>
@@ -93,7 +92,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 /// Reads a file. If it does not exist, but has a model's name, the message says how to name the model.
-Mesh load_file(const std::string& file) {
+Mesh load_file(const std::string& file, const LoadOptions& options) {
   const std::filesystem::path path = mesh_file_of(file);
   if (!std::filesystem::exists(path)) {
     const std::string stem = path.stem().string();
@@ -103,7 +102,7 @@ Mesh load_file(const std::string& file) {
                                       stem));
     }
   }
-  return load_mesh(file);
+  return load_mesh(file, options);
 }
 
 }  // namespace
@@ -122,8 +121,8 @@ ModelName parse_model_name(std::string_view name) {
 
 bool names_file(std::string_view name_or_file) { return name_or_file.find_first_of("./") != std::string_view::npos; }
 
-Mesh load_model(const std::string& name_or_file) {
-  if (names_file(name_or_file)) return load_file(name_or_file);
+Mesh load_model(const std::string& name_or_file, const LoadOptions& options) {
+  if (names_file(name_or_file)) return load_file(name_or_file, options);
   const ModelName parts = parse_model_name(name_or_file);
   if (const Recipe* const recipe = find_recipe(parts.base)) {
     if (!parts.triangles) {

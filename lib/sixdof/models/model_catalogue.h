@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <sixdof/geometry/load.h>
 #include <sixdof/geometry/mesh.h>
 
 namespace sixdof {
@@ -28,10 +29,10 @@ bool names_file(std::string_view name_or_file);
 /// - NAME is a fetched model: "elephant", "camel" (manifest.h, collection.h); NAME-COUNT is its subdivision:
 /// "elephant-1m" (refine.h);
 /// - a word with a '.' or a '/' is a file for load_mesh(): "hull.stl", "./parts/hull", "hull.dae#as-stored".
-/// The mesh has the given name, or the file's.
+/// The mesh has the given name, or the file's. @param options for files
 /// @throws BadArgument for a name that does not exist (the message lists similar ones) or a count out of range; BadFile
 /// for a file that cannot be read or a model that is not fetched.
-Mesh load_model(const std::string& name_or_file);
+Mesh load_model(const std::string& name_or_file, const LoadOptions& options = {});
 
 /// Those of `names` that are similar to `word`, nearest first: within three edits (swapped neighbours are one) and
 /// about a third of the word's length, or one contains the other, which has three letters at least.
