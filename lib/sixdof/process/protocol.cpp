@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/base/visible_text.h>
 #include <sixdof/query/ask.h>
 
 namespace sixdof::protocol {
@@ -103,11 +104,10 @@ std::vector<double> times_of(const Json& json) {
 /// What is said last may hold bytes that are no text.
 std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-/// The line for messages.
-std::string quoted(const std::string& line) {
+/// Why a line cannot be read.
+Malformed malformed(const std::string& line, std::string_view words) {
   constexpr std::size_t k_most = 60;
-  const std::string start = line.substr(0, k_most);
-  return text(Json(line.size() > k_most ? start + "..." : start));
+  return Malformed(visible_words(fmt::format("\"{}\": {}", visible_text(line, k_most), words)));
 }
 
 /// Calls read(JSON object) and turns what goes wrong into Malformed.
@@ -121,10 +121,23 @@ auto read_line(const std::string& line, Read read) {
     // "[json.exception.out_of_range.403] key 'ns' not found"
     const std::string words = e.what();
     const std::size_t end = words.find("] ");
-    throw Malformed(fmt::format("{}: {}", quoted(line), end == std::string::npos ? words : words.substr(end + 2)));
+    throw malformed(line, end == std::string::npos ? words : words.substr(end + 2));
   } catch (const Malformed& e) {
-    throw Malformed(fmt::format("{}: {}", quoted(line), e.what()));
+    throw malformed(line, e.what());
   }
+}
+
+/// The same of a reply: all its texts are visible.
+template <class Read>
+auto read_reply(const std::string& line, Read read) {
+  return read_line(visible_json(line), read);
+}
+
+/// A name, a description or words of a failure.
+std::string words(const Json& json) { return visible_words(json.get<std::string>()); }
+
+std::string optional_words(const Json& json, const char* key) {
+  return json.contains(key) ? words(json.at(key)) : std::string();
 }
 
 template <class List>
@@ -168,8 +181,8 @@ Json parameter(const Parameter& p) {
 
 Parameter parameter_of(const Json& json) {
   Parameter p{.name = json.at("name"),
-              .meaning = json.value("meaning", ""),
-              .unit = json.value("unit", ""),
+              .meaning = optional_words(json, "meaning"),
+              .unit = optional_words(json, "unit"),
               .default_value = json.at("default")};
   if (json.contains("choices")) {
     json.at("choices").get_to(p.choices);
@@ -292,13 +305,13 @@ std::string to_line(const Greeting& greeting) {
 }
 
 Greeting greeting_of(const std::string& line) {
-  return read_line(line, [](const Json& json) {
+  return read_reply(line, [](const Json& json) {
     if (json.at("protocol") != k_version) throw Malformed(fmt::format("not version {} of the protocol", k_version));
     Greeting greeting;
     Traits& traits = greeting.traits;
-    json.at("name").get_to(traits.name);
-    json.at("version").get_to(traits.version);
-    traits.summary = json.value("summary", "");
+    traits.name = words(json.at("name"));
+    traits.version = words(json.at("version"));
+    traits.summary = optional_words(json, "summary");
     constexpr std::array k_kinds{"collide", "distance", "respond"};
     const std::array members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond};
     for (const std::string kind : json.at("answers")) traits.answers.*members.at(place_of(k_kinds, kind)) = true;
@@ -327,17 +340,17 @@ std::string to_line(const Refusal& refusal) {
 }
 
 std::variant<Prepared, Refusal> prepared_of(const std::string& line) {
-  return read_line(line, [](const Json& json) -> std::variant<Prepared, Refusal> {
+  return read_reply(line, [](const Json& json) -> std::variant<Prepared, Refusal> {
     if (json.contains("error")) {
       return Refusal{static_cast<Refusal::Kind>(place_of(k_refusals, json.value("kind", k_refusals.front()))),
-                     json.at("error")};
+                     words(json.at("error"))};
     }
     if (!json.at("prepared").get<bool>()) throw Malformed("nothing is prepared, and no \"error\" says why");
     Prepared prepared{optional_time(json, "ns"), optional_time(json, "cpu_ns"), {}};
     if (json.contains("bytes")) prepared.footprint.bytes = count_of<std::size_t>(json.at("bytes"));
     const Json counts = json.value("counts", Json::object());
     for (const auto& [name, count] : counts.items()) {
-      prepared.footprint.counts.emplace_back(name, number_of(count));
+      prepared.footprint.counts.emplace_back(visible_words(name), number_of(count));
     }
     return prepared;
   });
@@ -358,11 +371,11 @@ std::string to_line(const Asked<Answer>& asked) {
 
 template <class Answer>
 Asked<Answer> asked_of(const std::string& line) {
-  return read_line(line, [](const Json& json) {
+  return read_reply(line, [](const Json& json) {
     Asked<Answer> asked;
     if (json.contains("status")) {
       asked.outcome = status_of(json.at("status"));
-      asked.words = json.value("words", "");
+      asked.words = optional_words(json, "words");
     } else {
       Answer answer{};
       take(json, answer);
@@ -370,7 +383,7 @@ Asked<Answer> asked_of(const std::string& line) {
     }
     asked.ns = optional_time(json, "ns");
     for (const Json& each : json.value("work", Json::array())) {
-      asked.work.push_back({each.at(0), number_of(each.at(1)), number_of(each.at(2))});
+      asked.work.push_back({words(each.at(0)), number_of(each.at(1)), number_of(each.at(2))});
     }
     return asked;
   });
@@ -407,7 +420,7 @@ std::string to_line(const Timed& timed) {
 }
 
 Timed timed_of(const std::string& line, std::size_t count, bool each) {
-  return read_line(line, [&](const Json& json) {
+  return read_reply(line, [&](const Json& json) {
     Timed timed;
     if (each) {
       timed.once_ns = times_of(json.at("once_ns"));
@@ -421,7 +434,7 @@ Timed timed_of(const std::string& line, std::size_t count, bool each) {
     }
     std::vector<bool> has_failed(count);
     for (const Json& one : json.value("failed", Json::array())) {
-      timed.failed.push_back({count_of<std::size_t>(one.at(0)), status_of(one.at(1)), one.at(2)});
+      timed.failed.push_back({count_of<std::size_t>(one.at(0)), status_of(one.at(1)), words(one.at(2))});
       const std::size_t place = timed.failed.back().place;
       if (place >= count) throw Malformed("a place beyond the last pose");
       if (has_failed[place]) throw Malformed("a place is there twice");
