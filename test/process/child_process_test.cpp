@@ -4,9 +4,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
+#include <memory>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -41,7 +44,7 @@ ChildFailure failure_of(const std::string& command, double seconds = k_patience_
 bool is_running(pid_t process) { return ::kill(process, 0) == 0; }
 
 /// Waits until it has ended.
-bool ends(pid_t process) {
+bool ends_soon(pid_t process) {
   for (int i = 0; i < 6000 && is_running(process); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   return !is_running(process);
 }
@@ -133,8 +136,8 @@ TEST(ChildProcess, EndsWithTheObjectAndWhatItStarted) {
     child = std::stoi(process.receive(expired));
     EXPECT_TRUE(is_running(child) && is_running(grandchild));
   }
-  EXPECT_TRUE(ends(child));
-  EXPECT_TRUE(ends(grandchild));
+  EXPECT_TRUE(ends_soon(child));
+  EXPECT_TRUE(ends_soon(grandchild));
 }
 
 TEST(ChildProcess, EndsWithTheThreadThatMadeIt) {
@@ -145,6 +148,134 @@ TEST(ChildProcess, EndsWithTheThreadThatMadeIt) {
     child = std::stoi(process->receive(expires_after(k_patience_s)));
   }).join();
   EXPECT_THAT(failure_of(*process).what(), HasSubstr("signal 9"));
+}
+
+/// Starts `rest` with $! of a process that has left group and session, and whose parent has ended.
+std::string with_daemon(const std::string& rest) {
+  return "setsid sh -c 'sleep 600 > /dev/null & echo $!' & wait; " + rest;
+}
+
+TEST(ChildProcess, ADaemonEndsWithTheObject) {
+  pid_t daemon = 0;
+  {
+    ChildProcess process(shell(with_daemon("read x")), {}, 0);
+    daemon = std::stoi(process.receive(expires_after(k_patience_s)));
+    EXPECT_TRUE(is_running(daemon));
+  }
+  EXPECT_FALSE(is_running(daemon)) << "at once";
+}
+
+TEST(ChildProcess, ADaemonEndsWithTheProgram) {
+  ChildProcess process(shell(with_daemon("read x; exit 5")), {}, 0);
+  const pid_t daemon = std::stoi(process.receive(expires_after(k_patience_s)));
+  EXPECT_TRUE(is_running(daemon));
+  EXPECT_STREQ(failure_of(process).what(), "ended with exit code 5");
+  EXPECT_FALSE(is_running(daemon));
+}
+
+TEST(ChildProcess, EndsProcessesThatStartOthersWithoutAnEnd) {
+  // Each generation adds a byte, starts the next one in a session of its own, and ends.
+  const std::string file = ::testing::TempDir() + "sixdof-generations-" + std::to_string(::getpid());
+  const std::string generation = "[ -e \"$1\" ] && printf x >> \"$1\" && { setsid sh -c \"$0\" \"$0\" \"$1\" & }";
+  std::ofstream(file).close();
+  {
+    ChildProcess process({"/bin/sh", "-c", "setsid sh -c \"$0\" \"$0\" \"$1\" & echo begun; read x", generation, file},
+                         {}, 0);
+    EXPECT_EQ(process.receive(expires_after(k_patience_s)), "begun");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  const auto generations = std::filesystem::file_size(file);
+  EXPECT_GT(generations, 1u);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(std::filesystem::file_size(file), generations);
+  std::filesystem::remove(file);  // would end them, too
+}
+
+TEST(ChildProcess, ManyChildrenEndWithTheObject) {
+  constexpr int k_children = 200;
+  std::vector<pid_t> children;
+  {
+    ChildProcess process(shell("i=0; while [ $i -lt 200 ]; do sleep 600 & echo $!; i=$((i + 1)); done; read x"), {}, 0);
+    for (int i = 0; i < k_children; ++i) children.push_back(std::stoi(process.receive(expires_after(k_patience_s))));
+    EXPECT_TRUE(std::ranges::all_of(children, is_running));
+  }
+  EXPECT_TRUE(std::ranges::none_of(children, is_running));
+}
+
+/// A child of this process that is no concern of any ChildProcess.
+class Bystander {
+ public:
+  Bystander() : process_(::fork()) {
+    if (process_ != 0) return;
+    while (true) ::pause();
+  }
+  ~Bystander() {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  Bystander(const Bystander&) = delete;
+  Bystander& operator=(const Bystander&) = delete;
+
+  bool has_ended() const { return ::waitpid(process_, nullptr, WNOHANG) != 0; }
+
+ private:
+  pid_t process_;
+};
+
+TEST(ChildProcess, OtherChildrenOfThisProgramLive) {
+  const Bystander before;
+  {
+    ChildProcess process(shell(with_daemon("read x")), {}, 0);
+    process.receive(expires_after(k_patience_s));
+    const Bystander meanwhile;
+    EXPECT_THAT(failure_of(process).what(), HasSubstr("ended with exit code"));
+    EXPECT_FALSE(meanwhile.has_ended());
+  }
+  EXPECT_FALSE(before.has_ended());
+}
+
+TEST(ChildProcess, EndsWithAKilledProgram) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const pid_t program = ::fork();
+  if (program == 0) {
+    ChildProcess process(shell("echo $$; " + with_daemon("read x")), {}, 0);
+    for (int i = 0; i < 2; ++i) write_line(ends[1], process.receive(expires_after(k_patience_s)));
+    while (true) ::pause();
+  }
+  std::string text;
+  while (std::ranges::count(text, '\n') < 2) {
+    char c = 0;
+    ASSERT_EQ(::read(ends[0], &c, 1), 1);
+    text += c;
+  }
+  const pid_t child = std::stoi(text), daemon = std::stoi(text.substr(text.find('\n')));
+  EXPECT_TRUE(is_running(child) && is_running(daemon));
+  ::kill(program, SIGKILL);
+  ::waitpid(program, nullptr, 0);
+  EXPECT_TRUE(ends_soon(child));
+  EXPECT_TRUE(ends_soon(daemon));
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST(ChildProcess, ItsKeeperHoldsNeitherMemoryNorFiles) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "their own functions need the memory";
+#endif
+  const std::vector<char> memory(std::size_t{256} << 20, 'x');
+  const auto anonymous_kb_of_keeper = [] {
+    ChildProcess process(shell("sleep 0.2; grep RssAnon /proc/$PPID/status; ls /proc/$PPID/fd | wc -l"), {}, 0);
+    const std::string line = process.receive(expires_after(k_patience_s));
+    EXPECT_EQ(process.receive(expires_after(k_patience_s)), "0");
+    return std::stoi(line.substr(line.find_first_of("0123456789")));
+  };
+  constexpr int k_most_kb = 8 << 10;  // stack, thread-local data, variables of libraries
+  EXPECT_LT(anonymous_kb_of_keeper(), k_most_kb);
+  int in_a_thread = 0;
+  std::thread([&] { in_a_thread = anonymous_kb_of_keeper(); }).join();
+  EXPECT_LT(in_a_thread, k_most_kb);
+  EXPECT_EQ(memory[memory.size() / 2], 'x') << "that of this program stays";
 }
 
 }  // namespace

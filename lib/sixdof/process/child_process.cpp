@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -19,6 +18,8 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/process/keeper.h>
+
 namespace sixdof {
 namespace {
 
@@ -27,12 +28,14 @@ using std::chrono::milliseconds;
 
 /// A time limit is looked at this often.
 constexpr int k_poll_ms = 50;
-/// Time to end after its input was closed.
+/// Time to end after its input was closed,
 constexpr milliseconds k_patience{200};
+/// and after it has closed its own side: by ending, unless it takes as long as this.
+constexpr milliseconds k_patience_with_end{1000};
 /// Descriptors from here on are out of the way of those that a program finds.
 constexpr int k_high = 100;
-/// Exit code of a shell, and of fork() here, for a program that cannot be started.
-constexpr int k_not_started = 127;
+/// The keeper ends when it is told to; it is killed if someone has stopped it.
+constexpr milliseconds k_patience_with_keeper{10'000};
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool k_can_limit_memory = false;
@@ -50,24 +53,6 @@ long count_kernel_kills() {
     if (name == "oom_kill") return value;
   }
   return 0;
-}
-
-/// In the new process, where only calls are allowed that a signal handler may make.
-[[noreturn]] void become(char* const* words, int input, int output, const std::vector<int>& files,
-                         std::size_t memory_bytes, pid_t parent) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(k_not_started);
-  ::setpgid(0, 0);
-  sigset_t none;
-  sigemptyset(&none);
-  ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  limit_resources(memory_bytes);
-  ::dup2(input, STDIN_FILENO);
-  ::dup2(output, STDOUT_FILENO);
-  int place = STDERR_FILENO + 1;
-  for (const int file : files) ::dup2(file, place++);
-  ::execvp(words[0], words);
-  ::_exit(k_not_started);
 }
 
 }  // namespace
@@ -125,9 +110,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::vec
   input_ = high_descriptor(input[0]);
   output_ = high_descriptor(output[0]);
   const int its_input = high_descriptor(input[1]), its_output = high_descriptor(output[1]);
-  const pid_t parent = ::getpid();
-  process_ = ::fork();
-  if (process_ == 0) become(pointers.data(), its_input, its_output, files, memory_bytes, parent);
+  process_ = start_kept({pointers.data(), its_input, its_output, files, memory_bytes});
   const int error = errno;
   ::close(its_input);
   ::close(its_output);
@@ -137,29 +120,34 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::vec
     errno = error;
     throw_errno("fork");
   }
-  ::setpgid(process_, process_);  // whichever of the two processes runs first
   ::fcntl(input_, F_SETFL, O_NONBLOCK);
   ::fcntl(output_, F_SETFL, O_NONBLOCK);
 }
 
 ChildProcess::~ChildProcess() {
   ::close(input_);
-  const auto end_of_patience = Clock::now() + k_patience;
-  while (!ended_ && !has_ended() && Clock::now() < end_of_patience) std::this_thread::sleep_for(milliseconds(1));
+  if (!ended_) await_end(k_patience);
   end();
   ::close(output_);
 }
 
-/// Whether it has ended by itself. Its number stays taken until end().
-bool ChildProcess::has_ended() const {
-  siginfo_t info{};
-  return ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid != 0;
+/// Waits until it has ended by itself. Its number stays taken until end(). @returns false if it takes longer
+bool ChildProcess::await_end(std::chrono::milliseconds patience) const {
+  const auto end_of_patience = Clock::now() + patience;
+  while (true) {
+    siginfo_t info{};
+    const int result = ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT);
+    if ((result != 0 && errno == ECHILD) || info.si_pid != 0) return true;
+    if (Clock::now() >= end_of_patience) return false;
+    std::this_thread::sleep_for(milliseconds(1));
+  }
 }
 
 /// Kills the program and what it has started.
 void ChildProcess::end() {
   if (ended_) return;
-  ::kill(-process_, SIGKILL);
+  ::kill(process_, SIGTERM);
+  if (!await_end(k_patience_with_keeper)) ::kill(process_, SIGKILL);
   while (::waitpid(process_, &wait_status_, 0) < 0 && errno == EINTR) {
   }
   ended_ = true;
@@ -172,9 +160,7 @@ void ChildProcess::give_up(Status status, const std::string& words) {
 
 /// The program has closed its side, mostly by ending.
 void ChildProcess::closed() {
-  const auto end_of_patience = Clock::now() + k_patience;
-  while (!has_ended() && Clock::now() < end_of_patience) std::this_thread::sleep_for(milliseconds(1));
-  if (!has_ended()) give_up(Status::crashed, "closed its standard streams");
+  if (!await_end(k_patience_with_end)) give_up(Status::crashed, "closed its standard streams");
   end();
   read_what_is_there();  // its note may be unread: of a program that ended before it was asked
   while (take_line()) {

@@ -134,10 +134,10 @@ auto read_reply(const std::string& line, Read read) {
 }
 
 /// A name, a description or words of a failure.
-std::string words(const Json& json) { return visible_words(json.get<std::string>()); }
+std::string words_of(const Json& json) { return visible_words(json.get<std::string>()); }
 
-std::string optional_words(const Json& json, const char* key) {
-  return json.contains(key) ? words(json.at(key)) : std::string();
+std::string words_at(const Json& json, const char* key) {
+  return json.contains(key) ? words_of(json.at(key)) : std::string();
 }
 
 template <class List>
@@ -181,8 +181,8 @@ Json parameter(const Parameter& p) {
 
 Parameter parameter_of(const Json& json) {
   Parameter p{.name = json.at("name"),
-              .meaning = optional_words(json, "meaning"),
-              .unit = optional_words(json, "unit"),
+              .meaning = words_at(json, "meaning"),
+              .unit = words_at(json, "unit"),
               .default_value = json.at("default")};
   if (json.contains("choices")) {
     json.at("choices").get_to(p.choices);
@@ -309,9 +309,9 @@ Greeting greeting_of(const std::string& line) {
     if (json.at("protocol") != k_version) throw Malformed(fmt::format("not version {} of the protocol", k_version));
     Greeting greeting;
     Traits& traits = greeting.traits;
-    traits.name = words(json.at("name"));
-    traits.version = words(json.at("version"));
-    traits.summary = optional_words(json, "summary");
+    traits.name = words_of(json.at("name"));
+    traits.version = words_of(json.at("version"));
+    traits.summary = words_at(json, "summary");
     constexpr std::array k_kinds{"collide", "distance", "respond"};
     const std::array members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond};
     for (const std::string kind : json.at("answers")) traits.answers.*members.at(place_of(k_kinds, kind)) = true;
@@ -343,7 +343,7 @@ std::variant<Prepared, Refusal> prepared_of(const std::string& line) {
   return read_reply(line, [](const Json& json) -> std::variant<Prepared, Refusal> {
     if (json.contains("error")) {
       return Refusal{static_cast<Refusal::Kind>(place_of(k_refusals, json.value("kind", k_refusals.front()))),
-                     words(json.at("error"))};
+                     words_of(json.at("error"))};
     }
     if (!json.at("prepared").get<bool>()) throw Malformed("nothing is prepared, and no \"error\" says why");
     Prepared prepared{optional_time(json, "ns"), optional_time(json, "cpu_ns"), {}};
@@ -375,7 +375,7 @@ Asked<Answer> asked_of(const std::string& line) {
     Asked<Answer> asked;
     if (json.contains("status")) {
       asked.outcome = status_of(json.at("status"));
-      asked.words = optional_words(json, "words");
+      asked.words = words_at(json, "words");
     } else {
       Answer answer{};
       take(json, answer);
@@ -383,7 +383,7 @@ Asked<Answer> asked_of(const std::string& line) {
     }
     asked.ns = optional_time(json, "ns");
     for (const Json& each : json.value("work", Json::array())) {
-      asked.work.push_back({words(each.at(0)), number_of(each.at(1)), number_of(each.at(2))});
+      asked.work.push_back({words_of(each.at(0)), number_of(each.at(1)), number_of(each.at(2))});
     }
     return asked;
   });
@@ -434,7 +434,7 @@ Timed timed_of(const std::string& line, std::size_t count, bool each) {
     }
     std::vector<bool> has_failed(count);
     for (const Json& one : json.value("failed", Json::array())) {
-      timed.failed.push_back({count_of<std::size_t>(one.at(0)), status_of(one.at(1)), words(one.at(2))});
+      timed.failed.push_back({count_of<std::size_t>(one.at(0)), status_of(one.at(1)), words_of(one.at(2))});
       const std::size_t place = timed.failed.back().place;
       if (place >= count) throw Malformed("a place beyond the last pose");
       if (has_failed[place]) throw Malformed("a place is there twice");
