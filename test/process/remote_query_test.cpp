@@ -54,10 +54,13 @@ std::unique_ptr<RemoteQuery> remote(const std::string& algorithm, ProcessLimits 
 }
 
 /// A program in a shell that answers hello and prepare, then goes on with `rest`.
-std::unique_ptr<RemoteAlgorithm> script(const std::string& rest, ProcessLimits limits = {}) {
-  const std::string greeting = R"({"protocol":1,"name":"s","version":"1","answers":["collide","distance"]})";
-  const std::string text = "while read line; do case $line in *hello*) echo '" + greeting +
-                           "';; *prepare*) echo '{\"prepared\":true}';; *) " + rest + ";; esac; done";
+std::unique_ptr<RemoteAlgorithm> script(const std::string& rest, ProcessLimits limits = {},
+                                        const std::string& prepared = R"({"prepared":true})",
+                                        const std::string& can = "") {
+  const std::string greeting =
+      R"({"protocol":1,"name":"s","version":"1","answers":["collide","distance"],"can":[)" + can + "]}";
+  const std::string text = "while read line; do case $line in *hello*) echo '" + greeting + "';; *prepare*) echo '" +
+                           prepared + "';; *) " + rest + ";; esac; done";
   return RemoteAlgorithm::external("s", "sh -c \"$(cat <<'END'\n" + text + "\nEND\n)\"", limits);
 }
 
@@ -227,6 +230,57 @@ TEST(Script, WhatIsNoAnswerIsNeverOne) {
   EXPECT_EQ(status_of(R"({"distance": "-inf"})"), Status::non_finite);
   EXPECT_EQ(status_of(R"({"distance": 1, "triangle_a": 0.5})"), Status::failed);
   EXPECT_EQ(status_of(R"({"distance": 1, "ns": -3})"), Status::failed);
+}
+
+TEST(Script, ATimeThatHasNotPassedIsNonsense) {
+  for (const char* const ns : {"1e300", "60e9", "-1"}) {
+    const auto query =
+        script("echo '{\"collide\": true, \"ns\": " + std::string(ns) + "}'")->prepare(torus(), torus(), {});
+    EXPECT_EQ(query->collide(Pose()).status, Status::failed) << ns;
+    EXPECT_THAT(query->diagnosis(), ::testing::StartsWith("wrote nonsense: ")) << ns;
+    const auto timed = as_remote(*query)->time_each<bool>(std::vector<Pose>(3), 1);
+    EXPECT_EQ(timed.failed.size(), 3u) << ns;
+  }
+}
+
+TEST(Script, ATimeOfPreparingThatHasNotPassedIsNonsense) {
+  const auto words = [](const std::string& times) -> std::string {
+    try {
+      script("exit", {}, R"({"prepared": true, )" + times + "}")->prepare(torus(), torus(), Settings());
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "prepared";
+  };
+  EXPECT_EQ(words(R"("ns": 5, "cpu_ns": 5)"), "prepared");
+  EXPECT_EQ(words(R"("ns": 1e7)"), "prepared") << "within a tick of a coarse clock";
+  for (const char* const times : {R"("ns": 1e300)", R"("ns": 60e9)", R"("ns": -5)", R"("cpu_ns": 1e300)"}) {
+    EXPECT_THAT(words(times), HasSubstr("failed while it prepared the pair: wrote nonsense: ")) << times;
+  }
+}
+
+TEST(Script, TimesOfALoopThatHaveNotPassedAreNonsense) {
+  const std::vector<Pose> list = poses(2);
+  const auto words = [&](const std::string& times) -> std::string {
+    const auto query =
+        script("echo '" + times + "'", {}, R"({"prepared":true})", R"("time")")->prepare(torus(), torus(), Settings());
+    RemoteQuery& there = *as_remote(*query);
+    try {
+      times.starts_with("{\"wall") ? there.time_together<bool>(list, 3) : there.time_each<bool>(list, 3);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "timed";
+  };
+  EXPECT_EQ(words(R"({"once_ns": [9, 9], "least_ns": [8, 9]})"), "timed");
+  EXPECT_EQ(words(R"({"once_ns": [9, 1e300], "least_ns": [8, 1e300], "failed": [[1, "failed", ""]]})"), "timed")
+      << "no time of a pose without an answer";
+  EXPECT_EQ(words(R"({"wall_ns": 9, "cpu_ns": 9})"), "timed");
+  for (const char* const times :
+       {R"({"once_ns": [9, 60e9], "least_ns": [9, 9]})", R"({"once_ns": [9, 9], "least_ns": [9, 60e9]})",
+        R"({"wall_ns": 1e300, "cpu_ns": 9})", R"({"wall_ns": 9, "cpu_ns": 1e300})"}) {
+    EXPECT_THAT(words(times), HasSubstr("have passed")) << times;
+  }
 }
 
 TEST(Script, ALineBetweenTwoRequestsEndsTheProcess) {

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <numeric>
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 namespace sixdof {
@@ -30,6 +32,42 @@ std::string key_of(const Pose& X_AB) {
   key.append(reinterpret_cast<const char*>(X_AB.R.data()), sizeof(double) * 9);
   key.append(reinterpret_cast<const char*>(X_AB.t.data()), sizeof(double) * 3);
   return key;
+}
+
+/// Two clocks of one machine agree so well over a long time,
+constexpr double k_clock_rate = 1.01;
+/// and a coarse one ticks 64 times a second.
+constexpr double k_clock_tick_ns = 2e7;
+
+/// @throws Malformed for a time that a program states although less has passed here from request to reply
+void require_passed(const char* key, double stated_ns, double passed_ns, double threads = 1.0) {
+  if (stated_ns <= threads * (k_clock_rate * passed_ns + k_clock_tick_ns)) return;
+  throw Malformed(fmt::format("\"{}\" of {:.3g} ns, but only {:.3g} ns have passed", key, stated_ns, passed_ns));
+}
+
+double processors() { return static_cast<double>(std::max(1L, ::sysconf(_SC_NPROCESSORS_CONF))); }
+
+void require_passed(const Prepared& prepared, double passed_ns) {
+  require_passed("ns", prepared.wall_ns.value_or(0.0), passed_ns);
+  require_passed("cpu_ns", prepared.cpu_ns.value_or(0.0), passed_ns, processors());
+}
+
+/// The times of poses without an answer mean nothing.
+void require_passed(const Timed& timed, std::size_t passes, double passed_ns) {
+  require_passed("wall_ns", timed.wall_ns, passed_ns);
+  require_passed("cpu_ns", timed.cpu_ns, passed_ns, processors());
+  std::vector<bool> has_failed(timed.once_ns.size());
+  for (const Failed& each : timed.failed) {
+    if (each.place < has_failed.size()) has_failed[each.place] = true;
+  }
+  double once = 0.0, least = 0.0;
+  for (std::size_t i = 0; i < timed.once_ns.size(); ++i) {
+    if (has_failed[i]) continue;
+    once += timed.once_ns[i];
+    least += timed.least_ns[i];
+  }
+  require_passed("once_ns", once, passed_ns);
+  require_passed("least_ns", static_cast<double>(passes) * least, passed_ns);
 }
 
 ChildFailure nonsense(const Malformed& e) { return {Status::failed, fmt::format("wrote nonsense: {}", e.what())}; }
@@ -105,8 +143,12 @@ void RemoteQuery::start() {
   try {
     const TimeLimit expired = expires_after(program_.limits.prepare_s);
     greeting_ = greeting_of(exchange(Hello{}, expired));
-    const auto reply = prepared_of(exchange(request_, expired));
+    const auto sent = Clock::now();
+    const std::string line = exchange(request_, expired);
+    const double passed_ns = nanoseconds_since(sent);
+    const auto reply = prepared_of(line);
     if (const auto* const prepared = std::get_if<Prepared>(&reply)) {
+      require_passed(*prepared, passed_ns);
       prepared_ = *prepared;
       return;
     }
@@ -168,6 +210,7 @@ Asked<Answer> RemoteQuery::exchange_ask(const Pose& X_AB) {
   const double round_trip_ns = nanoseconds_since(sent);
   try {
     Asked<Answer> asked = answer_of<Answer>(line);
+    require_passed("ns", asked.ns.value_or(0.0), round_trip_ns);
     timed_inside_ = asked.ns.has_value();
     last_ns_ = asked.ns.value_or(round_trip_ns);
     return asked;
@@ -234,9 +277,12 @@ void RemoteQuery::time_chunk(std::span<const Pose> poses, std::size_t first, con
       files_->counter.set(0);
       if (!process_) start();
       const double queries = static_cast<double>(places.size() * request.passes);
-      const Timed timed =
-          timed_of(exchange(request, greeting_.progress ? stalled() : expires_after(queries * program_.limits.query_s)),
-                   places.size(), how.each);
+      const auto sent = Clock::now();
+      const std::string line =
+          exchange(request, greeting_.progress ? stalled() : expires_after(queries * program_.limits.query_s));
+      const double passed_ns = nanoseconds_since(sent);
+      const Timed timed = timed_of(line, places.size(), how.each);
+      require_passed(timed, request.passes, passed_ns);
       for (std::size_t i = 0; how.each && i < places.size(); ++i) {
         all.once_ns[first + places[i]] = timed.once_ns[i];
         all.least_ns[first + places[i]] = timed.least_ns[i];
