@@ -5,6 +5,7 @@ What bench/collection and bench/growth share. A unit is one pair. Everything of 
   meshes/NAME.ply   the meshes, with all bits
   sets/UNIT.h5      configuration sets
   units/UNIT.json   a unit's result, which appears whole when the unit is measured
+  .run-XXXX/        what a run has not finished; the next run removes those of runs that have ended, however they did
 
 Every algorithm is asked by a process of its own (sixdof-bench), so that one that hangs or takes all memory costs its own
 rows only. All of them are asked the same configurations.
@@ -13,10 +14,12 @@ rows only. All of them are asked the same configurations.
 import concurrent.futures
 import contextlib
 import dataclasses
+import fcntl
 import json
 import math
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -109,7 +112,43 @@ class Budget:
         return max(4 * LEAST_LIMIT_S, UNIT_OF_SHARE * share)
 
 
+class Scratch:
+    """A folder for what is not finished. It is locked while this process lives, so that others know, also those on other
+    machines that share the run's folder; those that nobody holds any more are removed."""
+
+    PREFIX = ".run-"
+    LOCK = "held"
+
+    def __init__(self, folder):
+        with open(folder / ".runs", "a", encoding="utf-8") as one_at_a_time:
+            fcntl.flock(one_at_a_time, fcntl.LOCK_EX)
+            for left in folder.glob(f"{self.PREFIX}*"):
+                self.remove_unless_held(left)
+            self.path = pathlib.Path(tempfile.mkdtemp(dir=folder, prefix=self.PREFIX))
+            self.lock = open(self.path / self.LOCK, "w", encoding="utf-8")
+            fcntl.flock(self.lock, fcntl.LOCK_EX)
+
+    def remove_unless_held(self, folder):
+        with contextlib.suppress(OSError):  # BlockingIOError: its run goes on
+            with open(folder / self.LOCK, "a", encoding="utf-8") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def close(self):
+        shutil.rmtree(self.path, ignore_errors=True)
+        self.lock.close()
+
+
+def ends_with_this_process(command):
+    """The command, such that it gets SIGTERM when this process ends, however it does: at that it removes what is
+    half-written."""
+    setpriv = shutil.which("setpriv")  # of util-linux
+    return [setpriv, "--pdeathsig", "TERM", "--", *command] if setpriv else command
+
+
 class Runner:
+    """Of one run. A context: what it has not finished goes with it."""
+
     def __init__(self, folder, choice, program, bench, budget):
         self.folder, self.choice, self.program, self.bench, self.budget = folder, choice, program, bench, budget
         self.running = set()
@@ -118,6 +157,13 @@ class Runner:
         self.lock = threading.Lock()
         for name in ("meshes", "sets", "units"):
             (folder / name).mkdir(parents=True, exist_ok=True)
+        self.scratch = Scratch(folder)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.scratch.close()
 
     def stop(self):
         """Ends the processes that this object started; nothing more begins."""
@@ -146,7 +192,7 @@ class Runner:
             with self.lock:
                 if self.stopped or limit_s <= 0:
                     raise OutOfTime
-                process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL,
+                process = subprocess.Popen(ends_with_this_process([str(word) for word in command]), stdin=subprocess.DEVNULL,
                                            stdout=subprocess.DEVNULL, stderr=said, start_new_session=True)
                 self.running.add(process)
             timer = threading.Timer(min(limit_s, threading.TIMEOUT_MAX), lambda: (timed_out.set(), self.end(process)))
@@ -192,7 +238,7 @@ class Runner:
                               self.choice.distances, *chosen, "--threads", 1, "-o", file], limit_s)
             record |= {"volumes": bool(chosen), "cpu_s": step.cpu_s, "peak_bytes": step.peak_bytes}
             if step.code == 0:
-                write(record_file, record)
+                write(record_file, record, self.scratch.path)
                 return file, record
             said = "not made in time" if step.code is None else step.said
             record["status"] = f"no volumes: {said}" if volumes else f"no set: {said}"
@@ -223,12 +269,12 @@ class Runner:
                     result.setdefault("context", document["context"])
                     result["benchmarks"] += document["benchmarks"]
         result["seconds"] += time.monotonic() - begun
-        write(self.folder / "units" / f"{unit.name}.json", result)
+        write(self.folder / "units" / f"{unit.name}.json", result, self.scratch.path)
 
     def ask(self, algorithm, made, a, b, limit_s):
         """Record and result document of one algorithm on a set; None for the document if it did not end in time."""
         queries = "|".join(("prepare", *self.choice.queries))
-        with tempfile.TemporaryDirectory(dir=self.folder, prefix=".run-") as name:
+        with tempfile.TemporaryDirectory(dir=self.scratch.path) as name:
             out = pathlib.Path(name) / "rows.json"
             step = self.call([self.bench, "--no-manifest", "--set", made, "--mesh", a, *(["--mesh", b] if a != b else []),
                               f"--benchmark_filter=^({queries})/algorithm:{algorithm}/pair:[^/]+"
@@ -245,9 +291,9 @@ class Runner:
             return record, json.loads(out.read_text(encoding="utf-8"))
 
 
-def write(file, document):
-    """Writes JSON whole or not at all."""
-    descriptor, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
+def write(file, document, scratch=None):
+    """Writes JSON whole or not at all. @param scratch where it stands until it is whole, on the same file system"""
+    descriptor, temporary = tempfile.mkstemp(dir=scratch or file.parent, prefix=f".{file.name}.")
     try:
         with os.fdopen(descriptor, "w", encoding="utf-8") as out:
             json.dump(document, out)

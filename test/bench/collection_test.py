@@ -224,6 +224,38 @@ class Run(unittest.TestCase):
         self.assertEqual(leftovers, [])
         self.assertEqual(self.collection("--partners", "self").returncode, 0)
 
+    def wait_for(self, condition, what):
+        for _ in range(3000):
+            if condition():
+                return
+            time.sleep(0.02)
+        self.fail(what)
+
+    def test_a_kill_leaves_no_process_and_nothing_that_the_next_run_keeps(self):
+        # The program tells its number, and is asked about a set when the run is killed.
+        slow = self.root / "slow"
+        slow.write_text(f"#!/bin/sh\necho $$ >> {self.root}/numbers\nexec sleep 600\n")
+        slow.chmod(0o755)
+        with subprocess.Popen([*self.command("--partners", "self", "--jobs", "2"), "--bench", str(slow)],
+                              stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=self.environment) as process:
+            numbers = self.root / "numbers"
+            self.wait_for(lambda: numbers.exists() and len(numbers.read_text().split()) == 2, "nothing is asked")
+            held = list(self.out.glob(".run-*"))
+            self.assertEqual(len(held), 1)
+            other = object_runs.Scratch(self.out)  # of a run that begins beside it
+            self.assertTrue(held[0].exists())
+            process.kill()
+            process.wait()
+        for number in numbers.read_text().split():
+            self.wait_for(lambda number=number: not pathlib.Path(f"/proc/{number}").exists(), f"{number} survives")
+        self.assertTrue(held[0].exists(), "nobody was left to remove it")
+        (self.out / ".run-of-an-earlier-version").mkdir()
+        self.assertEqual(self.collection("--partners", "self").returncode, 0)
+        self.assertEqual(list(self.out.glob(".run-*")), [other.path], "a run that goes on keeps its own")
+        other.close()
+        self.assertEqual(list(self.out.glob(".run-*")), [])
+        self.assertEqual([file for file in self.out.rglob("*") if file.name.endswith(".partial")], [])
+
     def test_an_algorithm_that_takes_too_long_costs_its_own_rows_only(self):
         slow = self.root / "slow"
         slow.write_text(f"#!/bin/sh\ncase \"$*\" in *algorithm:ist/*) exec sleep 600;; esac\nexec {SIXDOF_BENCH} \"$@\"\n")
