@@ -17,14 +17,12 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 
 extern char** environ;
 
 namespace sixdof::report {
 namespace {
-
-/// Longest text of a failed program that goes into a message.
-constexpr std::size_t k_last_words = 300;
 
 bool is_in_path(const std::string& program) {
   const char* const path = std::getenv("PATH");
@@ -86,8 +84,7 @@ int wait_for(pid_t child) {
 
 /// Runs a program to its end in `folder`, so that none of its words needs the folder's name, which may be no UTF-8.
 /// @return what it printed; by a pipe, so that a full disk does not swallow why it failed
-/// @throws BadArgument with its words if it ends with k_no_such_choice; BadFile with its last words for another end but
-/// 0
+/// @throws BadArgument with its words if it ends with k_no_such_choice; BadFile with its words for another end but 0
 std::string run(const std::vector<std::string>& words, const std::filesystem::path& folder) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw Error(fmt::format("pipe: {}", std::strerror(errno)));
@@ -110,9 +107,9 @@ std::string run(const std::vector<std::string>& words, const std::filesystem::pa
   if (failure != 0) throw Error(fmt::format("{} cannot be started: {}", words[0], std::strerror(failure)));
   const int status = wait_for(child);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return printed;
-  if (printed.size() > k_last_words) printed.erase(0, printed.size() - k_last_words);
   while (printed.ends_with('\n')) printed.pop_back();
   std::ranges::replace(printed, '\n', ' ');
+  printed = visible_words(printed);
   if (WIFEXITED(status) && WEXITSTATUS(status) == k_no_such_choice) throw BadArgument(printed);
   throw BadFile(folder.string(), fmt::format("{} failed: {}", words[0], printed));
 }
