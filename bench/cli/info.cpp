@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/geometry/shape_facts.h>
 #include <sixdof/models/model_catalogue.h>
@@ -166,13 +167,16 @@ void print_grid(const char* label, const Grid& grid) {
 
 void print_text(const ConfigurationSet& set) {
   const SetDescription& d = set.description();
-  fmt::print("configuration set  {}\n", set.path().string());
+  fmt::print("configuration set  {}\n", visible_text(set.path().string(), k_any_length));
   fmt::print("content hash       {}\n", set.hash());
   fmt::print("made by            sixdof {}\n", d.generator_version);
   for (const auto& [label, mesh] : {std::pair("A (fixed)", &d.a), std::pair("B (moving)", &d.b)}) {
     fmt::print("{:<18} {}: {} triangles, box diagonal {:.6g}, volume {:.6g}, content hash {}\n", label, mesh->name,
                mesh->triangles, mesh->diagonal(), mesh->volume, mesh->hash);
-    if (!mesh->path.empty()) fmt::print("{:<18} {} ({})\n", "", mesh->path, mesh->absolute_path);
+    if (!mesh->path.empty()) {
+      fmt::print("{:<18} {} ({})\n", "", visible_text(mesh->path, k_any_length),
+                 visible_text(mesh->absolute_path, k_any_length));
+    }
   }
   print_grid(d.volume_grid ? "grid of distances" : "grid", d.grid);
   if (d.volume_grid) print_grid("grid of volumes", *d.volume_grid);

@@ -67,11 +67,11 @@ std::string aligned(const std::vector<std::string>& cells, const Sheet& sheet, c
   return trimmed(text);
 }
 
-/// As Markdown shows it: characters that mean something there are escaped.
+/// As Markdown shows it: characters that begin something there, also HTML, are escaped.
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
-    if (std::string_view("|*\\_").find(c) != std::string_view::npos) result += '\\';
+    if (std::string_view("|*\\_`[<>&#~").find(c) != std::string_view::npos) result += '\\';
     result += c;
   }
   return result;
@@ -94,9 +94,9 @@ std::string as_text(const Sheet& full) {
 
 std::string as_markdown(const Sheet& full) {
   const Sheet sheet = without_empty_columns(full);
-  std::string text = "### " + sheet.title + "\n\n|", rule = "|";
+  std::string text = "### " + escaped(sheet.title) + "\n\n|", rule = "|";
   for (const auto& [group, title, left] : sheet.columns) {
-    text += fmt::format(" {}{}{} |", group, group.empty() || title.empty() ? "" : ": ", title);
+    text += fmt::format(" {}{}{} |", escaped(group), group.empty() || title.empty() ? "" : ": ", escaped(title));
     rule += left ? "---|" : "---:|";
   }
   text += "\n" + rule + "\n";

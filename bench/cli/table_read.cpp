@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 #include <sixdof/measure/metrics.h>
 #include <sixdof/report/result_json.h>
 #include "bench/cli/table.h"
@@ -18,14 +19,8 @@ using report::nanoseconds;
 using report::text_at;
 using report::words_of;
 
-Json parse_document(const std::string& text, const std::string& path) {
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw BadFile(path, "is empty");
-  Json document;
-  try {
-    document = Json::parse(text);
-  } catch (const Json::exception& e) {
-    throw BadFile(path, "not JSON: " + words_of(e));
-  }
+Json result_document(const std::string& text, const std::string& path) {
+  Json document = report::parse_document(text, path);
   if (!document.is_object() || !document.contains("benchmarks") || !document["benchmarks"].is_array()) {
     throw BadFile(path, "not a result file of sixdof-bench: it has no array \"benchmarks\"");
   }
@@ -93,9 +88,9 @@ std::uint64_t ResultRow::count(const std::string& name) const {
 }
 
 ResultFile parse_result_file(const std::string& text, const std::string& path) {
-  const Json document = parse_document(text, path);
+  const Json document = result_document(text, path);
   ResultFile file;
-  file.path = path;
+  file.path = visible_text(path, k_any_length);
   if (document.contains("context") && document.at("context").is_object()) {
     const Json& context = document.at("context");
     file.date = text_at(context, "date");

@@ -11,10 +11,20 @@
 #include <CLI/Error.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 
 namespace sixdof {
+
 void print_message(std::string_view program, std::string_view message) {
-  fmt::print(stderr, "{}: {}\n", program, message);
+  // A message may hold words of the command line. Some list what is wrong in lines of their own.
+  std::string visible;
+  while (true) {
+    const std::size_t end = message.find('\n');
+    visible += visible_text(message.substr(0, end), k_any_length) + "\n";
+    if (end == std::string_view::npos) break;
+    message.remove_prefix(end + 1);
+  }
+  fmt::print(stderr, "{}: {}", program, visible);
 }
 
 int run_guarded(std::string_view program, const std::function<void()>& work) {

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include <sixdof/base/visible_text.h>
 #include <sixdof/configuration/configuration_set.h>
 #include <sixdof/configuration/set_meshes.h>
 #include <sixdof/models/model_catalogue.h>
@@ -14,7 +15,8 @@ namespace {
 
 /// The file under --mesh that stands for a mesh of this name; empty if there is none.
 std::string mesh_option(const std::string& name, const Options& options) {
-  const auto file = std::ranges::find(options.meshes, name, [](const auto& path) { return path.stem().string(); });
+  const auto name_of = [](const auto& path) { return visible_text(path.stem().string(), k_any_length); };
+  const auto file = std::ranges::find(options.meshes, name, name_of);
   return file == options.meshes.end() ? std::string() : file->string();
 }
 

@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-
-#include "bench/common/json_text.h"
+#include <sixdof/base/visible_text.h>
 
 namespace sixdof::bench {
 
@@ -20,7 +19,7 @@ Json row_json(const Run& run, const FieldsByName& fields, const OutliersByName& 
   writer.ReportRuns({run});  // without a context: the object alone
   Json json;
   try {
-    json = Json::parse(valid_utf8(text.str()));
+    json = Json::parse(visible_json(text.str()));  // which has control characters as they are
   } catch (const Json::exception& e) {
     throw Error(run.benchmark_name() + ": Google Benchmark wrote no valid JSON: " + e.what());
   }

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sixdof/base/visible_text.h>
 #include <sixdof/process/remote_algorithm.h>
 #include "bench/common/build_info.h"
-#include "bench/common/json_text.h"
 #include "bench/harness/timing.h"
 
 namespace sixdof::bench {
@@ -26,7 +26,7 @@ Json context_of_benchmark() {
   writer.SetOutputStream(&text);
   writer.ReportContext(benchmark::BenchmarkReporter::Context());
   writer.Finalize();
-  return Json::parse(valid_utf8(text.str())).at("context");
+  return Json::parse(visible_json(text.str())).at("context");
 }
 
 /// Whether times or answers of a row depend on what stands under this key.

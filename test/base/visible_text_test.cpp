@@ -69,7 +69,8 @@ TEST(VisibleJson, HasVisibleStringsAndKeys) {
   EXPECT_EQ(read(R"(["\ud800", "\udc80x", "\ud800\u0041", "\uD83E\uDD84", "\udb40\udc20"])"),
             "[\"\\\\uD800\",\"\\\\uDC80x\",\"\\\\uD800A\",\"\xF0\x9F\xA6\x84\",\"\\\\xF3\\\\xA0\\\\x80\\\\xA0\"]");
   EXPECT_EQ(read(R"(["\\u001b", "\"\\", "\u00fc", 1e3, null])"), R"(["\\u001b","\"\\","ü",1000.0,null])");
-  for (const char* const no_json : {"\\", "[\"\\", "[\"\\u00", "[\"\\uZZZZ\"]", "[\"\x1B\"]"}) {
+  EXPECT_EQ(read("[\"\x1B\n\", \"\\\"\t\"]"), R"(["\\x1B\\x0A","\"\\x09"])") << "no JSON before";
+  for (const char* const no_json : {"\\", "[\"\\", "[\"\\u00", "[\"\\uZZZZ\"]", "[\x1B]", "[\xFF]"}) {
     EXPECT_FALSE(nlohmann::json::accept(visible_json(no_json))) << no_json;
   }
 }

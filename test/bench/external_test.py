@@ -152,6 +152,50 @@ class External(unittest.TestCase):
         self.assertEqual(listed[-1]["name"], "spheres")
         self.assertEqual(listed[-1]["answers"], ["collide", "distance"])
 
+    def test_hostile_words_end_no_run(self):
+        words = "red \x1b[31m \x9b2J\n\x00\x7f \u202e\u2028 | a |`<script>\\\" \ud800 " + "w" * 100000
+        script = self.folder / "hostile.py"
+        script.write_text(f"""import json, sys
+words = {words!r}
+for line in sys.stdin:
+    do = json.loads(line)["do"]
+    if do == "hello":
+        reply = dict(protocol=1, name=words, version="1" + words, summary=words, answers=["distance"], parameters=[
+            dict(name="p", meaning=words, unit=words, default="1", low=1, high=9)])
+    elif do == "prepare":
+        reply = dict(prepared=True, counts={{words: 3}})
+    else:
+        reply = dict(status="failed", words=words)
+    print(json.dumps(reply), flush=True)
+""")
+        command = f"{sys.executable} {script}"
+        document, row = self.bench(command)
+        self.assertEqual(row["failed"], SAMPLE)
+        self.assertIn("red \\x1B[31m \\xC2\\x9B2J\\x0A\\x00\\x7F", row["label"])
+        self.assertTrue(document["context"]["algorithm:spheres"].startswith("1red \\x1B[31m"))
+        out = self.folder / "out.json"
+        document["benchmarks"] = document["benchmarks"][:1]
+        out.write_text(json.dumps(document))
+        more = ["--manifest", MANIFEST, "--sample", str(SAMPLE), "--benchmark_min_time=0.000001", "--external",
+                f"spheres={command}", f"--benchmark_filter=^({ROW}|distance/algorithm:exact/pair:torus-1k/distance:05|"
+                "prepare/algorithm:spheres/pair:torus-1k)$"]
+        done = subprocess.run([SIXDOF_BENCH, *more, "--resume", out], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(json.loads(out.read_text())["benchmarks"]), 3)
+        shown = [done.stdout, done.stderr]
+        ask = ["--external", f"spheres={command}"]
+        pose = ["query", "--a", "cone-1k", "--b", "torus-1k", "--pose", "5 0 0 1 0 0 0", "--algorithm", "spheres", *ask]
+        for command, code in ((["algorithms", *ask], 0), (["algorithms", "--json", *ask], 0), (pose, 1),
+                              ([*pose, "--json"], 1), (["table", out], 0), (["table", "--markdown", out], 0),
+                              (["table", "--wide", out], 0), (["table", "--json", out], 0),
+                              (["report", out, "--csv", self.folder / "t", "--markdown", self.folder / "t"], 0)):
+            done = self.sixdof(*command, code=code)
+            shown += [done.stdout, done.stderr]
+        shown += [file.read_text() for file in (self.folder / "t").iterdir()]
+        for text in shown:
+            self.assertNotRegex(text, "[\x00-\x09\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202f]")
+        self.assertIn("red \\x1B[31m", "".join(shown))
+
     def children_of(self, process):
         text = subprocess.run(["ps", "-o", "pid=", "--ppid", str(process.pid)], capture_output=True, text=True, check=False)
         return [int(word) for word in text.stdout.split()]

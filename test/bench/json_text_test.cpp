@@ -15,8 +15,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* k_replaced = "h\xEF\xBF\xBDll";  // U+FFFD
 
 TEST(JsonText, ReplacesBytesThatAreNoUtf8) {
-  EXPECT_EQ(valid_utf8("h\xFFll"), k_replaced);
-  EXPECT_EQ(valid_utf8("\"h\xC3\xBCll\"\n"), "\"h\xC3\xBCll\"\n") << "what is UTF-8 stays";
   const Json read = Json::parse(json_text({{"name", "h\xFFll"}, {"h\xFFll", 1}}));
   EXPECT_EQ(read, Json({{"name", k_replaced}, {k_replaced, 1}}));
 }

@@ -394,5 +394,31 @@ TEST_F(RefusedFiles, AreNamedWithTheRow) {
             place + "y has the settings size=9 here and size=0.5 in an earlier row\n");
 }
 
+TEST_F(TableCommand, ShowsWhatATerminalOrMarkdownWouldObey) {
+  const std::string hostile = "x\x1B]0;title\x07\n\xE2\x80\xAE| a |`b`<script>[c](d)";
+  Json bad = failed_row("distance", hostile, "distance", 5), good = row("distance", "y", "distance", 5, 1500.0);
+  bad["error_message"] = hostile;
+  bad["sixdof"]["pair"] = good["sixdof"]["pair"] = hostile;
+  good["sixdof"]["settings"] = {{hostile, hostile}};
+  const std::string file = write("results.json", {bad, good}, {{"date", hostile}, {"commit", hostile}});
+  const auto is_control = [](char c) { return (c >= 0 && c < ' ' && c != '\n') || c == '\x7F'; };
+  for (const std::string options : {"", "--markdown ", "--wide ", "--wide --markdown ", "--json "}) {
+    const std::string text = printed(options + file);
+    EXPECT_TRUE(std::ranges::none_of(text, is_control)) << options << text;
+    EXPECT_EQ(text.find("\xE2\x80\xAE"), std::string::npos) << options;
+    if (options == "--json ") continue;
+    EXPECT_THAT(text, HasSubstr("x1B]0;title")) << options;
+  }
+  for (const std::string options : {"--markdown ", "--wide --markdown "}) {
+    const std::string text = printed(options + file);
+    for (const char c : {'`', '<', '['}) {
+      for (std::size_t at = text.find(c); at != std::string::npos; at = text.find(c, at + 1)) {
+        EXPECT_EQ(text.at(at - 1), '\\') << options << text;
+      }
+    }
+    EXPECT_THAT(text, HasSubstr(R"(\| a \|\`b\`\<script\>\[c](d))")) << options;
+  }
+}
+
 }  // namespace
 }  // namespace sixdof::cli

@@ -7,7 +7,7 @@
 //      't', 'T': times of two poses, each or together.
 //
 // A line is refused as Malformed, or what is read can be written, and read again as the same. An answer that is not
-// finite is none.
+// finite is none. No text of a reply, and no message, has a character that does not print.
 #include <fcntl.h>
 #include <sys/mman.h>
 
@@ -16,6 +16,7 @@
 #include <span>
 
 #include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/base/visible_text.h>
 #include <sixdof/process/protocol.h>
 #include <sixdof/process/serve.h>
 #include <sixdof/process/shared_memory.h>
@@ -95,11 +96,32 @@ void check_server(std::string_view text) {
   require(replies.empty() || replies.back() == '\n', "every reply is a line");
 }
 
+void require_visible(std::string_view text) {
+  const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; };
+  require(std::ranges::none_of(text, is_control), "a text has no control character");
+  require(visible_text(text, k_any_length) == text, "a text is visible");
+}
+
+void require_visible(const Traits& traits) {
+  for (const std::string* const text : {&traits.name, &traits.version, &traits.summary}) require_visible(*text);
+  for (const Parameter& parameter : traits.parameters) {
+    for (const std::string* const text :
+         {&parameter.name, &parameter.meaning, &parameter.unit, &parameter.default_value}) {
+      require_visible(*text);
+    }
+    for (const auto* const list : {&parameter.choices, &parameter.sweep}) {
+      for (const std::string& text : *list) require_visible(text);
+    }
+  }
+}
+
 template <class Answer>
 void check_answer(const std::string& line) {
   const Asked<Answer> answer = answer_of<Answer>(line);
   require(!answer.outcome.ok() || is_finite(answer.outcome.value), "an answer that is not finite is none");
   require(!answer.ns || *answer.ns >= 0.0, "a time is not negative");
+  require_visible(answer.words);
+  for (const Work& each : answer.work) require_visible(each.unit);
   const std::string written = to_line(asked_of<Answer>(line));
   require(to_line(asked_of<Answer>(written)) == written, "an answer that is written is read as the same");
 }
@@ -107,7 +129,10 @@ void check_answer(const std::string& line) {
 void check_times(const std::string& line, bool each) {
   constexpr std::size_t k_poses = 2;
   const Timed timed = timed_of(line, k_poses, each);
-  for (const Failed& failed : timed.failed) require(failed.place < k_poses, "failures are of poses that were asked");
+  for (const Failed& failed : timed.failed) {
+    require(failed.place < k_poses, "failures are of poses that were asked");
+    require_visible(failed.words);
+  }
   for (const auto& times : {timed.once_ns, timed.least_ns}) {
     require(times.size() == (each ? k_poses : 0), "there is a time for each pose");
     for (const double ns : times) require(ns >= 0.0 && ns <= std::numeric_limits<double>::max(), "times are finite");
@@ -128,12 +153,17 @@ void check_line(char kind, const std::string& line) {
     case 'T':
       return check_times(line, kind == 't');
     case 'h': {
-      const std::string written = to_line(greeting_of(line));
+      const Greeting greeting = greeting_of(line);
+      require_visible(greeting.traits);
+      const std::string written = to_line(greeting);
       return require(to_line(greeting_of(written)) == written, "a greeting that is written is read as the same");
     }
-    case 'p':
-      static_cast<void>(prepared_of(line));
+    case 'p': {
+      const auto reply = prepared_of(line);
+      if (const auto* const refusal = std::get_if<Refusal>(&reply)) return require_visible(refusal->words);
+      for (const auto& [name, count] : std::get<Prepared>(reply).footprint.counts) require_visible(name);
       return;
+    }
     default: {
       const std::string written = to_line(request_of(line));
       require(to_line(request_of(written)) == written, "a request that is written is read as the same");
@@ -154,10 +184,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   try {
     check_line(kind, std::string(input.rest()));
-  } catch (const sixdof::protocol::Malformed&) {
-    // Refused.
-  } catch (const sixdof::BadArgument&) {
+  } catch (const sixdof::protocol::Malformed& e) {
+    require_visible(e.what());
+  } catch (const sixdof::BadArgument& e) {
     require(kind == 'h', "only the parameters of a greeting are bad arguments");
+    require_visible(e.what());
   }
   return 0;
 }

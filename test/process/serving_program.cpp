@@ -1,14 +1,17 @@
 // A program that serves one algorithm: `exact`, one of those that die (deadly_query.h), one that is killed while it
-// prepares, one that refuses the mesh, or one with parameters.
+// prepares, one that refuses the mesh, one with parameters, or one that says hostile texts.
 
 #include <csignal>
+#include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <sixdof/base/error.h>
 #include <sixdof/process/serve.h>
 
 #include "deadly_query.h"
+#include "hostile_text.h"
 
 namespace {
 
@@ -21,6 +24,31 @@ struct DiesInPrepare final : Query {
 struct Refuses final : Query {
   Refuses(const Mesh& a, const Mesh&, const Settings&) { throw BadMesh(a.name() + ": too pretty"); }
 };
+
+/// Throws the text of the pose's number.
+struct Talkative final : Query {
+  Talkative(const Mesh&, const Mesh&, const Settings&) {}
+  Outcome<bool> collide(const Pose& X_AB) override {
+    throw std::runtime_error(test::hostile_text(static_cast<std::uint64_t>(X_AB.t.x())));
+  }
+};
+
+/// The same in JSON as only others write it.
+void talk_json() {
+  std::uint64_t asked = 0;
+  for (std::string line; std::getline(std::cin, line);) {
+    const std::string text = test::as_json_string(test::hostile_text(asked), asked);
+    if (line.find("\"hello\"") != std::string::npos) {
+      std::cout << R"({"protocol": 1, "name": "x", "version": "1", "answers": ["collide"], "summary": )" << text;
+    } else if (line.find("\"prepare\"") != std::string::npos) {
+      std::cout << R"({"prepared": true, "counts": {)" << text << ": 1}";
+    } else {
+      std::cout << R"({"status": "failed", "words": )" << text;
+      ++asked;
+    }
+    std::cout << "}" << std::endl;
+  }
+}
 
 /// The distance is a setting.
 class Configured final : public Query {
@@ -43,6 +71,7 @@ std::unique_ptr<Algorithm> make(const std::string& name) {
   const QuerySet all{.collide = true, .distance = true, .respond = true};
   if (name == "exact") return make_exact_algorithm();
   if (name == "dies-in-prepare") return make_algorithm<DiesInPrepare>({.name = name, .version = "1", .answers = all});
+  if (name == "talkative") return make_algorithm<Talkative>({.name = name, .version = "1", .answers = all});
   if (name == "refuses") return make_algorithm<Refuses>({.name = name, .version = "1", .answers = all});
   if (name == "configured") {
     return make_algorithm<Configured>({.name = name,
@@ -63,6 +92,10 @@ std::unique_ptr<Algorithm> make(const std::string& name) {
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
+  if (argv[1] == std::string("talks-json")) {
+    talk_json();
+    return 0;
+  }
   serve_on_standard_streams(*make(argv[1]));
   return 0;
 }

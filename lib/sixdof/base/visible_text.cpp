@@ -160,17 +160,23 @@ std::string visible_words(std::string_view text) {
 }
 
 std::string visible_json(std::string_view json) {
+  const auto is_plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
   std::string result;
   result.reserve(json.size());
-  while (!json.empty()) {
-    // White space stands outside of strings only: inside of them it is no JSON.
-    const auto is_special = [](char c) { return c == '\\' || static_cast<unsigned char>(c) >= 0x7F; };
-    const auto plain = static_cast<std::size_t>(std::ranges::find_if(json, is_special) - json.begin());
-    result.append(json.substr(0, plain));
-    json.remove_prefix(plain);
-    if (json.empty()) break;
-    json.remove_prefix(json.front() == '\\' ? append_visible_escape(result, json)
-                                            : append_visible(result, "\\\\", json));
+  for (bool in_string = false; !json.empty();) {
+    std::size_t taken = 1;
+    if (is_plain(json.front()) || (!in_string && json.front() != '"')) {
+      taken = static_cast<std::size_t>(std::ranges::find_if_not(json.substr(1), is_plain) - json.begin());
+      result.append(json.substr(0, taken));
+    } else if (json.front() == '"') {
+      in_string = !in_string;
+      result += '"';
+    } else if (json.front() == '\\') {
+      taken = append_visible_escape(result, json);
+    } else {
+      taken = append_visible(result, "\\\\", json);
+    }
+    json.remove_prefix(taken);
   }
   return result;
 }

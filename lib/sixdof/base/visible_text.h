@@ -24,9 +24,9 @@ std::string visible_text(std::string_view text, std::size_t longest = 40);
 /// comes out does not change by another call.
 std::string visible_words(std::string_view text);
 
-/// JSON as text whose strings and keys are visible as by visible_text(), whatever stood there: escapes such as \u001B
-/// become the text \x1B, halves of a surrogate pair \uD800, and bytes that are no UTF-8 \xFF. What is outside of strings
-/// stays.
+/// JSON as text whose strings and keys are visible as by visible_text(), whatever stood there: a control character, as
+/// it is or as the escape \u001B, becomes the text \x1B, half of a surrogate pair \uD800, a byte that is no UTF-8 \xFF.
+/// What is outside of strings stays.
 std::string visible_json(std::string_view json);
 
 }  // namespace sixdof

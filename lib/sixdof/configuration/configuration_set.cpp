@@ -11,6 +11,7 @@
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/hdf5.h>
+#include <sixdof/base/visible_text.h>
 #include <sixdof/configuration/set_fields.h>
 
 namespace sixdof {
@@ -127,6 +128,13 @@ ConfigurationSet::ConfigurationSet(std::filesystem::path path) : path_(std::move
     }
   }
   hash_ = detail::check_content_hash(file, path_, hash_of(description_, buckets_));
+  // Not before: the hash is that of the words as they are. Paths stay, to be opened.
+  std::vector<std::string*> words{&description_.a.name, &description_.b.name, &description_.generator_version,
+                                  &description_.grid.spec, &description_.grid.sampler};
+  if (description_.volume_grid)
+    words.insert(words.end(), {&description_.volume_grid->spec, &description_.volume_grid->sampler});
+  for (BucketSummary& bucket : buckets_) words.insert(words.end(), {&bucket.oracle, &bucket.oracle_version});
+  for (std::string* const text : words) *text = visible_text(*text, k_any_length);
 }
 
 const BucketSummary& ConfigurationSet::summary(BucketKey key) const {

@@ -11,6 +11,7 @@
 #include <sixdof/base/compensated_sum.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/hash.h>
+#include <sixdof/base/visible_text.h>
 #include <sixdof/geometry/sides.h>
 
 namespace sixdof {
@@ -144,7 +145,7 @@ Mesh Mesh::build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> tr
                  MeshRepairs repairs) {
   check_input(vertices, triangles);
   Mesh mesh;
-  mesh.name_ = std::move(name);
+  mesh.name_ = visible_text(name, k_any_length);
   mesh.repairs_ = std::move(repairs);
   weld(vertices, triangles, mesh.repairs_);
   mesh.vertices_ = std::move(vertices);

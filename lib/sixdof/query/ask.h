@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 #include <sixdof/query/algorithm.h>
 
 /// For callers: whatever a query does wrong is one failed configuration with its words.
@@ -23,16 +24,16 @@ inline bool is_finite(const Response& answer) {
 }
 
 /// The Outcome of ask(). An exception becomes Status::failed, or Status::out_of_memory where it is std::bad_alloc, and
-/// calls failed(words); without one it costs nothing.
+/// calls failed(visible words); without one it costs nothing.
 template <class Ask, class Failed>
 auto ask_guarded(Ask&& ask, const Failed& failed) -> decltype(ask()) {
   try {
     return ask();
   } catch (const std::bad_alloc& e) {
-    failed(e.what());
+    failed(visible_words(e.what()));
     return Status::out_of_memory;
   } catch (const std::exception& e) {
-    failed(e.what());
+    failed(visible_words(e.what()));
   } catch (...) {
     failed("an exception of unknown type was thrown");
   }

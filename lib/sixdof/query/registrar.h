@@ -9,6 +9,10 @@
 
 namespace sixdof {
 
+/// The same algorithm, whose version, descriptions and words of a refused pair are visible (base/visible_text.h). Its
+/// queries are its own. Null stays null.
+std::unique_ptr<Algorithm> with_visible_words(std::unique_ptr<Algorithm> algorithm);
+
 /// Adds an external algorithm to the programs. Link sixdof::bench_main or sixdof::cli_main and write at namespace scope
 ///
 ///     const sixdof::Registrar mine([] { return sixdof::make_algorithm<MyQuery>({.name = "mine", ...}); });
@@ -19,7 +23,9 @@ namespace sixdof {
 class Registrar {
  public:
   using Maker = std::function<std::unique_ptr<Algorithm>()>;
-  explicit Registrar(Maker maker) { makers().push_back(std::move(maker)); }
+  explicit Registrar(Maker maker) {
+    makers().push_back([maker = std::move(maker)] { return with_visible_words(maker()); });
+  }
 
   static std::vector<Maker>& makers() {
     static std::vector<Maker> list;

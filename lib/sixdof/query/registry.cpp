@@ -3,22 +3,51 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 
 namespace sixdof {
+namespace {
+
+/// What is typed in command lines, and stands in results as "name=value,name=value".
+void check_words(const std::string& algorithm, const Parameter& parameter) {
+  constexpr std::size_t k_longest = 64;
+  constexpr const char* k_in_names = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  const std::string& name = parameter.name;
+  if (name.empty() || name.size() > k_longest || name.find_first_not_of(k_in_names) != std::string::npos) {
+    throw BadArgument(
+        fmt::format("algorithm {}: parameter '{}': only a-z, 0-9 and '_'", algorithm, visible_text(name)));
+  }
+  std::vector<std::string> values{parameter.default_value};
+  values.insert(values.end(), parameter.choices.begin(), parameter.choices.end());
+  values.insert(values.end(), parameter.sweep.begin(), parameter.sweep.end());
+  for (const std::string& value : values) {
+    if (value.empty() || value.size() > k_longest || value.find_first_of(" ,\"'`\\") != std::string::npos ||
+        visible_text(value, k_any_length) != value) {
+      throw BadArgument(
+          fmt::format("algorithm {}: {}={}: a value has 1 to {} characters that print, without spaces, "
+                      "commas, quotes and backslashes",
+                      algorithm, name, visible_text(value), k_longest));
+    }
+  }
+}
+
+}  // namespace
 
 void Registry::add(std::unique_ptr<Algorithm> algorithm) {
   if (algorithm == nullptr) throw BadArgument("an algorithm to be registered is null");
   const std::string& name = algorithm->traits().name;
   if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos) {
-    throw BadArgument(fmt::format("algorithm name '{}': only a-z, 0-9 and '-'", name));
+    throw BadArgument(fmt::format("algorithm name '{}': only a-z, 0-9 and '-'", visible_text(name)));
   }
   std::size_t values = 0;
   for (const Parameter& parameter : algorithm->traits().parameters) {
+    check_words(name, parameter);
     const std::size_t own = parameter.sweep.size();
     if (own > 0 && values > 0 && own != values) {
       throw BadArgument(fmt::format("algorithm {}: its sweeps have {} and {} values", name, values, own));

@@ -5,13 +5,23 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 
 namespace sixdof::report {
+
+nlohmann::ordered_json parse_document(const std::string& text, const std::string& path) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw BadFile(path, "is empty");
+  try {
+    return nlohmann::ordered_json::parse(visible_json(text));
+  } catch (const nlohmann::ordered_json::exception& e) {
+    throw BadFile(path, "not JSON: " + words_of(e));
+  }
+}
 
 std::string words_of(const nlohmann::ordered_json::exception& e) {
   const std::string words = e.what();
   const std::size_t end = words.find("] ");
-  return end == std::string::npos ? words : words.substr(end + 2);
+  return visible_words(end == std::string::npos ? words : words.substr(end + 2));
 }
 
 std::string text_at(const nlohmann::ordered_json& object, const char* key) {

@@ -6,6 +6,11 @@
 
 namespace sixdof::report {
 
+/// The document of a result file, with strings and keys that are visible (base/visible_text.h): names and words in it
+/// are those of algorithms, meshes and machines. @param path named in messages
+/// @throws BadFile if it is empty or no JSON
+nlohmann::ordered_json parse_document(const std::string& text, const std::string& path);
+
 /// The words of nlohmann::json's exceptions behind "[json.exception.parse_error.101] ".
 std::string words_of(const nlohmann::ordered_json::exception& e);
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 #include <sixdof/measure/metrics.h>
 #include <sixdof/report/result_json.h>
 
@@ -198,14 +199,8 @@ std::string Source::at(const std::string& key) const {
 }
 
 void parse_results(const std::string& text, const std::string& path, Results& results) {
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos) throw BadFile(path, "is empty");
-  Json document;
-  try {
-    document = Json::parse(text);
-  } catch (const Json::exception& e) {
-    throw BadFile(path, "not JSON: " + words_of(e));
-  }
-  Source source{.path = path, .kind = {}, .context = {}};
+  const Json document = parse_document(text, path);
+  Source source{.path = visible_text(path, k_any_length), .kind = {}, .context = {}};
   try {
     if (document.is_object() && document.contains("benchmarks") && document.at("benchmarks").is_array()) {
       return take_rows(document, std::move(source), results);
