@@ -28,10 +28,32 @@ constexpr bool k_sanitized = false;
 
 constexpr std::size_t k_mb = std::size_t{1} << 20;
 
+using Work = std::function<std::string()>;
+
+/// What work() returns in a process of its own, behind its length.
+std::string run(const Work& work, const SeparateLimits& limits = {}) {
+  std::string result;
+  run_separately(
+      [&](SeparateOutput& output) {
+        const std::string bytes = work();
+        const std::size_t size = bytes.size();
+        output.write(&size, sizeof(size));
+        output.write(bytes.data(), size);
+      },
+      [&](SeparateInput& input) {
+        std::size_t size = 0;
+        input.read(&size, sizeof(size));
+        result.resize(size);
+        input.read(result.data(), size);
+      },
+      limits);
+  return result;
+}
+
 /// The words of the failure, or "gave N bytes".
-std::string failure(const std::function<std::string()>& work, const SeparateLimits& limits = {}) {
+std::string failure(const Work& work, const SeparateLimits& limits = {}) {
   try {
-    return "gave " + std::to_string(run_separately(work, limits).size()) + " bytes";
+    return "gave " + std::to_string(run(work, limits).size()) + " bytes";
   } catch (const SeparateFailure& e) {
     return e.what();
   }
@@ -45,11 +67,11 @@ std::string failure(const std::function<std::string()>& work, const SeparateLimi
 
 TEST(SeparateProcess, GivesBackWhatTheWorkReturnedAndChangesNothingHere) {
   int counter = 3;
-  const std::string empty = run_separately([] { return std::string(); }, {});
+  const std::string empty = run([] { return std::string(); });
   EXPECT_EQ(empty, "");
   std::string large(5'000'000, 'x');
   large[4'000'001] = '\0';
-  const std::string copy = run_separately([&] { return ++counter, large; }, {});
+  const std::string copy = run([&] { return ++counter, large; });
   EXPECT_EQ(copy, large);
   EXPECT_EQ(counter, 3);
 }
@@ -71,6 +93,28 @@ TEST(SeparateProcess, EveryEndIsNamed) {
               return {};
             }),
             "ended by signal 9 (Killed)");
+}
+
+TEST(SeparateProcess, AResultThatIsNotWholeIsNone) {
+  char byte = 0;
+  const auto read_two = [&](SeparateInput& input) {
+    input.read(&byte, 1);
+    input.read(&byte, 1);
+  };
+  const auto words = [&](const std::function<void(SeparateOutput&)>& work) -> std::string {
+    try {
+      run_separately(work, read_two, {});
+    } catch (const SeparateFailure& e) {
+      return e.what();
+    }
+    return "whole";
+  };
+  EXPECT_EQ(words([](SeparateOutput& output) { output.write("ab", 2); }), "whole");
+  EXPECT_EQ(words([](SeparateOutput& output) { output.write("ab", 2), output.finish(), std::abort(); }), "whole");
+  EXPECT_EQ(words([](SeparateOutput& output) { output.write("a", 1); }), "ended with exit code 0");
+  EXPECT_EQ(words([](SeparateOutput& output) { output.write("a", 1), std::abort(); }), "ended by signal 6 (Aborted)");
+  EXPECT_THAT(words([](SeparateOutput& output) { output.write("a", 1), throw Error("late"); }),
+              StartsWith("ended with"));
 }
 
 TEST(SeparateProcess, HandlersOfTheCallerAreNotItsOwn) {
@@ -110,8 +154,8 @@ TEST(SeparateProcess, LimitsHold) {
             "took longer than 0.25 s");
   limits = {};
   limits.result_bytes = 100;
-  EXPECT_EQ(failure([] { return std::string(101, 'x'); }, limits), "gave 101 bytes, more than 100");
-  EXPECT_EQ(failure([] { return std::string(100, 'x'); }, limits), "gave 100 bytes");
+  EXPECT_EQ(failure([] { return std::string(93, 'x'); }, limits), "gave more than 100 bytes") << "with their length";
+  EXPECT_EQ(failure([] { return std::string(92, 'x'); }, limits), "gave 92 bytes");
   const auto endless = []() -> std::string {
     volatile char start = 0;
     return std::to_string(deeper(std::size_t{1} << 40, &start));
@@ -138,7 +182,7 @@ TEST(SeparateProcess, HasNoFilesOfTheCaller) {
   const int file = ::open("/dev/zero", O_RDONLY);
   ASSERT_GE(file, 0);
   char byte = 'x';
-  EXPECT_EQ(run_separately([&] { return std::to_string(::read(file, &byte, 1)); }, {}), "-1");
+  EXPECT_EQ(run([&] { return std::to_string(::read(file, &byte, 1)); }), "-1");
   EXPECT_EQ(::read(file, &byte, 1), 1);
   ::close(file);
 }
@@ -158,7 +202,7 @@ TEST(SeparateProcess, SeveralThreadsAtOnceEachGetTheirOwn) {
         const std::string mine(static_cast<std::size_t>(1000 * t + i), static_cast<char>('a' + t));
         if (i % 5 == 4) {
           if (failure([]() -> std::string { std::abort(); }) != "ended by signal 6 (Aborted)") ++wrong;
-        } else if (run_separately([&] { return mine + mine; }, {}) != mine + mine) {
+        } else if (run([&] { return mine + mine; }) != mine + mine) {
           ++wrong;
         }
       }

@@ -86,8 +86,7 @@ TEST_F(HostileFile, ColladaNestedDeeply) {
   refusal("a.dae", with(node, repeated("<node>", k_levels) + node + repeated("</node>", k_levels)));
   refusal("b.dae", with(node, repeated("<node>", k_levels)));
   // Deep where nobody looks: read, or refused.
-  message_of(write("c.dae",
-                   with(node, node + "<extra>" + repeated("<a>", k_levels) + repeated("</a>", k_levels) + "</extra>")));
+  ends("c.dae", with(node, node + "<extra>" + repeated("<a>", k_levels) + repeated("</a>", k_levels) + "</extra>"));
 }
 
 TEST_F(HostileFile, ColladaNodesThatUseThemselves) {
@@ -141,8 +140,7 @@ TEST_F(HostileFile, HugeCounts) {
   const std::string count = R"(count="15")";
   for (const char* const other : {"4000000000", "18446744073709551615", "-1"}) {
     std::string damaged = bytes;
-    message_of(
-        write("a.dae", damaged.replace(damaged.find(count), count.size(), std::string("count=\"") + other + '"')));
+    ends("a.dae", damaged.replace(damaged.find(count), count.size(), std::string("count=\"") + other + '"'));
     damaged = bytes;
     ends("b.dae", damaged.replace(damaged.find(R"(count="5")"), 9, std::string("count=\"") + other + '"'));
     damaged = fbx_pyramid("-5");

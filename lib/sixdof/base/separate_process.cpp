@@ -36,15 +36,8 @@ constexpr bool k_sanitized = false;
 /// Exit codes of the separate process. Others may come from work(), which may call exit().
 constexpr int k_done = 0, k_not_started = 125, k_out_of_memory = 126;
 
-/// Before the result: what it is, and its length.
-enum class Kind : char {
-  result = 'r',
-  exception = 'e'
-};
-struct Header {
-  std::uint64_t bytes = 0;
-  Kind kind = Kind::result;
-};
+/// The first byte: what follows.
+constexpr char k_result = 'r', k_exception = 'e';
 
 [[noreturn]] void end_for_memory() { ::_exit(k_out_of_memory); }
 
@@ -108,7 +101,7 @@ void write_all(int output, const char* bytes, std::size_t count) {
 }
 
 /// In the new process.
-[[noreturn]] void work_and_exit(const std::function<std::string()>& work, const SeparateLimits& limits,
+[[noreturn]] void work_and_exit(const std::function<void(SeparateOutput&)>& work, const SeparateLimits& limits,
                                 std::size_t data_before, int output, pid_t caller) noexcept {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != caller) ::_exit(k_not_started);
@@ -117,44 +110,41 @@ void write_all(int output, const char* bytes, std::size_t count) {
   limit_all(limits, data_before);
   std::set_terminate([] { std::abort(); });
   std::set_new_handler(end_for_memory);
-  Header header;
-  std::string bytes;
+  SeparateOutput result(output);
+  std::string words;
   try {
-    bytes = work();
+    work(result);
+    result.finish();
   } catch (const std::bad_alloc&) {
     end_for_memory();
   } catch (const std::exception& e) {
-    header.kind = Kind::exception;
-    bytes = e.what();
+    words = e.what();
   }
-  header.bytes = bytes.size();
-  write_all(output, reinterpret_cast<const char*>(&header), sizeof(header));
-  write_all(output, bytes.data(), bytes.size());
+  if (result.begun()) ::_exit(k_not_started);
+  write_all(output, &k_exception, 1);
+  write_all(output, words.data(), words.size());
   ::_exit(k_done);
 }
 
 /// The caller's side: reads from the process, and ends it.
-class Waiting {
+class Waiting : public SeparateInput {
  public:
   Waiting(pid_t process, int input, const SeparateLimits& limits)
       : process_(process), input_(input), limits_(limits), end_(Clock::now() + duration(limits.wall_s)) {}
-  ~Waiting() {
+  ~Waiting() override {
     end();
     ::close(input_);
   }
   Waiting(const Waiting&) = delete;
   Waiting& operator=(const Waiting&) = delete;
 
-  std::string result() {
-    Header header;
-    read_all(reinterpret_cast<char*>(&header), sizeof(header));
-    if (header.bytes > limits_.result_bytes) {
-      throw SeparateFailure(fmt::format("gave {} bytes, more than {}", header.bytes, limits_.result_bytes));
+  void read(void* bytes, std::size_t count) override {
+    if (!begun_) begin();
+    if (count > limits_.result_bytes - got_) {
+      throw SeparateFailure(fmt::format("gave more than {} bytes", limits_.result_bytes));
     }
-    std::string bytes(header.bytes, '\0');
-    read_all(bytes.data(), bytes.size());
-    if (header.kind == Kind::exception) throw SeparateFailure("ended by an exception: " + bytes);
-    return bytes;
+    got_ += count;
+    if (read_some(static_cast<char*>(bytes), count) < count) fail();
   }
 
  private:
@@ -162,20 +152,32 @@ class Waiting {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
 
-  void read_all(char* bytes, std::size_t count) {
-    while (count > 0) {
-      const ssize_t got = ::read(input_, bytes, count);
+  void begin() {
+    char kind = k_result;
+    if (read_some(&kind, 1) == 0) fail();
+    begun_ = true;
+    if (kind != k_exception) return;
+    constexpr std::size_t k_longest_words = 4096;
+    std::string words(k_longest_words, '\0');
+    words.resize(read_some(words.data(), words.size()));
+    throw SeparateFailure("ended by an exception: " + words);
+  }
+
+  /// Reads `count` bytes; fewer if the process has closed its side before.
+  std::size_t read_some(char* bytes, std::size_t count) {
+    for (std::size_t read = 0; read < count;) {
+      const ssize_t got = ::read(input_, bytes + read, count - read);
       if (got > 0) {
-        bytes += got;
-        count -= static_cast<std::size_t>(got);
+        read += static_cast<std::size_t>(got);
       } else if (got == 0) {
-        fail();
+        return read;
       } else if (errno == EAGAIN) {
         wait_for_bytes();
       } else if (errno != EINTR) {
         throw SeparateFailure(fmt::format("cannot be heard: {}", std::strerror(errno)));
       }
     }
+    return count;
   }
 
   void wait_for_bytes() {
@@ -211,6 +213,8 @@ class Waiting {
   int input_;
   const SeparateLimits& limits_;
   Clock::time_point end_;
+  std::size_t got_ = 0;
+  bool begun_ = false;
   int status_ = 0;
 };
 
@@ -229,7 +233,16 @@ std::size_t default_memory_limit() {
   return static_cast<std::size_t>(k_share * bytes);
 }
 
-std::string run_separately(const std::function<std::string()>& work, const SeparateLimits& limits) {
+void SeparateOutput::write(const void* bytes, std::size_t count) {
+  if (!begun_) write_all(descriptor_, &k_result, 1);
+  begun_ = true;
+  write_all(descriptor_, static_cast<const char*>(bytes), count);
+}
+
+void SeparateOutput::finish() const { ::_exit(k_done); }
+
+void run_separately(const std::function<void(SeparateOutput&)>& work, const std::function<void(SeparateInput&)>& take,
+                    const SeparateLimits& limits) {
   const std::size_t data_before = data_bytes();
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw Error(fmt::format("no pipe: {}", std::strerror(errno)));
@@ -250,7 +263,8 @@ std::string run_separately(const std::function<std::string()>& work, const Separ
   ::fcntl(ends[0], F_SETFL, O_NONBLOCK);
   constexpr int k_pipe_bytes = 1 << 20;
   ::fcntl(ends[0], F_SETPIPE_SZ, k_pipe_bytes);
-  return Waiting(process, ends[0], limits).result();
+  Waiting waiting(process, ends[0], limits);
+  take(waiting);
 }
 
 }  // namespace sixdof

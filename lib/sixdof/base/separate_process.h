@@ -33,12 +33,35 @@ struct SeparateFailure : Error {
   using Error::Error;
 };
 
-/// work() in a process of its own, which ends with the thread that waits for it. The process has no files of the
-/// caller's, its standard streams are /dev/null (sanitizers keep their standard error), signals have their defaults
-/// and Ctrl-C passes it by.
-/// @returns what work() returned
-/// @throws SeparateFailure if there is none, also for an exception; Error if no process can be made
-std::string run_separately(const std::function<std::string()>& work, const SeparateLimits& limits);
+/// The result on its way to the caller, as bytes.
+class SeparateOutput {
+ public:
+  explicit SeparateOutput(int descriptor) : descriptor_(descriptor) {}
+  void write(const void* bytes, std::size_t count);
+  /// Ends the process, the result being whole. Nothing is destroyed, which saves the time for it.
+  [[noreturn]] void finish() const;
+  bool begun() const { return begun_; }
+
+ private:
+  int descriptor_;
+  bool begun_ = false;
+};
+
+/// The result as it comes to the caller.
+class SeparateInput {
+ public:
+  virtual ~SeparateInput() = default;
+  /// The next `count` bytes. @throws SeparateFailure if the process has ended, or exceeds a limit
+  virtual void read(void* bytes, std::size_t count) = 0;
+};
+
+/// work() in a process of its own, which ends with the thread that waits for it, and take() here, which reads what
+/// work() writes. The process has no files of the caller's, its standard streams are /dev/null (sanitizers keep their
+/// standard error), signals have their defaults and Ctrl-C passes it by.
+/// @throws SeparateFailure if the result is not whole, also for an exception in work(); what take() throws; Error if no
+/// process can be made
+void run_separately(const std::function<void(SeparateOutput&)>& work, const std::function<void(SeparateInput&)>& take,
+                    const SeparateLimits& limits);
 
 /// How a process ended, after waitpid(): "ended by signal 11 (Segmentation fault)", "ended with exit code 3".
 std::string words_of_end(int wait_status);

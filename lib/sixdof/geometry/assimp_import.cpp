@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
@@ -191,7 +192,13 @@ bool assimp_reads(const std::string& extension) {
   return importer.GetImporterCount() > 0;
 }
 
-Surface read_by_assimp(const Source& original, FileFrame frame) {
+Surface read_by_assimp(const Source& source, FileFrame frame) {
+  Surface surface;
+  read_by_assimp(source, frame, [&](Surface&& read) { surface = std::move(read); });
+  return surface;
+}
+
+void read_by_assimp(const Source& original, FileFrame frame, const std::function<void(Surface&&)>& use) {
   const std::string extension = lower_case_extension(original.path);
   Source without_scene;
   if (extension == ".3ds") {
@@ -216,13 +223,13 @@ Surface read_by_assimp(const Source& original, FileFrame frame) {
   Surface surface;
   if (extension == ".3ds") {
     for (unsigned i = 0; i < scene->mNumMeshes; ++i) add_mesh(source, *scene, i, Matrix4d::Identity(), surface);
-    return surface;
+    return use(std::move(surface));
   }
   const aiNode& root = *scene->mRootNode;
   const Matrix4d transform = root_transform(source, *scene, frame, surface.repairs.notes);
   for (unsigned i = 0; i < root.mNumMeshes; ++i) add_mesh(source, *scene, root.mMeshes[i], transform, surface);
   for (unsigned i = 0; i < root.mNumChildren; ++i) add_node(source, *scene, *root.mChildren[i], transform, surface);
-  return surface;
+  use(std::move(surface));
 }
 
 }  // namespace sixdof::loading

@@ -279,6 +279,8 @@ bool assimp_reads(const std::string& extension);
 /// file may crash it, or make it never return.
 /// @throws BadFile
 Surface read_by_assimp(const Source& source, FileFrame frame);
+/// The same; the surface is used while assimp still has the scene, which takes time to destroy.
+void read_by_assimp(const Source& source, FileFrame frame, const std::function<void(Surface&&)>& use);
 
 /// The same surface, read in a process of its own. @throws BadFile also for what ends that process
 Surface read_by_assimp_separately(const Source& source, FileFrame frame);

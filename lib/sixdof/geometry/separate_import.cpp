@@ -1,7 +1,6 @@
 // Assimp in a process of its own (base/separate_process.h): a file that makes it crash, recurse, loop or take all
-// memory ends its own import. The surface comes back as bytes.
+// memory ends its own import. The surface comes back through a pipe.
 #include <algorithm>
-#include <cstring>
 #include <type_traits>
 
 #include <sixdof/base/error.h>
@@ -14,81 +13,68 @@ namespace {
 /// What the process gives: a surface, or the words of a BadFile.
 constexpr char k_surface = 's', k_bad_file = 'b';
 
-void append(std::string& bytes, std::size_t value) { append_little_endian(bytes, std::uint64_t{value}); }
+// Numbers, texts and arrays, each behind its length.
 
-void append(std::string& bytes, const std::string& text) {
-  append(bytes, text.size());
-  bytes += text;
+void put(SeparateOutput& output, std::size_t value) { output.write(&value, sizeof(value)); }
+
+void put(SeparateOutput& output, const std::string& text) {
+  put(output, text.size());
+  output.write(text.data(), text.size());
 }
 
-void append(std::string& bytes, const FileRepairs& repairs) {
-  append(bytes, repairs.count);
-  append(bytes, repairs.first_place);
+void put(SeparateOutput& output, const FileRepairs& repairs) {
+  put(output, repairs.count);
+  put(output, repairs.first_place);
 }
 
 template <class T>
-void append(std::string& bytes, const std::vector<T>& values) {
-  append(bytes, values.size());
-  bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+void put(SeparateOutput& output, const std::vector<T>& values) {
+  put(output, values.size());
+  output.write(values.data(), values.size() * sizeof(T));
 }
 
-std::string to_bytes(const Surface& surface) {
-  std::string bytes(1, k_surface);
-  bytes.reserve(surface.vertices.size() * sizeof(Eigen::Vector3d) + surface.triangles.size() * sizeof(Triangle) + 4096);
-  append(bytes, surface.vertices);
-  append(bytes, surface.triangles);
-  for (const FileRepairs& of_kind : surface.repairs.forgiven.kinds) append(bytes, of_kind);
-  append(bytes, surface.repairs.notes.size());
-  for (const std::string& note : surface.repairs.notes) append(bytes, note);
-  return bytes;
+void put(SeparateOutput& output, const Surface& surface) {
+  put(output, surface.vertices);
+  put(output, surface.triangles);
+  for (const FileRepairs& of_kind : surface.repairs.forgiven.kinds) put(output, of_kind);
+  put(output, surface.repairs.notes.size());
+  for (const std::string& note : surface.repairs.notes) put(output, note);
 }
 
-/// Reads what to_bytes() wrote. A damaged process may write anything: Mesh::build() looks at the values.
-class Bytes {
- public:
-  explicit Bytes(std::string_view bytes) : left_(bytes) {}
-
-  std::size_t number() {
-    const std::string_view raw = take(sizeof(std::uint64_t));
-    return load_bytes<std::uint64_t>(raw.data());
-  }
-  std::string text() { return std::string(take(number())); }
-  FileRepairs repairs() {
-    const std::size_t count = number();
-    return {count, text()};
-  }
-  template <class T>
-  std::vector<T> values() {
-    const std::size_t count = number();
-    if (count > left_.size() / sizeof(T)) throw SeparateFailure("gave a surface that is cut off");
-    std::vector<T> result(count);
-    const std::string_view raw = take(count * sizeof(T));
-    if (count > 0) std::memcpy(static_cast<void*>(result.data()), raw.data(), raw.size());
-    return result;
-  }
-
- private:
-  std::string_view take(std::size_t count) {
-    if (count > left_.size()) throw SeparateFailure("gave a surface that is cut off");
-    const std::string_view taken = left_.substr(0, count);
-    left_.remove_prefix(count);
-    return taken;
-  }
-
-  std::string_view left_;
-};
-
-static_assert(std::is_trivially_copyable_v<Triangle> && sizeof(Eigen::Vector3d) == 3 * sizeof(double));
-
-Surface to_surface(std::string_view given) {
-  Bytes bytes(given);
-  Surface surface;
-  surface.vertices = bytes.values<Eigen::Vector3d>();
-  surface.triangles = bytes.values<Triangle>();
-  for (FileRepairs& of_kind : surface.repairs.forgiven.kinds) of_kind = bytes.repairs();
-  for (std::size_t n = bytes.number(); n > 0; --n) surface.repairs.notes.push_back(bytes.text());
-  return surface;
+std::size_t take_number(SeparateInput& input) {
+  std::size_t value = 0;
+  input.read(&value, sizeof(value));
+  return value;
 }
+
+/// A damaged process may state any length: what is there is read in blocks.
+template <class Container>
+void take(SeparateInput& input, Container& values) {
+  using T = typename Container::value_type;
+  static_assert(std::is_same_v<T, Eigen::Vector3d> || std::is_trivially_copyable_v<T>);
+  constexpr std::size_t k_block = (std::size_t{64} << 20) / sizeof(T);
+  for (std::size_t left = take_number(input); left > 0;) {
+    const std::size_t count = std::min(left, k_block), before = values.size();
+    values.resize(before + count);
+    input.read(values.data() + before, count * sizeof(T));
+    left -= count;
+  }
+}
+
+void take(SeparateInput& input, FileRepairs& repairs) {
+  repairs.count = take_number(input);
+  take(input, repairs.first_place);
+}
+
+/// Mesh::build() looks at the values.
+void take(SeparateInput& input, Surface& surface) {
+  take(input, surface.vertices);
+  take(input, surface.triangles);
+  for (FileRepairs& of_kind : surface.repairs.forgiven.kinds) take(input, of_kind);
+  for (std::size_t left = take_number(input); left > 0; --left) take(input, surface.repairs.notes.emplace_back());
+}
+
+static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
 
 /// Far more than files need that hold what they are about; a small hostile one is ended before it is felt.
 SeparateLimits limits_for(std::size_t file_bytes) {
@@ -105,26 +91,35 @@ SeparateLimits limits_for(std::size_t file_bytes) {
 }  // namespace
 
 Surface read_by_assimp_separately(const Source& source, FileFrame frame) {
-  const auto work = [&] {
+  const auto work = [&](SeparateOutput& output) {
     try {
-      return to_bytes(read_by_assimp(source, frame));
+      read_by_assimp(source, frame, [&](const Surface& surface) {
+        output.write(&k_surface, 1);
+        put(output, surface);
+        output.finish();
+      });
     } catch (const BadFile& e) {
       const std::string file = source.path.string() + ": ";
-      return k_bad_file + std::string(e.what()).substr(file.size());
+      output.write(&k_bad_file, 1);
+      put(output, std::string(e.what()).substr(file.size()));
     }
   };
+  Surface surface;
+  std::string refusal;
+  const auto receive = [&](SeparateInput& input) {
+    char kind = k_surface;
+    input.read(&kind, 1);
+    kind == k_surface ? take(input, surface) : take(input, refusal);
+  };
   try {
-    const std::string given = run_separately(work, limits_for(source.bytes.size()));
-    const std::string_view content = std::string_view(given).substr(std::min<std::size_t>(given.size(), 1));
-    if (given.starts_with(k_bad_file)) source.fail(std::string(content));
-    return to_surface(content);
+    run_separately(work, receive, limits_for(source.bytes.size()));
   } catch (const SeparateFailure& e) {
     source.fail(std::string("assimp, which reads this format, ") + e.what());
-  } catch (const BadFile&) {
-    throw;
   } catch (const Error& e) {
-    source.fail(std::string("cannot be read apart: ") + e.what());
+    source.fail(std::string("cannot be read in a process of its own: ") + e.what());
   }
+  if (!refusal.empty()) source.fail(refusal);
+  return surface;
 }
 
 }  // namespace sixdof::loading
