@@ -46,6 +46,12 @@ KindName name_of(RepairKind kind) {
       return {"flipped_triangles", "triangles turned"};
     case RepairKind::filled_holes:
       return {"filled_holes", "holes filled"};
+    case RepairKind::fins:
+      return {"fins", "triangles of fins dropped"};
+    case RepairKind::inner_walls:
+      return {"inner_walls", "triangles of inner walls dropped"};
+    case RepairKind::stray_triangles:
+      return {"stray_triangles", "stray triangles dropped"};
   }
   return {"", ""};
 }
@@ -72,7 +78,8 @@ void print_json(const Mesh& before, const RepairedMesh& repaired) {
     for (const Eigen::Vector3d& p : of_kind.first) places.push_back(coordinates(p));
     repairs[name_of(static_cast<RepairKind>(k)).key] = {{"count", of_kind.count}, {"first", std::move(places)}};
   }
-  const Json json{{"before", state_of(before)},
+  const Json json{{"forgiven", text_of(before.repairs().forgiven)},
+                  {"before", state_of(before)},
                   {"after", state_of(repaired.mesh)},
                   {"repairs", std::move(repairs)},
                   {"passes", repaired.passes},
@@ -87,6 +94,8 @@ std::string state_text(const Mesh& mesh) {
 }
 
 void print_text(const Mesh& before, const RepairedMesh& repaired) {
+  const std::string forgiven = text_of(before.repairs().forgiven);
+  if (!forgiven.empty()) fmt::print("{:<8} {}\n", "forgiven", forgiven);
   fmt::print("{:<8} {}\n", "before", state_text(before));
   if (repaired.log.total() == 0) fmt::print("{:<8} nothing to repair\n", "");
   for (std::size_t k = 0; k < k_repair_kinds; ++k) {
@@ -107,7 +116,7 @@ void repair(const Arguments& arguments) {
   if (std::filesystem::equivalent(arguments.input, arguments.output, none)) {
     throw BadArgument(arguments.output + ": is the input, which is not overwritten");
   }
-  const Mesh mesh = load_model(arguments.input);
+  const Mesh mesh = load_model(arguments.input, {.drop_faces_not_finite = true});
   const RepairedMesh repaired = repair_mesh(mesh, arguments.options);
   save_mesh(repaired.mesh, arguments.output);
   arguments.json ? print_json(mesh, repaired) : print_text(mesh, repaired);
@@ -133,6 +142,10 @@ void add_repair_command(CLI::App& app) {
                    "Weld border vertices, and close edges to vertices on them, within this fraction of the diagonal")
       ->capture_default_str();
   command->add_option("--max-hole", arguments->options.max_hole, "Fill holes of up to this number of edges; 0: none")
+      ->capture_default_str();
+  command
+      ->add_option("--max-fin", arguments->options.max_fin,
+                   "Drop fins and stray pieces of up to this fraction of the area of the closed surface beside them")
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "As JSON");
   add_examples(*command, "sixdof repair cone.ply -o mended.ply",

@@ -94,10 +94,13 @@ double rounding_of(const Surface& surface, const Triangle& t) {
       {rounding_at(surface.vertices[t[0]]), rounding_at(surface.vertices[t[1]]), rounding_at(surface.vertices[t[2]])});
 }
 
-/// Whether the corners lie on a line within rounding.
+}  // namespace
+
 bool is_degenerate(const Surface& surface, const Triangle& t) {
   return surface.normal(t).norm() <= rounding_of(surface, t) * longest_side(surface, t);
 }
+
+namespace {
 
 /// Merges the ends of sides that are within rounding, where triangles are degenerate. @return repairs made
 std::size_t merge_close_corners(Surface& surface, const std::vector<std::uint32_t>& degenerate, RepairLog& log) {

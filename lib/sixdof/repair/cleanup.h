@@ -12,6 +12,9 @@ namespace sixdof::repairing {
 /// @return repairs made
 std::size_t drop_duplicates(Surface& surface, RepairLog& log);
 
+/// Whether the corners lie on a line within rounding.
+bool is_degenerate(const Surface& surface, const Triangle& t);
+
 /// Removes triangles whose corners lie on a line within rounding. Two corners within rounding become one. Otherwise the
 /// corner c opposite the longest edge lies on it: the neighbour at that edge is split at c, so that a closed surface
 /// stays closed. Those with two or more neighbours at that edge stay.

@@ -6,6 +6,7 @@
 #include <sixdof/repair/cleanup.h>
 #include <sixdof/repair/holes.h>
 #include <sixdof/repair/orient.h>
+#include <sixdof/repair/superfluous.h>
 #include <sixdof/repair/surface.h>
 #include <sixdof/repair/t_junctions.h>
 #include <sixdof/repair/weld.h>
@@ -26,16 +27,20 @@ void check(const RepairOptions& options) {
     throw BadArgument(fmt::format("holes of up to {} edges can be filled; {} were asked for",
                                   RepairOptions::k_largest_max_hole, options.max_hole));
   }
+  if (!(options.max_fin >= 0.0 && options.max_fin <= 1.0)) {
+    throw BadArgument(fmt::format("the largest fin is {} of the area, but must be from 0 to 1", options.max_fin));
+  }
 }
 
 /// All steps once. @return repairs made
-std::size_t run_steps(repairing::Surface& surface, double tolerance, std::size_t max_hole, RepairLog& log) {
+std::size_t run_steps(repairing::Surface& surface, double tolerance, const RepairOptions& options, RepairLog& log) {
   std::size_t made = repairing::weld_border(surface, tolerance, log);
   made += repairing::drop_duplicates(surface, log);
   made += repairing::drop_degenerate(surface, log);
   made += repairing::split_at_t_junctions(surface, tolerance, log);
   made += repairing::orient(surface, log);
-  made += repairing::fill_holes(surface, max_hole, log);
+  made += repairing::drop_superfluous(surface, options.max_fin, log);
+  made += repairing::fill_holes(surface, options.max_hole, log);
   return made;
 }
 
@@ -50,7 +55,7 @@ RepairedMesh repair_mesh(const Mesh& mesh, const RepairOptions& options) {
   std::size_t passes = 0;
   bool converged = false;
   while (!converged && passes < k_most_passes) {
-    converged = run_steps(surface, tolerance, options.max_hole, log) == 0;
+    converged = run_steps(surface, tolerance, options, log) == 0;
     ++passes;
   }
   return {.mesh = Mesh::build(std::move(surface.vertices), std::move(surface.triangles), mesh.name()),

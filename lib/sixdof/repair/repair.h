@@ -19,7 +19,8 @@
 ///    neighbour at their longest edge (cleanup.h);
 /// 3. border edges are split at the border vertices that lie on them within the tolerance (t_junctions.h);
 /// 4. triangles are turned to agree with their neighbours, and shells to face outwards (orient.h);
-/// 5. holes of few edges are filled (holes.h).
+/// 5. fins, inner walls and stray triangles go where the rest is closed without them (superfluous.h);
+/// 6. holes of few edges are filled (holes.h).
 /// A closed, oriented mesh without duplicate and collinear triangles stays as it is, bit by bit. Self-intersections and
 /// nested shells stay, see oracle/mesh_check.h.
 namespace sixdof {
@@ -28,12 +29,16 @@ struct RepairOptions {
   static constexpr double k_default_weld = 1e-6;
   static constexpr std::size_t k_default_max_hole = 32;
   static constexpr std::size_t k_largest_max_hole = 512;
+  /// Above a stray facet of a cube's edge (6 %), below what someone may have modelled as a sheet.
+  static constexpr double k_default_max_fin = 0.1;
 
   /// Tolerance of welding and of vertices on edges, relative to the diagonal of the mesh's box. The default is above
   /// the rounding of coordinates to float. 0: within rounding.
   double weld = k_default_weld;
   /// Edges of the largest hole that is filled; 0: none. Time grows with its third power.
   std::size_t max_hole = k_default_max_hole;
+  /// Largest fin or stray piece that is dropped, relative to the area of the closed surface beside it.
+  double max_fin = k_default_max_fin;
 };
 
 enum class RepairKind {
@@ -43,8 +48,11 @@ enum class RepairKind {
   split_edges,           ///< By vertices that lay on them.
   flipped_triangles,
   filled_holes,
+  fins,             ///< Triangles that hang on a closed surface and enclose nothing; dropped, as the next two.
+  inner_walls,      ///< Triangles inside of the outline of what they hang on.
+  stray_triangles,  ///< Triangles beside closed surfaces.
 };
-inline constexpr std::size_t k_repair_kinds = 6;
+inline constexpr std::size_t k_repair_kinds = 9;
 
 /// Repairs of one kind.
 struct RepairsOfKind {
@@ -77,8 +85,8 @@ struct RepairedMesh {
   bool converged = false;
 };
 
-/// @throws BadArgument if `weld` is not in [0, 0.1] or `max_hole` is above k_largest_max_hole; BadMesh if no triangle
-/// is left.
+/// @throws BadArgument if `weld` is not in [0, 0.1], `max_hole` above k_largest_max_hole or `max_fin` not in [0, 1];
+/// BadMesh if no triangle is left.
 RepairedMesh repair_mesh(const Mesh& mesh, const RepairOptions& options = {});
 
 }  // namespace sixdof
