@@ -14,6 +14,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/process/remote_algorithm.h>
+#include <sixdof/query/ask.h>
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
 #include "bench/common/pair_warnings.h"
@@ -86,9 +87,11 @@ void ask_one(Query& query, const char* kind, bool asked, Outcome<T> (Query::*que
   const std::int64_t took = remote == nullptr ? round_trip : std::llround(remote->last_ns());
   answers.times_ns[kind] = took;
   answers.query_ns += took;
-  if (outcome.ok() || answers.status != Status::ok) return;
-  answers.status = outcome.status;
-  answers.diagnosis = query.diagnosis();
+  examine(query, outcome, [&](const std::string& words) {
+    if (answers.status != Status::ok) return;
+    answers.status = outcome.status;
+    answers.diagnosis = words;
+  });
 }
 
 Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Settings& settings, const Pose& X_AB) {

@@ -96,14 +96,39 @@ TEST(ExactAlgorithm, RefusesPosesThatAreNotRigid) {
   const auto query = exact->prepare(mesh, mesh, exact->settings());
   Pose pose;
   pose.t.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(query->distance(pose).status, Status::failed);
-  EXPECT_EQ(query->collide(pose).status, Status::failed);
+  EXPECT_EQ(query->distance(pose).status, Status::non_finite);
+  EXPECT_EQ(query->collide(pose).status, Status::non_finite);
   EXPECT_FALSE(query->diagnosis().empty());
   pose = Pose();
   pose.R *= 1.001;
   EXPECT_EQ(query->distance(pose).status, Status::failed);
   pose.R = -Eigen::Matrix3d::Identity();
   EXPECT_EQ(query->distance(pose).status, Status::failed);
+}
+
+TEST(ExactAlgorithm, AnswersAtAnySeparationThatADoubleHolds) {
+  const Mesh mesh = shapes::bumpy_sphere(3, 0.2);
+  const auto exact = make_exact_algorithm();
+  Settings threads = exact->settings();
+  threads.set("threads", "2");
+  for (const Settings& settings : {exact->settings(), threads}) {
+    const auto query = exact->prepare(mesh, mesh, settings);
+    for (const double far : {1e14, 1e155, 1e308}) {
+      const Pose pose{Eigen::Matrix3d::Identity(), Vector3d(far, 0.3 * far, -0.2 * far)};
+      const Outcome<Separation> separation = query->distance(pose);
+      ASSERT_TRUE(separation.ok());
+      EXPECT_NEAR(separation.value.distance / far, std::sqrt(1.13), 1e-13);
+      EXPECT_FALSE(query->collide(pose).value);
+      ASSERT_TRUE(query->respond(pose).ok());
+      EXPECT_EQ(query->respond(pose).value.volume, 0.0);
+      EXPECT_EQ(query->respond(pose).value.force, Vector3d::Zero());
+    }
+    const Pose beyond{Eigen::Matrix3d::Identity(), Vector3d(1.7e308, 1.7e308, 0.0)};
+    EXPECT_EQ(query->distance(beyond).status, Status::non_finite);
+    EXPECT_NE(query->diagnosis(), "");
+    const Outcome<bool> meets = query->collide(beyond);
+    EXPECT_TRUE(meets.ok() && !meets.value);
+  }
 }
 
 TEST(ExactAlgorithm, ThreadsChangeNoResponse) {

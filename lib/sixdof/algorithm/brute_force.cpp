@@ -23,7 +23,7 @@ class BruteForceQuery final : public Query {
   }
 
   Outcome<Separation> distance(const Pose& X_AB) override {
-    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
+    if (!is_finite(X_AB)) return fail(Status::non_finite, "the pose is not finite");
     for (std::size_t i = 0; i < vertices_b_A_.size(); ++i) vertices_b_A_[i] = X_AB * b_.vertices()[i];
     Separation best{.distance = std::numeric_limits<double>::infinity(), .has_witnesses = true};
     for (const Triangle& t : b_.triangles()) {

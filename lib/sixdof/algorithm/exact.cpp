@@ -1,5 +1,6 @@
 #include <sixdof/algorithm/core_algorithms.h>
 
+#include <cmath>
 #include <optional>
 
 #include <sixdof/oracle/distance.h>
@@ -36,7 +37,11 @@ class ExactQuery final : public Query {
 
   Outcome<Separation> distance(const Pose& X_AB) override {
     if (const Status status = check(X_AB); status != Status::ok) return status;
-    return distance_query_.distance(X_AB, warm_start_);
+    const Separation separation = distance_query_.distance(X_AB, warm_start_);
+    if (!std::isfinite(separation.distance)) {
+      return fail(Status::non_finite, "the distance is larger than the largest double");
+    }
+    return separation;
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {
@@ -60,7 +65,7 @@ class ExactQuery final : public Query {
 
  private:
   Status check(const Pose& X_AB) {
-    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
+    if (!is_finite(X_AB)) return fail(Status::non_finite, "the pose is not finite");
     if (!(X_AB.R.transpose() * X_AB.R).isIdentity(k_rotation_tolerance) || X_AB.R.determinant() < 0.0) {
       return fail(Status::failed, "the pose's matrix is not a rotation");
     }

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include <sixdof/geometry/sides.h>
+#include <sixdof/oracle/far_pair.h>
 #include <sixdof/oracle/winding.h>
 
 namespace sixdof {
@@ -32,16 +33,13 @@ std::vector<Vector3d> find_piece_vertices(const Mesh& mesh) {
   return vertices;
 }
 
-/// How DistanceQuery transforms the corners of B.
-Vector3d transform_point_of_b(const Pose& X_AB, const Vector3d& p) { return X_AB * p; }
-
 /// Whether the boxes around the two meshes are certainly apart, by the axes of both.
 bool boxes_apart(const detail::DistanceBody& a, const detail::DistanceBody& b, const Pose& X_AB) {
   const Vector3d half_a = 0.5 * a.box.sizes();
   const Vector3d half_b = 0.5 * b.box.sizes();
   const Vector3d between = X_AB * b.box.center() - a.box.center();
   const double slack = 1e-9 * (a.tree.radius() + b.tree.radius()) +
-                       1e-14 * (a.box.center().cwiseAbs() + b.box.center().cwiseAbs() + X_AB.t.cwiseAbs()).sum();
+                       (1e-14 * (a.box.center().cwiseAbs() + b.box.center().cwiseAbs() + X_AB.t.cwiseAbs())).sum();
   const Eigen::Matrix3d abs_R = X_AB.R.cwiseAbs();
   return (between.cwiseAbs() - half_a - abs_R * half_b).maxCoeff() > slack ||
          ((X_AB.R.transpose() * between).cwiseAbs() - half_b - abs_R.transpose() * half_a).maxCoeff() > slack;
@@ -73,6 +71,8 @@ void DistanceQuery::prepare(const Pose& X_AB, bool warm_start) {
   search_.X_AB = X_AB;
   search_.ties = detail::TieWindow::of(search_.a, search_.b, X_AB);
   search_.found = false;
+  search_.of_bodies = false;
+  search_.found_inside = false;
   search_.measured.clear();
   search_.counts = {};
   if (!warm_start) {
@@ -87,9 +87,13 @@ Separation DistanceQuery::distance(const Pose& X_AB, bool warm_start) {
   detail::DistanceSearch& s = search_;
   s.best = std::numeric_limits<double>::infinity();
   s.closest.reset();
-  if (closest_pair_) detail::try_update(s, *closest_pair_);
-  if (s.best != 0.0) detail::seed_search(s);
-  if (s.best != 0.0) detail::find_pair(s, false);
+  if (detail::are_far(s.a, s.b, X_AB)) {
+    detail::take_far_pair(s);
+  } else {
+    if (closest_pair_) detail::try_update(s, *closest_pair_);
+    if (s.best != 0.0) detail::seed_search(s);
+    if (s.best != 0.0) detail::find_pair(s, false);
+  }
   Separation result;
   const ClosestPoints& closest = detail::points_of(s);
   result.has_witnesses = !std::isnan(closest.distance);  // NaN: coordinates that overflow
@@ -111,19 +115,21 @@ bool DistanceQuery::collide(const Pose& X_AB, bool warm_start) {
   if (boxes_apart(search_.a, search_.b, X_AB)) return false;
   prepare(X_AB, warm_start);
   if (intersecting_pair_ && detail::intersects(search_, *intersecting_pair_)) return true;
+  const std::vector<Vector3d>& of_a = search_.a.piece_vertices;
+  const std::vector<Vector3d>& of_b = search_.b.piece_vertices;
+  search_.of_bodies = !of_a.empty() && !of_b.empty();
   detail::find_pair(search_, true);
+  if (search_.found_inside) return true;
   if (search_.found) {
     intersecting_pair_ = search_.pair;
     return true;
   }
-  const std::vector<Vector3d>& of_a = search_.a.piece_vertices;
-  const std::vector<Vector3d>& of_b = search_.b.piece_vertices;
-  if (of_a.empty() || of_b.empty()) return false;
+  if (!search_.of_bodies) return false;
   for (const Vector3d& p : of_b) {
-    if (detail::winding_of_a(search_.a.tree, X_AB * p, triangles_) > 0) return true;
+    if (detail::winding_of_a(search_.a.tree, detail::transform_point_of_b(X_AB, p), search_.triangles) > 0) return true;
   }
   for (const Vector3d& p : of_a) {
-    if (detail::winding_of_b(search_.b.tree, X_AB, transform_point_of_b, p, triangles_) > 0) return true;
+    if (detail::winding_of_b(search_.b.tree, X_AB, detail::transform_point_of_b, p, search_.triangles) > 0) return true;
   }
   return false;
 }

@@ -84,7 +84,6 @@ class DistanceQuery {
   detail::DistanceSearch search_;
   std::optional<TrianglePair> closest_pair_;       // of the last distance
   std::optional<TrianglePair> intersecting_pair_;  // of the last intersection
-  std::vector<std::uint32_t> triangles_;           // scratch
 };
 
 }  // namespace sixdof

@@ -11,6 +11,7 @@
 
 #include <sixdof/oracle/distance_ties.h>
 #include <sixdof/oracle/triangle_distances.h>
+#include <sixdof/oracle/winding.h>
 #include <sixdof/proximity/sorted_stack.h>
 
 #undef HWY_TARGET_INCLUDE
@@ -64,6 +65,11 @@ constexpr float k_unlike = 8.0f;
 constexpr std::uint64_t k_patience_with_leaves = 4096;
 /// After as many exact distances of triangles their gap along the normals is asked first. Most searches need fewer.
 constexpr std::uint64_t k_patience_with_triangles = 256;
+/// After so many pairs of leaves and of triangles, a search for an intersection asks whether a corner lies inside the
+/// other body, and again whenever it has met half as many more. Between surfaces that nearly coincide triangles
+/// intersect along few curves, which the search may meet late, but about half of the corners are inside. Most searches
+/// meet fewer pairs.
+constexpr std::uint64_t k_patience_with_corners = 128;
 /// So many pairs of leaves are early in a search.
 constexpr std::uint64_t k_early = 16;
 /// Axes across two boxes, and across two triangles, which are measured exactly otherwise.
@@ -221,6 +227,7 @@ class DistanceTraversal final : private CloseVisitor {
 
   /// Tests pairs of triangles exactly, up to TriangleDistances::k_most. Returns true if one intersects.
   bool measure(std::span<const TrianglePair> pairs) {
+    if (find_corner_inside(pairs.front(), pairs.size())) return true;
     std::array<TrianglePair, TriangleDistances::k_most> left;
     std::size_t count = 0;
     for (const TrianglePair pair : pairs) {
@@ -254,6 +261,16 @@ class DistanceTraversal final : private CloseVisitor {
     return closer;
   }
 
+  /// Asks now and then whether the bodies meet at a corner of a pair of triangles.
+  /// @param count of pairs met since the last call
+  HWY_INLINE bool find_corner_inside(TrianglePair pair, std::size_t count) {
+    if (!search_.of_bodies) return false;
+    near_pairs_ += count;
+    if (near_pairs_ < next_corner_) return false;
+    next_corner_ = near_pairs_ + near_pairs_ / 2;
+    return search_.found_inside = has_corner_inside(search_, pair, corners_asked_++);
+  }
+
   bool test_intersections(std::span<const TrianglePair> pairs) {
     for (const TrianglePair pair : pairs) {
       if (!intersects(search_, pair)) continue;
@@ -268,6 +285,7 @@ class DistanceTraversal final : private CloseVisitor {
   bool measure_leaves(const NodePair& leaves) {
     const Tree::Leaf& leaf_a = leaf_of(tree_a_, leaves.a);
     const Tree::Leaf& leaf_b = leaf_of(tree_b_, leaves.b);
+    if (find_corner_inside({leaf_a.child.first(), leaf_b.child.first()}, 1)) return true;
     LeafPair pairs;
     if (!bound_pairs(leaf_a, leaf_b, pairs)) return false;
     // Pairs that may intersect are measured now, the others last: most of them are pruned by then. Where an exact best
@@ -451,6 +469,8 @@ class DistanceTraversal final : private CloseVisitor {
   CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;
   std::uint64_t thick_pairs_ = 0;
   std::uint64_t doubtful_pairs_ = 0;
+  std::uint64_t near_pairs_ = 0, next_corner_ = k_patience_with_corners;
+  std::size_t corners_asked_ = 0;
   HWY_ALIGN float difference_[3][k_pairs];                   // of points of the triangles that bound_pairs() left
   float shortest_ = std::numeric_limits<float>::infinity();  // of the differences so far
   float best_ = std::numeric_limits<float>::infinity();      // search_.best, or less, + search_.ties.width, rounded up
@@ -467,9 +487,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sixdof::detail {
 
+Eigen::Vector3d transform_point_of_b(const Pose& X_AB, const Eigen::Vector3d& p) { return X_AB * p; }
+
 TriangleCorners corners_of_b(const DistanceSearch& search, std::uint32_t triangle) {
   const Tree::Corners& corners = search.b.tree.corners()[triangle];
-  return {search.X_AB * corners[0], search.X_AB * corners[1], search.X_AB * corners[2]};
+  return {transform_point_of_b(search.X_AB, corners[0]), transform_point_of_b(search.X_AB, corners[1]),
+          transform_point_of_b(search.X_AB, corners[2])};
 }
 
 HWY_EXPORT(find_pair);
@@ -508,6 +531,28 @@ bool try_update(DistanceSearch& search, TrianglePair pair) {
   search.closest = closest;
   search.direction = closest.on_b - closest.on_a;
   return true;
+}
+
+bool has_corner_inside(DistanceSearch& search, TrianglePair pair, std::size_t turn) {
+  const DistanceBody &a = search.a, &b = search.b;
+  const auto is_in_a = [&](const Eigen::Vector3d& p) { return winding_of_a(a.tree, p, search.triangles) > 0; };
+  const auto is_in_b = [&](const Eigen::Vector3d& p) {
+    return winding_of_b(b.tree, search.X_AB, transform_point_of_b, p, search.triangles) > 0;
+  };
+  const auto is_inside = [&](TrianglePair x) {
+    const TriangleCorners of_b = corners_of_b(search, x.b);
+    const Tree::Corners& of_a = a.tree.corners()[x.a];
+    return std::any_of(of_b.begin(), of_b.end(), is_in_a) || std::any_of(of_a.begin(), of_a.end(), is_in_b);
+  };
+  if (is_inside(pair)) return true;
+  constexpr std::size_t k_seeds = 4;
+  for (std::size_t i = k_seeds * turn; i < k_seeds * (turn + 1); ++i) {
+    const auto seed = [&](const DistanceBody& body) {
+      return body.tree.leaves()[body.seeds.leaf[i % SeedCorners::k_count]].child.first();
+    };
+    if (is_inside({seed(a), seed(b)})) return true;
+  }
+  return false;
 }
 
 const ClosestPoints& points_of(DistanceSearch& search) {

@@ -99,6 +99,7 @@ struct DistanceScratch {
   std::vector<RankedPair> ranked;
   std::vector<ClosePair> close;
   std::vector<CornerVolume> corners;
+  std::vector<std::uint32_t> triangles;
 };
 
 /// Input, output and scratch of one search.
@@ -109,6 +110,8 @@ struct DistanceSearch : DistanceScratch {
   TieWindow ties;
   double best = std::numeric_limits<double>::infinity();  ///< The smallest distance found.
   bool found = false;                                     ///< `pair` is set.
+  bool of_bodies = false;     ///< Ends a search for an intersection, too, where a corner lies inside the other body.
+  bool found_inside = false;  ///< It did. The meshes are solid: so the bodies meet, whether or not the surfaces do.
   TrianglePair pair;
   std::optional<ClosestPoints> closest;                 ///< Of `pair`, if they are known: see points_of().
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< Guess of the direction from A to B at the closest points.
@@ -122,6 +125,9 @@ bool try_update(DistanceSearch& search, TrianglePair pair);
 /// @param distance triangle_triangle_distance()
 bool try_update(DistanceSearch& search, TrianglePair pair, double distance);
 
+/// How points of B are mapped to A's frame: X_AB * p, rounded.
+Eigen::Vector3d transform_point_of_b(const Pose& X_AB, const Eigen::Vector3d& p);
+
 /// Corners of one of B's triangles in A's frame.
 TriangleCorners corners_of_b(const DistanceSearch& search, std::uint32_t triangle);
 
@@ -130,6 +136,11 @@ ClosestPoints distance_of(const DistanceSearch& search, TrianglePair pair);
 double gap_of(const DistanceSearch& search, TrianglePair pair);
 bool intersects(const DistanceSearch& search, TrianglePair pair);
 Rank rank_of(const DistanceSearch& search, TrianglePair pair);
+
+/// Whether one of a few corners lies inside the other mesh, which is closed: of those of a pair of triangles, and of
+/// some that are spread over the surfaces.
+/// @param turn 0, 1, ...: takes others of the latter
+bool has_corner_inside(DistanceSearch& search, TrianglePair pair, std::size_t turn);
 
 /// The closest points of search.pair; computed if they are not known.
 const ClosestPoints& points_of(DistanceSearch& search);
@@ -142,7 +153,7 @@ void seed_search(DistanceSearch& search);
 /// Branch and bound for the closest pair of triangles whose distance is at most search.best. Of all pairs whose
 /// distance exceeds the smallest by no more than ties.width, takes the one of smallest rank, whatever the order in
 /// which pairs were met and whichever were known before. A distance of 0 ends the search, with any intersecting pair.
-/// @param only_intersection finds any intersecting pair instead: sets found and pair
+/// @param only_intersection finds any intersecting pair instead: sets found and pair, or found_inside
 void find_pair(DistanceSearch& search, bool only_intersection);
 
 }  // namespace sixdof::detail

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include <sixdof/oracle/far_pair.h>
+
 namespace sixdof {
 
 template <class Ask>
@@ -23,9 +25,13 @@ std::optional<double> NearQuery::distance(const PreparedMesh& a, const PreparedM
   return with_search(a, b, X_AB, [&](detail::DistanceSearch& s) -> std::optional<double> {
     // The answer may exceed the smallest distance by the width of ties.
     s.best = limit + s.ties.width;
-    if (hint.known()) detail::try_update(s, hint.triangles);
-    if (!s.found && std::isinf(limit)) detail::seed_search(s);
-    if (!(s.found && s.best == 0.0)) detail::find_pair(s, false);
+    if (detail::are_far(s.a, s.b, X_AB)) {
+      detail::take_far_pair(s);
+    } else {
+      if (hint.known()) detail::try_update(s, hint.triangles);
+      if (!s.found && std::isinf(limit)) detail::seed_search(s);
+      if (!(s.found && s.best == 0.0)) detail::find_pair(s, false);
+    }
     if (!s.found) return std::nullopt;
     const double distance = detail::points_of(s).distance;
     if (!(distance <= limit)) return std::nullopt;
@@ -36,6 +42,7 @@ std::optional<double> NearQuery::distance(const PreparedMesh& a, const PreparedM
 
 bool NearQuery::surfaces_meet(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, NearHint& hint) {
   return with_search(a, b, X_AB, [&](detail::DistanceSearch& s) {
+    if (detail::are_far(s.a, s.b, X_AB)) return false;
     if (hint.known() && detail::intersects(s, hint.triangles)) {
       ++s.counts.triangles;
       return true;

@@ -40,7 +40,8 @@ Eigen::AlignedBox3d common_box(const Solid& a, const Solid& b, const Pose& X_AB,
 /// Whether the bodies' boxes are certainly apart.
 bool apart(const Solid& a, const Solid& b, const Pose& X_AB) {
   constexpr double k_relative_slack = 1e-12;  // far above the rounding of transformed vertices
-  const double slack = k_relative_slack * (b.mesh().diagonal() + X_AB.t.lpNorm<1>() + b.mesh().center().lpNorm<1>());
+  const double slack = k_relative_slack * (b.mesh().diagonal() + b.mesh().center().lpNorm<1>()) +
+                       (k_relative_slack * X_AB.t).lpNorm<1>();  // the sum itself may overflow
   return common_box(a, b, X_AB, slack).isEmpty();
 }
 

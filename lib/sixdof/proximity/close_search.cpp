@@ -87,6 +87,8 @@ double CloseShape::reach(const Vector3d& n) const {
   return std::min(along_arms.cwiseAbs().sum(), in_slab);
 }
 
+CloseShape shape_in_own_axes(const Tree& tree, const CloseVolume& v) { return shape_of(volume_of(tree, v)); }
+
 CloseBounds::CloseBounds(const Tree& a, const Tree& b, const Pose& X_AB, const Vector3d& sweep)
     : a_(a), b_(b), X_AB_(X_AB), shift_(X_AB * b.center() - a.center()), sweep_(sweep) {
   // Slabs of B are rotated as if R were exactly orthogonal.
@@ -96,7 +98,7 @@ CloseBounds::CloseBounds(const Tree& a, const Tree& b, const Pose& X_AB, const V
 }
 
 CloseShape CloseBounds::shape_of_a(const CloseVolume& v) const {
-  if (!is_triangle(v)) return shape_of(volume_of(a_, v));
+  if (!is_triangle(v)) return shape_in_own_axes(a_, v);
   const Tree::Corners& c = a_.corners()[v.triangle];
   return shape_of(TriangleCorners{c[0] - a_.center(), c[1] - a_.center(), c[2] - a_.center()});
 }
@@ -108,7 +110,7 @@ CloseShape CloseBounds::shape_of_b(const CloseVolume& v) const {
     for (std::size_t i = 0; i < 3; ++i) corners[i] = X_AB_.R * (c[i] - b_.center()) + shift_;
     return shape_of(corners);
   }
-  CloseShape shape = shape_of(volume_of(b_, v));
+  CloseShape shape = shape_in_own_axes(b_, v);
   shape.center = X_AB_.R * shape.center + shift_;
   shape.arms = X_AB_.R * shape.arms;
   shape.normal = X_AB_.R * shape.normal;

@@ -52,6 +52,9 @@ struct CloseShape {
   double reach(const Eigen::Vector3d& n) const;
 };
 
+/// A whole node or leaf in the axes of its own mesh, relative to the centre of its tree.
+CloseShape shape_in_own_axes(const Tree& tree, const CloseVolume& v);
+
 /// Lower bounds on distances between volumes of two trees at one pose, or at all that a translation of B passes.
 class CloseBounds {
  public:
