@@ -1,5 +1,5 @@
 // Damaged files: cut off anywhere, or with bytes changed. load_mesh() returns a valid mesh or throws a BadFile. Assimp
-// is tested with glTF and 3DS only: damaged files of other formats may make it crash.
+// is tested with 3DS here; what makes it crash is in separate_import_test.cpp.
 #include <sys/resource.h>
 
 #include <optional>

@@ -284,7 +284,7 @@ Surface read_surface(const Named& named, const LoadOptions& options) {
   if (frame == FileFrame::y_up && extension != ".dae" && extension != ".zae") {
     throw BadFile(file.string(), "#y-up is for COLLADA, the only format whose axes are known and may be others");
   }
-  const auto source = [&, path = file] {
+  const auto source = [&path = file, &options] {
     Source bytes = read_source(path);
     bytes.options = options;
     return bytes;
@@ -293,13 +293,13 @@ Surface read_surface(const Named& named, const LoadOptions& options) {
   if (extension == ".off") return read_off(source());
   if (extension == ".obj") return read_obj(source());
   if (extension == ".stl") return read_stl(source());
-  if (extension == ".gltf" || extension == ".glb") return read_gltf(read_source(file));
+  if (extension == ".gltf" || extension == ".glb") return read_gltf(source());
   if (extension.empty()) {
     throw BadFile(file.string(),
                   "has no extension, which would say its mesh format (.ply, .obj, .stl, .off, .glb and others)");
   }
   if (!assimp_reads(extension)) throw BadFile(file.string(), "'" + visible_text(extension) + "' is no mesh format");
-  return read_by_assimp_separately(read_source(file), frame);
+  return read_by_assimp_separately(source(), frame);
 }
 
 /// No triangle uses a vertex that is not finite, so Mesh::build drops it, wherever it is.

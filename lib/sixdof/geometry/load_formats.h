@@ -189,13 +189,6 @@ class TextLines {
   std::vector<std::string_view> words_;
 };
 
-/// What is done with the unit and the axes that a file states (load.h).
-enum class FileFrame {
-  metres,
-  as_stored,
-  y_up
-};
-
 /// The values of a text's elements (vertices, faces), which white space separates. Line breaks do not count, but tell
 /// where a value is missing or too many. The first line of a kind of elements says how they are laid out:
 /// - one element, or the beginning of one: each begins on a line and ends at a line's end, perhaps a later one;
@@ -261,6 +254,13 @@ class TextValues {
   std::size_t first_line_ = 0;                 // of the kind
   bool from_middle_ = false;                   // the element begins in the middle of a line
   bool divided_ = false;                       // it goes on on another
+};
+
+/// What is done with the unit and the axes that a file states (load.h).
+enum class FileFrame {
+  metres,
+  as_stored,
+  y_up
 };
 
 // These formats are not left to assimp (5.2): it holds coordinates in single precision only, does not return from a PLY

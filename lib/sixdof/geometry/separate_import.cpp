@@ -36,7 +36,7 @@ void put(SeparateOutput& output, const std::vector<T>& values) {
 void put(SeparateOutput& output, const Surface& surface) {
   put(output, surface.vertices);
   put(output, surface.triangles);
-  for (const FileRepairs& of_kind : surface.repairs.forgiven.kinds) put(output, of_kind);
+  for (const FileRepairs& repairs : surface.repairs.forgiven.kinds) put(output, repairs);
   put(output, surface.repairs.notes.size());
   for (const std::string& note : surface.repairs.notes) put(output, note);
 }
@@ -70,7 +70,7 @@ void take(SeparateInput& input, FileRepairs& repairs) {
 void take(SeparateInput& input, Surface& surface) {
   take(input, surface.vertices);
   take(input, surface.triangles);
-  for (FileRepairs& of_kind : surface.repairs.forgiven.kinds) take(input, of_kind);
+  for (FileRepairs& repairs : surface.repairs.forgiven.kinds) take(input, repairs);
   for (std::size_t left = take_number(input); left > 0; --left) take(input, surface.repairs.notes.emplace_back());
 }
 
