@@ -2,6 +2,7 @@
 
 import collections
 import csv
+import io
 import math
 import pathlib
 import statistics
@@ -196,12 +197,13 @@ def write_figure(file, cells):
     """The figure's data: time against distance and volume, one line per partner, query, algorithm and bucket."""
     fields = ["partner", "query", "algorithm", "bucket", "percent", "objects", "mean_us", "median_us", "p10_us",
               "p90_us", "least_us", "greatest_us", "greatest_object"]
-    with open(file, "w", newline="", encoding="utf-8") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(fields)
-        for one in cells:
-            row = {**one, "bucket": one["bucket"]["kind"], "percent": one["bucket"]["percent"]}
-            writer.writerow([f"{row[field]:.5g}" if isinstance(row[field], float) else row[field] for field in fields])
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(fields)
+    for one in cells:
+        row = {**one, "bucket": one["bucket"]["kind"], "percent": one["bucket"]["percent"]}
+        writer.writerow([f"{row[field]:.5g}" if isinstance(row[field], float) else row[field] for field in fields])
+    runs.write_whole(file, out.getvalue())
 
 
 def write_report(folder: pathlib.Path):

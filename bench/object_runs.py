@@ -23,8 +23,12 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import sys
 import threading
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fixtures"))
+from whole_file import write_whole  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 QUERIES = ["distance", "collide", "respond"]
@@ -293,16 +297,7 @@ class Runner:
 
 def write(file, document, scratch=None):
     """Writes JSON whole or not at all. @param scratch where it stands until it is whole, on the same file system"""
-    descriptor, temporary = tempfile.mkstemp(dir=scratch or file.parent, prefix=f".{file.name}.")
-    try:
-        with os.fdopen(descriptor, "w", encoding="utf-8") as out:
-            json.dump(document, out)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, file)
-    except BaseException:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(temporary)
-        raise
+    write_whole(file, json.dumps(document), scratch)
 
 
 def bind_to(folder, choice):

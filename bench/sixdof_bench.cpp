@@ -11,6 +11,7 @@
 #include <sixdof/configuration/set_catalogue.h>
 #include "bench/common/all_algorithms.h"
 #include "bench/common/interrupt.h"
+#include "bench/common/program_end.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/serve_algorithm.h"
 #include "bench/harness/options.h"
@@ -80,7 +81,12 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   if (const auto code = sixdof::serve_if_asked(argc, argv)) return *code;
-  sixdof::bench::Options options;
-  if (const int code = sixdof::bench::parse_options(argc, argv, options); code >= 0) return code;
-  return sixdof::run_guarded("sixdof-bench", [&] { sixdof::bench::run(options); });
+  int usage = 0;
+  const int code = sixdof::run_guarded("sixdof-bench", [&] {
+    sixdof::bench::Options options;
+    usage = sixdof::bench::parse_options(argc, argv, options);
+    if (usage < 0) sixdof::bench::run(options);
+  });
+  sixdof::print_cache_refusal("sixdof-bench");
+  return code != 0 ? code : std::max(usage, 0);
 }

@@ -14,6 +14,7 @@
 #include "bench/cli/scene.h"
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
+#include "bench/common/program_end.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/serve_algorithm.h"
 #include "bench/common/unknown_word.h"
@@ -97,9 +98,12 @@ int run(int argc, const char* const* argv) {
   add_examples(app, "sixdof models list", k_first_query);
   const InterruptGuard interruptible("sixdof");
   try {
-    return run_guarded("sixdof", [&] { app.parse(argc, argv); });
+    const int code = run_guarded("sixdof", [&] { app.parse(argc, argv); });
+    print_cache_refusal("sixdof");
+    return code;
   } catch (const CLI::Success& e) {
-    return app.exit(e);  // help or version
+    const int code = app.exit(e);  // help or version
+    return code != 0 ? code : end_output("sixdof");
   } catch (const CLI::ParseError& e) {
     if (const auto unknown = find_unknown_word(app)) {
       print_message(full_name(unknown->command), explain(*unknown));

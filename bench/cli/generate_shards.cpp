@@ -159,7 +159,7 @@ std::vector<ShardNumber> missing_shards(const GenerationWork& work, const std::f
 }  // namespace
 
 void generate_set(const GenerationWork& work, const std::filesystem::path& output) {
-  const AtomicFile writable(output);  // Fails before the work begins if the folder is missing or not writable.
+  check_writable(output);
   const auto start = Clock::now();
   constexpr ShardNumber k_whole{};
   Generated values;
@@ -185,7 +185,7 @@ void generate_set(const GenerationWork& work, const std::filesystem::path& outpu
 void generate_shards(const GenerationWork& work, const std::filesystem::path& folder, ShardNumber shards, bool resume) {
   check_shard_number({.number = shards.number == 0 ? 1 : shards.number, .count = shards.count}, work.set, work.job);
   make_folder(folder);
-  const AtomicFile writable(folder / shard_file_name({.number = 1, .count = shards.count}));
+  check_writable(folder / shard_file_name({.number = 1, .count = shards.count}));
   const auto start = Clock::now();
   const std::vector<ShardNumber> missing = missing_shards(work, folder, shards, resume);
   GenerationProgress progress(work, missing);

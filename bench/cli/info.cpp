@@ -222,7 +222,10 @@ void add_info_command(CLI::App& app) {
   command->callback([name, json, check] {
     if (looks_like_configuration_set(*name)) {
       if (*check) throw BadArgument(*name + ": --check is for meshes");
-      print(ConfigurationSet(*name), *json);
+      const ConfigurationSet set(*name);
+      // Summaries alone would be content with a set that lacks its values.
+      for (const BucketSummary& bucket : set.buckets()) static_cast<void>(set.read(bucket.key));
+      print(set, *json);
     } else {
       *check ? print_checked(load_model(*name), *json) : print(load_model(*name), *json);
     }

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/data_folder.h>
@@ -91,40 +90,25 @@ class NewFolder {
  public:
   /// @throws BadArgument if the name is taken, BadFile if the folder cannot be made
   explicit NewFolder(const Path& target)
-      : target_(target.has_filename() ? target : target.parent_path()),
-        unfinished_(target_.string() + fmt::format(".{}.partial", ::getpid())) {
-    refuse_existing();
-    std::error_code why;
-    std::filesystem::create_directory(unfinished_, why);
-    if (why) throw BadFile(target_.string(), "cannot be made: " + why.message());
-  }
-  ~NewFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(unfinished_, ignored);
-  }
-  NewFolder(const NewFolder&) = delete;
-  NewFolder& operator=(const NewFolder&) = delete;
+      : target_(target.has_filename() ? target : target.parent_path()), unfinished_(free(target_)) {}
 
   void write(const std::string& file, const std::string& text) const {
-    write_file_atomically(unfinished_ / file, text);
+    write_file_atomically(unfinished_.path() / file, text);
   }
 
-  void commit() const {
-    refuse_existing();
-    std::error_code why;
-    std::filesystem::rename(unfinished_, target_, why);
-    if (why) throw BadFile(target_.string(), "cannot be made: " + why.message());
-  }
+  void commit() { unfinished_.commit(free(target_)); }
 
  private:
-  void refuse_existing() const {
+  static const Path& free(const Path& target) {
     std::error_code ignored;
-    if (std::filesystem::exists(std::filesystem::symlink_status(target_, ignored))) {
-      throw BadArgument(fmt::format("{}: exists already, and is not overwritten", target_.string()));
+    if (std::filesystem::exists(std::filesystem::symlink_status(target, ignored))) {
+      throw BadArgument(fmt::format("{}: exists already, and is not overwritten", target.string()));
     }
+    return target;
   }
 
-  Path target_, unfinished_;
+  Path target_;
+  PrivateFolder unfinished_;
 };
 
 void write_project(const Arguments& arguments) {
@@ -134,7 +118,7 @@ void write_project(const Arguments& arguments) {
   const std::string stem = file_stem(name);
   const Words words{{"NAME", name}, {"FILE", stem}, {"CLASS", class_name(name)}, {"SIXDOF", sixdof_root().string()}};
   const Path output = arguments.output.empty() ? name : arguments.output;
-  const NewFolder folder(output);
+  NewFolder folder(output);
   folder.write("CMakeLists.txt", fill_in(templates / "CMakeLists.txt.in", words));
   folder.write("README.md", fill_in(templates / "README.md.in", words));
   folder.write(stem + ".cpp", fill_in(templates / "algorithm.cpp.in", words));

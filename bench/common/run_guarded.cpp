@@ -1,8 +1,6 @@
 #include "bench/common/run_guarded.h"
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
@@ -12,6 +10,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/visible_text.h>
+#include "bench/common/program_end.h"
 
 namespace sixdof {
 
@@ -48,10 +47,7 @@ int run_guarded(std::string_view program, const std::function<void()>& work) {
   } catch (...) {
     return report("an exception of unknown type was thrown", k_exit_error);
   }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    return report(fmt::format("standard output: {}", std::strerror(errno)), k_exit_error);
-  }
-  return 0;
+  return end_output(program);
 }
 
 }  // namespace sixdof

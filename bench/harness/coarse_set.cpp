@@ -1,9 +1,9 @@
 #include "bench/harness/coarse_set.h"
 
-#include <unistd.h>
-
+#include <cerrno>
 #include <chrono>
-#include <exception>
+#include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <sixdof/base/atomic_file.h>
 #include <sixdof/base/cache.h>
 #include <sixdof/base/error.h>
 #include <sixdof/generation/distance_generator.h>
@@ -47,20 +46,19 @@ std::string cache_key(const DistanceGenerator& generator, const Mesh& a, const M
                      fmt::join(k_distances, ","), k_distance_grid, fmt::join(k_volumes, ","), volume_grid(a, b));
 }
 
-/// Where the set is kept; empty where the cache is off or cannot be written.
-fs::path file_in_cache(const std::string& key) {
-  fs::path file = cache_file("coarse-set", key);
-  if (file.empty()) return file;
-  try {
-    fs::create_directories(file.parent_path());
-    const AtomicFile writable(file);
-  } catch (const std::exception&) {
-    return {};
+/// A new folder that nobody else can read or write.
+fs::path private_folder() {
+  std::string name = (fs::temp_directory_path() / "sixdof-coarse-set-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) {
+    throw BadFile(name, fmt::format("cannot be made: {}", std::strerror(errno)));
   }
-  return file;
+  return name;
 }
 
-fs::path temporary_file() { return fs::temp_directory_path() / fmt::format("sixdof-coarse-set-{}.h5", ::getpid()); }
+void remove_folder_of(const fs::path& file) {
+  std::error_code ignored;
+  fs::remove_all(file.parent_path(), ignored);
+}
 
 /// Whether the file is the whole set, with every value undamaged.
 bool is_whole(const fs::path& file, const Mesh& a, const Mesh& b) {
@@ -127,24 +125,28 @@ CoarseSet::CoarseSet(const Mesh& a, const MeshIdentity& a_identity, const Mesh& 
   SetDescription description{
       .generator_version = SIXDOF_VERSION, .a = a_identity, .b = b_identity, .grid = make_grid(k_distance_grid)};
   if (has_volumes(a, b, program)) description.volume_grid = make_grid(volume_grid(a, b));
-  file_ = file_in_cache(cache_key(*generator, a, b));
+  file_ = writable_cache_file("coarse-set", cache_key(*generator, a, b));
   const std::string pair = fmt::format("coarse set of {} with {}", a.name(), b.name());
   if (is_whole(file_, a, b)) {
     print_message(program, fmt::format("{}: {}", pair, file_.string()));
     return;
   }
   temporary_ = file_.empty();
-  if (temporary_) file_ = temporary_file();
+  if (temporary_) file_ = private_folder() / "set.h5";
   const auto start = std::chrono::steady_clock::now();
-  make(file_, *generator, a, b, description, program);
+  try {
+    make(file_, *generator, a, b, description, program);
+  } catch (...) {
+    if (temporary_) remove_folder_of(file_);
+    throw;
+  }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   print_message(
       program, fmt::format("{} made in {:.1f} s{}", pair, seconds, temporary_ ? std::string() : ": " + file_.string()));
 }
 
 CoarseSet::~CoarseSet() {
-  std::error_code ignored;
-  if (temporary_) fs::remove(file_, ignored);
+  if (temporary_) remove_folder_of(file_);
 }
 
 }  // namespace sixdof::bench

@@ -2,18 +2,21 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/hash.h>
 #include "bench/common/json_text.h"
 
 namespace sixdof::bench {
@@ -23,24 +26,53 @@ namespace {
   throw BadFile(file.string(), std::string("cannot be written: ") + std::strerror(failure));
 }
 
-/// @return errno, 0 on success
-int write_all(int descriptor, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(descriptor, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return written < 0 ? errno : ENOSPC;
-    text.remove_prefix(static_cast<std::size_t>(written));
+std::string all_of(int descriptor, const std::filesystem::path& file) {
+  std::string text;
+  std::array<char, 65536> block{};
+  for (;;) {
+    const ssize_t count = ::read(descriptor, block.data(), block.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw BadFile(file.string(), std::string("cannot be read: ") + std::strerror(errno));
+    if (count == 0) return text;
+    text.append(block.data(), static_cast<std::size_t>(count));
   }
-  return 0;
+}
+
+/// Ends every line: `,"checksum":"`, 32 digits and `"}`.
+constexpr std::string_view k_checksum_begin = ",\"checksum\":\"";
+constexpr std::string_view k_checksum_end = "\"}";
+constexpr std::size_t k_checksum_digits = 32;
+
+/// Of a line's text, as far as the checksum, and of the line before: so a line that was taken out or moved is found.
+std::string checksum_of(std::string_view text, std::string_view before) {
+  ContentHash hash;
+  hash.add_values(std::span(before));
+  hash.add_values(std::span(text));
+  return hash.hex();
+}
+
+/// A line in two: its text without the checksum, and the checksum, empty where it has none.
+std::pair<std::string_view, std::string_view> split(std::string_view line) {
+  constexpr std::size_t k_tail = k_checksum_begin.size() + k_checksum_digits + k_checksum_end.size();
+  if (line.size() < k_tail) return {line, {}};
+  const std::string_view tail = line.substr(line.size() - k_tail);
+  if (!tail.starts_with(k_checksum_begin) || !tail.ends_with(k_checksum_end)) return {line, {}};
+  return {line.substr(0, line.size() - k_tail), tail.substr(k_checksum_begin.size(), k_checksum_digits)};
 }
 
 }  // namespace
 
 ResultJournal::ResultJournal(std::filesystem::path file) : file_(std::move(file)) {
   constexpr mode_t k_mode = 0666;
-  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, k_mode);
+  // A link may have been put there by another user, to have the file that it leads to overwritten.
+  descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, k_mode);
+  if (descriptor_ < 0 && errno == ELOOP) throw BadFile(file_.string(), "is a link, which is not followed");
   if (descriptor_ < 0) throw_not_writable(file_, errno);
   try {
+    struct stat state = {};
+    if (::fstat(descriptor_, &state) != 0) throw_not_writable(file_, errno);
+    if (!S_ISREG(state.st_mode)) throw BadFile(file_.string(), "is not a regular file");
+    if (state.st_nlink > 1) throw BadFile(file_.string(), "has other names (hard links), so it is not written");
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) throw BadFile(file_.string(), "is in use by another process");
     read();
   } catch (...) {
@@ -52,14 +84,24 @@ ResultJournal::ResultJournal(std::filesystem::path file) : file_(std::move(file)
 ResultJournal::~ResultJournal() { ::close(descriptor_); }
 
 void ResultJournal::read() {
-  std::ostringstream content;
-  content << std::ifstream(file_, std::ios::binary).rdbuf();
-  const std::string text = content.str();
+  const std::string text = all_of(descriptor_, file_);
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', size_)) {
+    const std::string_view line = std::string_view(text).substr(size_, end - size_);
+    const auto refuse = [&](const std::string& why) {
+      throw BadFile(file_.string(), "line " + std::to_string(lines_.size() + 1), why);
+    };
+    const auto [words, checksum] = split(line);
+    if (checksum != checksum_of(words, last_checksum_)) {
+      refuse(checksum.empty() ? "has no checksum: damaged, edited, or of an older version"
+                              : "does not have its checksum: it or the line before was damaged or edited");
+    }
+    last_checksum_ = checksum;
     try {
-      lines_.push_back(Json::parse(text.substr(size_, end - size_)));
+      Json value = Json::parse(line);
+      value.erase("checksum");
+      lines_.push_back(std::move(value));
     } catch (const Json::exception& e) {
-      throw BadFile(file_.string(), "line " + std::to_string(lines_.size() + 1), e.what());
+      refuse(e.what());
     }
     size_ = end + 1;
   }
@@ -67,7 +109,10 @@ void ResultJournal::read() {
 }
 
 void ResultJournal::append(const Json& line) {
-  const std::string text = json_text(line, -1) + "\n";
+  std::string text = json_text(line, -1);
+  text.pop_back();  // the brace
+  std::string checksum = checksum_of(text, last_checksum_);
+  text += std::string(k_checksum_begin) + checksum + std::string(k_checksum_end) + "\n";
   int failure = write_all(descriptor_, text);
   if (failure == 0 && ::fsync(descriptor_) != 0) failure = errno;
   if (failure != 0) {
@@ -76,11 +121,13 @@ void ResultJournal::append(const Json& line) {
     throw_not_writable(file_, failure);
   }
   size_ += text.size();
+  last_checksum_ = std::move(checksum);
 }
 
 void ResultJournal::clear() {
   if (::ftruncate(descriptor_, 0) != 0) throw_not_writable(file_, errno);
   lines_.clear();
+  last_checksum_.clear();
   size_ = 0;
 }
 

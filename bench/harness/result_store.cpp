@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
+#include "bench/harness/result_checksums.h"
 #include "bench/harness/result_text.h"
 #include "bench/harness/run_context.h"
 
@@ -36,7 +38,7 @@ void ResultStore::open(const std::filesystem::path& file, ResultFormat format, b
     throw BadFile(file.string(), "cannot be written: is not a regular file");
   }
   remove_stale_partials(file);
-  const AtomicFile writable(file);  // refuses a folder that is missing or not writable
+  check_writable(file);
   file_ = file;
   format_ = format;
   journal_ = std::make_unique<ResultJournal>(journal_of(file));
@@ -60,8 +62,10 @@ void ResultStore::open(const std::filesystem::path& file, ResultFormat format, b
 void ResultStore::take_over_file() {
   Json document;
   try {
-    std::ifstream in(file_);
-    document = Json::parse(in);
+    std::ostringstream text;
+    text << std::ifstream(file_, std::ios::binary).rdbuf();
+    document = Json::parse(text.view());
+    take_checksums(document, file_, text.view());
     take_over(document.at("context"), file_);
     std::vector<std::pair<std::string, Runs>> rows;
     for (Json& run : document.at("benchmarks")) {

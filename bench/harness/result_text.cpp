@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/common/json_text.h"
+#include "bench/harness/result_checksums.h"
 
 namespace sixdof::bench {
 namespace {
@@ -53,8 +54,10 @@ std::string csv(const Json& rows) {
 
 }  // namespace
 
-std::string result_text(const Json& document, ResultFormat format) {
-  return format == ResultFormat::csv ? csv(document.at("benchmarks")) : json_text(document) + "\n";
+std::string result_text(Json document, ResultFormat format) {
+  if (format == ResultFormat::csv) return csv(document.at("benchmarks"));
+  add_checksums(document);
+  return json_text(document) + "\n";
 }
 
 }  // namespace sixdof::bench

@@ -190,12 +190,38 @@ def check_headers(root, files, build):
         return [problem for problem in found if problem]
 
 
+# A statement of its own, so that nobody looks at what it returns.
+IGNORED_CALL = re.compile(r"^\s*(static_cast<void>\()?H5[A-Z][A-Za-z]*[a-z0-9_]+\(")
+ANY_CALL = re.compile(r"\bH5[A-Z]{1,2}[a-z][a-z0-9_]*\(|\bH5open\(")
+HDF5_FILES = ("lib/sixdof/base/hdf5.h", "lib/sixdof/base/hdf5.cpp", "lib/sixdof/base/hdf5_driver.h",
+              "lib/sixdof/base/hdf5_driver.cpp")
+# Where a destructor gives the handler of errors back: there is nobody left to tell.
+HDF5_EXCEPTION = "  static_cast<void>(H5Eset_auto2(H5E_DEFAULT, old_handler_, old_data_));"
+
+
+def check_hdf5(root, files):
+    """HDF5 is called in one place, and no result of it is ignored: chunks of a set are written as it is closed."""
+    problems = []
+    for file in files:
+        if file.startswith("test/"):
+            continue
+        for number, line in enumerate((root / file).read_text(errors="replace").splitlines(), 1):
+            if line.lstrip().startswith("//") or line == HDF5_EXCEPTION:
+                continue
+            if file not in HDF5_FILES and ANY_CALL.search(line):
+                problems.append(f"{file}:{number}: calls HDF5, which {HDF5_FILES[0]} is for")
+            elif IGNORED_CALL.match(line) and line.rstrip().endswith(";"):
+                problems.append(f"{file}:{number}: ignores a result of HDF5: {line.strip()}")
+    return problems
+
+
 def check(root, build=None):
     """All problems of a tree, in words."""
     rooms = read_rooms(root / "lib" / "README.md")
     files = code_files(root)
     problems, graph = check_includes(root, rooms, files)
     problems += check_rooms(rooms, files)
+    problems += check_hdf5(root, files)
     problems += find_circles(graph)
     if build:
         problems += check_headers(root, files, build)

@@ -56,6 +56,14 @@ class Architecture(unittest.TestCase):
     def test_a_tree_without_faults(self):
         self.assertEqual(self.check({}, architecture.Build([COMPILER], set())), [])
 
+    def test_hdf5_elsewhere_and_ignored(self):
+        file = "lib/sixdof/base/hdf5.cpp"
+        rooms = {"lib/README.md": README.replace("| `test/`", "| `lib/sixdof/base/` | files |\n| `test/`")}
+        self.expect({**rooms, file: "void f(long id) {\n  H5Dclose(id);\n}\n"}, f"{file}:2", "ignores", "H5Dclose")
+        self.expect({**rooms, file: "void f(long id) {\n  static_cast<void>(H5Pset_shuffle(id));\n}\n"}, "ignores")
+        self.assertEqual(self.check({**rooms, file: "void f(long id) {\n  check(H5Dclose(id));\n}\n"}), [])
+        self.expect({"lib/sixdof/lower/a.cpp": "bool f(long id) { return H5Dclose(id) < 0; }\n"}, "a.cpp:1", "calls HDF5")
+
     def test_a_room_above(self):
         self.expect({"lib/sixdof/lower/c.h": "#pragma once\n#include <sixdof/upper/d.h>\n",
                      "lib/sixdof/upper/d.h": "#pragma once\n"}, "lib/sixdof/lower/c.h:2", "lib/sixdof/upper/", "above")

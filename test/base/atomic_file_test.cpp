@@ -1,12 +1,16 @@
 #include <sixdof/base/atomic_file.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <sstream>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
@@ -93,6 +97,95 @@ TEST_F(AtomicFileTest, RemovesTheTemporaryFilesOfThisProcess) {
   }
   EXPECT_EQ(file_count(), 2u);
   EXPECT_THROW(file.commit(), BadFile);
+}
+
+TEST_F(AtomicFileTest, KeepsTheModeOfAFileThatItReplaces) {
+  const auto mode = [&](const char* name) {
+    struct stat state = {};
+    EXPECT_EQ(::stat((directory_ / name).c_str(), &state), 0);
+    return state.st_mode & 0777;
+  };
+  const mode_t mask = ::umask(027);
+  write_file_atomically(directory_ / "new", "x");
+  EXPECT_EQ(mode("new"), 0640u);
+  ASSERT_EQ(::chmod((directory_ / "new").c_str(), 0604), 0);
+  write_file_atomically(directory_ / "new", "y");
+  EXPECT_EQ(mode("new"), 0604u);
+  ::umask(mask);
+}
+
+TEST_F(AtomicFileTest, WritesThroughTheUsersOwnLinks) {
+  std::filesystem::create_directory(directory_ / "far");
+  std::filesystem::create_directory_symlink("far", directory_ / "near");
+  std::filesystem::create_symlink("near/../near/file", directory_ / "link");
+  for (const char* text : {"made", "replaced"}) {
+    write_file_atomically(directory_ / "link", text);
+    EXPECT_EQ(content(directory_ / "far" / "file"), text);
+    EXPECT_TRUE(std::filesystem::is_symlink(directory_ / "link"));
+  }
+  std::filesystem::create_symlink("round", directory_ / "round");
+  EXPECT_THROW(write_file_atomically(directory_ / "round", ""), BadFile);
+  EXPECT_THROW(write_file_atomically("/dev/null", "a device is no file to replace"), BadFile);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+/// Another user, as root can be.
+constexpr uid_t k_stranger = 65534;
+
+TEST_F(AtomicFileTest, FollowsNoLinkThatAStrangerPutIntoAFolderOfEveryone) {
+  if (::geteuid() != 0) GTEST_SKIP() << "links of another user need root";
+  const auto shared = directory_ / "shared";
+  std::filesystem::create_directory(shared);
+  std::filesystem::create_directory(directory_ / "mine");
+  write_file_atomically(directory_ / "mine" / "precious", "precious");
+  std::filesystem::create_symlink("../mine/precious", shared / "file");
+  std::filesystem::create_symlink("../mine", shared / "folder");
+  for (const char* name : {"file", "folder"}) {
+    ASSERT_EQ(::lchown((shared / name).c_str(), k_stranger, k_stranger), 0);
+  }
+  for (const mode_t mode : {0777u, 01777u}) {
+    ASSERT_EQ(::chmod(shared.c_str(), mode), 0);
+    for (const char* name : {"file", "folder/precious"}) {
+      EXPECT_THAT([&] { write_file_atomically(shared / name, "overwritten"); },
+                  ::testing::ThrowsMessage<BadFile>(::testing::HasSubstr("link of another user")));
+    }
+  }
+  EXPECT_EQ(content(directory_ / "mine" / "precious"), "precious");
+  ASSERT_EQ(::lchown((shared / "file").c_str(), 0, 0), 0);
+  write_file_atomically(shared / "file", "by its owner");
+  EXPECT_EQ(content(directory_ / "mine" / "precious"), "by its owner");
+}
+
+TEST_F(AtomicFileTest, TemporaryNamesCannotBeForetold) {
+  std::set<std::string> names;
+  constexpr std::size_t k_count = 1000;
+  for (std::size_t i = 0; i < k_count; ++i) {
+    const AtomicFile file(directory_ / "x");
+    names.insert(file.temporary_path().filename().string());
+    EXPECT_EQ(::fcntl(file.descriptor(), F_GETFD) & FD_CLOEXEC, FD_CLOEXEC);
+  }
+  EXPECT_EQ(names.size(), k_count);
+  const std::string start = ".x." + std::to_string(::getpid()) + ".";
+  std::set<char> digits;
+  for (const std::string& name : names) {
+    ASSERT_TRUE(name.starts_with(start)) << name;
+    digits.insert(name[start.size()]);  // the highest, which a counter would leave 0
+  }
+  EXPECT_EQ(digits.size(), 16u);
+}
+
+TEST_F(AtomicFileTest, APrivateFolderIsItsOwnersAloneUntilItIsWhole) {
+  {
+    const PrivateFolder given_up(directory_ / "project");
+    std::ofstream(given_up.path() / "file") << "half";
+    EXPECT_EQ(std::filesystem::status(given_up.path()).permissions(), std::filesystem::perms::owner_all);
+  }
+  EXPECT_EQ(file_count(), 0u);
+  PrivateFolder folder(directory_ / "project");
+  std::ofstream(folder.path() / "file") << "whole";
+  folder.commit(directory_ / "project");
+  EXPECT_EQ(content(directory_ / "project" / "file"), "whole");
+  EXPECT_EQ(file_count(), 1u);
 }
 
 TEST_F(AtomicFileTest, NamesTheFileThatCannotBeWritten) {

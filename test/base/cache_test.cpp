@@ -1,5 +1,8 @@
 #include <sixdof/base/cache.h>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cstdlib>
 #include <fstream>
 
@@ -92,6 +95,27 @@ TEST_F(Cache, IsOffOnRequestAndWithoutAWritableDirectory) {
   ::setenv("SIXDOF_CACHE", (directory_ / "file").c_str(), 1);
   EXPECT_FALSE(store_cached("kind", "key", entry_));
   EXPECT_FALSE(load_cached("kind", "key").has_value());
+}
+
+TEST_F(Cache, IsNotUsedWhereOthersCanWriteIt) {
+  ASSERT_TRUE(store_cached("kind", "key", entry_));
+  const fs::path folder = cache_file("kind", "key").parent_path();
+  EXPECT_EQ(fs::status(folder).permissions(), fs::perms::owner_all) << "whatever the umask is";
+  for (const mode_t mode : {0777u, 01777u, 0770u, 0702u}) {
+    ASSERT_EQ(::chmod(folder.c_str(), mode), 0);
+    EXPECT_FALSE(load_cached("kind", "key").has_value());
+    EXPECT_FALSE(store_cached("kind", "other", entry_));
+    EXPECT_THAT(cache_refusal(), ::testing::HasSubstr(folder.string() + ": is not used as cache: others can write it"));
+  }
+  ASSERT_EQ(::chmod(folder.c_str(), 0755), 0);
+  EXPECT_TRUE(load_cached("kind", "key").has_value());
+  EXPECT_FALSE(load_cached("kind", "other").has_value()) << "was not kept";
+  if (::geteuid() != 0) GTEST_SKIP() << "a folder of another user needs root";
+  constexpr uid_t k_stranger = 65534;
+  ASSERT_EQ(::chown(folder.c_str(), k_stranger, k_stranger), 0);
+  EXPECT_FALSE(load_cached("kind", "key").has_value());
+  EXPECT_FALSE(store_cached("kind", "key", entry_));
+  EXPECT_THAT(cache_refusal(), ::testing::HasSubstr("it belongs to another user (uid 65534)"));
 }
 
 TEST_F(Cache, FollowsTheUsersDirectories) {

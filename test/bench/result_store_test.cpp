@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -143,6 +145,72 @@ TEST_F(Store, RefusesRowsOfOtherMeshes) {
       ::testing::ThrowsMessage<BadArgument>(HasSubstr("mesh:ship was 00ff, now it is 11ee")));
 }
 
+TEST_F(Store, RefusesEveryRowAndContextThatWasChanged) {
+  {
+    ResultStore store(order, context);
+    store.open(file, k_json, false);
+    for (const char* row : {"a", "b", "c"}) measure(store, row, 1.25);
+    store.finish(false);
+  }
+  const Json whole = result();
+  const auto resume = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    ResultStore store(order, context);
+    store.open(file, k_json, true);
+    return names(store.document(false));
+  };
+  const auto refuses = [&](const Json& changed, const std::string& words) {
+    EXPECT_THAT([&] { resume(changed.dump(2)); },
+                ::testing::ThrowsMessage<BadFile>(::testing::AllOf(HasSubstr(file.string() + ": line "), HasSubstr(words))));
+  };
+  EXPECT_EQ(resume(whole.dump(2)), order);
+  EXPECT_EQ(resume(whole.dump()), order) << "blanks and breaks are no values";
+  Json changed = whole;
+  changed["benchmarks"][1]["real_time"] = 1.0;
+  refuses(changed, "row b does not have its checksum");
+  changed = whole;
+  changed["benchmarks"][2]["label"] = "added";
+  refuses(changed, "row c does not have its checksum");
+  changed = whole;
+  changed["context"]["commit"] = "3c4d";
+  refuses(changed, "the context does not have its checksum");
+  changed = whole;
+  changed["benchmarks"][0].erase("checksum");
+  refuses(changed, "row a has no checksum");
+  // A row of another run, whole in itself.
+  const fs::path other = folder / "other.json";
+  {
+    ResultStore store(order, {{"seed", "7"}, {"commit", "5e6f"}});
+    store.open(other, k_json, false);
+    measure(store, "a", 1.25);
+    store.finish(false);
+  }
+  std::ifstream in(other);
+  changed = whole;
+  changed["benchmarks"][0] = Json::parse(in).at("benchmarks")[0];
+  refuses(changed, "row a does not have its checksum");
+}
+
+TEST_F(Store, NamesTheLineOfARowThatWasChanged) {
+  {
+    ResultStore store(order, context);
+    store.open(file, k_json, false);
+    measure(store, "a", 1.25);
+    measure(store, "b", 7.5);
+    store.finish(false);
+  }
+  std::ostringstream content;
+  content << std::ifstream(file).rdbuf();
+  std::string text = content.str();
+  const std::size_t at = text.find("7.5");
+  text[at] = '8';
+  std::ofstream(file) << text;
+  ResultStore store(order, context);
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("checksum", at)), '\n');
+  EXPECT_THAT([&] { store.open(file, k_json, true); },
+              ::testing::ThrowsMessage<BadFile>(HasSubstr("line " + std::to_string(line) + ": ")));
+}
+
 TEST_F(Store, RefusesWhatIsNoResult) {
   for (const char* text : {"", "[]", "{\"context\": {}}", "{\"benchmarks\": []}"}) {
     std::ofstream(file) << text;
@@ -170,7 +238,7 @@ TEST_F(Store, ContinuesTheRunThatWasToReplaceAFile) {
 }
 
 TEST_F(Store, ForgetsARunThatEndedBeforeItsFirstRow) {
-  std::ofstream(journal) << "{\"context\":{\"seed\":\"8\"},\"continues\":false}\n";
+  ResultJournal(journal).append({{"context", {{"seed", "8"}}}, {"continues", false}});
   leave_rows({"a"});
   ResultStore store(order, context);
   store.open(file, k_json, true);

@@ -1,6 +1,12 @@
 #include <sixdof/base/cache.h>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cstdlib>
+#include <mutex>
+
+#include <fmt/format.h>
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
@@ -23,6 +29,35 @@ std::filesystem::path cache_directory() {
   if (const std::string xdg = variable("XDG_CACHE_HOME"); !xdg.empty()) return std::filesystem::path(xdg) / "sixdof";
   if (const std::string home = variable("HOME"); !home.empty()) return std::filesystem::path(home) / ".cache/sixdof";
   return {};
+}
+
+/// Why a folder that is there is not used; empty if it may be.
+std::string refusal_of(const std::filesystem::path& folder) {
+  struct stat state = {};
+  try {
+    if (::stat(follow_links(folder).c_str(), &state) != 0) return {};
+  } catch (const BadFile& e) {
+    return e.what();
+  }
+  const auto refuse = [&](const std::string& why) {
+    return fmt::format("{}: is not used as cache: {}", folder.string(), why);
+  };
+  if (state.st_uid != ::geteuid()) return refuse(fmt::format("it belongs to another user (uid {})", state.st_uid));
+  if ((state.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
+    return refuse(fmt::format("others can write it (mode {:04o}); chmod go-w makes it one", state.st_mode & 07777));
+  }
+  return {};
+}
+
+/// Words of the first refusal, for cache_refusal().
+struct Refusal {
+  std::mutex mutex;
+  std::string words;
+};
+
+Refusal& refusal() {
+  static Refusal first;
+  return first;
 }
 
 /// Adds the number of values before them.
@@ -67,10 +102,36 @@ void CacheEntry::refuse(const std::string& name) { throw BadFile("cache", name, 
 std::filesystem::path cache_file(std::string_view kind, std::string_view key) {
   const std::filesystem::path directory = cache_directory();
   if (directory.empty()) return {};
+  if (const std::string words = refusal_of(directory); !words.empty()) {
+    const std::scoped_lock lock(refusal().mutex);
+    refusal().words = words;
+    return {};
+  }
   ContentHash hash;
   add_sized(hash, std::span(k_format));
   add_sized(hash, std::span(key));
   return directory / (std::string(kind) + "-" + hash.hex() + ".h5");
+}
+
+std::filesystem::path writable_cache_file(std::string_view kind, std::string_view key) {
+  std::filesystem::path file = cache_file(kind, key);
+  if (file.empty()) return file;
+  try {
+    std::filesystem::create_directories(file.parent_path().parent_path());
+    // Whatever the umask is: a folder that a group can write would be refused the next time.
+    if (::mkdir(file.parent_path().c_str(), S_IRWXU) == 0) file = cache_file(kind, key);
+    check_writable(file);
+    // Of a writer that was killed. One on another machine may lose its file by this, and then keeps nothing.
+    remove_stale_partials(file);
+  } catch (const std::exception&) {
+    return {};
+  }
+  return file;
+}
+
+std::string cache_refusal() {
+  const std::scoped_lock lock(refusal().mutex);
+  return refusal().words;
 }
 
 std::optional<CacheEntry> load_cached(std::string_view kind, std::string_view key) {
@@ -102,18 +163,13 @@ std::optional<CacheEntry> load_cached(std::string_view kind, std::string_view ke
 }
 
 bool store_cached(std::string_view kind, std::string_view key, const CacheEntry& entry) {
-  const std::filesystem::path path = cache_file(kind, key);
+  const std::filesystem::path path = writable_cache_file(kind, key);
   if (path.empty()) return false;
-  std::error_code error;
-  std::filesystem::create_directories(path.parent_path(), error);
-  if (error) return false;
-  // Of a writer that was killed. One on another machine may lose its file by this, and then keeps nothing.
-  remove_stale_partials(path);
   try {
     AtomicFile target(path);
     {
       const hdf5::Session session;
-      hdf5::File file = hdf5::File::create(target.temporary_path(), path);
+      hdf5::File file = hdf5::File::create(target);
       std::string list;
       for (const auto& [name, values] : entry.arrays()) {
         const std::string object = "/" + name;

@@ -18,7 +18,8 @@ namespace sixdof {
 /// names everything the content depends on (content hash of the mesh, parameters, version of the format and of the
 /// algorithm that builds it). Entries are HDF5 files in one directory: that of environment variable SIXDOF_CACHE; else
 /// $XDG_CACHE_HOME/sixdof; else $HOME/.cache/sixdof. Nothing is kept if SIXDOF_CACHE is "off" or none of the three is
-/// set. The directory may be deleted at any time, and processes may share it.
+/// set. The directory may be deleted at any time, and processes may share it. One that belongs to another user, or that
+/// others can write, is not used: cache_refusal() says so.
 ///
 /// The cache does not throw. An entry that is missing, damaged or of another key is not found; one that cannot be
 /// written is not kept.
@@ -50,6 +51,13 @@ class CacheEntry {
 
 /// The file of an entry; empty if nothing is kept.
 std::filesystem::path cache_file(std::string_view kind, std::string_view key);
+
+/// The same, where a file can be written: the directory is there. Empty if nothing can be kept.
+std::filesystem::path writable_cache_file(std::string_view kind, std::string_view key);
+
+/// One line that says why the directory is not used, if this process has asked for an entry and was refused; else empty.
+/// For programs to print.
+std::string cache_refusal();
 
 /// The entry as it was stored, checked against its content hash; nothing if there is none.
 std::optional<CacheEntry> load_cached(std::string_view kind, std::string_view key);

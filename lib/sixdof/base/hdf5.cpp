@@ -1,6 +1,7 @@
 #include <sixdof/base/hdf5.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <string_view>
 
@@ -8,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/hash.h>
 
 namespace sixdof::hdf5 {
 namespace {
@@ -35,8 +37,9 @@ herr_t keep_first(unsigned /*depth*/, const H5E_error2_t* entry, void* out) {
 /// what the system refuses, its words alone ("No space left on device"): HDF5 adds the time and addresses.
 std::string last_error() {
   std::string words;
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &words);
-  H5Eclear2(H5E_DEFAULT);
+  const bool walked = H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &words) >= 0;
+  const bool cleared = H5Eclear2(H5E_DEFAULT) >= 0;
+  if (!walked || !cleared) words += words.empty() ? "its own list of errors failed" : "; its own list of errors failed";
   constexpr std::string_view k_systems_words = "error message = '";
   if (const std::size_t begin = words.find(k_systems_words); begin != std::string::npos) {
     words.erase(0, begin + k_systems_words.size());
@@ -45,32 +48,56 @@ std::string last_error() {
   return words.empty() ? "no reason given" : words;
 }
 
+/// For calls that need no file: properties, types, spaces. @throws Error if `result` is negative
+hid_t must(hid_t result, const char* what) {
+  if (result < 0) throw Error(fmt::format("HDF5: {} ({})", what, last_error()));
+  return result;
+}
+
+Handle scalar_space() { return {must(H5Screate(H5S_SCALAR), "no scalar"), H5Sclose}; }
+
 /// Without times of creation: the same content gives the same bytes.
 Handle object_properties(hid_t property_class) {
-  Handle list(H5Pcreate(property_class), H5Pclose);
-  H5Pset_obj_track_times(list.id(), false);
-  H5Pset_attr_phase_change(list.id(), k_compact_attributes, k_compact_attributes / 2);
+  Handle list(must(H5Pcreate(property_class), "no list of properties"), H5Pclose);
+  must(H5Pset_obj_track_times(list.id(), false), "no files without times");
+  must(H5Pset_attr_phase_change(list.id(), k_compact_attributes, k_compact_attributes / 2), "no compact attributes");
   return list;
 }
 
 Handle file_access() {
-  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
+  Handle access(must(H5Pcreate(H5P_FILE_ACCESS), "no list of properties"), H5Pclose);
+  must(H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG), "no strong closing");
   return access;
+}
+
+std::string hash_of(std::span<const std::byte> bytes) {
+  ContentHash hash;
+  hash.add(bytes);
+  return hash.hex();
+}
+
+/// Bytes of a value of this type.
+std::size_t size_of(hid_t type) {
+  const std::size_t bytes = H5Tget_size(type);
+  must(bytes == 0 ? -1 : 0, "a type without a size");
+  return bytes;
 }
 
 }  // namespace
 
 Session::Session() : lock_(library_mutex()) {
   // After a damaged file, HDF5 1.10 may fail to close itself at exit and print "infinite loop closing library". Handles
-  // close themselves, so it need not. Without effect if the library is in use already.
-  H5dont_atexit();
-  H5open();
-  H5Eget_auto2(H5E_DEFAULT, &old_handler_, &old_data_);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  // close themselves, so it need not. It refuses where the library is in use already.
+  [[maybe_unused]] static const herr_t no_closing_at_exit = H5dont_atexit();
+  must(H5open(), "cannot be used");
+  must(H5Eget_auto2(H5E_DEFAULT, &old_handler_, &old_data_), "no handler of errors");
+  must(H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), "no handler of errors");
 }
 
-Session::~Session() { H5Eset_auto2(H5E_DEFAULT, old_handler_, old_data_); }
+Session::~Session() {
+  // It fails only where the library is closed; nobody is left then who would print.
+  static_cast<void>(H5Eset_auto2(H5E_DEFAULT, old_handler_, old_data_));
+}
 
 File File::open(const std::filesystem::path& path) {
   std::error_code error;
@@ -79,25 +106,40 @@ File File::open(const std::filesystem::path& path) {
   std::string first(k_first_bytes.size(), '\0');
   std::ifstream(path, std::ios::binary).read(first.data(), static_cast<std::streamsize>(first.size()));
   if (first != k_first_bytes) throw BadFile(path.string(), "not a readable HDF5 file of this project, or damaged");
-  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access().id()), H5Fclose);
+  Handle access = file_access();
+  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (file.id() < 0) {
     throw BadFile(path.string(), fmt::format("not a readable HDF5 file, or damaged ({})", last_error()));
   }
-  return {std::move(file), path.string()};
+  must(access.close(), "properties cannot be closed");
+  return {nullptr, std::move(file), path.string()};
 }
 
-File File::create(const std::filesystem::path& path, const std::filesystem::path& shown_as) {
-  const Handle access = file_access();
-  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110);
-  const Handle creation = object_properties(H5P_FILE_CREATE);
-  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose);
-  if (file.id() < 0) throw BadFile(shown_as.string(), fmt::format("cannot be written ({})", last_error()));
-  return {std::move(file), shown_as.string()};
+File File::create(AtomicFile& output) {
+  auto channel = std::make_unique<Channel>(Channel{.descriptor = output.descriptor()});
+  const std::string name = output.target().string();
+  Handle access = file_access();
+  must(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110), "no format of 1.10");
+  must(use_channel(access.id(), *channel), "no driver of files");
+  Handle creation = object_properties(H5P_FILE_CREATE);
+  File made(std::move(channel), {H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose}, name);
+  made.output_ = &output;
+  made.check(made.file_.id(), "/", "cannot be written");
+  made.close_all("/", access, creation);
+  return made;
 }
 
 void File::close() {
   check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL), "/", "cannot be written");
-  Handle closing = std::move(file_);
+  check(file_.close(), "/", "cannot be written");
+  output_->flush();
+  auto channel = std::make_unique<Channel>(Channel{.descriptor = output_->descriptor()});
+  Handle access = file_access();
+  must(use_channel(access.id(), *channel), "no driver of files");
+  File again(std::move(channel), {H5Fopen(name_.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose}, name_);
+  again.check(again.file_.id(), "/", "cannot be read again");
+  again.compare(datasets_, attributes_);
+  again.close_all("/", access, again.file_);
 }
 
 void File::refuse(const std::string& object, const std::string& cause) const {
@@ -105,6 +147,9 @@ void File::refuse(const std::string& object, const std::string& cause) const {
 }
 
 void File::check(hid_t result, const std::string& object, const std::string& what) const {
+  if (channel_ && channel_->failure != 0) {
+    throw BadFile(name_, fmt::format("cannot be written: {}", std::strerror(channel_->failure)));
+  }
   if (result < 0) refuse(object, fmt::format("{} ({})", what, last_error()));
 }
 
@@ -120,9 +165,11 @@ bool File::exists(const std::string& object) const {
 }
 
 void File::make_group(const std::string& object) {
-  const Handle creation = object_properties(H5P_GROUP_CREATE);
-  checked({H5Gcreate2(file_.id(), object.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose}, object,
-          "cannot be written");
+  Handle creation = object_properties(H5P_GROUP_CREATE);
+  Handle group =
+      checked({H5Gcreate2(file_.id(), object.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose}, object,
+              "cannot be written");
+  close_all(object, group, creation);
 }
 
 std::vector<std::string> File::names(const std::string& group) const {
@@ -142,94 +189,137 @@ bool File::has_attribute(const std::string& object, const char* name) const {
   return found > 0;
 }
 
-void File::write_attribute(const std::string& object, const char* name, hid_t type, const void* value) {
+void File::write_attribute(const std::string& object, const char* name, hid_t type, const void* value,
+                           std::size_t bytes) {
   const std::string what = fmt::format("attribute {} cannot be written", name);
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute = checked(
+  Handle space = scalar_space();
+  Handle attribute = checked(
       {H5Acreate_by_name(file_.id(), object.c_str(), name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
        H5Aclose},
       object, what);
   check(H5Awrite(attribute.id(), type, value), object, what);
+  close_all(object, attribute, space);
+  attributes_[{object, name}] = {.bytes = bytes, .hash = hash_of({static_cast<const std::byte*>(value), bytes})};
 }
 
 void File::write_attribute(const std::string& object, const char* name, const std::string& value) {
   // HDF5 has no strings of length 0; the terminator makes them 1.
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.id(), value.size() + 1);
-  H5Tset_cset(type.id(), H5T_CSET_UTF8);
-  write_attribute(object, name, type.id(), value.c_str());
+  Handle type(must(H5Tcopy(H5T_C_S1), "no strings"), H5Tclose);
+  must(H5Tset_size(type.id(), value.size() + 1), "no strings of this length");
+  must(H5Tset_cset(type.id(), H5T_CSET_UTF8), "no strings in UTF-8");
+  write_attribute(object, name, type.id(), value.c_str(), value.size() + 1);
+  close_all(object, type);
 }
 
-std::pair<Handle, Handle> File::open_attribute(const std::string& object, const char* name) const {
-  Handle attribute = checked({H5Aopen_by_name(file_.id(), object.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose},
-                             object, fmt::format("attribute {} cannot be read", name));
-  const Handle space(H5Aget_space(attribute.id()), H5Sclose);
+template <class Read>
+auto File::with_attribute(const std::string& object, const char* name, const Read& read) const {
+  const std::string what = fmt::format("attribute {} cannot be read", name);
+  Handle attribute =
+      checked({H5Aopen_by_name(file_.id(), object.c_str(), name, H5P_DEFAULT, H5P_DEFAULT), H5Aclose}, object, what);
+  Handle space = checked({H5Aget_space(attribute.id()), H5Sclose}, object, what);
   if (H5Sget_simple_extent_type(space.id()) != H5S_SCALAR) {
     refuse(object, fmt::format("attribute {} is not a single value", name));
   }
-  Handle type(H5Aget_type(attribute.id()), H5Tclose);
-  return {std::move(attribute), std::move(type)};
+  Handle type = checked({H5Aget_type(attribute.id()), H5Tclose}, object, what);
+  auto value = read(attribute.id(), type.id(), what);
+  close_all(object, type, space, attribute);
+  return value;
 }
 
 std::string File::read_string(const std::string& object, const char* name) const {
-  const auto [attribute, type] = open_attribute(object, name);
-  if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0) {
-    refuse(object, fmt::format("attribute {} is not a string of fixed length", name));
-  }
-  std::string value(H5Tget_size(type.id()), '\0');
-  check(H5Aread(attribute.id(), type.id(), value.data()), object, fmt::format("attribute {} cannot be read", name));
-  return value.substr(0, value.find('\0'));
+  return with_attribute(object, name, [&](hid_t attribute, hid_t type, const std::string& what) {
+    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0) {
+      refuse(object, fmt::format("attribute {} is not a string of fixed length", name));
+    }
+    std::string value(size_of(type), '\0');
+    check(H5Aread(attribute, type, value.data()), object, what);
+    return value.substr(0, value.find('\0'));
+  });
 }
 
 template <class T>
 T File::read_attribute(const std::string& object, const char* name) const {
-  const auto [attribute, type] = open_attribute(object, name);
-  const hid_t native = number_type<T>().native;
-  if (H5Tget_class(type.id()) != H5Tget_class(native)) {
-    refuse(object, fmt::format("attribute {} is not {}", name, std::is_integral_v<T> ? "a count" : "a number"));
-  }
-  T value{};
-  check(H5Aread(attribute.id(), native, &value), object, fmt::format("attribute {} cannot be read", name));
-  return value;
+  return with_attribute(object, name, [&](hid_t attribute, hid_t type, const std::string& what) {
+    const hid_t native = number_type<T>().native;
+    if (H5Tget_class(type) != H5Tget_class(native)) {
+      refuse(object, fmt::format("attribute {} is not {}", name, std::is_integral_v<T> ? "a count" : "a number"));
+    }
+    T value{};
+    check(H5Aread(attribute, native, &value), object, what);
+    return value;
+  });
 }
 
 template double File::read_attribute(const std::string& object, const char* name) const;
 template std::uint64_t File::read_attribute(const std::string& object, const char* name) const;
 
 void File::write_dataset(const std::string& object, std::span<const hsize_t> size, NumberType type,
-                         std::size_t chunk_rows, const void* values) {
+                         std::size_t chunk_rows, std::span<const std::byte> values) {
   const auto dimensions = static_cast<int>(size.size());
-  const Handle properties = object_properties(H5P_DATASET_CREATE);
+  Handle properties = object_properties(H5P_DATASET_CREATE);
   if (chunk_rows != 0) {
     std::vector<hsize_t> chunk(size.begin(), size.end());
     chunk[0] = std::min<hsize_t>(chunk_rows, chunk[0]);
-    H5Pset_chunk(properties.id(), dimensions, chunk.data());
-    H5Pset_shuffle(properties.id());
-    H5Pset_deflate(properties.id(), k_deflate_level);
-    H5Pset_fletcher32(properties.id());
+    must(H5Pset_chunk(properties.id(), dimensions, chunk.data()), "no chunks of this size");
+    must(H5Pset_shuffle(properties.id()), "no filter \"shuffle\"");
+    must(H5Pset_deflate(properties.id(), k_deflate_level), "no filter \"deflate\"");
+    must(H5Pset_fletcher32(properties.id()), "no filter \"fletcher32\"");
   }
-  const Handle space(H5Screate_simple(dimensions, size.data(), nullptr), H5Sclose);
-  const Handle dataset = checked(
+  Handle space(must(H5Screate_simple(dimensions, size.data(), nullptr), "no array of this size"), H5Sclose);
+  Handle dataset = checked(
       {H5Dcreate2(file_.id(), object.c_str(), type.stored, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
        H5Dclose},
       object, "cannot be written");
-  check(H5Dwrite(dataset.id(), type.native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), object, "cannot be written");
+  check(H5Dwrite(dataset.id(), type.native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), object, "cannot be written");
+  close_all(object, dataset, space, properties);  // chunks are written as their dataset is closed
+  datasets_[object] = {.bytes = values.size(), .hash = hash_of(values)};
 }
 
 void File::write_matrix(const std::string& object, const double* values, std::size_t rows, std::size_t columns,
                         std::size_t chunk_rows) {
-  write_dataset(object, std::array<hsize_t, 2>{rows, columns}, number_type<double>(), chunk_rows, values);
+  write_dataset(object, std::array<hsize_t, 2>{rows, columns}, number_type<double>(), chunk_rows,
+                std::as_bytes(std::span(values, rows * columns)));
+}
+
+void File::compare(const std::map<std::string, Written>& datasets,
+                   const std::map<std::pair<std::string, std::string>, Written>& attributes) const {
+  constexpr const char* k_unlike = "is not what was written, when it is read again";
+  std::vector<std::byte> bytes;
+  const auto is_same = [&](const Written& written) { return hash_of(bytes) == written.hash; };
+  for (const auto& [object, written] : datasets) {
+    Handle dataset = checked({H5Dopen2(file_.id(), object.c_str(), H5P_DEFAULT), H5Dclose}, object, "cannot be opened");
+    Handle type = checked({H5Dget_type(dataset.id()), H5Tclose}, object, "has no type");
+    Handle space = checked({H5Dget_space(dataset.id()), H5Sclose}, object, "has no size");
+    const hssize_t count = H5Sget_simple_extent_npoints(space.id());
+    check(count < 0 ? -1 : 0, object, "has no size");
+    if (static_cast<std::size_t>(count) * size_of(type.id()) != written.bytes) refuse(object, k_unlike);
+    bytes.resize(written.bytes);
+    check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()), object, "cannot be read again");
+    if (!is_same(written)) refuse(object, k_unlike);
+    close_all(object, space, type, dataset);
+  }
+  for (const auto& [place, written] : attributes) {
+    const auto& [object, name] = place;
+    const bool same = with_attribute(object, name.c_str(), [&](hid_t attribute, hid_t type, const std::string& what) {
+      if (size_of(type) != written.bytes) return false;
+      bytes.resize(written.bytes);
+      check(H5Aread(attribute, type, bytes.data()), object, what);
+      return is_same(written);
+    });
+    if (!same) refuse(object, fmt::format("attribute {} {}", name, k_unlike));
+  }
 }
 
 Handle File::open_dataset(const std::string& object, hid_t stored_type, std::span<hsize_t> size) const {
   Handle dataset = checked({H5Dopen2(file_.id(), object.c_str(), H5P_DEFAULT), H5Dclose}, object, "cannot be opened");
-  const Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  Handle type = checked({H5Dget_type(dataset.id()), H5Tclose}, object, "has no type");
   if (H5Tequal(type.id(), stored_type) <= 0) refuse(object, "is not of the expected type");
-  const Handle space(H5Dget_space(dataset.id()), H5Sclose);
+  Handle space = checked({H5Dget_space(dataset.id()), H5Sclose}, object, "has no size");
   if (H5Sget_simple_extent_ndims(space.id()) != static_cast<int>(size.size())) {
     refuse(object, fmt::format("does not have {} dimensions", size.size()));
   }
   check(H5Sget_simple_extent_dims(space.id(), size.data(), nullptr), object, "has no size");
+  close_all(object, space, type);
   return dataset;
 }
 
@@ -253,7 +343,8 @@ std::size_t File::value_count(const std::string& object, const Handle& dataset, 
 
 std::pair<std::size_t, std::size_t> File::matrix_size(const std::string& object) const {
   std::array<hsize_t, 2> size{};
-  open_dataset(object, number_type<double>().stored, size);
+  Handle dataset = open_dataset(object, number_type<double>().stored, size);
+  close_all(object, dataset);
   return {size[0], size[1]};
 }
 

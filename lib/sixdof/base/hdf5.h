@@ -3,8 +3,11 @@
 #include <hdf5.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string>
@@ -12,7 +15,11 @@
 #include <utility>
 #include <vector>
 
+#include <sixdof/base/atomic_file.h>
+#include <sixdof/base/hdf5_driver.h>
+
 /// HDF5's C interface with handles that close themselves and errors as exceptions. For this project's own sources.
+/// `test/architecture` holds that HDF5 is called here only, and that no result of it is ignored.
 
 namespace sixdof::hdf5 {
 
@@ -31,16 +38,19 @@ class Session {
   void* old_data_ = nullptr;
 };
 
-/// An identifier with the function that closes it.
+/// An identifier with the function that closes it. HDF5 may write as it closes an object, so whoever goes on afterwards
+/// calls close(); the destructor is for unwinding, where another failure is being reported.
 class Handle {
  public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(hid_t id, herr_t (*closer)(hid_t)) : id_(id), close_(closer) {}
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle& operator=(Handle&&) = delete;
   ~Handle() {
-    if (id_ >= 0) close_(id_);
+    if (id_ >= 0) static_cast<void>(close());
   }
   hid_t id() const { return id_; }
+  /// @return HDF5's status
+  [[nodiscard]] herr_t close() { return close_(std::exchange(id_, -1)); }
 
  private:
   hid_t id_;
@@ -70,10 +80,11 @@ class File {
  public:
   /// For reading. A file of another layout than create() gives, which has no checksums, is refused.
   static File open(const std::filesystem::path& path);
-  /// For writing; replaces a file at `path`. Messages call the file `shown_as`.
-  static File create(const std::filesystem::path& path, const std::filesystem::path& shown_as);
+  /// For writing into `output`, which must live longer. Messages name its target.
+  static File create(AtomicFile& output);
 
-  /// Flushes and closes. Without it, a failure to write (full disk) is not reported.
+  /// Closes a file that was written, flushes it to the disk, and reads every attribute and every value again: it throws
+  /// unless all are what was written. To be called before AtomicFile::commit().
   void close();
 
   bool exists(const std::string& object) const;
@@ -86,7 +97,7 @@ class File {
   /// T: double or std::uint64_t.
   template <class T>
   void write_attribute(const std::string& object, const char* name, T value) {
-    write_attribute(object, name, number_type<T>().stored, &value);
+    write_attribute(object, name, number_type<T>().stored, &value, sizeof(T));
   }
   std::string read_string(const std::string& object, const char* name) const;
   /// T: double or std::uint64_t.
@@ -106,7 +117,7 @@ class File {
   /// double, stored little-endian; read_values() throws if another type is stored.
   template <class T>
   void write_values(const std::string& object, std::span<const T> values) {
-    write_dataset(object, std::array<hsize_t, 1>{values.size()}, number_type<T>(), 0, values.data());
+    write_dataset(object, std::array<hsize_t, 1>{values.size()}, number_type<T>(), 0, std::as_bytes(values));
   }
   template <class T>
   std::vector<T> read_values(const std::string& object) const {
@@ -114,34 +125,56 @@ class File {
   }
 
  private:
-  File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+  /// What an attribute or a dataset must hold when it is read again.
+  struct Written {
+    std::size_t bytes;
+    std::string hash;
+  };
+
+  File(std::unique_ptr<Channel> channel, Handle file, std::string name)
+      : channel_(std::move(channel)), file_(std::move(file)), name_(std::move(name)) {}
   [[noreturn]] void refuse(const std::string& object, const std::string& cause) const;
-  /// Throws with HDF5's own reason if `result`, an identifier or a status, is negative.
+  /// Throws with the system's reason if a write failed, and with HDF5's own if `result`, an identifier or a status, is
+  /// negative.
   void check(hid_t result, const std::string& object, const std::string& what) const;
   Handle checked(Handle handle, const std::string& object, const std::string& what) const;
-  void write_attribute(const std::string& object, const char* name, hid_t type, const void* value);
-  /// The attribute and its type.
-  std::pair<Handle, Handle> open_attribute(const std::string& object, const char* name) const;
+  /// Closes the handles in this order.
+  template <class... Handles>
+  void close_all(const std::string& object, Handles&... handles) const {
+    (check(handles.close(), object, "cannot be closed"), ...);
+  }
+  void write_attribute(const std::string& object, const char* name, hid_t type, const void* value, std::size_t bytes);
+  /// Calls read(attribute, type, bytes) for a scalar attribute. @return what it returns
+  template <class Read>
+  auto with_attribute(const std::string& object, const char* name, const Read& read) const;
   void write_dataset(const std::string& object, std::span<const hsize_t> size, NumberType type, std::size_t chunk_rows,
-                     const void* values);
+                     std::span<const std::byte> values);
   /// @param size filled with one element for each dimension that the dataset must have
   Handle open_dataset(const std::string& object, hid_t stored_type, std::span<hsize_t> size) const;
   /// The product of the dimensions. Throws if the file has too few bytes for so many values.
   std::size_t value_count(const std::string& object, const Handle& dataset, std::span<const hsize_t> size,
                           std::size_t value_bytes) const;
+  /// Throws unless the file holds what was written.
+  void compare(const std::map<std::string, Written>& datasets,
+               const std::map<std::pair<std::string, std::string>, Written>& attributes) const;
 
   template <class T, std::size_t dimensions>
   std::vector<T> read_dataset(const std::string& object) const {
     const NumberType type = number_type<T>();
     std::array<hsize_t, dimensions> size{};
-    const Handle dataset = open_dataset(object, type.stored, size);
+    Handle dataset = open_dataset(object, type.stored, size);
     std::vector<T> values(value_count(object, dataset, size, sizeof(T)));
     check(H5Dread(dataset.id(), type.native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), object, "cannot be read");
+    close_all(object, dataset);
     return values;
   }
 
+  AtomicFile* output_ = nullptr;      ///< Of a file that is written.
+  std::unique_ptr<Channel> channel_;  ///< Likewise; outlives file_.
   Handle file_;
   std::string name_;
+  std::map<std::string, Written> datasets_;  ///< That were written.
+  std::map<std::pair<std::string, std::string>, Written> attributes_;
 };
 
 }  // namespace sixdof::hdf5

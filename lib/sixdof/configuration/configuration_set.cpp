@@ -61,7 +61,7 @@ ConfigurationSetWriter::ConfigurationSetWriter(std::filesystem::path path, SetDe
   state_ = std::make_unique<State>(path, std::move(description));
   const SetDescription& set = state_->description;
   const hdf5::Session session;
-  hdf5::File& file = state_->file.emplace(hdf5::File::create(state_->atomic.temporary_path(), path));
+  hdf5::File& file = state_->file.emplace(hdf5::File::create(state_->atomic));
   file.write_attribute("/", "format", std::string(k_format));
   file.write_attribute("/", "format_version", k_format_version);
   file.write_attribute("/", "generator_version", set.generator_version);

@@ -128,7 +128,7 @@ void write_shard(const std::filesystem::path& path, const GenerationJob& job, co
   AtomicFile atomic(path);
   {
     const hdf5::Session session;
-    hdf5::File file = hdf5::File::create(atomic.temporary_path(), path);
+    hdf5::File file = hdf5::File::create(atomic);
     file.write_attribute("/", "format", std::string(k_format));
     file.write_attribute("/", "format_version", k_format_version);
     file.write_attribute("/", "shard", std::uint64_t{shard.number});

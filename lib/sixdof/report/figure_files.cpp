@@ -33,33 +33,16 @@ bool is_in_path(const std::string& program) {
   return false;
 }
 
+/// @throws BadFile if not all of it can be read
 std::string text_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
+  text << in.rdbuf();
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || !in || text.view().size() != size) throw BadFile(path.string(), "cannot be read");
   return text.str();
 }
-
-/// A folder in `parent` that is removed with all that it holds.
-class WorkFolder {
- public:
-  explicit WorkFolder(const std::filesystem::path& parent)
-      : path_(parent / fmt::format(".sixdof-figures-{}.partial", ::getpid())) {
-    std::error_code error;
-    std::filesystem::create_directories(path_, error);
-    if (error) throw BadFile(parent.string(), "cannot be made: " + error.message());
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The exit code of write_svg.js for a choice that no figure offers.
 constexpr int k_no_such_choice = 3;
@@ -126,7 +109,10 @@ std::vector<std::string> write_figures(const Report& report, const PageFiles& fi
                                        const std::filesystem::path& folder, FigureFormat format) {
   need("node", "nodejs");
   if (format == FigureFormat::pdf) need("rsvg-convert", "librsvg2-bin");
-  const WorkFolder work(folder);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw BadFile(folder.string(), "cannot be made: " + error.message());
+  const PrivateFolder work(folder / "sixdof-figures");
   write_file_atomically(work.path() / "data.json", page_data(report, files));
   const std::filesystem::path programs = std::filesystem::absolute(files.folder);
   std::vector<std::string> names;

@@ -92,7 +92,9 @@ Row row_of(const Json& entry, std::size_t file) {
 
 void take_rows(const Json& document, Source source, Results& results) {
   if (document.contains("context") && document.at("context").is_object()) {
-    for (const auto& [key, value] : document.at("context").items()) source.context.emplace_back(key, as_text(value));
+    for (const auto& [key, value] : document.at("context").items()) {
+      if (key != "checksum") source.context.emplace_back(key, as_text(value));  // of the file, not of the run
+    }
   }
   source.kind = "rows";
   const std::size_t file = results.files.size();

@@ -265,7 +265,7 @@ void write_series(const std::filesystem::path& path, const Scenario& scenario, c
 
   AtomicFile output(path);
   const hdf5::Session session;
-  hdf5::File file = hdf5::File::create(output.temporary_path(), path);
+  hdf5::File file = hdf5::File::create(output);
   file.write_attribute("/", "format", std::string(k_format));
   file.write_attribute("/", "format_version", k_format_version);
   file.write_attribute("/", "scenario", scenario.name());

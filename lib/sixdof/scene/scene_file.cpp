@@ -208,7 +208,7 @@ void save_scene(const Scene& scene, const std::filesystem::path& path) {
   AtomicFile atomic(path);
   const hdf5::Session session;
   {
-    hdf5::File file = hdf5::File::create(atomic.temporary_path(), path);
+    hdf5::File file = hdf5::File::create(atomic);
     file.write_attribute("/", "format", std::string(k_format));
     file.write_attribute("/", "format_version", k_version);
     file.write_attribute("/", "name", scene.name);
