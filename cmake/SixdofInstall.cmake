@@ -44,6 +44,7 @@ if(SIXDOF_BUILD_BENCH)
     DESTINATION ${data_folder}/models)
   install(PROGRAMS ${PROJECT_SOURCE_DIR}/models/fetch DESTINATION ${data_folder}/models)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/linked_data_folder.cpp DESTINATION ${data_folder}/cmake)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/bash-completion DESTINATION share)
 endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sixdof-config.cmake.in

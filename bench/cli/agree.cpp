@@ -193,28 +193,33 @@ void agree(const Arguments& arguments) {
 }  // namespace
 
 void add_agree_command(CLI::App& app) {
-  auto* const command =
-      app.add_subcommand("agree", "Compare yes/no and distances of several algorithms with the truth of sets");
+  auto* const command = app.add_subcommand(
+      "agree", "Compare yes/no and distances of several algorithms with the truth of configuration sets");
   const auto arguments = std::make_shared<Arguments>();
-  auto* const pairs = command->add_option("--pair", arguments->pairs,
-                                          "Pairs of the committed sets: elephant,bunny; all of them if left out");
-  pairs->delimiter(',');
-  command->add_option("--set", arguments->sets, "Configuration sets of your own; may be repeated")
+  auto* const pairs =
+      command->add_option("--pair", arguments->pairs, "Pairs of the sets that come with sixdof: elephant,bunny");
+  pairs->delimiter(',')->type_name("PAIR")->default_str("all");
+  command->add_option("--set", arguments->sets, "A configuration set of your own; may be repeated")
+      ->type_name("FILE")
       ->allow_extra_args(false)
       ->excludes(pairs);
-  command
-      ->add_option("--algorithms", arguments->algorithms, "exact,ode,...; all of default runs that answer if left out")
+  command->add_option("--algorithms", arguments->algorithms, "Algorithms to compare: exact,ode,...")
+      ->type_name("ALGORITHM")
+      ->default_str("all that answer, but slow references")
       ->delimiter(',');
   command
       ->add_option("-p,--parameter", arguments->parameters,
-                   "Parameter of an algorithm: ALGORITHM:NAME=VALUE; may be repeated")
+                   "Parameter of an algorithm (sixdof algorithms lists them); may be repeated")
+      ->type_name("ALGORITHM:NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--sample", arguments->sample, "Configurations per bucket, drawn at random; 0 for all")
+  command->add_option("--sample", arguments->sample, "Poses per bucket of a set, drawn at random; 0: all")
+      ->type_name("N")
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Of the sample")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Seed of the draw")->type_name("N")->capture_default_str();
   command
       ->add_option("--show", arguments->show,
                    "Differences to print of each algorithm, bucket and question; --json has all")
+      ->type_name("N")
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "As JSON; the exit code is the same");
   add_examples(*command, "sixdof agree --set set.h5 --algorithms exact,fcl-obbrss --sample 20",

@@ -2,21 +2,26 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include <sixdof/models/model_catalogue.h>
 #include "bench/cli/scene.h"
 #include "bench/cli/shared.h"
+#include "bench/common/help_format.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/program_end.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/serve_algorithm.h"
+#include "bench/common/shell_text.h"
 #include "bench/common/unknown_word.h"
 
 namespace sixdof::cli {
@@ -59,8 +64,26 @@ std::optional<UnknownWord> find_unknown_word(const CLI::App& app) {
   return std::nullopt;
 }
 
+/// The commands below `app` that have an option of this name.
+void find_owners(const CLI::App& app, const std::string& option, std::vector<std::string>& owners) {
+  const std::vector<const CLI::Option*> options = app.get_options();
+  const auto has_name = [&](const CLI::Option* each) { return each->check_lname(option); };
+  if (std::ranges::any_of(options, has_name)) owners.push_back(full_name(app));
+  for (const CLI::App* command : app.get_subcommands({})) find_owners(*command, option, owners);
+}
+
+/// "--grid: no such option of sixdof info, but of sixdof generate"; empty if no command has the option.
+std::string explain_foreign_option(const CLI::App& app, const UnknownWord& unknown) {
+  std::vector<std::string> owners;
+  const std::string option = unknown.word.substr(0, unknown.word.find('='));
+  if (option.starts_with("--")) find_owners(app, option.substr(2), owners);
+  if (owners.empty()) return {};
+  return fmt::format("{}: no such option of {}, but of {} ({} --help)", option, full_name(unknown.command),
+                     fmt::join(owners, ", "), full_name(unknown.command));
+}
+
 /// "--gird: no such option; did you mean --grid?"
-std::string explain(const UnknownWord& unknown) {
+std::string explain(const CLI::App& app, const UnknownWord& unknown) {
   const auto& [command, word] = unknown;
   const std::string name = full_name(command);
   const bool is_option = word.starts_with('-');
@@ -72,7 +95,44 @@ std::string explain(const UnknownWord& unknown) {
     if (!is_option) names.push_back(each->get_name());
   }
   if (!is_option && names.empty()) return fmt::format("{}: unexpected argument ({} --help)", word, name);
-  return explain_unknown_word(word, names, name + " --help");
+  if (!is_option && word == "help") return fmt::format("help: no such command; did you mean {} --help?", name);
+  if (!is_option && names_file(word)) {
+    return fmt::format("{0}: no such command ({1} --help lists them); sixdof info {0} says what is in a file",
+                       shell_quoted(word), name);
+  }
+  const std::string text = explain_unknown_word(word, names, name + " --help");
+  if (text.find("did you mean") != std::string::npos) return text;
+  const std::string foreign = explain_foreign_option(app, unknown);
+  return foreign.empty() ? text : foreign;
+}
+
+/// Commands that a person looks for in one place.
+struct Group {
+  const char* title;
+  std::vector<void (*)(CLI::App&)> commands;
+};
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> list{
+      {"Meshes", {add_models_command, add_info_command, add_repair_command, add_show_command}},
+      {"Ask (two bodies at one pose)", {add_query_command, add_algorithms_command}},
+      {"Sets (thousands of poses of a pair, which sixdof-bench asks)",
+       {add_generate_command, add_merge_command, add_verify_command, add_agree_command}},
+      {"Results (of sixdof-bench)", {add_table_command, add_report_command, add_history_command}},
+      {"Studies (which algorithm, how fast, how wrong)",
+       {add_recommend_command, add_precision_command, add_equivalent_command, add_quality_command, add_stress_command}},
+      {"Scenes (many bodies that move)", {add_scene_command}},
+      {"Your own", {add_new_algorithm_command, add_completion_command}}};
+  return list;
+}
+
+void add_commands(CLI::App& app) {
+  for (const Group& group : groups()) {
+    for (const auto add : group.commands) {
+      add(app);
+      app.get_subcommands({}).back()->group(group.title);
+    }
+  }
 }
 
 }  // namespace
@@ -84,17 +144,14 @@ int run(int argc, const char* const* argv) {
     fmt::print(stderr, k_first_steps, k_first_query);
     return k_exit_usage;
   }
-  CLI::App app("sixdof: speed and correctness of collision queries in six degrees of freedom", "sixdof");
+  CLI::App app(
+      "Measures how fast and how right collision queries of rigid bodies are: whether two meshes collide, how far they "
+      "are apart, and the force that separates them.",
+      "sixdof");
+  app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("--version", std::string("sixdof ") + SIXDOF_VERSION);
   app.require_subcommand(1);
-  for (const auto add :
-       {add_models_command,     add_info_command,    add_repair_command,    add_algorithms_command,
-        add_query_command,      add_show_command,    add_quality_command,   add_generate_command,
-        add_merge_command,      add_verify_command,  add_agree_command,     add_table_command,
-        add_report_command,     add_history_command, add_precision_command, add_recommend_command,
-        add_equivalent_command, add_stress_command,  add_scene_command,     add_new_algorithm_command}) {
-    add(app);
-  }
+  add_commands(app);
   add_examples(app, "sixdof models list", k_first_query);
   const InterruptGuard interruptible("sixdof");
   try {
@@ -106,7 +163,7 @@ int run(int argc, const char* const* argv) {
     return code != 0 ? code : end_output("sixdof");
   } catch (const CLI::ParseError& e) {
     if (const auto unknown = find_unknown_word(app)) {
-      print_message(full_name(unknown->command), explain(*unknown));
+      print_message(full_name(unknown->command), explain(app, *unknown));
     } else {
       const std::string name = full_name(parsed_command(app));
       print_message(name, fmt::format("{} ({} --help)", e.what(), name));

@@ -23,7 +23,8 @@ void add_repair_command(CLI::App& app);
 /// `sixdof algorithms [--json]`: what every algorithm of this build answers, its law, version and parameters, and
 /// whether benchmarks time it.
 void add_algorithms_command(CLI::App& app);
-/// `sixdof query --a MESH --b MESH --pose POSE [--algorithm NAME] [--json]`: the answers of one algorithm at one pose.
+/// `sixdof query --a MESH --b MESH --pose POSE [--algorithm NAME] [--only LIST] [--json]`: the answers of one algorithm
+/// at one pose. Without a response where a mesh is no solid, with the reason.
 void add_query_command(CLI::App& app);
 /// `sixdof show --algorithm NAME --model M -o FILE.ply`: what `ist`, `vps` or `vps-field` prepares of a mesh, as a
 /// coloured PLY (structure_drawing.h defines the colours).
@@ -70,5 +71,8 @@ void add_history_command(CLI::App& app);
 /// `sixdof new-algorithm NAME [-o FOLDER]`: a project of its own with an algorithm that is to be replaced, made of
 /// the files in bench/new_algorithm/. The folder appears whole or not at all; nothing is overwritten.
 void add_new_algorithm_command(CLI::App& app);
+/// `sixdof completion bash`: a script that completes the commands, options and values of all of these
+/// (common/completion.h).
+void add_completion_command(CLI::App& app);
 
 }  // namespace sixdof::cli

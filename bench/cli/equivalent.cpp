@@ -229,50 +229,65 @@ void run(const Options& options) {
 
 void add_equivalent_command(CLI::App& app) {
   auto* const command = app.add_subcommand(
-      "equivalent", "Find the resolutions of A and B with the least error of a response at a given mean time");
+      "equivalent", "Find the resolutions of both bodies with the least error of a force at a given mean time");
   const auto options = std::make_shared<Options>();
-  command->add_option("--scenario", options->scenarios, "Ia, Ib, II, III, IV: one or more")
+  command->add_option("--scenario", options->scenarios, "Two solids and a path (sixdof quality): one or more")
+      ->type_name("SCENARIO")
+      ->check(words_of(scenario_names()))
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command->add_option("--algorithm", options->algorithms, "Algorithms with a resolution for each body: one or more")
+      ->type_name("ALGORITHM")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command->add_option("--tau", options->taus, "Mean processor time of a query: 10us, 1ms; one or more")
+      ->type_name("TIME")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
   command
-      ->add_option("--algorithm", options->algorithms,
-                   "Algorithms with two swept parameters, one for each body: one or more")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->capture_default_str();
-  command
-      ->add_option("--tau", options->taus,
-                   "The mean processor time of a query, with its unit: ns, us, ms, s; one or more")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->capture_default_str();
-  command->add_option("--reverse", options->reverse, "Instead of --tau: the least time for this eta")
+      ->add_option("--reverse", options->reverse,
+                   "Instead of --tau: find the least time at which the error eta (below) is this")
+      ->type_name("ETA")
       ->check(CLI::PositiveNumber);
-  command->add_option("--weights", options->weights, "Of sigma and of gamma (radians) in their sum eta")
+  command->add_option("--weights", options->weights, "Weights of sigma and of gamma in their sum, eta")
+      ->type_name("WEIGHT")
       ->capture_default_str();
-  command->add_option("--law", options->law, "Ideal to compare with (sixdof quality --help)")->capture_default_str();
-  command->add_option("--grid", options->grids, "Values of a searched parameter: NAME=V1,V2,V3; may be repeated")
+  command->add_option("--law", options->law, "Ideal to compare with (sixdof quality --help)")
+      ->type_name("LAW")
+      ->capture_default_str();
+  command->add_option("--grid", options->grids, "Values of a parameter that is searched; may be repeated")
+      ->type_name("NAME=VALUE,VALUE,...")
       ->allow_extra_args(false);
-  command->add_option("-p,--parameter", options->parameters, "A parameter that is not searched: ALGORITHM:NAME=VALUE")
+  command->add_option("-p,--parameter", options->parameters, "A parameter that is not searched; may be repeated")
+      ->type_name("ALGORITHM:NAME=VALUE")
       ->allow_extra_args(false);
   command->add_option("--reach", options->reach, "How far to search beyond the grid: this factor, on both sides")
+      ->type_name("FACTOR")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
-  command->add_option("--memory", options->largest_gb, "Leave out resolutions predicted to need more GB; 0: no limit")
+  command
+      ->add_option("--memory", options->largest_gb,
+                   "Leave out resolutions predicted to need more memory, in GB; 0: no limit")
+      ->type_name("GB")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--steps", options->steps, "Steps along the path")->capture_default_str();
+  command->add_option("--steps", options->steps, "Steps along the path")->type_name("N")->capture_default_str();
   add_process_options(*command, options->process);
-  command->add_option("-o,--output", options->output, "Write all measurements to this JSON file");
+  command->add_option("-o,--output", options->output, "Write all measurements to this file (JSON)")->type_name("FILE");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run(*options); });
-  add_examples(*command,
-               "sixdof equivalent --scenario II --algorithm vps --tau 10us --steps 100 "
-               "--grid voxel_size=0.03,0.02,0.01 --grid point_spacing=0.03,0.02,0.01",
-               "sixdof equivalent --scenario II --algorithm vps --reverse 0.05 --steps 100 "
-               "--grid voxel_size=0.03,0.02,0.01 --grid point_spacing=0.03,0.02,0.01 -o equivalent.json",
-               "Measures a grid of resolutions, fits time and error, and measures the predicted best one.");
+  add_examples(
+      *command,
+      "sixdof equivalent --scenario II --algorithm vps --tau 10us --steps 100 "
+      "--grid voxel_size=0.03,0.02,0.01 --grid point_spacing=0.03,0.02,0.01",
+      "sixdof equivalent --scenario II --algorithm vps --reverse 0.05 --steps 100 "
+      "--grid voxel_size=0.03,0.02,0.01 --grid point_spacing=0.03,0.02,0.01 -o equivalent.json",
+      "Measures a grid of resolutions, fits time and error, and measures the predicted best one. The error is eta = "
+      "w1 sigma + w2 gamma: sigma is the error of the force's magnitude, as a fraction; gamma that of its direction, "
+      "in radians; w1 and w2 are the --weights.");
 }
 
 }  // namespace sixdof::cli

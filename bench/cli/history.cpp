@@ -30,10 +30,10 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_history_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("history", "Show how times went over many results as one page");
+  auto* const command = app.add_subcommand("history", "Show how times went over many results, as one page");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("folder", arguments->folder, "Folder of result files")->required();
-  command->add_option("-o,--output", arguments->output, "Write the page to this HTML file")->required();
+  command->add_option("folder", arguments->folder, "Folder of result files (JSON)")->required()->type_name("FOLDER");
+  command->add_option("-o,--output", arguments->output, "The page to write (HTML)")->required()->type_name("FILE");
   command->callback([arguments] { run(*arguments); });
   add_examples(*command, "sixdof history . -o history.html",
                "cp results.json later.json; sixdof history . -o history.html", k_details);

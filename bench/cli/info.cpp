@@ -214,7 +214,9 @@ void add_info_command(CLI::App& app) {
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   const auto check = std::make_shared<bool>(false);
-  command->add_option("file", *name, "File, or name of a model (sixdof models list)")->required();
+  command->add_option("file", *name, "A mesh file, a model's name (sixdof models list), or a set")
+      ->required()
+      ->type_name("MESH");
   command->add_flag("--check", *check,
                     "Look for triangles of a mesh that meet each other and for shells that count twice; exit code 3 if "
                     "there are any, 0 if not");

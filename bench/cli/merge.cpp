@@ -40,8 +40,12 @@ void merge(const Arguments& arguments) {
 void add_merge_command(CLI::App& app) {
   auto* const command = app.add_subcommand("merge", "Make one configuration set of the shards in a folder");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("folder", arguments->folder, "The folder that sixdof generate --shards wrote")->required();
-  command->add_option("-o,--output", arguments->output, "The set (HDF5); replaced if it exists")->required();
+  command->add_option("folder", arguments->folder, "The folder that sixdof generate --shards wrote")
+      ->required()
+      ->type_name("FOLDER");
+  command->add_option("-o,--output", arguments->output, "The set to write (HDF5); replaced if it exists")
+      ->required()
+      ->type_name("FILE");
   command->add_flag("--progress", arguments->progress, "Show progress where stderr is not a terminal, too");
   add_examples(*command, "sixdof generate --a cone-1k --grid 60 --distances 0:3 --shards 4 --resume -o shards",
                "sixdof merge shards -o merged.h5");

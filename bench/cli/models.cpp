@@ -91,6 +91,7 @@ void add_list(CLI::App& models) {
   auto* const of_collection =
       command->add_option("--collection", *collection, "The objects of a collection and what was left out of it")
           ->expected(0, 1)
+          ->type_name("NAME")
           ->default_str(std::string(collection_name()));
   command->callback([json, collection, of_collection] {
     if (of_collection->count() == 0) {
@@ -133,15 +134,23 @@ void make(const MakeOptions& options) {
 }
 
 void add_make(CLI::App& models) {
-  auto* const command = models.add_subcommand("make", "Write a model to a mesh file");
+  auto* const command =
+      models.add_subcommand("make", "Write a model to a mesh file, or a mesh file to one of another format");
   const auto options = std::make_shared<MakeOptions>();
-  command->add_option("name", options->name, "Model, with or without its count, or a file: torus, torus-100k, elephant")
-      ->required();
+  command
+      ->add_option("name", options->name,
+                   "A model, with its number of triangles or without, or a file: torus-100k, torus, elephant")
+      ->required()
+      ->type_name("MESH");
   command->add_option("-n,--triangles", options->triangles, "Number of triangles (odd ones are rounded up)")
+      ->type_name("N")
       ->check(CLI::Range(std::size_t{1}, k_maximum_triangles));
   command->add_option("--diagonal", options->diagonal, "Scale the model, about its origin, to this diagonal of its box")
+      ->type_name("LENGTH")
       ->check(CLI::PositiveNumber);
-  command->add_option("-o,--output", options->output, "File to write: .ply, .off, .obj or .stl")->required();
+  command->add_option("-o,--output", options->output, "File to write: .ply, .off, .obj or .stl")
+      ->required()
+      ->type_name("FILE");
   command->callback([options] { make(*options); });
   add_examples(*command, "sixdof models make cone-1k -o cone.ply",
                "sixdof models make torus-knot --triangles 10000 --diagonal 0.1 -o knot.stl");

@@ -135,10 +135,12 @@ void write_project(const Arguments& arguments) {
 
 void add_new_algorithm_command(CLI::App& app) {
   auto* const command =
-      app.add_subcommand("new-algorithm", "Write a project with an algorithm of your own, which builds as it is");
+      app.add_subcommand("new-algorithm", "Write a C++ project with an algorithm of your own, which builds as it is");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("name", arguments->name, "The algorithm's name: a-z, 0-9 and '-'")->required();
-  command->add_option("-o,--output", arguments->output, "The folder to make; NAME if left out");
+  command->add_option("name", arguments->name, "The algorithm's name: a-z, 0-9 and '-'")->required()->type_name("NAME");
+  command->add_option("-o,--output", arguments->output, "The folder to make, which must not exist")
+      ->type_name("FOLDER")
+      ->default_str("NAME");
   command->callback([arguments] { write_project(*arguments); });
   add_examples(*command, "sixdof new-algorithm fast-boxes", "sixdof new-algorithm fast-boxes -o my-project");
 }

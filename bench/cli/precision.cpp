@@ -149,19 +149,25 @@ class PrecisionCommand {
 }  // namespace
 
 void add_precision_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("precision", "Run time against error: every algorithm at every resolution");
+  auto* const command =
+      app.add_subcommand("precision", "Measure run time against error: every algorithm at every resolution");
   const auto options = std::make_shared<Options>();
   add_study_options(*command, options->study);
-  command->add_option("--question", options->question, "collide, distance or respond")->capture_default_str();
-  command->add_option("--metric", options->metric,
-                      "Error of the frontier: any metric of the rows. gamma_F_deg for respond, error_rms for distance, "
-                      "mismatch for collide if left out");
+  command->add_option("--question", options->question, "What is asked of the algorithms")
+      ->type_name("QUESTION")
+      ->check(words_of({"collide", "distance", "respond"}))
+      ->capture_default_str();
+  command->add_option("--metric", options->metric, "Error of the frontier, any metric of the rows")
+      ->type_name("METRIC")
+      ->default_str("gamma_F_deg for respond, error_rms for distance, mismatch for collide");
   command
       ->add_option("--cost", options->cost, "Cost of the frontier: cpu_time, real_time, p99_ns, bytes, prepare_ns, ...")
+      ->type_name("METRIC")
       ->capture_default_str();
   command
       ->add_option("--sample", options->sample,
-                   "Configurations of a pair, spread evenly over its buckets; fewer if the budget is short")
+                   "Poses of a pair, spread evenly over the buckets of its set; fewer if the budget is short")
+      ->type_name("N")
       ->check(CLI::Range(std::size_t{8}, std::size_t{1'000'000}))
       ->capture_default_str();
   command->add_flag("--markdown", options->markdown, "Print tables as Markdown");

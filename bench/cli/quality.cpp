@@ -18,6 +18,12 @@
 namespace sixdof::cli {
 namespace {
 
+std::vector<std::string> law_words() {
+  std::vector<std::string> words{"own", "paper"};
+  for (const IdealLaw law : all_ideal_laws()) words.emplace_back(to_string(law));
+  return words;
+}
+
 struct Options {
   std::string scenario;
   AlgorithmOptions algorithm;
@@ -87,24 +93,32 @@ void run(const Options& options) {
 
 void add_quality_command(CLI::App& app) {
   auto* const command =
-      app.add_subcommand("quality", "Compare an algorithm's response along a scenario with the ideal");
+      app.add_subcommand("quality", "Compare the force of an algorithm along a path with the ideal one");
   const auto options = std::make_shared<Options>();
-  command->add_option("--scenario", options->scenario, "Ia, Ib, II, III or IV")->required();
-  add_algorithm_options(*command, options->algorithm, "Name of an algorithm that gives responses");
+  command->add_option("--scenario", options->scenario, "Two solids and a path of one into the other")
+      ->required()
+      ->type_name("SCENARIO")
+      ->check(words_of(scenario_names()));
+  add_algorithm_options(*command, options->algorithm, "An algorithm that gives responses (sixdof algorithms)");
   add_process_options(*command, options->algorithm.process);
   command
       ->add_option("--shape", options->shape,
-                   "Parameter of the scenario's solids and path: NAME=VALUE (the line \"shape\" of the output lists "
-                   "them); may be repeated")
+                   "Parameter of the scenario's solids and path (the line \"shape\" of the output lists them); may be "
+                   "repeated")
+      ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--steps", options->steps, "Steps along the path")->capture_default_str();
+  command->add_option("--steps", options->steps, "Steps along the path")->type_name("N")->capture_default_str();
   command
       ->add_option("--law", options->law,
-                   "Ideal to compare with: own (the law the algorithm declares), paper (that law's printed formula), "
-                   "depth, volume, gradient, energy, traction, wall-traction, paper-depth, paper-volume")
+                   "Ideal to compare with: own is the law that the algorithm declares, paper that law's formula as "
+                   "printed in the paper")
+      ->type_name("LAW")
+      ->check(words_of(law_words()))
       ->capture_default_str();
-  command->add_option("-o,--output", options->series, "Write the series to this HDF5 file");
-  command->add_option("--draw", options->drawing, "Draw the scenario to this SVG file and do nothing else");
+  command->add_option("-o,--output", options->series, "Write the forces along the path to this file (HDF5)")
+      ->type_name("FILE");
+  command->add_option("--draw", options->drawing, "Draw the scenario to this file (SVG) and do nothing else")
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run(*options); });
   add_examples(*command, "sixdof quality --scenario II --algorithm vps --steps 100",

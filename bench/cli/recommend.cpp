@@ -210,26 +210,32 @@ void run(const Options& options) {
 }  // namespace
 
 void add_recommend_command(CLI::App& app) {
-  auto* const command =
-      app.add_subcommand("recommend", "Which algorithm, with which parameters, keeps a deadline with the least error");
+  auto* const command = app.add_subcommand(
+      "recommend", "Say which algorithm, with which parameters, keeps a deadline with the least error");
   const auto options = std::make_shared<Options>();
   add_study_options(*command, options->study);
-  command->add_option("--deadline", options->deadline, "Longest time of a query: 1ms, 200us")->capture_default_str();
+  command->add_option("--deadline", options->deadline, "Longest time of a query: 1ms, 200us")
+      ->type_name("TIME")
+      ->capture_default_str();
   command
       ->add_option("--metric", options->metric,
-                   "Error that is to be small: gamma_F_deg, magnitude_error_F, error_rms, ...")
+                   "Error that is to be small: gamma_F_deg (angle of the force, degrees), magnitude_error_F, error_rms "
+                   "(distance, diagonals of A), ...")
+      ->type_name("METRIC")
       ->capture_default_str();
   command
       ->add_option(
           "--order", options->order,
-          "Poses that are timed: random, the configurations, far apart; or motion, poses that follow each other "
-          "as in a haptic loop, from some of the configurations on, where warm starts are tried, too")
+          "Poses that are timed: random, those of the set, far apart; or motion, poses that follow each other as in a "
+          "haptic loop, where warm starts are tried, too")
+      ->type_name("ORDER")
       ->check(CLI::IsMember({"random", "motion"}))
       ->capture_default_str();
   command
       ->add_option("--threads", options->threads,
                    "Threads that a query may use: algorithms with a parameter `threads` are tried with as many, with "
                    "half of them and so on, and with one")
+      ->type_name("N")
       ->check(CLI::Range(1u, k_most_threads))
       ->capture_default_str();
   command->callback([options] { run(*options); });

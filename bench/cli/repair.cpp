@@ -131,17 +131,23 @@ void repair(const Arguments& arguments) {
 void add_repair_command(CLI::App& app) {
   auto* const command = app.add_subcommand("repair", "Close and orient a damaged mesh");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("file", arguments->input, "File, or name of a model (sixdof models list)")->required();
+  command->add_option("file", arguments->input, "A mesh file, or a model's name (sixdof models list)")
+      ->required()
+      ->type_name("MESH");
   command
       ->add_option("-o,--output", arguments->output,
                    "File to write: .ply, .off, .obj or .stl; replaced if it exists, but must not be the input. Exit "
                    "code 3 if what is written is still no solid")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   command
       ->add_option("--weld", arguments->options.weld,
-                   "Weld border vertices, and close edges to vertices on them, within this fraction of the diagonal")
+                   "Weld border vertices, and close edges to vertices on them, that are at most so far apart, as a "
+                   "fraction of the diagonal of the mesh's box; 0: only those that are equal")
+      ->type_name("FRACTION")
       ->capture_default_str();
   command->add_option("--max-hole", arguments->options.max_hole, "Fill holes of up to this number of edges; 0: none")
+      ->type_name("N")
       ->capture_default_str();
   command
       ->add_option("--max-fin", arguments->options.max_fin,

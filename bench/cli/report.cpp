@@ -79,15 +79,21 @@ void run(const Arguments& arguments) {
 void add_report_command(CLI::App& app) {
   auto* const command = app.add_subcommand("report", "Show results as one page of figures and tables");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("file", arguments->files, "Result files (JSON)");
-  command->add_option("--series", arguments->series, "Series of sixdof quality -o (HDF5)");
-  command->add_option("-o,--output", arguments->output, "Write the page to this HTML file");
-  command->add_option("--csv", arguments->csv, "Write every table to this folder as CSV");
-  command->add_option("--markdown", arguments->markdown, "Write every table to this folder as Markdown");
-  command->add_option("--svg", arguments->svg, "Write every figure to this folder as SVG (needs node)");
-  command->add_option("--pdf", arguments->pdf,
-                      "Write every figure to this folder as PDF (needs node and rsvg-convert)");
-  command->add_option("--choose", arguments->choices, "COLUMN=VALUE: what figures show; may be repeated")
+  command->add_option("file", arguments->files, "Result files (JSON)")->type_name("FILE");
+  command->add_option("--series", arguments->series, "Series of sixdof quality -o (HDF5); may be repeated")
+      ->type_name("FILE");
+  command->add_option("-o,--output", arguments->output, "Write the page to this file (HTML)")->type_name("FILE");
+  command->add_option("--csv", arguments->csv, "Write every table to this folder, as CSV")->type_name("FOLDER");
+  command->add_option("--markdown", arguments->markdown, "Write every table to this folder, as Markdown")
+      ->type_name("FOLDER");
+  command->add_option("--svg", arguments->svg, "Write every figure to this folder, as SVG (needs Node.js)")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--pdf", arguments->pdf,
+                   "Write every figure to this folder, as PDF (needs Node.js and rsvg-convert)")
+      ->type_name("FOLDER");
+  command->add_option("--choose", arguments->choices, "What figures show at first (below); may be repeated")
+      ->type_name("COLUMN=VALUE")
       ->allow_extra_args(false);
   command->callback([arguments] { run(*arguments); });
   add_examples(*command, "sixdof report results.json -o report.html",

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -56,48 +58,82 @@ struct MakeOptions {
 
 void make(const MakeOptions& options, bool has_margin) {
   if (options.family.empty() == options.poses.empty()) {
-    throw BadArgument("name a family, or give --bodies and --poses");
+    throw BadArgument("name a family, or give a table of --poses");
   }
-  if (options.poses.empty() != options.folder.empty()) throw BadArgument("--bodies and --poses belong together");
+  if (options.poses.empty() && !options.folder.empty()) throw BadArgument("--bodies needs a table of --poses");
   scene::SceneNumbers numbers = options.numbers;
   if (has_margin) numbers.margin = options.margin;
-  const Scene made = options.family.empty() ? scene::read_scene_csv(options.folder, options.poses, options.margin)
+  std::filesystem::path folder = options.folder;
+  if (folder.empty()) folder = std::filesystem::absolute(options.poses).parent_path();
+  const Scene made = options.family.empty() ? scene::read_scene_csv(folder, options.poses, options.margin)
                                             : scene::make_scene(options.family, numbers);
   scene::save_scene(made, options.output);
   print_summary(made, options.output);
 }
 
+constexpr const char* k_table =
+    R"(A table of poses (CSV) has a row for each body in frame 0, and one wherever a body moves:
+  frame,body,mesh,tx,ty,tz,qw,qx,qy,qz,fixed,ignored
+  0,1,base.stl,0,0,0,1,0,0,0,1,2
+  0,2,torus-1k,1.5,0,0,1,0,0,0,,
+  1,2,,1.4,0,0,1,0,0,0,,
+body is a number, mesh a file of the --bodies folder or a model's name, then the translation and unit quaternion of the
+body's pose in the world. fixed (1: never moves) and ignored (bodies whose pair with this one does not matter, as "2 5")
+may be left out. Columns in any order; separated by commas, semicolons or tabs.)";
+
 void add_make(CLI::App& group) {
-  auto* const command = group.add_subcommand("make", "Make a scene of a family, or of mesh files and a table of poses");
+  auto* const command = group.add_subcommand("make", "Make a scene of a family, or of meshes and a table of poses");
   const auto options = std::make_shared<MakeOptions>();
-  std::string families = "Families:";
+  std::string families = "Families:\n";
+  std::vector<std::string> names;
   for (const scene::SceneFamily& family : scene::scene_families()) {
-    families += fmt::format("\n  {:<9} {}", family.name, family.stresses);
+    families += help_entry(std::string(family.name), std::string(family.stresses));
+    names.emplace_back(family.name);
   }
-  command->add_option("family", options->family, "Family (below)");
-  command->add_option("-n,--count", options->numbers.bodies, "Number of bodies")->capture_default_str();
+  const std::string of_family = "Of a family", of_table = "Of a table of poses";
+  command->add_option("family", options->family, "Kind of scene (below)")->type_name("FAMILY")->check(words_of(names));
+  command->add_option("-o,--output", options->output, "The scene to write (HDF5)")->required()->type_name("FILE");
+  auto* const margin = command
+                           ->add_option("--margin", options->margin,
+                                        "Largest distance of pairs that are near: of a family in mean sizes of its "
+                                        "bodies, of a table a length")
+                           ->type_name("X");
+  command->add_option("-n,--count", options->numbers.bodies, "Number of bodies")
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(of_family);
   command->add_option("--frames", options->numbers.frames, "Number of frames, the start included")
-      ->capture_default_str();
-  command->add_option("--density", options->numbers.density, "Volume of the bodies' boxes over that of the space");
-  command->add_option("--size-ratio", options->numbers.size_ratio, "Largest over smallest body of a shape");
-  command->add_option("--moving", options->numbers.moving, "Share of the bodies that moves in a frame, 0 to 1");
-  command->add_option("--step", options->numbers.step, "Largest translation in a frame, in sizes of the body");
-  auto* const margin = command->add_option("--margin", options->margin,
-                                           "Margin of near pairs: in mean sizes of the bodies, with --poses a length");
-  command->add_option("--seed", options->numbers.seed, "Seed")->capture_default_str();
-  command->add_option("--bodies", options->folder, "Folder of mesh files, instead of a family");
-  command->add_option("--poses", options->poses, "Table of poses: frame,body,mesh,tx,ty,tz,qw,qx,qy,qz (CSV)");
-  command->add_option("-o,--output", options->output, "File to write")->required();
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(of_family);
+  const auto add = [&](const char* name, auto& value, const char* meaning) {
+    command->add_option(name, value, meaning)->type_name("X")->default_str("the family's own")->group(of_family);
+  };
+  add("--density", options->numbers.density, "Volume of the bodies' boxes over that of the space");
+  add("--size-ratio", options->numbers.size_ratio, "Largest over smallest body of a shape");
+  add("--moving", options->numbers.moving, "Share of the bodies that moves in a frame, 0 to 1");
+  add("--step", options->numbers.step, "Largest translation in a frame, in sizes of the body");
+  command->add_option("--seed", options->numbers.seed, "Seed of positions and motion")
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(of_family);
+  command->add_option("--poses", options->poses, "The table (CSV, below), instead of a family")
+      ->type_name("FILE")
+      ->group(of_table);
+  command->add_option("--bodies", options->folder, "Folder of its mesh files")
+      ->type_name("FOLDER")
+      ->default_str("that of the table")
+      ->group(of_table);
   command->callback([options, margin] { make(*options, margin->count() > 0); });
   add_examples(*command, "sixdof scene make cube -n 100 --frames 10 -o cube.h5",
-               "sixdof scene make pile -n 50 --frames 5 --seed 2 -o pile.h5", families);
+               "sixdof scene make pile -n 50 --frames 5 --seed 2 -o pile.h5", families + "\n" + k_table);
 }
 
 void add_info(CLI::App& group) {
-  auto* const command = group.add_subcommand("info", "What a scene holds");
+  auto* const command = group.add_subcommand("info", "Print what a scene holds: bodies, frames, pairs");
   const auto file = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("file", *file, "Scene")->required();
+  command->add_option("file", *file, "The scene (HDF5)")->required()->type_name("FILE");
   command->add_flag("--json", *json, "As JSON");
   command->callback([file, json] {
     const Scene loaded = scene::load_scene(*file);
@@ -109,7 +145,8 @@ void add_info(CLI::App& group) {
 }  // namespace
 
 void add_scene_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("scene", "Scenes of many bodies: make them, look at them, replay them");
+  auto* const command =
+      app.add_subcommand("scene", "Make scenes of many bodies, and replay them to algorithms that find the pairs");
   command->require_subcommand(1);
   add_make(*command);
   add_info(*command);

@@ -15,7 +15,9 @@
 #include <sixdof/scene/scene_file.h>
 #include <sixdof/scene/score.h>
 #include "bench/cli/scene.h"
+#include "bench/cli/scene_play.h"
 #include "bench/cli/shared.h"
+#include "bench/common/duration.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
 #include "bench/common/run_guarded.h"
@@ -31,20 +33,23 @@ using scene::Scene;
 using scene::SceneAlgorithm;
 using scene::Truth;
 
-struct PlayOptions {
-  std::string file;
-  std::vector<std::string> algorithms, questions{"touching"};
-  std::vector<std::uint32_t> bodies;
-  std::string frames;
-  unsigned threads = 0;
-  bool json = false;
-};
+constexpr const char* k_details =
+    R"(Questions:
+  touching                all pairs of bodies that have a point in common
+  near                    all pairs whose surfaces are no further apart than the scene's margin
+  closest                 the closest pair
+  wrenches                forces and torques by the overlap volume on bodies that touch others
+A body inside another one touches it, as in sixdof query; libraries look at surfaces only, and such pairs that they do not
+report are counted as nested. Distances are those of surfaces. Open meshes have no inside.
 
-/// What is played of the file.
-struct Part {
-  Scene scene;
-  std::size_t first = 0;  ///< Its first frame's number in the file.
-};
+Times are of a frame: cpu of all threads, wall by the clock, the first frame apart, in which all pairs are new; of a scene
+with one frame they are those of that frame. *: least cpu among those without faults; !: pairs missed or wrong, with a
+command that shows the first again; grazing: such pairs of bodies that just touch, which are no fault; nor is nested. What does not
+answer a question is left out, with a line. Truth is every pair in every frame by the distance oracle, kept in the cache.
+
+Columns of --list: question, algorithm, frame; of a pair body, other and their distance (the meshes' unit); of a wrench
+body, force fx, fy, fz and torque tx, ty, tz about the centre of its box, in the world's frame. --list --json: an array
+with an object for each question, algorithm and frame.)";
 
 struct NamedPlay {
   const SceneAlgorithm& algorithm;
@@ -52,19 +57,45 @@ struct NamedPlay {
   std::string reproduction;  ///< The first wrong answer's command; empty if all are right.
 };
 
-std::vector<const SceneAlgorithm*> choose(const scene::SceneAlgorithms& all, const PlayOptions& options,
-                                          Question question) {
-  std::vector<const SceneAlgorithm*> chosen;
-  for (const std::string& name : options.algorithms) {
+/// The answers to one question.
+struct Played {
+  Question question;
+  Truth truth;
+  std::vector<NamedPlay> plays;
+  std::vector<LeftOut> left_out;
+};
+
+/// Those that were named, or all but references, as far as they answer the question; who does not is left out.
+Asked choose(const scene::SceneAlgorithms& all, const std::vector<std::string>& names, Question question) {
+  Asked asked{.question = question, .algorithms = {}, .left_out = {}};
+  for (const std::string& name : names) {
     const SceneAlgorithm& algorithm = scene::find_algorithm(all, name);
-    scene::check_answers(algorithm.traits(), question);
-    chosen.push_back(&algorithm);
+    if (algorithm.traits().answers_to(question)) {
+      asked.algorithms.push_back(&algorithm);
+    } else {
+      asked.left_out.push_back({name, "does not answer this question"});
+    }
   }
-  if (!options.algorithms.empty()) return chosen;
+  if (!names.empty()) return asked;
   for (const auto& algorithm : all) {
-    if (algorithm->traits().by_default && algorithm->traits().answers_to(question)) chosen.push_back(algorithm.get());
+    const scene::SceneTraits& traits = algorithm->traits();
+    if (traits.by_default && traits.answers_to(question)) asked.algorithms.push_back(algorithm.get());
   }
-  return chosen;
+  return asked;
+}
+
+bool has_faults(const NamedPlay& named) {
+  return named.play.score.failed() || (named.algorithm.traits().own && !named.play.score.same_bits);
+}
+
+/// The least processor time of a frame among those without faults; null if all have some.
+const NamedPlay* find_fastest(const std::vector<NamedPlay>& plays) {
+  const NamedPlay* fastest = nullptr;
+  for (const NamedPlay& each : plays) {
+    if (has_faults(each)) continue;
+    if (fastest == nullptr || each.play.timing.processor_us < fastest->play.timing.processor_us) fastest = &each;
+  }
+  return fastest;
 }
 
 /// Share of a count that is large, in percent: two digits are significant.
@@ -102,39 +133,46 @@ std::string reproduction(const Part& part, const PlayOptions& options, Question 
   return fmt::format("{} --frames {}:{}", command, part.first, part.first + wrong.frame);
 }
 
-void print_table(const Scene& scene, Question question, const Truth& truth, const std::vector<NamedPlay>& plays) {
-  fmt::print("{}, {}: {} bodies, {} frames, {} true pairs in all frames, truth {}\n",
-             scene.name.empty() ? "scene" : scene.name, to_string(question), scene.bodies.size(), scene.frames.size(),
-             truth.pairs(), truth.hash);
-  fmt::print("{:<20} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6} {:>7} {:>9} {:>9} {:>8} {:>5}\n", "", "cpu, us",
-             "wall, us", "p99", "max", "first", "missed", "wrong", "grazing", "false per", "looked at", "put off",
-             "same");
-  fmt::print("{:<20} {:>10} {:>10} {:>10} {:>10} {:>10} {:>7} {:>6} {:>7} {:>9} {:>9} {:>8} {:>5}\n", "algorithm",
-             "per frame", "per frame", "", "", "frame", "", "", "", "true pair", "of all, %", "of th., %", "bits");
-  for (const auto& [algorithm, play, again] : plays) {
-    const auto& t = play.timing;
-    const auto& s = play.score;
-    const auto candidates = static_cast<double>(play.work.candidates);
-    fmt::print(
-        "{:<20} {:>10.4g} {:>10.4g} {:>10.4g} {:>10.4g} {:>10.4g} {:>7} {:>6} {:>7} {:>9.3g} {:>9} {:>8} {:>5}\n",
-        algorithm.traits().name, t.processor_us, t.mean_us, t.p99_us, t.max_us, t.first_us, s.missed, s.wrong,
-        s.grazing, play.false_per_true(), percent(candidates, static_cast<double>(play.pairs_in_all)),
-        percent(static_cast<double>(play.work.put_off), candidates), s.same_bits ? "yes" : "-");
+void print_table(const Scene& scene, const Played& played) {
+  fmt::print("{}, {}: {} bodies, {} {}, {} true pairs in all frames, truth {}\n",
+             scene.name.empty() ? "scene" : scene.name, to_string(played.question), scene.bodies.size(),
+             scene.frames.size(), scene.frames.size() == 1 ? "frame" : "frames", played.truth.pairs(),
+             played.truth.hash);
+  constexpr const char* k_line =
+      "{:<22} {:>9} {:>9} {:>9} {:>9} {:>9} {:>7} {:>6} {:>7} {:>7} {:>9} {:>9} {:>8} {:>5}\n";
+  fmt::print(k_line, "", "cpu", "wall", "p99", "max", "first", "missed", "wrong", "grazing", "nested", "false per",
+             "looked at", "put off", "same");
+  fmt::print(k_line, "  algorithm", "per frame", "per frame", "", "", "frame", "", "", "", "", "true pair", "of all, %",
+             "of th., %", "bits");
+  const auto time = [](double us) { return duration_text(1e-6 * us); };
+  const NamedPlay* const fastest = find_fastest(played.plays);
+  for (const NamedPlay& each : played.plays) {
+    const auto& t = each.play.timing;
+    const auto& s = each.play.score;
+    const auto candidates = static_cast<double>(each.play.work.candidates);
+    const char* const mark = has_faults(each) ? "!" : &each == fastest ? "*" : " ";
+    fmt::print(k_line, fmt::format("{} {}", mark, each.algorithm.traits().name), time(t.processor_us), time(t.mean_us),
+               time(t.p99_us), time(t.max_us), time(t.first_us), s.missed, s.wrong, s.grazing, s.nested,
+               fmt::format("{:.3g}", each.play.false_per_true()),
+               percent(candidates, static_cast<double>(each.play.pairs_in_all)),
+               percent(static_cast<double>(each.play.work.put_off), candidates), s.same_bits ? "yes" : "-");
   }
-  for (const auto& [algorithm, play, again] : plays) {
+  for (const auto& [algorithm, play, again] : played.plays) {
     if (!play.score.first) continue;
     const scene::WrongPair& wrong = *play.score.first;
     fmt::print("! {}: {} missed, {} wrong; the first: frame {}, bodies {} and {}, distance {:.6g}, {}\n  {}\n",
                algorithm.traits().name, play.score.missed, play.score.wrong, wrong.frame, wrong.pair.a, wrong.pair.b,
                wrong.truth, wrong.missed ? "not reported" : "reported", again);
   }
+  for (const auto& [algorithm, reason] : played.left_out) fmt::print("- {}: left out: {}\n", algorithm, reason);
 }
 
-nlohmann::ordered_json json_of(const NamedPlay& named) {
+nlohmann::ordered_json json_of(const NamedPlay& named, bool is_fastest) {
   const Play& play = named.play;
   nlohmann::ordered_json json;
   json["algorithm"] = named.algorithm.traits().name;
   json["version"] = named.algorithm.traits().version;
+  json["fastest"] = is_fastest;
   json["processor_us"] = play.timing.processor_us;
   json["mean_us"] = play.timing.mean_us;
   json["p99_us"] = play.timing.p99_us;
@@ -144,6 +182,7 @@ nlohmann::ordered_json json_of(const NamedPlay& named) {
   json["missed"] = play.score.missed;
   json["wrong"] = play.score.wrong;
   json["grazing"] = play.score.grazing;
+  json["nested"] = play.score.nested;
   json["largest_error"] = play.score.largest_error;
   json["same_bits"] = play.score.same_bits;
   json["hash"] = play.score.hash;
@@ -164,19 +203,72 @@ nlohmann::ordered_json json_of(const NamedPlay& named) {
   return json;
 }
 
-std::vector<NamedPlay> play_all(const Part& part, const PlayOptions& options, Question question, const Truth& truth,
-                                const std::vector<const SceneAlgorithm*>& chosen) {
-  std::vector<NamedPlay> plays;
-  for (const SceneAlgorithm* algorithm : chosen) {
-    NamedPlay& last = plays.emplace_back(
-        NamedPlay{*algorithm, scene::play(part.scene, *algorithm, question, truth, InterruptGuard::requested), ""});
-    if (const auto& wrong = last.play.score.first) {
-      last.reproduction = reproduction(part, options, question, *algorithm, *wrong);
-      // Frames are those of the file.
-      last.play.score.first->frame += part.first;
+nlohmann::ordered_json json_of(const Played& played) {
+  nlohmann::ordered_json json{{"question", to_string(played.question)},
+                              {"truth", played.truth.hash},
+                              {"true_pairs", played.truth.pairs()},
+                              {"algorithms", nlohmann::ordered_json::array()},
+                              {"left_out", nlohmann::ordered_json::array()}};
+  const NamedPlay* const fastest = find_fastest(played.plays);
+  for (const NamedPlay& each : played.plays) json["algorithms"].push_back(json_of(each, &each == fastest));
+  for (const auto& [algorithm, reason] : played.left_out) {
+    json["left_out"].push_back({{"algorithm", algorithm}, {"reason", reason}});
+  }
+  return json;
+}
+
+NamedPlay play_one(const Part& part, const PlayOptions& options, Question question, const Truth& truth,
+                   const SceneAlgorithm& algorithm) {
+  NamedPlay named{algorithm, scene::play(part.scene, algorithm, question, truth, InterruptGuard::requested), ""};
+  if (auto& wrong = named.play.score.first) {
+    named.reproduction = reproduction(part, options, question, algorithm, *wrong);
+    wrong->frame += part.first;  // frames are those of the file
+  }
+  return named;
+}
+
+/// Asks every algorithm. One that cannot answer this scene is left out; all are, if there is no truth.
+Played play_question(const Part& part, const PlayOptions& options, const Asked& asked) {
+  Played played{.question = asked.question, .truth = {}, .plays = {}, .left_out = asked.left_out};
+  if (asked.algorithms.empty()) return played;
+  try {
+    played.truth = scene::truth_of(part.scene, asked.question, InterruptGuard::requested);
+  } catch (const BadMesh& e) {
+    for (const SceneAlgorithm* each : asked.algorithms) played.left_out.push_back({each->traits().name, e.what()});
+    return played;
+  }
+  for (const SceneAlgorithm* algorithm : asked.algorithms) {
+    try {
+      played.plays.push_back(play_one(part, options, asked.question, played.truth, *algorithm));
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& e) {
+      if (algorithm->traits().own) throw;
+      played.left_out.push_back({algorithm->traits().name, e.what()});
     }
   }
-  return plays;
+  return played;
+}
+
+void judge(const Part& part, const PlayOptions& options, const std::vector<Asked>& asked) {
+  auto json = nlohmann::ordered_json::array();
+  std::string differs, left_out;
+  bool has_answers = false;
+  for (const Asked& each : asked) {
+    const Played played = play_question(part, options, each);
+    for (const NamedPlay& named : played.plays) {
+      if (named.algorithm.traits().own && !named.play.score.same_bits) differs = named.algorithm.traits().name;
+    }
+    has_answers = has_answers || !played.plays.empty();
+    if (!played.left_out.empty()) {
+      left_out = fmt::format("{}: {}: {}", to_string(played.question), played.left_out.front().algorithm,
+                             played.left_out.front().reason);
+    }
+    options.json ? json.push_back(json_of(played)) : print_table(part.scene, played);
+  }
+  if (options.json) fmt::print("{}\n", json_text(json));
+  if (!has_answers) throw BadArgument("no question has an answer; " + left_out);
+  if (!differs.empty()) throw DefectsFound(fmt::format("{} has not the bits of the truth", differs));
 }
 
 void play(const PlayOptions& options) {
@@ -185,52 +277,49 @@ void play(const PlayOptions& options) {
     const auto [first, last] = parse_frames(options.frames, part.scene);
     part = {.scene = scene::excerpt(part.scene, options.bodies, first, last), .first = first};
   }
-  const Scene& scene = part.scene;
   const scene::SceneAlgorithms all = all_scene_algorithms();
-  std::vector<Question> questions;
-  for (const std::string& word : options.questions) questions.push_back(scene::parse_question(word));
-  for (const Question question : questions) choose(all, options, question);  // refuses before anything is measured
-  auto json = nlohmann::ordered_json::array();
-  std::string differs;
-  parallel::with_threads(options.threads, [&] {
-    for (const Question question : questions) {
-      const Truth truth = scene::truth_of(scene, question, InterruptGuard::requested);
-      const std::vector<NamedPlay> plays = play_all(part, options, question, truth, choose(all, options, question));
-      nlohmann::ordered_json answers{
-          {"question", to_string(question)}, {"truth", truth.hash}, {"true_pairs", truth.pairs()}};
-      for (const NamedPlay& each : plays) {
-        answers["algorithms"].push_back(json_of(each));
-        if (each.algorithm.traits().own && !each.play.score.same_bits) differs = each.algorithm.traits().name;
-      }
-      if (!options.json) print_table(scene, question, truth, plays);
-      json.push_back(std::move(answers));
-    }
-  });
-  if (options.json) fmt::print("{}\n", json_text(json));
-  if (!differs.empty()) throw DefectsFound(fmt::format("{} has not the bits of the truth", differs));
+  std::vector<std::string> names = options.algorithms;
+  if (names.empty() && options.list) names = {"exact"};
+  std::vector<Asked> asked;
+  for (const std::string& word : options.questions) asked.push_back(choose(all, names, scene::parse_question(word)));
+  parallel::with_threads(options.threads,
+                         [&] { options.list ? list_answers(part, asked, options.json) : judge(part, options, asked); });
 }
 
 }  // namespace
 
 void add_scene_play(CLI::App& group) {
-  auto* const command = group.add_subcommand("play", "Replay a scene to algorithms: time, work and misses");
+  auto* const command =
+      group.add_subcommand("play", "Replay a scene to algorithms: time, work and misses, or the pairs");
   const auto options = std::make_shared<PlayOptions>();
-  command->add_option("file", options->file, "Scene")->required();
-  command->add_option("--algorithms", options->algorithms, "Names, separated by commas; default: all but references")
-      ->delimiter(',');
-  command->add_option("--question", options->questions, "touching, near, closest, wrenches; separated by commas")
+  std::vector<std::string> questions;
+  for (const Question question : scene::k_questions) questions.emplace_back(to_string(question));
+  command->add_option("file", options->file, "The scene (HDF5)")->required()->type_name("FILE");
+  command->add_option("--algorithms", options->algorithms, "Who is asked: exact,fcl-hash,...")
+      ->type_name("PAIR-FINDER")
+      ->delimiter(',')
+      ->default_str("all but references; with --list, exact");
+  command->add_option("--question", options->questions, "What is asked in each frame (below): touching,near")
+      ->type_name("QUESTION")
+      ->check(words_of(questions))
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--bodies", options->bodies, "Identifiers, separated by commas: only these bodies")
-      ->delimiter(',');
-  command->add_option("--frames", options->frames, "F or FIRST:LAST, from 0: only these frames");
-  command->add_option("--threads", options->threads, "Threads of this project's own; 0: as many as there are")
+  command->add_flag("--list", options->list,
+                    "Print pairs, distances and wrenches of each frame instead of times, as CSV or with --json");
+  command->add_option("--bodies", options->bodies, "Only these bodies, by their identifiers: 3,17")
+      ->type_name("ID")
+      ->delimiter(',')
+      ->default_str("all");
+  command->add_option("--frames", options->frames, "Only these frames, from 0: 12, or 12:20")
+      ->type_name("FRAMES")
+      ->default_str("all");
+  command->add_option("--threads", options->threads, "Threads of sixdof's own algorithms; 0: as many as there are")
+      ->type_name("N")
       ->capture_default_str();
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { play(*options); });
   add_examples(*command, "sixdof scene play cube.h5 --algorithms exact,all-pairs --question touching,near",
-               "sixdof scene play pile.h5 --threads 1",
-               "Truth is every pair in every frame by the distance oracle; it is kept in the cache.");
+               "sixdof scene play pile.h5 --question near --frames 2 --list", k_details);
 }
 
 }  // namespace sixdof::cli

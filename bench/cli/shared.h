@@ -9,6 +9,7 @@
 
 #include <sixdof/query/registry.h>
 #include "bench/common/all_algorithms.h"
+#include "bench/common/help_format.h"
 
 /// What several commands share.
 
@@ -35,10 +36,11 @@ struct AlgorithmOptions {
 /// Adds --algorithm and -p,--parameter NAME=VALUE. @returns the option --algorithm
 inline CLI::Option* add_algorithm_options(CLI::App& command, AlgorithmOptions& options,
                                           const std::string& description) {
-  auto* const algorithm = command.add_option("--algorithm", options.name, description);
+  auto* const algorithm = command.add_option("--algorithm", options.name, description)->type_name("ALGORITHM");
   command
       .add_option("-p,--parameter", options.parameters,
-                  "Parameter of the algorithm: NAME=VALUE (sixdof algorithms lists them); may be repeated")
+                  "Parameter of the algorithm (sixdof algorithms lists them); may be repeated")
+      ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   return algorithm;
 }

@@ -86,18 +86,26 @@ void run_show(const Arguments& arguments) {
 }  // namespace
 
 void add_show_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("show", "Draw what an algorithm prepares of a mesh, as a coloured PLY");
+  auto* const command = app.add_subcommand(
+      "show", "Write what an algorithm makes of a mesh (spheres, voxels, points) as a coloured PLY file");
   const auto arguments = std::make_shared<Arguments>();
   add_algorithm_options(*command, arguments->algorithm, "ist, vps or vps-field")->required();
-  command->add_option("--model", arguments->model, "A model's name or a mesh file")->required();
-  command->add_option("-o,--output", arguments->output, "The PLY file; replaced if it exists")->required();
-  command->add_option("--part", arguments->part,
-                      "ist: spheres (by radius) or balls (of the hierarchy, by level); vps and vps-field: voxels (by "
-                      "layer) or points (with inward normals, by area). Default: the first");
+  command->add_option("--model", arguments->model, "A model's name or a mesh file")->required()->type_name("MESH");
+  command->add_option("-o,--output", arguments->output, "The PLY file; replaced if it exists")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--part", arguments->part,
+                   "ist: spheres (by radius) or balls (of the hierarchy, by level); vps and vps-field: voxels (by "
+                   "layer) or points (with inward normals, by area)")
+      ->type_name("PART")
+      ->default_str("the first");
   command->add_option("--level", arguments->level, "With --part balls: level of the hierarchy, from 1 (below the root)")
+      ->type_name("N")
       ->check(CLI::Range(1, 64));
   command
       ->add_option("--keep", arguments->keep, "Cut the body open: draw only this fraction of its bounding box along x")
+      ->type_name("FRACTION")
       ->check(CLI::Range(0.0, 1.0));
   command->callback([arguments] { run_show(*arguments); });
   add_examples(*command, "sixdof show --algorithm vps --model cone-1k --keep 0.5 -o voxels.ply",

@@ -140,40 +140,50 @@ void add_stress_command(CLI::App& app) {
       app.add_subcommand("stress", "Ask algorithms hard cases with known answers, and show where each one breaks");
   const auto options = std::make_shared<Options>();
   command
-      ->add_option(
-          "--algorithms,--algorithm", options->algorithms,
-          "One or more; if left out, all but null, slow ones and those of convex hulls. generate-distances and "
-          "generate-volumes are the generators of sets")
+      ->add_option("--algorithms,--algorithm", options->algorithms,
+                   "One or more; generate-distances and generate-volumes are the generators of sets")
+      ->type_name("ALGORITHM")
+      ->default_str("all but null, slow ones and those of convex hulls")
       ->delimiter(',')
       ->allow_extra_args(false);
-  std::string names;
-  for (const stability::Family& family : stability::families())
-    names += fmt::format("\n  {:<15} {} Sweep: {}.", family.name, family.sentence, family.parameter);
-  command->add_option("--families,--family", options->families, "One or more (default: all)")
+  std::string names = "Families:\n";
+  for (const stability::Family& family : stability::families()) {
+    names += help_entry(std::string(family.name), fmt::format("{} Sweep: {}.", family.sentence, family.parameter));
+  }
+  command->add_option("--families,--family", options->families, "Kinds of hard cases (below), one or more")
+      ->type_name("FAMILY")
+      ->default_str("all")
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_option("--effort", options->effort, "How many cases are made and how long worse ones are searched for")
+      ->type_name("EFFORT")
       ->check(CLI::IsMember({"quick", "full"}))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Of the generated cases and the searches")->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of the cases and searches")->type_name("N")->capture_default_str();
   command
       ->add_option("--cases", options->cases,
                    "Folder for the meshes that the printed commands read, and for prepared structures unless "
                    "SIXDOF_CACHE is set")
+      ->type_name("FOLDER")
       ->capture_default_str();
   command
       ->add_option("--query-timeout", options->silence_s,
                    "Longest time of one query or one preparation, in seconds; a process that takes longer is ended")
+      ->type_name("SECONDS")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--memory-limit", options->memory_gb, "Data of each process in GB")
+  command->add_option("--memory-limit", options->memory_gb, "Memory of each process, in GB")
+      ->type_name("GB")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "Write the list of cells to this JSON file");
+  command
+      ->add_option("-o,--output", options->output,
+                   "Write the list of cells, of each algorithm and family, to this file (JSON)")
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run_stress_command(*options); });
   add_examples(*command, "sixdof stress --algorithms exact,fcl-obbrss --families kissing,grazing",
-               "sixdof stress --algorithms exact --families scale --json -o stability.json", "Families:" + names);
+               "sixdof stress --algorithms exact --families scale --json -o stability.json", names);
 }
 
 }  // namespace sixdof::cli

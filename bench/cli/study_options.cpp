@@ -11,25 +11,36 @@
 namespace sixdof::cli {
 
 void add_study_options(CLI::App& command, StudyOptions& options) {
-  auto* const pairs = command.add_option("--pair", options.pairs, "Pairs of the committed sets: elephant,bunny");
-  pairs->delimiter(',');
-  auto* const sets = command.add_option("--set", options.sets, "Configuration sets of your own; may be repeated");
-  sets->allow_extra_args(false)->excludes(pairs);
+  auto* const pairs =
+      command.add_option("--pair", options.pairs, "Pairs of the sets that come with sixdof: elephant,bunny");
+  pairs->delimiter(',')->type_name("PAIR");
+  auto* const sets = command.add_option("--set", options.sets, "A configuration set of your own; may be repeated");
+  sets->type_name("FILE")->allow_extra_args(false)->excludes(pairs);
   auto* const a = command.add_option("--a", options.a,
                                      "Fixed mesh A, a model's name or a file, instead of --pair: measured on a coarse "
                                      "set that is made in seconds and kept in the cache");
-  a->excludes(pairs)->excludes(sets);
-  command.add_option("--b", options.b, "Moving mesh B, likewise; a copy of A if left out")->needs(a);
-  command.add_option("--algorithms", options.algorithms, "vps,ist,...; all that answer if left out")->delimiter(',');
+  a->type_name("MESH")->excludes(pairs)->excludes(sets);
+  command.add_option("--b", options.b, "Moving mesh B, likewise")
+      ->type_name("MESH")
+      ->default_str("a copy of A")
+      ->needs(a);
+  command.add_option("--algorithms", options.algorithms, "Algorithms to try: vps,ist,...")
+      ->type_name("ALGORITHM")
+      ->default_str("all that answer")
+      ->delimiter(',');
   command
       .add_option("--params", options.values,
-                  "Values of a parameter instead of the algorithm's own sweep: ALGORITHM:NAME=VALUE,VALUE,...; may be "
-                  "repeated, and then every combination is tried")
+                  "Values of a parameter to try, instead of the algorithm's own; may be repeated, and then every "
+                  "combination is tried")
+      ->type_name("ALGORITHM:NAME=VALUE,VALUE,...")
       ->allow_extra_args(false);
-  command.add_option("--seed", options.seed, "Of the configurations")->capture_default_str();
-  command.add_option("--budget", options.budget, "Wall time: 90s, 10min")->capture_default_str();
+  command.add_option("--seed", options.seed, "Seed of the draw of poses")->type_name("N")->capture_default_str();
+  command.add_option("--budget", options.budget, "Longest time of the whole study: 90s, 10min")
+      ->type_name("TIME")
+      ->capture_default_str();
   add_process_options(command, options.process);
-  command.add_option("-o,--output", options.output, "Write the rows to this JSON file; whole after every step");
+  command.add_option("-o,--output", options.output, "Write the rows to this JSON file; it is whole after every step")
+      ->type_name("FILE");
   command.add_flag("--json", options.json, "Print the rows as JSON");
 }
 

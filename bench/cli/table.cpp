@@ -67,10 +67,11 @@ void run(const Arguments& arguments) {
 void add_table_command(CLI::App& app) {
   auto* const command = app.add_subcommand("table", "Print results of sixdof-bench as tables");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("file", arguments->files, "Result files of sixdof-bench (JSON)")->required();
+  command->add_option("file", arguments->files, "Result files of sixdof-bench (JSON)")->required()->type_name("FILE");
   auto* const markdown = command->add_flag("--markdown", arguments->markdown, "As Markdown");
   auto* const json = command->add_flag("--json", arguments->json, "As JSON")->excludes(markdown);
-  command->add_flag("--wide", arguments->wide, "A line per pair and algorithm, a column per bucket")->excludes(json);
+  command->add_flag("--wide", arguments->wide, "One line per pair and algorithm, one column per bucket")
+      ->excludes(json);
   command->callback([arguments] { run(*arguments); });
   add_examples(*command,
                "sixdof-bench --benchmark_filter=/algorithm:exact/pair:torus-knot-10k/distance:05 --sample 32 "

@@ -179,21 +179,27 @@ void verify(const Arguments& arguments) {
 }  // namespace
 
 void add_verify_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("verify", "Measure a sample of a configuration set again, or make it again");
+  auto* const command = app.add_subcommand(
+      "verify", "Measure a sample of a configuration set again, or make it again, and say what is wrong with it");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("file", arguments->file, "The set")->required();
-  command->add_option("--a", arguments->a, "Mesh A, a model's name or a file, if it is not where the set says");
-  command->add_option("--b", arguments->b, "Mesh B, likewise");
-  auto* const sample = command->add_option("--sample", arguments->sample, "Configurations per bucket, drawn at random")
+  command->add_option("file", arguments->file, "The configuration set")->required()->type_name("FILE");
+  command->add_option("--a", arguments->a, "Mesh A, if it is not where the set says: a model's name or a file")
+      ->type_name("MESH");
+  command->add_option("--b", arguments->b, "Mesh B, likewise")->type_name("MESH");
+  auto* const sample = command->add_option("--sample", arguments->sample, "Poses per bucket, drawn at random")
+                           ->type_name("N")
                            ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Of the sample")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Seed of the draw")->type_name("N")->capture_default_str();
   auto* const measuring =
       command->add_option("--oracle", arguments->oracle, "Algorithm with exact distances that measures them")
+          ->type_name("ALGORITHM")
           ->capture_default_str();
   command
-      ->add_option("--again", arguments->again,
-                   "Make all configurations of this many rotations again instead, drawn at random, or of all, and "
-                   "compare bits; exit code 3 if any differ")
+      ->add_option(
+          "--again", arguments->again,
+          "Instead make all poses of N rotations, drawn at random, or of all rotations again, and compare bits; "
+          "exit code 3 if any differ")
+      ->type_name("N|all")
       ->excludes(sample)
       ->excludes(measuring);
   command->add_flag("--json", arguments->json, "As JSON; the exit code is the same");

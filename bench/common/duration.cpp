@@ -34,7 +34,8 @@ double parse_duration(std::string_view option, const std::string& text) {
 std::string duration_text(double seconds) {
   const std::pair<std::string_view, double>* best = &k_units[0];
   for (const auto& unit : k_units) {
-    if (seconds >= unit.second) best = &unit;
+    // What three digits show as 1000 ns is 1 us.
+    if (seconds >= (1.0 - 5e-4) * unit.second) best = &unit;
   }
   return fmt::format("{:.3g} {}", seconds / best->second, best->first);
 }

@@ -29,25 +29,36 @@ ProcessLimits ProcessOptions::limits() const {
 }
 
 void add_process_options(CLI::App& command, ProcessOptions& options) {
+  const std::string group = "Algorithms in processes of their own";
   command
-      .add_flag("--isolate{all}", options.isolate,
-                fmt::format("Run algorithms in processes of their own, so that a crash costs one configuration: "
-                            "--isolate or --isolate=all, =third-party (all but those of this project) or =none. "
-                            "{} if left out",
-                            options.isolate))
-      ->check(CLI::IsMember({"none", "third-party", "all"}));
+      .add_flag(
+          "--isolate{all}", options.isolate,
+          fmt::format("Which ones, so that a crash or a hang costs one query: all (also plain --isolate), those of "
+                      "third parties, or none; {} if left out",
+                      options.isolate))
+      ->check(CLI::IsMember({"none", "third-party", "all"}))
+      ->type_name("WHICH")
+      ->group(group);
   command
       .add_option("--external", options.external,
-                  "An algorithm in any language: NAME=\"PROGRAM ARGUMENTS\", a program that answers the protocol of "
+                  "Add an algorithm in any language: 'NAME=PROGRAM ARGUMENTS', a program that answers the protocol of "
                   "lib/sixdof/process/README.md; may be repeated")
-      ->allow_extra_args(false);
-  command.add_option("--query-timeout", options.query_timeout, "Longest time of a query of an isolated algorithm")
-      ->capture_default_str();
-  command.add_option("--prepare-timeout", options.prepare_timeout, "Longest time that one prepares a pair")
-      ->capture_default_str();
-  command.add_option("--memory-limit", options.memory_gb, "Memory of an isolated algorithm in GB; 0: no limit")
+      ->type_name("NAME=COMMAND")
+      ->allow_extra_args(false)
+      ->group(group);
+  command.add_option("--query-timeout", options.query_timeout, "Longest time of one query: 10s, 50ms")
+      ->type_name("TIME")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--prepare-timeout", options.prepare_timeout, "Longest time of preparing a pair of meshes")
+      ->type_name("TIME")
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--memory-limit", options.memory_gb, "Memory of each process, in GB; 0: no limit")
+      ->type_name("GB")
       ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(group);
 }
 
 std::pair<std::string, std::string> parse_external(const std::string& text) {

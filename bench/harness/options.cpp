@@ -1,8 +1,10 @@
 #include "bench/harness/options.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <iterator>
+#include <memory>
 #include <set>
 #include <string_view>
 
@@ -15,6 +17,8 @@
 
 #include <sixdof/base/data_folder.h>
 #include <sixdof/base/error.h>
+#include "bench/common/completion.h"
+#include "bench/common/help_format.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/shell_text.h"
 #include "bench/common/unknown_word.h"
@@ -28,6 +32,20 @@ constexpr const char* k_default_min_time = "--benchmark_min_time=0.1";
 /// For the rows of an own pair: a table within two minutes, the making of its coarse set included.
 constexpr double k_own_pair_budget_s = 60.0;
 constexpr const char* k_own_pair_min_time = "--benchmark_min_time=0.02";
+
+/// Flags of Google Benchmark, which the parser does not know.
+constexpr std::array k_benchmark_flags{"benchmark_list_tests",
+                                       "benchmark_filter",
+                                       "benchmark_min_time",
+                                       "benchmark_min_warmup_time",
+                                       "benchmark_repetitions",
+                                       "benchmark_enable_random_interleaving",
+                                       "benchmark_report_aggregates_only",
+                                       "benchmark_display_aggregates_only",
+                                       "benchmark_color",
+                                       "benchmark_counters_tabular",
+                                       "benchmark_context",
+                                       "benchmark_time_unit"};
 
 constexpr const char* k_examples =
     "\nExamples:\n"
@@ -104,23 +122,20 @@ std::string initialize_benchmark(const std::vector<std::string>& flags) {
   return count > 1 ? pointers[1] : std::string();
 }
 
-/// Long names of this program's options and of Google Benchmark's, which the parser does not know.
+/// Long names of this program's options and of Google Benchmark's.
 std::vector<std::string> option_names(const CLI::App& app) {
-  std::vector<std::string> names{"benchmark_list_tests",
-                                 "benchmark_filter",
-                                 "benchmark_min_time",
-                                 "benchmark_min_warmup_time",
-                                 "benchmark_repetitions",
-                                 "benchmark_enable_random_interleaving",
-                                 "benchmark_report_aggregates_only",
-                                 "benchmark_display_aggregates_only",
-                                 "benchmark_color",
-                                 "benchmark_counters_tabular",
-                                 "benchmark_context",
-                                 "benchmark_time_unit"};
+  std::vector<std::string> names(k_benchmark_flags.begin(), k_benchmark_flags.end());
   for (const CLI::Option* option : app.get_options())
     std::ranges::copy(option->get_lnames(), std::back_inserter(names));
   return names;
+}
+
+std::string completion_of(const CLI::App& app) {
+  ValueTable values = common_values();
+  values["SUITE"] = {.words = {"default", "own-pair", "all-algorithms", "scenes", "all"}, .files = true};
+  std::vector<std::string> flags;
+  for (const char* name : k_benchmark_flags) flags.push_back(std::string("--") + name);
+  return bash_completion(app, "sixdof-bench", values, flags);
 }
 
 /// The file of a named list of rows, or of the user's own; empty for all rows.
@@ -139,7 +154,11 @@ std::filesystem::path file_of_suite(const std::string& suite) {
 std::filesystem::path default_manifest() { return data_folder() / "fixtures" / "manifest.json"; }
 
 int parse_options(int argc, const char* const* argv, Options& options) {
-  CLI::App app("sixdof-bench: collision queries under Google Benchmark", "sixdof-bench");
+  CLI::App app(
+      "Times yes/no, distance and response queries of every algorithm on the poses of configuration sets, checks every "
+      "answer, and writes rows for `sixdof table` and `sixdof report`. Runs under Google Benchmark.",
+      "sixdof-bench");
+  app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("--version", std::string("sixdof-bench ") + SIXDOF_VERSION);
   app.allow_extras();
   options.manifest = default_manifest();
@@ -147,59 +166,79 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   std::string out_format = "json";
   std::string suite;
   bool no_manifest = false;
-  auto* const manifest =
-      app.add_option("--manifest", options.manifest, "Catalogue of configuration sets")->capture_default_str();
-  app.add_flag("--no-manifest", no_manifest, "No catalogue: only the sets named by --set")->excludes(manifest);
+  auto* const manifest = app.add_option("--manifest", options.manifest, "Catalogue of configuration sets")
+                             ->type_name("FILE")
+                             ->default_str("that of the sets that come with sixdof");
+  app.add_flag("--no-manifest", no_manifest, "No catalogue: only the sets of --set")->excludes(manifest);
   app.add_option("--set", options.sets, "A configuration set of your own (sixdof generate); may be repeated")
+      ->type_name("FILE")
       ->allow_extra_args(false)
       ->check(CLI::ExistingFile);
-  app.add_option("--mesh", options.meshes, "The file of a mesh that is in a set (tray.off for tray); may be repeated")
+  app.add_option("--mesh", options.meshes, "The file of a mesh that a --set names (tray.off for tray); may be repeated")
+      ->type_name("FILE")
       ->allow_extra_args(false)
       ->check(CLI::ExistingFile);
   app.add_option(
-      "--a", options.a,
-      "Fixed mesh A, a model's name or a file. With a --set: where A is now. Without: measure this pair alone, "
-      "on a coarse set that is made in seconds and kept in the cache");
-  app.add_option("--b", options.b, "Moving mesh B, likewise; a copy of A if left out");
+         "--a", options.a,
+         "Fixed mesh A, a model's name or a file: measure this pair alone, on a coarse set that is made in seconds and "
+         "kept in the cache. With a --set: where A is now")
+      ->type_name("MESH");
+  app.add_option("--b", options.b, "Moving mesh B, likewise")->type_name("MESH")->default_str("a copy of A");
   app.add_option(
-      "--suite", suite,
-      "Rows to run: default, own-pair, all-algorithms, scenes (bench/*_suite.json), all, or a file of the same form. "
-      "Without this option: own-pair with --a and no --set; all with a --benchmark_filter or sets of your own; default "
-      "otherwise");
+         "--suite", suite,
+         "Rows to run: default, own-pair, all-algorithms, scenes (bench/*_suite.json), all, or a file of the same form")
+      ->type_name("SUITE")
+      ->default_str("own-pair with --a and no --set; all with --benchmark_filter or your own sets; else default");
   app.add_option("-p,--parameter", options.parameters,
-                 "Parameter of an algorithm: ALGORITHM:NAME=VALUE (sixdof algorithms); may be repeated")
+                 "Parameter of an algorithm (sixdof algorithms lists them); may be repeated")
+      ->type_name("ALGORITHM:NAME=VALUE")
       ->allow_extra_args(false);
-  app.add_option("--sample", options.sample, "Configurations per bucket, drawn by seed; 0 for all")
+  app.add_option("--sample", options.sample, "Poses (configurations) per bucket, drawn at random; 0: all")
+      ->type_name("N")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   auto* const budget =
       app.add_option(
              "--budget", options.budget_s,
-             fmt::format("Seconds for all rows together: samples shrink to fit; 0 for no limit. {} with --a and "
-                         "no --set",
+             fmt::format("Time of all rows together: samples shrink to fit; 0: no limit; {} with --a and no --set",
                          k_own_pair_budget_s))
+          ->type_name("SECONDS")
           ->check(CLI::NonNegativeNumber)
           ->capture_default_str();
-  app.add_option("--seed", options.seed, "Of samples and orders")->capture_default_str();
+  app.add_option("--seed", options.seed, "Seed of samples and orders")->type_name("N")->capture_default_str();
   app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were used");
   add_process_options(app, options.process);
   auto* const out =
       app.add_option("--benchmark_out,--out", options.out,
-                     "Result file; appears whole or not at all. Until then finished rows are in FILE.journal");
+                     "Result file; appears whole or not at all. Until then finished rows are in FILE.journal")
+          ->type_name("FILE");
   auto* const resume =
       app.add_option("--resume", options.out,
                      "Continue the result file of a run that was broken off, with the same arguments: rows that are "
                      "there are not measured again, failed ones are")
+          ->type_name("FILE")
           ->excludes(out)
           ->check([](const std::string& file) { return file.empty() ? "a file is needed" : ""; });
-  app.add_option("--benchmark_out_format", out_format, "Of the result file; csv has no context")
+  app.add_option("--benchmark_out_format", out_format, "Format of the result file; csv has no context")
+      ->type_name("FORMAT")
       ->check(CLI::IsMember({"json", "csv"}))
       ->capture_default_str();
-  app.add_option("--benchmark_format", format, "Of standard output")
+  app.add_option("--benchmark_format", format, "Format of standard output")
+      ->type_name("FORMAT")
       ->check(CLI::IsMember({"console", "json", "csv"}))
       ->capture_default_str();
+  std::string shell;
+  // For the installation, which keeps the script; no row is run.
+  app.add_option("--completion", shell, "Print a script with which a shell completes the options")
+      ->check(CLI::IsMember({"bash"}))
+      ->type_name("SHELL")
+      ->group("");
   try {
     app.parse(argc, argv);
+    if (!shell.empty()) {
+      fmt::print("{}", completion_of(app));
+      return 0;
+    }
   } catch (const CLI::CallForHelp&) {
     fmt::print("{}\nGoogle Benchmark's own flags:\n", app.help());
     benchmark::PrintDefaultHelp();

@@ -35,7 +35,8 @@ std::string take(Json& object, std::string_view context, const std::string& what
   const std::string expected = checksum_of(object, context);
   if (found == expected) return expected;
   const std::size_t at = text.find(found.empty() ? name : found);
-  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size())), '\n');
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size())), '\n');
   throw BadFile(file.string(), fmt::format("line {}", line),
                 fmt::format("cannot be continued: {} {}", what,
                             found.empty() ? "has no checksum: edited, or of another program"

@@ -50,6 +50,7 @@ void report(const scene::Play& play, benchmark::State& state) {
   counters["missed_pairs"] = number(play.score.missed);
   counters["wrong_pairs"] = number(play.score.wrong);
   counters["grazing_pairs"] = number(play.score.grazing);
+  counters["nested_pairs"] = number(play.score.nested);
   counters["same_bits"] = play.score.same_bits ? 1.0 : 0.0;
   counters["false_per_true"] = play.false_per_true();
   counters["pairs_looked_at"] = number(play.work.candidates) / frames;

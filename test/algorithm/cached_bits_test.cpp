@@ -34,16 +34,17 @@ TEST(CachedBits, BelongToTheirVersions) {
   const Mesh b = load_model("cone-1k");
   Registry registry;
   register_core_algorithms(registry);
-  for (const auto& [name, parameters] : std::map<std::string, std::vector<std::string>>{
-           {"ist", {"spheres=200", "spheres_b=100"}}, {"vps", {"voxel_size=0.05"}}, {"vps-field", {"voxel_size=0.05"}}}) {
+  for (const auto& [name, parameters] :
+       std::map<std::string, std::vector<std::string>>{{"ist", {"spheres=200", "spheres_b=100"}},
+                                                       {"vps", {"voxel_size=0.05"}},
+                                                       {"vps-field", {"voxel_size=0.05"}}}) {
     const Algorithm& algorithm = registry.find(name);
     Settings settings = algorithm.settings();
     settings.set_all(parameters);
     ASSERT_NE(algorithm.prepare(a, b, settings), nullptr);
   }
   ::unsetenv("SIXDOF_CACHE");
-  const std::map<std::string, std::string> known{
-  };
+  const std::map<std::string, std::string> known{};
   EXPECT_EQ(contents(folder), known)
       << "a structure has other bits, or another key: raise the version in its key, and name file and content here";
   std::filesystem::remove_all(folder);

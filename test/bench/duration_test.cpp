@@ -22,6 +22,9 @@ TEST(Duration, IsPrintedInItsOwnUnit) {
   EXPECT_EQ(duration_text(12e-6), "12 us");
   EXPECT_EQ(duration_text(90.0), "1.5 min");
   EXPECT_EQ(duration_text(1e-12), "0.001 ns");
+  EXPECT_EQ(duration_text(999.4e-9), "999 ns");
+  EXPECT_EQ(duration_text(999.7e-9), "1 us");
+  EXPECT_EQ(duration_text(999.7e-3), "1 s");
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ TEST_F(Journal, RefusesWhateverWasChangedByItsLine) {
   refuses(lines[0] + lines[2], 2);             // one taken out
   refuses(lines[1] + lines[0] + lines[2], 1);  // moved
   refuses(lines[0] + lines[0], 2);             // repeated
-  refuses(lines[0] + "{\"row\":2}\n", 2);       // added by hand
+  refuses(lines[0] + "{\"row\":2}\n", 2);      // added by hand
   std::ofstream(file) << whole;
   EXPECT_EQ(ResultJournal(file).lines().size(), 3u);
 }

@@ -160,8 +160,8 @@ TEST_F(Store, RefusesEveryRowAndContextThatWasChanged) {
     return names(store.document(false));
   };
   const auto refuses = [&](const Json& changed, const std::string& words) {
-    EXPECT_THAT([&] { resume(changed.dump(2)); },
-                ::testing::ThrowsMessage<BadFile>(::testing::AllOf(HasSubstr(file.string() + ": line "), HasSubstr(words))));
+    EXPECT_THAT([&] { resume(changed.dump(2)); }, ::testing::ThrowsMessage<BadFile>(::testing::AllOf(
+                                                      HasSubstr(file.string() + ": line "), HasSubstr(words))));
   };
   EXPECT_EQ(resume(whole.dump(2)), order);
   EXPECT_EQ(resume(whole.dump()), order) << "blanks and breaks are no values";
@@ -206,7 +206,8 @@ TEST_F(Store, NamesTheLineOfARowThatWasChanged) {
   text[at] = '8';
   std::ofstream(file) << text;
   ResultStore store(order, context);
-  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("checksum", at)), '\n');
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("checksum", at)), '\n');
   EXPECT_THAT([&] { store.open(file, k_json, true); },
               ::testing::ThrowsMessage<BadFile>(HasSubstr("line " + std::to_string(line) + ": ")));
 }

@@ -40,7 +40,9 @@ class Examples : public test::ScratchFolder {
     for (std::string line; std::getline(lines, line);) {
       if (line == "Examples:") {
         section = &examples;
-      } else if (line == "Subcommands:") {
+      } else if (line == "Arguments:" || line == "Options:") {
+        section = nullptr;
+      } else if (!line.empty() && line.front() != ' ' && line.back() == ':') {
         section = &subcommands;
       } else if (!line.empty() && line.front() != ' ') {
         section = nullptr;
@@ -56,7 +58,8 @@ class Examples : public test::ScratchFolder {
         << command << ": no example of this command";
     std::vector<Example> all;
     for (const std::string& line : examples) all.push_back({command, line});
-    for (const std::string& subcommand : subcommands) {
+    const bool has_commands = help.out.find(" COMMAND [options]\n") != std::string::npos;
+    for (const std::string& subcommand : has_commands ? subcommands : std::vector<std::string>()) {
       const auto more = collect(command + " " + subcommand.substr(0, subcommand.find(' ')));
       all.insert(all.end(), more.begin(), more.end());
     }

@@ -50,6 +50,18 @@ TEST(Program, NamesTheUnknownWordAndTheNearestKnownOne) {
         std::pair("query --jsn --a box-12", "sixdof query: --jsn: no such option; did you mean --json?\n"),
         std::pair("query --pse=1", "sixdof query: --pse: no such option; did you mean --pose?\n"),
         std::pair("frobnicate", "sixdof: frobnicate: no such command (sixdof --help lists them)\n"),
+        std::pair("help", "sixdof: help: no such command; did you mean sixdof --help?\n"),
+        std::pair("scene help", "sixdof scene: help: no such command; did you mean sixdof scene --help?\n"),
+        std::pair("hull.stl",
+                  "sixdof: hull.stl: no such command (sixdof --help lists them); sixdof info hull.stl says "
+                  "what is in a file\n"),
+        std::pair(
+            "info cone-1k --grid 45",
+            "sixdof info: --grid: no such option of sixdof info, but of sixdof generate, sixdof equivalent (sixdof "
+            "info --help)\n"),
+        std::pair("models --deadline=1ms",
+                  "sixdof models: --deadline: no such option of sixdof models, but of sixdof recommend (sixdof models "
+                  "--help)\n"),
         std::pair("info --frobnicate", "sixdof info: --frobnicate: no such option (sixdof info --help lists them)\n"),
         std::pair("info a b", "sixdof info: b: unexpected argument (sixdof info --help)\n"),
         std::pair("query --b box-12 --pose 0", "sixdof query: --a is required (sixdof query --help)\n")}) {

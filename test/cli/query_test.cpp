@@ -1,4 +1,6 @@
 #include <cmath>
+#include <fstream>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +10,7 @@
 #include "bench/common/run_guarded.h"
 
 #include "run_program.h"
+#include "scratch_folder.h"
 
 namespace sixdof {
 namespace {
@@ -103,6 +106,87 @@ TEST(Query, InnerSphereTreesHaveTheirForceLawsAndNumbersOfSpheres) {
   EXPECT_NE(cones, force("ist-descent"));
   EXPECT_THAT(answers(std::string(k_boxes) + " --algorithm ist-descent" + spheres).at("settings").get<std::string>(),
               HasSubstr("spheres_b=40"));
+}
+
+TEST(Query, AsksOnlyWhatIsWanted) {
+  const auto json = answers(std::string(k_boxes) + " --only distance");
+  EXPECT_EQ(json.at("distance"), 0.0);
+  for (const char* key : {"colliding", "force", "volume", "no_response"}) EXPECT_TRUE(json.at(key).is_null()) << key;
+  EXPECT_TRUE(json.at("times_ns").at("respond").is_null());
+  EXPECT_FALSE(json.at("times_ns").at("distance").is_null());
+  const auto two = answers(std::string(k_boxes) + " --only collide,respond");
+  EXPECT_EQ(two.at("colliding"), true);
+  EXPECT_FALSE(two.at("force").is_null());
+  EXPECT_TRUE(two.at("distance").is_null());
+  EXPECT_EQ(answers(std::string(k_boxes) + " --only collide --only distance").at("distance"), 0.0);
+  const auto unasked = query(std::string(k_boxes) + " --algorithm fcl-rss --only respond");
+  EXPECT_EQ(unasked.exit_code, k_exit_error);
+  EXPECT_THAT(unasked.err, HasSubstr("fcl-rss gives no answer to respond"));
+  const auto unknown = query(std::string(k_boxes) + " --only force");
+  EXPECT_EQ(unknown.exit_code, k_exit_usage);
+  EXPECT_THAT(unknown.err, HasSubstr("force not in {collide,distance,respond}"));
+}
+
+TEST(Query, APoseNeedsNoQuotes) {
+  const auto quoted = answers("--a box-100 --b box-100 --pose '2.5 0 -0.5 1 0 0 0'");
+  const auto words = answers("--a box-100 --b box-100 --pose 2.5 0 -0.5 1 0 0 0");
+  EXPECT_EQ(words.at("witness_a"), quoted.at("witness_a"));
+  EXPECT_EQ(words.at("distance"), quoted.at("distance"));
+  const auto few = query("--a box-100 --b box-100 --pose 2.5 0 0 1 0 0");
+  EXPECT_EQ(few.exit_code, k_exit_error);
+  EXPECT_THAT(few.err, HasSubstr("6 numbers instead of 7"));
+}
+
+/// Meshes with a border.
+class QueryOfOpenMeshes : public test::ScratchFolder {
+ protected:
+  QueryOfOpenMeshes() {
+    // A box without its lid, 1 x 1 x 1; a triangle; a cube of 0.2, closed.
+    std::ofstream(path("tray.off")) << "OFF\n8 10 0\n"
+                                       "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+                                       "3 0 2 1\n3 0 3 2\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n"
+                                       "3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n";
+    std::ofstream(path("leaf.off")) << "OFF\n3 1 0\n0 0 0\n0.25 0 0\n0 0.25 0\n3 0 1 2\n";
+    EXPECT_EQ(test::run_program(SIXDOF_PROGRAM " models make box-12 --diagonal 0.2 -o " + path("small.off")).exit_code,
+              0);
+  }
+  std::string pair(const char* a, const char* b, const char* pose) const {
+    return "--a " + (std::string(a).find('.') == std::string::npos ? a : path(a)) + " --b " + path(b) + " --pose '" +
+           pose + " 1 0 0 0'";
+  }
+};
+
+TEST_F(QueryOfOpenMeshes, HaveYesNoAndDistanceAndAReasonWhyThereIsNoResponse) {
+  for (const auto& [a, b, pose, distance] :
+       {std::tuple("tray.off", "small.off", "0.5 0.5 3", 1.9), std::tuple("tray.off", "tray.off", "1.5 0 0", 0.5),
+        std::tuple("box-12", "leaf.off", "0 0 2", 1.4), std::tuple("tray.off", "leaf.off", "0.5 0.25 0.5", 0.25)}) {
+    SCOPED_TRACE(pair(a, b, pose));
+    const auto json = answers(pair(a, b, pose));
+    EXPECT_EQ(json.at("status"), "ok");
+    EXPECT_EQ(json.at("colliding"), false);
+    EXPECT_NEAR(json.at("distance"), distance, 0.05);
+    EXPECT_TRUE(json.at("force").is_null());
+    EXPECT_TRUE(json.at("diagnosis").is_null());
+    EXPECT_THAT(json.at("no_response").get<std::string>(), HasSubstr("not closed"));
+    EXPECT_THAT(query(pair(a, b, pose)).out, HasSubstr("no_response "));
+  }
+  EXPECT_EQ(answers(pair("tray.off", "leaf.off", "0 0.5 0.5")).at("colliding"), true);
+  EXPECT_TRUE(answers(pair("tray.off", "leaf.off", "0 0.5 0.5") + " --only collide").at("no_response").is_null());
+  // Asked for nothing but the response, there is no answer.
+  const auto alone = query(pair("tray.off", "leaf.off", "0 0.5 0.5") + " --only respond");
+  EXPECT_EQ(alone.exit_code, k_exit_error);
+  EXPECT_THAT(alone.err, HasSubstr("not closed"));
+}
+
+TEST_F(QueryOfOpenMeshes, ABodyInsideASolidCollidesWithItAndInsideATrayDoesNot) {
+  const auto solid = answers("--a box-12 --b " + path("small.off") + " --pose '0 0 0 1 0 0 0'");
+  EXPECT_EQ(solid.at("colliding"), true);
+  EXPECT_EQ(solid.at("nested"), true);
+  EXPECT_GT(solid.at("distance"), 0.4);
+  EXPECT_TRUE(solid.at("no_response").is_null());
+  const auto tray = answers(pair("tray.off", "small.off", "0.5 0.5 0.5"));
+  EXPECT_EQ(tray.at("colliding"), false);
+  EXPECT_TRUE(tray.at("nested").is_null());
 }
 
 TEST(Query, RefusesBadArgumentsAndNamesThem) {

@@ -1,5 +1,7 @@
 // `sixdof scene make`, `info` and `play`.
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -56,7 +58,8 @@ TEST_F(SceneCommand, PlaysAScene) {
   const auto table = run("play s.h5 --threads 1");
   EXPECT_EQ(table.exit_code, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("pile, touching: 60 bodies, 4 frames, "));
-  EXPECT_THAT(table.out, HasSubstr("\nexact "));
+  EXPECT_THAT(table.out, HasSubstr("\n* "));
+  EXPECT_THAT(table.out, ::testing::ContainsRegex("\n[* ] exact +[0-9.]+ (us|ms) "));
 }
 
 TEST_F(SceneCommand, TakesMeshesAndATableOfPoses) {
@@ -92,6 +95,113 @@ TEST_F(SceneCommand, PlaysSomeBodiesAndFrames) {
   EXPECT_EQ(json_of("play s.h5 --algorithms all-pairs --bodies 3,5,8")[0].at("algorithms")[0].at("pairs_in_all"), 12);
 }
 
+/// A big and a small cube, and one that touches the big one, in one frame: a table beside its meshes.
+class PosesOfOneFrame : public SceneCommand {
+ protected:
+  void SetUp() override {
+    const auto make = [&](const std::string& diagonal, const std::string& file) {
+      const auto made =
+          test::run_program(SIXDOF_PROGRAM " models make box-12 --diagonal " + diagonal + " -o " + path(file));
+      ASSERT_EQ(made.exit_code, 0) << made.err;
+    };
+    make("4", "big.off");
+    make("0.4", "small.off");
+    std::ofstream(path("poses.csv")) << "\xEF\xBB\xBF\"frame\";body;mesh;tx;ty;tz;qw;qx;qy;qz;ignored\r\n"
+                                        "0;1;big.off;+0.5;0;0;1;0;0;0;\r\n0;2;small.off;-0.4;0.1;0;1;0;0;0;\r\n"
+                                        "0;3;cone-1k;1.2;0;0;1;0;0;0;4\r\n0;4;small.off;1.2;0;0.5;1;0;0;0;\r\n";
+    const auto made = run("make --poses poses.csv --margin 0.2 -o s.h5");
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_THAT(made.out, HasSubstr("pairs       5 that matter, 1 ignored\n"));
+  }
+};
+
+TEST_F(PosesOfOneFrame, ListNamesPairsThatTouchNestedOnesToo) {
+  const auto list = run("play s.h5 --list");
+  ASSERT_EQ(list.exit_code, 0) << list.err;
+  EXPECT_EQ(list.out,
+            "question,algorithm,frame,body,other,distance,fx,fy,fz,tx,ty,tz\n"
+            "touching,exact,0,1,2,0,,,,,,\ntouching,exact,0,1,3,0,,,,,,\ntouching,exact,0,1,4,0,,,,,,\n");
+  EXPECT_THAT(run("play s.h5 --list --bodies 1,3").out, ::testing::EndsWith("tz\ntouching,exact,0,1,3,0,,,,,,\n"));
+  // The same as of pairs.
+  const auto pair =
+      test::run_program("cd " + folder().string() +
+                        " && " SIXDOF_PROGRAM " query --a big.off --b small.off --pose '-0.9 0.1 0 1 0 0 0' --json");
+  EXPECT_EQ(json::parse(pair.out).at("colliding"), true);
+  const json near = json_of("play s.h5 --list --question near");
+  ASSERT_EQ(near.size(), 1u);
+  for (const json& each : near[0].at("pairs")) {
+    if (each.at("bodies") == json({1, 2})) ADD_FAILURE() << "their surfaces are further apart than the margin";
+  }
+}
+
+TEST_F(PosesOfOneFrame, ListHasDistancesAndWrenches) {
+  const json list = json_of("play s.h5 --list --question closest,wrenches --algorithms exact,all-pairs");
+  ASSERT_EQ(list.size(), 4u);
+  EXPECT_EQ(list[0].at("question"), "closest");
+  EXPECT_EQ(list[0].at("pairs").size(), 1u);
+  EXPECT_EQ(list[0].at("pairs"), list[1].at("pairs"));
+  EXPECT_EQ(list[3].at("algorithm"), "all-pairs");
+  ASSERT_EQ(list[2].at("wrenches").size(), 4u);
+  EXPECT_EQ(list[2].at("wrenches"), list[3].at("wrenches"));
+  double sum = 0.0, largest = 0.0;
+  for (const json& wrench : list[2].at("wrenches")) {
+    sum += wrench.at("force")[0].get<double>();
+    largest = std::max(largest, std::abs(wrench.at("force")[0].get<double>()));
+  }
+  EXPECT_GT(largest, 0.01);
+  EXPECT_LE(std::abs(sum), 1e-12 * largest) << "forces between bodies";
+  const std::string csv = run("play s.h5 --list --question wrenches").out;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 + 4) << csv;
+  EXPECT_THAT(csv, ::testing::ContainsRegex("\nwrenches,exact,0,3,,,[-0-9.e]+,[-0-9.e]+,[-0-9.e]+,"));
+}
+
+TEST_F(PosesOfOneFrame, HasATime) {
+  const json played = json_of("play s.h5 --algorithms exact,all-pairs")[0];
+  int fastest = 0;
+  for (const json& each : played.at("algorithms")) {
+    EXPECT_GT(each.at("processor_us"), 0.0);
+    EXPECT_EQ(each.at("mean_us"), each.at("first_us"));
+    fastest += each.at("fastest").get<bool>() ? 1 : 0;
+  }
+  EXPECT_EQ(fastest, 1);
+  EXPECT_THAT(run("play s.h5").out, HasSubstr(": 4 bodies, 1 frame, 3 true pairs"));
+}
+
+TEST_F(PosesOfOneFrame, WhatDoesNotAnswerIsLeftOutWithALine) {
+  const auto some = run("play s.h5 --algorithms exact,fcl-hash --question wrenches,touching");
+  if (some.err.find("no algorithm for scenes fcl-hash") != std::string::npos) GTEST_SKIP() << some.err;
+  EXPECT_EQ(some.exit_code, 0) << some.err;
+  EXPECT_THAT(some.out, HasSubstr("\n- fcl-hash: left out: does not answer this question\n"));
+  EXPECT_THAT(some.out, ::testing::ContainsRegex("\n[* ] fcl-hash "));
+  const json played = json_of("play s.h5 --algorithms exact,fcl-hash --question wrenches,touching");
+  EXPECT_EQ(played[0].at("left_out")[0].at("algorithm"), "fcl-hash");
+  EXPECT_EQ(played[0].at("algorithms").size(), 1u);
+  EXPECT_TRUE(played[1].at("left_out").empty());
+  // FCL looks at surfaces; the ball in the ball is no miss of it.
+  EXPECT_EQ(played[1].at("algorithms")[1].at("missed"), 0);
+  EXPECT_GE(played[1].at("algorithms")[1].at("nested"), 1);
+  EXPECT_EQ(played[1].at("algorithms")[0].at("nested"), 0);
+  const auto list = run("play s.h5 --list --algorithms exact,fcl-hash --question wrenches,touching");
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_EQ(list.err, "sixdof: warning: wrenches: fcl-hash is left out: does not answer this question\n");
+  const auto none = run("play s.h5 --algorithms fcl-hash --question wrenches");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("no question has an answer; wrenches: fcl-hash: does not answer this question"));
+}
+
+TEST_F(PosesOfOneFrame, AnOpenMeshEndsOneQuestionOnly) {
+  std::ofstream(path("leaf.off")) << "OFF\n3 1 0\n0 0 0\n3 0 0\n0 3 0\n3 0 1 2\n";
+  std::ofstream(path("poses.csv")) << "frame,body,mesh,tx,ty,tz,qw,qx,qy,qz\n0,1,big.off,0,0,0,1,0,0,0\n"
+                                      "0,2,leaf.off,0,0,0,1,0,0,0\n";
+  ASSERT_EQ(run("make --poses poses.csv -o open.h5").exit_code, 0);
+  const auto both = run("play open.h5 --algorithms exact --question wrenches,touching");
+  EXPECT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_THAT(both.out, HasSubstr("- exact: left out: leaf"));
+  EXPECT_THAT(both.out, HasSubstr("poses, touching: 2 bodies, 1 frame, 1 true pairs"));
+  EXPECT_EQ(run("play open.h5 --list --question wrenches,touching").exit_code, 0);
+  EXPECT_EQ(run("play open.h5 --list --question wrenches").exit_code, 1);
+}
+
 /// A scene of which Bullet's GImpact reports pairs that are apart.
 TEST_F(SceneCommand, AWrongPairHasItsReproduction) {
   ASSERT_EQ(run("make clusters -n 120 --frames 6 --seed 3 -o 'my scene.h5'").exit_code, 0);
@@ -118,8 +228,10 @@ TEST_F(SceneCommand, RefusesInOneLine) {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
   refuses("make heap -o t.h5", "no family of scenes heap; there are cube, ");
-  refuses("make -o t.h5", "name a family, or give --bodies and --poses");
-  refuses("make --poses p.csv -o t.h5", "--bodies and --poses belong together");
+  refuses("make -o t.h5", "name a family, or give a table of --poses");
+  refuses("make --bodies . -o t.h5", "name a family, or give a table of --poses");
+  refuses("make cube --bodies . -o t.h5", "--bodies needs a table of --poses");
+  refuses("make --poses none.csv -o t.h5", "none.csv: cannot be read");
   refuses("make cube -n 1 -o t.h5", "1 bodies: it must be in 2 .. 1000000");
   refuses("make cube --density -1 -o t.h5", "density -1");
   refuses("make cube", "--output is required");

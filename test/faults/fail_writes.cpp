@@ -1,8 +1,10 @@
-// Loaded before libc (LD_PRELOAD): one chosen call that writes to the disk fails, in this process or any that it starts.
+// Loaded before libc (LD_PRELOAD): one chosen call that writes to the disk fails, in this process or any that it
+// starts.
 //
 // SIXDOF_FAULT       a file of two 64-bit counts that all processes share: calls so far, and faults so far
 // SIXDOF_FAULT_AT    which call fails, from 1 on; 0: none, they are counted
-// SIXDOF_FAULT_KIND  ENOSPC, EIO, EDQUOT: it fails so; short: a write does half, and all later ones fail with ENOSPC; lost: a
+// SIXDOF_FAULT_KIND  ENOSPC, EIO, EDQUOT: it fails so; short: a write does half, and all later ones fail with ENOSPC;
+// lost: a
 //                    write says that it was done, and was not
 // SIXDOF_FAULT_ONCE  1: later calls succeed; else they fail, too, as on a disk that stays full
 //
@@ -25,7 +27,12 @@
 
 namespace {
 
-enum class Answer { go_on, fail, half, pretend };
+enum class Answer {
+  go_on,
+  fail,
+  half,
+  pretend
+};
 
 struct Shared {
   std::atomic<std::uint64_t> calls, faults;
@@ -92,10 +99,14 @@ template <class Write>
 ssize_t write_bytes(int descriptor, std::size_t size, const Write& write) {
   if (!is_regular(descriptor)) return write(size);
   switch (next(size > 0)) {
-    case Answer::go_on: return write(size);
-    case Answer::half: return size > 1 ? write(size / 2) : -1;
-    case Answer::pretend: return static_cast<ssize_t>(size);
-    case Answer::fail: break;
+    case Answer::go_on:
+      return write(size);
+    case Answer::half:
+      return size > 1 ? write(size / 2) : -1;
+    case Answer::pretend:
+      return static_cast<ssize_t>(size);
+    case Answer::fail:
+      break;
   }
   return -1;
 }
@@ -120,7 +131,8 @@ ssize_t write(int descriptor, const void* bytes, std::size_t size) {
 }
 
 ssize_t pwrite64(int descriptor, const void* bytes, std::size_t size, off64_t at) {
-  return write_bytes(descriptor, size, [&](std::size_t n) { return ::syscall(SYS_pwrite64, descriptor, bytes, n, at); });
+  return write_bytes(descriptor, size,
+                     [&](std::size_t n) { return ::syscall(SYS_pwrite64, descriptor, bytes, n, at); });
 }
 
 ssize_t pwrite(int descriptor, const void* bytes, std::size_t size, off_t at) {
@@ -146,7 +158,8 @@ ssize_t pwritev(int descriptor, const iovec* parts, int count, off_t at) {
 }
 
 int ftruncate64(int descriptor, off64_t size) noexcept {
-  return other_call(is_regular(descriptor), [&] { return static_cast<int>(::syscall(SYS_ftruncate, descriptor, size)); });
+  return other_call(is_regular(descriptor),
+                    [&] { return static_cast<int>(::syscall(SYS_ftruncate, descriptor, size)); });
 }
 
 int ftruncate(int descriptor, off_t size) noexcept { return ftruncate64(descriptor, size); }
@@ -210,8 +223,8 @@ int open(const char* name, int flags, ...) {
 }
 
 int renameat2(int from, const char* old_name, int to, const char* new_name, unsigned flags) noexcept {
-  return other_call(
-      true, [&] { return static_cast<int>(::syscall(SYS_renameat2, from, old_name, to, new_name, flags)); });
+  return other_call(true,
+                    [&] { return static_cast<int>(::syscall(SYS_renameat2, from, old_name, to, new_name, flags)); });
 }
 
 int renameat(int from, const char* old_name, int to, const char* new_name) noexcept {
@@ -223,8 +236,7 @@ int rename(const char* old_name, const char* new_name) noexcept {
 }
 
 int linkat(int from, const char* old_name, int to, const char* new_name, int flags) noexcept {
-  return other_call(true,
-                    [&] { return static_cast<int>(::syscall(SYS_linkat, from, old_name, to, new_name, flags)); });
+  return other_call(true, [&] { return static_cast<int>(::syscall(SYS_linkat, from, old_name, to, new_name, flags)); });
 }
 
 int link(const char* old_name, const char* new_name) noexcept {

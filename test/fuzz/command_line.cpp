@@ -52,6 +52,8 @@ const std::vector<std::pair<std::string, std::string>>& files() {
     keep(write_small_shard(folder));
     made.emplace_back("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     made.emplace_back("empty.ply", "");
+    made.emplace_back("poses.csv",
+                      "frame,body,mesh,tx,ty,tz,qw,qx,qy,qz\n0,1,a.ply,0,0,0,1,0,0,0\n0,2,b.obj,1,0,0,1,0,0,0\n");
     made.emplace_back("r.json",
                       R"({"context":{},"benchmarks":[{"name":"distance/algorithm:exact/pair:a/distance:05",)"
                       R"("real_time":10.5,"cpu_time":10.25,"time_unit":"us","sixdof":{"query":"distance",)"

@@ -11,7 +11,7 @@ import tempfile
 import unittest
 
 RUN = pathlib.Path(sys.argv.pop(1))
-TARGETS = ["mesh_file", "configuration_set", "cached_structure", "protocol", "command_line"]
+TARGETS = ["mesh_file", "configuration_set", "cached_structure", "protocol", "pose_table", "command_line"]
 
 # Says what libFuzzer says, and keeps an input in its first folder.
 STAND_IN = """#!/bin/sh

@@ -156,6 +156,40 @@ void write_lines(const fs::path& folder) {
   seeds.add("deep", "d" + std::string(2000, '[') + std::string(2000, ']'));
 }
 
+void write_pose_tables(const fs::path& folder) {
+  const Seeds seeds(folder, "pose_table");
+  const std::string header = "frame,body,mesh,tx,ty,tz,qw,qx,qy,qz";
+  const std::string rows = "0,1,a.off,0,0,0,1,0,0,0\n0,2,b.off,1.5,-2e-3,+.25,0.8,0.36,0.48,0\n1,2,,1,2,3,0,0,1,0\n";
+  const auto separated = [&](char separator, const std::string& text) {
+    std::string out = text;
+    std::replace(out.begin(), out.end(), ',', separator);
+    return out;
+  };
+  seeds.add("plain", header + "\n" + rows);
+  seeds.add("byte-order-mark", "\xEF\xBB\xBF" + header + "\n" + rows);
+  seeds.add("utf-16", std::string("\xFF\xFE"
+                                  "f\0r\0",
+                                  6));
+  seeds.add("carriage-returns", separated('\r', header) + "\r" + rows);
+  seeds.add("semicolons", separated(';', header + "\n" + rows));
+  seeds.add("excel", "sep=;\n" + separated(';', header + "\n" + rows));
+  seeds.add("tabs", separated('\t', header + "\n" + rows));
+  seeds.add("two-separators", header + ";fixed\n" + rows);
+  seeds.add("quotes",
+            "\"frame\",\"body\",mesh,tx,ty,tz,qw,qx,qy,qz\n\"0\",1,\"a.off\",\"+0.5\",0,0,1,0,0,0\n"
+            "0,2,\"b\"\".off\",0,0,0,1,0,0,0\n");
+  seeds.add("open-quote", header + "\n0,1,\"a.off,0,0,0,1,0,0,0\n");
+  seeds.add("floats-as-counts", header + "\n0.0,1.0,a.off,0,0,0,1.0,0,0,0\n0e0,2.0,b.off,1,1,1,1,0,0,0\n");
+  seeds.add("decimal-commas", separated(';', header) + "\n0;1;a.off;0,5;0;0;1;0;0;0\n");
+  seeds.add("comments-and-blanks", "# c\n\n" + header + ",\n , ,\n" + rows + "#\n,,,\n");
+  seeds.add("ignored-and-fixed", header +
+                                     ",fixed,ignored\n0,1,a.off,0,0,0,1,0,0,0,TRUE,\n"
+                                     "0,2,b.off,0,0,0,1,0,0,0,,\"1, 3\"\n0,3,b.off,9,0,0,1,0,0,0,0,2 1\n");
+  seeds.add("ignored-of-none", header + ",ignored\n0,1,a.off,0,0,0,1,0,0,0,9\n0,2,b.off,0,0,0,1,0,0,0,2\n");
+  seeds.add("huge-frame", header + "\n" + rows + "20000,1,,0,0,0,1,0,0,0\n4294967295,1,,0,0,0,1,0,0,0\n");
+  seeds.add("no-such-column", header + ",name\n");
+}
+
 void write_command_lines(const fs::path& folder) {
   const Seeds seeds(folder, "command_line");
   constexpr std::array k_lines{
@@ -201,7 +235,12 @@ void write_command_lines(const fs::path& folder) {
       "gird",
       "query\n--gird\n5",
       "\xC3\xA9t\xC3\xA9\n\xFF\xFE",
-      ""};
+      "",
+      "completion\nbash",
+      "query\n--a\na.ply\n--b\nopen.off\n--pose\n0\n0\n0\n1\n0\n0\n0\n--only\ndistance,collide",
+      "scene\nmake\ncube\n-n\n3\n--frames\n2\n-o\ns.h5",
+      "scene\nmake\n--poses\nposes.csv\n-o\ns.h5",
+      "scene\nplay\ns.h5\n--list\n--json"};
   for (std::size_t i = 0; i < k_lines.size(); ++i) seeds.add("line-" + std::to_string(i), k_lines[i]);
 }
 
@@ -219,6 +258,7 @@ int main(int count, char** words) {
   write_sets(folder);
   write_structures(folder);
   write_lines(folder);
+  write_pose_tables(folder);
   write_command_lines(folder);
   return 0;
 }

@@ -7,6 +7,16 @@ cmake_path(GET INSTALLED PARENT_PATH parent)
 file(MAKE_DIRECTORY ${parent})
 file(RENAME ${WORK}/prefix ${INSTALLED})
 
+# bash finds the completion of a program by the program's name.
+foreach(program IN ITEMS sixdof sixdof-bench)
+  if(EXISTS ${INSTALLED}/bin/${program})
+    file(READ ${INSTALLED}/share/bash-completion/completions/${program} script)
+    if(NOT script MATCHES "complete -F [_a-z]+ ${program}\n$")
+      message(FATAL_ERROR "no completion of ${program} in:\n${script}")
+    endif()
+  endif()
+endforeach()
+
 # Assertions and debugging information name source files.
 set(kind_of_files "")
 if(NOT BUILD_TYPE STREQUAL "Release")

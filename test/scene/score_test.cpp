@@ -143,5 +143,36 @@ TEST(Score, CountsGrazingPairsApart) {
   EXPECT_EQ(score(scene, Question::near, none, truth, true).wrong, pairs);
 }
 
+TEST(Score, CountsBodiesInsideOthersApartForWhatLooksAtSurfaces) {
+  Scene scene = row_of_spheres(2, -0.1, 0.0, 1, 0.0);
+  scene.meshes.push_back(std::make_shared<const Mesh>(make_sphere({.radius = 0.2}, 80)));
+  scene.bodies.push_back({50, 1, false, RecordedPose::of(Eigen::Matrix3d::Identity(), {0.05, 0.1, -0.2})});
+  const Truth truth = replay(scene, *make_all_pairs(), Question::touching);
+  Truth surfaces = truth;
+  std::erase_if(surfaces.frames[0].pairs, [](const NearPair& near) { return near.pair == BodyPair{10, 50}; });
+  ASSERT_EQ(surfaces.pairs() + 1, truth.pairs());
+  set_hash(surfaces);
+  const Score declared = score(scene, Question::touching, truth, surfaces, false, true);
+  EXPECT_EQ(std::pair(declared.missed, declared.nested), std::pair(std::size_t{0}, std::size_t{1}));
+  EXPECT_FALSE(declared.failed());
+  const Score bodies = score(scene, Question::touching, truth, surfaces, false);
+  EXPECT_EQ(std::pair(bodies.missed, bodies.nested), std::pair(std::size_t{1}, std::size_t{0}));
+  // A pair whose surfaces meet is missed by anyone.
+  Truth none = truth;
+  none.frames[0].pairs.clear();
+  EXPECT_EQ(score(scene, Question::touching, truth, none, true, true).missed, truth.pairs() - 1);
+}
+
+TEST(Score, AFrameAloneHasItsTime) {
+  const Scene one = row_of_spheres(6, -0.1, 0.0, 1, 0.0);
+  const Truth truth = replay(one, *make_all_pairs(), Question::touching);
+  const Timing timing = scene::play(one, *make_exact_scene(), Question::touching, truth).timing;
+  EXPECT_GT(timing.first_us, 0.0);
+  EXPECT_GT(timing.processor_us, 0.0);
+  EXPECT_EQ(timing.mean_us, timing.first_us);
+  EXPECT_EQ(timing.p99_us, timing.first_us);
+  EXPECT_EQ(timing.max_us, timing.first_us);
+}
+
 }  // namespace
 }  // namespace sixdof::scene

@@ -44,7 +44,8 @@ std::string temporary_prefix(const std::filesystem::path& target) { return "." +
 std::filesystem::path temporary_name(const std::filesystem::path& target, const std::filesystem::path& shown_as) {
   std::uint64_t random = 0;
   // Requests of up to 256 bytes are never cut short, and fail only where there is no such call.
-  if (::getrandom(&random, sizeof random, 0) != static_cast<ssize_t>(sizeof random)) throw_not_writable(shown_as, errno);
+  if (::getrandom(&random, sizeof random, 0) != static_cast<ssize_t>(sizeof random))
+    throw_not_writable(shown_as, errno);
   return directory_of(target) / fmt::format("{}{}.{:016x}{}", temporary_prefix(target), ::getpid(), random, k_partial);
 }
 
@@ -69,7 +70,8 @@ Partials& partials() {
   return *all;
 }
 
-/// The rule of Linux's fs.protected_symlinks, which may be off, for every folder that everyone can write, sticky or not.
+/// The rule of Linux's fs.protected_symlinks, which may be off, for every folder that everyone can write, sticky or
+/// not.
 bool is_followed(const struct stat& link, const struct stat& folder) {
   if ((folder.st_mode & S_IWOTH) == 0) return true;
   return link.st_uid == ::geteuid() || link.st_uid == 0 || link.st_uid == folder.st_uid;

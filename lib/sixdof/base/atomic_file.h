@@ -9,8 +9,8 @@ namespace sixdof {
 ///
 /// Write to descriptor() by append(), then call commit(): it flushes the data to the disk (fsync), renames the file to
 /// the target and flushes the directory. Without commit() the destructor removes the temporary file and the target
-/// stays as it was. The temporary file lies in the target's directory and ends in ".partial". It is made by O_EXCL under
-/// a name that nobody can foretell, so that no file or link that another user put there is ever written to.
+/// stays as it was. The temporary file lies in the target's directory and ends in ".partial". It is made by O_EXCL
+/// under a name that nobody can foretell, so that no file or link that another user put there is ever written to.
 ///
 /// A target that is a link stays one: the file that it leads to is replaced. A link in a folder that everyone can write
 /// is followed only if it belongs to this user, to root or to the folder's owner. A file that is replaced keeps its

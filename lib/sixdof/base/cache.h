@@ -55,8 +55,8 @@ std::filesystem::path cache_file(std::string_view kind, std::string_view key);
 /// The same, where a file can be written: the directory is there. Empty if nothing can be kept.
 std::filesystem::path writable_cache_file(std::string_view kind, std::string_view key);
 
-/// One line that says why the directory is not used, if this process has asked for an entry and was refused; else empty.
-/// For programs to print.
+/// One line that says why the directory is not used, if this process has asked for an entry and was refused; else
+/// empty. For programs to print.
 std::string cache_refusal();
 
 /// The entry as it was stored, checked against its content hash; nothing if there is none.

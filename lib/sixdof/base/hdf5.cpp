@@ -166,9 +166,8 @@ bool File::exists(const std::string& object) const {
 
 void File::make_group(const std::string& object) {
   Handle creation = object_properties(H5P_GROUP_CREATE);
-  Handle group =
-      checked({H5Gcreate2(file_.id(), object.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose}, object,
-              "cannot be written");
+  Handle group = checked({H5Gcreate2(file_.id(), object.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose},
+                         object, "cannot be written");
   close_all(object, group, creation);
 }
 
@@ -294,7 +293,8 @@ void File::compare(const std::map<std::string, Written>& datasets,
     check(count < 0 ? -1 : 0, object, "has no size");
     if (static_cast<std::size_t>(count) * size_of(type.id()) != written.bytes) refuse(object, k_unlike);
     bytes.resize(written.bytes);
-    check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()), object, "cannot be read again");
+    check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()), object,
+          "cannot be read again");
     if (!is_same(written)) refuse(object, k_unlike);
     close_all(object, space, type, dataset);
   }

@@ -98,6 +98,8 @@ constexpr std::array k_metrics{
     Metric{"missed_pairs", "pairs", lower, "true pairs of all frames that are not reported", k_scene},
     Metric{"wrong_pairs", "pairs", lower, "pairs of all frames that are reported and not true", k_scene},
     Metric{"grazing_pairs", "pairs", neither, "of either, where 1e-5 of the bodies' size decides", k_scene},
+    Metric{"nested_pairs", "pairs", neither, "of bodies inside others, not reported by what looks at surfaces only",
+           k_scene},
     Metric{"same_bits", "1", higher, "1: all answers have the bits of the truth", k_scene},
     Metric{"true_pairs", "pairs", neither, "pairs per frame in the truth", k_scene},
     Metric{"false_per_true", "1", lower, "pairs asked of the narrow phase that are not true, per true pair", k_scene},

@@ -7,7 +7,7 @@
 
 #include <sixdof/geometry/sides.h>
 #include <sixdof/oracle/far_pair.h>
-#include <sixdof/oracle/winding.h>
+#include <sixdof/oracle/nested.h>
 
 namespace sixdof {
 namespace {
@@ -124,14 +124,7 @@ bool DistanceQuery::collide(const Pose& X_AB, bool warm_start) {
     intersecting_pair_ = search_.pair;
     return true;
   }
-  if (!search_.of_bodies) return false;
-  for (const Vector3d& p : of_b) {
-    if (detail::winding_of_a(search_.a.tree, detail::transform_point_of_b(X_AB, p), search_.triangles) > 0) return true;
-  }
-  for (const Vector3d& p : of_a) {
-    if (detail::winding_of_b(search_.b.tree, X_AB, detail::transform_point_of_b, p, search_.triangles) > 0) return true;
-  }
-  return false;
+  return search_.of_bodies && detail::is_nested(search_.a, search_.b, X_AB, search_.triangles);
 }
 
 }  // namespace sixdof

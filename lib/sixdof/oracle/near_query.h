@@ -5,11 +5,13 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/distance_search.h>
+#include <sixdof/oracle/nested.h>
 
 /// Distances between any two of many meshes, of interest up to a limit. The same definitions and bits as distance.h,
 /// which has the method; a mesh is prepared once, whatever it meets, and a search ends where the limit is certain.
@@ -51,6 +53,12 @@ class NearQuery {
   /// Whether the surfaces have a point in common: distance() would be 0.
   bool surfaces_meet(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB, NearHint& hint);
 
+  /// Whether a piece of one body lies inside the other, given that the surfaces do not meet: with surfaces_meet() the
+  /// answer of DistanceQuery::collide(). False unless both meshes are solid.
+  bool is_nested(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB) {
+    return detail::is_nested(*a.body_, *b.body_, X_AB, triangles_);
+  }
+
   /// Of all queries so far.
   const detail::TraversalCounts& counts() const { return counts_; }
 
@@ -60,6 +68,7 @@ class NearQuery {
 
   detail::TraversalCounts counts_;
   detail::DistanceScratch scratch_;
+  std::vector<std::uint32_t> triangles_;
 };
 
 }  // namespace sixdof

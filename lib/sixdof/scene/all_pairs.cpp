@@ -75,7 +75,8 @@ class AllPairs final : public SceneQuery {
   std::size_t bytes() const override { return bodies_.bytes() + (wrenches_ ? wrenches_->bytes() : 0); }
 
  private:
-  /// Distances of all pairs that may be no further apart than `reach`, sorted by rank.
+  /// The pairs that are no further apart than `reach`, with their distances, sorted by rank; and those that are nested,
+  /// if the question is of bodies.
   std::vector<NearPair> measure(double reach) {
     const BoxArrays boxes(bodies_);
     struct Part {
@@ -94,9 +95,13 @@ class AllPairs final : public SceneQuery {
               if (!bodies_.matters(i, j)) return;
               ++part.candidates;
               NearHint none;
-              const auto distance =
-                  query.distance(bodies_.mesh(i), bodies_.mesh(j), bodies_.relative(i, j), NearQuery::k_no_limit, none);
-              if (distance && *distance <= reach) part.pairs.push_back({{i, j}, *distance});
+              const Pose X_AB = bodies_.relative(i, j);
+              const auto distance = query.distance(bodies_.mesh(i), bodies_.mesh(j), X_AB, NearQuery::k_no_limit, none);
+              if (distance && *distance <= reach) {
+                part.pairs.push_back({{i, j}, *distance});
+              } else if (is_of_bodies(question_) && query.is_nested(bodies_.mesh(i), bodies_.mesh(j), X_AB)) {
+                part.pairs.push_back({{i, j}, 0.0});
+              }
             });
           }
           part.triangles = query.counts().triangles;

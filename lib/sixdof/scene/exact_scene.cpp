@@ -85,22 +85,24 @@ class ExactScene final : public SceneQuery {
     const PreparedMesh &a = bodies_.mesh(pair.a), &b = bodies_.mesh(pair.b);
     const Pose X_AB = bodies_.relative(pair.a, pair.b);
     const double slack = bodies_.rounding(pair.a, pair.b);
-    const bool was_within = std::exchange(memory.within, false);
+    const bool did_meet = std::exchange(memory.within, false) && !std::exchange(memory.nested, false);
+    const double limit = reach + further;
     memory.asked = frame_;
-    if (reach == 0.0 && (further == 0.0 || was_within)) {
+    if (reach == 0.0 && (further == 0.0 || did_meet)) {
       memory.within = query.surfaces_meet(a, b, X_AB, memory.hint);
       memory.distance = 0.0;
       motions_.note(pair, -slack);
-      return;
-    }
-    const double limit = reach + further;
-    if (const auto distance = query.distance(a, b, X_AB, limit, memory.hint)) {
+    } else if (const auto distance = query.distance(a, b, X_AB, limit, memory.hint)) {
       memory.within = *distance <= reach;
       memory.distance = *distance;
       motions_.note(pair, *distance - slack);
     } else {
       motions_.note(pair, limit - slack);
     }
+    if (memory.within || !is_of_bodies(question_)) return;
+    memory.nested = query.is_nested(a, b, X_AB);
+    memory.within = memory.nested;
+    memory.distance = 0.0;
   }
 
   /// Whether boxes and spheres show that the pair is further apart than `reach`; then notes it.
@@ -118,6 +120,7 @@ class ExactScene final : public SceneQuery {
     if (memory.asked > 0 && !motions_.moved_since(pair, memory.asked)) return false;
     if (!is_certainly_apart(pair, reach)) return true;
     memory.within = false;
+    memory.nested = false;
     memory.asked = frame_;
     return false;
   }
@@ -138,9 +141,10 @@ class ExactScene final : public SceneQuery {
     active_.clear();
     asked_.clear();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
-      if (motions_.distance_left(pairs[k]) > margin_) continue;
+      const bool is_put_off = motions_.distance_left(pairs[k]) > margin_;
+      if (is_put_off && !kept_.memory()[k].nested) continue;
       active_.push_back(k);
-      if (must_ask(k, margin_)) asked_.push_back(k);
+      if (!is_put_off && must_ask(k, margin_)) asked_.push_back(k);
     }
     for_each(asked_, [&](std::size_t k) { ask(k, margin_, horizon(kept_.pairs()[k])); });
     count(pairs.size(), asked_.size());

@@ -26,7 +26,9 @@ struct PairMemory {
   NearHint hint;
   std::uint32_t asked = 0;  ///< Frame, from 1; 0 if never.
   bool within = false;      ///< The answer then: within the reach of the question.
-  double distance = 0.0;    ///< If within.
+  /// Within, since one body is inside the other. It stays so until the surfaces may meet.
+  bool nested = false;
+  double distance = 0.0;  ///< If within.
 };
 
 /// How far each body has moved, as upper bounds that only rise.

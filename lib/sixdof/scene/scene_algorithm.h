@@ -19,22 +19,25 @@
 namespace sixdof::scene {
 
 enum class Question {
-  touching,  ///< All pairs whose surfaces have a point in common.
+  touching,  ///< All pairs of bodies that have a point in common: their surfaces meet, or one lies inside the other.
   near,      ///< All pairs whose surfaces are no further apart than the margin, with their distances.
   closest,   ///< The closest pair of the scene; of equally close ones the first.
   wrenches   ///< The sum of the wrenches of the volume law on each body that touches another.
 };
+/// Whether a body inside another counts. Distances are of surfaces, as those of all libraries.
+constexpr bool is_of_bodies(Question question) {
+  return question == Question::touching || question == Question::wrenches;
+}
 inline constexpr Question k_questions[] = {Question::touching, Question::near, Question::closest, Question::wrenches};
 
 std::string_view to_string(Question question);
 /// @throws BadArgument listing the words
 Question parse_question(std::string_view word);
 
-/// Of two bodies by their identifiers, a < b. A body wholly inside another does not touch it: distances are those of
-/// the surfaces.
+/// Of two bodies by their identifiers, a < b.
 struct NearPair {
   BodyPair pair;
-  double distance = 0.0;  ///< Length; 0 where the surfaces meet.
+  double distance = 0.0;  ///< Of the surfaces (length); 0 where they meet. touching, wrenches: 0.
   auto operator<=>(const NearPair&) const = default;
 };
 
@@ -83,6 +86,8 @@ struct SceneTraits {
   std::string summary;  ///< One line.
   std::vector<Question> answers;
   bool own = false;  ///< Of this project: its answers must have the bits of the truth.
+  /// It does not find that a body lies inside another whose surface it does not meet.
+  bool surfaces_only = false;
   /// Whether it is compared where all are: not the quadratic reference.
   bool by_default = true;
 

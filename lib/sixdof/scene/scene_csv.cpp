@@ -4,45 +4,61 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/load.h>
+#include <sixdof/models/model_catalogue.h>
+#include <sixdof/scene/csv_text.h>
 
 namespace sixdof::scene {
 namespace {
 
-constexpr std::array<std::string_view, 11> k_columns{"frame", "body", "mesh", "qw", "qx",   "qy",
-                                                     "qz",    "tx",   "ty",   "tz", "fixed"};
+constexpr std::array<std::string_view, 12> k_columns{"frame", "body", "mesh", "qw", "qx",    "qy",
+                                                     "qz",    "tx",   "ty",   "tz", "fixed", "ignored"};
 enum Column : std::size_t {
   frame,
   body,
   mesh,
   first_number,
-  fixed = 10
+  fixed = 10,  // this one and the next may be left out
+  ignored = 11
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view k_blank = " \t\r";
-  const std::size_t first = text.find_first_not_of(k_blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(k_blank) - first + 1);
+std::string in_small_letters(std::string_view text) {
+  std::string small(text);
+  for (char& c : small) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return small;
 }
 
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t at = 0; at <= line.size();) {
-    const std::size_t end = std::min(line.find(',', at), line.size());
-    cells.push_back(trimmed(line.substr(at, end - at)));
-    at = end + 1;
-  }
-  return cells;
+/// A number with or without a sign. @returns nothing for other text, and for what no T can hold
+template <class T>
+std::optional<T> parse(std::string_view text) {
+  // "+" is what from_chars does not read.
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// A count, also one that was written as a float: "3", "3.0".
+std::optional<std::uint32_t> parse_count(std::string_view text) {
+  if (const auto count = parse<std::uint32_t>(text)) return count;
+  const auto number = parse<double>(text);
+  if (!number || *number != std::floor(*number) || !(*number >= 0.0) || *number > 4294967295.0) return std::nullopt;
+  return static_cast<std::uint32_t>(*number);
 }
 
 class Table {
@@ -54,16 +70,16 @@ class Table {
   }
 
   Scene read() {
-    std::ifstream in(file_);
-    if (!in) throw BadFile(file_.string(), "cannot be read");
+    CsvText text(file_);
     if (!std::filesystem::is_directory(folder_)) throw BadFile(folder_.string(), "no such folder");
-    for (std::string text; std::getline(in, text);) {
-      ++line_;
-      const std::string_view row = trimmed(text);
-      if (row.empty() || row.front() == '#') continue;
-      places_.empty() ? read_header(split(row)) : read_row(split(row));
+    for (CsvText::Row row; text.next(row);) {
+      line_ = row.line;
+      while (row.cells.size() > columns_ && row.cells.back().empty()) row.cells.pop_back();
+      places_.empty() ? read_header(row.cells) : read_row(row.cells);
     }
     if (scene_.frames.empty()) throw BadFile(file_.string(), "has no rows");
+    if (scene_.bodies.size() < 2) throw BadFile(file_.string(), "has one body; a scene needs two");
+    add_ignored_pairs();
     scene_.check();
     return std::move(scene_);
   }
@@ -72,17 +88,20 @@ class Table {
   [[noreturn]] void refuse(const std::string& cause) const {
     throw BadFile(file_.string(), fmt::format("line {}", line_), cause);
   }
+  [[noreturn]] void refuse(std::size_t column, const std::string& cause) const {
+    throw BadFile(file_.string(), fmt::format("line {}, column {}", line_, k_columns[column]), cause);
+  }
 
-  void read_header(const std::vector<std::string_view>& names) {
+  void read_header(const std::vector<std::string>& names) {
     columns_ = names.size();
     places_.resize(k_columns.size());
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const auto found = std::ranges::find(k_columns, names[i]);
+      const auto found = std::ranges::find(k_columns, in_small_letters(names[i]));
       if (found == k_columns.end()) {
         refuse(fmt::format("no column '{}'; there are {}", names[i], fmt::join(k_columns, ", ")));
       }
       auto& place = places_[static_cast<std::size_t>(found - k_columns.begin())];
-      if (place) refuse(fmt::format("column {} comes twice", names[i]));
+      if (place) refuse(fmt::format("column {} comes twice", *found));
       place = i;
     }
     for (std::size_t c = 0; c < fixed; ++c) {
@@ -90,25 +109,31 @@ class Table {
     }
   }
 
-  template <class T>
-  T number(std::string_view text, std::string_view what) const {
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) {
-      refuse(fmt::format("{} '{}' is not {}", what, text, std::is_integral_v<T> ? "a count" : "a number"));
-    }
-    return value;
+  std::uint32_t count(std::size_t column, std::string_view text) const {
+    const auto value = parse_count(text);
+    if (!value) refuse(column, fmt::format("'{}' is not a count", text));
+    return *value;
   }
 
-  void read_row(const std::vector<std::string_view>& cells) {
+  double number(std::size_t column, std::string_view text) const {
+    const auto value = parse<double>(text);
+    if (!value && text.find(',') != std::string_view::npos) {
+      refuse(column, fmt::format("'{}' is not a number; decimals are written with a point", text));
+    }
+    if (!value) refuse(column, fmt::format("'{}' is not a number", text));
+    if (!std::isfinite(*value)) refuse(column, "is not finite");
+    return *value;
+  }
+
+  void read_row(const std::vector<std::string>& cells) {
     if (cells.size() != columns_) refuse(fmt::format("{} cells, not {}", cells.size(), columns_));
-    const auto cell = [&](std::size_t column) { return cells[*places_[column]]; };
-    const auto at = number<std::uint32_t>(cell(frame), "frame");
-    const auto id = number<std::uint32_t>(cell(body), "body");
+    const auto cell = [&](std::size_t column) {
+      return places_[column] ? std::string_view(cells[*places_[column]]) : std::string_view();
+    };
+    const std::uint32_t at = count(frame, cell(frame)), id = count(body, cell(body));
     RecordedPose pose;
     for (std::size_t k = 0; k < pose.numbers.size(); ++k) {
-      pose.numbers[k] = number<double>(cell(first_number + k), k_columns[first_number + k]);
-      if (!std::isfinite(pose.numbers[k])) refuse(fmt::format("{} is not finite", k_columns[first_number + k]));
+      pose.numbers[k] = number(first_number + k, cell(first_number + k));
     }
     try {
       pose.pose();
@@ -116,7 +141,46 @@ class Table {
       refuse(e.what());
     }
     begin_frame(at);
-    at == 0 ? add_body(id, pose, cell(mesh), places_[fixed] ? cell(fixed) : "0") : add_motion(id, pose, cell(mesh));
+    if (at == 0) {
+      add_body(id, pose, cell(mesh), is_fixed(cell(fixed)));
+      note_ignored(id, cell(ignored));
+    } else {
+      add_motion(id, pose, cell(mesh));
+      if (!cell(ignored).empty()) refuse(ignored, "pairs are ignored in all frames; name them in frame 0");
+    }
+  }
+
+  bool is_fixed(std::string_view text) const {
+    const std::string word = in_small_letters(text);
+    if (word == "1" || word == "true") return true;
+    if (!word.empty() && word != "0" && word != "false") refuse(fixed, fmt::format("'{}' is not 0 or 1", text));
+    return false;
+  }
+
+  /// Identifiers separated by blanks; in quotes also by separators of cells.
+  void note_ignored(std::uint32_t id, std::string_view text) {
+    constexpr std::string_view k_between = " \t,;";
+    while (!text.empty()) {
+      const std::size_t begin = std::min(text.find_first_not_of(k_between), text.size());
+      text.remove_prefix(begin);
+      const std::string_view word = text.substr(0, text.find_first_of(k_between));
+      if (word.empty()) break;
+      const std::uint32_t other = count(ignored, word);
+      if (other == id) refuse(ignored, fmt::format("body {} is no pair with itself", id));
+      ignored_.push_back({line_, other});
+      scene_.ignored.push_back(BodyPair::of(id, other));
+      text.remove_prefix(word.size());
+    }
+  }
+
+  /// Either of two bodies may name the other.
+  void add_ignored_pairs() {
+    for (const auto& [line, id] : ignored_) {
+      line_ = line;
+      if (!index_.contains(id)) refuse(ignored, fmt::format("body {} is not in frame 0", id));
+    }
+    std::ranges::sort(scene_.ignored);
+    scene_.ignored.erase(std::ranges::unique(scene_.ignored).begin(), scene_.ignored.end());
   }
 
   void begin_frame(std::uint32_t at) {
@@ -129,11 +193,10 @@ class Table {
     scene_.frames.resize(at + 1);
   }
 
-  void add_body(std::uint32_t id, const RecordedPose& pose, std::string_view name, std::string_view is_fixed) {
-    if (name.empty()) refuse(fmt::format("body {} has no mesh", id));
-    if (is_fixed != "0" && is_fixed != "1") refuse(fmt::format("fixed '{}' is not 0 or 1", is_fixed));
+  void add_body(std::uint32_t id, const RecordedPose& pose, std::string_view name, bool never_moves) {
+    if (name.empty()) refuse(mesh, fmt::format("body {} has none", id));
     if (!index_.emplace(id, scene_.bodies.size()).second) refuse(fmt::format("body {} comes twice in frame 0", id));
-    scene_.bodies.push_back({id, mesh_of(name), is_fixed == "1", pose});
+    scene_.bodies.push_back({id, mesh_of(name), never_moves, pose});
   }
 
   void add_motion(std::uint32_t id, const RecordedPose& pose, std::string_view name) {
@@ -151,20 +214,30 @@ class Table {
 
   std::uint32_t mesh_of(std::string_view name) {
     const auto [found, is_new] = meshes_.emplace(name, static_cast<std::uint32_t>(scene_.meshes.size()));
-    if (is_new) {
-      if (!std::filesystem::exists(folder_ / name)) refuse(fmt::format("no file {}", (folder_ / name).string()));
-      scene_.meshes.push_back(std::make_shared<const Mesh>(load_mesh(folder_ / name)));
-    }
+    if (is_new) scene_.meshes.push_back(std::make_shared<const Mesh>(load(found->first)));
     return found->second;
+  }
+
+  /// A file of the folder, else a model.
+  Mesh load(const std::string& name) const {
+    const std::filesystem::path file = folder_ / name;
+    if (std::filesystem::is_regular_file(file)) return load_mesh(file);
+    if (names_file(name)) refuse(mesh, fmt::format("no file {}", file.string()));
+    try {
+      return load_model(name);
+    } catch (const Error& e) {
+      refuse(mesh, fmt::format("no file {}, and: {}", file.string(), e.what()));
+    }
   }
 
   std::filesystem::path folder_, file_;
   std::size_t line_ = 0;
-  std::size_t columns_ = 0;
+  std::size_t columns_ = 0;                         // 0 before the header
   std::vector<std::optional<std::size_t>> places_;  // of each of k_columns in a row; empty before the header
   std::map<std::uint32_t, std::size_t> index_;      // of a body by its identifier
   std::map<std::uint32_t, std::size_t> last_;       // frame in which a body moved last
   std::map<std::string, std::uint32_t, std::less<>> meshes_;
+  std::vector<std::pair<std::size_t, std::uint32_t>> ignored_;  // line, and identifier that it names
   Scene scene_;
 };
 

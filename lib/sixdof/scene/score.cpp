@@ -68,8 +68,8 @@ class Judge {
 
 class Scorer {
  public:
-  Scorer(const Scene& scene, Question question, bool exactly)
-      : judge_(scene, question), question_(question), exactly_(exactly) {}
+  Scorer(const Scene& scene, Question question, bool exactly, bool surfaces_only)
+      : judge_(scene, question), question_(question), exactly_(exactly), surfaces_only_(surfaces_only) {}
 
   Score run(const Scene& scene, const Truth& truth, const Truth& answers) {
     if (truth.frames.size() != scene.frames.size() || answers.frames.size() != scene.frames.size()) {
@@ -125,6 +125,10 @@ class Scorer {
       ++score_.grazing;
       return;
     }
+    if (missed && surfaces_only_ && is_of_bodies(question_) && judge_.distance(pair) > 0.0) {
+      ++score_.nested;
+      return;
+    }
     if (!score_.first || (missed && !score_.first->missed))
       score_.first = {frame_, pair, judge_.distance(pair), missed};
     ++(missed ? score_.missed : score_.wrong);
@@ -132,7 +136,7 @@ class Scorer {
 
   Judge judge_;
   Question question_;
-  bool exactly_;
+  bool exactly_, surfaces_only_;
   std::size_t frame_ = 0;
   Score score_;
 };
@@ -158,11 +162,15 @@ void check(const SceneAnswer& answer, const std::string& name) {
   }
 }
 
-Timing summary(std::vector<double> frames, double processor) {
+/// @param frames wall times (us) @param first, processor processor times of the first frame and of all others (s)
+Timing summary(std::vector<double> frames, double first, double processor) {
   Timing timing;
   timing.first_us = frames.front();
-  frames.erase(frames.begin());
-  if (frames.empty()) return timing;
+  if (frames.size() == 1) {
+    processor = first;
+  } else {
+    frames.erase(frames.begin());
+  }
   for (const double us : frames) timing.mean_us += us / static_cast<double>(frames.size());
   timing.processor_us = 1e6 * processor / static_cast<double>(frames.size());
   std::ranges::sort(frames);
@@ -173,8 +181,9 @@ Timing summary(std::vector<double> frames, double processor) {
 
 }  // namespace
 
-Score score(const Scene& scene, Question question, const Truth& truth, const Truth& answers, bool exactly) {
-  return Scorer(scene, question, exactly).run(scene, truth, answers);
+Score score(const Scene& scene, Question question, const Truth& truth, const Truth& answers, bool exactly,
+            bool surfaces_only) {
+  return Scorer(scene, question, exactly, surfaces_only).run(scene, truth, answers);
 }
 
 double Play::false_per_true() const {
@@ -190,7 +199,7 @@ Play play(const Scene& scene, const SceneAlgorithm& algorithm, Question question
   const auto query = algorithm.prepare(scene, question);
   const double prepared = wall_seconds();
   std::vector<double> times;
-  double processor = 0.0;
+  double first = 0.0, processor = 0.0;
   for (std::size_t f = 0; f < scene.frames.size(); ++f) {
     if (cancelled && cancelled()) throw Interrupted("interrupted");
     const std::vector<Moved> moved = moves_of(scene.frames[f]);
@@ -199,17 +208,18 @@ Play play(const Scene& scene, const SceneAlgorithm& algorithm, Question question
     query->update(moved);
     const SceneAnswer& answer = query->answer();
     times.push_back(1e6 * (wall_seconds() - start));
-    if (f > 0) processor += processor_seconds() - used;
+    (f == 0 ? first : processor) += processor_seconds() - used;
     check(answer, algorithm.traits().name);
     result.answers.frames.push_back(answer);
   }
-  result.timing = summary(std::move(times), processor);
+  result.timing = summary(std::move(times), first, processor);
   result.timing.prepare_s = prepared - before;
   result.work = query->work();
   result.bytes = query->bytes();
   result.pairs_in_all = PairFilter(scene).pairs() * scene.frames.size();
   set_hash(result.answers);
-  result.score = score(scene, question, truth, result.answers, algorithm.traits().own);
+  result.score =
+      score(scene, question, truth, result.answers, algorithm.traits().own, algorithm.traits().surfaces_only);
   return result;
 }
 

@@ -27,10 +27,12 @@ struct Score {
   static constexpr double k_grazing = 1e-5;
 
   std::size_t frames = 0;
-  std::size_t true_pairs = 0;      ///< Of all frames.
-  std::size_t missed = 0;          ///< True pairs that are not reported. One is a failure.
-  std::size_t wrong = 0;           ///< Pairs that are reported and not true.
-  std::size_t grazing = 0;         ///< Of either, where bodies graze; not in `missed` and `wrong`.
+  std::size_t true_pairs = 0;  ///< Of all frames.
+  std::size_t missed = 0;      ///< True pairs that are not reported. One is a failure.
+  std::size_t wrong = 0;       ///< Pairs that are reported and not true.
+  std::size_t grazing = 0;     ///< Of either, where bodies graze; not in `missed` and `wrong`.
+  /// True pairs of a body inside another that an algorithm for surfaces only does not report; not in `missed`.
+  std::size_t nested = 0;
   double largest_error = 0.0;      ///< Of the distances of true pairs that are reported (length).
   bool same_bits = false;          ///< All answers have the bits of the truth.
   std::string hash;                ///< Of all answers, as Truth::hash.
@@ -41,13 +43,15 @@ struct Score {
 
 /// @param answers of every frame, in order
 /// @param exactly no pair counts as grazing
-Score score(const Scene& scene, Question question, const Truth& truth, const Truth& answers, bool exactly);
+/// @param surfaces_only SceneTraits::surfaces_only of who answers
+Score score(const Scene& scene, Question question, const Truth& truth, const Truth& answers, bool exactly,
+            bool surfaces_only = false);
 
 /// What a replay took.
 struct Timing {
   double prepare_s = 0.0;  ///< Wall time of preparing.
   double first_us = 0.0;   ///< Wall time of the first frame, in which all pairs are new.
-  // Of the further frames: update() and answer().
+  // Of the further frames, or of the first if there is no other: update() and answer().
   double mean_us = 0.0, p99_us = 0.0, max_us = 0.0;  ///< Wall time.
   double processor_us = 0.0;                         ///< Mean processor time of all threads.
 };

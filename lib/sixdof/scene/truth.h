@@ -24,7 +24,7 @@ Truth replay(const Scene& scene, const SceneAlgorithm& algorithm, Question quest
 
 /// Version of the definitions, of the last bits of the answers and of their layout in the cache: what another version
 /// stored is not used.
-inline constexpr int k_truth_version = 6;
+inline constexpr int k_truth_version = 7;
 
 /// The answers of `all-pairs`, from the cache on disk (base/cache.h), where they are kept by the scene's content hash.
 Truth truth_of(const Scene& scene, Question question, const std::function<bool()>& cancelled = {});

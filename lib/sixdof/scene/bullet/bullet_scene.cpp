@@ -180,6 +180,7 @@ void add_bullet_scenes(SceneAlgorithms& algorithms) {
          .version = fmt::format("{}.{} double", BT_BULLET_VERSION / 100, BT_BULLET_VERSION % 100),
          .summary = fmt::format("Bullet, {}; narrow phase bullet-gimpact", summary),
          .answers = {Question::touching},
+         .surfaces_only = true,
          .by_default = by_default},
         make));
   };

@@ -201,6 +201,7 @@ void add_fcl_scenes(SceneAlgorithms& algorithms) {
                                         .version = FCL_VERSION,
                                         .summary = fmt::format("FCL, {}; narrow phase fcl-obbrss", summary),
                                         .answers = {Question::touching, Question::near, Question::closest},
+                                        .surfaces_only = true,
                                         .by_default = by_default},
                                        std::move(kind)));
   };

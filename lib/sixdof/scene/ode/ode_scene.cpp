@@ -123,6 +123,7 @@ void add_ode_scenes(SceneAlgorithms& algorithms) {
                                                          .version = SIXDOF_ODE_VERSION " double",
                                                          .summary = fmt::format("ODE, {}; narrow phase ode", summary),
                                                          .answers = {Question::touching},
+                                                         .surfaces_only = true,
                                                          .by_default = by_default},
                                                         make));
   };
