@@ -26,7 +26,9 @@
 /// computed in floats, eight or more at once, and lowered by their rounding (distance_bounds-inl.h); what they cannot
 /// prune is measured in double precision (distance_search.cpp). So the answer does not depend on the bounds: it has the
 /// same bits on every instruction set, for every thread, warm or cold. Bounds of volumes that floats cannot tell apart
-/// are computed in doubles (close_search.h): of a body 1e-6 times as large as the other, of bodies 1e9 diameters apart.
+/// are computed in doubles (close_search.h): of a body 1e-6 times as large as the other, of bodies 1e6 diameters apart.
+/// Farther apart than 1e8 diameters the closest points are corners, each found in one tree (far_pair.h); among those
+/// that are equally far up to rounding, none is preferred by its rank, but the answer has the same bits all the same.
 ///
 /// Ties: where surfaces are apart, the closest pair is the one with the lowest triangle in A, then in B, of all pairs
 /// that are equally far; distance and points are those of this pair. Pairs are equally far if their distances are the
@@ -69,7 +71,7 @@ class DistanceQuery {
   explicit DistanceQuery(const DistanceOracle& oracle) : search_{{}, *oracle.a_, *oracle.b_} {}
 
   /// The distance of the surfaces with witnesses and their triangles. 0 if and only if the surfaces have a point in
-  /// common; then the witnesses are one such point.
+  /// common; then the witnesses are one such point. Infinite if it exceeds the largest double.
   Separation distance(const Pose& X_AB, bool warm_start = true);
 
   /// Whether the surfaces have a point in common or, if both meshes are solid, a piece of one lies inside the other.
