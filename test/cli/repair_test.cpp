@@ -91,6 +91,40 @@ TEST_F(Repair, GivesASoundMeshBack) {
   EXPECT_EQ(bytes("torus.ply"), bytes("same.ply"));
 }
 
+/// Other commands refuse a file with a face that is not finite, and name the one that drops it.
+TEST_F(Repair, DropsFacesThatAreNotFiniteAndSaysSo) {
+  std::string text = bytes("tray.off");
+  text.replace(text.find("OFF\n8 10 "), 9, "OFF\n9 13 ");
+  text.insert(text.find("\n3 ") + 1, "nan 0 0\n");
+  std::ofstream(path("nan.off")) << text << "3 1 3 5\n3 3 7 5\n3 0 1 8\n";
+  const std::string hint = "not finite; sixdof repair drops such faces";
+  for (const char* command : {"info nan.off", "query --a nan.off --b cone-1k --pose '0.9 0 0.1 1 0 0 0'"}) {
+    const auto refused = run(command);
+    EXPECT_EQ(refused.exit_code, k_exit_error) << command;
+    EXPECT_THAT(refused.err, HasSubstr(hint)) << command;
+  }
+  const auto repaired = run("repair nan.off -o mended.off");
+  EXPECT_EQ(repaired.exit_code, 0) << repaired.err;
+  const std::string forgiven = "1 face with a corner that is not finite, dropped (line 24)";
+  EXPECT_THAT(repaired.out, HasSubstr("forgiven 1 unused vertex that is not finite, dropped (line 11); " + forgiven));
+  EXPECT_EQ(json_of("info mended.off").at("volume"), 1.0);
+  EXPECT_THAT(json_of("repair nan.off -o mended.off").at("forgiven").get<std::string>(), HasSubstr(forgiven));
+}
+
+TEST_F(Repair, DropsFinsWallsAndStrayTriangles) {
+  std::string text = bytes("tray.off");
+  text.replace(text.find("OFF\n8 10 "), 9, "OFF\n12 15 ");
+  text.insert(text.find("\n3 ") + 1, "0.5 -0.3 -0.3\n2 0 0\n2 0.2 0\n2 0 0.1\n");
+  std::ofstream(path("odd.off")) << text << "3 1 3 5\n3 3 7 5\n3 1 2 4\n3 0 1 8\n3 9 10 11\n";
+  const auto json = json_of("repair odd.off -o mended.off");
+  EXPECT_EQ(json.at("after").at("volume"), 1.0);
+  for (const char* kind : {"fins", "inner_walls", "stray_triangles"}) {
+    EXPECT_EQ(json.at("repairs").at(kind).at("count"), 1) << kind;
+  }
+  EXPECT_THAT(run("repair odd.off -o mended.off").out, HasSubstr("1 triangles of fins dropped, at (0.5, -0.1, -0.1)"));
+  EXPECT_EQ(json_of("repair odd.off -o kept.off --max-fin 0", k_exit_defects).at("repairs").at("fins").at("count"), 0);
+}
+
 /// What cannot be mended is written as far as it is, and the exit code says so.
 TEST_F(Repair, SaysWhatIsLeft) {
   const auto open = run("repair tray.off -o open.ply --max-hole 3");
@@ -120,6 +154,7 @@ TEST_F(Repair, RefusesInWordsAndWritesNothing) {
   refuses("missing.off -o mended.ply", k_exit_error, "missing.off");
   refuses("damaged.off", k_exit_usage, "--output");
   refuses("damaged.off -o mended.ply --weld 0.5", k_exit_error, "must be from 0 to 0.1");
+  refuses("damaged.off -o mended.ply --max-fin -1", k_exit_error, "must be from 0 to 1");
   refuses("damaged.off -o mended.ply --max-hole 100000", k_exit_error, "100000 were asked for");
   EXPECT_EQ(bytes("damaged.off"), before);
 }

@@ -38,6 +38,57 @@ class Seeds {
   fs::path folder_;
 };
 
+/// Files as other programs write them, and with damage that a repair mends (test/geometry/forgiven_test.cpp).
+void write_meshes_of_other_programs(const Seeds& seeds) {
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n", faces = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+  const std::string vertex = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string face = "element face 4\nproperty list uchar int vertex_indices\n";
+  const auto replaced = [](std::string text, std::string_view what, std::string_view by) {
+    for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size()) {
+      text.replace(at, what.size(), by);
+    }
+    return text;
+  };
+  const auto ply = [](const std::string& elements, const std::string& data) {
+    return "0ply \nformat ascii 1.0\nobj_info x\n" + elements + "end_header\n" + data;
+  };
+  seeds.add("faces-first.ply", ply(face + vertex, faces + points));
+  seeds.add("one-line.ply", ply(vertex + face, replaced(points + faces, "\n", " ")));
+  seeds.add("a-value-a-line.ply", ply(vertex + face, replaced(points + faces, " ", "\n")));
+  seeds.add("wrapped.ply", ply(vertex + face, "0 0 0 1 0\n0 0 1 0 0\n0 1\n3 0 2 1 3\n0 1 3 3 1\n2 3 3 0 3\n2\n"));
+  seeds.add("returns.ply", replaced(ply(vertex + face, points + faces), "\n", "\r"));
+  seeds.add("wide-integers.ply", ply(vertex + replaced(face, "uchar int", "long uint64"), points + faces));
+  seeds.add("edges-as-faces.ply", ply(vertex + replaced(face, "face 4", "face 6"), points + faces + "2 0 1\n0\n"));
+  seeds.add("unused-nan.ply", ply(replaced(vertex, "vertex 4", "vertex 5") + face, points + "nan inf -nan\n" + faces));
+  seeds.add("used-nan.ply", ply(vertex + face, replaced(points, "0 1\n", "0 nan\n") + faces));
+  const std::string strips = "element tristrips 2\nproperty list int int vertex_indices\n";
+  seeds.add("strips.ply", ply(vertex + strips, points + "9 0 2 1 3 -1 0 2 3 -1\n3 0 1 3\n"));
+  std::string binary = "0ply\rformat binary_little_endian 1.0\r" + replaced(vertex, "\n", "\r") +
+                       "element tristrips 1\r" + "property list uchar int vertex_indices\rend_header\r";
+  binary += std::string(48, '\n') + '\6';
+  for (const char v : {'\0', '\2', '\1', '\3', '\0', '\2'}) binary += std::string{v, 0, 0, 0};
+  seeds.add("returns-and-blanks-behind.ply", binary + "\r\n");
+  seeds.add("undeclared.off", "1OFF\n4 4 0\n" + replaced(points, "\n", " 9 8 7 255\n") + faces);
+  seeds.add("no-keyword.off", "14 4 0\n" + points + faces + "");
+  seeds.add("glued-keyword.off", "1OFF4 4 0\n" + points + faces);
+  seeds.add("homogeneous.off", "14OFF 4 4 0\n" + replaced(points, "\n", " 0.5\n") + faces);
+  seeds.add("dimensions.off", "1STNCnOFF\n3\n4\n5\n0\n" + replaced(points, "\n", " 1 1 1\n") + faces + "2 0 1 0.5\n");
+  seeds.add("returns.off", replaced("1OFF\n4 4 0\n" + replaced(points, " ", "\n") + faces, "\n", "\r"));
+  const std::string vertices = "v 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nv 0 1 0\nv 0 0 1\n";
+  const std::string corners = "f 1// 3// 2//\nf 1/ 2/ 4/\nfo 2/1/ 3//1 4\nf -4 -1 -2\n";
+  seeds.add("empty-numbers.obj", "2" + vertices + "v 9 9 9 2\nv nan 0 0\n" + replaced(corners, "-4 -1 -2", "-6 -3 -4"));
+  seeds.add("late-vertices.obj", "2f 1 2\n" + replaced(corners, "-4 -1 -2", "1 4 3") + vertices);
+  seeds.add("weights.obj", "2" + replaced(vertices, "0 0 1\n", "0 0 1 2\n") + corners);
+  seeds.add("returns.obj", replaced("2" + vertices + replaced(corners, "f 1//", "f \\\n1//"), "\n", "\r"));
+  const std::string facet =
+      "facet normal nan nan nan\nouterloop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nEND loop\nend facet\n";
+  seeds.add("other-words.stl", "3solid a b\n" + facet + "end solid a b\n# x\nSOLID\n" + facet + "endsolid\n\n# y\n");
+  seeds.add("returns.stl", replaced("3solid\n" + facet + "endsolid\n", "\n", "\r"));
+  seeds.add("nan-facet.stl", "3solid\n" + facet + replaced(facet, "1 0 0", "1.#QNAN 0 inf") + "endsolid\n");
+  std::string stl = "3solid" + std::string(75, ' ') + std::string("\2\0\0\0", 4) + std::string(50, '\1');
+  seeds.add("nan-facet-and-blanks.stl", stl + std::string(50, '\xFF') + "\r\n");
+}
+
 void write_meshes(const fs::path& folder) {
   using namespace testing_support;
   const Seeds seeds(folder, "mesh_file");
@@ -70,6 +121,7 @@ void write_meshes(const fs::path& folder) {
             "usemtl m\nf 1/1/1 2/1/1 \\\n3//1 4 5\nf -5 -4 -1\nl 1 2\n");
   seeds.add("coloured.off",
             "1COFF\n# c\n4 2 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1\n0 1 0 1 1 1 1\n4 0 1 2 3 9\n3 0 2 1\n");
+  write_meshes_of_other_programs(seeds);
   seeds.add("box.glb", "4" + glb(gltf_json(box_mesh, "", R"([{"mesh":0}])"), gltf_data(box_mesh)));
   const std::string data = R"(,"uri":"data:;base64,)" + base64(gltf_data(box_mesh)) + '"';
   seeds.add("box.gltf",
