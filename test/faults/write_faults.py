@@ -45,7 +45,7 @@ KINDS = [
     output.Kind("results that are continued", "kept.json", [*output.BENCH, "--resume", "OUT"], times=True,
                 program=SIXDOF_BENCH),
     output.Kind("scene by Python", "x.h5", ["-B", str(SOURCE / "fixtures/scene_file.py"), "--example", "OUT"],
-                program=PYTHON),
+                times=True, program=PYTHON),
     output.Kind("manifest of sets", "sets/manifest.json",
                 ["-B", str(SOURCE / "fixtures/set_manifest.py"), "--program", SIXDOF, "sets"], program=PYTHON),
 ]
@@ -65,19 +65,20 @@ class Fault:
                 "SIXDOF_FAULT_KIND": self.what, "SIXDOF_FAULT_ONCE": str(int(self.once))}
 
 
-def prepare():
+def prepare(asked):
     """Makes the inputs, in each process that runs commands."""
     work.setUpClass()
     for kind in [*KINDS, CACHE]:
-        if kind.name in work.whole:
+        if kind.name in work.whole or kind.name not in asked:
             continue
         folder = fresh(kind)
         environment = work.environment(SIXDOF_CACHE=str(folder / "cache")) if kind is CACHE else None
         done = work.run_in(folder, kind.command(), environment)
         assert done.returncode == 0, (kind.name, done.stderr)
         work.whole[kind.name] = work.content(folder / kind.file)
-    global answers
-    answers = work.answers(work.run_in(work.new_folder(), output.CACHED))
+        if kind is CACHE:
+            global answers
+            answers = work.answers(done)
 
 
 def fresh(kind):
@@ -185,7 +186,9 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     options = parser.parse_args(OPTIONS)
     names = [kind.name for kind in all_kinds(options.kinds)]
-    with concurrent.futures.ProcessPoolExecutor(options.jobs, initializer=prepare) as pool:
+    output.KINDS = [kind for kind in output.KINDS if kind.name in names]  # what prepare() makes
+    output.FOLDERS = [kind for kind in FOLDERS if kind.name in names]
+    with concurrent.futures.ProcessPoolExecutor(options.jobs, initializer=prepare, initargs=(names,)) as pool:
         calls = dict(zip(names, pool.map(count, names)))
         faults = [(name, at, what, once) for name in names for at in range(1, calls[name] + 1) for what, once in WAYS]
         if options.most and len(faults) > options.most:
