@@ -22,6 +22,7 @@ import re
 import struct
 import subprocess
 import sys
+import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCE = HERE.parent.parent
@@ -37,8 +38,10 @@ sys.argv[1:] = PROGRAMS[:2]  # for the kinds of files, which this test shares wi
 import output_files_test as output  # noqa: E402
 
 PYTHON = sys.executable
+MANY = ["--a", "a.off", "--b", "a.off", "--grid", "90/60", "--distances", "0:20", "--volumes", "1:5"]
 KINDS = [
     *output.KINDS,
+    output.Kind("set of many buckets", "x.h5", ["generate", *MANY, "-o", "OUT"]),
     output.Kind("scene", "x.h5", ["scene", "make", "robot", "-n", "6", "--frames", "2", "-o", "OUT"]),
     output.Kind("results, CSV", "x.csv", [*output.BENCH, "--benchmark_out_format=csv", "--out", "OUT"], times=True,
                 program=SIXDOF_BENCH, replaces=False),
@@ -50,6 +53,7 @@ KINDS = [
                 ["-B", str(SOURCE / "fixtures/set_manifest.py"), "--program", SIXDOF, "sets"], program=PYTHON),
 ]
 FOLDERS = [kind for kind in output.FOLDERS if kind.name != "figures of results"]  # node runs for a second each
+FOLDERS.append(output.Kind("shards of many buckets", "made", ["generate", *MANY, "--shards", "6", "-o", "OUT"], replaces=False))
 CACHE = output.Kind("entries of the cache", "cache", output.CACHED[1:])
 # (what fails, only once)
 WAYS = [(kind, once) for kind in ("ENOSPC", "EIO", "EDQUOT", "short") for once in (True, False)] + [("lost", True)]
@@ -65,8 +69,9 @@ class Fault:
                 "SIXDOF_FAULT_KIND": self.what, "SIXDOF_FAULT_ONCE": str(int(self.once))}
 
 
-def prepare(asked):
+def prepare(asked, folder):
     """Makes the inputs, in each process that runs commands."""
+    tempfile.tempdir = folder
     work.setUpClass()
     for kind in [*KINDS, CACHE]:
         if kind.name in work.whole or kind.name not in asked:
@@ -103,7 +108,7 @@ def run(kind, fault):
     counts = work.top / "counts"
     counts.write_bytes(bytes(16))
     environment = work.environment(**fault.environment(counts),
-                                   SIXDOF_CACHE=str(folder / "cache") if kind is CACHE else "off")
+                                   SIXDOF_CACHE=str(folder / "cache" if kind is CACHE else work.cache))
     done = work.run_in(folder, kind.command(), environment)
     calls, faults = struct.unpack("QQ", counts.read_bytes())
     return calls, faults, done, folder, old
@@ -188,7 +193,8 @@ def main():
     names = [kind.name for kind in all_kinds(options.kinds)]
     output.KINDS = [kind for kind in output.KINDS if kind.name in names]  # what prepare() makes
     output.FOLDERS = [kind for kind in FOLDERS if kind.name in names]
-    with concurrent.futures.ProcessPoolExecutor(options.jobs, initializer=prepare, initargs=(names,)) as pool:
+    with tempfile.TemporaryDirectory(prefix="sixdof-faults-") as folder, \
+            concurrent.futures.ProcessPoolExecutor(options.jobs, initializer=prepare, initargs=(names, folder)) as pool:
         calls = dict(zip(names, pool.map(count, names)))
         faults = [(name, at, what, once) for name in names for at in range(1, calls[name] + 1) for what, once in WAYS]
         if options.most and len(faults) > options.most:
