@@ -66,8 +66,12 @@ ResultJournal::ResultJournal(std::filesystem::path file) : file_(std::move(file)
   constexpr mode_t k_mode = 0666;
   // A link may have been put there by another user, to have the file that it leads to overwritten.
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, k_mode);
-  if (descriptor_ < 0 && errno == ELOOP) throw BadFile(file_.string(), "is a link, which is not followed");
-  if (descriptor_ < 0) throw_not_writable(file_, errno);
+  if (descriptor_ < 0) {
+    const int failure = errno;  // ELOOP or, where the system protects such links, EACCES
+    std::error_code ignored;
+    if (std::filesystem::is_symlink(file_, ignored)) throw BadFile(file_.string(), "is a link, which is not followed");
+    throw_not_writable(file_, failure);
+  }
   try {
     struct stat state = {};
     if (::fstat(descriptor_, &state) != 0) throw_not_writable(file_, errno);

@@ -232,7 +232,10 @@ void PrivateFolder::commit(const std::filesystem::path& target) {
   if (failure != 0) throw BadFile(target.string(), fmt::format("cannot be made: {}", std::strerror(failure)));
 }
 
-void check_writable(const std::filesystem::path& target) { const AtomicFile made(target); }
+void check_writable(const std::filesystem::path& target) {
+  AtomicFile probe(target);
+  if (const int failure = close_file(probe.descriptor_)) throw_not_writable(target, failure);
+}
 
 void remove_own_partials() {
   Partials& all = partials();

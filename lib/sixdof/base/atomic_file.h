@@ -42,6 +42,7 @@ class AtomicFile {
   void commit();
 
  private:
+  friend void check_writable(const std::filesystem::path& target);
   /// Removes the temporary file unless it has been renamed.
   void discard();
 
