@@ -18,8 +18,7 @@ using FieldsByName = std::map<std::string, RowFields>;
 using OutliersByName = std::map<std::string, std::function<Outliers()>>;
 
 /// One finished row, or one aggregate of its repetitions, as it stands in a result file's "benchmarks": Google
-/// Benchmark's keys, the row's fields under k_row_fields_key, and its outliers under k_outliers_key. Strings are
-/// visible (visible_text.h).
+/// Benchmark's keys, the row's fields under k_row_fields_key, its outliers under k_outliers_key. Strings are visible.
 /// @throws Error for a NaN in it
 nlohmann::ordered_json row_json(const benchmark::BenchmarkReporter::Run& run, const FieldsByName& fields,
                                 const OutliersByName& outliers);

@@ -188,6 +188,13 @@ void write_lines(const fs::path& folder) {
   seeds.add("answer-to-another-query", R"(d{"collide":true})");
   seeds.add("response", "r" + to_line(Asked<Response>{Response{1, 2, {1, 2, 3}, {4, 5, 6}, {7, 8, 9}}, "", {}, {}}));
   seeds.add("no-answer", "r" + to_line(Asked<Response>{Status::failed, "no \xFF convergence", {}, {}}));
+  seeds.add("no-answer-that-prints",
+            "c"
+            R"({"status":"failed","words":"\u001b]0;t\u0007 \ud800 \u202e)"
+            "\xC2\x9B\x1B\xFF\"}");
+  seeds.add("counts-that-do-not-print", R"(p{"prepared":true,"counts":{"\u001b[31m\n\u2028":3}})");
+  seeds.add("greeting-that-does-not-print",
+            R"(h{"protocol":1,"name":"\u001b","version":"\udc80","answers":["collide"],"summary":"\u0000"})");
   seeds.add("times", "t" + to_line(Timed{{1, 2}, {1, 1.5}, 0, 0, {{1, Status::non_finite, "nan"}}}));
   seeds.add("times-together", R"(T{"wall_ns":8,"cpu_ns":7})");
   seeds.add("times-negative", R"(T{"wall_ns":-8,"cpu_ns":"inf"})");

@@ -24,7 +24,7 @@ using namespace protocol;
 using test::as_json_string;
 using test::hostile_text;
 
-constexpr std::uint64_t k_texts = 4000;
+constexpr std::uint64_t k_texts = 2000;
 constexpr std::uint64_t k_asked_texts = 400;  // each by two processes
 
 /// One line that any terminal shows as it is, and JSON takes.

@@ -235,7 +235,7 @@ TEST(Script, WhatIsNoAnswerIsNeverOne) {
 TEST(Script, ATimeThatHasNotPassedIsNonsense) {
   for (const char* const ns : {"1e300", "60e9", "-1"}) {
     const auto query =
-        script("echo '{\"collide\": true, \"ns\": " + std::string(ns) + "}'")->prepare(torus(), torus(), {});
+        script("echo '{\"collide\": true, \"ns\": " + std::string(ns) + "}'")->prepare(torus(), torus(), Settings());
     EXPECT_EQ(query->collide(Pose()).status, Status::failed) << ns;
     EXPECT_THAT(query->diagnosis(), ::testing::StartsWith("wrote nonsense: ")) << ns;
     const auto timed = as_remote(*query)->time_each<bool>(std::vector<Pose>(3), 1);

@@ -45,6 +45,15 @@ constexpr bool k_can_limit_memory = true;
 
 [[noreturn]] void throw_errno(const char* what) { throw Error(fmt::format("{}: {}", what, std::strerror(errno))); }
 
+/// Asks until it is true, or the time is over. @returns whether it is
+template <class Condition>
+bool becomes_true(const Condition& condition, milliseconds patience) {
+  const auto end_of_patience = Clock::now() + patience;
+  bool is_true = false;
+  while (!(is_true = condition()) && Clock::now() < end_of_patience) std::this_thread::sleep_for(milliseconds(1));
+  return is_true;
+}
+
 /// Processes that the kernel has ended for want of memory since it started; 0 where it does not tell.
 long count_kernel_kills() {
   std::ifstream file("/proc/vmstat");
@@ -126,28 +135,23 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::vec
 
 ChildProcess::~ChildProcess() {
   ::close(input_);
-  if (!ended_) await_end(k_patience);
+  if (!ended_) becomes_true([this] { return has_ended(); }, k_patience);
   end();
   ::close(output_);
 }
 
-/// Waits until it has ended by itself. Its number stays taken until end(). @returns false if it takes longer
-bool ChildProcess::await_end(std::chrono::milliseconds patience) const {
-  const auto end_of_patience = Clock::now() + patience;
-  while (true) {
-    siginfo_t info{};
-    const int result = ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT);
-    if ((result != 0 && errno == ECHILD) || info.si_pid != 0) return true;
-    if (Clock::now() >= end_of_patience) return false;
-    std::this_thread::sleep_for(milliseconds(1));
-  }
+/// Whether it has ended by itself. Its number stays taken until end().
+bool ChildProcess::has_ended() const {
+  siginfo_t info{};
+  const int result = ::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT);
+  return (result != 0 && errno == ECHILD) || info.si_pid != 0;
 }
 
 /// Kills the program and what it has started.
 void ChildProcess::end() {
   if (ended_) return;
   ::kill(process_, SIGTERM);
-  if (!await_end(k_patience_with_keeper)) ::kill(process_, SIGKILL);
+  if (!becomes_true([this] { return has_ended(); }, k_patience_with_keeper)) ::kill(process_, SIGKILL);
   while (::waitpid(process_, &wait_status_, 0) < 0 && errno == EINTR) {
   }
   ended_ = true;
@@ -160,7 +164,8 @@ void ChildProcess::give_up(Status status, const std::string& words) {
 
 /// The program has closed its side, mostly by ending.
 void ChildProcess::closed() {
-  if (!await_end(k_patience_with_end)) give_up(Status::crashed, "closed its standard streams");
+  if (!becomes_true([this] { return has_ended(); }, k_patience_with_end))
+    give_up(Status::crashed, "closed its standard streams");
   end();
   read_what_is_there();  // its note may be unread: of a program that ended before it was asked
   while (take_line()) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -34,9 +33,9 @@ TimeLimit expires_after(double seconds);
 ChildFailure how_it_ended(int wait_status, bool ran_out_of_memory);
 
 /// A program that runs beside this one and exchanges lines with it: what is sent is its standard input, what it prints
-/// on standard output is received; its standard error is this program's. Neither the program nor what it starts, also
-/// by other processes that leave its group, outlives the program, this object or, whatever happens to it, the thread
-/// that made the object (keeper.h). Ctrl-C does not reach it: it has a process group of its own.
+/// on standard output is received; its standard error is this program's. Neither the program nor what it has started
+/// outlives this object or, whatever happens to it, the thread that made the object; nor does that outlive the program
+/// (keeper.h). Ctrl-C does not reach it: it has a process group of its own.
 class ChildProcess {
  public:
   /// @param words program and arguments; the program is looked for in PATH
@@ -72,7 +71,7 @@ class ChildProcess {
   std::optional<std::string> take_line();
   [[noreturn]] void give_up(Status status, const std::string& words);
   [[noreturn]] void closed();
-  bool await_end(std::chrono::milliseconds patience) const;
+  bool has_ended() const;
   void end();
 
   pid_t process_ = -1;            ///< The program's keeper, which ends as the program does.

@@ -13,9 +13,8 @@ namespace sixdof {
 /// register themselves.
 class Registry {
  public:
-  /// @throws BadArgument if it is null, the name is taken or has characters other than a-z 0-9 '-', a parameter has a
-  /// name with others than a-z 0-9 '_' or a value that cannot be typed and recorded, or if the sweeps of two parameters
-  /// have unlike numbers of values
+  /// @throws BadArgument if it is null, a name is taken or has characters other than a-z 0-9 '-' (of parameters '_'), a
+  /// value cannot be typed and recorded, or the sweeps of two parameters have unlike numbers of values
   void add(std::unique_ptr<Algorithm> algorithm);
 
   /// @throws BadArgument that lists the registered names
