@@ -157,6 +157,7 @@ class External(unittest.TestCase):
         script = self.folder / "hostile.py"
         script.write_text(f"""import json, sys
 words = {words!r}
+asked = 0
 for line in sys.stdin:
     do = json.loads(line)["do"]
     if do == "hello":
@@ -165,12 +166,13 @@ for line in sys.stdin:
     elif do == "prepare":
         reply = dict(prepared=True, counts={{words: 3}})
     else:
-        reply = dict(status="failed", words=words)
+        asked += 1
+        reply = dict(status="failed", words=words) if asked % 2 else dict(distance=0.25)
     print(json.dumps(reply), flush=True)
 """)
         command = f"{sys.executable} {script}"
         document, row = self.bench(command)
-        self.assertEqual(row["failed"], SAMPLE)
+        self.assertGreaterEqual(row["failed"], SAMPLE // 2)
         self.assertIn("red \\x1B[31m \\xC2\\x9B2J\\x0A\\x00\\x7F", row["label"])
         self.assertTrue(document["context"]["algorithm:spheres"].startswith("1red \\x1B[31m"))
         out = self.folder / "out.json"

@@ -9,11 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <Eigen/Core>
 
 #include <sixdof/base/cache.h>
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/mesh.h>
+#include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/solid.h>
 
 /// Shared by the algorithms that prepare structures of their own.
@@ -21,10 +23,14 @@
 namespace sixdof {
 
 /// @param what needs the solid, for the message
-/// @throws BadMesh with the reason if the mesh is not solid()
+/// @throws BadMesh with the reason if the mesh is not solid(), or of a size whose cube has no double
 inline void require_solid(const Mesh& mesh, const std::string& what) {
   if (!mesh.solid())
     throw BadMesh(mesh.name() + ": " + what + " needs a solid: " + mesh.why_not_solid() + k_repair_hint);
+  if (!(mesh.diagonal() >= Tree::k_smallest_diagonal && mesh.diagonal() <= Tree::k_largest_diagonal)) {
+    throw BadMesh(fmt::format("{}: {} needs a box diagonal of {} to {}, not {}", mesh.name(), what,
+                              Tree::k_smallest_diagonal, Tree::k_largest_diagonal, mesh.diagonal()));
+  }
 }
 
 /// Whether all numbers of an array from the cache are finite.

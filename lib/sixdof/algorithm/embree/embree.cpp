@@ -29,6 +29,16 @@ float round_down(double x) {
 }
 float round_up(double x) { return -round_down(-x); }
 
+/// Whether the body is a point in Embree's floats, of which its builder asserts that there is none: the body is too
+/// small, or too far away for its size.
+bool is_point_in_floats(const Eigen::AlignedBox3d& box) {
+  float largest = 0.0F;
+  for (int axis = 0; axis < 3; ++axis) {
+    largest = std::max(largest, round_up(box.max()[axis]) - round_down(box.min()[axis]));
+  }
+  return !(largest >= std::numeric_limits<float>::min());  // Embree takes smaller ones for zero
+}
+
 template <auto release>
 struct Release {
   template <class Handle>
@@ -70,17 +80,21 @@ class Body {
   Body(const Body&) = delete;
   Body& operator=(const Body&) = delete;
 
-  /// @return false if Embree would drop a triangle, since a coordinate is too large
-  bool move(const Pose& X_AB) {
-    double largest = 0.0;
+  /// @return why Embree cannot be asked there; null if it can
+  const char* move(const Pose& X_AB) {
+    Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < vertices_A_.size(); ++i) {
       vertices_A_[i] = transform_point(X_AB, mesh_.vertices()[i]);
-      largest = std::max(largest, vertices_A_[i].lpNorm<Eigen::Infinity>());
+      box.extend(vertices_A_[i]);
     }
-    if (!(largest < k_largest_coordinate)) return false;
+    // It would drop a triangle.
+    if (!(box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() < k_largest_coordinate)) {
+      return "coordinates beyond Embree's largest";
+    }
+    if (is_point_in_floats(box)) return "coordinates that Embree's floats cannot tell apart";
     rtcCommitGeometry(geometry_.get());
     rtcCommitScene(scene_.get());
-    return true;
+    return nullptr;
   }
 
   TriangleCorners corners(unsigned triangle) const {
@@ -125,6 +139,9 @@ class EmbreeQuery final : public Query {
       if (mesh->box().min().cwiseAbs().cwiseMax(mesh->box().max().cwiseAbs()).maxCoeff() >= k_largest_coordinate) {
         throw BadMesh(mesh->name() + ": coordinates beyond Embree's largest");
       }
+      if (is_point_in_floats(mesh->box())) {
+        throw BadMesh(mesh->name() + ": coordinates that Embree's floats cannot tell apart");
+      }
     }
     const bool tuned = settings.choice(k_profile) == "tuned";
     one_thread_.execute([&] {
@@ -139,12 +156,12 @@ class EmbreeQuery final : public Query {
     if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
     try {
       found_ = false;
-      const bool in_range = one_thread_.execute([&] {
-        if (!b_->move(X_AB)) return false;
-        rtcCollide(a_->scene(), b_->scene(), &receive, this);
-        return true;
+      const char* const why_not = one_thread_.execute([&] {
+        const char* const why = b_->move(X_AB);
+        if (why == nullptr) rtcCollide(a_->scene(), b_->scene(), &receive, this);
+        return why;
       });
-      if (!in_range) return fail(Status::failed, "coordinates beyond Embree's largest");
+      if (why_not != nullptr) return fail(Status::failed, why_not);
       check(device_.get());
     } catch (const std::exception& e) {
       return fail(Status::failed, e.what());

@@ -54,6 +54,10 @@ class OdeQuery final : public Query {
  public:
   OdeQuery(const Mesh& a, const Mesh& b, const Settings& settings)
       : center_b_(b.center()), wrench_(settings), contacts_(static_cast<std::size_t>(settings.number(k_max_contacts))) {
+    // Its trees of one triangle have no nodes. It looks for them where both meshes have such a tree.
+    if (a.triangles().size() == 1 && b.triangles().size() == 1) {
+      throw BadMesh(fmt::format("{}, {}: ODE cannot collide two meshes of one triangle", a.name(), b.name()));
+    }
     const OdeLock lock;
     data_a_ = std::make_shared<TriangleData>(a);
     data_b_ = a.hash() == b.hash() ? data_a_ : std::make_shared<TriangleData>(b);
