@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/geometry/load.h>
 #include <sixdof/geometry/pose.h>
+#include <sixdof/geometry/save.h>
 #include "bench/common/run_guarded.h"
 
+#include "../geometry/scene_files.h"
 #include "run_program.h"
 #include "scratch_folder.h"
 
@@ -209,6 +212,26 @@ TEST(Query, RefusesBadArgumentsAndNamesThem) {
   refuses("--a elefant --b box-100 --pose '0 0 0 1 0 0 0'", "elefant");
   refuses("--a box-100 --b no_such_file.ply --pose '0 0 0 1 0 0 0'", "no_such_file.ply");
   EXPECT_EQ(query("--a box-100 --b box-100").exit_code, k_exit_usage);
+}
+
+class ColladaBesideOff : public test::ScratchFolder {};
+
+TEST_F(ColladaBesideOff, WhatTheFileStatesIsSaidAndOneWordMakesThemMeet) {
+  std::string pyramid = testing_support::collada_pyramid("2 2 0");
+  const std::string axis = "<up_axis>Y_UP";
+  pyramid.replace(pyramid.find(axis), axis.size(), R"(<unit name="centimeter" meter="0.01"/><up_axis>Z_UP)");
+  std::ofstream(path("part.dae")) << pyramid;
+  save_mesh(load_mesh(path("part.dae") + "#as-stored"), path("part.off"));
+  const std::string pose = " --pose '0 0 0 1 0 0 0'";
+  const auto pair = [&](const std::string& words) {
+    return "--a '" + path("part.dae") + words + "' --b " + path("part.off") + pose;
+  };
+  EXPECT_EQ(answers(pair("#as-stored")).at("volume"), 4.0);
+  EXPECT_EQ(answers(pair("")).at("colliding"), false) << "in metres it is a hundredth";
+  EXPECT_THAT(query(pair("")).err,
+              HasSubstr("part.dae: the file's unit is 0.01 m and z points up; scaled to metres; axes kept"));
+  const auto info = test::run_program(std::string(SIXDOF_PROGRAM) + " info '" + path("part.dae") + "#as-stored'");
+  EXPECT_THAT(info.out, HasSubstr("the file's unit is 0.01 m and z points up; read as stored"));
 }
 
 }  // namespace

@@ -126,6 +126,24 @@ void write_meshes(const fs::path& folder) {
   const std::string data = R"(,"uri":"data:;base64,)" + base64(gltf_data(box_mesh)) + '"';
   seeds.add("box.gltf",
             "5" + gltf_json(box_mesh, data, R"([{"children":[1],"scale":[1,1,-1]},{"mesh":0,"translation":[1,2,3]}])"));
+  const auto gltf = [&](const std::string& nodes, const std::string& positions, const std::string& more) {
+    const std::string points = R"({"bufferView":0,"componentType":5126,"count":8,"type":"VEC3"})";
+    std::string json = gltf_json(box_mesh, data, nodes);
+    json.replace(json.find(points), points.size(), positions);
+    return "5" + json.insert(json.size() - 1, more);
+  };
+  const std::string plain_node = R"([{"mesh":0}])";
+  seeds.add("instances.gltf",
+            gltf(R"([{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0,"SCALE":0}}}}])",
+                 R"({"bufferView":0,"componentType":5126,"count":8,"type":"VEC3"})",
+                 R"(,"extensionsRequired":["EXT_mesh_gpu_instancing"])"));
+  seeds.add("integers.gltf",
+            gltf(plain_node, R"({"bufferView":0,"componentType":5122,"normalized":true,"count":8,"type":"VEC3"})",
+                 R"(,"extensionsUsed":["KHR_mesh_quantization"])"));
+  seeds.add("sparse.gltf", gltf(plain_node,
+                                R"({"componentType":5126,"count":8,"type":"VEC3","sparse":{"count":4,"indices":)"
+                                R"({"bufferView":1,"componentType":5123},"values":{"bufferView":0}}})",
+                                ""));
   seeds.add("box.3ds", "6" + file_3ds(object_3ds(box_mesh, {0, 3})));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the readers and writers of mesh files share; only files of lib/sixdof/geometry include this.
+// What the readers and writers of mesh files share; only files of lib/sixdof/geometry and their tests include this.
 
 #include <algorithm>
 #include <array>
