@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <sixdof/models/recipe.h>
 #include <sixdof/oracle/distance.h>
 
 #include "../geometry/shapes.h"
@@ -176,6 +177,29 @@ TEST(DistanceOracle, OfRodsThatCrossFewNodesAreExpanded) {
   EXPECT_LT(far.triangles, 15000u);
   EXPECT_LT(touching.nodes, 60000u) << "690,078 without the axes across";
   EXPECT_LT(touching.triangles, 10000u);
+}
+
+TEST(DistanceOracle, OfSolidsWhoseFacesNearlyCoincideFewAreTestedForAnIntersection) {
+  // A plate on a plate, tilted about a line of both meshes: along that line faces touch but for rounding, on one side
+  // of it B's corners are inside A. An open plate has no inside.
+  const Mesh plate = make_box({Vector3d(2.0, 2.0, 0.1)}, 100000);
+  std::vector<Triangle> all_but_one(plate.triangles().begin(), plate.triangles().end() - 1);
+  const Mesh open = Mesh::build(plate.vertices(), all_but_one);
+  const DistanceOracle oracle(plate, plate), of_open(open, open);
+  DistanceQuery query(oracle), query_of_open(of_open);
+  for (const Vector3d& axis : {Vector3d(1.0, 0.0, 0.0), Vector3d(0.0, -1.0, 0.0), Vector3d(0.6, 0.8, 0.0)}) {
+    for (const double angle : {1e-9, -1e-9, 1e-7}) {
+      const Pose pose{Eigen::AngleAxisd(angle, axis).toRotationMatrix(), Vector3d(0.0, 0.0, 0.1)};
+      EXPECT_TRUE(query.collide(pose, false));
+      EXPECT_LT(query.counts().leaf_pairs + query.counts().triangles, 400u) << angle;
+      EXPECT_EQ(query_of_open.collide(pose, false), query_of_open.distance(pose, false).distance == 0.0);
+      EXPECT_TRUE(query.collide(pose.inverse(), false));
+      // Clear of each other by less than the tilt moves the border.
+      Pose above = pose;
+      above.t.z() += 1.5 * std::abs(angle);
+      EXPECT_EQ(query.collide(above, false), query.distance(above, false).distance == 0.0);
+    }
+  }
 }
 
 TEST(DistanceOracle, ColdSearchesExpandFewNodes) {
