@@ -10,6 +10,4 @@ std::string json_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string valid_utf8(const std::string& text) { return Json::parse(json_text(text, -1)).get<std::string>(); }
-
 }  // namespace sixdof

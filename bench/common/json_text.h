@@ -11,7 +11,4 @@ namespace sixdof {
 /// @param indent spaces per level; -1: all on one line
 std::string json_text(const nlohmann::ordered_json& json, int indent = 2);
 
-/// The text with bytes that are not UTF-8 replaced by U+FFFD.
-std::string valid_utf8(const std::string& text);
-
 }  // namespace sixdof

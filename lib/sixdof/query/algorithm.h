@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include <sixdof/base/visible_text.h>
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
 #include <sixdof/query/settings.h>
@@ -205,9 +206,9 @@ class Query {
   const std::string& diagnosis() const { return diagnosis_; }
 
  protected:
-  /// Keeps the words for diagnosis(). @return `status`
-  Status fail(Status status, std::string words) {
-    diagnosis_ = std::move(words);
+  /// Keeps the words, visible, for diagnosis(). @return `status`
+  Status fail(Status status, const std::string& words) {
+    diagnosis_ = visible_words(words);
     return status;
   }
 
