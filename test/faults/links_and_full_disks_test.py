@@ -21,7 +21,8 @@ STRANGER = 65534
 PAGE = os.sysconf("SC_PAGE_SIZE")
 # So many values that nothing hides what is missing: buckets of 18,252 configurations, 0.1 MB each when compressed.
 GENERATE = [SIXDOF, "generate", "--a", "cone-1k", "--b", "cone-1k", "--grid", "30/90", "--distances", "0:5"]
-QUERY = [SIXDOF, "query", "--a", "torus-1k", "--b", "cone-1k", "--pose", "0.9 0 0.1 1 0 0 0", "--algorithm", "ist"]
+QUERY = [SIXDOF, "query", "--a", "torus-1k", "--b", "cone-1k", "--pose", "0.9 0 0.1 1 0 0 0", "--algorithm", "vps-field",
+         "-p", "voxel_size=0.1", "-p", "point_spacing=0.1"]
 
 
 def run(words, **options):
