@@ -6,7 +6,8 @@ usage: write_faults.py SIXDOF SIXDOF_BENCH FAIL_WRITES [--most N] [--kinds REGEX
 FAIL_WRITES is the library of fail_writes.cpp. A run without a fault counts a command's calls; then every one fails, in
 every way: once or from there on, with ENOSPC, EIO, EDQUOT, after half of a write, or silently. After a fault
 
-- the exit code is not 0 (but of a query whose cache could not be written, which answers all the same),
+- the exit code is not 0, unless the new file is whole and what failed was not needed for it (a write that was taken up
+  again, the cache, closing the journal of rows that are in the file),
 - there is a message, and no signal ended the program,
 - the old file stands, bit for bit, or the new one is whole,
 - no temporary file is left.
@@ -138,7 +139,8 @@ def complaints(kind, fault, done, folder, old):
             if data != work.whole[kind.name].get(name):
                 found.append(f"{name} is not whole")
     else:
-        silent = fault.what == "lost" or (fault.what == "short" and fault.once)
+        # sixdof-bench does without a cache that it cannot write, and closes its journal when all rows are in the file.
+        silent = fault.what == "lost" or (fault.what == "short" and fault.once) or kind.program is SIXDOF_BENCH
         if done.returncode == 0 and not (silent and is_folder_or_whole(kind, content, True)):
             found.append("exit code 0" + ("" if is_folder_or_whole(kind, content, True) else ", and the file is not whole"))
         if done.returncode not in (0, 1):
