@@ -193,7 +193,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     options = parser.parse_args(OPTIONS)
     names = [kind.name for kind in all_kinds(options.kinds)]
-    output.KINDS = [kind for kind in output.KINDS if kind.name in names]  # what prepare() makes
+    # What prepare() makes; the manifest is one of a set.
+    output.KINDS = [kind for kind in output.KINDS if kind.name in [*names, "set"]]
     output.FOLDERS = [kind for kind in FOLDERS if kind.name in names]
     with tempfile.TemporaryDirectory(prefix="sixdof-faults-") as folder, \
             concurrent.futures.ProcessPoolExecutor(options.jobs, initializer=prepare, initargs=(names, folder)) as pool:
