@@ -29,7 +29,8 @@ ValueTable values() {
   }
   for (const stability::Family& family : stability::families()) add("FAMILY", std::string(family.name));
   try {
-    for (const CatalogueEntry& set : SetCatalogue::read(bench::default_manifest()).sets()) add("PAIR", set.pair);
+    const SetCatalogue catalogue = SetCatalogue::read(bench::default_manifest());
+    for (const CatalogueEntry& set : catalogue.sets()) add("PAIR", set.pair);
   } catch (const BadFile&) {
     // Without the committed sets there is no pair to name.
   }

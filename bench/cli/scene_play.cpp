@@ -39,6 +39,7 @@ constexpr const char* k_details =
   near                    all pairs whose surfaces are no further apart than the scene's margin
   closest                 the closest pair
   wrenches                forces and torques by the overlap volume on bodies that touch others
+
 A body inside another one touches it, as in sixdof query; libraries look at surfaces only, and such pairs that they do not
 report are counted as nested. Distances are those of surfaces. Open meshes have no inside.
 

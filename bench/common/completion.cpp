@@ -142,9 +142,9 @@ class Script {
       options.push_back(names.back());
       if (value_of(*option).name.empty()) continue;
       // The value of a flag is optional, and follows "=".
-      taken +=
-          fmt::format("        {}) {}{{ taken=1; {}; }} ;;\n", fmt::join(names, " | "),
-                      option->get_type_size() == 0 ? "[[ $assigned ]] && " : "", commands_for(*option, values_, name_));
+      taken += fmt::format("        {}) {}{{ taken=1; {}; }} ;;\n", fmt::join(names, " | "),
+                           !option->get_fnames().empty() ? "[[ $assigned ]] && " : "",
+                           commands_for(*option, values_, name_));
     }
     for (const CLI::App* command : app.get_subcommands({})) {
       commands.push_back(command->get_name());

@@ -47,7 +47,7 @@ std::string left_side(const CLI::Option& option) {
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
   std::string text = fmt::format("{}", fmt::join(names, ","));
   if (value.name.empty()) return text;
-  return text + (option.get_type_size() == 0 ? fmt::format("[={}]", value.name) : " " + value.name);
+  return text + (!option.get_fnames().empty() ? fmt::format("[={}]", value.name) : " " + value.name);
 }
 
 /// "-o FILE": with the shortest name only.
@@ -146,10 +146,14 @@ std::string help_entry(const std::string& left, const std::string& right) {
 }
 
 OptionValue value_of(const CLI::Option& option) {
+  // "NAME:CHECK", where a name may have colons of its own.
   const std::string text = option.get_type_name();
-  const std::size_t colon = std::min(text.find(':'), text.size());
-  OptionValue value{.name = text.substr(0, colon), .choices = {}, .range = range_in(text.substr(colon))};
-  value.choices = choices_in(text.substr(colon));
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return {.name = text, .choices = {}, .range = {}};
+  const std::string check = text.substr(colon + 1);
+  OptionValue value{.name = text.substr(0, colon), .choices = choices_in(check), .range = range_in(check)};
+  constexpr std::string_view k_existing_file = "FILE";
+  if (value.choices.empty() && value.range.empty() && check != k_existing_file) value.name = text;
   return value;
 }
 

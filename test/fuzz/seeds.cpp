@@ -247,7 +247,9 @@ void write_pose_tables(const fs::path& folder) {
   seeds.add("utf-16", std::string("\xFF\xFE"
                                   "f\0r\0",
                                   6));
-  seeds.add("carriage-returns", separated('\r', header) + "\r" + rows);
+  std::string of_returns = header + "\n" + rows;
+  std::replace(of_returns.begin(), of_returns.end(), '\n', '\r');
+  seeds.add("carriage-returns", of_returns);
   seeds.add("semicolons", separated(';', header + "\n" + rows));
   seeds.add("excel", "sep=;\n" + separated(';', header + "\n" + rows));
   seeds.add("tabs", separated('\t', header + "\n" + rows));
