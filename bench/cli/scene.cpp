@@ -56,6 +56,12 @@ struct MakeOptions {
   double margin = 0.0;
 };
 
+/// Of the mesh files: as given, else where the table is.
+std::filesystem::path folder_of(const MakeOptions& options) {
+  if (!options.folder.empty()) return options.folder;
+  return std::filesystem::absolute(options.poses).parent_path();
+}
+
 void make(const MakeOptions& options, bool has_margin) {
   if (options.family.empty() == options.poses.empty()) {
     throw BadArgument("name a family, or give a table of --poses");
@@ -63,9 +69,7 @@ void make(const MakeOptions& options, bool has_margin) {
   if (options.poses.empty() && !options.folder.empty()) throw BadArgument("--bodies needs a table of --poses");
   scene::SceneNumbers numbers = options.numbers;
   if (has_margin) numbers.margin = options.margin;
-  std::filesystem::path folder = options.folder;
-  if (folder.empty()) folder = std::filesystem::absolute(options.poses).parent_path();
-  const Scene made = options.family.empty() ? scene::read_scene_csv(folder, options.poses, options.margin)
+  const Scene made = options.family.empty() ? scene::read_scene_csv(folder_of(options), options.poses, options.margin)
                                             : scene::make_scene(options.family, numbers);
   scene::save_scene(made, options.output);
   print_summary(made, options.output);
