@@ -152,6 +152,7 @@ void add_repair_command(CLI::App& app) {
   command
       ->add_option("--max-fin", arguments->options.max_fin,
                    "Drop fins and stray pieces of up to this fraction of the area of the closed surface beside them")
+      ->type_name("FRACTION")
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "As JSON");
   add_examples(*command, "sixdof repair cone.ply -o mended.ply",
