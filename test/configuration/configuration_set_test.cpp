@@ -13,6 +13,7 @@
 #include <sixdof/base/hdf5.h>
 
 #include "folder_test.h"
+#include "foreign_hdf5.h"
 #include "shapes.h"
 
 namespace sixdof {
@@ -201,28 +202,15 @@ TEST_F(ConfigurationSetTest, RefusesForeignFiles) {
     EXPECT_THAT([&] { ConfigurationSet set(path); },
                 ThrowsMessage<BadFile>(AllOf(HasSubstr(path.string()), HasSubstr("HDF5"))));
   }
-  {
-    const hdf5::Session session;
-    auto file = hdf5::File::create(path, path);
-    file.make_group("distance");
-    file.close();
-  }
+  test::write_hdf5(path, [](hdf5::File& file) { file.make_group("distance"); });
   EXPECT_THAT([&] { ConfigurationSet set(path); }, ThrowsMessage<BadFile>(HasSubstr("attribute format")));
-  {
-    const hdf5::Session session;
-    auto file = hdf5::File::create(path, path);
-    file.write_attribute("/", "format", std::string("weather"));
-    file.close();
-  }
+  test::write_hdf5(path, [](hdf5::File& file) { file.write_attribute("/", "format", std::string("weather")); });
   EXPECT_THAT([&] { ConfigurationSet set(path); }, ThrowsMessage<BadFile>(HasSubstr("not a sixdof configuration set")));
   for (const std::uint64_t version : {1, 2, 4}) {
-    {
-      const hdf5::Session session;
-      auto file = hdf5::File::create(path, path);
+    test::write_hdf5(path, [&](hdf5::File& file) {
       file.write_attribute("/", "format", std::string("sixdof-configuration-set"));
       file.write_attribute("/", "format_version", version);
-      file.close();
-    }
+    });
     EXPECT_THAT([&] { ConfigurationSet set(path); },
                 ThrowsMessage<BadFile>(AllOf(HasSubstr("format version " + std::to_string(version)),
                                              HasSubstr("reads version 3"), HasSubstr("sixdof generate"))));

@@ -8,6 +8,7 @@
 #include <sixdof/configuration/configuration_set.h>
 
 #include "folder_test.h"
+#include "foreign_hdf5.h"
 #include "shard_job.h"
 
 namespace sixdof {
@@ -88,13 +89,10 @@ TEST_F(ShardFileTest, RefusesOtherFiles) {
   const SetDescription set = test::SmallJob().set;
   ConfigurationSetWriter(path, set).commit();
   EXPECT_THAT([&] { ShardFile shard(path); }, ThrowsMessage<BadFile>(HasSubstr("is not a shard")));
-  {
-    const hdf5::Session session;
-    auto file = hdf5::File::create(path, path);
+  test::write_hdf5(path, [](hdf5::File& file) {
     file.write_attribute("/", "format", std::string("sixdof-shard"));
     file.write_attribute("/", "format_version", std::uint64_t{1});
-    file.close();
-  }
+  });
   EXPECT_THAT([&] { ShardFile shard(path); },
               ThrowsMessage<BadFile>(HasSubstr("has format version 1, but this build reads version 2")));
 }
