@@ -105,8 +105,8 @@ std::vector<std::string> names() {
   return list;
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEveryAlgorithm, TinyMeshes, ::testing::ValuesIn(names()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(OfEveryAlgorithm, TinyMeshes, ::testing::ValuesIn(names()), [](const auto& made) {
+  std::string name = made.param;
   std::ranges::replace(name, '-', '_');
   return name;
 });
