@@ -76,7 +76,7 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
     families.insert(name.substr(0, name.find('/')));
     expect_fields_of_the_name(entry);
     for (const auto& [key, value] : entry.items()) {
-      if (k_no_counters.contains(key)) continue;
+      if (k_no_counters.contains(key) || key == "checksum") continue;
       counters.insert(key);
       EXPECT_NE(find_metric(key), nullptr) << key << " of " << name << " is not in lib/sixdof/measure/metrics.cpp";
     }
