@@ -117,7 +117,8 @@ std::filesystem::path writable_cache_file(std::string_view kind, std::string_vie
   std::filesystem::path file = cache_file(kind, key);
   if (file.empty()) return file;
   try {
-    std::filesystem::create_directories(file.parent_path().parent_path());
+    const std::filesystem::path above = file.parent_path().parent_path();
+    if (!above.empty()) std::filesystem::create_directories(above);  // empty: a folder of the working directory
     // Whatever the umask is: a folder that a group can write would be refused the next time.
     if (::mkdir(file.parent_path().c_str(), S_IRWXU) == 0) file = cache_file(kind, key);
     check_writable(file);
