@@ -51,7 +51,7 @@ constexpr const char* k_aborts = "gts";
 
 /// Some where they touch, cross, coincide, and one far away.
 std::vector<Pose> poses() {
-  return {Pose(), Pose{.t = {0.25, 0.25, 0}}, Pose::from_quaternion(0.9, 0.3, 0.2, 0.1, {0.1, 0.2, -0.1}),
+  return {Pose(), Pose{.t = {0.25, 0.25, 0}}, Pose::from_quaternion(0.7, 0.5, 0.5, 0.1, {0.1, 0.2, -0.1}),
           Pose{.t = {3, 4, 100}}};
 }
 
