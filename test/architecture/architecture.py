@@ -145,7 +145,8 @@ def read_build(root, folder):
     command, sources = [], set()
     for entry in json.loads(commands.read_text()):
         file = os.path.relpath(entry["file"], root)
-        sources.add(file)
+        if "cmake_pch" not in entry["command"]:  # what is precompiled comes before a source's own includes
+            sources.add(file)
         if not file.startswith(("lib/", "bench/")):
             continue
         words = shlex.split(entry["command"])

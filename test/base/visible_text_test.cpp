@@ -55,7 +55,7 @@ TEST(VisibleWords, AreTheBeginningOfLongOnes) {
   EXPECT_EQ(visible_words("why: " + std::string(100'000, 'w')),
             "why: " + std::string(k_longest_words - 5 - end.size(), 'w') + end);
   for (const std::string& text :
-       {std::string(k_longest_words, '\x1B'), "a" + std::string(600, 'b'), std::string("a\nb"),
+       {std::string(k_longest_words, '\x1B'), std::string("a").append(600, 'b'), std::string("a\nb"),
         std::string(k_longest_words / 2, '\xC3') + std::string(600, '\xBC')}) {
     const std::string words = visible_words(text);
     EXPECT_LE(words.size(), k_longest_words);

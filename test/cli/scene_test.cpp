@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "mesh_files.h"
 #include "run_program.h"
 #include "scratch_folder.h"
 
@@ -202,21 +203,33 @@ TEST_F(PosesOfOneFrame, AnOpenMeshEndsOneQuestionOnly) {
   EXPECT_EQ(run("play open.h5 --list --question wrenches").exit_code, 1);
 }
 
-/// A scene of which Bullet's GImpact reports pairs that are apart.
+/// Two cubes of 2 mm, which cross: Bullet's GImpact finds nothing, since its tolerances are lengths.
 TEST_F(SceneCommand, AWrongPairHasItsReproduction) {
-  ASSERT_EQ(run("make clusters -n 120 --frames 6 --seed 3 -o 'my scene.h5'").exit_code, 0);
-  const auto played = run("play 'my scene.h5' --algorithms bullet-dbvt --frames 2:4 --json");
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Triangle> triangles;
+  test::add_box(Eigen::Vector3d::Constant(-0.001), Eigen::Vector3d::Constant(0.001), vertices, triangles);
+  save_mesh(Mesh::build(vertices, triangles, "cube"), path("cube.ply"));
+  std::ofstream(path("poses.csv"))
+      << "frame,body,mesh,tx,ty,tz,qw,qx,qy,qz\n0,1,cube.ply,1,1,1,1,0,0,0\n"
+         "0,21,cube.ply,-0.003912383075545867,0.003998185003560202,0.00010115980928676382,"
+         "0.8281198308059594,0.1238881696316525,-0.480579787888994,0.2605999515038282\n"
+         "0,25,cube.ply,-0.0019361337966675408,0.0035851440635655935,-0.0018963637264686596,"
+         "0.3556680040769872,0.13768780164334826,0.9056799852741918,-0.18516507345677732\n"
+         "1,1,,1,1,2,1,0,0,0\n";
+  ASSERT_EQ(run("make --poses poses.csv -o 'my scene.h5'").exit_code, 0);
+  const auto played = run("play 'my scene.h5' --algorithms bullet-dbvt --frames 1:1 --json");
   if (played.err.find("no algorithm for scenes bullet-dbvt") != std::string::npos) GTEST_SKIP() << played.err;
   ASSERT_EQ(played.exit_code, 0) << played.err;
   const json first = json::parse(played.out)[0].at("algorithms")[0].value("first_wrong", json());
-  if (first.is_null()) GTEST_SKIP() << "this build of Bullet reports no wrong pair";
+  if (first.is_null()) GTEST_SKIP() << "this build of Bullet misses nothing";
+  EXPECT_EQ(first.at("bodies"), json({21, 25}));
   const std::string command = first.at("reproduction");
-  const std::string prefix = "sixdof scene ";
-  ASSERT_EQ(command.find(prefix + "play 'my scene.h5' --question touching --algorithms bullet-dbvt "), 0u) << command;
-  const json again = json_of(command.substr(prefix.size()))[0].at("algorithms")[0].at("first_wrong");
-  EXPECT_EQ(again.at("bodies"), first.at("bodies"));
-  EXPECT_EQ(again.at("frame"), first.at("frame"));
-  EXPECT_EQ(again.at("distance"), first.at("distance"));
+  EXPECT_EQ(command,
+            "sixdof scene play 'my scene.h5' --question touching --algorithms bullet-dbvt --bodies 21,25 --frames 1");
+  const json again =
+      json_of(command.substr(std::string("sixdof scene ").size()))[0].at("algorithms")[0].at("first_wrong");
+  for (const char* const key : {"bodies", "frame", "distance", "missed"})
+    EXPECT_EQ(again.at(key), first.at(key)) << key;
 }
 
 TEST_F(SceneCommand, RefusesInOneLine) {

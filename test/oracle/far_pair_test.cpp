@@ -13,6 +13,7 @@
 #include <sixdof/oracle/overlap.h>
 
 #include "../geometry/shapes.h"
+#include "distance_truth.h"
 #include "instruction_sets.h"
 
 // Bodies so far apart that a rounding of their distance is a visible part of their size, up to the largest doubles.
@@ -20,12 +21,13 @@
 namespace sixdof {
 namespace {
 
+using distance_truth::brute_force;
 using Eigen::Vector3d;
 using shapes::Generator;
 using Vector3l = Eigen::Matrix<long double, 3, 1>;
 
 /// The least distance of two vertices in numbers with eleven more bits than doubles, and with exponents that no square
-/// of a double exceeds. Where bodies are far apart, that is their distance: far_pair.h.
+/// of a double exceeds. Where only corners matter, that is their distance: far_pair.h.
 double least_distance_of_vertices(const Mesh& a, const Mesh& b, const Pose& X_AB) {
   std::vector<Vector3l> of_b;
   for (const Vector3d& q : b.vertices()) {
@@ -58,8 +60,8 @@ TEST(FarPair, IsTheClosestOfAllPairsAtAnySeparation) {
       DistanceQuery query(oracle);
       const detail::DistanceBody body_a(a), body_b(b);
       const double sizes = body_a.tree.radius() + body_b.tree.radius();
-      for (const double diameters :
-           {1.1 * detail::k_far, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e16, 1e20, 1e100, 1e150, 1e155, 1e300, 2e307}) {
+      for (const double diameters : {1.1 * detail::k_corners, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e16, 1e20, 1e100,
+                                     1e150, 1e155, 1e300, 2e307}) {
         for (const Vector3d& direction : directions(generator)) {
           Pose pose = shapes::random_pose(generator, 0.0);
           if (generator() % 3 == 0) pose.R.setIdentity();
@@ -101,25 +103,60 @@ TEST(FarPair, ReachesFarthestWhereTheDistanceHardlyTellsCornersApart) {
   }
 }
 
-TEST(FarPair, MeetsTheSearchAtTheLimit) {
-  // On both sides of it the same distance up to rounding, of both orders.
+TEST(FarPair, IsTheClosestOfAllPairsOfTriangles) {
+  // Where a point of a face or of an edge may be closer than all corners. Both orders.
   Generator generator(63);
+  int count = 0;
+  const std::vector<Mesh> meshes{shapes::bumpy_sphere(1, 0.2), shapes::box({0.5, 0.4, 0.3}, {7.0, -3.0, 2.0}),
+                                 make_box({Vector3d(2.0, 2.0, 0.01)}, 200), shapes::bumpy_sphere(1, 0.3, 1e-3)};
+  for (const Mesh& a : meshes) {
+    for (const Mesh& b : meshes) {
+      const DistanceOracle oracle(a, b), swapped(b, a);
+      DistanceQuery query(oracle), back(swapped);
+      const detail::DistanceBody body_a(a), body_b(b);
+      const double sizes = body_a.tree.radius() + body_b.tree.radius();
+      for (const double ratio : {1.1 * detail::k_far, 1e5, 1e6, 1e7, 0.9 * detail::k_corners}) {
+        for (const Vector3d& direction : directions(generator)) {
+          Pose pose = shapes::random_pose(generator, 0.0);
+          if (generator() % 3 == 0) pose.R.setIdentity();
+          pose.t = ratio * sizes / direction.cwiseAbs().maxCoeff() * direction;
+          const auto expect_closest = [&](DistanceQuery& asked, const Mesh& x, const Mesh& y, const Pose& X_XY) {
+            if (!detail::are_far(detail::DistanceBody(x), detail::DistanceBody(y), X_XY)) return;  // for few directions
+            ++count;
+            const double truth = brute_force(x, y, X_XY).distance;
+            const Separation found = asked.distance(X_XY);
+            EXPECT_GE(found.distance, truth) << ratio;
+            EXPECT_LE(found.distance, (1.0 + detail::k_far_pair_error) * truth) << ratio;
+            EXPECT_NEAR(found.distance, (found.witness_b - found.witness_a).norm(), k_relative_error * truth) << ratio;
+          };
+          expect_closest(query, a, b, pose);
+          expect_closest(back, b, a, pose.inverse());
+        }
+      }
+    }
+  }
+  EXPECT_GT(count, 500);
+}
+
+TEST(FarPair, MeetsTheSearchAtTheLimits) {
+  // On both sides of each the same distance up to rounding.
+  Generator generator(67);
   const Mesh a = shapes::bumpy_sphere(2, 0.2), b = make_box({}, 60);
-  const DistanceOracle oracle(a, b), swapped(b, a);
-  DistanceQuery query(oracle), back(swapped);
+  const DistanceOracle oracle(a, b);
+  DistanceQuery query(oracle);
   const detail::DistanceBody body_a(a), body_b(b);
-  const double limit = detail::k_far * (oracle.tree_a().radius() + oracle.tree_b().radius());
+  const double sizes = oracle.tree_a().radius() + oracle.tree_b().radius();
   for (int i = 0; i < 20; ++i) {
     Pose pose = shapes::random_pose(generator, 0.0);
     Vector3d direction = shapes::unit_vector(generator);
     direction /= direction.cwiseAbs().maxCoeff();
-    for (const double factor : {0.999, 1.001}) {
-      pose.t = factor * limit * direction;
-      ASSERT_EQ(detail::are_far(body_a, body_b, pose), factor > 1.0);
-      const double truth = least_distance_of_vertices(a, b, pose);
-      EXPECT_NEAR(query.distance(pose).distance, truth, k_relative_error * truth);
-      // The inverse pose's translation is rounded once more.
-      EXPECT_NEAR(back.distance(pose.inverse()).distance, truth, 2.0 * k_relative_error * truth);
+    for (const double limit : {detail::k_far, detail::k_corners}) {
+      for (const double factor : {0.999, 1.001}) {
+        pose.t = factor * limit * sizes * direction;
+        ASSERT_EQ(detail::are_far(body_a, body_b, pose), factor > 1.0 || limit > detail::k_far);
+        const double truth = brute_force(a, b, pose).distance;
+        EXPECT_NEAR(query.distance(pose).distance, truth, k_relative_error * truth);
+      }
     }
   }
 }
@@ -135,7 +172,9 @@ TEST(FarPair, CostsAboutAsMuchAtAnySeparation) {
                              std::pair(&sphere, &plate), std::pair(&turned, &turned)}) {
     const DistanceOracle oracle(*a, *b);
     DistanceQuery query(oracle);
-    for (const double far : {1e10, 1e11, 1e12, 1e13, 1e14, 1e16, 1e100, 1e300}) {
+    for (const double far : {1e6, 1e7, 1e8, 1e10, 1e11, 1e12, 1e13, 1e14, 1e16, 1e100, 1e300}) {
+      // Nearer than k_corners, all corners of a face across the line of the centres are looked at.
+      const bool only_corners = far > 1e9;
       for (const Vector3d& along :
            {Vector3d(Vector3d::UnitZ()), Vector3d(tilted.R.col(2)), shapes::unit_vector(generator)}) {
         for (const bool rotated : {false, true}) {
@@ -143,8 +182,8 @@ TEST(FarPair, CostsAboutAsMuchAtAnySeparation) {
           if (rotated) pose.R = shapes::random_pose(generator, 0.0).R;
           pose.t = far * along;
           query.distance(pose, false);
-          EXPECT_LT(query.counts().nodes, 2000u) << far;
-          EXPECT_LE(query.counts().triangles, 1u) << far;
+          EXPECT_LT(query.counts().nodes, only_corners ? 2000u : 50000u) << far;
+          EXPECT_LE(query.counts().triangles, only_corners ? 1u : 600u) << far;
         }
       }
     }

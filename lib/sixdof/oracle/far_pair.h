@@ -7,23 +7,30 @@
 /// The closest points of bodies that are far apart. Internal: use distance.h.
 ///
 /// Let s lead from A's centre to B's, let w = s / |s|, and let e be the difference of a point of B and a point of A,
-/// each relative to its body's centre. Their distance |s + e| is between |s| + w . e and that + |e|^2 / (2 |s|). |e| is
-/// at most r, the sum of the radii. Where |s| > k_far r, the last term is less than half a rounding of the distance. So
-/// the closest points are the corners that reach farthest along w and -w. Each is found in one tree.
+/// each relative to its body's centre, x = w . e its part along w and p the length of the rest. Then
+///   (|s + e|^2 - |s|^2) / (2 |s|) = x + (x^2 + p^2) / (2 |s|)
+/// has its minimum where the distance |s + e| has, and numbers of the bodies' size tell apart what the distance's
+/// rounding hides. A search for that minimum ends as soon as nothing is closer by more than a few such roundings.
 ///
-/// distance_search.cpp would take long there: coordinates are rounded to a visible part of the bodies' size, the
-/// distances of thousands of pairs of triangles differ by no more, and it measures all of these.
+/// From |s| = k_corners r on, where r is the sum of the radii, the second term is less than half a rounding of the
+/// distance. There the closest points are the corners that reach farthest along w and -w, each found in one tree.
+///
+/// distance_search.cpp, which bounds distances themselves, would take long: the distances of thousands of pairs of
+/// triangles differ by less than a rounding, and it measures all of these.
 namespace sixdof::detail {
 
-/// Distance of the centres per sum of the radii, from which bodies are far apart.
-inline constexpr double k_far = 1e8;
+/// Distance of the centres per sum of the radii, from which bodies are far apart, and from which only corners matter.
+inline constexpr double k_far = 1e4;
+inline constexpr double k_corners = 1e8;
+
+/// Distances that exceed the smallest by no more than this times the distance need not be told apart.
+inline constexpr double k_far_pair_error = 10.0 * 0x1p-53;
 
 /// Whether the bodies are farther apart than k_far. A function of the pose alone.
 bool are_far(const DistanceBody& a, const DistanceBody& b, const Pose& X_AB);
 
-/// Sets the closest pair with its points and distance, whatever the search knew before. Each point is the farthest
-/// corner along w up to a unit in the last place of the distance, the same corner on every instruction set. The
-/// distance is exact up to k_triangle_distance_error, and infinite if it exceeds the largest double.
+/// Sets the closest pair with its points and distance, whatever the search knew before: the same on every instruction
+/// set. No distance is less by more than k_far_pair_error; it is infinite if it exceeds the largest double.
 /// @pre are_far()
 void take_far_pair(DistanceSearch& search);
 

@@ -160,6 +160,18 @@ double CloseBounds::gap_along(const Vector3d& unit, TrianglePair pair) const {
   return unit.dot(shift_) - reach(a_, pair.a, unit) - reach(b_, pair.b, -(X_AB_.R.transpose() * unit)) - slack_;
 }
 
+std::uint32_t parts_of(const Tree& tree, const CloseVolume& v, std::array<CloseVolume, Tree::k_width>& parts) {
+  std::uint32_t count = 0;
+  if (is_leaf(v)) {
+    const Tree::Child leaf = leaf_of(tree, v).child;
+    for (; count < leaf.count(); ++count) parts[count] = {v.volume, leaf.first() + count};
+  } else {
+    const Tree::Node& node = tree.nodes()[v.volume];
+    for (; count < node.child_count; ++count) parts[count] = CloseVolume::child_of(node, count);
+  }
+  return count;
+}
+
 bool search_closely(const Tree& tree_a, const Tree& tree_b, const CloseBounds& bounds, std::uint32_t a, std::uint32_t b,
                     CloseVisitor& visitor, std::vector<ClosePair>& stack) {
   stack.assign(1, {{a}, {b}, -std::numeric_limits<double>::infinity()});
@@ -168,7 +180,7 @@ bool search_closely(const Tree& tree_a, const Tree& tree_b, const CloseBounds& b
     const ClosePair top = stack.back();
     stack.pop_back();
     if (top.lower > visitor.largest_of_interest()) continue;
-    if (is_triangle(top.a) && is_triangle(top.b)) {
+    if (top.is_of_triangles()) {
       if (visitor.visit_triangles({top.a.triangle, top.b.triangle})) return true;
       continue;
     }
@@ -180,14 +192,7 @@ bool search_closely(const Tree& tree_a, const Tree& tree_b, const CloseBounds& b
     const bool expands_a = is_triangle(top.b) || (!is_triangle(top.a) && shape_a.squared_size >= shape_b.squared_size);
     const Tree& tree = expands_a ? tree_a : tree_b;
     const CloseVolume& expanded = expands_a ? top.a : top.b;
-    std::uint32_t count = 0;
-    if (is_leaf(expanded)) {
-      const Tree::Child leaf = leaf_of(tree, expanded).child;
-      for (; count < leaf.count(); ++count) children[count] = {expanded.volume, leaf.first() + count};
-    } else {
-      const Tree::Node& node = tree.nodes()[expanded.volume];
-      for (; count < node.child_count; ++count) children[count] = CloseVolume::child_of(node, count);
-    }
+    const std::uint32_t count = parts_of(tree, expanded, children);
     const std::size_t first = stack.size();
     for (std::uint32_t i = 0; i < count; ++i) {
       const double limit = visitor.largest_of_interest();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct ClosePair {
   CloseVolume a;
   CloseVolume b;
   double lower;  ///< Lower bound on the distance; negative where the volumes may overlap.
+
+  bool is_of_triangles() const { return a.triangle != CloseVolume::k_whole && b.triangle != CloseVolume::k_whole; }
 };
 
 /// A volume in A's axes, relative to the centre of A's tree: the intersection of a box and a slab; or a triangle.
@@ -70,6 +73,9 @@ class CloseBounds {
   /// @param guess of the direction from A to B at their closest points, of any length
   double lower_bound(const CloseShape& a, const CloseShape& b, const Eigen::Vector3d& guess, double enough) const;
 
+  /// What lower_bound() subtracts for rounding.
+  double slack() const { return slack_; }
+
   /// The same for two triangles (tree order) along one axis, from A to B.
   double gap_along(const Eigen::Vector3d& unit, TrianglePair pair) const;
 
@@ -98,6 +104,9 @@ class CloseVisitor {
  protected:
   ~CloseVisitor() = default;
 };
+
+/// Sets the parts of a node or leaf, the latter's triangles. Returns their number.
+std::uint32_t parts_of(const Tree& tree, const CloseVolume& v, std::array<CloseVolume, Tree::k_width>& parts);
 
 /// Visits the pairs of triangles of two volumes whose bounds do not exceed what is of interest: depth first, the pair
 /// with the smallest lower bound first. Returns true if a visit did.
