@@ -1,10 +1,10 @@
 #include <sixdof/geometry/mesh.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string_view>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -41,24 +41,30 @@ void check_input(const std::vector<Eigen::Vector3d>& vertices, const std::vector
   }
 }
 
-struct BitsHash {
-  std::size_t operator()(const Eigen::Vector3d& p) const {
-    return std::hash<std::string_view>()({reinterpret_cast<const char*>(p.data()), sizeof(p)});
+/// For each vertex the first one that is equal to it. @pre no coordinate is -0
+std::vector<std::uint32_t> first_equal_of(const std::vector<Eigen::Vector3d>& vertices) {
+  // A table of vertices by the hash of their bits, at most half full; a place that is taken by another passes to the
+  // next.
+  std::vector<std::uint32_t> table(std::bit_ceil(2 * vertices.size()), k_unset);
+  const std::size_t mask = table.size() - 1;
+  std::vector<std::uint32_t> first_equal(vertices.size());
+  for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+    const Eigen::Vector3d& p = vertices[i];
+    std::size_t at = std::hash<std::string_view>()({reinterpret_cast<const char*>(p.data()), sizeof(p)}) & mask;
+    while (table[at] != k_unset && vertices[table[at]] != p) at = (at + 1) & mask;
+    if (table[at] == k_unset) table[at] = i;
+    first_equal[i] = table[at];
   }
-};
+  return first_equal;
+}
 
 /// The repairs of Mesh::build.
 void weld(std::vector<Eigen::Vector3d>& vertices, std::vector<Triangle>& triangles, MeshRepairs& repairs) {
   repairs.unreferenced_vertices = drop_unreferenced(vertices, triangles);
-  std::unordered_map<Eigen::Vector3d, std::uint32_t, BitsHash> first;
-  first.reserve(vertices.size());
-  std::vector<std::uint32_t> first_equal(vertices.size());
+  for (Eigen::Vector3d& p : vertices) p += Eigen::Vector3d::Zero();  // -0 becomes +0
+  const std::vector<std::uint32_t> first_equal = first_equal_of(vertices);
   repairs.welded_vertices = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    vertices[i] += Eigen::Vector3d::Zero();  // -0 becomes +0
-    first_equal[i] = first.try_emplace(vertices[i], static_cast<std::uint32_t>(i)).first->second;
-    if (first_equal[i] != i) ++repairs.welded_vertices;
-  }
+  for (std::size_t i = 0; i < vertices.size(); ++i) repairs.welded_vertices += first_equal[i] != i ? 1 : 0;
   for (Triangle& t : triangles) {
     for (std::uint32_t& v : t) v = first_equal[v];
   }

@@ -47,13 +47,16 @@ std::size_t take_number(SeparateInput& input) {
   return value;
 }
 
-/// A damaged process may state any length: what is there is read in blocks.
+/// A damaged process may state any length: what is there is read in blocks. Address space costs nothing.
 template <class Container>
 void take(SeparateInput& input, Container& values) {
   using T = typename Container::value_type;
   static_assert(std::is_same_v<T, Eigen::Vector3d> || std::is_trivially_copyable_v<T>);
   constexpr std::size_t k_block = (std::size_t{64} << 20) / sizeof(T);
-  for (std::size_t left = take_number(input); left > 0;) {
+  std::size_t left = take_number(input);
+  constexpr std::size_t k_most_reserved = (std::size_t{4} << 30) / sizeof(T);
+  values.reserve(std::min(left, k_most_reserved));
+  while (left > 0) {
     const std::size_t count = std::min(left, k_block), before = values.size();
     values.resize(before + count);
     input.read(values.data() + before, count * sizeof(T));
