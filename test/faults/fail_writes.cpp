@@ -4,8 +4,7 @@
 // SIXDOF_FAULT       a file of two 64-bit counts that all processes share: calls so far, and faults so far
 // SIXDOF_FAULT_AT    which call fails, from 1 on; 0: none, they are counted
 // SIXDOF_FAULT_KIND  ENOSPC, EIO, EDQUOT: it fails so; short: a write does half, and all later ones fail with ENOSPC;
-// lost: a
-//                    write says that it was done, and was not
+//                    lost: a write says that it was done, and was not
 // SIXDOF_FAULT_ONCE  1: later calls succeed; else they fail, too, as on a disk that stays full
 //
 // Calls are those on regular files (and the flushing of folders), open() that makes a file, and calls that make names.
@@ -81,12 +80,13 @@ Answer next(bool writes) {
   return plan->half && writes && number == plan->at ? Answer::half : Answer::fail;
 }
 
+/// Memory that processes share (memfd_create) has no name.
 bool is_regular(int descriptor, bool or_folder = false) {
   const int before = errno;
   struct stat state = {};
   const bool known = ::fstat(descriptor, &state) == 0;
   errno = before;
-  return known && (S_ISREG(state.st_mode) || (or_folder && S_ISDIR(state.st_mode)));
+  return known && state.st_nlink > 0 && (S_ISREG(state.st_mode) || (or_folder && S_ISDIR(state.st_mode)));
 }
 
 bool is_written(int descriptor) {

@@ -298,12 +298,13 @@ void File::compare(const std::map<std::string, Written>& datasets,
     if (!is_same(written)) refuse(object, k_unlike);
     close_all(object, space, type, dataset);
   }
-  for (const auto& [place, written] : attributes) {
-    const auto& [object, name] = place;
+  for (const auto& each : attributes) {
+    const auto& [object, name] = each.first;
+    const Written& written = each.second;
     const bool same = with_attribute(object, name.c_str(), [&](hid_t attribute, hid_t type, const std::string& what) {
       if (size_of(type) != written.bytes) return false;
       bytes.resize(written.bytes);
-      check(H5Aread(attribute, type, bytes.data()), object, what);
+      check(H5Aread(attribute, type, bytes.data()), each.first.first, what);
       return is_same(written);
     });
     if (!same) refuse(object, fmt::format("attribute {} {}", name, k_unlike));
