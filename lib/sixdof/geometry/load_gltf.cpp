@@ -203,8 +203,8 @@ class Reader {
 
   /// Before `more` vertices or triangles are added to a part, or to the surface.
   void check_size(const Part& part, std::size_t more) const {
-    const std::size_t size =
-        part.vertices.size() + part.triangles.size() + surface_.vertices.size() + surface_.triangles.size() + more;
+    const std::size_t size = part.vertices.size() + part.triangles.size() + surface_.vertices.size() +
+                             surface_.triangles.size() + visits_ + more;
     if (size <= k_most_copies + accessors_size_) return;
     source_.fail(fmt::format(
         "its meshes, as often as they are used, have more than {} vertices and triangles of copies", k_most_copies));

@@ -180,7 +180,7 @@ class Table {
       if (!index_.contains(id)) refuse(ignored, fmt::format("body {} is not in frame 0", id));
     }
     std::ranges::sort(scene_.ignored);
-    scene_.ignored.erase(std::ranges::unique(scene_.ignored).begin(), scene_.ignored.end());
+    scene_.ignored.erase(std::unique(scene_.ignored.begin(), scene_.ignored.end()), scene_.ignored.end());
   }
 
   void begin_frame(std::uint32_t at) {
