@@ -66,6 +66,8 @@ TEST_F(SceneCsv, NamesTheLineThatIsWrong) {
   EXPECT_EQ(refuses(good + "0,7,ball.ply,0,0,0,1,0,0,0\n"), "line 4: body 7 comes twice in frame 0");
   EXPECT_EQ(refuses(good + "0,4,,0,0,0,1,0,0,0\n"), "line 4, column mesh: body 4 has none");
   EXPECT_EQ(refuses(good + "0,4,cone.ply,0,0,0,1,0,0,0\n"), "line 4, column mesh: no file " + path("cone.ply"));
+  const std::string too_long = std::string(300, 'x').append(".off");
+  EXPECT_EQ(refuses(good + "0,4," + too_long + ",0,0,0,1,0,0,0\n"), "line 4, column mesh: no file " + path(too_long));
   EXPECT_EQ(refuses(std::string(k_header) + "1,7,ball.ply,0,0,0,1,0,0,0\n"), "line 2: the first frame is 1, not 0");
   EXPECT_NE(refuses(good + "1,7,,0,0,0,2,0,0,0\n").find("line 4: "), std::string::npos);
   EXPECT_EQ(refuses(""), "has no rows");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -32,7 +33,8 @@ std::string_view trimmed(std::string_view text) {
 
 CsvText::CsvText(std::filesystem::path file) : file_(std::move(file)) {
   std::ifstream in(file_, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file_)) throw BadFile(file_.string(), "cannot be read");
+  std::error_code ignored;
+  if (!in || std::filesystem::is_directory(file_, ignored)) throw BadFile(file_.string(), "cannot be read");
   text_.assign(std::istreambuf_iterator<char>(in), {});
   if (in.bad()) throw BadFile(file_.string(), "cannot be read");
   rest_ = text_;

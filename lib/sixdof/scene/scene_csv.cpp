@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -71,7 +72,8 @@ class Table {
 
   Scene read() {
     CsvText text(file_);
-    if (!std::filesystem::is_directory(folder_)) throw BadFile(folder_.string(), "no such folder");
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder_, ignored)) throw BadFile(folder_.string(), "no such folder");
     for (CsvText::Row row; text.next(row);) {
       line_ = row.line;
       while (row.cells.size() > columns_ && row.cells.back().empty()) row.cells.pop_back();
@@ -221,7 +223,8 @@ class Table {
   /// A file of the folder, else a model.
   Mesh load(const std::string& name) const {
     const std::filesystem::path file = folder_ / name;
-    if (std::filesystem::is_regular_file(file)) return load_mesh(file);
+    std::error_code too_long;  // a name, for a file: it is none
+    if (std::filesystem::is_regular_file(file, too_long)) return load_mesh(file);
     if (names_file(name)) refuse(mesh, fmt::format("no file {}", file.string()));
     try {
       return load_model(name);
