@@ -136,7 +136,8 @@ TEST_F(SceneCsv, ReadsEveryWayOfWritingTheSameTable) {
     for (const char c : table) c == * from ? text += to : text += c;
     return text;
   };
-  std::string quoted = "\"" + with(",", "\",\"");
+  std::string quoted("\"");
+  quoted += with(",", "\",\"");
   for (std::size_t at = 0; (at = quoted.find('\n', at)) + 1 < quoted.size(); at += 3) quoted.replace(at, 1, "\"\n\"");
   quoted.replace(quoted.size() - 1, 1, "\"\n");
   const std::string trailing = "# all\n\n  \n" + with("\n", " , ,\n,,,\n#\n");
