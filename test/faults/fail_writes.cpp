@@ -3,7 +3,7 @@
 //
 // SIXDOF_FAULT       a file of two 64-bit counts that all processes share: calls so far, and faults so far
 // SIXDOF_FAULT_AT    which call fails, from 1 on; 0: none, they are counted
-// SIXDOF_FAULT_KIND  ENOSPC, EIO, EDQUOT: it fails so; short: a write does half, and all later ones fail with ENOSPC;
+// SIXDOF_FAULT_KIND  ENOSPC, EIO, EDQUOT, EFBIG: it fails so; short: a write does half, and all later ones fail with ENOSPC;
 //                    lost: a write says that it was done, and was not
 // SIXDOF_FAULT_ONCE  1: later calls succeed; else they fail, too, as on a disk that stays full
 //
@@ -63,6 +63,7 @@ struct Plan {
     pretend = std::strcmp(kind, "lost") == 0;
     if (std::strcmp(kind, "EIO") == 0) failure = EIO;
     if (std::strcmp(kind, "EDQUOT") == 0) failure = EDQUOT;
+    if (std::strcmp(kind, "EFBIG") == 0) failure = EFBIG;
   }
 };
 

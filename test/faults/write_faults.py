@@ -59,7 +59,7 @@ FOLDERS.append(output.Kind("shards of many buckets", "made", ["generate", *MANY,
 WITH_COARSE_SETS = ("rows of precision",)
 CACHE = output.Kind("entries of the cache", "cache", output.CACHED[1:])
 # (what fails, only once)
-WAYS = [(kind, once) for kind in ("ENOSPC", "EIO", "EDQUOT", "short") for once in (True, False)] + [("lost", True)]
+WAYS = [(kind, once) for kind in ("ENOSPC", "EIO", "EDQUOT", "EFBIG", "short") for once in (True, False)] + [("lost", True)]
 work = output.OutputFiles  # its folders and what it knows of whole files
 
 
@@ -207,14 +207,16 @@ def main():
             # A step that shares no factor with the number of ways would do; a fraction needs no thought.
             faults = [faults[int(i * len(faults) / options.most)] for i in range(options.most)]
         hit, missed, found = collections.Counter(), 0, []
-        for fault, (reached, problems) in zip(faults, pool.map(attempt, *zip(*faults), chunksize=4)):
-            hit[fault[0]] += reached
-            missed += not reached
-            found += problems
-            for problem in problems:
-                print(problem, flush=True)
-    for name in names:
-        print(f"{name:<32} {calls[name]:>4} calls, {hit[name]:>5} faults")
+        results = iter(pool.map(attempt, *zip(*faults), chunksize=4))
+        for name in names:
+            for _ in (fault for fault in faults if fault[0] == name):
+                reached, problems = next(results)
+                hit[name] += reached
+                missed += not reached
+                found += problems
+                for problem in problems:
+                    print(problem, flush=True)
+            print(f"{name:<32} {calls[name]:>4} calls, {hit[name]:>5} faults", flush=True)
     print(f"{sum(hit.values())} faults over {len(names)} kinds of files ({missed} did nothing, e.g. a lost fsync); "
           f"{len(found)} complaints")
     sys.exit(1 if found or sum(hit.values()) == 0 else 0)
