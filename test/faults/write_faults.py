@@ -4,7 +4,7 @@
 usage: write_faults.py SIXDOF SIXDOF_BENCH FAIL_WRITES [--most N] [--kinds REGEX] [--jobs N]
 
 FAIL_WRITES is the library of fail_writes.cpp. A run without a fault counts a command's calls; then every one fails, in
-every way: once or from there on, with ENOSPC, EIO, EDQUOT, after half of a write, or silently. After a fault
+every way: once or from there on, with ENOSPC, EIO, EDQUOT, EFBIG, after half of a write, or silently. After a fault
 
 - the exit code is not 0, unless the new file is whole and what failed was not needed for it (a write that was taken up
   again, the cache, closing the journal of rows that are in the file),

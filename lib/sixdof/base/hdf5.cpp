@@ -70,6 +70,8 @@ Handle file_access() {
   return access;
 }
 
+constexpr const char* k_unlike = "is not what was written, when it is read again";
+
 std::string hash_of(std::span<const std::byte> bytes) {
   ContentHash hash;
   hash.add(bytes);
@@ -133,6 +135,7 @@ void File::close() {
   check(H5Fflush(file_.id(), H5F_SCOPE_LOCAL), "/", "cannot be written");
   check(file_.close(), "/", "cannot be written");
   output_->flush();
+  if (!channel_->written.matches(output_->descriptor())) refuse("/", k_unlike);
   auto channel = std::make_unique<Channel>(Channel{.descriptor = output_->descriptor()});
   Handle access = file_access();
   must(use_channel(access.id(), *channel), "no driver of files");
@@ -282,7 +285,6 @@ void File::write_matrix(const std::string& object, const double* values, std::si
 
 void File::compare(const std::map<std::string, Written>& datasets,
                    const std::map<std::pair<std::string, std::string>, Written>& attributes) const {
-  constexpr const char* k_unlike = "is not what was written, when it is read again";
   std::vector<std::byte> bytes;
   const auto is_same = [&](const Written& written) { return hash_of(bytes) == written.hash; };
   for (const auto& [object, written] : datasets) {

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <span>
 
 namespace sixdof::hdf5 {
 namespace {
@@ -97,6 +98,7 @@ herr_t write_block(H5FD_t* file, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_
                    const void* from) {
   Channel& channel = *of(file).channel;
   const auto* bytes = static_cast<const char*>(from);
+  channel.written.add(at, std::as_bytes(std::span(bytes, size)));
   while (size > 0 && channel.failure == 0) {
     errno = ENOSPC;  // of a write of no bytes
     const ssize_t count = ::pwrite(channel.descriptor, bytes, size, static_cast<off_t>(at));

@@ -2,6 +2,8 @@
 
 #include <hdf5.h>
 
+#include <sixdof/base/write_log.h>
+
 /// A file driver of HDF5 that reads and writes an open descriptor. Internal: use hdf5.h.
 ///
 /// HDF5's own driver opens by name, so it would follow a link that someone put there in between. And after a failed
@@ -13,6 +15,7 @@ namespace sixdof::hdf5 {
 struct Channel {
   int descriptor = -1;  ///< Stays open when HDF5 closes the file.
   int failure = 0;      ///< errno of the first call that failed.
+  WriteLog written = {};
 };
 
 /// Makes files that are opened with these access properties use the channel, which must live longer than they do.
