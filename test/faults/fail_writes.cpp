@@ -3,8 +3,8 @@
 //
 // SIXDOF_FAULT       a file of two 64-bit counts that all processes share: calls so far, and faults so far
 // SIXDOF_FAULT_AT    which call fails, from 1 on; 0: none, they are counted
-// SIXDOF_FAULT_KIND  ENOSPC, EIO, EDQUOT, EFBIG: it fails so; short: a write does half, and all later ones fail with ENOSPC;
-//                    lost: a write says that it was done, and was not
+// SIXDOF_FAULT_KIND  ENOSPC, EIO, EDQUOT, EFBIG: it fails so; short: a write does half, and all later ones fail with
+//                    ENOSPC; lost: a write says that it was done, and was not
 // SIXDOF_FAULT_ONCE  1: later calls succeed; else they fail, too, as on a disk that stays full
 //
 // Calls are those on regular files (and the flushing of folders), open() that makes a file, and calls that make names.
