@@ -27,7 +27,7 @@
 /// prune is measured in double precision (distance_search.cpp). So the answer does not depend on the bounds: it has the
 /// same bits on every instruction set, for every thread, warm or cold. Bounds of volumes that floats cannot tell apart
 /// are computed in doubles (close_search.h): of a body 1e-6 times as large as the other, of bodies 1e6 diameters apart.
-/// Farther apart than 1e4 diameters no distance is less than the answer by more than 1.2e-15 of it (far_pair.h); of
+/// Farther apart than 50 diameters no distance is less than the answer by more than 1.2e-15 of it (far_pair.h); of
 /// pairs that are equally far up to that, none is preferred by its rank, but the answer has the same bits all the same.
 ///
 /// Ties: where surfaces are apart, the closest pair is the one with the lowest triangle in A, then in B, of all pairs

@@ -20,7 +20,7 @@
 namespace sixdof::detail {
 
 /// Distance of the centres per sum of the radii, from which bodies are far apart, and from which only corners matter.
-inline constexpr double k_far = 1e4;
+inline constexpr double k_far = 50.0;
 inline constexpr double k_corners = 1e8;
 
 /// Distances that exceed the smallest by no more than this times the distance need not be told apart.
