@@ -49,8 +49,7 @@ void run(const Options& options) {
                             .seed = options.seed};
 
   std::vector<Row> rows;
-  for (const auto family :
-       {prepare_rows, query_rows, scenario_rows, kernel_rows, stability_rows, scene_rows, generate_rows}) {
+  for (const auto family : {prepare_rows, query_rows, scenario_rows, scene_rows, generate_rows}) {
     std::ranges::move(family(resources), std::back_inserter(rows));
   }
   if (!options.suite.empty()) {

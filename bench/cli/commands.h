@@ -30,7 +30,7 @@ void add_query_command(CLI::App& app);
 /// coloured PLY (structure_drawing.h defines the colours).
 void add_show_command(CLI::App& app);
 /// `sixdof quality --scenario II --algorithm NAME`: the response of one algorithm along one scenario against the ideal,
-/// as measures (text or JSON) and as a series (HDF5); `--draw FILE.svg` draws the scenario instead.
+/// as measures (text or JSON) and as a series (HDF5).
 void add_quality_command(CLI::App& app);
 /// `sixdof precision --pair elephant [--question distance] [--budget 10min] [-o FILE.json]`: time and error of every
 /// algorithm at every resolution on the same configurations, with the frontiers (study/precision.h).

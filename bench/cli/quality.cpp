@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
 #include <sixdof/measure/metrics.h>
 #include <sixdof/scenario/evaluation.h>
@@ -31,7 +30,6 @@ struct Options {
   std::size_t steps = k_default_steps;
   std::string law = "own";
   std::string series;
-  std::string drawing;
   bool json = false;
 };
 
@@ -69,11 +67,7 @@ void run(const Options& options) {
   Settings shape = scenario_settings(options.scenario);
   shape.set_all(options.shape);
   const auto scenario = make_scenario(options.scenario, shape);
-  if (!options.drawing.empty()) {
-    write_file_atomically(options.drawing, draw(*scenario));
-    return;
-  }
-  if (options.algorithm.name.empty()) throw BadArgument("--algorithm is needed (or --draw)");
+  if (options.algorithm.name.empty()) throw BadArgument("--algorithm is needed");
   const auto [registry, algorithm, settings] = select_algorithm(options.algorithm);
   const Traits& traits = algorithm->traits();
   if (!traits.answers.respond) throw BadArgument(fmt::format("{} gives no response", traits.name));
@@ -117,12 +111,10 @@ void add_quality_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("-o,--output", options->series, "Write the forces along the path to this file (HDF5)")
       ->type_name("FILE");
-  command->add_option("--draw", options->drawing, "Draw the scenario to this file (SVG) and do nothing else")
-      ->type_name("FILE");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run(*options); });
   add_examples(*command, "sixdof quality --scenario II --algorithm vps --steps 100",
-               "sixdof quality --scenario III --shape rotation_degrees=20 --shape facets=40 --draw III.svg");
+               "sixdof quality --scenario III --algorithm ist --shape rotation_degrees=20 --law gradient -o III-ist.h5");
 }
 
 }  // namespace sixdof::cli

@@ -19,8 +19,8 @@ using Json = nlohmann::ordered_json;
 /// The members that are text and are left out where empty.
 constexpr std::pair<const char*, std::string RowFields::*> k_texts[] = {
     {"pair", &RowFields::pair},         {"order", &RowFields::order},   {"cache", &RowFields::cache},
-    {"scenario", &RowFields::scenario}, {"kernel", &RowFields::kernel}, {"target", &RowFields::target},
-    {"question", &RowFields::question}, {"body", &RowFields::body},
+    {"scenario", &RowFields::scenario}, {"target", &RowFields::target}, {"question", &RowFields::question},
+    {"body", &RowFields::body},
 };
 
 /// The whole text as a number; empty if it is none.

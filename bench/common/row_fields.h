@@ -22,7 +22,6 @@ struct RowFields {
   std::string body = {};      ///< "convex_hull" where answers are not about the meshes; empty where they are.
   std::string cache = {};     ///< Of a query: "warm", or "cold" where data leaves the caches before each.
   std::string scenario = {};  ///< "II"; of a scene row its family.
-  std::string kernel = {};    ///< Which inner loop, of a kernel row.
   std::string target = {};    ///< Of a generate row: "distance" or "volume".
   bool isolated = false;      ///< The algorithm runs, and is timed, in a process of its own.
   std::string question = {};  ///< Of a study's row: the kind of query that it asks.

@@ -22,15 +22,6 @@ std::vector<Row> query_rows(const Resources& resources);
 /// the law that the algorithm declares and, with the suffix "_by_LAW", against every other.
 std::vector<Row> scenario_rows(const Resources& resources);
 
-/// `kernel/NAME/algorithm:A`: the inner loop of one algorithm on a generated body, with settings and poses that isolate
-/// it: time per point on a map in cache and in memory without culling, time per pair of spheres, a response without
-/// contact.
-std::vector<Row> kernel_rows(const Resources& resources);
-
-/// `stability/FAMILY/algorithm:A`: the seed's cases of a family of hard cases (lib/sixdof/stability), all that the
-/// algorithm answers, with the worst verdict and error as counters. Settings are the coarsest of sweeps unless given.
-std::vector<Row> stability_rows(const Resources& resources);
-
 /// `scene/FAMILY/n:1000/question:touching/algorithm:A`: a scene of many bodies (lib/sixdof/scene) replayed to an
 /// algorithm for scenes, judged against every pair in every frame. One missed pair is an error of the row. They are not
 /// in the default suite; bench/scenes_suite.json lists those of 1,000 bodies.

@@ -45,8 +45,7 @@ TEST(RowFields, HavePartsOfAPercent) {
 }
 
 TEST(RowFields, AreReadBack) {
-  for (const RowFields& fields : {k_query, RowFields{.query = "kernel", .algorithm = "ist", .kernel = "apart"},
-                                  RowFields{.query = "collide", .algorithm = "ode", .isolated = true},
+  for (const RowFields& fields : {k_query, RowFields{.query = "collide", .algorithm = "ode", .isolated = true},
                                   RowFields{.query = "generate", .algorithm = "raycast", .target = "distance"}}) {
     EXPECT_EQ(to_json_object(row_fields_of(to_json_object(fields))), to_json_object(fields));
   }

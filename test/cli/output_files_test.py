@@ -60,7 +60,6 @@ KINDS = [
     Kind("merged set", "x.h5", ["merge", "shards", "-o", "OUT"]),
     Kind("series of a scenario", "x.h5",
          ["quality", "--scenario", "Ia", "--algorithm", "exact", "--steps", "60", "-o", "OUT"], times=True),
-    Kind("drawing of a scenario", "x.svg", ["quality", "--scenario", "II", "--draw", "OUT"]),
     Kind("rows of precision", "x.json", ["precision", "--question", "distance", *STUDY, "-o", "OUT"], times=True),
     Kind("rows of equivalent", "x.json",
          ["equivalent", "--scenario", "II", "--algorithm", "vps", "--tau", "10us", "--steps", "60", "--grid",

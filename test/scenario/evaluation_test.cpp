@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
@@ -161,23 +160,6 @@ TEST(SeriesFile, HoldsTheRecording) {
     EXPECT_EQ(file.read_matrix("/spectrum/force_residual"), std::vector<double>(residual.size(), 0.0));
   }
   std::filesystem::remove(path);
-}
-
-TEST(Drawing, IsTheSameEveryTimeAndShowsBothBodies) {
-  for (const std::string& name : scenario_names()) {
-    Settings settings = scenario_settings(name);
-    settings.set("facets", "16");
-    const auto scenario = make_scenario(name, settings);
-    const std::string svg = draw(*scenario);
-    EXPECT_EQ(svg, draw(*make_scenario(name, settings)));
-    EXPECT_TRUE(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
-    EXPECT_NE(svg.find("Scenario " + name + "<"), std::string::npos);
-    EXPECT_EQ(svg.find("nan"), std::string::npos);
-    for (const Dimension& dimension : scenario->sketch().dimensions) {
-      EXPECT_NE(svg.find(fmt::format("{} = {:g}", dimension.symbol, dimension.length)), std::string::npos);
-    }
-    EXPECT_NE(svg.find("url(#wrench)"), std::string::npos) << name;
-  }
 }
 
 }  // namespace

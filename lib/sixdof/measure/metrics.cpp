@@ -23,7 +23,6 @@ constexpr std::string_view k_latency = "lib/sixdof/measure/latency.h";
 constexpr std::string_view k_check = "bench/harness/check.h";
 constexpr std::string_view k_timing = "bench/harness/timing.h";
 constexpr std::string_view k_work = "bench/harness/work.h";
-constexpr std::string_view k_stability = "bench/rows/stability.cpp";
 constexpr std::string_view k_status = "lib/sixdof/query/algorithm.h (Status)";
 constexpr std::string_view k_footprint = "lib/sixdof/query/algorithm.h (Footprint)";
 constexpr std::string_view k_generate_row = "bench/rows/generate.cpp";
@@ -89,11 +88,6 @@ constexpr std::array k_metrics{
     Metric{"false_negatives", "queries", lower, "bodies overlap, the answer is none", k_answers},
     Metric{"touching", "queries", neither, "bodies touch: both answers are right", k_answers},
     Metric{"touching_yes", "queries", neither, "touching bodies that are said to collide", k_answers},
-    // Hard cases.
-    Metric{"stability_cases", "cases", neither, "hard cases of a family that were judged", k_stability},
-    Metric{"stability_red", "cases", lower, "cases with a wrong, non-finite or missing answer", k_stability},
-    Metric{"stability_verdict", "1", lower, "the worst verdict: 0 exact, 1 within resolution, 2 unsupported", k_stability},
-    Metric{"stability_worst", "1", lower, "the largest defect, in the unit that the label says", k_stability},
     // Scenes of many bodies.
     Metric{"missed_pairs", "pairs", lower, "true pairs of all frames that are not reported", k_scene},
     Metric{"wrong_pairs", "pairs", lower, "pairs of all frames that are reported and not true", k_scene},

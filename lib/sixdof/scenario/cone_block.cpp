@@ -87,26 +87,6 @@ class ConeBlock final : public Scenario {
     return std::nullopt;
   }
 
-  Sketch sketch() const override {
-    // The start of the path; the block continues to the right.
-    const double x = 1.5 * shape_.radius;
-    const double low = -shape_.depth;
-    Sketch sketch;
-    sketch.progress = (x + shape_.overshoot) / (shape_.block_length + 2.0 * shape_.overshoot);
-    sketch.region = {Eigen::Vector2d(-1.5 * shape_.overshoot, -std::max(shape_.block_height, 1.2 * shape_.depth)),
-                     Eigen::Vector2d(x + 2.0 * shape_.radius, shape_.height - 0.8 * shape_.depth)};
-    sketch.up = Eigen::Vector3d::UnitY();
-    const double rim = x + shape_.radius;
-    const double top = low + shape_.height;
-    sketch.dimensions = {
-        {{x, low}, {x, top}, {1.25 * shape_.radius, 0.0}, "H", shape_.height},
-        {{x, top}, {rim, top}, {0.0, 0.12 * shape_.height}, "r", shape_.radius},
-        {{x, low}, {x, 0.0}, {-0.75 * shape_.radius, 0.0}, "\u03b4", shape_.depth},
-        {{-shape_.overshoot, 0.0}, {0.0, 0.0}, {0.0, -0.15 * shape_.height}, "a", shape_.overshoot},
-        {{rim, -shape_.block_height}, {rim, 0.0}, {0.6 * shape_.radius, 0.0}, "h", shape_.block_height}};
-    return sketch;
-  }
-
  private:
   double apex_x(double progress) const {
     return -shape_.overshoot + progress * (shape_.block_length + 2.0 * shape_.overshoot);

@@ -53,24 +53,6 @@ Settings pins_settings(Parameter path) {
 
 double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
-/// Dimensions of block and holes. @param left end of the region that the plan shows
-Sketch pins_sketch(const PinsShape& shape, double left, double progress) {
-  Sketch sketch;
-  sketch.progress = progress;
-  const double b = shape.width;
-  const double a = shape.depth;
-  const double c = shape.square_side;
-  const double r = shape.round_radius;
-  sketch.region = {Eigen::Vector2d(left, -0.85 * a), Eigen::Vector2d(0.62 * b, 0.9 * a)};
-  sketch.up = Eigen::Vector3d::UnitZ();
-  sketch.underside = true;  // from above, the plate hides its pins
-  sketch.dimensions = {{{-0.5 * b, -0.5 * a}, {0.5 * b, -0.5 * a}, {0.0, -0.2 * a}, "b", b},
-                       {{0.5 * b, -0.5 * a}, {0.5 * b, 0.5 * a}, {0.12 * a, 0.0}, "a", a},
-                       {{-0.25 * b - 0.5 * c, -0.5 * c}, {-0.25 * b + 0.5 * c, -0.5 * c}, {0.0, -0.15 * a}, "c", c},
-                       {{0.25 * b, 0.0}, {0.25 * b + r, 0.0}, {0.0, -0.4 * a}, "r", r}};
-  return sketch;
-}
-
 /// Load of a vertical line of the wall at depth d.
 double line_load(double d, double length, bool along_wall) { return d * (along_wall ? length - 2.0 * d : length - d); }
 
@@ -140,8 +122,6 @@ class RotatingPin final : public Scenario {
     return std::nullopt;
   }
 
-  Sketch sketch() const override { return pins_sketch(shape_, -1.15 * shape_.width, 1.0); }
-
  private:
   PinsShape shape_;
   double largest_phi_;
@@ -192,14 +172,6 @@ class OrbitingPins final : public Scenario {
       }
     }
     return std::nullopt;
-  }
-
-  Sketch sketch() const override {
-    Sketch sketch = pins_sketch(shape_, -0.7 * shape_.width, 0.125);
-    const Eigen::Vector2d d = orbit_ * direction(sketch.progress);
-    sketch.dimensions.push_back(
-        {Eigen::Vector2d::Zero(), d, 0.8 * shape_.depth * Eigen::Vector2d(-d.y(), d.x()) / d.norm(), "\u03c1", orbit_});
-    return sketch;
   }
 
  private:

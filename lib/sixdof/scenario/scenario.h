@@ -48,24 +48,6 @@ struct IdealWrench {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< On B about the scenario's reference point, in A's frame.
 };
 
-/// A length shown in a drawing.
-struct Dimension {
-  Eigen::Vector2d from;  ///< In the x, y plane of A's frame.
-  Eigen::Vector2d to;
-  Eigen::Vector2d offset;  ///< From the measured points to the dimension line.
-  std::string symbol;
-  double length = 0.0;
-};
-
-/// How to draw a scenario (draw()).
-struct Sketch {
-  double progress = 0.0;       ///< Where B is shown.
-  Eigen::AlignedBox2d region;  ///< Part of the x, y plane that the plan shows.
-  Eigen::Vector3d up;          ///< Vertical direction of the oblique view.
-  bool underside = false;      ///< The plan shows the faces of B that look down.
-  std::vector<Dimension> dimensions;
-};
-
 class Scenario {
  public:
   /// The constants of a scenario besides its solids.
@@ -102,8 +84,6 @@ class Scenario {
   /// Empty if the law has no ideal here (the paper prints no formula). Each law has one for all progress or for none.
   virtual std::optional<IdealWrench> ideal(IdealLaw law, double progress) const = 0;
 
-  virtual Sketch sketch() const = 0;
-
  protected:
   Scenario(Description description, Mesh a, Mesh b)
       : description_(std::move(description)), a_(std::move(a)), b_(std::move(b)) {}
@@ -125,11 +105,5 @@ std::unique_ptr<Scenario> make_scenario(std::string_view name, const Settings& s
 
 /// With all defaults.
 std::unique_ptr<Scenario> make_scenario(std::string_view name);
-
-/// An SVG drawing of a scenario from its own meshes, path and ideal model: a plan (x to the right, y up, seen along -z)
-/// with dimensions, and an oblique view. A is grey, B translucent blue at the progress in sketch(); the path of the
-/// reference point is dashed red, the ideal force or torque of the volume law a dark blue arrow (its length has no
-/// scale). The same scenario gives the same bytes.
-std::string draw(const Scenario& scenario);
 
 }  // namespace sixdof

@@ -69,28 +69,6 @@ class SphereCylinder final : public Scenario {
     return IdealWrench{penalty, magnitude * outwards(progress), Eigen::Vector3d::Zero()};
   }
 
-  Sketch sketch() const override {
-    Sketch sketch;
-    sketch.progress = 0.09;
-    const Eigen::Vector2d center = shape_.orbit * outwards(sketch.progress).head<2>();
-    const Eigen::Vector2d across(-center.y() / shape_.orbit, center.x() / shape_.orbit);
-    const double reach = 1.1 * (shape_.orbit + shape_.sphere_radius);
-    sketch.region = {Eigen::Vector2d(-1.3 * shape_.orbit, -1.3 * shape_.orbit), Eigen::Vector2d(reach, reach)};
-    sketch.up = Eigen::Vector3d::UnitZ();
-    const Eigen::Vector2d left(-shape_.cylinder_radius, 0.0);
-    sketch.dimensions = {
-        {Eigen::Vector2d::Zero(), center, 0.55 * shape_.sphere_radius * across, "\u03c1", shape_.orbit},
-        {Eigen::Vector2d::Zero(), left, {0.0, 0.3 * shape_.cylinder_radius}, "R", shape_.cylinder_radius},
-        {center,
-         center + shape_.sphere_radius * Eigen::Vector2d::UnitX(),
-         {0.0, -0.35 * shape_.sphere_radius},
-         "r",
-         shape_.sphere_radius},
-        {center * (1.0 - shape_.sphere_radius / shape_.orbit), center * (shape_.cylinder_radius / shape_.orbit),
-         -0.95 * shape_.sphere_radius * across, "p", depth()}};
-    return sketch;
-  }
-
  private:
   double orbit() const { return shape_.orbit; }
   double cylinder() const { return shape_.cylinder_radius; }
