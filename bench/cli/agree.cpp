@@ -39,8 +39,11 @@ struct Arguments {
 };
 
 constexpr const char* k_keys =
-    "An answer differs if it is not that of the set: no at a distance and yes at a volume, where bodies do not just\n"
-    "touch (0 %); a distance that is off by more than a row of sixdof-bench allows. Exit code 3 if one differs.\n"
+    "An answer differs if it contradicts the set: yes at a distance, no at an overlap, or a distance that is off by "
+    "more\n"
+    "than the set's tolerance plus 1e-9 of A's diagonal. Touching bodies (0 %) may be called either way. An answer "
+    "that\n"
+    "is missing differs, too. Exit code 3 if one differs.\n"
     "Keys of --json: seed, sample, algorithms[] {name, version, settings}, pairs[] {pair, refusals[], buckets[]\n"
     "{bucket, configurations, split, algorithms[] {algorithm, yes, judged_collide, wrong_collide, judged_distance,\n"
     "wrong_distance, failed, largest_distance_error}}, differences[] {algorithm, bucket, cell, question, answer, "
@@ -137,7 +140,7 @@ void print_totals(const PairAgreement& pair) {
 
 /// The differences of one algorithm, bucket and question: how many, and the first of them as commands.
 void print_differences(const PairAgreement& pair, std::size_t show) {
-  using Key = std::tuple<std::string, BucketKey, bench::Question>;
+  using Key = std::tuple<std::string, BucketKey, bench::QueryKind>;
   std::map<Key, std::vector<const Difference*>> groups;
   for (const Difference& each : pair.differences) {
     groups[{each.algorithm, each.bucket, each.question}].push_back(&each);
@@ -205,7 +208,7 @@ void add_agree_command(CLI::App& app) {
       ->excludes(pairs);
   command->add_option("--algorithms", arguments->algorithms, "Algorithms to compare: exact,ode,...")
       ->type_name("ALGORITHM")
-      ->default_str("all that answer, but slow references")
+      ->default_str("all that answer, without slow ones")
       ->delimiter(',');
   command
       ->add_option("-p,--parameter", arguments->parameters,

@@ -26,8 +26,8 @@ void add_algorithms_command(CLI::App& app);
 /// `sixdof query --a MESH --b MESH --pose POSE [--algorithm NAME] [--only LIST] [--json]`: the answers of one algorithm
 /// at one pose. Without a response where a mesh is no solid, with the reason.
 void add_query_command(CLI::App& app);
-/// `sixdof show --algorithm NAME --model M -o FILE.ply`: what `ist`, `vps` or `vps-field` prepares of a mesh, as a
-/// coloured PLY (structure_drawing.h defines the colours).
+/// `sixdof show --algorithm NAME --model M -o FILE.ply`: the structure that `ist`, `vps` or `vps-field` prepares of a
+/// mesh, as a coloured PLY (structure_drawing.h defines the colours).
 void add_show_command(CLI::App& app);
 /// `sixdof quality --scenario II --algorithm NAME`: the response of one algorithm along one scenario against the ideal,
 /// as measures (text or JSON) and as a series (HDF5).

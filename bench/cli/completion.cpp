@@ -40,7 +40,8 @@ ValueTable values() {
 }  // namespace
 
 void add_completion_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("completion", "Print a script with which a shell completes what you type");
+  auto* const command =
+      app.add_subcommand("completion", "Print a script that lets a shell complete commands and options");
   const auto shell = std::make_shared<std::string>();
   command->add_option("shell", *shell, "The shell")->required()->type_name("SHELL")->check(CLI::IsMember({"bash"}));
   command->callback([&app] { fmt::print("{}", bash_completion(app, app.get_name(), values())); });

@@ -166,6 +166,71 @@ void generate(const Arguments& arguments) {
   generate_shards(work, arguments.output, {.number = arguments.shard, .count = arguments.shards}, arguments.resume);
 }
 
+/// What the set is.
+void add_set_options(CLI::App& command, Arguments& arguments) {
+  command.add_option("--a", arguments.a, "Fixed mesh A: a model's name or a file")->type_name("MESH");
+  command.add_option("--b", arguments.b, "Moving mesh B, likewise")->type_name("MESH")->default_str("A");
+  command
+      .add_option("--grid", arguments.grid,
+                  "Directions from A to B, and rotations of B. 45: both in steps of 45 degrees. 45/90: directions in "
+                  "steps of 45, rotations of 90. so3:N or so3:N:M: N evenly spread rotations, M directions. paper: "
+                  "steps of 15 degrees, 2 million poses a bucket. paper-volume: the paper's for volumes, 268,128 poses")
+      ->type_name("GRID");
+  command.add_option("--volume-grid", arguments.volume_grid, "Grid of the volumes")
+      ->type_name("GRID")
+      ->default_str("that of --grid; paper-volume with --grid paper");
+  command
+      .add_option("--distances", arguments.distances,
+                  "Distances, in percent of the diagonal of A's box: 0,0.5,5:10 (5:10 is 5,6,...,10)")
+      ->type_name("PERCENTS")
+      ->default_str("0:30, if no --volumes are given");
+  command
+      .add_option("--volumes", arguments.volumes,
+                  "Overlaps, in percent of A's volume: 0.1,1:10; A and B must be solids")
+      ->type_name("PERCENTS");
+  command
+      .add_option("--method", arguments.method,
+                  "raycast: search the pairs of triangles along each ray; advance: step by step with the distances of "
+                  "--oracle")
+      ->type_name("METHOD")
+      ->default_str("raycast; with --oracle, advance")
+      ->check(CLI::IsMember({"raycast", "advance"}));
+  command
+      .add_option("--oracle", arguments.oracle, "Algorithm with exact distances that --method advance measures with")
+      ->type_name("ALGORITHM")
+      ->default_str(k_default_oracle);
+}
+
+/// How it is made, and where to.
+void add_run_options(CLI::App& command, Arguments& arguments) {
+  command.add_option("--threads", arguments.threads, "Threads; 0: as many as the machine has")
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option("-o,--output", arguments.output,
+                  "The set to write (HDF5), replaced if it exists; with --shards a folder, made if missing")
+      ->type_name("FILE");
+  command
+      .add_option("--shards", arguments.shards,
+                  "Divide the work into N files of equal size, which sixdof merge makes a set of")
+      ->type_name("N")
+      ->check(CLI::Range(1, k_most_shards));
+  command.add_option("--shard", arguments.shard, "Make only this one of the --shards")
+      ->type_name("I")
+      ->default_str("all")
+      ->check(CLI::Range(1, k_most_shards));
+  command.add_flag("--resume", arguments.resume, "Keep shards that are there and valid, make the others");
+  command.add_flag("--progress", arguments.progress, "Show progress where stderr is not a terminal, too");
+  command.add_flag("--plan", arguments.plan,
+                   "Make nothing: print the size of the set and, with --a, time and memory estimated from a sample");
+  command.add_flag("--json", arguments.json, "With --plan: as JSON");
+  command.add_option("--plan-seconds", arguments.plan_seconds, "Time for the sample of --plan; 0: no sample")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command.add_option("--seed", arguments.seed, "Seed of the sample of --plan")->type_name("N")->capture_default_str();
+}
+
 }  // namespace
 
 std::unique_ptr<DistanceGenerator> generator_of(const std::string& oracle, const Registry& registry) {
@@ -178,63 +243,8 @@ void add_generate_command(CLI::App& app) {
   auto* const command =
       app.add_subcommand("generate", "Make a configuration set of two meshes: poses at given distances and overlaps");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--a", arguments->a, "Fixed mesh A: a model's name or a file")->type_name("MESH");
-  command->add_option("--b", arguments->b, "Moving mesh B, likewise")->type_name("MESH")->default_str("A");
-  command
-      ->add_option("--grid", arguments->grid,
-                   "Directions from which B comes times rotations of B: every 45 degrees (45), each its own step "
-                   "(45/90), N even rotations and M directions (so3:N:M, or so3:N), or the paper's (paper: 15 degrees, "
-                   "2 million poses a bucket; paper-volume: 268,128)")
-      ->type_name("GRID");
-  command->add_option("--volume-grid", arguments->volume_grid, "Grid of the volumes")
-      ->type_name("GRID")
-      ->default_str("that of --grid; paper-volume with --grid paper");
-  command
-      ->add_option("--distances", arguments->distances,
-                   "Distances, in percent of the diagonal of A's box: 0,0.5,5:10 (5:10 is 5,6,...,10)")
-      ->type_name("PERCENTS")
-      ->default_str("0:30, if no --volumes are given");
-  command
-      ->add_option("--volumes", arguments->volumes,
-                   "Overlaps, in percent of A's volume: 0.1,1:10; A and B must be solids")
-      ->type_name("PERCENTS");
-  command
-      ->add_option("--method", arguments->method,
-                   "raycast: search the pairs of triangles along each ray; advance: step by step with the distances of "
-                   "--oracle")
-      ->type_name("METHOD")
-      ->default_str("raycast; with --oracle, advance")
-      ->check(CLI::IsMember({"raycast", "advance"}));
-  command
-      ->add_option("--oracle", arguments->oracle, "Algorithm with exact distances that --method advance measures with")
-      ->type_name("ALGORITHM")
-      ->default_str(k_default_oracle);
-  command->add_option("--threads", arguments->threads, "Threads; 0: as many as the machine has")
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      ->add_option("-o,--output", arguments->output,
-                   "The set to write (HDF5), replaced if it exists; with --shards a folder, made if missing")
-      ->type_name("FILE");
-  command
-      ->add_option("--shards", arguments->shards,
-                   "Divide the work into N files of equal size, which sixdof merge makes a set of")
-      ->type_name("N")
-      ->check(CLI::Range(1, k_most_shards));
-  command->add_option("--shard", arguments->shard, "Make only this one of the --shards")
-      ->type_name("I")
-      ->default_str("all")
-      ->check(CLI::Range(1, k_most_shards));
-  command->add_flag("--resume", arguments->resume, "Keep shards that are there and valid, make the others");
-  command->add_flag("--progress", arguments->progress, "Show progress where stderr is not a terminal, too");
-  command->add_flag("--plan", arguments->plan,
-                    "Only print what would be made and, given --a, the time and memory it needs, from a timed sample");
-  command->add_flag("--json", arguments->json, "With --plan: as JSON");
-  command->add_option("--plan-seconds", arguments->plan_seconds, "Time for the sample of --plan; 0: no sample")
-      ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Seed of the sample of --plan")->type_name("N")->capture_default_str();
+  add_set_options(*command, *arguments);
+  add_run_options(*command, *arguments);
   add_examples(
       *command, "sixdof generate --a torus-knot-10k --b cone-1k --grid 90 --distances 0,5:10 --volumes 5 -o set.h5",
       "sixdof generate --a cone-1k --grid paper --distances 0:30 --volumes 0:10 --plan --plan-seconds 1", k_keys);

@@ -30,7 +30,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_history_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("history", "Show how times went over many results, as one page");
+  auto* const command = app.add_subcommand("history", "Show how times changed over many results, as one page");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("folder", arguments->folder, "Folder of result files (JSON)")->required()->type_name("FOLDER");
   command->add_option("-o,--output", arguments->output, "The page to write (HTML)")->required()->type_name("FILE");

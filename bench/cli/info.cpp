@@ -217,9 +217,10 @@ void add_info_command(CLI::App& app) {
   command->add_option("file", *name, "A mesh file, a model's name (sixdof models list), or a set")
       ->required()
       ->type_name("MESH");
-  command->add_flag("--check", *check,
-                    "Look for triangles of a mesh that meet each other and for shells that count twice; exit code 3 if "
-                    "there are any, 0 if not");
+  command->add_flag(
+      "--check", *check,
+      "Check a mesh for self-intersections and for duplicate, nested or inverted shells, which make volumes "
+      "wrong; exit code 3 if there are any");
   command->add_flag("--json", *json, "As JSON");
   command->callback([name, json, check] {
     if (looks_like_configuration_set(*name)) {

@@ -25,7 +25,7 @@
 namespace sixdof::cli {
 namespace {
 
-using bench::Question;
+using bench::QueryKind;
 
 struct Options {
   StudyOptions study;
@@ -82,8 +82,8 @@ class PrecisionCommand {
                                                                    options_.sample);
   }
 
-  Question parse_question() const {
-    for (const Question question : bench::k_questions) {
+  QueryKind parse_question() const {
+    for (const QueryKind question : bench::k_query_kinds) {
       if (to_string(question) == options_.question) return question;
     }
     throw BadArgument(fmt::format("--question {}: must be collide, distance or respond", options_.question));

@@ -17,9 +17,9 @@ using study::PrecisionPoint;
 using study::PrecisionStudy;
 
 /// Metrics shown beside the plane of the frontier, by the question.
-std::vector<std::string> shown_metrics(bench::Question question) {
-  if (question == bench::Question::collide) return {"false_positives", "false_negatives", "touching_yes"};
-  if (question == bench::Question::distance) return {"error_mean", "error_max", "too_small", "too_large"};
+std::vector<std::string> shown_metrics(bench::QueryKind question) {
+  if (question == bench::QueryKind::collide) return {"false_positives", "false_negatives", "touching_yes"};
+  if (question == bench::QueryKind::distance) return {"error_mean", "error_max", "too_small", "too_large"};
   return {"gamma_F_p95_deg", "gamma_max_F_deg", "gamma_T_deg", "magnitude_error_F", "gain_F", "misses"};
 }
 

@@ -113,8 +113,9 @@ void add_quality_command(CLI::App& app) {
       ->type_name("FILE");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run(*options); });
-  add_examples(*command, "sixdof quality --scenario II --algorithm vps --steps 100",
-               "sixdof quality --scenario III --algorithm ist --shape rotation_degrees=20 --law gradient -o III-ist.h5");
+  add_examples(
+      *command, "sixdof quality --scenario II --algorithm vps --steps 100",
+      "sixdof quality --scenario III --algorithm ist --shape rotation_degrees=20 --law gradient -o III-ist.h5");
 }
 
 }  // namespace sixdof::cli

@@ -237,7 +237,7 @@ void add_query_command(CLI::App& app) {
       ->check(CLI::IsMember({"collide", "distance", "respond"}))
       ->allow_extra_args(false)
       ->default_str("all that the algorithm answers");
-  add_algorithm_options(*command, arguments->algorithm, "Who answers (sixdof algorithms lists them)")
+  add_algorithm_options(*command, arguments->algorithm, "The algorithm to ask (sixdof algorithms lists them)")
       ->capture_default_str();
   command->add_option("--about", arguments->about, "Reference point \"x y z\" of the torque, in A's frame")
       ->type_name("POINT")

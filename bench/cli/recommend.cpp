@@ -24,7 +24,7 @@
 namespace sixdof::cli {
 namespace {
 
-using bench::Question;
+using bench::QueryKind;
 using study::Candidate;
 using study::Recommendation;
 
@@ -43,16 +43,16 @@ struct Options {
 };
 
 /// The question that has the metric among its errors. @throws BadArgument, which lists them
-Question question_of(const std::string& metric) {
+QueryKind question_of(const std::string& metric) {
   std::vector<std::string> known;
-  for (const Question question : {Question::respond, Question::distance, Question::collide}) {
+  for (const QueryKind question : {QueryKind::respond, QueryKind::distance, QueryKind::collide}) {
     const std::vector<std::string> metrics = study::error_metrics(question);
     if (std::ranges::find(metrics, metric) != metrics.end()) return question;
     known.insert(known.end(), metrics.begin(), metrics.end() - 1);  // all end with "failed"
   }
   known.emplace_back("failed");
   require_metric("--metric", metric, known);
-  return Question::respond;
+  return QueryKind::respond;
 }
 
 std::string name_of(const Candidate& candidate) {
@@ -219,22 +219,22 @@ void add_recommend_command(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--metric", options->metric,
-                   "Error that is to be small: gamma_F_deg (angle of the force, degrees), magnitude_error_F, error_rms "
+                   "Error to minimise: gamma_F_deg (angle of the force, degrees), magnitude_error_F, error_rms "
                    "(distance, diagonals of A), ...")
       ->type_name("METRIC")
       ->capture_default_str();
   command
       ->add_option(
           "--order", options->order,
-          "Poses that are timed: random, those of the set, far apart; or motion, poses that follow each other as in a "
-          "haptic loop, where warm starts are tried, too")
+          "Poses that are timed. random: poses of the set, far from each other. motion: small steps from pose to pose, "
+          "as in a haptic loop; warm starts are tried as well")
       ->type_name("ORDER")
       ->check(CLI::IsMember({"random", "motion"}))
       ->capture_default_str();
   command
       ->add_option("--threads", options->threads,
-                   "Threads that a query may use: algorithms with a parameter `threads` are tried with as many, with "
-                   "half of them and so on, and with one")
+                   "Most threads of one query. Algorithms with a parameter `threads` are tried with N, N/2, ... and 1 "
+                   "threads")
       ->type_name("N")
       ->check(CLI::Range(1u, k_most_threads))
       ->capture_default_str();

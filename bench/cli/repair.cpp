@@ -141,9 +141,10 @@ void add_repair_command(CLI::App& app) {
       ->required()
       ->type_name("FILE");
   command
-      ->add_option("--weld", arguments->options.weld,
-                   "Weld border vertices, and close edges to vertices on them, that are at most so far apart, as a "
-                   "fraction of the diagonal of the mesh's box; 0: only those that are equal")
+      ->add_option(
+          "--weld", arguments->options.weld,
+          "Join border vertices to each other, and border edges to vertices on them, up to this distance, as a "
+          "fraction of the diagonal of the mesh's box; 0: only equal vertices")
       ->type_name("FRACTION")
       ->capture_default_str();
   command->add_option("--max-hole", arguments->options.max_hole, "Fill holes of up to this number of edges; 0: none")

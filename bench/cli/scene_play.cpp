@@ -296,7 +296,7 @@ void add_scene_play(CLI::App& group) {
   std::vector<std::string> questions;
   for (const Question question : scene::k_questions) questions.emplace_back(to_string(question));
   command->add_option("file", options->file, "The scene (HDF5)")->required()->type_name("FILE");
-  command->add_option("--algorithms", options->algorithms, "Who is asked: exact,fcl-hash,...")
+  command->add_option("--algorithms", options->algorithms, "Algorithms to ask: exact,fcl-hash,...")
       ->type_name("PAIR-FINDER")
       ->delimiter(',')
       ->default_str("all but references; with --list, exact");

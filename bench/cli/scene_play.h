@@ -25,12 +25,12 @@ struct Part {
   std::size_t first = 0;  ///< Its first frame's number in the file.
 };
 
-/// An algorithm that is not asked a question, and why.
+/// An algorithm that cannot answer a question, and why.
 struct LeftOut {
   std::string algorithm, reason;
 };
 
-/// Who is asked a question.
+/// The algorithms that are asked a question.
 struct Asked {
   scene::Question question;
   std::vector<const scene::SceneAlgorithm*> algorithms;

@@ -87,7 +87,8 @@ void run_show(const Arguments& arguments) {
 
 void add_show_command(CLI::App& app) {
   auto* const command = app.add_subcommand(
-      "show", "Write what an algorithm makes of a mesh (spheres, voxels, points) as a coloured PLY file");
+      "show",
+      "Write the structure that an algorithm prepares of a mesh (spheres, voxels, points) as a coloured PLY file");
   const auto arguments = std::make_shared<Arguments>();
   add_algorithm_options(*command, arguments->algorithm, "ist, vps or vps-field")->required();
   command->add_option("--model", arguments->model, "A model's name or a mesh file")->required()->type_name("MESH");

@@ -33,7 +33,7 @@ struct Options {
   std::vector<std::string> algorithms, families;
   std::string effort = "quick", output, cases = "stress-cases";
   std::uint64_t seed = 1;
-  double silence_s = 60.0, memory_gb = 4.0;
+  double timeout_s = 60.0, memory_gb = 4.0;
   bool json = false;
 };
 
@@ -57,7 +57,7 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
       .families = {},
       .effort = options.effort == "full" ? study::StressEffort::full() : study::StressEffort::quick(),
       .seed = options.seed,
-      .silence_s = options.silence_s,
+      .timeout_s = options.timeout_s,
       .memory_bytes = 1e9 * options.memory_gb,
       .processes = std::max(1u, std::thread::hardware_concurrency())};
   for (const std::string& name : options.algorithms) {
@@ -167,7 +167,7 @@ void add_stress_command(CLI::App& app) {
       ->type_name("FOLDER")
       ->capture_default_str();
   command
-      ->add_option("--query-timeout", options->silence_s,
+      ->add_option("--query-timeout", options->timeout_s,
                    "Longest time of one query or one preparation, in seconds; a process that takes longer is ended")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber)

@@ -56,7 +56,7 @@ bench::Options harness_options(const StudyOptions& options, std::size_t sample, 
 }
 
 std::vector<const Algorithm*> study_algorithms(const Registry& registry, const std::vector<std::string>& names,
-                                               bench::Question question) {
+                                               bench::QueryKind question) {
   std::vector<const Algorithm*> chosen;
   for (const std::string& name : names) {
     const Algorithm& algorithm = registry.find(name);

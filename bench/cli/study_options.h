@@ -7,7 +7,7 @@
 
 #include <sixdof/query/registry.h>
 #include "bench/harness/options.h"
-#include "bench/harness/question.h"
+#include "bench/harness/query_kind.h"
 #include "bench/study/sweep.h"
 
 namespace sixdof::cli {
@@ -35,7 +35,7 @@ bench::Options harness_options(const StudyOptions& options, std::size_t sample, 
 /// The algorithms that answer the question: those of --algorithms, or all that are timed but `null`.
 /// @throws BadArgument for one that does not exist or gives no such answer
 std::vector<const Algorithm*> study_algorithms(const Registry& registry, const std::vector<std::string>& names,
-                                               bench::Question question);
+                                               bench::QueryKind question);
 
 /// @throws BadArgument for an algorithm that is not among `algorithms`
 std::vector<study::SweptValues> swept_values(const StudyOptions& options,

@@ -180,7 +180,7 @@ void verify(const Arguments& arguments) {
 
 void add_verify_command(CLI::App& app) {
   auto* const command = app.add_subcommand(
-      "verify", "Measure a sample of a configuration set again, or make it again, and say what is wrong with it");
+      "verify", "Check a configuration set: measure a sample of its poses again, or make poses again");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("file", arguments->file, "The configuration set")->required()->type_name("FILE");
   command->add_option("--a", arguments->a, "Mesh A, if it is not where the set says: a model's name or a file")
@@ -191,14 +191,14 @@ void add_verify_command(CLI::App& app) {
                            ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Seed of the draw")->type_name("N")->capture_default_str();
   auto* const measuring =
-      command->add_option("--oracle", arguments->oracle, "Algorithm with exact distances that measures them")
+      command->add_option("--oracle", arguments->oracle, "Algorithm with exact distances that measures the poses")
           ->type_name("ALGORITHM")
           ->capture_default_str();
   command
       ->add_option(
           "--again", arguments->again,
-          "Instead make all poses of N rotations, drawn at random, or of all rotations again, and compare bits; "
-          "exit code 3 if any differ")
+          "Instead of measuring, make all poses of N random rotations, or of all rotations, again and compare their "
+          "bits; exit code 3 if any differ")
       ->type_name("N|all")
       ->excludes(sample)
       ->excludes(measuring);

@@ -65,7 +65,7 @@ void InterruptGuard::watch() {
   }
   {
     std::unique_lock lock(mutex_);
-    if (changed_.wait_for(lock, k_patience, [this] { return ended_; })) return;
+    if (changed_.wait_for(lock, k_grace_period, [this] { return ended_; })) return;
   }
   // The standard streams are not flushed: the work may hold their locks.
   if (keep_) keep_();

@@ -11,10 +11,10 @@
 namespace sixdof {
 
 /// While an object of this class exists, Ctrl-C (SIGINT) and SIGTERM end the work within a second. They set a flag; the
-/// work polls requested() between its steps and throws Interrupted, so that it ends in order. If the object still
-/// exists k_patience after the signal, because a step takes long, a thread of its own ends the program: it calls
-/// `keep`, removes the temporary files of every AtomicFile, prints one line and exits with k_exit_interrupted. A second
-/// signal ends the program at once. One object at a time.
+/// work polls requested() between its steps and throws Interrupted. If the object still exists k_grace_period after the
+/// signal, because a step takes long, a watcher thread ends the program: it calls `keep`, removes the temporary files
+/// of every AtomicFile, prints one line and exits with k_exit_interrupted. A second signal ends the program at once. At
+/// most one object exists at a time.
 class InterruptGuard {
  public:
   /// @param program named in the line on stderr
@@ -30,8 +30,8 @@ class InterruptGuard {
   /// @throws Interrupted once a signal came
   static void check();
 
-  /// With what `keep` and the exit take, less than a second.
-  static constexpr std::chrono::milliseconds k_patience{700};
+  /// Together with `keep` and the exit this is less than a second.
+  static constexpr std::chrono::milliseconds k_grace_period{700};
 
  private:
   void watch();

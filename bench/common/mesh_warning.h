@@ -10,13 +10,14 @@ namespace sixdof {
 /// "12 pairs of triangles meet, 1 shell is doubled": the counts above zero; empty if all are.
 std::string summary(const MeshCheck& check);
 
-/// One line that says what is wrong with a solid whose volumes count parts of it several times (oracle/mesh_check.h);
-/// empty if nothing is, if the mesh is no solid, or if the check takes longer than k_longest_check_s or is interrupted.
+/// One line about a solid that intersects itself, so that volumes count some parts of it more than once
+/// (oracle/mesh_check.h). Empty if it does not, if the mesh is no solid, or if the check takes longer than
+/// k_longest_check_s or is interrupted.
 /// The verdict is kept in the cache on disk (base/cache.h) by the mesh's content hash.
 /// @param argument that stands for the mesh on a command line
 std::string mesh_warning(const Mesh& mesh, const std::string& argument);
 
-/// Several times what a mesh of a million triangles takes where contacts are few.
+/// Several times what a mesh of a million triangles takes if few of its triangles intersect.
 constexpr double k_longest_check_s = 10.0;
 
 }  // namespace sixdof

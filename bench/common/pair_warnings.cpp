@@ -11,7 +11,7 @@ void warn_of_sizes(std::string_view program, const MeshIdentity& a, const MeshId
   const MeshIdentity& large = a_is_larger ? a : b;
   const MeshIdentity& small = a_is_larger ? b : a;
   const double ratio = large.diagonal() / small.diagonal();
-  if (!(ratio >= k_doubtful_size_ratio)) return;
+  if (!(ratio >= k_suspicious_size_ratio)) return;
   print_message(program,
                 fmt::format("warning: {} is {:.0f} times as large as {} (box diagonals {:.4g} and {:.4g}); are "
                             "both in one unit?",

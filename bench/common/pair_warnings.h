@@ -4,15 +4,15 @@
 
 #include <sixdof/configuration/configuration_set.h>
 
-/// What looks wrong with a pair or its set and yet can be measured: one line each on stderr, "PROGRAM: warning: ...".
+/// Warnings about a pair or its set that do not stop a run: one line each on stderr, "PROGRAM: warning: ...".
 
 namespace sixdof {
 
-/// From this ratio of the boxes' diagonals on, the units of two meshes are doubted: millimetres against metres are 1000
-/// for bodies of one size.
-constexpr double k_doubtful_size_ratio = 500.0;
+/// From this ratio of the boxes' diagonals on, two meshes probably have different units. Millimetres against metres
+/// give 1000 for bodies of the same size.
+constexpr double k_suspicious_size_ratio = 500.0;
 
-/// One line if one mesh is k_doubtful_size_ratio times as large as the other or more.
+/// One line if one mesh is k_suspicious_size_ratio times as large as the other or more.
 void warn_of_sizes(std::string_view program, const MeshIdentity& a, const MeshIdentity& b);
 
 /// One line for each note of the reader of a mesh's file (MeshRepairs::notes): what unit and axes the file states, and

@@ -31,11 +31,11 @@ ProcessLimits ProcessOptions::limits() const {
 void add_process_options(CLI::App& command, ProcessOptions& options) {
   const std::string group = "Algorithms in processes of their own";
   command
-      .add_flag(
-          "--isolate{all}", options.isolate,
-          fmt::format("Which ones, so that a crash or a hang costs one query: all (also plain --isolate), those of "
-                      "third parties, or none; {} if left out",
-                      options.isolate))
+      .add_flag("--isolate{all}", options.isolate,
+                fmt::format(
+                    "Algorithms to run in processes of their own, where a crash or a hang costs only one query. Plain "
+                    "--isolate means all; without the option: {}",
+                    options.isolate))
       ->check(CLI::IsMember({"none", "third-party", "all"}))
       ->type_name("WHICH")
       ->group(group);

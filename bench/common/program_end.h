@@ -6,8 +6,7 @@
 
 namespace sixdof {
 
-/// Writes what standard output holds back. @return 0, or k_exit_error after a message where any of it could not be
-/// written
+/// Flushes standard output. @return 0, or k_exit_error after a message if any of it could not be written
 int end_output(std::string_view program);
 
 /// Prints why the cache was not used, if it was refused (base/cache.h).

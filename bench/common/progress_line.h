@@ -9,12 +9,12 @@
 
 namespace sixdof {
 
-/// One line on stderr that is rewritten in place and cut to the terminal's width of the moment. Where stderr is not a
-/// terminal, or one that cannot rewrite a line (TERM=dumb), nothing is printed or, if asked, one line every ten
-/// seconds.
+/// One line on stderr that is rewritten in place and cut to the current width of the terminal. Where stderr is not a
+/// terminal, or the terminal cannot rewrite a line (TERM=dumb), nothing is printed or, with `always`, one line every
+/// ten seconds.
 class StatusLine {
  public:
-  /// @param always print where stderr is not such a terminal, too
+  /// @param always print also where stderr is not such a terminal
   explicit StatusLine(bool always = false);
   ~StatusLine() { clear(); }
   StatusLine(const StatusLine&) = delete;

@@ -6,14 +6,14 @@
 
 namespace sixdof::bench {
 
-/// Size of the last-level cache in bytes as the system tells it, or k_unknown_cache_bytes where it does not.
+/// Size of the last-level cache in bytes, or k_unknown_cache_bytes where the system does not report it.
 std::size_t last_level_cache_bytes();
 
 /// As large as the cache of most machines.
 constexpr std::size_t k_unknown_cache_bytes = std::size_t{64} << 20;
 
-/// What is read to empty the caches: caches that do not replace the oldest line first keep some of what a buffer of
-/// their own size would replace.
+/// Size of the buffer that is read to empty the caches: twice the last-level cache, since caches that do not evict the
+/// oldest line first would keep some data after reading a buffer of their own size.
 inline std::size_t eviction_bytes() { return 2 * last_level_cache_bytes(); }
 
 /// Empties the caches of the processor: data that was used before is in memory only.

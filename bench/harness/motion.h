@@ -12,10 +12,10 @@
 
 namespace sixdof::bench {
 
-/// Successive poses of a body in motion, as a haptic loop or a simulation asks them.
+/// Successive poses of a moving body, as in a haptic loop or a simulation.
 struct Motion {
-  /// Poses of one motion of a row. From the end of one to the beginning of the next B jumps: less than one query of
-  /// 100.
+  /// Poses of one motion of a row. B jumps from the end of a motion to the start of the next, so that fewer than one
+  /// query in 100 follows a jump.
   static constexpr std::size_t k_poses = 128;
   /// How far B moves from one pose to the next, in diagonals of A's box. At 1 kHz and a diagonal of 0.3 m that is 30
   /// mm/s.
@@ -25,8 +25,8 @@ struct Motion {
   double angle;                     ///< Per step, in radians.
   double length;                    ///< Per step, of the centre of B's box.
 
-  /// About a random axis and in a random direction: the centre of B's box moves by half a step, and the corners of the
-  /// box turn about it by another half at most.
+  /// About a random axis and in a random direction: the centre of B's box moves by half of k_step, and the rotation
+  /// moves no corner of the box by more than the other half.
   Motion(const Mesh& a, const Mesh& b, std::uint64_t seed);
 
   /// @param center of B's box, in B's frame

@@ -149,27 +149,19 @@ std::filesystem::path file_of_suite(const std::string& suite) {
   return suite;
 }
 
-}  // namespace
-
-std::filesystem::path default_manifest() { return data_folder() / "fixtures" / "manifest.json"; }
-
-int parse_options(int argc, const char* const* argv, Options& options) {
-  CLI::App app(
-      "Times yes/no, distance and response queries of every algorithm on the poses of configuration sets, checks every "
-      "answer, and writes rows for `sixdof table` and `sixdof report`. Runs under Google Benchmark.",
-      "sixdof-bench");
-  app.formatter(std::make_shared<HelpFormat>());
-  app.set_version_flag("--version", std::string("sixdof-bench ") + SIXDOF_VERSION);
-  app.allow_extras();
-  options.manifest = default_manifest();
-  std::string format = "console";
-  std::string out_format = "json";
-  std::string suite;
+/// What the parser fills besides Options, and its options of which it matters whether they were given.
+struct CommandLine {
+  std::string format = "console", out_format = "json", suite, shell;
   bool no_manifest = false;
+  const CLI::Option *manifest = nullptr, *budget = nullptr, *resume = nullptr;
+};
+
+void add_set_options(CLI::App& app, Options& options, CommandLine& line) {
   auto* const manifest = app.add_option("--manifest", options.manifest, "Catalogue of configuration sets")
                              ->type_name("FILE")
                              ->default_str("that of the sets that come with sixdof");
-  app.add_flag("--no-manifest", no_manifest, "No catalogue: only the sets of --set")->excludes(manifest);
+  line.manifest = manifest;
+  app.add_flag("--no-manifest", line.no_manifest, "No catalogue: only the sets of --set")->excludes(manifest);
   app.add_option("--set", options.sets, "A configuration set of your own (sixdof generate); may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false)
@@ -184,9 +176,12 @@ int parse_options(int argc, const char* const* argv, Options& options) {
          "kept in the cache. With a --set: where A is now")
       ->type_name("MESH");
   app.add_option("--b", options.b, "Moving mesh B, likewise")->type_name("MESH")->default_str("a copy of A");
-  app.add_option(
-         "--suite", suite,
-         "Rows to run: default, own-pair, all-algorithms, scenes (bench/*_suite.json), all, or a file of the same form")
+}
+
+void add_row_options(CLI::App& app, Options& options, CommandLine& line) {
+  app.add_option("--suite", line.suite,
+                 "Rows to run: default, own-pair, all-algorithms, scenes (bench/*_suite.json), all, or a file of the "
+                 "same form")
       ->type_name("SUITE")
       ->default_str("own-pair with --a and no --set; all with --benchmark_filter or your own sets; else default");
   app.add_option("-p,--parameter", options.parameters,
@@ -197,48 +192,49 @@ int parse_options(int argc, const char* const* argv, Options& options) {
       ->type_name("N")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  auto* const budget =
-      app.add_option(
-             "--budget", options.budget_s,
-             fmt::format("Time of all rows together: samples shrink to fit; 0: no limit; {} with --a and no --set",
-                         k_own_pair_budget_s))
-          ->type_name("SECONDS")
-          ->check(CLI::NonNegativeNumber)
-          ->capture_default_str();
+  line.budget = app.add_option("--budget", options.budget_s,
+                               fmt::format("Time of all rows together: samples shrink to fit; 0: no limit; {} with "
+                                           "--a and no --set",
+                                           k_own_pair_budget_s))
+                    ->type_name("SECONDS")
+                    ->check(CLI::NonNegativeNumber)
+                    ->capture_default_str();
   app.add_option("--seed", options.seed, "Seed of samples and orders")->type_name("N")->capture_default_str();
   app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were used");
   add_process_options(app, options.process);
+}
+
+void add_output_options(CLI::App& app, Options& options, CommandLine& line) {
   auto* const out =
       app.add_option("--benchmark_out,--out", options.out,
                      "Result file; appears whole or not at all. Until then finished rows are in FILE.journal")
           ->type_name("FILE");
-  auto* const resume =
+  line.resume =
       app.add_option("--resume", options.out,
                      "Continue the result file of a run that was broken off, with the same arguments: rows that are "
                      "there are not measured again, failed ones are")
           ->type_name("FILE")
           ->excludes(out)
           ->check([](const std::string& file) { return file.empty() ? "a file is needed" : ""; });
-  app.add_option("--benchmark_out_format", out_format, "Format of the result file; csv has no context")
+  app.add_option("--benchmark_out_format", line.out_format, "Format of the result file; csv has no context")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"json", "csv"}))
       ->capture_default_str();
-  app.add_option("--benchmark_format", format, "Format of standard output")
+  app.add_option("--benchmark_format", line.format, "Format of standard output")
       ->type_name("FORMAT")
       ->check(CLI::IsMember({"console", "json", "csv"}))
       ->capture_default_str();
-  std::string shell;
   // For the installation, which keeps the script; no row is run.
-  app.add_option("--completion", shell, "Print a script with which a shell completes the options")
+  app.add_option("--completion", line.shell, "Print a script with which a shell completes the options")
       ->check(CLI::IsMember({"bash"}))
       ->type_name("SHELL")
       ->group("");
+}
+
+/// Help, version, completion and errors end the program. @returns as parse_options()
+int parse(CLI::App& app, int argc, const char* const* argv, const CommandLine& line) {
   try {
     app.parse(argc, argv);
-    if (!shell.empty()) {
-      fmt::print("{}", completion_of(app));
-      return 0;
-    }
   } catch (const CLI::CallForHelp&) {
     fmt::print("{}\nGoogle Benchmark's own flags:\n", app.help());
     benchmark::PrintDefaultHelp();
@@ -247,30 +243,31 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : k_exit_usage;
   }
+  if (line.shell.empty()) return -1;
+  fmt::print("{}", completion_of(app));
+  return 0;
+}
 
-  if (const std::string conflict = conflict_of_meshes(options, !manifest->empty()); !conflict.empty()) {
-    print_message("sixdof-bench", conflict);
-    return k_exit_usage;
-  }
-  if (options.own_pair()) {
-    no_manifest = true;
-    if (budget->empty()) options.budget_s = k_own_pair_budget_s;
-  }
-
-  std::vector<std::string> flags = app.remaining();
-  const bool own_sets = no_manifest || !manifest->empty() || !options.sets.empty();
-  if (suite.empty() && options.own_pair()) suite = "own-pair";
-  if (suite.empty()) suite = own_sets || has_flag(flags, "--benchmark_filter") ? "all" : "default";
-  options.suite = file_of_suite(suite);
+/// What depends on several options.
+void complete_options(const CommandLine& line, bool has_filter, Options& options) {
+  const bool own_pair = options.own_pair();
+  if (own_pair && line.budget->empty()) options.budget_s = k_own_pair_budget_s;
+  const bool no_manifest = line.no_manifest || own_pair;
+  const bool own_sets = no_manifest || !line.manifest->empty() || !options.sets.empty();
+  const char* const usual = own_pair ? "own-pair" : own_sets || has_filter ? "all" : "default";
+  options.suite = file_of_suite(line.suite.empty() ? usual : line.suite);
   if (no_manifest) options.manifest.clear();
-  options.resume = !resume->empty();
-  options.out_format = out_format == "csv" ? ResultFormat::csv : ResultFormat::json;
-  if (format != "console") options.format = format == "csv" ? ResultFormat::csv : ResultFormat::json;
+  options.resume = !line.resume->empty();
+  options.out_format = line.out_format == "csv" ? ResultFormat::csv : ResultFormat::json;
+  if (line.format != "console") options.format = line.format == "csv" ? ResultFormat::csv : ResultFormat::json;
+}
+
+/// Hands Google Benchmark its flags, with this program's defaults. @returns as parse_options()
+int pass_on(std::vector<std::string> flags, Options& options, const std::vector<std::string>& own_names) {
   options.list_only = has_flag(flags, "--benchmark_list_tests") && !has_flag(flags, "--benchmark_list_tests=false");
   if (!has_flag(flags, "--benchmark_min_time")) {
     flags.emplace_back(options.own_pair() ? k_own_pair_min_time : k_default_min_time);
   }
-  options.arguments = arguments_but_file(argc, argv);
   options.benchmark_flags = flags_of_measurement(flags);
   const auto is_color = [](const std::string& flag) {
     return flag.starts_with("--benchmark_color=") && flag != "--benchmark_color=auto";
@@ -279,9 +276,37 @@ int parse_options(int argc, const char* const* argv, Options& options) {
   const std::string unknown = initialize_benchmark(flags);
   if (unknown.empty()) return -1;
   print_message("sixdof-bench", unknown.starts_with('-')
-                                    ? explain_unknown_word(unknown, option_names(app), "sixdof-bench --help")
+                                    ? explain_unknown_word(unknown, own_names, "sixdof-bench --help")
                                     : unknown + ": unexpected argument (sixdof-bench --help)");
   return k_exit_usage;
+}
+
+}  // namespace
+
+std::filesystem::path default_manifest() { return data_folder() / "fixtures" / "manifest.json"; }
+
+int parse_options(int argc, const char* const* argv, Options& options) {
+  CLI::App app(
+      "Times yes/no, distance and response queries of every algorithm on the poses of configuration sets, checks every "
+      "answer, and writes rows for `sixdof table` and `sixdof report`. Runs under Google Benchmark.",
+      "sixdof-bench");
+  app.formatter(std::make_shared<HelpFormat>());
+  app.set_version_flag("--version", std::string("sixdof-bench ") + SIXDOF_VERSION);
+  app.allow_extras();
+  options.manifest = default_manifest();
+  CommandLine line;
+  add_set_options(app, options, line);
+  add_row_options(app, options, line);
+  add_output_options(app, options, line);
+  if (const int code = parse(app, argc, argv, line); code >= 0) return code;
+  if (const std::string conflict = conflict_of_meshes(options, !line.manifest->empty()); !conflict.empty()) {
+    print_message("sixdof-bench", conflict);
+    return k_exit_usage;
+  }
+  const std::vector<std::string> flags = app.remaining();
+  complete_options(line, has_flag(flags, "--benchmark_filter"), options);
+  options.arguments = arguments_but_file(argc, argv);
+  return pass_on(flags, options, option_names(app));
 }
 
 std::map<std::string, Settings> parse_parameters(const std::vector<std::string>& parameters, const Registry& registry) {

@@ -67,7 +67,7 @@ class PairCache {
   /// The reference is valid until the next call of query() or exact_responses(). @throws what prepare() throws
   Query& query(const Algorithm& algorithm, const Settings& settings, const std::string& a, const std::string& b);
 
-  /// Whether query() would find it prepared.
+  /// Whether query() would return without preparing.
   bool is_prepared(const Algorithm& algorithm, const Settings& settings, const std::string& a,
                    const std::string& b) const;
 
@@ -82,7 +82,7 @@ class PairCache {
   };
   const Counts& counts() const { return counts_; }
 
-  /// One line for each mesh that was fetched and whose volumes count parts of it several times (mesh_warning.h).
+  /// One line for each fetched mesh that intersects itself (mesh_warning.h).
   std::vector<std::string> warnings() const;
 
   /// ("mesh:elephant", content hash), ("set:elephant", content hash) of everything that was fetched.

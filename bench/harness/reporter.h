@@ -14,11 +14,12 @@ namespace sixdof::bench {
 
 /// Hands rows on to another reporter:
 /// - rows that are left out are not handed on;
-/// - names are those of Row, without what Google Benchmark adds to rows of one round, and the processor time of these
-///   is the wall time that the row has set: that of their loop is mostly none of queries;
+/// - names are those of Row, without what Google Benchmark adds to rows of one round. The processor time of these rows
+/// is
+///   the wall time that the row has set, since their loop spends most of its processor time outside of queries;
 /// - the processor time of an isolated algorithm is what its process measured (k_processor_inside);
 /// - a row with a counter that is not finite becomes an error that names the counter;
-/// - the coefficient of variation of zeros, which has no value, is left out of repetitions.
+/// - of repetitions that are all zero the coefficient of variation is left out, since it is undefined.
 class RowReporter : public benchmark::BenchmarkReporter {
  public:
   /// @param next null for none; @param left_out names of rows. Both outlive this object.

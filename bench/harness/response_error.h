@@ -11,7 +11,7 @@
 #include <sixdof/measure/direction.h>
 #include <sixdof/measure/magnitude.h>
 #include <sixdof/query/algorithm.h>
-#include "bench/harness/check.h"
+#include "bench/harness/judge.h"
 
 /// Responses compared with the exact ones.
 
@@ -34,7 +34,7 @@ class VectorSeries {
     exact.push_back(exact_vector);
     measured.push_back(vector);
     exact_magnitudes.push_back(exact_vector.norm());
-    magnitudes.push_back(std::min(vector.stableNorm() / scale, Errors::k_largest));
+    magnitudes.push_back(std::min(vector.stableNorm() / scale, k_largest_error));
   }
   VectorError error() const {
     return {direction_error(exact, measured), magnitude_error(exact_magnitudes, magnitudes)};

@@ -17,7 +17,7 @@
 
 namespace sixdof::bench {
 
-/// What rows are made from and work with. Everything that it refers to outlives the rows.
+/// What all rows use. Everything that it refers to outlives the rows.
 struct Resources {
   const Registry& registry;
   const SetCatalogue& catalogue;
@@ -28,11 +28,11 @@ struct Resources {
   const Settings& settings_of(const Algorithm& algorithm) const { return settings.at(algorithm.traits().name); }
 };
 
-/// What a row may use.
+/// The part of the run's time, and of a bucket's sample, that a row may use.
 struct Share {
   double seconds = std::numeric_limits<double>::infinity();  ///< Wall time of the whole row.
-  /// Of a bucket's sample the row asks the first so many, however long they take, or all if it has no more. The same
-  /// for all rows that are compared (sample_plan.h).
+  /// How many configurations of a bucket's sample the row asks: the first ones, however long they take. The same for
+  /// all rows that are compared (sample_plan.h).
   std::size_t configurations = std::numeric_limits<std::size_t>::max();
 };
 
@@ -40,18 +40,18 @@ struct Share {
 /// prepared queries are fetched from the cache inside `run`.
 struct Row {
   std::string name;  ///< API: "distance/algorithm:fcl-rss/pair:elephant/distance:05".
-  /// Google Benchmark calls it several times, until it has found the number of iterations; it keeps for itself what
-  /// needs to be done once. An exception ends the row, not the program.
+  /// Google Benchmark calls it several times, until it has found the number of iterations. What has to be done only
+  /// once is kept between the calls. An exception ends the row, not the program.
   std::function<void(benchmark::State&, const Share&)> run;
   RowFields fields;  ///< What the name says, for readers of the result file.
   benchmark::TimeUnit unit = benchmark::kNanosecond;
-  /// Of rows on a bucket's sample: the wall time in seconds that each configuration takes the row, estimated from a
-  /// few; 0 if none of them has an answer. The argument is the time of the whole row, of which the estimate takes
-  /// little. It may throw what `run` throws.
+  /// Of rows on a bucket's sample: wall time in seconds that the row needs per configuration, estimated from a few; 0
+  /// if none of them has an answer. The argument is the time of the whole row; the estimate takes a small part of it.
+  /// It may throw what `run` throws.
   std::function<double(double)> trial = {};
   /// Of rows on a bucket's sample: where the last call of `run` found the worst answers and times.
   std::function<Outliers()> outliers = {};
-  /// Google Benchmark calls `run` once per repetition, which decides itself how often to ask, and sets the wall time of
+  /// Google Benchmark calls `run` once per repetition. `run` decides itself how often to ask, and sets the wall time of
   /// every iteration.
   bool one_round = false;
   /// `run` sets the wall time of its iterations and the processor time (k_processor_inside), since the algorithm runs

@@ -27,7 +27,7 @@ class RowCaller {
   void call(const Row& row, benchmark::State& state);
 
   std::set<std::string> left_out;   ///< Names of the rows that are left out because they need solids.
-  std::set<std::string> not_solid;  ///< Meshes, with the reason.
+  std::set<std::string> not_solid;  ///< "MESH: REASON" of the meshes because of which rows are left out.
 
   /// Rows that were called and not left out.
   std::size_t measured() const { return begun_.size() - left_out.size(); }

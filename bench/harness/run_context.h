@@ -18,8 +18,8 @@ nlohmann::ordered_json run_context(const Options& options, const Registry& regis
                                    const std::map<std::string, Settings>& settings);
 
 /// Why rows of two runs do not belong in one file: another machine, build, algorithm, setting, sample, seed or way to
-/// measure. "sample is 64, now 32; ..."; empty if nothing is in the way. The choice of rows and --budget may differ: a
-/// row's counters say how many configurations or steps it had time for.
+/// measure. "sample is 64, now 32; ..."; empty if they belong together. The choice of rows and --budget may differ,
+/// since a row's counters say how many configurations or steps it had time for.
 std::string difference_of_contexts(const nlohmann::ordered_json& before, const nlohmann::ordered_json& now);
 
 /// Likewise, for meshes and sets that both runs used.

@@ -14,15 +14,15 @@ namespace sixdof::bench {
 /// limit of the sample. Empty for rows that ask no configurations of a bucket.
 std::string group_of(const RowFields& fields);
 
-/// How many configurations rows ask. All rows of a group ask the same ones, however fast their algorithms are: the
-/// number is chosen before the first of them is measured, such that all of them together fit into their parts of the
-/// time.
+/// How many configurations rows ask. All rows of a group ask the same ones, so that slow and fast algorithms are
+/// compared on the same poses. The number is chosen before the first row of the group is measured, such that the whole
+/// group fits into its time.
 class SamplePlan {
  public:
   /// @param rows those that are to be measured; they outlive this object
   explicit SamplePlan(const std::vector<const Row*>& rows);
 
-  /// A row that is measured already: the others of its group ask as many.
+  /// Takes over a row of an earlier run: the others of its group ask as many configurations.
   void keep(const RowFields& measured);
 
   /// Share::configurations of a row. Where there is a limit of time, the first call for a group asks trial() of its
@@ -31,7 +31,7 @@ class SamplePlan {
   /// @throws Interrupted
   std::size_t configurations(const Row& row, const std::function<double()>& row_seconds);
 
-  /// Enough for a mean; asked even where the time does not suffice.
+  /// Enough for a mean. Rows ask at least so many, even if that takes longer than their time.
   static constexpr std::size_t k_fewest = 32;
 
  private:

@@ -16,7 +16,7 @@
 #include "bench/harness/check.h"
 #include "bench/harness/failure_counters.h"
 #include "bench/harness/motion.h"
-#include "bench/harness/question.h"
+#include "bench/harness/query_kind.h"
 #include "bench/harness/response_error.h"
 #include "bench/harness/timing.h"
 #include "bench/rows/families.h"
@@ -64,7 +64,7 @@ struct QueryRow {
   const Algorithm& algorithm;
   const CatalogueEntry& pair;
   BucketKey key;
-  Question question;
+  QueryKind question;
   Order order;
   /// Called before each query; empty for a row on warm caches.
   std::shared_ptr<CacheEviction> evict;
@@ -103,7 +103,7 @@ struct QueryRow {
     const std::size_t most = evict ? k_most_cold : bucket.poses.size();
     const std::size_t count = std::min({share.configurations, most, bucket.poses.size()});
     std::span<const Response> exact;
-    if (question == Question::respond) exact = resources.cache.exact_responses(pair, key, count);
+    if (question == QueryKind::respond) exact = resources.cache.exact_responses(pair, key, count);
     with_query(failures, [&](auto query) {
       if (!check) {
         if constexpr (requires { query.ask(poses[0]).value.force; }) compare_with_exact(bucket, exact, query);
@@ -141,16 +141,16 @@ struct QueryRow {
     found.b = word_of(pair.b);
     found.command = query_command(found.a, found.b, algorithm, resources.settings_of(algorithm));
     found.add("failed", failures.first_pose());
-    found.add("mismatch", check->first_mismatch);
-    found.add("misses", check->first_miss);
-    found.add(question == Question::distance ? "error_max" : "volume_error_max", check->largest_error);
+    found.add("mismatch", check->first_wrong);
+    found.add("misses", check->first_missed);
+    found.add(question == QueryKind::distance ? "error_max" : "volume_error_max", check->largest_error);
     return found;
   }
 
   /// Row::trial.
   double trial(double seconds) {
     const BucketSample& bucket = sample();
-    double each = question == Question::respond ? time_exact() : 0.0;
+    double each = question == QueryKind::respond ? time_exact() : 0.0;
     Failures ignored;
     with_query(ignored, [&](auto query) {
       const auto start = std::chrono::steady_clock::now();
@@ -165,7 +165,7 @@ struct QueryRow {
         if (seconds_since(start) > k_trial_time * seconds) break;
       }
       // A response is asked once more, to be compared with the exact one.
-      const double passes = (evict ? k_cold_passes : k_passes) + (question == Question::respond ? 1.0 : 0.0);
+      const double passes = (evict ? k_cold_passes : k_passes) + (question == QueryKind::respond ? 1.0 : 0.0);
       if (answers > 0) each += passes * 1e-9 * answers_ns / static_cast<double>(answers);
     });
     if (evict) each += time_eviction();
@@ -204,7 +204,7 @@ struct QueryRow {
   template <class Use>
   void with_query(Failures& counted, Use use) const {
     Query& query = resources.cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
-    with_question(query, question, counted, use);
+    with_query_kind(query, question, counted, use);
   }
 
   /// Seconds of an exact response. Near 0 in the second trial of a bucket: the cache has them.
@@ -263,14 +263,14 @@ struct QueryRow {
     count("failed", failures.count());
     count_statuses(state.counters, failures);
     count("judged", check->judged);
-    count("mismatch", check->mismatch);
+    count("mismatch", check->wrong);
     check->work.report(state.counters);
-    if (question == Question::distance && is_judged()) {
+    if (question == QueryKind::distance && is_judged()) {
       count("error_rms", check->errors.rms());
       count("error_max", check->errors.largest());
     }
-    if (question == Question::respond) {
-      count("misses", check->misses);
+    if (question == QueryKind::respond) {
+      count("misses", check->missed);
       if (check->judged > 0) {
         count("volume_error_mean", check->errors.mean());
         count("volume_error_max", check->errors.largest());
@@ -307,7 +307,7 @@ std::vector<Row> query_rows(const Resources& resources) {
   for (const CatalogueEntry& pair : resources.catalogue.sets()) {
     for (const auto& algorithm : resources.registry.all()) {
       if (!algorithm->traits().timed) continue;
-      const auto add = [&](BucketKey key, Question question) {
+      const auto add = [&](BucketKey key, QueryKind question) {
         for (const auto& [order, cold] :
              {std::pair(Order::random, false), {Order::path, false}, {Order::motion, false}, {Order::random, true}}) {
           const auto row = std::make_shared<QueryRow>(QueryRow{resources, *algorithm, pair, key, question, order,
@@ -322,7 +322,7 @@ std::vector<Row> query_rows(const Resources& resources) {
         }
       };
       for (const BucketKey key : pair.buckets) {
-        for (const Question question : k_questions) {
+        for (const QueryKind question : k_query_kinds) {
           if (answers(algorithm->traits().answers, question) && suits(key, question)) add(key, question);
         }
       }

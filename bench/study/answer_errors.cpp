@@ -11,8 +11,8 @@
 
 #include <sixdof/measure/direction.h>
 #include <sixdof/measure/magnitude.h>
-#include "bench/harness/check.h"
-#include "bench/harness/question.h"
+#include "bench/harness/judge.h"
+#include "bench/harness/query_kind.h"
 #include "bench/harness/response_error.h"
 
 namespace sixdof::study {
@@ -36,9 +36,8 @@ double quantile(std::vector<double> values, double q) {
 /// Answers yes/no.
 class Collisions {
  public:
-  void add(const Truth& truth, bool answer) {
-    touching_.push_back(truth.key.percent == 0);
-    overlap_.push_back(truth.key.kind == BucketKind::volume);
+  void add(const Reference& reference, bool answer) {
+    judgements_.push_back(bench::judge(reference.known, answer));
     yes_.push_back(answer);
   }
   std::size_t size() const { return yes_.size(); }
@@ -46,10 +45,10 @@ class Collisions {
     Counters counts{
         {"mismatch", 0}, {"false_positives", 0}, {"false_negatives", 0}, {"touching", 0}, {"touching_yes", 0}};
     for (const std::size_t i : chosen) {
-      if (touching_[i]) {
+      if (!judgements_[i].judged) {
         ++counts["touching"];
         if (yes_[i]) ++counts["touching_yes"];
-      } else if (yes_[i] != overlap_[i]) {
+      } else if (judgements_[i].wrong) {
         ++counts["mismatch"];
         ++counts[yes_[i] ? "false_positives" : "false_negatives"];
       }
@@ -58,26 +57,25 @@ class Collisions {
   }
 
  private:
-  std::vector<bool> touching_, overlap_, yes_;
+  std::vector<bench::Judgement> judgements_;
+  std::vector<bool> yes_;
 };
 
 class Distances {
  public:
-  void add(const Truth& truth, const Separation& answer) {
-    const double error = std::clamp(answer.distance - truth.target, -Errors::k_largest, Errors::k_largest);
-    const double allowed = truth.tolerance + bench::k_distance_slack * truth.diagonal;
-    errors_.push_back(error / truth.diagonal);
-    beyond_.push_back(std::abs(error) <= allowed ? 0 : error < 0.0 ? -1 : 1);
+  void add(const Reference& reference, const Separation& answer) {
+    judgements_.push_back(bench::judge(reference.known, answer));
   }
-  std::size_t size() const { return errors_.size(); }
+  std::size_t size() const { return judgements_.size(); }
   Counters counters(Indices chosen) const {
     Errors absolute;
     double sum = 0.0;
     Counters counts{{"too_small", 0}, {"too_large", 0}};
     for (const std::size_t i : chosen) {
-      absolute.add(std::abs(errors_[i]));
-      sum += errors_[i];
-      if (beyond_[i] != 0) ++counts[beyond_[i] < 0 ? "too_small" : "too_large"];
+      const double error = *judgements_[i].error;
+      absolute.add(error);
+      sum += error;
+      if (judgements_[i].wrong) ++counts[error < 0.0 ? "too_small" : "too_large"];
     }
     counts["error_mean"] = sum / static_cast<double>(chosen.size());
     counts["error_rms"] = absolute.rms();
@@ -86,8 +84,7 @@ class Distances {
   }
 
  private:
-  std::vector<double> errors_;
-  std::vector<int> beyond_;  ///< The tolerance: -1 too small, 1 too large.
+  std::vector<bench::Judgement> judgements_;
 };
 
 /// Forces or torques.
@@ -126,26 +123,26 @@ class VectorAnswers {
 
 class Responses {
  public:
-  void add(const Truth& truth, const Response& answer) {
-    const auto [response, scale] = bench::scaled_about(answer, truth.exact.reference);
-    forces_.add(truth.exact.force, response.force, scale);
-    torques_.add(truth.exact.torque, response.torque, scale);
-    missed_.push_back(answer.force.isZero(0.0));
-    volumes_.push_back(truth.target);
-    penalties_.push_back(std::min(std::abs(answer.penalty), Errors::k_largest));
-    volume_errors_.push_back(std::min(std::abs(answer.volume - truth.target) / truth.target, Errors::k_largest));
-    has_volume_ = has_volume_ && std::isfinite(answer.volume);
+  void add(const Reference& reference, const Response& answer) {
+    const Response& exact = reference.exact;
+    const auto [response, scale] = bench::scaled_about(answer, exact.reference);
+    forces_.add(exact.force, response.force, scale);
+    torques_.add(exact.torque, response.torque, scale);
+    judgements_.push_back(bench::judge(reference.known, answer));
+    volumes_.push_back(reference.known.target);
+    penalties_.push_back(std::min(std::abs(answer.penalty), bench::k_largest_error));
+    has_volume_ = has_volume_ && judgements_.back().error.has_value();
   }
-  std::size_t size() const { return missed_.size(); }
+  std::size_t size() const { return judgements_.size(); }
   Counters counters(Indices chosen) const {
     Counters counters{{"misses", 0}};
     std::vector<double> volumes, penalties;
     double volume_error = 0.0;
     for (const std::size_t i : chosen) {
-      if (missed_[i]) ++counters["misses"];
+      if (judgements_[i].missed) ++counters["misses"];
       volumes.push_back(volumes_[i]);
       penalties.push_back(penalties_[i]);
-      volume_error += volume_errors_[i];
+      volume_error += std::abs(judgements_[i].error.value_or(0.0));
     }
     forces_.count(chosen, counters);
     torques_.count(chosen, counters);
@@ -156,8 +153,8 @@ class Responses {
 
  private:
   VectorAnswers forces_{"F"}, torques_{"T"};
-  std::vector<bool> missed_;
-  std::vector<double> volumes_, penalties_, volume_errors_;
+  std::vector<bench::Judgement> judgements_;
+  std::vector<double> volumes_, penalties_;
   bool has_volume_ = true;
 };
 
@@ -207,9 +204,9 @@ using AnswersTo = std::conditional_t<std::is_same_v<Value, bool>, Collisions,
 
 }  // namespace
 
-std::vector<std::string> error_metrics(bench::Question question) {
-  if (question == bench::Question::collide) return {"mismatch", "false_positives", "false_negatives", "failed"};
-  if (question == bench::Question::distance) {
+std::vector<std::string> error_metrics(bench::QueryKind question) {
+  if (question == bench::QueryKind::collide) return {"mismatch", "false_positives", "false_negatives", "failed"};
+  if (question == bench::QueryKind::distance) {
     return {"error_rms", "error_mean", "error_max", "too_small", "too_large", "failed"};
   }
   return {"gamma_F_deg",
@@ -235,16 +232,16 @@ void AnswerErrors::add_failures(std::size_t count, const std::string& first) {
 
 AnswerErrors measure_errors(Query& query, const StudySample& sample, std::uint64_t seed) {
   AnswerErrors errors;
-  errors.forces.assign(sample.truths.size(), Eigen::Vector3d::Zero());
+  errors.forces.assign(sample.references.size(), Eigen::Vector3d::Zero());
   bench::Failures failures;
-  bench::with_question(query, sample.question, failures, [&](auto guarded) {
+  bench::with_query_kind(query, sample.question, failures, [&](auto guarded) {
     AnswersTo<decltype(guarded.ask(sample.poses[0]).value)> answers;
     for (std::size_t i = 0; i < sample.poses.size(); ++i) {
       const auto answer = guarded.ask(sample.poses[i]);
       if (!answer.ok()) continue;
       errors.answered.push_back(sample.poses[i]);
-      if (i >= sample.truths.size()) continue;
-      answers.add(sample.truths[i], answer.value);
+      if (i >= sample.references.size()) continue;
+      answers.add(sample.references[i], answer.value);
       keep_force(answer.value, errors.forces[i]);
     }
     errors.values = estimate(answers, seed);

@@ -28,7 +28,7 @@ struct AnswerErrors {
   /// have no spread.
   std::map<std::string, Estimate> values;
   std::vector<Pose> answered;  ///< Those of the sample's poses that have an answer, judged or not.
-  /// Of Question::respond: forces by the configurations that are judged; zero where there is no answer.
+  /// Of QueryKind::respond: forces by the configurations that are judged; zero where there is no answer.
   std::vector<Eigen::Vector3d> forces;
   std::size_t failed = 0;
   std::string first_failure;  ///< Words of it.
@@ -38,7 +38,7 @@ struct AnswerErrors {
 };
 
 /// The names of the values, those of which the table of metrics knows what is better.
-std::vector<std::string> error_metrics(bench::Question question);
+std::vector<std::string> error_metrics(bench::QueryKind question);
 
 inline constexpr std::size_t k_resamples = 200;
 

@@ -22,7 +22,7 @@
 namespace sixdof::study {
 
 struct PrecisionPlan {
-  bench::Question question = bench::Question::respond;
+  bench::QueryKind question = bench::QueryKind::respond;
   std::vector<const Algorithm*> algorithms;  ///< Those that answer the question.
   std::vector<SweptValues> values;           ///< Instead of the algorithms' own sweeps.
   std::string cost = "cpu_time";             ///< Metrics that span the plane of the frontier.

@@ -46,7 +46,7 @@ std::vector<std::optional<double>> PrecisionStudy::angles_to_finest() const {
     if (point.measured() && !point.faulty()) finest[point.algorithm] = &point;
   }
   std::vector<std::optional<double>> angles(points_.size());
-  if (sample_.question != bench::Question::respond) return angles;
+  if (sample_.question != bench::QueryKind::respond) return angles;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const PrecisionPoint* const best = finest[points_[i].algorithm];
     if (!points_[i].measured() || best == nullptr || best == &points_[i]) continue;

@@ -7,12 +7,12 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/query/ask.h>
-#include "bench/harness/check.h"
+#include "bench/harness/judge.h"
 
 namespace sixdof::study {
 namespace {
 
-using bench::Question;
+using bench::QueryKind;
 
 std::string as_word(bool answer) { return answer ? "yes" : "no"; }
 std::string as_word(const Separation& answer) { return fmt::format("{}", answer.distance); }
@@ -33,12 +33,13 @@ std::string command_of(const Bucket& bucket, const AskedAlgorithm& asked, const 
   return command;
 }
 
-/// Asks one kind of query at every pose; `judged` gets each answer. An answer is wrong if the harness counts it so.
+/// Asks one kind of query at every pose. Failures go to `counts`, and each answer to `answered`.
 template <class T, class Answered>
-bench::Check ask_bucket(const Bucket& bucket, const AskedAlgorithm& asked, Query& query, Question question,
-                        Outcome<T> (Query::*kind)(const Pose&), const T& truth, AnswerCounts& counts,
-                        const Answered& answered) {
-  bench::Check check;
+bench::JudgedAnswers ask_bucket(const Bucket& bucket, const AskedAlgorithm& asked, Query& query, QueryKind question,
+                                Outcome<T> (Query::*kind)(const Pose&), const T& truth, AnswerCounts& counts,
+                                const Answered& answered) {
+  const bench::KnownAnswer known = bench::KnownAnswer::of(bucket.sample);
+  bench::JudgedAnswers judged;
   for (std::size_t i = 0; i < bucket.poses.size(); ++i) {
     bucket.run.check_cancelled();
     std::string words;
@@ -47,10 +48,10 @@ bench::Check ask_bucket(const Bucket& bucket, const AskedAlgorithm& asked, Query
     if (words.empty()) examine(query, outcome, failed);
     std::string answer;
     if (outcome.ok()) {
-      const std::size_t wrong_before = check.mismatch;
-      bench::judge(bucket.sample, outcome.value, check);
+      const bench::Judgement judgement = bench::judge(known, outcome.value);
+      judged.add(judgement);
       answered(i, outcome.value);
-      if (check.mismatch == wrong_before) continue;
+      if (!judgement.wrong) continue;
       answer = as_word(outcome.value);
     } else {
       ++counts.failed;
@@ -65,7 +66,7 @@ bench::Check ask_bucket(const Bucket& bucket, const AskedAlgorithm& asked, Query
                                   .pose = bucket.poses[i],
                                   .command = command_of(bucket, asked, bucket.poses[i])});
   }
-  return check;
+  return judged;
 }
 
 /// Of each configuration, which yes/no the algorithms gave.
@@ -88,21 +89,22 @@ AnswerCounts ask_algorithm(const Bucket& bucket, const AskedAlgorithm& asked, Qu
   const bool overlap = bucket.sample.key.kind == BucketKind::volume;
   AnswerCounts counts{.algorithm = traits.name};
   if (traits.answers.collide) {
-    const bench::Check check = ask_bucket(bucket, asked, query, Question::collide, &Query::collide, overlap, counts,
-                                          [&](std::size_t i, bool answer) {
-                                            votes.add(i, answer);
-                                            counts.yes += answer;
-                                          });
-    counts.judged_collide = check.judged;
-    counts.wrong_collide = check.mismatch;
+    const auto count = [&](std::size_t i, bool answer) {
+      votes.add(i, answer);
+      counts.yes += answer;
+    };
+    const bench::JudgedAnswers judged =
+        ask_bucket(bucket, asked, query, QueryKind::collide, &Query::collide, overlap, counts, count);
+    counts.judged_collide = judged.judged;
+    counts.wrong_collide = judged.wrong;
   }
   if (traits.answers.distance) {
     const Separation truth{.distance = overlap ? 0.0 : bucket.sample.target};
-    const bench::Check check = ask_bucket(bucket, asked, query, Question::distance, &Query::distance, truth, counts,
-                                          [](std::size_t, const Separation&) {});
-    counts.judged_distance = check.judged;
-    counts.wrong_distance = check.mismatch;
-    counts.largest_distance_error = check.errors.largest();
+    const bench::JudgedAnswers judged = ask_bucket(bucket, asked, query, QueryKind::distance, &Query::distance, truth,
+                                                   counts, [](std::size_t, const Separation&) {});
+    counts.judged_distance = judged.judged;
+    counts.wrong_distance = judged.wrong;
+    counts.largest_distance_error = judged.errors.largest();
   }
   return counts;
 }

@@ -11,7 +11,7 @@
 #include <sixdof/geometry/typed_pose.h>
 #include <sixdof/query/algorithm.h>
 #include "bench/harness/pair_cache.h"
-#include "bench/harness/question.h"
+#include "bench/harness/query_kind.h"
 
 /// Whether algorithms give the answers that a configuration set is made for, and where not.
 
@@ -29,7 +29,7 @@ struct Difference {
   std::string algorithm;
   BucketKey bucket;
   std::uint64_t cell = 0;  ///< Place in the grid (BucketSample::cells).
-  bench::Question question = bench::Question::collide;
+  bench::QueryKind question = bench::QueryKind::collide;
   std::string answer, truth;  ///< "yes", "no", a distance, or a status with its words.
   TypedPose pose;
   std::string command;  ///< `sixdof query ...` at the pose.
@@ -40,7 +40,7 @@ struct AnswerCounts {
   std::string algorithm;
   std::size_t yes = 0;
   std::size_t judged_collide = 0, wrong_collide = 0;
-  std::size_t judged_distance = 0, wrong_distance = 0;  ///< Off by more than a row allows (bench/harness/check.h).
+  std::size_t judged_distance = 0, wrong_distance = 0;  ///< Beyond the tolerance (bench/harness/judge.h).
   std::size_t failed = 0;                               ///< Questions without an answer.
   double largest_distance_error = 0.0;                  ///< In A's diagonals.
 };

@@ -55,7 +55,7 @@ void run_apart(const StressPlan& plan, StressCell& cell, const std::atomic<bool>
       beats = now;
       last_beat = Clock::now();
     }
-    return stopped || silent_s() >= plan.silence_s;
+    return stopped || silent_s() >= plan.timeout_s;
   };
   try {
     ChildProcess process(stress_cell_command(*cell.family, *cell.algorithm, plan.effort, plan.seed),

@@ -5,8 +5,8 @@
 
 #include "bench/study/stress.h"
 
-/// Cells of a stress, each in a process of its own: a library that aborts, never returns or takes all memory ends its
-/// cell and nothing else.
+/// Runs each cell in a process of its own, so that a library that aborts, never returns or takes all memory ends only
+/// its own cell.
 
 namespace sixdof::study {
 
@@ -15,13 +15,14 @@ struct StressPlan {
   std::vector<const stability::Family*> families;
   StressEffort effort;
   std::uint64_t seed = 1;
-  double silence_s = 60.0;    ///< Longest wall time of one query or one preparation.
+  double timeout_s = 60.0;    ///< Longest wall time of one query or one preparation.
   double memory_bytes = 4e9;  ///< Of data, for each process.
   std::size_t processes = 2;  ///< At once.
 };
 
-/// All cells, by family, then by algorithm. Deterministic by seed but for times and what depends on them. A cell whose
-/// process ends has the case and the pose that it was asked last, and the verdict crashed, hung or out of memory.
+/// All cells, by family, then by algorithm. All but times, and verdicts that depend on them, is determined by the seed.
+/// A cell whose process ends has the case and the pose that it was asked last, and the verdict crashed, hung or out of
+/// memory.
 ///
 /// The processes run this program again, which has to begin with run_stress_cell_if_asked() (stress_worker.h).
 /// @param progress is called often, with how many cells are done; what it throws ends all processes

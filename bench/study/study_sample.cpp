@@ -11,7 +11,7 @@
 namespace sixdof::study {
 namespace {
 
-using bench::Question;
+using bench::QueryKind;
 
 /// The sample of one bucket, with responses where they are asked for.
 struct BucketTruth {
@@ -19,11 +19,11 @@ struct BucketTruth {
   std::vector<Response> exact;
 };
 
-BucketTruth truth_of(bench::PairCache& cache, const CatalogueEntry& pair, Question question, BucketKey key,
+BucketTruth truth_of(bench::PairCache& cache, const CatalogueEntry& pair, QueryKind question, BucketKey key,
                      std::size_t count) {
   const BucketSample& sample = cache.bucket(pair, key);
   BucketTruth truth{&sample, {}};
-  if (question == Question::respond) {
+  if (question == QueryKind::respond) {
     const auto exact = cache.exact_responses(pair, key, count);
     truth.exact.assign(exact.begin(), exact.end());
   }
@@ -32,7 +32,7 @@ BucketTruth truth_of(bench::PairCache& cache, const CatalogueEntry& pair, Questi
 
 }  // namespace
 
-StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, Question question,
+StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, QueryKind question,
                         const std::vector<BucketKey>& buckets, std::size_t count) {
   StudySample sample{.question = question};
   for (const BucketKey key : buckets) {
@@ -40,7 +40,7 @@ StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, Que
   }
   if (sample.buckets.empty()) {
     throw BadArgument(fmt::format("{}: its set has no {} to ask {} of (sixdof generate makes one that has)", pair.pair,
-                                  question == Question::respond ? "volumes" : "distances", to_string(question)));
+                                  question == QueryKind::respond ? "volumes" : "distances", to_string(question)));
   }
   const std::size_t each = count == 0 ? count : (count + sample.buckets.size() - 1) / sample.buckets.size();
   std::vector<BucketTruth> truths;
@@ -55,13 +55,10 @@ StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, Que
       if (i >= bucket.sample->poses.size() || (count > 0 && sample.poses.size() == count)) continue;
       const BucketSample& from = *bucket.sample;
       sample.poses.push_back(from.poses[i]);
-      judged = judged && (question != Question::respond || i < bucket.exact.size());
+      judged = judged && (question != QueryKind::respond || i < bucket.exact.size());
       if (!judged) continue;
-      sample.truths.push_back({.key = from.key,
-                               .target = from.target,
-                               .tolerance = from.tolerance,
-                               .diagonal = from.diagonal,
-                               .exact = question == Question::respond ? bucket.exact[i] : Response{}});
+      sample.references.push_back({.known = bench::KnownAnswer::of(from),
+                                   .exact = question == QueryKind::respond ? bucket.exact[i] : Response{}});
     }
   }
   if (sample.poses.empty()) throw BadArgument(fmt::format("{}: no configuration can be reached", pair.pair));

@@ -6,18 +6,16 @@
 
 #include <sixdof/configuration/bucket_sample.h>
 #include <sixdof/query/algorithm.h>
+#include "bench/harness/judge.h"
 #include "bench/harness/pair_cache.h"
-#include "bench/harness/question.h"
+#include "bench/harness/query_kind.h"
 
 namespace sixdof::study {
 
 /// What an answer is compared with.
-struct Truth {
-  BucketKey key;
-  double target = 0.0;     ///< Distance (length) or overlap volume (length^3).
-  double tolerance = 0.0;  ///< Of `target`, same unit.
-  double diagonal = 0.0;   ///< Of A's box (length).
-  Response exact;          ///< The response of `exact`; only for Question::respond.
+struct Reference {
+  bench::KnownAnswer known;
+  Response exact;  ///< The response of `exact`; only for QueryKind::respond.
 };
 
 /// Poses that are timed, in this order.
@@ -34,11 +32,11 @@ struct TimedPoses {
 /// Configurations of several buckets, the same ones for every point of a study: one of each bucket in turn, each bucket
 /// in the order of its sample, so that every prefix is spread evenly over buckets, rotations and directions.
 struct StudySample {
-  bench::Question question = bench::Question::respond;
+  bench::QueryKind question = bench::QueryKind::respond;
   std::vector<BucketKey> buckets;
   std::vector<Pose> poses;
-  std::vector<Truth> truths;  ///< Of the first poses; answers to the others are timed only.
-  TimedPoses motions;         ///< Timed instead of `poses`, if there are any.
+  std::vector<Reference> references;  ///< Of the first poses; answers to the others are timed only.
+  TimedPoses motions;                 ///< Timed instead of `poses`, if there are any.
 
   std::size_t asked() const { return poses.size() + motions.poses.size(); }  ///< Poses of both kinds.
 };
@@ -46,7 +44,7 @@ struct StudySample {
 /// @param buckets of the set; those that do not suit the question are left out
 /// @param count configurations in all, as many as there are if 0
 /// @throws BadArgument if no bucket suits the question, NeedsSolid, BadFile
-StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, bench::Question question,
+StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, bench::QueryKind question,
                         const std::vector<BucketKey>& buckets, std::size_t count);
 
 /// Motions (harness/motion.h) from the first of the sample's poses on: as many times count as there are

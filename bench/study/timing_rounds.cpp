@@ -51,9 +51,9 @@ std::pair<std::size_t, std::size_t> ranks_of_median(std::size_t n) {
 
 }  // namespace
 
-void TimingRounds::add(Query& query, bench::Question question, std::span<const Pose> poses) {
+void TimingRounds::add(Query& query, bench::QueryKind question, std::span<const Pose> poses) {
   bench::Failures ignored;
-  bench::with_question(query, question, ignored, [&](auto guarded) {
+  bench::with_query_kind(query, question, ignored, [&](auto guarded) {
     if (RemoteQuery* const remote = guarded.remote()) {
       const auto [cpu_ns, wall_ns] = time_there<typename decltype(guarded)::Answer>(*remote, poses);
       cpu_ns_.push_back(cpu_ns);
@@ -82,10 +82,10 @@ Estimate TimingRounds::median(std::vector<double> values) {
           std::max(values[high], (1.0 + k_least_spread) * middle)};
 }
 
-SingleQueries time_single_queries(Query& query, bench::Question question, const TimedPoses& timed) {
+SingleQueries time_single_queries(Query& query, bench::QueryKind question, const TimedPoses& timed) {
   SingleQueries result;
   bench::Failures failures;
-  bench::with_question(query, question, failures, [&](auto guarded) {
+  bench::with_query_kind(query, question, failures, [&](auto guarded) {
     const auto [times, failed] = bench::time_latency_passes(timed.poses, guarded);
     std::vector<double> once_ns, least_ns;
     for (std::size_t i = 0; i < timed.poses.size(); ++i) {

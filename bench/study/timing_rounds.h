@@ -7,25 +7,25 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/measure/latency.h>
 #include <sixdof/query/algorithm.h>
-#include "bench/harness/question.h"
+#include "bench/harness/query_kind.h"
 #include "bench/study/estimate.h"
 #include "bench/study/study_sample.h"
 
 namespace sixdof::study {
 
-/// Times of one point of a study. Its rounds lie minutes apart, with rounds of other points between them, so that a
-/// drift of the machine's speed meets all points alike.
+/// Times of one point of a study. Its rounds lie minutes apart, with rounds of other points between them, so that slow
+/// changes of the machine's speed affect all points alike.
 class TimingRounds {
  public:
   /// Asks all poses, which have an answer, as often as k_shortest_s needs, in a loop without clocks. @throws
   /// Interrupted
-  void add(Query& query, bench::Question question, std::span<const Pose> poses);
+  void add(Query& query, bench::QueryKind question, std::span<const Pose> poses);
 
   std::size_t count() const { return cpu_ns_.size(); }
 
   /// Median over the rounds of the mean time of a query, in ns, with its 95 % interval by ranks: that of the binomial
-  /// distribution, which is least to largest for up to 8 rounds. No narrower than k_least_spread to either side: by
-  /// that much two runs differ on a machine that does other work.
+  /// distribution, which is least to largest for up to 8 rounds. At least k_least_spread wide to either side, since
+  /// two runs on a machine that does other work differ by that much.
   Estimate cpu_ns() const { return median(cpu_ns_); }
   Estimate wall_ns() const { return median(wall_ns_); }
 
@@ -44,6 +44,6 @@ struct SingleQueries {
   std::size_t failed = 0;  ///< Poses, counted or not, without an answer in one of the passes.
   std::string first_failure;
 };
-SingleQueries time_single_queries(Query& query, bench::Question question, const TimedPoses& timed);
+SingleQueries time_single_queries(Query& query, bench::QueryKind question, const TimedPoses& timed);
 
 }  // namespace sixdof::study

@@ -79,11 +79,11 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
       EXPECT_NE(find_metric(key), nullptr) << key << " of " << name << " is not in lib/sixdof/measure/metrics.cpp";
     }
   }
-  EXPECT_EQ(families, (std::set<std::string>{"prepare", "collide", "distance", "respond", "scenario", "scene",
-                                             "generate"}));
-  for (const char* counter : {"max_least_ns", "error_rms", "gamma_F_deg", "magnitude_error_F", "gain_T",
-                              "points_tested", "ns_per_points", "bytes", "sigma_F_by_depth", "steps",
-                              "ns_per_configuration", "missed_pairs", "pairs_put_off"}) {
+  EXPECT_EQ(families,
+            (std::set<std::string>{"prepare", "collide", "distance", "respond", "scenario", "scene", "generate"}));
+  for (const char* counter :
+       {"max_least_ns", "error_rms", "gamma_F_deg", "magnitude_error_F", "gain_T", "points_tested", "ns_per_points",
+        "bytes", "sigma_F_by_depth", "steps", "ns_per_configuration", "missed_pairs", "pairs_put_off"}) {
     EXPECT_TRUE(counters.contains(counter)) << counter;
   }
 }

@@ -70,12 +70,12 @@ constexpr const char* k_motion = "^[a-z]+/algorithm:records.*/order:motion$";
 /// Two pairs with 3 buckets to collide, 2 with distances and one with responses.
 constexpr std::size_t k_groups = 2 * (3 + 2 + 1);
 /// As the poses tell them apart: two pairs, three questions.
-constexpr std::size_t k_questions = 2 * 3;
+constexpr std::size_t k_query_kinds = 2 * 3;
 
 TEST_F(SamePoses, WithoutABudget) {
   for (const char* const rows : {k_random, k_path, k_motion}) {
     const json document = run("--sample 50 --benchmark_out=" + out.string(), rows);
-    expect_equal_poses(asked(), k_questions);
+    expect_equal_poses(asked(), k_query_kinds);
     const auto counts = configurations(document);
     EXPECT_EQ(counts.size(), k_groups);
     for (const auto& [group, count] : counts) EXPECT_EQ(count, 50u) << group;
@@ -85,7 +85,7 @@ TEST_F(SamePoses, WithoutABudget) {
 TEST_F(SamePoses, WithinABudgetThatTheSlowOneWouldExceed) {
   for (const char* const rows : {k_random, k_path, k_motion}) {
     const json document = run("--sample 0 --budget 1 --benchmark_out=" + out.string(), rows);
-    expect_equal_poses(asked(), k_questions);
+    expect_equal_poses(asked(), k_query_kinds);
     const auto counts = configurations(document);
     EXPECT_EQ(counts.size(), k_groups);
     for (const auto& [group, count] : counts) {

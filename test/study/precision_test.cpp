@@ -20,7 +20,7 @@
 namespace sixdof::study {
 namespace {
 
-using bench::Question;
+using bench::QueryKind;
 
 /// Which fault the next prepared query has.
 struct Fault {
@@ -74,13 +74,13 @@ class FaultyQuery final : public Query {
 class Precision : public ::testing::Test {
  protected:
   /// The point of `exact` and that of the faulty one.
-  std::vector<PrecisionPoint> study(const Fault& of, Question question = Question::respond) {
+  std::vector<PrecisionPoint> study(const Fault& of, QueryKind question = QueryKind::respond) {
     fault = of;
     PrecisionPlan plan{
         .question = question, .algorithms = {exact_.get(), faulty_.get()}, .rounds = 5, .most_rounds = 5};
-    plan.error = question == Question::respond    ? "gamma_F_deg"
-                 : question == Question::distance ? "error_rms"
-                                                  : "mismatch";
+    plan.error = question == QueryKind::respond    ? "gamma_F_deg"
+                 : question == QueryKind::distance ? "error_rms"
+                                                   : "mismatch";
     bench::PairCache cache(k_sample, 1, [](const std::string& key) { return bench::LoadedMesh{load_model(key), key}; });
     const SetCatalogue catalogue = SetCatalogue::read(std::filesystem::path(SIXDOF_SMALL_SUITE) / "manifest.json");
     const CatalogueEntry& pair = catalogue.sets().front();
@@ -169,7 +169,7 @@ TEST_F(Precision, FailuresAreCountedAndOffTheFrontier) {
 
 TEST_F(Precision, DistancesHaveASign) {
   for (const double shift : {1e-3, -1e-4}) {
-    const auto points = study({.distance = shift}, Question::distance);
+    const auto points = study({.distance = shift}, QueryKind::distance);
     EXPECT_NEAR(value(points[1], "error_mean"), shift, 1e-9);
     EXPECT_NEAR(value(points[1], "error_rms"), std::abs(shift), 1e-9);
     EXPECT_EQ(value(points[1], shift > 0 ? "too_large" : "too_small"), static_cast<double>(configurations_));
@@ -179,7 +179,7 @@ TEST_F(Precision, DistancesHaveASign) {
 }
 
 TEST_F(Precision, YesForEverythingHasFalsePositivesOnly) {
-  const auto points = study({.always_yes = true}, Question::collide);
+  const auto points = study({.always_yes = true}, QueryKind::collide);
   EXPECT_GT(value(points[1], "false_positives"), 0.0);
   EXPECT_EQ(value(points[1], "false_positives"), value(points[1], "mismatch"));
   EXPECT_EQ(value(points[1], "false_negatives"), 0.0);
@@ -196,7 +196,7 @@ TEST_F(Precision, AnglesToTheFinestPointFallWithTheResolution) {
   bench::PairCache cache(k_sample, 1, [](const std::string& key) { return bench::LoadedMesh{load_model(key), key}; });
   const SetCatalogue catalogue = SetCatalogue::read(std::filesystem::path(SIXDOF_SMALL_SUITE) / "manifest.json");
   const CatalogueEntry& pair = catalogue.sets().front();
-  const StudySample sample = draw_sample(cache, pair, Question::respond, pair.buckets, k_sample);
+  const StudySample sample = draw_sample(cache, pair, QueryKind::respond, pair.buckets, k_sample);
   PrecisionStudy study(plan, cache, pair, sample);
   study.run([](const std::string&, std::size_t, std::size_t) {}, [] {});
   const auto angles = study.angles_to_finest();

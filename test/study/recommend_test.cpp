@@ -64,7 +64,7 @@ class Recommend : public ::testing::Test {
  protected:
   /// A query takes 20 us a step.
   Recommendation within(double deadline_s) {
-    PrecisionPlan plan{.question = bench::Question::distance, .algorithms = algorithms_};
+    PrecisionPlan plan{.question = bench::QueryKind::distance, .algorithms = algorithms_};
     plan.values = warm_starts(algorithms_, {});
     plan.error = "error_rms";
     plan.single_queries = true;
@@ -86,7 +86,7 @@ class Recommend : public ::testing::Test {
   bench::PairCache cache_{32, 1, [](const std::string& key) { return bench::LoadedMesh{load_model(key), key}; }};
   SetCatalogue catalogue_ = SetCatalogue::read(std::filesystem::path(SIXDOF_SMALL_SUITE) / "manifest.json");
   const CatalogueEntry& pair_ = catalogue_.sets().front();
-  StudySample sample_ = draw_sample(cache_, pair_, bench::Question::distance, {{BucketKind::distance, 5}}, 32);
+  StudySample sample_ = draw_sample(cache_, pair_, bench::QueryKind::distance, {{BucketKind::distance, 5}}, 32);
   std::unique_ptr<PrecisionStudy> study_;
 };
 

@@ -66,11 +66,11 @@ const Registry& algorithms() {
   return registry;
 }
 
-StressCell run(const char* algorithm, const char* family, double silence_s = 20.0) {
+StressCell run(const char* algorithm, const char* family, double timeout_s = 20.0) {
   const StressPlan plan{.algorithms = {&algorithms().find(algorithm)},
                         .families = {&stability::find_family(family)},
                         .effort = {.generations = 0},
-                        .silence_s = silence_s,
+                        .timeout_s = timeout_s,
                         .memory_bytes = 1.5e8};
   return run_stress(plan, [](std::size_t, std::size_t) {}).at(0);
 }
