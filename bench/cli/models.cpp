@@ -13,11 +13,9 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/save.h>
-#include <sixdof/models/collection.h>
 #include <sixdof/models/manifest.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/models/recipe.h>
-#include <sixdof/models/recipe_variants.h>
 #include <sixdof/models/surface.h>
 #include "bench/cli/models_collection.h"
 #include "bench/cli/shared.h"

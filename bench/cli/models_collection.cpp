@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-#include <sixdof/models/collection.h>
+#include <sixdof/models/manifest.h>
 #include "bench/common/json_text.h"
 
 namespace sixdof::cli {

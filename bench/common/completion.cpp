@@ -9,10 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <sixdof/models/collection.h>
 #include <sixdof/models/manifest.h>
 #include <sixdof/models/recipe.h>
-#include <sixdof/models/recipe_variants.h>
 #include "bench/common/help_format.h"
 
 namespace sixdof {

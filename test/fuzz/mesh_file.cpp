@@ -37,7 +37,9 @@ void check_mesh(const Mesh& mesh) {
 /// load_mesh(), in this process.
 Mesh load_here(const std::filesystem::path& file, const LoadOptions& options) {
   if (file.extension() != ".3ds") return load_mesh(file, options);
-  loading::Surface surface = loading::read_by_assimp(loading::read_source(file), loading::FileFrame::metres);
+  loading::FileMesh surface;
+  loading::read_by_assimp(loading::read_source(file), loading::FileFrame::metres,
+                          [&](loading::FileMesh&& read) { surface = std::move(read); });
   try {
     return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), "mesh", std::move(surface.repairs));
   } catch (const BadMesh& e) {

@@ -150,8 +150,11 @@ TEST_F(HostileFile, HugeCounts) {
 
 class SeparateImport : public TestFolder {
  protected:
-  static loading::Surface here(const std::filesystem::path& file) {
-    return loading::read_by_assimp(loading::read_source(file), loading::FileFrame::metres);
+  static loading::FileMesh here(const std::filesystem::path& file) {
+    loading::FileMesh surface;
+    loading::read_by_assimp(loading::read_source(file), loading::FileFrame::metres,
+                            [&](loading::FileMesh&& read) { surface = std::move(read); });
+    return surface;
   }
 };
 
@@ -159,8 +162,8 @@ TEST_F(SeparateImport, GivesTheSameBits) {
   for (const auto& file :
        {write("a.dae", collada_pyramid("2 2 0.5")), write("b.x3d", x3d_pyramid()), write("c.fbx", fbx_pyramid("-5")),
         write("d.3ds", file_3ds(object_3ds(float_torus(), {3})))}) {
-    const loading::Surface one = here(file);
-    const loading::Surface other =
+    const loading::FileMesh one = here(file);
+    const loading::FileMesh other =
         loading::read_by_assimp_separately(loading::read_source(file), loading::FileFrame::metres);
     EXPECT_EQ(one.vertices, other.vertices) << file;
     EXPECT_EQ(one.triangles, other.triangles);

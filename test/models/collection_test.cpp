@@ -1,4 +1,4 @@
-#include <sixdof/models/collection.h>
+#include <sixdof/models/manifest.h>
 
 #include <algorithm>
 #include <filesystem>

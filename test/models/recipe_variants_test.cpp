@@ -1,4 +1,4 @@
-#include <sixdof/models/recipe_variants.h>
+#include <sixdof/models/recipe.h>
 
 #include <set>
 #include <string>

@@ -1,4 +1,4 @@
-#include <sixdof/repair/superfluous.h>
+#include <sixdof/repair/steps.h>
 
 #include <gtest/gtest.h>
 

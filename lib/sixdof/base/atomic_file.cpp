@@ -200,6 +200,12 @@ void AtomicFile::flush() {
   static_cast<void>(::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_DONTNEED));
 }
 
+void AtomicFile::store(std::string_view content) {
+  append(content);
+  flush();
+  if (const int failure = compare(descriptor_, content)) throw_not_writable(target_, failure);
+}
+
 void AtomicFile::commit() {
   flush();
   if (const int failure = close_file(descriptor_)) throw_not_writable(target_, failure);
@@ -262,9 +268,7 @@ void remove_stale_partials(const std::filesystem::path& target) {
 
 void write_file_atomically(const std::filesystem::path& target, std::string_view content) {
   AtomicFile file(target);
-  file.append(content);
-  file.flush();
-  if (const int failure = compare(file.descriptor(), content)) throw_not_writable(target, failure);
+  file.store(content);
   file.commit();
 }
 

@@ -33,9 +33,9 @@ class AtomicFile {
   /// @throws BadFile if not all of it could be written
   void append(std::string_view content);
 
-  /// Flushes the data to the disk and lets go of the copy in memory, so that a reader gets what the disk has.
-  /// @throws BadFile
-  void flush();
+  /// Writes the content of an empty file, flushes it to the disk and reads it again: a disk may say that a write was
+  /// done which was not. @throws BadFile unless the file holds these bytes
+  void store(std::string_view content);
 
   /// @throws BadFile if flushing, closing or renaming fails (disk full, permission). After a failure to flush the
   ///   directory, which is the last step, the new file is in its place.
@@ -43,6 +43,7 @@ class AtomicFile {
 
  private:
   friend void check_writable(const std::filesystem::path& target);
+  void flush();
   /// Removes the temporary file unless it has been renamed.
   void discard();
 

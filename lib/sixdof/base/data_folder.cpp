@@ -19,15 +19,22 @@ std::filesystem::path resolved(const std::filesystem::path& folder) {
 
 std::filesystem::path folder_above_program() {
   std::error_code ignored;
-  std::filesystem::path above = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (; !above.empty(); above = above.parent_path()) {
-    if (std::filesystem::is_directory(above / "share" / "sixdof", ignored)) return above / "share" / "sixdof";
-    if (above == above.parent_path()) break;
-  }
-  return std::filesystem::path("share") / "sixdof";
+  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  const std::filesystem::path data = std::filesystem::path("share") / "sixdof";
+  const std::filesystem::path found = find_above(here, data);
+  return found.empty() ? data : found;
 }
 
 }  // namespace
+
+std::filesystem::path find_above(std::filesystem::path folder, const std::filesystem::path& wanted) {
+  std::error_code ignored;
+  for (; !folder.empty(); folder = folder.parent_path()) {
+    if (std::filesystem::exists(folder / wanted, ignored)) return folder / wanted;
+    if (folder == folder.parent_path()) break;
+  }
+  return {};
+}
 
 std::filesystem::path data_folder() {
   const char* const chosen = std::getenv("SIXDOF_DATA");

@@ -16,6 +16,9 @@ namespace sixdof {
 /// @return canonical if it exists
 std::filesystem::path data_folder();
 
+/// The first FOLDER/wanted that exists, for `folder` and the folders above it; empty if there is none.
+std::filesystem::path find_above(std::filesystem::path folder, const std::filesystem::path& wanted);
+
 /// Tells a program that lies elsewhere where the data of the package are that it was linked with. Each program that
 /// links sixdof::bench_main or sixdof::cli_main has one (cmake/linked_data_folder.cpp).
 struct LinkedDataFolder {

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -16,7 +15,6 @@
 #include <vector>
 
 #include <sixdof/base/atomic_file.h>
-#include <sixdof/base/hdf5_driver.h>
 
 /// HDF5's C interface with handles that close themselves and errors as exceptions. For this project's own sources.
 /// `test/architecture` holds that HDF5 is called here only, and that no result of it is ignored.
@@ -80,11 +78,11 @@ class File {
  public:
   /// For reading. A file of another layout than create() gives, which has no checksums, is refused.
   static File open(const std::filesystem::path& path);
-  /// For writing into `output`, which must live longer. Messages name its target.
+  /// For writing into `output`, which must live longer. Messages name its target. The file is made in memory: after a
+  /// failed write to a disk HDF5 can close neither the dataset nor the file.
   static File create(AtomicFile& output);
 
-  /// Closes a file that was written, flushes it to the disk, and reads every attribute and every value again: it throws
-  /// unless all are what was written. To be called before AtomicFile::commit().
+  /// Closes a file that was written and stores it by AtomicFile::store(). To be called before AtomicFile::commit().
   void close();
 
   bool exists(const std::string& object) const;
@@ -97,7 +95,7 @@ class File {
   /// T: double or std::uint64_t.
   template <class T>
   void write_attribute(const std::string& object, const char* name, T value) {
-    write_attribute(object, name, number_type<T>().stored, &value, sizeof(T));
+    write_attribute(object, name, number_type<T>().stored, &value);
   }
   std::string read_string(const std::string& object, const char* name) const;
   /// T: double or std::uint64_t.
@@ -125,17 +123,9 @@ class File {
   }
 
  private:
-  /// What an attribute or a dataset must hold when it is read again.
-  struct Written {
-    std::size_t bytes;
-    std::string hash;
-  };
-
-  File(std::unique_ptr<Channel> channel, Handle file, std::string name)
-      : channel_(std::move(channel)), file_(std::move(file)), name_(std::move(name)) {}
+  File(Handle file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
   [[noreturn]] void refuse(const std::string& object, const std::string& cause) const;
-  /// Throws with the system's reason if a write failed, and with HDF5's own if `result`, an identifier or a status, is
-  /// negative.
+  /// Throws with HDF5's reason if `result`, an identifier or a status, is negative.
   void check(hid_t result, const std::string& object, const std::string& what) const;
   Handle checked(Handle handle, const std::string& object, const std::string& what) const;
   /// Closes the handles in this order.
@@ -143,7 +133,7 @@ class File {
   void close_all(const std::string& object, Handles&... handles) const {
     (check(handles.close(), object, "cannot be closed"), ...);
   }
-  void write_attribute(const std::string& object, const char* name, hid_t type, const void* value, std::size_t bytes);
+  void write_attribute(const std::string& object, const char* name, hid_t type, const void* value);
   /// Calls read(attribute, type, bytes) for a scalar attribute. @return what it returns
   template <class Read>
   auto with_attribute(const std::string& object, const char* name, const Read& read) const;
@@ -154,10 +144,6 @@ class File {
   /// The product of the dimensions. Throws if the file has too few bytes for so many values.
   std::size_t value_count(const std::string& object, const Handle& dataset, std::span<const hsize_t> size,
                           std::size_t value_bytes) const;
-  /// Throws unless the file holds what was written.
-  void compare(const std::map<std::string, Written>& datasets,
-               const std::map<std::pair<std::string, std::string>, Written>& attributes) const;
-
   template <class T, std::size_t dimensions>
   std::vector<T> read_dataset(const std::string& object) const {
     const NumberType type = number_type<T>();
@@ -169,12 +155,10 @@ class File {
     return values;
   }
 
-  AtomicFile* output_ = nullptr;      ///< Of a file that is written.
-  std::unique_ptr<Channel> channel_;  ///< Likewise; outlives file_.
+  AtomicFile* output_ = nullptr;              ///< Of a file that is written.
+  std::unique_ptr<std::vector<char>> image_;  ///< Likewise: its bytes. Outlives file_.
   Handle file_;
   std::string name_;
-  std::map<std::string, Written> datasets_;  ///< That were written.
-  std::map<std::pair<std::string, std::string>, Written> attributes_;
 };
 
 }  // namespace sixdof::hdf5

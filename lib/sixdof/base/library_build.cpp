@@ -13,15 +13,8 @@ LibraryBuild library_build() {
 }
 
 std::string to_string(LibraryBuild build) {
-  switch (build) {
-    case LibraryBuild::release:
-      return "release";
-    case LibraryBuild::with_assertions:
-      return "debug (optimised)";
-    case LibraryBuild::unoptimised:
-      break;
-  }
-  return "debug (unoptimised)";
+  constexpr const char* k_names[] = {"release", "debug (optimised)", "debug (unoptimised)"};
+  return k_names[static_cast<int>(build)];
 }
 
 }  // namespace sixdof

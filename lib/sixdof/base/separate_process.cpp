@@ -22,6 +22,8 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/base/atomic_file.h>
+
 namespace sixdof {
 namespace {
 
@@ -90,14 +92,8 @@ int forget_files(int output) {
   return k_place;
 }
 
-void write_all(int output, const char* bytes, std::size_t count) {
-  while (count > 0) {
-    const ssize_t written = ::write(output, bytes, count);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) ::_exit(k_not_started);  // the caller has gone
-    bytes += written;
-    count -= static_cast<std::size_t>(written);
-  }
+void write_or_exit(int output, std::string_view bytes) {
+  if (write_all(output, bytes) != 0) ::_exit(k_not_started);  // the caller has gone
 }
 
 /// In the new process.
@@ -121,8 +117,7 @@ void write_all(int output, const char* bytes, std::size_t count) {
     words = e.what();
   }
   if (result.begun()) ::_exit(k_not_started);
-  write_all(output, &k_exception, 1);
-  write_all(output, words.data(), words.size());
+  write_or_exit(output, std::string(1, k_exception) + words);
   ::_exit(k_done);
 }
 
@@ -234,9 +229,9 @@ std::size_t default_memory_limit() {
 }
 
 void SeparateOutput::write(const void* bytes, std::size_t count) {
-  if (!begun_) write_all(descriptor_, &k_result, 1);
+  if (!begun_) write_or_exit(descriptor_, {&k_result, 1});
   begun_ = true;
-  write_all(descriptor_, static_cast<const char*>(bytes), count);
+  write_or_exit(descriptor_, {static_cast<const char*>(bytes), count});
 }
 
 void SeparateOutput::finish() const { ::_exit(k_done); }

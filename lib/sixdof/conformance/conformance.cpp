@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/conformance/checks.h>
+#include <sixdof/conformance/subject.h>
 #include <sixdof/query/registrar.h>
 #include <sixdof/query/registry.h>
 

@@ -21,9 +21,9 @@ constexpr double k_clearly_apart = 0.02, k_clearly_overlapping = 0.05;
 constexpr std::size_t k_poses = 5;
 
 /// Both oracles of one pair; the overlap only if both are solids.
-class Truth {
+class Oracles {
  public:
-  Truth(const Mesh& a, const Mesh& b) : oracle_(a, b), distance_(oracle_) {
+  Oracles(const Mesh& a, const Mesh& b) : oracle_(a, b), distance_(oracle_) {
     if (!a.solid() || !b.solid()) return;
     solid_a_.emplace(a, oracle_.tree_a());
     solid_b_.emplace(b, oracle_.tree_b());
@@ -72,7 +72,7 @@ TypedPose random_pose(Random& random, const Mesh& a, const Mesh& b, double reach
 /// Draws poses until there are k_poses clear ones of each of the two places.
 Pair with_cases(Mesh a, Mesh b, std::uint64_t seed) {
   Pair pair{std::move(a), std::move(b), {}};
-  Truth truth(pair.a, pair.b);
+  Oracles oracles(pair.a, pair.b);
   Random random(seed);
   const double farthest = 0.5 * (pair.a.diagonal() + pair.b.diagonal());
   std::uniform_real_distribution<double> reach(0.1 * farthest, farthest);
@@ -80,7 +80,7 @@ Pair with_cases(Mesh a, Mesh b, std::uint64_t seed) {
   const double least_volume = solids ? k_clearly_overlapping * std::min(pair.a.volume(), pair.b.volume()) : 0.0;
   std::size_t apart = 0, overlapping = 0;
   while (apart < k_poses || overlapping < k_poses) {
-    const Case drawn = truth.of(random_pose(random, pair.a, pair.b, reach(random)));
+    const Case drawn = oracles.of(random_pose(random, pair.a, pair.b, reach(random)));
     const bool clear = drawn.place == Place::apart ? drawn.distance >= k_clearly_apart * pair.a.diagonal()
                                                    : drawn.place == Place::overlapping && drawn.volume >= least_volume;
     std::size_t& count = drawn.place == Place::apart ? apart : overlapping;
@@ -94,11 +94,11 @@ Pair with_cases(Mesh a, Mesh b, std::uint64_t seed) {
 /// A body of at most a third of the other's radius within half of it.
 Pair with_one_inside(Mesh a, Mesh b, std::uint64_t seed) {
   Pair pair{std::move(a), std::move(b), {}};
-  Truth truth(pair.a, pair.b);
+  Oracles oracles(pair.a, pair.b);
   Random random(seed);
   std::uniform_real_distribution<double> reach(0.05, 0.35);
   while (pair.cases.size() < k_poses) {
-    const Case drawn = truth.of(random_pose(random, pair.a, pair.b, reach(random)));
+    const Case drawn = oracles.of(random_pose(random, pair.a, pair.b, reach(random)));
     if (drawn.place == Place::contained) pair.cases.push_back(drawn);
   }
   return pair;

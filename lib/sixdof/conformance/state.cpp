@@ -1,4 +1,4 @@
-#include <sixdof/conformance/checks.h>
+#include <sixdof/conformance/subject.h>
 
 #include <cstddef>
 #include <limits>

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -48,12 +47,7 @@ struct Files final : Assimp::DefaultIOSystem {
       return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(source.bytes.data()),
                                         source.bytes.size());
     }
-    std::string decoded = name;
-    for (std::size_t at = 0; !Exists(name) && (at = decoded.find('%', at)) != std::string::npos; ++at) {
-      unsigned code = 0;
-      if (std::sscanf(decoded.c_str() + at, "%%%2x", &code) == 1) decoded.replace(at, 3, 1, static_cast<char>(code));
-    }
-    return DefaultIOSystem::Open(decoded.c_str(), mode);
+    return DefaultIOSystem::Open(Exists(name) ? name : decode_percent(name).c_str(), mode);
   }
 };
 
@@ -76,7 +70,7 @@ void hide_3ds_scene(Source& source, std::size_t begin, std::size_t end) {
 }
 
 void add_mesh(const Source& source, const aiScene& scene, unsigned number, const Matrix4d& transform,
-              Surface& surface) {
+              FileMesh& surface) {
   const aiMesh& mesh = *scene.mMeshes[number];
   const auto first = static_cast<std::uint32_t>(surface.vertices.size());
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
@@ -103,11 +97,14 @@ Matrix4d transform_of(const aiNode& node) {
   return Eigen::Map<const Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>>(&node.mTransformation.a1).cast<double>();
 }
 
-void add_node(const Source& source, const aiScene& scene, const aiNode& node, const Matrix4d& parent,
-              Surface& surface) {
-  const Matrix4d transform = parent * transform_of(node);
+/// @param transform of the node, with those above it
+void add_node(const Source& source, const aiScene& scene, const aiNode& node, const Matrix4d& transform,
+              FileMesh& surface) {
   for (unsigned i = 0; i < node.mNumMeshes; ++i) add_mesh(source, scene, node.mMeshes[i], transform, surface);
-  for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(source, scene, *node.mChildren[i], transform, surface);
+  for (unsigned i = 0; i < node.mNumChildren; ++i) {
+    const aiNode& child = *node.mChildren[i];
+    add_node(source, scene, child, transform * transform_of(child), surface);
+  }
 }
 
 /// A transform of COLLADA's root, as assimp makes it of the file's unit and axes: which axis points up, scaled.
@@ -192,13 +189,7 @@ bool assimp_reads(const std::string& extension) {
   return importer.GetImporterCount() > 0;
 }
 
-Surface read_by_assimp(const Source& source, FileFrame frame) {
-  Surface surface;
-  read_by_assimp(source, frame, [&](Surface&& read) { surface = std::move(read); });
-  return surface;
-}
-
-void read_by_assimp(const Source& original, FileFrame frame, const std::function<void(Surface&&)>& use) {
+void read_by_assimp(const Source& original, FileFrame frame, const std::function<void(FileMesh&&)>& use) {
   const std::string extension = lower_case_extension(original.path);
   Source without_scene;
   if (extension == ".3ds") {
@@ -220,15 +211,13 @@ void read_by_assimp(const Source& original, FileFrame frame, const std::function
   const aiScene* const scene = importer.ReadFile(source.path.string(), aiProcess_ValidateDataStructure);
   if (scene == nullptr) source.fail(fmt::format("assimp cannot read it: {}", importer.GetErrorString()));
   if (!DamageLog::first.empty()) source.fail("assimp finds it damaged: " + DamageLog::first);
-  Surface surface;
+  FileMesh surface;
   if (extension == ".3ds") {
     for (unsigned i = 0; i < scene->mNumMeshes; ++i) add_mesh(source, *scene, i, Matrix4d::Identity(), surface);
     return use(std::move(surface));
   }
-  const aiNode& root = *scene->mRootNode;
   const Matrix4d transform = root_transform(source, *scene, frame, surface.repairs.notes);
-  for (unsigned i = 0; i < root.mNumMeshes; ++i) add_mesh(source, *scene, root.mMeshes[i], transform, surface);
-  for (unsigned i = 0; i < root.mNumChildren; ++i) add_node(source, *scene, *root.mChildren[i], transform, surface);
+  add_node(source, *scene, *scene->mRootNode, transform, surface);
   use(std::move(surface));
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <optional>
 
 #include <fmt/format.h>
@@ -56,22 +55,6 @@ std::optional<std::string> decode_base64(std::string_view text) {
   }
   if (count == 6) return std::nullopt;  // a single digit is left over
   return bytes;
-}
-
-/// A name in which %20 and the like stand for bytes.
-std::string decode_percent(const std::string& uri) {
-  std::string name;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    unsigned code = 0;
-    int length = 0;
-    if (std::sscanf(uri.c_str() + i, "%%%2x%n", &code, &length) == 1 && length == 3) {
-      name += static_cast<char>(code);
-      i += 2;
-    } else {
-      name += uri[i];
-    }
-  }
-  return name;
 }
 
 }  // namespace

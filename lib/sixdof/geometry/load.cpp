@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -56,7 +57,7 @@ Source read_source(const std::filesystem::path& file) {
   return source;
 }
 
-void drop_face(const Source& source, Surface& surface, const std::function<std::string()>& face,
+void drop_face(const Source& source, FileMesh& surface, const std::function<std::string()>& face,
                const std::string& corner, const Eigen::Vector3d& p) {
   if (!source.options.drop_faces_not_finite) {
     source.fail(corner, fmt::format("coordinates ({}, {}, {}) of a face's corner are not finite; sixdof repair drops "
@@ -70,7 +71,7 @@ namespace {
 
 /// @return whether the polygon is dropped, since it has a corner that is not finite
 bool has_unusable_corner(const Source& source, std::span<const std::uint32_t> corners,
-                         const std::function<std::string()>& place, Surface& surface) {
+                         const std::function<std::string()>& place, FileMesh& surface) {
   for (const std::uint32_t v : corners) {
     const auto found = std::lower_bound(surface.unusable.begin(), surface.unusable.end(), v,
                                         [](const UnusableVertex& u, std::uint32_t w) { return u.vertex < w; });
@@ -91,7 +92,7 @@ bool has_unusable_corner(const Source& source, std::span<const std::uint32_t> co
 }  // namespace
 
 void add_polygon(const Source& source, std::span<const std::uint32_t> corners,
-                 const std::function<std::string()>& place, Surface& surface) {
+                 const std::function<std::string()>& place, FileMesh& surface) {
   if (corners.size() < 3) return surface.repairs.forgiven.add(Forgiven::faces_without_area, place);
   if (!surface.unusable.empty() && has_unusable_corner(source, corners, place, surface)) return;
   switch (triangulate(corners, surface.vertices, surface.triangles)) {
@@ -105,6 +106,21 @@ void add_polygon(const Source& source, std::span<const std::uint32_t> corners,
       source.fail(place(),
                   fmt::format("a concave polygon of more than {} corners", k_most_corners_of_a_concave_polygon));
   }
+}
+
+std::string decode_percent(const std::string& text) {
+  std::string name;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned code = 0;
+    int length = 0;
+    if (std::sscanf(text.c_str() + i, "%%%2x%n", &code, &length) == 1 && length == 3) {
+      name += static_cast<char>(code);
+      i += 2;
+    } else {
+      name += text[i];
+    }
+  }
+  return name;
 }
 
 bool is_blank_text(std::string_view text) {
@@ -278,7 +294,7 @@ Named parse_name(const std::filesystem::path& name) {
   return {name};
 }
 
-Surface read_surface(const Named& named, const LoadOptions& options) {
+FileMesh read_surface(const Named& named, const LoadOptions& options) {
   const auto& [file, frame] = named;
   const std::string extension = lower_case_extension(file);
   if (frame == FileFrame::y_up && extension != ".dae" && extension != ".zae") {
@@ -303,7 +319,7 @@ Surface read_surface(const Named& named, const LoadOptions& options) {
 }
 
 /// No triangle uses a vertex that is not finite, so Mesh::build drops it, wherever it is.
-void move_bad_vertices(Surface& surface) {
+void move_bad_vertices(FileMesh& surface) {
   for (const UnusableVertex& bad : surface.unusable) {
     if (bad.weight != 1.0) continue;
     surface.vertices[bad.vertex].setZero();
@@ -322,7 +338,7 @@ Mesh load_mesh(const std::filesystem::path& name, const LoadOptions& options) {
   const loading::Named named = loading::parse_name(name);
   const std::filesystem::path& file = named.file;
   try {
-    loading::Surface surface = loading::read_surface(named, options);
+    loading::FileMesh surface = loading::read_surface(named, options);
     loading::move_bad_vertices(surface);
     return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), file.stem().string(),
                        std::move(surface.repairs));

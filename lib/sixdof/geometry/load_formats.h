@@ -18,7 +18,7 @@
 #include <Eigen/Core>
 
 #include <sixdof/geometry/load.h>
-#include <sixdof/geometry/mesh.h>
+#include <sixdof/geometry/raw_mesh.h>
 
 namespace sixdof::loading {
 
@@ -64,9 +64,7 @@ struct UnusableVertex {
 };
 
 /// What a reader returns: indices are in range, coordinates of triangles finite, nothing is welded yet.
-struct Surface {
-  std::vector<Eigen::Vector3d> vertices;
-  std::vector<Triangle> triangles;
+struct FileMesh : RawMesh {
   MeshRepairs repairs;
   std::vector<UnusableVertex> unusable;  ///< By vertex.
 
@@ -79,7 +77,7 @@ struct Surface {
 
 /// For a face with a corner that is not finite: counts it if the options say so. @throws BadFile otherwise
 /// @param face, corner: their places in the file
-void drop_face(const Source& source, Surface& surface, const std::function<std::string()>& face,
+void drop_face(const Source& source, FileMesh& surface, const std::function<std::string()>& face,
                const std::string& corner, const Eigen::Vector3d& p);
 
 /// Triangulates a polygon of vertices of the surface, and counts it if it is other than simple. One of fewer than three
@@ -87,7 +85,7 @@ void drop_face(const Source& source, Surface& surface, const std::function<std::
 /// @param place names the polygon's place in the file; called only if it is needed
 /// @throws BadFile if the polygon is too large to be triangulated, or has an unusable corner.
 void add_polygon(const Source& source, std::span<const std::uint32_t> corners,
-                 const std::function<std::string()>& place, Surface& surface);
+                 const std::function<std::string()>& place, FileMesh& surface);
 
 /// Polygons that stand before their vertices in the file, kept until these are read.
 class LatePolygons {
@@ -116,6 +114,9 @@ class LatePolygons {
   std::vector<std::uint32_t> corners_;
   std::vector<Polygon> polygons_;
 };
+
+/// A name in which %20 and the like stand for bytes.
+std::string decode_percent(const std::string& name);
 
 /// Whether there is nothing but white space.
 bool is_blank_text(std::string_view text);
@@ -266,23 +267,21 @@ enum class FileFrame {
 // These formats are not left to assimp (5.2): it holds coordinates in single precision only, does not return from a PLY
 // file without end_header, accepts a truncated OFF file, and knows neither the instances, nor the integer coordinates
 // of glTF.
-Surface read_gltf(const Source& source);
-Surface read_obj(const Source& source);
-Surface read_off(const Source& source);
-Surface read_ply(const Source& source);
-Surface read_stl(const Source& source);
+FileMesh read_gltf(const Source& source);
+FileMesh read_obj(const Source& source);
+FileMesh read_off(const Source& source);
+FileMesh read_ply(const Source& source);
+FileMesh read_stl(const Source& source);
 
 /// Whether assimp has a reader for files with this extension.
 bool assimp_reads(const std::string& extension);
 
 /// Reads a file of any other format by assimp, as load.h says. All meshes of the scene become one surface. A damaged
 /// file may crash it, or make it never return.
-/// @throws BadFile
-Surface read_by_assimp(const Source& source, FileFrame frame);
-/// The same; the surface is used while assimp still has the scene, which takes time to destroy.
-void read_by_assimp(const Source& source, FileFrame frame, const std::function<void(Surface&&)>& use);
+/// @param use is called while assimp still has the scene, which takes time to destroy
+void read_by_assimp(const Source& source, FileFrame frame, const std::function<void(FileMesh&&)>& use);
 
 /// The same surface, read in a process of its own. @throws BadFile also for what ends that process
-Surface read_by_assimp_separately(const Source& source, FileFrame frame);
+FileMesh read_by_assimp_separately(const Source& source, FileFrame frame);
 
 }  // namespace sixdof::loading

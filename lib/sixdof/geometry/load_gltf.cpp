@@ -43,7 +43,7 @@ class Reader {
  public:
   explicit Reader(const Source& source) : source_(source), data_(source) {}
 
-  Surface read() {
+  FileMesh read() {
     check_extensions();
     add_scene();
     if (morphed_) note("morph targets are not applied");
@@ -307,7 +307,7 @@ class Reader {
 
   const Source& source_;
   GltfData data_;
-  Surface surface_;
+  FileMesh surface_;
   std::map<std::size_t, std::size_t> sizes_;  ///< Elements of the accessors that were read,
   std::size_t accessors_size_ = 0;            ///< and their sum.
   std::size_t visits_ = 0;                    ///< Of primitives and instances, which may all be empty: they take time.
@@ -316,7 +316,7 @@ class Reader {
 
 }  // namespace
 
-Surface read_gltf(const Source& source) {
+FileMesh read_gltf(const Source& source) {
   try {
     return Reader(source).read();
   } catch (const json::exception& e) {

@@ -19,7 +19,7 @@ class Reader {
  public:
   explicit Reader(const Source& source) : source_(source), lines_(source, {.comment = '#', .continuation = true}) {}
 
-  Surface read() {
+  FileMesh read() {
     while (lines_.next()) {
       const std::string_view keyword = lines_.words()[0];
       if (keyword == "v") {
@@ -115,13 +115,13 @@ class Reader {
 
   const Source& source_;
   TextLines lines_;
-  Surface surface_;
+  FileMesh surface_;
   std::vector<std::uint32_t> corners_;
   LatePolygons late_;
 };
 
 }  // namespace
 
-Surface read_obj(const Source& source) { return Reader(source).read(); }
+FileMesh read_obj(const Source& source) { return Reader(source).read(); }
 
 }  // namespace sixdof::loading

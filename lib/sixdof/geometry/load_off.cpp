@@ -16,7 +16,7 @@ class Reader {
         lines_(source, {.comment = '#'}),
         values_(lines_, [this] { return fmt::format("vertex {}", surface_.vertices.size()); }) {}
 
-  Surface read() {
+  FileMesh read() {
     read_keyword();
     read_counts();
     read_vertices();
@@ -184,7 +184,7 @@ class Reader {
 
   const Source& source_;
   TextLines lines_;
-  Surface surface_;
+  FileMesh surface_;
   TextValues values_;                    ///< Of the vertices.
   std::vector<std::string_view> words_;  ///< Of the keyword's line and the counts.
   bool announced_ = false;               ///< Colours, normals or texture coordinates.
@@ -196,6 +196,6 @@ class Reader {
 
 }  // namespace
 
-Surface read_off(const Source& source) { return Reader(source).read(); }
+FileMesh read_off(const Source& source) { return Reader(source).read(); }
 
 }  // namespace sixdof::loading

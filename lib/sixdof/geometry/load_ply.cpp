@@ -163,7 +163,7 @@ class Reader {
     values_.emplace(*lines_, [this] { return name(); });
   }
 
-  Surface read() {
+  FileMesh read() {
     const Element* const vertices = find_once("vertex");
     if (vertices == nullptr) source_.fail("the header has no element vertex");
     vertex_count_ = vertices->count;
@@ -422,12 +422,12 @@ class Reader {
   std::uint64_t number_ = 0;        ///< Of the element.
   std::uint64_t vertex_count_ = 0;  ///< In the header.
   std::vector<Late> late_;          ///< Faces that stand before the vertices.
-  Surface surface_;
+  FileMesh surface_;
 };
 
 }  // namespace
 
-Surface read_ply(const Source& source) {
+FileMesh read_ply(const Source& source) {
   const Header header = read_header(source);
   return Reader(source, header).read();
 }

@@ -17,7 +17,7 @@ constexpr std::size_t k_normal_bytes = 12;
 using Corners = std::array<Eigen::Vector3d, 3>;
 
 void add_triangle(const Source& source, const Corners& corners, const std::function<std::string()>& place,
-                  Surface& surface) {
+                  FileMesh& surface) {
   for (const Eigen::Vector3d& p : corners) {
     if (!p.allFinite()) return drop_face(source, surface, place, place(), p);
   }
@@ -26,8 +26,8 @@ void add_triangle(const Source& source, const Corners& corners, const std::funct
   surface.triangles.push_back({n, n + 1, n + 2});
 }
 
-Surface read_binary(const Source& source, std::size_t count) {
-  Surface surface;
+FileMesh read_binary(const Source& source, std::size_t count) {
+  FileMesh surface;
   surface.vertices.reserve(3 * count);
   surface.triangles.reserve(count);
   const char* at = source.bytes.data() + k_header_bytes + k_count_bytes;
@@ -55,7 +55,7 @@ class TextReader {
  public:
   explicit TextReader(const Source& source) : source_(source), lines_(source, {}) {}
 
-  Surface read() {
+  FileMesh read() {
     bool any = false;
     while (lines_.next()) {
       if (!is_word(lines_.words()[0], "solid")) {
@@ -141,12 +141,12 @@ class TextReader {
 
   const Source& source_;
   TextLines lines_;
-  Surface surface_;
+  FileMesh surface_;
 };
 
 }  // namespace
 
-Surface read_stl(const Source& source) {
+FileMesh read_stl(const Source& source) {
   const std::string& bytes = source.bytes;
   // Many binary files begin with "solid" too, so the size decides: count and size must agree, line breaks behind the
   // end aside. A text would need the right four bytes at the right place to be taken for binary, and its count would be

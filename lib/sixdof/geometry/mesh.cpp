@@ -12,6 +12,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/base/hash.h>
 #include <sixdof/base/visible_text.h>
+#include <sixdof/geometry/raw_mesh.h>
 #include <sixdof/geometry/sides.h>
 
 namespace sixdof {
@@ -68,15 +69,12 @@ void weld(std::vector<Eigen::Vector3d>& vertices, std::vector<Triangle>& triangl
   for (Triangle& t : triangles) {
     for (std::uint32_t& v : t) v = first_equal[v];
   }
-  repairs.collapsed_triangles =
-      std::erase_if(triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  repairs.collapsed_triangles = std::erase_if(triangles, is_collapsed);
   if (triangles.empty()) throw BadMesh("every triangle collapses to an edge or a point");
   triangles.shrink_to_fit();
   // Now unreferenced: the welded vertices, and those whose triangles have all collapsed.
   repairs.unreferenced_vertices += drop_unreferenced(vertices, triangles) - repairs.welded_vertices;
 }
-
-std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 
 /// Corners of a side at its lower and its higher vertex.
 std::uint32_t corner_at_low(const Side& s) { return s.forward ? s.corner : next_corner(s.corner); }

@@ -13,48 +13,26 @@ namespace {
 /// What the process gives: a surface, or the words of a BadFile.
 constexpr char k_surface = 's', k_bad_file = 'b';
 
-// Numbers, texts and arrays, each behind its length.
+/// transfer(stream, value) writes a value to the pipe, or reads it there: texts and arrays behind their length.
+void transfer(SeparateOutput& output, const std::size_t& value) { output.write(&value, sizeof(value)); }
 
-void put(SeparateOutput& output, std::size_t value) { output.write(&value, sizeof(value)); }
+void transfer(SeparateInput& input, std::size_t& value) { input.read(&value, sizeof(value)); }
 
-void put(SeparateOutput& output, const std::string& text) {
-  put(output, text.size());
-  output.write(text.data(), text.size());
-}
-
-void put(SeparateOutput& output, const FileRepairs& repairs) {
-  put(output, repairs.count);
-  put(output, repairs.first_place);
-}
-
-template <class T>
-void put(SeparateOutput& output, const std::vector<T>& values) {
-  put(output, values.size());
-  output.write(values.data(), values.size() * sizeof(T));
-}
-
-void put(SeparateOutput& output, const Surface& surface) {
-  put(output, surface.vertices);
-  put(output, surface.triangles);
-  for (const FileRepairs& repairs : surface.repairs.forgiven.kinds) put(output, repairs);
-  put(output, surface.repairs.notes.size());
-  for (const std::string& note : surface.repairs.notes) put(output, note);
-}
-
-std::size_t take_number(SeparateInput& input) {
-  std::size_t value = 0;
-  input.read(&value, sizeof(value));
-  return value;
+template <class Container>
+void transfer(SeparateOutput& output, const Container& values) {
+  transfer(output, values.size());
+  output.write(values.data(), values.size() * sizeof(typename Container::value_type));
 }
 
 /// A damaged process may state any length: what is there is read in blocks. Address space costs nothing.
 template <class Container>
-void take(SeparateInput& input, Container& values) {
+void transfer(SeparateInput& input, Container& values) {
   using T = typename Container::value_type;
   static_assert(std::is_same_v<T, Eigen::Vector3d> || std::is_trivially_copyable_v<T>);
   constexpr std::size_t k_block = (std::size_t{64} << 20) / sizeof(T);
-  std::size_t left = take_number(input);
   constexpr std::size_t k_most_reserved = (std::size_t{4} << 30) / sizeof(T);
+  std::size_t left = 0;
+  transfer(input, left);
   values.reserve(std::min(left, k_most_reserved));
   while (left > 0) {
     const std::size_t count = std::min(left, k_block), before = values.size();
@@ -64,17 +42,22 @@ void take(SeparateInput& input, Container& values) {
   }
 }
 
-void take(SeparateInput& input, FileRepairs& repairs) {
-  repairs.count = take_number(input);
-  take(input, repairs.first_place);
-}
-
 /// Mesh::build() looks at the values.
-void take(SeparateInput& input, Surface& surface) {
-  take(input, surface.vertices);
-  take(input, surface.triangles);
-  for (FileRepairs& repairs : surface.repairs.forgiven.kinds) take(input, repairs);
-  for (std::size_t left = take_number(input); left > 0; --left) take(input, surface.repairs.notes.emplace_back());
+template <class Stream, class AnyFileMesh>
+void transfer_mesh(Stream& stream, AnyFileMesh& mesh) {
+  transfer(stream, mesh.vertices);
+  transfer(stream, mesh.triangles);
+  for (auto& repairs : mesh.repairs.forgiven.kinds) {
+    transfer(stream, repairs.count);
+    transfer(stream, repairs.first_place);
+  }
+  auto& notes = mesh.repairs.notes;
+  std::size_t count = notes.size();
+  transfer(stream, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if constexpr (std::is_same_v<Stream, SeparateInput>) notes.emplace_back();
+    transfer(stream, notes[i]);
+  }
 }
 
 static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
@@ -93,26 +76,26 @@ SeparateLimits limits_for(std::size_t file_bytes) {
 
 }  // namespace
 
-Surface read_by_assimp_separately(const Source& source, FileFrame frame) {
+FileMesh read_by_assimp_separately(const Source& source, FileFrame frame) {
   const auto work = [&](SeparateOutput& output) {
     try {
-      read_by_assimp(source, frame, [&](const Surface& surface) {
+      read_by_assimp(source, frame, [&](const FileMesh& surface) {
         output.write(&k_surface, 1);
-        put(output, surface);
+        transfer_mesh(output, surface);
         output.finish();
       });
     } catch (const BadFile& e) {
       const std::string file = source.path.string() + ": ";
       output.write(&k_bad_file, 1);
-      put(output, std::string(e.what()).substr(file.size()));
+      transfer(output, std::string(e.what()).substr(file.size()));
     }
   };
-  Surface surface;
+  FileMesh surface;
   std::string refusal;
   const auto receive = [&](SeparateInput& input) {
     char kind = k_surface;
     input.read(&kind, 1);
-    kind == k_surface ? take(input, surface) : take(input, refusal);
+    kind == k_surface ? transfer_mesh(input, surface) : transfer(input, refusal);
   };
   try {
     run_separately(work, receive, limits_for(source.bytes.size()));

@@ -6,50 +6,21 @@
 #include <numeric>
 #include <vector>
 
+#include <sixdof/geometry/sides.h>
+
 namespace sixdof {
 namespace {
-
-/// The edges of a triangle, by its smaller vertex number first.
-struct EdgeOfTriangle {
-  std::uint64_t edge = 0;
-  std::uint32_t triangle = 0;
-
-  auto operator<=>(const EdgeOfTriangle&) const = default;
-};
-
-Eigen::Vector3d doubled_area_vector(const Mesh& mesh, const Triangle& t) {
-  const Eigen::Vector3d& p = mesh.vertices()[t[0]];
-  return (mesh.vertices()[t[1]] - p).cross(mesh.vertices()[t[2]] - p);
-}
-
-std::vector<EdgeOfTriangle> sorted_edges(const Mesh& mesh) {
-  std::vector<EdgeOfTriangle> edges;
-  edges.reserve(3 * mesh.triangles().size());
-  for (std::uint32_t i = 0; i < mesh.triangles().size(); ++i) {
-    const Triangle& t = mesh.triangles()[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-      edges.push_back({(std::uint64_t{low} << 32) | high, i});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
 
 /// Angles between the normals of the two triangles of an edge, in radians; of edges with two triangles that have an
 /// area.
 std::vector<double> bends(const Mesh& mesh, const std::vector<Eigen::Vector3d>& area_vectors) {
-  const std::vector<EdgeOfTriangle> edges = sorted_edges(mesh);
   std::vector<double> angles;
-  angles.reserve(edges.size() / 2);
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end].edge == edges[begin].edge) ++end;
-    if (end - begin != 2) continue;
-    const Eigen::Vector3d& u = area_vectors[edges[begin].triangle];
-    const Eigen::Vector3d& v = area_vectors[edges[begin + 1].triangle];
-    if (u.isZero(0.0) || v.isZero(0.0)) continue;
-    angles.push_back(std::atan2(u.cross(v).norm(), u.dot(v)));
-  }
+  for_each_edge(sorted_sides(mesh.triangles()), [&](std::span<const Side> sides) {
+    if (sides.size() != 2) return;
+    const Eigen::Vector3d& u = area_vectors[sides[0].triangle()];
+    const Eigen::Vector3d& v = area_vectors[sides[1].triangle()];
+    if (!u.isZero(0.0) && !v.isZero(0.0)) angles.push_back(std::atan2(u.cross(v).norm(), u.dot(v)));
+  });
   return angles;
 }
 
@@ -78,7 +49,10 @@ double aligned_share(const std::vector<Eigen::Vector3d>& area_vectors) {
 ShapeFacts shape_facts(const Mesh& mesh) {
   std::vector<Eigen::Vector3d> area_vectors;
   area_vectors.reserve(mesh.triangles().size());
-  for (const Triangle& t : mesh.triangles()) area_vectors.push_back(doubled_area_vector(mesh, t));
+  for (const Triangle& t : mesh.triangles()) {
+    const Eigen::Vector3d& p = mesh.vertices()[t[0]];
+    area_vectors.push_back((mesh.vertices()[t[1]] - p).cross(mesh.vertices()[t[2]] - p));
+  }
 
   ShapeFacts facts;
   const MeshTopology& topology = mesh.topology();
@@ -112,19 +86,8 @@ ShapeKind kind_of(const ShapeFacts& facts) {
 }
 
 std::string_view name_of(ShapeKind kind) {
-  switch (kind) {
-    case ShapeKind::handles:
-      return "handles";
-    case ShapeKind::thin:
-      return "thin";
-    case ShapeKind::boxy:
-      return "boxy";
-    case ShapeKind::cad:
-      return "cad";
-    case ShapeKind::organic:
-      return "organic";
-  }
-  return "";
+  constexpr std::string_view k_names[] = {"handles", "thin", "boxy", "cad", "organic"};
+  return k_names[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace sixdof

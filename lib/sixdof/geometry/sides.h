@@ -18,6 +18,9 @@ struct Side {
   std::uint32_t triangle() const { return corner / 3; }
 };
 
+inline std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+inline std::uint32_t previous_corner(std::uint32_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
+
 /// All sides, by edge and then by corner. Time and memory grow with the largest vertex index, too.
 std::vector<Side> sorted_sides(std::span<const Triangle> triangles);
 

@@ -35,12 +35,11 @@ double vibration_threshold(double frequency_hz) {
 double buzz(std::span<const double> force_N, double rate_hz) {
   const std::size_t n = force_N.size();
   if (n < 2) return 0.0;
-  std::vector<double> windowed(n);
+  std::vector<double> windowed = hann(n);
   double squares = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
-    const double w = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n));
-    windowed[k] = w * force_N[k];
-    squares += w * w;
+    squares += windowed[k] * windowed[k];
+    windowed[k] *= force_N[k];
   }
   const std::vector<double> energy = energy_spectrum(windowed);
   double sum = 0.0;

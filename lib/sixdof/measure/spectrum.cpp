@@ -56,7 +56,8 @@ class FourierTransform {
   fftw_plan plan_;
 };
 
-/// Periodic Hann window.
+}  // namespace
+
 std::vector<double> hann(std::size_t length) {
   std::vector<double> window(length);
   for (std::size_t k = 0; k < length; ++k) {
@@ -64,8 +65,6 @@ std::vector<double> hann(std::size_t length) {
   }
   return window;
 }
-
-}  // namespace
 
 std::vector<double> energy_spectrum(std::span<const double> signal) {
   if (signal.empty()) return {};

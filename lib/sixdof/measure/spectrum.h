@@ -9,6 +9,9 @@
 
 namespace sixdof {
 
+/// Periodic Hann window.
+std::vector<double> hann(std::size_t length);
+
 /// One-sided energy spectrum of a real signal: |X_0|^2 / N, 2 |X_j|^2 / N, ... so that its sum is the signal's energy
 /// sum x_k^2 (Parseval). Entry j belongs to the frequency j / N in units of the signal's rate; N/2 + 1 entries, rounded
 /// down.

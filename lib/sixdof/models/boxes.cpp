@@ -72,7 +72,7 @@ class Builder {
     }
   }
 
-  Surface build() {
+  RawMesh build() {
     for_each_wall(lattice_, [this](const Wall& wall) { add(wall); });
     return std::move(surface_);
   }
@@ -122,7 +122,7 @@ class Builder {
   const Lattice& lattice_;
   std::array<std::vector<std::uint32_t>, 3> start_;
   std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
-  Surface surface_;
+  RawMesh surface_;
 };
 
 std::size_t count_triangles(const Lattice& lattice) {
@@ -226,7 +226,7 @@ template <class Shape>
 Mesh tessellate(const Shape& shape, double area, std::size_t budget, const char* name) {
   const double h = fit_edge_length(area, budget, [&](double edge) { return count_triangles(lattice_of(shape, edge)); });
   const Lattice lattice = lattice_of(shape, h);
-  Surface surface = Builder(lattice).build();
+  RawMesh surface = Builder(lattice).build();
   refine_to(surface, budget);
   return to_mesh(std::move(surface), name);
 }

@@ -39,7 +39,7 @@ class Coarsener {
   using Queue = std::priority_queue<Edge, std::vector<Edge>, decltype(&collapses_later)>;
 
  public:
-  Coarsener(Surface& surface, const SurfaceProjection& project)
+  Coarsener(RawMesh& surface, const SurfaceProjection& project)
       : surface_(surface),
         project_(project),
         alive_(surface.triangles.size()),
@@ -80,8 +80,8 @@ class Coarsener {
 
  private:
   std::uint32_t& origin(HalfEdge h) { return surface_.triangles[h / 3][h % 3]; }
-  std::uint32_t target(HalfEdge h) { return origin(next_in_triangle(h)); }
-  std::uint32_t opposite(HalfEdge h) { return origin(previous_in_triangle(h)); }
+  std::uint32_t target(HalfEdge h) { return origin(next_corner(h)); }
+  std::uint32_t opposite(HalfEdge h) { return origin(previous_corner(h)); }
   const Eigen::Vector3d& point(std::uint32_t v) const { return surface_.vertices[v]; }
   bool is_alive(HalfEdge h) { return surface_.triangles[h / 3][0] != k_none; }
 
@@ -91,7 +91,7 @@ class Coarsener {
     HalfEdge h = start;
     do {
       around_.push_back(h);
-      h = twin_[previous_in_triangle(h)];
+      h = twin_[previous_corner(h)];
     } while (h != start);
     return around_;
   }
@@ -153,8 +153,7 @@ class Coarsener {
     for (const std::uint32_t v : around_a) {
       common += static_cast<std::size_t>(std::count(around_b.begin(), around_b.end(), v));
     }
-    return common == 2 && leaving(previous_in_triangle(h)).size() > 3 &&
-           leaving(previous_in_triangle(other)).size() > 3;
+    return common == 2 && leaving(previous_corner(h)).size() > 3 && leaving(previous_corner(other)).size() > 3;
   }
 
   void try_collapse(HalfEdge h, const Limits& limits) {
@@ -169,8 +168,8 @@ class Coarsener {
     surface_.vertices[a] = position;
     HalfEdge leaving_a = k_none;
     for (const HalfEdge gone : {h, other}) {
-      const HalfEdge left = twin_[next_in_triangle(gone)];
-      const HalfEdge right = twin_[previous_in_triangle(gone)];
+      const HalfEdge left = twin_[next_corner(gone)];
+      const HalfEdge right = twin_[previous_corner(gone)];
       twin_[left] = right;
       twin_[right] = left;
       if (gone == h) leaving_a = right;
@@ -179,7 +178,7 @@ class Coarsener {
     alive_ -= 2;
     for (const HalfEdge g : leaving(leaving_a)) {
       queue_.push(edge_of(surface_, g));
-      queue_.push(edge_of(surface_, next_in_triangle(g)));
+      queue_.push(edge_of(surface_, next_corner(g)));
     }
   }
 
@@ -205,7 +204,7 @@ class Coarsener {
     }
   }
 
-  Surface& surface_;
+  RawMesh& surface_;
   const SurfaceProjection& project_;
   std::size_t alive_;
   std::vector<HalfEdge> twin_;
@@ -215,7 +214,7 @@ class Coarsener {
 
 }  // namespace
 
-void coarsen_to(Surface& surface, std::size_t triangles, const SurfaceProjection& project) {
+void coarsen_to(RawMesh& surface, std::size_t triangles, const SurfaceProjection& project) {
   constexpr int k_rounds = 8;  // of smoothing; more have little effect
   Coarsener coarsener(surface, project);
   coarsener.collapse_until(triangles);

@@ -63,7 +63,7 @@ class Marcher {
  public:
   explicit Marcher(const GridField& field) : field_(field) {}
 
-  Surface run() {
+  RawMesh run() {
     for_each_triple(field_.cells / k_block, [this](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
       contour_block({i * k_block, j * k_block, k * k_block});
     });
@@ -151,11 +151,11 @@ class Marcher {
   const GridField& field_;
   std::array<std::array<std::array<double, k_block + 1>, k_block + 1>, k_block + 1> values_{};
   std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
-  Surface surface_;
+  RawMesh surface_;
 };
 
 /// Keeps the component of the surface with the most triangles only.
-void keep_largest_component(Surface& surface) {
+void keep_largest_component(RawMesh& surface) {
   UnionFind parts(surface.vertices.size());
   for (const Triangle& t : surface.triangles) {
     parts.join(t[1], t[0]);
@@ -164,7 +164,7 @@ void keep_largest_component(Surface& surface) {
   std::vector<std::size_t> size(surface.vertices.size(), 0);
   for (const Triangle& t : surface.triangles) ++size[parts.find(t[0])];
   const auto largest = static_cast<std::uint32_t>(std::max_element(size.begin(), size.end()) - size.begin());
-  Surface kept;
+  RawMesh kept;
   constexpr std::uint32_t k_none = ~0U;
   std::vector<std::uint32_t> number(surface.vertices.size(), k_none);
   for (const Triangle& t : surface.triangles) {
@@ -219,7 +219,7 @@ Eigen::Vector3d project(const GyroidBallShape& shape, Eigen::Vector3d p) {
   return p;
 }
 
-Surface contour_of(const GyroidBallShape& shape, std::uint32_t cells) {
+RawMesh contour_of(const GyroidBallShape& shape, std::uint32_t cells) {
   constexpr double k_half = 1.05;  // half the grid's width: the solid ends at 1
   GridField field;
   field.cells = cells;
@@ -254,7 +254,7 @@ Mesh make_gyroid_ball(const GyroidBallShape& shape, std::size_t triangles) {
   const double wanted = k_surplus * static_cast<double>(budget);
   auto cells =
       std::max(k_coarsest, static_cast<std::uint32_t>(std::sqrt(wanted / k_triangles_per_square_of_cells)) / 8 * 8);
-  Surface surface;
+  RawMesh surface;
   while (true) {
     surface = contour_of(shape, cells);
     keep_largest_component(surface);

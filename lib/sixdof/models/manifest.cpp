@@ -11,37 +11,76 @@
 #include <sixdof/geometry/load.h>
 
 namespace sixdof {
+
+std::string_view manifest_text();    // models/models.json
+std::string_view collection_text();  // models/collection.json
+
 namespace {
+
+/// An entry with a file, of either list. @param summary key of its description
+FetchedModel fetched_model(const nlohmann::json& entry, const char* summary, const std::string& licence) {
+  FetchedModel model{.name = entry.at("name"),
+                     .summary = entry.at(summary),
+                     .package = entry.at("package"),
+                     .licence = licence,
+                     .file = entry.at("file"),
+                     .triangles = entry.at("triangles"),
+                     .size = {},
+                     .genus = entry.at("genus"),
+                     .closed = entry.at("closed"),
+                     .manifold = entry.at("manifold"),
+                     .hash = entry.at("hash")};
+  for (int k = 0; k < 3; ++k) model.size[k] = entry.at("size").at(static_cast<std::size_t>(k));
+  return model;
+}
 
 std::vector<FetchedModel> parse_manifest() {
   const auto json = nlohmann::json::parse(manifest_text());
   std::vector<FetchedModel> models;
   for (const auto& entry : json.at("models")) {
-    FetchedModel model;
-    model.name = entry.at("name");
-    model.summary = entry.at("summary");
-    model.package = entry.at("package");
-    model.licence = json.at("packages").at(model.package).at("licence");
-    model.file = entry.at("file");
-    model.triangles = entry.at("triangles");
-    for (int k = 0; k < 3; ++k) model.size[k] = entry.at("size").at(static_cast<std::size_t>(k));
-    model.genus = entry.at("genus");
-    model.closed = entry.at("closed");
-    model.manifold = entry.at("manifold");
-    model.hash = entry.at("hash");
-    models.push_back(std::move(model));
+    const auto& package = json.at("packages").at(entry.at("package").get<std::string>());
+    models.push_back(fetched_model(entry, "summary", package.at("licence")));
   }
   return models;
 }
 
-/// The folder models/ of the source tree around `start`, empty if there is none.
-std::filesystem::path models_folder_above(std::filesystem::path start) {
-  std::error_code ignored;
-  for (; !start.empty(); start = start.parent_path()) {
-    if (std::filesystem::exists(start / "models" / "models.json", ignored)) return start / "models";
-    if (start == start.parent_path()) break;
+struct Collection {
+  std::string name;
+  std::vector<CollectionObject> objects;
+  std::vector<FetchedModel> files;
+  std::vector<LeftOut> left_out;
+};
+
+Collection parse_collection() {
+  const auto json = nlohmann::json::parse(collection_text());
+  Collection result;
+  result.name = json.at("name");
+  for (const auto& entry : json.at("objects")) {
+    const std::string source = entry.value("package", "recipe");
+    const std::string licence =
+        source == "recipe" ? "BSD-3-Clause" : json.at("packages").at(source).at("licence").get<std::string>();
+    result.objects.push_back({.name = entry.at("name"),
+                              .kind = entry.at("kind"),
+                              .source = source,
+                              .licence = licence,
+                              .triangles = entry.at("triangles"),
+                              .shells = entry.at("shells"),
+                              .genus = entry.at("genus"),
+                              .closed = entry.at("closed"),
+                              .box_aspect = entry.at("box_aspect"),
+                              .box_fill = entry.at("box_fill"),
+                              .hash = entry.at("hash")});
+    if (entry.contains("file")) result.files.push_back(fetched_model(entry, "path", licence));
   }
-  return {};
+  for (const auto& entry : json.at("left_out")) {
+    result.left_out.push_back({entry.at("package"), entry.at("path"), entry.at("reason")});
+  }
+  return result;
+}
+
+const Collection& the_collection() {
+  static const Collection parsed = parse_collection();
+  return parsed;
 }
 
 }  // namespace
@@ -60,8 +99,8 @@ std::filesystem::path model_cache() {
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
   const std::filesystem::path here = std::filesystem::current_path(ignored);
   for (const std::filesystem::path& start : {program.parent_path(), here}) {
-    const std::filesystem::path folder = models_folder_above(start);
-    if (!folder.empty()) return folder / "cache";
+    const std::filesystem::path list = find_above(start, std::filesystem::path("models") / "models.json");
+    if (!list.empty()) return list.parent_path() / "cache";
   }
   return std::filesystem::path("models") / "cache";
 }
@@ -85,5 +124,10 @@ Mesh load_fetched_model(const FetchedModel& model) {
   }
   return mesh;
 }
+
+std::string_view collection_name() { return the_collection().name; }
+std::span<const CollectionObject> collection() { return the_collection().objects; }
+std::span<const FetchedModel> collection_files() { return the_collection().files; }
+std::span<const LeftOut> left_out_of_collection() { return the_collection().left_out; }
 
 }  // namespace sixdof

@@ -9,10 +9,8 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/models/collection.h>
 #include <sixdof/models/manifest.h>
 #include <sixdof/models/recipe.h>
-#include <sixdof/models/recipe_variants.h>
 #include <sixdof/models/refine.h>
 #include <sixdof/models/surface.h>
 

@@ -25,8 +25,8 @@ ModelName parse_model_name(std::string_view name);
 bool names_file(std::string_view name_or_file);
 
 /// A mesh by its name or from a file:
-/// - RECIPE-COUNT is made by a recipe or a variant: "torus-100k", "plate-12500" (recipe.h, recipe_variants.h);
-/// - NAME is a fetched model: "elephant", "camel" (manifest.h, collection.h); NAME-COUNT is its subdivision:
+/// - RECIPE-COUNT is made by a recipe or a variant: "torus-100k", "plate-12500" (recipe.h);
+/// - NAME is a fetched model: "elephant", "camel" (manifest.h); NAME-COUNT is its subdivision:
 /// "elephant-1m" (refine.h);
 /// - a word with a '.' or a '/' is a file for load_mesh(): "hull.stl", "./parts/hull", "hull.dae#as-stored".
 /// The mesh has the given name, or the file's. @param options for files

@@ -23,6 +23,10 @@ struct Recipe {
 /// All recipes.
 std::span<const Recipe> recipes();
 
+/// The same with other parameters, which `summary` states, for a collection of many shapes: `plate-10k`,
+/// `gyroid-ball-fine-50k`.
+std::span<const Recipe> recipe_variants();
+
 // The shapes of the recipes in any size. Each make_... gives exactly `triangles` triangles, or one more if that is odd.
 // @throws BadArgument if a parameter or the count is out of range.
 

@@ -18,7 +18,7 @@ class Refiner {
   using Queue = std::priority_queue<Edge, std::vector<Edge>, decltype(&splits_later)>;
 
  public:
-  Refiner(Surface& surface, const SplitPosition& position) : surface_(surface), position_(position) {
+  Refiner(RawMesh& surface, const SplitPosition& position) : surface_(surface), position_(position) {
     link_half_edges();
   }
 
@@ -78,8 +78,8 @@ class Refiner {
     at_high_.clear();
     for (const HalfEdge cut : around_) {
       // Triangle (a, b, c), split on a-b, becomes (a, middle, c); triangle (middle, b, c) is added.
-      const HalfEdge after = next_in_triangle(cut);
-      const HalfEdge before = previous_in_triangle(cut);
+      const HalfEdge after = next_corner(cut);
+      const HalfEdge before = previous_corner(cut);
       const std::uint32_t a = origin(cut);
       const std::uint32_t b = origin(after);
       const std::uint32_t c = origin(before);
@@ -99,7 +99,7 @@ class Refiner {
     link_ring(at_high_);
   }
 
-  Surface& surface_;
+  RawMesh& surface_;
   const SplitPosition& position_;
   Queue queue_;                 ///< Longest first; may hold stale entries.
   std::vector<HalfEdge> ring_;  ///< Next half-edge of the same edge.
@@ -108,11 +108,11 @@ class Refiner {
 
 }  // namespace
 
-Eigen::Vector3d midpoint_of_edge(const Surface& surface, std::uint32_t a, std::uint32_t b) {
+Eigen::Vector3d midpoint_of_edge(const RawMesh& surface, std::uint32_t a, std::uint32_t b) {
   return 0.5 * (surface.vertices[a] + surface.vertices[b]);
 }
 
-void refine_to(Surface& surface, std::size_t triangles, const SplitPosition& position) {
+void refine_to(RawMesh& surface, std::size_t triangles, const SplitPosition& position) {
   if (surface.triangles.size() >= triangles) return;
   surface.triangles.reserve(triangles + 2);
   Refiner refiner(surface, position);
@@ -124,7 +124,7 @@ Mesh subdivide(const Mesh& mesh, std::size_t triangles, std::string name) {
     throw BadArgument(
         fmt::format("{}: at most {} triangles can be made; {} were asked for", name, k_maximum_triangles, triangles));
   }
-  Surface surface{mesh.vertices(), mesh.triangles()};
+  RawMesh surface{mesh.vertices(), mesh.triangles()};
   refine_to(surface, triangles);
   return to_mesh(std::move(surface), std::move(name));
 }

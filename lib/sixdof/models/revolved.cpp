@@ -64,7 +64,7 @@ Mesh revolve(std::span<const ProfilePoint> profile, double area, std::size_t bud
              RadiusAt radius_at) {
   const double h =
       fit_edge_length(area, budget, [&](double edge) { return count_triangles(rings_along(profile, edge)); });
-  Surface surface;
+  RawMesh surface;
   std::vector<char> on_side;
   std::optional<Ring> before;
   for (const ProfileRing& at : rings_along(profile, h)) {
@@ -77,7 +77,7 @@ Mesh revolve(std::span<const ProfilePoint> profile, double area, std::size_t bud
     if (before) stitch(surface, *before, ring);
     before = ring;
   }
-  refine_to(surface, budget, [&](const Surface& s, std::uint32_t a, std::uint32_t b) {
+  refine_to(surface, budget, [&](const RawMesh& s, std::uint32_t a, std::uint32_t b) {
     Eigen::Vector3d p = midpoint_of_edge(s, a, b);
     const bool side = on_side[a] != 0 && on_side[b] != 0;
     on_side.push_back(side ? 1 : 0);

@@ -14,7 +14,7 @@ namespace sixdof {
 namespace {
 
 /// Icosahedron with corners (0, +-1, +-g) and cyclic, g the golden ratio; not normalised.
-Surface icosahedron() {
+RawMesh icosahedron() {
   const double g = 0.5 * (1.0 + std::sqrt(5.0));
   return {{{-1, g, 0},
            {1, g, 0},
@@ -34,8 +34,8 @@ Surface icosahedron() {
 }
 
 /// Divides every triangle into n^2 equal ones. Points of an edge are made once, from its lower to its higher corner.
-Surface divide_faces(const Surface& coarse, std::uint32_t n) {
-  Surface fine{coarse.vertices, {}};
+RawMesh divide_faces(const RawMesh& coarse, std::uint32_t n) {
+  RawMesh fine{coarse.vertices, {}};
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> first_on_edge;
   const auto between = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, std::uint32_t k, std::uint32_t parts) {
     const double s = static_cast<double>(k) / static_cast<double>(parts);
@@ -85,10 +85,10 @@ Mesh make_geodesic(const char* name, std::size_t triangles, Project project) {
   const std::size_t budget = triangle_budget(name, triangles, k_minimum_sphere);
   std::uint32_t n = 1;
   while (20ULL * (n + 1) * (n + 1) <= budget) ++n;
-  Surface surface = divide_faces(icosahedron(), n);
+  RawMesh surface = divide_faces(icosahedron(), n);
   for (Eigen::Vector3d& p : surface.vertices) p = project(p);
   refine_to(surface, budget,
-            [&](const Surface& s, std::uint32_t a, std::uint32_t b) { return project(midpoint_of_edge(s, a, b)); });
+            [&](const RawMesh& s, std::uint32_t a, std::uint32_t b) { return project(midpoint_of_edge(s, a, b)); });
   return to_mesh(std::move(surface), name);
 }
 

@@ -18,7 +18,7 @@ bool comes_first(const Ring& lower, std::uint32_t i, const Ring& upper, std::uin
 
 }  // namespace
 
-void stitch(Surface& surface, const Ring& lower, const Ring& upper) {
+void stitch(RawMesh& surface, const Ring& lower, const Ring& upper) {
   const std::uint32_t lower_edges = lower.count == 1 ? 0 : lower.count;
   const std::uint32_t upper_edges = upper.count == 1 ? 0 : upper.count;
   std::uint32_t i = 0;

@@ -6,29 +6,16 @@
 #include <cstdint>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <Eigen/Core>
 
-#include <sixdof/geometry/mesh.h>
+#include <sixdof/geometry/raw_mesh.h>
 #include <sixdof/geometry/sides.h>
 
 namespace sixdof {
 
-/// A triangle mesh under construction, not validated.
-struct Surface {
-  std::vector<Eigen::Vector3d> vertices;
-  std::vector<Triangle> triangles;
-
-  /// Adds a vertex. @return its number
-  std::uint32_t add(const Eigen::Vector3d& p) {
-    vertices.push_back(p);
-    return static_cast<std::uint32_t>(vertices.size() - 1);
-  }
-};
-
-inline Mesh to_mesh(Surface surface, std::string name) {
-  return Mesh::build(std::move(surface.vertices), std::move(surface.triangles), std::move(name));
+inline Mesh to_mesh(RawMesh made, std::string name) {
+  return Mesh::build(std::move(made.vertices), std::move(made.triangles), std::move(name));
 }
 
 /// Sums in a fixed order: Eigen's reductions depend on the processor, which a model's content hash must not.
@@ -51,7 +38,7 @@ inline constexpr double k_row = 0.8660254037844386;
 
 /// Joins two rings by triangles in the order of their angles. Both rings are counter-clockwise seen against the
 /// direction from `lower` to `upper`; the triangles face away from the axis.
-void stitch(Surface& surface, const Ring& lower, const Ring& upper);
+void stitch(RawMesh& surface, const Ring& lower, const Ring& upper);
 
 /// Most triangles that a recipe or a subdivision makes: a larger number is taken for a typing mistake.
 constexpr std::size_t k_maximum_triangles = 20'000'000;
@@ -89,9 +76,6 @@ inline std::uint32_t whole_steps(double length, double step, std::uint32_t least
 /// 3 * triangle + corner, as Side::corner: the side from that corner to the next.
 using HalfEdge = std::uint32_t;
 
-inline HalfEdge next_in_triangle(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
-inline HalfEdge previous_in_triangle(HalfEdge h) { return h % 3 == 0 ? h + 2 : h - 1; }
-
 /// An edge by its end points, low < high, and one of its half-edges.
 struct Edge {
   double length_squared;
@@ -102,8 +86,8 @@ struct Edge {
 };
 
 /// The edge of a half-edge. From the lower number to the higher: the length has the same bits on both sides.
-inline Edge edge_of(const Surface& surface, HalfEdge h) {
-  const HalfEdge next = next_in_triangle(h);
+inline Edge edge_of(const RawMesh& surface, HalfEdge h) {
+  const HalfEdge next = next_corner(h);
   const auto [low, high] = std::minmax(surface.triangles[h / 3][h % 3], surface.triangles[next / 3][next % 3]);
   const Eigen::Vector3d along = surface.vertices[high] - surface.vertices[low];
   return {dot_in_order(along, along), low, high, h};

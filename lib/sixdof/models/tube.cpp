@@ -118,7 +118,7 @@ Counts fit_counts(double core, double tube_radius, std::size_t budget, Counts fe
   }));
 }
 
-void stitch_all(Surface& surface, const Counts& counts) {
+void stitch_all(RawMesh& surface, const Counts& counts) {
   for (std::uint32_t i = 0; i < counts.along; ++i) {
     const std::uint32_t next = (i + 1) % counts.along;
     stitch(surface, {i * counts.around, counts.around, i % 2}, {next * counts.around, counts.around, next % 2});
@@ -140,7 +140,7 @@ Mesh make_torus(const TorusShape& shape, std::size_t triangles) {
   const double core = k_two_pi * shape.major_radius;
   const double r = shape.minor_radius;
   const Counts counts = fit_counts(core, r, budget, k_fewest_torus);
-  Surface surface;
+  RawMesh surface;
   for (std::uint32_t i = 0; i < counts.along; ++i) {
     const Eigen::Vector2d around = cos_sin(i, counts.along);
     for (std::uint32_t j = 0; j < counts.around; ++j) {
@@ -151,7 +151,7 @@ Mesh make_torus(const TorusShape& shape, std::size_t triangles) {
     }
   }
   stitch_all(surface, counts);
-  refine_to(surface, budget, [&](const Surface& s, std::uint32_t a, std::uint32_t b) {
+  refine_to(surface, budget, [&](const RawMesh& s, std::uint32_t a, std::uint32_t b) {
     const Eigen::Vector3d p = midpoint_of_edge(s, a, b);
     const double rho = std::sqrt(p.x() * p.x() + p.y() * p.y());
     const Eigen::Vector3d core_point(shape.major_radius / rho * p.x(), shape.major_radius / rho * p.y(), 0.0);
@@ -173,7 +173,7 @@ Mesh make_torus_knot(const TorusKnotShape& shape, std::size_t triangles) {
   const std::size_t budget = triangle_budget("torus-knot", triangles, k_minimum_torus_knot);
   const double radius = shape.tube_radius;
   const Counts counts = fit_counts(core, radius, budget, k_fewest_torus_knot);
-  Surface surface;
+  RawMesh surface;
   std::vector<double> parameter;  // of the ring that each vertex lies on
   const std::vector<double> rows = equal_parts(shape, counts.along);
   for (std::uint32_t i = 0; i < counts.along; ++i) {
@@ -185,7 +185,7 @@ Mesh make_torus_knot(const TorusKnotShape& shape, std::size_t triangles) {
     }
   }
   stitch_all(surface, counts);
-  refine_to(surface, budget, [&](const Surface& s, std::uint32_t a, std::uint32_t b) {
+  refine_to(surface, budget, [&](const RawMesh& s, std::uint32_t a, std::uint32_t b) {
     const auto [low, high] = std::minmax(parameter[a], parameter[b]);
     const double t = high - low > 0.5 ? 0.5 * (low + 1.0 + high) : 0.5 * (low + high);
     parameter.push_back(t < 1.0 ? t : t - 1.0);

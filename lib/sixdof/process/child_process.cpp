@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/base/atomic_file.h>
 #include <sixdof/process/keeper.h>
 
 namespace sixdof {
@@ -26,16 +27,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// A time limit is looked at this often.
-constexpr int k_poll_ms = 50;
-/// Time to end after its input was closed,
-constexpr milliseconds k_patience{200};
-/// and after it has closed its own side: by ending, unless it takes as long as this.
-constexpr milliseconds k_patience_with_end{1000};
-/// Descriptors from here on are out of the way of those that a program finds.
-constexpr int k_high = 100;
-/// The keeper ends when it is told to; it is killed if someone has stopped it.
-constexpr milliseconds k_patience_with_keeper{10'000};
+constexpr int k_poll_ms = 50;                             ///< Time between two checks of a time limit.
+constexpr milliseconds k_exit_timeout{200};               ///< To end after its input was closed.
+constexpr milliseconds k_exit_timeout_after_close{1000};  ///< To end after it has closed its output.
+constexpr milliseconds k_keeper_exit_timeout{10'000};     ///< To end after SIGTERM; then it is killed.
+constexpr int k_first_high_descriptor = 100;              ///< Above those that a program finds.
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool k_can_limit_memory = false;
@@ -45,12 +41,12 @@ constexpr bool k_can_limit_memory = true;
 
 [[noreturn]] void throw_errno(const char* what) { throw Error(fmt::format("{}: {}", what, std::strerror(errno))); }
 
-/// Asks until it is true, or the time is over. @returns whether it is
+/// Waits until it is true. @returns whether it is, at the end of the timeout at the latest
 template <class Condition>
-bool becomes_true(const Condition& condition, milliseconds patience) {
-  const auto end_of_patience = Clock::now() + patience;
+bool becomes_true(const Condition& condition, milliseconds timeout) {
+  const auto end = Clock::now() + timeout;
   bool is_true = false;
-  while (!(is_true = condition()) && Clock::now() < end_of_patience) std::this_thread::sleep_for(milliseconds(1));
+  while (!(is_true = condition()) && Clock::now() < end) std::this_thread::sleep_for(milliseconds(1));
   return is_true;
 }
 
@@ -81,16 +77,13 @@ ChildFailure how_it_ended(int wait_status, bool ran_out_of_memory) {
 
 void write_line(int output, std::string line) {
   line += '\n';
-  for (std::size_t written = 0; written < line.size();) {
-    const ssize_t count = ::write(output, line.data() + written, line.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) throw Error(fmt::format("a reply cannot be written: {}", std::strerror(errno)));
-    written += static_cast<std::size_t>(count);
+  if (const int failure = write_all(output, line)) {
+    throw Error(fmt::format("a reply cannot be written: {}", std::strerror(failure)));
   }
 }
 
 int high_descriptor(int descriptor) {
-  const int high = ::fcntl(descriptor, F_DUPFD_CLOEXEC, k_high);
+  const int high = ::fcntl(descriptor, F_DUPFD_CLOEXEC, k_first_high_descriptor);
   const int error = errno;
   ::close(descriptor);
   errno = error;
@@ -135,7 +128,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::vec
 
 ChildProcess::~ChildProcess() {
   ::close(input_);
-  if (!ended_) becomes_true([this] { return has_ended(); }, k_patience);
+  if (!ended_) becomes_true([this] { return has_ended(); }, k_exit_timeout);
   end();
   ::close(output_);
 }
@@ -151,7 +144,7 @@ bool ChildProcess::has_ended() const {
 void ChildProcess::end() {
   if (ended_) return;
   ::kill(process_, SIGTERM);
-  if (!becomes_true([this] { return has_ended(); }, k_patience_with_keeper)) ::kill(process_, SIGKILL);
+  if (!becomes_true([this] { return has_ended(); }, k_keeper_exit_timeout)) ::kill(process_, SIGKILL);
   while (::waitpid(process_, &wait_status_, 0) < 0 && errno == EINTR) {
   }
   ended_ = true;
@@ -164,7 +157,7 @@ void ChildProcess::give_up(Status status, const std::string& words) {
 
 /// The program has closed its side, mostly by ending.
 void ChildProcess::closed() {
-  if (!becomes_true([this] { return has_ended(); }, k_patience_with_end))
+  if (!becomes_true([this] { return has_ended(); }, k_exit_timeout_after_close))
     give_up(Status::crashed, "closed its standard streams");
   end();
   read_what_is_there();  // its note may be unread: of a program that ended before it was asked

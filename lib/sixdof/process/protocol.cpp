@@ -16,6 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::array k_kinds{"collide", "distance", "respond"};
+constexpr std::array k_kind_members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond};
 constexpr std::array k_laws{"none", "depth", "volume"};
 constexpr std::array k_bodies{"mesh", "convex_hull"};
 constexpr std::array k_refusals{"error", "bad_mesh", "bad_argument"};
@@ -287,9 +289,9 @@ Request request_of(const std::string& line) {
 std::string to_line(const Greeting& greeting) {
   const Traits& traits = greeting.traits;
   Json answers = Json::array(), can = Json::array(), parameters = Json::array();
-  if (traits.answers.collide) answers.push_back("collide");
-  if (traits.answers.distance) answers.push_back("distance");
-  if (traits.answers.respond) answers.push_back("respond");
+  for (std::size_t i = 0; i < k_kinds.size(); ++i) {
+    if (traits.answers.*k_kind_members.at(i)) answers.push_back(k_kinds.at(i));
+  }
   if (greeting.times) can.push_back("time");
   if (greeting.progress) can.push_back("progress");
   for (const Parameter& each : traits.parameters) parameters.push_back(parameter(each));
@@ -312,9 +314,7 @@ Greeting greeting_of(const std::string& line) {
     traits.name = words_of(json.at("name"));
     traits.version = words_of(json.at("version"));
     traits.summary = words_at(json, "summary");
-    constexpr std::array k_kinds{"collide", "distance", "respond"};
-    const std::array members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond};
-    for (const std::string kind : json.at("answers")) traits.answers.*members.at(place_of(k_kinds, kind)) = true;
+    for (const std::string kind : json.at("answers")) traits.answers.*k_kind_members.at(place_of(k_kinds, kind)) = true;
     traits.law = static_cast<ResponseLaw>(place_of(k_laws, json.value("law", "none")));
     traits.body = static_cast<Body>(place_of(k_bodies, json.value("body", "mesh")));
     for (const Json& each : json.value("parameters", Json::array())) traits.parameters.push_back(parameter_of(each));

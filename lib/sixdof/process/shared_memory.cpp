@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
 #include <sixdof/process/child_process.h>
 
@@ -19,14 +20,9 @@ MemoryFile::MemoryFile(const char* name, std::span<const std::byte> content) {
   const int made = ::memfd_create(name, MFD_CLOEXEC);
   if (made < 0) throw Error(fmt::format("memfd_create: {}", std::strerror(errno)));
   descriptor_ = high_descriptor(made);
-  for (std::size_t written = 0; written < content.size();) {
-    const ssize_t count = ::write(descriptor_, content.data() + written, content.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) {
-      ::close(descriptor_);
-      throw Error(fmt::format("{}: a file in memory of {} bytes: {}", name, content.size(), std::strerror(errno)));
-    }
-    written += static_cast<std::size_t>(count);
+  if (const int failure = write_all(descriptor_, {reinterpret_cast<const char*>(content.data()), content.size()})) {
+    ::close(descriptor_);
+    throw Error(fmt::format("{}: a file in memory of {} bytes: {}", name, content.size(), std::strerror(failure)));
   }
 }
 

@@ -1,23 +1,11 @@
-#include <sixdof/repair/cleanup.h>
+#include <sixdof/repair/steps.h>
 
 #include <algorithm>
+#include <array>
 #include <tuple>
-
-#include <sixdof/repair/weld.h>
 
 namespace sixdof::repairing {
 namespace {
-
-/// Removes the triangles that are marked.
-void erase_marked(std::vector<Triangle>& triangles, const std::vector<std::uint8_t>& marked) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < marked.size(); ++i) {
-    if (marked[i] == 0) triangles[kept++] = triangles[i];
-  }
-  // Triangles behind the marks were added meanwhile.
-  for (std::size_t i = marked.size(); i < triangles.size(); ++i) triangles[kept++] = triangles[i];
-  triangles.resize(kept);
-}
 
 /// A triangle's corners in ascending order, and whether an odd permutation gives them.
 struct Key {
@@ -61,7 +49,7 @@ std::vector<std::uint8_t> at_odd_edges(const std::vector<Triangle>& triangles) {
 
 /// Drops those triangles of a group with equal corners for which drop(first, other) is true.
 template <class Drop>
-std::size_t drop_from_groups(Surface& surface, RepairLog& log, const Drop& drop) {
+std::size_t drop_from_groups(RawMesh& surface, RepairLog& log, const Drop& drop) {
   const std::vector<Key> keys = sorted_keys(surface.triangles);
   std::vector<std::uint8_t> marked(surface.triangles.size(), 0);
   std::size_t dropped = 0;
@@ -80,30 +68,36 @@ std::size_t drop_from_groups(Surface& surface, RepairLog& log, const Drop& drop)
   return dropped;
 }
 
-double longest_side(const Surface& surface, const Triangle& t) {
-  double longest = 0.0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    longest = std::max(longest, (surface.vertices[t[k]] - surface.vertices[t[(k + 1) % 3]]).norm());
-  }
-  return longest;
+/// Corner at the start of the longest side.
+std::size_t longest_side_of(const RawMesh& surface, const Triangle& t) {
+  const auto squared = [&](std::size_t k) {
+    return (surface.vertices[t[k]] - surface.vertices[t[(k + 1) % 3]]).squaredNorm();
+  };
+  const std::array lengths{squared(0), squared(1), squared(2)};
+  return static_cast<std::size_t>(std::ranges::max_element(lengths) - lengths.begin());
+}
+
+double longest_side(const RawMesh& surface, const Triangle& t) {
+  const std::size_t k = longest_side_of(surface, t);
+  return (surface.vertices[t[k]] - surface.vertices[t[(k + 1) % 3]]).norm();
 }
 
 /// The largest rounding_at() of a triangle's corners.
-double rounding_of(const Surface& surface, const Triangle& t) {
+double rounding_of(const RawMesh& surface, const Triangle& t) {
   return std::max(
       {rounding_at(surface.vertices[t[0]]), rounding_at(surface.vertices[t[1]]), rounding_at(surface.vertices[t[2]])});
 }
 
 }  // namespace
 
-bool is_degenerate(const Surface& surface, const Triangle& t) {
+bool is_degenerate(const RawMesh& surface, const Triangle& t) {
   return surface.normal(t).norm() <= rounding_of(surface, t) * longest_side(surface, t);
 }
 
 namespace {
 
 /// Merges the ends of sides that are within rounding, where triangles are degenerate. @return repairs made
-std::size_t merge_close_corners(Surface& surface, const std::vector<std::uint32_t>& degenerate, RepairLog& log) {
+std::size_t merge_close_corners(RawMesh& surface, const std::vector<std::uint32_t>& degenerate, RepairLog& log) {
   UnionFind same(surface.vertices.size());
   std::size_t merged = 0;
   for (const std::uint32_t i : degenerate) {
@@ -126,7 +120,7 @@ std::size_t merge_close_corners(Surface& surface, const std::vector<std::uint32_
 /// Takes degenerate triangles out by splitting their neighbours at the longest edge; each triangle is touched once.
 class Splitter {
  public:
-  Splitter(Surface& surface, RepairLog& log)
+  Splitter(RawMesh& surface, RepairLog& log)
       : surface_(surface), log_(log), sides_(sorted_sides(surface.triangles)), gone_(surface.triangles.size(), 0) {}
 
   /// @return repairs made
@@ -138,20 +132,6 @@ class Splitter {
   }
 
  private:
-  /// Corner at the start of the longest side.
-  std::size_t longest_side_of(const Triangle& t) const {
-    std::size_t longest = 0;
-    double length = -1.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double l = (surface_.vertices[t[k]] - surface_.vertices[t[(k + 1) % 3]]).squaredNorm();
-      if (l > length) {
-        length = l;
-        longest = k;
-      }
-    }
-    return longest;
-  }
-
   std::span<const Side> sides_at(std::uint32_t a, std::uint32_t b) const {
     const auto [low, high] = std::minmax(a, b);
     const auto before = [](const Side& x, const Side& y) { return std::tie(x.low, x.high) < std::tie(y.low, y.high); };
@@ -169,7 +149,7 @@ class Splitter {
 
   bool take_out(std::uint32_t i) {
     const Triangle t = surface_.triangles[i];
-    const std::size_t k = longest_side_of(t);
+    const std::size_t k = longest_side_of(surface_, t);
     const std::uint32_t c = t[(k + 2) % 3];
     const std::span<const Side> sides = sides_at(t[k], t[(k + 1) % 3]);
     if (sides.size() > 2) return false;
@@ -188,14 +168,14 @@ class Splitter {
     return true;
   }
 
-  Surface& surface_;
+  RawMesh& surface_;
   RepairLog& log_;
   const std::vector<Side> sides_;
   std::vector<std::uint8_t> gone_;  ///< For the triangles that were there at first.
 };
 
 /// Degenerate triangles, those with the longest sides first.
-std::vector<std::uint32_t> find_degenerate(const Surface& surface) {
+std::vector<std::uint32_t> find_degenerate(const RawMesh& surface) {
   std::vector<std::pair<double, std::uint32_t>> found;
   for (std::uint32_t i = 0; i < surface.triangles.size(); ++i) {
     const Triangle& t = surface.triangles[i];
@@ -209,7 +189,7 @@ std::vector<std::uint32_t> find_degenerate(const Surface& surface) {
 
 }  // namespace
 
-std::size_t drop_duplicates(Surface& surface, RepairLog& log) {
+std::size_t drop_duplicates(RawMesh& surface, RepairLog& log) {
   std::size_t dropped =
       drop_from_groups(surface, log, [](const Key& first, const Key& other) { return first.odd == other.odd; });
   // Each round may make edges odd that others wait for.
@@ -223,7 +203,7 @@ std::size_t drop_duplicates(Surface& surface, RepairLog& log) {
   }
 }
 
-std::size_t drop_degenerate(Surface& surface, RepairLog& log) {
+std::size_t drop_degenerate(RawMesh& surface, RepairLog& log) {
   // Each split replaces a side by a shorter one.
   constexpr int k_most_rounds = 64;
   std::size_t made = 0;

@@ -1,4 +1,4 @@
-#include <sixdof/repair/holes.h>
+#include <sixdof/repair/steps.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ using Loop = std::vector<std::uint32_t>;  ///< Vertices; triangles to fill it ar
 /// Directed edges that the missing triangles would have, by their start.
 class OpenEdges {
  public:
-  OpenEdges(const Surface& surface, const std::vector<Side>& border) : surface_(surface) {
+  OpenEdges(const RawMesh& surface, const std::vector<Side>& border) : surface_(surface) {
     for (const Side& side : border) {
       next_[end_of(side)].push_back(start_of(side));
       for (const std::uint32_t v : {side.low, side.high}) {
@@ -87,7 +87,7 @@ class OpenEdges {
     return angle > 0.0 ? angle : angle + 2.0 * std::numbers::pi;
   }
 
-  const Surface& surface_;
+  const RawMesh& surface_;
   std::map<std::uint32_t, std::vector<std::uint32_t>> next_;
   std::map<std::uint32_t, Eigen::Vector3d> normals_;  ///< Sums over border triangles.
 };
@@ -110,7 +110,7 @@ class Filling {
 
   /// @param taken tells whether an edge exists
   template <class Taken>
-  Filling(const Surface& surface, const Loop& loop, const Taken& taken) : loop_(loop), n_(loop.size()) {
+  Filling(const RawMesh& surface, const Loop& loop, const Taken& taken) : loop_(loop), n_(loop.size()) {
     cost_.assign(n_ * n_, Cost{});
     middle_.assign(n_ * n_, 0);
     for (std::size_t span = 2; span < n_; ++span) {
@@ -147,15 +147,9 @@ class Filling {
  private:
   const Cost& total() const { return cost_[n_ - 1]; }
 
-  Cost cost_of(const Surface& surface, std::size_t i, std::size_t k, std::size_t j) const {
+  Cost cost_of(const RawMesh& surface, std::size_t i, std::size_t k, std::size_t j) const {
     const Triangle t{loop_[i], loop_[k], loop_[j]};
-    const double twice_area = surface.normal(t).norm();
-    double side = 0.0, rounding = 0.0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      side = std::max(side, (surface.vertices[t[c]] - surface.vertices[t[(c + 1) % 3]]).norm());
-      rounding = std::max(rounding, rounding_at(surface.vertices[t[c]]));
-    }
-    return {twice_area <= rounding * side ? std::size_t{1} : 0, 0.5 * twice_area};
+    return {is_degenerate(surface, t) ? std::size_t{1} : 0, 0.5 * surface.normal(t).norm()};
   }
 
   const Loop& loop_;
@@ -165,7 +159,7 @@ class Filling {
 };
 
 /// Area of what edges connect to each triangle.
-std::vector<double> connected_areas(const Surface& surface, const std::vector<Side>& sides) {
+std::vector<double> connected_areas(const RawMesh& surface, const std::vector<Side>& sides) {
   UnionFind connected(surface.triangles.size());
   for_each_edge(sides, [&](std::span<const Side> edge) {
     for (const Side& side : edge.subspan(1)) connected.join(side.triangle(), edge[0].triangle());
@@ -180,7 +174,7 @@ std::vector<double> connected_areas(const Surface& surface, const std::vector<Si
 
 }  // namespace
 
-std::size_t fill_holes(Surface& surface, std::size_t max_edges, RepairLog& log) {
+std::size_t fill_holes(RawMesh& surface, std::size_t max_edges, RepairLog& log) {
   const std::vector<Side> sides = sorted_sides(surface.triangles);
   const std::vector<Side> border = border_sides(sides);
   if (border.empty() || max_edges == 0) return 0;

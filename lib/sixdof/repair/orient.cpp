@@ -1,4 +1,4 @@
-#include <sixdof/repair/orient.h>
+#include <sixdof/repair/steps.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +28,7 @@ struct Patch {
 /// The patches of a surface, and how each triangle must turn to agree with the first of its patch.
 class Patches {
  public:
-  explicit Patches(const Surface& surface)
+  explicit Patches(const RawMesh& surface)
       : of_triangle(surface.triangles.size(), k_none),
         turns(surface.triangles.size(), 0),
         surface_(surface),
@@ -95,21 +95,19 @@ class Patches {
   }
 
   double tetrahedron(std::uint32_t t) const {
-    const Triangle& corners = surface_.triangles[t];
     const Eigen::Vector3d& origin = surface_.vertices[surface_.triangles[all[of_triangle[t]].first][0]];
-    const auto corner = [&](std::size_t k) -> Eigen::Vector3d { return surface_.vertices[corners[k]] - origin; };
-    const double volume = corner(0).dot(corner(1).cross(corner(2))) / 6.0;
+    const double volume = surface_.tetrahedron(surface_.triangles[t], origin);
     return turns[t] != 0 ? -volume : volume;
   }
 
-  const Surface& surface_;
+  const RawMesh& surface_;
   const std::vector<Side> sides_;
   std::vector<std::uint32_t> across_;         ///< The triangle beyond each corner's side.
   std::vector<std::uint8_t> same_direction_;  ///< Whether both triangles use the side in one direction.
 };
 
 /// For each patch the largest closed one around it, if there is any.
-std::vector<std::optional<std::uint32_t>> outermost_around(const Surface& surface, const Patches& patches) {
+std::vector<std::optional<std::uint32_t>> outermost_around(const RawMesh& surface, const Patches& patches) {
   std::vector<std::optional<std::uint32_t>> around(patches.all.size());
   const auto encloses = [&](std::uint32_t p) { return patches.all[p].closed && patches.all[p].orientable; };
   std::size_t closed = 0;
@@ -138,7 +136,7 @@ std::vector<std::optional<std::uint32_t>> outermost_around(const Surface& surfac
 
 }  // namespace
 
-std::size_t orient(Surface& surface, RepairLog& log) {
+std::size_t orient(RawMesh& surface, RepairLog& log) {
   Patches patches(surface);
   const auto around = outermost_around(surface, patches);
   const auto faces_inwards = [&](std::uint32_t p) { return patches.all[p].volume < 0.0; };

@@ -3,15 +3,28 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/repair/cleanup.h>
-#include <sixdof/repair/holes.h>
-#include <sixdof/repair/orient.h>
-#include <sixdof/repair/superfluous.h>
-#include <sixdof/repair/surface.h>
-#include <sixdof/repair/t_junctions.h>
-#include <sixdof/repair/weld.h>
+#include <sixdof/repair/steps.h>
 
 namespace sixdof {
+namespace repairing {
+
+void erase_marked(std::vector<Triangle>& triangles, const std::vector<std::uint8_t>& marked) {
+  std::erase_if(triangles, [&](const Triangle& t) {
+    const auto i = static_cast<std::size_t>(&t - triangles.data());
+    return i < marked.size() && marked[i] != 0;
+  });
+}
+
+std::vector<Side> border_sides(std::span<const Side> sorted) {
+  std::vector<Side> border;
+  for_each_edge(sorted, [&](std::span<const Side> edge) {
+    if (edge.size() == 1) border.push_back(edge[0]);
+  });
+  return border;
+}
+
+}  // namespace repairing
+
 namespace {
 
 constexpr double k_largest_weld = 0.1;
@@ -33,7 +46,7 @@ void check(const RepairOptions& options) {
 }
 
 /// All steps once. @return repairs made
-std::size_t run_steps(repairing::Surface& surface, double tolerance, const RepairOptions& options, RepairLog& log) {
+std::size_t run_steps(RawMesh& surface, double tolerance, const RepairOptions& options, RepairLog& log) {
   std::size_t made = repairing::weld_border(surface, tolerance, log);
   made += repairing::drop_duplicates(surface, log);
   made += repairing::drop_degenerate(surface, log);
@@ -50,7 +63,7 @@ RepairedMesh repair_mesh(const Mesh& mesh, const RepairOptions& options) {
   check(options);
   const double rounding = std::max(repairing::rounding_at(mesh.box().min()), repairing::rounding_at(mesh.box().max()));
   const double tolerance = std::max(options.weld * mesh.diagonal(), rounding);
-  repairing::Surface surface{mesh.vertices(), mesh.triangles()};
+  RawMesh surface{mesh.vertices(), mesh.triangles()};
   RepairLog log;
   std::size_t passes = 0;
   bool converged = false;

@@ -1,4 +1,4 @@
-#include <sixdof/repair/superfluous.h>
+#include <sixdof/repair/steps.h>
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,6 @@
 
 #include <sixdof/geometry/tree.h>
 #include <sixdof/oracle/shells.h>
-#include <sixdof/repair/cleanup.h>
-#include <sixdof/repair/holes.h>
 
 namespace sixdof::repairing {
 namespace {
@@ -39,7 +37,7 @@ struct Component {
 
 class Cells {
  public:
-  Cells(const Surface& surface, std::vector<Side> sides)
+  Cells(const RawMesh& surface, std::vector<Side> sides)
       : surface_(surface), sides_(std::move(sides)), cell_(2 * surface.triangles.size()) {
     divide();
     find_cells();
@@ -154,10 +152,8 @@ class Cells {
   void classify() {
     std::vector<double> volume(2 * surface_.triangles.size(), 0.0);
     for (std::uint32_t t = 0; t < patch_of.size(); ++t) {
-      const Triangle& corners = surface_.triangles[t];
-      const Eigen::Vector3d& origin = surface_.vertices[surface_.triangles[0][0]];
-      const auto corner = [&](std::size_t k) -> Eigen::Vector3d { return surface_.vertices[corners[k]] - origin; };
-      const double tetrahedron = corner(0).dot(corner(1).cross(corner(2))) / 6.0;
+      const double tetrahedron =
+          surface_.tetrahedron(surface_.triangles[t], surface_.vertices[surface_.triangles[0][0]]);
       volume[cell_.find(front(t))] += tetrahedron;
       volume[cell_.find(back(t))] -= tetrahedron;
     }
@@ -221,7 +217,7 @@ class Cells {
     });
   }
 
-  const Surface& surface_;
+  const RawMesh& surface_;
   const std::vector<Side> sides_;
   UnionFind cell_;                                     ///< Of the fronts and backs of triangles.
   std::vector<std::uint32_t> front_cell_, back_cell_;  ///< Of the patches' first triangles.
@@ -230,7 +226,7 @@ class Cells {
 /// The middles of all triangles of a component lie inside of what is closed.
 class Inside {
  public:
-  Inside(const Surface& surface, const Cells& cells) : surface_(surface), cells_(cells) {
+  Inside(const RawMesh& surface, const Cells& cells) : surface_(surface), cells_(cells) {
     std::vector<Triangle> closed;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
       const Patch& patch = cells.patches[cells.patch_of[t]];
@@ -253,14 +249,14 @@ class Inside {
   }
 
  private:
-  const Surface& surface_;
+  const RawMesh& surface_;
   const Cells& cells_;
   std::optional<Tree> tree_;
   std::vector<std::uint32_t> group_;
 };
 
 /// Marks stray pieces as dropped.
-void drop_stray_pieces(const Surface& surface, double max_sheet, Cells& cells) {
+void drop_stray_pieces(const RawMesh& surface, double max_sheet, Cells& cells) {
   double closed_area = 0.0;
   for (const Patch& patch : cells.patches) {
     const Component& component = cells.components[patch.component];
@@ -288,7 +284,7 @@ void drop_stray_pieces(const Surface& surface, double max_sheet, Cells& cells) {
 
 }  // namespace
 
-std::size_t drop_superfluous(Surface& surface, double max_sheet, RepairLog& log) {
+std::size_t drop_superfluous(RawMesh& surface, double max_sheet, RepairLog& log) {
   std::vector<Side> sides = sorted_sides(surface.triangles);
   bool odd = false;
   for_each_edge(sides, [&](std::span<const Side> edge) { odd = odd || edge.size() % 2 == 1; });
@@ -297,23 +293,21 @@ std::size_t drop_superfluous(Surface& surface, double max_sheet, RepairLog& log)
   cells.drop_sheets_and_walls(max_sheet);
   drop_stray_pieces(surface, max_sheet, cells);
 
-  std::size_t kept = 0;
+  std::vector<std::uint8_t> dropped(surface.triangles.size(), 0);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const Triangle triangle = surface.triangles[t];
     const Patch& patch = cells.patches[cells.patch_of[t]];
-    if (!patch.dropped) {
-      surface.triangles[kept++] = triangle;
-      continue;
-    }
+    if (!patch.dropped) continue;
+    dropped[t] = 1;
+    const Triangle& triangle = surface.triangles[t];
     const RepairKind kind = is_degenerate(surface, triangle)              ? RepairKind::degenerate_triangles
                             : cells.components[patch.component].still_odd ? RepairKind::stray_triangles
                             : patch.sheet                                 ? RepairKind::fins
                                                                           : RepairKind::inner_walls;
     log.add(kind, surface.middle(triangle));
   }
-  const std::size_t dropped = surface.triangles.size() - kept;
-  surface.triangles.resize(kept);
-  return dropped;
+  const std::size_t before = surface.triangles.size();
+  erase_marked(surface.triangles, dropped);
+  return before - surface.triangles.size();
 }
 
 }  // namespace sixdof::repairing

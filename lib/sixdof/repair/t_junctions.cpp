@@ -1,4 +1,4 @@
-#include <sixdof/repair/t_junctions.h>
+#include <sixdof/repair/steps.h>
 
 #include <algorithm>
 #include <map>
@@ -25,7 +25,7 @@ struct Segment {
 
 class Round {
  public:
-  Round(Surface& surface, double tolerance, RepairLog& log)
+  Round(RawMesh& surface, double tolerance, RepairLog& log)
       : surface_(surface),
         tolerance_(tolerance),
         log_(log),
@@ -45,11 +45,7 @@ class Round {
       for (const std::uint32_t v : on_side) log_.add(RepairKind::split_edges, surface_.vertices[v]);
       made += on_side.size();
     }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < gone.size(); ++i) {
-      if (gone[i] == 0) surface_.triangles[kept++] = surface_.triangles[i];
-    }
-    surface_.triangles.resize(kept);
+    erase_marked(surface_.triangles, gone);
     surface_.triangles.insert(surface_.triangles.end(), added.begin(), added.end());
     return made;
   }
@@ -108,7 +104,7 @@ class Round {
     return true;
   }
 
-  Surface& surface_;
+  RawMesh& surface_;
   const double tolerance_;
   RepairLog& log_;
   const std::vector<Side> border_;
@@ -118,7 +114,7 @@ class Round {
 
 }  // namespace
 
-std::size_t split_at_t_junctions(Surface& surface, double tolerance, RepairLog& log) {
+std::size_t split_at_t_junctions(RawMesh& surface, double tolerance, RepairLog& log) {
   // A triangle has three sides; the parts of a side may meet further vertices, since they follow the first ones.
   constexpr int k_most_rounds = 16;
   std::size_t made = 0;

@@ -1,4 +1,4 @@
-#include <sixdof/repair/weld.h>
+#include <sixdof/repair/steps.h>
 
 #include <map>
 #include <numeric>
@@ -14,7 +14,7 @@ enum class Place : std::uint8_t {
   border
 };
 
-std::vector<Place> places_of(const Surface& surface) {
+std::vector<Place> places_of(const RawMesh& surface) {
   std::vector<Place> places(surface.vertices.size(), Place::unused);
   for (const Triangle& t : surface.triangles) {
     for (const std::uint32_t v : t) places[v] = Place::inner;
@@ -26,7 +26,7 @@ std::vector<Place> places_of(const Surface& surface) {
 }
 
 /// The inner vertex closest to `v` within the tolerance; `v` itself if there is none.
-std::uint32_t closest_inner(const Surface& surface, const Neighbours& neighbours, const std::vector<Place>& places,
+std::uint32_t closest_inner(const RawMesh& surface, const Neighbours& neighbours, const std::vector<Place>& places,
                             std::uint32_t v, double tolerance) {
   std::uint32_t closest = v;
   double least = tolerance * tolerance;
@@ -41,18 +41,18 @@ std::uint32_t closest_inner(const Surface& surface, const Neighbours& neighbours
 
 }  // namespace
 
-std::size_t renumber(Surface& surface, std::span<const std::uint32_t> number, RepairLog& log) {
+void renumber(RawMesh& surface, std::span<const std::uint32_t> number, RepairLog& log) {
   for (Triangle& t : surface.triangles) {
     for (std::uint32_t& v : t) v = number[v];
   }
-  return std::erase_if(surface.triangles, [&](const Triangle& t) {
+  std::erase_if(surface.triangles, [&](const Triangle& t) {
     if (!is_collapsed(t)) return false;
     log.add(RepairKind::degenerate_triangles, surface.vertices[t[0]]);
     return true;
   });
 }
 
-std::size_t weld_border(Surface& surface, double tolerance, RepairLog& log) {
+std::size_t weld_border(RawMesh& surface, double tolerance, RepairLog& log) {
   const std::vector<Place> places = places_of(surface);
   std::vector<std::uint32_t> used, border;
   for (std::uint32_t v = 0; v < places.size(); ++v) {

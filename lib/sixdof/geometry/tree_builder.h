@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <sixdof/geometry/tree.h>
+
+/// How the triangles of a mesh are partitioned into the nodes of a Tree: the first half of its construction.
+///
+/// A range of triangles is split in two again and again, always the part with the largest box, until a node has eight
+/// children. A split is the best by the surface-area heuristic of those at multiples of a block: of a full leaf, of a
+/// full node of leaves, or of a full node of those. So nearly all leaves and most nodes are full. Ranges of up to a
+/// full node of nodes of leaves are split exactly; larger ones at the block next to the best of 15 cuts along each
+/// axis, or at that cut itself where parts lie far from each other.
+namespace sixdof::tree_builder {
+
+/// Axis-aligned box in single precision, relative to the tree's centre; contains its triangles.
+struct Box {
+  std::array<float, 3> lower{Tree::k_empty, Tree::k_empty, Tree::k_empty};
+  std::array<float, 3> upper{-Tree::k_empty, -Tree::k_empty, -Tree::k_empty};
+
+  void add(const Box& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower[k] = std::min(lower[k], other.lower[k]);
+      upper[k] = std::max(upper[k], other.upper[k]);
+    }
+  }
+  float half_area() const {
+    const float x = upper[0] - lower[0];
+    const float y = upper[1] - lower[1];
+    const float z = upper[2] - lower[2];
+    return x * y + y * z + z * x;
+  }
+};
+
+/// Triangles first .. last - 1 in tree order.
+struct Range {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  Box box;
+  std::size_t count() const { return last - first; }
+};
+
+/// A node with all nodes below it.
+struct Subtree {
+  std::vector<Range> children;                  ///< In tree order.
+  std::vector<std::unique_ptr<Subtree>> nodes;  ///< Of each child; null if it is a leaf.
+  std::size_t total = 1;                        ///< Nodes in this subtree.
+};
+
+/// Strictly below x: also below any double that rounds to x in a difference.
+inline float round_down(double x) {
+  return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
+}
+inline float round_up(double x) {
+  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+}
+
+/// The same for every number of threads.
+/// @param[out] mesh_triangle the mesh's triangle of each triangle in tree order
+std::unique_ptr<Subtree> build(const Mesh& mesh, const Eigen::Vector3d& center,
+                               std::vector<std::uint32_t>& mesh_triangle);
+
+}  // namespace sixdof::tree_builder
