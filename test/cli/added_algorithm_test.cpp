@@ -15,8 +15,7 @@
 namespace sixdof {
 namespace {
 
-constexpr double k_tessellation =
-    0.05;  // of the boxes of tessellated spheres
+constexpr double k_tessellation = 0.05;  // of the boxes of tessellated spheres
 
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
