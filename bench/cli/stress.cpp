@@ -34,7 +34,7 @@ struct Options {
   std::string effort = "quick", output, cases = "stress-cases";
   std::uint64_t seed = 1;
   double timeout_s = 60.0, memory_gb = 4.0;
-  bool json = false;
+  bool at_defaults = false, json = false;
 };
 
 void add_generators(Registry& registry) {
@@ -56,6 +56,7 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
       .algorithms = {},
       .families = {},
       .effort = options.effort == "full" ? study::StressEffort::full() : study::StressEffort::quick(),
+      .at_defaults = options.at_defaults,
       .seed = options.seed,
       .timeout_s = options.timeout_s,
       .memory_bytes = 1e9 * options.memory_gb,
@@ -85,9 +86,9 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
 }
 
 void print_red(const study::StressCell& cell, const study::StressLine& line) {
-  fmt::print("\n{} on {}: {}: {} {} ({}{}{}; parameter {:.3g})\n  {}\n  {}\n", cell.algorithm->traits().name,
-             cell.family->name, line.verdict, line.metric, line.worst, line.member, line.thread.empty() ? "" : ", ",
-             line.thread, line.parameter, line.words, line.reproduction);
+  fmt::print("\n{} on {}: {}: {} {} ({}{}{}; parameter {:.3g})\n  {}\n  {}\n", cell.name(), cell.family->name,
+             line.verdict, line.metric, line.worst, line.member, line.thread.empty() ? "" : ", ", line.thread,
+             line.parameter, line.words, line.reproduction);
 }
 
 void run_stress_command(const Options& options) {
@@ -117,9 +118,8 @@ void run_stress_command(const Options& options) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!stability::is_red(cells[i].worst.verdict)) continue;
     if (!options.json) print_red(cells[i], lines[i]);
-    const std::string name = cells[i].algorithm->traits().name;
-    if (own.contains(name))
-      defects += fmt::format("{}{} on {}", defects.empty() ? "" : ", ", name, cells[i].family->name);
+    if (own.contains(cells[i].algorithm->traits().name))
+      defects += fmt::format("{}{} on {}", defects.empty() ? "" : ", ", cells[i].name(), cells[i].family->name);
   }
   if (!defects.empty()) throw DefectsFound("algorithms of this project fail: " + defects);
 }
@@ -180,6 +180,9 @@ void add_stress_command(CLI::App& app) {
       ->add_option("-o,--output", options->output,
                    "Write the list of cells, of each algorithm and family, to this file (JSON)")
       ->type_name("FILE");
+  command->add_flag("--at-defaults", options->at_defaults,
+                    "Ask algorithms that approximate the bodies at their default settings as well, in a column of "
+                    "their own; hours for all families, since bodies are prepared by the hundred");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run_stress_command(*options); });
   add_examples(*command, "sixdof stress --algorithms exact,fcl-obbrss --families kissing,grazing",

@@ -48,8 +48,8 @@ struct Subject {
   Settings settings;
   Prepare prepare;
 
-  Subject(const Algorithm& of, const StressWatch& watching)
-      : algorithm(of), watch(watching), settings(coarse_settings(of)), prepare([this](const Mesh& a, const Mesh& b) {
+  Subject(const Algorithm& of, StressSettings which, const StressWatch& watching)
+      : algorithm(of), watch(watching), settings(settings_of(of, which)), prepare([this](const Mesh& a, const Mesh& b) {
           watch.prepares();
           return std::make_unique<WatchedQuery>(algorithm.prepare(a, b, settings), watch);
         }) {}
@@ -136,11 +136,24 @@ Case make_case(const Family& family, const CaseId& id) {
   return family.make(draw);
 }
 
-StressCell run_cell(const Family& family, const Algorithm& algorithm, const StressEffort& effort, std::uint64_t seed,
-                    const StressWatch& watch) {
-  const Subject subject(algorithm, watch);
+Settings settings_of(const Algorithm& algorithm, StressSettings which) {
+  return which == StressSettings::defaults ? algorithm.settings() : coarse_settings(algorithm);
+}
+
+bool has_finer_defaults(const Algorithm& algorithm) {
+  return algorithm.settings().to_string() != coarse_settings(algorithm).to_string();
+}
+
+std::string StressCell::name() const {
+  return algorithm->traits().name + (which == StressSettings::defaults ? " at defaults" : "");
+}
+
+StressCell run_cell(const Family& family, const Algorithm& algorithm, StressSettings which, const StressEffort& effort,
+                    std::uint64_t seed, const StressWatch& watch) {
+  const Subject subject(algorithm, which, watch);
   StressCell cell{.family = &family,
                   .algorithm = &algorithm,
+                  .which = which,
                   .settings = subject.settings.to_string(),
                   .id = {},
                   .worst = {},
@@ -170,7 +183,8 @@ StressCell run_cell(const Family& family, const Algorithm& algorithm, const Stre
   }
   // A check for small meshes must not be led to larger ones. What declares a resolution prepares for long.
   const std::size_t part = approximates ? 2 : 1;
-  const std::size_t generations = algorithm.traits().timed ? effort.generations / part : 0;
+  const bool searched = algorithm.traits().timed && which == StressSettings::coarsest;
+  const std::size_t generations = searched ? effort.generations / part : 0;
   const std::size_t children = effort.children / part;
   worst = search_worst(family, std::move(worst), judge_genes, worse_answer, generations, children, seed);
   add(cell, {.genes = worst.genes}, worst.judgement);

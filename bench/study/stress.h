@@ -36,11 +36,24 @@ struct CaseId {
 
 stability::Case make_case(const stability::Family& family, const CaseId& id);
 
+/// What an algorithm is asked with.
+enum class StressSettings {
+  coarsest,  ///< coarse_settings(): of one that does not approximate the defaults.
+  defaults
+};
+
+Settings settings_of(const Algorithm& algorithm, StressSettings which);
+
+/// Whether an algorithm is asked at its defaults, too: it approximates, and is asked at its coarsest settings
+/// otherwise.
+bool has_finer_defaults(const Algorithm& algorithm);
+
 /// An algorithm on a family.
 struct StressCell {
   const stability::Family* family = nullptr;
   const Algorithm* algorithm = nullptr;
-  std::string settings;  ///< "name=value,name=value": coarse_settings() of the algorithm.
+  StressSettings which = StressSettings::coarsest;
+  std::string settings;  ///< "name=value,name=value" of settings_of().
   std::size_t cases = 0;
   std::size_t unsupported = 0;  ///< Cases that it declares it does not answer.
   CaseId id;                    ///< The worst case,
@@ -48,6 +61,9 @@ struct StressCell {
   CaseId slow_id;               ///< The case with the slowest query.
   std::size_t slow_shot = 0;
   double slowest_seconds = 0.0;  ///< Processor time.
+
+  /// "vps", or "vps at defaults".
+  std::string name() const;
 };
 
 /// Is told what is asked next, so that it is known if the process ends there.
@@ -57,9 +73,10 @@ struct StressWatch {
   std::function<void(const Pose& X_AB)> asks;
 };
 
-/// One cell, in this process. Deterministic by seed but for times.
-StressCell run_cell(const stability::Family& family, const Algorithm& algorithm, const StressEffort& effort,
-                    std::uint64_t seed, const StressWatch& watch);
+/// One cell, in this process. Deterministic by seed but for times. Nothing is searched for at defaults, where bodies
+/// are prepared for long.
+StressCell run_cell(const stability::Family& family, const Algorithm& algorithm, StressSettings which,
+                    const StressEffort& effort, std::uint64_t seed, const StressWatch& watch);
 
 /// The command that asks a case's shot again, one line: numbers with all digits, settings that differ from the
 /// defaults. Of a generator: the same ray, turned to an axis, with targets to a thousandth of a percent.

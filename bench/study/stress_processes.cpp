@@ -29,7 +29,7 @@ using stability::Verdict;
 void lose(StressCell& cell, const StressBeacon& beacon, Verdict verdict, std::string words) {
   cell.id = cell.slow_id = beacon.id;
   cell.cases = std::max<std::size_t>(1, cell.cases);
-  cell.settings = cell.algorithm->settings().to_string();
+  cell.settings = settings_of(*cell.algorithm, cell.which).to_string();
   cell.worst = {.verdict = verdict, .metric = "process", .unit = "1", .words = std::move(words)};
   const stability::Case member = make_case(*cell.family, cell.id);
   for (std::size_t i = 0; i < member.shots.size(); ++i) {
@@ -58,8 +58,8 @@ void run_apart(const StressPlan& plan, StressCell& cell, const std::atomic<bool>
     return stopped || silent_s() >= plan.timeout_s;
   };
   try {
-    ChildProcess process(stress_cell_command(*cell.family, *cell.algorithm, plan.effort, plan.seed),
-                         {memory.descriptor()}, static_cast<std::size_t>(plan.memory_bytes));
+    ChildProcess process(stress_cell_command(cell, plan.effort, plan.seed), {memory.descriptor()},
+                         static_cast<std::size_t>(plan.memory_bytes));
     read_result(process.receive(silent), cell);
   } catch (const ChildFailure& failure) {
     const bool hung = failure.status == Status::timed_out;
@@ -120,9 +120,13 @@ std::vector<StressCell> run_stress(const StressPlan& plan,
   std::vector<StressCell> cells;
   for (const stability::Family* family : plan.families) {
     for (const Algorithm* algorithm : plan.algorithms) {
-      StressCell& cell = cells.emplace_back();
-      cell.family = family;
-      cell.algorithm = algorithm;
+      for (const StressSettings which : {StressSettings::coarsest, StressSettings::defaults}) {
+        if (which == StressSettings::defaults && !(plan.at_defaults && has_finer_defaults(*algorithm))) continue;
+        StressCell& cell = cells.emplace_back();
+        cell.family = family;
+        cell.algorithm = algorithm;
+        cell.which = which;
+      }
     }
   }
   Run run(plan, cells);

@@ -14,6 +14,7 @@ struct StressPlan {
   std::vector<const Algorithm*> algorithms;
   std::vector<const stability::Family*> families;
   StressEffort effort;
+  bool at_defaults = false;  ///< Another cell for each algorithm that has_finer_defaults().
   std::uint64_t seed = 1;
   double timeout_s = 60.0;    ///< Longest wall time of one query or one preparation.
   double memory_bytes = 4e9;  ///< Of data, for each process.

@@ -37,12 +37,10 @@ std::string stress_matrix(const std::vector<StressCell>& cells) {
   constexpr std::size_t k_first_column = 17;
   static constexpr std::size_t k_least_column = 6;
   std::string text = fmt::format("{:<{}}", "family", k_first_column);
-  const auto width = [](const StressCell& cell) {
-    return std::max(k_least_column, cell.algorithm->traits().name.size());
-  };
+  const auto width = [](const StressCell& cell) { return std::max(k_least_column, cell.name().size()); };
   for (const StressCell& cell : cells) {
     if (cell.family != cells.front().family) break;
-    text += fmt::format(" {:>{}}", cell.algorithm->traits().name, width(cell));
+    text += fmt::format(" {:>{}}", cell.name(), width(cell));
   }
   const stability::Family* family = nullptr;
   for (const StressCell& cell : cells) {
@@ -61,7 +59,7 @@ nlohmann::ordered_json stress_json(const std::vector<StressCell>& cells, const s
     const StressCell& cell = cells[i];
     const StressLine& line = lines[i];
     list.push_back({{"family", cell.family->name},
-                    {"algorithm", cell.algorithm->traits().name},
+                    {"algorithm", cell.name()},
                     {"verdict", line.verdict},
                     {"cases", cell.cases},
                     {"worst", cell.worst.value},

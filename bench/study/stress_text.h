@@ -20,8 +20,8 @@ struct StressLine {
 /// @param folder gets the meshes of the reproductions; see reproduction()
 StressLine stress_line(const StressCell& cell, const std::filesystem::path& folder);
 
-/// Families down, algorithms across, a word per cell: "exact", "within", "-" for declared unsupported, else a red one
-/// in capital letters.
+/// Families down, algorithms across (StressCell::name()), a word per cell: "exact", "within", "-" for declared
+/// unsupported, else a red one in capital letters.
 std::string stress_matrix(const std::vector<StressCell>& cells);
 
 /// A list of cells: family, algorithm, verdict, cases, worst, unit, reproduction, and what else is known of each.

@@ -76,8 +76,9 @@ StressCell run_job(const json& job, const FindAlgorithm& find) {
   const StressWatch watch{.begins_case = [&](const CaseId& id) { beacon->id = id, beacon->pose = {}, ++beacon->beats; },
                           .prepares = [&] { ++beacon->beats; },
                           .asks = [&](const Pose& X_AB) { beacon->pose = pose_numbers(X_AB), ++beacon->beats; }};
-  return run_cell(stability::find_family(job.at("family").get<std::string>()), find(job.at("algorithm")), effort,
-                  job.at("seed"), watch);
+  return run_cell(stability::find_family(job.at("family").get<std::string>()), find(job.at("algorithm")),
+                  job.at("at_defaults") ? StressSettings::defaults : StressSettings::coarsest, effort, job.at("seed"),
+                  watch);
 }
 
 }  // namespace
@@ -97,10 +98,10 @@ SharedBeacon::SharedBeacon(int descriptor) {
 
 SharedBeacon::~SharedBeacon() { ::munmap(beacon_, sizeof(StressBeacon)); }
 
-std::vector<std::string> stress_cell_command(const stability::Family& family, const Algorithm& algorithm,
-                                             const StressEffort& effort, std::uint64_t seed) {
-  const json job{{"family", family.name},
-                 {"algorithm", algorithm.traits().name},
+std::vector<std::string> stress_cell_command(const StressCell& cell, const StressEffort& effort, std::uint64_t seed) {
+  const json job{{"family", cell.family->name},
+                 {"algorithm", cell.algorithm->traits().name},
+                 {"at_defaults", cell.which == StressSettings::defaults},
                  {"samples", effort.samples},
                  {"declared_samples", effort.declared_samples},
                  {"generations", effort.generations},

@@ -43,16 +43,16 @@ class SharedBeacon {
   StressBeacon* beacon_ = nullptr;
 };
 
-/// The command line by which this program runs a cell in another process of itself.
-std::vector<std::string> stress_cell_command(const stability::Family& family, const Algorithm& algorithm,
-                                             const StressEffort& effort, std::uint64_t seed);
+/// The command line by which this program runs a cell (its family, algorithm and choice of settings) in another process
+/// of itself.
+std::vector<std::string> stress_cell_command(const StressCell& cell, const StressEffort& effort, std::uint64_t seed);
 
 using FindAlgorithm = std::function<const Algorithm&(const std::string& name)>;
 
 /// Runs the cell if the command line is stress_cell_command(). @returns the exit code; nothing for another command line
 std::optional<int> run_stress_cell_if_asked(int argc, const char* const* argv, const FindAlgorithm& find);
 
-/// What the program has written; the family and the algorithm stay. @throws nlohmann::json::exception
+/// What the program has written; family, algorithm and choice of settings stay. @throws nlohmann::json::exception
 void read_result(std::string_view line, StressCell& cell);
 
 }  // namespace sixdof::study

@@ -13,6 +13,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_far_rounding = 1e-13;     // relative: of a pose far away
+constexpr double k_volume_rounding = 1e-15;  // of a volume of 0.016, a sum over some corners
+
 using Eigen::Vector3d;
 
 Pose rotated_about(const Pose& X, const Vector3d& point, const Vector3d& rotation) {
@@ -57,7 +60,7 @@ TEST(ExactAlgorithm, ForcePushesBOutOfA) {
   const Outcome<Response> r = query->respond({Eigen::Matrix3d::Identity(), {0.1, 0.05, 0.4}});
   ASSERT_TRUE(r.ok());
   // B penetrates 0.1 into A's upper face with an area of 0.16.
-  EXPECT_NEAR(r.value.volume, 0.016, 1e-15);
+  EXPECT_NEAR(r.value.volume, 0.016, k_volume_rounding);
   EXPECT_LT((r.value.force - Vector3d(0.0, 0.0, 0.16)).norm(), 1e-15);
   EXPECT_LT(r.value.torque.norm(), 1e-15);
 }
@@ -117,7 +120,7 @@ TEST(ExactAlgorithm, AnswersAtAnySeparationThatADoubleHolds) {
       const Pose pose{Eigen::Matrix3d::Identity(), Vector3d(far, 0.3 * far, -0.2 * far)};
       const Outcome<Separation> separation = query->distance(pose);
       ASSERT_TRUE(separation.ok());
-      EXPECT_NEAR(separation.value.distance / far, std::sqrt(1.13), 1e-13);
+      EXPECT_NEAR(separation.value.distance / far, std::sqrt(1.13), k_far_rounding);
       EXPECT_FALSE(query->collide(pose).value);
       ASSERT_TRUE(query->respond(pose).ok());
       EXPECT_EQ(query->respond(pose).value.volume, 0.0);

@@ -6,6 +6,8 @@
 
 namespace sixdof::test {
 
+inline constexpr double k_volume_rounding = 1e-9;  // relative: of a sum over all triangles of a ball
+
 /// Volume, force and torque as `exact`, in both orders; zero where bodies are apart.
 /// @param tolerance of each, as a fraction of the exact one
 inline void expect_response_of_exact(const Algorithm& algorithm, double tolerance) {
@@ -37,7 +39,7 @@ inline void expect_volume_of_inner_body(const Algorithm& algorithm) {
     const auto query = block_first ? prepare(algorithm, t.block, t.ball) : prepare(algorithm, t.ball, t.block);
     const auto outcome = query->respond(block_first ? inside : inside.inverse());
     ASSERT_TRUE(outcome.ok()) << query->diagnosis();
-    EXPECT_NEAR(outcome.value.volume, t.ball.volume(), 1e-9 * t.ball.volume());
+    EXPECT_NEAR(outcome.value.volume, t.ball.volume(), k_volume_rounding * t.ball.volume());
     EXPECT_EQ(outcome.value.force.norm(), 0.0);
     EXPECT_EQ(outcome.value.torque.norm(), 0.0);
   }

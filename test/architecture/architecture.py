@@ -7,6 +7,7 @@ Reads the table of rooms (first column: a folder; a row may use the rows below i
 - an include of a room above, or of a file that does not exist;
 - a folder with code that the table does not name, and a row of the table without code;
 - files that include each other in a circle;
+- a source without a test of its name that test/README.md does not give to another test, and a row there that is wrong;
 - with --build, a header that does not compile alone. A header that is the first include of a source in
   FOLDER/compile_commands.json was compiled alone by the build; the others are compiled here with the flags of that file
   (files *-inl.h are parts of others and are left out).
@@ -215,6 +216,53 @@ def check_hdf5(root, files):
     return problems
 
 
+COVERED_ROW = re.compile(r"^\|\s*`(\S+_test\.(?:cpp|py))`\s*\|\s*`([\w/.]+/)`\s*\|(.+)\|\s*$")
+TEMPLATES = "bench/new_algorithm/"  # written into projects of others
+
+
+def test_folder(source):
+    """Where a source's own test lies, relative to test/."""
+    folder = os.path.dirname(source)
+    if folder.startswith("lib/sixdof"):
+        return folder.removeprefix("lib/sixdof").lstrip("/")
+    return {"bench/cli": "cli", "bench/study": "study"}.get(folder, "bench")
+
+
+def read_covered(readme):
+    """The test that covers a source, by source, for all rows of the table; and sources that stand there twice."""
+    covered, twice = {}, []
+    for line in readme.read_text().splitlines() if readme.is_file() else []:
+        if match := COVERED_ROW.match(line):
+            for stem in re.findall(r"`(\w+)`", match.group(3)):
+                source = f"{match.group(2)}{stem}.cpp"
+                if source in covered:
+                    twice.append(source)
+                covered[source] = match.group(1)
+    return covered, twice
+
+
+def check_tests(root, files):
+    """Every source has a test of its name, or a row in test/README.md."""
+    readme = "test/README.md"
+    covered, twice = read_covered(root / readme)
+    problems = [f"{readme}: {source} stands there twice" for source in twice]
+    sources = [f for f in files if f.endswith(".cpp") and not f.startswith((EVERYWHERE, TEMPLATES))]
+    for source in sources:
+        stem = pathlib.PurePath(source).stem
+        own = [f"test/{test_folder(source)}/{stem}_test{end}".replace("//", "/") for end in (".cpp", ".py")]
+        has_own = any((root / test).is_file() for test in own)
+        if not has_own and source not in covered:
+            problems.append(f"{source}: no {own[0]}, and no row in {readme} names the test that covers it")
+        elif has_own and source in covered:
+            problems.append(f"{readme}: {source} has a test of its own; remove it from the table")
+    for source, test in covered.items():
+        if source not in sources:
+            problems.append(f"{readme}: {source} is not there")
+        if not (root / "test" / test).is_file():
+            problems.append(f"{readme}: test/{test}, which is to cover {source}, is not there")
+    return problems
+
+
 def check(root, build=None):
     """All problems of a tree, in words."""
     rooms = read_rooms(root / "lib" / "README.md")
@@ -222,6 +270,7 @@ def check(root, build=None):
     problems, graph = check_includes(root, rooms, files)
     problems += check_rooms(rooms, files)
     problems += check_hdf5(root, files)
+    problems += check_tests(root, files)
     problems += find_circles(graph)
     if build:
         problems += check_headers(root, files, build)

@@ -28,6 +28,9 @@ TREE = {
     "lib/sixdof/upper/b.cpp": "#include <sixdof/upper/b.h>\n#include <sixdof/upper/b.cpp>\n",  # as SIMD targets do
     "lib/sixdof/lower/a.h": "#pragma once\nstruct A { int x; };\n",
     "lib/sixdof/lower/part-inl.h": "Unknown part;\n",
+    "test/bench/main_test.py": "",
+    "test/README.md": "| test | folder | sources |\n|---|---|---|\n| `upper/all_test.cpp` | `lib/sixdof/upper/` | `b` |\n",
+    "test/upper/all_test.cpp": "\n",
     "test/a_test.cpp": '#include "helper.h"\n#include <sixdof/upper/b.h>\n',
     "test/helper.h": "#pragma once\n",
 }
@@ -36,25 +39,41 @@ COMPILER = "c++"
 
 
 class Architecture(unittest.TestCase):
-    def check(self, changes, build=None):
-        """Problems of the valid tree with some files changed (None: removed)."""
+    def check(self, changes, build=None, tested=True):
+        """Problems of the valid tree with some files changed (None: removed); new sources have a test if `tested`."""
+        tests = {f"test/{architecture.test_folder(name)}/{pathlib.PurePath(name).stem}_test.cpp": "\n"
+                 for name in changes if tested and name.startswith(("lib/", "bench/")) and name.endswith(".cpp")}
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            for name, text in {**TREE, **changes}.items():
+            for name, text in {**TREE, **tests, **changes}.items():
                 if text is None:
                     continue
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(text)
             return architecture.check(root, build)
 
-    def expect(self, changes, *words, build=None):
-        problems = self.check(changes, build)
+    def expect(self, changes, *words, build=None, tested=True):
+        problems = self.check(changes, build, tested)
         self.assertEqual(len(problems), 1, problems)
         for word in words:
             self.assertIn(word, problems[0])
 
     def test_a_tree_without_faults(self):
         self.assertEqual(self.check({}, architecture.Build([COMPILER], set())), [])
+
+    def test_a_source_without_a_test(self):
+        self.expect({"lib/sixdof/lower/c.cpp": "\n"}, "lib/sixdof/lower/c.cpp", "test/lower/c_test.cpp", "no row", tested=False)
+        self.assertEqual(self.check({"lib/sixdof/lower/c.cpp": "\n", "test/lower/c_test.cpp": "\n"}, tested=False), [])
+        self.expect({"bench/cli/c.cpp": "\n", "test/bench/c_test.cpp": "\n"}, "bench/cli/c.cpp", "test/cli/c_test.cpp",
+                    tested=False)
+        self.assertEqual(self.check({"bench/new_algorithm/c.cpp": "\n"}, tested=False), [])
+
+    def test_a_row_that_is_wrong(self):
+        table = TREE["test/README.md"]
+        self.expect({"test/README.md": table.replace("`b`", "`b` `c`")}, "lib/sixdof/upper/c.cpp", "not there")
+        self.expect({"test/upper/all_test.cpp": None}, "test/upper/all_test.cpp", "not there")
+        self.expect({"test/upper/b_test.cpp": "\n"}, "upper/b.cpp", "test of its own")
+        self.expect({"test/README.md": table.replace("`b`", "`b` `b`")}, "upper/b.cpp", "twice")
 
     def test_hdf5_elsewhere_and_ignored(self):
         file = "lib/sixdof/base/hdf5.cpp"

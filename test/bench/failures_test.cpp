@@ -22,6 +22,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_degree_rounding = 1e-9;  // of an angle in degrees
+constexpr double k_error_rounding = 1e-6;   // of an error relative to the diagonal
+
 using nlohmann::json;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
@@ -110,7 +113,7 @@ TEST_F(Faulty, WrongAnswersAreMismatchesAndTimed) {
     EXPECT_GT(entry.at("error_rms"), 0.0) << algorithm;
   }
   EXPECT_EQ(row(document, "collide", "wrong", "distance:05").at("mismatch"), faulty);
-  EXPECT_NEAR(row(document, "distance", "wrong", "distance:05").at("error_max"), 0.005, 1e-6);
+  EXPECT_NEAR(row(document, "distance", "wrong", "distance:05").at("error_max"), 0.005, k_error_rounding);
   const json large = row(document, "respond", "returns-1e308", "volume:03");
   EXPECT_EQ(large.at("failed"), 0);
   EXPECT_GT(large.at("gamma_max_F_deg"), 1.0);
@@ -144,7 +147,8 @@ TEST_F(Faulty, OutliersAreTheFaultyPoses) {
     return Eigen::Vector3d(v[0], v[1], v[2]);
   };
   EXPECT_NEAR(angle_degrees(vector("exact_force"), vector("force")),
-              row(document, "respond", "returns-1e308", "volume:03").at("gamma_max_F_deg").get<double>(), 1e-9);
+              row(document, "respond", "returns-1e308", "volume:03").at("gamma_max_F_deg").get<double>(),
+              k_degree_rounding);
   const json right = row(document, "distance", "exact", "distance:05").at("outliers").at("poses");
   EXPECT_FALSE(right.contains("mismatch"));
   EXPECT_FALSE(right.contains("failed"));

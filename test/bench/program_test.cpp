@@ -17,6 +17,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_set_tolerance = 1e-6;  // the set's tolerance, and rounding of the printed pose
+constexpr double k_rounding = 1e-9;       // of a mean over the sample
+
 using nlohmann::json;
 using test::BenchProgram;
 using test::row;
@@ -78,7 +81,7 @@ TEST_F(BenchProgram, JudgesResponsesByTheirVolumeAndForce) {
   EXPECT_EQ(exact.at("compared"), 32);
   for (const char* which : {"F", "T"}) {
     // The order of poses may change the rounding of answers.
-    EXPECT_NEAR(exact.at(std::string("gain_") + which).get<double>(), 1.0, 1e-9) << which;
+    EXPECT_NEAR(exact.at(std::string("gain_") + which).get<double>(), 1.0, k_rounding) << which;
     EXPECT_LT(exact.at(std::string("magnitude_error_") + which), 1e-9) << which;
   }
   const json spheres = row(document, "respond/algorithm:ist/pair:torus-1k-cone-1k/volume:03");
@@ -115,7 +118,7 @@ TEST_F(BenchProgram, CountsTheMismatchesOfNull) {
   const json document = result("--benchmark_filter=algorithm:null/pair:torus-1k/");
   const json distance = row(document, "distance/algorithm:null/pair:torus-1k/distance:05");
   EXPECT_EQ(distance.at("mismatch"), distance.at("judged"));
-  EXPECT_NEAR(distance.at("error_rms").get<double>(), 0.05, 1e-9);
+  EXPECT_NEAR(distance.at("error_rms").get<double>(), 0.05, k_rounding);
   const json overlap = row(document, "collide/algorithm:null/pair:torus-1k/volume:03");
   EXPECT_EQ(overlap.at("mismatch"), overlap.at("configurations"));
   EXPECT_EQ(row(document, "collide/algorithm:null/pair:torus-1k/distance:05").at("mismatch"), 0);
@@ -238,7 +241,7 @@ TEST_F(BenchProgram, OutliersAskTheSameAgain) {
   };
   const double diagonal = load_model("torus-1k").diagonal(), truth = 0.05 * diagonal;
   // The set's tolerance, and rounding of the pose.
-  EXPECT_NEAR(std::abs(ask("error_max") - truth) / diagonal, entry.at("error_max").get<double>(), 1e-6);
+  EXPECT_NEAR(std::abs(ask("error_max") - truth) / diagonal, entry.at("error_max").get<double>(), k_set_tolerance);
   EXPECT_GT(std::abs(ask("mismatch") - truth), 1e-6 * diagonal);
 }
 

@@ -15,6 +15,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_tessellation = 0.05;  // of the boxes of tessellated spheres
+
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
@@ -44,7 +46,7 @@ TEST_F(AddedAlgorithm, AnswersSingleQueries) {
   const Json json =
       answer("query --algorithm balls -p scale_b=0.5 --a sphere-500 --b sphere-500 --json --pose '3 0 0 1 0 0 0'");
   EXPECT_EQ(json.at("status"), "ok");
-  EXPECT_NEAR(json.at("distance"), 3.0 - 1.5 * std::sqrt(3.0), 0.05);
+  EXPECT_NEAR(json.at("distance"), 3.0 - 1.5 * std::sqrt(3.0), k_tessellation);
 }
 
 TEST_F(AddedAlgorithm, IsInEveryStudy) {

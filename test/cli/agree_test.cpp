@@ -16,6 +16,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_printed_digits = 1e-8;  // of the printed distance
+
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -81,7 +83,7 @@ TEST_F(Agree, ListsEachDifferenceWithACommandThatAsksTheSame) {
     if (difference.at("question") == "collide") {
       EXPECT_EQ(truth.at("colliding"), true);
     } else {
-      EXPECT_NEAR(truth.at("distance"), std::stod(difference.at("truth").get<std::string>()), 1e-8);
+      EXPECT_NEAR(truth.at("distance"), std::stod(difference.at("truth").get<std::string>()), k_printed_digits);
     }
   }
 }

@@ -13,6 +13,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_rounding = 1e-9;  // of a sum of two printed values
+
 using ::testing::HasSubstr;
 
 /// Coarse points and short paths, so that a search takes a second.
@@ -60,7 +62,7 @@ TEST_F(Equivalent, FindsTheLeastTimeAndPrintsJson) {
   const auto& answer = json.at("benchmarks").at(0);
   EXPECT_EQ(answer.at("name"), "equivalent/scenario:II/algorithm:vps-field/eta:0.05");
   const double sigma = answer.at("sigma_F"), gamma = answer.at("gamma_F_deg");
-  EXPECT_NEAR(answer.at("eta_measured"), 0.5 * sigma + 2.0 * gamma * 3.14159265358979 / 180.0, 1e-9);
+  EXPECT_NEAR(answer.at("eta_measured"), 0.5 * sigma + 2.0 * gamma * 3.14159265358979 / 180.0, k_rounding);
   EXPECT_TRUE(json.at("context").contains("algorithm:vps-field"));
 }
 

@@ -18,6 +18,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_digits = 0.05;  // the expected distances have two digits
+
 using ::testing::HasSubstr;
 
 test::ProgramResult query(const std::string& arguments) {
@@ -167,7 +169,7 @@ TEST_F(QueryOfOpenMeshes, HaveYesNoAndDistanceAndAReasonWhyThereIsNoResponse) {
     const auto json = answers(pair(a, b, pose));
     EXPECT_EQ(json.at("status"), "ok");
     EXPECT_EQ(json.at("colliding"), false);
-    EXPECT_NEAR(json.at("distance"), distance, 0.05);
+    EXPECT_NEAR(json.at("distance"), distance, k_digits);
     EXPECT_TRUE(json.at("force").is_null());
     EXPECT_TRUE(json.at("diagnosis").is_null());
     EXPECT_THAT(json.at("no_response").get<std::string>(), HasSubstr("not closed"));

@@ -12,6 +12,8 @@
 namespace sixdof::cli {
 namespace {
 
+constexpr double k_near_rounding = 1e-9;  // of a sum over the faces of all voxels
+
 constexpr double k_rounding = 1e-12;  // of coordinates of the order of 1
 
 /// Fifty disjoint spheres of different sizes.
@@ -147,7 +149,7 @@ void expect_faces(const Drawing& drawing, const vps::VoxelGrid& grid, double cut
     for (std::size_t i = 0; i < 4; ++i) ASSERT_EQ(drawing.colours[first + i], depth_colour(depth(voxel), deepest));
   }
   // A closed surface around all voxels and nothing else.
-  EXPECT_NEAR(as_mesh(drawing).volume(), static_cast<double>(voxels) * std::pow(grid.size, 3), 1e-9);
+  EXPECT_NEAR(as_mesh(drawing).volume(), static_cast<double>(voxels) * std::pow(grid.size, 3), k_near_rounding);
 }
 
 TEST(Drawing, VoxelsAreShownByLayerAndOnlyFromOutside) {

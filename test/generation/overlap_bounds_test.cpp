@@ -23,6 +23,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_near_rounding = 1e-9;  // relative: of the volume of a polyhedron from its corners
+
 constexpr double k_rounding = 1e-12;  // relative
 
 Eigen::Matrix3d random_rotation(std::mt19937_64& random) {
@@ -39,8 +41,8 @@ TEST(OverlapBound, IsTightForPlatesThatCross) {
     // About x: B's edge of 1.8 lies along A's of 2.
     const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()).toRotationMatrix();
     const double expected = 1.8 * 0.01 * 0.02 / std::sin(angle);
-    EXPECT_NEAR(overlap_upper_bound(size_a, size_b, R), expected, 1e-9 * expected) << degrees;
-    EXPECT_NEAR(overlap_upper_bound(size_b, size_a, R.transpose()), expected, 1e-9 * expected) << degrees;
+    EXPECT_NEAR(overlap_upper_bound(size_a, size_b, R), expected, k_near_rounding * expected) << degrees;
+    EXPECT_NEAR(overlap_upper_bound(size_b, size_a, R.transpose()), expected, k_near_rounding * expected) << degrees;
   }
 }
 

@@ -13,6 +13,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_two_steps = 2e-5;         // two steps of the search for the expected crossing
+constexpr double k_volume_tolerance = 1e-9;  // of a volume at the translation found
+
 /// A function of the translation in place of an overlap. Slopes within -2 .. 4.
 struct Wave {
   double amplitude = 1.0;
@@ -48,7 +51,7 @@ TEST(OverlapMarch, TakesTheFirstOfSeveralCrossings) {
     const std::optional<OverlapMeasurement> hit = march.advance(target);
     ASSERT_TRUE(hit);
     EXPECT_NEAR(hit->volume, target, k_tolerance);
-    EXPECT_NEAR(hit->s, expected, 2e-5) << target;
+    EXPECT_NEAR(hit->s, expected, k_two_steps) << target;
   }
 }
 
@@ -67,7 +70,7 @@ TEST(OverlapMarch, TheCurvatureSparesMeasurements) {
     OverlapMarch march(cubic, within(20.0, 0.0), 4.0, {.resolution = 1e-3, .tolerance = 1e-9, .first_step = 0.1});
     for (int i = 1; i <= 10; ++i) {
       const std::optional<OverlapMeasurement> hit = march.advance(0.5 * i);
-      EXPECT_NEAR(hit.value().volume, 0.5 * i, 1e-9);
+      EXPECT_NEAR(hit.value().volume, 0.5 * i, k_volume_tolerance);
     }
     return calls;
   };

@@ -30,6 +30,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_stops = 1e-8;         // of a translation, at which the search stops
+constexpr double k_tessellation = 0.15;  // relative: a lens of balls of few triangles
+
 using test::same_bits;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -130,7 +133,7 @@ TEST(VolumeGenerator, BallsMeetTheirLens) {
     for (const int percent : {5, 10}) {
       // The facets of 24 rings reduce a ball's volume by 0.9 %, that of the lens by up to a tenth.
       const double expected = 0.01 * percent * a.volume();
-      EXPECT_NEAR(lens(bucket_of(result, percent).translations[0]) / expected, 1.0, 0.15) << percent;
+      EXPECT_NEAR(lens(bucket_of(result, percent).translations[0]) / expected, 1.0, k_tessellation) << percent;
     }
   }
 }
@@ -188,7 +191,8 @@ TEST(VolumeGenerator, FirstCrossingWhereTheVolumeFallsAgain) {
   const double outer = 3.1 + 0.15 - a.center().x(), block = 1.2 + 0.15 - a.center().x();
   for (const int percent : {5, 6, 7, 8}) {
     const double volume = 0.01 * percent * a.volume();
-    EXPECT_NEAR(bucket_of(result, percent).translations[0], (volume < wall ? outer : block) - volume, 1e-8) << percent;
+    EXPECT_NEAR(bucket_of(result, percent).translations[0], (volume < wall ? outer : block) - volume, k_stops)
+        << percent;
   }
   // More than the slab's volume inside the block.
   EXPECT_TRUE(std::isnan(bucket_of(result, 10).translations[0]));

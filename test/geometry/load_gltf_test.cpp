@@ -14,6 +14,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_rounding = 1e-15;      // of the volume of one tetrahedron
+constexpr double k_sum_rounding = 1e-12;  // of a volume of 5
+
 using namespace testing_support;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -290,7 +293,7 @@ TEST_F(LoadGltfCube, InstancesAreTurnedScaledAndMirroredBelowTheirNode) {
   const Mesh mesh = load(
       parts.glb_of(k_one_scene, instanced(R"("ROTATION":2,"SCALE":3)", R"(,"translation":[10,0,0])"), k_cube_mesh));
   EXPECT_TRUE(mesh.solid()) << mesh.why_not_solid();
-  EXPECT_NEAR(mesh.volume(), 5.0, 1e-12);
+  EXPECT_NEAR(mesh.volume(), 5.0, k_sum_rounding);
   EXPECT_LT((mesh.box().min() - Eigen::Vector3d(9, 0, 0)).norm(), 1e-12);
   EXPECT_LT((mesh.box().max() - Eigen::Vector3d(10, 2, 3)).norm(), 1e-12);
 }
@@ -465,12 +468,12 @@ TEST_F(LoadGltfCube, StripsAndFansTurnTheRightWay) {
   const Mesh of_strip = load(parts.glb_of(k_one_scene, R"([{"mesh":0}])",
                                           R"([{"primitives":[{"attributes":{"POSITION":0},"indices":2,"mode":5}]}])"));
   EXPECT_TRUE(of_strip.topology().closed && of_strip.topology().oriented) << of_strip.why_not_solid();
-  EXPECT_NEAR(std::abs(of_strip.volume()), 1.0 / 6.0, 1e-15);
+  EXPECT_NEAR(std::abs(of_strip.volume()), 1.0 / 6.0, k_rounding);
   const Mesh of_fan = load(parts.glb_of(k_one_scene, R"([{"mesh":0}])",
                                         R"([{"primitives":[{"attributes":{"POSITION":0},"indices":3,"mode":6},)"
                                         R"({"attributes":{"POSITION":0},"indices":4}]}])"));
   EXPECT_TRUE(of_fan.solid()) << of_fan.why_not_solid();
-  EXPECT_NEAR(of_fan.volume(), 1.0 / 6.0, 1e-15);
+  EXPECT_NEAR(of_fan.volume(), 1.0 / 6.0, k_rounding);
 }
 
 TEST_F(LoadGltfCube, TransformsAreInDoublePrecision) {

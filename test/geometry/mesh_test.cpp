@@ -11,6 +11,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_far_rounding = 1e-8;  // of a body 4e6 from the origin: eps * offset / size in each of three factors
+
 using ::testing::HasSubstr;
 using Vertices = std::vector<Eigen::Vector3d>;
 using Triangles = std::vector<Triangle>;
@@ -38,7 +40,7 @@ TEST(Mesh, VolumeIsAccurateFarFromTheOrigin) {
   Vertices far = tetrahedron_vertices();
   for (auto& p : far) p += Eigen::Vector3d(1e6, -3e6, 2e6);
   // Rounding of the vertices themselves: eps * offset / size in each of three factors.
-  EXPECT_NEAR(Mesh::build(far, tetrahedron_triangles()).volume(), k_tetrahedron_volume, 1e-8);
+  EXPECT_NEAR(Mesh::build(far, tetrahedron_triangles()).volume(), k_tetrahedron_volume, k_far_rounding);
 }
 
 TEST(Mesh, WeldsExactlyEqualVerticesOnly) {

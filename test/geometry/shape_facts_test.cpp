@@ -9,6 +9,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_rounding = 1e-12;  // of sums over some hundred triangles
+
 /// A box with its edges along the axes and every face divided into n x n squares of two triangles each.
 Mesh divided_box(const Eigen::Vector3d& size, int n) {
   std::vector<Eigen::Vector3d> vertices;
@@ -52,23 +54,23 @@ TEST(ShapeFacts, OfABoxAreItsClosedForm) {
   const ShapeFacts facts = shape_facts(box);
   EXPECT_EQ(facts.genus, 0);
   EXPECT_DOUBLE_EQ(facts.box_aspect, 0.25);
-  EXPECT_NEAR(facts.box_fill, 1.0, 1e-12);
-  EXPECT_NEAR(facts.thickness, 2.0 * 1.0 / 7.0 / std::sqrt(5.25), 1e-12);
-  EXPECT_NEAR(facts.aligned_share, 1.0, 1e-12);
+  EXPECT_NEAR(facts.box_fill, 1.0, k_rounding);
+  EXPECT_NEAR(facts.thickness, 2.0 * 1.0 / 7.0 / std::sqrt(5.25), k_rounding);
+  EXPECT_NEAR(facts.aligned_share, 1.0, k_rounding);
   // Of 18 n^2 edges the 12 n on the box's own edges bend.
-  EXPECT_NEAR(facts.flat_share, 1.0 - 12.0 * n / (18.0 * n * n), 1e-12);
+  EXPECT_NEAR(facts.flat_share, 1.0 - 12.0 * n / (18.0 * n * n), k_rounding);
 }
 
 TEST(ShapeFacts, DoNotDependOnTheUnitAndOnlyTheFramesOnesOnTheFrame) {
   const Mesh box = divided_box({2.0, 1.0, 0.5}, 5);
   const ShapeFacts facts = shape_facts(box), larger = shape_facts(moved(box, Eigen::Matrix3d::Identity(), 1234.5));
-  EXPECT_NEAR(larger.thickness, facts.thickness, 1e-12);
-  EXPECT_NEAR(larger.box_fill, facts.box_fill, 1e-12);
-  EXPECT_NEAR(larger.flat_share, facts.flat_share, 1e-12);
+  EXPECT_NEAR(larger.thickness, facts.thickness, k_rounding);
+  EXPECT_NEAR(larger.box_fill, facts.box_fill, k_rounding);
+  EXPECT_NEAR(larger.flat_share, facts.flat_share, k_rounding);
   const Eigen::Matrix3d rotation = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   const ShapeFacts turned = shape_facts(moved(box, rotation, 1.0));
   EXPECT_EQ(turned.aligned_share, 0.0);
-  EXPECT_NEAR(turned.flat_share, facts.flat_share, 1e-12);
+  EXPECT_NEAR(turned.flat_share, facts.flat_share, k_rounding);
 }
 
 TEST(ShapeFacts, AnOpenMeshHasNoVolumeAndNoGenus) {

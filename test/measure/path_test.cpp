@@ -11,6 +11,10 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_sampled_shift = 1e-2;   // steps; the largest difference is 5e-6
+constexpr double k_slope_left = 1e-4;      // what the slopes beside the step leave after the halvings
+constexpr double k_work_rounding = 1e-12;  // of a sum along the path
+
 constexpr double k_rounding = 16 * std::numeric_limits<double>::epsilon();
 constexpr double k_full_angle = 2.0 * std::numbers::pi;
 
@@ -62,8 +66,8 @@ TEST(Lag, NeedsAnIdealThatVaries) {
     }
     return values;
   };
-  EXPECT_FALSE(lag(wobble(5e-3, 0.0), wobble(5e-3, 3.0), 10));             // 3e-7
-  EXPECT_NEAR(*lag(wobble(2e-2, 0.0), wobble(2e-2, 3.0), 10), 3.0, 1e-2);  // 5e-6
+  EXPECT_FALSE(lag(wobble(5e-3, 0.0), wobble(5e-3, 3.0), 10));                        // 3e-7
+  EXPECT_NEAR(*lag(wobble(2e-2, 0.0), wobble(2e-2, 3.0), 10), 3.0, k_sampled_shift);  // 5e-6
 }
 
 TEST(Lag, IsNotReadFromAConstant) {
@@ -88,7 +92,7 @@ TEST(Jump, TellsADiscontinuityFromASlope) {
     step.push_back(stepped(progress.back()));
   }
   EXPECT_NEAR(largest_jump(progress, slope, steep, 3, k_halvings), 0.1 / 4096.0, k_rounding * 100);
-  EXPECT_NEAR(largest_jump(progress, step, stepped, 3, k_halvings), 0.25, 1e-4);
+  EXPECT_NEAR(largest_jump(progress, step, stepped, 3, k_halvings), 0.25, k_slope_left);
   EXPECT_THROW(largest_jump(progress, {}, stepped, 3, 3), BadArgument);
   // More candidates than intervals, and nothing that changes.
   const std::vector<Eigen::Vector3d> same(2, Eigen::Vector3d(1, 2, 3));
@@ -138,9 +142,9 @@ TEST(LoopWork, CountsTheTorqueOfARotation) {
   const std::vector<Eigen::Vector3d> torques(poses.size(), torque);
   const std::vector<Eigen::Vector3d> none(poses.size(), Eigen::Vector3d::Zero());
   const double expected = std::abs(torque.dot(axis)) / torque.norm();
-  EXPECT_NEAR(*loop_work(none, torques, poses, {0.5, -0.25, 2.0}), expected, 1e-12);
+  EXPECT_NEAR(*loop_work(none, torques, poses, {0.5, -0.25, 2.0}), expected, k_work_rounding);
   // The reference point does not move, so the force does no work.
-  EXPECT_NEAR(*loop_work(torques, torques, poses, {0.5, -0.25, 2.0}), expected, 1e-12);
+  EXPECT_NEAR(*loop_work(torques, torques, poses, {0.5, -0.25, 2.0}), expected, k_work_rounding);
   // A point off the axis moves along a circle; a force along it adds its work to the torque's.
   const Eigen::Vector3d off(1.5, 0.75, 2.0);
   std::vector<Eigen::Vector3d> along;
@@ -154,7 +158,7 @@ TEST(LoopWork, CountsTheTorqueOfARotation) {
   const double force_work = length * std::cos(k_full_angle / 80.0);
   const double torque_work = k_full_angle * torque.dot(axis);
   EXPECT_NEAR(*loop_work(along, torques, poses, off),
-              (force_work + torque_work) / (length + k_full_angle * torque.norm()), 1e-12);
+              (force_work + torque_work) / (length + k_full_angle * torque.norm()), k_work_rounding);
 }
 
 }  // namespace

@@ -15,6 +15,11 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_decibel_rounding = 1e-9;  // of a logarithm times 20
+constexpr double k_leakage_of_window =
+    0.01;  // the window spreads a tone over three lines, whose thresholds differ by some percent
+constexpr double k_rounding = 1e-12;  // of a mean over the series
+
 using perception::k_felt_mass;
 using perception::k_full_force;
 
@@ -46,11 +51,12 @@ TEST(Perception, GainErrorOfTenPercentScoresOne) {
   auto measured = ideal;
   for (auto& force : measured) force *= 1.1;
   const auto scores = perceptual_scores(ideal, measured, 1.0, k_rate).value();
-  EXPECT_NEAR(scores.magnitude, 1.0, 1e-12);
-  EXPECT_NEAR(scores.direction, 0.0, 1e-12);
+  EXPECT_NEAR(scores.magnitude, 1.0, k_rounding);
+  EXPECT_NEAR(scores.direction, 0.0, k_rounding);
   EXPECT_LT(scores.vibration, 0.05);
   EXPECT_LT(scores.jump, 0.01);
-  EXPECT_NEAR(perceptual_scores(ideal, measured, 1.1, k_rate)->magnitude, 0.0, 1e-12) << "a fitted gain absorbs it";
+  EXPECT_NEAR(perceptual_scores(ideal, measured, 1.1, k_rate)->magnitude, 0.0, k_rounding)
+      << "a fitted gain absorbs it";
 }
 
 TEST(Perception, TurnOfThirtyDegreesScoresOne) {
@@ -62,8 +68,8 @@ TEST(Perception, TurnOfThirtyDegreesScoresOne) {
     force = std::cos(angle) * force + std::sin(angle) * axis.cross(force);
   }
   const auto scores = perceptual_scores(ideal, measured, 1.0, k_rate).value();
-  EXPECT_NEAR(scores.direction, 1.0, 1e-12);
-  EXPECT_NEAR(scores.magnitude, 0.0, 1e-12);
+  EXPECT_NEAR(scores.direction, 1.0, k_rounding);
+  EXPECT_NEAR(scores.magnitude, 0.0, k_rounding);
   EXPECT_LT(scores.vibration, 0.5) << "a slow turn is no vibration";
 }
 
@@ -83,14 +89,15 @@ TEST(Perception, BuzzOfHundredHertzAtItsThresholdScoresOne) {
   const auto scores = perceptual_scores(ideal, measured, 1.0, k_rate).value();
   // A piece of 250 ms has lines 4 Hz apart; the window spreads the tone over three, whose thresholds differ by some
   // percent.
-  EXPECT_NEAR(scores.vibration, 1.0, 0.01);
+  EXPECT_NEAR(scores.vibration, 1.0, k_leakage_of_window);
   EXPECT_LT(scores.magnitude, 0.2) << "far below what is noticed as a change of force";
   EXPECT_LT(scores.direction, 0.1);
 }
 
 TEST(Perception, ThresholdHasThePublishedShape) {
   EXPECT_DOUBLE_EQ(vibration_threshold(250.0), perception::k_least_displacement);
-  EXPECT_NEAR(20.0 * std::log10(vibration_threshold(62.5) / vibration_threshold(125.0)), 12.0, 1e-9) << "per octave";
+  EXPECT_NEAR(20.0 * std::log10(vibration_threshold(62.5) / vibration_threshold(125.0)), 12.0, k_decibel_rounding)
+      << "per octave";
   EXPECT_DOUBLE_EQ(vibration_threshold(10.0), vibration_threshold(40.0)) << "flat below";
   EXPECT_GT(vibration_threshold(500.0), vibration_threshold(250.0));
 }
@@ -108,7 +115,7 @@ TEST(Perception, VibrationOutsideOfTheBandIsNotScored) {
 TEST(Perception, JumpOfTenPercentScoresOne) {
   std::vector<Eigen::Vector3d> ideal(k_steps, Eigen::Vector3d(0.0, 2.0, 0.0)), measured = ideal;
   for (std::size_t k = 600; k < k_steps; ++k) measured[k] += Eigen::Vector3d(0.0, 0.2, 0.0);
-  EXPECT_NEAR(perceptual_scores(ideal, measured, 1.0, k_rate)->jump, 1.0, 1e-12);
+  EXPECT_NEAR(perceptual_scores(ideal, measured, 1.0, k_rate)->jump, 1.0, k_rounding);
 }
 
 TEST(Perception, PoolsAsRootOfSquares) {

@@ -14,6 +14,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_listed_digits = 1e-4;  // of values that the list keeps in four digits
+
 TEST(Collection, HasAHundredClosedObjectsOfEveryKindAndSize) {
   std::map<std::string, std::size_t> kinds;
   std::size_t closed = 0;
@@ -74,8 +76,8 @@ TEST(Collection, IsWhatTheManifestSays) {
     EXPECT_EQ(mesh.topology().components, object.shells) << object.name;
     const ShapeFacts facts = shape_facts(mesh);
     EXPECT_EQ(facts.genus, object.genus) << object.name;
-    EXPECT_NEAR(facts.box_aspect, object.box_aspect, 1e-4) << object.name;
-    EXPECT_NEAR(facts.box_fill, object.box_fill, 1e-4) << object.name;
+    EXPECT_NEAR(facts.box_aspect, object.box_aspect, k_listed_digits) << object.name;
+    EXPECT_NEAR(facts.box_fill, object.box_fill, k_listed_digits) << object.name;
     EXPECT_EQ(name_of(kind_of(facts)), object.kind == "scan" ? "organic" : object.kind) << object.name;
     ++seen;
   }

@@ -16,6 +16,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_cone_tessellation = 2e-3;  // of a centroid
+constexpr double k_fine_tessellation = 1e-3;  // relative: with ten thousands of triangles
+
 using ::testing::HasSubstr;
 
 constexpr double k_pi = std::numbers::pi;
@@ -175,7 +178,7 @@ TEST(BumpySphere, ConvergesToTheQuadratureOfItsRadius) {
   volume *= 4.0 * k_pi / (k_rows * k_columns);
   EXPECT_NEAR(order_of([&](std::size_t n) { return volume - make_bumpy_sphere(shape, n).volume(); }), 1.0,
               2.0 * k_order_margin);
-  EXPECT_NEAR(make_bumpy_sphere(shape, 32000).volume() / volume, 1.0, 1e-3);
+  EXPECT_NEAR(make_bumpy_sphere(shape, 32000).volume() / volume, 1.0, k_fine_tessellation);
 }
 
 // Sums of a few thousand terms near 1.
@@ -206,8 +209,9 @@ TEST(Shapes, LieInTheStatedFrame) {
   const Mesh cone = make_cone({.radius = 1.3, .height = 2.6}, 5000);
   EXPECT_EQ(cone.box().min().z(), 0.0);
   EXPECT_EQ(cone.box().max().z(), 2.6);
-  EXPECT_NEAR(cone.centroid().z(), 2.6 / 4.0, 2e-3);  // that of the ideal cone, of which the inscribed one lacks a part
-  EXPECT_NEAR(cone.centroid().head<2>().norm(), 0.0, 1e-3);
+  EXPECT_NEAR(cone.centroid().z(), 2.6 / 4.0,
+              k_cone_tessellation);  // that of the ideal cone, of which the inscribed one lacks a part
+  EXPECT_NEAR(cone.centroid().head<2>().norm(), 0.0, k_fine_tessellation);
   const Mesh cylinder = make_cylinder({.radius = 0.9, .height = 3.1}, 5000);
   EXPECT_EQ(cylinder.box().min().z(), -1.55);
   EXPECT_EQ(cylinder.box().max().z(), 1.55);

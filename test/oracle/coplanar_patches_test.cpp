@@ -14,6 +14,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_near_rounding = 1e-15;  // of the length of a unit vector
+
 using detail::CloseVolume;
 using detail::CoplanarPatches;
 using Eigen::Vector3d;
@@ -26,7 +28,7 @@ std::uint32_t check_volume(const Mesh& mesh, const Tree& tree, const CoplanarPat
   const auto triangles = tree.mesh_triangle().subspan(first, count);
   EXPECT_EQ(smallest_index, *std::min_element(triangles.begin(), triangles.end()));
   if (!plane) return 0;
-  EXPECT_NEAR(plane->normal.norm(), 1.0, 1e-15);
+  EXPECT_NEAR(plane->normal.norm(), 1.0, k_near_rounding);
   EXPECT_GT(plane->upper, plane->lower);
   EXPECT_LE(plane->upper - plane->lower, 1e-14 * (mesh.diagonal() + mesh.center().norm()));
   for (const std::uint32_t t : triangles) {

@@ -16,6 +16,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_below_width = 1e-9;          // below the width of a needle by orders of magnitude
+constexpr double k_tessellation_of_gap = 1e-5;  // of the gap of round bodies, from their tessellation
+
 using distance_truth::brute_force;
 using Eigen::Vector3d;
 using shapes::Generator;
@@ -142,10 +145,10 @@ TEST(DistanceOracle, OfNeedlesThatCrossFewAreMeasured) {
   pose.R << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
   pose.t = Vector3d(1.0 + 0.5 * k_width, 0.0, k_gap);
   // One needle's base, `width` wide, runs over the ridges' middle.
-  EXPECT_NEAR(query.distance(pose).distance, k_gap - k_width, 1e-9);
+  EXPECT_NEAR(query.distance(pose).distance, k_gap - k_width, k_below_width);
   EXPECT_LE(query.counts().triangles, std::uint64_t{k_needles} * k_needles);
   const Pose back = pose.inverse();
-  EXPECT_NEAR(query.distance(back).distance, k_gap - k_width, 1e-9);
+  EXPECT_NEAR(query.distance(back).distance, k_gap - k_width, k_below_width);
 }
 
 TEST(DistanceOracle, OfRodsThatCrossFewNodesAreExpanded) {
@@ -164,7 +167,7 @@ TEST(DistanceOracle, OfRodsThatCrossFewNodesAreExpanded) {
     const Vector3d along = shapes::uniform(generator, -0.7, 0.7) * Vector3d::UnitZ() +
                            shapes::uniform(generator, -0.7, 0.7) * pose.R.col(2);
     pose.t = along + (2.0 * k_radius + 0.02) * across;
-    EXPECT_NEAR(query.distance(pose, false).distance, 0.02, 1e-5);
+    EXPECT_NEAR(query.distance(pose, false).distance, 0.02, k_tessellation_of_gap);
     far.nodes += query.counts().nodes;
     far.triangles += query.counts().triangles;
     pose.t = along + (2.0 * k_radius + 1e-5) * across;

@@ -16,6 +16,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_reach_of_both = 3.0;  // the radii of both bodies, with room
+
 using distance_truth::brute_force;
 using distance_truth::corners_of;
 using Eigen::Vector3d;
@@ -205,7 +207,7 @@ TEST(DistanceOracle, PrunesBodiesFarApart) {
     Pose pose = shapes::random_pose(generator, 0.0);
     pose.t = far * shapes::unit_vector(generator);
     const Separation d = query.distance(pose);
-    EXPECT_NEAR(d.distance, far, 3.0);
+    EXPECT_NEAR(d.distance, far, k_reach_of_both);
     // Of 26 million pairs. Leaves are compared in floats, which prune less as the distance grows.
     EXPECT_LT(query.counts().triangles, 30000u) << "far " << far;
     EXPECT_LT(query.counts().nodes, 30000u) << "far " << far;

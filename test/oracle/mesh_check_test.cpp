@@ -11,6 +11,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_plane_rounding = 1e-12;  // of a point in a plane
+
 /// Several meshes as one.
 Mesh joined(const std::vector<Mesh>& parts) {
   std::vector<Eigen::Vector3d> vertices;
@@ -135,7 +137,7 @@ TEST(MeshCheck, PlacesLieOnBothTriangles) {
     for (const std::uint32_t t : {contact.a, contact.b}) {
       const auto corner = [&](std::size_t k) { return soup.vertices()[soup.triangles()[t][k]]; };
       const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
-      EXPECT_NEAR(normal.dot(contact.point - corner(0)), 0.0, 1e-12);
+      EXPECT_NEAR(normal.dot(contact.point - corner(0)), 0.0, k_plane_rounding);
     }
   }
 }

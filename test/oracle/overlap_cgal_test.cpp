@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <filesystem>
 
 #include <cgal_overlap.h>
 #include <gtest/gtest.h>
 
-#include <sixdof/models/manifest.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/oracle/candidates.h>
 #include <sixdof/oracle/overlap.h>
@@ -62,19 +60,12 @@ TEST(OverlapAgainstCorefinement, AHundredThousandTriangles) {
   expect_agreement(bodies::bumpy_torus(320, 160), bodies::bumpy_torus(319, 157, 0.2), 1, 43);
 }
 
-/// Scans: triangles of all sizes and shapes. The second is scaled to the size of the first.
+/// Scans, which the fixture real_models fetches: triangles of all sizes and shapes. The second is scaled to the size of
+/// the first.
 TEST(OverlapAgainstCorefinement, ScannedObjects) {
-  const auto is_here = [](const char* name) {
-    return std::ranges::any_of(fetched_models(), [&](const FetchedModel& model) {
-      return model.name == name && std::filesystem::exists(model_cache() / model.file);
-    });
-  };
   const std::pair<const char*, const char*> pairs[] = {
       {"knot", "bear"}, {"elephant", "knot"}, {"elephant", "elephant"}};
   for (const auto& [name_a, name_b] : pairs) {
-    for (const char* name : {name_a, name_b}) {
-      if (!is_here(name)) GTEST_SKIP() << name << " could not be downloaded: models/fetch " << name;
-    }
     const Mesh a = load_model(name_a), b = load_model(name_b);
     std::vector<Vector3d> scaled = b.vertices();
     for (Vector3d& p : scaled) p *= a.diagonal() / b.diagonal();

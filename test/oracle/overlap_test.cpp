@@ -15,6 +15,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_curvature_rounding = 1e-14;  // of a sum over the edges of the overlap
+
 using bodies::Body;
 using Eigen::Vector3d;
 
@@ -224,8 +226,8 @@ TEST(Overlap, CurvatureOfBoxesInClosedForm) {
   const Pose X_BA{Eigen::Matrix3d::Identity(), edges};
   const double expected = 2.0 * (u.x() * u.y() * edges.z() + u.y() * u.z() * edges.x() + u.z() * u.x() * edges.y());
   OverlapQuery query(a.solid, b.solid), exchanged(b.solid, a.solid);
-  EXPECT_NEAR(curved(query, a, b, X_AB, u).curvature, expected, 1e-14);
-  EXPECT_NEAR(curved(exchanged, b, a, X_BA, u).curvature, expected, 1e-14);
+  EXPECT_NEAR(curved(query, a, b, X_AB, u).curvature, expected, k_curvature_rounding);
+  EXPECT_NEAR(curved(exchanged, b, a, X_BA, u).curvature, expected, k_curvature_rounding);
   EXPECT_EQ(curved(query, a, b, X_AB, Vector3d::Zero()).curvature, 0.0);
 }
 

@@ -14,6 +14,8 @@
 namespace sixdof::detail {
 namespace {
 
+constexpr double k_float_rounding = 1e-5;  // relative to the radius: of corners in floats
+
 /// The least squared distance of a corner from p, one by one.
 double least_squared(const Tree& tree, const Eigen::Vector3d& p) {
   double least = std::numeric_limits<double>::infinity();
@@ -45,7 +47,8 @@ TEST(FindCorner, FindsACornerAboutAsCloseAsTheClosest) {
           nearest = std::min(nearest, (c - tree.center() - point).norm());
         }
         EXPECT_LE(nearest, 1e-6 * tree.radius());
-        EXPECT_NEAR((point - p).norm(), std::sqrt(static_cast<double>(corner.squared)), 1e-5 * tree.radius());
+        EXPECT_NEAR((point - p).norm(), std::sqrt(static_cast<double>(corner.squared)),
+                    k_float_rounding * tree.radius());
         // Nothing is closer than that by more than the tolerance.
         Corner closer = corner;
         closer.squared = static_cast<float>(0.999 * least);
@@ -67,7 +70,8 @@ TEST(FindCorner, OfFewLeavesFindsOneThatIsNotMuchFarther) {
     Corner of_all{1e30f, 0, 0, {}}, of_few = of_all;
     ASSERT_TRUE(find_corner(tree, at, CornerEffort{.leaf_areas = 0.0f}, of_all, stack));
     ASSERT_TRUE(find_corner(tree, at, CornerEffort{.leaf_areas = 0.0f, .most_leaves = 2}, of_few, stack));
-    EXPECT_NEAR(static_cast<double>(of_all.squared), least_squared(tree, p), 1e-5 * tree.radius() * tree.radius());
+    EXPECT_NEAR(static_cast<double>(of_all.squared), least_squared(tree, p),
+                k_float_rounding * tree.radius() * tree.radius());
     EXPECT_GE(of_few.squared, of_all.squared);
     sum += std::sqrt(static_cast<double>(of_few.squared));
     sum_of_all += std::sqrt(static_cast<double>(of_all.squared));

@@ -8,6 +8,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_rounding = 1e-14;  // of the volume of a box
+
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -39,8 +41,8 @@ TEST(Shells, AreWhatEdgesConnect) {
   const Shell &outer = shells.all[0], &inner = shells.all[1], &copy = shells.all[2];
   EXPECT_TRUE(outer.closed && inner.closed && !copy.closed);
   EXPECT_TRUE(!outer.doubled && !inner.doubled && copy.doubled);
-  EXPECT_NEAR(outer.volume, 8.0 * 1.0 * 1.1 * 1.2, 1e-14);
-  EXPECT_NEAR(inner.volume, 8.0 * 0.3 * 0.4 * 0.5, 1e-14);
+  EXPECT_NEAR(outer.volume, 8.0 * 1.0 * 1.1 * 1.2, k_rounding);
+  EXPECT_NEAR(inner.volume, 8.0 * 0.3 * 0.4 * 0.5, k_rounding);
   EXPECT_EQ(copy.first_triangle, 24u);
   EXPECT_EQ(copy.triangles, 11u);
 }

@@ -26,6 +26,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_tessellation = 1e-5;      // of a distance of 0.005
+constexpr double k_height_rounding = 2e-15;  // rounding of the least height, of order 1
+
 using detail::CloseBounds;
 using detail::CloseVolume;
 using detail::NodePair;
@@ -221,7 +224,7 @@ TEST(CloseSearch, AScaledCopyInTheCentreTakesPairsAlongTheFacesThatTie) {
     const Mesh b = scaled(a, ratio);
     const DistanceOracle oracle(a, b);
     DistanceQuery query(oracle);
-    EXPECT_NEAR(query.distance(Pose{}).distance, (1.0 - ratio) * least, 2e-15);
+    EXPECT_NEAR(query.distance(Pose{}).distance, (1.0 - ratio) * least, k_height_rounding);
     EXPECT_LE(work_of(query), most_work);
   }
 }
@@ -318,7 +321,7 @@ TEST(CloseSearch, SmallPartsOfLargeBodiesTakeFewPairs) {
   const Pose pose = ball_to_ball(0.025);
   const DistanceOracle balls(ball, ball);
   const Separation truth = DistanceQuery(balls).distance(pose);
-  EXPECT_NEAR(truth.distance, std::hypot(0.025, 0.001) - 0.02, 1e-5);  // facets lie up to 6e-6 inside
+  EXPECT_NEAR(truth.distance, std::hypot(0.025, 0.001) - 0.02, k_tessellation);  // facets lie up to 6e-6 inside
   const DistanceOracle oracle(both, both);
   DistanceQuery query(oracle);
   const Separation d = query.distance(pose);

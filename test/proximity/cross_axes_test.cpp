@@ -9,6 +9,8 @@
 namespace sixdof::detail {
 namespace {
 
+constexpr double k_float_rounding = 1e-6;  // of unit vectors in floats
+
 using Eigen::Vector3d;
 
 Vector3d vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
@@ -21,10 +23,10 @@ TEST(CrossAxes, AreAcrossAnAxisOfEachFrame) {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
         const Vector3d in_a = vector_of(axes.in_a[3 * i + j]);
-        EXPECT_NEAR(in_a.norm(), 1.0, 1e-6);
-        EXPECT_NEAR(in_a[i], 0.0, 1e-6);
-        EXPECT_NEAR(in_a.dot(R.col(j)), 0.0, 1e-6);
-        EXPECT_NEAR((R * vector_of(axes.in_b[3 * i + j]) - in_a).norm(), 0.0, 1e-6);
+        EXPECT_NEAR(in_a.norm(), 1.0, k_float_rounding);
+        EXPECT_NEAR(in_a[i], 0.0, k_float_rounding);
+        EXPECT_NEAR(in_a.dot(R.col(j)), 0.0, k_float_rounding);
+        EXPECT_NEAR((R * vector_of(axes.in_b[3 * i + j]) - in_a).norm(), 0.0, k_float_rounding);
       }
     }
   }
@@ -34,8 +36,8 @@ TEST(CrossAxes, AreZeroWhereAxesAreParallel) {
   const CrossAxes axes(Eigen::AngleAxisd(1e-4, Vector3d::UnitZ()).toRotationMatrix());
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      EXPECT_NEAR(vector_of(axes.in_a[3 * i + j]).norm(), i == j ? 0.0 : 1.0, 1e-6) << i << j;
-      EXPECT_NEAR(vector_of(axes.in_b[3 * i + j]).norm(), i == j ? 0.0 : 1.0, 1e-6) << i << j;
+      EXPECT_NEAR(vector_of(axes.in_a[3 * i + j]).norm(), i == j ? 0.0 : 1.0, k_float_rounding) << i << j;
+      EXPECT_NEAR(vector_of(axes.in_b[3 * i + j]).norm(), i == j ? 0.0 : 1.0, k_float_rounding) << i << j;
     }
   }
 }

@@ -9,11 +9,20 @@
 
 namespace sixdof {
 
+/// What a bound claims. No kind fails where an algorithm becomes better.
 enum class Kind {
-  gate,     ///< Not above the bound, and not below half of it (then the table is to be tightened).
-  records,  ///< A known weakness, or a value that is neither good nor bad, such as a gain: a change in either direction
-            ///< fails.
+  characterised,  ///< What the code reaches today, in two digits; no theory gives the number, `reason` only says what
+                  ///< limits it. Fails where the value is k_margin times as bad (largest_defect()).
+  required,       ///< A limit with a reason: rounding, zero, a value of the paper. Fails above it.
+  scale,     ///< A gain, of which no value is better; a change of a method's stiffness is news to its users all the
+             ///< same. Fails outside a factor of k_scale_margin on both sides.
+  weakness,  ///< Known to be as bad as can be, so that no bound could fail. Nothing is held.
 };
+
+std::string_view to_string(Kind kind);
+
+inline constexpr double k_margin = 2.0;
+inline constexpr double k_scale_margin = 1.5;
 
 /// An algorithm with its default settings, or with some parameters changed.
 struct Subject {
@@ -29,32 +38,25 @@ struct Bound {
   std::string_view scenario;
   std::string_view algorithm;  ///< See subject().
   IdealLaw law;
-  std::string_view measure;  ///< As in lib/sixdof/measure/metrics.h; absolute values are compared.
-  double bound;              ///< 0 means exactly zero.
+  std::string_view measure;  ///< As in lib/sixdof/measure/metrics.h.
+  double bound;              ///< Of the absolute value; of nu and gain of max(x, 1/x) - 1; of Kind::scale the gain.
   std::string_view reason;   ///< Why the value is not better.
-  Kind kind = Kind::gate;
+  Kind kind = Kind::characterised;
 };
 
-/// The one table, without algorithms that this build leaves out. A value above the bound fails. A value below half the
-/// bound fails too, unless the bound is at most k_rounding_bound.
+/// The one table, without algorithms that this build leaves out.
 std::span<const Bound> bounds();
 
-/// Up to here a bound means "rounding only", and a value far below it is not reported.
-inline constexpr double k_rounding_bound = 1e-6;
+/// The worst value that a measure can have; infinity if there is no limit.
+double worst_value(std::string_view measure);
+
+/// From where on a value fails, as Bound::bound is measured: k_margin times a characterised one, but no farther than
+/// half-way to the worst value.
+double largest_defect(const Bound& bound);
+
+bool holds(const Bound& bound, double value);
 
 /// Steps of every gate's recording: a multiple of four (Scenario::steps), 5 ms apart at one second for a path.
 inline constexpr std::size_t k_gate_steps = 200;
-
-/// Relative change of a recorded value that is accepted: the table has four digits.
-inline constexpr double k_record_tolerance = 1e-3;
-
-enum class Verdict {
-  holds,
-  worse,      ///< Above the bound.
-  too_loose,  ///< Below half of the bound: the table is to be tightened.
-  changed,    ///< Not the recorded value.
-};
-
-Verdict judge(double value, double bound, Kind kind = Kind::gate);
 
 }  // namespace sixdof

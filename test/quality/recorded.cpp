@@ -17,10 +17,10 @@ const Recorded& recorded(const std::string& scenario, const std::string& algorit
     register_all_algorithms(registry);
     const auto& [name, parameters] = subject(algorithm);
     const Algorithm& found = registry.find(name);
-    Settings settings = found.settings();
-    settings.set_all(parameters);
+    r.settings = found.settings();
+    r.settings.set_all(parameters);
     r.scenario = make_scenario(scenario);
-    r.query = found.prepare(r.scenario->a(), r.scenario->b(), settings);
+    r.query = found.prepare(r.scenario->a(), r.scenario->b(), r.settings);
     r.recording = record(*r.scenario, *r.query, k_gate_steps);
   }
   return r;

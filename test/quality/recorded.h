@@ -13,6 +13,7 @@ namespace sixdof {
 /// An algorithm's responses along a scenario's path, with what made them.
 struct Recorded {
   std::unique_ptr<Scenario> scenario;
+  Settings settings;
   std::unique_ptr<Query> query;
   Recording recording;
 };

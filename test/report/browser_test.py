@@ -341,8 +341,6 @@ class Page(unittest.TestCase):
     def test_file_asks_no_network_and_is_small(self):
         self.assertLess(self.page.stat().st_size, 10 << 20)
         self.open()
-        paint = self.browser.run("performance.getEntriesByName('first-contentful-paint').map(entry => entry.startTime)[0] ?? 0")
-        self.assertLess(paint, 20000, "ten times the target, since other work may have the processor")
         asked = self.browser.run("performance.getEntriesByType('resource').map(entry => entry.name)")
         self.assertEqual(asked, [])
 

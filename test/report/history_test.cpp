@@ -18,6 +18,8 @@
 namespace sixdof::report {
 namespace {
 
+constexpr double k_rounding = 1e-12;  // of one quotient
+
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -90,7 +92,7 @@ TEST_F(HistoryFolder, AnotherMachineIsNoChange) {
     if (std::holds_alternative<double>(table.rows[k][k_history_change])) changed.push_back(k);
   }
   ASSERT_THAT(changed, ElementsAre(9));
-  EXPECT_NEAR(test::number_in(table, table.rows[9], "change"), 2.0, 1e-12);
+  EXPECT_NEAR(test::number_in(table, table.rows[9], "change"), 2.0, k_rounding);
   EXPECT_EQ(test::text_in(table, table.rows[5], "machine"), "machine 1");
   EXPECT_EQ(test::text_in(table, table.rows[6], "machine"), "machine 2");
 }

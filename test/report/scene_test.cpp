@@ -17,6 +17,8 @@
 namespace sixdof::report {
 namespace {
 
+constexpr double k_rounding = 1e-12;  // of one product
+
 using test::Json;
 
 TEST(DrawnMesh, LargeMeshHasFewTrianglesAndTheSameExtent) {
@@ -89,7 +91,7 @@ TEST(Scenes, OutlierOfARowHasItsPoseMeshesAndResponse) {
   EXPECT_EQ(scene.moments.at(0).pose, pose);
   EXPECT_EQ(scene.moments.at(0).ideal_force[1], 1.0);
   // Half a turn about x takes the point over B's origin below it.
-  EXPECT_NEAR(scene.reference[2], -1.0, 1e-12);
+  EXPECT_NEAR(scene.reference[2], -1.0, k_rounding);
   EXPECT_EQ(scenes.scenes[2].moments.at(0).pose[4], 4.0);
 }
 

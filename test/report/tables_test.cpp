@@ -14,6 +14,10 @@
 namespace sixdof::report {
 namespace {
 
+constexpr double k_degree_rounding = 1e-9;  // of an angle in degrees
+constexpr double k_quantile = 1e-3;         // Student's t is given in six digits, times the exponential of it
+constexpr double k_rounding = 1e-12;        // of exponentials of means of logarithms
+
 using test::Json;
 using test::lines_with;
 using test::number_in;
@@ -41,10 +45,10 @@ TEST(TimesTable, MeanOverObjectsIsGeometricAndOverTheSameObjects) {
   const auto means = lines_with(table, {{"pair", k_all_objects}, {"statistic", "mean"}});
   ASSERT_EQ(means.size(), 1u) << "fcl-rss has one of the two objects";
   EXPECT_EQ(text_in(table, means[0], "algorithm"), "exact");
-  EXPECT_NEAR(number_in(table, means[0], "time_us"), 2.0, 1e-12);
+  EXPECT_NEAR(number_in(table, means[0], "time_us"), 2.0, k_rounding);
   const double spread = std::exp(std::sqrt(2.0) * std::log(2.0));  // both logarithms are log 2 from their mean
-  EXPECT_NEAR(number_in(table, means[0], "high_us"), 2.0 * spread, 1e-12);
-  EXPECT_NEAR(number_in(table, means[0], "low_us"), 2.0 / spread, 1e-12);
+  EXPECT_NEAR(number_in(table, means[0], "high_us"), 2.0 * spread, k_rounding);
+  EXPECT_NEAR(number_in(table, means[0], "low_us"), 2.0 / spread, k_rounding);
 }
 
 TEST(TimesTable, RepetitionsAreOneLineWithTheirInterval) {
@@ -54,10 +58,10 @@ TEST(TimesTable, RepetitionsAreOneLineWithTheirInterval) {
   const DataTable table = times_table(results, row_groups(results));
   const auto mean = lines_with(table, {{"statistic", "mean"}});
   ASSERT_EQ(mean.size(), 1u);
-  EXPECT_NEAR(number_in(table, mean[0], "time_us"), 2.0, 1e-12) << "geometric mean";
+  EXPECT_NEAR(number_in(table, mean[0], "time_us"), 2.0, k_rounding) << "geometric mean";
   // Student's t of two degrees of freedom at 97.5 % is 4.30265; the logarithms are 0, 0 and 3 log 2.
   const double half = 4.30265 * std::sqrt(3.0 * std::pow(std::log(2.0), 2) / 3.0);
-  EXPECT_NEAR(number_in(table, mean[0], "high_us"), 2.0 * std::exp(half), 1e-3);
+  EXPECT_NEAR(number_in(table, mean[0], "high_us"), 2.0 * std::exp(half), k_quantile);
 }
 
 TEST(TimesTable, LongestAndOtherStatisticsHaveTheirPoses) {
@@ -179,7 +183,7 @@ TEST(SignalsTable, OutlierOfOneStepIsDrawn) {
       at = number_in(table, line, "time_ms");
     }
   }
-  EXPECT_NEAR(largest, 30.0, 1e-9);
+  EXPECT_NEAR(largest, 30.0, k_degree_rounding);
   EXPECT_EQ(at, 4321.0);
   const auto magnitudes = lines_with(table, {{"signal", "force, magnitude"}, {"curve", "ideal"}});
   EXPECT_EQ(number_in(table, magnitudes.at(0), "value"), 1.0) << "over its own largest";

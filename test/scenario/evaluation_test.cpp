@@ -18,6 +18,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_slope_left = 1e-3;  // what a slope leaves of a jump after the halvings
+
 using test::IdealQuery;
 
 constexpr double k_rounding = 1e-9;
@@ -119,7 +121,7 @@ TEST(Evaluation, JumpsAreFoundBetweenSteps) {
     if (progress > 0.3141) r.force *= 0.8;
   });
   const auto jump = by_name(evaluate_jumps(*scenario, step, record(*scenario, step, 100), IdealLaw::volume));
-  EXPECT_NEAR(jump.at("jump_F"), 0.2, 1e-3);
+  EXPECT_NEAR(jump.at("jump_F"), 0.2, k_slope_left);
 }
 
 TEST(SeriesFile, HoldsTheRecording) {

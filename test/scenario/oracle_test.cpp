@@ -11,6 +11,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_order_margin = 0.3;  // of an order from two tessellations
+constexpr double k_slope_error = 2e-3;  // relative: of a slope from a finite step
+
 std::unique_ptr<Scenario> with(const char* name, int facets, const char* round) {
   Settings settings = scenario_settings(name);
   settings.set("facets", std::to_string(facets));
@@ -63,7 +66,8 @@ TEST(IdealAgainstOracle, InscribedRoundPartsConvergeWithTheSquareOfTheFacets) {
   for (const char* name : {"Ia", "Ib", "II"}) {
     const Errors coarse = largest_errors(*with(name, 48, "inscribed"), 61);
     const Errors fine = largest_errors(*with(name, 96, "inscribed"), 61);
-    EXPECT_NEAR(order(coarse.volume, fine.volume), 2.0, 0.3) << name << ' ' << coarse.volume << ' ' << fine.volume;
+    EXPECT_NEAR(order(coarse.volume, fine.volume), 2.0, k_order_margin)
+        << name << ' ' << coarse.volume << ' ' << fine.volume;
     EXPECT_GT(order(coarse.force, fine.force), 1.5) << name << ' ' << coarse.force << ' ' << fine.force;
     EXPECT_LT(fine.volume, 0.02) << name;
   }
@@ -152,7 +156,7 @@ TEST(IdealAgainstOracle, ThePlateLiesOnTheBlock) {
         return (oracle.evaluate(pose, pose.t).volume - here) / step;
       };
       const double lift = scenario->ideal(IdealLaw::gradient, progress)->force.z();
-      EXPECT_NEAR(slope(k_step), -lift, 2e-3 * lift) << name << ' ' << progress;  // 96 facets in IV
+      EXPECT_NEAR(slope(k_step), -lift, k_slope_error * lift) << name << ' ' << progress;  // 96 facets in IV
       // A plate of 80 x 40; less than half of it is over the holes or, in III, beside the block.
       EXPECT_LT(slope(-k_step), -1000.0) << name << ' ' << progress;
     }

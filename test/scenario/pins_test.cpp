@@ -14,6 +14,19 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_angle_rounding = 1e-14;     // radians
+constexpr double k_clipped = 1e-10;            // of a polygon of this size, clipped
+constexpr double k_near_rounding = 1e-12;      // of lengths of order 10
+constexpr double k_two_digits = 0.01;          // of 19 %, in two digits
+constexpr double k_quadrature = 1e-5;          // of the integral over the lens, or of a slope
+constexpr double k_rounding_of_depth = 1e-13;  // of lengths of order 10
+constexpr double k_slope_error = 1e-3;         // relative: of slopes from finite steps
+constexpr double k_sum_rounding = 1e-9;        // of sums over the walls
+constexpr double k_tessellation = 2e-2;        // of the round pin
+constexpr double k_torque_rounding = 1e-8;     // of a volume of 4,000 times an arm of 20
+constexpr double k_torque_tessellation = 0.2;  // of the round pin, times the arm of 20
+constexpr double k_unit_rounding = 1e-15;      // of one sine
+
 using Loop = std::vector<Eigen::Vector2d>;
 constexpr double k_pi = std::numbers::pi;
 
@@ -75,13 +88,14 @@ TEST(RotatingPin, VolumeAgreesWithClipping) {
   for (const double s : {0.0, 0.013, 0.2, 0.5, 0.77, 1.0}) {
     const double phi = s * k_pi / 6.0;
     const auto ideal = scenario->ideal(IdealLaw::volume, s);
-    EXPECT_NEAR(ideal->penalty, outside(square(20.0), phi, Eigen::Vector2d::Zero()), 1e-10);
+    EXPECT_NEAR(ideal->penalty, outside(square(20.0), phi, Eigen::Vector2d::Zero()), k_clipped);
     EXPECT_EQ(ideal->force, Eigen::Vector3d::Zero());
-    EXPECT_NEAR(ideal->torque.z(), ideal->penalty, 1e-12);
+    EXPECT_NEAR(ideal->torque.z(), ideal->penalty, k_near_rounding);
     if (s == 0.0) continue;
     const double dv = slope([](double x) { return outside(square(20.0), x, Eigen::Vector2d::Zero()); }, phi);
-    EXPECT_NEAR(scenario->ideal(IdealLaw::gradient, s)->torque.z(), dv, 1e-5 * dv);
-    EXPECT_NEAR(scenario->ideal(IdealLaw::energy, s)->torque.z(), dv * ideal->penalty, 1e-5 * dv * ideal->penalty);
+    EXPECT_NEAR(scenario->ideal(IdealLaw::gradient, s)->torque.z(), dv, k_quadrature * dv);
+    EXPECT_NEAR(scenario->ideal(IdealLaw::energy, s)->torque.z(), dv * ideal->penalty,
+                k_quadrature * dv * ideal->penalty);
   }
 }
 
@@ -92,7 +106,7 @@ TEST(RotatingPin, DepthIsThatOfTheCorner) {
     for (const Eigen::Vector2d& p : transformed(square(20.0), s * k_pi / 6.0, Eigen::Vector2d::Zero())) {
       highest = std::max(highest, p.y());
     }
-    EXPECT_NEAR(scenario->ideal(IdealLaw::depth, s)->penalty, highest - 10.0, 1e-13);
+    EXPECT_NEAR(scenario->ideal(IdealLaw::depth, s)->penalty, highest - 10.0, k_rounding_of_depth);
   }
 }
 
@@ -130,22 +144,23 @@ TEST(RotatingPin, PoseRotatesTheSquarePinAboutItsHole) {
     EXPECT_EQ((pose * Eigen::Vector3d(7, 3, 0)).z(), 0.0);
     // Clockwise by phi from 180 degrees.
     const Eigen::Vector3d x = pose.R * Eigen::Vector3d::UnitX();
-    EXPECT_NEAR(std::atan2(x.y(), x.x()), k_pi - s * k_pi / 6.0, 1e-14);
+    EXPECT_NEAR(std::atan2(x.y(), x.x()), k_pi - s * k_pi / 6.0, k_angle_rounding);
   }
 }
 
 TEST(RotatingPin, PaperFormulasAreAsPrinted) {
   const auto scenario = make_scenario("III");
   const double phi = 0.6 * k_pi / 6.0;
-  EXPECT_NEAR(scenario->ideal(IdealLaw::paper_depth, 0.6)->penalty, std::sin(phi / 2.0) - 1.0, 1e-15);
-  EXPECT_NEAR(scenario->ideal(IdealLaw::paper_depth, 0.6)->torque.z(), 1.0 - std::sin(phi / 2.0), 1e-15);
+  EXPECT_NEAR(scenario->ideal(IdealLaw::paper_depth, 0.6)->penalty, std::sin(phi / 2.0) - 1.0, k_unit_rounding);
+  EXPECT_NEAR(scenario->ideal(IdealLaw::paper_depth, 0.6)->torque.z(), 1.0 - std::sin(phi / 2.0), k_unit_rounding);
   const double bulge = std::sqrt(2.0) * std::cos(k_pi / 4.0 - phi) - 1.0;
-  EXPECT_NEAR(scenario->ideal(IdealLaw::paper_volume, 0.6)->penalty, bulge * bulge / std::tan(phi / 2.0), 1e-14);
+  EXPECT_NEAR(scenario->ideal(IdealLaw::paper_volume, 0.6)->penalty, bulge * bulge / std::tan(phi / 2.0),
+              k_angle_rounding);
   // Proportionality to the true volume is lost by 19 % over the path.
   const auto ratio = [&](double s) {
     return scenario->ideal(IdealLaw::paper_volume, s)->penalty / scenario->ideal(IdealLaw::volume, s)->penalty;
   };
-  EXPECT_NEAR(1.0 - ratio(1.0) / ratio(1e-6), 0.19, 0.01);
+  EXPECT_NEAR(1.0 - ratio(1.0) / ratio(1e-6), 0.19, k_two_digits);
 }
 
 /// Every point of the pin's wall with its depth below the block's nearest face, on a grid.
@@ -232,9 +247,9 @@ TEST(OrbitingPins, VolumeAgreesWithClipping) {
     const double v_square = outside(square(20.0), 0.0, d);
     const double v_round = outside(circle, 0.0, d);
     const auto ideal = scenario->ideal(IdealLaw::volume, s);
-    EXPECT_NEAR(ideal->penalty, v_square + v_round, 2e-2);  // facets
+    EXPECT_NEAR(ideal->penalty, v_square + v_round, k_tessellation);  // facets
     EXPECT_TRUE(ideal->force.head<2>().isApprox(-(v_square + v_round) * d / 2.0, 1e-5));
-    EXPECT_NEAR(ideal->torque.z(), -20.0 * (v_round - v_square) * d.y() / 2.0, 0.2);
+    EXPECT_NEAR(ideal->torque.z(), -20.0 * (v_round - v_square) * d.y() / 2.0, k_torque_tessellation);
   }
 }
 
@@ -252,9 +267,15 @@ TEST(OrbitingPins, GradientIsTheSlopeOfClippedVolumes) {
     };
     const auto gradient = scenario->ideal(IdealLaw::gradient, s);
     const double scale = gradient->force.norm();
-    EXPECT_NEAR(gradient->force.x(), -slope([&](double x) { return volume({x, 0}, 0.0); }, 0.0), 1e-3 * scale);
-    EXPECT_NEAR(gradient->force.y(), -slope([&](double y) { return volume({0, y}, 0.0); }, 0.0), 1e-3 * scale);
-    EXPECT_NEAR(gradient->torque.z(), -slope([&](double t) { return volume({0, 0}, t); }, 0.0), 1e-3 * scale * 20.0);
+    EXPECT_NEAR(gradient->force.x(), -slope([&](double x) { return volume({x, 0}, 0.0); }, 0.0), k_slope_error * scale);
+    EXPECT_NEAR(gradient->force.y(), -slope([&](double y) { return volume({0, y}, 0.0); }, 0.0), k_slope_error * scale);
+    EXPECT_NEAR(gradient->torque.z(),
+                -slope(
+                    [&](double t) {
+                      return volume({0, 0}, t);
+                    },
+                    0.0),
+                k_slope_error * scale * 20.0);
   }
 }
 
@@ -270,15 +291,15 @@ TEST(OrbitingPins, ForcePointsBackToTheFit) {
     }
     for (const IdealLaw law : {IdealLaw::depth, IdealLaw::paper_depth}) {
       EXPECT_EQ(scenario->ideal(law, s)->torque, Eigen::Vector3d::Zero());
-      EXPECT_NEAR(scenario->ideal(law, s)->force.norm(), 2.0, 1e-12);
+      EXPECT_NEAR(scenario->ideal(law, s)->force.norm(), 2.0, k_near_rounding);
     }
     const auto printed = scenario->ideal(IdealLaw::paper_volume, s);
     EXPECT_EQ(printed->torque, Eigen::Vector3d::Zero());
-    EXPECT_NEAR(printed->force.norm(), printed->penalty, 1e-10);
+    EXPECT_NEAR(printed->force.norm(), printed->penalty, k_clipped);
     const auto volume = scenario->ideal(IdealLaw::volume, s);
     const Eigen::Vector2d shift = scenario->pose(s).t.head<2>();
     const double v_square = 40.0 * (400.0 - (20.0 - std::abs(shift.x())) * (20.0 - std::abs(shift.y())));
-    EXPECT_NEAR(volume->torque.z(), -20.0 * (volume->penalty - 2.0 * v_square) * shift.y() / 2.0, 1e-8);
+    EXPECT_NEAR(volume->torque.z(), -20.0 * (volume->penalty - 2.0 * v_square) * shift.y() / 2.0, k_torque_rounding);
     const auto gradient = scenario->ideal(IdealLaw::gradient, s);
     const auto energy = scenario->ideal(IdealLaw::energy, s);
     EXPECT_TRUE(energy->force.isApprox(volume->penalty * gradient->force, 1e-12));
@@ -286,7 +307,7 @@ TEST(OrbitingPins, ForcePointsBackToTheFit) {
     // As printed: no length, an empty integral, the whole disc instead of the part outside.
     const Eigen::Vector2d d = scenario->pose(s).t.head<2>().cwiseAbs();
     EXPECT_NEAR(scenario->ideal(IdealLaw::paper_volume, s)->penalty,
-                400.0 - (20.0 - d.x()) * (20.0 - d.y()) + k_pi * 100.0, 1e-10);
+                400.0 - (20.0 - d.x()) * (20.0 - d.y()) + k_pi * 100.0, k_clipped);
   }
 }
 
@@ -303,7 +324,7 @@ TEST(OrbitingPins, PaperIntegralIsAsPrinted) {
   }
   const Eigen::Vector2d d = scenario->pose(0.2).t.head<2>().cwiseAbs();
   EXPECT_NEAR(scenario->ideal(IdealLaw::paper_volume, 0.2)->penalty,
-              196.0 - (14.0 - d.x()) * (14.0 - d.y()) + k_pi * 100.0 - 4.0 * integral, 1e-5);
+              196.0 - (14.0 - d.x()) * (14.0 - d.y()) + k_pi * 100.0 - 4.0 * integral, k_quadrature);
 }
 
 /// Tractions of the scenario are those of its pins, at their positions.
@@ -315,8 +336,8 @@ TEST(OrbitingPins, TractionIsThatOfItsPins) {
     const PlaneWrench square = square_pin_traction(20.0, 40.0, 0.0, d, along_wall);
     const PlaneWrench round = round_pin_traction(10.0, 40.0, d, along_wall);
     EXPECT_TRUE(ideal->force.head<2>().isApprox(square.force() + round.force(), 1e-12));
-    EXPECT_NEAR(ideal->torque.z(), square.torque + 20.0 * (round.y - square.y), 1e-9);
-    EXPECT_NEAR(round.torque, 0.0, 1e-9);
+    EXPECT_NEAR(ideal->torque.z(), square.torque + 20.0 * (round.y - square.y), k_sum_rounding);
+    EXPECT_NEAR(round.torque, 0.0, k_sum_rounding);
     EXPECT_EQ(ideal->penalty, 2.0);
   }
 }

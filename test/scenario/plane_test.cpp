@@ -8,6 +8,9 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_quadrature = 1e-7;   // of an area from many strips
+constexpr double k_slope_error = 1e-8;  // of a slope from a central difference
+
 constexpr double k_pi = std::numbers::pi;
 constexpr double k_rounding = 1e-13;
 
@@ -34,7 +37,7 @@ TEST(Lens, AgreesWithStrips) {
       const double half2 = std::sqrt(r2 * r2 - y * y);
       area += std::max(0.0, std::min(half1, d + half2) - std::max(-half1, d - half2)) * 2.0 * r1 / strips;
     }
-    EXPECT_NEAR(lens_area(r1, r2, d), area, 1e-7) << d;  // midpoint rule with square roots at both ends
+    EXPECT_NEAR(lens_area(r1, r2, d), area, k_quadrature) << d;  // midpoint rule with square roots at both ends
   }
 }
 
@@ -42,7 +45,7 @@ TEST(Lens, ChordIsTheSlopeOfTheArea) {
   const double step = 1e-5;
   for (const double d : {0.45, 0.9, 1.3, 1.75}) {
     const double slope = (lens_area(0.7, 1.1, d + step) - lens_area(0.7, 1.1, d - step)) / (2.0 * step);
-    EXPECT_NEAR(lens_chord(0.7, 1.1, d), -slope, 1e-8) << d;
+    EXPECT_NEAR(lens_chord(0.7, 1.1, d), -slope, k_slope_error) << d;
   }
   EXPECT_EQ(lens_chord(0.7, 1.1, 0.3), 0.0);
   EXPECT_EQ(lens_chord(0.7, 1.1, 1.9), 0.0);

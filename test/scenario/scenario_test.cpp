@@ -12,6 +12,13 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_coarse_slope = 1e-4;     // of a slope from a finite step
+constexpr double k_near_rounding = 1e-12;   // of lengths of order 100
+constexpr double k_five_digits = 5e-6;      // of a published value in five digits
+constexpr double k_slope_error = 1e-6;      // of a slope from a central difference
+constexpr double k_torque_rounding = 1e-7;  // relative: of a quadrature times an arm
+constexpr double k_volume_rounding = 1e-9;  // of volumes of order 1,000, or relative
+
 constexpr double k_pi = std::numbers::pi;
 constexpr double k_rounding = 1e-12;
 
@@ -131,8 +138,8 @@ TEST(Scenario, ConeGetsShallowerAtTheEnds) {
   const auto depth_at = [&](double x) { return scenario->ideal(IdealLaw::depth, (x + 30.0) / 960.0)->penalty; };
   const double cosine = 60.0 / std::hypot(60.0, 30.0);
   for (const double over : {0.7, 5.0, 19.0, 22.3}) {
-    EXPECT_NEAR(depth_at(over - 10.0), over * cosine, 1e-12) << over;
-    EXPECT_NEAR(depth_at(910.0 - over), over * cosine, 1e-12) << over;
+    EXPECT_NEAR(depth_at(over - 10.0), over * cosine, k_near_rounding) << over;
+    EXPECT_NEAR(depth_at(910.0 - over), over * cosine, k_near_rounding) << over;
   }
   EXPECT_EQ(depth_at(12.4), 20.0);  // 22.4 cosine = 20.03
   EXPECT_EQ(depth_at(-10.1), 0.0);
@@ -168,7 +175,7 @@ TEST(Scenario, ConeHasTheClosedFormWhereItsTipIsOverTheBlock) {
   const auto thick = make_scenario("Ia");
   for (const double s : {0.05, 0.31, 0.5, 0.9}) {
     ASSERT_TRUE(thick->in_window(s));
-    EXPECT_NEAR(thick->ideal(IdealLaw::volume, s)->penalty, k_pi * 8000.0 / 12.0, 1e-9);
+    EXPECT_NEAR(thick->ideal(IdealLaw::volume, s)->penalty, k_pi * 8000.0 / 12.0, k_volume_rounding);
     // dV / d delta = pi delta^2 / 4, straight up, no torque.
     const auto gradient = thick->ideal(IdealLaw::gradient, s);
     EXPECT_TRUE(gradient->force.isApprox(Eigen::Vector3d(0.0, k_pi * 100.0, 0.0), k_rounding));
@@ -181,8 +188,9 @@ TEST(Scenario, ConeHasTheClosedFormWhereItsTipIsOverTheBlock) {
   EXPECT_FALSE(thick->in_window(0.96));
 
   const auto thin = make_scenario("Ib");
-  EXPECT_NEAR(thin->ideal(IdealLaw::volume, 0.5)->penalty, k_pi / 12.0 * (8000.0 - std::pow(19.8, 3)), 1e-9);
-  EXPECT_NEAR(thin->ideal(IdealLaw::gradient, 0.5)->force.y(), k_pi / 4.0 * (400.0 - 19.8 * 19.8), 1e-9);
+  EXPECT_NEAR(thin->ideal(IdealLaw::volume, 0.5)->penalty, k_pi / 12.0 * (8000.0 - std::pow(19.8, 3)),
+              k_volume_rounding);
+  EXPECT_NEAR(thin->ideal(IdealLaw::gradient, 0.5)->force.y(), k_pi / 4.0 * (400.0 - 19.8 * 19.8), k_volume_rounding);
   EXPECT_EQ(thin->ideal(IdealLaw::depth, 0.5)->penalty, 20.0);
 }
 
@@ -195,9 +203,12 @@ TEST(Scenario, ConeLeavesTheBlockOnBothSidesAlike) {
         const auto front = scenario->ideal(law, s);
         const auto back = scenario->ideal(law, 1.0 - s);
         const double scale = scenario->ideal(law, 0.5)->force.norm();
-        EXPECT_NEAR(front->force.y(), back->force.y(), 1e-9 * scale) << name << ' ' << to_string(law) << ' ' << s;
-        EXPECT_NEAR(front->force.x(), -back->force.x(), 1e-9 * scale) << name << ' ' << to_string(law) << ' ' << s;
-        EXPECT_NEAR(front->torque.z(), -back->torque.z(), 1e-7 * scale) << name << ' ' << to_string(law) << ' ' << s;
+        EXPECT_NEAR(front->force.y(), back->force.y(), k_volume_rounding * scale)
+            << name << ' ' << to_string(law) << ' ' << s;
+        EXPECT_NEAR(front->force.x(), -back->force.x(), k_volume_rounding * scale)
+            << name << ' ' << to_string(law) << ' ' << s;
+        EXPECT_NEAR(front->torque.z(), -back->torque.z(), k_torque_rounding * scale)
+            << name << ' ' << to_string(law) << ' ' << s;
       }
       EXPECT_EQ(scenario->ideal(law, 0.0)->force.norm(), 0.0);
     }
@@ -216,7 +227,7 @@ TEST(Scenario, GradientIsTheSlopeOfTheVolumeAlongThePath) {
       const Eigen::Vector3d speed = (scenario->pose(s + step).t - scenario->pose(s - step).t) / (2.0 * step);
       const double power = scenario->ideal(IdealLaw::gradient, s)->force.dot(speed);
       const double scale = scenario->ideal(IdealLaw::gradient, s)->force.norm() * speed.norm();
-      EXPECT_NEAR(power, -slope, 1e-6 * scale + 1e-6) << name << ' ' << s;
+      EXPECT_NEAR(power, -slope, k_slope_error * scale + k_slope_error) << name << ' ' << s;
     }
   }
 }
@@ -233,17 +244,19 @@ TEST(Scenario, GradientIsTheSlopeOfTheVolumeAcrossThePath) {
     return (volume(at + step) - volume(at - step)) / (2.0 * step);
   };
   for (const double s : {0.026, 0.033, 0.041, 0.4}) {
-    EXPECT_NEAR(make_scenario("Ia")->ideal(IdealLaw::gradient, s)->force.y(), slope("Ia", "depth", 20.0, s), 1e-4);
-    EXPECT_NEAR(make_scenario("Ib")->ideal(IdealLaw::gradient, s)->force.y(), slope("Ib", "depth", 20.0, s), 1e-4);
+    EXPECT_NEAR(make_scenario("Ia")->ideal(IdealLaw::gradient, s)->force.y(), slope("Ia", "depth", 20.0, s),
+                k_coarse_slope);
+    EXPECT_NEAR(make_scenario("Ib")->ideal(IdealLaw::gradient, s)->force.y(), slope("Ib", "depth", 20.0, s),
+                k_coarse_slope);
   }
   EXPECT_NEAR(make_scenario("II")->ideal(IdealLaw::gradient, 0.3)->force.norm(),
-              -slope("II", "orbit_radius", 50.0, 0.3), 1e-4);
+              -slope("II", "orbit_radius", 50.0, 0.3), k_coarse_slope);
 }
 
 TEST(Scenario, SphereHasTheKnownVolume) {
   // For radii 1 and orbit 5/3, by quadrature elsewhere: 0.22778; here 30 times as large.
   const auto scenario = make_scenario("II");
-  EXPECT_NEAR(scenario->ideal(IdealLaw::volume, 0.1)->penalty / 27000.0, 0.22778, 5e-6);
+  EXPECT_NEAR(scenario->ideal(IdealLaw::volume, 0.1)->penalty / 27000.0, 0.22778, k_five_digits);
   EXPECT_EQ(scenario->ideal(IdealLaw::depth, 0.1)->penalty, 10.0);
   EXPECT_EQ(scenario->ideal(IdealLaw::paper_depth, 0.1)->penalty, 50.0);
   EXPECT_EQ(scenario->ideal(IdealLaw::paper_volume, 0.1)->penalty, 1.0);

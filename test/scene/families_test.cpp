@@ -7,6 +7,11 @@
 namespace sixdof::scene {
 namespace {
 
+constexpr double k_count_margin = 200.0;   // of 2,000 motions drawn at random: five standard deviations
+constexpr double k_extent_margin = 0.05;   // of the outermost of 400 bodies drawn at random
+constexpr double k_ratio_rounding = 1e-9;  // of sizes
+constexpr double k_rounding = 1e-12;       // of one quotient
+
 TEST(SceneFamilies, AreSeededAndHaveTheirCounts) {
   std::set<std::string_view> names;
   for (const SceneFamily& family : scene_families()) {
@@ -33,9 +38,9 @@ TEST(SceneFamilies, ObeyTheAxes) {
   };
   const Scene dense = cube({.bodies = 400, .frames = 1, .density = 0.08});
   const Scene thin = cube({.bodies = 400, .frames = 1, .density = 0.01});
-  EXPECT_NEAR(extent(thin) / extent(dense), 2.0, 0.05);
+  EXPECT_NEAR(extent(thin) / extent(dense), 2.0, k_extent_margin);
   const Scene some = cube({.bodies = 400, .frames = 21, .moving = 0.25});
-  EXPECT_NEAR(static_cast<double>(some.motions()), 0.25 * 400 * 20, 200.0);
+  EXPECT_NEAR(static_cast<double>(some.motions()), 0.25 * 400 * 20, k_count_margin);
   const Scene sizes = cube({.bodies = 400, .frames = 1, .size_ratio = 8.0});
   double largest = 0.0, smallest = 1e9;
   for (const auto& mesh : sizes.meshes) {
@@ -43,10 +48,10 @@ TEST(SceneFamilies, ObeyTheAxes) {
     largest = std::max(largest, mesh->diagonal());
     smallest = std::min(smallest, mesh->diagonal());
   }
-  EXPECT_NEAR(largest / smallest, 8.0, 1e-9);
+  EXPECT_NEAR(largest / smallest, 8.0, k_ratio_rounding);
   EXPECT_NEAR(
       cube({.bodies = 40, .frames = 1, .margin = 0.4}).margin / cube({.bodies = 40, .frames = 1, .margin = 0.1}).margin,
-      4.0, 1e-12);
+      4.0, k_rounding);
 }
 
 TEST(SceneFamilies, ShuffledIsTheCube) {

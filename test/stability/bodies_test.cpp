@@ -8,17 +8,20 @@
 namespace sixdof::stability {
 namespace {
 
+constexpr double k_rounding = 1e-14;        // of a sum over the sides
+constexpr double k_sixth_rounding = 1e-16;  // of a volume of 1/6
+
 TEST(Bodies, AreSolidWithTheVolumesOfTheirFormulas) {
   EXPECT_TRUE(box({2.0, 3.0, 0.5})->solid());
   EXPECT_DOUBLE_EQ(box({2.0, 3.0, 0.5})->volume(), 3.0);
   const MeshPointer corner = tetrahedron(
       {Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()});
   EXPECT_TRUE(corner->solid());
-  EXPECT_NEAR(corner->volume(), 1.0 / 6.0, 1e-16);
+  EXPECT_NEAR(corner->volume(), 1.0 / 6.0, k_sixth_rounding);
   // A prism over a regular polygon of n sides: n / 2 sin(2 pi / n) r^2 times its height.
   const MeshPointer prism = cylinder(0.5, 0.7, 24);
   EXPECT_TRUE(prism->solid());
-  EXPECT_NEAR(prism->volume(), 12.0 * std::sin(std::numbers::pi / 12.0) * 0.25 * 1.4, 1e-14);
+  EXPECT_NEAR(prism->volume(), 12.0 * std::sin(std::numbers::pi / 12.0) * 0.25 * 1.4, k_rounding);
 }
 
 TEST(Bodies, RoundOnesConvergeFromInside) {

@@ -18,6 +18,8 @@
 namespace sixdof::stability {
 namespace {
 
+constexpr double k_rounding = 1e-15;  // of a few dozen operations on numbers of order 1
+
 /// Says what it is told to say.
 struct Script {
   Outcome<bool> collide = Status::unsupported;
@@ -102,7 +104,7 @@ TEST(Judge, AWrongDistanceIsMeasuredInSizes) {
   const Finding found = judge_script({.distance = at_distance(0.2)}, apart_by_a_tenth(), k_all).worst();
   EXPECT_EQ(found.verdict, Verdict::wrong);
   EXPECT_EQ(found.metric, "distance");
-  EXPECT_NEAR(found.value, 0.1 / std::sqrt(3.0), 1e-15);
+  EXPECT_NEAR(found.value, 0.1 / std::sqrt(3.0), k_rounding);
 }
 
 TEST(Judge, MissesAndPhantomsAreToldApart) {
@@ -185,8 +187,8 @@ TEST(Judge, SurfacesOnlyIsALimitWhereBodiesAreInsideEachOther) {
 TEST(Judge, PointsOfOneBodyMissWhereTheOtherSticksInByLessThanTheResolution) {
   // A box reaches 0.2 into a plate and sticks out of it by 0.02. The plate is B: its surface is 0.02 deep in the box.
   const Shot stands_out = swapped(aligned_boxes({1.0, 1.0, 0.5}, {0.4, 0.4, 0.22}, {0.05, 0.1, 0.16}));
-  ASSERT_NEAR(stands_out.truth.depth_of_a, 0.2, 1e-15);
-  ASSERT_NEAR(stands_out.truth.depth_of_b, 0.02, 1e-15);
+  ASSERT_NEAR(stands_out.truth.depth_of_a, 0.2, k_rounding);
+  ASSERT_NEAR(stands_out.truth.depth_of_b, 0.02, k_rounding);
   Traits all = k_all;
   all.approximates = true;
   Traits points = all;

@@ -9,6 +9,9 @@
 namespace sixdof::stability {
 namespace {
 
+constexpr double k_six_digits = 1e-21;  // of a value in six digits
+constexpr double k_ulp = 2.3e-16;       // of coordinates of order 1
+
 TEST(Reference, DistancesOfBoxesInClosedForm) {
   const MeshPointer a = box({2.0, 2.0, 2.0}), b = box({1.0, 1.0, 1.0});
   const auto distance = [&](const Eigen::Vector3d& t) {
@@ -19,7 +22,7 @@ TEST(Reference, DistancesOfBoxesInClosedForm) {
   EXPECT_DOUBLE_EQ(distance({1.5 + 0.2, 1.5 + 0.3, 1.5 + 0.6}), 0.7);  // corners
   EXPECT_EQ(distance({0.9, 0.3, 0.2}), 0.0);                           // crossing
   EXPECT_DOUBLE_EQ(distance({0.1, 0.0, 0.0}), 0.4);                    // inside: of the surfaces
-  EXPECT_NEAR(distance({1.5 + 1e-15, 0.3, 0.1}), 1e-15, 2.3e-16);      // the rounding of 1.5 + 1e-15
+  EXPECT_NEAR(distance({1.5 + 1e-15, 0.3, 0.1}), 1e-15, k_ulp);        // the rounding of 1.5 + 1e-15
 }
 
 TEST(Reference, CrossedEdges) {
@@ -37,7 +40,7 @@ TEST(Reference, AgreesWithTheThreadOfAThinTriangle) {
   const MeshPointer point = tetrahedron({Eigen::Vector3d::Zero(), Eigen::Vector3d(0.1, 1.0, 0.0),
                                          Eigen::Vector3d(0.0, 1.0, 0.1), Eigen::Vector3d(-0.1, 1.0, -0.1)});
   const long double d = reference_distance(*thin, *point, {});
-  EXPECT_NEAR(static_cast<double>(d * d), 3.10802e-16, 1e-21);
+  EXPECT_NEAR(static_cast<double>(d * d), 3.10802e-16, k_six_digits);
 }
 
 }  // namespace

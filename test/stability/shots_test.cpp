@@ -15,6 +15,11 @@
 namespace sixdof::stability {
 namespace {
 
+constexpr double k_columns = 1e-13;          // of a sum over columns
+constexpr double k_gap_rounding = 1e-12;     // of a gap of 1e-6 on moved bodies
+constexpr double k_rounding = 1e-15;         // of lengths of order 1
+constexpr double k_turned_rounding = 1e-14;  // of bodies in turned frames
+
 double reference(const Shot& shot) {
   return static_cast<double>(reference_distance(*shot.a, *shot.b, shot.X_AB.pose()));
 }
@@ -27,9 +32,9 @@ TEST(Shots, AlignedBoxesAgreeWithColumnsAndBruteForce) {
     const Shot shot =
         aligned_boxes({1.1, 0.9, 0.7}, {0.5, 0.6, 0.4}, {uniform(random), uniform(random), uniform(random)});
     if (!std::isnan(shot.truth.distance)) {
-      EXPECT_NEAR(shot.truth.distance, reference(shot), 1e-15);
+      EXPECT_NEAR(shot.truth.distance, reference(shot), k_rounding);
     }
-    EXPECT_NEAR(shot.truth.volume, overlap_volume_by_columns(*shot.a, *shot.b, shot.X_AB.pose()), 1e-13);
+    EXPECT_NEAR(shot.truth.volume, overlap_volume_by_columns(*shot.a, *shot.b, shot.X_AB.pose()), k_columns);
     if (shot.truth.gap >= 0.0 || shot.truth.contained) continue;
     ++overlapping;
     // Moved out by the depth along the direction, and a little more or less.
@@ -37,7 +42,7 @@ TEST(Shots, AlignedBoxesAgreeWithColumnsAndBruteForce) {
     Shot outside = shot, inside = shot;
     outside.X_AB.t += (-shot.truth.gap + 1e-9) * *shot.truth.push;
     inside.X_AB.t += (-shot.truth.gap - 1e-9) * *shot.truth.push;
-    EXPECT_NEAR(reference(outside), 1e-9, 1e-14);
+    EXPECT_NEAR(reference(outside), 1e-9, k_turned_rounding);
     EXPECT_EQ(reference(inside), 0.0);
   }
   EXPECT_GT(overlapping, 5);
@@ -97,7 +102,7 @@ TEST(Shots, AboveAFaceAgreesWithBruteForce) {
     const Shot shot = above_face(box({2.0, 1.6, 1.2}), 0.6, box({0.5, 0.4, 0.3}), draw.rotation(), 0.2, -0.1,
                                  draw.logarithmic(1e-12, 0.1));
     EXPECT_GT(shot.truth.distance, 0.0);
-    EXPECT_NEAR(shot.truth.distance, reference(shot), 1e-18 + 1e-12 * shot.truth.distance);
+    EXPECT_NEAR(shot.truth.distance, reference(shot), 1e-18 + k_gap_rounding * shot.truth.distance);
   }
 }
 
@@ -112,9 +117,9 @@ TEST(Shots, MotionExchangeAndScaleKeepTheTruth) {
     const double factor = 1e-3;
     for (const Shot& shot : {turned, swapped(turned), scaled(turned, factor), swapped(scaled(first, factor))}) {
       EXPECT_NEAR(reference(shot) / shot.scale, reference(first), (shot.rounding() + shot.truth.error) / shot.scale);
-      EXPECT_NEAR(shot.truth.gap / shot.scale, first.truth.gap, 1e-15);
+      EXPECT_NEAR(shot.truth.gap / shot.scale, first.truth.gap, k_rounding);
       if (first.truth.push) {
-        EXPECT_NEAR(shot.truth.push->norm(), 1.0, 1e-14);
+        EXPECT_NEAR(shot.truth.push->norm(), 1.0, k_turned_rounding);
       }
     }
     // The bound is not idle: it is no more than a few hundred roundings of the coordinates.
@@ -132,7 +137,7 @@ TEST(Shots, ADirectionIsThatOfTheMovedFrame) {
   for (const Shot& shot : {first, turned, swapped(turned)}) {
     Shot out = shot;
     out.X_AB.t += (-first.truth.gap + 1e-6) * *shot.truth.push;
-    EXPECT_NEAR(reference(out), 1e-6, 1e-12);
+    EXPECT_NEAR(reference(out), 1e-6, k_gap_rounding);
   }
 }
 

@@ -11,6 +11,8 @@
 namespace sixdof::study {
 namespace {
 
+constexpr double k_rounding = 1e-12;  // of means of two values
+
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -43,7 +45,7 @@ TEST(EquivalentRows, HaveTheAnswerTheStepsAndTheGrid) {
   EXPECT_THAT(names, ElementsAre(prefix, prefix + "/step:0", prefix + "/step:1", prefix + "/size:0.5/count:20"));
   const auto answer = to_json_object(rows[0]);
   EXPECT_EQ(answer.at("eta_measured"), 0.02);
-  EXPECT_NEAR(answer.at("eta_predicted"), 0.019, 1e-12);
+  EXPECT_NEAR(answer.at("eta_predicted"), 0.019, k_rounding);
   EXPECT_EQ(answer.at("predicted_ns"), 9e5);
   EXPECT_EQ(answer.at("measured_ns"), 8e5);
   EXPECT_EQ(answer.at("cpu_time"), 8e5);
@@ -79,9 +81,9 @@ TEST(PredictionError, IsAMeanOfDifferencesAndOfShares) {
                                               result(std::numeric_limits<double>::quiet_NaN(), 0.01)};
   const PredictionError first = prediction_error(results, true);
   EXPECT_EQ(first.searches, 2u);
-  EXPECT_NEAR(first.difference, 0.02, 1e-12);
-  EXPECT_NEAR(first.relative, (0.5 + 0.06) / 2.0, 1e-12);
-  EXPECT_NEAR(prediction_error(results, false).difference, 0.002, 1e-12);
+  EXPECT_NEAR(first.difference, 0.02, k_rounding);
+  EXPECT_NEAR(first.relative, (0.5 + 0.06) / 2.0, k_rounding);
+  EXPECT_NEAR(prediction_error(results, false).difference, 0.002, k_rounding);
   EXPECT_EQ(prediction_error({}, true).searches, 0u);
 }
 

@@ -14,6 +14,8 @@
 namespace sixdof::study {
 namespace {
 
+constexpr double k_rounding = 1e-9;  // of a mean along the path
+
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -102,14 +104,14 @@ TEST_F(EquivalentInAScenario, NeedsTwoSweptParameters) {
 
 TEST_F(EquivalentInAScenario, MeasuresTheErrorInRadiansAndProcessorTime) {
   const Measurement coarse = measure_scenario(study(40), axes_, {500, 500});
-  EXPECT_NEAR(coarse.eta, 5.0 / 500, 1e-9);  // sigma is 0: the magnitude is constant
+  EXPECT_NEAR(coarse.eta, 5.0 / 500, k_rounding);  // sigma is 0: the magnitude is constant
   EXPECT_EQ(coarse.bytes, 1000);
   const Measurement fine = measure_scenario(study(40), axes_, {16000, 16000});
-  EXPECT_NEAR(fine.eta, 5.0 / 16000, 1e-9);
+  EXPECT_NEAR(fine.eta, 5.0 / 16000, k_rounding);
   EXPECT_GT(fine.time_ns, 5.0 * coarse.time_ns) << "of 32 times the work";
   ScenarioStudy doubled = study(40);
   doubled.weights = {.sigma = 1.0, .gamma = 3.0};
-  EXPECT_NEAR(measure_scenario(doubled, axes_, {500, 500}).eta, 3.0 * coarse.eta, 1e-9);
+  EXPECT_NEAR(measure_scenario(doubled, axes_, {500, 500}).eta, 3.0 * coarse.eta, k_rounding);
 }
 
 TEST_F(EquivalentInAScenario, FindsTheBestShareOfTheWork) {

@@ -13,6 +13,8 @@
 namespace sixdof::study {
 namespace {
 
+constexpr double k_residual = 0.01;  // of values of order 1, at the samples
+
 /// Exact data leave rounding of the least-squares solution.
 constexpr double k_rounding = 1e-9;
 
@@ -109,7 +111,7 @@ TEST(CorrectedFit, FollowsTheSamplesAndFallsBackToTheFit) {
   const SurfaceFit fit(FitForm::log_plane, samples);
   const CorrectedFit corrected(fit, samples);
   for (const FitSample& s : samples) {
-    EXPECT_NEAR(corrected.at(s.x, s.y) / s.value, 1.0, 0.01);
+    EXPECT_NEAR(corrected.at(s.x, s.y) / s.value, 1.0, k_residual);
     EXPECT_GT(std::abs(fit.at(s.x, s.y) / s.value - 1.0), 0.01);
   }
   EXPECT_NEAR(corrected.at(1e-6, 1e9) / fit.at(1e-6, 1e9), 1.0, k_rounding);
@@ -122,7 +124,7 @@ TEST(CorrectedFit, AddsDifferencesWhereASampleIsNotPositive) {
   const Function f = [](double x, double y) { return std::sin(100.0 * x) - 1e-4 * y; };
   const std::vector<FitSample> samples = grid(f);
   const CorrectedFit corrected(fit_plane(samples), samples);
-  for (const FitSample& s : samples) EXPECT_NEAR(corrected.at(s.x, s.y), s.value, 0.01);
+  for (const FitSample& s : samples) EXPECT_NEAR(corrected.at(s.x, s.y), s.value, k_residual);
 }
 
 }  // namespace

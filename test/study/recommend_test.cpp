@@ -11,6 +11,8 @@
 namespace sixdof::study {
 namespace {
 
+constexpr double k_rounding = 1e-6;  // of one quotient
+
 void wait(int microseconds) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(microseconds);
   while (std::chrono::steady_clock::now() < end) {
@@ -95,7 +97,7 @@ TEST_F(Recommend, TakesTheSmallestErrorThatKeepsTheDeadline) {
   EXPECT_EQ(found.tail, "max") << "32 queries have no p99";
   EXPECT_EQ(name(found.best), "fine steps=20");
   EXPECT_EQ(name(found.second), "coarse steps=10");
-  EXPECT_NEAR(found.best->error.value, 0.05 / 20, 1e-6);
+  EXPECT_NEAR(found.best->error.value, 0.05 / 20, k_rounding);
   EXPECT_GE(found.best->tail_ns, 20 * 20e3);
   EXPECT_LE(found.best->tail_ns, 2e6);
   EXPECT_GE(found.best->tail_once_ns, found.best->tail_ns);

@@ -120,7 +120,7 @@ TEST(StressProcesses, AFaultEndsItsCellOnly) {
 TEST(StressProcesses, GivesWhatOneProcessGives) {
   const stability::Family& family = stability::find_family("motion");
   const StressWatch nobody{.begins_case = [](const CaseId&) {}, .prepares = [] {}, .asks = [](const Pose&) {}};
-  const StressCell here = run_cell(family, algorithms().find("exact"), {}, 1, nobody);
+  const StressCell here = run_cell(family, algorithms().find("exact"), StressSettings::coarsest, {}, 1, nobody);
   const StressCell there = run("exact", "motion");
   EXPECT_EQ(here.cases, there.cases);
   EXPECT_EQ(here.worst.value, there.worst.value);

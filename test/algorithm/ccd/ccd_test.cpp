@@ -7,6 +7,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_rounding = 1e-12;  // of a sum over some triangles, of a volume of 48
+
 TEST(ConvexHull, IsASolidThatHoldsEveryVertex) {
   for (const char* name : {"torus-1k", "cone-1k"}) {
     const Mesh mesh = load_model(name), hull = convex_hull(mesh);
@@ -25,7 +27,7 @@ TEST(ConvexHull, IsASolidThatHoldsEveryVertex) {
     EXPECT_LT(farthest, 1e-9 * mesh.diagonal());
   }
   const Mesh box = box_solid({-1.0, -2.0, -3.0}, {1.0, 2.0, 3.0}, "box");
-  EXPECT_NEAR(convex_hull(box).volume(), 48.0, 1e-12);
+  EXPECT_NEAR(convex_hull(box).volume(), 48.0, k_rounding);
 }
 
 TEST(ConvexHull, RefusesAFlatMesh) {

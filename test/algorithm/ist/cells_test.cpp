@@ -15,6 +15,8 @@
 namespace sixdof::ist {
 namespace {
 
+constexpr double k_cell_sampling = 0.15;  // relative: of a volume from rays in some hundred directions
+
 constexpr double k_rounding = 1e-12;  // relative, of sums over some hundred spheres
 
 double total(std::span<const Sphere> spheres, std::span<const double> weights) {
@@ -44,7 +46,7 @@ TEST(Cells, AreThePartsOfABoxNearestToEachSphere) {
   double squares = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const double expected = hits[i] / static_cast<double>(k_points) * box.volume() / packing.spheres[i].volume();
-    EXPECT_NEAR(weights[i], expected, 0.15 * expected) << i;  // 96 rays a sphere, some thousand points
+    EXPECT_NEAR(weights[i], expected, k_cell_sampling * expected) << i;  // 96 rays a sphere, some thousand points
     squares += (weights[i] / expected - 1.0) * (weights[i] / expected - 1.0);
   }
   EXPECT_LT(std::sqrt(squares / static_cast<double>(weights.size())), 0.06);

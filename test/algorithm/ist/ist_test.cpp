@@ -18,6 +18,10 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_gaps = 0.1;             // part of a volume that the spheres do not fill
+constexpr double k_near_rounding = 1e-12;  // of a sum over some hundred pairs of spheres
+constexpr double k_slope_error = 1e-3;     // relative: of a slope from a finite step
+
 constexpr double k_rounding = 1e-12;  // relative, of some hundred terms
 
 class IstTest : public ::testing::Test {
@@ -81,7 +85,7 @@ TEST_F(IstTest, ReactionIsOppositeToAction) {
       const Response on_b = forward->respond(X_AB).value;
       const Response on_a_in_b = backward->respond(X_AB.inverse()).value;
       touching += on_b.volume > 0.0 ? 1 : 0;
-      EXPECT_NEAR(on_b.volume, on_a_in_b.volume, 1e-12);
+      EXPECT_NEAR(on_b.volume, on_a_in_b.volume, k_near_rounding);
       EXPECT_LE((on_b.force + X_AB.R * on_a_in_b.force).norm(), 1e-12);
       const Response about_origin = on_b.about(Eigen::Vector3d::Zero());
       const Response reaction = on_a_in_b.about(X_AB.inverse() * Eigen::Vector3d::Zero());
@@ -141,7 +145,7 @@ TEST_F(IstTest, SteepestDescentHasTheVolumeAsMagnitudeAndTheGradientsDirection) 
     const Pose X{Eigen::Matrix3d::Identity(), {2.0 - x, 1.6 - y, 1.2 - z}};
     const Response steepest = descent->respond(X).value, slope = gradient->respond(X).value;
     const double volume = x * y * z;
-    EXPECT_NEAR(steepest.volume, volume, 0.1 * volume);
+    EXPECT_NEAR(steepest.volume, volume, k_gaps * volume);
     EXPECT_EQ(steepest.volume, slope.volume);
     // The gradient acts nearly through the centroid of the overlap, so its moment about it is small.
     EXPECT_LE(steepest.force.norm(), steepest.volume * (1.0 + k_rounding));
@@ -214,7 +218,7 @@ TEST_F(IstTest, TwoBallsPushEachOtherAlongTheirCentres) {
   constexpr double k_inscribed = 0.1;  // the largest ball in a mesh of 2,000 triangles has a radius of 0.99
   EXPECT_NEAR(response.volume, full, k_inscribed * full);
   EXPECT_LT(response.volume, full);
-  EXPECT_NEAR(response.force.dot(X.t) / d, response.volume, 1e-3 * response.volume);  // on B, away from A
+  EXPECT_NEAR(response.force.dot(X.t) / d, response.volume, k_slope_error * response.volume);  // on B, away from A
   EXPECT_LT(response.torque.norm(), 0.02 * response.force.norm());
 }
 
@@ -226,7 +230,7 @@ TEST_F(IstTest, DistanceIsAnUpperBoundAndThatOfTheWitnesses) {
   ASSERT_TRUE(gap.ok());
   EXPECT_GT(gap.value.distance, 0.3);
   EXPECT_LT(gap.value.distance, 0.4);
-  EXPECT_NEAR((gap.value.witness_a - gap.value.witness_b).norm(), gap.value.distance, 1e-12);
+  EXPECT_NEAR((gap.value.witness_a - gap.value.witness_b).norm(), gap.value.distance, k_near_rounding);
   EXPECT_FALSE(query->collide(X).value);
   EXPECT_TRUE(query->collide({Eigen::Matrix3d::Identity(), {0.1, 0.2, 1.0}}).value);
 }

@@ -18,6 +18,8 @@
 namespace sixdof::ist {
 namespace {
 
+constexpr double k_cosine_tolerance = 1e-9;  // of the iteration for the narrowest cone, in the cosine of its angle
+
 constexpr double k_rounding = 1e-12;
 constexpr double k_angle_rounding = 3e-6;  // of an angle near 0 whose cosine is off by k_rounding
 
@@ -171,7 +173,7 @@ TEST(NormalCones, AreThoseOfBruteForceOnDetailedBodies) {
       if (cones[i].axis.isZero()) continue;
       // An axis that was left out without need would show as too few.
       EXPECT_TRUE(contains(cones[i].axis, std::cos(cones[i].half_angle), normals)) << name << ' ' << i;
-      EXPECT_NEAR(std::cos(narrowest_cone(normals).half_angle), std::cos(cones[i].half_angle), 1e-9)
+      EXPECT_NEAR(std::cos(narrowest_cone(normals).half_angle), std::cos(cones[i].half_angle), k_cosine_tolerance)
           << name << ' ' << i;
       ++with_axis;
     }

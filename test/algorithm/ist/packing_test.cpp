@@ -15,6 +15,10 @@
 namespace sixdof::ist {
 namespace {
 
+constexpr double k_rounding = 1e-12;     // of a sum over the spheres
+constexpr double k_scale_change = 0.01;  // relative: limits of the search are not scaled, so other spheres may be found
+constexpr double k_solid_angle_rounding = 1e-9;  // of a sum of some thousand arcs
+
 PackingOptions at_most(std::size_t spheres) { return {.spheres = spheres}; }
 
 /// Solid angle of the surface seen from p, over 4 pi: 1 inside, 0 outside (van Oosterom and Strackee 1983).
@@ -43,7 +47,7 @@ TEST(Packing, SpheresAreInsideAndDisjoint) {
         worst_pair = std::min(worst_pair, ((s.center - o.center).norm() - s.radius - o.radius) / s.radius);
       }
       if (i % 20 == 0) {
-        EXPECT_NEAR(winding_number(mesh, s.center), 1.0, 1e-9) << name << ' ' << i;
+        EXPECT_NEAR(winding_number(mesh, s.center), 1.0, k_solid_angle_rounding) << name << ' ' << i;
       }
     }
     EXPECT_GT(worst_surface, 0.0) << name;
@@ -110,7 +114,7 @@ TEST(Packing, FillsATorusKnotByMoreThanFourFifths) {
   EXPECT_LT(packing.fill, k_highest_fill);
   double volume = 0.0;  // by a formula of its own: pi d^3 / 6
   for (const Sphere& s : packing.spheres) volume += std::numbers::pi / 6.0 * std::pow(2.0 * s.radius, 3);
-  EXPECT_NEAR(packing.fill, volume / mesh.volume(), 1e-12);
+  EXPECT_NEAR(packing.fill, volume / mesh.volume(), k_rounding);
 }
 
 Mesh scaled(const Mesh& mesh, double factor) {
@@ -125,8 +129,8 @@ TEST(Packing, DoesNotDependOnTheUnitOfLength) {
   for (const double factor : {0x1p-40, 0x1p40}) {  // powers of two: the same roundings
     const Mesh other = scaled(mesh, factor);
     const Packing packing = pack_spheres(other, at_most(200));
-    EXPECT_NEAR(packing.fill, plain.fill, 0.01) << factor;
-    EXPECT_NEAR(packing.spheres.front().radius / factor, plain.spheres.front().radius, 1e-2) << factor;
+    EXPECT_NEAR(packing.fill, plain.fill, k_scale_change) << factor;
+    EXPECT_NEAR(packing.spheres.front().radius / factor, plain.spheres.front().radius, k_scale_change) << factor;
   }
 }
 

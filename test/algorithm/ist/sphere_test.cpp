@@ -9,6 +9,9 @@
 namespace sixdof::ist {
 namespace {
 
+constexpr double k_rounding = 1e-12;     // of a closed form with cancellation next to contact
+constexpr double k_tiny_volume = 1e-13;  // of spheres that overlap by 1e-7: a lens is as large as its depth squared
+
 /// Intersection volume of two spheres by slices across the line of centres: each is the smaller of two concentric
 /// discs.
 double overlap_by_slices(double r1, double r2, double d) {
@@ -35,9 +38,9 @@ TEST(Sphere, OverlapVolumeAgreesWithSlices) {
 TEST(Sphere, OverlapVolumeIsContinuousAtContainmentAndAtTouching) {
   const double small = Sphere{{}, 0.4}.volume();
   EXPECT_DOUBLE_EQ(overlap_volume(1.0, 0.4, 0.3), small);
-  EXPECT_NEAR(overlap_volume(1.0, 0.4, 0.6 + 1e-7), small, 1e-12);
+  EXPECT_NEAR(overlap_volume(1.0, 0.4, 0.6 + 1e-7), small, k_rounding);
   EXPECT_DOUBLE_EQ(overlap_volume(1.0, 0.4, 1.4), 0.0);
-  EXPECT_NEAR(overlap_volume(1.0, 0.4, 1.4 - 1e-7), 0.0, 1e-13);
+  EXPECT_NEAR(overlap_volume(1.0, 0.4, 1.4 - 1e-7), 0.0, k_tiny_volume);
   EXPECT_DOUBLE_EQ(overlap_volume(1.0, 1.0, 0.0), (Sphere{{}, 1.0}.volume()));
 }
 

@@ -13,6 +13,8 @@
 namespace sixdof::ist {
 namespace {
 
+constexpr double k_slope_error = 1e-8;  // of a slope from a central difference
+
 constexpr double k_rounding = 1e-12;  // sums of some 1e4 terms in another order
 
 /// Minus the derivative of overlap_volume() by d: the area of the disc bounded by the circle in which the spheres meet;
@@ -27,7 +29,7 @@ TEST(OverlapDiscArea, IsMinusTheDerivativeOfTheVolume) {
   constexpr double h = 1e-5;
   for (const double d : {0.45, 0.8, 1.1, 1.5}) {
     const double slope = (overlap_volume(1.0, 0.7, d + h) - overlap_volume(1.0, 0.7, d - h)) / (2.0 * h);
-    EXPECT_NEAR(overlap_disc_area(1.0, 0.7, d), -slope, 1e-8) << d;
+    EXPECT_NEAR(overlap_disc_area(1.0, 0.7, d), -slope, k_slope_error) << d;
   }
 }
 

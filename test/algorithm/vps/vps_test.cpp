@@ -19,6 +19,8 @@
 namespace sixdof {
 namespace {
 
+constexpr double k_layer_rounding = 1e-9;  // of a depth in voxels, which is a whole number
+
 namespace fs = std::filesystem;
 using vps_test::ball;
 using vps_test::box;
@@ -325,7 +327,7 @@ TEST(VpsDepth, LayersAreWholeVoxelsAndGiveNoForceOnThinPlates) {
   const double s = 0.01 * a.diagonal();
   const double penalty = prepare("vps", a, b, parameters)->respond(generic_pose(97, 0.7)).value.penalty;
   EXPECT_GT(penalty, 0.0);
-  EXPECT_NEAR(penalty / s, std::round(penalty / s), 1e-9);
+  EXPECT_NEAR(penalty / s, std::round(penalty / s), k_layer_rounding);
   ::unsetenv("SIXDOF_CACHE");
 }
 

@@ -7,9 +7,11 @@
 
 namespace sixdof::ist {
 
-/// How far the surface lies from the spheres inside it, at its vertices and at the centroids of its triangles, the
-/// greatest value (length): what queries of the spheres do not see. Of large meshes evenly chosen ones are taken, so
-/// that the time stays below that of some 1e7 distances.
+/// How far the greatest gap may be overestimated, as a part of it.
+inline constexpr double k_gap_tolerance = 0.05;
+
+/// An upper bound on the distance from any point of the mesh's surface to the nearest of the spheres inside (length):
+/// what queries of the spheres do not see. It is at most k_gap_tolerance too large. @pre at least one sphere
 double largest_gap(const Mesh& mesh, std::span<const Sphere> spheres);
 
 }  // namespace sixdof::ist
