@@ -284,10 +284,9 @@ class DistanceTraversal final : private CloseVisitor {
     LeafPair pairs;
     if (!bound_pairs(leaf_a, leaf_b, pairs)) return false;
     // Pairs that may intersect are measured now, the others last: most of them are pruned by then. Where an exact best
-    // tells more than the least upper bound, pairs that improve on it are measured now, too: between meshes with
-    // planes, as ties are pruned by exact distances, and where bounds are asked in doubles. Between coplanar patches
-    // pairs at the distance of the best count as improving, one at a time, as the first exact distance shows that the
-    // rest tie.
+    // tells more than the least upper bound, pairs that improve on it are measured now, too: where meshes have planes,
+    // as ties are pruned by exact distances, and where bounds are asked in doubles. Between coplanar patches pairs at
+    // the distance of the best improve, too, one at a time: the first exact distance shows that the rest tie.
     const bool coplanar = has_planes_ && search_.a.patches.of(leaves.a) && search_.b.patches.of(leaves.b);
     const bool one_by_one = coplanar || doubtful_pairs_ > k_doubtful_pairs_before_doubles;
     const float improving = one_by_one ? best_ + frames_.slack.all : has_planes_ ? best_ : -Tree::k_empty;
