@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <sixdof/scenario/scenario.h>
@@ -42,6 +43,15 @@ struct Bound {
   double bound;              ///< Of the absolute value; of nu and gain of max(x, 1/x) - 1; of Kind::scale the gain.
   std::string_view reason;   ///< Why the value is not better.
   Kind kind = Kind::characterised;
+};
+
+/// Bounds of a subject that share reason and kind: a line of the table.
+struct BoundLine {
+  std::string_view scenario, algorithm;
+  IdealLaw law;
+  std::string_view reason;
+  Kind kind;
+  std::vector<std::pair<std::string_view, double>> measures;
 };
 
 /// The one table, without algorithms that this build leaves out.
