@@ -192,7 +192,7 @@ TEST(Judge, PointsOfOneBodyMissWhereTheOtherSticksInByLessThanTheResolution) {
   Traits all = k_all;
   all.approximates = true;
   Traits points = all;
-  points.limits.samples_b_only = true;
+  points.limits.points_of_b_only = true;
   const auto verdict = [](const Shot& shot, const Traits& traits, double resolution) {
     return judge_script({.respond = Response{}, .resolution = resolution}, shot, traits).worst().verdict;
   };

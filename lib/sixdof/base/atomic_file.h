@@ -7,14 +7,13 @@ namespace sixdof {
 
 /// A file that appears complete or not at all.
 ///
-/// Write to descriptor() by append(), then call commit(): it flushes the data to the disk (fsync), renames the file to
-/// the target and flushes the directory. Without commit() the destructor removes the temporary file and the target
-/// stays as it was. The temporary file lies in the target's directory and ends in ".partial". It is made by O_EXCL
-/// under a name that nobody can foretell, so that no file or link that another user put there is ever written to.
+/// Write by append() or store(), then call commit(): it flushes the data to the disk, renames the file to the target
+/// and flushes the directory. Without commit() the destructor removes the temporary file and the target stays as it
+/// was. The temporary file lies beside the target, has a random name that ends in ".partial", and is opened by O_EXCL:
+/// no file or link of another user is ever written to.
 ///
-/// A target that is a link stays one: the file that it leads to is replaced. A link in a folder that everyone can write
-/// is followed only if it belongs to this user, to root or to the folder's owner. A file that is replaced keeps its
-/// mode; a new one has the mode that the umask gives.
+/// If the target is a link, the file that it leads to is replaced. A link in a folder that everyone can write is
+/// followed only if it belongs to this user, to root or to the folder's owner. A file that is replaced keeps its mode.
 class AtomicFile {
  public:
   /// @throws BadFile if the target's directory does not exist or is not writable, the target is there and no regular
@@ -54,8 +53,8 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// A folder of this process that nobody else can read or write, and that is removed with all that it holds unless it is
-/// committed. It lies beside `target`, has a name that nobody can foretell, and ends in ".partial".
+/// A folder that only this user can read or write, removed with its content unless it is committed. It lies beside
+/// `target` and has a random name that ends in ".partial".
 class PrivateFolder {
  public:
   /// @throws BadFile naming the target
@@ -73,7 +72,7 @@ class PrivateFolder {
   std::filesystem::path path_;
 };
 
-/// @throws BadFile if AtomicFile could not be made, so that a long work need not begin
+/// @throws BadFile if an AtomicFile cannot be made. To be called before a long computation.
 void check_writable(const std::filesystem::path& target);
 
 /// The path with every link in it followed. @throws BadFile if a link is one that AtomicFile does not follow, or if

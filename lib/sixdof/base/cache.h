@@ -15,11 +15,10 @@ namespace sixdof {
 /// Arrays of numbers by name: the content of one file of the cache.
 ///
 /// The cache keeps prepared structures on disk. An entry is found by its kind ("vps-voxelmap") and its key: a text that
-/// names everything the content depends on (content hash of the mesh, parameters, version of the format and of the
-/// algorithm that builds it). Entries are HDF5 files in one directory: that of environment variable SIXDOF_CACHE; else
-/// $XDG_CACHE_HOME/sixdof; else $HOME/.cache/sixdof. Nothing is kept if SIXDOF_CACHE is "off" or none of the three is
-/// set. The directory may be deleted at any time, and processes may share it. One that belongs to another user, or that
-/// others can write, is not used: cache_refusal() says so.
+/// names everything the content depends on (hash of the mesh, parameters, versions of format and algorithm). Entries
+/// are HDF5 files in $SIXDOF_CACHE; else $XDG_CACHE_HOME/sixdof; else $HOME/.cache/sixdof. Nothing is kept if
+/// SIXDOF_CACHE is "off" or none of the three is set. The directory may be deleted at any time, and processes may share
+/// it. One that belongs to another user, or that others can write, is not used: cache_refusal() says so.
 ///
 /// The cache does not throw. An entry that is missing, damaged or of another key is not found; one that cannot be
 /// written is not kept.

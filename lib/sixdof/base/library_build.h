@@ -4,8 +4,8 @@
 
 namespace sixdof {
 
-/// How this library was compiled. An embedder that sets no build type gets it without optimisation, and times of such a
-/// build mean nothing.
+/// How this library was compiled. Without a CMake build type it is not optimised, and times of such a build mean
+/// nothing.
 enum class LibraryBuild {
   release,
   with_assertions,  ///< Optimised, assertions on.

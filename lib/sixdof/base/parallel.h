@@ -15,10 +15,9 @@
 /// An exception that leaves a body reaches the caller of the step after all bodies have ended; of several, one does.
 ///
 /// Thread sanitizer: Debian's oneTBB is not instrumented, so the sanitizer does not see its forks and joins. In builds
-/// with the sanitizer, parallel.cpp is compiled without instrumentation, which hides oneTBB's own data, and states
-/// every fork and join by __tsan_release and __tsan_acquire. This relies on two conditions: no part of a body or of a
-/// per-thread value lies in oneTBB's memory, and a body does all its work between the two calls. No suppressions are
-/// needed. The sanitizer finds a race between two bodies if they run on different threads, so it needs two cores.
+/// with the sanitizer, parallel.cpp is compiled without instrumentation and states every fork and join by
+/// __tsan_release and __tsan_acquire. A body and its per-thread values must therefore not lie in oneTBB's memory. No
+/// suppressions are needed. A race between two bodies is found only if they run on different threads, on two cores.
 namespace sixdof::parallel {
 
 namespace detail {

@@ -7,7 +7,7 @@
 
 namespace sixdof {
 
-/// How a long computation runs: on how many threads, whom it informs, and who may end it.
+/// Options of a long computation: threads, progress, cancellation.
 struct RunOptions {
   /// 0: as many as the machine has. The result does not depend on it.
   unsigned threads = 0;

@@ -6,20 +6,16 @@
 
 #include <sixdof/base/error.h>
 
-/// A function that runs in a process of its own: whatever it does, it ends nothing but itself.
+/// A function that runs in a process of its own, so that a crash or an endless loop ends that process only.
 ///
-/// The process is a fork without exec. A helper program would start as clean as any, but this is a static library in
-/// anybody's program: nothing tells that program where a helper was installed, or moved to. A fork needs nothing but
-/// the caller, whose memory it reads where it lies.
-///
-/// The caller may have other threads; the fork has only the calling one. That is safe as long as the function takes no
-/// lock that another thread may hold at that moment. glibc makes malloc and streams usable in the fork (POSIX does not
-/// promise it); exceptions and what the function makes itself are safe; parallel.h, HDF5 and objects that threads share
-/// are not. A function that waits for such a lock is ended by its limit of time. Threads of the sanitizer for threads
-/// are not watched in a fork.
+/// The process is a fork without exec: a static library in any program cannot know where a helper program is installed.
+/// The fork has the calling thread only. The function must therefore not take a lock that another thread may hold at
+/// that moment: malloc, streams and exceptions are safe with glibc; parallel.h, HDF5 and objects that threads share are
+/// not. A function that waits for such a lock runs into its time limit. The thread sanitizer does not watch threads
+/// that are started in a fork.
 namespace sixdof {
 
-/// What a separate process may use. What the caller has already counts for nothing.
+/// What a separate process may use, on top of what the caller has already.
 struct SeparateLimits {
   double processor_s = 60.0;
   double wall_s = 240.0;
@@ -55,18 +51,18 @@ class SeparateInput {
   virtual void read(void* bytes, std::size_t count) = 0;
 };
 
-/// work() in a process of its own, which ends with the thread that waits for it, and take() here, which reads what
-/// work() writes. The process has no files of the caller's, its standard streams are /dev/null (sanitizers keep their
-/// standard error), signals have their defaults and Ctrl-C passes it by.
-/// @throws SeparateFailure if the result is not whole, also for an exception in work(); what take() throws; Error if no
-/// process can be made
+/// Runs work() in a process of its own and take(), which reads what work() writes, here. The process ends with the
+/// calling thread. It has none of the caller's files, its standard streams are /dev/null (sanitizers keep standard
+/// error), signals have their defaults and Ctrl-C is ignored.
+/// @throws SeparateFailure if the result is incomplete, also for an exception in work(); what take() throws; Error if
+/// no process can be made
 void run_separately(const std::function<void(SeparateOutput&)>& work, const std::function<void(SeparateInput&)>& take,
                     const SeparateLimits& limits);
 
 /// How a process ended, after waitpid(): "ended by signal 11 (Segmentation fault)", "ended with exit code 3".
 std::string words_of_end(int wait_status);
 
-/// A part of the machine's memory that leaves enough for other programs.
+/// 80 % of the machine's memory.
 std::size_t default_memory_limit();
 
 }  // namespace sixdof

@@ -4,9 +4,8 @@
 #include <string>
 #include <string_view>
 
-/// Text that comes from outside of a program - names, words of failures, versions - is made visible where it enters:
-/// then no message, table or result can hold a character that a terminal obeys, that turns the direction of the line
-/// or that nobody sees.
+/// Text from outside of the program (names, messages, versions) is escaped where it enters: then no message, table or
+/// result holds a control character, a character that changes the direction of the line, or an invisible one.
 
 namespace sixdof {
 
@@ -15,9 +14,9 @@ inline constexpr std::size_t k_any_length = std::string_view::npos;
 /// Most bytes of words that another program or library says, by visible_words().
 inline constexpr std::size_t k_longest_words = 500;
 
-/// Every character that prints stays, in any language (UTF-8). Of all others each byte becomes \xHH: control characters
-/// and line breaks (C0, DEL, C1, U+2028), marks of direction, spaces and joiners that do not show, what is no character
-/// and bytes that are no UTF-8. Text of more than `longest` bytes is cut at its end, which becomes "...".
+/// Printable characters stay, in any language (UTF-8). Of all others each byte becomes \xHH: control characters and
+/// line breaks (C0, DEL, C1, U+2028), direction marks, invisible spaces and joiners, unassigned code points and invalid
+/// UTF-8. Text of more than `longest` bytes is cut, and "..." added.
 std::string visible_text(std::string_view text, std::size_t longest = 40);
 
 /// Words of a failure or a description, visible, of k_longest_words bytes at most: the beginning of longer ones. What

@@ -53,8 +53,8 @@ struct Subject {
   Answers ask(Query& query, Kind kind, const Pose& X_AB) const;
 };
 
-/// Says at what pose of which meshes a check failed: streamed into the message of an assertion, it costs nothing where
-/// the assertion holds. Ends with a command line; a mesh that is no model of the catalogue is written to a file for it.
+/// Where a check failed: meshes, pose and a command line that asks the same. A mesh that is no model of the catalogue
+/// is written to a file for it. To be streamed into the message of an assertion.
 struct At {
   const Subject& subject;
   const Mesh& a;

@@ -7,8 +7,8 @@
 
 namespace sixdof {
 
-/// What reading a mesh file forgives: what the format does not foresee but has one meaning, and surfaces that have more
-/// than one.
+/// Deviations from a file's format that are accepted and counted: those with one possible meaning, and polygons with
+/// more than one possible surface.
 enum class Forgiven : std::uint8_t {
   crossing_polygons,    ///< Polygons that cross themselves, triangulated (triangulate.h).
   nonplanar_polygons,   ///< Polygons that are not flat, triangulated.
@@ -28,13 +28,13 @@ enum class Forgiven : std::uint8_t {
 };
 inline constexpr std::size_t k_forgiven_kinds = 15;
 
-/// What is forgiven, of one kind.
+/// Deviations of one kind.
 struct FileRepairs {
   std::size_t count = 0;
   std::string first_place;  ///< Where in the file the first one is: "line 6", "face 2"; empty if there is none.
 };
 
-/// All that reading one file forgave.
+/// All accepted deviations of one file.
 struct ForgivenKinds {
   std::array<FileRepairs, k_forgiven_kinds> kinds;
 

@@ -23,39 +23,30 @@ struct LoadOptions {
 /// | .3ds         | float                    | read by assimp; vertices are in world coordinates as stored         |
 /// | .dae, .fbx, .x3d and others | float     | whatever else assimp reads                                         |
 ///
-/// Coordinates keep the file's unit and axes, with one exception: COLLADA (.dae) states its unit, and is scaled to
-/// metres. Its axes stay, whatever it says points up: so a part is where its STL or OBJ file has it, as RViz, Gazebo
-/// and MoveIt show it. Words behind a file's name ask for something else: `part.dae#as-stored` does not scale, and
-/// `part.dae#y-up` scales and turns so that y points up, as in a glTF file of the part. MeshRepairs::notes says what a
-/// file states and what was done (COLLADA, FBX). `#as-stored` is allowed behind any name. Faces with more than three
-/// corners are triangulated as triangulate.h says. A byte order mark before a text is skipped.
+/// Coordinates keep the file's unit and axes. The exception is COLLADA (.dae), which states its unit: it is scaled to
+/// metres, and its axes stay, as in RViz, Gazebo and MoveIt. A suffix of the file's name asks for something else:
+/// `part.dae#as-stored` does not scale; `part.dae#y-up` scales and turns so that y points up. MeshRepairs::notes says
+/// what a COLLADA or FBX file states and what was done.
 ///
-/// Errors are: a count, index or number that is wrong, and bytes behind the end that are not blank. The last line needs
-/// no line break, so a text that is cut off within its last number is read with what is left of that number. OBJ holds
-/// no counts: a file cut off between two faces is a valid file of fewer faces. A vertex that is not finite is an error
-/// where a face uses it; so is an OBJ vertex whose fourth value, the weight of rational curves, is not 1.
+/// Faces with more than three corners are triangulated (triangulate.h). Deviations from a format that have one possible
+/// meaning are accepted and counted in Mesh::repairs(); forgiven.h lists them. A wrong count, index or number is an
+/// error, and so are bytes behind the end that are not blank, and a vertex that a face uses and that is not finite or,
+/// in OBJ, has a fourth value (a weight) other than 1. Two kinds of truncated text cannot be detected: a file that ends
+/// within its last number, and an OBJ file that ends between two faces.
 ///
-/// What a format does not foresee, but has one meaning, is read: forgiven.h lists the kinds. Nothing is forgiven or
-/// repaired in silence: Mesh::repairs() counts that, polygons that are not flat or cross themselves, skipped
-/// statements, and what Mesh::build welded or dropped.
+/// glTF: sparse accessors, integer coordinates (KHR_mesh_quantization), strips, fans and copies
+/// (EXT_mesh_gpu_instancing) are read. A file that requires another extension that may change the surface, such as
+/// compression (Draco, meshopt), is refused. A file without scenes gives all its nodes. A note says what was left out:
+/// other scenes, morph targets, skins, animations.
 ///
-/// glTF: sparse accessors, integer coordinates (KHR_mesh_quantization), strips and fans are read,
-/// EXT_mesh_gpu_instancing makes copies. Extensions that may change the surface and that the file requires are refused
-/// by their name, such as compression (Draco, meshopt); those of materials, textures and lights change nothing here. A
-/// file without scenes gives all its nodes. Where the file has several scenes, morph targets, skins or animations, a
-/// note says what was read.
+/// Assimp holds coordinates and transforms in single precision (relative rounding 6e-8). All meshes of a scene become
+/// one, with the transforms of their nodes multiplied and applied in double precision; a transform that mirrors
+/// reverses the corners. Points, lines, bones, morph targets and animations are left out. Since damaged files may make
+/// assimp crash or hang, it runs in a process of its own (base/separate_process.h) with limits of time and memory that
+/// grow with the file (60 s and 2 GB for a small one); exceeding them is an error.
 ///
-/// Assimp holds coordinates and transforms in single precision (relative rounding 6e-8). The transforms of a scene's
-/// nodes are multiplied and applied in double precision; a mirroring one reverses the corners, so that outside stays
-/// outside. All meshes of the scene become one. Points and lines are skipped; bones, morph targets and animations are
-/// not applied. An index out of range, a coordinate that is not finite, a count that does not fit the file, and what
-/// assimp's own validation finds are errors. Damaged files may make assimp crash or never return: it reads in a process
-/// of its own (base/separate_process.h), with limits of time and memory that grow with the file (60 s and 2 GB for a
-/// small one). What ends it is an error too.
-///
-/// A mesh that save_mesh() wrote as PLY, OBJ or OFF comes back bit for bit, with the same hash. The result does not
-/// depend on the process's locale.
-/// Mesh::name() becomes the file's name without its folder and extension.
+/// A mesh that save_mesh() wrote as PLY, OBJ or OFF comes back bit for bit, with the same hash. The locale has no
+/// effect. Mesh::name() becomes the file's name without its folder and extension.
 /// @throws BadFile naming the file, the place (element from 0, or line from 1) and the cause.
 Mesh load_mesh(const std::filesystem::path& file, const LoadOptions& options = {});
 

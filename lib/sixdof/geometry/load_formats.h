@@ -190,12 +190,13 @@ class TextLines {
   std::vector<std::string_view> words_;
 };
 
-/// The values of a text's elements (vertices, faces), which white space separates. Line breaks do not count, but tell
-/// where a value is missing or too many. The first line of a kind of elements says how they are laid out:
-/// - one element, or the beginning of one: each begins on a line and ends at a line's end, perhaps a later one;
-/// - several elements: others may begin in the middle of a line as well, and end on it;
-/// - several, of which the last goes on on the next line: they are divided anywhere, and end at a line's end. Elements
-///   of any number of values then have the same number of them on every line but the last.
+/// The values of a text's elements (vertices, faces), separated by white space. Line breaks have no meaning in these
+/// formats, but they show where a value is missing. The first line of each kind of element decides how lines are read:
+/// - it holds one element or the beginning of one: every element begins on a new line and ends at the end of a line;
+/// - it holds several elements: others may also begin in the middle of a line, and end on it;
+/// - it holds several, of which the last continues on the next line: elements are divided anywhere. If they may have
+/// any
+///   number of values, every line but the last must have as many values as the first.
 class TextValues {
  public:
   /// @param element names the current one, for messages: "face 3"

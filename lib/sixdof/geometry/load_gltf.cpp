@@ -274,8 +274,8 @@ class Reader {
       if (mode == k_fan) {
         add(0, i + 1, i + 2);
       } else {
-        const std::size_t turn =
-            mode == k_strip ? i % 2 : 0;  // every second triangle of a strip is the other way round
+        // Every second triangle of a strip is the other way round.
+        const std::size_t turn = mode == k_strip ? i % 2 : 0;
         add(i + turn, i + 1 - turn, i + 2);
       }
     }

@@ -62,7 +62,7 @@ void transfer_mesh(Stream& stream, AnyFileMesh& mesh) {
 
 static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
 
-/// Far more than files need that hold what they are about; a small hostile one is ended before it is felt.
+/// Far more than intact files need. A small hostile file is stopped before it slows the machine down.
 SeparateLimits limits_for(std::size_t file_bytes) {
   constexpr std::size_t k_memory_per_byte = 200, k_least_memory = std::size_t{2} << 30;
   constexpr double k_least_s = 60.0, k_s_per_byte = 20e-6, k_waiting = 4.0;

@@ -75,8 +75,8 @@ ShapeKind kind_of(const ShapeFacts& facts) {
   constexpr double k_thin = 0.02;     // a sheet of 1 % to 2 % of its own diagonal
   constexpr double k_slender = 0.04;  // a needle or a disc of 1 : 25
   constexpr double k_boxy = 0.8;      // walls along the axes, with some rounding between them
-  constexpr double k_flat_faces =
-      0.25;  // a third of a meshed cylinder's edges is straight; curved surfaces have 0 to 0.1
+  // A third of a meshed cylinder's edges is straight; curved surfaces have 0 to 0.1.
+  constexpr double k_flat_faces = 0.25;
   if (facts.genus >= k_many_handles) return ShapeKind::handles;
   // Without a volume there is no thickness.
   const bool sheet = facts.thickness > 0.0 && facts.thickness < k_thin;

@@ -21,8 +21,8 @@ bool is_better(Better better, double value, double other);
 /// One column of the results: a counter of a row of `sixdof-bench`, a measure of `sixdof quality`, or a time that
 /// Google Benchmark itself adds to every row.
 struct Metric {
-  std::string_view
-      name;  ///< As in the results. A '*' stands for a unit of work: "*_tested" is points_tested and so on.
+  /// As in the results. A '*' stands for a unit of work: "*_tested" is points_tested and so on.
+  std::string_view name;
   std::string_view unit;  ///< "1" for pure numbers.
   Better better;
   std::string_view meaning;  ///< One sentence.

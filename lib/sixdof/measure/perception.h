@@ -14,8 +14,8 @@ struct PerceptualScores {
   double magnitude = 0.0;  ///< RMS of |m| / (g |i|) - 1 over the steps with a noticeable ideal, over k_force_fraction.
   double direction = 0.0;  ///< RMS angle over the same steps, over k_direction_degrees.
   double vibration = 0.0;  ///< The loudest piece of 250 ms of the residual m - g i (buzz() of each component).
-  double jump =
-      0.0;  ///< Largest change of the residual within a step, over k_force_fraction of the ideal's peak g |i|.
+  /// Largest change of the residual within a step, over k_force_fraction of the ideal's peak g |i|.
+  double jump = 0.0;
   /// Root of the sum of squares: discriminabilities of independent channels add so (Green and Swets, "Signal Detection
   /// Theory and Psychophysics", 1966).
   double pooled() const;

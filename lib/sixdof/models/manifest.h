@@ -32,9 +32,8 @@ struct FetchedModel {
 /// needs no data file.
 std::span<const FetchedModel> fetched_models();
 
-/// The folder of fetched models: that of environment variable SIXDOF_MODELS, else models/cache in
-/// data_folder() if that has a list of models, else models/cache of the source tree that contains the running program
-/// or the current directory, else models/cache in the current directory.
+/// The folder of fetched models: $SIXDOF_MODELS; else models/cache in data_folder() if that has a list of models, or in
+/// the source tree that contains the running program or the current directory; else models/cache.
 std::filesystem::path model_cache();
 
 /// Reads a fetched model and compares its hash with the manifest. @throws BadFile if the file does not exist, is

@@ -32,10 +32,9 @@ TimeLimit expires_after(double seconds);
 /// @returns the status and words: "ended by signal 11 (Segmentation fault)"
 ChildFailure how_it_ended(int wait_status, bool ran_out_of_memory);
 
-/// A program that runs beside this one and exchanges lines with it: what is sent is its standard input, what it prints
-/// on standard output is received; its standard error is this program's. Neither the program nor what it has started
-/// outlives this object or, whatever happens to it, the thread that made the object; nor does that outlive the program
-/// (keeper.h). Ctrl-C does not reach it: it has a process group of its own.
+/// A program that runs beside this one and exchanges lines with it over its standard input and output; its standard
+/// error is this program's. The program and all that it has started end with this object, and also with the thread that
+/// made it, however that thread ends (keeper.h). Ctrl-C does not reach it: it has a process group of its own.
 class ChildProcess {
  public:
   /// @param words program and arguments; the program is looked for in PATH
@@ -54,8 +53,8 @@ class ChildProcess {
   /// The next line, without its break. @throws ChildFailure likewise; for a line longer than k_longest_line too
   std::string receive(const TimeLimit& expired);
 
-  /// Before a request: a line that is there already is the answer to none, and all later ones would be read as answers
-  /// to other requests than theirs. @throws ChildFailure likewise
+  /// To be called before a request: a line that is there already answers no request, and would be taken for the answer
+  /// to this one. @throws ChildFailure likewise
   void expect_no_line();
 
   static constexpr std::size_t k_longest_line = std::size_t{16} << 20;
@@ -87,8 +86,8 @@ class ChildProcess {
 /// What a program writes for receive(): the line and its break. @throws Error if the other side is gone
 void write_line(int output, std::string line);
 
-/// A copy of a descriptor that stands in the way of none of those that a program finds; closed in programs that this
-/// one starts. The given one is closed. @throws Error
+/// Moves a descriptor to a number of 100 or more, so that 3, 4, ... are free for a program that is started. The copy is
+/// closed on exec, the given one is closed now. @throws Error
 int high_descriptor(int descriptor);
 
 /// Limits this process and what it starts: no core file, and no more data than that (RLIMIT_DATA; 0 for no limit). In

@@ -18,12 +18,11 @@ struct KeptProgram {
 /// Exit code of a shell, and of what follows, for a program that cannot be started.
 inline constexpr int k_not_started = 127;
 
-/// Starts a program below a process of its own, the keeper, to which the kernel gives every descendant of the program
-/// whose parent has ended (PR_SET_CHILD_SUBREAPER), also one that has left its group and session. When the program
-/// ends, the keeper kills what is left of them, and ends as the program did: by the same exit code or signal. At
-/// SIGTERM, or when the thread that has called this ends, however it does (PR_SET_PDEATHSIG), it kills them all,
-/// program included. It touches no other process: no other children of the caller, and no descendants of these. It
-/// shares no descriptor, and little memory, with the caller.
+/// Starts a program as the child of a process of its own, the keeper. The keeper is the reaper of the program's orphans
+/// (PR_SET_CHILD_SUBREAPER), also of those that have left its process group and session. When the program ends, the
+/// keeper kills all of its descendants that are left, and ends as the program did: by the same exit code or signal. At
+/// SIGTERM, or when the calling thread ends (PR_SET_PDEATHSIG), it kills the program, too. It touches no other children
+/// of the caller. It shares no descriptor, and little memory, with the caller.
 /// @returns the keeper, leader of a process group; -1 with errno if there can be none
 pid_t start_kept(const KeptProgram& program);
 

@@ -39,10 +39,10 @@ class RemoteQuery final : public Query {
   RemoteQuery(RemoteProgram program, const Traits& traits, const Mesh& a, const Mesh& b, const Settings& settings);
   ~RemoteQuery() override;
 
-  /// A process that ends, is silent for too long or writes nonsense is ended: Status::crashed, timed_out, out_of_memory
-  /// or failed with words. The next query has a new one, which prepares the pair again. A pose that has ended a process
-  /// is not asked again: it has the same status. After k_most_deaths poses in a row, or k_most_time_outs, the others
-  /// have Status::failed and are not asked until forgive().
+  /// If the process crashes, does not answer in time or sends a malformed reply, it is killed, and the status is
+  /// crashed, timed_out, out_of_memory or failed. The next query starts a new process, which prepares the pair again. A
+  /// pose that ended a process is not asked again: it keeps its status. After k_most_deaths in a row, or
+  /// k_most_time_outs, all other poses have Status::failed until forgive().
   Outcome<bool> collide(const Pose& X_AB) override;
   Outcome<Separation> distance(const Pose& X_AB) override;
   Outcome<Response> respond(const Pose& X_AB) override;

@@ -4,8 +4,8 @@
 
 namespace sixdof {
 
-/// The process of an isolated algorithm: answers the requests of the protocol (protocol.h) with one algorithm until the
-/// input ends. Exceptions and NaN become a Status as in ask.h; what ends the process is for the other side to see.
+/// Answers the requests of the protocol (protocol.h) with one algorithm until the input ends: the process of an
+/// isolated algorithm. Exceptions and NaN become a Status as in ask.h; a crash is detected by the other side.
 ///
 /// @param input, output descriptors of the lines; both stay open
 void serve(const Algorithm& algorithm, int input, int output);

@@ -120,12 +120,12 @@ struct MethodLimits {
   QuerySet surfaces_only = {};
   /// There distance() is 0, not that of the surfaces.
   bool distance_of_bodies = false;
-  /// The force adds up what contacts, points or parts of the bodies contribute. Where the overlap is shallow it is less
-  /// than 90 degrees from the shortest way out; elsewhere no direction is promised.
+  /// The force is a sum over contacts, points or parts of the bodies. Where the overlap is shallow it is less than 90
+  /// degrees from the shortest way out; elsewhere no direction is promised.
   bool own_direction = false;
   /// respond() looks at points of B's surface only. Where none of them is deeper in A than the resolution, it may be
   /// zero, however far B is from leaving A.
-  bool samples_b_only = false;
+  bool points_of_b_only = false;
 };
 
 /// What the magnitude of a response is proportional to. It selects the ideal model that scenarios compare with.

@@ -11,7 +11,7 @@
 #include <sixdof/base/visible_text.h>
 #include <sixdof/query/algorithm.h>
 
-/// For callers: whatever a query does wrong is one failed configuration with its words.
+/// For callers of queries: an exception or a NaN becomes one failed configuration with a message.
 
 namespace sixdof {
 

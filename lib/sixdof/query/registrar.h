@@ -9,8 +9,8 @@
 
 namespace sixdof {
 
-/// The same algorithm, whose version, descriptions and words of a refused pair are visible (base/visible_text.h). Its
-/// queries are its own. Null stays null.
+/// Wraps an algorithm: its version, descriptions and errors of prepare() are escaped (base/visible_text.h). Queries are
+/// not wrapped. Null stays null.
 std::unique_ptr<Algorithm> with_visible_words(std::unique_ptr<Algorithm> algorithm);
 
 /// Adds an external algorithm to the programs. Link sixdof::bench_main or sixdof::cli_main and write at namespace scope

@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// The timed loops, as templates on the question, so that they contain nothing but the query. Rows of sixdof-bench and
-/// the process of an isolated algorithm (process/serve.h) run the same ones.
+/// The timed loops, used by the rows of sixdof-bench and by the process of an isolated algorithm (process/serve.h).
 
 namespace sixdof {
 
