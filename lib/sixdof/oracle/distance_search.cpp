@@ -4,14 +4,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <optional>
 #include <span>
-
-#include <Eigen/Geometry>
 
 #include <sixdof/oracle/distance_ties.h>
 #include <sixdof/oracle/triangle_distances.h>
-#include <sixdof/oracle/winding.h>
 #include <sixdof/proximity/sorted_stack.h>
 
 #undef HWY_TARGET_INCLUDE
@@ -20,7 +16,7 @@
 #include <hwy/highway.h>
 
 // After foreach_target.h: this is compiled once per instruction set, too.
-#include <sixdof/oracle/distance_bounds-inl.h>
+#include <sixdof/oracle/distance_expansion-inl.h>
 
 // Depth-first branch and bound over pairs of volumes, the pair with the smallest lower bound first. Of two volumes the
 // larger is expanded: its eight children are bounded against the other volume at once, one child per SIMD lane.
@@ -53,27 +49,26 @@ enum class TiePruning {
 constexpr float k_blurred = 16.0f;
 /// So is a leaf with a node whose size is less than the leaf's thickness times this.
 constexpr float k_thick = 4.0f;
-/// Where doubles may prune more but are not the only way, they are used only after as many such pairs in a search. Most
-/// searches have fewer, and to bound a pair again takes as long as to expand it.
-constexpr std::uint64_t k_patience_with_thick = 256;
-constexpr std::uint64_t k_patience_with_doubtful = 1024;
-constexpr std::uint64_t k_patience_with_touching = 256;  // for intersections, exact tests of triangles are spared, too
+/// Where doubles may prune more but are not the only way, they are used after as many such pairs in a search: to bound
+/// a pair again takes as long as to expand it.
+constexpr std::uint64_t k_thick_pairs_before_doubles = 256;
+constexpr std::uint64_t k_doubtful_pairs_before_doubles = 1024;
+constexpr std::uint64_t k_touching_pairs_before_doubles =
+    256;  // for intersections, exact tests of triangles are spared, too
 
 /// And, in long searches, with a node whose size is less than its own divided by this.
-constexpr float k_unlike = 8.0f;
+constexpr float k_much_larger = 8.0f;
 /// A search is long after as many pairs of leaves.
-constexpr std::uint64_t k_patience_with_leaves = 4096;
-/// After as many exact distances of triangles their gap along the normals is asked first. Most searches need fewer.
-constexpr std::uint64_t k_patience_with_triangles = 256;
-/// After so many pairs of leaves and of triangles, a search for an intersection asks whether a corner lies inside the
-/// other body, and again whenever it has met half as many more. Between surfaces that nearly coincide triangles
-/// intersect along few curves, which the search may meet late, but about half of the corners are inside. Most searches
-/// meet fewer pairs.
-constexpr std::uint64_t k_patience_with_corners = 128;
+constexpr std::uint64_t k_leaf_pairs_of_long_search = 4096;
+/// After as many exact distances of triangles their gap along the normals is asked first.
+constexpr std::uint64_t k_triangles_before_gaps = 256;
+/// After so many pairs of leaves and of triangles, and whenever there are half as many more, a search for an
+/// intersection asks whether a corner lies inside the other body: surfaces that nearly coincide intersect along few
+/// curves, but about half of their corners are inside.
+constexpr std::uint64_t k_pairs_before_corners = 128;
 /// So many pairs of leaves are early in a search.
-constexpr std::uint64_t k_early = 16;
-/// Axes across two boxes, and across two triangles, which are measured exactly otherwise.
-constexpr CrossAxesUse k_use_of_cross_axes(0.125);
+constexpr std::uint64_t k_early_leaf_pairs = 16;
+/// Of axes across two triangles, which are measured exactly otherwise.
 constexpr CrossAxesUse k_use_of_cross_edges(0.03);
 
 class DistanceTraversal final : private CloseVisitor {
@@ -89,7 +84,7 @@ class DistanceTraversal final : private CloseVisitor {
         has_planes_(!search.a.patches.empty() && !search.b.patches.empty()),
         width_(rounded_up(search.ties.width)),
         close_bounds_(tree_a_, tree_b_, search.X_AB),
-        expansion_(tree_a_, tree_b_) {
+        expansion_(tree_a_, tree_b_, search.X_AB) {
     turn_to(search_.direction.squaredNorm() == 0.0 ? frames_.shift : search_.direction);
     lower_best(only_intersection_ ? 0.0f : rounded_up(search_.best + search_.ties.width));
   }
@@ -163,7 +158,7 @@ class DistanceTraversal final : private CloseVisitor {
       }
       // Children by their bounds: all of them early in a search, later the smallest one only.
       const std::size_t first = stack.size();
-      const bool is_early = search_.counts.leaf_pairs < k_early;
+      const bool is_early = search_.counts.leaf_pairs < k_early_leaf_pairs;
       expand(top, [&](const NodePair& next) {
         push_sorted(stack, is_early ? first : std::max(first + 1, stack.size()) - 1, next);
       });
@@ -183,9 +178,9 @@ class DistanceTraversal final : private CloseVisitor {
     const float expanded = expands_a ? size_a : size_b;
     if (expanded < blurred_) return true;
     if (!is_leaf(expands_a ? pair.b : pair.a)) return false;
-    const bool is_long_search = search_.counts.leaf_pairs > k_patience_with_leaves;
-    if (is_long_search && k_unlike * k_unlike * expanded < (expands_a ? size_b : size_a)) return true;
-    return is_thick(expands_a ? b : a, expanded) && ++thick_pairs_ > k_patience_with_thick;
+    const bool is_long_search = search_.counts.leaf_pairs > k_leaf_pairs_of_long_search;
+    if (is_long_search && k_much_larger * k_much_larger * expanded < (expands_a ? size_b : size_a)) return true;
+    return is_thick(expands_a ? b : a, expanded) && ++thick_pairs_ > k_thick_pairs_before_doubles;
   }
 
   /// @param size square of a diagonal
@@ -207,7 +202,7 @@ class DistanceTraversal final : private CloseVisitor {
   /// Whether the pair's bound may exceed the best but for rounding.
   bool is_doubtful(const NodePair& pair) {
     if (!(pair.lower > doubtful_)) return false;
-    return ++doubtful_pairs_ > (only_intersection_ ? k_patience_with_touching : k_patience_with_doubtful);
+    return ++doubtful_pairs_ > (only_intersection_ ? k_touching_pairs_before_doubles : k_doubtful_pairs_before_doubles);
   }
 
   HWY_NOINLINE double bound_closely(const NodePair& pair) const {
@@ -289,12 +284,11 @@ class DistanceTraversal final : private CloseVisitor {
     LeafPair pairs;
     if (!bound_pairs(leaf_a, leaf_b, pairs)) return false;
     // Pairs that may intersect are measured now, the others last: most of them are pruned by then. Where an exact best
-    // tells more than the least upper bound, pairs that improve on it are measured now, too: between meshes with
-    // planes, as ties are pruned by exact distances, and where bounds are asked in doubles. Between coplanar patches
-    // pairs at the distance of the best count as improving, one at a time, as the first exact distance shows that the
-    // rest tie.
+    // tells more than the least upper bound, pairs that improve on it are measured now, too: where meshes have planes,
+    // as ties are pruned by exact distances, and where bounds are asked in doubles. Between coplanar patches pairs at
+    // the distance of the best improve, too, one at a time: the first exact distance shows that the rest tie.
     const bool coplanar = has_planes_ && search_.a.patches.of(leaves.a) && search_.b.patches.of(leaves.b);
-    const bool one_by_one = coplanar || doubtful_pairs_ > k_patience_with_doubtful;
+    const bool one_by_one = coplanar || doubtful_pairs_ > k_doubtful_pairs_before_doubles;
     const float improving = one_by_one ? best_ + frames_.slack.all : has_planes_ ? best_ : -Tree::k_empty;
     if (!has_planes_) take_upper_bound(pairs);
     while (true) {
@@ -371,46 +365,7 @@ class DistanceTraversal final : private CloseVisitor {
   /// best.
   template <class Keep>
   HWY_INLINE void expand(const NodePair& top, const Keep& keep) {
-    expansion_.take(tree_a_, top.a, tree_b_, top.b, frames_);
-    const auto& [a, b] = expansion_;
-    const auto near_b =
-        b.lanes() & near_volumes(a.volumes(), a.whole(), b.volumes(), frames_.shift_along, frames_.slack, best_);
-    const auto near_a =
-        a.lanes() & near_volumes(b.volumes(), b.whole(), a.volumes(), frames_.shift_along, frames_.slack, best_);
-    // One volume after the other of the side that has fewer.
-    const bool x_is_a = std::popcount(near_a) >= std::popcount(near_b);
-    const auto& x = x_is_a ? a : b;
-    const auto& y = x_is_a ? b : a;
-    const std::uint32_t near_x = x_is_a ? near_a : near_b;
-    const Frame& frame = x_is_a ? frames_.a : frames_.b;
-    for (std::uint32_t rest = x_is_a ? near_b : near_a; rest != 0; rest &= rest - 1) {
-      const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-      HWY_ALIGN float bounds[k_width];
-      ++search_.counts.nodes;
-      std::uint32_t kept =
-          near_x & bound_volumes(x.volumes(), y.volumes(), j, frame, frames_.shift_along, frames_.slack, best_, bounds);
-      if (kept != 0 && use_of_cross_axes_.is_due())
-        kept = ask_cross_axes(x.volumes(), y.volumes(), j, x_is_a, kept, bounds);
-      if (kept == 0) continue;
-      const std::uint32_t child_y = y.child(j);
-      y.prefetch_child(child_y);
-      for (; kept != 0; kept &= kept - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(kept));
-        const std::uint32_t child_x = x.child(i);
-        x.prefetch_child(child_x);
-        keep(x_is_a ? NodePair{child_x, child_y, bounds[i]} : NodePair{child_y, child_x, bounds[i]});
-      }
-    }
-  }
-
-  HWY_NOINLINE std::uint32_t ask_cross_axes(const Volumes& x, const Volumes& y, std::size_t j, bool x_is_a,
-                                            std::uint32_t kept, float* bounds) {
-    if (!cross_axes_) cross_axes_.emplace(search_.X_AB.R);
-    const auto& axes_x = x_is_a ? cross_axes_->in_a : cross_axes_->in_b;
-    const auto& axes_y = x_is_a ? cross_axes_->in_b : cross_axes_->in_a;
-    const std::uint32_t left = bound_across_axes(x, y, j, axes_x, axes_y, frames_.slack, best_, kept, bounds);
-    use_of_cross_axes_.count(std::popcount(kept), std::popcount(left));
-    return left;
+    expansion_.expand(top, frames_, best_, search_.counts.nodes, keep);
   }
 
   /// Whether a pair whose exact distance is at least `lower` is not closer than the best. Records it if it may tie.
@@ -428,7 +383,7 @@ class DistanceTraversal final : private CloseVisitor {
   /// long searches.
   bool prune_by_gap(TrianglePair pair) {
     const bool is_asked =
-        only_intersection_ || search_.ties.margin > 0.0 || search_.counts.triangles > k_patience_with_triangles;
+        only_intersection_ || search_.ties.margin > 0.0 || search_.counts.triangles > k_triangles_before_gaps;
     return is_asked && prune(NodePair::of(pair, 0.0f), gap_of(search_, pair));
   }
 
@@ -463,13 +418,11 @@ class DistanceTraversal final : private CloseVisitor {
   const bool has_planes_;    // both meshes have coplanar patches
   const float width_;        // search_.ties.width, rounded up
   const CloseBounds close_bounds_;
-  Expansion<k_rounding, true, 8> expansion_;
-  std::optional<CrossAxes> cross_axes_;  // made when they are asked for the first time
-  CrossAxesUse use_of_cross_axes_ = k_use_of_cross_axes;
+  PairExpansion expansion_;
   CrossAxesUse use_of_cross_edges_ = k_use_of_cross_edges;
   std::uint64_t thick_pairs_ = 0;
   std::uint64_t doubtful_pairs_ = 0;
-  std::uint64_t near_pairs_ = 0, next_corner_ = k_patience_with_corners;
+  std::uint64_t near_pairs_ = 0, next_corner_ = k_pairs_before_corners;
   std::size_t corners_asked_ = 0;
   HWY_ALIGN float difference_[3][k_pairs];                   // of points of the triangles that bound_pairs() left
   float shortest_ = std::numeric_limits<float>::infinity();  // of the differences so far
@@ -487,85 +440,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sixdof::detail {
 
-Eigen::Vector3d transform_point_of_b(const Pose& X_AB, const Eigen::Vector3d& p) { return X_AB * p; }
-
-TriangleCorners corners_of_b(const DistanceSearch& search, std::uint32_t triangle) {
-  const Tree::Corners& corners = search.b.tree.corners()[triangle];
-  return {transform_point_of_b(search.X_AB, corners[0]), transform_point_of_b(search.X_AB, corners[1]),
-          transform_point_of_b(search.X_AB, corners[2])};
-}
-
 HWY_EXPORT(find_pair);
 
 void find_pair(DistanceSearch& search, bool only_intersection) {
   HWY_DYNAMIC_DISPATCH(find_pair)(search, only_intersection);
-}
-
-ClosestPoints distance_of(const DistanceSearch& search, TrianglePair pair) {
-  return triangle_triangle_distance(search.a.tree.corners()[pair.a], corners_of_b(search, pair.b));
-}
-
-double gap_of(const DistanceSearch& search, TrianglePair pair) {
-  return triangle_gap(search.a.tree.corners()[pair.a], corners_of_b(search, pair.b));
-}
-
-bool intersects(const DistanceSearch& search, TrianglePair pair) {
-  return triangles_intersect(search.a.tree.corners()[pair.a], corners_of_b(search, pair.b));
-}
-
-bool try_update(DistanceSearch& search, TrianglePair pair, double distance) {
-  if (distance > search.best + search.ties.width) return false;
-  search.measured.push_back({pair, distance});
-  if (distance > search.best || (search.found && distance == search.best)) return false;
-  const bool closer = distance < search.best;
-  search.best = distance;
-  search.found = true;
-  search.pair = pair;
-  search.closest.reset();
-  return closer;
-}
-
-bool try_update(DistanceSearch& search, TrianglePair pair) {
-  const ClosestPoints closest = distance_of(search, pair);
-  if (!try_update(search, pair, closest.distance)) return false;
-  search.closest = closest;
-  search.direction = closest.on_b - closest.on_a;
-  return true;
-}
-
-bool has_corner_inside(DistanceSearch& search, TrianglePair pair, std::size_t turn) {
-  const DistanceBody &a = search.a, &b = search.b;
-  const auto is_in_a = [&](const Eigen::Vector3d& p) { return winding_of_a(a.tree, p, search.triangles) > 0; };
-  const auto is_in_b = [&](const Eigen::Vector3d& p) {
-    return winding_of_b(b.tree, search.X_AB, transform_point_of_b, p, search.triangles) > 0;
-  };
-  const auto is_inside = [&](TrianglePair x) {
-    const TriangleCorners of_b = corners_of_b(search, x.b);
-    const Tree::Corners& of_a = a.tree.corners()[x.a];
-    return std::any_of(of_b.begin(), of_b.end(), is_in_a) || std::any_of(of_a.begin(), of_a.end(), is_in_b);
-  };
-  if (is_inside(pair)) return true;
-  constexpr std::size_t k_seeds = 4;
-  for (std::size_t i = k_seeds * turn; i < k_seeds * (turn + 1); ++i) {
-    const auto seed = [&](const DistanceBody& body) {
-      return body.tree.leaves()[body.seeds.leaf[i % SeedCorners::k_count]].child.first();
-    };
-    if (is_inside({seed(a), seed(b)})) return true;
-  }
-  return false;
-}
-
-const ClosestPoints& points_of(DistanceSearch& search) {
-  if (!search.closest) search.closest = distance_of(search, search.pair);
-  return *search.closest;
-}
-
-float smallest_leaf_of(const Tree& tree) {
-  float smallest = std::numeric_limits<float>::infinity();
-  for (const Tree::Leaf& leaf : tree.leaves()) {
-    smallest = std::min(smallest, leaf.volume.squared_diagonal());
-  }
-  return smallest;
 }
 
 }  // namespace sixdof::detail
