@@ -72,7 +72,7 @@ TEST(Shots, DepthsOfSurfacesAgreeWithPointsOnThem) {
   int sunk = 0;
   for (int i = 0; i < 30; ++i) {
     const Eigen::Vector3d offset(uniform(random), uniform(random), uniform(random));
-    const Truth truth = aligned_boxes(size_a, size_b, offset).truth;
+    const GroundTruth truth = aligned_boxes(size_a, size_b, offset).truth;
     const double of_b = sampled_depth(size_a, size_b, offset, k_steps);
     const double of_a = sampled_depth(size_b, size_a, -offset, k_steps);
     EXPECT_GE(truth.depth_of_b, of_b - 1e-15);

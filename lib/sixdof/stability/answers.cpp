@@ -4,7 +4,6 @@
 #include <chrono>
 #include <ctime>
 #include <exception>
-#include <new>
 
 #include <sixdof/base/error.h>
 #include <sixdof/query/ask.h>

@@ -21,10 +21,14 @@ MeshPointer closed(Points points, std::vector<Triangle> triangles) {
   if (signed_volume(points, triangles) < 0.0) {
     for (Triangle& t : triangles) std::swap(t[1], t[2]);
   }
-  return std::make_shared<const Mesh>(Mesh::build(std::move(points), std::move(triangles), "stability"));
+  return built(std::move(points), std::move(triangles));
 }
 
 }  // namespace
+
+MeshPointer built(Points points, std::vector<Triangle> triangles, std::string name) {
+  return std::make_shared<const Mesh>(Mesh::build(std::move(points), std::move(triangles), std::move(name)));
+}
 
 MeshPointer hexahedron(const std::array<Eigen::Vector3d, 8>& corners) {
   // Two triangles for each face, in the order low x, high x, low y, high y, low z, high z.
@@ -51,7 +55,7 @@ MeshPointer tetrahedron(const std::array<Eigen::Vector3d, 4>& corners) {
 MeshPointer triangles(const Points& corners) {
   std::vector<Triangle> faces;
   for (std::uint32_t i = 0; i + 2 < corners.size(); i += 3) faces.push_back({i, i + 1, i + 2});
-  return std::make_shared<const Mesh>(Mesh::build(corners, std::move(faces), "stability"));
+  return built(corners, std::move(faces));
 }
 
 MeshPointer revolved(const std::vector<Level>& levels, std::size_t sides) {
@@ -106,7 +110,7 @@ MeshPointer transformed(const Mesh& mesh, const Placement& motion, double factor
   const Pose X = motion.pose();
   Points points;
   for (const Eigen::Vector3d& p : mesh.vertices()) points.push_back(X * (factor * p));
-  return std::make_shared<const Mesh>(Mesh::build(std::move(points), mesh.triangles(), mesh.name()));
+  return built(std::move(points), mesh.triangles(), mesh.name());
 }
 
 Placement z_to(const Eigen::Vector3d& direction, const Eigen::Vector3d& t) {

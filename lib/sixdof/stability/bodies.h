@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,6 +14,9 @@
 namespace sixdof::stability {
 
 using Points = std::vector<Eigen::Vector3d>;
+
+/// A mesh as it is given.
+MeshPointer built(Points points, std::vector<Triangle> triangles, std::string name = "stability");
 
 /// Twelve triangles, centred at the origin.
 MeshPointer box(const Eigen::Vector3d& size);
@@ -42,6 +46,11 @@ MeshPointer capsule(double radius, double half_height, std::size_t sides = 16);
 
 /// p -> factor * R p + t of every vertex.
 MeshPointer transformed(const Mesh& mesh, const Placement& motion, double factor = 1.0);
+
+/// A rotation by `angle` (radians) about a unit vector.
+inline Eigen::Quaterniond about(double angle, const Eigen::Vector3d& axis) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
+}
 
 /// The rotation that turns z to a direction.
 Placement z_to(const Eigen::Vector3d& direction, const Eigen::Vector3d& t = Eigen::Vector3d::Zero());

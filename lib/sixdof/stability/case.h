@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -29,7 +30,7 @@ struct Placement {
 inline constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// What is true of the two bodies; k_unknown where nothing is claimed.
-struct Truth {
+struct GroundTruth {
   double gap = k_unknown;       ///< Distance of the bodies, or minus the depth by which B has to leave A (length).
   double distance = k_unknown;  ///< Of the surfaces (length).
   double volume = k_unknown;    ///< Of the intersection (length^3).
@@ -44,7 +45,7 @@ struct Truth {
 struct Shot {
   MeshPointer a, b;
   Placement X_AB;
-  Truth truth;
+  GroundTruth truth = {};
   double scale = 1.0;                                  ///< Lengths of this shot over those of the case's first.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< Takes the force of the first shot to that of this one.
   std::optional<Pose> raw;                             ///< Asked in place of X_AB: a pose that is none.
@@ -71,15 +72,26 @@ enum class Relation {
 /// A member of a family.
 struct Case {
   std::string name;
-  std::string thread;      ///< "owner/repo#issue" where users met it; empty if generated.
-  double parameter = 0.0;  ///< Of the family's sweep.
+  std::string thread = {};  ///< "owner/repo#issue" where users met it; empty if generated.
+  double parameter = 0.0;   ///< Of the family's sweep.
   Relation relation = Relation::none;
-  std::vector<Shot> shots;
+  std::vector<Shot> shots = {};
   bool convex = false;                               ///< Both bodies are: a separating direction attains the distance.
   Eigen::Vector3d motion = Eigen::Vector3d::Zero();  ///< Of B in A's frame, per unit of time (Relation::sweep).
   double contact_time = k_unknown;                   ///< When the bodies first touch; infinity: never.
 
   double size() const { return shots.front().a->diagonal(); }  ///< Lengths are judged relative to it.
 };
+
+/// A case whose shots must have the same answers (Relation::same).
+inline Case same_answers(std::string name, double parameter, std::vector<Shot> shots, bool convex = true,
+                         std::string thread = {}) {
+  return {.name = std::move(name),
+          .thread = std::move(thread),
+          .parameter = parameter,
+          .relation = Relation::same,
+          .shots = std::move(shots),
+          .convex = convex};
+}
 
 }  // namespace sixdof::stability

@@ -11,13 +11,6 @@
 namespace sixdof::stability::make {
 namespace {
 
-const Eigen::Vector3d k_size_a{2.0, 1.6, 1.2};
-const Eigen::Vector3d k_size_b{0.5, 0.4, 0.3};
-
-MeshPointer built(Points points, std::vector<Triangle> triangles) {
-  return std::make_shared<const Mesh>(Mesh::build(std::move(points), std::move(triangles), "stability"));
-}
-
 /// Cuts `count` sides in the middle on one of their two triangles and closes each slit by a triangle without area; then
 /// adds as many pairs of equal triangles that look in opposite directions.
 MeshPointer with_zero_area(const Mesh& mesh, std::size_t count) {
@@ -64,12 +57,7 @@ Case slivers(Draw& draw) {
   const double x = draw.uniform(-0.3, 0.3), y = draw.uniform(-0.3, 0.3);
   const double gap = draw.logarithmic(1e-6, 0.1);
   const Shot shot = above_face(box(k_size_a), 0.5 * k_size_a.z(), box(size), q, x, y, gap);
-  return {.name = needle ? "needle" : "flake",
-          .thread = {},
-          .parameter = aspect,
-          .relation = Relation::same,
-          .shots = {shot, swapped(shot), moved(shot, frame(draw), frame(draw))},
-          .convex = true};
+  return same_answers(needle ? "needle" : "flake", aspect, in_other_frames(shot, draw));
 }
 
 Case zero_area(Draw& draw) {
@@ -81,11 +69,7 @@ Case zero_area(Draw& draw) {
   Shot dirty = clean;
   dirty.a = with_zero_area(*clean.a, added(*clean.a));
   dirty.b = with_zero_area(*clean.b, added(*clean.b));
-  return {.name = "triangles without area",
-          .thread = {},
-          .parameter = part,
-          .relation = Relation::same,
-          .shots = {clean, dirty, swapped(dirty)}};
+  return same_answers("triangles without area", part, {clean, dirty, swapped(dirty)}, false);
 }
 
 Case retriangulated(Draw& draw) {
@@ -98,12 +82,7 @@ Case retriangulated(Draw& draw) {
   const auto triangles = static_cast<std::size_t>(count);
   fine.a = std::make_shared<const Mesh>(make_box({k_size_a}, triangles));
   fine.b = std::make_shared<const Mesh>(make_box({k_size_b}, triangles));
-  return {.name = "gridded boxes",
-          .thread = {},
-          .parameter = count,
-          .relation = Relation::same,
-          .shots = {coarse, fine, moved(fine, frame(draw), frame(draw))},
-          .convex = true};
+  return same_answers("gridded boxes", count, {coarse, fine, moved(fine, frame(draw), frame(draw))});
 }
 
 Case holes(Draw& draw) {
@@ -113,7 +92,7 @@ Case holes(Draw& draw) {
   Shot shot = above_face(std::make_shared<const Mesh>(make_box({k_size_a}, 108)), 0.5 * k_size_a.z(), box(k_size_b), q,
                          draw.uniform(-0.3, 0.3), draw.uniform(-0.3, 0.3), gap);
   shot.a = damaged_below(*shot.a, part, draw);
-  return {.name = "damage below", .thread = {}, .parameter = part, .relation = Relation::none, .shots = {shot}};
+  return {.name = "damage below", .parameter = part, .relation = Relation::none, .shots = {shot}};
 }
 
 }  // namespace sixdof::stability::make

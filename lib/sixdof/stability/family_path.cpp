@@ -11,9 +11,6 @@
 namespace sixdof::stability::make {
 namespace {
 
-const Eigen::Vector3d k_size_a{2.0, 1.6, 1.2};
-const Eigen::Vector3d k_size_b{0.5, 0.4, 0.3};
-
 MeshPointer ball(std::size_t triangles, double radius) {
   return std::make_shared<const Mesh>(make_sphere({radius}, triangles));
 }
@@ -29,7 +26,7 @@ Shot without_truth(Shot shot) {
 Case bad_poses(Draw& draw) {
   const double norm = draw.unit() < 0.1 ? 0.0 : draw.logarithmic(1e-3, 1e3);
   const Shot first = base(draw);
-  Case result{.name = "bad poses", .thread = {}, .parameter = norm, .relation = Relation::bad, .shots = {}};
+  Case result{.name = "bad poses", .parameter = norm, .relation = Relation::bad};
   const auto add = [&](const auto& spoil) {
     Shot shot = without_truth(first);
     shot.raw = first.X_AB.pose();
@@ -56,7 +53,7 @@ Case bad_poses(Draw& draw) {
 
 Case lipschitz(Draw& draw) {
   const double step = draw.logarithmic(1e-12, 1e-3);
-  Case result{.name = "small steps", .thread = {}, .parameter = step, .relation = Relation::path, .shots = {}};
+  Case result{.name = "small steps", .parameter = step, .relation = Relation::path};
   Shot shot = moved(base(draw), frame(draw), frame(draw));
   shot.truth = {.error = shot.truth.error};
   const Eigen::Vector3d direction = draw.direction();
@@ -71,11 +68,7 @@ Case closed_loop(Draw& draw) {
   const auto steps = static_cast<std::size_t>(draw.logarithmic(64.0, 512.0));
   const double radius = draw.logarithmic(0.01, 0.1), depth = draw.uniform(1.2, 2.0) * radius;
   const Eigen::Quaterniond q = draw.rotation();
-  Case result{.name = "small circle",
-              .thread = {},
-              .parameter = static_cast<double>(steps),
-              .relation = Relation::loop,
-              .shots = {}};
+  Case result{.name = "small circle", .parameter = static_cast<double>(steps), .relation = Relation::loop};
   Shot shot = above_face(box(k_size_a), 0.5 * k_size_a.z(), box(k_size_b), q, draw.uniform(-0.3, 0.3),
                          draw.uniform(-0.3, 0.3), -depth);
   const Eigen::Vector3d u = draw.direction(), v = u.unitOrthogonal();
@@ -90,11 +83,7 @@ Case closed_loop(Draw& draw) {
 
 Case repeated(Draw& draw) {
   const auto poses = static_cast<std::size_t>(draw.uniform(4.0, 17.0));
-  Case result{.name = "repeated poses",
-              .thread = {},
-              .parameter = static_cast<double>(poses),
-              .relation = Relation::repeat,
-              .shots = {}};
+  Case result{.name = "repeated poses", .parameter = static_cast<double>(poses), .relation = Relation::repeat};
   const Shot first = moved(base(draw), frame(draw), frame(draw));
   for (std::size_t i = 0; i < poses; ++i) {
     Shot shot = without_truth(first);
@@ -110,13 +99,13 @@ Case worst_time(Draw& draw) {
   const double small = draw.logarithmic(1e-3, 1.0);
   const double gap = draw.logarithmic(1e-9, 1e-2);
   const MeshPointer a = ball(triangles, 1.0), b = small > 0.9 ? a : ball(triangles, small);
-  Case result{.name = "balls near contact", .thread = {}, .parameter = count, .relation = Relation::time, .shots = {}};
+  Case result{.name = "balls near contact", .parameter = count, .relation = Relation::time};
   for (int i = 0; i < 12; ++i) {
     const Eigen::Quaterniond q = draw.rotation();
     const Eigen::Vector3d direction = draw.direction();
     // Close outside, close inside, far away.
     const double s = i % 3 == 0 ? 1.0 + small + gap : i % 3 == 1 ? 1.0 - small - gap : 100.0;
-    result.shots.push_back({.a = a, .b = b, .X_AB = {s * direction, q}, .truth = {}});
+    result.shots.push_back({.a = a, .b = b, .X_AB = {s * direction, q}});
   }
   return result;
 }

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include <sixdof/stability/bodies.h>
 #include <sixdof/stability/makers.h>
@@ -6,9 +5,6 @@
 
 namespace sixdof::stability::make {
 namespace {
-
-const Eigen::Vector3d k_size_a{2.0, 1.6, 1.2};
-const Eigen::Vector3d k_size_b{0.5, 0.4, 0.3};
 
 /// Where B's lowest vertex meets the face: far from its border.
 constexpr double k_inner = 0.3;
@@ -39,16 +35,16 @@ Placement frame(Draw& draw, double largest_shift) {
   return {largest_shift * draw.unit() * direction, q};
 }
 
+std::vector<Shot> in_other_frames(const Shot& shot, Draw& draw) {
+  return {shot, swapped(shot), moved(shot, frame(draw), frame(draw))};
+}
+
 Case uniform_scale(Draw& draw) {
   const double factor = draw.logarithmic(1e-6, 1e6);
   const Shot first = base(draw);
   const Shot turned = moved(first, frame(draw), frame(draw));
-  return {.name = "scaled bodies",
-          .thread = {},
-          .parameter = factor,
-          .relation = Relation::same,
-          .shots = {first, scaled(first, factor), scaled(turned, factor), scaled(swapped(turned), factor)},
-          .convex = true};
+  return same_answers("scaled bodies", factor,
+                      {first, scaled(first, factor), scaled(turned, factor), scaled(swapped(turned), factor)});
 }
 
 Case size_ratio(Draw& draw) {
@@ -59,12 +55,8 @@ Case size_ratio(Draw& draw) {
   const Eigen::Quaterniond q = draw.rotation();
   const Shot shot =
       above_face(box(k_size_a), 0.5 * k_size_a.z(), box(size * Eigen::Vector3d(1.0, 0.8, 0.6)), q, x, y, gap);
-  return {.name = "small body over a face",
-          .thread = {},
-          .parameter = ratio,
-          .relation = Relation::same,
-          .shots = {shot, swapped(shot), moved(shot, frame(draw), frame(draw, size))},
-          .convex = true};
+  return same_answers("small body over a face", ratio,
+                      {shot, swapped(shot), moved(shot, frame(draw), frame(draw, size))});
 }
 
 Case common_offset(Draw& draw) {
@@ -72,24 +64,14 @@ Case common_offset(Draw& draw) {
   const Shot first = base(draw);
   const Placement far{offset * draw.direction(), Eigen::Quaterniond::Identity()};
   const Shot away = moved(first, far, far);
-  return {.name = "both bodies offset",
-          .thread = {},
-          .parameter = offset,
-          .relation = Relation::same,
-          .shots = {first, away, swapped(away)},
-          .convex = true};
+  return same_answers("both bodies offset", offset, {first, away, swapped(away)});
 }
 
 Case rigid_motion(Draw& draw) {
   const double shift = draw.logarithmic(1e-3, 1e3);
   const Shot first = base(draw);
   const Shot turned = moved(first, frame(draw, shift), frame(draw, shift));
-  return {.name = "other frames",
-          .thread = {},
-          .parameter = shift,
-          .relation = Relation::same,
-          .shots = {first, turned, swapped(first), swapped(turned)},
-          .convex = true};
+  return same_answers("other frames", shift, {first, turned, swapped(first), swapped(turned)});
 }
 
 }  // namespace sixdof::stability::make

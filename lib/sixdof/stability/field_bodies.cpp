@@ -47,20 +47,11 @@ std::vector<Case> body_scales() {
                            moved(near, far, far), true));
   }
   const Shot whole = aligned_boxes({2.0, 1.0, 1.0}, cube(1.0), {0.2, 0.1, 0.95});
-  cases.push_back({.name = "mesh at 5 %",
-                   .thread = "jrouwe/JoltPhysics#2048",
-                   .parameter = 0.05,
-                   .relation = Relation::same,
-                   .shots = {whole, scaled(whole, 0.05)},
-                   .convex = true});
+  cases.push_back(same_answers("mesh at 5 %", 0.05, {whole, scaled(whole, 0.05)}, true, "jrouwe/JoltPhysics#2048"));
   for (const double factor : {1e-3, 1e-5}) {
     const Shot pair = aligned_boxes(cube(1.0), cube(0.5), {0.1, 0.2, 0.7});
-    cases.push_back({.name = fmt::format("absolute tolerance at scale {}", factor),
-                     .thread = "Genesis-Embodied-AI/genesis-world#3007",
-                     .parameter = factor,
-                     .relation = Relation::same,
-                     .shots = {pair, scaled(pair, factor)},
-                     .convex = true});
+    cases.push_back(same_answers(fmt::format("absolute tolerance at scale {}", factor), factor,
+                                 {pair, scaled(pair, factor)}, true, "Genesis-Embodied-AI/genesis-world#3007"));
   }
   return cases;
 }
@@ -101,18 +92,15 @@ std::vector<Case> body_kissing() {
   const Eigen::Vector2d beside(0.5419794018 - 0.6, -0.0621175025);
   const double angle = std::atan2(beside.y(), beside.x());
   const MeshPointer post =
-      transformed(*cylinder(0.03, 0.325),
-                  {Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()))});
+      transformed(*cylinder(0.03, 0.325), {Eigen::Vector3d::Zero(), about(angle, Eigen::Vector3d::UnitZ())});
   Shot touching{.a = post,
                 .b = ball(0.055, Eigen::Vector3d(-beside.x(), -beside.y(), 0.0)),
-                .X_AB = at(beside.x(), beside.y(), 0.6016236576 - 0.325),
-                .truth = {}};
+                .X_AB = at(beside.x(), beside.y(), 0.6016236576 - 0.325)};
   touching.truth.gap = beside.norm() - 0.085;  // -1.5334e-7
   touching.truth.distance = 0.0;
   Shot on_edge{.a = box(cube(0.1)),
                .b = ball(0.06, Eigen::Vector3d::UnitY()),
-               .X_AB = at(1.7855e-10 - 0.05, 0.04 - 0.15, 0.33 - 0.35),
-               .truth = {}};
+               .X_AB = at(1.7855e-10 - 0.05, 0.04 - 0.15, 0.33 - 0.35)};
   on_edge.truth.gap = on_edge.truth.distance = 0.0;
   return {
       member("boxes 3.6e-6 apart", "coal-library/coal#604", 3.57545e-6,
@@ -132,13 +120,12 @@ std::vector<Case> body_kissing() {
 }
 
 std::vector<Case> body_aligned() {
-  const Placement yaw{{0.75, 0.0, 0.15},
-                      Eigen::Quaterniond(Eigen::AngleAxisd(std::acos(7.96326710733264e-4), Eigen::Vector3d::UnitZ()))};
+  const Placement yaw{{0.75, 0.0, 0.15}, about(std::acos(7.96326710733264e-4), Eigen::Vector3d::UnitZ())};
   const Placement turned{{0.75, 0.0, 0.15}, rotation({0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}, {0.0, -1.0, 0.0})};
   const Pose X = yaw.pose().inverse() * turned.pose();
   const Shot bars = overlapping(box({0.05, 0.55, 0.3}), box({0.25, 0.2, 0.15}),
                                 {X.t, (yaw.q.conjugate() * turned.q).normalized()}, 0.15005968, 2e-8);
-  const Eigen::Quaterniond almost(Eigen::AngleAxisd(4.6e-11, Eigen::Vector3d(0.6, 0.48, 0.64)));
+  const Eigen::Quaterniond almost = about(4.6e-11, {0.6, 0.48, 0.64});
   return {
       member("bars at an angle of 8e-4", "RobotLocomotion/drake#21673", 7.96e-4, bars, true),
       member("nearly equal frames", "flexible-collision-library/fcl#445", 4.6e-11,
@@ -158,8 +145,8 @@ std::vector<Case> body_aligned() {
 std::vector<Case> body_parallel() {
   return {
       member("edges 1.7e-8 apart", "flexible-collision-library/fcl#390", 1.70822e-8,
-             above_face(box({1.0, 1.0, 0.1}), 0.05, box({0.4, 0.3, 0.2}),
-                        Eigen::Quaterniond(Eigen::AngleAxisd(1e-8, Eigen::Vector3d::UnitX())), 0.1, 0.1, 1.70822e-8),
+             above_face(box({1.0, 1.0, 0.1}), 0.05, box({0.4, 0.3, 0.2}), about(1e-8, Eigen::Vector3d::UnitX()), 0.1,
+                        0.1, 1.70822e-8),
              true),
   };
 }

@@ -14,12 +14,7 @@ namespace sixdof::stability::field {
 
 /// One query in both orders.
 inline Case member(std::string name, std::string thread, double parameter, const Shot& shot, bool convex = false) {
-  return {.name = std::move(name),
-          .thread = std::move(thread),
-          .parameter = parameter,
-          .relation = Relation::same,
-          .shots = {shot, swapped(shot)},
-          .convex = convex};
+  return same_answers(std::move(name), parameter, {shot, swapped(shot)}, convex, std::move(thread));
 }
 
 /// A surface of triangles at its own coordinates against another one, or a body.

@@ -11,23 +11,17 @@
 namespace sixdof::stability::field {
 namespace {
 
-MeshPointer inverted(const Mesh& mesh) {
-  std::vector<Triangle> triangles = mesh.triangles();
-  for (Triangle& t : triangles) std::swap(t[1], t[2]);
-  return std::make_shared<const Mesh>(Mesh::build(mesh.vertices(), std::move(triangles), mesh.name()));
-}
-
-/// Every triangle twice, the second time turned over.
-MeshPointer doubled(const Mesh& mesh) {
-  std::vector<Triangle> triangles = mesh.triangles();
+/// Every triangle turned over or, if `twice`, once as it is and once turned over.
+MeshPointer turned_over(const Mesh& mesh, bool twice) {
+  std::vector<Triangle> triangles;
+  if (twice) triangles = mesh.triangles();
   for (const Triangle& t : mesh.triangles()) triangles.push_back({t[0], t[2], t[1]});
-  return std::make_shared<const Mesh>(Mesh::build(mesh.vertices(), std::move(triangles), mesh.name()));
+  return built(mesh.vertices(), std::move(triangles));
 }
 
 /// A body above a plate.
 Shot standing(double gap) {
-  return above_face(box({2.0, 1.6, 1.2}), 0.6, box({0.5, 0.4, 0.3}),
-                    Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.6, 0.48, 0.64))), 0.1, 0.05, gap);
+  return above_face(box({2.0, 1.6, 1.2}), 0.6, box({0.5, 0.4, 0.3}), about(0.7, {0.6, 0.48, 0.64}), 0.1, 0.05, gap);
 }
 
 Case moving(std::string name, std::string thread, double parameter, const Shot& shot, const Eigen::Vector3d& motion,
@@ -56,11 +50,11 @@ std::vector<Case> retriangulations() {
 
 std::vector<Case> damaged() {
   Shot mirrored = standing(0.05);
-  mirrored.a = inverted(*mirrored.a);
+  mirrored.a = turned_over(*mirrored.a, false);
   Shot twice = standing(0.05);
-  twice.a = doubled(*twice.a);
+  twice.a = turned_over(*twice.a, true);
   Shot inside_out = standing(-0.05);
-  inside_out.b = inverted(*inside_out.b);
+  inside_out.b = turned_over(*inside_out.b, false);
   inside_out.truth.push.reset();
   return {member("mirrored mesh, normals inwards", "google-deepmind/mujoco#3604", 1.0, mirrored),
           member("mirrored moving mesh in contact", "google-deepmind/mujoco#3604, moving", 1.0, inside_out),
@@ -105,48 +99,27 @@ std::vector<Case> inputs() {
   half.raw->R = 0.5 * Eigen::Matrix3d::Identity();
   Shot nan = half;
   nan.raw->R.setConstant(std::numeric_limits<double>::quiet_NaN());
-  return {{.name = "quaternion of norm 0.707107",
-           .thread = "flexible-collision-library/fcl#567",
-           .parameter = 0.707107,
-           .relation = Relation::bad,
-           .shots = {half}},
-          {.name = "box of NaN",
-           .thread = "flexible-collision-library/fcl#567, NaN",
-           .parameter = 0.0,
-           .relation = Relation::bad,
-           .shots = {nan}}};
+  const auto bad = [](const char* name, const char* thread, double parameter, const Shot& shot) {
+    return Case{.name = name, .thread = thread, .parameter = parameter, .relation = Relation::bad, .shots = {shot}};
+  };
+  return {bad("quaternion of norm 0.707107", "flexible-collision-library/fcl#567", 0.707107, half),
+          bad("box of NaN", "flexible-collision-library/fcl#567, NaN", 0.0, nan)};
 }
 
 std::vector<Case> repeats() {
-  Case order{.name = "contacts in the same order",
-             .thread = "sofa-framework/sofa#6231",
-             .parameter = 8,
-             .relation = Relation::repeat,
-             .shots = {}};
-  Case endless{.name = "turned by small angles",
-               .thread = "flexible-collision-library/fcl#578",
-               .parameter = 8,
-               .relation = Relation::repeat,
-               .shots = {}};
-  Case apart_hulls{.name = "separated bodies",
-                   .thread = "google-deepmind/mujoco#3383",
-                   .parameter = 8,
-                   .relation = Relation::repeat,
-                   .shots = {}};
-  Case touching{.name = "bodies in contact",
-                .thread = "danfis/libccd#7",
-                .parameter = 8,
-                .relation = Relation::repeat,
-                .shots = {}};
-  for (int i = 0; i < 8; ++i) {
-    const double step = 0.01 * (i + 1);
-    order.shots.push_back(standing(-step));
-    apart_hulls.shots.push_back(standing(step));
-    touching.shots.push_back(standing(0.0));
-    const Eigen::Quaterniond q(Eigen::AngleAxisd(1e-9 * (i + 1), Eigen::Vector3d(0.6, 0.48, 0.64)));
-    endless.shots.push_back(above_face(box({2.0, 1.6, 1.2}), 0.6, box({0.5, 0.4, 0.3}), q, 0.1, 0.05, 1e-9));
-  }
-  return {order, endless, apart_hulls, touching};
+  const auto repeated = [](const char* name, const char* thread, const auto& shot) {
+    Case result{.name = name, .thread = thread, .parameter = 8, .relation = Relation::repeat};
+    for (int i = 1; i <= 8; ++i) result.shots.push_back(shot(i));
+    return result;
+  };
+  const auto turned = [](int i) {
+    return above_face(box({2.0, 1.6, 1.2}), 0.6, box({0.5, 0.4, 0.3}), about(1e-9 * i, {0.6, 0.48, 0.64}), 0.1, 0.05,
+                      1e-9);
+  };
+  return {repeated("contacts in the same order", "sofa-framework/sofa#6231", [](int i) { return standing(-0.01 * i); }),
+          repeated("turned by small angles", "flexible-collision-library/fcl#578", turned),
+          repeated("separated bodies", "google-deepmind/mujoco#3383", [](int i) { return standing(0.01 * i); }),
+          repeated("bodies in contact", "danfis/libccd#7", [](int) { return standing(0.0); })};
 }
 
 std::vector<Case> motions() {
@@ -155,8 +128,8 @@ std::vector<Case> motions() {
                                      Eigen::Vector3d{0.3, 1.7, 0.2}, Eigen::Vector3d{0.5, 0.4, 1.9}});
   const MeshPointer b = tetrahedron({Eigen::Vector3d{-0.9, 0.1, 0.2}, Eigen::Vector3d{1.1, -0.2, 0.1},
                                      Eigen::Vector3d{0.1, 1.2, -0.3}, Eigen::Vector3d{0.2, 0.3, 1.4}});
-  const Eigen::Quaterniond q(Eigen::AngleAxisd(1.1, Eigen::Vector3d(0.6, 0.48, 0.64)));
-  return {member("exchange of the bodies", "dimforge/parry#431", 3.7, apart(a, b, {{3.1, 2.2, 2.7}, q}), true)};
+  const Placement X_AB{{3.1, 2.2, 2.7}, about(1.1, {0.6, 0.48, 0.64})};
+  return {member("exchange of the bodies", "dimforge/parry#431", 3.7, apart(a, b, X_AB), true)};
 }
 
 }  // namespace sixdof::stability::field

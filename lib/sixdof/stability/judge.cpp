@@ -74,8 +74,7 @@ Judgement judge(const Case& member, const Traits& traits, const Prepare& prepare
                                   .words = "processor times"});
   }
   if (judgement.findings.empty()) {
-    judgement.findings.push_back(
-        {.verdict = Verdict::unsupported, .metric = "none", .unit = "1", .words = "answers nothing that is asked"});
+    judgement.findings.push_back(declared_finding("none", "1", 0, "answers nothing that is asked"));
   }
   return judgement;
 }

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <thread>
 #include <utility>
 
@@ -14,10 +13,6 @@
 
 namespace sixdof::stability {
 namespace {
-
-double angle_between(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
-  return std::atan2(u.cross(v).norm(), u.dot(v));
-}
 
 Bounds sum(const Bounds& x, const Bounds& y, double scale) {
   return {x.rounding + y.rounding / scale, x.resolution + y.resolution / scale, x.slack + y.slack / scale};
@@ -33,19 +28,10 @@ void compare_directions(const Case& member, std::size_t index, const Response& f
       !(depth > bounds_first.least_depth() + bounds_other.least_depth() / shot.scale)) {
     return;
   }
-  const double angle = angle_between(shot.turn * first.force, other.force);
   const double allowed = rounding_angle(bounds_other, depth * shot.scale) + rounding_angle(bounds_first, depth);
   // The parts that approximate a body lie otherwise in another frame.
-  const bool excused = traits.approximates && angle < 0.5 * std::numbers::pi;
-  findings.push_back({.verdict = angle <= allowed ? Verdict::exact
-                                 : excused        ? Verdict::resolution
-                                                  : Verdict::wrong,
-                      .metric = "turned force",
-                      .value = angle,
-                      .unit = "rad",
-                      .excess = angle / allowed,
-                      .shot = index,
-                      .words = "angle to the force at the case's first pose, in the same frame"});
+  findings.push_back(angle_finding("turned force", shot.turn * first.force, other.force, allowed, traits.approximates,
+                                   index, "angle to the force at the case's first pose, in the same frame"));
 }
 
 /// Forces by the volume law are areas: they are the same but for a turn and the scale. Where faces lie in one plane the
@@ -133,7 +119,7 @@ void judge_contact(const Case& member, const Traits& traits, const Prepare& prep
   inside.truth.gap = start.truth.gap - closing * (inside.X_AB.t - start.X_AB.t).norm() / member.motion.norm();
   PreparedPairs pairs(prepare, traits);
   const Answers answers = pairs.ask(inside);
-  const Case contact{.name = member.name, .thread = {}, .shots = {inside}};
+  const Case contact{.name = member.name, .shots = {inside}};
   judge_statuses(inside, 0, answers, limits, findings);
   judge_truth(contact, 0, answers, traits, findings);
 }
@@ -158,12 +144,9 @@ void judge_same(const Case& member, const std::vector<Answers>& answers, const T
     if (!r0.ok() || !r.ok()) continue;
     if (std::isfinite(r0.value.volume) && std::isfinite(r.value.volume)) {
       const double error = std::abs(r.value.volume / (shot.scale * shot.scale * shot.scale) - r0.value.volume);
-      Finding finding =
-          length_finding("same volume", error / moving_area(first), size, bounds, i,
-                         fmt::format("volume {} and, at the case's first pose, {}", r.value.volume, r0.value.volume));
-      finding.value = error / (size * size * size);
-      finding.unit = "volume";
-      findings.push_back(finding);
+      findings.push_back(
+          volume_finding("same volume", error, first, bounds, i,
+                         fmt::format("volume {} and, at the case's first pose, {}", r.value.volume, r0.value.volume)));
     }
     // Contained bodies may be pushed in any direction.
     if (!first.truth.contained && first.truth.push) {
@@ -289,21 +272,18 @@ void judge_bad(const Case& member, const std::vector<Answers>& answers, std::vec
     if (!member.shots[i].raw) continue;
     const Pose X = member.shots[i].pose();
     const bool finite = X.R.allFinite() && X.t.allFinite();
-    const auto examine = [&](const char* query, Status status, const std::string& words) {
+    for_each_query(answers[i], [&](const char* query, Status status, const std::string& words) {
       if (status == Status::unsupported) return;
-      const std::string_view name = to_string(status);
       Finding finding{.metric = query, .unit = "1", .shot = i, .words = words};
-      if (name == "ok" && !finite)
-        finding.verdict = Verdict::wrong, finding.words = "an answer for a pose that is not finite";
-      if (name == "non_finite" && finite && words == "the answer is not finite") finding.verdict = Verdict::non_finite;
-      if (name == "crashed") finding.verdict = Verdict::crashed;
-      if (name == "timed_out") finding.verdict = Verdict::hung;
-      if (name == "out_of_memory") finding.verdict = Verdict::out_of_memory;
+      const bool is_nan = status == Status::non_finite && finite && words == "the answer is not finite";
+      const bool ended = std::ranges::find(k_counted_statuses, status) != k_counted_statuses.end();
+      if (is_nan || ended) finding.verdict = verdict_of(status);
+      if (status == Status::ok && !finite) {
+        finding.verdict = Verdict::wrong;
+        finding.words = "an answer for a pose that is not finite";
+      }
       findings.push_back(finding);
-    };
-    examine("collide", answers[i].collide.outcome.status, answers[i].collide.words);
-    examine("distance", answers[i].distance.outcome.status, answers[i].distance.words);
-    examine("respond", answers[i].respond.outcome.status, answers[i].respond.words);
+    });
   }
 }
 

@@ -16,20 +16,6 @@ namespace {
 
 bool pushes(const Response& response) { return response.penalty != 0.0 || !response.force.isZero(0.0); }
 
-double angle_between(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
-  return std::atan2(u.cross(v).norm(), u.dot(v));
-}
-
-Verdict verdict_of(Status status) {
-  const std::string_view name = to_string(status);
-  if (name == "non_finite") return Verdict::non_finite;
-  if (name == "crashed") return Verdict::crashed;
-  if (name == "timed_out") return Verdict::hung;
-  if (name == "out_of_memory") return Verdict::out_of_memory;
-  if (name == "unsupported") return Verdict::unsupported;
-  return Verdict::threw;
-}
-
 /// Radius of a ball that fits into a body, 0 if it is no solid: a surface that lies deeper than that inside its body
 /// may be no surface at all. Both are lower bounds for convex bodies, and the distance of the box's centre from the
 /// planes of the faces is the radius where a body is symmetric about it.
@@ -73,31 +59,19 @@ Finding sign_finding(const char* metric, bool right, const Shot& asked, double d
 void judge_response(const Case& member, std::size_t index, const Response& response, const Answers& answers,
                     const Traits& traits, std::vector<Finding>& findings) {
   const Shot& shot = member.shots[index];
-  const Truth& truth = shot.truth;
+  const GroundTruth& truth = shot.truth;
   const Bounds bounds = bounds_of(shot, answers);
-  const double size = shot.a->diagonal();
   const bool excused = truth.contained && traits.limits.surfaces_only.respond;
   if (!std::isnan(truth.gap)) {
     // At a gap of 0 any answer is right.
     const bool right = truth.gap == 0.0 || pushes(response) == (truth.gap < 0.0);
-    if (excused && !right) {
-      findings.push_back({.verdict = Verdict::unsupported,
-                          .metric = "missed",
-                          .unit = "size",
-                          .shot = index,
-                          .words = "surfaces only"});
-    } else {
-      const double distance = distance_to_no_push(shot, answers, traits);
-      findings.push_back(sign_finding(truth.gap < 0.0 ? "missed" : "phantom", right, shot, distance, bounds, index));
-    }
+    findings.push_back(excused && !right ? declared_finding("missed", "size", index, "surfaces only")
+                                         : sign_finding(truth.gap < 0.0 ? "missed" : "phantom", right, shot,
+                                                        distance_to_no_push(shot, answers, traits), bounds, index));
   }
   if (!std::isnan(truth.volume) && std::isfinite(response.volume)) {
-    const double area = moving_area(shot), error = std::abs(response.volume - truth.volume);
-    Finding finding = length_finding("volume", error / area, size, bounds, index,
-                                     fmt::format("volume {} instead of {}", response.volume, truth.volume));
-    finding.value = error / (size * size * size);
-    finding.unit = "volume";
-    findings.push_back(std::move(finding));
+    findings.push_back(volume_finding("volume", std::abs(response.volume - truth.volume), shot, bounds, index,
+                                      fmt::format("volume {} instead of {}", response.volume, truth.volume)));
   }
   const double depth = -truth.gap;
   // Of a body, as a part of its inner radius, up to which MethodLimits::own_direction promises a direction.
@@ -105,18 +79,8 @@ void judge_response(const Case& member, std::size_t index, const Response& respo
   const bool own_direction = traits.limits.own_direction;
   const bool claimed = !own_direction || depth < k_shallow * least_radius(shot);
   if (truth.push && claimed && depth > bounds.least_depth() && !response.force.isZero(0.0)) {
-    const double angle = angle_between(response.force, *truth.push);
-    const double allowed = rounding_angle(bounds, depth);
-    const Verdict verdict = angle <= allowed                                  ? Verdict::exact
-                            : own_direction && angle < 0.5 * std::numbers::pi ? Verdict::resolution
-                                                                              : Verdict::wrong;
-    findings.push_back({.verdict = verdict,
-                        .metric = "direction",
-                        .value = angle,
-                        .unit = "rad",
-                        .excess = angle / allowed,
-                        .shot = index,
-                        .words = "angle of the force to the shortest way out"});
+    findings.push_back(angle_finding("direction", response.force, *truth.push, rounding_angle(bounds, depth),
+                                     own_direction, index, "angle of the force to the shortest way out"));
   }
 }
 
@@ -196,6 +160,51 @@ Finding length_finding(const char* metric, double error, double size, const Boun
           .words = std::move(words)};
 }
 
+Finding volume_finding(const char* metric, double error, const Shot& measured, const Bounds& bounds, std::size_t shot,
+                       std::string words) {
+  const double size = measured.a->diagonal();
+  Finding finding = length_finding(metric, error / moving_area(measured), size, bounds, shot, std::move(words));
+  finding.value = error / (size * size * size);
+  finding.unit = "volume";
+  return finding;
+}
+
+Finding angle_finding(const char* metric, const Eigen::Vector3d& u, const Eigen::Vector3d& v, double allowed,
+                      bool excused, std::size_t shot, std::string words) {
+  const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
+  const bool within_resolution = excused && angle < 0.5 * std::numbers::pi;
+  return {.verdict = angle <= allowed    ? Verdict::exact
+                     : within_resolution ? Verdict::resolution
+                                         : Verdict::wrong,
+          .metric = metric,
+          .value = angle,
+          .unit = "rad",
+          .excess = angle / allowed,
+          .shot = shot,
+          .words = std::move(words)};
+}
+
+Finding declared_finding(const char* metric, const char* unit, std::size_t shot, std::string words) {
+  return {.verdict = Verdict::unsupported, .metric = metric, .unit = unit, .shot = shot, .words = std::move(words)};
+}
+
+Verdict verdict_of(Status status) {
+  switch (status) {
+    case Status::non_finite:
+      return Verdict::non_finite;
+    case Status::crashed:
+      return Verdict::crashed;
+    case Status::timed_out:
+      return Verdict::hung;
+    case Status::out_of_memory:
+      return Verdict::out_of_memory;
+    case Status::unsupported:
+      return Verdict::unsupported;
+    default:
+      return Verdict::threw;
+  }
+}
+
 void judge_statuses(const Shot& shot, std::size_t index, const Answers& answers, const Limits& limits,
                     std::vector<Finding>& findings) {
   const bool solid = shot.a->solid() && shot.b->solid();
@@ -208,7 +217,7 @@ void judge_statuses(const Shot& shot, std::size_t index, const Answers& answers,
                         .words = answers.words});
     return;
   }
-  const auto examine = [&](const char* query, Status status, const std::string& words) {
+  for_each_query(answers, [&](const char* query, Status status, const std::string& words) {
     if (status == Status::ok || status == Status::unsupported) return;
     Verdict verdict = verdict_of(status);
     if (words == "std::bad_alloc") verdict = Verdict::out_of_memory;
@@ -216,10 +225,7 @@ void judge_statuses(const Shot& shot, std::size_t index, const Answers& answers,
     const bool no_inside = !solid && query == std::string_view("respond");
     if (verdict == Verdict::threw && no_inside) verdict = Verdict::unsupported;
     findings.push_back({.verdict = verdict, .metric = query, .unit = "1", .shot = index, .words = words});
-  };
-  examine("collide", answers.collide.outcome.status, answers.collide.words);
-  examine("distance", answers.distance.outcome.status, answers.distance.words);
-  examine("respond", answers.respond.outcome.status, answers.respond.words);
+  });
   if (answers.wall_seconds > limits.seconds) {
     findings.push_back({.verdict = Verdict::hung,
                         .metric = "time",
@@ -233,30 +239,20 @@ void judge_statuses(const Shot& shot, std::size_t index, const Answers& answers,
 void judge_truth(const Case& member, std::size_t index, const Answers& answers, const Traits& traits,
                  std::vector<Finding>& findings) {
   const Shot& shot = member.shots[index];
-  const Truth& truth = shot.truth;
+  const GroundTruth& truth = shot.truth;
   const Bounds bounds = bounds_of(shot, answers);
   const double size = shot.a->diagonal();
   if (answers.collide.outcome.ok() && !std::isnan(truth.gap)) {
     const bool right = answers.collide.outcome.value == (truth.gap <= 0.0);
-    if (!right && truth.contained && traits.limits.surfaces_only.collide) {
-      findings.push_back({.verdict = Verdict::unsupported,
-                          .metric = "missed",
-                          .unit = "size",
-                          .shot = index,
-                          .words = "surfaces only"});
-    } else {
-      const double distance = distance_to_miss(shot, answers);
-      findings.push_back(sign_finding(truth.gap <= 0.0 ? "missed" : "phantom", right, shot, distance, bounds, index));
-    }
+    const bool excused = truth.contained && traits.limits.surfaces_only.collide;
+    findings.push_back(excused && !right ? declared_finding("missed", "size", index, "surfaces only")
+                                         : sign_finding(truth.gap <= 0.0 ? "missed" : "phantom", right, shot,
+                                                        distance_to_miss(shot, answers), bounds, index));
   }
   if (answers.distance.outcome.ok()) {
     const Separation& gap = answers.distance.outcome.value;
     if (truth.contained && traits.limits.distance_of_bodies && gap.distance == 0.0) {
-      findings.push_back({.verdict = Verdict::unsupported,
-                          .metric = "distance",
-                          .unit = "size",
-                          .shot = index,
-                          .words = "distance of the bodies"});
+      findings.push_back(declared_finding("distance", "size", index, "distance of the bodies"));
     } else if (!std::isnan(truth.distance)) {
       findings.push_back(length_finding("distance", std::abs(gap.distance - truth.distance), size, bounds, index,
                                         fmt::format("distance {} instead of {}", gap.distance, truth.distance)));

@@ -6,7 +6,7 @@
 
 namespace sixdof::stability {
 
-/// Bounds on the error of a length.
+/// Bounds on the error of a length, for what is measured at one shot.
 struct Bounds {
   double rounding;    ///< That of the input and of a backward stable computation.
   double resolution;  ///< Beyond that, what an algorithm that approximates declares; 0 for others.
@@ -40,5 +40,28 @@ void judge_truth(const Case& member, std::size_t index, const Answers& answers, 
 /// An error of a length at one shot.
 Finding length_finding(const char* metric, double error, double size, const Bounds& bounds, std::size_t shot,
                        std::string words);
+
+/// An error of a volume: bounded as the length by which the surfaces of `measured` would have to move to cause it.
+Finding volume_finding(const char* metric, double error, const Shot& measured, const Bounds& bounds, std::size_t shot,
+                       std::string words);
+
+/// An angle between two directions that should be the same (radians).
+/// @param excused beyond `allowed` it counts as within the resolution while it is less than 90 degrees
+Finding angle_finding(const char* metric, const Eigen::Vector3d& u, const Eigen::Vector3d& v, double allowed,
+                      bool excused, std::size_t shot, std::string words);
+
+/// What Traits::limits declare.
+Finding declared_finding(const char* metric, const char* unit, std::size_t shot, std::string words);
+
+/// Calls examine(name, status, words) for each kind of query.
+template <class Examine>
+void for_each_query(const Answers& answers, const Examine& examine) {
+  examine("collide", answers.collide.outcome.status, answers.collide.words);
+  examine("distance", answers.distance.outcome.status, answers.distance.words);
+  examine("respond", answers.respond.outcome.status, answers.respond.words);
+}
+
+/// What a query that ended in this way did. @pre it is not Status::ok
+Verdict verdict_of(Status status);
 
 }  // namespace sixdof::stability

@@ -45,6 +45,13 @@ Shot base(Draw& draw);
 /// A random frame for a body whose size is about 1.
 Placement frame(Draw& draw, double largest_shift = 1.0);
 
+/// The shot; the same with A and B exchanged; the same with both meshes in random frames of their own.
+std::vector<Shot> in_other_frames(const Shot& shot, Draw& draw);
+
+/// Edges of the boxes of most families.
+inline const Eigen::Vector3d k_size_a{2.0, 1.6, 1.2};
+inline const Eigen::Vector3d k_size_b{0.5, 0.4, 0.3};
+
 }  // namespace sixdof::stability::make
 
 /// Field cases, by the file that holds them.

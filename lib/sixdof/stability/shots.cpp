@@ -49,7 +49,7 @@ double Shot::rounding() const {
 
 Shot above_face(const MeshPointer& a, double height, const MeshPointer& b, const Eigen::Quaterniond& q, double x,
                 double y, double gap) {
-  Shot shot{.a = a, .b = b, .X_AB = {Eigen::Vector3d::Zero(), q.normalized()}, .truth = {}};
+  Shot shot{.a = a, .b = b, .X_AB = {Eigen::Vector3d::Zero(), q.normalized()}};
   const Eigen::Matrix3d R = shot.X_AB.pose().R;
   const auto& points = b->vertices();
   const auto lowest = *std::ranges::min_element(points, {}, [&](const Eigen::Vector3d& p) { return R.row(2).dot(p); });
@@ -68,7 +68,7 @@ Shot above_face(const MeshPointer& a, double height, const MeshPointer& b, const
 }
 
 Shot aligned_boxes(const Eigen::Vector3d& size_a, const Eigen::Vector3d& size_b, const Eigen::Vector3d& offset) {
-  Shot shot{.a = box(size_a), .b = box(size_b), .X_AB = {offset, Eigen::Quaterniond::Identity()}, .truth = {}};
+  Shot shot{.a = box(size_a), .b = box(size_b), .X_AB = {offset, Eigen::Quaterniond::Identity()}};
   constexpr long double k_same_plane = 1e-12L;
   long double volume = 1.0L, square = 0.0L, depth = std::numeric_limits<long double>::infinity();
   bool b_inside = true, a_inside = true, apart_inside = true;
@@ -106,14 +106,14 @@ Shot aligned_boxes(const Eigen::Vector3d& size_a, const Eigen::Vector3d& size_b,
 }
 
 Shot apart(const MeshPointer& a, const MeshPointer& b, const Placement& X_AB) {
-  Shot shot{.a = a, .b = b, .X_AB = X_AB, .truth = {}};
+  Shot shot{.a = a, .b = b, .X_AB = X_AB};
   shot.truth.distance = static_cast<double>(reference_distance(*a, *b, X_AB.pose()));
   shot.truth.gap = shot.truth.distance;
   return shot;
 }
 
 Shot overlapping(const MeshPointer& a, const MeshPointer& b, const Placement& X_AB, double depth, double error) {
-  Shot shot{.a = a, .b = b, .X_AB = X_AB, .truth = {}};
+  Shot shot{.a = a, .b = b, .X_AB = X_AB};
   shot.truth.gap = -depth;
   shot.truth.distance = 0.0;
   shot.truth.error = error;
