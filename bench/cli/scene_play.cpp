@@ -31,7 +31,7 @@ using scene::Play;
 using scene::Question;
 using scene::Scene;
 using scene::SceneAlgorithm;
-using scene::Truth;
+using scene::SceneAnswers;
 
 constexpr const char* k_details =
     R"(Questions:
@@ -61,7 +61,7 @@ struct NamedPlay {
 /// The answers to one question.
 struct Played {
   Question question;
-  Truth truth;
+  SceneAnswers truth;
   std::vector<NamedPlay> plays;
   std::vector<LeftOut> left_out;
 };
@@ -126,7 +126,7 @@ std::string reproduction(const Part& part, const PlayOptions& options, Question 
                                     to_string(question), algorithm.traits().name);
   const std::vector<std::uint32_t> bodies{wrong.pair.a, wrong.pair.b};
   const Scene two = scene::excerpt(part.scene, bodies, wrong.frame, wrong.frame);
-  const Truth truth = scene::truth_of(two, question);
+  const SceneAnswers truth = scene::truth_of(two, question);
   if (scene::play(two, algorithm, question, truth).score.failed()) {
     return fmt::format("{} --bodies {},{} --frames {}", command, wrong.pair.a, wrong.pair.b, part.first + wrong.frame);
   }
@@ -218,7 +218,7 @@ nlohmann::ordered_json json_of(const Played& played) {
   return json;
 }
 
-NamedPlay play_one(const Part& part, const PlayOptions& options, Question question, const Truth& truth,
+NamedPlay play_one(const Part& part, const PlayOptions& options, Question question, const SceneAnswers& truth,
                    const SceneAlgorithm& algorithm) {
   NamedPlay named{algorithm, scene::play(part.scene, algorithm, question, truth, InterruptGuard::requested), ""};
   if (auto& wrong = named.play.score.first) {

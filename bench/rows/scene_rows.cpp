@@ -31,7 +31,7 @@ constexpr Size k_sizes[] = {{100, 60, false}, {1000, 30, false}, {10'000, 8, tru
 struct Stage {
   std::string key;
   scene::Scene scene;
-  scene::Truth truth;
+  scene::SceneAnswers truth;
 };
 
 void report(const scene::Play& play, benchmark::State& state) {

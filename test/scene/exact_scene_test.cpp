@@ -24,8 +24,8 @@ TEST_P(EveryFamily, HasTheBitsOfAllPairs) {
   const Scene scene = make_scene(GetParam(), numbers_of(GetParam()));
   for (const Question question : k_questions) {
     SCOPED_TRACE(to_string(question));
-    const Truth truth = replay(scene, *make_all_pairs(), question);
-    const Truth exact = replay(scene, *make_exact_scene(), question);
+    const SceneAnswers truth = replay(scene, *make_all_pairs(), question);
+    const SceneAnswers exact = replay(scene, *make_exact_scene(), question);
     for (std::size_t f = 0; f < truth.frames.size(); ++f) {
       ASSERT_EQ(exact.frames[f].pairs, truth.frames[f].pairs) << "frame " << f;
     }
@@ -85,7 +85,7 @@ TEST(ExactScene, PutsOffMostPairsThatMoveSlowly) {
   }
   const SceneWork work = query->work();
   EXPECT_EQ(work.put_off + work.narrow, work.candidates);
-  const Truth truth = replay(scene, *make_all_pairs(), Question::near);
+  const SceneAnswers truth = replay(scene, *make_all_pairs(), Question::near);
   // The narrow phase is asked for pairs that are near, and for few others.
   EXPECT_LT(static_cast<double>(work.narrow), 1.5 * static_cast<double>(truth.pairs()) + 600.0);
   EXPECT_LT(work.candidates, 30u * scene.bodies.size() * scene.bodies.size() / 2 / 4);
@@ -96,7 +96,7 @@ TEST(ExactScene, FindsTheClosestPairAsItChanges) {
   // Body 10, the last one inserted, moves away from its neighbour, then onto it.
   for (const double x : {-3.0, 0.2, 0.6, -0.1})
     scene.frames.push_back({{4, RecordedPose::of(Eigen::Matrix3d::Identity(), {x, 0.1, -0.2})}});
-  const Truth exact = replay(scene, *make_exact_scene(), Question::closest);
+  const SceneAnswers exact = replay(scene, *make_exact_scene(), Question::closest);
   EXPECT_EQ(exact.hash, replay(scene, *make_all_pairs(), Question::closest).hash);
   EXPECT_EQ(exact.frames[2].pairs.front().pair, (BodyPair{10, 11}));
   EXPECT_EQ(exact.frames[3].pairs.front().distance, 0.0);
@@ -108,7 +108,7 @@ TEST(ExactScene, AnswersWhereNoPairMatters) {
   for (Body& body : scene.bodies) body.fixed = true;
   for (Frame& frame : scene.frames) frame.clear();
   for (const Question question : k_questions) {
-    const Truth exact = replay(scene, *make_exact_scene(), question);
+    const SceneAnswers exact = replay(scene, *make_exact_scene(), question);
     EXPECT_EQ(exact.pairs(), 0u);
     EXPECT_EQ(exact.hash, replay(scene, *make_all_pairs(), question).hash);
   }
@@ -117,7 +117,7 @@ TEST(ExactScene, AnswersWhereNoPairMatters) {
 TEST(ExactScene, LeavesOutIgnoredPairs) {
   Scene scene = row_of_spheres(4, -0.5, 0.0, 1, 0.0);  // neighbours overlap
   scene.ignored = {{11, 12}};
-  const Truth exact = replay(scene, *make_exact_scene(), Question::touching);
+  const SceneAnswers exact = replay(scene, *make_exact_scene(), Question::touching);
   ASSERT_EQ(exact.frames[0].pairs.size(), 2u);
   EXPECT_EQ(exact.frames[0].pairs[0].pair, (BodyPair{10, 11}));
   EXPECT_EQ(exact.frames[0].pairs[1].pair, (BodyPair{12, 13}));
@@ -125,7 +125,7 @@ TEST(ExactScene, LeavesOutIgnoredPairs) {
 
 TEST(ExactScene, WrenchesOfASceneSumToZero) {
   const Scene scene = make_scene("pile", {.bodies = 60, .frames = 1, .seed = 3});
-  const Truth exact = replay(scene, *make_exact_scene(), Question::wrenches);
+  const SceneAnswers exact = replay(scene, *make_exact_scene(), Question::wrenches);
   ASSERT_GT(exact.frames[0].wrenches.size(), 10u);
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = Eigen::Vector3d::Zero();
   double scale = 0.0;

@@ -22,7 +22,7 @@ TEST_P(Rivals, MissNoPair) {
   const std::size_t bodies = GetParam() == "pairs" ? 20 : 120;
   const Scene scene = make_scene(family->name, {.bodies = bodies, .frames = 6, .seed = 3});
   for (const Question question : {Question::touching, Question::near, Question::closest}) {
-    const Truth truth = truth_of(scene, question);
+    const SceneAnswers truth = truth_of(scene, question);
     for (const auto& algorithm : all_scene_algorithms()) {
       if (!algorithm->traits().answers_to(question)) continue;
       // An update of FCL 0.7's sweep and prune may never return.

@@ -78,7 +78,7 @@ std::unique_ptr<SceneAlgorithm> third_party() {
 
 TEST(Score, FindsNothingWrongWithTheTruth) {
   const Scene scene = make_scene("pile", {.bodies = 100, .frames = 5});
-  const Truth truth = replay(scene, *make_all_pairs(), Question::near);
+  const SceneAnswers truth = replay(scene, *make_all_pairs(), Question::near);
   const Play play = scene::play(scene, *make_exact_scene(), Question::near, truth);
   EXPECT_FALSE(play.score.failed());
   EXPECT_TRUE(play.score.same_bits);
@@ -93,7 +93,7 @@ TEST(Score, FindsNothingWrongWithTheTruth) {
 
 TEST(Score, FindsAPairInTenThousandThatIsDropped) {
   const Scene scene = make_scene("pile", {.bodies = 400, .frames = 40, .moving = 0.1});
-  const Truth truth = replay(scene, *make_exact_scene(), Question::near);
+  const SceneAnswers truth = replay(scene, *make_exact_scene(), Question::near);
   ASSERT_GT(truth.pairs(), 20'000u);
   const Play play = scene::play(scene, *third_party<DropsPairs>(), Question::near, truth);
   EXPECT_TRUE(play.score.failed());
@@ -107,7 +107,7 @@ TEST(Score, FindsAPairInTenThousandThatIsDropped) {
 TEST(Score, FindsAStaleBox) {
   // Body 1 is one of 150; all move by a tenth of their size.
   const Scene scene = make_scene("cube", {.bodies = 150, .frames = 60, .density = 0.3});
-  const Truth truth = replay(scene, *make_exact_scene(), Question::touching);
+  const SceneAnswers truth = replay(scene, *make_exact_scene(), Question::touching);
   const Play play = scene::play(scene, *third_party<StaleBox>(), Question::touching, truth);
   EXPECT_GT(play.score.missed, 0u);
   EXPECT_GT(play.score.wrong, 0u);
@@ -118,7 +118,7 @@ TEST(Score, FindsAStaleBox) {
 
 TEST(Score, FindsAMarginThatIsTakenTwice) {
   const Scene scene = make_scene("cube", {.bodies = 150, .frames = 5, .density = 0.1});
-  const Truth truth = replay(scene, *make_exact_scene(), Question::near);
+  const SceneAnswers truth = replay(scene, *make_exact_scene(), Question::near);
   const Play play = scene::play(scene, *third_party<TwiceTheMargin>(), Question::near, truth);
   EXPECT_EQ(play.score.missed, 0u);
   EXPECT_GT(play.score.wrong, 10u);
@@ -131,8 +131,8 @@ TEST(Score, CountsGrazingPairsApart) {
   // Neighbours are apart by the margin less a millionth of their size.
   const double margin = 0.25;
   const Scene scene = row_of_spheres(6, 0.25 - 1e-6, 0.0, 1, margin);
-  Truth truth = replay(scene, *make_all_pairs(), Question::near);
-  Truth none = truth;
+  SceneAnswers truth = replay(scene, *make_all_pairs(), Question::near);
+  SceneAnswers none = truth;
   none.frames[0].pairs.clear();
   set_hash(none);
   const std::size_t pairs = truth.pairs();
@@ -147,8 +147,8 @@ TEST(Score, CountsBodiesInsideOthersApartForWhatLooksAtSurfaces) {
   Scene scene = row_of_spheres(2, -0.1, 0.0, 1, 0.0);
   scene.meshes.push_back(std::make_shared<const Mesh>(make_sphere({.radius = 0.2}, 80)));
   scene.bodies.push_back({50, 1, false, RecordedPose::of(Eigen::Matrix3d::Identity(), {0.05, 0.1, -0.2})});
-  const Truth truth = replay(scene, *make_all_pairs(), Question::touching);
-  Truth surfaces = truth;
+  const SceneAnswers truth = replay(scene, *make_all_pairs(), Question::touching);
+  SceneAnswers surfaces = truth;
   std::erase_if(surfaces.frames[0].pairs, [](const NearPair& near) { return near.pair == BodyPair{10, 50}; });
   ASSERT_EQ(surfaces.pairs() + 1, truth.pairs());
   set_hash(surfaces);
@@ -158,14 +158,14 @@ TEST(Score, CountsBodiesInsideOthersApartForWhatLooksAtSurfaces) {
   const Score bodies = score(scene, Question::touching, truth, surfaces, false);
   EXPECT_EQ(std::pair(bodies.missed, bodies.nested), std::pair(std::size_t{1}, std::size_t{0}));
   // A pair whose surfaces meet is missed by anyone.
-  Truth none = truth;
+  SceneAnswers none = truth;
   none.frames[0].pairs.clear();
   EXPECT_EQ(score(scene, Question::touching, truth, none, true, true).missed, truth.pairs() - 1);
 }
 
 TEST(Score, AFrameAloneHasItsTime) {
   const Scene one = row_of_spheres(6, -0.1, 0.0, 1, 0.0);
-  const Truth truth = replay(one, *make_all_pairs(), Question::touching);
+  const SceneAnswers truth = replay(one, *make_all_pairs(), Question::touching);
   const Timing timing = scene::play(one, *make_exact_scene(), Question::touching, truth).timing;
   EXPECT_GT(timing.first_us, 0.0);
   EXPECT_GT(timing.processor_us, 0.0);

@@ -27,7 +27,7 @@ Scene overlapping_spheres() {
 // The cache on disk must not mix answers of two programs: algorithms of this project are asked for the truth's bits.
 TEST(Truth, ItsBitsBelongToItsVersion) {
   const Scene scene = overlapping_spheres();
-  const Truth truth = replay(scene, *make_all_pairs(), Question::wrenches);
+  const SceneAnswers truth = replay(scene, *make_all_pairs(), Question::wrenches);
   EXPECT_EQ(truth.pairs(), 9u);
   EXPECT_EQ(std::pair(k_truth_version, truth.hash), std::pair(7, std::string("67732e2cfb16e3a548127e245f65bd1e")))
       << "answers have other bits: raise k_truth_version, and name it and the new hash here";
@@ -45,7 +45,7 @@ Scene ball_through_a_ball() {
 
 TEST(Truth, BodiesInsideOthersTouchThemAsTheOracleOfPairsHasIt) {
   const Scene scene = ball_through_a_ball();
-  const Truth touching = replay(scene, *make_all_pairs(), Question::touching);
+  const SceneAnswers touching = replay(scene, *make_all_pairs(), Question::touching);
   DistanceOracle oracle(*scene.meshes[0], *scene.meshes[1]);
   DistanceQuery query(oracle);
   const Pose X_WA = scene.bodies[0].pose.pose();
@@ -62,7 +62,7 @@ TEST(Truth, BodiesInsideOthersTouchThemAsTheOracleOfPairsHasIt) {
   EXPECT_GT(met, 4u);
   EXPECT_GT(nested, 4u);
   // Distances are those of surfaces.
-  const Truth near = replay(scene, *make_all_pairs(), Question::near);
+  const SceneAnswers near = replay(scene, *make_all_pairs(), Question::near);
   EXPECT_LT(near.pairs(), touching.pairs());
 }
 

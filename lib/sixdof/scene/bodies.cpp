@@ -55,6 +55,10 @@ void Bodies::place(std::uint32_t rank, const Pose& X_WB) {
   boxes_[rank] = {center.array() - reach, center.array() + reach};
 }
 
+std::uint32_t Bodies::rank_of_id(std::uint32_t id) const {
+  return static_cast<std::uint32_t>(std::ranges::lower_bound(ids_, id) - ids_.begin());
+}
+
 double Bodies::move(std::uint32_t rank, const Pose& X_WB) {
   const Matrix3d turn = X_WB.R - poses_[rank].R;
   const Vector3d before = centers_[rank];

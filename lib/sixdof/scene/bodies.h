@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,6 +42,7 @@ class Bodies {
   std::size_t size() const { return ids_.size(); }
   std::uint32_t id(std::uint32_t rank) const { return ids_[rank]; }
   std::uint32_t rank(std::uint32_t index) const { return rank_[index]; }  ///< Of an index into Scene::bodies.
+  std::uint32_t rank_of_id(std::uint32_t id) const;
   std::uint32_t mesh_index(std::uint32_t rank) const { return mesh_[rank]; }
   const PreparedMesh& mesh(std::uint32_t rank) const { return *meshes_[mesh_[rank]]; }
   bool fixed(std::uint32_t rank) const { return fixed_[rank]; }

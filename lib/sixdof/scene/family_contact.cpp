@@ -57,12 +57,7 @@ Scene make_pile(const SceneNumbers& numbers) {
   Scene scene;
   Random random(numbers.seed);
   const Shapes shapes(scene, own(numbers.size_ratio, 2.0));
-  std::vector<std::uint32_t> meshes;
-  double volume = 0.0;
-  for (std::size_t i = 1; i < numbers.bodies; ++i) {
-    meshes.push_back(shapes.draw(i, random));
-    volume += shapes.volume(meshes.back());
-  }
+  const auto [meshes, volume] = shapes.draw(1, numbers.bodies, random);
   const double half = 0.5 * std::cbrt(volume / own(numbers.density, 0.5));
   constexpr double k_thickness = 1.0;
   scene.meshes.push_back(std::make_shared<const Mesh>(

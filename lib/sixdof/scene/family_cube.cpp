@@ -42,9 +42,14 @@ Shapes::Shapes(Scene& scene, double size_ratio) {
   }
 }
 
-std::uint32_t Shapes::draw(std::size_t body, Random& random) const {
-  const std::size_t size = random.pick(volumes_.size() / k_kinds);
-  return static_cast<std::uint32_t>(k_kinds * size + body % k_kinds);
+Shapes::Draw Shapes::draw(std::size_t first, std::size_t end, Random& random) const {
+  Draw drawn;
+  for (std::size_t body = first; body < end; ++body) {
+    const std::size_t mesh = k_kinds * random.pick(volumes_.size() / k_kinds) + body % k_kinds;
+    drawn.meshes.push_back(static_cast<std::uint32_t>(mesh));
+    drawn.volume += volumes_[mesh];
+  }
+  return drawn;
 }
 
 double Shapes::mean_size(const Scene& scene) const {
@@ -59,12 +64,7 @@ double Shapes::mean_size(const Scene& scene) const {
 }
 
 double fill_cube(Mover& mover, const Shapes& shapes, std::size_t bodies, double density, Random& random) {
-  std::vector<std::uint32_t> meshes;
-  double volume = 0.0;
-  for (std::size_t i = 0; i < bodies; ++i) {
-    meshes.push_back(shapes.draw(i, random));
-    volume += shapes.volume(meshes.back());
-  }
+  const auto [meshes, volume] = shapes.draw(0, bodies, random);
   const double edge = std::cbrt(volume / density);
   for (const std::uint32_t mesh : meshes) {
     const Matrix3d R = random.rotation();

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <numbers>
 #include <random>
-#include <string>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -65,11 +63,14 @@ class Shapes {
   static constexpr std::size_t k_kinds = 3;
   /// Adds k_kinds * k_sizes meshes to the scene, of sizes between 1 / size_ratio and 1, and evenly spread logarithms.
   Shapes(Scene& scene, double size_ratio);
-  /// Index of a mesh: kinds in turn, sizes at random.
-  std::uint32_t draw(std::size_t body, Random& random) const;
-  double volume(std::uint32_t mesh) const { return volumes_[mesh]; }  ///< Of its box.
-  double radius(std::uint32_t mesh) const { return radii_[mesh]; }    ///< Half of its box's diagonal.
-  double mean_size(const Scene& scene) const;                         ///< Mean diameter of the bodies.
+  struct Draw {
+    std::vector<std::uint32_t> meshes;  ///< Indices into Scene::meshes.
+    double volume = 0.0;                ///< Of all boxes.
+  };
+  /// Meshes for the bodies from `first` to before `end`: kinds in turn, sizes at random.
+  Draw draw(std::size_t first, std::size_t end, Random& random) const;
+  double radius(std::uint32_t mesh) const { return radii_[mesh]; }  ///< Half of its box's diagonal.
+  double mean_size(const Scene& scene) const;                       ///< Mean diameter of the bodies.
 
  private:
   std::vector<double> volumes_, radii_;

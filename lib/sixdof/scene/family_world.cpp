@@ -29,12 +29,7 @@ Scene make_giant(const SceneNumbers& numbers) {
   Mover mover(scene);
   mover.add(giant, Matrix3d::Identity(), Vector3d::Zero());
   // Their centres lie in a cap, in a layer from one radius inside the surface to four outside.
-  double volume = 0.0;
-  std::vector<std::uint32_t> meshes;
-  for (std::size_t i = 1; i < numbers.bodies; ++i) {
-    meshes.push_back(shapes.draw(i, random));
-    volume += shapes.volume(meshes.back());
-  }
+  const auto [meshes, volume] = shapes.draw(1, numbers.bodies, random);
   constexpr double k_layer = 5.0;
   const double half = std::min(0.5 * k_radius, 0.5 * std::sqrt(volume / own(numbers.density, 0.02) / k_layer));
   for (const std::uint32_t mesh : meshes) {
@@ -134,12 +129,7 @@ Scene make_robot(const SceneNumbers& numbers) {
     mover.poses[i] = {R, t};
     scene.bodies[i].pose = RecordedPose::of(R, t);
   });
-  std::vector<std::uint32_t> meshes;
-  double volume = 0.0;
-  for (std::size_t i = arm; i < numbers.bodies; ++i) {
-    meshes.push_back(shapes.draw(i, random));
-    volume += shapes.volume(meshes.back());
-  }
+  const auto [meshes, volume] = shapes.draw(arm, numbers.bodies, random);
   const double edge = std::cbrt(volume / own(numbers.density, 0.02));
   for (const std::uint32_t mesh : meshes) {
     const Matrix3d R = random.rotation();

@@ -1,7 +1,6 @@
 #include <sixdof/scene/kept_pairs.h>
 
 #include <algorithm>
-#include <iterator>
 
 namespace sixdof::scene::detail {
 namespace {

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/base/hash.h>
+#include <sixdof/query/timed_loop.h>
 #include <sixdof/scene/bodies.h>
 
 namespace sixdof::scene {
@@ -19,10 +18,7 @@ using Eigen::Vector3d;
 /// Decides which pairs graze, at the poses of one frame after the other.
 class Judge {
  public:
-  Judge(const Scene& scene, Question question) : scene_(scene), question_(question), bodies_(scene) {
-    for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) index_.emplace_back(scene.bodies[i].id, i);
-    std::ranges::sort(index_);
-  }
+  Judge(const Scene& scene, Question question) : scene_(scene), question_(question), bodies_(scene) {}
 
   void update(const Frame& frame) {
     for (const Moved& each : moves_of(frame)) bodies_.move(bodies_.rank(each.body), each.X_WB);
@@ -31,7 +27,7 @@ class Judge {
   double distance(const BodyPair& pair) { return distance(pair, Vector3d::Zero()); }
 
   bool grazes(const BodyPair& pair) {
-    const double size = 2.0 * (bodies_.radius(rank(pair.a)) + bodies_.radius(rank(pair.b)));
+    const double size = 2.0 * (bodies_.radius(bodies_.rank_of_id(pair.a)) + bodies_.radius(bodies_.rank_of_id(pair.b)));
     const double shift = Score::k_grazing * size;
     const double limit = question_ == Question::near ? scene_.margin : 0.0;
     const double here = distance(pair);
@@ -45,12 +41,8 @@ class Judge {
   }
 
  private:
-  std::uint32_t rank(std::uint32_t id) const {
-    return bodies_.rank(std::ranges::lower_bound(index_, std::pair(id, 0u))->second);
-  }
-
   double distance(const BodyPair& pair, const Vector3d& shift) {
-    const std::uint32_t a = rank(pair.a), b = rank(pair.b);
+    const std::uint32_t a = bodies_.rank_of_id(pair.a), b = bodies_.rank_of_id(pair.b);
     Pose X_WB = bodies_.pose(b);
     X_WB.t += shift;
     NearHint none;
@@ -62,7 +54,6 @@ class Judge {
   const Scene& scene_;
   Question question_;
   detail::Bodies bodies_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> index_;  // identifier, index into Scene::bodies
   NearQuery query_;
 };
 
@@ -71,7 +62,7 @@ class Scorer {
   Scorer(const Scene& scene, Question question, bool exactly, bool surfaces_only)
       : judge_(scene, question), question_(question), exactly_(exactly), surfaces_only_(surfaces_only) {}
 
-  Score run(const Scene& scene, const Truth& truth, const Truth& answers) {
+  Score run(const Scene& scene, const SceneAnswers& truth, const SceneAnswers& answers) {
     if (truth.frames.size() != scene.frames.size() || answers.frames.size() != scene.frames.size()) {
       throw Error("answers of another number of frames");
     }
@@ -141,12 +132,6 @@ class Scorer {
   Score score_;
 };
 
-double processor_seconds() {
-  timespec now{};
-  ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -181,7 +166,7 @@ Timing summary(std::vector<double> frames, double first, double processor) {
 
 }  // namespace
 
-Score score(const Scene& scene, Question question, const Truth& truth, const Truth& answers, bool exactly,
+Score score(const Scene& scene, Question question, const SceneAnswers& truth, const SceneAnswers& answers, bool exactly,
             bool surfaces_only) {
   return Scorer(scene, question, exactly, surfaces_only).run(scene, truth, answers);
 }
@@ -192,7 +177,7 @@ double Play::false_per_true() const {
          static_cast<double>(score.true_pairs);
 }
 
-Play play(const Scene& scene, const SceneAlgorithm& algorithm, Question question, const Truth& truth,
+Play play(const Scene& scene, const SceneAlgorithm& algorithm, Question question, const SceneAnswers& truth,
           const std::function<bool()>& cancelled) {
   Play result;
   const double before = wall_seconds();
@@ -203,12 +188,12 @@ Play play(const Scene& scene, const SceneAlgorithm& algorithm, Question question
   for (std::size_t f = 0; f < scene.frames.size(); ++f) {
     if (cancelled && cancelled()) throw Interrupted("interrupted");
     const std::vector<Moved> moved = moves_of(scene.frames[f]);
-    const double used = processor_seconds();
+    const double used = processor_ns();
     const double start = wall_seconds();
     query->update(moved);
     const SceneAnswer& answer = query->answer();
     times.push_back(1e6 * (wall_seconds() - start));
-    (f == 0 ? first : processor) += processor_seconds() - used;
+    (f == 0 ? first : processor) += 1e-9 * (processor_ns() - used);
     check(answer, algorithm.traits().name);
     result.answers.frames.push_back(answer);
   }

@@ -35,7 +35,7 @@ struct Score {
   std::size_t nested = 0;
   double largest_error = 0.0;      ///< Of the distances of true pairs that are reported (length).
   bool same_bits = false;          ///< All answers have the bits of the truth.
-  std::string hash;                ///< Of all answers, as Truth::hash.
+  std::string hash;                ///< Of all answers, as SceneAnswers::hash.
   std::optional<WrongPair> first;  ///< The first that is missed, else the first that is wrong.
 
   bool failed() const { return missed > 0 || wrong > 0; }
@@ -44,7 +44,7 @@ struct Score {
 /// @param answers of every frame, in order
 /// @param exactly no pair counts as grazing
 /// @param surfaces_only SceneTraits::surfaces_only of who answers
-Score score(const Scene& scene, Question question, const Truth& truth, const Truth& answers, bool exactly,
+Score score(const Scene& scene, Question question, const SceneAnswers& truth, const SceneAnswers& answers, bool exactly,
             bool surfaces_only = false);
 
 /// What a replay took.
@@ -57,7 +57,7 @@ struct Timing {
 };
 
 struct Play {
-  Truth answers;
+  SceneAnswers answers;
   Score score;
   Timing timing;
   SceneWork work;  ///< Of all frames.
@@ -70,7 +70,7 @@ struct Play {
 
 /// Replays a scene to an algorithm and judges its answers afterwards. @throws Error if an answer is not sorted or has a
 /// distance that is not finite; what prepare() throws; Interrupted if `cancelled` says so before a frame
-Play play(const Scene& scene, const SceneAlgorithm& algorithm, Question question, const Truth& truth,
+Play play(const Scene& scene, const SceneAlgorithm& algorithm, Question question, const SceneAnswers& truth,
           const std::function<bool()>& cancelled = {});
 
 }  // namespace sixdof::scene

@@ -16,7 +16,7 @@ std::string key_of(const Scene& scene, Question question) {
   return fmt::format("version {} scene {} question {}", k_truth_version, scene.hash(), to_string(question));
 }
 
-CacheEntry pack(const Truth& truth) {
+CacheEntry pack(const SceneAnswers& truth) {
   std::vector<std::uint64_t> pair_start{0}, wrench_start{0};
   std::vector<std::uint32_t> ids, bodies;
   std::vector<double> distances, wrenches;
@@ -43,12 +43,12 @@ CacheEntry pack(const Truth& truth) {
   return entry;
 }
 
-Truth unpack(CacheEntry entry) {
+SceneAnswers unpack(CacheEntry entry) {
   const auto pair_start = entry.take<std::uint64_t>("pair_start"),
              wrench_start = entry.take<std::uint64_t>("wrench_start");
   const auto ids = entry.take<std::uint32_t>("pair"), bodies = entry.take<std::uint32_t>("body");
   const auto distances = entry.take<double>("distance"), wrenches = entry.take<double>("wrench");
-  Truth truth;
+  SceneAnswers truth;
   for (std::size_t f = 0; f + 1 < pair_start.size(); ++f) {
     SceneAnswer& answer = truth.frames.emplace_back();
     for (std::size_t k = pair_start[f]; k < pair_start[f + 1]; ++k) {
@@ -63,22 +63,22 @@ Truth unpack(CacheEntry entry) {
 
 }  // namespace
 
-void set_hash(Truth& truth) {
+void set_hash(SceneAnswers& truth) {
   ContentHash hash;
   for (const SceneAnswer& answer : truth.frames) hash.add_values(std::span<const char>(answer.hash()));
   truth.hash = hash.hex();
 }
 
-std::size_t Truth::pairs() const {
+std::size_t SceneAnswers::pairs() const {
   std::size_t sum = 0;
   for (const SceneAnswer& answer : frames) sum += answer.pairs.size();
   return sum;
 }
 
-Truth replay(const Scene& scene, const SceneAlgorithm& algorithm, Question question,
-             const std::function<bool()>& cancelled) {
+SceneAnswers replay(const Scene& scene, const SceneAlgorithm& algorithm, Question question,
+                    const std::function<bool()>& cancelled) {
   const auto query = algorithm.prepare(scene, question);
-  Truth truth;
+  SceneAnswers truth;
   for (const Frame& frame : scene.frames) {
     if (cancelled && cancelled()) throw Interrupted("interrupted");
     query->update(moves_of(frame));
@@ -88,14 +88,14 @@ Truth replay(const Scene& scene, const SceneAlgorithm& algorithm, Question quest
   return truth;
 }
 
-Truth truth_of(const Scene& scene, Question question, const std::function<bool()>& cancelled) {
+SceneAnswers truth_of(const Scene& scene, Question question, const std::function<bool()>& cancelled) {
   const std::string key = key_of(scene, question);
   if (auto entry = load_cached(k_kind, key)) {
-    Truth truth = unpack(std::move(*entry));
+    SceneAnswers truth = unpack(std::move(*entry));
     set_hash(truth);
     return truth;
   }
-  Truth truth = replay(scene, *make_all_pairs(), question, cancelled);
+  SceneAnswers truth = replay(scene, *make_all_pairs(), question, cancelled);
   store_cached(k_kind, key, pack(truth));
   return truth;
 }
