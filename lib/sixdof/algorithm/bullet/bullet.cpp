@@ -1,64 +1,15 @@
 #include <sixdof/algorithm/bullet/bullet.h>
 
-#include <limits>
-#include <string>
-
-#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
-#include <BulletCollision/Gimpact/btGImpactShape.h>
-#include <btBulletCollisionCommon.h>
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/contact_wrench.h>
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/bullet/bullet_mesh.h>
 
 namespace sixdof {
 namespace {
 
 constexpr const char* k_margin = "margin";
 
-btVector3 to_bullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-
-/// Refers to the arrays of a mesh, which outlives it.
-class GImpactShape {
- public:
-  /// @throws BadMesh if the mesh has more elements than Bullet can count
-  GImpactShape(const Mesh& mesh, double margin) : mesh_(checked(mesh)) {
-    btIndexedMesh part;
-    part.m_numTriangles = static_cast<int>(mesh_.triangles().size());
-    part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(mesh_.triangles().data());
-    part.m_triangleIndexStride = sizeof(Triangle);
-    part.m_numVertices = static_cast<int>(mesh_.vertices().size());
-    part.m_vertexBase = reinterpret_cast<const unsigned char*>(mesh_.vertices().data());
-    part.m_vertexStride = sizeof(Eigen::Vector3d);
-    part.m_vertexType = PHY_DOUBLE;
-    arrays_.addIndexedMesh(part, PHY_INTEGER);
-    shape_ = std::make_unique<btGImpactMeshShape>(&arrays_);
-    shape_->setMargin(margin);
-    // Builds the tree.
-    shape_->updateBound();
-  }
-
-  btGImpactMeshShape* get() const { return shape_.get(); }
-  const Mesh& mesh() const { return mesh_; }
-  int nodes() const { return shape_->getMeshPart(0)->getBoxSet()->getNodeCount(); }
-
- private:
-  static const Mesh& checked(const Mesh& mesh) {
-    // Nodes and indices are counted in int.
-    constexpr auto k_max_count = static_cast<std::size_t>(std::numeric_limits<int>::max()) / 3;
-    if (mesh.triangles().size() > k_max_count || mesh.vertices().size() > k_max_count) {
-      throw BadMesh(fmt::format("{}: more triangles or vertices than Bullet can count", mesh.name()));
-    }
-    return mesh;
-  }
-
-  static_assert(sizeof(btScalar) == sizeof(double), "Bullet is compiled for double precision");
-  static_assert(sizeof(Triangle) == 3 * sizeof(int));
-  const Mesh& mesh_;
-  btTriangleIndexVertexArray arrays_;
-  std::unique_ptr<btGImpactMeshShape> shape_;
-};
 
 /// Receives every contact that GImpact finds.
 class ContactReceiver final : public btManifoldResult {
@@ -75,16 +26,14 @@ class ContactReceiver final : public btManifoldResult {
   ContactWrench& wrench_;
 };
 
-class GImpactQuery final : public Query {
+class GImpactQuery final : public LibraryQuery {
  public:
   GImpactQuery(const Mesh& a, const Mesh& b, const Settings& settings)
-      : center_b_(b.center()),
-        wrench_(settings),
-        shape_a_(std::make_shared<GImpactShape>(a, settings.number(k_margin))),
-        shape_b_(a.hash() == b.hash() ? shape_a_ : std::make_shared<GImpactShape>(b, settings.number(k_margin))) {
-    btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-    body_a_.setCollisionShape(shape_a_->get());
-    body_b_.setCollisionShape(shape_b_->get());
+      : center_b_(b.center()), wrench_(settings), meshes_(ShapePair<GImpactMesh>::of(a, b, [&](const Mesh& mesh) {
+          return std::make_shared<GImpactMesh>(mesh, settings.number(k_margin));
+        })) {
+    body_a_.setCollisionShape(meshes_.a->shape());
+    body_b_.setCollisionShape(meshes_.b->shape());
   }
 
   Outcome<bool> collide(const Pose& X_AB) override {
@@ -94,20 +43,15 @@ class GImpactQuery final : public Query {
 
   Outcome<Response> respond(const Pose& X_AB) override {
     if (const Status status = find_contacts(X_AB); status != Status::ok) return status;
-    const Response response = wrench_.response();
-    if (!response.force.allFinite() || !response.torque.allFinite()) {
-      return fail(Status::non_finite, "a contact is not finite");
-    }
-    return response;
+    return response_of(wrench_);
   }
 
   Footprint footprint() const override {
     double nodes = 0.0, triangles = 0.0;
-    for (const auto* shape : {shape_a_.get(), shape_a_ == shape_b_ ? nullptr : shape_b_.get()}) {
-      if (shape == nullptr) continue;
-      nodes += shape->nodes();
-      triangles += static_cast<double>(shape->mesh().triangles().size());
-    }
+    meshes_.for_each([&](const GImpactMesh& each) {
+      nodes += each.shape()->getMeshPart(0)->getBoxSet()->getNodeCount();
+      triangles += static_cast<double>(each.mesh().triangles().size());
+    });
     return {static_cast<std::size_t>(nodes) * sizeof(BT_QUANTIZED_BVH_NODE),
             {{"nodes", nodes}, {"triangles", triangles}}};
   }
@@ -115,26 +59,16 @@ class GImpactQuery final : public Query {
  private:
   Status find_contacts(const Pose& X_AB) {
     if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
-    const Eigen::Matrix3d& R = X_AB.R;
-    const btMatrix3x3 rotation(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2));
-    body_b_.setWorldTransform(btTransform(rotation, to_bullet(X_AB.t)));
+    body_b_.setWorldTransform(to_bullet(X_AB));
     wrench_.reset(X_AB * center_b_);
-    const btCollisionObjectWrapper a(nullptr, shape_a_->get(), &body_a_, body_a_.getWorldTransform(), -1, -1);
-    const btCollisionObjectWrapper b(nullptr, shape_b_->get(), &body_b_, body_b_.getWorldTransform(), -1, -1);
-    ContactReceiver receiver(&a, &b, wrench_);
-    btCollisionAlgorithm* const algorithm = dispatcher_.findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
-    algorithm->processCollision(&a, &b, info_, &receiver);
-    algorithm->~btCollisionAlgorithm();
-    dispatcher_.freeCollisionAlgorithm(algorithm);
+    pairs_.collide(body_a_, body_b_, [&](auto* a, auto* b) { return ContactReceiver(a, b, wrench_); });
     return Status::ok;
   }
 
   const Eigen::Vector3d center_b_;
   ContactWrench wrench_;
-  const std::shared_ptr<const GImpactShape> shape_a_, shape_b_;
-  btDefaultCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_{&configuration_};
-  btDispatcherInfo info_;
+  const ShapePair<GImpactMesh> meshes_;
+  GImpactPairs pairs_;
   btCollisionObject body_a_, body_b_;
 };
 

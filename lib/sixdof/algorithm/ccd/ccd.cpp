@@ -3,7 +3,6 @@
 #include <ccd/ccd.h>
 
 #include <limits>
-#include <string>
 #include <type_traits>
 
 #include <sixdof/algorithm/ccd/convex_hull.h>

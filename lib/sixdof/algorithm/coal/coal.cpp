@@ -6,7 +6,6 @@
 #include <coal/config.hh>
 
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -15,8 +14,7 @@
 
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/contact_wrench.h>
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/library_query.h>
 
 namespace sixdof {
 namespace {
@@ -31,10 +29,7 @@ using CoalTriangle = std::decay_t<decltype(std::declval<Model>().tri_indices->fr
 
 /// @throws BadMesh if Coal refuses the mesh
 std::shared_ptr<const Model> build_model(const Mesh& mesh) {
-  constexpr auto k_max_count = static_cast<std::size_t>(std::numeric_limits<int>::max()) / 2;
-  if (mesh.triangles().size() > k_max_count || mesh.vertices().size() > k_max_count) {
-    throw BadMesh(fmt::format("{}: more triangles or vertices than Coal can count", mesh.name()));
-  }
+  require_countable(mesh, "Coal", 2);
   std::vector<coal::Vec3s> vertices;
   for (const Eigen::Vector3d& v : mesh.vertices()) vertices.emplace_back(v.cast<Scalar>());
   std::vector<CoalTriangle> triangles;
@@ -48,34 +43,29 @@ std::shared_ptr<const Model> build_model(const Mesh& mesh) {
 }
 
 /// The trees of both bodies. Equal meshes share one.
-class CoalQuery : public Query {
+class CoalQuery : public LibraryQuery {
  public:
   Footprint footprint() const override {
     double nodes = 0.0, triangles = 0.0;
-    for (const Model* model : {a_.get(), a_ == b_ ? nullptr : b_.get()}) {
-      if (model == nullptr) continue;
-      nodes += model->getNumBVs();
-      triangles += model->num_tris;
-    }
+    models_.for_each([&](const Model& model) {
+      nodes += model.getNumBVs();
+      triangles += model.num_tris;
+    });
     return {static_cast<std::size_t>(nodes) * sizeof(coal::BVNode<coal::OBBRSS>),
             {{"nodes", nodes}, {"triangles", triangles}}};
   }
 
  protected:
-  CoalQuery(const Mesh& a, const Mesh& b) : a_(build_model(a)), b_(a.hash() == b.hash() ? a_ : build_model(b)) {}
+  CoalQuery(const Mesh& a, const Mesh& b) : models_(ShapePair<Model>::of(a, b, build_model)) {}
 
+  /// guarded(), with X_AB_ set.
   template <class Answer>
-  auto guarded(const Pose& X_AB, const Answer& answer) -> decltype(answer()) {
-    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
+  auto at(const Pose& X_AB, const Answer& answer) -> decltype(answer()) {
     X_AB_ = coal::Transform3s(X_AB.R.cast<Scalar>(), X_AB.t.cast<Scalar>());
-    try {
-      return answer();
-    } catch (const std::exception& e) {
-      return fail(Status::failed, e.what());
-    }
+    return guarded(X_AB, answer);
   }
 
-  const std::shared_ptr<const Model> a_, b_;
+  const ShapePair<Model> models_;
   const coal::Transform3s X_AA_;
   coal::Transform3s X_AB_;
 };
@@ -85,8 +75,8 @@ class ObbrssQuery final : public CoalQuery {
   ObbrssQuery(const Mesh& a, const Mesh& b, const Settings& settings)
       : CoalQuery(a, b),
         is_tuned_(settings.choice(k_profile) == "tuned"),
-        collide_(a_.get(), b_.get()),
-        distance_(a_.get(), b_.get()) {
+        collide_(models_.a.get(), models_.b.get()),
+        distance_(models_.a.get(), models_.b.get()) {
     if (!is_tuned_) return;
     collision_request_.enable_contact = false;
     collision_request_.gjk_initial_guess = coal::GJKInitialGuess::CachedGuess;
@@ -94,26 +84,26 @@ class ObbrssQuery final : public CoalQuery {
   }
 
   Outcome<bool> collide(const Pose& X_AB) override {
-    return guarded(X_AB, [&]() -> Outcome<bool> {
+    return at(X_AB, [&]() -> Outcome<bool> {
       coal::CollisionResult result;
       if (is_tuned_) {
         collide_(X_AA_, X_AB_, collision_request_, result);
         collision_request_.updateGuess(result);
       } else {
-        coal::collide(a_.get(), X_AA_, b_.get(), X_AB_, collision_request_, result);
+        coal::collide(models_.a.get(), X_AA_, models_.b.get(), X_AB_, collision_request_, result);
       }
       return result.isCollision();
     });
   }
 
   Outcome<Separation> distance(const Pose& X_AB) override {
-    return guarded(X_AB, [&]() -> Outcome<Separation> {
+    return at(X_AB, [&]() -> Outcome<Separation> {
       coal::DistanceResult result;
       if (is_tuned_) {
         distance_(X_AA_, X_AB_, distance_request_, result);
         distance_request_.updateGuess(result);
       } else {
-        coal::distance(a_.get(), X_AA_, b_.get(), X_AB_, distance_request_, result);
+        coal::distance(models_.a.get(), X_AA_, models_.b.get(), X_AB_, distance_request_, result);
       }
       if (!std::isfinite(result.min_distance)) return fail(Status::non_finite, "the distance is not finite");
       if (result.min_distance == std::numeric_limits<Scalar>::max())
@@ -144,11 +134,11 @@ class ContactsQuery final : public CoalQuery {
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {
-    return guarded(X_AB, [&]() -> Outcome<Response> {
+    return at(X_AB, [&]() -> Outcome<Response> {
       coal::CollisionResult result;
-      coal::collide(a_.get(), X_AA_, b_.get(), X_AB_, request_, result);
+      coal::collide(models_.a.get(), X_AA_, models_.b.get(), X_AB_, request_, result);
       if (result.numContacts() >= request_.num_max_contacts) {
-        return fail(Status::failed, fmt::format("more contacts than {}", request_.num_max_contacts));
+        return too_many_contacts(request_.num_max_contacts);
       }
       wrench_.reset(X_AB * center_b_);
       for (std::size_t i = 0; i < result.numContacts(); ++i) {
@@ -157,11 +147,7 @@ class ContactsQuery final : public CoalQuery {
         wrench_.add(contact.pos.template cast<double>(), contact.normal.template cast<double>(),
                     -static_cast<double>(contact.penetration_depth));
       }
-      const Response response = wrench_.response();
-      if (!response.force.allFinite() || !response.torque.allFinite()) {
-        return fail(Status::non_finite, "a contact is not finite");
-      }
-      return response;
+      return response_of(wrench_);
     });
   }
 

@@ -3,16 +3,14 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/library_query.h>
 #include <sixdof/geometry/triangle_distance.h>
 #include <sixdof/oracle/candidates.h>
 
@@ -130,7 +128,7 @@ bool boxes_overlap(const TriangleCorners& a, const TriangleCorners& b) {
   return (low(a) <= high(b)).all() && (low(b) <= high(a)).all();
 }
 
-class EmbreeQuery final : public Query {
+class EmbreeQuery final : public LibraryQuery {
  public:
   EmbreeQuery(const Mesh& a, const Mesh& b, const Settings& settings)
       : triangles_(a.triangles().size() + b.triangles().size()), device_(rtcNewDevice("threads=1")) {
@@ -153,8 +151,7 @@ class EmbreeQuery final : public Query {
   }
 
   Outcome<bool> collide(const Pose& X_AB) override {
-    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
-    try {
+    return guarded(X_AB, [&]() -> Outcome<bool> {
       found_ = false;
       const char* const why_not = one_thread_.execute([&] {
         const char* const why = b_->move(X_AB);
@@ -163,10 +160,8 @@ class EmbreeQuery final : public Query {
       });
       if (why_not != nullptr) return fail(Status::failed, why_not);
       check(device_.get());
-    } catch (const std::exception& e) {
-      return fail(Status::failed, e.what());
-    }
-    return found_;
+      return found_;
+    });
   }
 
   /// Embree does not tell the size of its trees.

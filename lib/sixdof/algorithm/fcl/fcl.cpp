@@ -3,14 +3,10 @@
 #include <fcl/config.h>
 
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <string>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
-#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/AABB.h>
 #include <fcl/math/bv/OBB.h>
 #include <fcl/math/bv/OBBRSS.h>
@@ -22,8 +18,7 @@
 #include <fcl/narrowphase/distance.h>
 #include <fmt/format.h>
 
-#include <sixdof/algorithm/contact_wrench.h>
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/fcl/fcl_mesh.h>
 
 namespace sixdof {
 namespace {
@@ -31,75 +26,41 @@ namespace {
 constexpr const char* k_relative_error = "relative_error";
 constexpr const char* k_max_contacts = "max_contacts";
 
-/// @throws BadMesh if FCL refuses the mesh
-template <class BV>
-std::shared_ptr<const fcl::BVHModel<BV>> build_model(const Mesh& mesh) {
-  // FCL counts in int.
-  constexpr auto k_max_count = static_cast<std::size_t>(std::numeric_limits<int>::max()) / 2;
-  if (mesh.triangles().size() > k_max_count || mesh.vertices().size() > k_max_count) {
-    throw BadMesh(fmt::format("{}: more triangles or vertices than FCL can count", mesh.name()));
-  }
-  std::vector<fcl::Triangle> triangles;
-  triangles.reserve(mesh.triangles().size());
-  for (const Triangle& t : mesh.triangles()) triangles.emplace_back(t[0], t[1], t[2]);
-
-  const auto model = std::make_shared<fcl::BVHModel<BV>>();
-  int code = model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices().size()));
-  if (code == fcl::BVH_OK) code = model->addSubModel(mesh.vertices(), triangles);
-  if (code == fcl::BVH_OK) code = model->endModel();
-  if (code != fcl::BVH_OK) throw BadMesh(fmt::format("{}: FCL cannot build a tree (code {})", mesh.name(), code));
-  return model;
-}
-
 /// The trees of both bodies. Equal meshes share one.
 template <class BV>
-class FclQuery : public Query {
+class FclQuery : public LibraryQuery {
  public:
   Footprint footprint() const override {
     Footprint sum;
     double nodes = 0.0;
     double triangles = 0.0;
-    for (const auto* model : {a_.get(), a_ == b_ ? nullptr : b_.get()}) {
-      if (model == nullptr) continue;
-      nodes += model->getNumBVs();
-      triangles += model->num_tris;
+    models_.for_each([&](const fcl::BVHModel<BV>& model) {
+      nodes += model.getNumBVs();
+      triangles += model.num_tris;
       // FCL's own memUsage() returns a status instead of a size.
-      sum.bytes += sizeof(*model) + static_cast<std::size_t>(model->getNumBVs()) * sizeof(fcl::BVNode<BV>) +
-                   static_cast<std::size_t>(model->num_tris) * (sizeof(fcl::Triangle) + sizeof(unsigned)) +
-                   static_cast<std::size_t>(model->num_vertices) * sizeof(fcl::Vector3d);
-    }
+      sum.bytes += sizeof(model) + static_cast<std::size_t>(model.getNumBVs()) * sizeof(fcl::BVNode<BV>) +
+                   static_cast<std::size_t>(model.num_tris) * (sizeof(fcl::Triangle) + sizeof(unsigned)) +
+                   static_cast<std::size_t>(model.num_vertices) * sizeof(fcl::Vector3d);
+    });
     sum.counts = {{"nodes", nodes}, {"triangles", triangles}};
     return sum;
   }
 
  protected:
-  FclQuery(const Mesh& a, const Mesh& b) : a_(build_model<BV>(a)), b_(a.hash() == b.hash() ? a_ : build_model<BV>(b)) {}
-
-  /// answer() with X_AB_ set; a failure if it throws, or if the pose is not finite: FCL would find no two volumes apart
-  /// and expand the whole tree.
-  template <class Answer>
-  auto guarded(const Pose& X_AB, const Answer& answer) -> decltype(answer()) {
-    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
-    X_AB_.linear() = X_AB.R;
-    X_AB_.translation() = X_AB.t;
-    try {
-      return answer();
-    } catch (const std::exception& e) {
-      return fail(Status::failed, e.what());
-    }
-  }
+  FclQuery(const Mesh& a, const Mesh& b) : models_(ShapePair<fcl::BVHModel<BV>>::of(a, b, build_fcl_model<BV>)) {}
 
   /// Whether any two triangles intersect. FCL stops at the first pair.
   Outcome<bool> any_contact(const Pose& X_AB) {
     return guarded(X_AB, [&]() -> Outcome<bool> {
+      X_AB_ = to_fcl(X_AB);
       fcl::CollisionResultd result;
-      fcl::collide<double>(a_.get(), X_AA_, b_.get(), X_AB_, first_contact_, result);
+      fcl::collide<double>(models_.a.get(), X_AA_, models_.b.get(), X_AB_, first_contact_, result);
       return result.isCollision();
     });
   }
 
   const fcl::CollisionRequestd first_contact_{1, false};  ///< One contact, without its points.
-  const std::shared_ptr<const fcl::BVHModel<BV>> a_, b_;
+  const ShapePair<fcl::BVHModel<BV>> models_;
   const fcl::Transform3d X_AA_ = fcl::Transform3d::Identity();
   fcl::Transform3d X_AB_ = fcl::Transform3d::Identity();
 };
@@ -130,7 +91,7 @@ struct DistanceNode<fcl::kIOSd> {
 template <class BV>
 class FclDistanceQuery final : public FclQuery<BV> {
   using Base = FclQuery<BV>;
-  using Base::a_, Base::b_, Base::fail, Base::guarded, Base::X_AA_, Base::X_AB_;
+  using Base::fail, Base::guarded, Base::models_, Base::X_AA_, Base::X_AB_;
 
  public:
   FclDistanceQuery(const Mesh& a, const Mesh& b, const Settings& settings)
@@ -146,9 +107,10 @@ class FclDistanceQuery final : public FclQuery<BV> {
 
   Outcome<Separation> distance(const Pose& X_AB) override {
     return guarded(X_AB, [&] {
+      X_AB_ = to_fcl(X_AB);
       fcl::DistanceResultd result;
       if (relative_error_ == 0.0) {
-        fcl::distance<double>(a_.get(), X_AA_, b_.get(), X_AB_, nearest_points_, result);
+        fcl::distance<double>(models_.a.get(), X_AA_, models_.b.get(), X_AB_, nearest_points_, result);
       } else {
         approximate_distance(result);
       }
@@ -161,7 +123,7 @@ class FclDistanceQuery final : public FclQuery<BV> {
   /// volumes if BOTH bounds hold; with an infinite absolute bound the relative one decides.
   void approximate_distance(fcl::DistanceResultd& result) {
     typename DistanceNode<BV>::type node;
-    fcl::detail::initialize(node, *a_, X_AA_, *b_, X_AB_, nearest_points_, result);
+    fcl::detail::initialize(node, *models_.a, X_AA_, *models_.b, X_AB_, nearest_points_, result);
     node.rel_err = relative_error_;
     node.abs_err = std::numeric_limits<double>::infinity();
     fcl::detail::distance<double>(&node);
@@ -198,10 +160,11 @@ class ContactsQuery final : public FclQuery<fcl::OBBRSSd> {
 
   Outcome<Response> respond(const Pose& X_AB) override {
     return guarded(X_AB, [&]() -> Outcome<Response> {
+      X_AB_ = to_fcl(X_AB);
       fcl::CollisionResultd result;
-      fcl::collide<double>(a_.get(), X_AA_, b_.get(), X_AB_, request_, result);
+      fcl::collide<double>(models_.a.get(), X_AA_, models_.b.get(), X_AB_, request_, result);
       if (result.numContacts() >= request_.num_max_contacts) {
-        return fail(Status::failed, fmt::format("more contacts than {}", request_.num_max_contacts));
+        return too_many_contacts(request_.num_max_contacts);
       }
       wrench_.reset(X_AB * center_b_);
       for (std::size_t i = 0; i < result.numContacts(); ++i) {
@@ -209,11 +172,7 @@ class ContactsQuery final : public FclQuery<fcl::OBBRSSd> {
         // FCL's normal points from the first body to the second: A to B.
         wrench_.add(contact.pos, contact.normal, contact.penetration_depth);
       }
-      const Response response = wrench_.response();
-      if (!response.force.allFinite() || !response.torque.allFinite()) {
-        return fail(Status::non_finite, "a contact is not finite");
-      }
-      return response;
+      return response_of(wrench_);
     });
   }
 

@@ -2,8 +2,6 @@
 
 #include <map>
 #include <mutex>
-#include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
-#include <exception>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -11,7 +10,7 @@
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/library_query.h>
 
 namespace sixdof {
 namespace {
@@ -72,7 +71,7 @@ Model compile(const Mesh& a, const Mesh& b) {
   return model;
 }
 
-class MujocoQuery final : public Query {
+class MujocoQuery final : public LibraryQuery {
  public:
   MujocoQuery(const Mesh& a, const Mesh& b, const Settings& /*settings*/) {
     for (const Mesh* mesh : {&a, &b}) refuse_flat(*mesh);
@@ -87,18 +86,15 @@ class MujocoQuery final : public Query {
   }
 
   Outcome<bool> collide(const Pose& X_AB) override {
-    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
-    std::copy_n(X_AB.t.data(), 3, data_->qpos);
-    const Eigen::Vector4d q = X_AB.quaternion();
-    std::copy_n(q.data(), 4, data_->qpos + 3);
-    try {
+    return guarded(X_AB, [&]() -> Outcome<bool> {
+      std::copy_n(X_AB.t.data(), 3, data_->qpos);
+      const Eigen::Vector4d q = X_AB.quaternion();
+      std::copy_n(q.data(), 4, data_->qpos + 3);
       mj_kinematics(model_.get(), data_.get());
       mj_comPos(model_.get(), data_.get());
       mj_collision(model_.get(), data_.get());
-    } catch (const std::exception& e) {
-      return fail(Status::failed, e.what());
-    }
-    return data_->ncon > 0;
+      return data_->ncon > 0;
+    });
   }
 
   Footprint footprint() const override {

@@ -2,10 +2,9 @@
 
 #include <cmath>
 #include <exception>
-#include <string>
 
+#include <sixdof/algorithm/library_query.h>
 #include <sixdof/algorithm/simbody/foundation.h>
-#include <sixdof/base/error.h>
 
 namespace sixdof {
 namespace {
@@ -38,7 +37,7 @@ std::unique_ptr<Foundation> foundation_of(const Mesh& a, const Mesh& b) {
   }
 }
 
-class SimbodyQuery final : public Query {
+class SimbodyQuery final : public LibraryQuery {
  public:
   SimbodyQuery(const Mesh& a, const Mesh& b, const Settings& /*settings*/)
       : center_b_(b.center()),
@@ -47,12 +46,12 @@ class SimbodyQuery final : public Query {
         foundation_(foundation_of(a, b)) {}
 
   Outcome<bool> collide(const Pose& X_AB) override {
-    return guarded(X_AB, [&](const auto& R, const auto& t) -> Outcome<bool> { return foundation_->contact(R, t); });
+    return guarded(X_AB, [&]() -> Outcome<bool> { return foundation_->contact(rows(X_AB.R), coordinates(X_AB.t)); });
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {
-    return guarded(X_AB, [&](const auto& R, const auto& t) -> Outcome<Response> {
-      const Foundation::Forces forces = foundation_->forces(R, t);
+    return guarded(X_AB, [&]() -> Outcome<Response> {
+      const Foundation::Forces forces = foundation_->forces(rows(X_AB.R), coordinates(X_AB.t));
       Response response{.penalty = std::sqrt(2.0 * forces.energy / (k_area_factor * area_)),
                         .force = {forces.force[0], forces.force[1], forces.force[2]},
                         .torque = {forces.torque[0], forces.torque[1], forces.torque[2]},
@@ -68,19 +67,10 @@ class SimbodyQuery final : public Query {
   Footprint footprint() const override { return {0, {{"triangles", triangles_}}}; }
 
  private:
-  template <class Answer>
-  auto guarded(const Pose& X_AB, const Answer& answer)
-      -> decltype(answer(std::array<double, 9>(), std::array<double, 3>())) {
-    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
-    const Eigen::Matrix3d& R = X_AB.R;
-    try {
-      return answer(
-          std::array<double, 9>{R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)},
-          std::array<double, 3>{X_AB.t.x(), X_AB.t.y(), X_AB.t.z()});
-    } catch (const std::exception& e) {
-      return fail(Status::failed, e.what());
-    }
+  static std::array<double, 9> rows(const Eigen::Matrix3d& R) {
+    return {R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)};
   }
+  static std::array<double, 3> coordinates(const Eigen::Vector3d& t) { return {t.x(), t.y(), t.z()}; }
 
   const Eigen::Vector3d center_b_;
   const double area_, triangles_;

@@ -1,48 +1,15 @@
 #include <sixdof/scene/bullet/bullet_scene.h>
 
-#include <algorithm>
 #include <memory>
-#include <utility>
 #include <vector>
 
-#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
-#include <BulletCollision/Gimpact/btGImpactShape.h>
-#include <btBulletCollisionCommon.h>
 #include <fmt/format.h>
 
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/bullet/bullet_mesh.h>
+#include <sixdof/scene/library_scene.h>
 
 namespace sixdof::scene {
 namespace {
-
-btVector3 to_bullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-btTransform to_bullet(const Pose& X) {
-  const Eigen::Matrix3d& R = X.R;
-  return btTransform(btMatrix3x3(R(0, 0), R(0, 1), R(0, 2), R(1, 0), R(1, 1), R(1, 2), R(2, 0), R(2, 1), R(2, 2)),
-                     to_bullet(X.t));
-}
-
-/// Refers to the arrays of a mesh, which outlives it.
-struct MeshShape {
-  explicit MeshShape(const Mesh& mesh) {
-    static_assert(sizeof(btScalar) == sizeof(double) && sizeof(Triangle) == 3 * sizeof(int));
-    btIndexedMesh part;
-    part.m_numTriangles = static_cast<int>(mesh.triangles().size());
-    part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(mesh.triangles().data());
-    part.m_triangleIndexStride = sizeof(Triangle);
-    part.m_numVertices = static_cast<int>(mesh.vertices().size());
-    part.m_vertexBase = reinterpret_cast<const unsigned char*>(mesh.vertices().data());
-    part.m_vertexStride = sizeof(Eigen::Vector3d);
-    part.m_vertexType = PHY_DOUBLE;
-    arrays.addIndexedMesh(part, PHY_INTEGER);
-    shape = std::make_unique<btGImpactMeshShape>(&arrays);
-    shape->setMargin(0.0);
-    shape->updateBound();
-  }
-  btTriangleIndexVertexArray arrays;
-  std::unique_ptr<btGImpactMeshShape> shape;
-};
 
 /// Whether there is any contact.
 class AnyContact final : public btManifoldResult {
@@ -73,19 +40,17 @@ Eigen::AlignedBox3d bounds_of(const Scene& scene) {
 
 using MakeBroadphase = std::unique_ptr<btBroadphaseInterface> (*)(const Scene& scene);
 
-class BulletScene final : public SceneQuery {
+class BulletScene final : public LibraryScene {
  public:
   BulletScene(const Scene& scene, Question /*question*/, MakeBroadphase make)
-      : scene_(scene),
-        filter_(scene),
+      : LibraryScene(scene),
         broadphase_(make(scene)),
-        world_(std::make_unique<btCollisionWorld>(&dispatcher_, broadphase_.get(), &configuration_)) {
-    btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-    for (const auto& mesh : scene.meshes) shapes_.push_back(std::make_unique<MeshShape>(*mesh));
+        world_(std::make_unique<btCollisionWorld>(&pairs_.dispatcher(), broadphase_.get(), &pairs_.configuration())) {
+    for (const auto& mesh : scene.meshes) meshes_.push_back(std::make_unique<GImpactMesh>(*mesh, 0.0));
     for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
       const Body& body = scene.bodies[i];
       auto& object = *objects_.emplace_back(std::make_unique<btCollisionObject>());
-      object.setCollisionShape(shapes_[body.mesh]->shape.get());
+      object.setCollisionShape(meshes_[body.mesh]->shape());
       object.setWorldTransform(to_bullet(body.pose.pose()));
       object.setUserIndex(static_cast<int>(i));
       const int group = body.fixed ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter;
@@ -100,9 +65,7 @@ class BulletScene final : public SceneQuery {
     for (const auto& object : objects_) world_->removeCollisionObject(object.get());
   }
 
-  void update(std::span<const Moved> moved) override {
-    if (moved.empty()) return;
-    known_ = false;
+  void move(std::span<const Moved> moved) override {
     for (const Moved& each : moved) {
       btCollisionObject& object = *objects_[each.body];
       object.setWorldTransform(to_bullet(each.X_WB));
@@ -110,51 +73,30 @@ class BulletScene final : public SceneQuery {
     }
   }
 
-  const SceneAnswer& answer() override {
-    if (std::exchange(known_, true)) return answer_;
-    answer_.pairs.clear();
-    broadphase_->calculateOverlappingPairs(&dispatcher_);
+  void find() override {
+    broadphase_->calculateOverlappingPairs(&pairs_.dispatcher());
     btOverlappingPairCache& pairs = *broadphase_->getOverlappingPairCache();
     for (int k = 0; k < pairs.getNumOverlappingPairs(); ++k) {
       const btBroadphasePair& pair = pairs.getOverlappingPairArrayPtr()[k];
       ask(static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject),
           static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject));
     }
-    std::ranges::sort(answer_.pairs);
-    return answer_;
   }
-
-  SceneWork work() const override { return work_; }
 
  private:
   void ask(const btCollisionObject* first, const btCollisionObject* second) {
     const auto i = static_cast<std::uint32_t>(first->getUserIndex());
     const auto j = static_cast<std::uint32_t>(second->getUserIndex());
-    ++work_.candidates;
-    if (!filter_.matters(i, j)) return;
-    ++work_.narrow;
-    const btCollisionObjectWrapper a(nullptr, first->getCollisionShape(), first, first->getWorldTransform(), -1, -1);
-    const btCollisionObjectWrapper b(nullptr, second->getCollisionShape(), second, second->getWorldTransform(), -1, -1);
-    AnyContact result(&a, &b);
-    btCollisionAlgorithm* const algorithm = dispatcher_.findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
-    algorithm->processCollision(&a, &b, info_, &result);
-    algorithm->~btCollisionAlgorithm();
-    dispatcher_.freeCollisionAlgorithm(algorithm);
-    if (result.found) answer_.pairs.push_back({BodyPair::of(scene_.bodies[i].id, scene_.bodies[j].id), 0.0});
+    if (!is_asked(i, j)) return;
+    const auto receiver = [](auto* a, auto* b) { return AnyContact(a, b); };
+    if (pairs_.collide(*first, *second, receiver).found) take(i, j);
   }
 
-  const Scene& scene_;
-  const PairFilter filter_;
-  btDefaultCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_{&configuration_};
-  btDispatcherInfo info_;
+  GImpactPairs pairs_;
   std::unique_ptr<btBroadphaseInterface> broadphase_;
   std::unique_ptr<btCollisionWorld> world_;
-  std::vector<std::unique_ptr<MeshShape>> shapes_;
+  std::vector<std::unique_ptr<GImpactMesh>> meshes_;
   std::vector<std::unique_ptr<btCollisionObject>> objects_;
-  bool known_ = false;
-  SceneAnswer answer_;
-  SceneWork work_;
 };
 
 std::unique_ptr<btBroadphaseInterface> make_simple(const Scene& scene) {

@@ -16,13 +16,13 @@
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree_array.h>
 #include <fcl/broadphase/broadphase_interval_tree.h>
 #include <fcl/broadphase/broadphase_spatialhash.h>
-#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 #include <fmt/format.h>
 
-#include <sixdof/base/error.h>
+#include <sixdof/algorithm/fcl/fcl_mesh.h>
+#include <sixdof/scene/library_scene.h>
 
 namespace sixdof::scene {
 namespace {
@@ -38,35 +38,19 @@ struct ManagerKind {
   bool updates_some = true;
 };
 
-std::shared_ptr<Model> build_model(const Mesh& mesh) {
-  const auto model = std::make_shared<Model>();
-  std::vector<fcl::Triangle> triangles;
-  for (const Triangle& t : mesh.triangles()) triangles.emplace_back(t[0], t[1], t[2]);
-  int code = model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices().size()));
-  if (code == fcl::BVH_OK) code = model->addSubModel(mesh.vertices(), triangles);
-  if (code == fcl::BVH_OK) code = model->endModel();
-  if (code != fcl::BVH_OK) throw BadMesh(fmt::format("{}: FCL cannot build a tree (code {})", mesh.name(), code));
-  model->computeLocalAABB();
-  return model;
-}
-
-fcl::Transform3d transform(const Pose& pose) {
-  fcl::Transform3d X = fcl::Transform3d::Identity();
-  X.linear() = pose.R;
-  X.translation() = pose.t;
-  return X;
-}
-
-class FclScene final : public SceneQuery {
+class FclScene final : public LibraryScene {
  public:
   FclScene(const Scene& scene, Question question, const ManagerKind& kind)
-      : scene_(scene), question_(question), filter_(scene), updates_some_(kind.updates_some) {
+      : LibraryScene(scene), question_(question), updates_some_(kind.updates_some) {
     std::vector<std::shared_ptr<Model>> models;
-    for (const auto& mesh : scene.meshes) models.push_back(build_model(*mesh));
+    for (const auto& mesh : scene.meshes) {
+      models.push_back(build_fcl_model<fcl::OBBRSSd>(*mesh));
+      models.back()->computeLocalAABB();
+    }
     std::vector<Object*> moving, fixed;
     for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
       const Body& body = scene.bodies[i];
-      auto& object = *objects_.emplace_back(std::make_unique<Object>(models[body.mesh], transform(body.pose.pose())));
+      auto& object = *objects_.emplace_back(std::make_unique<Object>(models[body.mesh], to_fcl(body.pose.pose())));
       object.computeAABB();
       object.setUserData(reinterpret_cast<void*>(static_cast<std::uintptr_t>(i)));
       (body.fixed ? fixed : moving).push_back(&object);
@@ -75,13 +59,11 @@ class FclScene final : public SceneQuery {
     if (!fixed.empty()) fixed_ = registered(kind, fixed);
   }
 
-  void update(std::span<const Moved> moved) override {
-    if (moved.empty()) return;
-    known_ = false;
+  void move(std::span<const Moved> moved) override {
     changed_.clear();
     for (const Moved& each : moved) {
       Object& object = *objects_[each.body];
-      object.setTransform(transform(each.X_WB));
+      object.setTransform(to_fcl(each.X_WB));
       object.computeAABB();
       changed_.push_back(&object);
     }
@@ -92,9 +74,7 @@ class FclScene final : public SceneQuery {
     }
   }
 
-  const SceneAnswer& answer() override {
-    if (std::exchange(known_, true)) return answer_;
-    answer_.pairs.clear();
+  void find() override {
     limit_ = question_ == Question::near ? scene_.margin : std::numeric_limits<double>::max();
     if (moving_ && question_ == Question::touching) {
       moving_->collide(this, &on_pair);
@@ -103,14 +83,7 @@ class FclScene final : public SceneQuery {
       moving_->distance(this, &on_distance);
       if (fixed_) moving_->distance(fixed_.get(), this, &on_distance);
     }
-    std::ranges::sort(answer_.pairs);
-    // Some managers name a pair twice.
-    const auto twice = std::ranges::unique(answer_.pairs, {}, &NearPair::pair);
-    answer_.pairs.erase(twice.begin(), twice.end());
-    return answer_;
   }
-
-  SceneWork work() const override { return work_; }
 
  private:
   static std::unique_ptr<Manager> registered(const ManagerKind& kind, std::vector<Object*>& objects) {
@@ -124,57 +97,44 @@ class FclScene final : public SceneQuery {
     return static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(object->getUserData()));
   }
 
-  BodyPair ids(std::uint32_t i, std::uint32_t j) const {
-    return BodyPair::of(scene_.bodies[i].id, scene_.bodies[j].id);
-  }
-
   /// FCL's callback: true ends the query.
   static bool on_pair(Object* a, Object* b, void* self) {
     auto& scene = *static_cast<FclScene*>(self);
     const std::uint32_t i = index_of(a), j = index_of(b);
-    ++scene.work_.candidates;
-    if (!scene.filter_.matters(i, j)) return false;
-    ++scene.work_.narrow;
+    if (!scene.is_asked(i, j)) return false;
     fcl::CollisionResultd result;
     fcl::collide(a, b, fcl::CollisionRequestd(1, false), result);
-    if (result.isCollision()) scene.answer_.pairs.push_back({scene.ids(i, j), 0.0});
+    if (result.isCollision()) scene.take(i, j);
     return false;
   }
 
   static bool on_distance(Object* a, Object* b, void* self, double& least) {
     auto& scene = *static_cast<FclScene*>(self);
     const std::uint32_t i = index_of(a), j = index_of(b);
-    ++scene.work_.candidates;
-    if (scene.filter_.matters(i, j)) {
-      ++scene.work_.narrow;
+    if (scene.is_asked(i, j)) {
       fcl::DistanceResultd result;
       fcl::distance(a, b, fcl::DistanceRequestd(false), result);
-      scene.take({scene.ids(i, j), std::max(result.min_distance, 0.0)});
+      scene.take_within_limit(i, j, std::max(result.min_distance, 0.0));
     }
     least = scene.limit_;
     return scene.question_ == Question::closest && scene.limit_ == 0.0;
   }
 
-  void take(const NearPair& found) {
-    if (found.distance > limit_) return;
+  void take_within_limit(std::uint32_t i, std::uint32_t j, double distance) {
+    if (distance > limit_) return;
     if (question_ == Question::closest) {
-      answer_.pairs.clear();
-      limit_ = found.distance;
+      forget_pairs();
+      limit_ = distance;
     }
-    answer_.pairs.push_back(found);
+    take(i, j, distance);
   }
 
-  const Scene& scene_;
   const Question question_;
-  const PairFilter filter_;
   const bool updates_some_;
   std::vector<std::unique_ptr<Object>> objects_;
   std::unique_ptr<Manager> moving_, fixed_;
   std::vector<Object*> changed_;
   double limit_ = 0.0;
-  bool known_ = false;
-  SceneAnswer answer_;
-  SceneWork work_;
 };
 
 template <class T>
