@@ -190,7 +190,7 @@ TEST(Judge, PointsOfOneBodyMissWhereTheOtherSticksInByLessThanTheResolution) {
   Traits all = k_all;
   all.approximates = true;
   Traits points = all;
-  points.limits.samples_b_only = true;
+  points.limits.only_points_of_b = true;
   const auto verdict = [](const Shot& shot, const Traits& traits, double resolution) {
     return judge_script({.respond = Response{}, .resolution = resolution}, shot, traits).worst().verdict;
   };

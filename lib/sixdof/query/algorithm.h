@@ -125,7 +125,7 @@ struct MethodLimits {
   bool own_direction = false;
   /// respond() looks at points of B's surface only. Where none of them is deeper in A than the resolution, it may be
   /// zero, however far B is from leaving A.
-  bool samples_b_only = false;
+  bool only_points_of_b = false;
 };
 
 /// What the magnitude of a response is proportional to. It selects the ideal model that scenarios compare with.

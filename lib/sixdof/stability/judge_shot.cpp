@@ -44,7 +44,7 @@ double distance_to_miss(const Shot& shot, const Answers& answers) {
 double distance_to_no_push(const Shot& shot, const Answers& answers, const Traits& traits) {
   const double distance = distance_to_miss(shot, answers), depth_of_b = shot.truth.depth_of_b;
   // Without such points the miss is that of a body inside the other: MethodLimits::surfaces_only.
-  return traits.limits.samples_b_only && depth_of_b > 0.0 ? std::min(distance, depth_of_b) : distance;
+  return traits.limits.only_points_of_b && depth_of_b > 0.0 ? std::min(distance, depth_of_b) : distance;
 }
 
 /// Yes/no, once right and wrong are known: how far from contact the mistake is.

@@ -264,7 +264,7 @@ Traits traits(std::string name, std::string summary, std::vector<Parameter> para
       .law = ResponseLaw::depth,
       .approximates = true,
       // A is sampled at B's points only: none is in an A that lies inside B.
-      .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true, .samples_b_only = true},
+      .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true, .only_points_of_b = true},
       .parameters = std::move(parameters)};
 }
 
