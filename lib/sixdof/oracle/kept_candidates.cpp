@@ -52,7 +52,7 @@ void KeptCandidates::search(const Tree& a, const Tree& b, const Pose& X_AB) {
   now_.start(a, b, margin > 0.0 ? pose_ahead(b, X_AB, k_ahead * margin) : X_AB, margin);
   while (margin > 0.0 && !now_.is_complete() && !abounds(now_)) advance(now_, a, b, k_part);
   if (margin > 0.0 && abounds(now_)) {
-    growth_ *= k_punished;
+    growth_ *= k_growth_of_failure;
     now_.start(a, b, X_AB, 0.0);
   }
   advance(now_, a, b, CandidateSearch::k_whole);
@@ -79,7 +79,7 @@ void KeptCandidates::search_ahead(const Tree& a, const Tree& b, const Pose& X_AB
   if (next_.is_complete()) return;
   advance(next_, a, b, part_);
   if (abounds(next_)) {
-    growth_ *= k_punished;
+    growth_ *= k_growth_of_failure;
     has_next_ = false;
   }
 }
@@ -110,7 +110,7 @@ double KeptCandidates::next_margin(const Tree& a, const Tree& b, double step) {
     const double more = static_cast<double>(now_.pairs.size()) / std::max(without_margin(), k_few) - 1.0;
     measured = std::max(more * size / now_.margin, k_least_growth);
   }
-  growth_ = std::max(measured, k_forgotten * growth_);  // where candidates abounded, they may no longer
+  growth_ = std::max(measured, k_decay_of_growth * growth_);  // where candidates abounded, they may no longer
   const double margin = std::sqrt(k_search / growth_ * size * step);
   return margin >= k_least_steps * step ? margin : 0.0;
 }

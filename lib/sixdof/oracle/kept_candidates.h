@@ -37,7 +37,7 @@ class KeptCandidates {
   /// The growth of candidates at first, of elephants with an overlap of 10 %; and the least.
   static constexpr double k_first_growth = 6.0, k_least_growth = 0.6;
   /// Where candidates abound within a margin, none is tried for the next hundred searches.
-  static constexpr double k_punished = 8.0, k_forgotten = 0.98;
+  static constexpr double k_growth_of_failure = 8.0, k_decay_of_growth = 0.98;
   static constexpr double k_few = 64.0;  ///< Candidates that cost next to nothing.
 
   void search(const Tree& a, const Tree& b, const Pose& X_AB);
