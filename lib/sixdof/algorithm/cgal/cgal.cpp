@@ -1,6 +1,7 @@
 #include <sixdof/algorithm/cgal/cgal.h>
 
 #include <array>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,8 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/version_macros.h>
 
-#include <sixdof/algorithm/library_query.h>
 #include <sixdof/algorithm/volume_response.h>
+#include <sixdof/base/error.h>
 #include <sixdof/oracle/candidates.h>
 #include <sixdof/oracle/solid.h>
 
@@ -45,7 +46,7 @@ struct FacesOfB : CGAL::Polygon_mesh_processing::Corefinement::Default_visitor<S
   std::vector<Face>* faces_of_b;
 };
 
-class CgalQuery final : public LibraryQuery {
+class CgalQuery final : public Query {
  public:
   CgalQuery(const Mesh& a, const Mesh& b, const Settings& /*settings*/)
       : mesh_b_(b), a_(to_cgal(a)), b_(to_cgal(b)), id_a_(detection_.add_mesh(a_)), id_b_(detection_.add_mesh(b_)) {
@@ -55,20 +56,26 @@ class CgalQuery final : public LibraryQuery {
   }
 
   Outcome<bool> collide(const Pose& X_AB) override {
-    return guarded(X_AB, [&]() -> Outcome<bool> {
-      const Eigen::Matrix3d& R = X_AB.R;
-      const Eigen::Vector3d& t = X_AB.t;
+    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
+    const Eigen::Matrix3d& R = X_AB.R;
+    const Eigen::Vector3d& t = X_AB.t;
+    try {
       detection_.set_transformation(id_b_, {R(0, 0), R(0, 1), R(0, 2), t.x(), R(1, 0), R(1, 1), R(1, 2), t.y(), R(2, 0),
                                             R(2, 1), R(2, 2), t.z()});
       return !detection_.get_all_intersections(id_b_).empty();
-    });
+    } catch (const std::exception& e) {
+      return fail(Status::failed, e.what());
+    }
   }
 
   Outcome<Response> respond(const Pose& X_AB) override {
-    return guarded(X_AB, [&]() -> Outcome<Response> {
-      if (!why_no_response_.empty()) return fail(Status::failed, why_no_response_);
+    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
+    if (!why_no_response_.empty()) return fail(Status::failed, why_no_response_);
+    try {
       return intersection(X_AB);
-    });
+    } catch (const std::exception& e) {
+      return fail(Status::failed, e.what());
+    }
   }
 
   /// CGAL does not tell the size of its trees.
