@@ -36,7 +36,7 @@ void add_quality_command(CLI::App& app);
 /// algorithm at every resolution on the same configurations, with the frontiers (study/precision.h).
 void add_precision_command(CLI::App& app);
 /// `sixdof recommend --a A --b B --deadline 1ms [--metric gamma_F_deg]`: which algorithm and parameters keep the
-/// deadline on this pair with the least error, and what else there is; k_exit_defects if none does (study/recommend.h).
+/// deadline on this pair with the least error, and what else there is; k_exit_defects if none does (results/choice.h).
 void add_recommend_command(CLI::App& app);
 /// `sixdof equivalent [--scenario LIST] [--algorithm LIST] [--tau TIME]`: the resolutions of A and B with the least
 /// error of a response at a given mean time (study/equivalent.h).
@@ -68,6 +68,9 @@ void add_report_command(CLI::App& app);
 /// `sixdof history FOLDER -o FILE.html`: how the times of all results in a folder went, as such a page
 /// (report/history.h).
 void add_history_command(CLI::App& app);
+/// `sixdof compare BEFORE.json AFTER.json [--json] [--fail-on-answers]`: versions, answers and counts of work that
+/// differ (results/difference.h); with --fail-on-answers k_exit_defects if an answer does.
+void add_compare_command(CLI::App& app);
 /// `sixdof new-algorithm NAME [-o FOLDER]`: a project of its own with an algorithm that is to be replaced, made of
 /// the files in bench/new_algorithm/. The folder appears whole or not at all; nothing is overwritten.
 void add_new_algorithm_command(CLI::App& app);

@@ -15,6 +15,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/process/remote_algorithm.h>
+#include <sixdof/results/results.h>
 #include <sixdof/scenario/scenario.h>
 #include "bench/cli/equivalent_text.h"
 #include "bench/cli/shared.h"
@@ -177,10 +178,10 @@ std::vector<EquivalentResult> run_one(const Options& options, const std::string&
   return results;
 }
 
-std::vector<study::StudyRow> rows_of(const std::vector<EquivalentResult>& results) {
-  std::vector<study::StudyRow> rows;
+std::vector<results::Row> rows_of(const std::vector<EquivalentResult>& results) {
+  std::vector<results::Row> rows;
   for (const EquivalentResult& result : results) {
-    for (study::StudyRow& row : study::equivalent_rows(result)) rows.push_back(std::move(row));
+    for (results::Row& row : study::equivalent_rows(result)) rows.push_back(std::move(row));
   }
   return rows;
 }
@@ -190,7 +191,7 @@ void write(const Options& options, nlohmann::ordered_json context, const std::ve
            bool interrupted) {
   if (options.output.empty()) return;
   if (interrupted) context["interrupted"] = "true";
-  study::write_study_rows(options.output, context, rows_of(results));
+  results::write_rows(options.output, context, rows_of(results));
 }
 
 /// What can be checked before anything is measured. @throws BadArgument
@@ -222,7 +223,7 @@ void run(const Options& options) {
   }
   write(options, context, results, false);
   if (!options.json) return print_prediction_errors(results);
-  fmt::print("{}\n", json_text(study::study_document(context, rows_of(results))));
+  fmt::print("{}\n", json_text(results::document_of(context, rows_of(results))));
 }
 
 }  // namespace

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <sixdof/results/paper.h>
 #include "bench/study/equivalent_scenario.h"
 
 namespace sixdof::cli {
@@ -16,9 +16,6 @@ using study::EquivalentResult;
 using study::Goal;
 using study::Reach;
 using study::SearchStep;
-
-/// Mean absolute differences of predicted and measured eta that the paper prints (section 3.2.3).
-const std::map<std::string, std::string> k_paper{{"vps", "1.2 %"}, {"ist", "2.1 %"}};
 
 std::string given_text(const EquivalentResult& result) {
   return result.options.goal == Goal::time ? "tau = " + study::time_text(result.options.target)
@@ -108,9 +105,9 @@ void print_prediction_errors(std::span<const EquivalentResult> results) {
       const study::PredictionError error = prediction_error(own, first);
       return fmt::format("{:.3g} % ({:.3g} %)", 100.0 * error.difference, 100.0 * error.relative);
     };
-    const auto paper = k_paper.find(name);
+    const auto paper = results::paper_value("", name, results::k_eta_difference);
     fmt::print("{:<14} {:>8} {:>22} {:>22} {:>10}\n", name, own.size(), text(true), text(false),
-               paper == k_paper.end() ? "-" : paper->second);
+               paper ? fmt::format("{:.2g} %", 100.0 * *paper) : "-");
   }
 }
 

@@ -96,7 +96,7 @@ struct SetCounts {
 };
 
 /// What a job takes, from a timed sample. Times are wall times.
-struct Estimate {
+struct Effort {
   std::vector<Kind> kinds;
   unsigned threads = 0;
   double total_s = 0.0;    ///< All shards in sequence.
@@ -107,8 +107,8 @@ struct Estimate {
 };
 
 /// @param shards 0: a whole set in one process
-Estimate estimate(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed) {
-  Estimate result{.threads = work.threads};
+Effort estimate(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed) {
+  Effort result{.threads = work.threads};
   const bool both = work.job.has(BucketKind::distance) && work.job.has(BucketKind::volume);
   for (const BucketKind kind : {BucketKind::distance, BucketKind::volume}) {
     if (work.job.has(kind)) result.kinds.push_back(measure(work, kind, seconds / (both ? 2.0 : 1.0), seed));
@@ -197,7 +197,7 @@ Json counts_as_json(const SetDescription& set, std::size_t distances, std::size_
 }
 
 void print_estimate(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed) {
-  const Estimate needed = estimate(work, shards, seconds, seed);
+  const Effort needed = estimate(work, shards, seconds, seed);
   for (const Kind& kind : needed.kinds) print_cost(kind, seed);
   print_line("time", fmt::format("{} with {} threads{}", as_clock(needed.total_s), needed.threads,
                                  shards == 0 ? "" : ", all shards in sequence"));
@@ -214,7 +214,7 @@ void print_estimate(const GenerationWork& work, std::size_t shards, double secon
 }
 
 Json estimate_as_json(const GenerationWork& work, std::size_t shards, double seconds, std::uint64_t seed) {
-  const Estimate needed = estimate(work, shards, seconds, seed);
+  const Effort needed = estimate(work, shards, seconds, seed);
   Json kinds = Json::array();
   for (const Kind& kind : needed.kinds) kinds.push_back(as_json(kind));
   Json json = {{"kinds", std::move(kinds)},        {"seed", seed},

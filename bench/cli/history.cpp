@@ -22,7 +22,7 @@ struct Arguments {
 };
 
 void run(const Arguments& arguments) {
-  const report::Results results = report::read_history(arguments.folder);
+  const results::Results results = results::read_folder(arguments.folder);
   const report::PageFiles files = report::read_page_files(data_folder() / "report");
   write_file_atomically(arguments.output, report::page_html(report::make_history(results), files));
 }

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/results/results.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/precision_table.h"
 #include "bench/cli/shared.h"
@@ -109,8 +110,8 @@ class PrecisionCommand {
     write(true);
   }
 
-  std::vector<study::StudyRow> rows() const {
-    std::vector<study::StudyRow> all;
+  std::vector<results::Row> rows() const {
+    std::vector<results::Row> all;
     for (const study::PrecisionStudy& study : studies_) std::ranges::move(study.rows(), std::back_inserter(all));
     return all;
   }
@@ -120,13 +121,13 @@ class PrecisionCommand {
     if (options_.study.output.empty()) return;
     auto context = context_;
     if (interrupted) context["interrupted"] = "true";
-    study::write_study_rows(options_.study.output, context, rows());
+    results::write_rows(options_.study.output, context, rows());
   }
 
   void finish() const {
     write(false);
     if (options_.study.json) {
-      fmt::print("{}\n", json_text(study::study_document(context_, rows())));
+      fmt::print("{}\n", json_text(results::document_of(context_, rows())));
       return;
     }
     for (const study::PrecisionStudy& study : studies_) {

@@ -12,7 +12,7 @@
 namespace sixdof::cli {
 namespace {
 
-using study::Estimate;
+using results::Estimate;
 using study::PrecisionPoint;
 using study::PrecisionStudy;
 

@@ -9,6 +9,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/measure/metrics.h>
+#include <sixdof/results/paper.h>
 #include <sixdof/scenario/evaluation.h>
 #include <sixdof/scenario/scenario.h>
 #include "bench/cli/shared.h"
@@ -43,6 +44,10 @@ void print_json(const Options& options, IdealLaw law, const SeriesSource& source
   nlohmann::ordered_json values = nlohmann::ordered_json::object();
   for (const auto& [name, value] : measures) values[name] = value;
   json["measures"] = values;
+  for (const auto& [scenario, algorithm, measure, value] : results::k_paper_values) {
+    const bool is_it = algorithm == source.algorithm && (scenario.empty() || scenario == options.scenario);
+    if (is_it) json["paper"][std::string(measure)] = value;
+  }
   fmt::print("{}\n", json_text(json));
 }
 

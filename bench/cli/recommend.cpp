@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/results/choice.h>
+#include <sixdof/results/results.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 #include "bench/cli/study_options.h"
@@ -18,15 +20,17 @@
 #include "bench/common/progress_line.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/run_context.h"
-#include "bench/study/recommend.h"
+#include "bench/study/precision.h"
 #include "bench/study/study_pairs.h"
 
 namespace sixdof::cli {
 namespace {
 
 using bench::QueryKind;
-using study::Candidate;
-using study::Recommendation;
+using results::Candidate;
+using results::Choice;
+using study::PrecisionPoint;
+using study::PrecisionStudy;
 
 /// Enough for a p99.9.
 constexpr std::size_t k_queries = 2100;
@@ -55,37 +59,38 @@ QueryKind question_of(const std::string& metric) {
   return QueryKind::respond;
 }
 
-std::string name_of(const Candidate& candidate) {
-  const auto& assignments = candidate.point->sweep.assignments;
-  return fmt::format("{}{}{}", candidate.point->algorithm->traits().name, assignments.empty() ? "" : " ",
+std::string name_of(const PrecisionPoint& point) {
+  const auto& assignments = point.sweep.assignments;
+  return fmt::format("{}{}{}", point.algorithm->traits().name, assignments.empty() ? "" : " ",
                      fmt::join(assignments, " "));
 }
 
-std::string error_text(const Candidate& candidate, const std::string& metric) {
+std::string error_text(const Candidate& candidate, const PrecisionPoint& point, const std::string& metric) {
   std::string text = fmt::format("{} {:.3g}", metric, candidate.error.value);
   if (candidate.error.low < candidate.error.high) {
     text += fmt::format(" [{:.3g}, {:.3g}]", candidate.error.low, candidate.error.high);
   }
   if (metric != "gamma_F_deg") return text;
-  const auto p95 = candidate.point->metric("gamma_F_p95_deg"), most = candidate.point->metric("gamma_max_F_deg");
+  const auto p95 = point.metric("gamma_F_p95_deg"), most = point.metric("gamma_max_F_deg");
   if (p95 && most) text += fmt::format(", 95 % below {:.3g}, largest {:.3g}", p95->value, most->value);
   return text;
 }
 
-std::string line(const Candidate& candidate, const Recommendation& recommendation, const std::string& metric) {
-  return fmt::format("{}: {} {} ({} in one pass), {}", name_of(candidate), recommendation.tail,
+std::string line(const Candidate& candidate, const Choice& choice, const PrecisionStudy& study) {
+  const PrecisionPoint& point = study.points()[candidate.place];
+  return fmt::format("{}: {} {} ({} in one pass), {}", name_of(point), choice.tail,
                      duration_text(1e-9 * candidate.tail_ns), duration_text(1e-9 * candidate.tail_once_ns),
-                     error_text(candidate, metric));
+                     error_text(candidate, point, study.plan().error));
 }
 
 /// The command that measures the recommended point again as rows of sixdof-bench.
-std::string command_again(const Candidate& candidate, const Options& options, const CatalogueEntry& pair) {
-  const std::string& algorithm = candidate.point->algorithm->traits().name;
+std::string command_again(const PrecisionPoint& point, const Options& options, const CatalogueEntry& pair) {
+  const std::string& algorithm = point.algorithm->traits().name;
   std::string text = "sixdof-bench";
   if (!options.study.a.empty()) text += " --a " + options.study.a;
   if (!options.study.b.empty()) text += " --b " + options.study.b;
   for (const std::string& set : options.study.sets) text += " --no-manifest --set " + set;
-  for (const std::string& assignment : candidate.point->sweep.assignments) {
+  for (const std::string& assignment : point.sweep.assignments) {
     text += fmt::format(" -p {}:{}", algorithm, assignment);
   }
   return text + fmt::format(" --suite all --benchmark_filter='^{}/algorithm:{}/pair:{}/[^/]*{}$'",
@@ -93,9 +98,11 @@ std::string command_again(const Candidate& candidate, const Options& options, co
                             options.in_motion() ? "/order:motion" : "");
 }
 
-nlohmann::ordered_json as_json(const Candidate& candidate, const std::string& metric) {
-  return {{"algorithm", candidate.point->algorithm->traits().name},
-          {"settings", candidate.point->sweep.settings.to_string()},
+nlohmann::ordered_json as_json(const Candidate& candidate, const PrecisionStudy& study) {
+  const PrecisionPoint& point = study.points()[candidate.place];
+  const std::string& metric = study.plan().error;
+  return {{"algorithm", point.algorithm->traits().name},
+          {"settings", point.sweep.settings.to_string()},
           {"tail_ns", candidate.tail_ns},
           {"tail_once_ns", candidate.tail_once_ns},
           {metric, candidate.error.value},
@@ -103,8 +110,7 @@ nlohmann::ordered_json as_json(const Candidate& candidate, const std::string& me
           {metric + "_high", candidate.error.high}};
 }
 
-void print_text(const Options& options, double deadline_s, const Recommendation& found,
-                const study::PrecisionStudy& study) {
+void print_text(const Options& options, double deadline_s, const Choice& found, const PrecisionStudy& study) {
   const study::StudySample& sample = study.sample();
   std::vector<std::string> buckets;
   for (const BucketKey key : sample.buckets) buckets.push_back(key.name());
@@ -117,39 +123,38 @@ void print_text(const Options& options, double deadline_s, const Recommendation&
   fmt::print("deadline    {}, for the {} of a query (the least of three times of each)\n", options.deadline,
              found.tail);
   if (found.best) {
-    fmt::print("take        {}\n", line(*found.best, found, options.metric));
+    fmt::print("take        {}\n", line(*found.best, found, study));
     fmt::print("because     its {} is the smallest of all that keep the deadline; its {} is {:.0f} % of it\n",
                options.metric, found.tail, 1e-7 * found.best->tail_ns / deadline_s);
   } else {
     fmt::print("take        none: no algorithm keeps this deadline\n");
   }
   for (const Candidate& slow : found.too_slow) {
-    fmt::print("too slow    {}\n", line(slow, found, options.metric));
+    fmt::print("too slow    {}\n", line(slow, found, study));
   }
-  if (found.second) fmt::print("runner-up   {}\n", line(*found.second, found, options.metric));
+  if (found.second) fmt::print("runner-up   {}\n", line(*found.second, found, study));
   for (const study::PrecisionPoint& point : study.points()) {
-    const std::string name = name_of({.point = &point});
+    const std::string name = name_of(point);
     if (!point.left_out.empty()) fmt::print("left out    {}: {}\n", name, point.left_out);
     if (point.measured() && point.faulty()) {
-      fmt::print("fault       {}: {} of {} failed, {} without a force\n", name, point.errors.failed, sample.asked(),
-                 point.metric("misses").value_or(study::Estimate{}).value);
+      fmt::print("fault       {}: {}\n", name, results::to_string(point.faults(sample.asked())));
     }
   }
-  if (found.best) fmt::print("again       {}\n", command_again(*found.best, options, study.pair()));
+  if (found.best)
+    fmt::print("again       {}\n", command_again(study.points()[found.best->place], options, study.pair()));
 }
 
-void print_json(const Options& options, double deadline_s, const Recommendation& found,
-                const study::PrecisionStudy& study) {
+void print_json(const Options& options, double deadline_s, const Choice& found, const PrecisionStudy& study) {
   nlohmann::ordered_json json = {{"pair", study.pair().pair},
                                  {"order", options.order},
                                  {"deadline_ns", 1e9 * deadline_s},
                                  {"tail", found.tail},
                                  {"metric", options.metric}};
-  json["best"] = found.best ? as_json(*found.best, options.metric) : nlohmann::ordered_json();
-  json["second"] = found.second ? as_json(*found.second, options.metric) : nlohmann::ordered_json();
+  json["best"] = found.best ? as_json(*found.best, study) : nlohmann::ordered_json();
+  json["second"] = found.second ? as_json(*found.second, study) : nlohmann::ordered_json();
   json["too_slow"] = nlohmann::ordered_json::array();
-  for (const Candidate& slow : found.too_slow) json["too_slow"].push_back(as_json(slow, options.metric));
-  if (found.best) json["again"] = command_again(*found.best, options, study.pair());
+  for (const Candidate& slow : found.too_slow) json["too_slow"].push_back(as_json(slow, study));
+  if (found.best) json["again"] = command_again(study.points()[found.best->place], options, study.pair());
   fmt::print("{}\n", json_text(json));
 }
 
@@ -195,14 +200,14 @@ void run(const Options& options) {
     auto context = started;
     for (const auto& [key, hash] : pairs.cache().hashes()) context[key] = hash;
     if (interrupted) context["interrupted"] = "true";
-    study::write_study_rows(options.study.output, context, study.rows());
+    results::write_rows(options.study.output, context, study.rows());
   };
   study.run([&](const std::string& what, std::size_t done,
                 std::size_t total) { status.show(fmt::format("{}, {} of {} points", what, done, total)); },
             [&] { write(true); });
   status.clear();
   write(false);
-  const Recommendation found = study::recommend(study, deadline_s);
+  const Choice found = results::choose(study.rows(), study.plan().error, 1e9 * deadline_s);
   options.study.json ? print_json(options, deadline_s, found, study) : print_text(options, deadline_s, found, study);
   if (!found.best) throw DefectsFound(fmt::format("no algorithm keeps a deadline of {}", options.deadline));
 }

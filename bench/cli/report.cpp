@@ -53,8 +53,8 @@ void run(const Arguments& arguments) {
   if (std::ranges::all_of(outputs, &std::string::empty, [](const std::string* output) { return *output; })) {
     throw BadArgument("-o, --csv, --markdown, --svg or --pdf is needed");
   }
-  report::Results results;
-  for (const std::string& file : arguments.files) report::read_results(file, results);
+  results::Results results;
+  for (const std::string& file : arguments.files) results::read_results(file, results);
   std::vector<report::Series> series;
   for (const std::string& file : arguments.series) series.push_back(report::read_series(file));
   report::Report report = report::make_report(results, series);

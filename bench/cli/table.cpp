@@ -20,9 +20,12 @@ constexpr const char* k_details =
     R"(A table per pair, query and kind of bucket, a line per bucket and algorithm. A column has one clock: cpu is the mean
 processor time of a query in a loop over all, the other times are by wall clock, of single queries. The least cpu of
 each bucket is marked *, among rows without faults. A row with faults is marked !, and what they are stands below its
-table with their counts: configurations that failed, wrong answers, overlaps without a force. Several files stand side
+table with their counts: configurations that failed, wrong answers, overlaps without a force. Of
+repetitions each value is the median, and cpu their geometric mean from three on. Several files stand side
 by side, with the ratio of cpu to the first. --wide: one table per query, of one file, with a line per pair and
 algorithm and a column per bucket; angles and magnitudes are means over the buckets, errors the largest, faults sums.
+--against: how many times faster than the fastest of others, as the median over the files with the least and the
+greatest, e.g. of several seeds; also of `generate` rows and of scenes (sixdof scene play --json).
 
 Keys of --json: files[] {file, date, commit, interrupted, settings {ALGORITHM: {PARAMETER: value}}, not_shown {FAMILY:
 rows}}; tables[] {pair, query, kind, rows[] {percent, algorithm, order, cache, files[]}}, with null or {fastest,
@@ -31,34 +34,40 @@ faults[] {what, count, of}, ratio_to_first, values} for each file. values are th
 
 struct Arguments {
   std::vector<std::string> files;
+  std::vector<std::string> against;
+  std::string of = "exact";
   bool markdown = false, json = false, wide = false;
 };
 
-void print(const std::vector<ResultTable>& tables, const std::vector<ResultFile>& files, const Arguments& arguments) {
+void print(const std::vector<ResultTable>& tables, const TableInput& input, const Arguments& arguments) {
   const bool markdown = arguments.markdown;
   const auto format_lines = markdown ? lines_as_markdown : lines_as_text;
   const auto format_sheet = markdown ? as_markdown : as_text;
-  fmt::print("{}\n", format_lines(lines_above(files)));
+  fmt::print("{}\n", format_lines(lines_above(input)));
   std::vector<Sheet> sheets;
   if (arguments.wide) {
     sheets = wide_sheets_of(tables);
   } else {
-    for (const ResultTable& table : tables) sheets.push_back(sheet_of(table, files));
+    for (const ResultTable& table : tables) sheets.push_back(sheet_of(table, input));
   }
   for (const Sheet& sheet : sheets) fmt::print("{}\n", format_sheet(sheet));
   if (tables.empty()) fmt::print("no rows of queries on buckets\n\n");
-  fmt::print("{}", format_lines(lines_below(files)));
+  fmt::print("{}", format_lines(lines_below(input)));
 }
 
 void run(const Arguments& arguments) {
+  if (!arguments.against.empty()) {
+    const Sheet sheet = sheet_against(TableInput(arguments.files, false), arguments.of, arguments.against);
+    fmt::print("{}", arguments.markdown ? as_markdown(sheet) : as_text(sheet));
+    return;
+  }
   if (arguments.wide && arguments.files.size() > 1) throw BadArgument("--wide shows one file");
-  std::vector<ResultFile> files;
-  for (const std::string& file : arguments.files) files.push_back(read_result_file(file));
-  const std::vector<ResultTable> tables = rank(files);
+  const TableInput input(arguments.files);
+  const std::vector<ResultTable> tables = tables_of(input);
   if (arguments.json) {
-    fmt::print("{}\n", json_text(as_json(tables, files)));
+    fmt::print("{}\n", json_text(as_json(tables, input)));
   } else {
-    print(tables, files, arguments);
+    print(tables, input, arguments);
   }
 }
 
@@ -72,6 +81,16 @@ void add_table_command(CLI::App& app) {
   auto* const json = command->add_flag("--json", arguments->json, "As JSON")->excludes(markdown);
   command->add_flag("--wide", arguments->wide, "One line per pair and algorithm, one column per bucket")
       ->excludes(json);
+  auto* const against =
+      command->add_option("--against", arguments->against, "Only ratios to the fastest of these, e.g. 'fcl-*,ode'")
+          ->type_name("ALGORITHM,...")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->excludes(json);
+  command->add_option("--of", arguments->of, "Whose ratios --against prints")
+      ->type_name("ALGORITHM")
+      ->needs(against)
+      ->capture_default_str();
   command->callback([arguments] { run(*arguments); });
   add_examples(*command,
                "sixdof-bench --benchmark_filter=/algorithm:exact/pair:torus-knot-10k/distance:05 --sample 32 "

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,59 +8,34 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "bench/common/row_fields.h"
+#include <sixdof/results/row_group.h>
 
-/// What `sixdof table` does: reads result files (table_read.cpp), puts their rows side by side and ranks them
-/// (table_ranking.cpp), chooses columns (table_sheet.cpp, table_wide.cpp), and prints as text, Markdown
-/// (table_format.cpp) or JSON (table_json.cpp).
+/// What `sixdof table` does: puts the rows of result files side by side (table_lines.cpp), chooses columns
+/// (table_sheet.cpp, table_wide.cpp), and prints as text, Markdown (table_format.cpp) or JSON (table_json.cpp).
 
 namespace sixdof::cli {
 
-/// Names of the means in ResultRow::values; all other values have the names of their counters.
-inline constexpr const char* k_processor_mean = "processor_mean_ns";
-inline constexpr const char* k_wall_mean = "wall_mean_ns";
+/// The files of a table and their rows.
+struct TableInput {
+  results::Results content;
+  std::vector<results::RowGroup> groups;  ///< Of `content`.
 
-/// One row of a result file: a query on a bucket.
-struct ResultRow {
-  RowFields fields;
-  std::string error;                     ///< Why the row could not be run; empty if it could.
-  std::map<std::string, double> values;  ///< Counters, and the two means in ns; empty with an error.
-
-  std::optional<double> value(const std::string& name) const;
-  std::uint64_t count(const std::string& name) const;  ///< 0 where the row has no such value.
+  /// @param rows_only refuses files that are no result of sixdof-bench or a study
+  /// @throws BadFile with the place and the cause
+  explicit TableInput(const std::vector<std::string>& files, bool rows_only = true);
+  TableInput(const TableInput&) = delete;  // the groups refer to the content
+  std::size_t files() const { return content.files.size(); }
 };
-
-struct ResultFile {
-  std::string path;
-  std::string date, commit;  ///< From the context; empty where it has none.
-  bool interrupted = false;  ///< The run was broken off; rows may be missing.
-  /// Those with a bucket, in the file's order. Of repetitions the one with the least mean time.
-  std::vector<ResultRow> rows;
-  std::map<std::string, std::size_t> not_shown;  ///< How many rows of other families, by family.
-};
-
-/// @throws BadFile with the place and the cause, for a file that is empty, no JSON, or has no rows of sixdof-bench
-ResultFile read_result_file(const std::string& path);
-
-/// The same of the file's text. @param path named in messages
-ResultFile parse_result_file(const std::string& text, const std::string& path);
-
-/// A reason why a row is not ranked.
-struct Fault {
-  std::string what;         ///< "failed", "wrong", ...: behind the counts, or alone where there are none.
-  std::uint64_t count = 0;  ///< How many configurations,
-  std::uint64_t of = 0;     ///< of how many; 0: without counts.
-};
-
-/// "3 of 640 failed".
-std::string to_string(const Fault& fault);
 
 /// A row in one of the files.
 struct RankedRow {
-  const ResultRow* row = nullptr;  ///< None: the file has no such row.
-  std::vector<Fault> faults;
-  bool fastest = false;         ///< Least mean processor time of the bucket, in this file, among rows without faults.
-  std::optional<double> ratio;  ///< Mean processor time over that of the same row in the first file.
+  const results::RowGroup* group = nullptr;  ///< None: the file has no such row.
+  bool fastest = false;                      ///< Wins its contest (results/contest.h).
+  std::optional<double> ratio;               ///< Mean processor time over that of the same row in the first file.
+
+  bool has_fault() const { return group != nullptr && !group->faults.empty(); }
+  /// Whether no time was measured.
+  bool is_error() const { return group != nullptr && group->values.empty(); }
 };
 
 /// One algorithm on one bucket, in all files.
@@ -84,15 +58,14 @@ struct ResultTable {
   std::vector<TableLine> lines;
 };
 
-/// A row has a fault, and is not ranked, if
-/// - it could not be run, or some of its configurations failed, were answered wrongly or, in an overlap, without a
-///   force;
-/// - all answers of its algorithm to the same query are at fault in another bucket of the pair: a constant "no" is
-/// right
-///   wherever bodies are apart;
-/// - its algorithm is `null`, which measures the harness.
-/// @param files outlive the result
-std::vector<ResultTable> rank(const std::vector<ResultFile>& files);
+/// The tables of all rows on buckets. @param input outlives the result
+std::vector<ResultTable> tables_of(const TableInput& input);
+
+/// How many rows of other families a file has, by family.
+std::map<std::string, std::size_t> other_rows(const TableInput& input, std::size_t file);
+
+/// The settings of the rows of one file, by algorithm.
+std::map<std::string, std::string> settings_of(const TableInput& input, std::size_t file);
 
 /// What a table looks like: text in cells.
 struct Sheet {
@@ -107,17 +80,23 @@ struct Sheet {
   std::vector<std::string> notes;  ///< Below the lines: what was not ranked, and why.
 };
 
-/// @param files those of `table`; columns of several files stand side by side, with fewer of each
-Sheet sheet_of(const ResultTable& table, const std::vector<ResultFile>& files);
+/// @param input that of `table`; columns of several files stand side by side, with fewer of each
+Sheet sheet_of(const ResultTable& table, const TableInput& input);
 
 /// One sheet per query over all pairs, a line per pair and algorithm, a column per bucket. Errors are over all buckets:
 /// the mean of means, or the largest; faults are sums.
 /// @param tables of one file
 std::vector<Sheet> wide_sheets_of(const std::vector<ResultTable>& tables);
 
+/// A line per query, bodies and bucket (or target, or scene): the algorithm's time, that of the fastest of the others,
+/// their ratio and how far it spreads over the files, e.g. of several seeds (results/rivals.h). Rows with a fault stand
+/// below and count for nothing.
+/// @throws BadArgument if there is nothing to compare
+Sheet sheet_against(const TableInput& input, const std::string& algorithm, const std::vector<std::string>& against);
+
 /// What stands once, above and below all tables.
-std::vector<std::string> lines_above(const std::vector<ResultFile>& files);
-std::vector<std::string> lines_below(const std::vector<ResultFile>& files);
+std::vector<std::string> lines_above(const TableInput& input);
+std::vector<std::string> lines_below(const TableInput& input);
 
 std::string as_text(const Sheet& sheet);
 std::string as_markdown(const Sheet& sheet);
@@ -125,6 +104,6 @@ std::string lines_as_text(const std::vector<std::string>& lines);
 std::string lines_as_markdown(const std::vector<std::string>& lines);
 
 /// `sixdof table --help` documents the keys.
-nlohmann::ordered_json as_json(const std::vector<ResultTable>& tables, const std::vector<ResultFile>& files);
+nlohmann::ordered_json as_json(const std::vector<ResultTable>& tables, const TableInput& input);
 
 }  // namespace sixdof::cli

@@ -6,21 +6,24 @@ namespace sixdof::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using results::Fault;
 
-Json as_json(const ResultFile& file) {
+Json file_json(const TableInput& input, std::size_t file) {
+  const results::Source& source = input.content.files[file];
   Json settings = Json::object();
-  for (const ResultRow& row : file.rows) {
-    settings[row.fields.algorithm] = to_json_object(row.fields).at("settings");
+  for (const auto& [algorithm, text] : settings_of(input, file)) {
+    settings[algorithm] =
+        results::to_json_object({.query = {}, .algorithm = algorithm, .settings = text}).at("settings");
   }
-  return {{"file", file.path},     {"date", file.date},
-          {"commit", file.commit}, {"interrupted", file.interrupted},
-          {"settings", settings},  {"not_shown", file.not_shown}};
+  return {{"file", source.path},           {"date", source.at("date")},
+          {"commit", source.at("commit")}, {"interrupted", source.at("interrupted") == "true"},
+          {"settings", settings},          {"not_shown", other_rows(input, file)}};
 }
 
 Json as_json(const RankedRow& ranked) {
-  if (ranked.row == nullptr) return nullptr;
+  if (ranked.group == nullptr) return nullptr;
   Json faults = Json::array();
-  for (const Fault& fault : ranked.faults) {
+  for (const Fault& fault : ranked.group->faults) {
     Json entry = {{"what", fault.what}};
     if (fault.of > 0) entry.update({{"count", fault.count}, {"of", fault.of}});
     faults.push_back(std::move(entry));
@@ -28,20 +31,20 @@ Json as_json(const RankedRow& ranked) {
   return {{"fastest", ranked.fastest},
           {"faults", faults},
           {"ratio_to_first", ranked.ratio ? Json(*ranked.ratio) : Json(nullptr)},
-          {"values", ranked.row->values}};
+          {"values", ranked.group->values}};
 }
 
 }  // namespace
 
-Json as_json(const std::vector<ResultTable>& tables, const std::vector<ResultFile>& files) {
+Json as_json(const std::vector<ResultTable>& tables, const TableInput& input) {
   Json document = {{"files", Json::array()}, {"tables", Json::array()}};
-  for (const ResultFile& file : files) document["files"].push_back(as_json(file));
+  for (std::size_t file = 0; file < input.files(); ++file) document["files"].push_back(file_json(input, file));
   for (const ResultTable& table : tables) {
     Json lines = Json::array();
     for (const TableLine& line : table.lines) {
       Json of_files = Json::array();
       for (const RankedRow& ranked : line.files) of_files.push_back(as_json(ranked));
-      lines.push_back({{"percent", percent_number(line.bucket)},
+      lines.push_back({{"percent", results::percent_number(line.bucket)},
                        {"algorithm", line.algorithm},
                        {"order", line.order},
                        {"cache", line.cache},

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "bench/common/row_fields.h"
+#include <sixdof/configuration/bucket.h>
 
 /// How `sixdof table` writes numbers.
 

@@ -11,6 +11,8 @@
 namespace sixdof::cli {
 namespace {
 
+using results::Fault;
+
 /// Of an algorithm whose faults differ from bucket to bucket, more buckets than this are added up.
 constexpr std::size_t k_most_buckets = 4;
 
@@ -29,7 +31,7 @@ constexpr const char* k_torque = "torque";
 constexpr const char* k_distance = "error, diagonals of A";
 
 constexpr ValueColumn k_count{"", "n", "configurations", as_count};
-constexpr ValueColumn k_mean{k_processor, "mean", k_processor_mean, as_microseconds};
+constexpr ValueColumn k_mean{k_processor, "mean", results::k_processor_mean, as_microseconds};
 constexpr ValueColumn k_p99{k_wall, "p99", "p99_ns", as_microseconds};
 constexpr ValueColumn k_late{"", ">1 ms, %", "over_1ms", as_percent};
 constexpr ValueColumn k_angle{k_force, "angle", "gamma_F_deg", as_degrees};
@@ -68,13 +70,13 @@ std::vector<ValueColumn> value_columns(const std::string& query, std::size_t fil
 }
 
 std::string cell_of(const RankedRow& ranked, const ValueColumn& column) {
-  if (ranked.row == nullptr) return "-";
-  if (!ranked.row->error.empty()) return column.value == k_mean.value ? "error" : "-";
-  const std::optional<double> value = ranked.row->value(column.value);
+  if (ranked.group == nullptr) return "-";
+  if (ranked.is_error()) return column.value == k_mean.value ? "error" : "-";
+  const std::optional<double> value = ranked.group->value(column.value);
   return value ? column.format(*value) : "-";
 }
 
-std::string mark_of(const RankedRow& ranked) { return !ranked.faults.empty() ? "!" : ranked.fastest ? "*" : ""; }
+std::string mark_of(const RankedRow& ranked) { return ranked.has_fault() ? "!" : ranked.fastest ? "*" : ""; }
 
 /// "[1] " where there are several files.
 std::string prefix_of(std::size_t file, std::size_t files) {
@@ -130,7 +132,8 @@ std::vector<std::string> fault_notes(const ResultTable& table, std::size_t files
   for (std::size_t file = 0; file < files; ++file) {
     std::vector<std::pair<std::string, std::vector<FaultNote>>> by_label;
     for (const TableLine& line : table.lines) {
-      for (const Fault& fault : line.files[file].faults) {
+      if (!line.files[file].has_fault()) continue;
+      for (const Fault& fault : line.files[file].group->faults) {
         auto of_label = std::ranges::find(by_label, line.label(), [](const auto& entry) { return entry.first; });
         if (of_label == by_label.end()) of_label = by_label.insert(by_label.end(), {line.label(), {}});
         auto& list = of_label->second;
@@ -191,29 +194,30 @@ Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
 
 }  // namespace
 
-Sheet sheet_of(const ResultTable& table, const std::vector<ResultFile>& files) {
-  Sheet sheet = files.size() == 1 ? sheet_of_one(table) : sheet_of_several(table, files.size());
+Sheet sheet_of(const ResultTable& table, const TableInput& input) {
+  Sheet sheet = input.files() == 1 ? sheet_of_one(table) : sheet_of_several(table, input.files());
   const char* const percent = table.kind == BucketKind::distance ? "distances in percent of A's box diagonal"
                                                                  : "overlaps in percent of A's volume";
   sheet.title = fmt::format("{}: {}, {}", table.pair, table.query, percent);
-  sheet.notes = fault_notes(table, files.size());
+  sheet.notes = fault_notes(table, input.files());
   return sheet;
 }
 
-std::vector<std::string> lines_above(const std::vector<ResultFile>& files) {
+std::vector<std::string> lines_above(const TableInput& input) {
   std::vector<std::string> lines;
-  for (std::size_t i = 0; i < files.size(); ++i) {
+  for (std::size_t i = 0; i < input.files(); ++i) {
+    const results::Source& file = input.content.files[i];
     std::vector<std::string> facts;
-    if (!files[i].date.empty()) facts.push_back(files[i].date);
-    if (!files[i].commit.empty()) facts.push_back("commit " + files[i].commit.substr(0, 12));
-    if (files[i].interrupted) facts.emplace_back("INTERRUPTED: rows are missing");
-    lines.push_back(fmt::format("{}{}{}{}", prefix_of(i, files.size()), files[i].path, facts.empty() ? "" : ": ",
+    if (!file.at("date").empty()) facts.push_back(file.at("date"));
+    if (!file.at("commit").empty()) facts.push_back("commit " + file.at("commit").substr(0, 12));
+    if (file.at("interrupted") == "true") facts.emplace_back("INTERRUPTED: rows are missing");
+    lines.push_back(fmt::format("{}{}{}{}", prefix_of(i, input.files()), file.path, facts.empty() ? "" : ": ",
                                 fmt::join(facts, ", ")));
   }
   return lines;
 }
 
-std::vector<std::string> lines_below(const std::vector<ResultFile>& files) {
+std::vector<std::string> lines_below(const TableInput& input) {
   std::vector<std::string> lines{
       "n: configurations; cpu: mean processor time of a query in a loop over all of them",
       fmt::format("p50, p99, max: wall clock of single queries, in one pass; p99 from {} configurations on, else -",
@@ -225,18 +229,16 @@ std::vector<std::string> lines_below(const std::vector<ResultFile>& files) {
       "(motion): times of successive poses, steps of 0.01 % of A's diagonal, from some of the configurations on",
       "(cold): data is removed from the caches before each query; wall clock only, not ranked",
       "*: least cpu of its bucket among rows without faults; !: has faults, which stand below its table"};
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    std::map<std::string, std::string> settings;
-    for (const ResultRow& row : files[i].rows) settings[row.fields.algorithm] = row.fields.settings;
-    for (const auto& [algorithm, text] : settings) {
+  for (std::size_t i = 0; i < input.files(); ++i) {
+    for (const auto& [algorithm, text] : settings_of(input, i)) {
       lines.push_back(
-          fmt::format("settings {}{}: {}", prefix_of(i, files.size()), algorithm, text.empty() ? "none" : text));
+          fmt::format("settings {}{}: {}", prefix_of(i, input.files()), algorithm, text.empty() ? "none" : text));
     }
     std::vector<std::string> others;
-    for (const auto& [query, count] : files[i].not_shown) others.push_back(fmt::format("{} {}", count, query));
+    for (const auto& [query, count] : other_rows(input, i)) others.push_back(fmt::format("{} {}", count, query));
     if (!others.empty()) {
       lines.push_back(
-          fmt::format("{}rows of other families, not shown: {}", prefix_of(i, files.size()), fmt::join(others, ", ")));
+          fmt::format("{}rows of other families, not shown: {}", prefix_of(i, input.files()), fmt::join(others, ", ")));
     }
   }
   return lines;

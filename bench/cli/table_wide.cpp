@@ -3,13 +3,14 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "bench/cli/table.h"
 #include "bench/cli/table_numbers.h"
 
 namespace sixdof::cli {
 namespace {
+
+using results::Fault;
 
 /// The rows of one algorithm on one pair, of all buckets.
 struct WideLine {
@@ -21,7 +22,7 @@ struct WideLine {
   std::optional<double> fold(const std::string& name, F f) const {
     std::optional<double> result;
     for (const auto& [bucket, ranked] : rows) {
-      if (const auto value = ranked->row->value(name)) result = result ? f(*result, *value) : *value;
+      if (const auto value = ranked->group->value(name)) result = result ? f(*result, *value) : *value;
     }
     return result;
   }
@@ -32,7 +33,7 @@ struct WideLine {
   std::optional<double> mean(const std::string& name) const {
     const auto sum = fold(name, [](double a, double b) { return a + b; });
     const auto count =
-        std::ranges::count_if(rows, [&](const auto& entry) { return entry.second->row->value(name).has_value(); });
+        std::ranges::count_if(rows, [&](const auto& entry) { return entry.second->group->value(name).has_value(); });
     return sum ? std::optional(*sum / static_cast<double>(count)) : std::nullopt;
   }
 };
@@ -43,7 +44,7 @@ std::vector<WideLine> lines_of(const std::vector<const ResultTable*>& tables) {
   for (const ResultTable* table : tables) {
     for (const TableLine& line : table->lines) {
       const RankedRow& ranked = line.files.front();
-      if (ranked.row == nullptr) continue;
+      if (ranked.group == nullptr) continue;
       const auto is_same = [&](const WideLine& other) {
         return other.pair == table->pair && other.label == line.label();
       };
@@ -62,9 +63,9 @@ std::vector<WideLine> lines_of(const std::vector<const ResultTable*>& tables) {
 }
 
 std::string time_cell(const RankedRow& ranked) {
-  if (!ranked.row->error.empty()) return "error";
-  const char* const mark = !ranked.faults.empty() ? "!" : ranked.fastest ? "*" : "";
-  const auto mean = ranked.row->value(k_processor_mean), p99 = ranked.row->value("p99_ns");
+  if (ranked.is_error()) return "error";
+  const char* const mark = ranked.has_fault() ? "!" : ranked.fastest ? "*" : "";
+  const auto mean = ranked.group->value(results::k_processor_mean), p99 = ranked.group->value("p99_ns");
   return fmt::format("{}{} / {}", mark, mean ? as_microseconds(*mean) : "-", p99 ? as_microseconds(*p99) : "-");
 }
 
@@ -91,7 +92,7 @@ std::vector<ErrorColumn> error_columns(const std::string& query) {
 std::string faults_cell(const WideLine& line) {
   std::vector<Fault> sums;
   for (const auto& [bucket, ranked] : line.rows) {
-    for (const Fault& fault : ranked->faults) {
+    for (const Fault& fault : ranked->group->faults) {
       const auto found = std::ranges::find(sums, fault.what, &Fault::what);
       if (found == sums.end()) {
         sums.push_back(fault);
@@ -101,9 +102,7 @@ std::string faults_cell(const WideLine& line) {
       }
     }
   }
-  std::vector<std::string> texts;
-  for (const Fault& fault : sums) texts.push_back(to_string(fault));
-  return fmt::format("{}", fmt::join(texts, ", "));
+  return results::to_string(sums);
 }
 
 std::string configurations_cell(const WideLine& line) {

@@ -118,12 +118,12 @@ bool ResultStore::has(const std::string& row) const {
   return found != rows_.end() && !failed(found->second);
 }
 
-std::vector<RowFields> ResultStore::fields() const {
+std::vector<results::RowFields> ResultStore::fields() const {
   const std::scoped_lock lock(mutex_);
-  std::vector<RowFields> list;
+  std::vector<results::RowFields> list;
   for (const auto& [name, runs] : rows_) {
-    if (failed(runs) || runs.empty() || !runs.front().contains(k_row_fields_key)) continue;
-    list.push_back(row_fields_of(runs.front().at(k_row_fields_key)));
+    if (failed(runs) || runs.empty() || !runs.front().contains(results::k_row_fields_key)) continue;
+    list.push_back(results::row_fields_of(runs.front().at(results::k_row_fields_key)));
   }
   return list;
 }

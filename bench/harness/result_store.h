@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/common/row_fields.h"
+#include <sixdof/results/row_fields.h>
 #include "bench/harness/options.h"
 #include "bench/harness/result_journal.h"
 
@@ -40,7 +40,7 @@ class ResultStore {
   bool has(const std::string& row) const;
 
   /// What the rows say of which has() is true. @throws Error if they were not written by sixdof-bench
-  std::vector<RowFields> fields() const;
+  std::vector<results::RowFields> fields() const;
 
   /// Adds to the row that is being measured: one run of it, or one aggregate of its repetitions.
   void add(const std::string& row, Json run);

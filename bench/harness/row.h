@@ -11,8 +11,8 @@
 
 #include <sixdof/configuration/set_catalogue.h>
 #include <sixdof/query/registry.h>
-#include "bench/common/row_fields.h"
-#include "bench/harness/outliers.h"
+#include <sixdof/results/outliers.h>
+#include <sixdof/results/row_fields.h>
 #include "bench/harness/pair_cache.h"
 
 namespace sixdof::bench {
@@ -43,14 +43,14 @@ struct Row {
   /// Google Benchmark calls it several times, until it has found the number of iterations. What has to be done only
   /// once is kept between the calls. An exception ends the row, not the program.
   std::function<void(benchmark::State&, const Share&)> run;
-  RowFields fields;  ///< What the name says, for readers of the result file.
+  results::RowFields fields;  ///< What the name says, for readers of the result file.
   benchmark::TimeUnit unit = benchmark::kNanosecond;
   /// Of rows on a bucket's sample: wall time in seconds that the row needs per configuration, estimated from a few; 0
   /// if none of them has an answer. The argument is the time of the whole row; the estimate takes a small part of it.
   /// It may throw what `run` throws.
   std::function<double(double)> trial = {};
   /// Of rows on a bucket's sample: where the last call of `run` found the worst answers and times.
-  std::function<Outliers()> outliers = {};
+  std::function<results::Outliers()> outliers = {};
   /// Google Benchmark calls `run` once per repetition. `run` decides itself how often to ask, and sets the wall time of
   /// every iteration.
   bool one_round = false;

@@ -23,15 +23,15 @@ Json row_json(const Run& run, const FieldsByName& fields, const OutliersByName& 
   } catch (const Json::exception& e) {
     throw Error(run.benchmark_name() + ": Google Benchmark wrote no valid JSON: " + e.what());
   }
-  RowFields of_run = fields.at(run.run_name.function_name);
+  results::RowFields of_run = fields.at(run.run_name.function_name);
   const auto asked = run.counters.find("configurations");
   if (asked != run.counters.end() && run.run_type == Run::RT_Iteration) {
     of_run.configurations = static_cast<std::uint64_t>(asked->second.value);
   }
-  json[k_row_fields_key] = to_json_object(of_run);
+  json[results::k_row_fields_key] = results::to_json_object(of_run);
   const auto found = outliers.find(run.run_name.function_name);
   if (found != outliers.end() && run.run_type == Run::RT_Iteration && !run.error_occurred) {
-    json[k_outliers_key] = to_json_object(found->second());
+    json[results::k_outliers_key] = results::to_json_object(found->second());
   }
   return json;
 }

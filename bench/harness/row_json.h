@@ -7,15 +7,15 @@
 #include <benchmark/benchmark.h>
 #include <nlohmann/json_fwd.hpp>
 
-#include "bench/common/row_fields.h"
-#include "bench/harness/outliers.h"
+#include <sixdof/results/outliers.h>
+#include <sixdof/results/row_fields.h>
 
 namespace sixdof::bench {
 
 /// The fields of every row by its name.
-using FieldsByName = std::map<std::string, RowFields>;
+using FieldsByName = std::map<std::string, results::RowFields>;
 /// Row::outliers of the rows that have it, by name.
-using OutliersByName = std::map<std::string, std::function<Outliers()>>;
+using OutliersByName = std::map<std::string, std::function<results::Outliers()>>;
 
 /// One finished row, or one aggregate of its repetitions, as it stands in a result file's "benchmarks": Google
 /// Benchmark's keys, the row's fields under k_row_fields_key, its outliers under k_outliers_key. Strings are visible.

@@ -123,7 +123,7 @@ int measure(const std::vector<const Row*>& rows, const Options& options, const R
   }
   const auto commit = [&] { store.commit(resources.cache.hashes()); };
   SamplePlan plan(rows);
-  for (const RowFields& measured : store.fields()) plan.keep(measured);
+  for (const results::RowFields& measured : store.fields()) plan.keep(measured);
   RowCaller caller(rows.size(), options.budget_s, plan, commit);
   Console console;
   RowReporter display(options.format ? nullptr : &console, caller.left_out);

@@ -26,7 +26,7 @@ double trial(const Row& row, double seconds) {
 
 }  // namespace
 
-std::string group_of(const RowFields& fields) {
+std::string group_of(const results::RowFields& fields) {
   if (!fields.bucket) return {};
   return fmt::format("{}/{}/{}/{}/{}/{}", fields.query, fields.pair, fields.bucket->name(), fields.order, fields.cache,
                      fields.sample_limit.value_or(0));
@@ -38,7 +38,7 @@ SamplePlan::SamplePlan(const std::vector<const Row*>& rows) {
   }
 }
 
-void SamplePlan::keep(const RowFields& measured) {
+void SamplePlan::keep(const results::RowFields& measured) {
   const std::string group = group_of(measured);
   if (!group.empty() && measured.configurations) configurations_.emplace(group, *measured.configurations);
 }

@@ -12,7 +12,7 @@ namespace sixdof::bench {
 
 /// What rows have in common that differ in the algorithm alone: query, pair, bucket, order, state of the caches and
 /// limit of the sample. Empty for rows that ask no configurations of a bucket.
-std::string group_of(const RowFields& fields);
+std::string group_of(const results::RowFields& fields);
 
 /// How many configurations rows ask. All rows of a group ask the same ones, so that slow and fast algorithms are
 /// compared on the same poses. The number is chosen before the first row of the group is measured, such that the whole
@@ -23,7 +23,7 @@ class SamplePlan {
   explicit SamplePlan(const std::vector<const Row*>& rows);
 
   /// Takes over a row of an earlier run: the others of its group ask as many configurations.
-  void keep(const RowFields& measured);
+  void keep(const results::RowFields& measured);
 
   /// Share::configurations of a row. Where there is a limit of time, the first call for a group asks trial() of its
   /// rows; those that throw or have no answer take no time.

@@ -35,7 +35,8 @@ std::vector<Row> scene_rows(const Resources& resources);
 /// - `generate/distance/algorithm:fcl-sweep/...`: certified steps from bucket to bucket by the same distances;
 /// - `generate/volume/algorithm:overlap/...`.
 /// For the catalogue's pairs and for generated models of 10k to a million triangles. Some rows take half a minute, so
-/// they are not in the default suite. bench/generate-ratios prints how many times faster the ray cast is than FCL.
+/// they are not in the default suite. `sixdof table --of raycast --against fcl` prints how many times faster the ray
+/// cast is than FCL.
 std::vector<Row> generate_rows(const Resources& resources);
 
 }  // namespace sixdof::bench

@@ -16,6 +16,7 @@
 #include "bench/harness/check.h"
 #include "bench/harness/failure_counters.h"
 #include "bench/harness/motion.h"
+#include "bench/harness/query_command.h"
 #include "bench/harness/query_kind.h"
 #include "bench/harness/response_error.h"
 #include "bench/harness/timing.h"
@@ -23,6 +24,8 @@
 
 namespace sixdof::bench {
 namespace {
+
+std::array<double, 3> numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// How often a row asks each configuration, for its trial: once in the check, in one or two timed rounds, and in the
 /// passes that time single queries.
@@ -76,9 +79,9 @@ struct QueryRow {
   std::optional<Latency> least = {};  ///< Of several passes; none on cold caches.
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
   std::optional<std::array<VectorError, 2>> errors = {};
-  Outliers worst = {};
+  results::Outliers worst = {};
 
-  RowFields fields() const {
+  results::RowFields fields() const {
     return {.query = std::string(to_string(question)),
             .algorithm = algorithm.traits().name,
             .settings = resources.settings_of(algorithm).to_string(),
@@ -131,12 +134,12 @@ struct QueryRow {
   }
 
   /// Row::outliers.
-  Outliers outliers() const {
+  results::Outliers outliers() const {
     const auto word_of = [&](const std::string& name) {
       const CatalogueMesh* const mesh = resources.catalogue.mesh(name);
       return mesh == nullptr || mesh->identity.path.empty() ? name : mesh->identity.path;
     };
-    Outliers found = worst;
+    results::Outliers found = worst;
     found.a = word_of(pair.a);
     found.b = word_of(pair.b);
     found.command = query_command(found.a, found.b, algorithm, resources.settings_of(algorithm));
@@ -238,8 +241,13 @@ struct QueryRow {
     errors = {forces.error(), torques.error()};
     const auto add = [&](const std::string& counter, std::optional<std::size_t> k) {
       if (!k) return;
-      const ComparedResponse response{forces.measured[*k], torques.measured[*k], exact[places[*k]]};
-      worst.by_counter[counter] = {.X_AB = bucket.poses[places[*k]], .response = response};
+      const Response& truth = exact[places[*k]];
+      worst.add(counter, bucket.poses[places[*k]]);
+      worst.responses[counter] = {.force = numbers(forces.measured[*k]),
+                                  .torque = numbers(torques.measured[*k]),
+                                  .exact_force = numbers(truth.force),
+                                  .exact_torque = numbers(truth.torque),
+                                  .reference = numbers(truth.reference)};
     };
     add("gamma_max_F_deg", forces.largest_angle(errors->at(0).direction));
     add("gamma_max_T_deg", torques.largest_angle(errors->at(1).direction));

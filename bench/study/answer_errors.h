@@ -7,10 +7,12 @@
 #include <vector>
 
 #include <sixdof/query/algorithm.h>
-#include "bench/study/estimate.h"
+#include <sixdof/results/estimate.h>
 #include "bench/study/study_sample.h"
 
 namespace sixdof::study {
+
+using results::Estimate;
 
 /// The errors of an algorithm's answers to the judged configurations of a sample, by names of the table of metrics.
 ///

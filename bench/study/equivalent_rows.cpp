@@ -21,33 +21,34 @@ std::string prefix(const EquivalentResult& result) {
   return fmt::format("equivalent/scenario:{}/algorithm:{}/{}", result.scenario, result.algorithm, given);
 }
 
-StudyRow measured_row(const EquivalentResult& result, const Measurement& measured, std::string name) {
+results::Row measured_row(const EquivalentResult& result, const Measurement& measured, std::string name) {
   const Settings settings = with_resolution(result.settings, result.axes, measured.at);
-  StudyRow row{.name = std::move(name),
-               .fields = {.query = "equivalent",
-                          .algorithm = result.algorithm,
-                          .settings = settings.to_string(),
-                          .scenario = result.scenario,
-                          .isolated = result.isolated,
-                          .question = "respond"},
-               .real_time_ns = measured.time_ns,
-               .cpu_time_ns = measured.time_ns,
-               .counters = {{"measured_ns", measured.time_ns}, {"bytes", measured.bytes}},
-               .label = fmt::format("law={}", result.law)};
+  results::Row row{.name = std::move(name),
+                   .fields = {.query = "equivalent",
+                              .algorithm = result.algorithm,
+                              .settings = settings.to_string(),
+                              .scenario = result.scenario,
+                              .isolated = result.isolated,
+                              .question = "respond"},
+                   .values = {{results::k_processor_mean, measured.time_ns},
+                              {results::k_wall_mean, measured.time_ns},
+                              {"measured_ns", measured.time_ns},
+                              {"bytes", measured.bytes}},
+                   .label = fmt::format("law={}", result.law)};
   if (std::isfinite(measured.eta)) {
-    row.counters.emplace_back("eta_measured", measured.eta);
+    row.values["eta_measured"] = measured.eta;
   } else {
     row.error = "eta is not defined: no force in the scenario's window";
   }
-  for (const auto& counter : measured.counters) row.counters.push_back(counter);
+  for (const auto& counter : measured.counters) row.values.insert_or_assign(counter.first, counter.second);
   return row;
 }
 
-StudyRow step_row(const EquivalentResult& result, const SearchStep& step, std::string name) {
-  StudyRow row = measured_row(result, step.measured, std::move(name));
-  row.counters.emplace_back("eta_predicted", step.eta_predicted);
-  row.counters.emplace_back("predicted_ns", step.time_predicted_ns);
-  row.counters.emplace_back(result.options.goal == Goal::time ? "tau_ns" : "eta_wanted", result.options.target);
+results::Row step_row(const EquivalentResult& result, const SearchStep& step, std::string name) {
+  results::Row row = measured_row(result, step.measured, std::move(name));
+  row.values["eta_predicted"] = step.eta_predicted;
+  row.values["predicted_ns"] = step.time_predicted_ns;
+  row.values[result.options.goal == Goal::time ? "tau_ns" : "eta_wanted"] = result.options.target;
   row.label += fmt::format(" time={} eta={}", to_string(step.time_form), to_string(step.eta_form));
   if (step.reach == Reach::inside) row.label += " inside";
   if (step.reach == Reach::below) row.label += " all-below";
@@ -57,8 +58,8 @@ StudyRow step_row(const EquivalentResult& result, const SearchStep& step, std::s
 
 }  // namespace
 
-std::vector<StudyRow> equivalent_rows(const EquivalentResult& result) {
-  std::vector<StudyRow> rows;
+std::vector<results::Row> equivalent_rows(const EquivalentResult& result) {
+  std::vector<results::Row> rows;
   rows.push_back(step_row(result, result.search.answer(), prefix(result)));
   if (!result.search.converged) rows.back().label += " not-within-tolerance";
   for (std::size_t k = 0; k < result.search.steps.size(); ++k) {

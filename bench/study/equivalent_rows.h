@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <sixdof/query/settings.h>
+#include <sixdof/results/row.h>
 #include "bench/study/equivalent.h"
-#include "bench/study/study_rows.h"
 
 /// Results of `sixdof equivalent`: rows of a file, and how well the predictions of eta were.
 
@@ -30,7 +30,7 @@ struct EquivalentResult {
 /// so on its refinements; ".../voxel_size:0.016/point_spacing:0.004" a point of the grid. With an eta given, "eta:0.05"
 /// stands in place of tau. Answer and steps have the counters eta_predicted, eta_measured, predicted_ns, measured_ns,
 /// and tau_ns or eta_wanted; points of the grid the measured ones.
-std::vector<StudyRow> equivalent_rows(const EquivalentResult& result);
+std::vector<results::Row> equivalent_rows(const EquivalentResult& result);
 
 /// How far predictions of eta were from what was measured, over several searches.
 struct PredictionError {

@@ -1,8 +1,12 @@
 #include "bench/study/order_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
+
+#include <boost/math/statistics/linear_regression.hpp>
+#include <boost/math/statistics/univariate_statistics.hpp>
 
 namespace sixdof::study {
 
@@ -13,26 +17,12 @@ std::optional<OrderFit> fit_order(std::span<const double> resolution, std::span<
     x.push_back(std::log(resolution[i]));
     y.push_back(std::log(error[i]));
   }
-  if (x.size() < 3) return std::nullopt;
-  const auto n = static_cast<double>(x.size());
-  double mean_x = 0.0, mean_y = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    mean_x += x[i] / n;
-    mean_y += y[i] / n;
-  }
-  double xx = 0.0, xy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - mean_x) * (x[i] - mean_x);
-    xy += (x[i] - mean_x) * (y[i] - mean_y);
-  }
-  if (xx == 0.0) return std::nullopt;
-  const double order = xy / xx;
+  if (x.size() < 3 || std::ranges::all_of(x, [&](double each) { return each == x.front(); })) return std::nullopt;
+  const auto [offset, order] = boost::math::statistics::simple_ordinary_least_squares(x, y);
   double residual = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double difference = y[i] - mean_y - order * (x[i] - mean_x);
-    residual += difference * difference;
-  }
-  return OrderFit{.order = order, .standard_error = std::sqrt(residual / (n - 2.0) / xx)};
+  for (std::size_t i = 0; i < x.size(); ++i) residual += std::pow(y[i] - offset - order * x[i], 2);
+  const double xx = boost::math::statistics::variance(x) * static_cast<double>(x.size());
+  return OrderFit{.order = order, .standard_error = std::sqrt(residual / (static_cast<double>(x.size()) - 2.0) / xx)};
 }
 
 }  // namespace sixdof::study

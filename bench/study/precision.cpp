@@ -31,9 +31,10 @@ std::vector<std::string> cost_metrics() {
           "p999_ns",  "p99_least_ns", "p999_least_ns", "max_least_ns", "max_ns", "over_1ms"};
 }
 
-bool PrecisionPoint::faulty() const {
-  const auto misses = errors.values.find("misses");
-  return errors.failed > 0 || (misses != errors.values.end() && misses->second.value > 0.0);
+std::vector<results::Fault> PrecisionPoint::faults(std::size_t asked) const {
+  results::Row row{.name = {}, .fields = {.query = "precision", .algorithm = {}, .configurations = asked}};
+  for (const auto& [name, estimate] : errors.values) row.values[name] = estimate.value;
+  return results::own_faults(row);
 }
 
 std::optional<Estimate> PrecisionPoint::metric(const std::string& name) const {
@@ -204,13 +205,9 @@ std::vector<std::size_t> PrecisionStudy::timed_points() const {
 }
 
 std::vector<std::size_t> PrecisionStudy::uncertain_points() const {
-  const PointTradeoffs all = tradeoffs();
-  const std::vector<bool> open = uncertain(all.tradeoffs);
-  std::vector<std::size_t> result;
-  for (std::size_t k = 0; k < open.size(); ++k) {
-    if (open[k] && points_[all.places[k]].times.count() < plan_.most_rounds) result.push_back(all.places[k]);
-  }
-  return result;
+  std::vector<std::size_t> places = uncertain_places();
+  std::erase_if(places, [&](std::size_t place) { return points_[place].times.count() >= plan_.most_rounds; });
+  return places;
 }
 
 void PrecisionStudy::run(const Progress& progress, const std::function<void()>& finished) {

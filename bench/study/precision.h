@@ -11,9 +11,10 @@
 #include <vector>
 
 #include <sixdof/query/registry.h>
+#include <sixdof/results/fault.h>
+#include <sixdof/results/frontier.h>
+#include <sixdof/results/row.h>
 #include "bench/study/answer_errors.h"
-#include "bench/study/frontier.h"
-#include "bench/study/study_rows.h"
 #include "bench/study/sweep.h"
 #include "bench/study/timing_rounds.h"
 
@@ -52,8 +53,9 @@ struct PrecisionPoint {
   std::string left_out;  ///< Why it was not measured; empty if it was.
 
   bool measured() const { return left_out.empty() && times.count() > 0; }
-  /// Failed configurations, and responses without a force although the bodies overlap.
-  bool faulty() const;
+  /// By results::own_faults(). @param asked configurations
+  std::vector<results::Fault> faults(std::size_t asked = 0) const;
+  bool faulty() const { return !faults().empty(); }
   /// A metric by its name: an error, cpu_time, real_time, p99_ns, p999_ns, ..., bytes, prepare_ns. Empty if the point
   /// has no such value.
   std::optional<Estimate> metric(const std::string& name) const;
@@ -84,11 +86,8 @@ class PrecisionStudy {
 
   const std::vector<PrecisionPoint>& points() const { return points_; }
 
-  /// Per point: on the frontier of all points, and on that of its own algorithm.
-  struct OnFrontier {
-    bool overall = false, own = false;
-  };
-  std::vector<OnFrontier> frontiers() const;
+  /// Of the plane of the plan's cost and error.
+  std::vector<results::OnFrontier> frontiers() const;
 
   /// Per point: the mean angle in degrees between its forces and those of the finest point of its algorithm that was
   /// measured without a fault. It shows what the resolution does, apart from the limit to which the algorithm's law
@@ -100,19 +99,15 @@ class PrecisionStudy {
 
   /// One row per point, "precision/QUESTION/algorithm:NAME/pair:PAIR/PARAMETER:VALUE...", with "/order:motion" if
   /// motions were timed. Bounds of the intervals of METRIC are METRIC_low and METRIC_high.
-  std::vector<StudyRow> rows() const;
+  std::vector<results::Row> rows() const;
 
   const PrecisionPlan& plan() const { return plan_; }
   const CatalogueEntry& pair() const { return pair_; }
   const StudySample& sample() const { return sample_; }
 
  private:
-  /// The points that have both metrics of the plane.
-  struct PointTradeoffs {
-    std::vector<std::size_t> places;  ///< In points_.
-    std::vector<Tradeoff> tradeoffs;
-  };
-  PointTradeoffs tradeoffs() const;
+  /// Of the points that have both metrics of the plane: places in points_ of those that results::uncertain() names.
+  std::vector<std::size_t> uncertain_places() const;
   double left_s() const;
   Query& query_of(const PrecisionPoint& point);
   double slowest_preparation(const PrecisionPoint& point) const;
@@ -124,7 +119,8 @@ class PrecisionStudy {
   TimedPoses timed_poses(const PrecisionPoint& point) const;
   std::vector<std::size_t> timed_points() const;
   std::vector<std::size_t> uncertain_points() const;
-  StudyRow row(const PrecisionPoint& point, OnFrontier on, std::optional<double> to_finest) const;
+  results::Row row(const PrecisionPoint& point) const;
+  std::vector<results::Row> measured_rows() const;
 
   const PrecisionPlan plan_;
   bench::PairCache& cache_;

@@ -11,33 +11,26 @@
 
 namespace sixdof::study {
 
-PrecisionStudy::PointTradeoffs PrecisionStudy::tradeoffs() const {
-  PointTradeoffs all;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const auto cost = points_[i].metric(plan_.cost), error = points_[i].metric(plan_.error);
-    if (!points_[i].measured() || !cost || !error) continue;
-    all.places.push_back(i);
-    all.tradeoffs.push_back({*cost, *error, points_[i].faulty()});
-  }
-  return all;
+std::vector<results::OnFrontier> PrecisionStudy::frontiers() const {
+  return results::frontiers(measured_rows(), plan_.cost, plan_.error);
 }
 
-std::vector<PrecisionStudy::OnFrontier> PrecisionStudy::frontiers() const {
-  const PointTradeoffs all = tradeoffs();
-  std::vector<OnFrontier> on(points_.size());
-  const std::vector<bool> overall = frontier(all.tradeoffs);
-  for (std::size_t k = 0; k < overall.size(); ++k) on[all.places[k]].overall = overall[k];
-  for (const Algorithm* const algorithm : plan_.algorithms) {
-    PointTradeoffs own;
-    for (std::size_t k = 0; k < all.places.size(); ++k) {
-      if (points_[all.places[k]].algorithm != algorithm) continue;
-      own.places.push_back(all.places[k]);
-      own.tradeoffs.push_back(all.tradeoffs[k]);
-    }
-    const std::vector<bool> own_frontier = frontier(own.tradeoffs);
-    for (std::size_t k = 0; k < own_frontier.size(); ++k) on[own.places[k]].own = own_frontier[k];
+std::vector<std::size_t> PrecisionStudy::uncertain_places() const {
+  std::vector<std::size_t> places;
+  std::vector<results::Tradeoff> tradeoffs;
+  const std::vector<results::Row> rows = measured_rows();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto tradeoff = results::tradeoff_of(rows[i], plan_.cost, plan_.error);
+    if (!tradeoff) continue;
+    places.push_back(i);
+    tradeoffs.push_back(*tradeoff);
   }
-  return on;
+  const std::vector<bool> open = results::uncertain(tradeoffs);
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (open[k]) result.push_back(places[k]);
+  }
+  return result;
 }
 
 std::vector<std::optional<double>> PrecisionStudy::angles_to_finest() const {
@@ -55,14 +48,11 @@ std::vector<std::optional<double>> PrecisionStudy::angles_to_finest() const {
   return angles;
 }
 
-std::size_t PrecisionStudy::undecided() const {
-  const std::vector<bool> open = uncertain(tradeoffs().tradeoffs);
-  return static_cast<std::size_t>(std::ranges::count(open, true));
-}
+std::size_t PrecisionStudy::undecided() const { return uncertain_places().size(); }
 
-StudyRow PrecisionStudy::row(const PrecisionPoint& point, OnFrontier on, std::optional<double> to_finest) const {
+results::Row PrecisionStudy::row(const PrecisionPoint& point) const {
   const std::string question(to_string(sample_.question));
-  StudyRow row{
+  results::Row row{
       .name = fmt::format("precision/{}/algorithm:{}/pair:{}", question, point.algorithm->traits().name, pair_.pair),
       .fields = {.query = "precision",
                  .algorithm = point.algorithm->traits().name,
@@ -80,34 +70,41 @@ StudyRow PrecisionStudy::row(const PrecisionPoint& point, OnFrontier on, std::op
     row.error = "left out: " + (point.left_out.empty() ? "the run was interrupted" : point.left_out);
     return row;
   }
-  row.cpu_time_ns = point.times.cpu_ns().value;
-  row.real_time_ns = point.times.wall_ns().value;
   row.label = point.errors.failed > 0 ? "first failure: " + point.errors.first_failure : std::string();
-  const auto add = [&](const std::string& name, const Estimate& estimate) {
-    row.counters.emplace_back(name, estimate.value);
-    if (estimate.low == estimate.high) return;
-    row.counters.emplace_back(name + "_low", estimate.low);
-    row.counters.emplace_back(name + "_high", estimate.high);
+  const auto add = [&](const std::string& name, const std::optional<Estimate>& estimate) {
+    if (!estimate) return;
+    row.values[name] = estimate->value;
+    if (estimate->low == estimate->high) return;
+    row.values[name + "_low"] = estimate->low;
+    row.values[name + "_high"] = estimate->high;
   };
-  row.counters.emplace_back("cpu_time_low", point.times.cpu_ns().low);
-  row.counters.emplace_back("cpu_time_high", point.times.cpu_ns().high);
+  add(results::k_processor_mean, point.times.cpu_ns());
+  add(results::k_wall_mean, point.times.wall_ns());
   for (const auto& [name, estimate] : point.errors.values) add(name, estimate);
   for (const char* const name : {"bytes", "prepare_ns", "p50_ns", "p99_ns", "p999_ns", "max_ns", "over_1ms",
                                  "p99_least_ns", "p999_least_ns", "max_least_ns"}) {
-    if (const auto value = point.metric(name)) add(name, *value);
+    add(name, point.metric(name));
   }
-  if (to_finest) row.counters.emplace_back("gamma_F_finest_deg", *to_finest);
-  row.counters.emplace_back("timing_rounds", static_cast<double>(point.times.count()));
-  row.counters.emplace_back("on_frontier", on.overall ? 1.0 : 0.0);
-  row.counters.emplace_back("on_own_frontier", on.own ? 1.0 : 0.0);
+  row.values["timing_rounds"] = static_cast<double>(point.times.count());
   return row;
 }
 
-std::vector<StudyRow> PrecisionStudy::rows() const {
-  std::vector<StudyRow> list;
-  const std::vector<OnFrontier> on = frontiers();
+std::vector<results::Row> PrecisionStudy::measured_rows() const {
+  std::vector<results::Row> list;
+  for (const PrecisionPoint& point : points_) list.push_back(row(point));
+  return list;
+}
+
+std::vector<results::Row> PrecisionStudy::rows() const {
+  std::vector<results::Row> list = measured_rows();
+  const std::vector<results::OnFrontier> on = results::frontiers(list, plan_.cost, plan_.error);
   const auto to_finest = angles_to_finest();
-  for (std::size_t i = 0; i < points_.size(); ++i) list.push_back(row(points_[i], on[i], to_finest[i]));
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!list[i].error.empty()) continue;
+    if (to_finest[i]) list[i].values["gamma_F_finest_deg"] = *to_finest[i];
+    list[i].values["on_frontier"] = on[i].overall ? 1.0 : 0.0;
+    list[i].values["on_own_frontier"] = on[i].own ? 1.0 : 0.0;
+  }
   return list;
 }
 
@@ -122,7 +119,7 @@ std::optional<ErrorOrder> order_of(const PrecisionStudy& study, const Algorithm&
     const PrecisionPoint& point = study.points()[i];
     const auto& assignments = point.sweep.assignments;
     if (point.algorithm != &algorithm || assignments.empty() || point.faulty() || !errors[i]) continue;
-    if (!(*errors[i] > k_rounding)) continue;
+    if (!(*errors[i] > results::k_rounding)) continue;
     order.parameter = assignments.front().substr(0, assignments.front().find('='));
     resolutions.push_back(point.sweep.settings.number(order.parameter));
     values.push_back(*errors[i]);

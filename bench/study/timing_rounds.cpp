@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include <sixdof/base/error.h>
@@ -35,20 +34,6 @@ std::pair<double, double> time_there(RemoteQuery& remote, std::span<const Pose> 
   return {cpu_ns / queries, wall_ns / queries};
 }
 
-/// Ranks, from 0, of the interval of the median of n values: between them it lies with a probability of at least 95 %
-/// (for n < 6 with that of least to largest).
-std::pair<std::size_t, std::size_t> ranks_of_median(std::size_t n) {
-  std::size_t rank = 0;
-  double below = 0.0, probability = std::pow(0.5, static_cast<double>(n));  // of no value below the median
-  while (2 * (rank + 1) < n) {
-    below += probability;
-    probability *= static_cast<double>(n - rank) / static_cast<double>(rank + 1);
-    if (2.0 * (below + probability) > 0.05) break;
-    ++rank;
-  }
-  return {rank, n - 1 - rank};
-}
-
 }  // namespace
 
 void TimingRounds::add(Query& query, bench::QueryKind question, std::span<const Pose> poses) {
@@ -70,16 +55,6 @@ void TimingRounds::add(Query& query, bench::QueryKind question, std::span<const 
     cpu_ns_.push_back((processor_ns() - cpu_start) / queries);
     wall_ns_.push_back((wall_clock_ns() - wall_start) / queries);
   });
-}
-
-Estimate TimingRounds::median(std::vector<double> values) {
-  if (values.empty()) return {};
-  std::ranges::sort(values);
-  const std::size_t n = values.size();
-  const double middle = n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-  const auto [low, high] = ranks_of_median(n);
-  return {middle, std::min(values[low], (1.0 - k_least_spread) * middle),
-          std::max(values[high], (1.0 + k_least_spread) * middle)};
 }
 
 SingleQueries time_single_queries(Query& query, bench::QueryKind question, const TimedPoses& timed) {

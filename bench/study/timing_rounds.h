@@ -7,8 +7,8 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/measure/latency.h>
 #include <sixdof/query/algorithm.h>
+#include <sixdof/results/estimate.h>
 #include "bench/harness/query_kind.h"
-#include "bench/study/estimate.h"
 #include "bench/study/study_sample.h"
 
 namespace sixdof::study {
@@ -23,18 +23,13 @@ class TimingRounds {
 
   std::size_t count() const { return cpu_ns_.size(); }
 
-  /// Median over the rounds of the mean time of a query, in ns, with its 95 % interval by ranks: that of the binomial
-  /// distribution, which is least to largest for up to 8 rounds. At least k_least_spread wide to either side, since
-  /// two runs on a machine that does other work differ by that much.
-  Estimate cpu_ns() const { return median(cpu_ns_); }
-  Estimate wall_ns() const { return median(wall_ns_); }
+  /// The mean time of a query in ns (results::median_of_rounds).
+  results::Estimate cpu_ns() const { return results::median_of_rounds(cpu_ns_); }
+  results::Estimate wall_ns() const { return results::median_of_rounds(wall_ns_); }
 
   static constexpr double k_shortest_s = 0.02;
-  static constexpr double k_least_spread = 0.1;
 
  private:
-  static Estimate median(std::vector<double> values);
-
   std::vector<double> cpu_ns_, wall_ns_;
 };
 

@@ -110,11 +110,12 @@ flags = dict(word[2:].split("=", 1) for word in sys.argv[1:] if word.startswith(
 row = {"name": "distance/algorithm:x/pair:p/distance:05", "run_name": "distance/algorithm:x/pair:p/distance:05",
        "run_type": "iteration", "repetitions": 1, "repetition_index": 0, "threads": 1, "iterations": 9,
        "time_unit": "ns", "cpu_time": settings["time"] * (1 + 0.01 * random.random()), "failed": 0.0, "p50_ns": 5.0,
-       "mismatch": 0.0, "error_max": 1e-16 * random.random(), "nodes_tested": 10.0} | settings.get("row", {})
+       "mismatch": 0.0, "error_max": 1e-16 * random.random(), "nodes_tested": 10.0,
+       "sixdof": {"query": "distance", "algorithm": "x", "settings": {}}} | settings.get("row", {})
 row["real_time"] = row["cpu_time"]
 rows = [row] + [row | {"name": name, "run_name": name} for name in settings.get("more", [])]
 if settings.get("error"):
-    rows[0] = {key: row[key] for key in ("name", "run_name", "run_type", "repetitions", "repetition_index", "threads")}
+    rows[0] = {key: row[key] for key in ("name", "run_name", "run_type", "repetitions", "repetition_index", "threads", "sixdof")}
     rows[0] |= {"error_occurred": True, "error_message": settings["error"]}
 json.dump({"context": {"date": "today", "algorithm:x": settings["version"]}, "benchmarks": rows},
           open(flags["benchmark_out"], "w"))
@@ -124,7 +125,7 @@ sys.exit(1 if settings.get("error") else 0)
 
 def compared(programs, folder, *arguments):
     return subprocess.run([sys.executable, "-B", SCRIPT, "--programs", *programs,
-                           "--folder", pathlib.Path(folder) / "results", *arguments], capture_output=True, text=True)
+                           "--sixdof", SIXDOF, "--folder", pathlib.Path(folder) / "results", *arguments], capture_output=True, text=True)
 
 
 class Programs(unittest.TestCase):
@@ -206,5 +207,5 @@ class SixdofBench(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    BENCH, MANIFEST = sys.argv[1:]
+    SIXDOF, BENCH, MANIFEST = sys.argv[1:]
     unittest.main(argv=sys.argv[:1])

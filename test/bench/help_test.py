@@ -61,17 +61,6 @@ class Help(unittest.TestCase):
         self.assertEqual(compare.parse_arguments(commits[1:]).base, "v0.1")
         self.assertEqual(len(compare.parse_arguments(programs[1:]).programs), 2)
 
-    def test_generate_ratios(self):
-        measure, ratios = self.examples([str(BENCH / "generate-ratios")])
-        self.succeed([SIXDOF_BENCH, *measure[1:], *QUICK])
-        self.assertIn("`torus-knot-10k`", self.succeed([str(BENCH / "generate-ratios"), *ratios[1:]]))
-
-    def test_speedups(self):
-        one, both = self.examples([str(BENCH / "speedups")])
-        self.assertEqual(both[0], "bench/speedups", "needs fetched models; the other one does not")
-        done = self.succeed([str(BENCH / "speedups"), "--program", SIXDOF_BENCH, *one[1:], "--seeds", "1", "--", *QUICK])
-        self.assertIn("| `torus-knot-10k` | distance | distance 5 % |", done)
-
     def test_collection_and_growth(self):
         for script, said in (("collection", "6 pairs of 2 objects."), ("growth", "6 pairs.")):
             measure, report = self.examples([str(BENCH / script)])

@@ -34,8 +34,8 @@ struct Collector : ::testing::Test {
                       {"b", {.query = "prepare", .algorithm = "exact"}},
                       {"c", {.query = "scenario", .algorithm = "vps", .scenario = "II"}}};
   ResultStore store{{"a", "b", "c"}, {{"seed", "7"}}};
-  static Outliers one_outlier() {
-    Outliers found{.a = "left", .b = "right", .command = "", .by_counter = {}};
+  static results::Outliers one_outlier() {
+    results::Outliers found{.a = "left", .b = "right"};
     found.add("max_ns", Pose{.t = {0.1, 2.0, 3.0}});
     return found;
   }

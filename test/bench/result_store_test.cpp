@@ -251,10 +251,10 @@ TEST_F(Store, KnowsTheFieldsOfRowsThatAreMeasured) {
     ResultStore store(order, context);
     store.open(file, k_json, false);
     measure(store, "a");  // without fields
-    const Json fields = to_json_object({.query = "collide", .algorithm = "exact", .configurations = 32});
-    store.add("b", {{"name", "b"}, {"run_name", "b"}, {k_row_fields_key, fields}});
+    const Json fields = results::to_json_object({.query = "collide", .algorithm = "exact", .configurations = 32});
+    store.add("b", {{"name", "b"}, {"run_name", "b"}, {results::k_row_fields_key, fields}});
     store.commit({});
-    store.add("c", {{"name", "c"}, {"run_name", "c"}, {k_row_fields_key, fields}, {"error_occurred", true}});
+    store.add("c", {{"name", "c"}, {"run_name", "c"}, {results::k_row_fields_key, fields}, {"error_occurred", true}});
     store.commit({});
   }
   ResultStore store(order, context);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t k_no_limit = std::numeric_limits<std::size_t>::max();
 
-RowFields fields(const std::string& algorithm, double percent) {
+results::RowFields fields(const std::string& algorithm, double percent) {
   return {.query = "distance",
           .algorithm = algorithm,
           .pair = "ship",
@@ -36,10 +36,10 @@ std::function<double()> each(double seconds) {
 }
 
 TEST(GroupOf, DiffersInAllButTheAlgorithm) {
-  const RowFields one = fields("exact", 5);
+  const results::RowFields one = fields("exact", 5);
   EXPECT_EQ(group_of(one), group_of(fields("fcl-rss", 5)));
   EXPECT_NE(group_of(one), group_of(fields("exact", 6)));
-  RowFields other = one;
+  results::RowFields other = one;
   other.cache = "cold";
   EXPECT_NE(group_of(one), group_of(other));
   other = one;
@@ -98,7 +98,7 @@ TEST(SamplePlan, EndsWhenInterrupted) {
 TEST(SamplePlan, KeepsTheNumberOfAnEarlierRun) {
   const Row slow = row("slow", 5, 0.1), other = row("slow", 6, 0.1);
   SamplePlan plan({&slow, &other});
-  RowFields measured = fields("fast", 5);
+  results::RowFields measured = fields("fast", 5);
   plan.keep(measured);
   measured.configurations = 777;
   plan.keep(measured);

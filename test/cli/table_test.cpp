@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -26,7 +27,7 @@ using ::testing::StartsWith;
 /// A row of pair "p" as sixdof-bench writes it, of 64 configurations and with a right answer to each.
 Json row(const std::string& query, const std::string& algorithm, const std::string& kind, double percent, double cpu_ns,
          const Json& values = Json::object()) {
-  Json json = {{"name", query + "/algorithm:" + algorithm + "/pair:p"},
+  Json json = {{"name", fmt::format("{}/algorithm:{}/pair:p/{}:{}", query, algorithm, kind, percent)},
                {"run_type", "iteration"},
                {"cpu_time", cpu_ns},
                {"real_time", 2 * cpu_ns},
@@ -126,6 +127,7 @@ constexpr const char* k_wide =
 TEST_F(TableCommand, HasALinePerBucketAndAlgorithmAndOneClockPerColumn) {
   Json path = row("distance", "x", "distance", 5, 4000);
   path["sixdof"]["order"] = "path";
+  path["name"] = "path";
   const Json right = {{"over_1ms", 0.25}, {"error_rms", 0.0}, {"error_max", 0.0}};
   const Json wrong = {{"error_rms", 1.24e-3}, {"error_max", 0.0136}, {"mismatch", 3}};
   EXPECT_THAT(printed(write("r.json", {row("distance", "x", "distance", 5, 1500, right),
@@ -150,6 +152,7 @@ TEST_F(TableCommand, AnswersAboutOtherBodiesHaveATableOfTheirOwn) {
 TEST_F(TableCommand, WideHasALinePerPairAndAlgorithmAndAColumnPerBucket) {
   Json other_pair = row("distance", "x", "distance", 5, 500, {{"error_max", 0.0}});
   other_pair["sixdof"]["pair"] = "q";
+  other_pair["name"] = "q";
   const Json angles = {
       {"gamma_F_deg", 1.0}, {"gamma_max_F_deg", 20.25}, {"magnitude_error_F", 0.125}, {"gamma_T_deg", 3.5}};
   const Json other_angles = {{"gamma_F_deg", 2.0},
@@ -240,14 +243,14 @@ TEST_F(TableCommand, AddsUpFaultsOfManyBuckets) {
   EXPECT_THAT(out, HasSubstr("! y: 2 of 64 failed (6 buckets from 01 % to 06 %)\n"));
 }
 
-TEST_F(TableCommand, KeepsTheFastestOfRepetitionsAndLeavesOutAggregates) {
+TEST_F(TableCommand, TakesRepetitionsTogetherAndLeavesOutAggregates) {
   Json mean = row("collide", "x", "distance", 5, 1.0);
   mean["run_type"] = "aggregate";
-  const std::string out =
-      printed(write("r.json", {row("collide", "x", "distance", 5, 2000), mean, row("collide", "x", "distance", 5, 1500),
-                               failed_row("collide", "x", "distance", 5)}));
-  EXPECT_THAT(out, HasSubstr(" 1.50 "));
-  EXPECT_THAT(out, AllOf(Not(HasSubstr(" 2.00 ")), Not(HasSubstr("0.0010")), Not(HasSubstr("not run"))));
+  const Json slow = row("collide", "x", "distance", 5, 2000), fast = row("collide", "x", "distance", 5, 1500);
+  const std::string out = printed(write("r.json", {slow, mean, fast}));
+  EXPECT_THAT(out, AllOf(HasSubstr(" 1.75 "), Not(HasSubstr("0.0010"))));
+  EXPECT_THAT(printed(write("s.json", {slow, fast, failed_row("collide", "x", "distance", 5)})),
+              AllOf(HasSubstr(" 1.75 "), HasSubstr("! x: not run: no such model")));
 }
 
 TEST_F(TableCommand, PutsFilesSideBySide) {
@@ -277,6 +280,7 @@ TEST_F(TableCommand, KeepsColdRowsApartAndLeavesOutPercentilesOfFewQueries) {
   Json cold = row("collide", "x", "distance", 5, 9000), slow = row("collide", "y", "distance", 5, 9500);
   for (Json* const each : {&cold, &slow}) {
     (*each)["sixdof"]["cache"] = "cold";
+    (*each)["name"] = (*each)["name"].get<std::string>() + "/cache:cold";
     each->erase("p99_ns");
   }
   Json warm = row("collide", "x", "distance", 5, 1500);
@@ -374,8 +378,10 @@ TEST_F(RefusedFiles, AreNamedWithTheCause) {
   EXPECT_THAT(message("{\"benchmarks\":\n ["), StartsWith("not JSON: parse error at line 2, column 3: "));
   EXPECT_THAT(message("\xFF"), StartsWith("not JSON: parse error at line 1, column 1: "));
   for (const char* other : {"[]", "{}", "7", R"({"benchmarks": 7})"}) {
-    EXPECT_EQ(message(other), "not a result file of sixdof-bench: it has no array \"benchmarks\"\n");
+    EXPECT_THAT(message(other), StartsWith("neither a result of sixdof-bench or a study"));
   }
+  EXPECT_EQ(message(R"([{"family": "scale", "algorithm": "x", "verdict": "exact"}])"),
+            "not a result file of sixdof-bench: it has no array \"benchmarks\"\n");
   EXPECT_THAT(table("no-such-file.json").err, HasSubstr("no-such-file.json: cannot be opened\n"));
   EXPECT_EQ(table("").exit_code, k_exit_usage);
 }
@@ -384,14 +390,15 @@ TEST_F(RefusedFiles, AreNamedWithTheRow) {
   EXPECT_EQ(message(R"({"benchmarks": [7]})"), "benchmarks[0]: not an object\n");
   EXPECT_THAT(message(R"({"benchmarks": [{"name": "BM_sort/8", "cpu_time": 3}]})"),
               StartsWith("benchmarks[0] (BM_sort/8): no \"sixdof\" object: not a row of sixdof-bench"));
-  const std::string place = "benchmarks[1] (collide/algorithm:x/pair:p): ";
+  const std::string place = "benchmarks[1] (collide/algorithm:x/pair:p/distance:5): ";
   EXPECT_EQ(message_of_row({{"cpu_time", nullptr}}), place + "no number \"cpu_time\"\n");
   EXPECT_EQ(message_of_row({{"time_unit", "days"}}), place + "time_unit \"days\" is none of ns, us, ms, s\n");
   EXPECT_THAT(message_of_row({{"sixdof", {{"bucket", {{"kind", "depth"}}}}}}),
               StartsWith(place + "sixdof.bucket: bucket 'depth/5'"));
   EXPECT_THAT(message_of_row({{"sixdof", {{"query", 7}}}}), StartsWith(place + "sixdof.query: "));
-  EXPECT_EQ(message_of_row({{"sixdof", {{"algorithm", "y"}, {"settings", {{"size", 9}}}}}}),
-            place + "y has the settings size=9 here and size=0.5 in an earlier row\n");
+  const std::string other = "collide/algorithm:y/pair:p/distance:5";
+  EXPECT_EQ(message_of_row({{"name", other}, {"sixdof", {{"algorithm", "y"}, {"settings", {{"size", 9}}}}}}),
+            "benchmarks[1] (" + other + "): y has the settings size=9 here and size=0.5 in an earlier row\n");
 }
 
 TEST_F(TableCommand, ShowsWhatATerminalOrMarkdownWouldObey) {

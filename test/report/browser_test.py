@@ -202,20 +202,22 @@ class Page(unittest.TestCase):
             self.assertIn(figure, filtered)
         self.assertEqual(self.browser.errors, [])
 
-    def test_any_two_numbers_have_a_frontier(self):
+    def test_any_two_numbers_are_the_axes(self):
         self.open()
         self.go_to("any-two")
         card = "sixdofReport.cards.metrics"
         self.browser.run(f"Object.assign({card}.choices, {{query: 'distance', axis_x: 'processor_mean_ns', axis_y: 'error_rms'}}) && {card}.draw()")
-        leads = f"{card}.shown().rows.filter(row => row.frontier === 'yes').map(row => row.algorithm)"
-        self.assertEqual(self.browser.run(leads), ["exact"], "the fastest has the smallest error")
-        self.browser.run(f"{card}.choices.axis_x = 'error_max', {card}.choices.axis_y = 'reachable', {card}.draw()")
-        self.assertEqual(self.browser.run(leads), [])
-        self.browser.wait_for("document.querySelector('#figure-metrics .missing').textContent.includes('reachable describes a row')")
-        # Of two numbers that disagree, each algorithm without a fault leads; the one with faults never does.
-        self.browser.run(f"""{card}.all.forEach(row => {{ if (row.algorithm === 'exact') row.error_rms = 1; }})""")
-        self.browser.run(f"{card}.choices.axis_x = 'processor_mean_ns', {card}.choices.axis_y = 'error_rms', {card}.draw()")
-        self.assertEqual(self.browser.run(leads), ["exact", "vps"])
+        shown = f"{card}.shown().rows.filter(row => row.algorithm === 'exact').map(row => [row.x === row.processor_mean_ns, row.y === row.error_rms])"
+        self.assertEqual(self.browser.run(shown), [[True, True]])
+
+    def test_frontier_is_that_of_the_data(self):
+        self.open()
+        self.go_to("tradeoff")
+        card = "sixdofReport.cards.frontier"
+        for cost in self.browser.run(f"sixdofReport.valuesOf({card}.all, 'cost')"):
+            self.browser.run(f"{card}.choices.cost = {json.dumps(cost)}, {card}.draw()")
+            self.assertEqual(self.browser.run(f"[...new Set({card}.shown().rows.map(row => row.cost))]"), [cost])
+            self.assertIn("yes", self.browser.run(f"{card}.shown().rows.map(row => row.frontier)"))
 
     def test_theme_button_redraws(self):
         self.open()

@@ -71,7 +71,7 @@ TEST_F(HistoryFolder, FilesStandInTheOrderOfTheirDates) {
   write("b.json", "2026-01-01", "m", 1000.0);
   std::ofstream(folder / "other.json") << "{}";
   std::ofstream(folder / "text.txt") << "no result";
-  const Results results = read_history(folder);
+  const Results results = read_folder(folder);
   const DataTable table = history_table(results, row_groups(results));
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_EQ(test::number_in(table, table.rows[0], "time_us"), 1.0);
@@ -84,7 +84,7 @@ TEST_F(HistoryFolder, AnotherMachineIsNoChange) {
   for (int k = 0; k < 6; ++k) {
     write("b" + std::to_string(k) + ".json", "2026-02-0" + std::to_string(k + 1), "new", k < 3 ? 3000.0 : 6000.0);
   }
-  const Results results = read_history(folder);
+  const Results results = read_folder(folder);
   const DataTable table = history_table(results, row_groups(results));
   ASSERT_EQ(table.columns[k_history_change], "change");
   std::vector<std::size_t> changed;
@@ -100,12 +100,12 @@ TEST_F(HistoryFolder, AnotherMachineIsNoChange) {
 TEST_F(HistoryFolder, FolderWithoutResultsIsRefused) {
   std::ofstream(folder / "x.json") << "{}";
   try {
-    read_history(folder);
+    read_folder(folder);
     FAIL();
   } catch (const BadFile& e) {
     EXPECT_THAT(e.what(), HasSubstr("has no result of sixdof-bench"));
   }
-  EXPECT_THROW(read_history(folder / "absent"), BadFile);
+  EXPECT_THROW(read_folder(folder / "absent"), BadFile);
 }
 
 }  // namespace

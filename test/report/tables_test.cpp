@@ -86,7 +86,7 @@ TEST(MetricsTable, HasEveryNumberAndThatOfPreparing) {
   const DataTable table = metrics_table(results, row_groups(results));
   const auto line = lines_with(table, {{"query", "respond"}}).at(0);
   EXPECT_EQ(text_in(table, line, "where"), "bunny, volume 5 %");
-  EXPECT_EQ(text_in(table, line, "faults"), "2 of 64 without a force");
+  EXPECT_EQ(text_in(table, line, "faults"), "2 of 64 without a force though the bodies overlap");
   EXPECT_EQ(number_in(table, line, "gamma_F_deg"), 4.0);
   EXPECT_EQ(number_in(table, line, "processor_mean_ns"), 10.0);
   EXPECT_EQ(number_in(table, line, "bytes"), 77.0);

@@ -38,9 +38,9 @@ EquivalentResult result(double eta, double off) {
 }
 
 TEST(EquivalentRows, HaveTheAnswerTheStepsAndTheGrid) {
-  const std::vector<StudyRow> rows = equivalent_rows(result(0.02, 0.01));
+  const std::vector<results::Row> rows = equivalent_rows(result(0.02, 0.01));
   std::vector<std::string> names;
-  for (const StudyRow& row : rows) names.push_back(row.name);
+  for (const results::Row& row : rows) names.push_back(row.name);
   const std::string prefix = "equivalent/scenario:II/algorithm:fake/tau:0.9ms";
   EXPECT_THAT(names, ElementsAre(prefix, prefix + "/step:0", prefix + "/step:1", prefix + "/size:0.5/count:20"));
   const auto answer = to_json_object(rows[0]);
@@ -64,7 +64,7 @@ TEST(EquivalentRows, NameAnEtaThatWasGiven) {
   EquivalentResult reverse = result(0.02, 0.01);
   reverse.options.goal = Goal::eta;
   reverse.options.target = 0.025;
-  const StudyRow row = equivalent_rows(reverse).front();
+  const results::Row row = equivalent_rows(reverse).front();
   EXPECT_EQ(row.name, "equivalent/scenario:II/algorithm:fake/eta:0.025");
   EXPECT_EQ(to_json_object(row).at("eta_wanted"), 0.025);
 }

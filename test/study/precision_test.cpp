@@ -14,6 +14,7 @@
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/algorithm/vps/vps.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/results/results.h>
 
 #include "../configuration/small_suite.h"
 
@@ -109,8 +110,8 @@ class Precision : public ::testing::Test {
   std::unique_ptr<Algorithm> faulty_ = make_algorithm<FaultyQuery>(
       {.name = "faulty", .answers = {.collide = true, .distance = true, .respond = true}, .law = ResponseLaw::volume});
   std::size_t configurations_ = 0;
-  std::vector<PrecisionStudy::OnFrontier> frontiers_;
-  std::vector<StudyRow> rows_;
+  std::vector<results::OnFrontier> frontiers_;
+  std::vector<results::Row> rows_;
 };
 
 TEST_F(Precision, WithoutAFaultIsAtRoundingLevel) {
@@ -231,7 +232,7 @@ TEST_F(Precision, RowsHaveKnownCountersAndTheirBounds) {
   study({.degrees = 3.0, .gain = 2.0});
   ASSERT_EQ(rows_.size(), 2u);
   EXPECT_THAT(rows_[1].name, ::testing::StartsWith("precision/respond/algorithm:faulty/pair:torus-1k"));
-  const auto document = study_document({}, rows_);
+  const auto document = results::document_of({}, rows_);
   EXPECT_EQ(document.at("benchmarks").size(), 2u);
   const auto& row = document.at("benchmarks")[1];
   EXPECT_LT(row.at("cpu_time_low"), row.at("cpu_time"));

@@ -1,10 +1,12 @@
-#include "bench/study/recommend.h"
+#include <sixdof/results/choice.h>
 
 #include <chrono>
 
 #include <gtest/gtest.h>
 
 #include <sixdof/models/model_catalogue.h>
+
+#include "bench/study/precision.h"
 
 #include "../configuration/small_suite.h"
 
@@ -65,7 +67,7 @@ std::unique_ptr<Algorithm> tunable(const std::string& name, std::vector<std::str
 class Recommend : public ::testing::Test {
  protected:
   /// A query takes 20 us a step.
-  Recommendation within(double deadline_s) {
+  results::Choice within(double deadline_s) {
     PrecisionPlan plan{.question = bench::QueryKind::distance, .algorithms = algorithms_};
     plan.values = warm_starts(algorithms_, {});
     plan.error = "error_rms";
@@ -75,11 +77,12 @@ class Recommend : public ::testing::Test {
     plan.most_rounds = 1;
     study_ = std::make_unique<PrecisionStudy>(plan, cache_, pair_, sample_);
     study_->run([](const std::string&, std::size_t, std::size_t) {}, [] {});
-    return recommend(*study_, deadline_s);
+    return results::choose(study_->rows(), plan.error, 1e9 * deadline_s);
   }
-  static std::string name(const std::optional<Candidate>& candidate) {
+  std::string name(const std::optional<results::Candidate>& candidate) const {
     if (!candidate) return "none";
-    return candidate->point->algorithm->traits().name + " " + candidate->point->sweep.assignments.front();
+    const PrecisionPoint& point = study_->points()[candidate->place];
+    return point.algorithm->traits().name + " " + point.sweep.assignments.front();
   }
 
   std::unique_ptr<Algorithm> fine_ = tunable("fine", {"2", "20", "200", "400"});
@@ -93,7 +96,7 @@ class Recommend : public ::testing::Test {
 };
 
 TEST_F(Recommend, TakesTheSmallestErrorThatKeepsTheDeadline) {
-  const Recommendation found = within(2e-3);
+  const results::Choice found = within(2e-3);
   EXPECT_EQ(found.tail, "max") << "32 queries have no p99";
   EXPECT_EQ(name(found.best), "fine steps=20");
   EXPECT_EQ(name(found.second), "coarse steps=10");
@@ -107,7 +110,7 @@ TEST_F(Recommend, TakesTheSmallestErrorThatKeepsTheDeadline) {
 }
 
 TEST_F(Recommend, TakesNoneWhereNoneKeepsIt) {
-  const Recommendation found = within(30e-6);
+  const results::Choice found = within(30e-6);
   EXPECT_FALSE(found.best);
   EXPECT_FALSE(found.second);
 }
@@ -137,16 +140,17 @@ TEST_F(RecommendInMotion, HasAsManyTimesThatCountAsConfigurations) {
 }
 
 TEST_F(RecommendInMotion, TakesWhatIsFastFromPoseToPose) {
-  const Recommendation found = within(1e-3);
+  const results::Choice found = within(1e-3);
   EXPECT_EQ(name(found.best), "warm warm_start=on");
   EXPECT_NE(study_->points()[1].left_out.find("over the deadline"), std::string::npos) << "without a warm start";
   sample_.motions = {};
-  EXPECT_EQ(name(within(1e-3).best), "coarse steps=10") << "where poses are far apart";
+  const results::Choice apart = within(1e-3);
+  EXPECT_EQ(name(apart.best), "coarse steps=10") << "where poses are far apart";
 }
 
 TEST_F(RecommendInMotion, TakesNothingThatFailsOnTheWay) {
   WarmQuery::fails = true;
-  const Recommendation found = within(1e-3);
+  const results::Choice found = within(1e-3);
   EXPECT_EQ(name(found.best), "coarse steps=10");
   const PrecisionPoint& point = study_->points()[0];
   EXPECT_TRUE(point.faulty());

@@ -197,4 +197,16 @@ const Metric* find_metric(std::string_view counter) {
   return found == k_metrics.end() ? nullptr : &*found;
 }
 
+MetricKind kind_of(std::string_view counter) {
+  constexpr std::array<std::string_view, 5> k_by_times{"over_1ms", "iterations", "timing_rounds", "on_frontier",
+                                                       "on_own_frontier"};
+  const Metric* const metric = find_metric(counter);
+  if (metric == nullptr) return MetricKind::answer;
+  const bool is_time = metric->unit == "ns" || metric->unit == "time_unit";
+  if (is_time || std::ranges::find(k_by_times, metric->name) != k_by_times.end()) return MetricKind::time;
+  const bool is_work = metric->source == k_work || metric->source == k_footprint || metric->source == k_scene_work ||
+                       metric->name == "false_per_true";
+  return is_work ? MetricKind::work : MetricKind::answer;
+}
+
 }  // namespace sixdof

@@ -38,4 +38,14 @@ std::span<const Metric> metrics();
 /// "sigma_T_all_by_wall_traction".
 const Metric* find_metric(std::string_view counter);
 
+/// What a counter is about.
+enum class MetricKind {
+  time,    ///< No two runs share it; also what depends on times: how many rounds, which points lead.
+  work,    ///< What a query looks at, and the size of structures: changes with how an answer is found.
+  answer,  ///< Everything else: errors, failures, counts of configurations.
+};
+
+/// MetricKind::answer for a counter that the table does not have.
+MetricKind kind_of(std::string_view counter);
+
 }  // namespace sixdof

@@ -12,9 +12,9 @@ DataTable collection_table(const Results& results) {
                   .rows = {}};
   for (const CollectionCell& cell : results.collection.cells) {
     if (cell.algorithm == "null") continue;
-    table.rows.push_back({run_name(results, cell.file), cell.partner, cell.query, cell.kind, cell.percent,
-                          cell.algorithm, cell.objects, cell.mean_us, cell.p10_us, cell.p90_us, cell.greatest_object,
-                          cell.greatest_us});
+    table.rows.push_back({run_name(results, cell.file), cell.partner, cell.query, to_string(cell.bucket.kind),
+                          cell.bucket.percent, cell.algorithm, cell.objects, cell.mean_us, cell.p10_us, cell.p90_us,
+                          cell.greatest_object, cell.greatest_us});
   }
   return table;
 }

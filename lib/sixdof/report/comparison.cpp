@@ -8,53 +8,26 @@
 #include <fmt/format.h>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/statistics/univariate_statistics.hpp>
 
-#include <sixdof/measure/metrics.h>
 #include <sixdof/report/tables.h>
+#include <sixdof/results/difference.h>
 
 namespace sixdof::report {
 namespace {
-
-/// Differences of answers below these are rounding of the printed numbers.
-constexpr double k_relative_rounding = 1e-9, k_absolute_rounding = 1e-13;
 
 struct Pair {
   const RowGroup *before, *after;
   double log_ratio = 0.0;
 };
 
-bool is_answer(const std::string& name) {
-  const Metric* const metric = find_metric(name);
-  return metric != nullptr && metric->better != Better::neither && metric->unit != "ns" &&
-         metric->unit != "time_unit" && metric->unit != "byte" && name != "over_1ms" &&
-         !name.starts_with(k_processor_mean) && !name.starts_with(k_wall_mean);
-}
-
-double median_of(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
 /// Standard deviation of the logarithms, by the median of the deviations from their median: a few rows that did change
 /// hardly widen it.
 double spread_of(const std::vector<Pair>& pairs) {
-  std::vector<double> ratios, deviations;
+  std::vector<double> ratios;
   for (const Pair& pair : pairs) ratios.push_back(pair.log_ratio);
-  const double middle = median_of(ratios);
-  for (const double r : ratios) deviations.push_back(std::abs(r - middle));
   constexpr double k_normal = 1.4826;  // of a normal distribution, standard deviation over median deviation
-  return k_normal * median_of(deviations);
-}
-
-struct Moments {
-  double mean = 0.0, variance = 0.0, count = 0.0;
-};
-
-Moments moments_of_logs(const std::vector<double>& values) {
-  Moments m{.count = static_cast<double>(values.size())};
-  for (const double v : values) m.mean += std::log(v) / m.count;
-  for (const double v : values) m.variance += (std::log(v) - m.mean) * (std::log(v) - m.mean) / (m.count - 1.0);
-  return m;
+  return k_normal * boost::math::statistics::median_absolute_deviation(ratios);
 }
 
 /// Difference of the means of a row's repetitions.
@@ -67,7 +40,7 @@ struct Repeated {
 std::optional<Repeated> by_repetitions(const Pair& pair, double tail) {
   const std::vector<double> before = pair.before->all(k_processor_mean), after = pair.after->all(k_processor_mean);
   if (before.size() < k_fewest_repetitions || after.size() < k_fewest_repetitions) return std::nullopt;
-  const Moments b = moments_of_logs(before), a = moments_of_logs(after);
+  const LogMoments b = log_moments(before), a = log_moments(after);
   const double vb = b.variance / b.count, va = a.variance / a.count;
   if (vb + va == 0.0) return Repeated{a.mean - b.mean, 0.0, 0.0};
   const double freedom = (vb + va) * (vb + va) / (vb * vb / (b.count - 1.0) + va * va / (a.count - 1.0));
@@ -82,29 +55,19 @@ double spread_between_runs(const std::vector<std::optional<Repeated>>& repeated,
   for (const auto& each : repeated) {
     if (each) variances.push_back(each->variance);
   }
-  return variances.empty() ? 0.0 : std::sqrt(std::max(0.0, spread * spread - median_of(variances)));
+  return variances.empty() ? 0.0 : std::sqrt(std::max(0.0, spread * spread - median(variances)));
 }
 
-void compare_answers(const Pair& pair, DataTable& table) {
-  const Row &before = pair.before->row(), &after = pair.after->row();
-  if (!before.error.empty() || !after.error.empty()) {
-    if (before.error != after.error) {
-      table.rows.push_back({before.name, std::string("not run"), Cell(), Cell(),
-                            fmt::format("{} -> {}", before.error.empty() ? "ran" : before.error,
-                                        after.error.empty() ? "ran" : after.error)});
-    }
-    return;
-  }
-  if (before.value("configurations") != after.value("configurations") ||
-      before.value("steps") != after.value("steps")) {
-    return;
-  }
-  for (const auto& [name, value] : before.values) {
-    const auto other = after.value(name);
-    if (!is_answer(name) || !other) continue;
-    const double difference = std::abs(*other - value);
-    if (difference <= k_absolute_rounding + k_relative_rounding * std::abs(value)) continue;
-    table.rows.push_back({before.name, name, value, *other, std::string()});
+/// A row of "answers"; of counts of configurations and steps nothing.
+void add_answer(const Difference& difference, DataTable& table) {
+  const auto& [row, counter, kind, before, after, error_before, error_after] = difference;
+  if (counter == "error") {
+    const auto words = [](const std::string& error) { return error.empty() ? "ran" : error; };
+    table.rows.push_back({row, std::string("not run"), Cell(), Cell(),
+                          fmt::format("{} -> {}", words(error_before), words(error_after))});
+  } else {
+    const auto cell = [](const std::optional<Range>& range) { return range ? Cell(range->least) : Cell(); };
+    table.rows.push_back({row, counter, cell(before), cell(after), std::string()});
   }
 }
 
@@ -119,12 +82,6 @@ std::vector<Pair> common_rows(const std::vector<RowGroup>& groups, std::size_t b
     if (group.row().file == after && found != by_name.end()) pairs.push_back({found->second, &group});
   }
   return pairs;
-}
-
-std::size_t rows_that_asked_others(const std::vector<Pair>& pairs) {
-  return static_cast<std::size_t>(std::ranges::count_if(pairs, [](const Pair& pair) {
-    return pair.before->row().value("configurations") != pair.after->row().value("configurations");
-  }));
 }
 
 /// Keys of the context that differ, except times and names of files.
@@ -157,10 +114,16 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
                                     "low", "high", "verdict", "worst_pose"},
                         .rows = {}};
   std::vector<Pair> pairs = common_rows(groups, before, after);
-  for (const Pair& pair : pairs) compare_answers(pair, comparison.answers);
-  const std::size_t others = rows_that_asked_others(pairs);
+  std::size_t others = 0;
+  for (const Difference& difference : differences(results, groups, before, after).values) {
+    if (difference.counter == "configurations" || difference.counter == "steps") {
+      ++others;
+    } else if (difference.kind == MetricKind::answer) {
+      add_answer(difference, comparison.answers);
+    }
+  }
   std::erase_if(pairs, [](Pair& pair) {
-    const auto b = processor_time(*pair.before), a = processor_time(*pair.after);
+    const auto b = pair.before->mean_time(), a = pair.after->mean_time();
     if (b && a) pair.log_ratio = std::log(a->value / b->value);
     return !b || !a;
   });
@@ -186,14 +149,15 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
     slower += is_slower ? 1 : 0;
     faster += is_faster ? 1 : 0;
     const Row& row = pair.before->row();
-    comparison.changes.rows.push_back(
-        {comparison.before + " -> " + comparison.after, row.query, row.pair.empty() ? row.scenario : row.pair,
-         pair.before->algorithm(), row.name, processor_time(*pair.before)->value / 1e3,
-         processor_time(*pair.after)->value / 1e3, std::exp(middle), std::exp(middle - half), std::exp(middle + half),
-         std::string(is_slower   ? "slower"
-                     : is_faster ? "faster"
-                                 : "no change shown"),
-         pair.after->row().outliers.command_of("max_least_ns")});
+    comparison.changes.rows.push_back({comparison.before + " -> " + comparison.after, row.fields.query,
+                                       row.fields.pair.empty() ? row.fields.scenario : row.fields.pair,
+                                       pair.before->algorithm(), row.name, pair.before->mean_time()->value / 1e3,
+                                       pair.after->mean_time()->value / 1e3, std::exp(middle), std::exp(middle - half),
+                                       std::exp(middle + half),
+                                       std::string(is_slower   ? "slower"
+                                                   : is_faster ? "faster"
+                                                               : "no change shown"),
+                                       pair.after->row().outliers.command_of("max_least_ns")});
   }
   auto& sentences = comparison.sentences;
   sentences.push_back(
@@ -207,7 +171,7 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
   sentences.push_back(
       fmt::format("Times, by row: {} slower, {} faster, {} without a change that can be shown; the median row "
                   "takes {:.3g} times as long.",
-                  slower, faster, pairs.size() - slower - faster, std::exp(median_of(ratios))));
+                  slower, faster, pairs.size() - slower - faster, std::exp(median(ratios))));
   sentences.push_back(
       std::ranges::all_of(repeated, [](const auto& each) { return each.has_value(); })
           ? fmt::format(

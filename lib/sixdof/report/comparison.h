@@ -5,10 +5,12 @@
 #include <vector>
 
 #include <sixdof/report/data_table.h>
-#include <sixdof/report/results.h>
-#include <sixdof/report/row_group.h>
+#include <sixdof/results/results.h>
+#include <sixdof/results/row_group.h>
 
 namespace sixdof::report {
+
+using namespace results;
 
 /// What changed from one file to another, over the rows that both have (by name).
 struct Comparison {

@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <compare>
 #include <cstddef>
 #include <map>
-#include <string_view>
 
 #include <fmt/format.h>
 
-#include <sixdof/measure/metrics.h>
 #include <sixdof/report/tables.h>
+#include <sixdof/results/frontier.h>
+#include <sixdof/results/paper.h>
 
 namespace sixdof::report {
 namespace {
@@ -59,44 +59,61 @@ constexpr std::array k_frontier_errors{
 
 Cell cell_of(std::optional<double> value) { return value ? Cell(*value) : Cell(); }
 
-/// A point of a plot of time against error.
-struct Point {
-  const Row* row;
-  std::string source;
-  Estimate us;
-  double error;
-  std::optional<double> low, high;
-  std::string worst_pose;
-  bool may_lead;  ///< Has no fault.
-  bool leads = false;
+/// What a point of the frontier costs.
+struct Cost {
+  const char* value;
+  const char* title;
+  double unit;  ///< Of the title.
+};
+constexpr std::array k_costs{
+    Cost{k_processor_mean, "mean processor time of a query, µs", 1e3},
+    Cost{"p99_ns", "time that 99 % of the queries keep, µs", 1e3},
+    Cost{"bytes", "memory, bytes", 1.0},
+    Cost{"prepare_ns", "time to prepare, s", 1e9},
 };
 
-/// Of the points of one plot: no other is at most as slow and as wrong, and better in one of them.
-void mark_frontier(std::vector<Point>& points) {
-  for (Point& point : points) {
-    point.leads = point.may_lead && std::ranges::none_of(points, [&](const Point& other) {
-                    return other.may_lead && other.us.value <= point.us.value && other.error <= point.error &&
-                           (other.us.value < point.us.value || other.error < point.error);
-                  });
+/// Of the plots of the frontier: those of studies first, then responses, then distances.
+struct Plot {
+  int order;
+  std::string measured, pair, run;
+  std::size_t cost;  ///< Place in k_costs.
+  std::string measure;
+  auto operator<=>(const Plot&) const = default;
+};
+
+/// A row in a plot.
+struct Point {
+  const RowGroup* group;
+  Tradeoff tradeoff;
+  std::string worst_pose;
+};
+
+/// A plot for each cost and error that the group has; none for a group that answers neither with a distance nor with a
+/// response.
+void add_points(const Results& results, const RowGroup& group, std::map<Plot, std::vector<Point>>& plots) {
+  const RowFields& fields = group.fields();
+  const bool is_study = fields.query == "precision", is_response = fields.query == "respond";
+  const bool is_query = fields.bucket && (is_response || fields.query == "distance");
+  if (fields.algorithm == "null" || (!is_study && !is_query)) return;
+  std::string measured = is_study ? fields.question + ", every resolution" : fields.query + ", " + place_of(fields);
+  if (group.is_special()) measured += group.algorithm().substr(fields.algorithm.size());
+  for (std::size_t cost = 0; cost < k_costs.size(); ++cost) {
+    const bool is_mean = k_costs[cost].value == std::string(k_processor_mean);
+    const auto x = is_mean ? group.mean_time() : group.estimate(k_costs[cost].value);
+    for (const Measure& measure : k_frontier_errors) {
+      const auto y = group.estimate(measure.value);
+      if (!x || !y) continue;
+      plots[{is_study      ? 0
+             : is_response ? 1
+                           : 2,
+             measured, bodies_of(fields), run_name(results, group.row().file), cost, measure.title}]
+          .push_back({&group, {*x, *y, !group.faults.empty()}, group.row().outliers.command_of(measure.value)});
+    }
   }
 }
 
-Estimate in_microseconds(const Estimate& ns) { return {ns.value / 1e3, ns.low / 1e3, ns.high / 1e3}; }
-
 /// Slashes in the name of an answer: "equivalent/scenario:Ia/algorithm:vps/tau:0.9ms". Steps of the search have more.
 constexpr std::ptrdiff_t k_parts_of_answer = 3;
-
-/// Values that the paper's table of equal times prints, of vps and ist (lib/sixdof/scenario/README.md).
-struct PaperValue {
-  std::string_view scenario, algorithm, measure;
-  double value;
-};
-constexpr std::array k_paper_values{
-    PaperValue{"Ia", "vps", "sigma_F", 0.043},   PaperValue{"Ia", "ist", "sigma_F", 0.176},
-    PaperValue{"II", "vps", "gamma_F_deg", 2.4}, PaperValue{"II", "ist", "gamma_F_deg", 7.64},
-    PaperValue{"III", "vps", "sigma_T", 0.169},  PaperValue{"III", "ist", "sigma_T", 0.112},
-    PaperValue{"III", "vps", "nu_T", 0.62},      PaperValue{"III", "ist", "nu_T", 1.12},
-};
 
 }  // namespace
 
@@ -107,12 +124,12 @@ DataTable response_errors_table(const Results& results, const std::vector<RowGro
                   .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
-    if (row.query != "respond" || !row.percent || row.algorithm == "null") continue;
+    if (row.fields.query != "respond" || !row.fields.bucket || row.fields.algorithm == "null") continue;
     for (const Measure& measure : k_response_errors) {
-      const auto value = row.value(measure.value);
+      const auto value = group.value(measure.value);
       if (!value) continue;
-      table.rows.push_back({run_name(results, row.file), row.pair, std::string(measure.title), group.algorithm(),
-                            *row.percent, *value, reproduction(row, results.files[row.file]),
+      table.rows.push_back({run_name(results, row.file), row.fields.pair, std::string(measure.title), group.algorithm(),
+                            row.fields.bucket->percent, *value, reproduction(row, results.files[row.file]),
                             row.outliers.command_of(measure.value)});
     }
   }
@@ -126,56 +143,40 @@ DataTable scenario_measures_table(const Results& results, const std::vector<RowG
                   .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
-    if (row.query != "scenario" || row.algorithm == "null") continue;
+    if (row.fields.query != "scenario" || row.fields.algorithm == "null") continue;
     for (const Measure& measure : k_scenario_measures) {
-      const auto value = row.value(measure.value);
+      const auto value = group.value(measure.value);
       if (!value) continue;
-      table.rows.push_back({run_name(results, row.file), std::string(measure.title), row.scenario, group.algorithm(),
-                            *value, cell_of(row.value("steps")),
-                            fmt::format("sixdof quality --scenario {} --algorithm {}", row.scenario, row.algorithm)});
+      table.rows.push_back(
+          {run_name(results, row.file), std::string(measure.title), row.fields.scenario, group.algorithm(), *value,
+           cell_of(group.value("steps")),
+           fmt::format("sixdof quality --scenario {} --algorithm {}", row.fields.scenario, row.fields.algorithm)});
     }
   }
   return table;
 }
 
 DataTable frontier_table(const Results& results, const std::vector<RowGroup>& groups) {
-  using Plot =
-      std::tuple<int, std::string, std::string, std::string, std::string>;  // order, source, pair, run, measure
-  std::map<Plot, std::vector<Point>> plots;
-  for (const RowGroup& group : groups) {
-    const Row& row = group.row();
-    const bool is_point = row.query == "precision";
-    const auto time = processor_time(group);
-    if (!time || row.algorithm == "null" ||
-        (!is_point && !(row.percent && (row.query == "respond" || row.query == "distance"))))
-      continue;
-    const std::string source = is_point ? row.question + ", every resolution"
-                                        : fmt::format("{}, {} {:g} %", row.query, row.kind, *row.percent);
-    for (const Measure& measure : k_frontier_errors) {
-      const auto error = row.value(measure.value);
-      if (!error) continue;
-      const std::string name = measure.value;
-      plots[{is_point                 ? 0
-             : row.query == "respond" ? 1
-                                      : 2,
-             source, row.pair, run_name(results, row.file), measure.title}]
-          .push_back({&row, source, in_microseconds(*time), *error, row.value(name + "_low"), row.value(name + "_high"),
-                      row.outliers.command_of(name), is_ranked(group)});
-    }
-  }
   DataTable table{.name = "frontier",
-                  .title = "Run time against error",
-                  .columns = {"run", "pair", "measured", "measure", "algorithm", "settings", "time_us", "low_us",
-                              "high_us", "error", "low", "high", "frontier", "command", "worst_pose"},
+                  .title = "Cost against error",
+                  .columns = {"run", "pair", "measured", "cost", "measure", "algorithm", "settings", "spent",
+                              "spent_low", "spent_high", "error", "low", "high", "frontier", "command", "worst_pose"},
                   .rows = {}};
-  for (auto& [plot, points] : plots) {
-    mark_frontier(points);
-    const auto& [order, source, pair, run, measure] = plot;
-    for (const Point& point : points) {
-      table.rows.push_back({run, pair, source, measure, point.row->algorithm, point.row->settings, point.us.value,
-                            point.us.low, point.us.high, point.error, cell_of(point.low), cell_of(point.high),
-                            std::string(point.leads ? "yes" : "no"),
-                            reproduction(*point.row, results.files[point.row->file]), point.worst_pose});
+  std::map<Plot, std::vector<Point>> plots;
+  for (const RowGroup& group : groups) add_points(results, group, plots);
+  for (const auto& [plot, points] : plots) {
+    std::vector<Tradeoff> tradeoffs;
+    for (const Point& point : points) tradeoffs.push_back(point.tradeoff);
+    const std::vector<bool> leads = frontier(tradeoffs);
+    const auto& [value, title, unit] = k_costs[plot.cost];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto& [cost, error, faulty] = points[i].tradeoff;
+      const Row& row = points[i].group->row();
+      const auto bound = [&](double at) { return error.low < error.high ? Cell(at) : Cell(); };
+      table.rows.push_back({plot.run, plot.pair, plot.measured, std::string(title), plot.measure, row.fields.algorithm,
+                            row.fields.settings, cost.value / unit, cost.low / unit, cost.high / unit, error.value,
+                            bound(error.low), bound(error.high), std::string(leads[i] ? "yes" : "no"),
+                            reproduction(row, results.files[row.file]), points[i].worst_pose});
     }
   }
   return table;
@@ -190,16 +191,14 @@ DataTable equal_time_table(const Results& results, const std::vector<RowGroup>& 
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
     const bool is_answer = std::ranges::count(row.name, '/') == k_parts_of_answer;
-    if (row.query != "equivalent" || !row.value("tau_ns") || !is_answer) continue;
+    if (row.fields.query != "equivalent" || !group.value("tau_ns") || !is_answer) continue;
     for (const char* const measure : {"sigma_F", "gamma_F_deg", "sigma_T", "gamma_T_deg", "nu_T"}) {
-      const auto value = row.value(measure);
+      const auto value = group.value(measure);
       if (!value) continue;
-      const auto printed = std::ranges::find_if(k_paper_values, [&](const PaperValue& paper) {
-        return paper.scenario == row.scenario && paper.algorithm == row.algorithm && paper.measure == measure;
-      });
-      table.rows.push_back({run_name(results, row.file), row.scenario, row.algorithm, std::string(measure),
-                            row.count("tau_ns") / 1e6, row.count("measured_ns") / 1e6, *value,
-                            printed == k_paper_values.end() ? Cell() : Cell(printed->value), row.settings});
+      table.rows.push_back({run_name(results, row.file), row.fields.scenario, row.fields.algorithm,
+                            std::string(measure), group.count("tau_ns") / 1e6, group.count("measured_ns") / 1e6, *value,
+                            cell_of(paper_value(row.fields.scenario, row.fields.algorithm, measure)),
+                            row.fields.settings});
     }
   }
   return table;

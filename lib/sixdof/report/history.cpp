@@ -4,11 +4,10 @@
 #include <cmath>
 #include <map>
 #include <span>
-#include <system_error>
 
 #include <fmt/format.h>
 
-#include <sixdof/base/error.h>
+#include <boost/math/statistics/univariate_statistics.hpp>
 
 namespace sixdof::report {
 namespace {
@@ -16,21 +15,16 @@ namespace {
 /// Least standard deviation of the logarithm of a mean between two runs of the same program.
 constexpr double k_least_noise = 0.03;
 
-double mean_of(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double v : values) sum += v;
-  return sum / static_cast<double>(values.size());
-}
+double mean_of(std::span<const double> values) { return boost::math::statistics::mean(values.begin(), values.end()); }
 
 /// Standard deviation of one value, from the median of the neighbouring differences.
 double noise_of(const std::vector<double>& values) {
   std::vector<double> differences;
   for (std::size_t k = 1; k < values.size(); ++k) differences.push_back(std::abs(values[k] - values[k - 1]));
   if (differences.empty()) return k_least_noise;
-  std::ranges::sort(differences);
   constexpr double k_normal =
       1.4826 / 1.4142135623730951;  // of a normal distribution; a difference has two values' noise
-  return std::max(k_least_noise, k_normal * differences[differences.size() / 2]);
+  return std::max(k_least_noise, k_normal * median(std::move(differences)));
 }
 
 void search(std::span<const double> values, std::size_t offset, double noise, std::vector<std::size_t>& found) {
@@ -72,8 +66,8 @@ std::vector<Track> tracks_of(const std::vector<RowGroup>& groups) {
   std::vector<Track> tracks;
   std::map<std::string, std::size_t> index;
   for (const RowGroup& group : groups) {
-    const auto time = processor_time(group);
-    if (!time || group.row().algorithm == "null") continue;
+    const auto time = group.mean_time();
+    if (!time || group.fields().algorithm == "null") continue;
     const auto [place, is_new] = index.try_emplace(group.row().name, tracks.size());
     if (is_new) tracks.push_back({&group.row(), group.algorithm(), {}});
     tracks[place->second].values.emplace_back(group.row().file, time->value / 1e3);
@@ -106,31 +100,6 @@ std::map<std::size_t, double> changes_of(const Track& track, const std::vector<s
 
 }  // namespace
 
-Results read_history(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".json") paths.push_back(entry.path());
-  }
-  if (error) throw BadFile(folder.string(), "cannot be read: " + error.message());
-  std::ranges::sort(paths);
-  std::vector<std::pair<std::string, std::filesystem::path>> dated;
-  for (const auto& path : paths) {
-    Results one;
-    try {
-      read_results(path, one);
-    } catch (const BadFile&) {
-      continue;
-    }
-    if (!one.rows.empty()) dated.emplace_back(one.files.front().at("date"), path);
-  }
-  if (dated.empty()) throw BadFile(folder.string(), "has no result of sixdof-bench (*.json)");
-  std::ranges::stable_sort(dated);
-  Results results;
-  for (const auto& [date, path] : dated) read_results(path, results);
-  return results;
-}
-
 std::vector<std::size_t> change_points(const std::vector<double>& logarithms) {
   std::vector<std::size_t> found;
   if (logarithms.size() > 1) search(logarithms, 0, noise_of(logarithms), found);
@@ -151,12 +120,11 @@ DataTable history_table(const Results& results, const std::vector<RowGroup>& gro
   for (const Track& track : tracks_of(groups)) {
     const std::map<std::size_t, double> changes = changes_of(track, stretch_of_file);
     const Row& row = *track.row;
-    const std::string bucket = row.percent ? fmt::format("{} {:g} %", row.kind, *row.percent) : row.scenario;
     for (std::size_t k = 0; k < track.values.size(); ++k) {
       const auto& [file, us] = track.values[k];
       const auto change = changes.find(k);
-      table.rows.push_back({row.query, row.pair, bucket, track.algorithm, static_cast<double>(file + 1),
-                            results.files[file].at("date").substr(0, 16),
+      table.rows.push_back({row.fields.query, row.fields.pair, place_of(row.fields), track.algorithm,
+                            static_cast<double>(file + 1), results.files[file].at("date").substr(0, 16),
                             results.files[file].at("commit").substr(0, 12),
                             fmt::format("machine {}", stretch_of_file[file] + 1), us,
                             change == changes.end() ? Cell() : Cell(change->second), row.name});

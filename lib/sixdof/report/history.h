@@ -1,19 +1,15 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
-#include <string>
 #include <vector>
 
 #include <sixdof/report/data_table.h>
-#include <sixdof/report/results.h>
-#include <sixdof/report/row_group.h>
+#include <sixdof/results/results.h>
+#include <sixdof/results/row_group.h>
 
 namespace sixdof::report {
 
-/// Every result file of sixdof-bench directly in a folder, in the order of their dates. Other JSON files are left out.
-/// @throws BadFile if the folder cannot be read or has no result
-Results read_history(const std::filesystem::path& folder);
+using namespace results;
 
 /// Where the level of a series of logarithms changes: indices of the first value of each later level, increasing. A
 /// change is kept if the means on both sides differ by more than k_sure standard errors and by more than a factor of

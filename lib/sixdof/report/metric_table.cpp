@@ -14,17 +14,18 @@ namespace {
 bool is_bound(const std::string& name) { return name.ends_with("_low") || name.ends_with("_high"); }
 
 /// What rows are compared on: the same objects, path or bodies.
-std::string place_of(const Row& row) {
-  if (row.query == "scene") {
-    return fmt::format("{}, {:.0f} bodies, {}", row.scenario, row.count("bodies"), row.question);
+std::string where_of(const RowGroup& group) {
+  const Row& row = group.row();
+  if (row.fields.query == "scene") {
+    return fmt::format("{}, {:.0f} bodies, {}", row.fields.scenario, group.count("bodies"), row.fields.question);
   }
-  std::string place = row.pair;
+  std::string place = bodies_of(row.fields);
   const auto add = [&](const std::string& text) { place += (place.empty() ? "" : ", ") + text; };
-  if (!row.scenario.empty()) add("scenario " + row.scenario);
-  if (!row.question.empty()) add(row.question);
-  if (row.percent) add(fmt::format("{} {:g} %", row.kind, *row.percent));
-  if (const auto tau = row.value("tau_ns")) add(fmt::format("{:g} ms", *tau / 1e6));
-  return place.empty() ? row.query : place;
+  if (!row.fields.scenario.empty()) add("scenario " + row.fields.scenario);
+  if (!row.fields.question.empty()) add(row.fields.question);
+  if (row.fields.bucket) add(place_of(row.fields));
+  if (const auto tau = group.value("tau_ns")) add(fmt::format("{:g} ms", *tau / 1e6));
+  return place.empty() ? row.fields.query : place;
 }
 
 /// Memory and time of the prepared structure, from the row that prepares it.
@@ -32,14 +33,12 @@ using Prepared = std::map<std::tuple<std::size_t, std::string, std::string>, con
 
 std::map<std::string, double> values_of(const RowGroup& group, const Prepared& prepared) {
   const Row& row = group.row();
-  std::map<std::string, double> values;
-  for (const auto& [name, value] : row.values) {
-    if (!is_bound(name)) values[name] = group.median(name).value_or(value);
-  }
-  const auto found = prepared.find({row.file, row.pair, row.algorithm});
-  if (row.query == "prepare" || row.pair.empty() || found == prepared.end()) return values;
-  if (const auto bytes = found->second->median("bytes")) values.try_emplace("bytes", *bytes);
-  if (const auto ns = found->second->median(k_wall_mean)) values.try_emplace("prepare_ns", *ns);
+  std::map<std::string, double> values = group.values;
+  std::erase_if(values, [](const auto& entry) { return is_bound(entry.first); });
+  const auto found = prepared.find({row.file, row.fields.pair, row.fields.algorithm});
+  if (row.fields.query == "prepare" || row.fields.pair.empty() || found == prepared.end()) return values;
+  if (const auto bytes = found->second->value("bytes")) values.try_emplace("bytes", *bytes);
+  if (const auto ns = found->second->value(k_wall_mean)) values.try_emplace("prepare_ns", *ns);
   return values;
 }
 
@@ -49,7 +48,8 @@ DataTable metrics_table(const Results& results, const std::vector<RowGroup>& gro
   Prepared prepared;
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
-    if (row.query == "prepare" && row.error.empty()) prepared[{row.file, row.pair, row.algorithm}] = &group;
+    if (row.fields.query == "prepare" && row.error.empty())
+      prepared[{row.file, row.fields.pair, row.fields.algorithm}] = &group;
   }
   std::vector<std::map<std::string, double>> all;
   std::set<std::string> names;
@@ -64,12 +64,10 @@ DataTable metrics_table(const Results& results, const std::vector<RowGroup>& gro
   table.columns.insert(table.columns.end(), names.begin(), names.end());
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const Row& row = groups[i].row();
-    if (row.algorithm == "null" || all[i].empty()) continue;
-    std::string faults;
-    for (const Fault& fault : faults_of(row)) faults += (faults.empty() ? "" : ", ") + to_string(fault);
-    if (!row.body.empty()) faults += (faults.empty() ? "" : ", ") + row.body;
-    table.rows.push_back({run_name(results, row.file), row.query, place_of(row), groups[i].algorithm(), row.settings,
-                          faults, reproduction(row, results.files[row.file]), row.outliers.command_of("max_least_ns")});
+    if (row.fields.algorithm == "null" || all[i].empty()) continue;
+    table.rows.push_back({run_name(results, row.file), row.fields.query, where_of(groups[i]), groups[i].algorithm(),
+                          row.fields.settings, to_string(groups[i].faults), reproduction(row, results.files[row.file]),
+                          row.outliers.command_of("max_least_ns")});
     std::vector<Cell>& cells = table.rows.back();
     for (const std::string& name : names) {
       cells.emplace_back();

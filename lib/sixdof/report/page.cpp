@@ -174,7 +174,7 @@ std::vector<std::string> algorithms_of(const Results& results, const std::vector
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
   for (const Row& row : results.rows) {
-    if (row.algorithm != "null") add(row.algorithm);
+    if (row.fields.algorithm != "null") add(row.fields.algorithm);
   }
   for (const HardCase& cell : results.hard_cases) add(cell.algorithm);
   for (const Series& each : series) add(each.algorithm);

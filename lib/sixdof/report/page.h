@@ -7,12 +7,14 @@
 
 #include <sixdof/report/comparison.h>
 #include <sixdof/report/data_table.h>
-#include <sixdof/report/results.h>
 #include <sixdof/report/scene.h>
 #include <sixdof/report/series.h>
 #include <sixdof/report/summary.h>
+#include <sixdof/results/results.h>
 
 namespace sixdof::report {
+
+using namespace results;
 
 /// Everything that a report shows.
 struct Report {
@@ -31,7 +33,7 @@ struct Report {
 Report make_report(const Results& results, const std::vector<Series>& series);
 
 /// The times of many files in the order of their dates, and what changed from the last but one to the last. The page
-/// has nothing else of them, so that it stays small. @param results of read_history()
+/// has nothing else of them, so that it stays small. @param results of results::read_folder()
 Report make_history(const Results& results);
 
 /// The files of which a page consists: `page/` and `figures/` of this folder, and libraries that the build takes from

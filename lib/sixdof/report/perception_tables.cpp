@@ -81,13 +81,13 @@ DataTable update_rates_table(const Results& results, const std::vector<RowGroup>
                   .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
-    if (row.query != "respond" || !row.percent || row.algorithm == "null") continue;
-    const auto p99 = group.median("p99_ns"), longest = group.median("max_ns");
+    if (row.fields.query != "respond" || !row.fields.bucket || row.fields.algorithm == "null") continue;
+    const auto p99 = group.value("p99_ns"), longest = group.value("max_ns");
     const double tail_ns = p99.value_or(longest.value_or(0.0));
     if (!(tail_ns > 0.0)) continue;
     const double rate = 1e9 / tail_ns;
-    table.rows.push_back({run_name(results, row.file), row.pair, group.algorithm(), *row.percent, tail_ns / 1e3, rate,
-                          words_of(rate), 2.0 * rate, reproduction(row, results.files[row.file]),
+    table.rows.push_back({run_name(results, row.file), row.fields.pair, group.algorithm(), row.fields.bucket->percent,
+                          tail_ns / 1e3, rate, words_of(rate), 2.0 * rate, reproduction(row, results.files[row.file]),
                           row.outliers.command_of("max_ns")});
   }
   return table;

@@ -189,23 +189,21 @@ class NamedMeshes {
   std::map<std::string, std::optional<std::size_t>> index_;
 };
 
-Scene pose_scene(const Row& row, const std::string& counter, const Outlier& outlier) {
-  Scene scene{.name = fmt::format("{} of {}: {} {} {:g} %, {}", row.query, row.algorithm, row.pair, row.kind,
-                                  row.percent.value_or(0.0), words_of_outlier(counter)),
+Scene pose_scene(const Row& row, const std::string& counter, const ComparedResponse* response) {
+  Scene scene{.name = fmt::format("{} of {}: {} {}, {}", row.fields.query, row.fields.algorithm, row.fields.pair,
+                                  place_of(row.fields), words_of_outlier(counter)),
               .kind = "pose",
-              .command = row.outliers.command_of(outlier),
+              .command = row.outliers.command_of(counter),
               .moments = {}};
-  Moment moment{.pose = typed_pose(outlier.pose).value_or(Moment().pose)};
-  if (outlier.response) {
-    const auto& [force, exact_force, torque, exact_torque, reference] = *outlier.response;
-    moment.force = force;
-    moment.ideal_force = exact_force;
-    moment.torque = torque;
-    moment.ideal_torque = exact_torque;
+  Moment moment{.pose = typed_pose(row.outliers.poses.at(counter)).value_or(Moment().pose)};
+  if (response != nullptr) {
+    moment.force = response->force;
+    moment.ideal_force = response->exact_force;
+    moment.torque = response->torque;
+    moment.ideal_torque = response->exact_torque;
     const auto& [w, x, y, z, tx, ty, tz] = moment.pose;
-    const Eigen::Vector3d in_a(reference[0], reference[1], reference[2]);
-    const Eigen::Vector3d in_b =
-        Eigen::Quaterniond(w, x, y, z).normalized().conjugate() * (in_a - Eigen::Vector3d(tx, ty, tz));
+    const Eigen::Vector3d in_b = Eigen::Quaterniond(w, x, y, z).normalized().conjugate() *
+                                 (Eigen::Vector3d(response->reference.data()) - Eigen::Vector3d(tx, ty, tz));
     scene.reference = {in_b.x(), in_b.y(), in_b.z()};
   }
   scene.moments.push_back(moment);
@@ -217,13 +215,15 @@ void add_outliers(const Results& results, Scenes& scenes) {
   NamedMeshes meshes(results, scenes);
   std::map<std::string, std::size_t> index;
   for (const Row& row : results.rows) {
-    for (const auto& [counter, outlier] : row.outliers.by_counter) {
-      const std::string command = row.outliers.command_of(outlier);
+    for (const auto& [counter, pose] : row.outliers.poses) {
+      const std::string command = row.outliers.command_of(counter);
+      const auto found = row.outliers.responses.find(counter);
+      const ComparedResponse* const response = found == row.outliers.responses.end() ? nullptr : &found->second;
       const auto a = meshes.find(row.outliers.a, row.file), b = meshes.find(row.outliers.b, row.file);
       if (command.empty() || !a || !b) continue;
       const auto [place, is_new] = index.try_emplace(command, scenes.scenes.size());
-      if (!is_new && !outlier.response) continue;
-      Scene scene = pose_scene(row, counter, outlier);
+      if (!is_new && response == nullptr) continue;
+      Scene scene = pose_scene(row, counter, response);
       scene.a = *a;
       scene.b = *b;
       if (is_new) {

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include <sixdof/geometry/mesh.h>
-#include <sixdof/report/results.h>
 #include <sixdof/report/series.h>
+#include <sixdof/results/results.h>
 
 /// What the page shows in three dimensions.
 
 namespace sixdof::report {
+
+using namespace results;
 
 /// A mesh with few triangles that looks like another one.
 struct DrawnMesh {

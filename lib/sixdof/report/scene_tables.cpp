@@ -21,15 +21,13 @@ DataTable many_bodies_table(const Results& results, const std::vector<RowGroup>&
                   .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
-    if (row.query != "scene" || row.scenario.empty()) continue;
-    const auto value = [&](const char* name, double unit = 1.0) { return cell_of(group.median(name), unit); };
-    std::string faults;
-    for (const Fault& fault : faults_of(row)) faults += (faults.empty() ? "" : ", ") + to_string(fault);
-    table.rows.push_back({run_name(results, row.file), row.question, value("bodies"), row.scenario, row.algorithm,
-                          value("processor_ns", k_us), value("p99_frame_ns", k_us), value("max_ns", k_us),
-                          value("first_frame_ns", k_us), value("missed_pairs"), value("wrong_pairs"),
-                          value("true_pairs"), value("pairs_looked_at"), value("triangle_pairs"), value("bytes"),
-                          faults, reproduction(row, results.files[row.file])});
+    if (row.fields.query != "scene" || row.fields.scenario.empty()) continue;
+    const auto value = [&](const char* name, double unit = 1.0) { return cell_of(group.value(name), unit); };
+    table.rows.push_back({run_name(results, row.file), row.fields.question, value("bodies"), row.fields.scenario,
+                          row.fields.algorithm, value("processor_ns", k_us), value("p99_frame_ns", k_us),
+                          value("max_ns", k_us), value("first_frame_ns", k_us), value("missed_pairs"),
+                          value("wrong_pairs"), value("true_pairs"), value("pairs_looked_at"), value("triangle_pairs"),
+                          value("bytes"), to_string(group.faults), reproduction(row, results.files[row.file])});
   }
   return table;
 }

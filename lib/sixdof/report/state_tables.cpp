@@ -63,11 +63,10 @@ DataTable failures_table(const Results& results, const std::vector<RowGroup>& gr
                   .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
-    if (row.algorithm == "null") continue;  // answers nothing, by design
-    for (const Fault& fault : faults_of(row)) {
-      const std::string bucket = row.percent ? fmt::format("{} {:g} %", row.kind, *row.percent) : row.scenario;
-      table.rows.push_back({run_name(results, row.file), row.query, row.pair, group.algorithm(), bucket,
-                            to_string(fault), reproduction(row, results.files[row.file]),
+    if (row.fields.algorithm == "null") continue;  // answers nothing, by design
+    for (const Fault& fault : group.faults) {
+      table.rows.push_back({run_name(results, row.file), row.fields.query, bodies_of(row.fields), group.algorithm(),
+                            place_of(row.fields), to_string(fault), reproduction(row, results.files[row.file]),
                             row.outliers.command_of(fault.counter)});
     }
   }
@@ -84,7 +83,7 @@ DataTable settings_table(const Results& results) {
       if (!key.starts_with("algorithm:")) continue;
       const std::string name = key.substr(std::string("algorithm:").size());
       const auto rows = std::ranges::count_if(
-          results.rows, [&](const Row& row) { return row.file == file && row.algorithm == name; });
+          results.rows, [&](const Row& row) { return row.file == file && row.fields.algorithm == name; });
       table.rows.push_back({run_name(results, file), name, version, results.files[file].at("settings:" + name),
                             static_cast<double>(rows)});
     }

@@ -4,49 +4,15 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <sixdof/report/tables.h>
+#include <sixdof/results/contest.h>
 
 namespace sixdof::report {
 namespace {
-
-struct Entry {
-  const RowGroup* group;
-  Estimate time;
-};
-
-/// The ranked rows of one query on one bucket of a pair, the fastest first.
-struct Contest {
-  std::string run, query, pair, kind;
-  double percent = 0.0;
-  std::vector<Entry> entries;
-
-  bool is_clear() const { return entries[0].time.high < entries[1].time.low; }
-  double factor() const { return entries[1].time.value / entries[0].time.value; }
-};
-
-std::vector<Contest> contests_of(const Results& results, const std::vector<RowGroup>& groups) {
-  std::vector<Contest> contests;
-  std::map<std::tuple<std::size_t, std::string, std::string, std::string, double>, std::size_t> index;
-  for (const RowGroup& group : groups) {
-    const Row& row = group.row();
-    const bool is_query = row.query == "collide" || row.query == "distance" || row.query == "respond";
-    const auto time = processor_time(group);
-    if (!is_query || !row.percent || !time || !is_ranked(group) || group.is_special()) continue;
-    const auto [place, is_new] =
-        index.try_emplace({row.file, row.query, row.pair, row.kind, *row.percent}, contests.size());
-    if (is_new) contests.push_back({run_name(results, row.file), row.query, row.pair, row.kind, *row.percent, {}});
-    contests[place->second].entries.push_back({&group, *time});
-  }
-  for (Contest& contest : contests) {
-    std::ranges::sort(contest.entries, {}, [](const Entry& entry) { return entry.time.value; });
-  }
-  return contests;
-}
 
 std::string_view words_of(const std::string& query) {
   if (query == "collide") return "Yes/no";
@@ -58,24 +24,20 @@ std::string_view words_of(const std::string& query) {
 std::string speed_sentence(const std::string& query, const std::vector<const Contest*>& contests) {
   std::map<std::string, std::vector<const Contest*>> by_winner;
   for (const Contest* const contest : contests) {
-    by_winner[contest->entries.front().group->algorithm()].push_back(contest);
+    by_winner[contest->winner().algorithm()].push_back(contest);
   }
   std::vector<std::pair<std::string, std::vector<const Contest*>>> winners(by_winner.begin(), by_winner.end());
   std::ranges::stable_sort(winners, std::greater{}, [](const auto& winner) { return winner.second.size(); });
   std::vector<std::string> parts;
   for (const auto& [algorithm, won] : winners) {
-    double mean = 0.0, least = HUGE_VAL, most = 0.0;
-    std::size_t clear = 0;
-    for (const Contest* const contest : won) {
-      mean += std::log(contest->factor()) / static_cast<double>(won.size());
-      least = std::min(least, contest->factor());
-      most = std::max(most, contest->factor());
-      clear += contest->is_clear() ? 1 : 0;
-    }
+    std::vector<double> factors;
+    for (const Contest* const contest : won) factors.push_back(contest->factor());
+    const auto clear = std::ranges::count_if(won, &Contest::is_clear);
+    const auto [least, most] = std::ranges::minmax(factors);
     const std::string range = won.size() > 1 ? fmt::format(" on average, {:.3g} to {:.3g}", least, most) : "";
     parts.push_back(fmt::format("{}{} in {} of {} buckets, clearly in {}, {:.3g} times faster than the next{}",
                                 algorithm, parts.empty() ? " is the fastest" : "", won.size(), contests.size(), clear,
-                                std::exp(mean), range));
+                                std::exp(log_moments(factors).mean), range));
   }
   return fmt::format("{}: {}.", words_of(query), fmt::join(parts, "; "));
 }
@@ -85,8 +47,8 @@ std::string accuracy_sentence(const std::vector<RowGroup>& groups) {
   std::map<std::string, std::pair<double, double>> sums;  // algorithm: degrees, rows
   for (const RowGroup& group : groups) {
     if (group.is_special()) continue;
-    const auto angle = group.row().query == "respond" ? group.row().value("gamma_F_deg") : std::nullopt;
-    if (!angle || group.row().algorithm == "exact" || group.row().algorithm == "brute-force") continue;
+    const auto angle = group.fields().query == "respond" ? group.value("gamma_F_deg") : std::nullopt;
+    if (!angle || group.fields().algorithm == "exact" || group.fields().algorithm == "brute-force") continue;
     auto& [degrees, rows] = sums[group.algorithm()];
     degrees += *angle;
     rows += 1.0;
@@ -106,9 +68,9 @@ std::string fault_sentence(const std::vector<RowGroup>& groups) {
   std::map<std::string, std::size_t> by_algorithm;
   std::size_t faulty = 0;
   for (const RowGroup& group : groups) {
-    if (group.row().algorithm == "null" || faults_of(group.row()).empty()) continue;
+    if (group.fields().algorithm == "null" || group.faults.empty()) continue;
     ++faulty;
-    ++by_algorithm[group.row().algorithm];
+    ++by_algorithm[group.fields().algorithm];
   }
   if (groups.empty()) return {};
   if (faulty == 0) return fmt::format("All {} rows ran, with no failed and no wrong answer.", groups.size());
@@ -139,25 +101,26 @@ std::string stability_sentence(const Results& results) {
 }  // namespace
 
 Summary summarise(const Results& results, const std::vector<RowGroup>& groups) {
-  const std::vector<Contest> contests = contests_of(results, groups);
+  std::vector<Contest> all = contests(groups);
+  std::erase_if(all, [](const Contest& contest) { return contest.entries.size() < 2; });
   Summary summary;
   summary.winners = {.name = "winners",
                      .title = "Fastest without a fault",
-                     .columns = {"run", "query", "pair", "bucket", "fastest", "time_us", "next", "times_faster",
-                                 "verdict", "worst_pose"},
+                     .columns = {"run", "query", "poses", "pair", "bucket", "fastest", "time_us", "next",
+                                 "times_faster", "verdict", "worst_pose"},
                      .rows = {}};
-  for (const Contest& contest : contests) {
-    if (contest.entries.size() < 2) continue;
-    const Entry& first = contest.entries[0];
+  for (const Contest& contest : all) {
+    const RowGroup& first = contest.winner();
     summary.winners.rows.push_back(
-        {contest.run, contest.query, contest.pair, fmt::format("{} {:g} %", contest.kind, contest.percent),
-         first.group->algorithm(), first.time.value / 1e3, contest.entries[1].group->algorithm(), contest.factor(),
-         std::string(contest.is_clear() ? "clear" : "tie"), first.group->row().outliers.command_of("max_least_ns")});
+        {run_name(results, contest.file), contest.query, contest.order, contest.bodies, place_of(first.fields()),
+         first.algorithm(), first.mean_time()->value / 1e3, contest.entries[1]->algorithm(), contest.factor(),
+         std::string(contest.is_clear() ? "clear" : "tie"), first.row().outliers.command_of("max_least_ns")});
   }
   for (const char* const query : {"collide", "distance", "respond"}) {
     std::vector<const Contest*> of_query;
-    for (const Contest& contest : contests) {
-      if (contest.query == query && contest.entries.size() > 1) of_query.push_back(&contest);
+    for (const Contest& contest : all) {
+      const bool is_usual = contest.order == "random" && contest.winner().fields().body.empty();
+      if (contest.query == query && is_usual) of_query.push_back(&contest);
     }
     if (!of_query.empty()) summary.sentences.push_back(speed_sentence(query, of_query));
   }

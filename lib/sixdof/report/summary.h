@@ -4,10 +4,12 @@
 #include <vector>
 
 #include <sixdof/report/data_table.h>
-#include <sixdof/report/results.h>
-#include <sixdof/report/row_group.h>
+#include <sixdof/results/results.h>
+#include <sixdof/results/row_group.h>
 
 namespace sixdof::report {
+
+using namespace results;
 
 /// What a report says first.
 struct Summary {

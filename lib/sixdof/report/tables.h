@@ -3,15 +3,17 @@
 #include <vector>
 
 #include <sixdof/report/data_table.h>
-#include <sixdof/report/results.h>
-#include <sixdof/report/row_group.h>
 #include <sixdof/report/series.h>
+#include <sixdof/results/results.h>
+#include <sixdof/results/row_group.h>
 
 /// The tables that the figures draw, in long form: a line per value, texts in the columns by which a reader chooses. A
 /// table without rows belongs to a page without data. A column "worst_pose" has the command line that asks at the
 /// configuration where the row is at its worst; the page links it to its picture.
 
 namespace sixdof::report {
+
+using namespace results;
 
 /// Name of the pair whose times are means over all pairs of a run.
 inline constexpr const char* k_all_objects = "all objects (mean)";
@@ -27,8 +29,9 @@ DataTable response_errors_table(const Results& results, const std::vector<RowGro
 /// "scenario_measures": measures of responses along the scenarios, in their windows.
 DataTable scenario_measures_table(const Results& results, const std::vector<RowGroup>& groups);
 
-/// "frontier": time against every error of the points of `sixdof precision`, and of responses on buckets (means over a
-/// pair's buckets). `frontier` is yes for a point with no other that is faster and better by this error.
+/// "frontier": costs (time, memory, time to prepare) against every error of the points of `sixdof precision`, and of
+/// distances and responses on buckets. `frontier` is "yes" by results/frontier.h, among the points of the same run,
+/// pair, cost, error and bucket or study.
 DataTable frontier_table(const Results& results, const std::vector<RowGroup>& groups);
 
 /// "equal_time": what `sixdof equivalent` found, beside the values that the paper prints (scenario/README.md).

@@ -32,28 +32,22 @@ struct TimeLine {
   std::string faults, command, worst_pose;
 };
 
-std::string faults_text(const Row& row) {
-  std::string text;
-  for (const Fault& fault : faults_of(row)) text += (text.empty() ? "" : ", ") + to_string(fault);
-  return text;
-}
-
 std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
   const Row& row = group.row();
   TimeLine line{.run = run_name(results, row.file),
-                .query = row.query,
-                .kind = row.kind,
-                .pair = row.pair,
+                .query = row.fields.query,
+                .kind = to_string(row.fields.bucket->kind),
+                .pair = row.fields.pair,
                 .statistic = k_mean,
                 .algorithm = group.algorithm(),
-                .percent = *row.percent,
+                .percent = row.fields.bucket->percent,
                 .low = {},
                 .high = {},
-                .faults = faults_text(row),
+                .faults = to_string(group.faults),
                 .command = reproduction(row, results.files[row.file]),
                 .worst_pose = row.outliers.command_of(k_slowest)};
   std::vector<TimeLine> lines;
-  if (const auto time = processor_time(group)) {
+  if (const auto time = group.mean_time()) {
     line.us = time->value / 1e3;
     line.low = time->low / 1e3;
     line.high = time->high / 1e3;
@@ -61,7 +55,7 @@ std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
   }
   line.low = line.high = {};
   for (const Statistic& statistic : k_statistics) {
-    const auto ns = group.median(statistic.value);
+    const auto ns = group.value(statistic.value);
     if (!ns) continue;
     line.statistic = statistic.name;
     line.us = *ns / 1e3;
@@ -88,15 +82,14 @@ std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
     if (most < 2) continue;
     for (const auto& [algorithm, pairs] : algorithms) {
       if (pairs.size() < most) continue;
-      double mean = 0.0, squares = 0.0;
-      const auto n = static_cast<double>(pairs.size());
+      std::vector<double> times;
       const TimeLine* slowest = pairs.begin()->second;
       for (const auto& [pair, line] : pairs) {
-        mean += std::log(line->us) / n;
+        times.push_back(line->us);
         if (line->us > slowest->us) slowest = line;
       }
-      for (const auto& [pair, line] : pairs) squares += (std::log(line->us) - mean) * (std::log(line->us) - mean);
-      const double spread = std::sqrt(squares / (n - 1.0));
+      const auto [mean, variance, count] = log_moments(times);
+      const double spread = std::sqrt(variance);
       const auto& [run, query, kind, statistic, percent] = place;
       means.push_back({.run = run,
                        .query = query,
@@ -123,7 +116,7 @@ Cell optional_cell(std::optional<double> value) { return value ? Cell(*value) : 
 DataTable times_table(const Results& results, const std::vector<RowGroup>& groups) {
   std::vector<TimeLine> lines;
   for (const RowGroup& group : groups) {
-    if (!group.row().percent || group.row().pair.empty()) continue;
+    if (!group.fields().bucket || group.fields().pair.empty()) continue;
     for (TimeLine& line : lines_of(results, group)) lines.push_back(std::move(line));
   }
   std::vector<TimeLine> means = means_over_pairs(lines);

@@ -76,7 +76,7 @@
     shown() {
       const { resolved, choices, rows } = report.resolveChoices(this.figure, this.all, this.choices, this.data.metrics);
       const visible = this.meta.noChips ? rows : rows.filter((row) => !this.state.hidden.has(row[this.field()]));
-      return { resolved, choices, before: rows, rows: report.withFrontier(this.figure, visible, choices, this.data.metrics) };
+      return { resolved, choices, before: rows, rows: report.withAxes(this.figure, visible, choices, this.data.metrics) };
     }
 
     drawControls(resolved) {
@@ -120,7 +120,7 @@
       const { resolved, choices, before, rows } = this.shown();
       this.drawControls(resolved);
       this.drawChips(before);
-      this.missing.textContent = [missingText(before, rows, this.field()), report.frontierNote(this.figure, choices, this.data.metrics)].filter(Boolean).join("; ");
+      this.missing.textContent = missingText(before, rows, this.field());
       this.drawOutlier(rows);
       for (const view of this.views) view.finalize();
       this.views = [];

@@ -106,32 +106,14 @@ function linesOf(text) {
   return lines;
 }
 
-/** How bad a value is: the less the better; undefined where a metric does not rate. */
-function badness(value, { better }) {
-  if (typeof value !== "number") return undefined;
-  return { lower: Math.abs(value), higher: -value, "nearer 1": Math.abs(value - 1) }[better];
-}
-
-/** Gives rows of a figure with free axes their x, y and whether no other row without a fault is at most as bad in both
- * and less bad in one; of the metrics they keep these two. */
-sixdofReport.withFrontier = function (figure, rows, choices, metrics) {
+/** Gives rows of a figure with free axes their x and y; of the metrics they keep these two. */
+sixdofReport.withAxes = function (figure, rows, choices, metrics) {
   if (!figure.usermeta.axes) return rows;
   const names = figure.usermeta.axes.map((axis) => choices[axis.field]);
   if (names.some((name) => name === undefined)) return [];
   const isKept = ([column]) => !metrics[column] || names.includes(column);
-  const points = rows.filter((row) => names.every((name) => typeof row[name] === "number")).map((row) => (
-    { ...Object.fromEntries(Object.entries(row).filter(isKept)), x: row[names[0]], y: row[names[1]],
-      bad: row.faults ? [] : names.map((name) => badness(row[name], metrics[name])) }));
-  const rated = points.filter(({ bad }) => bad.length === 2 && bad.every((each) => each !== undefined));
-  const beats = ([a, b], [c, d]) => a <= c && b <= d && (a < c || b < d);
-  return points.map(({ bad, ...row }) => ({
-    ...row, frontier: rated.some((each) => each.bad === bad) && !rated.some((each) => beats(each.bad, bad)) ? "yes" : "no" }));
-};
-
-/** Why a figure with free axes has no frontier; empty if it has one. */
-sixdofReport.frontierNote = function (figure, choices, metrics) {
-  const unrated = (figure.usermeta.axes || []).map((axis) => choices[axis.field]).filter((name) => name && metrics[name].better === "neither");
-  return unrated.length ? `no frontier: ${unrated.join(" and ")} describes a row and does not rate it` : "";
+  return rows.filter((row) => names.every((name) => typeof row[name] === "number")).map((row) => (
+    { ...Object.fromEntries(Object.entries(row).filter(isKept)), x: row[names[0]], y: row[names[1]] }));
 };
 
 /** Rows with the value by which the worst is found: as they are or, with `against`, the difference from the row of the

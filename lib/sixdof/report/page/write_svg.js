@@ -38,7 +38,7 @@ function titleOf(meta, choices, facet) {
 async function write(id, figure) {
   const meta = figure.usermeta;
   const { choices, rows: chosen } = report.resolveChoices(figure, report.figureRows(figure, data.tables), data.choices, data.metrics);
-  const rows = report.withFrontier(figure, chosen, choices, data.metrics);
+  const rows = report.withAxes(figure, chosen, choices, data.metrics);
   if (rows.length === 0) return;
   for (const facet of meta.facet ? report.valuesOf(rows, meta.facet) : [null]) {
     const part = facet === null ? rows : rows.filter((row) => row[meta.facet] === facet);

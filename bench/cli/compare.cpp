@@ -1,0 +1,106 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/results/difference.h>
+
+#include "bench/cli/commands.h"
+#include "bench/cli/shared.h"
+#include "bench/common/json_text.h"
+#include "bench/common/run_guarded.h"
+
+namespace sixdof::cli {
+namespace {
+
+using results::Difference;
+using results::Differences;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* k_details =
+    R"(Versions and settings that differ, rows of one file only, answers that differ (errors, failures, angles), and counts of
+work that differ; no times, which `sixdof report BEFORE AFTER` compares. Numbers within rounding are the same: 1e-12, or
+1e-9 of the larger. Of repetitions the ranges are compared. Of a row that asked another number of configurations only
+that number is named.
+
+Keys of --json: versions[] {key, before, after}; only_before[], only_after[]; answers[] and work[] {row, counter,
+before, after}, with [least, largest], words of an error, or null; common_rows.)";
+
+struct Arguments {
+  std::string before, after;
+  bool json = false, fail_on_answers = false;
+};
+
+void print_text(const Differences& found, const Arguments& arguments) {
+  for (const auto& [key, before, after] : found.versions) {
+    fmt::print("version  {}: {} -> {}\n", key, before.empty() ? "none" : before, after.empty() ? "none" : after);
+  }
+  const auto print_rows = [](const std::string& file, const std::vector<std::string>& rows) {
+    for (const std::string& row : rows)
+      fmt::print("only in {}: {}\n", std::filesystem::path(file).stem().string(), row);
+  };
+  print_rows(arguments.before, found.only_before);
+  print_rows(arguments.after, found.only_after);
+  for (const Difference& each : found.values) {
+    fmt::print("{} {}: {} {} -> {}\n", each.kind == MetricKind::work ? "work    " : "ANSWER  ", each.row, each.counter,
+               text_before(each), text_after(each));
+  }
+  fmt::print("answers: {} counters of {} rows changed\n", found.changed_answers(), found.common_rows);
+}
+
+Json side(const std::optional<results::Range>& range, const std::string& error) {
+  if (range) return {range->least, range->largest};
+  return error.empty() ? Json(nullptr) : Json(error);
+}
+
+Json as_json(const Differences& found) {
+  Json document = {{"versions", Json::array()},      {"only_before", found.only_before},
+                   {"only_after", found.only_after}, {"answers", Json::array()},
+                   {"work", Json::array()},          {"common_rows", found.common_rows}};
+  for (const auto& [key, before, after] : found.versions) {
+    document["versions"].push_back({{"key", key}, {"before", before}, {"after", after}});
+  }
+  for (const Difference& each : found.values) {
+    document[each.kind == MetricKind::work ? "work" : "answers"].push_back(
+        {{"row", each.row},
+         {"counter", each.counter},
+         {"before", side(each.before, each.error_before)},
+         {"after", side(each.after, each.error_after)}});
+  }
+  return document;
+}
+
+void run(const Arguments& arguments) {
+  results::Results results;
+  results::read_results(arguments.before, results);
+  results::read_results(arguments.after, results);
+  const Differences found = differences(results, row_groups(results), 0, 1);
+  if (arguments.json) {
+    fmt::print("{}\n", json_text(as_json(found)));
+  } else {
+    print_text(found, arguments);
+  }
+  const std::size_t one_sided = found.only_before.size() + found.only_after.size();
+  if (arguments.fail_on_answers && found.changed_answers() + one_sided > 0) {
+    throw DefectsFound(fmt::format("{} answers changed, {} rows of one file only", found.changed_answers(), one_sided));
+  }
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app) {
+  auto* const command = app.add_subcommand("compare", "Say whether two results differ in answers, versions or work");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("before", arguments->before, "Result file (JSON)")->required()->type_name("BEFORE");
+  command->add_option("after", arguments->after, "Result file of the same rows")->required()->type_name("AFTER");
+  command->add_flag("--json", arguments->json, "As JSON");
+  command->add_flag("--fail-on-answers", arguments->fail_on_answers,
+                    "Exit code 3 if an answer changed or a row is in one file only");
+  command->callback([arguments] { run(*arguments); });
+  add_examples(*command, "sixdof compare results.json results.json --fail-on-answers",
+               "sixdof compare results.json results.json --json", k_details);
+}
+
+}  // namespace sixdof::cli

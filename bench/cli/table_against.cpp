@@ -1,0 +1,48 @@
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/results/rivals.h>
+#include "bench/cli/table.h"
+
+namespace sixdof::cli {
+namespace {
+
+std::string us(double ns) { return ns < 1e6 ? fmt::format("{:.3g}", ns / 1e3) : fmt::format("{:.0f}", ns / 1e3); }
+
+/// Enough digits for two of the least.
+std::string number(double value, double least) {
+  return fmt::format("{:.{}f}", value, least >= 99.5 ? 0 : least >= 0.95 ? 1 : 2);
+}
+
+}  // namespace
+
+Sheet sheet_against(const TableInput& input, const std::string& algorithm, const std::vector<std::string>& against) {
+  Sheet sheet;
+  sheet.title = fmt::format("{} against the fastest of {}", algorithm, fmt::join(against, ", "));
+  sheet.columns = {{"", "pair", true},        {"", "query", true}, {"", "place", true}, {"", algorithm + ", us"},
+                   {"", "fastest other, us"}, {"", "which", true}, {"", "ratio"},       {"", "least..greatest"}};
+  for (const results::Rivalry& each : results::rivalries(input.groups, algorithm, against)) {
+    const std::vector<double> ratios = each.ratios();
+    const auto [least, greatest] = std::ranges::minmax(ratios);
+    const std::set<std::string> names(each.rivals.begin(), each.rivals.end());
+    sheet.lines.push_back({each.bodies, each.query, each.place, us(results::median(each.own_ns)),
+                           us(results::median(each.rival_ns)), fmt::format("{}", fmt::join(names, ", ")),
+                           number(results::median(ratios), least),
+                           fmt::format("{}..{}", number(least, least), number(greatest, least))});
+  }
+  if (sheet.lines.empty()) {
+    throw BadArgument(fmt::format("no rows without a fault of both {} and {}", algorithm, fmt::join(against, ", ")));
+  }
+  for (const results::RowGroup& group : input.groups) {
+    const std::string& name = group.fields().algorithm;
+    if (group.faults.empty() || (name != algorithm && !results::fits(name, against))) continue;
+    sheet.notes.push_back(fmt::format("! {}: {}", group.row().name, results::to_string(group.faults)));
+  }
+  return sheet;
+}
+
+}  // namespace sixdof::cli

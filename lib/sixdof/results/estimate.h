@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+/// How sure a measured value is.
+
+namespace sixdof::results {
+
+/// A measured value with its 95 % interval.
+struct Estimate {
+  double value = 0.0;
+  double low = 0.0, high = 0.0;
+
+  /// A value without spread.
+  static Estimate exactly(double value) { return {value, value, value}; }
+};
+
+/// Whether the intervals have a point in common.
+inline bool overlap(const Estimate& a, const Estimate& b) { return a.low <= b.high && b.low <= a.high; }
+
+/// Values up to this one are errors of rounding: they count as equal, and answers that differ by no more are the same.
+inline constexpr double k_rounding = 1e-12;
+
+/// By how much the means of two runs of the same row differ on a machine that does other work: half of the interval of
+/// a mean that was measured once, and the least half of one that was measured in rounds.
+inline constexpr double k_run_to_run = 0.10;
+
+/// Repetitions from which an interval is estimated; fewer say too little about their spread.
+inline constexpr std::size_t k_fewest_repetitions = 3;
+
+/// The middle value, or the mean of the two in the middle. @param values at least one
+double median(std::vector<double> values);
+
+/// Mean and variance (over n - 1) of the logarithms of values.
+struct LogMoments {
+  double mean = 0.0, variance = 0.0;
+  double count = 0.0;
+};
+LogMoments log_moments(std::span<const double> values);
+
+/// The mean time of a row from that of each of its repetitions: the geometric mean with Student's interval of the
+/// logarithms from k_fewest_repetitions on, the median within k_run_to_run of fewer.
+/// @param times at least one, above zero
+Estimate mean_of_repetitions(std::vector<double> times);
+
+/// Median over rounds of timing with its interval by ranks (binomial, which is least to largest for up to 8 rounds), no
+/// narrower than k_run_to_run to either side; zero for no rounds.
+Estimate median_of_rounds(std::vector<double> times);
+
+}  // namespace sixdof::results

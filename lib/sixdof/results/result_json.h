@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace sixdof::results {
+
+/// The document of a result file, with strings and keys that are visible (base/visible_text.h): names and words in it
+/// are those of algorithms, meshes and machines. @param path named in messages
+/// @throws BadFile if it is empty or no JSON
+nlohmann::ordered_json parse_document(const std::string& text, const std::string& path);
+
+/// The words of nlohmann::json's exceptions behind "[json.exception.parse_error.101] ".
+std::string words_of(const nlohmann::json::exception& e);
+
+/// The text of a member, empty where there is none.
+std::string text_at(const nlohmann::ordered_json& object, const char* key);
+
+/// How many nanoseconds a time_unit of Google Benchmark has. @throws Error
+double nanoseconds(const std::string& time_unit);
+
+}  // namespace sixdof::results

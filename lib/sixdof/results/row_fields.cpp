@@ -1,0 +1,127 @@
+#include <sixdof/results/row_fields.h>
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sixdof/base/error.h>
+
+namespace sixdof::results {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The members that are text and are left out where empty.
+constexpr std::pair<const char*, std::string RowFields::*> k_texts[] = {
+    {"pair", &RowFields::pair},         {"order", &RowFields::order},   {"cache", &RowFields::cache},
+    {"scenario", &RowFields::scenario}, {"target", &RowFields::target}, {"question", &RowFields::question},
+    {"body", &RowFields::body},
+};
+
+/// The whole text as a number; empty if it is none.
+template <class Number>
+std::optional<Number> parse(const std::string& text) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stop == end ? std::optional(value) : std::nullopt;
+}
+
+Json number_or_text(const std::string& text) {
+  if (const auto integer = parse<std::int64_t>(text)) return *integer;
+  if (const auto number = parse<double>(text); number && std::isfinite(*number)) return *number;
+  return text;
+}
+
+Json settings_object(const std::string& settings) {
+  Json object = Json::object();
+  std::istringstream words(settings);
+  for (std::string word; std::getline(words, word, ',');) {
+    const std::size_t equals = word.find('=');
+    if (equals != std::string::npos) object[word.substr(0, equals)] = number_or_text(word.substr(equals + 1));
+  }
+  return object;
+}
+
+/// A conversion would wrap what is negative, and has no defined result for what is too large.
+std::uint64_t count_of(const Json& number) {
+  if (!number.is_number_unsigned()) throw BadArgument("not a whole number");
+  return number.get<std::uint64_t>();
+}
+
+std::string settings_text(const Json& object) {
+  if (!object.is_object()) throw BadArgument("not an object");
+  std::string text;
+  for (const auto& [name, value] : object.items()) {
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", name,
+                        value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return text;
+}
+
+/// Calls `read`; names the key where it throws.
+template <class Read>
+void read_key(const char* key, Read read) {
+  try {
+    read();
+  } catch (const Json::exception& e) {
+    throw Error(fmt::format("{}.{}: {}", k_row_fields_key, key, e.what()));
+  } catch (const BadArgument& e) {
+    throw Error(fmt::format("{}.{}: {}", k_row_fields_key, key, e.what()));
+  }
+}
+
+}  // namespace
+
+Json percent_number(BucketKey key) {
+  const auto whole = static_cast<int>(key.percent);
+  return whole == key.percent ? Json(whole) : Json(key.percent);
+}
+
+Json to_json_object(BucketKey key) { return {{"kind", to_string(key.kind)}, {"percent", percent_number(key)}}; }
+
+BucketKey bucket_of(const Json& object) {
+  const auto percent = object.at("percent").get<double>();
+  return BucketKey::parse(fmt::format("{}/{}", object.at("kind").get<std::string>(), percent));
+}
+
+Json to_json_object(const RowFields& fields) {
+  Json object = {{"query", fields.query}, {"algorithm", fields.algorithm}};
+  object["settings"] = settings_object(fields.settings);
+  for (const auto& [key, member] : k_texts) {
+    if (!(fields.*member).empty()) object[key] = fields.*member;
+  }
+  if (fields.isolated) object["isolated"] = true;
+  if (fields.bucket) {
+    object["bucket"] = to_json_object(*fields.bucket);
+  }
+  if (fields.sample_limit) object["sample_limit"] = *fields.sample_limit;
+  if (fields.configurations) object["configurations"] = *fields.configurations;
+  return object;
+}
+
+RowFields row_fields_of(const Json& object) {
+  RowFields fields;
+  read_key("query", [&] { object.at("query").get_to(fields.query); });
+  read_key("algorithm", [&] { object.at("algorithm").get_to(fields.algorithm); });
+  read_key("settings", [&] { fields.settings = settings_text(object.at("settings")); });
+  for (const auto& [key, member] : k_texts) {
+    if (object.contains(key)) read_key(key, [&, name = key, to = member] { object.at(name).get_to(fields.*to); });
+  }
+  if (object.contains("isolated")) read_key("isolated", [&] { object.at("isolated").get_to(fields.isolated); });
+  if (object.contains("bucket")) {
+    read_key("bucket", [&] { fields.bucket = bucket_of(object.at("bucket")); });
+  }
+  if (object.contains("sample_limit")) {
+    read_key("sample_limit", [&] { fields.sample_limit = count_of(object.at("sample_limit")); });
+  }
+  if (object.contains("configurations")) {
+    read_key("configurations", [&] { fields.configurations = count_of(object.at("configurations")); });
+  }
+  return fields;
+}
+
+}  // namespace sixdof::results

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <sixdof/configuration/bucket.h>
+
+namespace sixdof::results {
+
+/// What a row of sixdof-bench measures, so that no reader of a result file needs to take the row's name apart. A row's
+/// JSON holds it as an object under k_row_fields_key.
+struct RowFields {
+  std::string query;      ///< "collide", "distance" or "respond"; of other rows the family: "prepare", "scenario", ...
+  std::string algorithm;  ///< As in the registry; of a generate row the method.
+  std::string settings = {};  ///< Of the algorithm: "name=value,name=value".
+  std::string pair = {};      ///< Empty where the row belongs to none.
+  std::optional<BucketKey> bucket = {};
+  std::string order = {};     ///< Of a query's poses: "random", "path" (the grid's own order) or "motion".
+  std::string body = {};      ///< "convex_hull" where answers are not about the meshes; empty where they are.
+  std::string cache = {};     ///< Of a query: "warm", or "cold" where data leaves the caches before each.
+  std::string scenario = {};  ///< "II"; of a scene row its family.
+  std::string target = {};    ///< Of a generate row: "distance" or "volume".
+  bool isolated = false;      ///< The algorithm runs, and is timed, in a process of its own.
+  std::string question = {};  ///< Of a study's row: the kind of query that it asks.
+  /// The row asks at most so many configurations, and is compared with rows of the same limit; empty without one.
+  std::optional<std::uint64_t> sample_limit = {};
+  /// How many were asked or made; empty where the row has none or could not be run.
+  std::optional<std::uint64_t> configurations = {};
+};
+
+inline constexpr const char* k_row_fields_key = "sixdof";
+
+/// The percentage as a JSON number: whole ones without a point.
+nlohmann::ordered_json percent_number(BucketKey key);
+
+/// {"kind": "distance", "percent": 5} and back. @throws what nlohmann::json and BucketKey::parse() throw
+nlohmann::ordered_json to_json_object(BucketKey key);
+BucketKey bucket_of(const nlohmann::ordered_json& object);
+
+/// Keys are those of RowFields; empty members are left out. "settings"
+/// is an object by parameter, always there, with numbers as numbers.
+nlohmann::ordered_json to_json_object(const RowFields& fields);
+
+/// The inverse. @throws Error with the key, e.g. "sixdof.bucket: ..."
+RowFields row_fields_of(const nlohmann::ordered_json& object);
+
+}  // namespace sixdof::results
