@@ -86,6 +86,12 @@ def scene_steps():
     return steps
 
 
+def plan_step(model):
+    return Step(f"{model}.json", ["sixdof", "generate", "--a", model, "--grid", "paper", "--distances", "0:30", "--volumes",
+                                  "0:10", "--plan", "--shards", "64", "--plan-seconds", "25", "--threads", "1", "--json"],
+                0.6, prints=True)
+
+
 def recommend(file, *words):
     return Step(file, ["sixdof", "recommend", "--a", "elephant", "--b", "elephant", "--deadline", "1ms", *words, "-o",
                        "{out}"], 3)
@@ -112,6 +118,8 @@ def parts():
              [respond_rows("one.json", 1, ""), respond_rows("two.json", 1, "", "-p", "exact:threads=2"),
               respond_rows("cold.json", 1, "/order:motion"),
               respond_rows("warm.json", 1, "/order:motion", "-p", "exact:warm_start=on")]),
+        Part("plan", "what sets of the paper's size would take",
+             [plan_step(model) for model in ("torus-knot-10k", "elephant", "torus-knot-100k", "torus-knot-1m")]),
         Part("generate", "making a configuration: ray cast and FCL's advancement",
              [rows("generate.json", 8, f"--benchmark_filter=^generate/distance/.*:({GENERATED})$")]),
         Part("equivalent", "the paper's table: errors at equal time", equal_time),
@@ -137,10 +145,10 @@ def rounded(value):
 
 def compact(document):
     """A result file in short."""
-    if isinstance(document, list):  # of stress, or of scenes
+    if isinstance(document, list) or "benchmarks" not in document:  # of stress, scenes, and plans
         return rounded(document)
     short = {key: value for key, value in document.items() if key not in ("benchmarks", "context")}
-    kept = [{key: row[key] for key in KEPT if key in row} for row in document.get("benchmarks", [])]
+    kept = [{key: row[key] for key in KEPT if key in row} for row in document["benchmarks"]]
     if "collection" in document or "growth" in document:
         kept = []  # their summaries have what is published
     return rounded({"context": context_of(document), "benchmarks": kept, **short})
@@ -166,6 +174,8 @@ def as_text(document):
         return "[\n" + ",\n".join(json.dumps(each, separators=(",", ":")) for each in entries) + "]"
     if isinstance(document, list):
         return lines(document) + "\n"
+    if "benchmarks" not in document:
+        return json.dumps(document, indent=1) + "\n"
     rest = {key: value for key, value in document.items() if key != "benchmarks"}
     inside = ",\n".join(f"{json.dumps(key)}: {json.dumps(value, separators=(',', ':'))}" for key, value in rest.items())
     return "{" + inside + ',\n"benchmarks": ' + lines(document["benchmarks"]) + "}\n"
