@@ -5,7 +5,8 @@ A mark in a Markdown file names where its text comes from:
   <!--= sixdof table pairs/pairs.json --wide --markdown -->TEXT<!--=-->     what the command prints, run in bench/published
   <!--= collection/results.json collection.against_exact[query=distance,algorithm=fcl-rss].ratio .1f -->11.3<!--=-->
                                                              a value of a file, by a path of keys, in Python's format
-  <!--= sixdof ... | head 12 -->TEXT<!--=-->                 the first lines; `grep WORDS` for lines that have the words
+  <!--= sixdof ... | head 12 -->TEXT<!--=-->                 the first lines; `grep WORDS` for lines that have the words;
+                                                             `tables` for Markdown tables, their titles and faults
   <!--= parts pairs.date -->TEXT<!--=-->                     a fact of a part: commit, date, machine, commands
 
 `KEY[NAME=VALUE,...]` takes the one element of a list whose members are these. A text that begins with a line break stands on
@@ -71,8 +72,12 @@ def printed_by(words, program):
     lines = done.stdout.strip("\n").splitlines()
     for each in filters:
         what, *arguments = shlex.split(each)
-        lines = (lines[:int(arguments[0])] if what == "head" else
-                 [line for line in lines if any(text in line for text in arguments)])
+        if what == "head":
+            lines = lines[:int(arguments[0])]
+        elif what == "tables":
+            lines = [line for line in lines if not line or line.startswith(("|", "#", "- !", "- \\!"))]
+        else:
+            lines = [line for line in lines if any(text in line for text in arguments)]
     return "\n".join(lines)
 
 
