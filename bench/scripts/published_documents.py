@@ -7,6 +7,7 @@ A mark in a Markdown file names where its text comes from:
                                                              a value of a file, by a path of keys, in Python's format
   <!--= sixdof ... | head 12 -->TEXT<!--=-->                 the first lines; `grep WORDS` for lines that have the words;
                                                              `tables` for Markdown tables, their titles and faults
+  <!--= fenced recommend/random.txt | head 4 -->TEXT<!--=--> what a command printed when it was measured
   <!--= parts pairs.date -->TEXT<!--=-->                     a fact of a part: commit, date, machine, commands
 
 `KEY[NAME=VALUE,...]` takes the one element of a list whose members are these. A text that begins with a line break stands on
@@ -63,32 +64,42 @@ def value_of(words):
     return format(value, words[2]) if len(words) > 2 else str(value)
 
 
-def printed_by(words, program):
-    """What `sixdof WORDS [| head N] [| grep TEXT]` prints, in bench/published. @raises Stale"""
-    command, *filters = " ".join(shlex.quote(word) for word in words).split(" '|' ")
-    done = subprocess.run([program, *shlex.split(command)[1:]], cwd=PUBLISHED, capture_output=True, text=True, check=False)
+def output_of(command, program):
+    """What a command prints in bench/published, or what stands in a text file there. @raises Stale"""
+    if command[0] != "sixdof":
+        file = PUBLISHED / command[0]
+        if not file.exists():
+            raise Stale(f"{file.relative_to(ROOT)} is not there")
+        return file.read_text(encoding="utf-8")
+    done = subprocess.run([program, *command[1:]], cwd=PUBLISHED, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise Stale(f"{command}: {done.stderr.strip()}")
-    lines = done.stdout.strip("\n").splitlines()
-    for each in filters:
-        what, *arguments = shlex.split(each)
-        if what == "head":
-            lines = lines[:int(arguments[0])]
-        elif what == "tables":
-            lines = [line for line in lines if not line or line.startswith(("|", "#", "- !", "- \\!"))]
-        else:
-            lines = [line for line in lines if any(text in line for text in arguments)]
-    return "\n".join(lines)
+        raise Stale(f"{shlex.join(command)}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def chosen_lines(lines, words):
+    """The lines that a filter keeps."""
+    name, *arguments = words
+    if name == "head":
+        return lines[:int(arguments[0])]
+    if name == "tables":
+        return [line for line in lines if not line or line.startswith(("|", "#", "- !", "- \\!"))]
+    if name == "grep":
+        return [line for line in lines if any(text in line for text in arguments)]
+    raise Stale(f"there is no filter '{name}'")
 
 
 def text_of(what, program):
     """What stands in a mark. @raises Stale"""
-    words = shlex.split(what)
-    fenced = words[0] == "fenced"
-    words = words[fenced:]
-    if words[0] != "sixdof":
-        return value_of(words)
-    text = printed_by(words, program)
+    parts = [shlex.split(part) for part in re.split(r" \| ", what)]
+    fenced = parts[0][0] == "fenced"
+    command = parts[0][fenced:]
+    if command[0] != "sixdof" and not command[0].endswith(".txt"):
+        return value_of(command)
+    lines = output_of(command, program).strip("\n").splitlines()
+    for words in parts[1:]:
+        lines = chosen_lines(lines, words)
+    text = "\n".join(lines).strip("\n")
     return f"\n```\n{text}\n```\n" if fenced else f"\n{text}\n"
 
 

@@ -93,8 +93,8 @@ def plan_step(model):
 
 
 def recommend(file, *words):
-    return Step(file, ["sixdof", "recommend", "--a", "elephant", "--b", "elephant", "--deadline", "1ms", *words, "-o",
-                       "{out}"], 3)
+    return Step(file, ["sixdof", "recommend", "--a", "elephant", "--b", "elephant", "--deadline", "1ms", *words], 3,
+                prints=True)
 
 
 def parts():
@@ -112,8 +112,8 @@ def parts():
              [Step("precision.json", ["sixdof", "precision", "--a", "elephant", "--b", "elephant", "--budget", "4min", "-o",
                                       "{out}"], 4)]),
         Part("recommend", "the choice under a deadline of 1 ms",
-             [recommend("random.json"), recommend("threads.json", "--threads", "2"),
-              recommend("motion.json", "--order", "motion")]),
+             [recommend("random.txt"), recommend("threads.txt", "--threads", "2"),
+              recommend("motion.txt", "--order", "motion")]),
         Part("threads", "the exact response by one and two threads, and along motions",
              [respond_rows("one.json", 1, ""), respond_rows("two.json", 1, "", "-p", "exact:threads=2"),
               respond_rows("cold.json", 1, "/order:motion"),
@@ -184,7 +184,10 @@ def as_text(document):
 def write_short(part, folder: pathlib.Path, published: pathlib.Path, write):
     """Writes published/PART/FILE of every result of a part. @param write (file, text) -> None, whole or not at all"""
     for step in part.steps:
-        if step.file.endswith(".json"):
-            target = published / part.name / pathlib.Path(step.file).name
-            target.parent.mkdir(parents=True, exist_ok=True)
-            write(target, as_text(compact(json.loads((folder / step.file).read_text(encoding="utf-8")))))
+        file = folder / step.file
+        if file.suffix not in (".json", ".txt"):
+            continue  # a scene, which a later step reads
+        text = file.read_text(encoding="utf-8")
+        target = published / part.name / file.name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        write(target, as_text(compact(json.loads(text))) if file.suffix == ".json" else text)
