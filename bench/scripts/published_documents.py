@@ -5,7 +5,8 @@ A mark in a Markdown file names where its text comes from:
   <!--= sixdof table pairs/pairs.json --wide --markdown -->TEXT<!--=-->     what the command prints, run in bench/published
   <!--= collection/results.json collection.against_exact[query=distance,algorithm=fcl-rss].ratio .1f -->11.3<!--=-->
                                                              a value of a file, by a path of keys, in Python's format
-  <!--= sixdof ... | head 12 -->TEXT<!--=-->                 the first lines; `grep WORDS` for lines that have the words;
+  <!--= sixdof ... | head 12 -->TEXT<!--=-->                 the first lines; `grep WORDS` for lines that have the words,
+                                                             `from WORDS`, `until WORDS` for lines from or before one,
                                                              `tables` for Markdown tables, their titles and faults
   <!--= fenced recommend/random.txt | head 4 -->TEXT<!--=--> what a command printed when it was measured
   <!--= parts pairs.date -->TEXT<!--=-->                     a fact of a part: commit, date, machine, commands
@@ -86,6 +87,11 @@ def chosen_lines(lines, words):
         return [line for line in lines if not line or line.startswith(("|", "#", "- !", "- \\!"))]
     if name == "grep":
         return [line for line in lines if any(text in line for text in arguments)]
+    if name in ("from", "until"):
+        places = [i for i, line in enumerate(lines) if arguments[0] in line]
+        if not places:
+            raise Stale(f"no line has '{arguments[0]}'")
+        return lines[places[0]:] if name == "from" else lines[:places[0]]
     raise Stale(f"there is no filter '{name}'")
 
 

@@ -57,17 +57,14 @@ def respond_rows(file, minutes, order, *words):
                 f"--benchmark_filter=^respond/algorithm:exact/.*volume:(01|10){order}$", *words)
 
 
-def collection(minutes):
-    words = ["bench/collection", "--out", "{folder}/collection", "--jobs", "1", "--distances", "0,1,5,10,20,30", "--volumes", "1,5,10",
-             "--grid", "so3:4:2", "--sample", "8", "--algorithms",
-             ",".join(["exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE]), "--budget", f"{minutes}min"]
-    return Step("collection/results.json", words, minutes)
-
-
-def growth(minutes):
-    words = ["bench/growth", "--out", "{folder}/growth", "--jobs", "1", "--grid", "so3:4:2", "--sample", "8", "--algorithms",
-             ",".join(["exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE]), "--budget", f"{minutes}min"]
-    return Step("growth/growth.json", words, minutes)
+def object_steps(script, minutes, *words):
+    """Steps of bench/collection or bench/growth: the measurement, and its tables."""
+    folder = ["--out", f"{{folder}}/{script}"]
+    algorithms = ",".join(["exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE])
+    return [Step(f"{script}/{'results' if script == 'collection' else script}.json",
+                 [f"bench/{script}", *folder, "--jobs", "1", "--grid", "so3:4:2", "--sample", "8", *words, "--algorithms",
+                  algorithms, "--budget", f"{minutes}min"], minutes),
+            Step(f"{script}/tables.txt", [f"bench/{script}", *folder, "--report"], 0.1, prints=True)]
 
 
 def scene_steps():
@@ -124,10 +121,11 @@ def parts():
              [rows("generate.json", 8, f"--benchmark_filter=^generate/distance/.*:({GENERATED})$")]),
         Part("equivalent", "the paper's table: errors at equal time", equal_time),
         Part("scenes", "scenes of 1,000 and 100,000 bodies", scene_steps()),
-        Part("growth", "growth with the number of triangles", [growth(20)]),
+        Part("growth", "growth with the number of triangles", object_steps("growth", 20)),
         Part("pairs", "every algorithm on four pairs",
              [rows("pairs.json", 30, "--suite", "all-algorithms", "--sample", "200", "--budget", "1800")]),
-        Part("collection", "every algorithm on the objects of the collection", [collection(60)]),
+        Part("collection", "every algorithm on the objects of the collection",
+             object_steps("collection", 60, "--distances", "0,1,5,10,20,30", "--volumes", "1,5,10")),
     ]
 
 
