@@ -114,10 +114,13 @@ def summary_of(units):
     for partner, query in sorted({(key[0], key[1]) for key in times}):
         for algorithm, by_object in sorted(ratios_to_reference(times, partner, query).items()):
             worst = sorted(by_object, key=by_object.get, reverse=True)[:WORST]
+            least = min(by_object, key=by_object.get)
             against.append({"partner": partner, "query": query, "algorithm": algorithm, "objects": len(by_object),
                             "ratio": geometric_mean(by_object.values()), "p10": quantile(by_object.values(), 0.1),
                             "p90": quantile(by_object.values(), 0.9),
-                            "worst": [{"object": name, "ratio": by_object[name]} for name in worst]})
+                            "worst": [{"object": name, "ratio": by_object[name]} for name in worst],
+                            "faster": sum(ratio < 1.0 for ratio in by_object.values()),
+                            "least": {"object": least, "ratio": by_object[least]}})
     not_measured = [{"unit": unit["unit"], "algorithm": algorithm, "why": record["status"]}
                     for unit in units for algorithm, record in unit["algorithms"].items() if record["status"] != "ok"]
     sets = [{"unit": unit["unit"], "why": unit["set"]["status"]} for unit in units if unit["set"]["status"] != "ok"]
@@ -167,13 +170,14 @@ def table(summary):
                 cells.append(text_of(found, most) if found else "-")
             lines.append(f"| `{algorithm}` | " + " | ".join(cells) + " |")
     lines += ["", f"Time / time of `{REFERENCE}` on the same object (geometric mean over buckets and objects):", "",
-              "| partner | query | algorithm | objects | ratio | 10 %..90 % | worst objects |", "|---|---|---|---|---|---|---|"]
+              "| partner | query | algorithm | objects | ratio | 10 %..90 % | faster on | worst objects |",
+             "|---|---|---|---|---|---|---|---|"]
     for one in summary["against_" + REFERENCE]:
         if one["algorithm"] == REFERENCE:
             continue
         worst = ", ".join(f"{each['object']} {each['ratio']:.3g}" for each in one["worst"])
         lines.append(f"| {one['partner']} | {one['query']} | `{one['algorithm']}` | {one['objects']} | "
-                     f"{one['ratio']:.3g} | {one['p10']:.3g}..{one['p90']:.3g} | {worst} |")
+                     f"{one['ratio']:.3g} | {one['p10']:.3g}..{one['p90']:.3g} | {one['faster']} | {worst} |")
     return lines + hardness_table(summary["hardness"])
 
 

@@ -1,0 +1,157 @@
+"""Figures in the documents of this project that come from bench/published, and the check that they are those.
+
+A mark in a Markdown file names where its text comes from:
+
+  <!--= sixdof table pairs/pairs.json --wide --markdown -->TEXT<!--=-->     what the command prints, run in bench/published
+  <!--= collection/results.json collection.against_exact[query=distance,algorithm=fcl-rss].ratio .1f -->11.3<!--=-->
+                                                             a value of a file, by a path of keys, in Python's format
+  <!--= sixdof ... | head 12 -->TEXT<!--=-->                 the first lines; `grep WORDS` for lines that have the words,
+                                                             `from WORDS`, `until WORDS` for lines from or before one,
+                                                             `tables` for Markdown tables, their titles and faults
+  <!--= fenced recommend/random.txt | head 4 -->TEXT<!--=--> what a command printed when it was measured
+  <!--= parts pairs.date -->TEXT<!--=-->                     a fact of a part: commit, date, machine, commands
+
+`KEY[NAME=VALUE,...]` takes the one element of a list whose members are these. A text that begins with a line break stands on
+lines of its own; `fenced` in front of a command puts it into a code block.
+"""
+
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PUBLISHED = ROOT / "bench/published"
+FACTS = PUBLISHED / "parts.json"
+PROGRAM = ROOT / "build/release/bin/sixdof"
+MARK = re.compile(r"<!--= (?P<what>.*?) -->(?P<text>.*?)<!--=-->", re.S)
+STEP = re.compile(r"(?P<key>[^.\[\]]+)(\[(?P<chosen>[^\]]*)\])?\.?")
+
+
+class Stale(Exception):
+    """A mark that cannot be filled, or published files of several commits."""
+
+
+def facts():
+    """{part: commit, date, machine, ...}; empty where nothing is published."""
+    return json.loads(FACTS.read_text(encoding="utf-8")) if FACTS.exists() else {}
+
+
+def selected(value, path):
+    """The element of a JSON value that a path names. @raises Stale"""
+    for step in STEP.finditer(path):
+        key, chosen = step["key"], step["chosen"]
+        if not isinstance(value, dict) or key not in value:
+            raise Stale(f"{path}: there is no '{key}'")
+        value = value[key]
+        if chosen is None:
+            continue
+        wanted = dict(pair.split("=", 1) for pair in chosen.split(","))
+        found = [each for each in value if all(str(each.get(name)) == text for name, text in wanted.items())]
+        if len(found) != 1:
+            raise Stale(f"{path}: {len(found)} elements are [{chosen}], not one")
+        value = found[0]
+    return value
+
+
+def value_of(words):
+    """FILE PATH [FORMAT] as text."""
+    file = FACTS if words[0] == "parts" else PUBLISHED / words[0]
+    if not file.exists():
+        raise Stale(f"{file.relative_to(ROOT)} is not there")
+    value = selected(json.loads(file.read_text(encoding="utf-8")), words[1])
+    return format(value, words[2]) if len(words) > 2 else str(value)
+
+
+def output_of(command, program):
+    """What a command prints in bench/published, or what stands in a text file there. @raises Stale"""
+    if command[0] != "sixdof":
+        file = PUBLISHED / command[0]
+        if not file.exists():
+            raise Stale(f"{file.relative_to(ROOT)} is not there")
+        return file.read_text(encoding="utf-8")
+    done = subprocess.run([program, *command[1:]], cwd=PUBLISHED, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise Stale(f"{shlex.join(command)}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def chosen_lines(lines, words):
+    """The lines that a filter keeps."""
+    name, *arguments = words
+    if name == "head":
+        return lines[:int(arguments[0])]
+    if name == "tables":
+        return [line for line in lines if not line or line.startswith(("|", "#", "- !", "- \\!"))]
+    if name == "grep":
+        return [line for line in lines if any(text in line for text in arguments)]
+    if name in ("from", "until"):
+        places = [i for i, line in enumerate(lines) if arguments[0] in line]
+        if not places:
+            raise Stale(f"no line has '{arguments[0]}'")
+        return lines[places[0]:] if name == "from" else lines[:places[0]]
+    raise Stale(f"there is no filter '{name}'")
+
+
+def text_of(what, program):
+    """What stands in a mark. @raises Stale"""
+    parts = [shlex.split(part) for part in re.split(r" \| ", what)]
+    fenced = parts[0][0] == "fenced"
+    command = parts[0][fenced:]
+    if command[0] != "sixdof" and not command[0].endswith(".txt"):
+        return value_of(command)
+    lines = output_of(command, program).strip("\n").splitlines()
+    for words in parts[1:]:
+        lines = chosen_lines(lines, words)
+    text = "\n".join(lines).strip("\n")
+    return f"\n```\n{text}\n```\n" if fenced else f"\n{text}\n"
+
+
+def documents():
+    """The Markdown files with marks."""
+    listed = subprocess.run(["git", "ls-files", "*.md"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    return [file for file in (ROOT / name for name in listed.split()) if "<!--= " in file.read_text(encoding="utf-8")]
+
+
+def filled(file, program):
+    """The file's text with all marks filled anew. @raises Stale with the file and the mark"""
+    def fill(mark):
+        try:
+            return f"<!--= {mark['what']} -->{text_of(mark['what'], program)}<!--=-->"
+        except Stale as stale:
+            raise Stale(f"{file.relative_to(ROOT)}: <!--= {mark['what']} -->: {stale}") from stale
+    return MARK.sub(fill, file.read_text(encoding="utf-8"))
+
+
+def one_commit():
+    """@raises Stale if published parts are of several commits"""
+    commits = {part["commit"] for part in facts().values()}
+    if len(commits) != 1:
+        raise Stale(f"published results are of {len(commits)} commits: {', '.join(sorted(commits))}; run bench/publish")
+
+
+def write(program=PROGRAM):
+    """Fills all marks. @returns exit code"""
+    one_commit()
+    for file in documents():
+        text = filled(file, program)
+        if text != file.read_text(encoding="utf-8"):
+            file.write_text(text, encoding="utf-8")
+            print(f"{file.relative_to(ROOT)}: written")
+    return 0
+
+
+def check(program=PROGRAM):
+    """Names the marks that are stale. @returns exit code, 1 if there is one"""
+    one_commit()
+    stale = 0
+    for file in documents():
+        for mark in MARK.finditer(file.read_text(encoding="utf-8")):
+            now = text_of(mark["what"], program)
+            if now != mark["text"]:
+                stale += 1
+                print(f"{file.relative_to(ROOT)}: <!--= {mark['what']} -->: says {mark['text'][:200]!r}, "
+                      f"published is {now[:200]!r}", file=sys.stderr)
+    return 1 if stale else 0

@@ -1,0 +1,191 @@
+"""What `bench/publish` measures: its parts, the commands of each, and what of their results is kept.
+
+Whole results stand in the folder of a run. bench/published/PART/FILE.json has them in short: the same formats, which
+`sixdof table` and `sixdof report` read, with the fields and counters below only. bench/published/parts.json says of each part
+commit, date, machine and commands.
+"""
+
+import dataclasses
+import json
+import pathlib
+
+# Counters of rows that tables and figures show. All others, and the worst configurations of rows, stay in the run.
+KEPT = ["name", "run_name", "run_type", "sixdof", "error_occurred", "error_message", "real_time", "cpu_time", "time_unit",
+        "cpu_time_low", "cpu_time_high", "configurations", "judged", "failed", "crashed", "timed_out", "out_of_memory",
+        "mismatch", "misses", "p50_ns", "p99_ns", "p999_ns", "p99_least_ns", "p999_least_ns", "max_ns", "max_least_ns",
+        "over_1ms", "error_rms", "error_max", "gamma_F_deg", "gamma_F_deg_low", "gamma_F_deg_high", "gamma_F_p95_deg",
+        "gamma_max_F_deg", "gamma_T_deg", "magnitude_error_F", "magnitude_error_T", "volume_error_mean", "bytes",
+        "prepare_ns", "ns_per_configuration", "triangles", "on_frontier", "label"]
+DIGITS = 4  # Significant digits of the numbers that are kept.
+FCL = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts"]
+APPROXIMATE = ["ist", "ist-descent", "vps", "vps-field"]
+SETS = ["elephant", "bunny", "armadillo", "ship", "torus-knot-1m"]
+SCENES = ["cube", "pairs", "pile", "robot", "dust", "still", "all-move", "giant", "clusters", "shuffled"]
+LARGE_SCENES = ["cube", "shuffled", "still", "all-move", "dust", "clusters"]
+GENERATED = "elephant|bunny|(torus-knot|bumpy-sphere|gyroid-ball)-(10k|100k|1m)"
+
+
+@dataclasses.dataclass(frozen=True)
+class Step:
+    """One command, and the file that it leaves in the folder of the run."""
+    file: str
+    command: list    # {out} stands for the file, {folder} for the folder of the run.
+    minutes: float   # That it takes on two cores of 2.5 GHz; for --plan.
+    resumes: bool = False  # A program that writes FILE.journal and continues it with --resume.
+    prints: bool = False   # What the command prints is the file.
+
+
+@dataclasses.dataclass(frozen=True)
+class Part:
+    name: str
+    about: str
+    steps: list
+
+    @property
+    def minutes(self):
+        return sum(step.minutes for step in self.steps)
+
+
+def rows(file, minutes, *words):
+    """A step of sixdof-bench on committed sets."""
+    return Step(file, ["sixdof-bench", *words, "{out}"], minutes, resumes=True)
+
+
+def respond_rows(file, minutes, order, *words):
+    sets = [word for name in SETS for word in ("--set", f"fixtures/{name}.h5")]
+    return rows(file, minutes, "--no-manifest", *sets, "--sample", "512",
+                f"--benchmark_filter=^respond/algorithm:exact/.*volume:(01|10){order}$", *words)
+
+
+def object_steps(script, minutes, *words):
+    """Steps of bench/collection or bench/growth: the measurement, and its tables."""
+    folder = ["--out", f"{{folder}}/{script}"]
+    algorithms = ",".join(["exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE])
+    return [Step(f"{script}/{'results' if script == 'collection' else script}.json",
+                 [f"bench/{script}", *folder, "--jobs", "1", "--grid", "so3:4:2", "--sample", "8", *words, "--algorithms",
+                  algorithms, "--budget", f"{minutes}min"], minutes),
+            Step(f"{script}/tables.txt", [f"bench/{script}", *folder, "--report"], 0.1, prints=True)]
+
+
+def scene_steps():
+    steps = []
+    for family in SCENES:
+        file = f"{family}.h5"
+        steps += [Step(file, ["sixdof", "scene", "make", family, "-n", "1000", "--frames", "10", "-o", "{out}"], 0.1),
+                  Step(f"{family}.json", ["sixdof", "scene", "play", "{folder}/" + file, "--question",
+                                          "touching,near,closest", "--threads", "1", "--json"], 1.0, prints=True)]
+    for family in LARGE_SCENES:
+        file = f"{family}-100k.h5"
+        steps += [Step(file, ["sixdof", "scene", "make", family, "-n", "100000", "--frames", "4", "-o", "{out}"], 0.3),
+                  Step(f"{family}-100k.json", ["sixdof", "scene", "play", "{folder}/" + file, "--question", "touching",
+                                               "--algorithms", "exact,fcl-aabb-tree,fcl-aabb-tree-array,ode-sap",
+                                               "--threads", "1", "--json"], 1.0, prints=True)]
+    return steps
+
+
+def plan_step(model):
+    return Step(f"{model}.json", ["sixdof", "generate", "--a", model, "--grid", "paper", "--distances", "0:30", "--volumes",
+                                  "0:10", "--plan", "--shards", "64", "--plan-seconds", "25", "--threads", "1", "--json"],
+                0.6, prints=True)
+
+
+def recommend(file, *words):
+    return Step(file, ["sixdof", "recommend", "--a", "elephant", "--b", "elephant", "--deadline", "1ms", *words], 3,
+                prints=True)
+
+
+def parts():
+    """All parts, the shortest first."""
+    equal_time = [Step(f"{scenario}-{algorithm}.json",
+                       ["sixdof", "equivalent", "--scenario", scenario, "--algorithm", algorithm, "--tau", "0.9ms,0.3ms",
+                        "--reach", "2" if algorithm == "vps" else "1", "-o", "{out}"], 2)
+                  for scenario in ("Ia", "II", "III") for algorithm in ("vps", "ist")]
+    return [
+        Part("stress", "hard cases: who breaks, on what",
+             [Step("stress.json", ["sixdof", "stress", "-o", "{out}"], 1.5)]),
+        Part("scenarios", "force and torque along the paper's paths, default settings",
+             [rows("scenarios.json", 4, "--benchmark_filter=^scenario/")]),
+        Part("precision", "run time against error on the elephants",
+             [Step("precision.json", ["sixdof", "precision", "--a", "elephant", "--b", "elephant", "--budget", "4min", "-o",
+                                      "{out}"], 4)]),
+        Part("recommend", "the choice under a deadline of 1 ms",
+             [recommend("random.txt"), recommend("threads.txt", "--threads", "2"),
+              recommend("motion.txt", "--order", "motion")]),
+        Part("threads", "the exact response by one and two threads, and along motions",
+             [respond_rows("one.json", 1, ""), respond_rows("two.json", 1, "", "-p", "exact:threads=2"),
+              respond_rows("cold.json", 1, "/order:motion"),
+              respond_rows("warm.json", 1, "/order:motion", "-p", "exact:warm_start=on")]),
+        Part("plan", "what sets of the paper's size would take",
+             [plan_step(model) for model in ("torus-knot-10k", "elephant", "torus-knot-100k", "torus-knot-1m")]),
+        Part("generate", "making a configuration: ray cast and FCL's advancement",
+             [rows("generate.json", 8, f"--benchmark_filter=^generate/distance/.*:({GENERATED})$")]),
+        Part("equivalent", "the paper's table: errors at equal time", equal_time),
+        Part("scenes", "scenes of 1,000 and 100,000 bodies", scene_steps()),
+        Part("growth", "growth with the number of triangles", object_steps("growth", 20)),
+        Part("pairs", "every algorithm on four pairs",
+             [rows("pairs.json", 30, "--suite", "all-algorithms", "--sample", "200", "--budget", "1800")]),
+        Part("collection", "every algorithm on the objects of the collection",
+             object_steps("collection", 60, "--distances", "0,1,5,10,20,30", "--volumes", "1,5,10")),
+    ]
+
+
+def rounded(value):
+    """Numbers of a JSON value with DIGITS significant digits."""
+    if isinstance(value, bool):
+        return value
+    if isinstance(value, float):
+        short = float(f"{value:.{DIGITS}g}")
+        return int(short) if short.is_integer() and abs(short) < 1e15 else short
+    if isinstance(value, dict):
+        return {key: rounded(each) for key, each in value.items()}
+    return [rounded(each) for each in value] if isinstance(value, list) else value
+
+
+def compact(document):
+    """A result file in short."""
+    if isinstance(document, list) or "benchmarks" not in document:  # of stress, scenes, and plans
+        return rounded(document)
+    short = {key: value for key, value in document.items() if key not in ("benchmarks", "context")}
+    kept = [{key: row[key] for key in KEPT if key in row} for row in document["benchmarks"]]
+    if "collection" in document or "growth" in document:
+        kept = []  # their summaries have what is published
+    return rounded({"context": context_of(document), "benchmarks": kept, **short})
+
+
+def context_of(document):
+    """What a table or a page of the file needs, without this machine's paths."""
+    kept = document.get("context", {})
+    return {key: value for key, value in kept.items()
+            if key in ("date", "num_cpus", "mhz_per_cpu", "commit", "sixdof_build", "seed", "arguments") or
+            key.startswith("algorithm:") or key.startswith("settings:")}
+
+
+def commands_of(part):
+    """The part's command lines, without the files that they write."""
+    return [" ".join(word for word in step.command if word not in ("-o", "{out}")).replace("{folder}/", "")
+            for step in part.steps]
+
+
+def as_text(document):
+    """JSON with a line for each row, so that a change of one row is a change of one line."""
+    def lines(entries):
+        return "[\n" + ",\n".join(json.dumps(each, separators=(",", ":")) for each in entries) + "]"
+    if isinstance(document, list):
+        return lines(document) + "\n"
+    if "benchmarks" not in document:
+        return json.dumps(document, indent=1) + "\n"
+    rest = {key: value for key, value in document.items() if key != "benchmarks"}
+    inside = ",\n".join(f"{json.dumps(key)}: {json.dumps(value, separators=(',', ':'))}" for key, value in rest.items())
+    return "{" + inside + ',\n"benchmarks": ' + lines(document["benchmarks"]) + "}\n"
+
+
+def write_short(part, folder: pathlib.Path, published: pathlib.Path, write):
+    """Writes published/PART/FILE of every result of a part. @param write (file, text) -> None, whole or not at all"""
+    for step in part.steps:
+        file = folder / step.file
+        if file.suffix not in (".json", ".txt"):
+            continue  # a scene, which a later step reads
+        text = file.read_text(encoding="utf-8")
+        target = published / part.name / file.name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        write(target, as_text(compact(json.loads(text))) if file.suffix == ".json" else text)

@@ -1,0 +1,110 @@
+"""Figures in documents are those of bench/published: `bench/publish --check`, on this repository and on planted faults.
+
+usage: publish_test.py SIXDOF
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SIXDOF = sys.argv.pop(1)
+sys.path.insert(0, str(ROOT / "bench/scripts"))
+sys.dont_write_bytecode = True
+import published_documents as documents  # noqa: E402
+import published_parts as parts  # noqa: E402
+
+ROW = {"name": "distance/algorithm:exact/pair:p/distance:05", "run_type": "iteration", "real_time": 1.25, "cpu_time": 1.25,
+       "time_unit": "us", "configurations": 8, "mismatch": 0, "error_rms": 1e-17,
+       "sixdof": {"query": "distance", "algorithm": "exact", "settings": {}, "pair": "p", "order": "random",
+                  "cache": "warm", "bucket": {"kind": "distance", "percent": 5}, "configurations": 8}}
+
+
+class Marks(unittest.TestCase):
+    """In a repository of one document, made for each test."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        root = pathlib.Path(folder.name)
+        for name, path in (("ROOT", root), ("PUBLISHED", root / "published"), ("FACTS", root / "published/parts.json")):
+            self.addCleanup(setattr, documents, name, getattr(documents, name))
+            setattr(documents, name, path)
+        (root / "published").mkdir()
+        self.publish(ROW)
+        documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "two": {"commit": "abc"}}))
+        self.file = root / "README.md"
+        subprocess.run(["git", "init", "-q", root], check=True)
+
+    def publish(self, row):
+        (documents.PUBLISHED / "rows.json").write_text(parts.as_text({"context": {"commit": "abc"}, "benchmarks": [row]}))
+
+    def fill(self, text):
+        self.file.write_text(text)
+        subprocess.run(["git", "add", "README.md"], cwd=documents.ROOT, check=True)
+        documents.write(SIXDOF)
+        return self.file.read_text()
+
+    def test_a_value(self):
+        mark = "<!--= rows.json benchmarks[name=distance/algorithm:exact/pair:p/distance:05].cpu_time .1f -->"
+        self.assertEqual(self.fill(f"takes {mark}?<!--=--> us"), f"takes {mark}1.2<!--=--> us")
+        self.assertEqual(documents.check(SIXDOF), 0)
+        self.publish(ROW | {"cpu_time": 3.0})
+        self.assertEqual(documents.check(SIXDOF), 1)
+
+    def test_a_planted_digit_is_found(self):
+        mark = "<!--= rows.json benchmarks[time_unit=us].cpu_time .2f -->"
+        text = self.fill(f"{mark}<!--=-->")
+        self.file.write_text(text.replace("1.25", "1.26"))
+        self.assertEqual(documents.check(SIXDOF), 1)
+
+    def test_a_table(self):
+        text = self.fill("<!--= sixdof table rows.json --markdown | grep exact -->\n<!--=-->")
+        self.assertIn("| 05 % |", text)
+        self.assertIn("1.25 |", text)
+        self.assertEqual(documents.check(SIXDOF), 0)
+        self.publish(ROW | {"cpu_time": 2.5})
+        self.assertEqual(documents.check(SIXDOF), 1)
+
+    def test_what_cannot_be_filled_names_document_and_mark(self):
+        for mark in ("gone.json a", "rows.json context.gone", "rows.json benchmarks[name=other].cpu_time",
+                     "sixdof table gone.json"):
+            with self.assertRaisesRegex(documents.Stale, f"README.md: <!--= {mark[:9]}"):
+                self.fill(f"<!--= {mark.replace('[', '[')} --><!--=-->")
+
+    def test_parts_of_two_commits_are_refused(self):
+        documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "two": {"commit": "def"}}))
+        with self.assertRaisesRegex(documents.Stale, "2 commits: abc, def"):
+            documents.check(SIXDOF)
+
+
+class Short(unittest.TestCase):
+    def test_rows_keep_what_tables_show_in_few_digits(self):
+        row = ROW | {"cpu_time": 1.23456789, "outliers": {"a": "p"}, "checksum": "0", "nodes": 17}
+        short = parts.compact({"context": {"commit": "abc", "executable": "/a/path", "checksum": "0"}, "benchmarks": [row]})
+        self.assertEqual(short["context"], {"commit": "abc"})
+        self.assertEqual(short["benchmarks"], [ROW | {"cpu_time": 1.235}])
+        self.assertEqual(json.loads(parts.as_text(short)), short)
+
+    def test_commands_are_those_that_a_user_types(self):
+        for part in parts.parts():
+            for command in parts.commands_of(part):
+                self.assertNotIn("{", command)
+                self.assertRegex(command, "^(sixdof|sixdof-bench|bench/[a-z]+) ")
+
+
+class Plan(unittest.TestCase):
+    def test_lists_every_part(self):
+        printed = subprocess.run([ROOT / "bench/publish", "--help"], check=True, capture_output=True, text=True).stdout
+        for part in parts.parts():
+            self.assertIn(part.name, printed)
+        wrong = subprocess.run([ROOT / "bench/publish", "gone"], check=False, capture_output=True, text=True)
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("no part is called gone", wrong.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
