@@ -9,6 +9,7 @@ A mark in a Markdown file names where its text comes from:
                                                              `from WORDS`, `until WORDS` for lines from or before one,
                                                              `tables` for Markdown tables, their titles and faults
   <!--= fenced recommend/random.txt | head 4 -->TEXT<!--=--> what a command printed when it was measured
+  <!--= fcl-distance.ratio -->11.3<!--=-->                    a figure that bench/scripts/figures.json names
   <!--= parts pairs.date -->TEXT<!--=-->                     a fact of a part: commit, date, machine, commands
 
 `KEY[NAME=VALUE,...]` takes the one element of a list whose members are these. A text that begins with a line break stands on
@@ -25,6 +26,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PUBLISHED = ROOT / "bench/published"
 FACTS = PUBLISHED / "parts.json"
+FIGURES = ROOT / "bench/scripts/figures.json"  # {name: [FILE, PATH, FORMAT]}
 PROGRAM = ROOT / "build/release/bin/sixdof"
 MARK = re.compile(r"<!--= (?P<what>.*?) -->(?P<text>.*?)<!--=-->", re.S)
 STEP = re.compile(r"(?P<key>[^.\[\]]+)(\[(?P<chosen>[^\]]*)\])?\.?")
@@ -57,7 +59,11 @@ def selected(value, path):
 
 
 def value_of(words):
-    """FILE PATH [FORMAT] as text."""
+    """FILE PATH [FORMAT], or the name of a figure, as text. @raises Stale"""
+    named = json.loads(FIGURES.read_text(encoding="utf-8"))
+    if len(words) == 1 and words[0] not in named:
+        raise Stale(f"{FIGURES.name} names no '{words[0]}'")
+    words = named.get(words[0], words)
     file = FACTS if words[0] == "parts" else PUBLISHED / words[0]
     if not file.exists():
         raise Stale(f"{file.relative_to(ROOT)} is not there")

@@ -55,6 +55,14 @@ class Marks(unittest.TestCase):
         self.publish(ROW | {"cpu_time": 3.0})
         self.assertEqual(documents.check(SIXDOF), 1)
 
+    def test_a_named_figure(self):
+        self.addCleanup(setattr, documents, "FIGURES", documents.FIGURES)
+        documents.FIGURES = documents.ROOT / "figures.json"
+        documents.FIGURES.write_text(json.dumps({"row.time": ["rows.json", "benchmarks[time_unit=us].cpu_time", ".2f"]}))
+        self.assertEqual(self.fill("<!--= row.time --><!--=-->"), "<!--= row.time -->1.25<!--=-->")
+        with self.assertRaisesRegex(documents.Stale, "names no 'gone'"):
+            self.fill("<!--= gone --><!--=-->")
+
     def test_a_planted_digit_is_found(self):
         mark = "<!--= rows.json benchmarks[time_unit=us].cpu_time .2f -->"
         text = self.fill(f"{mark}<!--=-->")
