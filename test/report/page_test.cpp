@@ -82,7 +82,7 @@ TEST_F(Page, DataAreJsonWithEveryTableThatFiguresAndPagesName) {
 
 TEST_F(Page, BytesThatAreNoTextDoNotStopIt) {
   Results results = test::results_of({test::row("distance", "exact", "p", "distance", 5.0, 1.0)});
-  results.rows[0].pair = "\xff\xfe";
+  results.rows[0].fields.pair = "\xff\xfe";
   EXPECT_THAT(page_html(make_report(results, {}), read_page_files(folder)), HasSubstr("\xEF\xBF\xBD"));
 }
 

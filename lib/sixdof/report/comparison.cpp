@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
-#include <boost/math/statistics/univariate_statistics.hpp>
 
 #include <sixdof/report/tables.h>
 #include <sixdof/results/difference.h>
@@ -24,10 +23,13 @@ struct Pair {
 /// Standard deviation of the logarithms, by the median of the deviations from their median: a few rows that did change
 /// hardly widen it.
 double spread_of(const std::vector<Pair>& pairs) {
-  std::vector<double> ratios;
+  std::vector<double> ratios, deviations;
   for (const Pair& pair : pairs) ratios.push_back(pair.log_ratio);
+  // Boost 1.74's median_absolute_deviation() does not subtract the centre.
+  const double middle = median(ratios);
+  for (const double r : ratios) deviations.push_back(std::abs(r - middle));
   constexpr double k_normal = 1.4826;  // of a normal distribution, standard deviation over median deviation
-  return k_normal * boost::math::statistics::median_absolute_deviation(ratios);
+  return k_normal * median(std::move(deviations));
 }
 
 /// Difference of the means of a row's repetitions.
