@@ -174,8 +174,8 @@ TEST(FarPair, CostsAboutAsMuchAtAnySeparation) {
     DistanceQuery query(oracle);
     for (const double far : {100.0, 1e3, 1e6, 1e7, 1e8, 1e10, 1e11, 1e12, 1e13, 1e14, 1e16, 1e100, 1e300}) {
       // Nearer than k_corners, all corners of a face across the line of the centres are looked at, and its pairs that
-      // floats blur: 34,005 nodes and 449 pairs of triangles at most from 1e6 on, of 225 million pairs. At 100 the
-      // distances of more pairs are really equal up to rounding: 795,017 and 51,695 at most.
+      // floats blur: 34,005 nodes and 449 pairs of triangles at most from 1e6 on, of 225 million pairs; at 100
+      // 795,017 and 51,695.
       const bool only_corners = far > 1e9, close = far < 1e6;
       for (const Vector3d& along :
            {Vector3d(Vector3d::UnitZ()), Vector3d(tilted.R.col(2)), shapes::unit_vector(generator)}) {
