@@ -1,4 +1,4 @@
-# Every third-party library, found in one place. README.md says why each is here; cmake/setup installs them.
+# Every third-party library, found in one place. DEPENDENCIES.md says why each is here; cmake/setup installs them.
 
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

@@ -39,16 +39,14 @@ struct Arguments {
 };
 
 constexpr const char* k_keys =
-    "An answer differs if it contradicts the set: yes at a distance, no at an overlap, or a distance that is off by "
-    "more\n"
-    "than the set's tolerance plus 1e-9 of A's diagonal. Touching bodies (0 %) may be called either way. An answer "
-    "that\n"
-    "is missing differs, too. Exit code 3 if one differs.\n"
+    "An answer differs if it contradicts the set: yes at a distance, no at an overlap, or a distance whose error\n"
+    "is larger than the set's tolerance plus 1e-9 of A's diagonal. For touching bodies (0 %) both yes and no are\n"
+    "right. A missing answer counts as a difference. Exit code 3 if any answer differs.\n"
     "Keys of --json: seed, sample, algorithms[] {name, version, settings}, pairs[] {pair, refusals[], buckets[]\n"
     "{bucket, configurations, split, algorithms[] {algorithm, yes, judged_collide, wrong_collide, judged_distance,\n"
     "wrong_distance, failed, largest_distance_error}}, differences[] {algorithm, bucket, cell, question, answer, "
     "truth,\n"
-    "pose, command}}. split: configurations where not all algorithms say the same yes or no.";
+    "pose, command}}. split: configurations where some algorithms say yes and others no.";
 
 /// Those of --algorithms, or all of default runs that answer yes/no or distance, but `null`.
 std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const Arguments& arguments) {
@@ -208,7 +206,7 @@ void add_agree_command(CLI::App& app) {
       ->excludes(pairs);
   command->add_option("--algorithms", arguments->algorithms, "Algorithms to compare: exact,ode,...")
       ->type_name("ALGORITHM")
-      ->default_str("all that answer, without slow ones")
+      ->default_str("all that answer, except slow ones")
       ->delimiter(',');
   command
       ->add_option("-p,--parameter", arguments->parameters,

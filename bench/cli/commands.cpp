@@ -119,7 +119,7 @@ const std::vector<Group>& groups() {
       {"Sets (thousands of poses of a pair, which sixdof-bench asks)",
        {add_generate_command, add_merge_command, add_verify_command, add_agree_command}},
       {"Results (of sixdof-bench)", {add_table_command, add_report_command, add_history_command, add_compare_command}},
-      {"Studies (which algorithm, how fast, how wrong)",
+      {"Studies (many measurements, one answer)",
        {add_recommend_command, add_precision_command, add_equivalent_command, add_quality_command, add_stress_command}},
       {"Scenes (many bodies that move)", {add_scene_command}},
       {"Your own", {add_new_algorithm_command, add_completion_command}}};
@@ -145,8 +145,8 @@ int run(int argc, const char* const* argv) {
     return k_exit_usage;
   }
   CLI::App app(
-      "Measures how fast and how right collision queries of rigid bodies are: whether two meshes collide, how far they "
-      "are apart, and the force that separates them.",
+      "Measures the speed and the errors of collision queries on rigid bodies: whether two meshes collide, how far "
+      "apart they are, and the force that separates them.",
       "sixdof");
   app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("--version", std::string("sixdof ") + SIXDOF_VERSION);

@@ -20,13 +20,13 @@ using results::Differences;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* k_details =
-    R"(Versions and settings that differ, rows of one file only, answers that differ (errors, failures, angles), and counts of
-work that differ; no times, which `sixdof report BEFORE AFTER` compares. Numbers within rounding are the same: 1e-12, or
-1e-9 of the larger. Of repetitions the ranges are compared. Of a row that asked another number of configurations only
-that number is named.
+    R"(Prints versions and settings that differ, rows that only one file has, answers that differ (errors, failures,
+angles), and counts of work that differ. It does not compare times; `sixdof report BEFORE AFTER` does. Two numbers are
+equal if they differ by at most 1e-12, or by 1e-9 of the larger one. For repetitions the ranges are compared. If a row
+asked another number of configurations, only that number is printed.
 
 Keys of --json: versions[] {key, before, after}; only_before[], only_after[]; answers[] and work[] {row, counter,
-before, after}, with [least, largest], words of an error, or null; common_rows.)";
+before, after}, each side [least, largest], the message of an error, or null; common_rows.)";
 
 struct Arguments {
   std::string before, after;
@@ -84,14 +84,15 @@ void run(const Arguments& arguments) {
   }
   const std::size_t one_sided = found.only_before.size() + found.only_after.size();
   if (arguments.fail_on_answers && found.changed_answers() + one_sided > 0) {
-    throw DefectsFound(fmt::format("{} answers changed, {} rows of one file only", found.changed_answers(), one_sided));
+    throw DefectsFound(
+        fmt::format("{} answers changed, {} rows are in one file only", found.changed_answers(), one_sided));
   }
 }
 
 }  // namespace
 
 void add_compare_command(CLI::App& app) {
-  auto* const command = app.add_subcommand("compare", "Say whether two results differ in answers, versions or work");
+  auto* const command = app.add_subcommand("compare", "Compare two results: answers, versions and counts of work");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("before", arguments->before, "Result file (JSON)")->required()->type_name("BEFORE");
   command->add_option("after", arguments->after, "Result file of the same rows")->required()->type_name("AFTER");

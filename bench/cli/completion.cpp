@@ -45,12 +45,12 @@ void add_completion_command(CLI::App& app) {
   const auto shell = std::make_shared<std::string>();
   command->add_option("shell", *shell, "The shell")->required()->type_name("SHELL")->check(CLI::IsMember({"bash"}));
   command->callback([&app] { fmt::print("{}", bash_completion(app, app.get_name(), values())); });
-  add_examples(*command, "sixdof completion bash > sixdof.bash",
-               "mkdir -p completions && sixdof completion bash > completions/sixdof",
-               "In bash: source sixdof.bash. It completes commands, options, their choices, names of algorithms, "
-               "models, metrics and pairs, elements "
-               "of lists, and files. An installation has it, and that of sixdof-bench, in "
-               "share/bash-completion/completions, where the package bash-completion finds it.");
+  add_examples(
+      *command, "sixdof completion bash > sixdof.bash",
+      "mkdir -p completions && sixdof completion bash > completions/sixdof",
+      "In bash: source sixdof.bash. It completes commands, options, their choices, elements of lists, files, and "
+      "names of algorithms, models, metrics and pairs. An installation has this script and that of sixdof-bench "
+      "in share/bash-completion/completions, where the package bash-completion finds them.");
 }
 
 }  // namespace sixdof::cli

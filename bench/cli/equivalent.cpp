@@ -253,19 +253,21 @@ void add_equivalent_command(CLI::App& app) {
                    "Instead of --tau: find the least time at which the error eta (below) is this")
       ->type_name("ETA")
       ->check(CLI::PositiveNumber);
-  command->add_option("--weights", options->weights, "Weights of sigma and of gamma in their sum, eta")
+  command->add_option("--weights", options->weights, "Weights of sigma and gamma in the error eta (below)")
       ->type_name("WEIGHT")
       ->capture_default_str();
   command->add_option("--law", options->law, "Ideal to compare with (sixdof quality --help)")
       ->type_name("LAW")
       ->capture_default_str();
-  command->add_option("--grid", options->grids, "Values of a parameter that is searched; may be repeated")
+  command->add_option("--grid", options->grids, "Values to try of a parameter that is searched; may be repeated")
       ->type_name("NAME=VALUE,VALUE,...")
       ->allow_extra_args(false);
-  command->add_option("-p,--parameter", options->parameters, "A parameter that is not searched; may be repeated")
+  command
+      ->add_option("-p,--parameter", options->parameters,
+                   "Fixed value of a parameter that is not searched; may be repeated")
       ->type_name("ALGORITHM:NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_option("--reach", options->reach, "How far to search beyond the grid: this factor, on both sides")
+  command->add_option("--reach", options->reach, "Search beyond the grid by this factor on both sides")
       ->type_name("FACTOR")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();

@@ -50,7 +50,7 @@ void print_remarks(const EquivalentResult& result) {
   const SearchStep& answer = result.search.answer();
   if (answer.reach == Reach::inside) {
     const bool time = result.options.goal == Goal::time;
-    fmt::print("{} than asked for: no resolution at {} is predicted to be {}\n", time ? "faster" : "better",
+    fmt::print("{} than requested: no resolution at {} is predicted to be {}\n", time ? "faster" : "better",
                given_text(result), time ? "better" : "faster");
   } else if (answer.reach != Reach::on_line) {
     const bool time = result.options.goal == Goal::time;
@@ -59,7 +59,7 @@ void print_remarks(const EquivalentResult& result) {
     for (const study::ResolutionAxis& axis : result.axes) {
       range += fmt::format(" {}={:.4g}..{:.4g}", axis.parameter, axis.low, axis.high);
     }
-    fmt::print("{} cannot be met: in{} all are {}\n", given_text(result), range, what);
+    fmt::print("{} cannot be met: all resolutions in{} are {}\n", given_text(result), range, what);
   }
   for (const auto& [name, value] : answer.measured.counters) {
     if (name == "misses" && value > 0.0) fmt::print("{} steps of the window have no force and are not in eta\n", value);

@@ -212,14 +212,14 @@ void add_run_options(CLI::App& command, Arguments& arguments) {
       ->type_name("FILE");
   command
       .add_option("--shards", arguments.shards,
-                  "Divide the work into N files of equal size, which sixdof merge makes a set of")
+                  "Divide the work into N files of equal size, which sixdof merge joins to a set")
       ->type_name("N")
       ->check(CLI::Range(1, k_most_shards));
   command.add_option("--shard", arguments.shard, "Make only this one of the --shards")
       ->type_name("I")
       ->default_str("all")
       ->check(CLI::Range(1, k_most_shards));
-  command.add_flag("--resume", arguments.resume, "Keep shards that are there and valid, make the others");
+  command.add_flag("--resume", arguments.resume, "Keep the valid shards of the folder, make the others");
   command.add_flag("--progress", arguments.progress, "Show progress where stderr is not a terminal, too");
   command.add_flag("--plan", arguments.plan,
                    "Make nothing: print the size of the set and, with --a, time and memory estimated from a sample");

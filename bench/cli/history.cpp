@@ -13,9 +13,9 @@ namespace sixdof::cli {
 namespace {
 
 constexpr const char* k_details =
-    R"(Every result of sixdof-bench in FOLDER (*.json, as bench/run leaves them in results/), in the order of their dates. The
-page has a line for each row, with marks where its level changes; lines are broken where the machine or the kind of build
-changes. It also compares the last run with the one before.)";
+    R"(Reads every result of sixdof-bench in FOLDER (*.json, as bench/run leaves them in results/), in the order of their
+dates. The page draws a line for each row and marks where its time changes lastingly. A line is interrupted where the
+machine or the kind of build changes. The page also compares the last run with the one before.)";
 
 struct Arguments {
   std::string folder, output;

@@ -32,7 +32,8 @@ void check_name(const std::string& name) {
   const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto is_allowed = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-'; };
   if (name.empty() || !is_letter(name.front()) || name.back() == '-' || !std::ranges::all_of(name, is_allowed)) {
-    throw BadArgument(fmt::format("{}: a name is a letter, then a-z, 0-9 and '-', and ends in no '-'", name));
+    throw BadArgument(
+        fmt::format("{}: a name begins with a letter, has only a-z, 0-9 and '-', and does not end in '-'", name));
   }
   Registry registry;
   register_all_algorithms(registry);

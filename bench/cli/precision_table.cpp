@@ -63,7 +63,7 @@ void add_notes(const PrecisionStudy& study, Sheet& sheet) {
     }
   }
   if (const std::size_t undecided = study.undecided(); undecided > 0) {
-    sheet.notes.push_back(fmt::format("{} points of the frontier have costs that are not told apart", undecided));
+    sheet.notes.push_back(fmt::format("{} points of the frontier have costs whose intervals overlap", undecided));
   }
 }
 

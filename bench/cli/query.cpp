@@ -26,10 +26,11 @@ namespace {
 
 constexpr const char* k_details =
     "colliding: the bodies have a point in common. Their surfaces meet, or one body lies inside the other (then nested "
-    "is true; some algorithms look at surfaces only and say no). distance: of the two surfaces, also of nested bodies; "
-    "0 where they meet. Lengths are in the meshes' own unit, volume in its cube; force is that of a volume law for "
-    "exact (unit squared), for others as `sixdof algorithms` says; times in ns of single calls with cold caches. Open "
-    "meshes have no inside: yes/no and distance are those of their surfaces, and there is no response.";
+    "is true; algorithms that look at surfaces only say no). distance: between the two surfaces, also for nested "
+    "bodies; 0 where the surfaces meet. Lengths are in the meshes' own unit, the volume in its cube. The force of "
+    "exact is the negative gradient of the overlap volume (unit squared); for other algorithms see "
+    "`sixdof algorithms`. Times are those of single calls with cold caches, in ns. Open meshes have no inside: yes/no "
+    "and distance are those of their surfaces, and there is no response.";
 
 struct Arguments {
   std::string a, b, about;

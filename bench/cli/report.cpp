@@ -21,11 +21,11 @@ namespace sixdof::cli {
 namespace {
 
 constexpr const char* k_details =
-    R"(FILE is a result of sixdof-bench, of a study (sixdof precision, equivalent, ... -o), or of sixdof stress -o; all go into
-one page, which opens from disk without a network. Several files with the same rows are compared with the first: answers
-before times, each change with its interval. Files of --series (sixdof quality -o) are drawn as signals and
-time-frequency diagrams. A page without data says which command makes them. --choose sets what figures show at first: one
-of the choices above them, by its column in the table: --choose pair=bunny --choose statistic=longest.)";
+    R"(FILE is a result of sixdof-bench, of a study (sixdof precision, equivalent, ... -o), or of sixdof stress -o.
+All go into one page, which opens from disk without a network. Files with the same rows are compared with the first
+one: answers, then times, each change with its interval. Files of --series (sixdof quality -o) are drawn as signals
+and time-frequency diagrams. A section without data says which command makes them. --choose selects what the figures
+show at first, by a column of the tables and one of its values: --choose pair=bunny --choose statistic=longest.)";
 
 struct Arguments {
   std::vector<std::string> files, series, choices;

@@ -27,7 +27,7 @@ void print_summary(const Scene& scene, const std::string& file) {
   if (!scene.recipe.empty()) fmt::print("recipe      {}\n", scene.recipe);
   fmt::print("bodies      {}, {} of them fixed\n", scene.bodies.size(), fixed);
   fmt::print("meshes      {}; triangles of all bodies {}\n", scene.meshes.size(), scene.triangles());
-  fmt::print("pairs       {} that matter, {} ignored\n", scene::PairFilter(scene).pairs(), scene.ignored.size());
+  fmt::print("pairs       {} tested, {} ignored\n", scene::PairFilter(scene).pairs(), scene.ignored.size());
   fmt::print("frames      {}, poses that change {}\n", scene.frames.size(), scene.motions());
   fmt::print("margin      {:.6g}\n", scene.margin);
   fmt::print("hash        {}\n", scene.hash());
@@ -81,9 +81,9 @@ constexpr const char* k_table =
   0,1,base.stl,0,0,0,1,0,0,0,1,2
   0,2,torus-1k,1.5,0,0,1,0,0,0,,
   1,2,,1.4,0,0,1,0,0,0,,
-body is a number, mesh a file of the --bodies folder or a model's name, then the translation and unit quaternion of the
-body's pose in the world. fixed (1: never moves) and ignored (bodies whose pair with this one does not matter, as "2 5")
-may be left out. Columns in any order; separated by commas, semicolons or tabs.)";
+body is a number, mesh a file in the --bodies folder or a model's name, tx to qz the translation and unit quaternion
+of the body's pose in the world. The columns fixed (1: never moves) and ignored (bodies that are not tested against
+this one, as "2 5") may be left out. Columns may have any order; commas, semicolons or tabs separate them.)";
 
 void add_make(CLI::App& group) {
   auto* const command = group.add_subcommand("make", "Make a scene of a family, or of meshes and a table of poses");
@@ -99,8 +99,8 @@ void add_make(CLI::App& group) {
   command->add_option("-o,--output", options->output, "The scene to write (HDF5)")->required()->type_name("FILE");
   auto* const margin = command
                            ->add_option("--margin", options->margin,
-                                        "Largest distance of pairs that are near: of a family in mean sizes of its "
-                                        "bodies, of a table a length")
+                                        "Largest distance at which a pair is near: in mean sizes of the bodies for a "
+                                        "family, a length for a table")
                            ->type_name("X");
   command->add_option("-n,--count", options->numbers.bodies, "Number of bodies")
       ->type_name("N")
@@ -113,9 +113,9 @@ void add_make(CLI::App& group) {
   const auto add = [&](const char* name, auto& value, const char* meaning) {
     command->add_option(name, value, meaning)->type_name("X")->default_str("the family's own")->group(of_family);
   };
-  add("--density", options->numbers.density, "Volume of the bodies' boxes over that of the space");
-  add("--size-ratio", options->numbers.size_ratio, "Largest over smallest body of a shape");
-  add("--moving", options->numbers.moving, "Share of the bodies that moves in a frame, 0 to 1");
+  add("--density", options->numbers.density, "Volume of the bodies' boxes, as a fraction of the volume of the space");
+  add("--size-ratio", options->numbers.size_ratio, "Size of the largest body of a shape over that of the smallest");
+  add("--moving", options->numbers.moving, "Fraction of the bodies that move in a frame, 0 to 1");
   add("--step", options->numbers.step, "Largest translation in a frame, in sizes of the body");
   command->add_option("--seed", options->numbers.seed, "Seed of positions and motion")
       ->type_name("N")
@@ -150,7 +150,7 @@ void add_info(CLI::App& group) {
 
 void add_scene_command(CLI::App& app) {
   auto* const command =
-      app.add_subcommand("scene", "Make scenes of many bodies, and replay them to algorithms that find the pairs");
+      app.add_subcommand("scene", "Make scenes of many moving bodies, and measure algorithms that find their pairs");
   command->require_subcommand(1);
   add_make(*command);
   add_info(*command);

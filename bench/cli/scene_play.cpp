@@ -40,17 +40,19 @@ constexpr const char* k_details =
   closest                 the closest pair
   wrenches                forces and torques by the overlap volume on bodies that touch others
 
-A body inside another one touches it, as in sixdof query; libraries look at surfaces only, and such pairs that they do not
-report are counted as nested. Distances are those of surfaces. Open meshes have no inside.
+A body inside another one touches it, as in sixdof query. Libraries look at surfaces only; pairs that they miss for
+this reason are counted as nested. Distances are those of surfaces. Open meshes have no inside.
 
-Times are of a frame: cpu of all threads, wall by the clock, the first frame apart, in which all pairs are new; of a scene
-with one frame they are those of that frame. *: least cpu among those without faults; !: pairs missed or wrong, with a
-command that shows the first again; grazing: such pairs of bodies that just touch, which are no fault; nor is nested. What does not
-answer a question is left out, with a line. Truth is every pair in every frame by the distance oracle, kept in the cache.
+Times are means per frame: cpu is the processor time of all threads, wall the elapsed time. The first frame, in which
+all pairs are new, has a column of its own and is not in the means unless the scene has no other. * marks the least
+cpu among the algorithms without faults. ! marks missed or wrong pairs, with a command that shows the first of them
+again. Differences for bodies that just touch (grazing), and nested pairs, are not faults. Algorithms that do not
+answer a question are left out, with a message. The truth is every pair in every frame, by the distance oracle; it is
+kept in the cache.
 
-Columns of --list: question, algorithm, frame; of a pair body, other and their distance (the meshes' unit); of a wrench
-body, force fx, fy, fz and torque tx, ty, tz about the centre of its box, in the world's frame. --list --json: an array
-with an object for each question, algorithm and frame.)";
+Columns of --list: question, algorithm, frame; for a pair body, other and their distance (in the meshes' unit); for a
+wrench body, force fx, fy, fz and torque tx, ty, tz about the centre of the body's box, in the world's frame. --list
+--json: an array with an object for each question, algorithm and frame.)";
 
 struct NamedPlay {
   const SceneAlgorithm& algorithm;
@@ -269,7 +271,7 @@ void judge(const Part& part, const PlayOptions& options, const std::vector<Asked
   }
   if (options.json) fmt::print("{}\n", json_text(json));
   if (!has_answers) throw BadArgument("no question has an answer; " + left_out);
-  if (!differs.empty()) throw DefectsFound(fmt::format("{} has not the bits of the truth", differs));
+  if (!differs.empty()) throw DefectsFound(fmt::format("answers differ from the truth in some bits: {}", differs));
 }
 
 void play(const PlayOptions& options) {
@@ -291,7 +293,7 @@ void play(const PlayOptions& options) {
 
 void add_scene_play(CLI::App& group) {
   auto* const command =
-      group.add_subcommand("play", "Replay a scene to algorithms: time, work and misses, or the pairs");
+      group.add_subcommand("play", "Measure algorithms on a scene: time, work and missed pairs; or print the pairs");
   const auto options = std::make_shared<PlayOptions>();
   std::vector<std::string> questions;
   for (const Question question : scene::k_questions) questions.emplace_back(to_string(question));

@@ -67,7 +67,7 @@ void run_show(const Arguments& arguments) {
   const auto [registry, algorithm, settings] = select_algorithm(arguments.algorithm);
   const Part& part = find_part(arguments.algorithm.name, arguments.part);
   if ((arguments.level > 0) != (part.draw == balls)) {
-    throw BadArgument("--level is needed with --part balls, and goes with no other part");
+    throw BadArgument("--level is needed with --part balls, and not allowed with other parts");
   }
   if (!arguments.output.ends_with(".ply")) throw BadArgument(fmt::format("{}: must end in .ply", arguments.output));
 
@@ -87,8 +87,7 @@ void run_show(const Arguments& arguments) {
 
 void add_show_command(CLI::App& app) {
   auto* const command = app.add_subcommand(
-      "show",
-      "Write the structure that an algorithm prepares of a mesh (spheres, voxels, points) as a coloured PLY file");
+      "show", "Write what an algorithm prepares from a mesh (spheres, voxels or points) as a coloured PLY file");
   const auto arguments = std::make_shared<Arguments>();
   add_algorithm_options(*command, arguments->algorithm, "ist, vps or vps-field")->required();
   command->add_option("--model", arguments->model, "A model's name or a mesh file")->required()->type_name("MESH");

@@ -137,7 +137,7 @@ std::optional<int> run_stress_cell_if_asked(int argc, const char* const* argv) {
 
 void add_stress_command(CLI::App& app) {
   auto* const command =
-      app.add_subcommand("stress", "Ask algorithms hard cases with known answers, and show where each one breaks");
+      app.add_subcommand("stress", "Ask algorithms hard cases with known answers, and show where each one fails");
   const auto options = std::make_shared<Options>();
   command
       ->add_option("--algorithms,--algorithm", options->algorithms,
@@ -155,7 +155,7 @@ void add_stress_command(CLI::App& app) {
       ->default_str("all")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--effort", options->effort, "How many cases are made and how long worse ones are searched for")
+  command->add_option("--effort", options->effort, "Number of cases, and of steps of the search for worse ones")
       ->type_name("EFFORT")
       ->check(CLI::IsMember({"quick", "full"}))
       ->capture_default_str();
@@ -178,11 +178,11 @@ void add_stress_command(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("-o,--output", options->output,
-                   "Write the list of cells, of each algorithm and family, to this file (JSON)")
+                   "Write the result of each algorithm on each family to this file (JSON)")
       ->type_name("FILE");
   command->add_flag("--at-defaults", options->at_defaults,
-                    "Ask algorithms that approximate the bodies at their default settings as well, in a column of "
-                    "their own; hours for all families, since bodies are prepared by the hundred");
+                    "Also ask algorithms that approximate the bodies at their default settings, in a column of their "
+                    "own; this takes hours for all families, since hundreds of bodies are prepared");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run_stress_command(*options); });
   add_examples(*command, "sixdof stress --algorithms exact,fcl-obbrss --families kissing,grazing",

@@ -34,12 +34,15 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
                   "combination is tried")
       ->type_name("ALGORITHM:NAME=VALUE,VALUE,...")
       ->allow_extra_args(false);
-  command.add_option("--seed", options.seed, "Seed of the draw of poses")->type_name("N")->capture_default_str();
+  command.add_option("--seed", options.seed, "Seed of the random choice of poses")
+      ->type_name("N")
+      ->capture_default_str();
   command.add_option("--budget", options.budget, "Longest time of the whole study: 90s, 10min")
       ->type_name("TIME")
       ->capture_default_str();
   add_process_options(command, options.process);
-  command.add_option("-o,--output", options.output, "Write the rows to this JSON file; it is whole after every step")
+  command
+      .add_option("-o,--output", options.output, "Write the rows to this JSON file; it is complete after every step")
       ->type_name("FILE");
   command.add_flag("--json", options.json, "Print the rows as JSON");
 }

@@ -17,15 +17,17 @@ namespace sixdof::cli {
 namespace {
 
 constexpr const char* k_details =
-    R"(A table per pair, query and kind of bucket, a line per bucket and algorithm. A column has one clock: cpu is the mean
-processor time of a query in a loop over all, the other times are by wall clock, of single queries. The least cpu of
-each bucket is marked *, among rows without faults. A row with faults is marked !, and what they are stands below its
-table with their counts: configurations that failed, wrong answers, overlaps without a force. Of
-repetitions each value is the median, and cpu their geometric mean from three on. Several files stand side
-by side, with the ratio of cpu to the first. --wide: one table per query, of one file, with a line per pair and
-algorithm and a column per bucket; angles and magnitudes are means over the buckets, errors the largest, faults sums.
---against: how many times faster than the fastest of others, as the median over the files with the least and the
-greatest, e.g. of several seeds; also of `generate` rows and of scenes (sixdof scene play --json).
+    R"(Prints a table for each pair, query and kind of bucket, with a line for each bucket and algorithm. cpu is the
+mean processor time of a query in a loop over all configurations; the other times are wall clock times of single
+queries. * marks the least cpu of a bucket among rows without faults. ! marks a row with faults, which are counted
+below its table: failed configurations, wrong answers, overlaps without a force. If rows are repeated, each value is
+the median; from three repetitions on, cpu is the geometric mean. Several files stand side by side, with the ratio of
+cpu to that of the first.
+
+--wide prints one table for each query of one file, with a line for each pair and algorithm and a column for each
+bucket. Angles and magnitudes are means over the buckets, errors the largest, faults sums. --against prints the time
+of the fastest of the named algorithms over that of --of: the median over the files, e.g. of several seeds, with the
+least and the greatest. It also takes `generate` rows and scenes (sixdof scene play --json).
 
 Keys of --json: files[] {file, date, commit, interrupted, settings {ALGORITHM: {PARAMETER: value}}, not_shown {FAMILY:
 rows}}; tables[] {pair, query, kind, rows[] {percent, algorithm, order, cache, files[]}}, with null or {fastest,

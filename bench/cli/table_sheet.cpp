@@ -226,7 +226,7 @@ std::vector<std::string> lines_below(const TableInput& input) {
       "angle: mean angle to the exact response, in degrees; max: the largest",
       "magn.: RMS of |F| - gain |exact F| over the RMS of |F|, with one gain per row; of torques likewise",
       "volume: mean error of the overlap volume; (path): configurations in the grid's own order",
-      "(motion): times of successive poses, steps of 0.01 % of A's diagonal, from some of the configurations on",
+      "(motion): times of successive poses in steps of 0.01 % of A's diagonal, starting at configurations",
       "(cold): data is removed from the caches before each query; wall clock only, not ranked",
       "*: least cpu of its bucket among rows without faults; !: has faults, which stand below its table"};
   for (std::size_t i = 0; i < input.files(); ++i) {

@@ -50,7 +50,7 @@ void print_table(const Verdict& verdict) {
                bucket.tolerance / bucket.scale, bucket.wrong_value, bucket.earlier_hit, bucket.false_nan,
                bucket.oracle);
   }
-  fmt::print("residuals and what is allowed: in diagonals of A's box and in A's volumes\n");
+  fmt::print("residual and tolerance: of distances in diagonals of A's box, of volumes in A's volume\n");
 }
 
 nlohmann::ordered_json as_json(const BucketVerdict& bucket) {

@@ -14,7 +14,7 @@ void warn_of_sizes(std::string_view program, const MeshIdentity& a, const MeshId
   if (!(ratio >= k_suspicious_size_ratio)) return;
   print_message(program,
                 fmt::format("warning: {} is {:.0f} times as large as {} (box diagonals {:.4g} and {:.4g}); are "
-                            "both in one unit?",
+                            "both in the same unit?",
                             large.name, ratio, small.name, large.diagonal(), small.diagonal()));
 }
 

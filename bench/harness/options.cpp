@@ -166,14 +166,15 @@ void add_set_options(CLI::App& app, Options& options, CommandLine& line) {
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->check(CLI::ExistingFile);
-  app.add_option("--mesh", options.meshes, "The file of a mesh that a --set names (tray.off for tray); may be repeated")
+  app.add_option("--mesh", options.meshes,
+                 "Where to find a mesh that a --set names, e.g. tray.off for its mesh tray; may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->check(CLI::ExistingFile);
   app.add_option(
          "--a", options.a,
          "Fixed mesh A, a model's name or a file: measure this pair alone, on a coarse set that is made in seconds and "
-         "kept in the cache. With a --set: where A is now")
+         "kept in the cache. With --set: where to find the set's mesh A")
       ->type_name("MESH");
   app.add_option("--b", options.b, "Moving mesh B, likewise")->type_name("MESH")->default_str("a copy of A");
 }
@@ -192,13 +193,14 @@ void add_row_options(CLI::App& app, Options& options, CommandLine& line) {
       ->type_name("N")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  line.budget = app.add_option("--budget", options.budget_s,
-                               fmt::format("Time of all rows together: samples shrink to fit; 0: no limit; {} with "
-                                           "--a and no --set",
-                                           k_own_pair_budget_s))
-                    ->type_name("SECONDS")
-                    ->check(CLI::NonNegativeNumber)
-                    ->capture_default_str();
+  line.budget =
+      app.add_option("--budget", options.budget_s,
+                     fmt::format("Time of all rows together; samples are reduced to fit. 0: no limit; {} with "
+                                 "--a and no --set",
+                                 k_own_pair_budget_s))
+          ->type_name("SECONDS")
+          ->check(CLI::NonNegativeNumber)
+          ->capture_default_str();
   app.add_option("--seed", options.seed, "Seed of samples and orders")->type_name("N")->capture_default_str();
   app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were used");
   add_process_options(app, options.process);
@@ -211,8 +213,8 @@ void add_output_options(CLI::App& app, Options& options, CommandLine& line) {
           ->type_name("FILE");
   line.resume =
       app.add_option("--resume", options.out,
-                     "Continue the result file of a run that was broken off, with the same arguments: rows that are "
-                     "there are not measured again, failed ones are")
+                     "Continue an interrupted run with the same arguments: finished rows of FILE are kept, missing and "
+                     "failed rows are measured")
           ->type_name("FILE")
           ->excludes(out)
           ->check([](const std::string& file) { return file.empty() ? "a file is needed" : ""; });

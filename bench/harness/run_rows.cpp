@@ -172,7 +172,7 @@ void run_rows(const std::vector<Row>& rows, const Options& options, const Resour
   ResultStore store(std::move(order), run_context(options, resources.registry, resources.settings));
   if (!options.out.empty()) store.open(options.out, options.out_format, options.resume);
   if (const auto there = std::erase_if(chosen, [&](const Row* row) { return store.has(row->name); }); there > 0) {
-    print_message(k_program, fmt::format("{}: {} rows are there, {} are to be measured", options.out.string(), there,
+    print_message(k_program, fmt::format("{}: {} rows are finished, {} will be measured", options.out.string(), there,
                                          chosen.size()));
   }
   if (const int failed = measure(chosen, options, resources, store); failed > 0) {

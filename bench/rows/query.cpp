@@ -302,7 +302,7 @@ struct QueryRow {
     if (failures.count() > 0) {
       label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures.first());
     }
-    if (timed_outside) label += fmt::format("{}times include the way to its process", label.empty() ? "" : "; ");
+    if (timed_outside) label += fmt::format("{}times include communication", label.empty() ? "" : "; ");
     state.SetLabel(label);
   }
 };

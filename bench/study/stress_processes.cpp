@@ -66,7 +66,7 @@ void run_apart(const StressPlan& plan, StressCell& cell, const std::atomic<bool>
     lose(cell, *beacon, verdict_of(failure.status),
          hung ? fmt::format("no answer in {:.0f} s", silent_s()) : failure.what());
   } catch (const nlohmann::json::exception&) {
-    lose(cell, *beacon, Verdict::crashed, "wrote something else than a result");
+    lose(cell, *beacon, Verdict::crashed, "did not write a result");
   }
 }
 

@@ -39,7 +39,7 @@ StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, Que
     if (bench::suits(key, question)) sample.buckets.push_back(key);
   }
   if (sample.buckets.empty()) {
-    throw BadArgument(fmt::format("{}: its set has no {} to ask {} of (sixdof generate makes one that has)", pair.pair,
+    throw BadArgument(fmt::format("{}: its set has no {}, which {} needs (sixdof generate makes such a set)", pair.pair,
                                   question == QueryKind::respond ? "volumes" : "distances", to_string(question)));
   }
   const std::size_t each = count == 0 ? count : (count + sample.buckets.size() - 1) / sample.buckets.size();

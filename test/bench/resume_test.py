@@ -87,7 +87,7 @@ class Resume(unittest.TestCase):
                  for name in [json.loads(line).get("row")] if name}
         done = self.succeed(command("--resume", self.out, "--stats"))
         self.assertIn(f"rows_measured={len(names) - len(measured)}\n", done.stderr)
-        self.assertIn(f"{len(measured)} rows are there, {len(names) - len(measured)} are to be measured", done.stderr)
+        self.assertIn(f"{len(measured)} rows are finished, {len(names) - len(measured)} will be measured", done.stderr)
         self.assertEqual(self.result_rows(), names)
         document = json.loads(self.out.read_text())
         for row in document["benchmarks"]:

@@ -111,7 +111,7 @@ class Run(unittest.TestCase):
         there = journal.read_text().count('"row":')
         done = self.run_it("--resume")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn(f"{there} rows are there, {COUNT - there} are to be measured", done.stderr)
+        self.assertIn(f"{there} rows are finished, {COUNT - there} will be measured", done.stderr)
         self.assertEqual(self.result().name, journal.stem)
         self.assertEqual(len(set(self.rows())), COUNT)
         context = json.loads(self.result().read_text())["context"]

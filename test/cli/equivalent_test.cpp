@@ -69,12 +69,11 @@ TEST_F(Equivalent, FindsTheLeastTimeAndPrintsJson) {
 TEST_F(Equivalent, SaysThatTauCannotBeMet) {
   const auto slower = equivalent(k_small + std::string("--tau 1ns"));
   ASSERT_EQ(slower.exit_code, 0) << slower.err;
-  EXPECT_THAT(slower.out,
-              HasSubstr("tau = 1ns cannot be met: in voxel_size=0.015..0.1 point_spacing=0.015..0.1 all are "
-                        "slower"));
+  EXPECT_THAT(slower.out, HasSubstr("tau = 1ns cannot be met: all resolutions in voxel_size=0.015..0.1 "
+                                    "point_spacing=0.015..0.1 are slower"));
   const auto faster = equivalent(k_small + std::string("--tau 5s --reach 1"));
-  EXPECT_THAT(faster.out, HasSubstr("tau = 5s cannot be met: in voxel_size=0.03..0.06 point_spacing=0.03..0.06 all are "
-                                    "faster"));
+  EXPECT_THAT(faster.out, HasSubstr("tau = 5s cannot be met: all resolutions in voxel_size=0.03..0.06 "
+                                    "point_spacing=0.03..0.06 are faster"));
 }
 
 TEST_F(Equivalent, RefusesBadArgumentsAndNamesThem) {

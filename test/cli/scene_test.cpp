@@ -112,7 +112,7 @@ class PosesOfOneFrame : public SceneCommand {
                                         "0;3;cone-1k;1.2;0;0;1;0;0;0;4\r\n0;4;small.off;1.2;0;0.5;1;0;0;0;\r\n";
     const auto made = run("make --poses poses.csv --margin 0.2 -o s.h5");
     ASSERT_EQ(made.exit_code, 0) << made.err;
-    EXPECT_THAT(made.out, HasSubstr("pairs       5 that matter, 1 ignored\n"));
+    EXPECT_THAT(made.out, HasSubstr("pairs       5 tested, 1 ignored\n"));
   }
 };
 
