@@ -14,7 +14,6 @@ find_package(Boost 1.74 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
-pkg_check_modules(FFTW REQUIRED IMPORTED_TARGET fftw3)
 
 if(SIXDOF_WITH_FCL)
   find_package(fcl 0.7 REQUIRED)

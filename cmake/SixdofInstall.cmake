@@ -62,7 +62,7 @@ set(needed
   "cmake               # find_package(sixdof)"
   "pkg-config          # finds libraries that have no CMake package"
   "libeigen3-dev       # part of the interface"
-  "libtbb-dev" "libfmt-dev" "nlohmann-json3-dev" "libassimp-dev" "libhdf5-dev" "libxxhash-dev" "libhwy-dev" "libfftw3-dev")
+  "libtbb-dev" "libfmt-dev" "nlohmann-json3-dev" "libassimp-dev" "libhdf5-dev" "libxxhash-dev" "libhwy-dev")
 set(needed_by_fcl libfcl-dev)
 set(needed_by_bullet libbullet-dev)
 set(needed_by_ode libode-dev)

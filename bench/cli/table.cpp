@@ -38,7 +38,7 @@ struct Arguments {
   std::vector<std::string> files;
   std::vector<std::string> against;
   std::string of = "exact";
-  bool markdown = false, json = false, wide = false;
+  bool markdown = false, json = false, wide = false, overview = false;
 };
 
 void print(const std::vector<ResultTable>& tables, const TableInput& input, const Arguments& arguments) {
@@ -47,14 +47,16 @@ void print(const std::vector<ResultTable>& tables, const TableInput& input, cons
   const auto format_sheet = markdown ? as_markdown : as_text;
   fmt::print("{}\n", format_lines(lines_above(input)));
   std::vector<Sheet> sheets;
-  if (arguments.wide) {
+  if (arguments.overview) {
+    sheets = overview_sheets_of(tables);
+  } else if (arguments.wide) {
     sheets = wide_sheets_of(tables);
   } else {
     for (const ResultTable& table : tables) sheets.push_back(sheet_of(table, input));
   }
   for (const Sheet& sheet : sheets) fmt::print("{}\n", format_sheet(sheet));
   if (tables.empty()) fmt::print("no rows of queries on buckets\n\n");
-  fmt::print("{}", format_lines(lines_below(input)));
+  fmt::print("{}", format_lines(arguments.overview ? lines_below_overview() : lines_below(input)));
 }
 
 void run(const Arguments& arguments) {
@@ -64,6 +66,7 @@ void run(const Arguments& arguments) {
     return;
   }
   if (arguments.wide && arguments.files.size() > 1) throw BadArgument("--wide shows one file");
+  if (arguments.overview && arguments.files.size() > 1) throw BadArgument("--overview shows one file");
   const TableInput input(arguments.files);
   const std::vector<ResultTable> tables = tables_of(input);
   if (arguments.json) {
@@ -81,8 +84,12 @@ void add_table_command(CLI::App& app) {
   command->add_option("file", arguments->files, "Result files of sixdof-bench (JSON)")->required()->type_name("FILE");
   auto* const markdown = command->add_flag("--markdown", arguments->markdown, "As Markdown");
   auto* const json = command->add_flag("--json", arguments->json, "As JSON")->excludes(markdown);
-  command->add_flag("--wide", arguments->wide, "One line per pair and algorithm, one column per bucket")
-      ->excludes(json);
+  auto* const wide =
+      command->add_flag("--wide", arguments->wide, "One line per pair and algorithm, one column per bucket")
+          ->excludes(json);
+  command->add_flag("--overview", arguments->overview, "One line per algorithm: its times and what is wrong with it")
+      ->excludes(json)
+      ->excludes(wide);
   auto* const against =
       command->add_option("--against", arguments->against, "Only ratios to the fastest of these, e.g. 'fcl-*,ode'")
           ->type_name("ALGORITHM,...")

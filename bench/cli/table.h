@@ -11,7 +11,7 @@
 #include <sixdof/results/row_group.h>
 
 /// What `sixdof table` does: puts the rows of result files side by side (table_lines.cpp), chooses columns
-/// (table_sheet.cpp, table_wide.cpp), and prints as text, Markdown (table_format.cpp) or JSON (table_json.cpp).
+/// (table_sheet.cpp, table_wide.cpp, table_overview.cpp), and prints as text, Markdown (table_format.cpp) or JSON (table_json.cpp).
 
 namespace sixdof::cli {
 
@@ -87,6 +87,11 @@ Sheet sheet_of(const ResultTable& table, const TableInput& input);
 /// the mean of means, or the largest; faults are sums.
 /// @param tables of one file
 std::vector<Sheet> wide_sheets_of(const std::vector<ResultTable>& tables);
+
+/// One sheet per pair, a line per algorithm: times over all buckets, the error of the force, and what is wrong. Rows of
+/// random poses on warm caches only. @param tables of one file
+std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables);
+std::vector<std::string> lines_below_overview();
 
 /// A line per query, bodies and bucket (or target, or scene): the algorithm's time, that of the fastest of the others,
 /// their ratio and how far it spreads over the files, e.g. of several seeds (results/rivals.h). Rows with a fault stand

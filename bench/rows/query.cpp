@@ -90,7 +90,8 @@ struct QueryRow {
             .order = to_string(order),
             .body = is_judged() ? "" : std::string(to_string(algorithm.traits().body)),
             .cache = evict ? "cold" : "warm",
-            .isolated = is_isolated(algorithm)};
+            .isolated = is_isolated(algorithm),
+            .approximates = algorithm.traits().approximates};
   }
 
   std::string name() const {

@@ -2,58 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <mutex>
+#include <complex>
 #include <numbers>
 
-#include <fftw3.h>
 #include <fmt/format.h>
+#include <unsupported/Eigen/FFT>
 
 #include <sixdof/base/error.h>
 
 namespace sixdof {
 namespace {
 
-/// FFTW's planner has global state; only the execution of a plan is thread-safe.
-std::mutex planner_mutex;
-
 /// Real-to-complex Fourier transform of a fixed length, with its own buffers.
 class FourierTransform {
  public:
-  explicit FourierTransform(std::size_t length)
-      : length_(length), in_(fftw_alloc_real(length)), out_(fftw_alloc_complex(length / 2 + 1)) {
-    const std::lock_guard lock(planner_mutex);
-    // FFTW_ESTIMATE plans without timing, so every run has the same plan and the same bits.
-    plan_ = fftw_plan_dft_r2c_1d(static_cast<int>(length), in_.get(), out_.get(), FFTW_ESTIMATE);
+  explicit FourierTransform(std::size_t length) : in_(length), out_(length / 2 + 1) {
+    transform_.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   }
-  ~FourierTransform() {
-    const std::lock_guard lock(planner_mutex);
-    fftw_destroy_plan(plan_);
-  }
-  FourierTransform(const FourierTransform&) = delete;
-  FourierTransform& operator=(const FourierTransform&) = delete;
 
-  std::span<double> input() { return {in_.get(), length_}; }
+  std::span<double> input() { return in_; }
 
   /// Adds the one-sided energy spectrum of input() to `sum` (length / 2 + 1 entries).
   void add_energy(std::span<double> sum) {
-    fftw_execute(plan_);
-    const double n = static_cast<double>(length_);
+    transform_.fwd(out_.data(), in_.data(), static_cast<Eigen::Index>(in_.size()));
+    const double n = static_cast<double>(in_.size());
     for (std::size_t j = 0; j < sum.size(); ++j) {
-      const bool mirrored = j != 0 && 2 * j != length_;  // also has the bin of the negative frequency
-      const auto& x = out_.get()[j];
-      sum[j] += (mirrored ? 2.0 : 1.0) * (x[0] * x[0] + x[1] * x[1]) / n;
+      const bool mirrored = j != 0 && 2 * j != in_.size();  // also has the bin of the negative frequency
+      sum[j] += (mirrored ? 2.0 : 1.0) * std::norm(out_[j]) / n;
     }
   }
 
  private:
-  struct Free {
-    void operator()(void* p) const { fftw_free(p); }
-  };
-  std::size_t length_;
-  std::unique_ptr<double, Free> in_;
-  std::unique_ptr<fftw_complex, Free> out_;
-  fftw_plan plan_;
+  std::vector<double> in_;
+  std::vector<std::complex<double>> out_;
+  Eigen::FFT<double> transform_;
 };
 
 }  // namespace

@@ -95,6 +95,7 @@ Json to_json_object(const RowFields& fields) {
     if (!(fields.*member).empty()) object[key] = fields.*member;
   }
   if (fields.isolated) object["isolated"] = true;
+  if (fields.approximates) object["approximates"] = true;
   if (fields.bucket) {
     object["bucket"] = to_json_object(*fields.bucket);
   }
@@ -112,6 +113,9 @@ RowFields row_fields_of(const Json& object) {
     if (object.contains(key)) read_key(key, [&, name = key, to = member] { object.at(name).get_to(fields.*to); });
   }
   if (object.contains("isolated")) read_key("isolated", [&] { object.at("isolated").get_to(fields.isolated); });
+  if (object.contains("approximates")) {
+    read_key("approximates", [&] { object.at("approximates").get_to(fields.approximates); });
+  }
   if (object.contains("bucket")) {
     read_key("bucket", [&] { fields.bucket = bucket_of(object.at("bucket")); });
   }

@@ -24,6 +24,7 @@ struct RowFields {
   std::string scenario = {};  ///< "II"; of a scene row its family.
   std::string target = {};    ///< Of a generate row: "distance" or "volume".
   bool isolated = false;      ///< The algorithm runs, and is timed, in a process of its own.
+  bool approximates = false;  ///< The algorithm replaces the bodies by others, such as spheres (Traits::approximates).
   std::string question = {};  ///< Of a study's row: the kind of query that it asks.
   /// The row asks at most so many configurations, and is compared with rows of the same limit; empty without one.
   std::optional<std::uint64_t> sample_limit = {};

@@ -5,13 +5,13 @@
 (function (report) {
   const element = report.element;
 
-  function chip(name, index, state, redraw) {
+  function chip(name, style, state, redraw) {
     const box = element("input", { type: "checkbox", checked: !state.hidden.has(name), onchange: () => {
       if (box.checked) state.hidden.delete(name); else state.hidden.add(name);
       redraw();
     } });
-    const swatch = element("span", { class: "swatch " + report.shapeOf(index), "aria-hidden": "true" });
-    swatch.style.setProperty("--colour", report.colourOf(index, report.theme));
+    const swatch = element("span", { class: "swatch " + report.shapeOf(style), "aria-hidden": "true" });
+    swatch.style.setProperty("--colour", report.colourOf(style, report.theme));
     return element("label", { class: "chip" }, box, swatch, name);
   }
 
@@ -94,9 +94,9 @@
 
     drawChips(rows) {
       const names = report.valuesOf(rows, this.field());
-      const index = (name) => Math.max(0, this.data.algorithms.indexOf(report.baseAlgorithm(name)));
-      names.sort((a, b) => index(a) - index(b));
-      replaceControls(this.chips, this.meta.noChips ? [] : names.map((name) => chip(name, index(name), this.state, () => this.draw())));
+      const style = (name) => report.styleOf(name, this.data.algorithms);
+      names.sort((a, b) => style(a) - style(b));
+      replaceControls(this.chips, this.meta.noChips ? [] : names.map((name) => chip(name, style(name), this.state, () => this.draw())));
     }
 
     /** The worst value that is drawn, with a link to its pose or moment. */

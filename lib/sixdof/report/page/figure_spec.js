@@ -6,20 +6,30 @@
 var sixdofReport = globalThis.sixdofReport || {};
 globalThis.sixdofReport = sixdofReport;
 
-// Okabe and Ito's colours, told apart by colour-blind readers; the second set is for a dark background. A shape tells
-// algorithms apart that share a colour.
+// Okabe and Ito's colours, told apart by colour-blind readers; the second set is for a dark background.
 sixdofReport.palettes = {
   light: ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#b8860b", "#56b4e9", "#444444", "#7b3294"],
   dark: ["#4ea3e0", "#ff8c42", "#2fd3a3", "#e28ad0", "#f0c419", "#8fd3ff", "#d0d0d0", "#b794f6"],
 };
-sixdofReport.shapes = ["circle", "square", "triangle-up", "diamond", "cross", "triangle-down", "triangle-right"];
+sixdofReport.shapes = ["circle", "square", "triangle-up", "diamond", "cross", "triangle-down", "triangle-right", "triangle-left"];
+// These have the same colour and shape in every report. The first eight differ in both; no two of all have both in common.
+sixdofReport.known = ["exact", "vps", "ist", "fcl-contacts", "bullet-gimpact", "ode", "vps-field", "ist-descent",
+                      "fcl-rss", "fcl-obbrss", "fcl-kios", "fcl-obb", "fcl-aabb", "embree", "gts", "simbody", "ccd-hull",
+                      "mujoco-hull"];
 
-sixdofReport.colourOf = function (index, theme) {
-  const palette = sixdofReport.palettes[theme];
-  return palette[index % palette.length];
+/** Number of an algorithm's colour and shape, among the algorithms of a report. */
+sixdofReport.styleOf = function (name, algorithms) {
+  const base = sixdofReport.baseAlgorithm(name), known = sixdofReport.known;
+  if (known.includes(base)) return known.indexOf(base);
+  return known.length + Math.max(0, algorithms.filter((each) => !known.includes(each)).indexOf(base));
 };
-sixdofReport.shapeOf = function (index) {
-  return sixdofReport.shapes[index % sixdofReport.shapes.length];
+sixdofReport.colourOf = function (style, theme) {
+  const palette = sixdofReport.palettes[theme];
+  return palette[style % palette.length];
+};
+sixdofReport.shapeOf = function (style) {
+  const shapes = sixdofReport.shapes;
+  return shapes[(style + Math.floor(style / sixdofReport.palettes.light.length)) % shapes.length];
 };
 
 /** Puts texts back in the place of their indices (page.cpp). */
@@ -177,9 +187,9 @@ function visit(node, f) {
 }
 
 function paintAlgorithms(spec, field, algorithms, context) {
-  const index = (name) => Math.max(0, context.algorithms.indexOf(sixdofReport.baseAlgorithm(name)));
-  const colours = algorithms.map((name) => sixdofReport.colourOf(index(name), context.theme));
-  const shapes = algorithms.map((name) => sixdofReport.shapeOf(index(name)));
+  const styles = algorithms.map((name) => sixdofReport.styleOf(name, context.algorithms));
+  const colours = styles.map((style) => sixdofReport.colourOf(style, context.theme));
+  const shapes = styles.map(sixdofReport.shapeOf);
   const dashes = algorithms.map((name) => (sixdofReport.baseAlgorithm(name) === name ? [1, 0] : [6, 4]));
   visit(spec, (node) => {
     for (const [channel, range] of [["color", colours], ["fill", colours], ["shape", shapes], ["strokeDash", dashes]]) {
@@ -239,7 +249,7 @@ sixdofReport.prepareSpec = function (figure, rows, choices, context) {
   const field = meta.algorithm || "algorithm";
   const present = new Set(rows.map((row) => row[field]));
   const algorithms = [...present].sort(
-    (a, b) => context.algorithms.indexOf(sixdofReport.baseAlgorithm(a)) - context.algorithms.indexOf(sixdofReport.baseAlgorithm(b)));
+    (a, b) => sixdofReport.styleOf(a, context.algorithms) - sixdofReport.styleOf(b, context.algorithms));
   paintAlgorithms(spec, field, algorithms, context);
   if (context.linear) useLinearAxes(spec, meta.logAxes || []);
   visit(spec, (node) => {

@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "bench/cli/table.h"
+#include "bench/cli/table_numbers.h"
+
+namespace sixdof::cli {
+namespace {
+
+using results::Fault;
+
+struct Query {
+  const char* name;
+  const char* words;
+};
+constexpr Query k_queries[]{{"collide", "yes/no"}, {"distance", "distance"}, {"respond", "response"}};
+
+/// The rows of one algorithm on one pair: random poses on warm caches.
+struct OverviewLine {
+  std::string algorithm;
+  bool approximates = false;
+  std::map<std::string, std::vector<const results::RowGroup*>> by_query;
+
+  std::vector<double> values(const std::string& query, const std::string& name) const {
+    std::vector<double> found;
+    const auto rows = by_query.find(query);
+    if (rows == by_query.end()) return found;
+    for (const results::RowGroup* group : rows->second) {
+      if (const auto value = group->value(name)) found.push_back(*value);
+    }
+    return found;
+  }
+};
+
+std::string mean_cell(const std::vector<double>& values, std::string (*format)(double)) {
+  if (values.empty()) return "-";
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return format(sum / static_cast<double>(values.size()));
+}
+
+/// "yes/no: 3 of 640 wrong", of all buckets together.
+std::vector<std::string> fault_texts(const OverviewLine& line) {
+  std::vector<std::string> texts;
+  for (const auto& [query, words] : k_queries) {
+    const auto rows = line.by_query.find(query);
+    if (rows == line.by_query.end()) continue;
+    std::vector<Fault> sums;
+    for (const results::RowGroup* group : rows->second) {
+      for (const Fault& fault : group->faults) {
+        const auto found = std::ranges::find(sums, fault.what, &Fault::what);
+        if (found == sums.end()) {
+          sums.push_back(fault);
+        } else {
+          found->count += fault.count;
+          found->of += fault.of;
+        }
+      }
+    }
+    if (!sums.empty()) texts.push_back(fmt::format("{}: {}", words, results::to_string(sums)));
+  }
+  return texts;
+}
+
+std::string answers_cell(const OverviewLine& line) {
+  std::vector<std::string> texts = fault_texts(line);
+  const std::vector<double> errors = line.values("distance", "error_max");
+  if (line.approximates && !errors.empty()) {
+    texts.push_back(fmt::format("distances off by at most {:.2g} % of the size", 100.0 * std::ranges::max(errors)));
+  }
+  const char* const verdict = line.approximates ? "approximate" : texts.empty() ? "right" : "wrong";
+  return texts.empty() ? verdict : fmt::format("{}; {}", verdict, fmt::join(texts, "; "));
+}
+
+}  // namespace
+
+std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
+  std::vector<std::pair<std::string, std::vector<OverviewLine>>> pairs;
+  for (const ResultTable& table : tables) {
+    auto pair = std::ranges::find(pairs, table.pair, [](const auto& each) { return each.first; });
+    if (pair == pairs.end()) pair = pairs.insert(pairs.end(), {table.pair, {}});
+    for (const TableLine& line : table.lines) {
+      const results::RowGroup* const group = line.files.front().group;
+      if (group == nullptr || line.label() != line.algorithm || line.algorithm == "null") continue;
+      auto found = std::ranges::find(pair->second, line.algorithm, &OverviewLine::algorithm);
+      if (found == pair->second.end()) found = pair->second.insert(found, {line.algorithm, false, {}});
+      found->approximates = found->approximates || group->fields().approximates;
+      found->by_query[table.query].push_back(group);
+    }
+  }
+  std::vector<Sheet> sheets;
+  for (const auto& [pair, lines] : pairs) {
+    Sheet& sheet = sheets.emplace_back();
+    sheet.title = pair + ": mean processor time of a query over all distances and overlaps";
+    sheet.columns = {{"", "algorithm", true}};
+    for (const auto& [query, words] : k_queries) sheet.columns.push_back({"", fmt::format("{}, us", words)});
+    sheet.columns.push_back({"", "force off by, degrees"});
+    sheet.columns.push_back({"", "answers", true});
+    for (const OverviewLine& line : lines) {
+      auto& cells = sheet.lines.emplace_back(std::vector{line.algorithm});
+      for (const auto& [query, words] : k_queries) {
+        cells.push_back(mean_cell(line.values(query, results::k_processor_mean), as_microseconds));
+      }
+      cells.push_back(mean_cell(line.values("respond", "gamma_F_deg"), as_degrees));
+      cells.push_back(answers_cell(line));
+    }
+  }
+  return sheets;
+}
+
+std::vector<std::string> lines_below_overview() {
+  return {"force off by: mean angle to the exact force",
+          "answers: right: none differs from the truth; approximate: the method replaces the bodies by others (spheres, "
+          "voxels, points), and its errors follow; wrong: an algorithm that promises right answers gave wrong ones"};
+}
+
+}  // namespace sixdof::cli
