@@ -19,8 +19,8 @@ inline constexpr std::size_t k_longest_words = 500;
 /// UTF-8. Text of more than `longest` bytes is cut, and "..." added.
 std::string visible_text(std::string_view text, std::size_t longest = 40);
 
-/// Words of a failure or a description, visible, of k_longest_words bytes at most: the beginning of longer ones. What
-/// comes out does not change by another call.
+/// visible_text() of the words of a failure or a description, cut at k_longest_words bytes. Applying it twice gives the
+/// same text.
 std::string visible_words(std::string_view text);
 
 /// JSON as text whose strings and keys are visible as by visible_text(), whatever stood there: a control character, as

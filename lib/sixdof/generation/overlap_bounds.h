@@ -64,7 +64,7 @@ class SlopeBounds {
   /// Parts of an interval, each with bounds of its own.
   static constexpr std::size_t k_parts = 32;
 
-  /// What bounds know of a mesh.
+  /// What the bounds need of a mesh.
   enum class Items {
     leaves,
     triangles

@@ -21,7 +21,8 @@ class OverlapMarch {
  public:
   /// Measures at `s`, after the front has come to `front`.
   using Measure = std::function<OverlapMeasurement(double s, double front)>;
-  /// An upper bound on the volume between two measurements: the least known, unless another is not above `enough`.
+  /// An upper bound on the volume between two measurements. It is the smallest known one, or any that is not above
+  /// `enough`.
   using Peak =
       std::function<VolumePeak(const OverlapMeasurement& outer, const OverlapMeasurement& inner, double enough)>;
 

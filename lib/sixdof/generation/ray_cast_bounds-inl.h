@@ -101,8 +101,9 @@ struct Gaps {
   }
 };
 
-/// Orders pairs by when they are probably hit, the first first: minus the largest t - t0 at which the centres are as
-/// far apart as the target. Centres that pass each other farther apart come later by as much.
+/// Estimates when a pair is hit; the search takes the smallest value first. The value is minus the largest t - t0 at
+/// which the distance of the centres is the target. Where the centres never come that close, it is computed at their
+/// closest approach, and increased by the closest distance minus the target.
 /// @param squared of the distance in which the centres pass each other
 /// @param along from the centre of x to that of y, along the ray
 HWY_INLINE V order_of(V squared, V along, float target) {

@@ -132,8 +132,9 @@ struct Cast {
   double size() const { return a.tree().radius() + b.tree().radius() + target; }
   /// Upper bound on every translation of interest.
   double reach() const { return 1.01 * size(); }
-  /// By how much the distance of a pair that ties may be below the target. Triangles that intersect do not tie: contact
-  /// of a small A with a large B is nearer than a part of both sizes.
+  /// By how much the distance of a pair that ties may be below the target. At most half the target: triangles that
+  /// intersect never tie, even where the target is smaller than the rounding, as for contact of a small A with a large
+  /// B.
   double tie() const { return std::min(k_cast_tie * size(), 0.5 * target); }
 };
 

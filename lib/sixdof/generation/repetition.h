@@ -22,7 +22,7 @@ struct RepetitionSample {
   std::uint64_t seed = 1;
 };
 
-/// A translation that this build computes otherwise, in the meshes' length unit.
+/// A translation that this build computes differently, in the meshes' length unit.
 struct ChangedValue {
   std::uint32_t rotation = 0, direction = 0;  ///< Indices into the bucket's grid.
   double stored = 0.0, made = 0.0;

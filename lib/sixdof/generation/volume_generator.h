@@ -20,14 +20,14 @@ namespace sixdof {
 /// divided, down to k_first_overlap_resolution.
 ///
 /// The leaves whose triangles may intersect are collected for the displacement between two measurements (candidates.h)
-/// and serve all bounds in it; where they do not suffice, so do their triangles, which then serve the measurements in
-/// it, too. A ray takes about three measurements per target.
+/// and used for all bounds in it. Where they do not suffice, their triangles are collected, and used for the
+/// measurements in it as well. A ray takes about three measurements per target.
 ///
-/// Not found are hits that begin and end within the resolution, where the bounds allow them at all; and, in meshes that
-/// intersect themselves, longer ones.
+/// Hits that begin and end within the resolution may be missed where the bounds do not exclude them; in meshes that
+/// intersect themselves, longer ones too.
 ///
-/// The first measurement on a ray is as far from contact as the first target was met on the ray before. The bits are
-/// the same for every number of threads and on every instruction set.
+/// The first measurement on a ray is as far from contact as the previous ray was when it met its first target. The bits
+/// are the same for every number of threads and on every instruction set.
 /// @param touching finds where the surfaces meet first
 /// @return makes a solver for these meshes; may be called from several threads. Both meshes and `touching` outlive it
 /// and the solvers. Targets are volumes in the cube of the meshes' unit, ascending; 0 stands for contact, which is

@@ -5,8 +5,8 @@
 
 #include <sixdof/geometry/mesh.h>
 
-/// What a mesh looks like, in numbers, and a kind from them: so that a collection of objects can be told apart by
-/// rule and not by hand.
+/// Numbers that describe the shape of a mesh, and a kind that follows from them, so that a rule classifies the objects
+/// of a collection.
 namespace sixdof {
 
 /// None of them depends on the unit of length. All are 0 where they have no meaning.

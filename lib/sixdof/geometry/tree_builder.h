@@ -14,10 +14,10 @@
 /// How the triangles of a mesh are partitioned into the nodes of a Tree: the first half of its construction.
 ///
 /// A range of triangles is split in two again and again, always the part with the largest box, until a node has eight
-/// children. A split is the best by the surface-area heuristic of those at multiples of a block: of a full leaf, of a
-/// full node of leaves, or of a full node of those. So nearly all leaves and most nodes are full. Ranges of up to a
-/// full node of nodes of leaves are split exactly; larger ones at the block next to the best of 15 cuts along each
-/// axis, or at that cut itself where parts lie far from each other.
+/// children. Ranges are split at multiples of a block of triangles: a full leaf (4), a full node of leaves (32) or a
+/// full node of such nodes (256). So nearly all leaves and most nodes are full. The surface-area heuristic chooses
+/// among these splits. In ranges of up to 256 triangles it compares all of them. A larger range is split at the block
+/// nearest to the best of 15 cuts along each axis, or at that cut itself where parts lie far from each other.
 namespace sixdof::tree_builder {
 
 /// Axis-aligned box in single precision, relative to the tree's centre; contains its triangles.

@@ -47,8 +47,8 @@ inline constexpr double k_parallel_sine = 2.0 * 0x1p-53;
 /// Above this sine one refinement is enough: the error of the first solution is about roundoff / sine^2 = 1e-10 times
 /// (distance / edge).
 inline constexpr double k_wide_sine = 1e-3;
-/// A first solution farther than this outside of [0, 1] is not brought back by refinement: that would take a distance
-/// of 1e9 edges, where the interior gains nothing over the border.
+/// A first solution farther than this outside of [0, 1] is not refined. Refinement could move it into [0, 1] only at a
+/// distance of 1e9 edges, and there the border is as close as the interior.
 inline constexpr double k_margin = 0.125;
 /// Triangles are disjoint if their projections on the line through the closest points have a gap of more than this
 /// times the size: the rounding of a dot product of differences is less than 8 units.

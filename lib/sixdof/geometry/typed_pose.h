@@ -8,7 +8,7 @@
 
 namespace sixdof {
 
-/// A pose with the seven numbers that give it on a command line: whoever pastes text() asks at the same bits.
+/// A pose with the seven numbers that give it on a command line: pasting text() gives a pose with the same bits.
 struct TypedPose {
   Eigen::Vector4d quaternion{1.0, 0.0, 0.0, 0.0};  ///< (w, x, y, z)
   Pose X_AB;                                       ///< Of these numbers, by Pose::from_quaternion().

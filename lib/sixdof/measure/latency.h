@@ -9,8 +9,8 @@ namespace sixdof {
 /// One cycle of a haptic loop at 1 kHz. A query that takes longer misses it.
 inline constexpr double k_haptic_deadline_ns = 1e6;
 
-/// Fewest times for a p99 and for a p999: two times lie above the percentile, so that it is not the maximum under
-/// another name, nor the one query that other work on the machine interrupted.
+/// Fewest times for a p99 and for a p999: at least two times lie above the percentile. So it is neither the maximum nor
+/// a single query that other work on the machine interrupted.
 inline constexpr std::size_t k_fewest_for_p99 = 200;
 inline constexpr std::size_t k_fewest_for_p999 = 2000;
 

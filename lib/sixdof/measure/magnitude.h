@@ -20,9 +20,9 @@ double peak(Vectors vectors);
 void check_same_length(Vectors ideal, Vectors measured);
 
 /// RMS difference of the magnitudes: sqrt(1/N sum (|i_k|/max|i| - |m_k|/max|m|)^2), a pure number. Each series is
-/// normalised by its own largest magnitude, so a gain error does not show and one spike sets the scale; see fit_gain().
-/// Source: Weller et al. 2010, formula (1), with the sum divided by N inside the root: only this reading gives the
-/// values the paper prints, and only this one does not depend on the number of steps.
+/// normalised by its own largest magnitude, so a gain error does not show, and a single spike changes the scale of the
+/// series; see fit_gain(). Source: Weller et al. 2010, formula (1), with the sum divided by N inside the root: only
+/// this reading gives the values the paper prints, and only this one does not depend on the number of steps.
 ///
 /// Empty where the ideal is zero throughout. A measured series that is zero throughout is compared as zero.
 std::optional<double> sigma(Vectors ideal, Vectors measured);

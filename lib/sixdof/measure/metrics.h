@@ -40,7 +40,7 @@ const Metric* find_metric(std::string_view counter);
 
 /// What a counter is about.
 enum class MetricKind {
-  time,    ///< No two runs share it; also what depends on times: how many rounds, which points lead.
+  time,    ///< Differs between any two runs: times, and what depends on times, as the frontier does.
   work,    ///< What a query looks at, and the size of structures: changes with how an answer is found.
   answer,  ///< Everything else: errors, failures, counts of configurations.
 };

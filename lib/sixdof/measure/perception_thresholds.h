@@ -13,7 +13,7 @@ namespace sixdof::perception {
 /// 49 (1991).
 inline constexpr double k_force_fraction = 0.10;
 
-/// Just noticeable change of a force's direction in degrees. Published: 18 to 32, by what the eye sees meanwhile.
+/// Just noticeable change of a force's direction in degrees. Published: 18 to 32, depending on what the subject sees.
 /// Barbagli, Salisbury, Ho, Spence, Tan, "Haptic discrimination of force direction and the influence of visual
 /// information", ACM Transactions on Applied Perception 3 (2006).
 inline constexpr double k_direction_degrees = 30.0;
@@ -22,7 +22,7 @@ inline constexpr double k_direction_degrees = 30.0;
 /// to the first frequency, falls by 12 dB an octave to the second, where it is least, and rises beyond. Verrillo,
 /// "Effect of contactor area on the vibrotactile threshold", Journal of the Acoustical Society of America 35 (1963);
 /// both frequencies and the slope as Gescheider and Verrillo sum them up in "Sensory Functions of the Skin of Humans"
-/// (1979). The rise beyond is taken to mirror the fall, which the 300 Hz that are scored hardly touch.
+/// (1979). The rise beyond is assumed to mirror the fall; scores end at 300 Hz, so it hardly matters.
 inline constexpr double k_flat_until_hz = 40.0;
 inline constexpr double k_most_sensitive_hz = 250.0;
 inline constexpr double k_slope_db_per_octave = 12.0;
@@ -40,8 +40,8 @@ inline constexpr double k_vibration_from_hz = 40.0, k_vibration_to_hz = 300.0;
 /// texture display", IEEE Transactions on Haptics 2 (2009): about 40 and 60 ms.
 inline constexpr double k_delay_changes_ms = 40.0, k_delay_noticed_ms = 60.0;
 
-/// Assumptions about the device, which the scores of vibration are proportional to: the peak of a response is sent as
-/// this force, in N, and handle with fingers answers to vibration as this mass, in kg.
+/// Assumptions about the device, which the scores of vibration are proportional to: the peak of a response is scaled to
+/// this force, in N, and handle and fingers respond to vibration like this mass, in kg.
 inline constexpr double k_full_force = 5.0, k_felt_mass = 0.1;
 
 /// A line for a reader: what is scored, what scores 1, from where.

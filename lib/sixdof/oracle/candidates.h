@@ -28,8 +28,8 @@ inline Eigen::Vector3d transform_point(const Pose& X_AB, const Eigen::Vector3d& 
   return q;
 }
 
-/// What a search has seen of axes across two volumes, and across two triangles: whether they pay. They have to find
-/// more than these shares apart; those of triangles spare a cross() each.
+/// Whether the cross products of two volumes' axes, and of two triangles' edges, pay in a search. They have to separate
+/// more than these shares of the pairs; each separated pair of triangles saves a cross().
 struct CandidateAxes {
   detail::CrossAxesUse volumes{0.3}, triangles{0.9};
 };
@@ -41,7 +41,7 @@ struct CandidateScratch {
     std::uint32_t a, b;
     float size_a, size_b;
   };
-  /// Two leaves; whether floats blur them.
+  /// Two leaves, and whether floats are too coarse to separate them.
   struct LeafPair {
     std::uint32_t a, b;
     bool blurred;
@@ -60,8 +60,9 @@ struct CandidateScratch {
 void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateScratch& scratch,
                      std::vector<TrianglePair>& pairs);
 
-/// The same in parts, and for the poses near X_AB: a search finds all pairs that intersect at any pose which takes no
-/// point of B farther than `margin` from where X_AB takes it. Those of one pose come in the order of find_candidates().
+/// The same in parts, and for all poses near X_AB: a pose is near if it moves every point of B to within `margin` of
+/// where X_AB moves it. All pairs that intersect at a near pose are found. Those of one pose come in the order of
+/// find_candidates().
 struct CandidateSearch {
   static constexpr std::size_t k_whole = std::numeric_limits<std::size_t>::max();
 
@@ -117,9 +118,9 @@ struct FractionRange {
 /// The pairs that may intersect at one of these fractions of the displacement, which lie in 0 .. 1.
 void select_pairs(std::span<const SweptPair> swept, FractionRange range, std::vector<TrianglePair>& pairs);
 
-/// The pairs of triangles of those of these leaves that may intersect at one of the fractions. Conservative as
-/// find_candidates() for B at X_AB and wherever it is translated from there by at most `margin` (length), provided that
-/// the fractions contain those poses; in the same order.
+/// The pairs of triangles of these leaves, for those leaves that may intersect at one of the fractions. No pair is
+/// missed that intersects at X_AB, or after a translation of B from there by at most `margin` (length), provided that
+/// the fractions contain those poses. The order is that of find_candidates().
 void select_triangles(const Tree& a, const Tree& b, const Pose& X_AB, double margin,
                       std::span<const SweptPair> leaf_pairs, FractionRange range, std::vector<TrianglePair>& pairs);
 

@@ -63,8 +63,8 @@ HWY_INLINE std::uint32_t overlapping_volumes(const Volumes& x, const Volumes& y,
   return bits;
 }
 
-/// The volumes x (bits), of those in `bits`, that are not separated from volume j of y by an axis across an axis of
-/// each frame.
+/// Of the volumes x in `bits`, those (as bits) that none of the nine cross products of both frames' axes separates from
+/// volume j of y.
 inline HWY_NOINLINE std::uint32_t overlapping_across_axes(const Volumes& x, const Volumes& y, std::size_t j,
                                                           const float (&axes_x)[detail::CrossAxes::k_count][3],
                                                           const float (&axes_y)[detail::CrossAxes::k_count][3],

@@ -29,8 +29,9 @@ inline constexpr double k_projection_rounding = 1e-14;
 }  // namespace detail
 
 /// Whether two triangles are certainly separated by a plane through an edge of one of them and across that triangle.
-/// Where faces lie in one plane, up to rounding, most pairs are: fans, strips and grids over each other. cross() asks
-/// this before the exact predicates, which such pairs need to decide on which side of the plane a corner lies.
+/// Most pairs of triangles of faces in one plane, up to rounding, are separated in this way: fans, strips and grids
+/// that lie on each other. cross() tests it first, since such pairs otherwise need exact arithmetic to decide on which
+/// side of the plane a corner lies.
 bool certainly_apart(const TriangleCorners& a, const TriangleCorners& b);
 
 /// Which of an edge and a triangle belongs to B and is translated by e; the other belongs to A.

@@ -132,7 +132,8 @@ class alignas(64) Batch {
  private:
   using FloatCorners = CornersOf<FloatV>;
 
-  /// So many doubtful pairs take longer one by one than eight at once. They abound where faces lie in one plane.
+  /// From this many doubtful pairs in a batch on, certainly_apart_lanes() tests all eight at once, which is faster than
+  /// one by one. Doubtful pairs are frequent where faces lie in one plane.
   static constexpr int k_many = 2;
 
   /// Bits of the lanes that intersect, and that do not.
@@ -208,9 +209,9 @@ class alignas(64) Batch {
   std::uint32_t lanes_ = 0;                   ///< Bits of the lanes that hold a pair of their own.
 };
 
-/// take(batch, place of its first pair) for all pairs, in their order. Several batches take each step together, and
-/// between() what was taken before is used, a step later: what was written a moment ago in other pieces than it is read
-/// in takes long to read.
+/// Calls take(batch, index of its first pair) for all pairs, in their order. Several batches do each step together.
+/// between() uses what was taken in the round before: reading data just after they were written in pieces of another
+/// size is slow (no store forwarding).
 template <class Between, class Take>
 HWY_INLINE void for_each_batch(const Solid& a, const Solid& b, const Pose& X_AB, std::span<const TrianglePair> pairs,
                                const Between& between, const Take& take) {

@@ -12,9 +12,10 @@
 
 namespace sixdof::detail {
 
-/// find_candidates() by several threads: the first pairs of volumes are divided into parts, which threads search in
-/// their order. One thread takes the candidates part by part, and searches itself while the next part is not there. Of
-/// a part with many candidates, as faces in one plane have, those that intersect are picked by who searched it.
+/// find_candidates() by several threads. The first pairs of volumes are divided into parts, which threads search in
+/// order. One thread takes the candidates part by part; while the next part is unfinished, it searches another one. If
+/// a part has many candidates, as with faces in one plane, the thread that searched it also selects those that
+/// intersect.
 ///
 /// No allocation once the vectors have grown.
 class CrossingParts {

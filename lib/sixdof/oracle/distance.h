@@ -26,9 +26,9 @@
 /// computed in floats, eight or more at once, and lowered by their rounding (distance_bounds-inl.h); what they cannot
 /// prune is measured in double precision (distance_search.cpp). So the answer does not depend on the bounds: it has the
 /// same bits on every instruction set, for every thread, warm or cold. Bounds of volumes that floats cannot tell apart
-/// are computed in doubles (close_search.h), such as those of a body 1e-6 times as large as the other.
-/// Farther apart than 50 diameters no distance is less than the answer by more than 1.2e-15 of it (far_pair.h); of
-/// pairs that are equally far up to that, none is preferred by its rank, but the answer has the same bits all the same.
+/// are computed in doubles (close_search.h), such as those of a body 1e-6 times as large as the other. For bodies
+/// farther apart than 50 diameters (far_pair.h) the answer exceeds the smallest distance by at most 1.2e-15 of it.
+/// Among pairs that are equally far up to that, the answer is not the one of lowest rank, but always the same one.
 ///
 /// Ties: where surfaces are apart, the closest pair is the one with the lowest triangle in A, then in B, of all pairs
 /// that are equally far; distance and points are those of this pair. Pairs are equally far if their distances are the

@@ -8,8 +8,8 @@
 /// Which of equally far pairs of triangles is the answer. Internal: use distance.h.
 ///
 /// Between coplanar patches the distances of thousands of pairs count as equal (TieWindow), and the answer is the pair
-/// of smallest rank. A search prunes pairs that can at most tie with the best, and records them. They are expanded in
-/// the order of the smallest ranks in them, so only a few of them.
+/// of smallest rank. A search prunes pairs that can at most tie with the best, and records them. Afterwards they are
+/// expanded in the order of the smallest rank that each contains, so that few need to be expanded.
 namespace sixdof::detail {
 
 /// Appends the pairs of parts of a pair that is not of triangles, but for those that are certainly farther than ties.

@@ -9,8 +9,9 @@
 /// Let s lead from A's centre to B's, let w = s / |s|, and let e be the difference of a point of B and a point of A,
 /// each relative to its body's centre, x = w . e its part along w and p the length of the rest. Then
 ///   (|s + e|^2 - |s|^2) / (2 |s|) = x + (x^2 + p^2) / (2 |s|)
-/// has its minimum where the distance |s + e| has, and numbers of the bodies' size tell apart what the distance's
-/// rounding hides. A search for that minimum ends as soon as nothing is closer by more than a few such roundings.
+/// has its minimum at the same points as the distance |s + e|. Its terms are of the bodies' size, so it distinguishes
+/// points whose distances round to the same double. A search for that minimum ends as soon as no pair is closer by more
+/// than a few roundings of the distance.
 ///
 /// From |s| = k_corners r on, where r is the sum of the radii, the second term is less than half a rounding of the
 /// distance. There the closest points are the corners that reach farthest along w and -w, each found in one tree.
@@ -19,11 +20,12 @@
 /// triangles differ by less than a rounding, and it measures all of these.
 namespace sixdof::detail {
 
-/// Distance of the centres per sum of the radii, from which bodies are far apart, and from which only corners matter.
+/// Distance of the centres divided by the sum of the radii. From k_far on bodies count as far apart; from k_corners on
+/// only corners matter.
 inline constexpr double k_far = 50.0;
 inline constexpr double k_corners = 1e8;
 
-/// Distances that exceed the smallest by no more than this times the distance need not be told apart.
+/// Distances that exceed the smallest by at most this times the distance count as equal to it.
 inline constexpr double k_far_pair_error = 10.0 * 0x1p-53;
 
 /// Whether the bodies are farther apart than k_far. A function of the pose alone.

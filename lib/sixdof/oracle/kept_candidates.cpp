@@ -50,8 +50,8 @@ void KeptCandidates::search(const Tree& a, const Tree& b, const Pose& X_AB) {
   constexpr std::size_t k_part = 512;  // after as many expansions it looks whether there are too many candidates
   const double margin = has_now_ ? next_margin(a, b, largest_displacement(b, X_AB, last_)) : 0.0;
   now_.start(a, b, margin > 0.0 ? pose_ahead(b, X_AB, k_ahead * margin) : X_AB, margin);
-  while (margin > 0.0 && !now_.is_complete() && !abounds(now_)) advance(now_, a, b, k_part);
-  if (margin > 0.0 && abounds(now_)) {
+  while (margin > 0.0 && !now_.is_complete() && !has_too_many(now_)) advance(now_, a, b, k_part);
+  if (margin > 0.0 && has_too_many(now_)) {
     growth_ *= k_growth_of_failure;
     now_.start(a, b, X_AB, 0.0);
   }
@@ -78,14 +78,15 @@ void KeptCandidates::search_ahead(const Tree& a, const Tree& b, const Pose& X_AB
   }
   if (next_.is_complete()) return;
   advance(next_, a, b, part_);
-  if (abounds(next_)) {
+  if (has_too_many(next_)) {
     growth_ *= k_growth_of_failure;
     has_next_ = false;
   }
 }
 
-bool KeptCandidates::abounds(const CandidateSearch& search) const {
-  return static_cast<double>(search.pairs.size()) > k_most_candidates * std::max(without_margin(), k_few);
+bool KeptCandidates::has_too_many(const CandidateSearch& search) const {
+  return static_cast<double>(search.pairs.size()) >
+         k_most_candidates * std::max(without_margin(), k_negligible_candidates);
 }
 
 void KeptCandidates::advance(CandidateSearch& search, const Tree& a, const Tree& b, std::size_t most) {
@@ -107,7 +108,8 @@ double KeptCandidates::next_margin(const Tree& a, const Tree& b, double step) {
   const double size = std::min(triangle_size(a), triangle_size(b));
   double measured = k_first_growth;
   if (now_.margin > 0.0) {
-    const double more = static_cast<double>(now_.pairs.size()) / std::max(without_margin(), k_few) - 1.0;
+    const double more =
+        static_cast<double>(now_.pairs.size()) / std::max(without_margin(), k_negligible_candidates) - 1.0;
     measured = std::max(more * size / now_.margin, k_least_growth);
   }
   growth_ = std::max(measured, k_decay_of_growth * growth_);  // where candidates abounded, they may no longer

@@ -10,13 +10,14 @@
 
 namespace sixdof::detail {
 
-/// Candidates for poses that follow each other closely. A search takes a margin around a pose a little ahead and holds
-/// until B leaves it. Before B does, the next search is done in parts, one per query, for where B will be then.
+/// Candidates kept for successive poses that are close together. A search predicts a pose a little ahead, and finds all
+/// pairs that can intersect while every point of B is within a margin of its place there. They are used until B leaves
+/// the margin. The next search is done before that, in parts, one per query.
 ///
-/// A wide margin spares searches, but all candidates within it are decided in every query. With the margin m and B
-/// moving by s per query, a query takes a share of a search that is proportional to s / m, and decides so many
-/// candidates more as grow with m. The sum is least where both are equal. The growth is that of the last search with a
-/// margin. Where B moves too far for a margin to last for some queries, searches take none.
+/// A wide margin needs fewer searches, but every query tests all candidates within it. If B moves by s per query, the
+/// cost of searches per query is proportional to s / m, where m is the margin, and the number of additional candidates
+/// to m. The sum is least where both costs are equal. How fast candidates grow with m is measured in the last search
+/// with a margin. If B moves so fast that a margin would not last for a few queries, there is none.
 ///
 /// No allocation once the vectors have grown.
 class KeptCandidates {
@@ -34,28 +35,31 @@ class KeptCandidates {
   std::size_t bytes() const;
 
  private:
-  /// The growth of candidates at first, of elephants with an overlap of 10 %; and the least.
+  /// Additional candidates per candidate, for a margin of the size of a triangle: the first guess, measured on
+  /// elephants with an overlap of 10 %, and the least.
   static constexpr double k_first_growth = 6.0, k_least_growth = 0.6;
-  /// Where candidates abound within a margin, none is tried for the next hundred searches.
+  /// After a margin with too many candidates, growth_ is raised by the first factor, and lowered by the second in each
+  /// search: about a hundred searches have no margin.
   static constexpr double k_growth_of_failure = 8.0, k_decay_of_growth = 0.98;
-  static constexpr double k_few = 64.0;  ///< Candidates that cost next to nothing.
+  /// A smaller number of candidates without a margin counts as this: so few cost nearly nothing.
+  static constexpr double k_negligible_candidates = 64.0;
 
   void search(const Tree& a, const Tree& b, const Pose& X_AB);
   void search_ahead(const Tree& a, const Tree& b, const Pose& X_AB);
-  /// Whether it has found so many candidates that its margin is too wide.
-  bool abounds(const CandidateSearch& search) const;
+  /// Whether a search has found so many candidates that its margin is too wide.
+  bool has_too_many(const CandidateSearch& search) const;
   double without_margin() const { return per_crossing_ * crossings_; }
   void advance(CandidateSearch& search, const Tree& a, const Tree& b, std::size_t most);
   double next_margin(const Tree& a, const Tree& b, double step);
-  /// Where B will be after moving on from X_AB, as from last_ to there, by at most `length`.
+  /// The predicted pose: the motion from last_ to X_AB, repeated as long as no point of B moves by more than `length`.
   Pose pose_ahead(const Tree& b, const Pose& X_AB, double length) const;
 
   CandidateSearch now_, next_;
   bool has_now_ = false, has_next_ = false;
   std::size_t part_ = 0;                         ///< Expansions of a search ahead in one query.
-  Pose last_;                                    ///< For which pairs were asked last.
-  double crossings_ = 1.0, per_crossing_ = 2.0;  ///< There, and candidates for each without a margin.
-  double growth_ = k_first_growth;               ///< By which share candidates grow per margin, in sizes of a triangle.
+  Pose last_;                                    ///< Of the last query.
+  double crossings_ = 1.0, per_crossing_ = 2.0;  ///< At last_; candidates per crossing without a margin.
+  double growth_ = k_first_growth;               ///< As k_first_growth.
   std::size_t expansions_ = 0;
 };
 

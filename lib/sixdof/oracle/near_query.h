@@ -13,8 +13,9 @@
 #include <sixdof/oracle/distance_search.h>
 #include <sixdof/oracle/nested.h>
 
-/// Distances between any two of many meshes, of interest up to a limit. The same definitions and bits as distance.h,
-/// which has the method; a mesh is prepared once, whatever it meets, and a search ends where the limit is certain.
+/// Distances between any two of many meshes, up to a limit. Definitions, method and bits are those of distance.h. A
+/// mesh is prepared once for queries with all others. A search ends as soon as the distance certainly exceeds the
+/// limit.
 namespace sixdof {
 
 /// A mesh prepared for queries with any other: immutable, shared by all threads.

@@ -39,8 +39,8 @@ namespace sixdof {
 
 /// What two solid bodies have in common at a pose. All vectors are in A's frame.
 ///
-/// Where a mesh overlaps itself a point counts as often as the meshes wind around it: volume is the integral of the
-/// product of both winding numbers.
+/// Where a mesh overlaps itself, winding numbers count: volume is the integral of the product of both meshes' winding
+/// numbers. A part of A that is covered twice counts twice.
 struct Overlap {
   /// Volume of the intersection (length^3). Rounding may leave a small value of either sign where bodies only touch.
   double volume = 0.0;

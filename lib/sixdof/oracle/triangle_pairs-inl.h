@@ -141,8 +141,7 @@ struct alignas(64) PairSide {
 using SideA = PairSide<true>;
 using SideB = PairSide<false>;
 
-/// Leaves of one tree, made when they are asked for and kept for a while: the leaves of one node do not displace each
-/// other.
+/// A cache of leaves of one tree, filled on demand. Leaves of the same node do not evict each other.
 template <bool of_a>
 class LeafCache {
  public:
@@ -259,8 +258,8 @@ HWY_INLINE std::uint32_t test_triangles(const SideA& a, const SideB& b, const Tr
   return bits;
 }
 
-/// Pairs of triangles (bits), of those in `bits`, that no axis across an edge of each separates; narrows the fractions.
-/// With the tests before, by both planes, they intersect but for rounding.
+/// Of the pairs of triangles in `bits`, those (as bits) that no cross product of two edges separates; narrows the
+/// fractions. With the tests before, by both planes, they intersect but for rounding.
 template <bool moving>
 HWY_NOINLINE std::uint32_t test_across_edges(const SideA& a, const SideB& b, std::uint32_t bits, const TreeMotion& x,
                                              float* first, float* last) {

@@ -53,7 +53,7 @@ class RemoteQuery final : public Query {
   static constexpr int k_most_deaths = 20;
   static constexpr int k_most_time_outs = 5;
 
-  /// Poses are asked again after too many deaths: another row begins.
+  /// Resets the counts of crashes and time-outs, for a new row: its poses are asked again.
   void forgive() { deaths_in_a_row_ = time_outs_in_a_row_ = 0; }
 
   /// Wall time of the last query that was asked, in ns: as the process says or, where it does not, the round trip.

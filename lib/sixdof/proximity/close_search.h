@@ -12,8 +12,8 @@
 /// Branch and bound in double precision, for pairs of volumes whose distances floats cannot tell apart. Internal: for
 /// oracle/distance_search.cpp, oracle/candidates.cpp and generation/ray_cast_ties.cpp, which call it where a float
 /// bound is too coarse:
-///   - bodies of unlike size: what is small next to the rounding of the large body's coordinates;
-///   - bodies that are far apart: all of both is small next to the rounding of their distance;
+///   - bodies of very different size, where details are smaller than the rounding of the large body's coordinates;
+///   - bodies that are far apart, where both are smaller than the rounding of their distance;
 ///   - layers closer to each other than that rounding;
 ///   - a leaf with a node that is smaller than the leaf is thick: a volume around four large triangles that are not
 ///     coplanar is far larger than the triangles. Here they are bounded one by one.

@@ -10,7 +10,7 @@
 /// Separating axes of boxes that cross. Internal: for oracle/distance_bounds-inl.h and oracle/candidates_bounds-inl.h.
 namespace sixdof::detail {
 
-/// The nine directions across an axis of A's frame and an axis of B's, of length 1; zero where the two are nearly
+/// The nine cross products of an axis of A's frame and an axis of B's, of length 1; zero where the two are nearly
 /// parallel. With the axes themselves they decide whether a box aligned with A's and one aligned with B's overlap
 /// (Gottschalk, Lin and Manocha, "OBBTree", 1996). Boxes are aligned with their tree's frame, so the nine are the same
 /// for all pairs of boxes of a query.
@@ -36,9 +36,10 @@ struct CrossAxes {
   }
 };
 
-/// Whether a search asks the cross axes, which takes about as long as all other axes. They pay where long volumes
-/// cross, such as strips of long triangles, and seldom elsewhere. So they are asked of a few pairs, or of all as long
-/// as enough volumes are found apart. A function of counts: the same on every machine.
+/// Decides for which pairs a search tests the cross axes, which takes about as long as all other axes. They pay where
+/// long volumes cross, such as strips of long triangles, and seldom elsewhere. So they are tested for a few pairs, and
+/// for all pairs as long as they separate enough volumes. The decision depends on counts alone: it is the same on every
+/// machine.
 class CrossAxesUse {
  public:
   /// @param worth to ask pays where more than this share of the volumes tested is found apart

@@ -5,7 +5,7 @@
 /// A pose as the searches of two trees take it, in floats. Internal.
 namespace sixdof::detail {
 
-/// The frame N of one tree and what it shows of the other tree, whose frame is F. Origins are the trees' centres.
+/// The pose of one tree, whose frame is F, in the frame N of the other. Origins are the trees' centres.
 struct Frame {
   float axis[3][3];      ///< F's axes in N: p_N = sum of axis[k] p_F[k] + translation
   float translation[3];  ///< From N's origin to F's.

@@ -116,8 +116,8 @@ struct alignas(64) Volumes {
     }
   }
 
-  /// Sets `front`. As a reach, but from the origin: the rounding of a slab's distance from the centre of the box would
-  /// blur layers.
+  /// Sets `front`. Computed like a reach, but from the origin: relative to the centre of the box, rounding would hide
+  /// the gap between close layers.
   /// @param f whose N is the own frame
   template <Rounding rounding, class Source>
   HWY_INLINE void set_front(const Source& from, const Frame& f) {

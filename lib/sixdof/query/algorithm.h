@@ -164,8 +164,8 @@ struct Traits {
   bool timed = true;
   /// Never compared with the truth of the meshes, or with other algorithms, unless it is `mesh`.
   Body body = Body::mesh;
-  /// Whether what takes "all" algorithms takes this one. False where thousands of queries would take hours: it is
-  /// measured where it is named.
+  /// Whether suites and studies of "all" algorithms take this one. False where thousands of queries would take hours:
+  /// it is measured only where it is named.
   bool by_default = true;
 
   /// Whether suites and studies of "all" algorithms include it.

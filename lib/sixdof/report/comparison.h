@@ -22,14 +22,14 @@ struct Comparison {
   std::vector<std::string> sentences;
 };
 
-/// Share of all rows together that may be called slower or faster although nothing changed.
+/// Probability that any row of a comparison is called slower or faster although nothing changed.
 inline constexpr double k_false_alarm = 0.05;
 
 /// Least standard deviation of the logarithm of a ratio of two means that were each measured once (k_run_to_run).
 inline constexpr double k_least_spread = 0.05;
 
-/// The noise of rows differs: that of the noisiest is twice that of the quietest (5 to 10 %). Factor on the spread of
-/// all rows with which one comparison in twenty of equal programs has a false alarm all the same (comparison_test.cpp).
+/// Factor on the spread of all rows. The noisiest rows have twice the noise of the quietest (5 to 10 %); with this
+/// factor one comparison in twenty of equal programs has a false alarm (comparison_test.cpp).
 inline constexpr double k_uneven = 1.2;
 
 /// A change is shown where the interval of the ratio does not contain 1. Its width comes from the repetitions where

@@ -29,7 +29,7 @@ double noise_of(const std::vector<double>& values) {
 
 void search(std::span<const double> values, std::size_t offset, double noise, std::vector<std::size_t>& found) {
   std::size_t best = 0;
-  double most = k_sure;
+  double most = k_change_standard_errors;
   for (std::size_t k = 1; k < values.size(); ++k) {
     const double difference = std::abs(mean_of(values.subspan(k)) - mean_of(values.first(k)));
     if (difference <= std::log(k_least_factor)) continue;

@@ -16,7 +16,7 @@ namespace sixdof::report {
 
 using namespace results;
 
-/// A mesh with few triangles that looks like another one.
+/// A simplified copy of a mesh, for drawing.
 struct DrawnMesh {
   std::string name;
   std::vector<std::array<float, 3>> vertices;

@@ -7,7 +7,7 @@
 
 #include <sixdof/results/row_group.h>
 
-/// Who wins.
+/// Which algorithm is the fastest.
 
 namespace sixdof::results {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-/// How sure a measured value is.
+/// Measured values with confidence intervals.
 
 namespace sixdof::results {
 
@@ -24,8 +24,8 @@ inline bool overlap(const Estimate& a, const Estimate& b) { return a.low <= b.hi
 /// Values up to this one are errors of rounding: they count as equal, and answers that differ by no more are the same.
 inline constexpr double k_rounding = 1e-12;
 
-/// By how much the means of two runs of the same row differ on a machine that does other work: half of the interval of
-/// a mean that was measured once, and the least half of one that was measured in rounds.
+/// Relative difference of the means of two runs of the same row on a machine that does other work. It is the half width
+/// of the interval of a mean that was measured once, and the least half width of one that was measured in rounds.
 inline constexpr double k_run_to_run = 0.10;
 
 /// Repetitions from which an interval is estimated; fewer say too little about their spread.

@@ -9,7 +9,7 @@
 #include <sixdof/results/estimate.h>
 #include <sixdof/results/row.h>
 
-/// Which points of a plane of cost and error no other is to be preferred to.
+/// Pareto frontiers in the plane of cost and error.
 
 namespace sixdof::results {
 

@@ -27,8 +27,8 @@ struct Outliers {
 
   void add(const std::string& counter, const std::optional<Pose>& X_AB);
 
-  /// The counter whose outlier stands for a value of the row: of a mean that with the largest value. Empty where there
-  /// is no such pose.
+  /// The counter whose outlier represents a value of the row: for a mean, the counter of the largest single value.
+  /// Empty where there is no such pose.
   std::string counter_of(const std::string& value) const;
   /// The command line that asks at the outlier of a value; empty where there is none.
   std::string command_of(const std::string& value) const;

@@ -9,8 +9,8 @@ namespace sixdof::scene {
 /// `exact`: the answers of `all-pairs`, bit for bit, with the work that a scene needs.
 ///
 /// - The broad phase is kept between frames (kept_pairs.h): boxes that are too large by a few frames' motion.
-/// - A pair is put off while bounds on the motion of its bodies do not reach the lower bound on its distance that was
-///   found last: from boxes and spheres, or from a search that ended above its limit.
+/// - A pair is put off (not searched) until its bodies may have moved by the last lower bound on their distance. That
+///   bound is from boxes and spheres, or from a search that ended above its limit.
 /// - A pair of bodies that stand still keeps its answer; a frame in which nothing moves keeps all answers.
 /// - A search ends at the limit that matters, the margin, or for the closest pair the smallest distance so far. Where
 ///   bodies move slowly the limit is a few frames' motion larger, so that the pair can be put off.

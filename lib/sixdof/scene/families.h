@@ -12,7 +12,7 @@
 /// the same C++ library.
 namespace sixdof::scene {
 
-/// The axes. What a family does not use it ignores; NaN stands for the family's own value.
+/// Parameters of a family, which ignores those that it does not use. NaN stands for the family's own value.
 struct SceneNumbers {
   std::size_t bodies = 1000;
   std::size_t frames = 50;    ///< Including the first, in which nothing moves.

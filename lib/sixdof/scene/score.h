@@ -10,7 +10,7 @@
 
 namespace sixdof::scene {
 
-/// A pair that an algorithm missed or made up: enough to ask for it alone.
+/// A pair that an algorithm missed or reported wrongly, with what is needed to ask for it alone.
 struct WrongPair {
   std::size_t frame = 0;
   BodyPair pair;

@@ -15,7 +15,8 @@ void judge_same(const Case& member, const std::vector<Answers>& answers, const T
 void judge_path(const Case& member, const std::vector<Answers>& answers, std::vector<Finding>& findings);
 
 /// Relation::loop: work of the force over peak force times length of the path. An algorithm whose law is a volume and
-/// that declares no resolution has a potential; others are told how far they are from one.
+/// that declares no resolution has a potential, so the work must be zero. For others a larger
+/// work counts as within their resolution.
 void judge_loop(const Case& member, const std::vector<Answers>& answers, const Traits& traits,
                 std::vector<Finding>& findings);
 

@@ -12,7 +12,7 @@
 #include <sixdof/stability/judge.h>
 
 /// The generators of configuration sets on hard cases: the ray through each shot's pose is solved for some targets, and
-/// what is found is held to the definition of a configuration.
+/// the translations found are checked against the definition of a configuration.
 namespace sixdof::stability {
 
 /// What a generator solves for.

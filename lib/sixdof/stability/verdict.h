@@ -32,7 +32,7 @@ constexpr std::string_view to_string(Verdict verdict) {
   return k_names[static_cast<std::size_t>(verdict)];
 }
 
-/// Whether a user is misled or stopped.
+/// Whether the verdict is a failure: a wrong answer, or none.
 constexpr bool is_red(Verdict verdict) { return verdict > Verdict::unsupported; }
 
 /// Errors of lengths up to this fraction of A's diagonal are allowed to every algorithm, as in rows of benchmarks.
