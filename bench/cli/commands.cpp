@@ -72,13 +72,13 @@ void find_owners(const CLI::App& app, const std::string& option, std::vector<std
   for (const CLI::App* command : app.get_subcommands({})) find_owners(*command, option, owners);
 }
 
-/// "--grid: no such option of sixdof info, but of sixdof generate"; empty if no command has the option.
+/// "--grid: sixdof info has no such option; it is one of sixdof generate"; empty if no command has the option.
 std::string explain_foreign_option(const CLI::App& app, const UnknownWord& unknown) {
   std::vector<std::string> owners;
   const std::string option = unknown.word.substr(0, unknown.word.find('='));
   if (option.starts_with("--")) find_owners(app, option.substr(2), owners);
   if (owners.empty()) return {};
-  return fmt::format("{}: no such option of {}, but of {} ({} --help)", option, full_name(unknown.command),
+  return fmt::format("{}: {} has no such option; it is one of {} ({} --help)", option, full_name(unknown.command),
                      fmt::join(owners, ", "), full_name(unknown.command));
 }
 

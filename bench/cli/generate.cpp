@@ -64,9 +64,9 @@ std::vector<double> parse_percents(std::string_view text) {
     const std::size_t colon = item.find(':');
     const double first = parse_item(text, item.substr(0, colon));
     const double last = colon == std::string_view::npos ? first : parse_item(text, item.substr(colon + 1));
-    if (last < first) throw BadArgument(fmt::format("percentages '{}': {} runs backwards", text, item));
+    if (last < first) throw BadArgument(fmt::format("percentages '{}': {}: the end is below the start", text, item));
     if (first < last && (first != std::floor(first) || last != std::floor(last))) {
-      throw BadArgument(fmt::format("percentages '{}': {} does not run over whole percentages", text, item));
+      throw BadArgument(fmt::format("percentages '{}': {} a range needs whole percentages", text, item));
     }
     for (double percent = first; percent <= last; ++percent) percents.push_back(percent);
     if (comma == std::string_view::npos) return percents;

@@ -64,8 +64,8 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
   for (const std::string& name : options.algorithms) {
     const Algorithm& algorithm = registry.find(name);
     if (algorithm.traits().body != Body::mesh) {
-      throw BadArgument(fmt::format("{} answers for the {} of the meshes, whose answers are not known", name,
-                                    to_string(algorithm.traits().body)));
+      throw BadArgument(fmt::format("{} answers for the {} of the meshes; the true answers for these are not known",
+                                    name, to_string(algorithm.traits().body)));
     }
     plan.algorithms.push_back(&algorithm);
   }

@@ -96,7 +96,7 @@ void add_table_command(CLI::App& app) {
           ->delimiter(',')
           ->allow_extra_args(false)
           ->excludes(json);
-  command->add_option("--of", arguments->of, "Whose ratios --against prints")
+  command->add_option("--of", arguments->of, "Algorithm whose time is compared by --against")
       ->type_name("ALGORITHM")
       ->needs(against)
       ->capture_default_str();

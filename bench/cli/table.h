@@ -11,7 +11,8 @@
 #include <sixdof/results/row_group.h>
 
 /// What `sixdof table` does: puts the rows of result files side by side (table_lines.cpp), chooses columns
-/// (table_sheet.cpp, table_wide.cpp, table_overview.cpp), and prints as text, Markdown (table_format.cpp) or JSON (table_json.cpp).
+/// (table_sheet.cpp, table_wide.cpp, table_overview.cpp), and prints as text, Markdown (table_format.cpp) or JSON
+/// (table_json.cpp).
 
 namespace sixdof::cli {
 

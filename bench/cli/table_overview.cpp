@@ -112,9 +112,10 @@ std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
 }
 
 std::vector<std::string> lines_below_overview() {
-  return {"force off by: mean angle to the exact force",
-          "answers: right: none differs from the truth; approximate: the method replaces the bodies by others (spheres, "
-          "voxels, points), and its errors follow; wrong: an algorithm that promises right answers gave wrong ones"};
+  return {
+      "force off by: mean angle to the exact force",
+      "answers: right: none differs from the truth; approximate: the method replaces the bodies by others (spheres, "
+      "voxels, points), and its errors follow; wrong: an algorithm that promises right answers gave wrong ones"};
 }
 
 }  // namespace sixdof::cli

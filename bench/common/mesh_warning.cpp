@@ -64,7 +64,7 @@ std::string summary(const MeshCheck& check) {
   };
   add(check.contacts.pairs(), "pair of triangles meets", "pairs of triangles meet");
   add(check.doubled, "shell is doubled", "shells are doubled");
-  add(check.nested, "shell is nested in material", "shells are nested in material");
+  add(check.nested, "shell lies inside another solid shell", "shells are nested in material");
   add(check.inverted, "shell is inside out", "shells are inside out");
   return text;
 }
@@ -78,7 +78,7 @@ std::string mesh_warning(const Mesh& mesh, const std::string& argument) {
     store_summary(mesh, *found);
   }
   if (found->empty()) return {};
-  return fmt::format("warning: {}: {}; what it encloses k times counts k times in volumes (sixdof info --check {})",
+  return fmt::format("warning: {}: {}; volumes count a region once for every shell around it (sixdof info --check {})",
                      mesh.name(), *found, argument);
 }
 

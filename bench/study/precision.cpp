@@ -236,7 +236,7 @@ void PrecisionStudy::run(const Progress& progress, const std::function<void()>& 
     timed = false;
     for (const std::size_t place : uncertain_points()) {
       if (!affordable(points_[place])) continue;
-      progress("points that are not told apart", place, points_.size());
+      progress("repeating points whose intervals overlap", place, points_.size());
       time_once(points_[place]);
       timed = true;
     }

@@ -86,7 +86,7 @@ class External(unittest.TestCase):
         _, row = self.bench(self.adapter("print('So far, so good', flush=True)"))
         self.assertGreaterEqual(row["failed"], SAMPLE // 8)
         self.assertNotIn("crashed", row)
-        self.assertIn('wrote nonsense: "So far, so good"', row["label"])
+        self.assertIn('wrote a malformed reply: "So far, so good"', row["label"])
 
     def test_exception(self):
         _, row = self.bench(self.adapter("1 / 0"))

@@ -204,7 +204,7 @@ TEST_F(Faulty, TheTableNeverCallsAConstantAnswerTheFastest) {
   EXPECT_THAT(table.out, HasSubstr("! zero-force: " + count + " of " + count + " without a force though the bodies "));
   EXPECT_THAT(table.out, HasSubstr("! always-apart: " + count + " of " + count + " wrong (03 %)"));
   EXPECT_THAT(table.out, HasSubstr("! always-apart: no right answer at volume 03 % (05 %)"));
-  EXPECT_THAT(table.out, HasSubstr("! null: measures the harness, answers constants (05 %)"));
+  EXPECT_THAT(table.out, HasSubstr("! null: returns constants: measures the overhead of the harness (05 %)"));
   // Tables of collide at a distance, collide in overlaps, and respond.
   const auto fastest = lines_with(table.out, "  *  ");
   ASSERT_EQ(fastest.size(), 3u) << table.out;

@@ -75,8 +75,9 @@ TEST_F(Check, NamesDoubledAndNestedShells) {
   EXPECT_THAT(text.out, HasSubstr("nested: shell of 12 triangles"));
   EXPECT_THAT(text.out, HasSubstr("counts 2 times"));
   EXPECT_THAT(text.out, HasSubstr("doubled: shell of 12 triangles, at triangle 36"));
-  EXPECT_EQ(text.err,
-            "sixdof: shells: 12 pairs of triangles meet, 1 shell is doubled, 1 shell is nested in material\n");
+  EXPECT_EQ(
+      text.err,
+      "sixdof: shells: 12 pairs of triangles meet, 1 shell is doubled, 1 shell lies inside another solid shell\n");
 }
 
 TEST_F(Check, IsForMeshesOnly) {

@@ -57,11 +57,11 @@ TEST(Program, NamesTheUnknownWordAndTheNearestKnownOne) {
                   "what is in a file\n"),
         std::pair(
             "info cone-1k --grid 45",
-            "sixdof info: --grid: no such option of sixdof info, but of sixdof generate, sixdof equivalent (sixdof "
-            "info --help)\n"),
+            "sixdof info: --grid: sixdof info has no such option; it is one of sixdof generate, sixdof equivalent "
+            "(sixdof info --help)\n"),
         std::pair("models --deadline=1ms",
-                  "sixdof models: --deadline: no such option of sixdof models, but of sixdof recommend (sixdof models "
-                  "--help)\n"),
+                  "sixdof models: --deadline: sixdof models has no such option; it is one of sixdof recommend (sixdof "
+                  "models --help)\n"),
         std::pair("info --frobnicate", "sixdof info: --frobnicate: no such option (sixdof info --help lists them)\n"),
         std::pair("info a b", "sixdof info: b: unexpected argument (sixdof info --help)\n"),
         std::pair("query --b box-12 --pose 0", "sixdof query: --a is required (sixdof query --help)\n")}) {

@@ -219,7 +219,7 @@ TEST_F(TableCommand, RanksOnlyRowsWithoutFaults) {
                              "(01 %), 5 of 64 without a force though the bodies overlap (05 %)\n"));
   EXPECT_THAT(out, HasSubstr("! silent: 64 of 64 without a force though the bodies overlap (01 %); "
                              "no right answer at volume 01 % (05 %)\n"));
-  EXPECT_THAT(out, HasSubstr("! null: measures the harness, answers constants (05 %)\n"));
+  EXPECT_THAT(out, HasSubstr("! null: returns constants: measures the overhead of the harness (05 %)\n"));
   EXPECT_THAT(out, HasSubstr("! broken: not run: no such model (01 %)\n"));
 }
 

@@ -212,7 +212,7 @@ TEST(Script, SilenceNonsenseAndAClosedPipe) {
     return status;
   };
   EXPECT_EQ(status_of("sleep 600", "gave no answer in time"), Status::timed_out);
-  EXPECT_EQ(status_of("echo Hello", R"(wrote nonsense: "Hello")"), Status::failed);
+  EXPECT_EQ(status_of("echo Hello", R"(wrote a malformed reply: "Hello")"), Status::failed);
   EXPECT_EQ(status_of("echo '{\"distance\": 1}'", "key 'collide' not found"), Status::failed);
   EXPECT_EQ(status_of("exec >&-", "closed its standard streams"), Status::crashed);
   EXPECT_EQ(status_of("exit 3", "ended with exit code 3"), Status::crashed);
@@ -237,7 +237,7 @@ TEST(Script, ATimeThatHasNotPassedIsNonsense) {
     const auto query =
         script("echo '{\"collide\": true, \"ns\": " + std::string(ns) + "}'")->prepare(torus(), torus(), Settings());
     EXPECT_EQ(query->collide(Pose()).status, Status::failed) << ns;
-    EXPECT_THAT(query->diagnosis(), ::testing::StartsWith("wrote nonsense: ")) << ns;
+    EXPECT_THAT(query->diagnosis(), ::testing::StartsWith("wrote a malformed reply: ")) << ns;
     const auto timed = as_remote(*query)->time_each<bool>(std::vector<Pose>(3), 1);
     EXPECT_EQ(timed.failed.size(), 3u) << ns;
   }
@@ -255,7 +255,7 @@ TEST(Script, ATimeOfPreparingThatHasNotPassedIsNonsense) {
   EXPECT_EQ(words(R"("ns": 5, "cpu_ns": 5)"), "prepared");
   EXPECT_EQ(words(R"("ns": 1e7)"), "prepared") << "within a tick of a coarse clock";
   for (const char* const times : {R"("ns": 1e300)", R"("ns": 60e9)", R"("ns": -5)", R"("cpu_ns": 1e300)"}) {
-    EXPECT_THAT(words(times), HasSubstr("failed while it prepared the pair: wrote nonsense: ")) << times;
+    EXPECT_THAT(words(times), HasSubstr("failed while it prepared the pair: wrote a malformed reply: ")) << times;
   }
 }
 
@@ -317,7 +317,8 @@ TEST(Script, GivesUpAfterTooManyDeathsInARow) {
   };
   EXPECT_EQ(count(Status::crashed), RemoteQuery::k_most_deaths);
   EXPECT_EQ(count(Status::failed), 10);
-  EXPECT_THAT(query->diagnosis(), StartsWith("not asked after 20 deaths in a row, the last: crashed: ended with"));
+  EXPECT_THAT(query->diagnosis(),
+              StartsWith("not asked after 20 crashes or timeouts in a row, the last: crashed: ended with"));
   as_remote(*query)->forgive();
   EXPECT_EQ(count(Status::crashed), static_cast<std::ptrdiff_t>(list.size())) << "of another row";
 }
@@ -333,7 +334,7 @@ TEST(External, IsRefusedUnlessItGreets) {
   };
   EXPECT_EQ(words("false"), "external algorithm mine (false): ended with exit code 1");
   EXPECT_THAT(words("/no/such/program"), HasSubstr("could not be started"));
-  EXPECT_THAT(words("echo Hello"), HasSubstr(R"(wrote nonsense: "Hello")"));
+  EXPECT_THAT(words("echo Hello"), HasSubstr(R"(wrote a malformed reply: "Hello")"));
   EXPECT_THAT(words("echo '{\"protocol\":2,\"name\":\"x\",\"version\":\"1\",\"answers\":[]}'"),
               HasSubstr("not version 1 of the protocol"));
   EXPECT_THAT(words("echo '{\"protocol\":1,\"name\":\"x\",\"version\":\"1\",\"answers\":[]}'"),

@@ -33,7 +33,7 @@ TEST(Faults, AreCounted) {
                                   row("distance", "null", "p", "distance", 1.0, 1.0)})),
       ElementsAre("2 of 64 failed, 1 of 64 crashed, 3 of 62 wrong, 4 of 62 without a force though the bodies "
                   "overlap",
-                  "", "measures the harness, answers constants"))
+                  "", "returns constants: measures the overhead of the harness"))
       << "a miss is a response's";
 }
 

@@ -109,7 +109,7 @@ Mesh load_fetched_model(const FetchedModel& model) {
   const std::filesystem::path file = model_cache() / model.file;
   const std::string remedy = fmt::format("run models/fetch {}", model.name);
   if (!std::filesystem::exists(file)) {
-    throw BadFile(file.string(), fmt::format("the model {} is not here yet: {}", model.name, remedy));
+    throw BadFile(file.string(), fmt::format("the model {} has not been fetched: {}", model.name, remedy));
   }
   Mesh mesh = [&] {
     try {

@@ -178,7 +178,7 @@ void ChildProcess::send(std::string_view line, const TimeLimit& expired) {
     } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
       pollfd waiting{input_, POLLOUT, 0};
       ::poll(&waiting, 1, k_poll_ms);
-      if (expired()) give_up(Status::timed_out, "did not read what it is asked within the limit");
+      if (expired()) give_up(Status::timed_out, "did not read the request within the limit");
     } else if (errno != EINTR) {
       closed();
     }

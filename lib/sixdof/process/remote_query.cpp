@@ -70,7 +70,9 @@ void require_passed(const Timed& timed, std::size_t passes, double passed_ns) {
   require_passed("least_ns", static_cast<double>(passes) * least, passed_ns);
 }
 
-ChildFailure nonsense(const Malformed& e) { return {Status::failed, fmt::format("wrote nonsense: {}", e.what())}; }
+ChildFailure nonsense(const Malformed& e) {
+  return {Status::failed, fmt::format("wrote a malformed reply: {}", e.what())};
+}
 
 /// Numbers of the descriptors as the program finds them.
 enum Descriptor {
@@ -190,8 +192,8 @@ TimeLimit RemoteQuery::stalled() const {
 }
 
 Status RemoteQuery::not_asked() {
-  return fail(Status::failed,
-              fmt::format("not asked after {} deaths in a row, the last: {}", deaths_in_a_row_, last_death_));
+  return fail(Status::failed, fmt::format("not asked after {} crashes or timeouts in a row, the last: {}",
+                                          deaths_in_a_row_, last_death_));
 }
 
 /// Counts a death. @returns its status, with diagnosis()
@@ -327,7 +329,8 @@ std::vector<Failed> RemoteQuery::find_culprits(const Time& request, const ChildF
       if (!outcome.ok()) found.push_back({i, outcome.status, diagnosis()});
     }
   }
-  if (found.empty()) throw Error(fmt::format("{}: {} in a timed loop, at no pose alone", name_, last_death_));
+  if (found.empty())
+    throw Error(fmt::format("{}: {} in a timed loop, but not when each pose is asked alone", name_, last_death_));
   return found;
 }
 

@@ -95,7 +95,7 @@ std::string context_sentence(const Source& before, const Source& after) {
     text += fmt::format("{}{}: {} -> {}", text.empty() ? "" : "; ", key, value,
                         after.at(key).empty() ? "none" : after.at(key));
   }
-  return text.empty() ? "Machine, build, versions and settings are the same." : "What differs besides: " + text + ".";
+  return text.empty() ? "Machine, build, versions and settings are the same." : "Other differences: " + text + ".";
 }
 
 }  // namespace
@@ -165,7 +165,7 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
   sentences.push_back(
       comparison.answers.rows.empty()
           ? fmt::format("Answers: none of the {} common rows changed.", pairs.size())
-          : fmt::format("Answers: values that changed: {}. They stand first.", comparison.answers.rows.size()));
+          : fmt::format("Answers: values that changed: {}. They are listed first.", comparison.answers.rows.size()));
   if (others > 0) {
     sentences.push_back(
         fmt::format("Rows that asked another number of configurations, whose answers are not compared: {}.", others));

@@ -41,7 +41,7 @@ constexpr std::array k_scenario_measures{
     Measure{"leakage", "leakage: unwanted over wanted part"},
     Measure{"jump_F", "largest jump of the force, over its peak"},
     Measure{"jump_T", "largest jump of the torque, over its peak"},
-    Measure{"loop_work", "work on a closed path (energy made)"},
+    Measure{"loop_work", "work on a closed path (energy created)"},
     Measure{"misses", "steps without a force (tunnelling)"},
     Measure{"lag", "lag (steps)"},
 };
@@ -67,7 +67,7 @@ struct Cost {
 };
 constexpr std::array k_costs{
     Cost{k_processor_mean, "mean processor time of a query, µs", 1e3},
-    Cost{"p99_ns", "time that 99 % of the queries keep, µs", 1e3},
+    Cost{"p99_ns", "99th percentile of query times, µs", 1e3},
     Cost{"bytes", "memory, bytes", 1.0},
     Cost{"prepare_ns", "time to prepare, s", 1e9},
 };

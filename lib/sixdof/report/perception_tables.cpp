@@ -75,7 +75,7 @@ DataTable perception_thresholds_table(const std::vector<Series>& all) {
 
 DataTable update_rates_table(const Results& results, const std::vector<RowGroup>& groups) {
   DataTable table{.name = "update_rates",
-                  .title = "Update rates that the tail of the queries keeps",
+                  .title = "Update rates at the 99th percentile of query times",
                   .columns = {"run", "pair", "algorithm", "percent", "tail_us", "rate_hz", "keeps",
                               "stiffness_per_damping", "command", "worst_pose"},
                   .rows = {}};

@@ -43,7 +43,7 @@ void judge(std::vector<RowGroup>& groups) {
   }
   for (RowGroup& group : groups) {
     if (group.fields().algorithm == k_null_algorithm) {
-      group.faults.push_back({"measures the harness, answers constants", "", 0, 0});
+      group.faults.push_back({"returns constants: measures the overhead of the harness", "", 0, 0});
     }
     const auto found = without_right_answer.find(subject_of(group.row()));
     if (!group.faults.empty() || !group.fields().bucket || found == without_right_answer.end()) continue;

@@ -17,16 +17,16 @@ constexpr std::array k_families{
                 "broad-phase tests: the broad phase alone.",
                 detail::make_cube},
     SceneFamily{"pairs",
-                "Detailed objects, two by two at the stored poses of a configuration set: a known number of "
+                "Detailed objects, in pairs, at the stored poses of a configuration set: a known number of "
                 "pairs at known distances, so the narrow phase.",
                 detail::make_pairs},
     SceneFamily{"pile",
                 "Bodies heaped on a floor by a seeded rule that knows spheres only, no dynamics: most neighbours "
                 "touch and hardly move.",
                 detail::make_pile},
-    SceneFamily{"robot", "An arm of 21 bodies in a fixed world, with a margin: few movers, pairs that do not matter.",
+    SceneFamily{"robot", "An arm of 21 bodies in a fixed world, with a margin: few moving bodies, many ignored pairs.",
                 detail::make_robot},
-    SceneFamily{"dust", "Specks that drift through one large fixed mesh: one box that covers all others.",
+    SceneFamily{"dust", "Small bodies that drift through one large fixed mesh: one box that covers all others.",
                 detail::make_dust},
     SceneFamily{"still", "The cube, and nothing moves after the first frame: the cost of asking again.",
                 detail::make_still},
@@ -34,7 +34,7 @@ constexpr std::array k_families{
                 detail::make_all_move},
     SceneFamily{"giant",
                 "One slowly moving body a thousand times as large as the others, which lie about its surface: "
-                "grids and sweeps that assume like sizes.",
+                "grids and sweeps that assume similar sizes.",
                 detail::make_giant},
     SceneFamily{"clusters", "Dense clusters far apart, a few of which move as a whole: uneven density.",
                 detail::make_clusters},

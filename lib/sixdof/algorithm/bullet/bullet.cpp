@@ -7,6 +7,8 @@
 namespace sixdof {
 namespace {
 
+static_assert(sizeof(btScalar) == sizeof(double), "Bullet is compiled for double precision");
+
 constexpr const char* k_margin = "margin";
 
 Eigen::Vector3d from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }

@@ -26,7 +26,6 @@ class GImpactMesh {
   /// @param margin by which triangles are thickened (length)
   /// @throws BadMesh if the mesh has more elements than Bullet can count
   GImpactMesh(const Mesh& mesh, double margin) : mesh_(mesh) {
-    static_assert(sizeof(btScalar) == sizeof(double), "Bullet is compiled for double precision");
     static_assert(sizeof(Triangle) == 3 * sizeof(int));
     require_countable(mesh, "Bullet", 3);
     btIndexedMesh part;
