@@ -1,66 +1,60 @@
-"""Answers that README.md prints are those of this build: the errors in its table, asked again at the same configurations.
+"""Errors in bench/published are those of this build: rows of the elephants, asked again at the same configurations.
 Times are not compared.
 
 usage: committed_results_test.py SIXDOF_BENCH SIXDOF
 """
 
+import json
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SIXDOF_BENCH, SIXDOF = sys.argv[1:3]
+PUBLISHED = ROOT / "bench/published/pairs/pairs.json"
+SIXDOF_BENCH = sys.argv[1]
 del sys.argv[1:3]
 
-# Errors below are rounding: their digits depend on the order of sums.
-ROUNDING = 1e-12
 FAST = ("exact", "ist", "ist-descent", "vps", "vps-field")
+ERRORS = ("failed", "mismatch", "misses", "error_max", "gamma_F_deg", "gamma_T_deg", "magnitude_error_F", "volume_error_mean")
+ROUNDING = 1e-12  # Errors below are rounding: their digits depend on the order of sums.
+DIGITS = 1e-3     # Published numbers have four significant digits.
+LEAST_ROWS = 30
 
 
-def table(folder, sample, buckets):
-    """What `sixdof table` prints of the fast algorithms' rows on the elephants."""
-    result = pathlib.Path(folder) / f"{sample}.json"
-    subprocess.run([SIXDOF_BENCH, f"--benchmark_out={result}", "--benchmark_min_time=0.0001", "--sample", str(sample),
-                    f"--benchmark_filter=^(distance|respond)/algorithm:({'|'.join(FAST)})/pair:elephant/{buckets}$"],
-                   check=True, capture_output=True)
-    return subprocess.run([SIXDOF, "table", str(result)], check=True, capture_output=True, text=True).stdout
-
-
-def sections(text):
-    """Lines of the first part, which is about distances, and of the second, about responses."""
-    before, after = text.split("elephant: respond", maxsplit=1)
-    return {"distance": before, "respond": after}
-
-
-def narrow(text):
-    """Errors by query, bucket and algorithm, of the README's table or of `sixdof table`."""
-    columns = {"distance": 2, "respond": 6}
+def rows_of(file):
+    """Errors of the fast algorithms' rows on the elephants, by the row's name, and how many configurations were asked."""
     found = {}
-    for query, part in sections(text).items():
-        for line in part.splitlines():
-            row = re.match(r"(\d+) %\s+(?:[*!]+\s+)?([a-z-]+)\s+\d+\s", line)
-            if row:
-                found[query, row[1], row[2]] = line.split()[-columns[query]:]
+    for row in json.loads(file.read_text(encoding="utf-8"))["benchmarks"]:
+        fields = row["sixdof"]
+        if fields["algorithm"] in FAST and fields.get("pair") == "elephant" and fields["query"] in ("distance", "respond"):
+            found[row["name"]] = fields["configurations"], {name: row[name] for name in ERRORS if name in row}
     return found
 
 
-class CommittedResults(unittest.TestCase):
-    def compare(self, committed, now, least):
-        rows = [row for row in committed if row[-1] in FAST]
-        self.assertGreaterEqual(len(rows), least)
-        for row in rows:
-            self.assertIn(row, now)
-            for before, after in zip(committed[row], now[row], strict=True):
-                if before != after:
-                    self.assertLess(max(float(before), float(after)), ROUNDING, f"{row}: {committed[row]}, now {now[row]}")
+def asked_again(count):
+    """The rows of this build, at so many configurations."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder) / "rows.json"
+        subprocess.run([SIXDOF_BENCH, f"--out={out}", "--benchmark_min_time=0.0001", "--sample", str(count), "--budget", "0",
+                        f"--benchmark_filter=^(distance|respond)/algorithm:({'|'.join(FAST)})/pair:elephant/[^/]+$"],
+                       check=True, capture_output=True)
+        return rows_of(out)
 
-    def test_readme(self):
-        with tempfile.TemporaryDirectory() as folder:
-            now = narrow(table(folder, 256, "(distance|volume):05"))
-        self.compare(narrow((ROOT / "README.md").read_text(encoding="utf-8")), now, 5)
+
+class CommittedResults(unittest.TestCase):
+    def test_errors_of_the_elephants(self):
+        published = rows_of(PUBLISHED)
+        self.assertGreaterEqual(len(published), LEAST_ROWS)
+        now = {}
+        for count in {configurations for configurations, _ in published.values()}:
+            now |= {(name, count): errors for name, (_, errors) in asked_again(count).items()}
+        for name, (count, errors) in published.items():
+            for counter, before in errors.items():
+                after = now[name, count][counter]
+                self.assertLessEqual(abs(after - before), max(ROUNDING, DIGITS * abs(before)),
+                                     f"{name}: {counter} is published as {before}, now {after}")
 
 
 if __name__ == "__main__":
