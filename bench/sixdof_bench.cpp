@@ -48,7 +48,7 @@ void run(const Options& options) {
                             .cache = cache,
                             .seed = options.seed};
 
-  std::vector<Row> rows;
+  std::vector<PlannedRow> rows;
   for (const auto family : {prepare_rows, query_rows, scenario_rows, scene_rows, generate_rows}) {
     std::ranges::move(family(resources), std::back_inserter(rows));
   }
@@ -58,15 +58,15 @@ void run(const Options& options) {
       if (!algorithm->traits().in_default_runs()) named_only.push_back(algorithm->traits().name);
     }
     const Suite suite = read_suite(options.suite, external, named_only);
-    std::erase_if(rows, [&](const Row& row) { return !suite(row.name); });
+    std::erase_if(rows, [&](const PlannedRow& row) { return !suite(row.name); });
     const std::size_t sample = options.sample > 0 ? options.sample : Share().configurations;
-    for (Row& row : rows) {
+    for (PlannedRow& row : rows) {
       if (const std::size_t most = *suite(row.name); most < sample) row.fields.sample_limit = most;
     }
   } else {
     const std::string filter = benchmark::GetBenchmarkFilter();
     const auto is_named = [&](const char* word) { return filter.find(word) != std::string::npos; };
-    std::erase_if(rows, [&](const Row& row) {
+    std::erase_if(rows, [&](const PlannedRow& row) {
       return (row.fields.cache == k_cold && !is_named(k_cold)) ||
              (row.fields.order == k_motion && !is_named(k_motion)) ||
              (row.name.starts_with(k_scene) && !is_named(k_scene));

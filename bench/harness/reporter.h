@@ -14,8 +14,8 @@ namespace sixdof::bench {
 
 /// Hands rows on to another reporter:
 /// - rows that are left out are not handed on;
-/// - names are those of Row, without what Google Benchmark adds to rows of one round. The processor time of these rows
-/// is
+/// - names are those of PlannedRow, without what Google Benchmark adds to rows of one round. The processor time of
+/// these rows is
 ///   the wall time that the row has set, since their loop spends most of its processor time outside of queries;
 /// - the processor time of an isolated algorithm is what its process measured (k_processor_inside);
 /// - a row with a counter that is not finite becomes an error that names the counter;

@@ -38,7 +38,7 @@ struct Share {
 
 /// One benchmark. Making a row costs nothing: its name comes from registry and catalogue alone; sets, meshes and
 /// prepared queries are fetched from the cache inside `run`.
-struct Row {
+struct PlannedRow {
   std::string name;  ///< API: "distance/algorithm:fcl-rss/pair:elephant/distance:05".
   /// Google Benchmark calls it several times, until it has found the number of iterations. What has to be done only
   /// once is kept between the calls. An exception ends the row, not the program.

@@ -9,7 +9,7 @@
 
 namespace sixdof::bench {
 
-void RowCaller::call(const Row& row, benchmark::State& state) {
+void RowCaller::call(const PlannedRow& row, benchmark::State& state) {
   InterruptGuard::check();
   before_row_();
   begun_.insert(row.name);

@@ -24,7 +24,7 @@ class RowCaller {
       : rows_(rows), budget_s_(budget_s), plan_(plan), before_row_(std::move(before_row)) {}
 
   /// Google Benchmark calls a row several times in succession. @throws Interrupted
-  void call(const Row& row, benchmark::State& state);
+  void call(const PlannedRow& row, benchmark::State& state);
 
   std::set<std::string> left_out;   ///< Names of the rows that are left out because they need solids.
   std::set<std::string> not_solid;  ///< "MESH: REASON" of the meshes because of which rows are left out.

@@ -14,7 +14,7 @@ namespace sixdof::bench {
 
 /// The fields of every row by its name.
 using FieldsByName = std::map<std::string, results::RowFields>;
-/// Row::outliers of the rows that have it, by name.
+/// PlannedRow::outliers of the rows that have it, by name.
 using OutliersByName = std::map<std::string, std::function<results::Outliers()>>;
 
 /// One finished row, or one aggregate of its repetitions, as it stands in a result file's "benchmarks": Google

@@ -30,15 +30,15 @@ constexpr const char* k_program = "sixdof-bench";
 constexpr const char* k_all_registered = ".";
 
 /// The rows that the filter takes. Google Benchmark searches names for the filter; a leading '-' negates it.
-std::vector<const Row*> choose_rows(const std::vector<Row>& rows) {
+std::vector<const PlannedRow*> choose_rows(const std::vector<PlannedRow>& rows) {
   std::string filter = benchmark::GetBenchmarkFilter();
   if (filter.empty() || filter == "all") filter = ".";
   const bool negated = filter.starts_with('-');
   if (negated) filter.erase(0, 1);
-  std::vector<const Row*> chosen;
+  std::vector<const PlannedRow*> chosen;
   try {
     const std::regex expression(filter, std::regex::extended);
-    for (const Row& row : rows) {
+    for (const PlannedRow& row : rows) {
       if (std::regex_search(row.name, expression) != negated) chosen.push_back(&row);
     }
   } catch (const std::regex_error& e) {
@@ -55,8 +55,9 @@ std::vector<const Row*> choose_rows(const std::vector<Row>& rows) {
 /// names, which RowReporter removes.
 class Registration {
  public:
-  Registration(const std::vector<const Row*>& rows, const std::function<void(const Row&, benchmark::State&)>& call) {
-    for (const Row* const row : rows) {
+  Registration(const std::vector<const PlannedRow*>& rows,
+               const std::function<void(const PlannedRow&, benchmark::State&)>& call) {
+    for (const PlannedRow* const row : rows) {
       auto* const registered =
           benchmark::RegisterBenchmark(row->name.c_str(), [row, &call](benchmark::State& state) { call(*row, state); });
       registered->Unit(row->unit);
@@ -70,8 +71,8 @@ class Registration {
   Registration& operator=(const Registration&) = delete;
 };
 
-void list_rows(const std::vector<const Row*>& rows) {
-  for (const Row* const row : rows) fmt::print("{}\n", row->name);
+void list_rows(const std::vector<const PlannedRow*>& rows) {
+  for (const PlannedRow* const row : rows) fmt::print("{}\n", row->name);
 }
 
 /// Writes the result once, whichever thread comes first.
@@ -113,11 +114,11 @@ void print_stats(const RowCaller& caller, const PairCache::Counts& counts) {
 }
 
 /// Measures rows and writes the result. @returns how many could not be run
-int measure(const std::vector<const Row*>& rows, const Options& options, const Resources& resources,
+int measure(const std::vector<const PlannedRow*>& rows, const Options& options, const Resources& resources,
             ResultStore& store) {
   FieldsByName fields;
   OutliersByName outliers;
-  for (const Row* const row : rows) {
+  for (const PlannedRow* const row : rows) {
     fields.emplace(row->name, row->fields);
     if (row->outliers) outliers.emplace(row->name, row->outliers);
   }
@@ -129,9 +130,8 @@ int measure(const std::vector<const Row*>& rows, const Options& options, const R
   RowReporter display(options.format ? nullptr : &console, caller.left_out);
   ResultCollector collector(store, fields, outliers);
   RowReporter result(&collector, caller.left_out);
-  const std::function<void(const Row&, benchmark::State&)> call = [&](const Row& row, benchmark::State& state) {
-    caller.call(row, state);
-  };
+  const std::function<void(const PlannedRow&, benchmark::State&)> call =
+      [&](const PlannedRow& row, benchmark::State& state) { caller.call(row, state); };
   Delivery delivery(options, store);
   const InterruptGuard guard(k_program, [&delivery]() noexcept {
     try {
@@ -163,15 +163,16 @@ void warn_of_build() {
 
 }  // namespace
 
-void run_rows(const std::vector<Row>& rows, const Options& options, const Resources& resources) {
-  std::vector<const Row*> chosen = choose_rows(rows);
+void run_rows(const std::vector<PlannedRow>& rows, const Options& options, const Resources& resources) {
+  std::vector<const PlannedRow*> chosen = choose_rows(rows);
   if (options.list_only) return list_rows(chosen);
   warn_of_build();
   std::vector<std::string> order;
-  for (const Row* const row : chosen) order.push_back(row->name);
+  for (const PlannedRow* const row : chosen) order.push_back(row->name);
   ResultStore store(std::move(order), run_context(options, resources.registry, resources.settings));
   if (!options.out.empty()) store.open(options.out, options.out_format, options.resume);
-  if (const auto there = std::erase_if(chosen, [&](const Row* row) { return store.has(row->name); }); there > 0) {
+  if (const auto there = std::erase_if(chosen, [&](const PlannedRow* row) { return store.has(row->name); });
+      there > 0) {
     print_message(k_program, fmt::format("{}: {} rows are finished, {} will be measured", options.out.string(), there,
                                          chosen.size()));
   }

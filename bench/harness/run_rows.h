@@ -13,6 +13,6 @@ namespace sixdof::bench {
 /// - Rows that need solids where a mesh is none are left out; one line on stderr counts them.
 /// - After Ctrl-C the file has the rows that were finished, and "interrupted": "true" in its context.
 /// @throws BadArgument if no row matches; Interrupted; Error if a row could not be run or the file not be written
-void run_rows(const std::vector<Row>& rows, const Options& options, const Resources& resources);
+void run_rows(const std::vector<PlannedRow>& rows, const Options& options, const Resources& resources);
 
 }  // namespace sixdof::bench

@@ -12,8 +12,8 @@
 namespace sixdof::bench {
 namespace {
 
-/// Row::trial(), 0 where the row cannot be run: it says so itself when it is called.
-double trial(const Row& row, double seconds) {
+/// PlannedRow::trial(), 0 where the row cannot be run: it says so itself when it is called.
+double trial(const PlannedRow& row, double seconds) {
   InterruptGuard::check();
   try {
     return row.trial(seconds);
@@ -32,8 +32,8 @@ std::string group_of(const results::RowFields& fields) {
                      fields.sample_limit.value_or(0));
 }
 
-SamplePlan::SamplePlan(const std::vector<const Row*>& rows) {
-  for (const Row* const row : rows) {
+SamplePlan::SamplePlan(const std::vector<const PlannedRow*>& rows) {
+  for (const PlannedRow* const row : rows) {
     if (row->trial) rows_[group_of(row->fields)].push_back(row);
   }
 }
@@ -43,7 +43,7 @@ void SamplePlan::keep(const results::RowFields& measured) {
   if (!group.empty() && measured.configurations) configurations_.emplace(group, *measured.configurations);
 }
 
-std::size_t SamplePlan::configurations(const Row& row, const std::function<double()>& row_seconds) {
+std::size_t SamplePlan::configurations(const PlannedRow& row, const std::function<double()>& row_seconds) {
   const std::string group = group_of(row.fields);
   const auto members = rows_.find(group);
   std::size_t count = row.fields.sample_limit.value_or(Share().configurations);
@@ -51,7 +51,7 @@ std::size_t SamplePlan::configurations(const Row& row, const std::function<doubl
   if (const auto found = configurations_.find(group); found != configurations_.end()) return found->second;
   if (std::isfinite(row_seconds())) {
     double seconds_each = 0.0;
-    for (const Row* const member : members->second) seconds_each += trial(*member, row_seconds());
+    for (const PlannedRow* const member : members->second) seconds_each += trial(*member, row_seconds());
     // After the trials, which prepared structures: what they took is gone.
     const double most = row_seconds() * static_cast<double>(members->second.size()) / seconds_each;
     if (most < static_cast<double>(count)) count = std::max(k_fewest, static_cast<std::size_t>(most));

@@ -20,7 +20,7 @@ std::string group_of(const results::RowFields& fields);
 class SamplePlan {
  public:
   /// @param rows those that are to be measured; they outlive this object
-  explicit SamplePlan(const std::vector<const Row*>& rows);
+  explicit SamplePlan(const std::vector<const PlannedRow*>& rows);
 
   /// Takes over a row of an earlier run: the others of its group ask as many configurations.
   void keep(const results::RowFields& measured);
@@ -29,14 +29,14 @@ class SamplePlan {
   /// rows; those that throw or have no answer take no time.
   /// @param row_seconds wall time that each row may take at the moment, infinity without a limit
   /// @throws Interrupted
-  std::size_t configurations(const Row& row, const std::function<double()>& row_seconds);
+  std::size_t configurations(const PlannedRow& row, const std::function<double()>& row_seconds);
 
   /// Enough for a mean. Rows ask at least so many, even if that takes longer than their time.
   static constexpr std::size_t k_fewest = 32;
 
  private:
-  std::map<std::string, std::vector<const Row*>> rows_;  ///< By group.
-  std::map<std::string, std::size_t> configurations_;    ///< By group, where it is known.
+  std::map<std::string, std::vector<const PlannedRow*>> rows_;  ///< By group.
+  std::map<std::string, std::size_t> configurations_;           ///< By group, where it is known.
 };
 
 }  // namespace sixdof::bench

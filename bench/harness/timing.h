@@ -49,7 +49,7 @@ inline double clock_overhead_ns() {
 inline constexpr const char* k_processor_inside = "processor_inside_ns";
 
 /// The timed loop of a row: whole rounds over all poses, so that the mean is over all of them. One iteration is one
-/// query. Rows of isolated algorithms set the time by hand (Row::manual_time).
+/// query. Rows of isolated algorithms set the time by hand (PlannedRow::manual_time).
 template <class Ask>
 void time_mean(benchmark::State& state, std::span<const Pose> poses, GuardedQuery<Ask> query) {
   const auto round = static_cast<benchmark::IterationCount>(poses.size());

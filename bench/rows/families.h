@@ -10,22 +10,22 @@
 namespace sixdof::bench {
 
 /// `prepare/algorithm:A/pair:P`: time to build the structures of a pair, their size and the counts that explain it.
-std::vector<Row> prepare_rows(const Resources& resources);
+std::vector<PlannedRow> prepare_rows(const Resources& resources);
 
 /// `collide/algorithm:A/pair:P/distance:05`, `distance/...`, `respond/algorithm:A/pair:P/volume:03`: queries on the
 /// buckets of the configuration sets, in random order, and in the grid's own order as `.../order:path`; in random order
 /// on cold caches as `.../cache:cold`. Responses are compared with the bucket's volume and with the directions of the
 /// exact ones.
-std::vector<Row> query_rows(const Resources& resources);
+std::vector<PlannedRow> query_rows(const Resources& resources);
 
 /// `scenario/II/algorithm:A`: mean time of a response along a scenario's path and every measure of its quality, against
 /// the law that the algorithm declares and, with the suffix "_by_LAW", against every other.
-std::vector<Row> scenario_rows(const Resources& resources);
+std::vector<PlannedRow> scenario_rows(const Resources& resources);
 
 /// `scene/FAMILY/n:1000/question:touching/algorithm:A`: a scene of many bodies (lib/sixdof/scene) replayed to an
 /// algorithm for scenes, judged against every pair in every frame. One missed pair is an error of the row. They are not
 /// in the default suite; bench/scenes_suite.json lists those of 1,000 bodies.
-std::vector<Row> scene_rows(const Resources& resources);
+std::vector<PlannedRow> scene_rows(const Resources& resources);
 
 /// What a configuration of the paper's grid and buckets costs to make, on the same seeded rays for all, as the counter
 /// ns_per_configuration (processor time):
@@ -37,6 +37,6 @@ std::vector<Row> scene_rows(const Resources& resources);
 /// For the catalogue's pairs and for generated models of 10k to a million triangles. Some rows take half a minute, so
 /// they are not in the default suite. `sixdof table --of raycast --against fcl` prints how many times faster the ray
 /// cast is than FCL.
-std::vector<Row> generate_rows(const Resources& resources);
+std::vector<PlannedRow> generate_rows(const Resources& resources);
 
 }  // namespace sixdof::bench

@@ -104,8 +104,8 @@ struct GenerateRow {
 
 }  // namespace
 
-std::vector<Row> generate_rows(const Resources& resources) {
-  std::vector<Row> rows;
+std::vector<PlannedRow> generate_rows(const Resources& resources) {
+  std::vector<PlannedRow> rows;
   const auto generator = std::make_shared<Generator>();
   const bool has_fcl = std::ranges::any_of(resources.registry.all(),
                                            [](const auto& algorithm) { return algorithm->traits().name == k_fcl; });

@@ -39,8 +39,8 @@ void run(const Resources& resources, const Algorithm& algorithm, const Catalogue
 
 }  // namespace
 
-std::vector<Row> prepare_rows(const Resources& resources) {
-  std::vector<Row> rows;
+std::vector<PlannedRow> prepare_rows(const Resources& resources) {
+  std::vector<PlannedRow> rows;
   for (const CatalogueEntry& pair : resources.catalogue.sets()) {
     for (const auto& algorithm : resources.registry.all()) {
       if (!algorithm->traits().timed) continue;

@@ -134,7 +134,7 @@ struct QueryRow {
     report(state, bucket);
   }
 
-  /// Row::outliers.
+  /// PlannedRow::outliers.
   results::Outliers outliers() const {
     const auto word_of = [&](const std::string& name) {
       const CatalogueMesh* const mesh = resources.catalogue.mesh(name);
@@ -151,7 +151,7 @@ struct QueryRow {
     return found;
   }
 
-  /// Row::trial.
+  /// PlannedRow::trial.
   double trial(double seconds) {
     const BucketSample& bucket = sample();
     double each = question == QueryKind::respond ? time_exact() : 0.0;
@@ -310,8 +310,8 @@ struct QueryRow {
 
 }  // namespace
 
-std::vector<Row> query_rows(const Resources& resources) {
-  std::vector<Row> rows;
+std::vector<PlannedRow> query_rows(const Resources& resources) {
+  std::vector<PlannedRow> rows;
   const auto evict = std::make_shared<CacheEviction>();
   for (const CatalogueEntry& pair : resources.catalogue.sets()) {
     for (const auto& algorithm : resources.registry.all()) {

@@ -94,8 +94,8 @@ struct ScenarioRow {
 
 }  // namespace
 
-std::vector<Row> scenario_rows(const Resources& resources) {
-  std::vector<Row> rows;
+std::vector<PlannedRow> scenario_rows(const Resources& resources) {
+  std::vector<PlannedRow> rows;
   for (const std::string& scenario : scenario_names()) {
     for (const auto& algorithm : resources.registry.all()) {
       if (!algorithm->traits().answers.respond) continue;

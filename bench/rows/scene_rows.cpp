@@ -83,10 +83,10 @@ void run(Stage& stage, const std::string& key, const scene::SceneNumbers& number
 
 }  // namespace
 
-std::vector<Row> scene_rows(const Resources& resources) {
+std::vector<PlannedRow> scene_rows(const Resources& resources) {
   const auto algorithms = std::make_shared<const scene::SceneAlgorithms>(all_scene_algorithms());
   const auto stage = std::make_shared<Stage>();
-  std::vector<Row> rows;
+  std::vector<PlannedRow> rows;
   for (const scene::SceneFamily& family : scene::scene_families()) {
     for (const Size& size : k_sizes) {
       if (size.light_only && family.name == "pairs") continue;

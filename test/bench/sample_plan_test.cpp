@@ -21,11 +21,11 @@ results::RowFields fields(const std::string& algorithm, double percent) {
 }
 
 /// A row whose configurations take the same time each.
-Row row(const std::string& algorithm, double percent, double seconds) {
+PlannedRow row(const std::string& algorithm, double percent, double seconds) {
   return {.name = algorithm, .run = {}, .fields = fields(algorithm, percent), .trial = [=](double) { return seconds; }};
 }
 
-Row broken_row(double percent) {
+PlannedRow broken_row(double percent) {
   return {.name = "broken", .run = {}, .fields = fields("broken", percent), .trial = [](double) -> double {
             throw Error("cannot be prepared");
           }};
@@ -49,8 +49,8 @@ TEST(GroupOf, DiffersInAllButTheAlgorithm) {
 }
 
 TEST(SamplePlan, RowsWithALimitAreAGroupOfTheirOwn) {
-  const Row free = row("free", 5, 1e-3);
-  Row limited = row("limited", 5, 1.0);
+  const PlannedRow free = row("free", 5, 1e-3);
+  PlannedRow limited = row("limited", 5, 1.0);
   limited.fields.sample_limit = 64;
   SamplePlan plan({&free, &limited});
   EXPECT_EQ(plan.configurations(limited, each(1e9)), 64u);
@@ -61,7 +61,7 @@ TEST(SamplePlan, RowsWithALimitAreAGroupOfTheirOwn) {
 }
 
 TEST(SamplePlan, FitsTheRowsOfAGroupIntoTheirPartsTogether) {
-  const Row fast = row("fast", 5, 1e-3), slow = row("slow", 5, 0.1), alone = row("alone", 6, 1e-3);
+  const PlannedRow fast = row("fast", 5, 1e-3), slow = row("slow", 5, 0.1), alone = row("alone", 6, 1e-3);
   SamplePlan plan({&fast, &slow, &alone});
   // 2 rows of 10.1 s each.
   EXPECT_EQ(plan.configurations(slow, each(10.11)), 200u);
@@ -71,32 +71,32 @@ TEST(SamplePlan, FitsTheRowsOfAGroupIntoTheirPartsTogether) {
 }
 
 TEST(SamplePlan, AsksAFewWhateverTheTime) {
-  const Row slow = row("slow", 5, 0.1);
+  const PlannedRow slow = row("slow", 5, 0.1);
   EXPECT_EQ(SamplePlan({&slow}).configurations(slow, each(0.0)), SamplePlan::k_fewest);
 }
 
 TEST(SamplePlan, TriesNothingWithoutALimit) {
-  const Row row = broken_row(5);
+  const PlannedRow row = broken_row(5);
   EXPECT_EQ(SamplePlan({&row}).configurations(row, each(std::numeric_limits<double>::infinity())), k_no_limit);
-  const Row prepare{.name = "prepare", .run = {}, .fields = {.query = "prepare", .algorithm = "exact"}};
+  const PlannedRow prepare{.name = "prepare", .run = {}, .fields = {.query = "prepare", .algorithm = "exact"}};
   EXPECT_EQ(SamplePlan({&prepare}).configurations(prepare, each(1.0)), k_no_limit);
 }
 
 TEST(SamplePlan, CountsNoTimeOfRowsThatCannotBeRun) {
-  const Row broken = broken_row(5), slow = row("slow", 5, 0.1), silent = row("silent", 6, 0.0);
+  const PlannedRow broken = broken_row(5), slow = row("slow", 5, 0.1), silent = row("silent", 6, 0.0);
   EXPECT_EQ(SamplePlan({&broken, &slow}).configurations(broken, each(10.001)), 200u);
   EXPECT_EQ(SamplePlan({&silent}).configurations(silent, each(1.0)), k_no_limit) << "nothing has an answer";
 }
 
 TEST(SamplePlan, EndsWhenInterrupted) {
-  Row row = broken_row(5);
+  PlannedRow row = broken_row(5);
   row.trial = [](double) -> double { throw Interrupted("Ctrl-C"); };
   SamplePlan plan({&row});
   EXPECT_THROW(plan.configurations(row, each(1.0)), Interrupted);
 }
 
 TEST(SamplePlan, KeepsTheNumberOfAnEarlierRun) {
-  const Row slow = row("slow", 5, 0.1), other = row("slow", 6, 0.1);
+  const PlannedRow slow = row("slow", 5, 0.1), other = row("slow", 6, 0.1);
   SamplePlan plan({&slow, &other});
   results::RowFields measured = fields("fast", 5);
   plan.keep(measured);

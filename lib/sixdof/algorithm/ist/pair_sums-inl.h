@@ -78,107 +78,156 @@ class PairSums {
     filled_ = 0;
   }
 
-  /// Adds the pairs from `first` on, one per SIMD lane. Volumes are those of overlap_volume().
-  HWY_INLINE void compute(std::size_t first) {
+  using Vector = hn::Vec<Lanes>;
+
+  /// Pairs of spheres, one per SIMD lane; vectors in A's frame.
+  struct Pairs {
+    std::size_t first, sums;  ///< Index of the first, and where its sums stand in total_.
+    Vector weight, r1, r2;
+    Vector x, y, z;                             ///< From A's centre to B's,
+    Vector ax, ay, az;                          ///< from about_ to B's centre.
+    Vector squared, distance, sum, difference;  ///< Of the centres, their distance; of the radii.
+    hn::Mask<Lanes> contained;                  ///< One sphere lies in the other.
+    Vector volume;                              ///< Of the overlap, times the weight.
+  };
+
+  static HWY_INLINE Vector constant(double value) { return hn::Set(Lanes(), value); }
+
+  /// Component k of R_AB v.
+  HWY_INLINE Vector rotated(Eigen::Index k, Vector v_x, Vector v_y, Vector v_z) const {
+    return hn::Add(hn::Add(hn::Mul(constant(X_AB_.R(k, 0)), v_x), hn::Mul(constant(X_AB_.R(k, 1)), v_y)),
+                   hn::Mul(constant(X_AB_.R(k, 2)), v_z));
+  }
+
+  /// Distance from A's centre to the plane in which the spheres meet.
+  static HWY_INLINE Vector plane(const Pairs& p) {
+    return hn::Div(hn::Add(p.squared, hn::Mul(p.difference, p.sum)), hn::Mul(constant(2.0), p.distance));
+  }
+
+  HWY_INLINE void add_to(const Pairs& p, std::size_t i, Vector value) {
     const Lanes d;
-    const std::size_t sums = first % k_lanes;
-    const auto constant = [&](double value) HWY_ATTR { return hn::Set(d, value); };
+    hn::Store(hn::Add(hn::Load(d, total_[i] + p.sums), value), d, total_[i] + p.sums);
+  }
+
+  HWY_INLINE void add_wrench(const Pairs& p, Vector fx, Vector fy, Vector fz, Vector mx, Vector my, Vector mz) {
+    add_to(p, k_force, fx);
+    add_to(p, k_force + 1, fy);
+    add_to(p, k_force + 2, fz);
+    add_to(p, k_moment, mx);
+    add_to(p, k_moment + 1, my);
+    add_to(p, k_moment + 2, mz);
+  }
+
+  /// Adds the pairs from `first` on. Volumes are those of overlap_volume().
+  HWY_INLINE void compute(std::size_t first) {
+    const Pairs p = pairs_from(first);
+    const auto overlap = hn::And(hn::Lt(p.distance, p.sum), hn::Gt(p.weight, hn::Zero(Lanes())));
+    overlapping_ += hn::CountTrue(Lanes(), overlap);
+    add_to(p, k_volume, p.volume);
+    if (law_ == PairForce::cones) {
+      add_along_cones(p);
+    } else {
+      add_along_centres(p);
+    }
+  }
+
+  HWY_INLINE Pairs pairs_from(std::size_t first) const {
+    const Lanes d;
     constexpr double k_pi = std::numbers::pi;
-    const auto zero = hn::Zero(d), weight = hn::LoadU(d, weight_ + first);
     static_assert(sizeof(Sphere) == 4 * sizeof(double), "center x, y, z and radius");
-    hn::Vec<Lanes> a_x, a_y, a_z, r1, b_x, b_y, b_z, r2;
-    hn::LoadInterleaved4(d, &a_[first].center.x(), a_x, a_y, a_z, r1);
-    hn::LoadInterleaved4(d, &b_[first].center.x(), b_x, b_y, b_z, r2);
-    const auto rotated = [&](Eigen::Index k, auto v_x, auto v_y, auto v_z) HWY_ATTR {
-      return hn::Add(hn::Add(hn::Mul(constant(X_AB_.R(k, 0)), v_x), hn::Mul(constant(X_AB_.R(k, 1)), v_y)),
-                     hn::Mul(constant(X_AB_.R(k, 2)), v_z));
-    };
+    Pairs p;
+    p.first = first;
+    p.sums = first % k_lanes;
+    p.weight = hn::LoadU(d, weight_ + first);
+    Vector a_x, a_y, a_z, b_x, b_y, b_z;
+    hn::LoadInterleaved4(d, &a_[first].center.x(), a_x, a_y, a_z, p.r1);
+    hn::LoadInterleaved4(d, &b_[first].center.x(), b_x, b_y, b_z, p.r2);
     const auto p_x = hn::Add(rotated(0, b_x, b_y, b_z), constant(X_AB_.t[0])),
                p_y = hn::Add(rotated(1, b_x, b_y, b_z), constant(X_AB_.t[1])),
                p_z = hn::Add(rotated(2, b_x, b_y, b_z), constant(X_AB_.t[2]));
-    const auto x = hn::Sub(p_x, a_x), y = hn::Sub(p_y, a_y), z = hn::Sub(p_z, a_z);
-    const auto squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-    const auto distance = hn::Sqrt(squared), sum = hn::Add(r1, r2), difference = hn::Sub(r1, r2);
-    const auto contained = hn::Le(distance, hn::Abs(difference));
-    const auto smaller = hn::Min(r1, r2);
+    p.x = hn::Sub(p_x, a_x);
+    p.y = hn::Sub(p_y, a_y);
+    p.z = hn::Sub(p_z, a_z);
+    p.ax = hn::Sub(p_x, constant(about_.x()));
+    p.ay = hn::Sub(p_y, constant(about_.y()));
+    p.az = hn::Sub(p_z, constant(about_.z()));
+    p.squared = hn::Add(hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)), hn::Mul(p.z, p.z));
+    p.distance = hn::Sqrt(p.squared);
+    p.sum = hn::Add(p.r1, p.r2);
+    p.difference = hn::Sub(p.r1, p.r2);
+    p.contained = hn::Le(p.distance, hn::Abs(p.difference));
+    const auto smaller = hn::Min(p.r1, p.r2);
     const auto ball = hn::Mul(constant(4.0 / 3.0 * k_pi), hn::Mul(smaller, hn::Mul(smaller, smaller)));
-    const auto depth = hn::Max(hn::Sub(sum, distance), zero);
-    const auto shape = hn::Sub(hn::Add(squared, hn::Mul(constant(2.0), hn::Mul(distance, sum))),
-                               hn::Mul(constant(3.0), hn::Mul(difference, difference)));
-    const auto lens = hn::Div(hn::Mul(constant(k_pi / 12.0), hn::Mul(hn::Mul(depth, depth), shape)), distance);
-    const auto volume = hn::Mul(weight, hn::IfThenElse(contained, ball, lens));
-    const auto ax = hn::Sub(p_x, constant(about_.x())), ay = hn::Sub(p_y, constant(about_.y())),
-               az = hn::Sub(p_z, constant(about_.z()));
-    const auto add_to = [&](std::size_t i, auto value)
-                            HWY_ATTR { hn::Store(hn::Add(hn::Load(d, total_[i] + sums), value), d, total_[i] + sums); };
-    const auto overlap = hn::And(hn::Lt(distance, sum), hn::Gt(weight, zero));
-    overlapping_ += hn::CountTrue(d, overlap);
-    add_to(k_volume, volume);
-    const auto add_wrench = [&](auto fx, auto fy, auto fz, auto mx, auto my, auto mz) HWY_ATTR {
-      add_to(k_force, fx);
-      add_to(k_force + 1, fy);
-      add_to(k_force + 2, fz);
-      add_to(k_moment, mx);
-      add_to(k_moment + 1, my);
-      add_to(k_moment + 2, mz);
-    };
-    // Distance from A's centre to the plane in which the spheres meet.
-    const auto plane = [&]() HWY_ATTR {
-      return hn::Div(hn::Add(squared, hn::Mul(difference, sum)), hn::Mul(constant(2.0), distance));
-    };
+    const auto depth = hn::Max(hn::Sub(p.sum, p.distance), hn::Zero(d));
+    const auto shape = hn::Sub(hn::Add(p.squared, hn::Mul(constant(2.0), hn::Mul(p.distance, p.sum))),
+                               hn::Mul(constant(3.0), hn::Mul(p.difference, p.difference)));
+    const auto lens = hn::Div(hn::Mul(constant(k_pi / 12.0), hn::Mul(hn::Mul(depth, depth), shape)), p.distance);
+    p.volume = hn::Mul(p.weight, hn::IfThenElse(p.contained, ball, lens));
+    return p;
+  }
+
+  /// PairForce::cones.
+  HWY_INLINE void add_along_cones(const Pairs& p) {
+    const Lanes d;
+    const auto zero = hn::Zero(d);
+    Vector na_x, na_y, na_z, nb_x, nb_y, nb_z;
+    hn::LoadInterleaved3(d, axis_a_[p.first].data(), na_x, na_y, na_z);
+    hn::LoadInterleaved3(d, axis_b_[p.first].data(), nb_x, nb_y, nb_z);
+    // Number of the two spheres that have an axis: 0, 1 or 2.
+    const auto axes = hn::Add(hn::Add(hn::Add(hn::Mul(na_x, na_x), hn::Mul(na_y, na_y)), hn::Mul(na_z, na_z)),
+                              hn::Add(hn::Add(hn::Mul(nb_x, nb_x), hn::Mul(nb_y, nb_y)), hn::Mul(nb_z, nb_z)));
+    const auto none = hn::Lt(axes, constant(0.5)), both = hn::Gt(axes, constant(1.5));
+    const auto along_axes = hn::IfThenElse(both, constant(0.5), constant(1.0));
     // Concentric spheres exert no force along the line of centres: it would have no direction.
-    const auto apart = hn::Gt(distance, zero);
-    if (law_ == PairForce::cones) {
-      hn::Vec<Lanes> na_x, na_y, na_z, nb_x, nb_y, nb_z;
-      hn::LoadInterleaved3(d, axis_a_[first].data(), na_x, na_y, na_z);
-      hn::LoadInterleaved3(d, axis_b_[first].data(), nb_x, nb_y, nb_z);
-      // Number of the two spheres that have an axis: 0, 1 or 2.
-      const auto axes = hn::Add(hn::Add(hn::Add(hn::Mul(na_x, na_x), hn::Mul(na_y, na_y)), hn::Mul(na_z, na_z)),
-                                hn::Add(hn::Add(hn::Mul(nb_x, nb_x), hn::Mul(nb_y, nb_y)), hn::Mul(nb_z, nb_z)));
-      const auto none = hn::Lt(axes, constant(0.5)), both = hn::Gt(axes, constant(1.5));
-      const auto along_axes = hn::IfThenElse(both, constant(0.5), constant(1.0));
-      const auto along_line = hn::IfThenElse(apart, hn::Div(constant(1.0), distance), zero);
-      const auto direction = [&](Eigen::Index k, auto n_a, auto line) HWY_ATTR {
-        const auto n = hn::Sub(n_a, rotated(k, nb_x, nb_y, nb_z));
-        return hn::IfThenElse(none, hn::Mul(along_line, line), hn::Mul(along_axes, n));
-      };
-      const auto u_x = direction(0, na_x, x), u_y = direction(1, na_y, y), u_z = direction(2, na_z, z);
-      // The overlap's first moment about `about`. Its centre divides the line from A's centre to B's in the ratio of
-      // the caps' volumes: (V_a p_a + V_b p_b) / (V_a + V_b), with V_a that of the cap of A's sphere.
-      const auto height = hn::Max(hn::Sub(r1, plane()), zero);
-      const auto cap =
-          hn::Mul(constant(k_pi / 3.0), hn::Mul(hn::Mul(height, height), hn::Sub(hn::Mul(constant(3.0), r1), height)));
-      const auto of_a = hn::IfThenElse(contained, hn::IfThenElse(hn::Lt(r1, r2), volume, zero), hn::Mul(weight, cap));
-      const auto mx = hn::Sub(hn::Mul(volume, ax), hn::Mul(of_a, x)),
-                 my = hn::Sub(hn::Mul(volume, ay), hn::Mul(of_a, y)),
-                 mz = hn::Sub(hn::Mul(volume, az), hn::Mul(of_a, z));
-      add_wrench(hn::Mul(volume, u_x), hn::Mul(volume, u_y), hn::Mul(volume, u_z),
-                 hn::Sub(hn::Mul(my, u_z), hn::Mul(mz, u_y)), hn::Sub(hn::Mul(mz, u_x), hn::Mul(mx, u_z)),
-                 hn::Sub(hn::Mul(mx, u_y), hn::Mul(my, u_x)));
-      return;
-    }
-    auto magnitude = volume;
-    if (law_ == PairForce::gradient) {
-      const auto to_plane = plane();
-      const auto disc = hn::Max(hn::Sub(hn::Mul(r1, r1), hn::Mul(to_plane, to_plane)), zero);
-      const auto crossing = hn::Mul(weight, hn::Mul(constant(k_pi), disc));
-      magnitude = hn::IfThenElse(hn::Or(contained, hn::Ge(distance, sum)), zero, crossing);
-      // Middle of the overlap: centre of the disc, or of the sphere inside the other. It is B's centre plus `back`
-      // times the vector (x, y, z) from A's centre to B's.
-      const auto in_b = hn::IfThenElse(hn::Lt(r1, r2), constant(-1.0), zero);
-      const auto back = hn::IfThenElse(contained, in_b, hn::Sub(hn::Div(to_plane, distance), constant(1.0)));
-      const auto mx = hn::Add(ax, hn::Mul(back, x)), my = hn::Add(ay, hn::Mul(back, y)),
-                 mz = hn::Add(az, hn::Mul(back, z));
-      add_to(k_first_moment, hn::Mul(volume, mx));
-      add_to(k_first_moment + 1, hn::Mul(volume, my));
-      add_to(k_first_moment + 2, hn::Mul(volume, mz));
-      add_to(k_second_moment, hn::Mul(volume, hn::Add(hn::Add(hn::Mul(mx, mx), hn::Mul(my, my)), hn::Mul(mz, mz))));
-    }
-    const auto factor = hn::IfThenElse(apart, hn::Div(magnitude, distance), zero);
-    const auto fx = hn::Mul(factor, x), fy = hn::Mul(factor, y), fz = hn::Mul(factor, z);
+    const auto along_line = hn::IfThenElse(hn::Gt(p.distance, zero), hn::Div(constant(1.0), p.distance), zero);
+    const auto direction = [&](Eigen::Index k, Vector n_a, Vector line) HWY_ATTR {
+      const auto n = hn::Sub(n_a, rotated(k, nb_x, nb_y, nb_z));
+      return hn::IfThenElse(none, hn::Mul(along_line, line), hn::Mul(along_axes, n));
+    };
+    const auto u_x = direction(0, na_x, p.x), u_y = direction(1, na_y, p.y), u_z = direction(2, na_z, p.z);
+    // The overlap's first moment about `about`. Its centre divides the line from A's centre to B's in the ratio of
+    // the caps' volumes: (V_a p_a + V_b p_b) / (V_a + V_b), with V_a that of the cap of A's sphere.
+    const auto height = hn::Max(hn::Sub(p.r1, plane(p)), zero);
+    const auto cap = hn::Mul(constant(std::numbers::pi / 3.0),
+                             hn::Mul(hn::Mul(height, height), hn::Sub(hn::Mul(constant(3.0), p.r1), height)));
+    const auto of_a =
+        hn::IfThenElse(p.contained, hn::IfThenElse(hn::Lt(p.r1, p.r2), p.volume, zero), hn::Mul(p.weight, cap));
+    const auto mx = hn::Sub(hn::Mul(p.volume, p.ax), hn::Mul(of_a, p.x)),
+               my = hn::Sub(hn::Mul(p.volume, p.ay), hn::Mul(of_a, p.y)),
+               mz = hn::Sub(hn::Mul(p.volume, p.az), hn::Mul(of_a, p.z));
+    add_wrench(p, hn::Mul(p.volume, u_x), hn::Mul(p.volume, u_y), hn::Mul(p.volume, u_z),
+               hn::Sub(hn::Mul(my, u_z), hn::Mul(mz, u_y)), hn::Sub(hn::Mul(mz, u_x), hn::Mul(mx, u_z)),
+               hn::Sub(hn::Mul(mx, u_y), hn::Mul(my, u_x)));
+  }
+
+  /// PairForce::volume and gradient.
+  HWY_INLINE void add_along_centres(const Pairs& p) {
+    const auto zero = hn::Zero(Lanes());
+    const auto magnitude = law_ == PairForce::gradient ? gradient_and_moments(p) : p.volume;
+    // Concentric spheres exert no force.
+    const auto factor = hn::IfThenElse(hn::Gt(p.distance, zero), hn::Div(magnitude, p.distance), zero);
+    const auto fx = hn::Mul(factor, p.x), fy = hn::Mul(factor, p.y), fz = hn::Mul(factor, p.z);
     // The force acts along the line of centres, so any point on it may be the end of the arm: here B's centre.
-    add_wrench(fx, fy, fz, hn::Sub(hn::Mul(ay, fz), hn::Mul(az, fy)), hn::Sub(hn::Mul(az, fx), hn::Mul(ax, fz)),
-               hn::Sub(hn::Mul(ax, fy), hn::Mul(ay, fx)));
+    add_wrench(p, fx, fy, fz, hn::Sub(hn::Mul(p.ay, fz), hn::Mul(p.az, fy)),
+               hn::Sub(hn::Mul(p.az, fx), hn::Mul(p.ax, fz)), hn::Sub(hn::Mul(p.ax, fy), hn::Mul(p.ay, fx)));
+  }
+
+  /// Adds the overlaps' moments. @return the magnitude of their volumes' gradients
+  HWY_INLINE Vector gradient_and_moments(const Pairs& p) {
+    const auto zero = hn::Zero(Lanes()), to_plane = plane(p);
+    const auto disc = hn::Max(hn::Sub(hn::Mul(p.r1, p.r1), hn::Mul(to_plane, to_plane)), zero);
+    const auto crossing = hn::Mul(p.weight, hn::Mul(constant(std::numbers::pi), disc));
+    // Middle of the overlap: centre of the disc, or of the sphere inside the other. It is B's centre plus `back`
+    // times the vector (x, y, z) from A's centre to B's.
+    const auto in_b = hn::IfThenElse(hn::Lt(p.r1, p.r2), constant(-1.0), zero);
+    const auto back = hn::IfThenElse(p.contained, in_b, hn::Sub(hn::Div(to_plane, p.distance), constant(1.0)));
+    const auto mx = hn::Add(p.ax, hn::Mul(back, p.x)), my = hn::Add(p.ay, hn::Mul(back, p.y)),
+               mz = hn::Add(p.az, hn::Mul(back, p.z));
+    add_to(p, k_first_moment, hn::Mul(p.volume, mx));
+    add_to(p, k_first_moment + 1, hn::Mul(p.volume, my));
+    add_to(p, k_first_moment + 2, hn::Mul(p.volume, mz));
+    add_to(p, k_second_moment, hn::Mul(p.volume, hn::Add(hn::Add(hn::Mul(mx, mx), hn::Mul(my, my)), hn::Mul(mz, mz))));
+    return hn::IfThenElse(hn::Or(p.contained, hn::Ge(p.distance, p.sum)), zero, crossing);
   }
 
   PairForce law_;
