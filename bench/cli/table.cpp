@@ -11,6 +11,7 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
+#include "bench/cli/table_collection.h"
 #include "bench/common/json_text.h"
 
 namespace sixdof::cli {
@@ -25,7 +26,10 @@ repetitions each value is the median, and cpu their geometric mean from three on
 by side, with the ratio of cpu to the first. --wide: one table per query, of one file, with a line per pair and
 algorithm and a column per bucket; angles and magnitudes are means over the buckets, errors the largest, faults sums.
 --against: how many times faster than the fastest of others, as the median over the files with the least and the
-greatest, e.g. of several seeds; also of `generate` rows and of scenes (sixdof scene play --json).
+greatest, e.g. of several seeds; also of `generate` rows and of scenes (sixdof scene play --json). --over-objects: of
+bench/scripts/collection, mean times over objects, ratios to `exact` on the same object, and which kinds of objects take
+longer than their number of triangles says. --growth: of bench/scripts/growth, exponents of the number of triangles. Rows
+with a fault count for no time. Both print Markdown, or with --json the members "collection" and "growth" of result files.
 
 Keys of --json: files[] {file, date, commit, interrupted, settings {ALGORITHM: {PARAMETER: value}}, not_shown {FAMILY:
 rows}}; tables[] {pair, query, kind, rows[] {percent, algorithm, order, cache, files[]}}, with null or {fastest,
@@ -36,7 +40,7 @@ struct Arguments {
   std::vector<std::string> files;
   std::vector<std::string> against;
   std::string of = "exact";
-  bool markdown = false, json = false, wide = false;
+  bool markdown = false, json = false, wide = false, over_objects = false, growth = false;
 };
 
 void print(const std::vector<ResultTable>& tables, const TableInput& input, const Arguments& arguments) {
@@ -61,8 +65,16 @@ void run(const Arguments& arguments) {
     fmt::print("{}", arguments.markdown ? as_markdown(sheet) : as_text(sheet));
     return;
   }
-  if (arguments.wide && arguments.files.size() > 1) throw BadArgument("--wide shows one file");
+  if ((arguments.wide || arguments.over_objects || arguments.growth) && arguments.files.size() > 1) {
+    throw BadArgument("--wide, --over-objects and --growth show one file");
+  }
   const TableInput input(arguments.files);
+  if (arguments.over_objects || arguments.growth) {
+    const auto as_json = arguments.growth ? growth_json : over_objects_json;
+    const auto as_text = arguments.growth ? growth_text : over_objects_text;
+    fmt::print("{}", arguments.json ? json_text(as_json(input.groups)) + "\n" : as_text(input.groups));
+    return;
+  }
   const std::vector<ResultTable> tables = tables_of(input);
   if (arguments.json) {
     fmt::print("{}\n", json_text(as_json(tables, input)));
@@ -79,14 +91,24 @@ void add_table_command(CLI::App& app) {
   command->add_option("file", arguments->files, "Result files of sixdof-bench (JSON)")->required()->type_name("FILE");
   auto* const markdown = command->add_flag("--markdown", arguments->markdown, "As Markdown");
   auto* const json = command->add_flag("--json", arguments->json, "As JSON")->excludes(markdown);
-  command->add_flag("--wide", arguments->wide, "One line per pair and algorithm, one column per bucket")
-      ->excludes(json);
+  auto* const wide =
+      command->add_flag("--wide", arguments->wide, "One line per pair and algorithm, one column per bucket")
+          ->excludes(json);
+  auto* const over_objects =
+      command->add_flag("--over-objects", arguments->over_objects, "Means over the objects of bench/scripts/collection")
+          ->excludes(wide);
+  auto* const growth =
+      command->add_flag("--growth", arguments->growth, "Growth with the number of triangles (bench/scripts/growth)")
+          ->excludes(wide)
+          ->excludes(over_objects);
   auto* const against =
       command->add_option("--against", arguments->against, "Only ratios to the fastest of these, e.g. 'fcl-*,ode'")
           ->type_name("ALGORITHM,...")
           ->delimiter(',')
           ->allow_extra_args(false)
-          ->excludes(json);
+          ->excludes(json)
+          ->excludes(over_objects)
+          ->excludes(growth);
   command->add_option("--of", arguments->of, "Whose ratios --against prints")
       ->type_name("ALGORITHM")
       ->needs(against)
