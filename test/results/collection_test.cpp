@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sixdof/results/row_group.h>
+
 #include "result_rows.h"
 
 namespace sixdof::results {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/results/measured_pairs.h>
+#include <sixdof/results/row_group.h>
 
 #include "result_rows.h"
 
