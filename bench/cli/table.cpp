@@ -11,6 +11,7 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
+#include "bench/cli/table_collection.h"
 #include "bench/common/json_text.h"
 
 namespace sixdof::cli {
@@ -29,6 +30,11 @@ bucket. Angles and magnitudes are means over the buckets, errors the largest, fa
 of the fastest of the named algorithms over that of --of: the median over the files, e.g. of several seeds, with the
 least and the greatest. It also takes `generate` rows and scenes (sixdof scene play --json).
 
+--over-objects: of a result of bench/scripts/collection, mean times over the objects, ratios to `exact` on the same
+object, and which kinds of objects take longer than their number of triangles alone says. --growth: of a result of
+bench/scripts/growth, the exponents of the number of triangles. Rows with a fault count for no time. Both print
+Markdown, or with --json the members "collection" and "growth" of result files.
+
 Keys of --json: files[] {file, date, commit, interrupted, settings {ALGORITHM: {PARAMETER: value}}, not_shown {FAMILY:
 rows}}; tables[] {pair, query, kind, rows[] {percent, algorithm, order, cache, files[]}}, with null or {fastest,
 faults[] {what, count, of}, ratio_to_first, values} for each file. values are the row's counters
@@ -38,7 +44,7 @@ struct Arguments {
   std::vector<std::string> files;
   std::vector<std::string> against;
   std::string of = "exact";
-  bool markdown = false, json = false, wide = false, overview = false;
+  bool markdown = false, json = false, wide = false, overview = false, over_objects = false, growth = false;
 };
 
 void print(const std::vector<ResultTable>& tables, const TableInput& input, const Arguments& arguments) {
@@ -65,9 +71,17 @@ void run(const Arguments& arguments) {
     fmt::print("{}", arguments.markdown ? as_markdown(sheet) : as_text(sheet));
     return;
   }
-  if (arguments.wide && arguments.files.size() > 1) throw BadArgument("--wide shows one file");
-  if (arguments.overview && arguments.files.size() > 1) throw BadArgument("--overview shows one file");
+  if ((arguments.wide || arguments.overview || arguments.over_objects || arguments.growth) &&
+      arguments.files.size() > 1) {
+    throw BadArgument("--wide, --overview, --over-objects and --growth show one file");
+  }
   const TableInput input(arguments.files);
+  if (arguments.over_objects || arguments.growth) {
+    const auto as_json = arguments.growth ? growth_json : over_objects_json;
+    const auto as_text = arguments.growth ? growth_text : over_objects_text;
+    fmt::print("{}", arguments.json ? json_text(as_json(input.groups)) + "\n" : as_text(input.groups));
+    return;
+  }
   const std::vector<ResultTable> tables = tables_of(input);
   if (arguments.json) {
     fmt::print("{}\n", json_text(as_json(tables, input)));
@@ -90,12 +104,21 @@ void add_table_command(CLI::App& app) {
   command->add_flag("--overview", arguments->overview, "One line per algorithm: its times and what is wrong with it")
       ->excludes(json)
       ->excludes(wide);
+  auto* const over_objects =
+      command->add_flag("--over-objects", arguments->over_objects, "Means over the objects of bench/scripts/collection")
+          ->excludes(wide);
+  auto* const growth =
+      command->add_flag("--growth", arguments->growth, "Growth with the number of triangles (bench/scripts/growth)")
+          ->excludes(wide)
+          ->excludes(over_objects);
   auto* const against =
       command->add_option("--against", arguments->against, "Only ratios to the fastest of these, e.g. 'fcl-*,ode'")
           ->type_name("ALGORITHM,...")
           ->delimiter(',')
           ->allow_extra_args(false)
-          ->excludes(json);
+          ->excludes(json)
+          ->excludes(over_objects)
+          ->excludes(growth);
   command->add_option("--of", arguments->of, "Algorithm whose time is compared by --against")
       ->type_name("ALGORITHM")
       ->needs(against)

@@ -58,13 +58,13 @@ def respond_rows(file, minutes, order, *words):
 
 
 def object_steps(script, minutes, *words):
-    """Steps of bench/collection or bench/growth: the measurement, and its tables."""
+    """Steps of bench/scripts/collection or growth: the measurement, and its tables."""
     folder = ["--out", f"{{folder}}/{script}"]
     algorithms = ",".join(["exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE])
     return [Step(f"{script}/{'results' if script == 'collection' else script}.json",
-                 [f"bench/{script}", *folder, "--jobs", "1", "--grid", "so3:4:2", "--sample", "8", *words, "--algorithms",
+                 [f"bench/scripts/{script}", *folder, "--jobs", "1", "--grid", "so3:4:2", "--sample", "8", *words, "--algorithms",
                   algorithms, "--budget", f"{minutes}min"], minutes),
-            Step(f"{script}/tables.txt", [f"bench/{script}", *folder, "--report"], 0.1, prints=True)]
+            Step(f"{script}/tables.txt", [f"bench/scripts/{script}", *folder, "--report"], 0.1, prints=True)]
 
 
 def scene_steps():

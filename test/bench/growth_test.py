@@ -1,4 +1,4 @@
-"""bench/growth: its fit on synthetic points, and a real run on small recipes.
+"""bench/scripts/growth: a real run on small recipes.
 
 usage: growth_test.py SIXDOF SIXDOF_BENCH
 """
@@ -6,61 +6,29 @@ usage: growth_test.py SIXDOF SIXDOF_BENCH
 import importlib.machinery
 import importlib.util
 import json
-import math
 import pathlib
-import random
 import subprocess
 import sys
 import tempfile
 import unittest
 
-BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
+GROWTH = str(pathlib.Path(__file__).resolve().parents[2] / "bench/scripts/growth")
 SIXDOF, SIXDOF_BENCH = sys.argv[1:3]
 del sys.argv[1:3]
 sys.dont_write_bytecode = True
-loader = importlib.machinery.SourceFileLoader("growth", str(BENCH / "growth"))
+loader = importlib.machinery.SourceFileLoader("growth", GROWTH)
 growth = importlib.util.module_from_spec(importlib.util.spec_from_loader("growth", loader))
 loader.exec_module(growth)
 
 
-class Fit(unittest.TestCase):
-    def test_finds_one_exponent_of_shapes_with_factors_of_their_own(self):
-        points = {shape: [(n, factor * n ** 0.7) for n in (1e3, 1e4, 1e5)] for shape, factor in (("a", 3), ("b", 50))}
-        exponent, half_width, count = growth.fit(points)
-        self.assertAlmostEqual(exponent, 0.7)
-        self.assertAlmostEqual(half_width, 0.0)
-        self.assertEqual(count, 6)
-
-    def test_agrees_with_a_line_worked_out_by_hand(self):
-        # Logarithms (0, 0), (1, 2), (2, 1), (3, 3): slope 0.8, residual squares 1.8, so that the slope's standard
-        # error is sqrt(1.8 / 2 / 5), and t = 4.303 with two degrees of freedom.
-        points = {"a": [(math.exp(x), math.exp(y)) for x, y in ((0, 0), (1, 2), (2, 1), (3, 3))]}
-        exponent, half_width, _ = growth.fit(points)
-        self.assertAlmostEqual(exponent, 0.8)
-        self.assertAlmostEqual(half_width, 4.303 * math.sqrt(1.8 / 2 / 5))
-
-    def test_the_interval_holds_the_exponent_in_95_of_100_cases(self):
-        generator = random.Random(4)
-        runs, held = 2000, 0
-        for _ in range(runs):
-            points = {shape: [(n, n ** 0.4 * math.exp(generator.gauss(0, 0.3))) for n in (1e3, 3e3, 1e4, 3e4)]
-                      for shape in "ab"}
-            exponent, half_width, _ = growth.fit(points)
-            held += abs(exponent - 0.4) <= half_width
-        self.assertAlmostEqual(held / runs, 0.95, delta=0.02)  # four standard deviations of the count
-
-    def test_too_few_points_have_no_fit(self):
-        self.assertIsNone(growth.fit({}))
-        self.assertIsNone(growth.fit({"a": [(1e3, 1.0)], "b": [(1e3, 2.0)]}))
-        self.assertIsNone(growth.fit({"a": [(1e3, 1.0), (1e4, 2.0)]}))
-
+class Words(unittest.TestCase):
     def test_counts(self):
         self.assertEqual([growth.count_of(text) for text in ("500", "3k", "1m")], [500, 3_000, 1_000_000])
 
 
 class Run(unittest.TestCase):
     def growth(self, *words):
-        return subprocess.run([sys.executable, "-B", str(BENCH / "growth"), "--program", SIXDOF, "--bench",
+        return subprocess.run([sys.executable, "-B", GROWTH, "--program", SIXDOF, "--bench",
                                SIXDOF_BENCH, "--algorithms", "exact", "--grid", "so3:4:2", "--sample", "4", *words],
                               capture_output=True, text=True, check=False)
 
@@ -89,7 +57,7 @@ class Run(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="sixdof-growth-") as folder:
             done = self.growth("--out", folder, "--report")
             self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1))
-            self.assertIn("nothing is measured yet", done.stderr)
+            self.assertIn("no pair is measured yet", done.stderr)
             self.assertEqual(self.growth("--out", folder, "--counts", "3q").returncode, 2)
             self.assertIn("no algorithm is called exakt",
                           self.growth("--out", folder, "--algorithms", "exakt").stderr)

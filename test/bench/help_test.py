@@ -63,15 +63,15 @@ class Help(unittest.TestCase):
 
     def test_collection_and_growth(self):
         for script, said in (("collection", "6 pairs of 2 objects."), ("growth", "6 pairs.")):
-            measure, report = self.examples([str(BENCH / script)])
+            measure, report = self.examples([str(BENCH / "scripts" / script)])
             programs = ["--program", SIXDOF, "--bench", SIXDOF_BENCH]
-            self.assertIn(said, self.succeed([str(BENCH / script), *measure[1:], *programs]))
-            self.assertIn(said, self.succeed([str(BENCH / script), *report[1:], *programs]))
+            self.assertIn(said, self.succeed([str(BENCH / "scripts" / script), *measure[1:], *programs]))
+            self.assertIn(said, self.succeed([str(BENCH / "scripts" / script), *report[1:], *programs]))
 
     def test_response_table(self):
-        both, one = self.examples([str(BENCH / "response-table")])
-        self.assertEqual(both, ["bench/response-table"], "takes minutes; the other one prints a part of it")
-        self.assertIn("| Ia | sigma_F |", self.succeed([str(BENCH / "response-table"), "--program", SIXDOF, *one[1:]]))
+        both, one = self.examples([str(BENCH / "scripts/response-table")])
+        self.assertEqual(both, ["bench/scripts/response-table"], "takes minutes; the other one prints a part of it")
+        self.assertIn("| Ia | sigma_F |", self.succeed([str(BENCH / "scripts/response-table"), "--program", SIXDOF, *one[1:]]))
 
 
 if __name__ == "__main__":

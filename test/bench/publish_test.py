@@ -101,7 +101,7 @@ class Short(unittest.TestCase):
         for part in parts.parts():
             for command in parts.commands_of(part):
                 self.assertNotIn("{", command)
-                self.assertRegex(command, "^(sixdof|sixdof-bench|bench/[a-z]+) ")
+                self.assertRegex(command, "^(sixdof|sixdof-bench|bench/(scripts/)?[a-z]+) ")
 
 
 class Plan(unittest.TestCase):

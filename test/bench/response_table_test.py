@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""bench/response-table prints the numbers of `sixdof equivalent` and `sixdof quality`, and no half table after an error.
+"""bench/scripts/response-table prints the numbers of `sixdof equivalent` and `sixdof quality`, and no half table after an error.
 
 usage: response_table_test.py SIXDOF RESPONSE_TABLE
 """

@@ -113,7 +113,7 @@ class Page(unittest.TestCase):
             self.assertFalse(is_filled and command, page)
             if command:
                 named[page] = command.split()[0]
-        self.assertEqual(named, {"signals": "sixdof", "scenes": "bench/run", "collection": "bench/collection", "stability": "sixdof", "compare": "sixdof",
+        self.assertEqual(named, {"signals": "sixdof", "scenes": "bench/run", "collection": "bench/scripts/collection", "stability": "sixdof", "compare": "sixdof",
                                  "history": "sixdof"})
 
     def test_hostile_names_are_text(self):

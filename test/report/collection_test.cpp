@@ -1,4 +1,4 @@
-// What bench/collection and bench/growth write, and how a report reads it.
+// What bench/scripts/collection and growth write, and how a report reads it.
 
 #include <sixdof/results/collection.h>
 
@@ -22,21 +22,19 @@ using test::text_in;
 using ::testing::HasSubstr;
 
 Json document() {
-  const Json cell = {
-      {"partner", "self"},       {"query", "distance"}, {"bucket", {{"kind", "distance"}, {"percent", 5}}},
-      {"algorithm", "vps"},      {"objects", 30},       {"mean_us", 4.0},
-      {"p10_us", 2.0},           {"p90_us", 9.0},       {"greatest_us", 20.0},
-      {"greatest_object", "bed"}};
+  const Json cell = {{"partner", "self"},  {"query", "distance"}, {"bucket", {{"kind", "distance"}, {"percent", 5}}},
+                     {"algorithm", "vps"}, {"objects", 30},       {"mean_us", 4.0},
+                     {"median_us", 3.0},   {"least_us", 1.0},     {"p10_us", 2.0},
+                     {"p90_us", 9.0},      {"greatest_us", 20.0}, {"greatest_object", "bed"}};
   const Json ratio = {
       {"partner", "self"},  {"query", "distance"},
       {"algorithm", "vps"}, {"objects", 30},
       {"ratio", 3.0},       {"p10", 1.5},
-      {"p90", 8.0},         {"worst", {{{"object", "bed"}, {"ratio", 12.0}}, {{"object", "cup"}, {"ratio", 11.0}}}}};
-  const Json growth = {{"algorithm", "vps"},
-                       {"quantity", "distance, us"},
-                       {"points", {{"knot", {{1000, 2.0}, {4000, 4.0}}}}},
-                       {"exponent", 0.5},
-                       {"half_width", 0.1}};
+      {"p90", 8.0},         {"worst", {{{"object", "bed"}, {"ratio", 12.0}}, {{"object", "cup"}, {"ratio", 11.0}}}},
+      {"faster", 1},        {"least", {{"object", "dot"}, {"ratio", 0.9}}}};
+  const Json growth = {
+      {"algorithm", "vps"}, {"quantity", "distance, us"}, {"points", {{"knot", {{1000, 2.0}, {4000, 4.0}}}}},
+      {"exponent", 0.5},    {"half_width", 0.1},          {"fitted", 9}};
   return {{"benchmarks", Json::array()},
           {"collection", {{"cells", {cell}}, {"against_exact", {ratio}}}},
           {"growth", {growth}}};

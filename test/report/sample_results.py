@@ -64,16 +64,17 @@ def scene_rows():
 
 
 def collection():
-    """What bench/collection and bench/growth write beside their rows."""
+    """What bench/scripts/collection and growth write beside their rows."""
     cells, ratios, growth = [], [], []
     for i, algorithm in enumerate(["exact", "vps", HOSTILE]):
         for percent in (1, 5, 10):
             cells.append({"partner": "self", "query": "distance", "bucket": {"kind": "distance", "percent": percent}, "algorithm": algorithm,
-                          "objects": 30, "mean_us": 9.0 * (i + 1), "p10_us": 3.0, "p90_us": 90.0, "greatest_us": 200.0, "greatest_object": HOSTILE})
+                          "objects": 30, "mean_us": 9.0 * (i + 1), "median_us": 8.0, "least_us": 2.0, "p10_us": 3.0, "p90_us": 90.0, "greatest_us": 200.0, "greatest_object": HOSTILE})
         ratios.append({"partner": "self", "query": "distance", "algorithm": algorithm, "objects": 30, "ratio": 1.0 + i, "p10": 0.9, "p90": 5.0 + i,
-                       "worst": [{"object": "bed", "ratio": 12.0}, {"object": HOSTILE, "ratio": 11.0}, {"object": "cup", "ratio": 9.0}]})
+                       "worst": [{"object": "bed", "ratio": 12.0}, {"object": HOSTILE, "ratio": 11.0}, {"object": "cup", "ratio": 9.0}],
+                       "faster": 3, "least": {"object": "cup", "ratio": 0.5}})
         growth.append({"algorithm": algorithm, "quantity": "distance, us", "points": {"knot": [[1000, 1.0 + i], [4000, 2.0 + i]]},
-                       "exponent": 0.4 + 0.1 * i, "half_width": 0.05})
+                       "exponent": 0.4 + 0.1 * i, "half_width": 0.05, "fitted": 12})
     return {"collection": {"cells": cells, "against_exact": ratios}, "growth": growth}
 
 

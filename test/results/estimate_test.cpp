@@ -15,6 +15,14 @@ TEST(Median, OfAnEvenNumberIsTheMeanOfTheMiddleTwo) {
   EXPECT_EQ(median({7.0}), 7.0);
 }
 
+TEST(Quantile, IsInterpolatedBetweenOrderStatistics) {
+  const std::vector<double> values{10.0, 1.0, 3.0, 2.0};
+  EXPECT_DOUBLE_EQ(quantile(values, 0.0), 1.0);
+  EXPECT_DOUBLE_EQ(quantile(values, 0.1), 1.3);
+  EXPECT_DOUBLE_EQ(quantile(values, 1.0), 10.0);
+  EXPECT_DOUBLE_EQ(quantile({7.0}, 0.9), 7.0);
+}
+
 TEST(MeanOfRepetitions, IsGeometricWithStudentsInterval) {
   const Estimate mean = mean_of_repetitions({1.0, 1.0, 8.0});
   const double half = 4.30265 * std::log(2.0);  // t of two degrees of freedom at 97.5 %; the logarithms' deviation is s

@@ -55,6 +55,12 @@ TEST(RowFields, AreReadBack) {
   EXPECT_EQ(read.configurations, k_query.configurations);
 }
 
+TEST(RowFields, SayWhichObjectOrShapeAPairStandsFor) {
+  const Json object = Json::parse(R"({"query": "respond", "algorithm": "vps", "settings": {}, "object": "bed",
+    "partner": "tenth", "kind": "boxy", "shape": "knot", "triangles": 4000, "volume_unit": 0.001})");
+  EXPECT_EQ(to_json_object(row_fields_of(object)), object);
+}
+
 TEST(RowFields, ThatAreWrongAreNamed) {
   const auto message_of = [](const char* key, const Json& value) {
     Json object = to_json_object(k_query);
@@ -74,6 +80,8 @@ TEST(RowFields, ThatAreWrongAreNamed) {
   EXPECT_THAT(message_of("configurations", "many"), HasSubstr("sixdof.configurations: "));
   EXPECT_THAT(message_of("configurations", -1), HasSubstr("sixdof.configurations: not a whole number"));
   EXPECT_THAT(message_of("sample_limit", 1.55e164), HasSubstr("sixdof.sample_limit: not a whole number"));
+  EXPECT_THAT(message_of("triangles", -1), HasSubstr("sixdof.triangles: not a whole number"));
+  EXPECT_THAT(message_of("volume_unit", 0), HasSubstr("sixdof.volume_unit: not above zero"));
   EXPECT_THROW(row_fields_of(Json::parse("[]")), Error);
 }
 

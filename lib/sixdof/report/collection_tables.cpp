@@ -41,7 +41,7 @@ DataTable growth_table(const Results& results) {
                   .title = "Growth with the number of triangles",
                   .columns = {"run", "quantity", "shape", "algorithm", "triangles", "value"},
                   .rows = {}};
-  for (const GrowthSeries& series : results.collection.growth) {
+  for (const GrowthSeries& series : results.growth) {
     for (const auto& [shape, points] : series.points) {
       for (const auto& [triangles, value] : points) {
         table.rows.push_back(
@@ -57,10 +57,11 @@ DataTable growth_exponents_table(const Results& results) {
                   .title = "Exponents of the number of triangles",
                   .columns = {"run", "quantity", "algorithm", "exponent", "low", "high"},
                   .rows = {}};
-  for (const GrowthSeries& series : results.collection.growth) {
-    if (!series.exponent || !series.half_width) continue;
-    table.rows.push_back({run_name(results, series.file), series.quantity, series.algorithm, *series.exponent,
-                          *series.exponent - *series.half_width, *series.exponent + *series.half_width});
+  for (const GrowthSeries& series : results.growth) {
+    if (!series.law) continue;
+    const auto& [exponent, half_width, points] = *series.law;
+    table.rows.push_back({run_name(results, series.file), series.quantity, series.algorithm, exponent,
+                          exponent - half_width, exponent + half_width});
   }
   return table;
 }

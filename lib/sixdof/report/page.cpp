@@ -179,7 +179,7 @@ std::vector<std::string> algorithms_of(const Results& results, const std::vector
   for (const HardCase& cell : results.hard_cases) add(cell.algorithm);
   for (const Series& each : series) add(each.algorithm);
   for (const CollectionCell& cell : results.collection.cells) add(cell.algorithm);
-  for (const GrowthSeries& each : results.collection.growth) add(each.algorithm);
+  for (const GrowthSeries& each : results.growth) add(each.algorithm);
   return names;
 }
 

@@ -16,6 +16,17 @@ constexpr double k_tail = 0.025;  ///< Of a 95 % interval.
 
 double median(std::vector<double> values) { return boost::math::statistics::median(values); }
 
+double quantile(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto low = static_cast<std::size_t>(place);
+  return std::lerp(values[low], values[std::min(low + 1, values.size() - 1)], place - static_cast<double>(low));
+}
+
+double student_t95(double degrees_of_freedom) {
+  return boost::math::quantile(boost::math::complement(boost::math::students_t(degrees_of_freedom), k_tail));
+}
+
 LogMoments log_moments(std::span<const double> values) {
   std::vector<double> logs;
   for (const double value : values) logs.push_back(std::log(value));
@@ -24,14 +35,15 @@ LogMoments log_moments(std::span<const double> values) {
           .count = static_cast<double>(logs.size())};
 }
 
+double geometric_mean(std::span<const double> values) { return std::exp(log_moments(values).mean); }
+
 Estimate mean_of_repetitions(std::vector<double> times) {
   if (times.size() < k_fewest_repetitions) {
     const double middle = median(std::move(times));
     return {middle, middle * (1.0 - k_run_to_run), middle * (1.0 + k_run_to_run)};
   }
   const auto [mean, variance, n] = log_moments(times);
-  const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1.0), k_tail));
-  const double half = t * std::sqrt(variance / n);
+  const double half = student_t95(n - 1.0) * std::sqrt(variance / n);
   return {std::exp(mean), std::exp(mean - half), std::exp(mean + half)};
 }
 

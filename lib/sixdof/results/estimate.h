@@ -34,12 +34,21 @@ inline constexpr std::size_t k_fewest_repetitions = 3;
 /// The middle value, or the mean of the two in the middle. @param values at least one
 double median(std::vector<double> values);
 
+/// By linear interpolation between order statistics. @param values at least one @param share 0: least, 1: greatest
+double quantile(std::vector<double> values, double share);
+
+/// Two-sided 95 % quantile of Student's t: an interval's half width in standard errors.
+double student_t95(double degrees_of_freedom);
+
 /// Mean and variance (over n - 1) of the logarithms of values.
 struct LogMoments {
   double mean = 0.0, variance = 0.0;
   double count = 0.0;
 };
 LogMoments log_moments(std::span<const double> values);
+
+/// @param values at least one, above zero
+double geometric_mean(std::span<const double> values);
 
 /// The mean time of a row from that of each of its repetitions: the geometric mean with Student's interval of the
 /// logarithms from k_fewest_repetitions on, the median within k_run_to_run of fewer.

@@ -63,12 +63,15 @@ void take_rows(const Json& document, Source source, Results& results) {
     }
   }
   Collection collection = results.collection;
+  std::vector<GrowthSeries> growth = results.growth;
   try {
     take_collection(document, file, collection);
+    take_growth(document, file, growth);
   } catch (const Error& e) {
     throw BadFile(source.path, e.what());
   }
   results.collection = std::move(collection);
+  results.growth = std::move(growth);
   results.rows.insert(results.rows.end(), rows.begin(), rows.end());
   results.files.push_back(std::move(source));
 }

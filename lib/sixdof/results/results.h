@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <sixdof/results/collection.h>
+#include <sixdof/results/growth.h>
 #include <sixdof/results/row.h>
 
 /// Files of results of this project's programs: rows of `sixdof-bench` and of studies, hard cases of `sixdof stress`,
@@ -37,11 +38,12 @@ struct Results {
   std::vector<Source> files;
   std::vector<Row> rows;
   std::vector<HardCase> hard_cases;
-  Collection collection;
+  Collection collection;  ///< The summaries that files have beside their rows.
+  std::vector<GrowthSeries> growth;
 };
 
-/// Reads a file of `sixdof-bench`, of a study (`-o`), of `bench/collection` or `bench/growth`, of `sixdof stress` or of
-/// `sixdof scene play --json`, and adds what it has.
+/// Reads a file of `sixdof-bench`, of a study (`-o`), of `bench/scripts/collection` or `growth`, of `sixdof stress` or
+/// of `sixdof scene play --json`, and adds what it has.
 /// @throws BadFile "FILE: PLACE: CAUSE" for a file that is empty, is no JSON, or is none of these
 void read_results(const std::filesystem::path& path, Results& results);
 

@@ -18,7 +18,14 @@ using Json = nlohmann::ordered_json;
 constexpr std::pair<const char*, std::string RowFields::*> k_texts[] = {
     {"pair", &RowFields::pair},         {"order", &RowFields::order},   {"cache", &RowFields::cache},
     {"scenario", &RowFields::scenario}, {"target", &RowFields::target}, {"question", &RowFields::question},
-    {"body", &RowFields::body},
+    {"body", &RowFields::body},         {"object", &RowFields::object}, {"partner", &RowFields::partner},
+    {"kind", &RowFields::kind},         {"shape", &RowFields::shape},
+};
+
+constexpr std::pair<const char*, std::optional<std::uint64_t> RowFields::*> k_counts[] = {
+    {"sample_limit", &RowFields::sample_limit},
+    {"configurations", &RowFields::configurations},
+    {"triangles", &RowFields::triangles},
 };
 
 /// The whole text as a number; empty if it is none.
@@ -99,8 +106,10 @@ Json to_json_object(const RowFields& fields) {
   if (fields.bucket) {
     object["bucket"] = to_json_object(*fields.bucket);
   }
-  if (fields.sample_limit) object["sample_limit"] = *fields.sample_limit;
-  if (fields.configurations) object["configurations"] = *fields.configurations;
+  for (const auto& [key, member] : k_counts) {
+    if (fields.*member) object[key] = *(fields.*member);
+  }
+  if (fields.volume_unit) object["volume_unit"] = *fields.volume_unit;
   return object;
 }
 
@@ -119,11 +128,16 @@ RowFields row_fields_of(const Json& object) {
   if (object.contains("bucket")) {
     read_key("bucket", [&] { fields.bucket = bucket_of(object.at("bucket")); });
   }
-  if (object.contains("sample_limit")) {
-    read_key("sample_limit", [&] { fields.sample_limit = count_of(object.at("sample_limit")); });
+  for (const auto& [key, member] : k_counts) {
+    if (object.contains(key)) {
+      read_key(key, [&, name = key, to = member] { fields.*to = count_of(object.at(name)); });
+    }
   }
-  if (object.contains("configurations")) {
-    read_key("configurations", [&] { fields.configurations = count_of(object.at("configurations")); });
+  if (object.contains("volume_unit")) {
+    read_key("volume_unit", [&] {
+      fields.volume_unit = object.at("volume_unit").get<double>();
+      if (!(*fields.volume_unit > 0.0)) throw BadArgument("not above zero");
+    });
   }
   return fields;
 }

@@ -30,6 +30,11 @@ struct RowFields {
   std::optional<std::uint64_t> sample_limit = {};
   /// How many were asked or made; empty where the row has none or could not be run.
   std::optional<std::uint64_t> configurations = {};
+  // What the pair stands for where many are measured (measured_pairs.h); empty elsewhere.
+  std::string object = {}, partner = {}, kind = {};  ///< Of a collection; "self" is the partner of an object's copy.
+  std::string shape = {};                            ///< Of a study of growth.
+  std::optional<std::uint64_t> triangles = {};       ///< Of the object or shape.
+  std::optional<double> volume_unit = {};  ///< What volumes are in percent of, in volumes of A; empty: of A's volume.
 };
 
 inline constexpr const char* k_row_fields_key = "sixdof";

@@ -1,6 +1,6 @@
 """Measures algorithms on pairs of meshes, one pair after the other, such that a run may be killed and continued.
 
-What bench/collection and bench/growth share. A unit is one pair. Everything of a run lies in one folder:
+Of bench/scripts/collection and bench/scripts/growth. A unit is one pair. Everything of a run lies in one folder:
 
   meshes/NAME.ply   the meshes, with all bits
   sets/UNIT.h5      configuration sets
@@ -22,17 +22,16 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import tempfile
 import sys
+import tempfile
 import threading
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "fixtures"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "fixtures"))
 from whole_file import write_whole  # noqa: E402
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 QUERIES = ["distance", "collide", "respond"]
-NS = {"ns": 1.0, "us": 1e3, "ms": 1e6, "s": 1e9}
 # The least time that a step of a unit gets: a process needs some seconds to load two large meshes on a busy machine.
 LEAST_LIMIT_S = 10.0
 # A unit may take this many times its equal part of the budget: most units take far less than the largest ones.
@@ -240,7 +239,8 @@ class Runner:
             chosen = ["--volumes", percents] if volumes and percents else []
             step = self.call([self.program, "generate", "--a", a, "--b", b, "--grid", self.choice.grid, "--distances",
                               self.choice.distances, *chosen, "--threads", 1, "-o", file], limit_s)
-            record |= {"volumes": bool(chosen), "cpu_s": step.cpu_s, "peak_bytes": step.peak_bytes}
+            record |= {"volumes": bool(chosen), "seconds": step.seconds, "cpu_s": step.cpu_s,
+                       "peak_bytes": step.peak_bytes}
             if step.code == 0:
                 write(record_file, record, self.scratch.path)
                 return file, record
@@ -392,38 +392,23 @@ def results(folder):
     return [json.loads(file.read_text(encoding="utf-8")) for file in sorted((folder / "units").glob("*.json"))]
 
 
-def fault_of(row):
-    """Why a row counts for no time, or None."""
-    if row.get("error_occurred"):
-        return row.get("error_message", "failed")
-    for counter, words in (("failed", "without an answer"), ("mismatch", "wrong"), ("misses", "without a force")):
-        if row.get(counter, 0):
-            return f"{row[counter]:.0f} {words}"
-    return None
-
-
-def cpu_ns(row):
-    return row["cpu_time"] * NS[row["time_unit"]]
+def printed(command, text=None):
+    """What a program prints. @raises Failure"""
+    done = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise Failure(done.stderr.strip().removeprefix("sixdof: "))
+    return done.stdout
 
 
 def chosen_algorithms(program, names):
     """The named algorithms; without names those that benchmarks ask by default, but for the one that answers with
     constants. @raises Failure for a name that does not exist"""
-    listed = json.loads(subprocess.run([program, "algorithms", "--json"], check=True, capture_output=True).stdout)
+    listed = json.loads(printed([program, "algorithms", "--json"]))
     unknown = set(names or []) - {one["name"] for one in listed}
     if unknown:
         raise Failure(f"no algorithm is called {', '.join(sorted(unknown))}")
     return names or [one["name"] for one in listed
                      if one["timed"] and one["by_default"] and one["body"] == "mesh" and one["name"] != "null"]
-
-
-def bucket_of(unit, row):
-    """(kind, percent) of a row's bucket, a volume in percent of the unit's volume_unit; None of other rows."""
-    bucket = row["sixdof"].get("bucket")
-    if bucket is None:
-        return None
-    scale = unit["labels"]["volume_unit"] if bucket["kind"] == "volume" else 1.0
-    return bucket["kind"], float(f"{bucket['percent'] / scale:.6g}")
 
 
 def percents_of(text):
@@ -433,13 +418,3 @@ def percents_of(text):
         low, colon, high = word.partition(":")
         percents += range(int(low), int(high) + 1) if colon else [float(low)]
     return percents
-
-
-def seconds_of(text):
-    """30s, 25min, 2h as seconds. @raises ValueError"""
-    for unit, factor in (("min", 60), ("h", 3600), ("s", 1)):
-        if text.endswith(unit):
-            value = float(text.removesuffix(unit)) * factor
-            if value > 0:
-                return value
-    raise ValueError(f"'{text}' is no time such as 90s, 25min, 2h")
