@@ -62,7 +62,7 @@ std::string where(const BucketKey& bucket) { return fmt::format("{} {:g} %", to_
 std::string times_table(const std::vector<const CollectionCell*>& cells) {
   std::set<BucketKey> buckets;
   std::map<std::string, std::map<BucketKey, const CollectionCell*>> lines;
-  double most = 0.0;
+  std::size_t most = 0;
   for (const CollectionCell* const cell : cells) {
     most = std::max(most, cell->objects);
     lines[cell->algorithm][cell->bucket] = cell;
@@ -72,7 +72,7 @@ std::string times_table(const std::vector<const CollectionCell*>& cells) {
   std::vector<std::string> titles{"algorithm"};
   for (const BucketKey& bucket : buckets) titles.push_back(where(bucket));
   std::string text = fmt::format(
-      "\n**{}, {}**: mean over {:.0f} objects, us (10 %..90 % of the objects); in square brackets the number of "
+      "\n**{}, {}**: mean over {} objects, us (10 %..90 % of the objects); in square brackets the number of "
       "objects "
       "where it is less\n\n{}",
       cells[0]->query, cells[0]->partner, most, head_of(titles));
@@ -84,7 +84,7 @@ std::string times_table(const std::vector<const CollectionCell*>& cells) {
       if (found == of_buckets.end()) continue;
       const CollectionCell& cell = *found->second;
       line.back() = fmt::format("{} ({}..{})", us(cell.mean_us), us(cell.p10_us), us(cell.p90_us));
-      if (cell.objects < most) line.back() += fmt::format(" [{:.0f}]", cell.objects);
+      if (cell.objects < most) line.back() += fmt::format(" [{}]", cell.objects);
     }
     text += line_of(line);
   }
@@ -100,9 +100,9 @@ std::string ratios_table(const Collection& collection) {
     if (each.algorithm == results::k_collection_reference) continue;
     std::vector<std::string> worst;
     for (const auto& [object, ratio] : each.worst) worst.push_back(fmt::format("{} {:.3g}", object, ratio));
-    text += line_of({each.partner, each.query, code(each.algorithm), fmt::format("{:.0f}", each.objects),
+    text += line_of({each.partner, each.query, code(each.algorithm), std::to_string(each.objects),
                      fmt::format("{:.3g}", each.ratio), fmt::format("{:.3g}..{:.3g}", each.p10, each.p90),
-                     fmt::format("{:.0f}", each.faster), fmt::format("{}", fmt::join(worst, ", "))});
+                     std::to_string(each.faster), fmt::format("{}", fmt::join(worst, ", "))});
   }
   return text;
 }
@@ -124,9 +124,8 @@ std::string hardness_table(const Collection& collection) {
                                   fmt::format("{:.2f}", each.exponent)};
     for (const std::string& kind : kinds) {
       const auto found = each.kinds.find(kind);
-      line.push_back(found == each.kinds.end()
-                         ? "-"
-                         : fmt::format("{:.2f} ({:.0f})", found->second.factor, found->second.objects));
+      line.push_back(
+          found == each.kinds.end() ? "-" : fmt::format("{:.2f} ({})", found->second.factor, found->second.objects));
     }
     text += line_of(line);
   }

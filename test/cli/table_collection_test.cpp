@@ -137,7 +137,7 @@ Sets that were not made as chosen: 1
 TEST_F(TableOfObjects, OtherRowsAreRefused) {
   for (const auto& [option, said] :
        {std::pair{"--over-objects", "no row has a partner"}, {"--growth", "no row has a shape"}}) {
-    const auto result = table({row("distance", "exact", "p", 1.0, Json::object())}, option);
+    const auto result = table(Json::array({row("distance", "exact", "p", 1.0, Json::object())}), option);
     EXPECT_EQ(result.exit_code, k_exit_error);
     EXPECT_THAT(result.err, HasSubstr(said));
   }

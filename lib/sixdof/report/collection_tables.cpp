@@ -13,8 +13,8 @@ DataTable collection_table(const Results& results) {
   for (const CollectionCell& cell : results.collection.cells) {
     if (cell.algorithm == "null") continue;
     table.rows.push_back({run_name(results, cell.file), cell.partner, cell.query, to_string(cell.bucket.kind),
-                          cell.bucket.percent, cell.algorithm, cell.objects, cell.mean_us, cell.p10_us, cell.p90_us,
-                          cell.greatest_object, cell.greatest_us});
+                          cell.bucket.percent, cell.algorithm, static_cast<double>(cell.objects), cell.mean_us,
+                          cell.p10_us, cell.p90_us, cell.greatest_object, cell.greatest_us});
   }
   return table;
 }
@@ -27,8 +27,8 @@ DataTable collection_ratios_table(const Results& results) {
   for (const CollectionRatio& each : results.collection.ratios) {
     if (each.algorithm == "null" || each.algorithm == "exact") continue;
     const std::string run = run_name(results, each.file);
-    table.rows.push_back({run, each.partner, each.query, each.algorithm, each.objects, std::string(k_mean_of_objects),
-                          each.ratio, each.p10, each.p90});
+    table.rows.push_back({run, each.partner, each.query, each.algorithm, static_cast<double>(each.objects),
+                          std::string(k_mean_of_objects), each.ratio, each.p10, each.p90});
     for (const auto& [object, ratio] : each.worst) {
       table.rows.push_back({run, each.partner, each.query, each.algorithm, Cell(), object, ratio, Cell(), Cell()});
     }

@@ -43,15 +43,13 @@ std::vector<double> values_of(const ByObject& by_object) {
   return {values.begin(), values.end()};
 }
 
-double count(const auto& list) { return static_cast<double>(list.size()); }
-
 CollectionCell cell_of(const ByObject& by_object) {
   std::vector<double> us = values_of(by_object);
   for (double& value : us) value /= 1e3;
   const auto greatest = std::ranges::max_element(by_object, {}, &ByObject::value_type::second);
   return {.greatest_object = greatest->first,
-          .objects = count(us),
-          .mean_us = std::accumulate(us.begin(), us.end(), 0.0) / count(us),
+          .objects = us.size(),
+          .mean_us = std::accumulate(us.begin(), us.end(), 0.0) / static_cast<double>(us.size()),
           .median_us = median(us),
           .p10_us = quantile(us, 0.1),
           .p90_us = quantile(us, 0.9),
@@ -65,11 +63,11 @@ CollectionRatio ratio_of(const ByObject& by_object) {
   for (const auto& [object, ratio] : by_object) ordered.push_back({object, ratio});
   const CollectionRatio::Of least = *std::ranges::min_element(ordered, {}, &CollectionRatio::Of::ratio);
   std::ranges::stable_sort(ordered, std::ranges::greater(), &CollectionRatio::Of::ratio);
-  return {.objects = count(ratios),
+  return {.objects = ratios.size(),
           .ratio = geometric_mean(ratios),
           .p10 = quantile(ratios, 0.1),
           .p90 = quantile(ratios, 0.9),
-          .faster = static_cast<double>(std::ranges::count_if(ratios, [](double ratio) { return ratio < 1.0; })),
+          .faster = static_cast<std::size_t>(std::ranges::count_if(ratios, [](double ratio) { return ratio < 1.0; })),
           .worst = {ordered.begin(), ordered.begin() + std::min(k_worst, std::ssize(ordered))},
           .least = least};
 }
@@ -113,7 +111,7 @@ CollectionHardness hardness_of(const ByObject& by_object, const std::map<std::st
     kinds[objects.at(object)->kind].push_back(all.back());
   }
   for (const auto& [kind, values] : kinds) {
-    hardness.kinds[kind] = {.objects = count(values), .factor = geometric_mean(values) / geometric_mean(all)};
+    hardness.kinds[kind] = {.objects = values.size(), .factor = geometric_mean(values) / geometric_mean(all)};
   }
   return hardness;
 }

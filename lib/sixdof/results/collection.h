@@ -20,7 +20,7 @@ struct CollectionCell {
   std::size_t file = 0;
   std::string partner = {}, query = {}, algorithm = {}, greatest_object = {};
   BucketKey bucket = {};
-  double objects = 0.0;
+  std::size_t objects = 0;
   double mean_us = 0.0, median_us = 0.0, p10_us = 0.0, p90_us = 0.0;
   double least_us = 0.0, greatest_us = 0.0;  ///< The greatest of greatest_object.
 };
@@ -36,8 +36,9 @@ struct CollectionRatio {
   };
   std::size_t file = 0;
   std::string partner = {}, query = {}, algorithm = {};
-  double objects = 0.0, ratio = 0.0, p10 = 0.0, p90 = 0.0;
-  double faster = 0.0;         ///< Objects on which the algorithm takes less time.
+  std::size_t objects = 0;
+  double ratio = 0.0, p10 = 0.0, p90 = 0.0;
+  std::size_t faster = 0;      ///< Objects on which the algorithm takes less time.
   std::vector<Of> worst = {};  ///< Largest first.
   Of least = {};
 };
@@ -46,7 +47,7 @@ struct CollectionRatio {
 /// with themselves as partners.
 struct CollectionHardness {
   struct Kind {
-    double objects = 0.0;
+    std::size_t objects = 0;
     double factor = 0.0;  ///< Geometric mean of time over that of the law.
   };
   std::string query, algorithm;
