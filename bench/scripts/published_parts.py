@@ -21,8 +21,8 @@ FCL = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts"]
 APPROXIMATE = ["ist", "ist-descent", "vps", "vps-field"]
 SETS = ["elephant", "bunny", "armadillo", "ship", "torus-knot-1m"]
 SCENES = ["cube", "pairs", "pile", "robot", "dust", "still", "all-move", "giant", "clusters", "shuffled"]
-LARGE_SCENES = ["cube", "shuffled", "still", "all-move", "dust", "clusters"]
-GENERATED = "elephant|bunny|(torus-knot|bumpy-sphere|gyroid-ball)-(10k|100k|1m)"
+LARGE_SCENES = ["cube", "shuffled", "dust"]
+GENERATED = "elephant|bunny|torus-knot-(10k|100k|1m)"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,7 +53,7 @@ def rows(file, minutes, *words):
 
 def respond_rows(file, minutes, order, *words):
     sets = [word for name in SETS for word in ("--set", f"fixtures/{name}.h5")]
-    return rows(file, minutes, "--no-manifest", *sets, "--sample", "512",
+    return rows(file, minutes, "--no-manifest", *sets, "--sample", "128",
                 f"--benchmark_filter=^respond/algorithm:exact/.*volume:(01|10){order}$", *words)
 
 
@@ -62,7 +62,7 @@ def object_steps(script, minutes, *words):
     folder = ["--out", f"{{folder}}/{script}"]
     algorithms = ",".join(["exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE])
     return [Step(f"{script}/{'results' if script == 'collection' else script}.json",
-                 [f"bench/scripts/{script}", *folder, "--jobs", "1", "--grid", "so3:4:2", "--sample", "8", *words, "--algorithms",
+                 [f"bench/scripts/{script}", *folder, "--jobs", "2", "--grid", "so3:4:2", "--sample", "8", *words, "--algorithms",
                   algorithms, "--budget", f"{minutes}min"], minutes),
             Step(f"{script}/tables.txt", [f"bench/scripts/{script}", *folder, "--report"], 0.1, prints=True)]
 
@@ -73,7 +73,7 @@ def scene_steps():
         file = f"{family}.h5"
         steps += [Step(file, ["sixdof", "scene", "make", family, "-n", "1000", "--frames", "10", "-o", "{out}"], 0.1),
                   Step(f"{family}.json", ["sixdof", "scene", "play", "{folder}/" + file, "--question",
-                                          "touching,near,closest", "--threads", "1", "--json"], 1.0, prints=True)]
+                                          "touching,near,closest", "--threads", "1", "--json"], 0.5, prints=True)]
     for family in LARGE_SCENES:
         file = f"{family}-100k.h5"
         steps += [Step(file, ["sixdof", "scene", "make", family, "-n", "100000", "--frames", "4", "-o", "{out}"], 0.3),
@@ -90,7 +90,7 @@ def plan_step(model):
 
 
 def recommend(file, *words):
-    return Step(file, ["sixdof", "recommend", "--a", "elephant", "--b", "elephant", "--deadline", "1ms", *words], 3,
+    return Step(file, ["sixdof", "recommend", "--a", "elephant", "--b", "elephant", "--deadline", "1ms", "--budget", "90s", *words], 1.5,
                 prints=True)
 
 
@@ -112,20 +112,20 @@ def parts():
              [recommend("random.txt"), recommend("threads.txt", "--threads", "2"),
               recommend("motion.txt", "--order", "motion")]),
         Part("threads", "the exact response by one and two threads, and along motions",
-             [respond_rows("one.json", 1, ""), respond_rows("two.json", 1, "", "-p", "exact:threads=2"),
-              respond_rows("cold.json", 1, "/order:motion"),
-              respond_rows("warm.json", 1, "/order:motion", "-p", "exact:warm_start=on")]),
+             [respond_rows("one.json", 0.5, ""), respond_rows("two.json", 0.5, "", "-p", "exact:threads=2"),
+              respond_rows("cold.json", 0.5, "/order:motion"),
+              respond_rows("warm.json", 0.5, "/order:motion", "-p", "exact:warm_start=on")]),
         Part("plan", "what sets of the paper's size would take",
-             [plan_step(model) for model in ("torus-knot-10k", "elephant", "torus-knot-100k", "torus-knot-1m")]),
+             [plan_step(model) for model in ("torus-knot-10k", "elephant")]),
         Part("generate", "making a configuration: ray cast and FCL's advancement",
-             [rows("generate.json", 8, f"--benchmark_filter=^generate/distance/.*:({GENERATED})$")]),
+             [rows("generate.json", 4, f"--benchmark_filter=^generate/distance/.*:({GENERATED})$")]),
         Part("equivalent", "the paper's table: errors at equal time", equal_time),
         Part("scenes", "scenes of 1,000 and 100,000 bodies", scene_steps()),
-        Part("growth", "growth with the number of triangles", object_steps("growth", 20)),
+        Part("growth", "growth with the number of triangles", object_steps("growth", 10)),
         Part("pairs", "every algorithm on four pairs",
-             [rows("pairs.json", 30, "--suite", "all-algorithms", "--sample", "200", "--budget", "1800")]),
+             [rows("pairs.json", 15, "--suite", "all-algorithms", "--sample", "100", "--budget", "900")]),
         Part("collection", "every algorithm on the objects of the collection",
-             object_steps("collection", 60, "--distances", "0,1,5,10,20,30", "--volumes", "1,5,10")),
+             object_steps("collection", 25, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10")),
     ]
 
 
