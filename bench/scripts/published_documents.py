@@ -9,9 +9,11 @@ A mark in a Markdown file names where its text comes from:
                                                              `from WORDS`, `until WORDS` for lines from or before one,
                                                              `tables` for Markdown tables, their titles and faults
   <!--= fenced recommend/random.txt | head 4 -->TEXT<!--=--> what a command printed when it was measured
+  <!--= report equal_time equivalent/*.json -->TEXT<!--=-->  a table of `sixdof report --markdown`, without its title
   <!--= fcl-distance.ratio -->11.3<!--=-->                    a figure that bench/scripts/figures.json names
   <!--= parts pairs.date -->TEXT<!--=-->                     a fact of a part: commit, date, machine, commands
 
+Files may have the wild cards of a shell. A part that is not published yet leaves "(not measured)".
 `KEY[NAME=VALUE,...]` takes the one element of a list whose members are these. A text that begins with a line break stands on
 lines of its own; `fenced` in front of a command puts it into a code block.
 """
@@ -22,6 +24,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PUBLISHED = ROOT / "bench/published"
@@ -34,6 +37,10 @@ STEP = re.compile(r"(?P<key>[^.\[\]]+)(\[(?P<chosen>[^\]]*)\])?\.?")
 
 class Stale(Exception):
     """A mark that cannot be filled, or published files of several commits."""
+
+
+class Missing(Stale):
+    """A part that a mark needs is not published."""
 
 
 def facts():
@@ -65,20 +72,45 @@ def value_of(words):
         raise Stale(f"{FIGURES.name} names no '{words[0]}'")
     words = named.get(words[0], words)
     file = FACTS if words[0] == "parts" else PUBLISHED / words[0]
-    if not file.exists():
-        raise Stale(f"{file.relative_to(ROOT)} is not there")
+    if not file.exists() or (words[0] == "parts" and words[1].split(".")[0] not in facts()):
+        raise Missing(f"{file.relative_to(ROOT)} is not there, or lacks the part")
     value = selected(json.loads(file.read_text(encoding="utf-8")), words[1])
     return format(value, words[2]) if len(words) > 2 else str(value)
 
 
+def expanded(words):
+    """The words with the wild cards of files in bench/published replaced. @raises Stale"""
+    found = []
+    for word in words:
+        is_pattern = "*" in word and "/" in word
+        files = sorted(str(file.relative_to(PUBLISHED)) for file in PUBLISHED.glob(word)) if is_pattern else [word]
+        if not files or any("/" in file and file.endswith(".json") and not (PUBLISHED / file).exists() for file in files):
+            raise Missing(f"{word} is not there")
+        found += files
+    return found
+
+
+def report_table(name, files, program):
+    """Lines of a table of `sixdof report --markdown`. @raises Stale"""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([program, "report", *expanded(files), "--markdown", folder], cwd=PUBLISHED, capture_output=True,
+                              text=True, check=False)
+        if done.returncode:
+            raise Stale(f"sixdof report: {done.stderr.strip()}")
+        text = (pathlib.Path(folder) / f"{name}.md").read_text(encoding="utf-8")
+    return "\n".join(line for line in text.splitlines() if line.startswith("|"))
+
+
 def output_of(command, program):
     """What a command prints in bench/published, or what stands in a text file there. @raises Stale"""
+    if command[0] == "report":
+        return report_table(command[1], command[2:], program)
     if command[0] != "sixdof":
         file = PUBLISHED / command[0]
         if not file.exists():
-            raise Stale(f"{file.relative_to(ROOT)} is not there")
+            raise Missing(f"{file.relative_to(ROOT)} is not there")
         return file.read_text(encoding="utf-8")
-    done = subprocess.run([program, *command[1:]], cwd=PUBLISHED, capture_output=True, text=True, check=False)
+    done = subprocess.run([program, *expanded(command[1:])], cwd=PUBLISHED, capture_output=True, text=True, check=False)
     if done.returncode:
         raise Stale(f"{shlex.join(command)}: {done.stderr.strip()}")
     return done.stdout
@@ -103,10 +135,17 @@ def chosen_lines(lines, words):
 
 def text_of(what, program):
     """What stands in a mark. @raises Stale"""
+    try:
+        return found_text(what, program)
+    except Missing:
+        return "(not measured)"
+
+
+def found_text(what, program):
     parts = [shlex.split(part) for part in re.split(r" \| ", what)]
     fenced = parts[0][0] == "fenced"
     command = parts[0][fenced:]
-    if command[0] != "sixdof" and not command[0].endswith(".txt"):
+    if command[0] not in ("sixdof", "report") and not command[0].endswith(".txt"):
         return value_of(command)
     lines = output_of(command, program).strip("\n").splitlines()
     for words in parts[1:]:
@@ -134,7 +173,7 @@ def filled(file, program):
 def one_commit():
     """@raises Stale if published parts are of several commits"""
     commits = {part["commit"] for part in facts().values()}
-    if len(commits) != 1:
+    if len(commits) > 1:
         raise Stale(f"published results are of {len(commits)} commits: {', '.join(sorted(commits))}; run bench/publish")
 
 
