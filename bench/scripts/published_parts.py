@@ -102,7 +102,7 @@ def parts():
                   for scenario in ("Ia", "II", "III") for algorithm in ("vps", "ist")]
     return [
         Part("stress", "hard cases: who breaks, on what",
-             [Step("stress.txt", ["sixdof", "stress"], 1.5, prints=True)]),
+             [Step("stress.txt", ["sixdof", "stress", "--cases", "{folder}/stress-cases"], 1.5, prints=True)]),
         Part("scenarios", "force and torque along the paper's paths, default settings",
              [rows("scenarios.json", 4, "--benchmark_filter=^scenario/")]),
         Part("precision", "run time against error on the elephants",
