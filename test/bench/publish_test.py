@@ -78,10 +78,14 @@ class Marks(unittest.TestCase):
         self.assertEqual(documents.check(SIXDOF), 1)
 
     def test_what_cannot_be_filled_names_document_and_mark(self):
-        for mark in ("gone.json a", "rows.json context.gone", "rows.json benchmarks[name=other].cpu_time",
+        for mark in ("rows.json context.gone", "rows.json benchmarks[name=other].cpu_time",
                      "sixdof table gone.json"):
             with self.assertRaisesRegex(documents.Stale, f"README.md: <!--= {mark[:9]}"):
                 self.fill(f"<!--= {mark.replace('[', '[')} --><!--=-->")
+
+    def test_what_is_not_published_says_so(self):
+        for mark in ("gone.json a", "gone.txt | head 3", "sixdof table part/*.json", "parts gone.date"):
+            self.assertEqual(self.fill(f"<!--= {mark} --><!--=-->"), f"<!--= {mark} -->(not measured)<!--=-->")
 
     def test_parts_of_two_commits_are_refused(self):
         documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "two": {"commit": "def"}}))

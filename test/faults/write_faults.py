@@ -37,27 +37,28 @@ SIXDOF, SIXDOF_BENCH, FAIL_WRITES = PROGRAMS
 OPTIONS = sys.argv[4:]
 sys.argv[1:] = PROGRAMS[:2]  # for the kinds of files, which this test shares with that one
 import output_files_test as output  # noqa: E402
+from output_kinds import Kind  # noqa: E402
 
 PYTHON = sys.executable
 MANY = ["--a", "a.off", "--b", "a.off", "--grid", "90/60", "--distances", "0:20", "--volumes", "1:5"]
 KINDS = [
     *output.KINDS,
-    output.Kind("set of many buckets", "x.h5", ["generate", *MANY, "-o", "OUT"]),
-    output.Kind("scene", "x.h5", ["scene", "make", "robot", "-n", "6", "--frames", "2", "-o", "OUT"]),
-    output.Kind("results, CSV", "x.csv", [*output.BENCH, "--benchmark_out_format=csv", "--out", "OUT"], times=True,
+    Kind("set of many buckets", "x.h5", ["generate", *MANY, "-o", "OUT"]),
+    Kind("scene", "x.h5", ["scene", "make", "robot", "-n", "6", "--frames", "2", "-o", "OUT"]),
+    Kind("results, CSV", "x.csv", [*output.BENCH, "--benchmark_out_format=csv", "--out", "OUT"], times=True,
                 program=SIXDOF_BENCH, replaces=False),
-    output.Kind("results that are continued", "kept.json", [*output.BENCH, "--resume", "OUT"], times=True,
+    Kind("results that are continued", "kept.json", [*output.BENCH, "--resume", "OUT"], times=True,
                 program=SIXDOF_BENCH),
-    output.Kind("scene by Python", "x.h5", ["-B", str(SOURCE / "fixtures/scene_file.py"), "--example", "OUT"],
+    Kind("scene by Python", "x.h5", ["-B", str(SOURCE / "fixtures/scene_file.py"), "--example", "OUT"],
                 times=True, program=PYTHON),
-    output.Kind("manifest of sets", "sets/manifest.json",
+    Kind("manifest of sets", "sets/manifest.json",
                 ["-B", str(SOURCE / "fixtures/set_manifest.py"), "--program", SIXDOF, "sets"], program=PYTHON),
 ]
 FOLDERS = [kind for kind in output.FOLDERS if kind.name != "figures of results"]  # node runs for a second each
-FOLDERS.append(output.Kind("shards of many buckets", "made", ["generate", *MANY, "--shards", "6", "-o", "OUT"], replaces=False))
+FOLDERS.append(Kind("shards of many buckets", "made", ["generate", *MANY, "--shards", "6", "-o", "OUT"], replaces=False))
 # Commands of sixdof that make a coarse set, and do without keeping it where the cache cannot be written.
 WITH_COARSE_SETS = ("rows of precision",)
-CACHE = output.Kind("entries of the cache", "cache", output.CACHED[1:])
+CACHE = Kind("entries of the cache", "cache", output.CACHED[1:])
 # (what fails, only once)
 WAYS = [(kind, once) for kind in ("ENOSPC", "EIO", "EDQUOT", "EFBIG", "short") for once in (True, False)] + [("lost", True)]
 work = output.OutputFiles  # its folders and what it knows of whole files
