@@ -140,7 +140,9 @@ File File::create(AtomicFile& output) {
   must(H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110), "no format of 1.10");
   keep_in_memory(access.id(), *image);
   Handle creation = object_properties(H5P_FILE_CREATE);
-  File made({H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose}, name);
+  // HDF5 opens and reads a file of the given name, though it is made in memory: here is none.
+  constexpr const char* k_no_file = "/dev/null/sixdof";
+  File made({H5Fcreate(k_no_file, H5F_ACC_TRUNC, creation.id(), access.id()), H5Fclose}, name);
   made.image_ = std::move(image);
   made.output_ = &output;
   made.check(made.file_.id(), "/", "cannot be written");
