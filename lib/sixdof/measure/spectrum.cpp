@@ -24,7 +24,11 @@ class FourierTransform {
 
   /// Adds the one-sided energy spectrum of input() to `sum` (length / 2 + 1 entries).
   void add_energy(std::span<double> sum) {
-    transform_.fwd(out_.data(), in_.data(), static_cast<Eigen::Index>(in_.size()));
+    if (in_.size() == 1) {
+      out_[0] = in_[0];  // Eigen has no plan for it
+    } else {
+      transform_.fwd(out_.data(), in_.data(), static_cast<Eigen::Index>(in_.size()));
+    }
     const double n = static_cast<double>(in_.size());
     for (std::size_t j = 0; j < sum.size(); ++j) {
       const bool mirrored = j != 0 && 2 * j != in_.size();  // also has the bin of the negative frequency
