@@ -180,8 +180,7 @@ void add_stress_command(CLI::App& app) {
       ->add_option("-o,--output", options->output,
                    "Write the result of each algorithm on each family to this file (JSON)")
       ->type_name("FILE");
-  command->add_flag("--at-defaults", options->at_defaults,
-                    "Also ask approximations at their defaults, in columns of their own; takes hours");
+  command->add_flag("--at-defaults", options->at_defaults, "Also ask approximations at their defaults; takes hours");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run_stress_command(*options); });
   add_examples(*command, "sixdof stress --algorithms exact,fcl-obbrss --families kissing,grazing",
