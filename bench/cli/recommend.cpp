@@ -136,6 +136,16 @@ class Recommendation {
     return budget_s_ - spent.count();
   }
 
+  /// Those of --algorithms that answer the question; where a single question is asked, all of them.
+  std::vector<std::string> names_that_answer(QueryKind question) const {
+    std::vector<std::string> names = options_.study.algorithms;
+    if (questions_.size() == 1) return names;
+    std::erase_if(names, [&](const std::string& name) {
+      return !bench::answers(registry_.find(name).traits().answers, question);
+    });
+    return names;
+  }
+
   study::PrecisionPlan plan_of(QueryKind question, const std::string& metric, double budget_s) {
     study::PrecisionPlan plan{.question = question, .error = metric};
     plan.cost = "p99_least_ns";
@@ -145,7 +155,7 @@ class Recommendation {
     plan.rounds = 1;
     plan.most_rounds = 1;
     plan.budget_s = budget_s;
-    plan.algorithms = in_order(study_algorithms(registry_, options_.study.algorithms, question));
+    plan.algorithms = in_order(study_algorithms(registry_, names_that_answer(question), question));
     plan.values = swept_values(options_.study, plan.algorithms);
     if (options_.in_motion()) {
       std::ranges::move(study::warm_starts(plan.algorithms, plan.values), std::back_inserter(plan.values));
@@ -158,6 +168,10 @@ class Recommendation {
   Verdict verdict_on(QueryKind question, const std::string& metric, double share_s) {
     const auto begun = std::chrono::steady_clock::now();
     Verdict verdict{.question = question, .metric = metric};
+    if (!options_.study.algorithms.empty() && names_that_answer(question).empty()) {
+      verdict.choice.missing = "none of the chosen algorithms answers it";
+      return verdict;
+    }
     StatusLine status;
     status.show(fmt::format("{}: truth", words_of(question)));
     study::StudySample sample;
