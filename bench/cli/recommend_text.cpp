@@ -7,6 +7,8 @@
 #include "bench/cli/recommend.h"
 #include "bench/common/duration.h"
 #include "bench/common/json_text.h"
+#include "bench/common/own_command.h"
+#include "bench/common/shell_text.h"
 
 namespace sixdof::cli {
 namespace {
@@ -95,10 +97,11 @@ std::string candidate_text(const Verdict& verdict, const Candidate& candidate) {
 std::string command_again(const Verdict& verdict, const RecommendOptions& options, const CatalogueEntry& pair) {
   const Candidate& taken = *verdict.choice.taken();
   const std::string& algorithm = verdict.rows[taken.place].fields.algorithm;
-  std::string text = "sixdof-bench";
-  if (!options.study.a.empty()) text += " --a " + options.study.a;
-  if (!options.study.b.empty()) text += " --b " + options.study.b;
-  for (const std::string& set : options.study.sets) text += " --no-manifest --set " + set;
+  std::string text = own_bench_program();
+  if (!options.study.a.empty()) text += " --a " + shell_quoted(options.study.a);
+  if (!options.study.b.empty()) text += " --b " + shell_quoted(options.study.b);
+  for (const std::string& set : options.study.sets) text += " --no-manifest --set " + shell_quoted(set);
+  for (const std::string& external : options.study.process.external) text += " --external " + shell_quoted(external);
   for (const std::string& assignment : verdict.assignments[taken.place]) {
     text += fmt::format(" -p {}:{}", algorithm, assignment);
   }
