@@ -37,6 +37,7 @@ struct Options {
   std::optional<ResultFormat> format;  ///< Of standard output; none for the console's table.
   std::string arguments;               ///< The command line, but for the result file, as a shell takes it.
   std::string benchmark_flags;         ///< Those of Google Benchmark's flags that change how a row is measured.
+  bool fail_on_wrong = false;          ///< Exit code 3 for wrong or missing answers.
   bool list_only = false;
   ProcessOptions process;
 
