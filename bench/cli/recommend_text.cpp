@@ -162,7 +162,8 @@ void print_json(const RecommendOptions& options, double deadline_s, const Catalo
   for (const Verdict& verdict : verdicts) {
     nlohmann::ordered_json entry = {
         {"question", words_of(verdict.question)}, {"metric", verdict.metric}, {"judged", verdict.poses}};
-    entry["missing"] = verdict.choice.missing.empty() ? nlohmann::ordered_json() : verdict.choice.missing;
+    entry["missing"] =
+        verdict.choice.missing.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(verdict.choice.missing);
     entry["candidates"] = nlohmann::ordered_json::array();
     for (const Candidate& candidate : verdict.choice.candidates)
       entry["candidates"].push_back(as_json(verdict, candidate));
