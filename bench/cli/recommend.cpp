@@ -94,6 +94,21 @@ std::vector<const Algorithm*> in_order(std::vector<const Algorithm*> algorithms)
   return algorithms;
 }
 
+/// The defaults of swept parameters, for algorithms that promise right answers: their sweeps only loosen the promise.
+std::vector<study::SweptValues> exact_settings(const std::vector<const Algorithm*>& algorithms,
+                                               const std::vector<study::SweptValues>& values) {
+  std::vector<study::SweptValues> fixed;
+  for (const Algorithm* const algorithm : algorithms) {
+    const Traits& traits = algorithm->traits();
+    const bool chosen = std::ranges::any_of(values, [&](const auto& each) { return each.algorithm == traits.name; });
+    if (traits.approximates || chosen) continue;
+    for (const Parameter& parameter : traits.parameters) {
+      if (!parameter.sweep.empty()) fixed.push_back({traits.name, parameter.name, {parameter.default_value}});
+    }
+  }
+  return fixed;
+}
+
 /// One pair with its algorithms, asked one question after the other.
 class Recommendation {
  public:
@@ -157,6 +172,7 @@ class Recommendation {
     plan.budget_s = budget_s;
     plan.algorithms = in_order(study_algorithms(registry_, names_that_answer(question), question));
     plan.values = swept_values(options_.study, plan.algorithms);
+    std::ranges::move(exact_settings(plan.algorithms, plan.values), std::back_inserter(plan.values));
     if (options_.in_motion()) {
       std::ranges::move(study::warm_starts(plan.algorithms, plan.values), std::back_inserter(plan.values));
     }
@@ -203,7 +219,7 @@ class Recommendation {
     status.clear();
     verdict.rows = study.rows();
     for (const study::PrecisionPoint& point : study.points()) verdict.assignments.push_back(point.sweep.assignments);
-    verdict.choice = results::choose(verdict.rows, std::string(to_string(question)), metric, 1e9 * deadline_s_);
+    verdict.choice = results::choose(verdict.rows, std::string(to_string(question)), metric);
     return verdict;
   }
 

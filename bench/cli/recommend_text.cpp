@@ -37,7 +37,7 @@ std::string answers_text(const Verdict& verdict, const Candidate& candidate) {
   } else if (row.value("gamma_F_deg").value_or(1.0) <= results::k_rounding) {
     text += fmt::format("the exact force at all {:.0f} poses", judged);
   } else {
-    text += fmt::format("force off by {:.2g} degrees on average, {:.2g} at most", value("gamma_F_deg"),
+    text += fmt::format("force off by {:.1f} degrees on average, {:.0f} at most", value("gamma_F_deg"),
                         value("gamma_max_F_deg"));
   }
   const bool is_usual =
@@ -50,7 +50,7 @@ std::string time_text(const Verdict& verdict, const Candidate& candidate) {
   std::string text = fmt::format("{} on average, {:.0f} of {:.0f} queries late",
                                  duration_text(1e-9 * candidate.mean_ns.value), candidate.late, candidate.timed);
   const double idle = row.count("idle_late");
-  if (candidate.late > 0.0 || idle > 0.0) text += fmt::format(" (waiting instead: {:.0f})", idle);
+  if (candidate.late > 0.0 || idle > 0.0) text += fmt::format(" (of a loop that only waits: {:.0f})", idle);
   return text;
 }
 
@@ -90,7 +90,29 @@ std::string candidate_text(const Verdict& verdict, const Candidate& candidate) {
     case Standing::less_right:
       break;
   }
+  if (candidate.reason == "approximate") {
+    return fmt::format("{}; {}", answers_text(verdict, candidate), time_text(verdict, candidate));
+  }
   return fmt::format("{}; {}; {}", candidate.reason, answers_text(verdict, candidate), time_text(verdict, candidate));
+}
+
+/// Those of one algorithm that were left out for the same reason share a line.
+void print_candidates(const Verdict& verdict) {
+  std::vector<std::pair<std::string, std::size_t>> told;  // of those left out: algorithm and reason, how many
+  for (const Candidate& candidate : verdict.choice.candidates) {
+    if (candidate.standing != Standing::left_out) {
+      fmt::print("  {:<10} {}: {}\n", to_string(candidate.standing), name_of(verdict, candidate),
+                 candidate_text(verdict, candidate));
+      continue;
+    }
+    const std::string words = verdict.rows[candidate.place].fields.algorithm + ": " + candidate.reason;
+    const auto same = std::ranges::find(told, words, [](const auto& each) { return each.first; });
+    same == told.end() ? static_cast<void>(told.emplace_back(words, 1)) : static_cast<void>(++same->second);
+  }
+  for (const auto& [words, count] : told) {
+    fmt::print("  {:<10} {}{}\n", to_string(Standing::left_out), words,
+               count > 1 ? fmt::format(" ({} settings)", count) : std::string());
+  }
 }
 
 /// The command that measures what was taken again as rows of sixdof-bench.
@@ -147,10 +169,7 @@ void print_text(const RecommendOptions& options, double deadline_s, const Catalo
   for (const Verdict& verdict : verdicts) {
     if (verdict.choice.candidates.empty()) continue;
     fmt::print("\n{}, {}\n", words_of(verdict.question), verdict.poses);
-    for (const Candidate& candidate : verdict.choice.candidates) {
-      fmt::print("  {:<10} {}: {}\n", to_string(candidate.standing), name_of(verdict, candidate),
-                 candidate_text(verdict, candidate));
-    }
+    print_candidates(verdict);
     if (verdict.choice.taken() != nullptr) fmt::print("  again      {}\n", command_again(verdict, options, pair));
   }
 }

@@ -146,6 +146,12 @@ std::string PrecisionStudy::why_left_out(const PrecisionPoint& point) const {
 void PrecisionStudy::check_first_queries(Query& query) const {
   if (std::isinf(plan_.deadline_ns)) return;
   constexpr std::size_t k_trial = 16, k_trial_motions = 2;
+  constexpr double k_hopeless = 20.0;  // times the deadline: one query says enough
+  const TimedPoses one = TimedPoses{sample_.poses}.first(1);
+  if (const double ns = time_single_queries(query, sample_.question, one, plan_.deadline_ns).least.p50;
+      ns > k_hopeless * plan_.deadline_ns) {
+    throw Error(fmt::format("its first query takes {}, over the deadline", duration_text(1e-9 * ns)));
+  }
   const TimedPoses first =
       sample_.motions.poses.empty() ? TimedPoses{sample_.poses}.first(k_trial) : sample_.motions.first(k_trial_motions);
   const double p50 = time_single_queries(query, sample_.question, first, plan_.deadline_ns).least.p50;
@@ -154,6 +160,7 @@ void PrecisionStudy::check_first_queries(Query& query) const {
   }
   constexpr double k_passes = 6.0;  // errors, three of single queries, the idle loop, the mean
   const double needed = 1e-9 * p50 * k_passes * static_cast<double>(sample_.asked());
+  if (left_s() <= 0.0) throw Error("the budget was spent");
   if (needed > left_s()) {
     throw Error(fmt::format("it would take about {:.1f} s, and {:.1f} s of the budget were left", needed, left_s()));
   }

@@ -270,7 +270,7 @@ TEST_F(OneReading, OfFrontiersAndChoices) {
       if (!row.error.empty()) continue;
       row.values.insert({{"judged_overlapping", 64.0}, {"timed", 64.0}, {"late", generator.one_in(4) ? 1.0 : 0.0}});
     }
-    const Choice choice = choose(results.rows, "respond", "gamma_F_deg", 1e6);
+    const Choice choice = choose(results.rows, "respond", "gamma_F_deg");
     for (const Candidate& candidate : choice.candidates) {
       const Row& row = results.rows[candidate.place];
       const bool faulty_there = candidate.standing == Standing::faulty || candidate.standing == Standing::left_out;

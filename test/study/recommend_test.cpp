@@ -82,7 +82,7 @@ class Recommend : public ::testing::Test {
     plan.most_rounds = 1;
     study_ = std::make_unique<PrecisionStudy>(plan, cache_, pair_, sample_);
     study_->run([](const std::string&, std::size_t, std::size_t) {}, [] {});
-    return results::choose(study_->rows(), std::string(to_string(sample_.question)), plan.error, 1e9 * deadline_s);
+    return results::choose(study_->rows(), std::string(to_string(sample_.question)), plan.error);
   }
   std::string name(const results::Candidate* candidate) const {
     if (candidate == nullptr) return "none";
@@ -174,15 +174,21 @@ class PlantedQuery final : public Query {
 class PlantedAlgorithm final : public Algorithm {
  public:
   PlantedAlgorithm(Plant plant, unsigned number)
-      : Algorithm({.name = "planted-" + std::to_string(number), .answers = {.collide = true}}),
+      : traits_{.name = "planted-" + std::to_string(number),
+                .version = "1",
+                .summary = "wrong in one way",
+                .answers = {.collide = true},
+                .parameters = {}},
         plant_(plant),
         number_(number) {}
+  const Traits& traits() const override { return traits_; }
   std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& /*settings*/) const override {
     return std::make_unique<PlantedQuery>(a, b, plant_, number_);
   }
   Plant plant() const { return plant_; }
 
  private:
+  const Traits traits_;
   const Plant plant_;
   const unsigned number_;
 };

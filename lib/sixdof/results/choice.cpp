@@ -30,6 +30,7 @@ std::vector<Place> needed(const std::string& query) {
 
 /// Why the rows cannot say anything; empty if they can. All rows are of the same poses, so the most judged counts.
 std::string missing_poses(std::span<const Row> rows, const std::string& query) {
+  if (std::ranges::none_of(rows, [](const Row& row) { return row.error.empty(); })) return {};  // nothing was judged
   std::vector<std::string> lacking;
   for (const Place& place : needed(query)) {
     double most = 0.0;
@@ -70,7 +71,8 @@ std::string why_unsafe(const Row& row, const std::string& query) {
 Candidate candidate_of(const Row& row, std::size_t place, const std::string& query, const std::string& error) {
   Candidate candidate{.place = place};
   if (!row.error.empty()) {
-    candidate.reason = row.error;
+    constexpr std::string_view k_prefix = "left out: ";
+    candidate.reason = row.error.starts_with(k_prefix) ? row.error.substr(k_prefix.size()) : row.error;
     return candidate;
   }
   candidate.late = row.count("late");
@@ -142,15 +144,9 @@ const Candidate* Choice::taken() const {
   return !candidates.empty() && candidates.front().standing == Standing::taken ? &candidates.front() : nullptr;
 }
 
-Choice choose(std::span<const Row> rows, const std::string& query, const std::string& error, double deadline_ns) {
+Choice choose(std::span<const Row> rows, const std::string& query, const std::string& error) {
   Choice choice{.candidates = {}, .missing = missing_poses(rows, query)};
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    choice.candidates.push_back(candidate_of(rows[i], i, query, error));
-    Candidate& candidate = choice.candidates.back();
-    if (candidate.standing == Standing::late) {
-      candidate.reason += fmt::format(" (over {:.4g} us)", 1e-3 * deadline_ns);
-    }
-  }
+  for (std::size_t i = 0; i < rows.size(); ++i) choice.candidates.push_back(candidate_of(rows[i], i, query, error));
   if (choice.missing.empty()) judge_the_rest(choice.candidates);
   std::ranges::stable_sort(choice.candidates, {}, [](const Candidate& candidate) {
     return std::tuple_cat(std::tuple(candidate.standing), rank_of(candidate));

@@ -61,7 +61,7 @@ struct Choice {
 };
 
 /// @param query "collide", "distance" or "respond"; @param error the metric that is to be small
-Choice choose(std::span<const Row> rows, const std::string& query, const std::string& error, double deadline_ns);
+Choice choose(std::span<const Row> rows, const std::string& query, const std::string& error);
 
 /// An upper bound, with 95 % confidence, on the share of wrong answers where 0 of `count` were wrong (rule of three).
 double most_wrong(double count);
