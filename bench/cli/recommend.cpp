@@ -161,6 +161,12 @@ class Recommendation {
     return names;
   }
 
+  /// Whether --params of an algorithm concern a question; those of one that does not answer it do not.
+  bool concerns(const std::string& params, QueryKind question) const {
+    const std::string name = study::parse_swept_values(params).algorithm;
+    return questions_.size() == 1 || bench::answers(registry_.find(name).traits().answers, question);
+  }
+
   study::PrecisionPlan plan_of(QueryKind question, const std::string& metric, double budget_s) {
     study::PrecisionPlan plan{.question = question, .error = metric};
     plan.cost = "p99_least_ns";
@@ -171,7 +177,9 @@ class Recommendation {
     plan.most_rounds = 1;
     plan.budget_s = budget_s;
     plan.algorithms = in_order(study_algorithms(registry_, names_that_answer(question), question));
-    plan.values = swept_values(options_.study, plan.algorithms);
+    StudyOptions study = options_.study;
+    std::erase_if(study.values, [&](const std::string& text) { return !concerns(text, question); });
+    plan.values = swept_values(study, plan.algorithms);
     std::ranges::move(exact_settings(plan.algorithms, plan.values), std::back_inserter(plan.values));
     if (options_.in_motion()) {
       std::ranges::move(study::warm_starts(plan.algorithms, plan.values), std::back_inserter(plan.values));

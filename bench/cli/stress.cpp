@@ -167,13 +167,10 @@ void add_stress_command(CLI::App& app) {
   command->add_option("--seed", options->seed, "Seed of the cases and searches")->type_name("N")->capture_default_str();
   command
       ->add_option("--cases", options->cases,
-                   "Folder for the meshes that the printed commands read, and for prepared structures unless "
-                   "SIXDOF_CACHE is set")
+                   "Folder for the meshes of printed commands, and for structures without SIXDOF_CACHE")
       ->type_name("FOLDER")
       ->capture_default_str();
-  command
-      ->add_option("--query-timeout", options->timeout_s,
-                   "Longest time of one query or one preparation, in seconds; a process that takes longer is ended")
+  command->add_option("--query-timeout", options->timeout_s, "Longest time of a query or a preparation, in seconds")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
