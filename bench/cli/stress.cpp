@@ -165,12 +165,10 @@ void add_stress_command(CLI::App& app) {
       ->check(CLI::IsMember({"quick", "full"}))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the cases and searches")->type_name("N")->capture_default_str();
-  command
-      ->add_option("--cases", options->cases,
-                   "Folder for the meshes of printed commands, and for structures without SIXDOF_CACHE")
+  command->add_option("--cases", options->cases, "Folder for the meshes and structures of the cases")
       ->type_name("FOLDER")
       ->capture_default_str();
-  command->add_option("--query-timeout", options->timeout_s, "Longest time of a query or a preparation, in seconds")
+  command->add_option("--query-timeout", options->timeout_s, "Limit of a query and of a preparation")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
