@@ -76,7 +76,8 @@ StressCell run_job(const json& job, const FindAlgorithm& find) {
   const StressWatch watch{.begins_case = [&](const CaseId& id) { beacon->id = id, beacon->pose = {}, ++beacon->beats; },
                           .prepares = [&] { ++beacon->beats; },
                           .asks = [&](const Pose& X_AB) { beacon->pose = pose_numbers(X_AB), ++beacon->beats; }};
-  return run_cell(stability::find_family(job.at("family").get<std::string>()), find(job.at("algorithm"), job.at("external").get<std::vector<std::string>>()),
+  return run_cell(stability::find_family(job.at("family").get<std::string>()),
+                  find(job.at("algorithm"), job.at("external").get<std::vector<std::string>>()),
                   job.at("at_defaults") ? StressSettings::defaults : StressSettings::coarsest, effort, job.at("seed"),
                   watch);
 }
