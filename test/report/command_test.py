@@ -60,7 +60,7 @@ class Report(unittest.TestCase):
     def test_markdown_has_no_markup_of_the_results(self):
         self.assertEqual(self.run_it("report", "run.json", "--markdown", "tables").returncode, 0)
         text = (self.folder / "tables" / "winners.md").read_text()
-        self.assertRegex(text, r"### Fastest without a fault\n\n\| run \|")
+        self.assertRegex(text, r"### The fastest right algorithm of each place\n\n\| run \|")
         self.assertRegex(text, r"\| distance \| random \| elephant \| distance 5 % \| exact \| 0\.166667 \| vps \| 2 \| clear \|")
         self.assertNotIn("<img", (self.folder / "tables" / "failures.md").read_text())
         self.assertIn("&lt;img", (self.folder / "tables" / "failures.md").read_text())

@@ -140,6 +140,37 @@ function compareFailed(figure, texts, shown, data) {
   if (failed.length > 0) compared.failed = (compared.failed ?? 0) + 1;
 }
 
+/** Rows with a fault are counted under figures that have no value of them. */
+function compareFaults(figure, texts, shown, data) {
+  const { id } = figure.usermeta, { run, query, where: place, poses } = shown.choices;
+  if (id !== "winners" && id !== "metrics") return;
+  const rows = report.rowsOf(data.tables.failures).filter((row) => row.run === run && row.query === query &&
+    (id === "winners" ? poses === "random" : `${row.pair}, ${row.bucket}` === place && row.fault.startsWith("not run")));
+  const count = new Set(rows.map((row) => [row.algorithm, row.pair, row.bucket].join("/"))).size;
+  check(Number(/(\d+) rows? failed/.exec(texts.missing)?.[1] ?? 0) === count, `says "${texts.missing}", but ${count} rows have faults`);
+  if (count > 0) compared[`faults of ${id}`] = (compared[`faults of ${id}`] ?? 0) + 1;
+}
+
+/** The verdict and the figure of winners rank the same algorithms. */
+function compareVerdict(figure, view, shown, data) {
+  const { poses, query } = shown.choices;
+  if (figure.usermeta.id !== "winners" || poses !== "random") return;
+  const words = { collide: "Yes or no", distance: "Distance", respond: "Force and torque" }[query];
+  const sentence = data.summary.find((each) => each.startsWith(words + ": ")) ?? "", [ranked, others = ""] = sentence.split("; faster, but ");
+  for (const name of new Set(marksOf(view, "symbol").map((item) => item.datum.fastest))) {
+    check(ranked.includes(` ${name} `) || ranked.includes(` ${name}, in `), `draws ${name}, but the verdict is "${sentence}"`);
+  }
+  if (others) compared["verdict with others"] = (compared["verdict with others"] ?? 0) + 1;
+}
+
+/** Equal time opens on a measure that the paper prints, whatever the file has first. */
+function comparePreferred(figure, all, data) {
+  if (figure.usermeta.id !== "equal_time") return;
+  const rows = all.filter((row) => row.scenario === "II"), { choices } = report.resolveChoices(figure, rows, {}, data.metrics);
+  const printed = rows.filter((row) => row.whose === "the paper's").map((row) => row.measure);
+  check(!printed.includes(rows[0].measure) && printed.includes(choices.measure), `opens on ${choices.measure}, but the paper prints ${printed}`);
+}
+
 function compareAdvice(figure, texts, shown, data) {
   const rows = report.drawnRows(figure, shown.rows), { value, times } = figure.usermeta;
   const isOnce = rows.some((row) => row.repetitions < 3 && row.repetitions !== null);
@@ -166,6 +197,9 @@ async function compare(id, figure, data, wanted) {
     else compareExtremes(figure, view, texts.finding, value.axis);
     compareMissing(figure, texts, shown, all);
     compareFailed(figure, texts, shown, data);
+    compareFaults(figure, texts, shown, data);
+    compareVerdict(figure, view, shown, data);
+    comparePreferred(figure, all, data);
     compareAdvice(figure, texts, shown, data);
     compareLegend(figure, view, rows, data.algorithms);
     compareStyles(figure, view, data.algorithms);

@@ -54,7 +54,9 @@ class FigureTexts(unittest.TestCase):
         failed = row("distance", "fcl-kios", "elephant", "distance", 5, 1.0)
         failed = {key: failed[key] for key in ("name", "run_type", "sixdof")} | {"error_occurred": True, "error_message": "no memory"}
         noisy = repeated(row("distance", "fcl-rss", "elephant", "distance", 5, 4000.0)) + repeated(row("distance", "fcl-rss", "elephant", "distance", 10, 3000.0))
-        self.write("run.json", [*rows(), failed, *noisy], {"load_avg": [6.5, 5.0, 4.0], "num_cpus": 2})
+        # The fastest where it is right, but wrong elsewhere.
+        hasty = [row("distance", "ode", "elephant", "distance", percent, 10.0, mismatch=wrong, error_rms=0.0) for percent, wrong in ((5, 0), (10, 2))]
+        self.write("run.json", [*rows(), failed, *noisy, *hasty], {"load_avg": [6.5, 5.0, 4.0], "num_cpus": 2})
         self.write("later.json", rows(1.3), {"load_avg": [0.1, 5.0, 4.0], "num_cpus": 2})
         self.write("scenes.json", scene_rows())
         self.write("objects.json", [], **collection())
@@ -87,7 +89,7 @@ class FigureTexts(unittest.TestCase):
         compared = json.loads(done.stdout.splitlines()[-1])["compared"]
         figures = [path.stem for path in (REPORT / "figures").glob("*.json")]
         self.assertEqual([figure for figure in figures if figure not in compared], [], "every figure is compared")
-        for what in ("failed", "once", "busy", "wide"):
+        for what in ("failed", "once", "busy", "wide", "faults of winners", "faults of metrics", "verdict with others"):
             self.assertGreater(compared.get(what, 0), 0, what)
 
 

@@ -1,6 +1,9 @@
 // The words of the summary are those of the numbers.
 
+#include <map>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -78,11 +81,58 @@ TEST(Summary, ApproximationsAreNotTheFastestButNamedWithTheirErrors) {
   Json vps = row("distance", "vps", "p", "distance", 5.0, 1.0, {{"error_max", 0.004}});
   vps["sixdof"]["approximates"] = true;
   const Results results = test::results_of({vps, row("distance", "exact", "p", "distance", 5.0, 100.0)});
-  EXPECT_THAT(summarise(results, row_groups(results)).sentences,
+  const Summary summary = summarise(results, row_groups(results));
+  EXPECT_THAT(summary.sentences,
               ElementsAre("Distance: the fastest without a wrong answer is exact, in 1 of 1 place; faster, but "
                           "approximate or elsewhere wrong: vps in 1 (100 times).",
                           "How far the others are off: distances, vps by up to 0.4 % of A's diagonal.",
                           HasSubstr("All 2 rows ran")));
+  ASSERT_EQ(summary.winners.rows.size(), 1u);
+  const auto& line = summary.winners.rows[0];
+  EXPECT_EQ(text_in(summary.winners, line, "fastest"), "exact");
+  EXPECT_EQ(text_in(summary.winners, line, "verdict"), "no other is right");
+  EXPECT_EQ(text_in(summary.winners, line, "not_right_but_faster"), "vps");
+  EXPECT_EQ(test::number_in(summary.winners, line, "by_factor"), 100.0);
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(test::cell(summary.winners, line, "times_faster")))
+      << "the figure has no point there";
+}
+
+/// Rows of three places: "right" and "slow" are right, "hasty" is the fastest but wrong in the last place, "rough" is
+/// an approximation.
+Results results_of_one_rule(const std::string& query, const std::string& kind) {
+  std::vector<Json> rows;
+  for (const double percent : {1.0, 5.0, 9.0}) {
+    const Json force = query == "respond" ? Json{{"gamma_F_deg", 0.1}} : Json::object();
+    rows.push_back(row(query, "right", "p", kind, percent, 100.0, force));
+    rows.push_back(row(query, "slow", "p", kind, percent, percent == 1.0 ? 50.0 : 400.0, force));
+    rows.push_back(row(query, "hasty", "p", kind, percent, 10.0, force));
+    if (percent == 9.0) rows.back()["mismatch"] = 1;
+    rows.push_back(row(query, "rough", "p", kind, percent, 20.0,
+                       query == "respond" ? Json{{"gamma_F_deg", 15.0}} : Json::object()));
+    if (query != "respond") rows.back()["sixdof"]["approximates"] = true;
+  }
+  return test::results_of(rows);
+}
+
+TEST(Summary, TableAndSentencesFollowOneRule) {
+  for (const auto& [query, kind] :
+       {std::pair("collide", "distance"), {"distance", "distance"}, {"respond", "volume"}}) {
+    const Results results = results_of_one_rule(query, kind);
+    const Summary summary = summarise(results, row_groups(results));
+    std::map<std::string, int> places, faster;
+    for (const auto& line : summary.winners.rows) {
+      ++places[text_in(summary.winners, line, "fastest")];
+      ++faster[text_in(summary.winners, line, "not_right_but_faster")];
+      EXPECT_EQ(test::number_in(summary.winners, line, "times_faster"),
+                text_in(summary.winners, line, "fastest") == "slow" ? 2.0 : 4.0);
+    }
+    EXPECT_EQ(places, (std::map<std::string, int>{{"right", 2}, {"slow", 1}})) << query;
+    EXPECT_EQ(faster, (std::map<std::string, int>{{"hasty", 2}, {"rough", 1}})) << query;
+    EXPECT_THAT(summary.sentences.front(),
+                HasSubstr(" is right, in 2 of 3 places, 4 times faster than the next on average; slow is in 1; faster, "
+                          "but approximate or elsewhere wrong: hasty in 2 (7.07 times), rough in 1 (5 times)."))
+        << query;
+  }
 }
 
 TEST(Summary, ForcesAreRightToADegreeAndOthersAreNamedFarthestFirst) {

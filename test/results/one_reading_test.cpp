@@ -174,8 +174,10 @@ Reading of_page(const report::Report& page) {
     for (const auto& line : table.rows) {
       const auto text = [&](const char* column) { return report::test::text_in(table, line, column); };
       if (table.name == "winners") {
+        // The page ranks algorithms that are right; beside them stands the fastest of all where it is another one.
+        const std::string other = text("not_right_but_faster");
         reading.winners.insert(contest_of(text("run"), text("query"), text("pair"), text("bucket"), text("poses")) +
-                               " | " + text("fastest"));
+                               " | " + (other.empty() ? text("fastest") : other));
       } else if (table.name == "failures" && text("query") != "precision") {
         reading.faults.insert(fmt::format("{} | {} | {}",
                                           contest_of(text("run"), text("query"), text("pair"), text("bucket"), ""),

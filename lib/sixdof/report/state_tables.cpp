@@ -59,15 +59,16 @@ DataTable objects_table(const Results& results) {
 DataTable failures_table(const Results& results, const std::vector<RowGroup>& groups) {
   DataTable table{.name = "failures",
                   .title = "Rows with failures or wrong answers",
-                  .columns = {"run", "query", "pair", "algorithm", "bucket", "fault", "command", "worst_pose"},
+                  .columns = {"run", "query", "question", "pair", "algorithm", "bucket", "fault", "command",
+                              "worst_pose"},
                   .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
     if (row.fields.algorithm == "null") continue;  // answers nothing, by design
     for (const Fault& fault : group.faults) {
-      table.rows.push_back({run_name(results, row.file), row.fields.query, bodies_of(row.fields), group.algorithm(),
-                            place_of(row.fields), to_string(fault), reproduction(row, results.files[row.file]),
-                            row.outliers.command_of(fault.counter)});
+      table.rows.push_back({run_name(results, row.file), row.fields.query, row.fields.question, bodies_of(row.fields),
+                            group.algorithm(), place_of(row.fields), to_string(fault),
+                            reproduction(row, results.files[row.file]), row.outliers.command_of(fault.counter)});
     }
   }
   return table;

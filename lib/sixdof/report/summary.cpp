@@ -21,44 +21,17 @@ constexpr double k_right_angle_deg = 1.0;
 /// Most algorithms that a sentence lists.
 constexpr std::size_t k_most_listed = 4;
 
-/// How an algorithm answered one kind of query in all rows of the usual order and on warm caches.
+/// How an algorithm answered one kind of query in all rows on buckets, whatever the order of poses and the caches.
 struct Record {
   bool has_fault = false, approximates = false;
+  bool is_about_meshes = true;  ///< Not about convex hulls.
   double wrong = 0.0, judged = 0.0;
   double largest_error = 0.0;              ///< Of distances, in diagonals of A.
   double sum_of_angles = 0.0, rows = 0.0;  ///< Mean angles to the exact force in degrees, over the rows that have one.
 
   double angle() const { return rows > 0.0 ? sum_of_angles / rows : 0.0; }
 };
-using Records = std::map<std::string, Record>;
-
-bool is_usual(const RowGroup& group) {
-  return !group.is_special() && group.fields().body.empty() && group.fields().algorithm != "null";
-}
-
-Records records_of(const std::vector<RowGroup>& groups, const std::string& query) {
-  Records records;
-  for (const RowGroup& group : groups) {
-    if (group.fields().query != query || !group.fields().bucket || !is_usual(group)) continue;
-    Record& record = records[group.algorithm()];
-    record.has_fault = record.has_fault || !group.faults.empty();
-    record.approximates = record.approximates || group.fields().approximates;
-    record.wrong += group.count("mismatch");
-    record.judged += group.count("judged");
-    record.largest_error = std::max(record.largest_error, group.count("error_max"));
-    if (const auto angle = group.value("gamma_F_deg")) {
-      record.sum_of_angles += *angle;
-      record.rows += 1.0;
-    }
-  }
-  return records;
-}
-
-/// Whether all answers are right: without a fault and, of forces, near the exact ones on average.
-bool is_right(const Record& record, const std::string& query) {
-  if (record.has_fault) return false;
-  return query == "respond" ? record.rows > 0.0 && record.angle() <= k_right_angle_deg : !record.approximates;
-}
+using Records = std::map<std::string, Record>;  // by algorithm
 
 struct Question {
   const char* query;
@@ -70,8 +43,64 @@ constexpr std::array k_questions{
     Question{"distance", "Distance", "without a wrong answer"},
     Question{"respond", "Force and torque", "with forces within 1 degree of the exact ones"}};
 
+/// By query; those of k_questions are there in any case.
+std::map<std::string, Records> records_of(const std::vector<RowGroup>& groups) {
+  std::map<std::string, Records> by_query;
+  for (const Question& question : k_questions) by_query.try_emplace(question.query);
+  for (const RowGroup& group : groups) {
+    const RowFields& fields = group.fields();
+    if (!fields.bucket || fields.algorithm == "null") continue;
+    Record& record = by_query[fields.query][fields.algorithm];
+    record.has_fault = record.has_fault || !group.faults.empty();
+    record.approximates = record.approximates || fields.approximates;
+    record.is_about_meshes = fields.body.empty();
+    record.wrong += group.count("mismatch");
+    record.judged += group.count("judged");
+    record.largest_error = std::max(record.largest_error, group.count("error_max"));
+    if (const auto angle = group.value("gamma_F_deg")) {
+      record.sum_of_angles += *angle;
+      record.rows += 1.0;
+    }
+  }
+  return by_query;
+}
+
+/// Whether all answers are right: without a fault and, of forces, near the exact ones on average.
+bool is_right(const Record& record, const std::string& query) {
+  if (record.has_fault) return false;
+  return query == "respond" ? record.rows > 0.0 && record.angle() <= k_right_angle_deg : !record.approximates;
+}
+
 std::string counted(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// The rows that compete for a place, and of these the ones of algorithms that are right: the one rule of the
+/// sentences, of the table of winners and of its figure.
+struct Race {
+  const Contest* all;
+  Contest right;  ///< Its entries may be none.
+
+  bool has_right() const { return !right.entries.empty(); }
+  /// Whether the fastest of all is not right.
+  bool is_beaten() const { return !has_right() || &right.winner() != &all->winner(); }
+  /// Time of the fastest right algorithm over that of the fastest of all.
+  double factor_of_fastest() const { return right.winner().mean_time()->value / all->winner().mean_time()->value; }
+};
+
+/// Of the contests between two or more. @param contests outlive the races
+std::vector<Race> races_of(const std::vector<Contest>& contests, const std::map<std::string, Records>& by_query) {
+  std::vector<Race> races;
+  for (const Contest& contest : contests) {
+    if (contest.entries.size() < 2) continue;
+    Race race{&contest, contest};
+    const Records& records = by_query.at(contest.query);
+    std::erase_if(race.right.entries, [&](const RowGroup* entry) {
+      return !is_right(records.at(entry->fields().algorithm), contest.query);
+    });
+    races.push_back(std::move(race));
+  }
+  return races;
 }
 
 /// Where algorithms win, and by which factors.
@@ -101,28 +130,22 @@ std::string faster_words(const WinsByName& faster) {
 
 /// "Distance: the fastest without a wrong answer is exact, in 12 of 14 places, 4.1 times faster than the next on
 /// average; fcl-rss is in 2." Empty where no two algorithms answered.
-std::string speed_sentence(const Question& question, const std::vector<Contest>& contests, const Records& records) {
+std::string speed_sentence(const Question& question, const std::vector<Race>& races) {
   std::map<std::string, Wins> by_winner, faster;
   std::size_t places = 0;
-  for (const Contest& contest : contests) {
-    if (contest.query != question.query || contest.order != "random" || !is_usual(contest.winner())) continue;
-    Contest right = contest;
-    std::erase_if(right.entries, [&](const RowGroup* entry) {
-      const auto found = records.find(entry->algorithm());
-      return found == records.end() || !is_right(found->second, question.query);
-    });
+  for (const Race& race : races) {
+    const RowGroup& first = race.all->winner();
+    if (race.all->query != question.query || race.all->order != "random" || !first.fields().body.empty()) continue;
     ++places;
-    if (right.entries.empty() || &right.winner() != &contest.winner()) {
-      Wins& wins = faster[contest.winner().algorithm()];
+    if (race.is_beaten()) {
+      Wins& wins = faster[first.algorithm()];
       ++wins.places;
-      if (!right.entries.empty()) {
-        wins.factors.push_back(right.winner().mean_time()->value / contest.winner().mean_time()->value);
-      }
+      if (race.has_right()) wins.factors.push_back(race.factor_of_fastest());
     }
-    if (right.entries.empty()) continue;
-    Wins& wins = by_winner[right.winner().algorithm()];
+    if (!race.has_right()) continue;
+    Wins& wins = by_winner[race.right.winner().algorithm()];
     ++wins.places;
-    if (right.entries.size() > 1) wins.factors.push_back(right.factor());
+    if (race.right.entries.size() > 1) wins.factors.push_back(race.right.factor());
   }
   if (places == 0) return {};
   if (by_winner.empty()) return fmt::format("{}: no algorithm answered {}.", question.words, question.right);
@@ -161,7 +184,7 @@ std::string error_sentence(const std::map<std::string, Records>& by_query) {
   std::vector<std::string> wrong;
   for (const Question& question : k_questions) {
     for (const auto& [name, record] : by_query.at(question.query)) {
-      if (record.wrong == 0.0) continue;
+      if (record.wrong == 0.0 || !record.is_about_meshes) continue;
       wrong.push_back(fmt::format("{} {:.0f} of {:.0f} ({})", name, record.wrong, record.judged,
                                   question.query == std::string("collide") ? "yes or no" : question.query));
     }
@@ -174,10 +197,12 @@ std::string error_sentence(const std::map<std::string, Records>& by_query) {
   if (!wrong.empty()) parts.push_back(fmt::format("wrong answers, {}", fmt::join(wrong, ", ")));
   std::vector<std::pair<double, std::string>> distances, angles;
   for (const auto& [name, record] : by_query.at("distance")) {
-    if (record.approximates && record.largest_error > 0.0) distances.emplace_back(100.0 * record.largest_error, name);
+    if (record.approximates && record.is_about_meshes && record.largest_error > 0.0) {
+      distances.emplace_back(100.0 * record.largest_error, name);
+    }
   }
   for (const auto& [name, record] : by_query.at("respond")) {
-    if (record.angle() > k_right_angle_deg) angles.emplace_back(record.angle(), name);
+    if (record.angle() > k_right_angle_deg && record.is_about_meshes) angles.emplace_back(record.angle(), name);
   }
   if (!distances.empty()) parts.push_back("distances, " + largest_of(distances, "% of A's diagonal", "by up to"));
   if (!angles.empty()) parts.push_back("directions of forces on average, " + largest_of(angles, "degrees", "by"));
@@ -218,28 +243,43 @@ std::string stability_sentence(const Results& results) {
                      bad.empty() ? "" : "; families with a wrong or missing answer: ", fmt::join(bad, ", "));
 }
 
+DataTable winners_table(const Results& results, const std::vector<Race>& races) {
+  DataTable table{.name = "winners",
+                  .title = "The fastest right algorithm of each place",
+                  .columns = {"run", "body", "query", "poses", "pair", "bucket", "fastest", "time_us", "next",
+                              "times_faster", "verdict", "not_right_but_faster", "by_factor", "worst_pose"},
+                  .rows = {}};
+  for (const Race& race : races) {
+    const RowGroup& first = race.all->winner();
+    const RowGroup* const best = race.has_right() ? &race.right.winner() : nullptr;
+    const bool has_next = race.right.entries.size() > 1;
+    const std::string verdict = best == nullptr         ? "none is right"
+                                : !has_next             ? "no other is right"
+                                : race.right.is_clear() ? "clear"
+                                                        : "tie";
+    table.rows.push_back({run_name(results, race.all->file),
+                          std::string(first.fields().body.empty() ? "meshes" : "convex hulls"), race.all->query,
+                          race.all->order, race.all->bodies, place_of(first.fields()),
+                          best == nullptr ? std::string() : best->algorithm(),
+                          best == nullptr ? Cell() : Cell(best->mean_time()->value / 1e3),
+                          has_next ? race.right.entries[1]->algorithm() : std::string(),
+                          has_next ? Cell(race.right.factor()) : Cell(), verdict,
+                          race.is_beaten() ? first.algorithm() : std::string(),
+                          race.is_beaten() && best != nullptr ? Cell(race.factor_of_fastest()) : Cell(),
+                          best == nullptr ? std::string() : best->row().outliers.command_of("max_least_ns")});
+  }
+  return table;
+}
+
 }  // namespace
 
 Summary summarise(const Results& results, const std::vector<RowGroup>& groups) {
-  std::vector<Contest> all = contests(groups);
-  std::erase_if(all, [](const Contest& contest) { return contest.entries.size() < 2; });
-  Summary summary;
-  summary.winners = {.name = "winners",
-                     .title = "Fastest without a fault",
-                     .columns = {"run", "query", "poses", "pair", "bucket", "fastest", "time_us", "next",
-                                 "times_faster", "verdict", "worst_pose"},
-                     .rows = {}};
-  for (const Contest& contest : all) {
-    const RowGroup& first = contest.winner();
-    summary.winners.rows.push_back(
-        {run_name(results, contest.file), contest.query, contest.order, contest.bodies, place_of(first.fields()),
-         first.algorithm(), first.mean_time()->value / 1e3, contest.entries[1]->algorithm(), contest.factor(),
-         std::string(contest.is_clear() ? "clear" : "tie"), first.row().outliers.command_of("max_least_ns")});
-  }
-  std::map<std::string, Records> records;
+  const std::vector<Contest> all = contests(groups);
+  const std::map<std::string, Records> records = records_of(groups);
+  const std::vector<Race> races = races_of(all, records);
+  Summary summary{.sentences = {}, .winners = winners_table(results, races)};
   for (const Question& question : k_questions) {
-    records[question.query] = records_of(groups, question.query);
-    std::string sentence = speed_sentence(question, all, records[question.query]);
+    std::string sentence = speed_sentence(question, races);
     if (!sentence.empty()) summary.sentences.push_back(std::move(sentence));
   }
   for (std::string sentence : {error_sentence(records), stability_sentence(results), fault_sentence(groups)}) {

@@ -125,7 +125,8 @@ sixdofReport.resolveChoices = function (figure, rows, wanted, metrics) {
   let left = rows;
   const choose = (filter, values) => {
     let value = values.find((each) => String(each) === String(wanted[filter.field]));
-    if (value === undefined) value = [filter.default].flat().find((each) => values.includes(each)) ?? values[0];
+    const preferred = filter.prefer ? sixdofReport.valuesOf(left.filter((row) => row[filter.prefer.column] === filter.prefer.value), filter.field) : [];
+    if (value === undefined) value = [...preferred, filter.default].flat().find((each) => values.includes(each)) ?? values[0];
     resolved.push({ filter, values, value });
     return value;
   };
@@ -201,15 +202,18 @@ sixdofReport.logTicks = function (from, to) {
   return ticks.filter((tick) => tick >= from && tick <= to);
 };
 
-/** Gives every row its place `shown` on the axis `channel`; values below rounding share the lower edge, whose tick says
- * so. An axis with values below zero is linear. */
-function withFloor(spec, rows, { field, shown, channel, include = 0 }, linear) {
+/** Gives every row its place `shown` on the axis `channel`, and the ends of its interval, the columns `bounds`, the places
+ * `shown`_low and `shown`_high; values below rounding share the lower edge, whose tick says so. An axis with values below
+ * zero is linear. */
+function withFloor(spec, rows, { field, shown, channel, include = 0, bounds = [] }, linear) {
   const isSigned = rows.some((row) => row[field] < 0);
+  const ends = (row, place) => Object.fromEntries(bounds.map((column, k) => [shown + ["_low", "_high"][k], typeof row[column] === "number" ? place(row[column]) : null]));
   if (linear || isSigned) {
     if (isSigned) visit(spec, (node) => { if (node[channel]?.field === shown) node[channel].scale = { type: "linear" }; });
-    return rows.map((row) => ({ ...row, [shown]: row[field] }));
+    return rows.map((row) => ({ ...row, [shown]: row[field], ...ends(row, (value) => value) }));
   }
-  const floor = floorOf(rows, field), top = Math.max(floor * 10, include, ...rows.map((row) => row[field] ?? 0)) * 1.1;
+  const highest = (row) => Math.max(row[field] ?? 0, ...bounds.map((column) => row[column] ?? 0));
+  const floor = floorOf(rows, field), top = Math.max(floor * 10, include, ...rows.map(highest)) * 1.1;
   const isFloored = rows.some((row) => row[field] !== null && row[field] <= sixdofReport.rounding);
   const low = isFloored ? floor : floor * 2.4;
   const label = "datum.value >= 1e6 ? format(datum.value, '~s') : datum.value >= 1e4 ? format(datum.value, ',') : format(datum.value, '~g')";
@@ -219,7 +223,7 @@ function withFloor(spec, rows, { field, shown, channel, include = 0 }, linear) {
     node[channel].axis = { values: [...(isFloored ? [floor] : []), ...sixdofReport.logTicks(isFloored ? floor * 1.5 : low, top)],
                     labelExpr: isFloored ? `datum.value < ${floor * 1.01} ? '≈ 0' : ${label}` : label };
   });
-  return rows.map((row) => ({ ...row, [shown]: row[field] === null ? null : Math.max(row[field], floor) }));
+  return rows.map((row) => ({ ...row, [shown]: row[field] === null ? null : Math.max(row[field], floor), ...ends(row, (value) => Math.max(value, low)) }));
 }
 
 function largestOf(rows, { by, count }) {
@@ -328,7 +332,7 @@ sixdofReport.prepareSpec = function (figure, chosen, choices, context) {
   delete spec.usermeta;
   let rows = sixdofReport.drawnRows(figure, chosen);
   const algorithms = sixdofReport.legendOrder(figure, rows, context.algorithms);
-  if (meta.floor) rows = withFloor(spec, rows, { field: meta.floor, shown: "shown", channel: "y", include: meta.include }, context.linear);
+  if (meta.floor) rows = withFloor(spec, rows, { field: meta.floor, shown: "shown", channel: "y", include: meta.include, bounds: meta.value?.low ? [meta.value.low, meta.value.high] : [] }, context.linear);
   if (meta.axes) {
     for (const channel of ["x", "y"]) rows = withFloor(spec, rows, { field: channel, shown: "shown_" + channel, channel }, context.linear);
   }

@@ -72,22 +72,44 @@
       `${count.unsupported} declared unsupported, ${countText(count.fault, "fault")}${faults.length ? ": " + listText(faults, mostFailures) : ""}.` };
   }
 
-  /** Rows of the table of failures that are about what is chosen and have no value in the figure. */
+  const isAll = (pair) => pair === undefined || pair === "all objects (mean)" || pair === "all";
+  const percentOf = (row) => row.percent ?? Number(/ (\S+) %$/.exec(row.bucket ?? "")?.[1]);
+
+  /** What a row of the table of failures has in common with the row of a figure that would stand for it, if it had not failed. */
+  const keys = {
+    place: (row, ofAll) => [row.algorithm, ofAll ? "" : row.pair, percentOf(row)].join("/"),
+    name: (row) => row.algorithm,
+    base: (row) => report.baseAlgorithm(row.algorithm),
+    scenario: (row) => [row.algorithm, row.scenario ?? row.scene ?? row.bucket].join("/"),
+  };
+
+  /** Whether a row of the table of failures is about what a reader chose. */
+  function isAbout(row, wanted, fails) {
+    const pair = row.pair ?? "", bucket = row.bucket ?? "", query = fails.query ?? wanted.query, order = row.algorithm.slice(report.baseAlgorithm(row.algorithm).length);
+    const isOf = (column, value) => wanted[column] === undefined || wanted[column] === value;
+    const isStudy = row.query === "precision" && wanted.measured === `${row.question}, every resolution`;
+    return isOf("run", row.run) && (query === undefined || row.query === query) && (isAll(wanted.pair) || pair === wanted.pair) &&
+      (!wanted.bucket || bucket.startsWith(wanted.bucket)) && (!fails.bucket || bucket.startsWith(fails.bucket)) && isOf("percent", percentOf(row)) &&
+      isOf("scenario", bucket) && isOf("scene", bucket) && isOf("question", row.question) &&
+      isOf("where", [pair, row.query === "scenario" ? `scenario ${bucket}` : bucket].filter(Boolean).join(", ")) &&
+      (isStudy || isOf("measured", `${row.query}, ${bucket}${order}`)) && isOf("body", pair.endsWith("(convex_hull)") ? "convex hulls" : "meshes") &&
+      (wanted.poses === undefined || order === ({ motion: " (motion)", path: " (path order)" }[wanted.poses] ?? ""));
+  }
+
+  /** Rows of the results that are about what is chosen and have no value in the figure, with their faults. */
   function failed(figure, shown, tables) {
-    const { fails } = figure.usermeta, table = tables.failures;
+    const { fails, where = {} } = figure.usermeta, table = tables.failures;
     if (!fails || !table) return [];
-    const { choices, before } = shown;
-    const wanted = { ...(figure.usermeta.where || {}), ...choices };
-    const isAll = (pair) => pair === undefined || pair === "all objects (mean)" || pair === "all";
-    const keyOf = (row, percent) => [row.algorithm, isAll(wanted.pair) ? "" : row.pair, percent].join("/");
-    const places = new Set(before.map((row) => keyOf(row, row.percent)));
-    return report.rowsOf(table).filter((row) => {
-      const percent = Number(/ (\S+) %$/.exec(row.bucket ?? "")?.[1]);
-      return (wanted.run === undefined || row.run === wanted.run) && row.query === (fails.query ?? wanted.query) &&
-        (isAll(wanted.pair) || row.pair === wanted.pair) && (!wanted.bucket || (row.bucket ?? "").startsWith(wanted.bucket)) &&
-        (!fails.bucket || (row.bucket ?? "").startsWith(fails.bucket)) && (wanted.percent === undefined || percent === wanted.percent) &&
-        !places.has(keyOf(row, percent));
-    });
+    const { choices, before } = shown, wanted = { ...where, ...choices }, ofAll = isAll(wanted.pair), key = keys[fails.key ?? "place"];
+    const hasAxes = (row) => (figure.usermeta.axes ?? []).every((axis) => typeof row[choices[axis.field]] === "number");
+    const places = new Set(key ? before.filter(hasAxes).map((row) => key(row, ofAll)) : []), found = new Map();
+    for (const row of report.rowsOf(table).filter((each) => isAbout(each, wanted, fails))) {
+      const isPoint = row.query === "precision";  // other resolutions of its algorithm may be drawn
+      if (isPoint ? !row.fault.startsWith("not run") : key && places.has(key(row, ofAll))) continue;
+      const id = isPoint ? found.size : JSON.stringify([row.algorithm, row.pair, row.bucket]), known = found.get(id);
+      found.set(id, known ? { ...known, fault: `${known.fault}, ${row.fault}` } : row);
+    }
+    return [...found.values()];
   }
 
   /** What is not drawn, and which of the drawn values are of rows with a fault. */
@@ -96,7 +118,7 @@
     const failures = failed(figure, shown, tables);
     if (failures.length > 0) {
       const named = failures.map((row) => `${row.algorithm} at ${[row.pair, row.bucket].filter(Boolean).join(", ")} (${row.fault})`);
-      parts.push(`${countText(failures.length, "row")} failed and ${failures.length === 1 ? "has" : "have"} no value here: ${listText(named, mostFailures)}`);
+      parts.push(`${countText(failures.length, "row")} ${figure.usermeta.fails.words ?? "failed"} and ${failures.length === 1 ? "has" : "have"} no value here: ${listText(named, mostFailures)}`);
     }
     const faulty = rows.filter((row) => row.faults);
     if (faulty.length > 0) {
