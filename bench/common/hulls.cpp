@@ -9,8 +9,12 @@
 namespace sixdof {
 
 #ifdef SIXDOF_WITH_CCD
+bool has_hulls() { return true; }
+
 Mesh hull_of(const Mesh& mesh) { return convex_hull(mesh); }
 #else
+bool has_hulls() { return false; }
+
 Mesh hull_of(const Mesh& /*mesh*/) {
   throw BadArgument("this build has no convex hulls: they need libqhull-dev and libccd-dev (SIXDOF_WITH_CCD)");
 }

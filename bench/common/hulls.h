@@ -4,6 +4,9 @@
 
 namespace sixdof {
 
+/// Whether this build has Qhull, which makes convex hulls.
+bool has_hulls();
+
 /// The convex hull of a mesh's vertices as a solid (algorithm/ccd/convex_hull.h).
 /// @throws BadArgument in a build without Qhull; BadMesh if the vertices lie in a plane
 Mesh hull_of(const Mesh& mesh);

@@ -23,17 +23,16 @@ struct Check : JudgedAnswers {
 };
 
 /// Asks the first `count` configurations once, however long it takes: rows that are compared ask the same ones.
-/// @param has_truth whether the answers are about the meshes, as the set's truth is
-template <class Ask>
-Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query, bool has_truth = true) {
-  const KnownAnswer known = KnownAnswer::of(bucket);
+/// @param known_at of a pose what its answer is compared with, as a std::optional<KnownAnswer>; empty: not judged
+template <class Ask, class KnownAt>
+Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query, KnownAt known_at) {
   Check check;
   for (const Pose& pose : std::span(bucket.poses).first(count)) {
     const auto answer = query.ask(pose);
     check.answered.push_back(answer.ok());
     if (!answer.ok()) continue;
-    if (has_truth) {
-      const Judgement judgement = judge(known, answer.value);
+    if (const std::optional<KnownAnswer> known = known_at(pose)) {
+      const Judgement judgement = judge(*known, answer.value);
       const double largest = check.errors.largest();
       check.add(judgement);
       if (judgement.wrong && !check.first_wrong) check.first_wrong = pose;
@@ -43,6 +42,13 @@ Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<
     check.work.add(query.query().work());
   }
   return check;
+}
+
+/// Against the truth of the bucket, which is about the meshes.
+template <class Ask>
+Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query) {
+  const KnownAnswer known = KnownAnswer::of(bucket);
+  return check_answers(bucket, count, query, [&known](const Pose&) { return std::optional<KnownAnswer>(known); });
 }
 
 }  // namespace sixdof::bench

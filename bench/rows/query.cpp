@@ -12,9 +12,11 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include "bench/common/hulls.h"
 #include "bench/harness/cache_eviction.h"
 #include "bench/harness/check.h"
 #include "bench/harness/failure_counters.h"
+#include "bench/harness/hull_truth.h"
 #include "bench/harness/motion.h"
 #include "bench/harness/query_command.h"
 #include "bench/harness/query_kind.h"
@@ -88,7 +90,7 @@ struct QueryRow {
             .pair = pair.pair,
             .bucket = key,
             .order = to_string(order),
-            .body = is_judged() ? "" : std::string(to_string(algorithm.traits().body)),
+            .body = is_about_meshes() ? "" : std::string(to_string(algorithm.traits().body)),
             .cache = evict ? "cold" : "warm",
             .isolated = is_isolated(algorithm),
             .approximates = algorithm.traits().approximates};
@@ -110,8 +112,13 @@ struct QueryRow {
     if (question == QueryKind::respond) exact = resources.cache.exact_responses(pair, key, count);
     with_query(failures, [&](auto query) {
       if (!check) {
-        if constexpr (requires { query.ask(poses[0]).value.force; }) compare_with_exact(bucket, exact, query);
-        check = check_answers(bucket, count, query, is_judged());
+        const std::unique_ptr<HullTruth> hulls = truth_of_hulls();
+        if constexpr (requires { query.ask(poses[0]).value.force; }) {
+          std::vector<Response> of_hulls;
+          if (hulls) of_hulls = hulls->responses(std::span(bucket.poses).first(exact.size()));
+          compare_with_exact(bucket, hulls ? std::span<const Response>(of_hulls) : exact, query);
+        }
+        check = checked(bucket, count, query, hulls.get());
         poses = poses_to_time(bucket, count);
         if (!evict) {
           const SingleTimes times = time_each(poses, query);
@@ -173,12 +180,28 @@ struct QueryRow {
       if (answers > 0) each += passes * 1e-9 * answers_ns / static_cast<double>(answers);
     });
     if (evict) each += time_eviction();
+    if (!is_about_meshes() && has_hulls()) each += time_truth_of_hulls(bucket);
     return each;
   }
 
  private:
-  /// The set's truth is that of the meshes.
-  bool is_judged() const { return algorithm.traits().body == Body::mesh; }
+  /// As the set's truth is.
+  bool is_about_meshes() const { return algorithm.traits().body == Body::mesh; }
+  bool is_judged() const { return is_about_meshes() || has_hulls(); }
+
+  /// What answers about hulls are compared with; null for answers about the meshes, and in a build without hulls.
+  std::unique_ptr<HullTruth> truth_of_hulls() const {
+    if (is_about_meshes() || !has_hulls()) return nullptr;
+    return std::make_unique<HullTruth>(resources.cache.mesh(pair.a), resources.cache.mesh(pair.b));
+  }
+
+  template <class Ask>
+  Check checked(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query, HullTruth* hulls) const {
+    if (is_about_meshes()) return check_answers(bucket, count, query);
+    return check_answers(bucket, count, query, [hulls](const Pose& pose) {
+      return hulls == nullptr ? std::optional<KnownAnswer>() : hulls->at(pose);
+    });
+  }
 
   /// @throws BadArgument for an empty bucket, NeedsSolid
   const BucketSample& sample() const {
@@ -217,6 +240,15 @@ struct QueryRow {
     const auto start = std::chrono::steady_clock::now();
     resources.cache.exact_responses(pair, key, k_trial);
     return seconds_since(start) / (k_trial - 1.0);
+  }
+
+  /// Seconds for a configuration.
+  double time_truth_of_hulls(const BucketSample& bucket) const {
+    const std::unique_ptr<HullTruth> hulls = truth_of_hulls();
+    const std::size_t count = std::min(k_trial, bucket.poses.size());
+    const auto start = std::chrono::steady_clock::now();
+    for (const Pose& pose : std::span(bucket.poses).first(count)) static_cast<void>(hulls->at(pose));
+    return seconds_since(start) / static_cast<double>(count);
   }
 
   double time_eviction() const {
@@ -296,9 +328,9 @@ struct QueryRow {
       count("compared", errors->at(0).direction.compared);
     }
     std::string label = resources.settings_of(algorithm).to_string();
-    if (!is_judged()) {
-      label += fmt::format("{}{} instead of the mesh, not judged", label.empty() ? "" : "; ",
-                           to_string(algorithm.traits().body));
+    if (!is_about_meshes()) {
+      label += fmt::format("{}{} instead of the mesh, {}", label.empty() ? "" : "; ",
+                           to_string(algorithm.traits().body), is_judged() ? "judged by the hulls" : "not judged");
     }
     if (failures.count() > 0) {
       label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures.first());

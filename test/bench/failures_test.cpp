@@ -13,6 +13,7 @@
 #include <sixdof/measure/direction.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/scenario/evaluation.h>
+#include "bench/common/hulls.h"
 #include "bench/common/run_guarded.h"
 
 #include "../cli/run_program.h"
@@ -219,6 +220,19 @@ TEST_F(Faulty, WrongAnswersEndWithDefectsOnRequest) {
       "'--benchmark_filter=^collide/algorithm:(exact|{})/pair:torus-1k/volume:03$' --fail-on-wrong";
   run(fmt::format(fmt::runtime(filter), "always-apart"), k_exit_defects);
   run(fmt::format(fmt::runtime(filter), "ist"));
+}
+
+TEST_F(Faulty, AnswersAboutHullsAreJudgedByTheHulls) {
+  if (!has_hulls()) GTEST_SKIP() << "this build has no Qhull";
+  const json document = run(filter("hulls-apart"));
+  const json deep = row(document, "collide", "hulls-apart", "volume:03");
+  const json apart = row(document, "collide", "hulls-apart", "distance:05");
+  EXPECT_EQ(deep.at("judged"), deep.at("configurations"));
+  EXPECT_EQ(deep.at("mismatch"), deep.at("judged")) << "where the meshes overlap, so do the hulls";
+  EXPECT_GT(apart.at("judged"), 0);
+  EXPECT_GT(apart.at("mismatch"), 0) << "hulls of tori overlap where the tori are apart";
+  EXPECT_EQ(deep.at("sixdof").at("body"), "convex_hull");
+  EXPECT_THAT(deep.at("label").get<std::string>(), HasSubstr("convex_hull instead of the mesh, judged by the hulls"));
 }
 
 TEST_F(Faulty, NullPointersAreErrorsWithWords) {

@@ -28,6 +28,7 @@ void spend_fault_delay() {
 struct Fault {
   std::string name;
   bool at_every_pose = false;  ///< Without the delay of a faulty pose.
+  Body body = Body::mesh;
   std::function<bool(bool)> collide = [](bool answer) { return answer; };
   std::function<double(double)> distance = [](double answer) { return answer; };
   std::function<Eigen::Vector3d(const Eigen::Vector3d&)> force = [](const Eigen::Vector3d& answer) { return answer; };
@@ -72,7 +73,8 @@ class FaultyAlgorithm final : public Algorithm {
                .version = "1",
                .summary = "goes wrong at one pose in 20",
                .answers = {.collide = true, .distance = true, .respond = true},
-               .law = ResponseLaw::volume};
+               .law = ResponseLaw::volume,
+               .body = fault_.body};
   }
   const Traits& traits() const override { return traits_; }
   std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings&) const override {
@@ -118,6 +120,10 @@ const Registrar k_faults[] = {
          .at_every_pose = true,
          .force = [](const Eigen::Vector3d&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); }}),
     add({.name = "always-apart", .at_every_pose = true, .collide = [](bool) { return false; }}),
+    add({.name = "hulls-apart",
+         .at_every_pose = true,
+         .body = Body::convex_hull,
+         .collide = [](bool) { return false; }}),
 };
 
 }  // namespace
