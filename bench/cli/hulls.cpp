@@ -9,6 +9,7 @@
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 #include "bench/cli/study_options.h"
+#include "bench/cli/table_numbers.h"
 #include "bench/common/duration.h"
 #include "bench/common/hulls.h"
 #include "bench/common/json_text.h"
@@ -24,9 +25,10 @@ constexpr std::size_t k_poses = 1500;
 
 constexpr const char* k_details =
     R"(Engines replace meshes by their convex hulls, or by convex parts. This command says what that changes for a pair:
-how often the hulls touch where the meshes do not (false yes), how much too small their distances are, and how much
-less time exact takes for them. The poses are those of `sixdof recommend`. Without --parts-a and --parts-b each mesh is
-replaced by its convex hull; the parts of a decomposition are files of closed meshes, in the frame of their mesh.
+how often the hulls touch where the meshes do not (false yes), how much too small (below zero) or too large their
+distances are, and how much less time exact takes for them. The poses are those of `sixdof recommend`. Without
+--parts-a and --parts-b each mesh is replaced by its convex hull; the parts of a decomposition are files of closed
+meshes, in the frame of their mesh. "0 %" is exactly zero; "<0.01" and ">-0.01" are not.
 
 Keys of --json: pair, triangles {a, b, stand_in_a, stand_in_b}; false_yes {apart, near} and false_no {overlapping},
 each {wrong, of}; bias {mean, p05, median, p95} of distances in diagonals of A, below zero: too small; yes_no_ns and
@@ -44,12 +46,10 @@ Mesh stand_in(const Mesh& mesh, const std::vector<std::string>& files) {
   return study::joined(parts, mesh.name() + " in parts");
 }
 
-double percent(const study::StandInErrors::Share& share) {
-  return share.of == 0 ? 0.0 : 100.0 * static_cast<double>(share.wrong) / static_cast<double>(share.of);
-}
-
 std::string share_text(const study::StandInErrors::Share& share) {
-  return fmt::format("{} of {} poses ({:.3g} %)", share.wrong, share.of, percent(share));
+  if (share.of == 0) return "no poses";
+  const double fraction = static_cast<double>(share.wrong) / static_cast<double>(share.of);
+  return fmt::format("{} of {} poses ({} %)", share.wrong, share.of, as_percent(fraction));
 }
 
 std::string times_text(const study::TimingRounds& meshes, const study::TimingRounds& stand_ins) {
@@ -71,8 +71,9 @@ void print_text(const std::string& pair, const Bodies& bodies, const study::Stan
   fmt::print("wrong yes/no, within 0.3 % of contact      {}\n", share_text(near));
   fmt::print("false no, overlapping                      {}\n", share_text(overlapping));
   if (!found.bias.empty()) {
-    fmt::print("distances, mean error                      {:.3g} % of the size (5 % to 95 %: {:.3g} to {:.3g} %)\n",
-               100.0 * found.mean_bias(), 100.0 * found.quantile(0.05), 100.0 * found.quantile(0.95));
+    fmt::print("distances, mean error                      {} % of the size (5 % to 95 %: {} to {} %)\n",
+               as_signed_percent(found.mean_bias()), as_signed_percent(found.quantile(0.05)),
+               as_signed_percent(found.quantile(0.95)));
   }
   fmt::print("yes/no by exact, mean time                 {}\n",
              times_text(found.yes_no_meshes, found.yes_no_stand_ins));

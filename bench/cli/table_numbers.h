@@ -9,7 +9,7 @@
 #include <sixdof/configuration/bucket.h>
 #include <sixdof/results/fault.h>
 
-/// How `sixdof table` writes numbers, and sums of faults.
+/// How tables write numbers, and sums of faults. "0" is exactly zero.
 
 namespace sixdof::cli {
 
@@ -25,6 +25,13 @@ inline std::string as_percent(double fraction) {
   if (percent == 0.0) return "0";
   if (percent < 0.01) return "<0.01";
   return fmt::format("{:.{}f}", percent, percent < 1.0 ? 2 : percent < 100.0 ? 1 : 0);
+}
+
+/// The same of a fraction that may be below zero: "-3.2", ">-0.01".
+inline std::string as_signed_percent(double fraction) {
+  if (!(fraction < 0.0)) return as_percent(fraction);
+  const std::string text = as_percent(-fraction);
+  return text.front() == '<' ? fmt::format(">-{}", text.substr(1)) : fmt::format("-{}", text);
 }
 
 inline std::string as_degrees(double degrees) { return fmt::format("{:.{}f}", degrees, degrees < 10.0 ? 2 : 1); }

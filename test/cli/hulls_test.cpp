@@ -46,6 +46,13 @@ TEST_F(Hulls, OfConvexBodiesChangeNothing) {
   EXPECT_GT(result.at("false_no").at("overlapping").at("of"), 300);
   EXPECT_NEAR(result.at("bias").at("p05"), 0.0, k_rounding);
   EXPECT_NEAR(result.at("bias").at("p95"), 0.0, k_rounding);
+  const auto text = run("--a " + box);
+  EXPECT_THAT(text.out, ::testing::HasSubstr("false yes, 1 % of the size or more apart   0 of "));
+  EXPECT_THAT(text.out, ::testing::HasSubstr(" poses (0 %)\n"));
+  // Rounding is no zero: a bias of 5e-17 is not printed as "0".
+  const double mean = result.at("bias").at("mean");
+  const std::string word = mean == 0.0 ? "0" : mean > 0.0 ? "<0.01" : ">-0.01";
+  EXPECT_THAT(text.out, ::testing::HasSubstr("distances, mean error                      " + word + " % of the size"));
 }
 
 TEST_F(Hulls, FillTheHoleOfATorus) {

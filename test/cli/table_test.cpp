@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/table_numbers.h"
 #include "bench/common/run_guarded.h"
 
 #include "run_program.h"
@@ -54,6 +55,18 @@ Json failed_row(const std::string& query, const std::string& algorithm, const st
   Json json = row(query, algorithm, kind, percent, 0.0);
   json.update({{"error_occurred", true}, {"error_message", "no such model"}});
   return json;
+}
+
+TEST(TableNumbers, ZeroIsExactlyZero) {
+  EXPECT_EQ(as_percent(0.0), "0");
+  EXPECT_EQ(as_percent(5.5e-17), "<0.01");
+  EXPECT_EQ(as_percent(0.032), "3.2");
+  EXPECT_EQ(as_signed_percent(0.0), "0");
+  EXPECT_EQ(as_signed_percent(-0.0), "0");
+  EXPECT_EQ(as_signed_percent(5.5e-17), "<0.01");
+  EXPECT_EQ(as_signed_percent(-5.5e-17), ">-0.01");
+  EXPECT_EQ(as_signed_percent(-0.032), "-3.2");
+  EXPECT_EQ(as_signed_percent(0.0012), "0.12");
 }
 
 class TableCommand : public test::ScratchFolder {
