@@ -14,6 +14,7 @@
 
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
+#include "bench/cli/table.h"
 #include "bench/common/json_text.h"
 #include "bench/common/run_guarded.h"
 
@@ -89,16 +90,22 @@ std::vector<Group> groups_of(const Differences& found) {
 void print_markdown(const Differences& found) {
   constexpr std::size_t k_most_groups = 12;
   const std::vector<Group> groups = groups_of(found);
-  fmt::print("{} answers changed in {} common rows; {} rows only before, {} only after; {} versions differ.\n",
-             found.changed_answers(), found.common_rows, found.only_before.size(), found.only_after.size(),
-             found.versions.size());
-  if (groups.empty()) return;
-  fmt::print("\n| rows | counter | how many | largest change | in |\n|---|---|---:|---|---|\n");
-  for (const Group& group : std::span(groups).first(std::min(groups.size(), k_most_groups))) {
-    fmt::print("| {} | {} | {} | {} | `{}` |\n", group.what, group.counter, group.rows, to_string(*group.largest),
-               group.largest->row);
+  Sheet sheet;
+  sheet.title = fmt::format(
+      "{} answers changed in {} common rows; {} rows only before, {} only after; {} versions differ",
+      found.changed_answers(), found.common_rows, found.only_before.size(), found.only_after.size(),
+      found.versions.size());
+  for (const char* const title : {"rows", "counter", "how many", "largest change", "in"}) {
+    sheet.columns.push_back({.group = "", .title = title, .left = true});
   }
-  if (groups.size() > k_most_groups) fmt::print("\nand {} more kinds of changes\n", groups.size() - k_most_groups);
+  for (const Group& group : std::span(groups).first(std::min(groups.size(), k_most_groups))) {
+    sheet.lines.push_back({group.what, group.counter, std::to_string(group.rows), to_string(*group.largest),
+                           group.largest->row});
+  }
+  if (groups.size() > k_most_groups) {
+    sheet.notes.push_back(fmt::format("and {} more kinds of changes", groups.size() - k_most_groups));
+  }
+  fmt::print("{}", groups.empty() ? fmt::format("### {}\n", sheet.title) : as_markdown(sheet));
 }
 
 Json side(const std::optional<results::Range>& range, const std::string& error) {

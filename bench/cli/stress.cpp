@@ -97,8 +97,13 @@ void run_stress_command(const Options& options) {
   Registry registry;
   register_all_algorithms(registry, {.external = options.external});
   add_generators(registry);
-  for (const std::string& name : options.fail_on) static_cast<void>(registry.find(name));
   const study::StressPlan plan = plan_of(options, registry);
+  for (const std::string& name : options.fail_on) {
+    const Algorithm& algorithm = registry.find(name);
+    if (std::ranges::find(plan.algorithms, &algorithm) == plan.algorithms.end()) {
+      throw BadArgument(fmt::format("--fail-on {}: is not among the algorithms that are asked (--algorithms)", name));
+    }
+  }
   // Bodies are new for every seed: in the user's cache they would stay for good. Here they are shared by algorithms and
   // by the shots of a case.
   std::filesystem::create_directories(options.cases);
@@ -185,7 +190,7 @@ void add_stress_command(CLI::App& app) {
                    "A program that answers the protocol (lib/sixdof/process/README.md)")
       ->type_name("NAME=COMMAND")
       ->allow_extra_args(false);
-  command->add_option("--fail-on", options->fail_on, "Exit code 3 if one of these fails, too")
+  command->add_option("--fail-on", options->fail_on, "Exit code 3 if one of these, which are asked, fails, too")
       ->type_name("ALGORITHM")
       ->delimiter(',')
       ->allow_extra_args(false);

@@ -162,6 +162,7 @@ void require_right_answers(const nlohmann::ordered_json& document) {
   for (const auto& entry : document.at("benchmarks")) {
     if (entry.value("run_type", "iteration") != "iteration") continue;
     const results::Row row = results::parse_row(entry);
+    if (row.fields.algorithm == "null") continue;  // answers with constants, by design
     std::vector<results::Fault> faults = results::own_faults(row);
     if (row.fields.approximates) {
       std::erase_if(faults, [](const results::Fault& f) { return f.counter == "mismatch" || f.counter == "misses"; });

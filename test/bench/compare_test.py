@@ -153,7 +153,7 @@ class Programs(unittest.TestCase):
         self.assertNotIn("version", done.stdout)
 
     def test_that_differ_show_versions_and_answers_before_times(self):
-        done = self.compare("--fail-on-answers", contender={
+        done = self.compare("--fail-on-answers", "--fail-above", "10", contender={
             "version": "1.1", "row": {"mismatch": 3.0, "error_max": 0.02, "nodes_tested": 20.0}})
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         lines = done.stdout.splitlines()
@@ -164,6 +164,11 @@ class Programs(unittest.TestCase):
         self.assertEqual(lines[3], f"work     {row}: nodes_tested 10 -> 20")
         self.assertEqual(lines[4], "answers: 2 counters of 1 rows changed")
         self.assertIn("Time", "".join(lines[5:]))
+
+    def test_answers_alone_need_one_run_of_each(self):
+        done = self.compare("--fail-on-answers")
+        self.assertEqual((done.returncode, done.stdout), (0, "answers: 0 counters of 1 rows changed\n"), done.stderr)
+        self.assertIn("repetition 1 of 1: contender", done.stderr)
 
     def test_changed_answers_alone_fail_nothing_that_was_not_asked(self):
         done = self.compare(contender={"row": {"mismatch": 3.0}})

@@ -111,6 +111,9 @@ TEST_F(Stress, RefusesWhatDoesNotExist) {
   EXPECT_EQ(family.exit_code, k_exit_error);
   EXPECT_THAT(family.err, HasSubstr("kissings: no such family"));
   EXPECT_EQ(run("stress --algorithms exacts").exit_code, k_exit_error);
+  const auto gate = run("stress --families kissing --algorithms exact --fail-on vps");
+  EXPECT_EQ(gate.exit_code, k_exit_error) << "a gate that asks nothing would always be open";
+  EXPECT_THAT(gate.err, HasSubstr("--fail-on vps: is not among the algorithms that are asked"));
   EXPECT_EQ(run("stress --effort great").exit_code, k_exit_usage);
 }
 
