@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -72,7 +74,43 @@ Json state_of(const Mesh& mesh) {
           {"hash", mesh.hash()}};
 }
 
-void print_json(const Mesh& before, const RepairedMesh& repaired) {
+/// The options that an attempt has and `tried` has not, as they are typed; empty for equal ones.
+std::string option_text(const RepairOptions& attempt, const RepairOptions& tried) {
+  std::string text;
+  if (attempt.weld != tried.weld) text += fmt::format("--weld {:g}", attempt.weld);
+  if (attempt.max_hole != tried.max_hole) {
+    text += fmt::format("{}--max-hole {}", text.empty() ? "" : " ", attempt.max_hole);
+  }
+  return text;
+}
+
+/// What is open in a result that is no solid, and what other options leave open.
+struct Advice {
+  std::optional<RepairGaps> gaps;
+  std::vector<RepairAttempt> attempts;
+
+  /// Options to add; empty if none was found.
+  std::string options(const RepairOptions& tried) const {
+    return attempts.back().solid ? option_text(attempts.back().options, tried) : "";
+  }
+};
+
+Json as_json(const Advice& advice, const RepairOptions& tried) {
+  auto attempts = Json::array();
+  for (const RepairAttempt& each : advice.attempts) {
+    attempts.push_back({{"options", option_text(each.options, tried)},
+                        {"border_edges", each.border_edges},
+                        {"solid", each.solid}});
+  }
+  Json json{{"tried", std::move(attempts)}, {"add", advice.options(tried)}};
+  if (advice.gaps) {
+    json["gaps"] = {{"edges", advice.gaps->edges}, {"median", advice.gaps->median}, {"largest", advice.gaps->largest}};
+  }
+  return json;
+}
+
+void print_json(const Mesh& before, const RepairedMesh& repaired, const std::optional<Advice>& advice,
+                const RepairOptions& tried) {
   Json repairs;
   for (std::size_t k = 0; k < k_repair_kinds; ++k) {
     const RepairsOfKind& of_kind = repaired.log.kinds[k];
@@ -80,12 +118,13 @@ void print_json(const Mesh& before, const RepairedMesh& repaired) {
     for (const Eigen::Vector3d& p : of_kind.first) places.push_back(coordinates(p));
     repairs[name_of(static_cast<RepairKind>(k)).key] = {{"count", of_kind.count}, {"first", std::move(places)}};
   }
-  const Json json{{"forgiven", text_of(before.repairs().forgiven)},
-                  {"before", state_of(before)},
-                  {"after", state_of(repaired.mesh)},
-                  {"repairs", std::move(repairs)},
-                  {"passes", repaired.passes},
-                  {"converged", repaired.converged}};
+  Json json{{"forgiven", text_of(before.repairs().forgiven)},
+            {"before", state_of(before)},
+            {"after", state_of(repaired.mesh)},
+            {"repairs", std::move(repairs)},
+            {"passes", repaired.passes},
+            {"converged", repaired.converged}};
+  if (advice) json["advice"] = as_json(*advice, tried);
   fmt::print("{}\n", json_text(json));
 }
 
@@ -113,21 +152,18 @@ void print_text(const Mesh& before, const RepairedMesh& repaired) {
   if (!repaired.converged) fmt::print("{:<8} repairing the result again may change more\n", "");
 }
 
-/// The option that an attempt has and `tried` has not, as it is typed.
-std::string option_text(const RepairOptions& attempt, const RepairOptions& tried) {
-  std::string text;
-  if (attempt.weld != tried.weld) text += fmt::format(" --weld {:g}", attempt.weld);
-  if (attempt.max_hole != tried.max_hole) text += fmt::format(" --max-hole {}", attempt.max_hole);
-  return text.empty() ? " as it is" : text;
-}
-
-void print_advice(const Mesh& mesh, const RepairOptions& tried) {
-  const std::vector<RepairAttempt> attempts = try_other_repairs(mesh, tried);
-  for (const RepairAttempt& each : attempts) {
-    fmt::print("{:<8}{}: {}\n", "tried", option_text(each.options, tried),
+void print_text(const Advice& advice, const RepairOptions& tried) {
+  if (advice.gaps) {
+    const auto& [edges, median, largest] = *advice.gaps;
+    fmt::print("{:<8} {} open edges; their middles are {:.2g} of the diagonal (median; largest {:.2g}) from the next\n",
+               "gaps", edges, median, largest);
+  }
+  for (const RepairAttempt& each : advice.attempts) {
+    const std::string options = option_text(each.options, tried);
+    fmt::print("{:<8} {}: {}\n", "tried", options.empty() ? "as it is" : options,
                each.solid ? "a solid" : fmt::format("no solid, {} open edges", each.border_edges));
   }
-  if (attempts.back().solid) fmt::print("{:<8} add{}\n", "advice", option_text(attempts.back().options, tried));
+  if (advice.attempts.back().solid) fmt::print("{:<8} add {}\n", "advice", advice.options(tried));
 }
 
 void repair(const Arguments& arguments) {
@@ -138,9 +174,17 @@ void repair(const Arguments& arguments) {
   const Mesh mesh = load_model(arguments.input, {.drop_faces_not_finite = true});
   const RepairedMesh repaired = repair_mesh(mesh, arguments.options);
   save_mesh(repaired.mesh, arguments.output);
-  arguments.json ? print_json(mesh, repaired) : print_text(mesh, repaired);
+  std::optional<Advice> advice;
   if (!repaired.mesh.solid()) {
-    if (!arguments.json) print_advice(mesh, arguments.options);
+    advice = Advice{measure_gaps(repaired.mesh), try_other_repairs(mesh, arguments.options)};
+  }
+  if (arguments.json) {
+    print_json(mesh, repaired, advice, arguments.options);
+  } else {
+    print_text(mesh, repaired);
+    if (advice) print_text(*advice, arguments.options);
+  }
+  if (advice) {
     throw DefectsFound(
         fmt::format("{}: written, but still no solid: {}", arguments.output, repaired.mesh.why_not_solid()));
   }

@@ -131,11 +131,18 @@ TEST_F(Repair, SaysWhatIsLeft) {
   EXPECT_EQ(open.exit_code, k_exit_defects);
   EXPECT_EQ(open.err, "sixdof: open.ply: written, but still no solid: not closed: 4 border edges\n");
   EXPECT_THAT(open.out, HasSubstr("nothing to repair"));
+  EXPECT_THAT(open.out, HasSubstr("gaps     4 open edges; their middles are 0.29 of the diagonal (median; largest "
+                                  "0.29) from the next\n"));
+  EXPECT_THAT(open.out, HasSubstr("tried    as it is: no solid, 4 open edges\n"));
+  EXPECT_THAT(open.out, HasSubstr("advice   add --max-hole 128\n"));
   EXPECT_EQ(json_of("info open.ply").at("border_edges"), 4);
   EXPECT_EQ(run("repair tray.off -o closed.ply --max-hole 4").exit_code, 0);
   EXPECT_EQ(json_of("info closed.ply").at("volume"), 1.0);
   const auto json = json_of("repair tray.off -o open.ply --max-hole 0", k_exit_defects);
   EXPECT_EQ(json.at("after").at("why_not_solid"), "not closed: 4 border edges");
+  EXPECT_EQ(json.at("advice").at("add"), "--max-hole 128");
+  EXPECT_EQ(json.at("advice").at("gaps").at("edges"), 4);
+  EXPECT_EQ(json.at("advice").at("tried").front().at("options"), "");
 }
 
 TEST_F(Repair, RefusesInWordsAndWritesNothing) {

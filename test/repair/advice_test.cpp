@@ -17,7 +17,13 @@ TEST(RepairAdvice, FindsTheToleranceOfWideGaps) {
   damage::split_vertices(soup, generator, 200, noise);
   const Mesh damaged = soup.build();
   const RepairOptions usual{.max_hole = 0};  // small holes would be filled instead
-  ASSERT_FALSE(repair_mesh(damaged, usual).mesh.solid());
+  const Mesh left = repair_mesh(damaged, usual).mesh;
+  ASSERT_FALSE(left.solid());
+  const auto gaps = measure_gaps(left);
+  ASSERT_TRUE(gaps);
+  EXPECT_EQ(gaps->edges, left.topology().border_edges);
+  EXPECT_GT(gaps->median, 1e-7);
+  EXPECT_LT(gaps->median, 3.5e-5);
   const std::vector<RepairAttempt> attempts = try_other_repairs(damaged, usual);
   ASSERT_TRUE(attempts.back().solid);
   EXPECT_GE(attempts.back().options.weld, 1e-5);
@@ -36,9 +42,23 @@ TEST(RepairAdvice, FindsTheSizeOfALargeHole) {
   });
   const Mesh open = soup.build();
   ASSERT_GT(open.topology().border_edges, RepairOptions::k_default_max_hole);
+  EXPECT_GT(measure_gaps(open)->median, 1e-3) << "a hole, not a gap";
   const std::vector<RepairAttempt> attempts = try_other_repairs(open, {});
   ASSERT_TRUE(attempts.back().solid);
   EXPECT_GT(attempts.back().options.max_hole, RepairOptions::k_default_max_hole);
+}
+
+TEST(RepairAdvice, MeasuresGapsFromTheMiddlesOfEdges) {
+  // Two equal triangles, one above the other.
+  constexpr double k_gap = 1e-3;
+  const Mesh sheets = Mesh::build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, k_gap}, {1, 0, k_gap}, {0, 1, k_gap}},
+                                  {{0, 1, 2}, {3, 4, 5}}, "sheets");
+  const auto gaps = measure_gaps(sheets);
+  ASSERT_TRUE(gaps);
+  EXPECT_EQ(gaps->edges, 6u);
+  EXPECT_NEAR(gaps->median * sheets.diagonal(), k_gap, 1e-12);
+  EXPECT_NEAR(gaps->largest * sheets.diagonal(), k_gap, 1e-12);
+  EXPECT_FALSE(measure_gaps(shapes::box({1.0, 1.0, 1.0}))) << "closed";
 }
 
 TEST(RepairAdvice, SaysThatNothingHelps) {

@@ -30,6 +30,15 @@ class Neighbours {
     return numbers;
   }
 
+  /// Numbers of the `count` chosen vertices closest to `p`, or of all if there are fewer, the closest first.
+  std::vector<std::uint32_t> nearest(const Eigen::Vector3d& p, std::size_t count) const {
+    std::vector<std::uint32_t> numbers(count);
+    std::vector<double> squared(count);
+    numbers.resize(tree_.knnSearch(p.data(), count, numbers.data(), squared.data()));
+    for (std::uint32_t& i : numbers) i = cloud_.chosen[i];
+    return numbers;
+  }
+
  private:
   struct Cloud {
     std::span<const Eigen::Vector3d> vertices;

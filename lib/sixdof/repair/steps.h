@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -86,6 +87,21 @@ inline std::uint32_t apex_of(const Side& s, const std::vector<Triangle>& triangl
 
 /// The sides of edges with one triangle, in the order of sorted_sides().
 std::vector<Side> border_sides(std::span<const Side> sorted);
+
+struct Segment {
+  Eigen::Vector3d from, to;
+
+  double length() const { return (to - from).norm(); }
+  /// Parameter of the closest point of the line: 0 at the start, 1 at the end.
+  double parameter(const Eigen::Vector3d& p) const { return (p - from).dot(to - from) / (to - from).squaredNorm(); }
+  /// Distance of the segment.
+  double distance(const Eigen::Vector3d& p) const {
+    return (from + std::clamp(parameter(p), 0.0, 1.0) * (to - from) - p).norm();
+  }
+  bool holds_inside(const Eigen::Vector3d& p, double tolerance) const {
+    return distance(p) <= tolerance && (p - from).norm() > tolerance && (p - to).norm() > tolerance;
+  }
+};
 
 /// Distance within which positions cannot be told apart: a few roundings of the largest coordinate.
 inline double rounding_at(const Eigen::Vector3d& p) {

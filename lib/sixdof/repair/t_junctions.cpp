@@ -8,21 +8,6 @@
 namespace sixdof::repairing {
 namespace {
 
-struct Segment {
-  Eigen::Vector3d from, to;
-
-  double length() const { return (to - from).norm(); }
-  /// Parameter of the closest point of the line: 0 at the start, 1 at the end.
-  double parameter(const Eigen::Vector3d& p) const { return (p - from).dot(to - from) / (to - from).squaredNorm(); }
-  /// Distance of the segment.
-  double distance(const Eigen::Vector3d& p) const {
-    return (from + std::clamp(parameter(p), 0.0, 1.0) * (to - from) - p).norm();
-  }
-  bool holds_inside(const Eigen::Vector3d& p, double tolerance) const {
-    return distance(p) <= tolerance && (p - from).norm() > tolerance && (p - to).norm() > tolerance;
-  }
-};
-
 class Round {
  public:
   Round(RawMesh& surface, double tolerance, RepairLog& log)
