@@ -292,7 +292,11 @@ struct QueryRow {
     const auto count = [&](const std::string& counter, auto value) {
       state.counters[counter] = static_cast<double>(value);
     };
+    count("p10_ns", latency.p10);
+    count("p25_ns", latency.p25);
     count("p50_ns", latency.p50);
+    count("p75_ns", latency.p75);
+    count("p90_ns", latency.p90);
     if (latency.p99) count("p99_ns", *latency.p99);
     if (latency.p999) count("p999_ns", *latency.p999);
     count("max_ns", latency.max);

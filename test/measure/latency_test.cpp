@@ -20,7 +20,11 @@ TEST(LatencyOf, QuantilesAreNearestRanks) {
   std::shuffle(times.begin(), times.end(), random);
   const Latency all = latency(times);
   EXPECT_EQ(all.mean, 500250.0);
+  EXPECT_EQ(all.p10, 100000.0);
+  EXPECT_EQ(all.p25, 250000.0);
   EXPECT_EQ(all.p50, 500000.0);
+  EXPECT_EQ(all.p75, 750000.0);
+  EXPECT_EQ(all.p90, 900000.0);
   EXPECT_EQ(all.p99, 990000.0);
   EXPECT_EQ(all.p999, 999000.0);
   EXPECT_EQ(all.max, 1e6);

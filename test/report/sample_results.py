@@ -17,7 +17,7 @@ def outliers(algorithm, place):
 def row(query, algorithm, pair, kind, percent, cpu_ns, **values):
     return {"name": f"{query}/algorithm:{algorithm}/pair:{pair}/{kind}:{percent}", "run_type": "iteration", "cpu_time": cpu_ns,
             "real_time": cpu_ns, "time_unit": "ns", "configurations": 64, "judged": 64, "failed": 0, "mismatch": 0,
-            "p50_ns": cpu_ns, "p99_ns": 3 * cpu_ns, "max_ns": 9 * cpu_ns, "reachable": 1000 + len(algorithm), **values,
+            "p10_ns": 0.7 * cpu_ns, "p25_ns": 0.9 * cpu_ns, "p50_ns": cpu_ns, "p75_ns": 1.2 * cpu_ns, "p90_ns": 1.5 * cpu_ns, "p99_ns": 3 * cpu_ns, "max_ns": 9 * cpu_ns, "reachable": 1000 + len(algorithm), **values,
             "outliers": outliers(algorithm, percent),
             "sixdof": {"query": query, "algorithm": algorithm, "settings": {"size": 1}, "pair": pair, "order": "random",
                        "cache": "warm", "bucket": {"kind": kind, "percent": percent}}}

@@ -26,7 +26,8 @@ using ::testing::HasSubstr;
 
 TEST(TimesTable, LineForEveryStatistic) {
   const Results results =
-      test::results_of({test::row("distance", "exact", "bunny", "distance", 5.0, 2000.0, {{"p999_ns", 7000.0}})});
+      test::results_of({test::row("distance", "exact", "bunny", "distance", 5.0, 2000.0,
+                                  {{"p999_ns", 7000.0}, {"p10_ns", 1500.0}, {"p90_ns", 2500.0}})});
   const DataTable table = times_table(results, row_groups(results));
   const auto mean = lines_with(table, {{"statistic", "mean"}});
   ASSERT_EQ(mean.size(), 1u);
@@ -34,6 +35,8 @@ TEST(TimesTable, LineForEveryStatistic) {
   EXPECT_DOUBLE_EQ(number_in(table, mean[0], "low_us"), 1.8);
   EXPECT_DOUBLE_EQ(number_in(table, mean[0], "high_us"), 2.2);
   EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "median"}}).at(0), "time_us"), 1.8);
+  EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "10th percentile"}}).at(0), "time_us"), 1.5);
+  EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "90th percentile"}}).at(0), "time_us"), 2.5);
   EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "longest"}}).at(0), "time_us"), 18.0);
   EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "99.9th percentile"}}).at(0), "time_us"), 7.0);
   EXPECT_EQ(number_in(table, mean[0], "repetitions"), 1.0);

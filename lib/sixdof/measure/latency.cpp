@@ -21,7 +21,11 @@ Latency latency(std::span<const double> times_ns) {
   // In permille and integers, because 0.99 * 100 is not 99 in binary.
   const auto quantile = [&](std::size_t permille) { return sorted[(sorted.size() * permille + 999) / 1000 - 1]; };
   result.mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / count;
+  result.p10 = quantile(100);
+  result.p25 = quantile(250);
   result.p50 = quantile(500);
+  result.p75 = quantile(750);
+  result.p90 = quantile(900);
   if (sorted.size() >= k_fewest_for_p99) result.p99 = quantile(990);
   if (sorted.size() >= k_fewest_for_p999) result.p999 = quantile(999);
   result.max = sorted.back();

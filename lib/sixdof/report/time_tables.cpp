@@ -22,7 +22,9 @@ struct Statistic {
 };
 constexpr const char* k_slowest = "max_least_ns";
 constexpr std::array k_statistics{
-    Statistic{"median", "p50_ns", k_slowest}, Statistic{"99th percentile", "p99_ns", k_slowest},
+    Statistic{"10th percentile", "p10_ns", k_slowest},    Statistic{"25th percentile", "p25_ns", k_slowest},
+    Statistic{"median", "p50_ns", k_slowest},             Statistic{"75th percentile", "p75_ns", k_slowest},
+    Statistic{"90th percentile", "p90_ns", k_slowest},    Statistic{"99th percentile", "p99_ns", k_slowest},
     Statistic{"99.9th percentile", "p999_ns", k_slowest}, Statistic{"longest", "max_ns", "max_ns"}};
 
 struct TimeLine {
