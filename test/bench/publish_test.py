@@ -5,6 +5,7 @@ usage: publish_test.py SIXDOF
 
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,10 +31,12 @@ class Marks(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         root = pathlib.Path(folder.name)
-        for name, path in (("ROOT", root), ("PUBLISHED", root / "published"), ("FACTS", root / "published/parts.json")):
+        for name, path in (("ROOT", root), ("PUBLISHED", root / "published"), ("FACTS", root / "published/parts.json"),
+                           ("DRAWINGS", root / "drawings.json")):
             self.addCleanup(setattr, documents, name, getattr(documents, name))
             setattr(documents, name, path)
         (root / "published").mkdir()
+        documents.DRAWINGS.write_text("{}")
         self.publish(ROW)
         documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "two": {"commit": "abc"}}))
         self.file = root / "README.md"
@@ -73,6 +76,16 @@ class Marks(unittest.TestCase):
         text = self.fill("<!--= sixdof table rows.json --markdown | grep exact -->\n<!--=-->")
         self.assertIn("| 05 % |", text)
         self.assertIn("1.25 |", text)
+        self.assertEqual(documents.check(SIXDOF), 0)
+        self.publish(ROW | {"cpu_time": 2.5})
+        self.assertEqual(documents.check(SIXDOF), 1)
+
+    @unittest.skipUnless(shutil.which("node"), "figures are drawn by Node.js")
+    def test_a_drawing(self):
+        documents.DRAWINGS.write_text(json.dumps({"time.svg": ["time_distance", "rows.json"], "other.svg": ["time_distance", "gone/rows.json"]}))
+        self.fill("")
+        self.assertIn("<svg", (documents.PUBLISHED / "time.svg").read_text())
+        self.assertFalse((documents.PUBLISHED / "other.svg").exists(), "its part is not published")
         self.assertEqual(documents.check(SIXDOF), 0)
         self.publish(ROW | {"cpu_time": 2.5})
         self.assertEqual(documents.check(SIXDOF), 1)
