@@ -104,7 +104,7 @@ def parts():
         Part("stress", "hard cases: who breaks, on what",
              [Step("stress.txt", ["sixdof", "stress", "--cases", "{folder}/stress-cases"], 1.5, prints=True)]),
         Part("scenarios", "force and torque along the paper's paths, default settings",
-             [rows("scenarios.json", 4, "--benchmark_filter=^scenario/")]),
+             [rows("scenarios.json", 4, "--isolate=third-party", "--benchmark_filter=^scenario/")]),
         Part("precision", "run time against error on the elephants",
              [Step("precision.json", ["sixdof", "precision", "--a", "elephant", "--b", "elephant", "--budget", "4min", "-o",
                                       "{out}"], 4)]),
@@ -123,7 +123,8 @@ def parts():
         Part("scenes", "scenes of 1,000 and 100,000 bodies", scene_steps()),
         Part("growth", "growth with the number of triangles", object_steps("growth", 10)),
         Part("pairs", "every algorithm on four pairs",
-             [rows("pairs.json", 15, "--suite", "all-algorithms", "--sample", "200", "--budget", "900")]),
+             [rows("pairs.json", 15, "--isolate=third-party", "--suite", "all-algorithms", "--sample", "200", "--budget",
+                   "900")]),
         Part("collection", "every algorithm on the objects of the collection",
              object_steps("collection", 25, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10")),
     ]
