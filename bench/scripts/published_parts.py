@@ -9,6 +9,8 @@ import dataclasses
 import json
 import pathlib
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
 # Counters of rows that tables and figures show. All others, and the worst configurations of rows, stay in the run.
 KEPT = ["name", "run_name", "run_type", "sixdof", "error_occurred", "error_message", "real_time", "cpu_time", "time_unit",
         "cpu_time_low", "cpu_time_high", "configurations", "judged", "failed", "crashed", "timed_out", "out_of_memory",
@@ -183,12 +185,13 @@ def as_text(document):
 
 
 def write_short(part, folder: pathlib.Path, published: pathlib.Path, write):
-    """Writes published/PART/FILE of every result of a part. @param write (file, text) -> None, whole or not at all"""
+    """Writes published/PART/FILE of every result of a part, with paths from the root of this repository.
+    @param write (file, text) -> None, whole or not at all"""
     for step in part.steps:
         file = folder / step.file
         if file.suffix not in (".json", ".txt"):
             continue  # a scene, which a later step reads
-        text = file.read_text(encoding="utf-8")
+        text = file.read_text(encoding="utf-8").replace(f"{ROOT}/", "")
         target = published / part.name / file.name
         target.parent.mkdir(parents=True, exist_ok=True)
         write(target, as_text(compact(json.loads(text))) if file.suffix == ".json" else text)

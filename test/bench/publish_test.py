@@ -114,6 +114,17 @@ class Short(unittest.TestCase):
         self.assertEqual(short["benchmarks"], [ROW | {"cpu_time": 1.235}])
         self.assertEqual(json.loads(parts.as_text(short)), short)
 
+    def test_paths_are_those_of_the_repository(self):
+        part = parts.Part("one", "", [parts.Step("one.txt", [], 1.0, prints=True), parts.Step("one.json", [], 1.0)])
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "one.txt").write_text(f"sixdof query --a {parts.ROOT}/results/case.off\n")
+            (folder / "one.json").write_text(json.dumps({"context": {"arguments": f"--set {parts.ROOT}/fixtures/a.h5"}, "benchmarks": []}))
+            written = {}
+            parts.write_short(part, folder, folder, lambda file, text: written.update({file.name: text}))
+        self.assertEqual(written["one.txt"], "sixdof query --a results/case.off\n")
+        self.assertIn('"--set fixtures/a.h5"', written["one.json"])
+
     def test_commands_are_those_that_a_user_types(self):
         for part in parts.parts():
             for command in parts.commands_of(part):
