@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/oracle/solid.h>
 #include <sixdof/results/results.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
@@ -33,10 +34,10 @@ constexpr std::size_t k_queries = 2100;
 constexpr unsigned k_most_threads = 64;
 
 constexpr const char* k_details =
-    R"(Asks every algorithm the same poses of the pair: apart, near contact (0.01 to 0.3 % of A's diagonal, apart and
-pushed in) and overlapping. Answers are compared with those of exact. Then every query is timed alone, once, as it
-comes: the deadline is kept if at most 0.1 % of the queries are late. Beside them stands how many waits of a loop that
-asks nothing were late on this machine; nothing is subtracted.
+    R"(Asks every algorithm the same poses of the pair: apart, near contact (0.01 to 0.3 % of the smaller box's
+diagonal, apart and pushed in) and overlapping. Answers are compared with those of exact. Then every query is timed
+alone, once, as it comes: the deadline is kept if at most 0.1 % of the queries are late. Beside them stands how many
+waits of a loop that asks nothing were late on this machine; nothing is subtracted.
 
 An algorithm that gives one wrong yes/no is unsafe and is not taken. Right answers come before approximations. Of
 equally right algorithms the fastest is taken. Where too few poses could be judged, there is no verdict. "0 of 2,100
@@ -109,6 +110,16 @@ std::vector<study::SweptValues> exact_settings(const std::vector<const Algorithm
   return fixed;
 }
 
+/// That nothing which was measured can be taken says nothing of what did not fit into the budget.
+std::string unmeasured(const results::Choice& choice) {
+  const auto count = std::ranges::count_if(choice.candidates, [](const results::Candidate& each) {
+    return each.standing == results::Standing::left_out && each.reason.find("budget") != std::string::npos;
+  });
+  if (choice.taken() != nullptr || count == 0) return {};
+  return fmt::format("nothing that was measured can be taken, and {} of {} settings did not fit into the budget", count,
+                     choice.candidates.size());
+}
+
 /// One pair with its algorithms, asked one question after the other.
 class Recommendation {
  public:
@@ -149,6 +160,20 @@ class Recommendation {
   double left_s() const {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
     return budget_s_ - spent.count();
+  }
+
+  /// Why the pair cannot be asked, whatever the algorithm; empty if it can.
+  std::string why_impossible(QueryKind question) {
+    if (question != QueryKind::respond) return {};
+    for (const std::string& key : {pair().a, pair().b}) {
+      const Mesh& mesh = pairs_->cache().mesh(key);
+      if (mesh.solid()) continue;
+      return fmt::format("forces need solid bodies; {}: {}{}", mesh.name(), mesh.why_not_solid(), k_repair_hint);
+    }
+    if (std::ranges::any_of(pair().buckets, [&](BucketKey key) { return bench::suits(key, question); })) return {};
+    std::string why = "there are no poses of known overlap volume, which forces need";
+    if (!options_.study.sets.empty()) why += " (sixdof generate --volumes makes some)";
+    return why;
   }
 
   /// Those of --algorithms that answer the question; where a single question is asked, all of them.
@@ -192,10 +217,11 @@ class Recommendation {
   Verdict verdict_on(QueryKind question, const std::string& metric, double share_s) {
     const auto begun = std::chrono::steady_clock::now();
     Verdict verdict{.question = question, .metric = metric};
+    verdict.choice.missing = why_impossible(question);
     if (!options_.study.algorithms.empty() && names_that_answer(question).empty()) {
       verdict.choice.missing = "none of the chosen algorithms answers it";
-      return verdict;
     }
+    if (!verdict.choice.missing.empty()) return verdict;
     StatusLine status;
     status.show(fmt::format("{}: truth", words_of(question)));
     study::StudySample sample;
@@ -228,6 +254,7 @@ class Recommendation {
     verdict.rows = study.rows();
     for (const study::PrecisionPoint& point : study.points()) verdict.assignments.push_back(point.sweep.assignments);
     verdict.choice = results::choose(verdict.rows, std::string(to_string(question)), metric);
+    if (verdict.choice.missing.empty()) verdict.choice.missing = unmeasured(verdict.choice);
     return verdict;
   }
 

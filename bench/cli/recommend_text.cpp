@@ -33,7 +33,7 @@ std::string answers_text(const Verdict& verdict, const Candidate& candidate) {
     text += fmt::format("0 of {:.0f} answers wrong (at most {:.2g} %, with 95 % confidence)", judged,
                         100.0 * results::most_wrong(judged));
   } else if (verdict.question == QueryKind::distance) {
-    text += fmt::format("distances off by at most {:.2g} % of the size", 100.0 * value("error_max"));
+    text += fmt::format("distances off by at most {:.2g} % of the diagonal of A's box", 100.0 * value("error_max"));
   } else if (row.value("gamma_F_deg").value_or(1.0) <= results::k_rounding) {
     text += fmt::format("the exact force at all {:.0f} poses", judged);
   } else {
@@ -50,7 +50,7 @@ std::string time_text(const Verdict& verdict, const Candidate& candidate) {
   std::string text = fmt::format("{} on average, {:.0f} of {:.0f} queries late",
                                  duration_text(1e-9 * candidate.mean_ns.value), candidate.late, candidate.timed);
   const double idle = row.count("idle_late");
-  if (candidate.late > 0.0 || idle > 0.0) text += fmt::format(" (of a loop that only waits: {:.0f})", idle);
+  if (candidate.late > 0.0 || idle > 0.0) text += fmt::format(" (of a loop that asks nothing: {:.0f})", idle);
   return text;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -42,11 +43,15 @@ const char* volume_grid(const Mesh& a, const Mesh& b) {
 
 bool are_solids(const Mesh& a, const Mesh& b) { return a.solid() && b.solid(); }
 
-/// The volumes in percent of A, in which buckets are named, with six significant digits.
+/// The volumes in percent of A, rounded to the decimals that a bucket may have; none where all would be zero.
 std::vector<double> volume_percents(const Mesh& a, const Mesh& b) {
-  std::vector<double> percents;
+  const double steps = std::pow(10.0, BucketKey::k_max_decimals);
   const double smaller = std::min(1.0, b.volume() / a.volume());
-  for (const double percent : k_volumes) percents.push_back(std::stod(fmt::format("{:.6g}", percent * smaller)));
+  std::vector<double> percents;
+  for (const double percent : k_volumes) {
+    const double rounded = std::round(steps * percent * smaller) / steps;
+    if (rounded > 0.0 && (percents.empty() || rounded > percents.back())) percents.push_back(rounded);
+  }
   return percents;
 }
 
@@ -91,6 +96,13 @@ bool has_volumes(const Mesh& a, const Mesh& b, std::string_view program) {
   for (const Mesh* mesh : {&a, &b}) {
     if (mesh->solid()) continue;
     print_message(program, fmt::format("no volumes: {} is no solid ({})", mesh->name(), mesh->why_not_solid()));
+    return false;
+  }
+  if (volume_percents(a, b).empty()) {
+    print_message(program,
+                  fmt::format("no volumes: {} has {:.2g} times the volume of {}, too little to be found; exchanging A "
+                              "and B may help",
+                              b.name(), b.volume() / a.volume(), a.name()));
     return false;
   }
   return true;

@@ -16,20 +16,27 @@ A mark in a Markdown file names where its text comes from:
 Files may have the wild cards of a shell. A part that is not published yet leaves "(not measured)".
 `KEY[NAME=VALUE,...]` takes the one element of a list whose members are these. A text that begins with a line break stands on
 lines of its own; `fenced` in front of a command puts it into a code block.
+
+bench/scripts/drawings.json names the figures of bench/published, each with the figure, files and options of `sixdof report`.
 """
 
 import json
 import pathlib
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "fixtures"))
+from whole_file import write_whole  # noqa: E402
+
 PUBLISHED = ROOT / "bench/published"
 FACTS = PUBLISHED / "parts.json"
 FIGURES = ROOT / "bench/scripts/figures.json"  # {name: [FILE, PATH, FORMAT]}
+DRAWINGS = ROOT / "bench/scripts/drawings.json"  # {SVG: [FIGURE, FILES AND OPTIONS...]}
 PROGRAM = ROOT / "build/release/bin/sixdof"
 MARK = re.compile(r"<!--= (?P<what>.*?) -->(?P<text>.*?)<!--=-->", re.S)
 STEP = re.compile(r"(?P<key>[^.\[\]]+)(\[(?P<chosen>[^\]]*)\])?\.?")
@@ -176,6 +183,25 @@ def filled(file, program):
     return MARK.sub(fill, file.read_text(encoding="utf-8"))
 
 
+def drawing(figure, words, program):
+    """An SVG of `sixdof report`. @raises Stale, Missing"""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([program, "report", *expanded(words), "--svg", folder], cwd=PUBLISHED, capture_output=True,
+                              text=True, check=False)
+        if done.returncode:
+            raise Stale(f"sixdof report: {done.stderr.strip()}")
+        return (pathlib.Path(folder) / f"{figure}.svg").read_text(encoding="utf-8")
+
+
+def drawings(program):
+    """(file in bench/published, its text) of every figure whose data are published. @raises Stale"""
+    for name, (figure, *words) in json.loads(DRAWINGS.read_text(encoding="utf-8")).items():
+        try:
+            yield PUBLISHED / name, drawing(figure, words, program)
+        except Missing:
+            continue
+
+
 def one_commit():
     """@raises Stale if published parts are of several commits"""
     commits = {part["commit"] for part in facts().values()}
@@ -191,6 +217,8 @@ def write(program=PROGRAM):
         if text != file.read_text(encoding="utf-8"):
             file.write_text(text, encoding="utf-8")
             print(f"{file.relative_to(ROOT)}: written")
+    for file, text in drawings(program):
+        write_whole(file, text)
     return 0
 
 
@@ -205,4 +233,8 @@ def check(program=PROGRAM):
                 stale += 1
                 print(f"{file.relative_to(ROOT)}: <!--= {mark['what']} -->: says {mark['text'][:200]!r}, "
                       f"published is {now[:200]!r}", file=sys.stderr)
+    for file, text in drawings(program) if shutil.which("node") else []:  # Figures are drawn by Node.js.
+        if not file.exists() or file.read_text(encoding="utf-8") != text:
+            stale += 1
+            print(f"{file.relative_to(ROOT)}: another figure than `sixdof report` draws now", file=sys.stderr)
     return 1 if stale else 0

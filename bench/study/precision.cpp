@@ -180,7 +180,7 @@ void PrecisionStudy::measure(PrecisionPoint& point) {
     check_first_queries(query);
     point.errors = measure_errors(query, sample_, plan_.seed);
     if (point.errors.answered.empty()) {
-      throw Error(fmt::format("no configuration has an answer: {}", point.errors.first_failure));
+      throw Error(fmt::format("no pose has an answer: {}", point.errors.first_failure));
     }
     if (plan_.single_queries) {
       point.single = time_single_queries(query, sample_.question, timed_poses(point), plan_.deadline_ns);
@@ -189,6 +189,8 @@ void PrecisionStudy::measure(PrecisionPoint& point) {
     time_once(point);
   } catch (const Interrupted&) {
     throw;
+  } catch (const bench::NeedsSolid& e) {
+    point.left_out = fmt::format("needs solid bodies: {}", e.what());
   } catch (const std::exception& e) {
     point.left_out = e.what();
   }

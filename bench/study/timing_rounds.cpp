@@ -24,7 +24,7 @@ std::pair<double, double> time_there(RemoteQuery& remote, std::span<const Pose> 
   for (std::size_t passes = 1; wall_ns < 1e9 * TimingRounds::k_shortest_s;) {
     const auto timed = remote.time_together<Answer>(poses, passes);
     const std::size_t answered = poses.size() - std::min(poses.size(), timed.failed.size());
-    if (answered == 0) throw Error("no configuration has an answer in the timed loop");
+    if (answered == 0) throw Error("no pose has an answer in the timed loop");
     cpu_ns += timed.cpu_ns;
     wall_ns += timed.wall_ns;
     queries += static_cast<double>(passes * answered);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <span>
 #include <vector>
@@ -17,10 +18,12 @@ namespace {
 
 using bench::QueryKind;
 
-/// Gaps in A's diagonals; below zero B is pushed in.
+/// Gaps in diagonals of the smaller body; below zero B is pushed in.
 constexpr double k_contact_gaps[] = {1e-4, -1e-4, 1e-3, -1e-3, 3e-3, -3e-3};
 constexpr double k_small_gaps[] = {1e-4, 1e-3, 3e-3};
 constexpr double k_overlap_gaps[] = {-0.01, -0.02, -0.05};
+constexpr const char* k_near_words = "0.01 to 0.3 % of the smaller box's diagonal";
+constexpr const char* k_pushed_words = "pushed in by 1 to 5 % of the smaller box's diagonal";
 
 struct Part {
   std::vector<Pose> poses;
@@ -43,7 +46,8 @@ bool is_overlap(BucketKey key) { return key.kind == BucketKind::volume && key.pe
 /// Moves B along the shortest way between the surfaces.
 class Mover {
  public:
-  Mover(const Mesh& a, const Mesh& b) : oracle_(a, b), query_(oracle_), diagonal_(a.diagonal()) {}
+  Mover(const Mesh& a, const Mesh& b)
+      : oracle_(a, b), query_(oracle_), diagonal_(a.diagonal()), unit_(std::min(a.diagonal(), b.diagonal())) {}
 
   /// Adds the pose at which the gap is left, if the truth there is on the meant side.
   void add(const Pose& X_AB, double gap, Part& part) {
@@ -51,7 +55,7 @@ class Mover {
     if (!(far.distance > 0.0)) return;
     const Eigen::Vector3d outwards = (far.witness_b - far.witness_a) / far.distance;
     Pose moved = X_AB;
-    moved.t -= (far.distance - gap * diagonal_) * outwards;
+    moved.t -= (far.distance - gap * unit_) * outwards;
     const bool touches = query_.collide(moved);
     if (touches == (gap > 0.0)) return;
     const Nearness nearness = std::abs(gap) < k_near ? Nearness::near : Nearness::overlapping;
@@ -67,7 +71,8 @@ class Mover {
  private:
   const DistanceOracle oracle_;
   DistanceQuery query_;
-  const double diagonal_;
+  const double diagonal_;  ///< Of A, in which distances are judged.
+  const double unit_;      ///< Of the gaps.
 };
 
 /// From poses of the bucket with the smallest distance, one gap after the other.
@@ -82,8 +87,9 @@ Part moved(bench::PairCache& cache, const CatalogueEntry& pair, std::span<const 
   const std::vector<Pose>& poses = cache.bucket(pair, *found).poses;
   Mover mover(cache.mesh(pair.a), cache.mesh(pair.b));
   for (std::size_t i = 0; i < poses.size() * gaps.size() && part.poses.size() < count; ++i) {
-    // Every pose with every gap, neighbours in the order with different ones of both.
-    mover.add(poses[i % poses.size()], gaps[(i + i / poses.size()) % gaps.size()], part);
+    // Every pose with every gap once, neighbours in the order with different ones of both.
+    const std::size_t place = i % poses.size(), round = i / poses.size();
+    mover.add(poses[place], gaps[(place + round) % gaps.size()], part);
   }
   return part;
 }
@@ -103,11 +109,32 @@ StudySample interleaved(QueryKind question, const std::vector<BucketKey>& bucket
   return sample;
 }
 
+/// "1 to 20 %" of the chosen ones, "5 %" of a single one.
+std::string percents_text(const std::vector<BucketKey>& buckets, bool (*chosen)(BucketKey)) {
+  std::vector<double> percents;
+  for (const BucketKey key : buckets) {
+    if (chosen(key)) percents.push_back(key.percent);
+  }
+  if (percents.empty()) return {};
+  const auto [least, most] = std::ranges::minmax(percents);
+  return least == most ? fmt::format("{:g} %", most) : fmt::format("{:g} to {:g} %", least, most);
+}
+
+/// How far from contact the poses of a kind are.
+std::string extent_text(const StudySample& sample, Nearness nearness) {
+  if (nearness == Nearness::near) return k_near_words;
+  const bool apart = nearness == Nearness::apart;
+  const std::string percents = percents_text(sample.buckets, apart ? is_apart : is_overlap);
+  if (percents.empty()) return k_pushed_words;
+  return percents + (apart ? " of the diagonal of A's box" : " of A's volume");
+}
+
 }  // namespace
 
 StudySample draw_verdict_sample(bench::PairCache& cache, const CatalogueEntry& pair, QueryKind question,
                                 std::size_t count) {
   if (question == QueryKind::respond) return draw_sample(cache, pair, question, pair.buckets, count);
+  std::vector<BucketKey> buckets = pair.buckets;
   std::vector<Part> parts;
   if (question == QueryKind::distance) {
     parts.push_back(drawn(cache, pair, (count + 1) / 2, is_apart));
@@ -117,10 +144,13 @@ StudySample draw_verdict_sample(bench::PairCache& cache, const CatalogueEntry& p
     parts.push_back(drawn(cache, pair, third, is_apart));
     parts.push_back(moved(cache, pair, k_contact_gaps, third));
     parts.push_back(drawn(cache, pair, third, is_overlap));
-    if (parts.back().poses.empty()) parts.back() = moved(cache, pair, k_overlap_gaps, third);
+    if (parts.back().poses.empty()) {
+      std::erase_if(buckets, is_overlap);
+      parts.back() = moved(cache, pair, k_overlap_gaps, third);
+    }
   }
-  StudySample sample = interleaved(question, pair.buckets, parts);
-  if (sample.poses.empty()) throw BadArgument(fmt::format("{}: no configuration can be reached", pair.pair));
+  StudySample sample = interleaved(question, buckets, parts);
+  if (sample.poses.empty()) throw BadArgument(fmt::format("{}: its set has no poses for this question", pair.pair));
   return sample;
 }
 
@@ -130,7 +160,8 @@ std::string poses_text(const StudySample& sample) {
   constexpr const char* k_words[] = {"apart", "near contact", "overlapping"};
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] > 0) texts.push_back(fmt::format("{} {}", counts[i], k_words[i]));
+    if (counts[i] == 0) continue;
+    texts.push_back(fmt::format("{} {} ({})", counts[i], k_words[i], extent_text(sample, static_cast<Nearness>(i))));
   }
   return fmt::format("{} judged poses: {}", sample.references.size(), fmt::join(texts, ", "));
 }

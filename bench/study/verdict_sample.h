@@ -11,9 +11,9 @@ namespace sixdof::study {
 /// collide: a third each of
 ///   - poses of the set that are 1 % of A's diagonal or more apart;
 ///   - poses near contact: of a pose of the set, B is moved along the shortest way to A until the surfaces are 0.01,
-///   0.1
-///     or 0.3 % of A's diagonal apart, or until B is pushed in as far;
-///   - overlaps: those of the set or, where it has none, B pushed in by 1, 2 or 5 %.
+///     0.1 or 0.3 % of the smaller body's diagonal apart, or until B is pushed in as far: the diagonal of a large A may
+///     be longer than a small B, which would then be pushed through it;
+///   - overlaps: those of the set or, where it has none, B pushed in by 1, 2 or 5 % of the same.
 /// distance: half of it apart, half near contact without touching. respond: overlaps of the set.
 /// The truth of moved poses is that of the distance oracle. Those whose truth is not on the side that was meant are
 /// left out; so are whole parts that the set has no poses for.
@@ -22,7 +22,9 @@ namespace sixdof::study {
 StudySample draw_verdict_sample(bench::PairCache& cache, const CatalogueEntry& pair, bench::QueryKind question,
                                 std::size_t count);
 
-/// "700 poses apart, 700 near contact, 700 overlapping".
+/// "2100 judged poses: 700 apart (1 to 20 % of the diagonal of A's box), 700 near contact (0.01 to 0.3 % of the smaller
+/// box's diagonal), 700 overlapping (1 to 10 % of A's volume)".
+/// @param sample of draw_verdict_sample()
 std::string poses_text(const StudySample& sample);
 
 }  // namespace sixdof::study

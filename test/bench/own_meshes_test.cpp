@@ -1,14 +1,17 @@
 // Meshes of the user's: sets that find them again, and a table of a pair in one line.
 
+#include <algorithm>
 #include <fstream>
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/geometry/load.h>
 #include "bench/common/run_guarded.h"
 
 #include "../cli/run_program.h"
@@ -43,6 +46,7 @@ class OwnMeshes : public test::ScratchFolder {
     EXPECT_EQ(result.exit_code, 0) << line << '\n' << result.err;
     return result;
   }
+  double volume_of(const std::string& file) const { return load_mesh(path(file)).volume(); }
   static json rows(const test::ProgramResult& result) { return json::parse(result.out).at("benchmarks"); }
   bool any_file(const std::string& folder_name, const std::string& begin) const {
     if (!fs::exists(folder() / folder_name)) return false;
@@ -105,7 +109,8 @@ TEST_F(OwnMeshes, ARunEndsBeforeAnythingIsMeasuredIfAMeshIsMissingOrHasChanged) 
 TEST_F(OwnMeshes, OneLineMeasuresAllAlgorithmsAtDistancesAndVolumes) {
   const auto first = succeed("sixdof-bench --a my.obj --b parts/my.obj" + k_pair);
   EXPECT_THAT(first.err, HasSubstr("coarse set of my with my made in "));
-  std::set<std::string> algorithms, buckets, queries;
+  std::set<std::string> algorithms, distances, queries;
+  std::set<double> volumes;
   for (const json& row : rows(first)) {
     const std::string name = row.at("name");
     EXPECT_FALSE(row.contains("error_occurred")) << row;
@@ -114,15 +119,25 @@ TEST_F(OwnMeshes, OneLineMeasuresAllAlgorithmsAtDistancesAndVolumes) {
     algorithms.insert(name.substr(algorithm, name.find('/', algorithm) - algorithm));
     queries.insert(name.substr(0, name.find('/')));
     const std::size_t bucket = name.find('/', name.find("pair:"));
-    if (bucket != std::string::npos) buckets.insert(name.substr(bucket + 1));
+    const std::string place = bucket == std::string::npos ? std::string() : name.substr(bucket + 1);
+    if (place.starts_with("distance:")) distances.insert(place);
+    if (place.starts_with("volume:")) volumes.insert(std::stod(place.substr(place.find(':') + 1)));
     if (!name.starts_with("distance/algorithm:exact")) continue;
     EXPECT_EQ(row.at("mismatch"), 0) << name;
     EXPECT_GE(row.at("configurations"), 32) << name;
   }
   EXPECT_EQ(queries, (std::set<std::string>{"collide", "distance", "prepare", "respond"}));
   EXPECT_THAT(algorithms, ::testing::IsSupersetOf({"exact", "fcl-obbrss", "fcl-rss", "fcl-contacts", "ist", "vps"}));
-  EXPECT_EQ(buckets, (std::set<std::string>{"distance:00", "distance:01", "distance:05", "distance:10", "distance:20",
-                                            "volume:01", "volume:05", "volume:10"}));
+  EXPECT_EQ(distances,
+            (std::set<std::string>{"distance:00", "distance:01", "distance:05", "distance:10", "distance:20"}));
+  // 1, 5 and 10 % of the smaller body, in percent of A.
+  const double smaller = std::min(1.0, volume_of("parts/my.obj") / volume_of("my.obj"));
+  ASSERT_EQ(volumes.size(), 3u);
+  const std::vector<double> percents(volumes.begin(), volumes.end());
+  constexpr double k_decimals = 1e-3;  // of a bucket's percentage
+  EXPECT_NEAR(percents[0], 1.0 * smaller, k_decimals);
+  EXPECT_NEAR(percents[1], 5.0 * smaller, k_decimals);
+  EXPECT_NEAR(percents[2], 10.0 * smaller, k_decimals);
   // The second time the set is in the cache, whatever the files are called.
   fs::rename(folder() / "my.obj", folder() / "ring.obj");
   const auto second =
@@ -178,11 +193,14 @@ TEST_F(OwnMeshes, WarnsOfOddSizesAndOfBucketsThatNothingReaches) {
   const auto measured = succeed("sixdof-bench --a my.obj --b tiny.off" + k_pair);
   EXPECT_TRUE(std::regex_search(measured.err, std::regex("warning: my is [0-9]+ times as large as tiny \\(box")))
       << measured.err;
-  for (const char* const bucket : {"volume 1 %", "volume 5 %", "volume 10 %"}) {
-    EXPECT_THAT(measured.err, HasSubstr(std::string("no configuration reaches ") + bucket + "\n"));
-  }
-  EXPECT_THAT(measured.err, Not(HasSubstr("reaches distance")));
+  EXPECT_TRUE(std::regex_search(measured.err, std::regex("no volumes: tiny has [0-9.e-]+ times the volume of my, too")))
+      << measured.err;
   for (const json& row : rows(measured)) EXPECT_FALSE(row.contains("error_occurred")) << row;
+  succeed("sixdof generate --a my.obj --b tiny.off --grid 90 --distances 5 --volumes 1 -o t.h5");
+  const auto of_set =
+      succeed("sixdof-bench --no-manifest --set t.h5 --benchmark_filter=^collide/algorithm:exact/" + k_quick);
+  EXPECT_THAT(of_set.err, HasSubstr("t.h5: no configuration reaches volume 1 %\n"));
+  EXPECT_THAT(of_set.err, Not(HasSubstr("reaches distance")));
 }
 
 TEST_F(OwnMeshes, RefusesOptionsThatDoNotGoTogether) {

@@ -5,6 +5,7 @@ usage: publish_test.py SIXDOF
 
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -30,10 +31,12 @@ class Marks(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         root = pathlib.Path(folder.name)
-        for name, path in (("ROOT", root), ("PUBLISHED", root / "published"), ("FACTS", root / "published/parts.json")):
+        for name, path in (("ROOT", root), ("PUBLISHED", root / "published"), ("FACTS", root / "published/parts.json"),
+                           ("DRAWINGS", root / "drawings.json")):
             self.addCleanup(setattr, documents, name, getattr(documents, name))
             setattr(documents, name, path)
         (root / "published").mkdir()
+        documents.DRAWINGS.write_text("{}")
         self.publish(ROW)
         documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "two": {"commit": "abc"}}))
         self.file = root / "README.md"
@@ -77,6 +80,16 @@ class Marks(unittest.TestCase):
         self.publish(ROW | {"cpu_time": 2.5})
         self.assertEqual(documents.check(SIXDOF), 1)
 
+    @unittest.skipUnless(shutil.which("node"), "figures are drawn by Node.js")
+    def test_a_drawing(self):
+        documents.DRAWINGS.write_text(json.dumps({"time.svg": ["time_distance", "rows.json"], "other.svg": ["time_distance", "gone/rows.json"]}))
+        self.fill("")
+        self.assertIn("<svg", (documents.PUBLISHED / "time.svg").read_text())
+        self.assertFalse((documents.PUBLISHED / "other.svg").exists(), "its part is not published")
+        self.assertEqual(documents.check(SIXDOF), 0)
+        self.publish(ROW | {"cpu_time": 2.5})
+        self.assertEqual(documents.check(SIXDOF), 1)
+
     def test_what_cannot_be_filled_names_document_and_mark(self):
         for mark in ("one/gone.json a", "two/gone.txt", "sixdof table one/*.json", "rows.json context.gone", "rows.json benchmarks[name=other].cpu_time",
                      "sixdof table gone.json"):
@@ -100,6 +113,17 @@ class Short(unittest.TestCase):
         self.assertEqual(short["context"], {"commit": "abc"})
         self.assertEqual(short["benchmarks"], [ROW | {"cpu_time": 1.235}])
         self.assertEqual(json.loads(parts.as_text(short)), short)
+
+    def test_paths_are_those_of_the_repository(self):
+        part = parts.Part("one", "", [parts.Step("one.txt", [], 1.0, prints=True), parts.Step("one.json", [], 1.0)])
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "one.txt").write_text(f"sixdof query --a {parts.ROOT}/results/case.off\n")
+            (folder / "one.json").write_text(json.dumps({"context": {"arguments": f"--set {parts.ROOT}/fixtures/a.h5"}, "benchmarks": []}))
+            written = {}
+            parts.write_short(part, folder, folder, lambda file, text: written.update({file.name: text}))
+        self.assertEqual(written["one.txt"], "sixdof query --a results/case.off\n")
+        self.assertIn('"--set fixtures/a.h5"', written["one.json"])
 
     def test_commands_are_those_that_a_user_types(self):
         for part in parts.parts():

@@ -117,6 +117,23 @@ class Installed(Project):
             run("sh", "-c", line, cwd=folder)
         self.check_lists(folder / "build" / "fast-boxes-sixdof", "fast-boxes", r"^0\.1\.0 ")
 
+    def test_program_of_the_readme(self):
+        """What README.md says of the library: its C++ program with its two lines of CMake."""
+        readme = (ARGUMENTS.source / "README.md").read_text()
+        program = re.search(r"```cpp\n(.*?)```", readme, re.DOTALL).group(1)
+        find, link = (re.search(f"`({name}\\([^`]*\\))`", readme).group(1) for name in ("find_package", "target_link_libraries"))
+        folder = ARGUMENTS.work / "readme"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        (folder / "main.cpp").write_text(program)
+        (folder / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(my_program)\n"
+                                               f"{find}\nadd_executable(my_program main.cpp)\n{link}\n")
+        configure_and_build(folder, folder / "build", f"-DCMAKE_PREFIX_PATH={ARGUMENTS.installed}")
+        cube = folder / "cube.obj"  # of edge 1; its copy is 3 higher
+        cube.write_text("".join(f"v {x} {y} {z}\n" for x in (0, 1) for y in (0, 1) for z in (0, 1)) +
+                        "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n")
+        self.assertEqual(run(folder / "build" / "my_program", cube, cube), "2\n")
+
 
 class Fetched(Project):
     """The project has sixdof's source as a part of its own."""

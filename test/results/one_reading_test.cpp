@@ -287,5 +287,16 @@ TEST_F(OneReading, OfFrontiersAndChoices) {
   EXPECT_GT(faulty, k_files);
 }
 
+TEST(Choice, SaysInPlainWordsWhatCouldNotBeMeasured) {
+  Row row;
+  row.fields.query = "precision";
+  row.values = {{"timed", 64.0}, {"judged_apart", 64.0}};
+  const auto reason = [&] { return choose({&row, 1}, "distance", "error_max").candidates.at(0).reason; };
+  EXPECT_EQ(reason(), "its error could not be measured");
+  row.values["error_max"] = 0.5;
+  row.values["timed"] = 0.0;
+  EXPECT_EQ(reason(), "no time could be measured");
+}
+
 }  // namespace
 }  // namespace sixdof::results

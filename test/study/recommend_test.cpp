@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
+#include <map>
 
 #include <gmock/gmock.h>
 
@@ -239,10 +241,13 @@ TEST_F(Recommend, SaysNothingWithoutJudgedOverlaps) {
 }
 
 TEST_F(Recommend, PosesNearContactAreWhatTheySay) {
-  const StudySample sample = draw_verdict_sample(cache_, pair_, bench::QueryKind::collide, 900);
+  const CatalogueEntry& pair = *std::ranges::find(catalogue_.sets(), "torus-1k-cone-1k", &CatalogueEntry::pair);
+  const StudySample sample = draw_verdict_sample(cache_, pair, bench::QueryKind::collide, 900);
   const auto exact = make_exact_algorithm();
-  const Mesh &a = cache_.mesh(pair_.a), &b = cache_.mesh(pair_.b);
+  const Mesh &a = cache_.mesh(pair.a), &b = cache_.mesh(pair.b);
+  ASSERT_LT(b.diagonal(), 0.9 * a.diagonal());
   const auto query = exact->prepare(a, b, exact->settings());
+  constexpr double k_largest_gap = 3e-3 + 1e-9;  // of the smaller body's diagonal, and rounding
   std::size_t near_apart = 0, near_overlapping = 0;
   for (std::size_t i = 0; i < sample.poses.size(); ++i) {
     const Reference& reference = sample.references[i];
@@ -251,13 +256,26 @@ TEST_F(Recommend, PosesNearContactAreWhatTheySay) {
     if (reference.nearness != Nearness::near) continue;
     (overlap ? near_overlapping : near_apart) += 1;
     if (!overlap) {
-      EXPECT_LE(query->distance(sample.poses[i]).value.distance, k_near * a.diagonal());
+      EXPECT_LE(query->distance(sample.poses[i]).value.distance, k_largest_gap * b.diagonal());
     } else {
       EXPECT_LT(query->respond(sample.poses[i]).value.volume, 0.01 * a.volume()) << "pushed in by 0.3 % at most";
     }
   }
   EXPECT_GT(near_apart, 100u);
   EXPECT_GT(near_overlapping, 100u);
+}
+
+TEST_F(Recommend, EveryPoseIsMovedToEveryGapOnce) {
+  // Fewer than there are gaps by one: counting through both at once would give each pose the same gap again.
+  constexpr std::size_t k_poses = 5;
+  bench::PairCache few{k_poses, 1, [](const std::string& key) { return bench::LoadedMesh{load_model(key), key}; }};
+  const StudySample sample = draw_verdict_sample(few, pair_, bench::QueryKind::collide, 900);
+  std::map<long, std::size_t> counts;  // of poses near contact, by their gap in 0.01 % of the diagonal
+  for (const Reference& reference : sample.references) {
+    if (reference.nearness != Nearness::near || reference.known.key.kind == BucketKind::volume) continue;
+    ++counts[std::lround(1e4 * reference.known.target / reference.known.diagonal)];
+  }
+  EXPECT_EQ(counts, (std::map<long, std::size_t>{{1, k_poses}, {10, k_poses}, {30, k_poses}}));
 }
 
 /// With motions from the sample's configurations.

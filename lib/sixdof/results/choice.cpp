@@ -85,7 +85,7 @@ Candidate candidate_of(const Row& row, std::size_t place, const std::string& que
     candidate.reason = to_string(faults);
   } else if (!row.value(error) || candidate.timed == 0.0) {
     candidate.standing = Standing::faulty;
-    candidate.reason = fmt::format("no {} could be measured", row.value(error) ? "time" : error);
+    candidate.reason = row.value(error) ? "no time could be measured" : "its error could not be measured";
   } else if (const std::string why = why_unsafe(row, query); !why.empty()) {
     candidate.standing = Standing::unsafe;
     candidate.reason = why;
