@@ -127,6 +127,10 @@ function compareMissing(figure, texts, shown, all) {
   check(said === absent, `says "${texts.missing}", but ${absent} algorithms are absent`);
   const faulty = report.drawnRows(figure, shown.rows).filter((row) => row.faults).length, count = Number(/(\d+) of \d+ drawn value/.exec(texts.missing)?.[1] ?? 0);
   check(count === faulty, `says "${texts.missing}", but ${faulty} drawn values have faults`);
+  const objects = report.drawnRows(figure, shown.rows).map((row) => row.objects).filter((number) => typeof number === "number");
+  const fewer = objects.filter((number) => number < Math.max(...objects)).length;
+  check(Number(/(\d+) of \d+ means? /.exec(texts.missing)?.[1] ?? 0) === fewer, `says "${texts.missing}", but ${fewer} means are over fewer objects`);
+  if (fewer > 0) compared.fewer = (compared.fewer ?? 0) + 1;
 }
 
 /** Rows that could not be run are named under the figures of their query. */

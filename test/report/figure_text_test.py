@@ -89,7 +89,7 @@ class FigureTexts(unittest.TestCase):
         compared = json.loads(done.stdout.splitlines()[-1])["compared"]
         figures = [path.stem for path in (REPORT / "figures").glob("*.json")]
         self.assertEqual([figure for figure in figures if figure not in compared], [], "every figure is compared")
-        for what in ("failed", "once", "busy", "wide", "faults of winners", "faults of metrics", "verdict with others"):
+        for what in ("failed", "once", "busy", "wide", "fewer", "faults of winners", "faults of metrics", "verdict with others"):
             self.assertGreater(compared.get(what, 0), 0, what)
 
 

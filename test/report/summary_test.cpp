@@ -37,8 +37,8 @@ TEST(Summary, WinnerIsTheFastestWithoutAFault) {
   EXPECT_EQ(text_in(summary.winners, summary.winners.rows[1], "verdict"), "tie") << "10 % is within two runs' noise";
   EXPECT_THAT(
       summary.sentences,
-      ElementsAre("Distance: the fastest without a wrong answer is exact, in 2 of 2 places, 2.35 times faster than the "
-                  "next on average.",
+      ElementsAre("Distance: the fastest without a wrong answer is exact, in 2 of 2 places, 2.35 times faster on "
+                  "average than the next, fcl-rss.",
                   "How far the others are off: wrong answers, wrong 1 of 64 (distance).",
                   HasSubstr("1 of 6 rows have failures or wrong answers and are not ranked (wrong 1)")));
 }
@@ -72,8 +72,8 @@ TEST(Summary, AlgorithmWithAWrongAnswerAnywhereIsNotTheFastest) {
   EXPECT_THAT(
       summarise(results, row_groups(results)).sentences,
       ElementsAre(HasSubstr("Yes or no: the fastest without a wrong answer is exact, in 1 of 2 places, 4 times "
-                            "faster than the next; fcl-rss is in 1; faster, but approximate or elsewhere wrong: "
-                            "hasty in 1 (50 times)."),
+                            "faster than the next, fcl-rss; fcl-rss is in 1; faster, but approximate or elsewhere "
+                            "wrong: hasty in 1 (50 times)."),
                   "How far the others are off: wrong answers, hasty 2 of 128 (yes or no).", HasSubstr("1 of 6 rows")));
 }
 
@@ -129,8 +129,8 @@ TEST(Summary, TableAndSentencesFollowOneRule) {
     EXPECT_EQ(places, (std::map<std::string, int>{{"right", 2}, {"slow", 1}})) << query;
     EXPECT_EQ(faster, (std::map<std::string, int>{{"hasty", 2}, {"rough", 1}})) << query;
     EXPECT_THAT(summary.sentences.front(),
-                HasSubstr(" is right, in 2 of 3 places, 4 times faster than the next on average; slow is in 1; faster, "
-                          "but approximate or elsewhere wrong: hasty in 2 (7.07 times), rough in 1 (5 times)."))
+                HasSubstr(" is right, in 2 of 3 places, 4 times faster on average than the next, slow; slow is in 1; "
+                          "faster, but approximate or elsewhere wrong: hasty in 2 (7.07 times), rough in 1 (5 times)."))
         << query;
   }
 }
@@ -143,11 +143,22 @@ TEST(Summary, ForcesAreRightToADegreeAndOthersAreNamedFarthestFirst) {
                         row("respond", "ist", "p", "volume", 5.0, 18.0, {{"gamma_F_deg", 20.0}})});
   EXPECT_THAT(summarise(results, row_groups(results)).sentences,
               ElementsAre("Force and torque: the fastest with forces within 1 degree of the exact ones is exact, in 1 "
-                          "of 1 place, 2 times faster than the next; faster, but approximate or elsewhere wrong: "
-                          "vps in 1 (3 times).",
+                          "of 1 place, 2 times faster than the next, ist-descent; faster, but approximate or "
+                          "elsewhere wrong: vps in 1 (3 times).",
                           "How far the others are off: directions of forces on average, ist by 20 degrees, vps by 12 "
                           "degrees.",
                           HasSubstr("All 4 rows ran")));
+}
+
+TEST(Summary, NextOneIsNamed) {
+  const Results results = test::results_of(
+      {row("distance", "exact", "p", "distance", 1.0, 10.0), row("distance", "fcl-rss", "p", "distance", 1.0, 20.0),
+       row("distance", "ode", "p", "distance", 1.0, 30.0), row("distance", "exact", "p", "distance", 5.0, 10.0),
+       row("distance", "fcl-rss", "p", "distance", 5.0, 30.0), row("distance", "ode", "p", "distance", 5.0, 20.0),
+       row("distance", "exact", "p", "distance", 9.0, 10.0), row("distance", "fcl-rss", "p", "distance", 9.0, 20.0)});
+  EXPECT_EQ(summarise(results, row_groups(results)).sentences.front(),
+            "Distance: the fastest without a wrong answer is exact, in 3 of 3 places, 2 times faster on average than "
+            "the next, most often fcl-rss.");
 }
 
 TEST(Summary, HardCasesAreCountedByAlgorithm) {

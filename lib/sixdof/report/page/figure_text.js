@@ -125,6 +125,12 @@
       parts.push(`${faulty.length} of ${countText(rows.length, "drawn value")} ${faulty.length === 1 ? "is" : "are"} of rows with wrong or missing answers: ` +
         listText([...new Set(faulty.map((row) => row[field]))], mostNames));
     }
+    const means = rows.filter((row) => typeof row.objects === "number"), most = Math.max(0, ...means.map((row) => row.objects));
+    const fewer = means.filter((row) => row.objects < most);
+    if (fewer.length > 0) {
+      parts.push(`${fewer.length} of ${countText(means.length, "mean")} ${fewer.length === 1 ? "is" : "are"} over fewer than ${most} objects: ` +
+        listText([...new Set(fewer.map((row) => row[field]))], mostNames));
+    }
     if (!figure.usermeta.noChips && field === "algorithm") {
       const present = new Set(before.map((row) => report.baseAlgorithm(row.algorithm)));
       const absent = [...new Set(all.filter((row) => choices.run === undefined || row.run === choices.run)
