@@ -65,14 +65,15 @@ void add_agree_command(CLI::App& app);
 /// `sixdof table FILE.json [MORE.json ...] [--markdown | --json]`: results of sixdof-bench, one table per pair, query
 /// and kind of bucket; several files side by side (table.h).
 void add_table_command(CLI::App& app);
-/// `sixdof report FILE.json [MORE.json ...] [--series FILE.h5] -o FILE.html [--csv | --markdown | --svg | --pdf
-/// FOLDER]`: results as one page of figures and tables that opens without a network (lib/sixdof/report/README.md).
+/// `sixdof report FILE.json [MORE.json ...] [--series FILE.h5] -o FILE.html [--csv | --markdown | --svg | --pdf |
+/// --tikz FOLDER]`: results as one page of figures and tables that opens without a network
+/// (lib/sixdof/report/README.md).
 void add_report_command(CLI::App& app);
 /// `sixdof history FOLDER -o FILE.html`: how the times of all results in a folder went, as such a page
 /// (report/history.h).
 void add_history_command(CLI::App& app);
-/// `sixdof compare BEFORE.json AFTER.json [--json] [--fail-on-answers]`: versions, answers and counts of work that
-/// differ (results/difference.h); with --fail-on-answers k_exit_defects if an answer does.
+/// `sixdof compare BEFORE.json AFTER.json [--json | --markdown] [--fail-on-answers]`: versions, answers and counts of
+/// work that differ (results/difference.h); with --fail-on-answers k_exit_defects if an answer does.
 void add_compare_command(CLI::App& app);
 /// `sixdof new-algorithm NAME [-o FOLDER]`: a project of its own with an algorithm that is to be replaced, made of
 /// the files in bench/new_algorithm/. The folder appears whole or not at all; nothing is overwritten.

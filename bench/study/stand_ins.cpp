@@ -18,7 +18,8 @@ void compare_yes_no(Query& stand_ins, const StudySample& sample, StandInErrors& 
   for (std::size_t i = 0; i < sample.references.size(); ++i) {
     const Reference& reference = sample.references[i];
     const bool truth = reference.known.key.kind == BucketKind::volume;
-    StandInErrors::Share& share = errors.yes_no[static_cast<std::size_t>(reference.nearness)];
+    auto& shares = truth ? errors.false_no : errors.false_yes;
+    StandInErrors::Share& share = shares[static_cast<std::size_t>(reference.nearness)];
     ++share.of;
     share.wrong += stand_ins.collide(sample.poses[i]).value != truth;
   }

@@ -18,7 +18,8 @@ struct StandInErrors {
   struct Share {
     std::size_t wrong = 0, of = 0;
   };
-  std::array<Share, 3> yes_no;  ///< By Nearness: stand-ins that touch where the meshes do not, or the other way round.
+  /// By Nearness: of poses where the meshes do not touch, how often stand-ins do; and the other way round.
+  std::array<Share, 3> false_yes, false_no;
   /// Distance of the stand-ins minus that of the meshes, in diagonals of A, ascending; only where the meshes are apart.
   std::vector<double> bias;
   /// Of `exact` on the meshes and on the stand-ins, with the same poses in turn.
