@@ -158,6 +158,15 @@ TEST(Comparison, AnswersComeFirstAndOnlyOfTheSameConfigurations) {
   EXPECT_THAT(comparison.sentences[1], HasSubstr("whose answers are not compared: 1"));
 }
 
+TEST(Comparison, WordsOfAnswersHaveDigitsThatDiffer) {
+  std::vector<Json> before = run_of(1, 1.0, 1), after = before;
+  before[3]["error_max"] = 0.199575;
+  after[3]["error_max"] = 0.199575001;
+  const Comparison comparison = compare_runs(before, after);
+  ASSERT_EQ(comparison.answers.rows.size(), 1u);
+  EXPECT_EQ(text_in(comparison.answers, comparison.answers.rows[0], "words"), "0.199575 -> 0.199575001");
+}
+
 TEST(Comparison, FilesWithoutCommonRowsAreNotCompared) {
   Results results;
   parse_results(test::file_of(run_of(1, 1.0, 1)), "a.json", results);

@@ -60,7 +60,7 @@ double spread_between_runs(const std::vector<std::optional<Repeated>>& repeated,
   return variances.empty() ? 0.0 : std::sqrt(std::max(0.0, spread * spread - median(variances)));
 }
 
-/// A row of "answers"; of counts of configurations and steps nothing.
+/// A row of "answers". Its words have as many digits as tell the sides apart.
 void add_answer(const Difference& difference, DataTable& table) {
   const auto& [row, counter, kind, before, after, error_before, error_after] = difference;
   if (counter == "error") {
@@ -69,7 +69,7 @@ void add_answer(const Difference& difference, DataTable& table) {
                           fmt::format("{} -> {}", words(error_before), words(error_after))});
   } else {
     const auto cell = [](const std::optional<Range>& range) { return range ? Cell(range->least) : Cell(); };
-    table.rows.push_back({row, counter, cell(before), cell(after), std::string()});
+    table.rows.push_back({row, counter, cell(before), cell(after), to_string(difference)});
   }
 }
 
@@ -117,7 +117,8 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
                         .rows = {}};
   std::vector<Pair> pairs = common_rows(groups, before, after);
   std::size_t others = 0;
-  for (const Difference& difference : differences(results, groups, before, after).values) {
+  const Differences found = differences(results, groups, before, after);
+  for (const Difference& difference : found.values) {
     if (difference.counter == "configurations" || difference.counter == "steps") {
       ++others;
     } else if (difference.kind == MetricKind::answer) {
@@ -129,6 +130,16 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
     if (b && a) pair.log_ratio = std::log(a->value / b->value);
     return !b || !a;
   });
+  if (found.common_rows == 0) return comparison;
+  auto& sentences = comparison.sentences;
+  sentences.push_back(
+      comparison.answers.rows.empty()
+          ? fmt::format("Answers: none of the {} common rows changed.", found.common_rows)
+          : fmt::format("Answers: values that changed: {}. They are listed first.", comparison.answers.rows.size()));
+  if (others > 0) {
+    sentences.push_back(
+        fmt::format("Rows that asked another number of configurations, whose answers are not compared: {}.", others));
+  }
   if (pairs.empty()) return comparison;
 
   const double tail = 0.5 * (1.0 - std::pow(1.0 - k_false_alarm, 1.0 / static_cast<double>(pairs.size())));
@@ -160,15 +171,6 @@ Comparison compare(const Results& results, const std::vector<RowGroup>& groups, 
                                                    : is_faster ? "faster"
                                                                : "no change shown"),
                                        pair.after->row().outliers.command_of("max_least_ns")});
-  }
-  auto& sentences = comparison.sentences;
-  sentences.push_back(
-      comparison.answers.rows.empty()
-          ? fmt::format("Answers: none of the {} common rows changed.", pairs.size())
-          : fmt::format("Answers: values that changed: {}. They are listed first.", comparison.answers.rows.size()));
-  if (others > 0) {
-    sentences.push_back(
-        fmt::format("Rows that asked another number of configurations, whose answers are not compared: {}.", others));
   }
   sentences.push_back(
       fmt::format("Times, by row: {} slower, {} faster, {} without a change that can be shown; the median row "
