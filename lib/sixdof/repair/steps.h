@@ -88,6 +88,7 @@ inline std::uint32_t apex_of(const Side& s, const std::vector<Triangle>& triangl
 /// The sides of edges with one triangle, in the order of sorted_sides().
 std::vector<Side> border_sides(std::span<const Side> sorted);
 
+/// An edge in space.
 struct Segment {
   Eigen::Vector3d from, to;
 
