@@ -18,6 +18,7 @@
 #include <sixdof/repair/repair.h>
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
+#include "bench/common/progress_line.h"
 #include "bench/common/run_guarded.h"
 
 namespace sixdof::cli {
@@ -176,6 +177,8 @@ void repair(const Arguments& arguments) {
   save_mesh(repaired.mesh, arguments.output);
   std::optional<Advice> advice;
   if (!repaired.mesh.solid()) {
+    StatusLine status;
+    status.show("no solid yet: trying other options");
     advice = Advice{measure_gaps(repaired.mesh), try_other_repairs(mesh, arguments.options)};
   }
   if (arguments.json) {

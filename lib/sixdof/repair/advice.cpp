@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include <sixdof/base/error.h>
 #include <sixdof/geometry/sides.h>
 #include <sixdof/repair/neighbours.h>
 #include <sixdof/repair/steps.h>
@@ -22,8 +23,12 @@ constexpr double k_welds[] = {3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3};
 constexpr std::size_t k_holes[] = {128, RepairOptions::k_largest_max_hole};
 
 RepairAttempt attempt(const Mesh& mesh, const RepairOptions& options) {
-  const RepairedMesh repaired = repair_mesh(mesh, options);
-  return {options, repaired.mesh.topology().border_edges, repaired.mesh.solid()};
+  try {
+    const RepairedMesh repaired = repair_mesh(mesh, options);
+    return {options, repaired.mesh.topology().border_edges, repaired.mesh.solid()};
+  } catch (const BadMesh&) {  // the tolerance leaves no triangle
+    return {options, mesh.topology().border_edges, false};
+  }
 }
 
 }  // namespace
