@@ -167,6 +167,19 @@ function compareVerdict(figure, view, shown, data) {
   if (others) compared["verdict with others"] = (compared["verdict with others"] ?? 0) + 1;
 }
 
+/** The intervals of the frontier's errors, which its caption calls bars, are drawn from end to end. */
+function compareBars(figure, view, rows) {
+  if (figure.usermeta.id !== "frontier") return;
+  const bars = marksOf(view, "rule").filter((item) => item.y2 !== undefined && Math.abs(item.y2 - item.y) > 1), scale = view.scale("y");
+  const bounded = report.drawnRows(figure, rows).filter((row) => typeof row.low === "number");
+  check(bars.length === bounded.length, `${bars.length} bars for ${bounded.length} intervals`);
+  for (const { y, y2, datum } of bars) {
+    const [low, high] = [scale.invert(y), scale.invert(y2)].sort((a, b) => a - b);
+    check(isNear(low, datum.low) && isNear(high, datum.high), `a bar from ${low} to ${high} for ${datum.low} to ${datum.high}`);
+  }
+  if (bars.length > 0) compared.bars = (compared.bars ?? 0) + 1;
+}
+
 /** Equal time opens on a measure that the paper prints, whatever the file has first. */
 function comparePreferred(figure, all, data) {
   if (figure.usermeta.id !== "equal_time") return;
@@ -204,6 +217,7 @@ async function compare(id, figure, data, wanted) {
     compareFaults(figure, texts, shown, data);
     compareVerdict(figure, view, shown, data);
     comparePreferred(figure, all, data);
+    compareBars(figure, view, rows);
     compareAdvice(figure, texts, shown, data);
     compareLegend(figure, view, rows, data.algorithms);
     compareStyles(figure, view, data.algorithms);

@@ -56,7 +56,8 @@ class FigureTexts(unittest.TestCase):
         noisy = repeated(row("distance", "fcl-rss", "elephant", "distance", 5, 4000.0)) + repeated(row("distance", "fcl-rss", "elephant", "distance", 10, 3000.0))
         # The fastest where it is right, but wrong elsewhere.
         hasty = [row("distance", "ode", "elephant", "distance", percent, 10.0, mismatch=wrong, error_rms=0.0) for percent, wrong in ((5, 0), (10, 2))]
-        self.write("run.json", [*rows(), failed, *noisy, *hasty], {"load_avg": [6.5, 5.0, 4.0], "num_cpus": 2})
+        bounded = row("respond", "fcl-contacts", "elephant", "volume", 0, 8000.0, gamma_F_deg=4.0, gamma_F_deg_low=3.0, gamma_F_deg_high=6.0)
+        self.write("run.json", [*rows(), failed, *noisy, *hasty, bounded], {"load_avg": [6.5, 5.0, 4.0], "num_cpus": 2})
         self.write("later.json", rows(1.3), {"load_avg": [0.1, 5.0, 4.0], "num_cpus": 2})
         self.write("scenes.json", scene_rows())
         self.write("objects.json", [], **collection())
@@ -89,7 +90,7 @@ class FigureTexts(unittest.TestCase):
         compared = json.loads(done.stdout.splitlines()[-1])["compared"]
         figures = [path.stem for path in (REPORT / "figures").glob("*.json")]
         self.assertEqual([figure for figure in figures if figure not in compared], [], "every figure is compared")
-        for what in ("failed", "once", "busy", "wide", "fewer", "faults of winners", "faults of metrics", "verdict with others"):
+        for what in ("failed", "once", "busy", "wide", "bars", "fewer", "faults of winners", "faults of metrics", "verdict with others"):
             self.assertGreater(compared.get(what, 0), 0, what)
 
 
