@@ -115,6 +115,8 @@ class Page(unittest.TestCase):
                 named[page] = command.split()[0]
         self.assertEqual(named, {"signals": "sixdof", "scenes": "bench/run", "collection": "bench/scripts/collection", "stability": "sixdof", "compare": "sixdof",
                                  "history": "sixdof"})
+        self.go_to("summary")
+        self.assertIn("sixdof stress", self.browser.run("document.querySelector('main .verdict .command code').textContent"))
 
     def test_hostile_names_are_text(self):
         self.open()

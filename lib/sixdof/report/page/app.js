@@ -24,11 +24,18 @@
       element("h3", {}, `${before} → ${after}`), ...sentences.map((sentence) => element("p", {}, sentence))));
   }
 
+  /** Of results without hard cases: how to see where an algorithm breaks. */
+  function hardCasesHint() {
+    const page = data.pages.find((each) => each.id === "stability");
+    if (!data.tables.stability || hasRows("stability") || !page) return [];
+    return [element("p", { class: "missing" }, "Where algorithms break is not in these files; this command asks hard cases with known answers:"), report.commandLine(page.command)];
+  }
+
   function build(page) {
     const node = element("article", { id: "page-" + page.id },
       element("h2", {}, page.title), element("p", { class: "intro" }, page.intro));
     if (page.summary) {
-      node.append(element("div", { class: "sentences verdict" }, ...data.summary.map((sentence) => element("p", {}, sentence))));
+      node.append(element("div", { class: "sentences verdict" }, ...data.summary.map((sentence) => element("p", {}, sentence)), ...hardCasesHint()));
     }
     if (page.comparisons) node.append(...comparisonText());
     const extra = page.pictures && report.objectPictures(data);
