@@ -15,7 +15,9 @@ KEPT = ["name", "run_name", "run_type", "sixdof", "error_occurred", "error_messa
         "mismatch", "misses", "p50_ns", "p99_ns", "p999_ns", "p99_least_ns", "p999_least_ns", "max_ns", "max_least_ns",
         "over_1ms", "error_rms", "error_max", "gamma_F_deg", "gamma_F_deg_low", "gamma_F_deg_high", "gamma_F_p95_deg",
         "gamma_max_F_deg", "gamma_T_deg", "magnitude_error_F", "magnitude_error_T", "volume_error_mean", "bytes",
-        "prepare_ns", "ns_per_configuration", "triangles", "on_frontier", "label"]
+        "prepare_ns", "ns_per_configuration", "triangles", "on_frontier", "label", "tau_ns", "measured_ns", "eta_measured",
+        "eta_predicted", "sigma_F", "sigma_T", "nu_F", "nu_T", "noise_F", "noise_T", "leakage", "jump_F", "jump_T",
+        "loop_work", "lag", "steps"]
 DIGITS = 4  # Significant digits of the numbers that are kept.
 FCL = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts"]
 APPROXIMATE = ["ist", "ist-descent", "vps", "vps-field"]
@@ -96,10 +98,10 @@ def recommend(file, *words):
 
 def parts():
     """All parts, the shortest first."""
-    equal_time = [Step(f"{scenario}-{algorithm}.json",
-                       ["sixdof", "equivalent", "--scenario", scenario, "--algorithm", algorithm, "--tau", "0.9ms,0.3ms",
-                        "--reach", "2" if algorithm == "vps" else "1", "-o", "{out}"], 2)
-                  for scenario in ("Ia", "II", "III") for algorithm in ("vps", "ist")]
+    equal_time = [Step("equivalent.json", ["sixdof", "equivalent", "--paper", "--resume", "-o", "{out}"], 20),
+                  # Of a whole file this measures nothing and prints.
+                  Step("paper.txt", ["sixdof", "equivalent", "--paper", "--resume", "--output={folder}/equivalent.json",
+                                     "--markdown"], 0.1, prints=True)]
     return [
         Part("stress", "hard cases: who breaks, on what",
              [Step("stress.txt", ["sixdof", "stress", "--cases", "{folder}/stress-cases"], 1.5, prints=True)]),
@@ -145,7 +147,7 @@ def compact(document):
     """A result file in short."""
     if isinstance(document, list) or "benchmarks" not in document:  # of stress, scenes, and plans
         return rounded(document)
-    short = {key: value for key, value in document.items() if key not in ("benchmarks", "context")}
+    short = {key: value for key, value in document.items() if key not in ("benchmarks", "context", "measurements")}
     kept = [{key: row[key] for key in KEPT if key in row} for row in document["benchmarks"]]
     if "collection" in document or "growth" in document:
         kept = []  # their summaries have what is published
