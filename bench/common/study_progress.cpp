@@ -42,14 +42,15 @@ void StudyProgress::begin(const std::string& what, double work) {
 }
 
 void StudyProgress::say_whole(double seconds) {
-  estimated_ = true;
   std::string text = fmt::format("about {} in all", duration_text(seconds));
   if (std::isfinite(budget_s_)) text += fmt::format(", the budget is {}", duration_text(budget_s_));
   say(text);
 }
 
 void StudyProgress::estimate(double seconds, double work) {
-  say_whole(seconds);
+  if (seconds > 0.0) say_whole(seconds);
+  if (seconds <= 0.0) say("nothing is left to measure");
+  estimated_ = true;
   begun_ = Clock::now();
   done_ = 0.0;
   total_ = work;
@@ -63,6 +64,7 @@ void StudyProgress::finished(const std::string& part, double work) {
   const double elapsed = seconds_since(begun_);
   const double all = done_ > 0.0 ? elapsed * total_ / done_ : 0.0;
   if (!estimated_) say_whole(all);
+  estimated_ = true;
   const double left = std::max(0.0, std::min(left_s(), all - elapsed));
   const double percent = total_ > 0.0 ? std::floor(100.0 * done_ / total_) : 100.0;
   say(fmt::format("{}: {:.0f} % done, {} left", part, percent, as_clock(left)));

@@ -37,7 +37,7 @@ class StudyProgress {
   void begin(const std::string& what, double work);
 
   /// "COMMAND: about 3.2 min in all". Without this call the first part that ends tells how long all will take.
-  /// @param seconds for `work`, which begins now and replaces that of begin()
+  /// @param seconds for `work`, which begins now and replaces that of begin(); 0 where nothing is left
   void estimate(double seconds, double work);
 
   /// What is left to do, where it turns out to be other than it was said.

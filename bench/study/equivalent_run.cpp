@@ -62,8 +62,7 @@ class Run {
   EquivalentRun run(const std::function<void(const EquivalentRun&)>& finished) {
     progress_.begin(plan(), 1.0);
     measure_coarsest();
-    const double all = remaining_s();
-    progress_.estimate(all, all);
+    if (const std::optional<double> all = remaining_s()) progress_.estimate(*all, *all);
     counts_ = true;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       search(i);
@@ -133,10 +132,14 @@ class Run {
     }));
   }
 
-  double remaining_s() const {
+  /// Of all tasks. Empty where nothing tells.
+  std::optional<double> remaining_s() const {
     double seconds = 0.0;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
-      if (targets_left_[i] > 0) seconds += needed_s(tasks_[i]).value_or(0.0);
+      if (targets_left_[i] == 0) continue;
+      const std::optional<double> needed = needed_s(tasks_[i]);
+      if (!needed) return std::nullopt;
+      seconds += *needed;
     }
     return seconds;
   }
@@ -182,7 +185,7 @@ class Run {
     store_.add(key_of(task, at), {.measured = measured, .seconds = seconds});
     note(task, at, seconds);
     if (counts_) {
-      progress_.set_remaining(seconds + remaining_s());
+      progress_.set_remaining(seconds + remaining_s().value_or(0.0));
       progress_.finished(part, seconds);
     }
     return measured;

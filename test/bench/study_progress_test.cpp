@@ -49,6 +49,14 @@ TEST(StudyProgress, AnEstimateMayComeBeforeAndTheWorkMayGrow) {
                                       MatchesRegex("equivalent: b: 50 % done, .* left")));
 }
 
+TEST(StudyProgress, NothingMayBeLeft) {
+  Lines told;
+  StudyProgress progress("equivalent", StudyProgress::k_no_limit, told.print());
+  progress.begin("1 search", 1.0);
+  progress.estimate(0.0, 0.0);
+  EXPECT_EQ(told.lines.back(), "equivalent: nothing is left to measure");
+}
+
 TEST(StudyProgress, ManySmallPartsHaveTwentyLines) {
   Lines told;
   StudyProgress progress("stress", StudyProgress::k_no_limit, told.print());
