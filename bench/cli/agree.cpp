@@ -14,11 +14,13 @@
 #include <sixdof/base/error.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
+#include "bench/cli/study_options.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
-#include "bench/common/progress_line.h"
+#include "bench/common/own_command.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/shell_text.h"
+#include "bench/common/study_progress.h"
 #include "bench/harness/options.h"
 #include "bench/study/set_agreement.h"
 #include "bench/study/study_pairs.h"
@@ -154,6 +156,40 @@ void print_differences(const PairAgreement& pair, std::size_t show) {
   }
 }
 
+/// A step is one algorithm on one bucket.
+class AgreeProgress {
+ public:
+  AgreeProgress(const study::StudyPairs& pairs, std::size_t algorithms, std::size_t sample)
+      : algorithms_(algorithms), progress_(own_command("sixdof agree")) {
+    std::size_t buckets = 0;
+    for (const CatalogueEntry* const pair : pairs.pairs()) buckets += pair->buckets.size();
+    total_ = buckets * algorithms;
+    progress_.begin(
+        fmt::format("pairs: {}, buckets: {}, algorithms: {}; a step is one algorithm at {} poses of a bucket: {} steps",
+                    pairs.pairs().size(), buckets, algorithms, sample == 0 ? "all" : std::to_string(sample), total_),
+        static_cast<double>(total_));
+  }
+
+  /// @param part of the pair's steps, which are fewer than planned where an algorithm refuses its meshes
+  void step(const CatalogueEntry& pair, double part) {
+    const auto steps = static_cast<std::size_t>(part * static_cast<double>(pair.buckets.size() * algorithms_));
+    progress_.counted(before_ + steps, total_, "steps");
+  }
+
+  void end_pair(const CatalogueEntry& pair, const std::vector<std::string>& refusals) {
+    before_ += pair.buckets.size() * algorithms_;
+    progress_.counted(before_, total_, "steps");
+    for (const std::string& refusal : refusals) progress_.leave_out(pair.pair, refusal);
+  }
+
+  StudyProgress& lines() { return progress_; }
+
+ private:
+  const std::size_t algorithms_;
+  StudyProgress progress_;
+  std::size_t total_ = 0, before_ = 0;  ///< Steps; before this pair.
+};
+
 void agree(const Arguments& arguments) {
   Registry registry;
   register_all_algorithms(registry, arguments.process);
@@ -171,17 +207,16 @@ void agree(const Arguments& arguments) {
   }
   json["pairs"] = Json::array();
   std::size_t differences = 0;
+  AgreeProgress progress(pairs, algorithms.size(), arguments.sample);
   for (const CatalogueEntry* const entry : pairs.pairs()) {
     const std::string meshes =
         fmt::format("--a {} --b {}", shell_quoted(pairs.argument(entry->a)), shell_quoted(pairs.argument(entry->b)));
-    PairAgreement pair;
-    {
-      ProgressLine line(entry->pair);
-      pair =
-          study::compare_with_set(pairs.cache(), *entry, meshes, algorithms,
-                                  {.progress = [&](std::uint64_t done, std::uint64_t total) { line.show(done, total); },
-                                   .cancelled = InterruptGuard::requested});
-    }
+    const auto step = [&](std::uint64_t done, std::uint64_t total) {
+      progress.step(*entry, static_cast<double>(done) / static_cast<double>(total));
+    };
+    const PairAgreement pair = study::compare_with_set(pairs.cache(), *entry, meshes, algorithms,
+                                                       {.progress = step, .cancelled = InterruptGuard::requested});
+    progress.end_pair(*entry, pair.refusals);
     differences += pair.differences.size();
     if (arguments.json) {
       json["pairs"].push_back(as_json(pair));
@@ -191,6 +226,12 @@ void agree(const Arguments& arguments) {
     print_differences(pair, arguments.show);
   }
   if (arguments.json) fmt::print("{}\n", json_text(json));
+  if (arguments.algorithms.empty()) {
+    std::vector<const Algorithm*> asked;
+    for (const AskedAlgorithm& each : algorithms) asked.push_back(each.algorithm);
+    leave_out_unasked(registry, asked, progress.lines());
+  }
+  progress.lines().end();
   if (differences > 0) throw DefectsFound(fmt::format("{} answers differ from the sets' truth", differences));
 }
 

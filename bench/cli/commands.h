@@ -41,8 +41,9 @@ void add_recommend_command(CLI::App& app);
 /// `sixdof hulls --a A --b B [--parts-a FILE ...]`: what convex hulls, or the parts of a decomposition, change in
 /// answers and times (study/stand_ins.h).
 void add_hulls_command(CLI::App& app);
-/// `sixdof equivalent [--scenario LIST] [--algorithm LIST] [--tau TIME]`: the resolutions of A and B with the least
-/// error of a response at a given mean time (study/equivalent.h).
+/// `sixdof equivalent [--paper] [--scenario LIST] [--algorithm LIST] [--tau TIME] [--budget TIME] [-o FILE]`: the
+/// resolutions of A and B with the least error of a response at a given mean time (study/equivalent.h), and the paper's
+/// table (results/paper_table.h). With `--resume` it continues a run that broke off.
 void add_equivalent_command(CLI::App& app);
 /// `sixdof stress [--algorithms LIST] [--families LIST] [--effort quick|full] [--seed N]`: every algorithm on families
 /// of hard cases with known answers; k_exit_defects if one of this project's own answers wrongly or not

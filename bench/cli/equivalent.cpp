@@ -11,26 +11,31 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
 #include <sixdof/process/remote_algorithm.h>
+#include <sixdof/results/paper.h>
 #include <sixdof/results/results.h>
 #include <sixdof/scenario/scenario.h>
 #include "bench/cli/equivalent_text.h"
 #include "bench/cli/shared.h"
-#include "bench/common/interrupt.h"
+#include "bench/common/duration.h"
 #include "bench/common/json_text.h"
-#include "bench/common/progress_line.h"
+#include "bench/common/own_command.h"
+#include "bench/common/shell_text.h"
+#include "bench/common/study_progress.h"
 #include "bench/harness/options.h"
 #include "bench/harness/run_context.h"
-#include "bench/study/equivalent_rows.h"
+#include "bench/study/equivalent_run.h"
 #include "bench/study/equivalent_scenario.h"
 
 namespace sixdof::cli {
 namespace {
 
-using study::EquivalentResult;
+constexpr const char* k_wrench_law = "wrench";
 
 struct Options {
   std::vector<std::string> scenarios = scenario_names();
@@ -41,11 +46,13 @@ struct Options {
   std::string law = "own";
   std::vector<std::string> parameters;  ///< "ALGORITHM:NAME=VALUE".
   std::vector<std::string> grids;       ///< "NAME=VALUE,VALUE,VALUE".
-  double reach = study::k_default_reach;
+  double reach = 0.0;                   ///< 0: reach_of().
   double largest_gb = 2.0;
   std::size_t steps = k_default_steps;
+  bool paper = false;
+  std::string budget;  ///< Empty: no limit.
   std::string output;
-  bool json = false;
+  bool resume = false, json = false, markdown = false;
   ProcessOptions process{.isolate = "third-party"};
 };
 
@@ -99,6 +106,15 @@ struct Candidate {
   Settings settings;
 };
 
+/// In the paper's table counts, such as spheres, are not searched beyond the sweep: more take many minutes to pack.
+double reach_of(const Options& options, const Traits& traits) {
+  const bool counts = std::ranges::any_of(traits.parameters, [](const Parameter& parameter) {
+    return parameter.integer && !parameter.sweep.empty();
+  });
+  if (options.reach > 0.0) return options.reach;
+  return options.paper && counts ? 1.0 : study::k_default_reach;
+}
+
 /// @throws BadArgument if an algorithm cannot be studied, or a parameter or a grid belongs to none
 std::vector<Candidate> select(const Options& options, const Registry& registry,
                               const std::map<std::string, Settings>& settings) {
@@ -107,8 +123,8 @@ std::vector<Candidate> select(const Options& options, const Registry& registry,
   for (const std::string& name : options.algorithms) {
     const Algorithm& algorithm = registry.find(name);
     if (!algorithm.traits().answers.respond) throw BadArgument(fmt::format("{} gives no response", name));
-    candidates.push_back(
-        {&algorithm, study::resolution_axes(algorithm.traits(), grids, options.reach), settings.at(name)});
+    const double reach = reach_of(options, algorithm.traits());
+    candidates.push_back({&algorithm, study::resolution_axes(algorithm.traits(), grids, reach), settings.at(name)});
   }
   const auto searched = [&](const std::string& parameter, const std::string& algorithm) {
     return std::ranges::any_of(candidates, [&](const Candidate& candidate) {
@@ -143,87 +159,156 @@ std::vector<study::SearchOptions> targets(const Options& options) {
   return list;
 }
 
-/// One search for each target. A resolution is measured once for all of them.
-std::vector<EquivalentResult> run_one(const Options& options, const std::string& name, const Candidate& candidate,
-                                      StatusLine& line) {
-  const auto scenario = make_scenario(name);
+/// @throws BadArgument if the algorithm cannot be searched
+study::SearchTask task_of(const Options& options, const std::string& name, const Candidate& candidate) {
+  const std::shared_ptr<const Scenario> scenario = make_scenario(name);
   const Traits& traits = candidate.algorithm->traits();
-  const IdealLaw law = parse_ideal_law(options.law, traits.law);
-  const study::ScenarioStudy study{.scenario = *scenario,
-                                   .algorithm = *candidate.algorithm,
-                                   .settings = candidate.settings,
-                                   .law = law,
-                                   .weights = parse_weights(options.weights),
-                                   .steps = options.steps};
-  std::map<study::Resolution, study::Measurement> known;
-  const study::Measure measure = [&](const study::Resolution& at) {
-    if (const auto found = known.find(at); found != known.end()) return found->second;
-    InterruptGuard::check();
-    line.show(fmt::format("{} {}: {}={} {}={}", name, traits.name, candidate.axes[0].parameter, at[0],
-                          candidate.axes[1].parameter, at[1]));
-    return known[at] = study::measure_scenario(study, candidate.axes, at);
+  const std::string_view word = options.law == k_wrench_law ? study::wrench_law(name, traits.name) : options.law;
+  const IdealLaw law = parse_ideal_law(word, traits.law);
+  study::check_axes(candidate.axes);
+  const auto measure = [scenario, candidate, law, weights = parse_weights(options.weights),
+                        steps = options.steps](const study::Resolution& at) {
+    const study::ScenarioStudy study{.scenario = *scenario,
+                                     .algorithm = *candidate.algorithm,
+                                     .settings = candidate.settings,
+                                     .law = law,
+                                     .weights = weights,
+                                     .steps = steps};
+    return study::measure_scenario(study, candidate.axes, at);
   };
-  std::vector<EquivalentResult> results;
-  for (const study::SearchOptions& target : targets(options)) {
-    results.push_back({.scenario = name,
-                       .algorithm = traits.name,
-                       .settings = candidate.settings,
-                       .law = std::string(to_string(law)),
-                       .axes = candidate.axes,
-                       .options = target,
-                       .search = study::search_equivalent(candidate.axes, target, measure),
-                       .isolated = is_isolated(*candidate.algorithm)});
+  return {.scenario = name,
+          .algorithm = traits.name,
+          .settings = candidate.settings,
+          .law = std::string(to_string(law)),
+          .axes = candidate.axes,
+          .targets = targets(options),
+          .isolated = is_isolated(*candidate.algorithm),
+          .with_defaults = options.paper,
+          .measure = measure};
+}
+
+/// The options on which a measurement depends besides the settings.
+std::string measured_with(const Options& options) {
+  return fmt::format("--steps {} --weights {} --law {}", options.steps, options.weights, options.law);
+}
+
+/// The command line, for the context of the result.
+std::string arguments(const Options& options) {
+  std::string text = fmt::format("equivalent --scenario {} --algorithm {} {}", fmt::join(options.scenarios, ","),
+                                 fmt::join(options.algorithms, ","), measured_with(options));
+  text += options.reverse > 0.0 ? fmt::format(" --reverse {}", options.reverse)
+                                : fmt::format(" --tau {}", fmt::join(options.taus, ","));
+  for (const std::string& grid : options.grids) text += " --grid " + shell_quoted(grid);
+  for (const std::string& parameter : options.parameters) text += " -p " + shell_quoted(parameter);
+  for (const std::string& external : options.process.external) text += " --external " + shell_quoted(external);
+  if (options.reach > 0.0) text += fmt::format(" --reach {}", options.reach);
+  text += fmt::format(" --memory {}", options.largest_gb);
+  return options.paper ? text + " --paper" : text;
+}
+
+class EquivalentCommand {
+ public:
+  /// @throws BadArgument for what can be checked before anything is measured
+  explicit EquivalentCommand(const Options& options)
+      : options_(options),
+        budget_s_(options.budget.empty() ? StudyProgress::k_no_limit : parse_duration("--budget", options.budget)) {
+    for (const std::string& scenario : options.scenarios) scenario_settings(scenario);
+    targets(options);
+    parse_weights(options.weights);
+    register_all_algorithms(registry_, options.process);
+    settings_ = bench::parse_parameters(options.parameters, registry_);
+    candidates_ = select(options, registry_, settings_);
   }
-  line.clear();
-  return results;
-}
 
-std::vector<results::Row> rows_of(const std::vector<EquivalentResult>& results) {
-  std::vector<results::Row> rows;
-  for (const EquivalentResult& result : results) {
-    for (results::Row& row : study::equivalent_rows(result)) rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-/// Until the study ends, the file says that it is not whole.
-void write(const Options& options, nlohmann::ordered_json context, const std::vector<EquivalentResult>& results,
-           bool interrupted) {
-  if (options.output.empty()) return;
-  if (interrupted) context["interrupted"] = "true";
-  results::write_rows(options.output, context, rows_of(results));
-}
-
-/// What can be checked before anything is measured. @throws BadArgument
-void check(const Options& options) {
-  for (const std::string& scenario : options.scenarios) scenario_settings(scenario);
-  targets(options);
-  parse_weights(options.weights);
-}
-
-void run(const Options& options) {
-  check(options);
-  Registry registry;
-  register_all_algorithms(registry, options.process);
-  const std::map<std::string, Settings> settings = bench::parse_parameters(options.parameters, registry);
-  const std::vector<Candidate> candidates = select(options, registry, settings);
-
-  const nlohmann::ordered_json context = bench::run_context({}, registry, settings);
-  std::vector<EquivalentResult> results;
-  StatusLine line;
-  for (const std::string& scenario : options.scenarios) {
-    for (const Candidate& candidate : candidates) {
-      for (EquivalentResult& result : run_one(options, scenario, candidate, line)) {
-        if (!options.json) print_equivalent(result, options.weights);
-        results.push_back(std::move(result));
-      }
-      std::fflush(stdout);  // into a file, too: the next search may take minutes
-      write(options, context, results, true);
+  void run() {
+    std::vector<study::SearchTask> tasks;
+    for (const std::string& scenario : options_.scenarios) {
+      for (const Candidate& candidate : candidates_) tasks.push_back(task_of(options_, scenario, candidate));
     }
+    context_ = bench::run_context(
+        {.program = "sixdof", .arguments = arguments(options_), .benchmark_flags = measured_with(options_)}, registry_,
+        settings_);
+    study::MeasurementStore store(context_);
+    if (!options_.output.empty()) store.open(options_.output, options_.resume);
+    StudyProgress progress(own_command("sixdof equivalent"), budget_s_);
+    const study::EquivalentRun searched =
+        study::run_searches(tasks, store, progress, [&](const study::EquivalentRun& so_far) {
+          print_new(so_far);
+          write(so_far, store, true);
+        });
+    const bool whole = searched.not_searched.empty();
+    write(searched, store, !whole);
+    if (whole) store.finish();
+    print(searched, store);
+    progress.end();
+    std::fflush(stdout);
   }
-  write(options, context, results, false);
-  if (!options.json) return print_prediction_errors(results);
-  fmt::print("{}\n", json_text(results::document_of(context, rows_of(results))));
+
+ private:
+  bool prints_searches() const { return !options_.json && !options_.paper; }
+
+  /// Those that have ended since the last call.
+  void print_new(const study::EquivalentRun& searched) {
+    if (!prints_searches()) return;
+    for (; printed_ < searched.results.size(); ++printed_) {
+      print_equivalent(searched.results[printed_], options_.weights);
+    }
+    std::fflush(stdout);  // into a file, too: the next search may take minutes
+  }
+
+  void print(const study::EquivalentRun& searched, const study::MeasurementStore& store) const {
+    if (options_.json) return fmt::print("{}\n", json_text(document(searched, store, !searched.not_searched.empty())));
+    std::vector<Sheet> sheets = options_.paper ? paper_sheets(paper_lines(searched)) : std::vector<Sheet>();
+    if (!searched.results.empty()) sheets.push_back(prediction_sheet(searched.results));
+    for (const Sheet& sheet : sheets) fmt::print("{}\n", options_.markdown ? as_markdown(sheet) : as_text(sheet));
+    const std::vector<std::string> lines = not_searched_lines(searched.not_searched);
+    fmt::print("{}", options_.markdown ? lines_as_markdown(lines) : lines_as_text(lines));
+  }
+
+  static std::vector<results::PaperLine> paper_lines(const study::EquivalentRun& searched) {
+    return results::paper_lines(study::equal_time_answers(searched.results));
+  }
+
+  /// Until the study is whole, the file says that it is not.
+  void write(const study::EquivalentRun& searched, const study::MeasurementStore& store, bool interrupted) const {
+    if (options_.output.empty()) return;
+    write_file_atomically(options_.output, json_text(document(searched, store, interrupted)) + "\n");
+  }
+
+  nlohmann::ordered_json document(const study::EquivalentRun& searched, const study::MeasurementStore& store,
+                                  bool interrupted) const {
+    std::vector<results::Row> rows;
+    for (const study::EquivalentResult& result : searched.results) {
+      for (results::Row& row : study::equivalent_rows(result)) rows.push_back(std::move(row));
+    }
+    nlohmann::ordered_json context = context_;
+    if (interrupted) context["interrupted"] = "true";
+    nlohmann::ordered_json json = results::document_of(context, rows);
+    if (options_.paper) json["paper"] = paper_json(paper_lines(searched));
+    json["not_searched"] = not_searched_json(searched.not_searched);
+    json["measurements"] = store.as_json();
+    return json;
+  }
+
+  const Options& options_;
+  const double budget_s_;
+  Registry registry_;
+  std::map<std::string, Settings> settings_;
+  std::vector<Candidate> candidates_;
+  nlohmann::ordered_json context_;
+  std::size_t printed_ = 0;
+};
+
+/// What --paper changes where the command line does not say otherwise: the searches of the paper, and a time that is
+/// its mean query time on a core k_faster times as fast, which is assumed.
+void take_paper_defaults(const CLI::App& command, Options& options) {
+  constexpr double k_faster = 3.0;
+  const auto given = [&](const char* option) { return command.count(option) > 0; };
+  if (!given("--scenario")) options.scenarios = {"Ia", "II", "III"};
+  if (!given("--tau")) {
+    options.taus = {study::time_text(results::k_paper_mean_ns), study::time_text(results::k_paper_mean_ns / k_faster)};
+  }
+  if (!given("--law")) options.law = k_wrench_law;
 }
 
 }  // namespace
@@ -248,15 +333,23 @@ void add_equivalent_command(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
+  auto* const paper = command->add_flag(
+      "--paper", options->paper,
+      "The paper's table, with what is worse than printed: Ia, II and III, at 0.9 ms and, for a core three times as "
+      "fast (assumed), 0.3 ms; other options change that");
+  command->add_flag("--markdown", options->markdown, "That table as Markdown")->needs(paper);
   command
       ->add_option("--reverse", options->reverse,
                    "Instead of --tau: find the least time at which the error eta (below) is this")
       ->type_name("ETA")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::PositiveNumber)
+      ->excludes(paper);
   command->add_option("--weights", options->weights, "Weights of sigma and gamma in the error eta (below)")
       ->type_name("WEIGHT")
       ->capture_default_str();
-  command->add_option("--law", options->law, "Ideal to compare with (sixdof quality --help)")
+  command
+      ->add_option("--law", options->law,
+                   "Ideal to compare with (sixdof quality --help), or wrench: that of the algorithm's own wrench")
       ->type_name("LAW")
       ->capture_default_str();
   command->add_option("--grid", options->grids, "Values to try of a parameter that is searched; may be repeated")
@@ -270,7 +363,7 @@ void add_equivalent_command(CLI::App& app) {
   command->add_option("--reach", options->reach, "Search beyond the grid by this factor on both sides")
       ->type_name("FACTOR")
       ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
+      ->default_str("2; with --paper 1 for counts");
   command
       ->add_option("--memory", options->largest_gb,
                    "Leave out resolutions predicted to need more memory, in GB; 0: no limit")
@@ -279,15 +372,27 @@ void add_equivalent_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--steps", options->steps, "Steps along the path")->type_name("N")->capture_default_str();
   add_process_options(*command, options->process);
-  command->add_option("-o,--output", options->output, "Write all measurements to this file (JSON)")->type_name("FILE");
+  command->add_option("--budget", options->budget, "Longest time: 90s, 10min; searches that do not fit are named")
+      ->type_name("TIME")
+      ->default_str("no limit");
+  auto* const output =
+      command->add_option("-o,--output", options->output, "Write answers and all measurements to this file (JSON)");
+  output->type_name("FILE");
+  command
+      ->add_flag("--resume", options->resume,
+                 "Take over what FILE and FILE.journal have of the same command, which broke off or ran out of budget")
+      ->needs(output);
   command->add_flag("--json", options->json, "As JSON");
-  command->callback([options] { run(*options); });
+  command->callback([command, options] {
+    if (options->paper) take_paper_defaults(*command, *options);
+    EquivalentCommand(*options).run();
+  });
   add_examples(
       *command,
       "sixdof equivalent --scenario II --algorithm vps --tau 10us --steps 100 "
       "--grid voxel_size=0.03,0.02,0.01 --grid point_spacing=0.03,0.02,0.01",
-      "sixdof equivalent --scenario II --algorithm vps --reverse 0.05 --steps 100 "
-      "--grid voxel_size=0.03,0.02,0.01 --grid point_spacing=0.03,0.02,0.01 -o equivalent.json",
+      "sixdof equivalent --paper --scenario II --algorithm vps --tau 10us --steps 100 "
+      "--grid voxel_size=0.03,0.02,0.01 --grid point_spacing=0.03,0.02,0.01 --budget 5min --resume -o equivalent.json",
       "Measures a grid of resolutions, fits time and error, and measures the predicted best one. The error is eta = "
       "w1 sigma + w2 gamma: sigma is the error of the force's magnitude, as a fraction; gamma that of its direction, "
       "in radians; w1 and w2 are the --weights.");

@@ -2,10 +2,16 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include <sixdof/results/paper_table.h>
+#include "bench/cli/table.h"
 #include "bench/study/equivalent_rows.h"
+#include "bench/study/equivalent_run.h"
 
-/// The text that `sixdof equivalent` prints.
+/// The text that `sixdof equivalent` prints, and the members of its JSON besides rows.
 
 namespace sixdof::cli {
 
@@ -13,6 +19,16 @@ namespace sixdof::cli {
 void print_equivalent(const study::EquivalentResult& result, const std::string& weights);
 
 /// For each algorithm the mean difference of predicted and measured eta, beside the values that the paper prints.
-void print_prediction_errors(std::span<const study::EquivalentResult> results);
+Sheet prediction_sheet(std::span<const study::EquivalentResult> results);
+
+/// A sheet for each mean time. @param lines of results::paper_lines()
+std::vector<Sheet> paper_sheets(std::span<const results::PaperLine> lines);
+
+/// A list of objects with the printed value, and value and verdict of each reading.
+nlohmann::ordered_json paper_json(std::span<const results::PaperLine> lines);
+
+/// "not searched: Ia ist at tau = 0.9ms: WHY".
+std::vector<std::string> not_searched_lines(std::span<const study::NotSearched> list);
+nlohmann::ordered_json not_searched_json(std::span<const study::NotSearched> list);
 
 }  // namespace sixdof::cli

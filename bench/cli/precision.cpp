@@ -1,8 +1,9 @@
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <iterator>
 #include <list>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,12 @@
 #include "bench/cli/study_options.h"
 #include "bench/common/duration.h"
 #include "bench/common/json_text.h"
-#include "bench/common/progress_line.h"
+#include "bench/common/own_command.h"
+#include "bench/common/study_progress.h"
 #include "bench/harness/run_context.h"
 #include "bench/study/precision.h"
 #include "bench/study/study_pairs.h"
+#include "bench/study/sweep.h"
 
 namespace sixdof::cli {
 namespace {
@@ -37,17 +40,53 @@ struct Options {
   bool markdown = false;
 };
 
-/// The end of the budget.
-class Deadline {
+/// Work of a round of timing, of which the measurement of all points is 1.
+constexpr double k_round_work = 0.25;
+
+/// A point takes about twice as long as the coarser one before it. @param finished only those that have ended
+double work_of(std::span<const study::PrecisionPoint> points, bool finished) {
+  double work = 0.0, next = 1.0;
+  const Algorithm* before = nullptr;
+  for (const study::PrecisionPoint& point : points) {
+    next = point.algorithm == before ? 2.0 * next : 1.0;
+    before = point.algorithm;
+    if (!finished || point.measured() || !point.left_out.empty()) work += next;
+  }
+  return work;
+}
+
+/// Lines about one pair.
+class PairProgress {
  public:
-  explicit Deadline(double seconds) : seconds_(seconds) {}
-  double left_s() const {
-    return seconds_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  PairProgress(const study::PrecisionStudy& study, StudyProgress& progress) : study_(study), progress_(progress) {}
+
+  /// A point, or a round of timing over all of them, has ended. Further rounds have no number that is known before.
+  void step() {
+    ++steps_;
+    const std::size_t points = study_.points().size(), rounds = steps_ > points ? steps_ - points : 0;
+    if (rounds >= study_.plan().rounds) return;
+    const double done = work_of(study_.points(), true) +
+                        k_round_work * static_cast<double>(rounds) * work_of(study_.points(), false);
+    const std::string part = rounds == 0 ? fmt::format("{} of {} points", steps_, points)
+                                         : fmt::format("round {} of timing", rounds + 1);
+    progress_.finished(fmt::format("{}: {}", study_.pair().pair, part), done - told_);
+    told_ = done;
+  }
+
+  void end() {
+    for (const study::PrecisionPoint& point : study_.points()) {
+      if (point.left_out.empty()) continue;
+      progress_.leave_out(fmt::format("{}: {} {}", study_.pair().pair, point.algorithm->traits().name,
+                                      fmt::join(point.sweep.assignments, " ")),
+                          point.left_out);
+    }
   }
 
  private:
-  const double seconds_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const study::PrecisionStudy& study_;
+  StudyProgress& progress_;
+  std::size_t steps_ = 0;
+  double told_ = 0.0;  ///< Work.
 };
 
 /// The studies of all pairs, and the file that they fill.
@@ -67,13 +106,15 @@ class PrecisionCommand {
     plan_.seed = options_.study.seed;
     plan_.algorithms = study_algorithms(registry_, options_.study.algorithms, plan_.question);
     plan_.values = swept_values(options_.study, plan_.algorithms);
-    const Deadline deadline(parse_duration("--budget", options_.study.budget));
+    StudyProgress progress(own_command("sixdof precision"), parse_duration("--budget", options_.study.budget));
     study::StudyPairs pairs(harness_options(options_.study, options_.sample, arguments()), options_.study.pairs);
     context_ = bench::run_context(pairs.options(), registry_, bench::parse_parameters({}, registry_));
+    begin(pairs.pairs().size(), progress);
     for (std::size_t i = 0; i < pairs.pairs().size(); ++i) {
-      measure(pairs, *pairs.pairs()[i], deadline, pairs.pairs().size() - i);
+      measure(pairs, *pairs.pairs()[i], progress, pairs.pairs().size() - i);
     }
     finish();
+    progress.end();
   }
 
  private:
@@ -90,23 +131,40 @@ class PrecisionCommand {
     throw BadArgument(fmt::format("--question {}: must be collide, distance or respond", options_.question));
   }
 
+  /// Counts the work before any of it is measured.
+  void begin(std::size_t pairs, StudyProgress& progress) const {
+    std::size_t points = 0;
+    double work = 0.0;
+    for (const Algorithm* const algorithm : plan_.algorithms) {
+      const std::size_t sweep = study::sweep_points(*algorithm, plan_.values).size();
+      points += sweep;
+      work += std::exp2(static_cast<double>(sweep)) - 1.0;
+    }
+    const double rounds = 1.0 + k_round_work * static_cast<double>(plan_.rounds - 1);
+    progress.begin(fmt::format("pairs: {}, algorithms: {}, points of each pair: {}, poses: {} at most", pairs,
+                               plan_.algorithms.size(), points, options_.sample),
+                   rounds * work * static_cast<double>(pairs));
+  }
+
   /// @param pairs_left which share the time that is left, this one included
-  void measure(study::StudyPairs& pairs, const CatalogueEntry& pair, const Deadline& deadline, std::size_t pairs_left) {
-    StatusLine line;
-    const double until_s = deadline.left_s() * (1.0 - 1.0 / static_cast<double>(pairs_left));
-    plan_.budget_s = deadline.left_s() - until_s;
-    line.show(fmt::format("{}: truth of {} configurations", pair.pair, options_.sample));
+  void measure(study::StudyPairs& pairs, const CatalogueEntry& pair, StudyProgress& progress, std::size_t pairs_left) {
+    const double until_s = progress.left_s() * (1.0 - 1.0 / static_cast<double>(pairs_left));
+    plan_.budget_s = progress.left_s() - until_s;
+    progress.status(fmt::format("{}: truth of {} configurations", pair.pair, options_.sample));
     samples_.push_back(study::draw_affordable_sample(plan_, pairs.cache(), pair, options_.sample));
-    plan_.budget_s = deadline.left_s() - until_s;
+    plan_.budget_s = progress.left_s() - until_s;
     study::PrecisionStudy& study = studies_.emplace_back(plan_, pairs.cache(), pair, samples_.back());
+    PairProgress lines(study, progress);
     study.run(
         [&](const std::string& what, std::size_t done, std::size_t total) {
-          line.show(fmt::format("{}: {}, {} of {} points", pair.pair, what, done, total));
+          progress.status(fmt::format("{}: {}, {} of {} points", pair.pair, what, done, total));
         },
         [&] {
           for (const auto& [key, hash] : pairs.cache().hashes()) context_[key] = hash;
           write(true);
+          lines.step();
         });
+    lines.end();
     write(true);
   }
 

@@ -18,10 +18,12 @@
 #include <sixdof/base/error.h>
 #include <sixdof/stability/ray_algorithm.h>
 #include "bench/cli/shared.h"
+#include "bench/cli/study_options.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
-#include "bench/common/progress_line.h"
+#include "bench/common/own_command.h"
 #include "bench/common/run_guarded.h"
+#include "bench/common/study_progress.h"
 #include "bench/study/stress_processes.h"
 #include "bench/study/stress_text.h"
 #include "bench/study/stress_worker.h"
@@ -93,6 +95,16 @@ void print_red(const study::StressCell& cell, const study::StressLine& line) {
              line.parameter, line.words, line.reproduction);
 }
 
+void leave_out(const Options& options, const study::StressPlan& plan, const Registry& registry,
+               StudyProgress& progress) {
+  if (options.algorithms.empty()) leave_out_unasked(registry, plan.algorithms, progress);
+  if (plan.at_defaults) return;
+  for (const Algorithm* const algorithm : plan.algorithms) {
+    if (!study::has_finer_defaults(*algorithm)) continue;
+    progress.leave_out(algorithm->traits().name + " at defaults", "takes hours; asked with --at-defaults");
+  }
+}
+
 void run_stress_command(const Options& options) {
   Registry registry;
   register_all_algorithms(registry, {.external = options.external});
@@ -108,12 +120,17 @@ void run_stress_command(const Options& options) {
   // by the shots of a case.
   std::filesystem::create_directories(options.cases);
   ::setenv("SIXDOF_CACHE", (std::filesystem::path(options.cases) / "structures").c_str(), 0);
-  ProgressLine progress("stress");
+  StudyProgress progress(own_command("sixdof stress"));
+  const std::size_t planned = study::cells_of(plan).size();
+  progress.begin(fmt::format("families: {}, algorithms: {}, cells: {}, {} at a time", plan.families.size(),
+                             plan.algorithms.size(), planned, plan.processes),
+                 static_cast<double>(planned));
   const std::vector<study::StressCell> cells = study::run_stress(plan, [&](std::size_t done, std::size_t total) {
     InterruptGuard::check();
-    progress.show(done, total);
+    progress.counted(done, total, "cells");
   });
-  progress.clear();
+  leave_out(options, plan, registry, progress);
+  progress.end();
 
   std::vector<study::StressLine> lines;
   for (const study::StressCell& cell : cells) lines.push_back(study::stress_line(cell, options.cases));

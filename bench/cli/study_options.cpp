@@ -103,6 +103,18 @@ void require_metric(const std::string& option, const std::string& name, const st
   throw BadArgument(fmt::format("{} {}: must be one of {}", option, name, fmt::join(known, ", ")));
 }
 
+void leave_out_unasked(const Registry& registry, const std::vector<const Algorithm*>& asked, StudyProgress& progress) {
+  for (const auto& algorithm : registry.all()) {
+    if (std::ranges::find(asked, algorithm.get()) != asked.end()) continue;
+    const Traits& traits = algorithm->traits();
+    std::string why = "does not answer what is asked";
+    if (!traits.timed || !traits.by_default) why = "too slow for all; asked where it is named";
+    if (traits.body != Body::mesh) why = fmt::format("answers for the {} of the meshes", to_string(traits.body));
+    if (traits.name == "null") why = "answers with constants";
+    progress.leave_out(traits.name, std::move(why));
+  }
+}
+
 std::string arguments_of(const std::string& command, const StudyOptions& options) {
   std::string text = command;
   if (!options.pairs.empty()) text += fmt::format(" --pair {}", fmt::join(options.pairs, ","));

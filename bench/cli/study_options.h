@@ -6,6 +6,7 @@
 #include <CLI/App.hpp>
 
 #include <sixdof/query/registry.h>
+#include "bench/common/study_progress.h"
 #include "bench/harness/options.h"
 #include "bench/harness/query_kind.h"
 #include "bench/study/sweep.h"
@@ -43,6 +44,9 @@ std::vector<study::SweptValues> swept_values(const StudyOptions& options,
 
 /// @throws BadArgument, which lists those that there are, unless `name` is among `known`
 void require_metric(const std::string& option, const std::string& name, const std::vector<std::string>& known);
+
+/// Names the algorithms of the registry that are not asked, with the reason why "all" does not include them.
+void leave_out_unasked(const Registry& registry, const std::vector<const Algorithm*>& asked, StudyProgress& progress);
 
 /// The command line, for the context of a result.
 std::string arguments_of(const std::string& command, const StudyOptions& options);

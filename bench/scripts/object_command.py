@@ -59,10 +59,7 @@ def measure(options, choice, units):
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with runs.Runner(options.out, choice, options.program, options.bench,
                      runs.Budget(options.budget, options.jobs)) as runner:
-        left_out = runs.run(runner, units, lambda unit, number, count: print(
-            f"{number} of {count}: {unit.name}", file=sys.stderr, flush=True))
-    if left_out:
-        print(f"the budget left out {len(left_out)} of {len(units)} pairs; the same command continues", file=sys.stderr)
+        runs.run(runner, units)
 
 
 def rows_of(unit):

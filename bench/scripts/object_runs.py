@@ -28,6 +28,7 @@ import threading
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "fixtures"))
+from object_progress import Progress  # noqa: E402
 from whole_file import write_whole  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -358,10 +359,17 @@ def set_was_made(result):
     return not result["set"]["status"].startswith(("no set", "no mesh"))
 
 
-def run(runner, units, report):
-    """Measures what is not measured yet. @returns names of the units that the budget left out"""
+def measured_points(folder):
+    """(triangles, seconds) of the units of a folder."""
+    return [(unit["labels"]["total_triangles"], unit["seconds"]) for unit in results(folder)]
+
+
+def run(runner, units):
+    """Measures what is not measured yet, and says so on stderr."""
     waiting = [unit for unit in units if not done(runner.folder, unit, runner.choice.algorithms)]
     runner.budget.left = len(waiting)
+    progress = Progress(runner.budget, measured_points(runner.folder))
+    progress.begin(waiting)
     left_out = []
 
     def one(unit):
@@ -369,9 +377,10 @@ def run(runner, units, report):
             if runner.stopped or runner.budget.remaining() <= 0:
                 raise OutOfTime
             runner.measure(unit)
-            report(unit, len(waiting) - runner.budget.left + 1, len(waiting))
+            with runner.lock:
+                progress.finished(unit)
         except OutOfTime:
-            left_out.append(unit.name)
+            left_out.append(unit)
         finally:
             with runner.lock:
                 runner.budget.left -= 1
@@ -384,7 +393,7 @@ def run(runner, units, report):
         except BaseException:
             runner.stop()
             raise
-    return left_out
+    progress.end(left_out)
 
 
 def results(folder):

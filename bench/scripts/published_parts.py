@@ -102,10 +102,10 @@ def recommend(file, *words):
 
 def parts():
     """All parts, the shortest first."""
-    equal_time = [Step(f"{scenario}-{algorithm}.json",
-                       ["sixdof", "equivalent", "--scenario", scenario, "--algorithm", algorithm, "--tau", "0.9ms,0.3ms",
-                        "--reach", "2" if algorithm == "vps" else "1", "-o", "{out}"], 2)
-                  for scenario in ("Ia", "II", "III") for algorithm in ("vps", "ist")]
+    equal_time = [Step("equivalent.json", ["sixdof", "equivalent", "--paper", "-o", "{out}"], 20, resumes=True),
+                  # Of a whole file this measures nothing and prints.
+                  Step("paper.txt", ["sixdof", "equivalent", "--paper", "--resume", "--output={folder}/equivalent.json",
+                                     "--markdown"], 0.1, prints=True)]
     return [
         Part("stress", "hard cases: who breaks, on what",
              [Step("stress.txt", ["sixdof", "stress", "--cases", "{folder}/stress-cases"], 1.5, prints=True)]),
@@ -152,7 +152,7 @@ def compact(document):
     """A result file in short."""
     if isinstance(document, list) or "benchmarks" not in document:  # of stress, scenes, and plans
         return rounded(document)
-    short = {key: value for key, value in document.items() if key not in ("benchmarks", "context")}
+    short = {key: value for key, value in document.items() if key not in ("benchmarks", "context", "measurements")}
     kept = [{key: row[key] for key in KEPT if key in row} for row in document["benchmarks"]]
     if "collection" in document or "growth" in document:
         kept = []  # their summaries have what is published

@@ -244,6 +244,10 @@ void check(const ResolutionAxis& axis) {
 
 }  // namespace
 
+void check_axes(const std::array<ResolutionAxis, 2>& axes) {
+  for (const ResolutionAxis& axis : axes) check(axis);
+}
+
 double rounded_value(const ResolutionAxis& axis, double value) {
   constexpr int k_digits = 4;
   const double exponent = std::floor(std::log10(value)) - (k_digits - 1);
@@ -256,7 +260,7 @@ double rounded_value(const ResolutionAxis& axis, double value) {
 
 SearchResult search_equivalent(const std::array<ResolutionAxis, 2>& axes, const SearchOptions& options,
                                const Measure& measure) {
-  for (const ResolutionAxis& axis : axes) check(axis);
+  check_axes(axes);
   if (!(options.target > 0.0)) throw BadArgument("the given time or eta must be above zero");
   return Search(axes, options, measure).run();
 }

@@ -100,6 +100,9 @@ using Measure = std::function<Measurement(const Resolution&)>;
 SearchResult search_equivalent(const std::array<ResolutionAxis, 2>& axes, const SearchOptions& options,
                                const Measure& measure);
 
+/// @throws BadArgument if an axis has fewer than three values, or values out of its range
+void check_axes(const std::array<ResolutionAxis, 2>& axes);
+
 /// Fraction of the objective for which the search leaves the line: less than what predictions are off by.
 inline constexpr double k_worthwhile = 0.05;
 

@@ -56,6 +56,20 @@ results::Row step_row(const EquivalentResult& result, const SearchStep& step, st
   return row;
 }
 
+/// What a reader of the answer alone has to know: "all faster, not converged".
+std::string remark(const SearchResult& search) {
+  std::string text;
+  if (search.answer().reach == Reach::inside) text = "better than at tau";
+  if (search.answer().reach == Reach::below) text = "all faster";
+  if (search.answer().reach == Reach::above) text = "all slower";
+  if (!search.converged) text += text.empty() ? "not converged" : ", not converged";
+  return text;
+}
+
+results::ScenarioMeasures measures_of(const Measurement& measured) {
+  return {.values = {measured.counters.begin(), measured.counters.end()}, .mean_ns = measured.time_ns};
+}
+
 }  // namespace
 
 std::vector<results::Row> equivalent_rows(const EquivalentResult& result) {
@@ -70,7 +84,25 @@ std::vector<results::Row> equivalent_rows(const EquivalentResult& result) {
                                 fmt::format("{}/{}:{}/{}:{}", prefix(result), result.axes[0].parameter, point.at[0],
                                             result.axes[1].parameter, point.at[1])));
   }
+  if (result.at_defaults) rows.push_back(measured_row(result, *result.at_defaults, prefix(result) + "/defaults"));
   return rows;
+}
+
+std::vector<results::EqualTimeAnswer> equal_time_answers(std::span<const EquivalentResult> searches) {
+  std::vector<results::EqualTimeAnswer> answers;
+  for (const EquivalentResult& result : searches) {
+    if (result.options.goal != Goal::time) continue;
+    const Measurement& found = result.search.answer().measured;
+    results::EqualTimeAnswer answer{.scenario = result.scenario,
+                                    .algorithm = result.algorithm,
+                                    .tau_ns = result.options.target,
+                                    .resolution = resolution_text(result.axes, found.at),
+                                    .remark = remark(result.search),
+                                    .found = measures_of(found)};
+    if (result.at_defaults) answer.at_defaults = measures_of(*result.at_defaults);
+    answers.push_back(std::move(answer));
+  }
+  return answers;
 }
 
 PredictionError prediction_error(std::span<const EquivalentResult> results, bool first) {
@@ -88,6 +120,15 @@ PredictionError prediction_error(std::span<const EquivalentResult> results, bool
     error.relative /= static_cast<double>(error.searches);
   }
   return error;
+}
+
+std::string given_text(const SearchOptions& options) {
+  return options.goal == Goal::time ? fmt::format("tau = {}", time_text(options.target))
+                                     : fmt::format("eta = {:.4g}", options.target);
+}
+
+std::string resolution_text(const std::array<ResolutionAxis, 2>& axes, const Resolution& at) {
+  return fmt::format("{}={} {}={}", axes[0].parameter, at[0], axes[1].parameter, at[1]);
 }
 
 std::string time_text(double nanoseconds) {

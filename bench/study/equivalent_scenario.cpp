@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,6 +20,40 @@ constexpr double k_undefined = std::numeric_limits<double>::quiet_NaN();
 double find(const Measures& measures, const std::string& name) {
   const auto found = std::ranges::find(measures, name, &Measures::value_type::first);
   return found == measures.end() ? k_undefined : found->second;
+}
+
+/// The law whose ideals are the formulas as printed; empty where the paper prints none.
+std::optional<IdealLaw> printed_law(const ScenarioStudy& study) {
+  const ResponseLaw own = study.algorithm.traits().law;
+  if (own == ResponseLaw::none) return std::nullopt;
+  const IdealLaw law = parse_ideal_law("paper", own);
+  return study.scenario.ideal(law, 0.0) ? std::optional(law) : std::nullopt;
+}
+
+using Counters = std::vector<std::pair<std::string, double>>;
+
+void add(Counters& counters, std::string name, double value) {
+  if (std::isfinite(value)) counters.emplace_back(std::move(name), value);
+}
+
+/// The measures that the paper prints, of the wrench that is rated, by the names of results::ScenarioMeasures.
+Counters readings(const ScenarioStudy& study, const Recording& recording, const Measures& measures) {
+  const std::string wrench(rated_wrench(study.scenario.name()));
+  const std::string sigma = "sigma_" + wrench, gamma = "gamma_" + wrench + "_deg", nu = "nu_" + wrench;
+  Counters counters;
+  for (const std::string& name : {sigma, gamma, nu}) {
+    add(counters, name, find(measures, name));
+    add(counters, name + "_all", find(measures, name + "_all"));
+  }
+  const std::optional<IdealLaw> law = printed_law(study);
+  if (!law) return counters;
+  const Measures printed = evaluate(study.scenario, recording, *law);
+  for (const std::string& name : {"sigma_paper_" + wrench, gamma, nu}) {
+    // Where all of the path is in the window there is no measure of the whole path.
+    const double whole = find(printed, name + "_all");
+    add(counters, name + "_all_by_paper", std::isfinite(whole) ? whole : find(printed, name));
+  }
+  return counters;
 }
 
 /// Sets the parameter, so that texts of a grid are checked like those of the command line. @returns the number
@@ -56,6 +91,15 @@ ResolutionAxis axis_of(const Traits& traits, const Parameter& parameter, const G
 
 std::string_view rated_wrench(std::string_view scenario) { return scenario == "III" ? "T" : "F"; }
 
+std::string_view wrench_law(std::string_view scenario, std::string_view algorithm) {
+  using Law = std::pair<std::string_view, std::string_view>;  // of an algorithm
+  constexpr std::array<Law, 4> k_laws{
+      Law{"vps", "traction"}, Law{"vps-field", "wall-traction"}, Law{"ist", "volume"}, Law{"ist-descent", "volume"}};
+  if (scenario != "III" && scenario != "IV") return "own";
+  const auto* const found = std::ranges::find(k_laws, algorithm, &Law::first);
+  return found == k_laws.end() ? "own" : found->second;
+}
+
 std::array<ResolutionAxis, 2> resolution_axes(const Traits& traits, const Grids& grids, double reach) {
   std::vector<const Parameter*> swept;
   for (const Parameter& parameter : traits.parameters) {
@@ -88,10 +132,8 @@ Measurement measure_scenario(const ScenarioStudy& study, const std::array<Resolu
   const double sigma = find(measures, "sigma_" + wrench);
   const double gamma = find(measures, "gamma_" + wrench + "_deg") * std::numbers::pi / 180.0;
 
-  std::vector<std::pair<std::string, double>> counters;
-  for (const std::string& name : {"sigma_" + wrench, "gamma_" + wrench + "_deg", std::string("misses")}) {
-    if (const double value = find(measures, name); std::isfinite(value)) counters.emplace_back(name, value);
-  }
+  Counters counters = readings(study, recording, measures);
+  add(counters, "misses", find(measures, "misses"));
 
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t pass = 0; pass < k_timing_passes; ++pass) {

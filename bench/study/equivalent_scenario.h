@@ -36,6 +36,10 @@ struct ScenarioStudy {
 /// "F" (force) or "T" (torque): whose sigma and gamma make eta. The ideal force of III is zero.
 std::string_view rated_wrench(std::string_view scenario);
 
+/// The word of `--law` for the ideal of the algorithm's own wrench (lib/sixdof/scenario/README.md): in III and IV,
+/// where laws differ, not that of its penalty; "own" in the other scenarios and where none is known.
+std::string_view wrench_law(std::string_view scenario, std::string_view algorithm);
+
 /// Values of the grid by the name of a swept parameter, in place of three of its sweep.
 using Grids = std::map<std::string, std::vector<double>>;
 
@@ -52,7 +56,8 @@ Settings with_resolution(const Settings& settings, const std::array<ResolutionAx
 
 /// Prepares the algorithm at one resolution and records the scenario: once for sigma and gamma in the scenario's
 /// window, then k_timing_passes times for the time, the least of the passes' mean processor times (other work on the
-/// machine only adds time).
+/// machine only adds time). Counters are the misses, and sigma, gamma and nu in every reading of the paper's table
+/// (results/paper_table.h).
 /// @throws what Algorithm::prepare() does; Error if a step has no answer
 Measurement measure_scenario(const ScenarioStudy& study, const std::array<ResolutionAxis, 2>& axes,
                              const Resolution& at);

@@ -115,8 +115,7 @@ class Run {
 
 }  // namespace
 
-std::vector<StressCell> run_stress(const StressPlan& plan,
-                                   const std::function<void(std::size_t done, std::size_t total)>& progress) {
+std::vector<StressCell> cells_of(const StressPlan& plan) {
   std::vector<StressCell> cells;
   for (const stability::Family* family : plan.families) {
     for (const Algorithm* algorithm : plan.algorithms) {
@@ -129,6 +128,12 @@ std::vector<StressCell> run_stress(const StressPlan& plan,
       }
     }
   }
+  return cells;
+}
+
+std::vector<StressCell> run_stress(const StressPlan& plan,
+                                   const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  std::vector<StressCell> cells = cells_of(plan);
   Run run(plan, cells);
   for (std::size_t done = 0; done < cells.size();) {
     done = run.done();

@@ -22,7 +22,10 @@ struct StressPlan {
   std::vector<std::string> external = {};  ///< "NAME=COMMAND", which the processes need as well.
 };
 
-/// All cells, by family, then by algorithm. All but times, and verdicts that depend on them, is determined by the seed.
+/// The cells of a plan as they will be asked: by family, then by algorithm.
+std::vector<StressCell> cells_of(const StressPlan& plan);
+
+/// Asks cells_of(plan). All but times, and verdicts that depend on them, is determined by the seed.
 /// A cell whose process ends has the case and the pose that it was asked last, and the verdict crashed, hung or out of
 /// memory.
 ///

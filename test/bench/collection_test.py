@@ -7,6 +7,7 @@ import argparse
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -49,6 +50,11 @@ class Run(unittest.TestCase):
     def collection(self, *words):
         return subprocess.run(self.command(*words), capture_output=True, text=True, check=False, env=self.environment)
 
+    @staticmethod
+    def ended(text):
+        """The pairs of the lines about those that have ended."""
+        return re.findall(r"(?m)^\d+ of \d+: (\S+): \d+ % done, [\d.e+]+ (?:s|min|h) left$", text)
+
     def units(self):
         return sorted(file.stem for file in (self.out / "units").glob("*.json"))
 
@@ -57,6 +63,8 @@ class Run(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.units(), sorted(f"{name}.{partner}" for name in OBJECTS
                                               for partner in ("self", "seeded", "tenth")))
+        self.assertRegex(done.stderr, r"^pairs to measure: 9, \d+ at a time\nabout \S+ (s|min) in all, by the first one\n1 of 9: ")
+        self.assertEqual(sorted(self.ended(done.stderr)), self.units())
         document = json.loads((self.out / "results.json").read_text())
         summary = document["collection"]
         self.assertEqual((summary["units"], summary["objects"]), (9, sorted(OBJECTS)))
@@ -76,7 +84,8 @@ class Run(unittest.TestCase):
         (self.out / "units" / "box-1k.self.json").unlink()
         again = self.collection()
         self.assertEqual(again.returncode, 0, again.stderr)
-        self.assertEqual(again.stderr, "1 of 1: box-1k.self\n")
+        self.assertRegex(again.stderr, r"^pairs to measure: 1, \d+ at a time; about \S+ \S+ in all, by those that are measured\n"
+                         r"1 of 1: box-1k.self: 100 % done, 0 s left\n$")
         del before["box-1k.self"]
         for name, changed in before.items():
             self.assertEqual((self.out / "units" / f"{name}.json").stat().st_mtime_ns, changed)
@@ -94,7 +103,7 @@ class Run(unittest.TestCase):
         self.assertEqual(self.collection(*words).returncode, 0)
         [before] = object_runs.results(self.out)
         gained = self.collection(*words, "--algorithms", "ode,exact")
-        self.assertEqual((gained.returncode, gained.stderr), (0, "1 of 1: box-1k.self\n"))
+        self.assertEqual((gained.returncode, self.ended(gained.stderr)), (0, ["box-1k.self"]))
         [after] = object_runs.results(self.out)
         self.assertEqual(list(after["algorithms"]), ["exact", "ode"])
         self.assertEqual(after["algorithms"]["exact"], before["algorithms"]["exact"])
@@ -117,7 +126,7 @@ class Run(unittest.TestCase):
             else:
                 done = self.collection(*words, "--shard", f"{shard}/3")
             self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
-            seen += [line.split(": ")[1] for line in done.stderr.splitlines()]
+            seen += self.ended(done.stderr)
         self.assertEqual(sorted(seen), sorted(f"{name}.self" for name in OBJECTS))
         self.assertFalse((self.out / "results.json").exists())
         self.assertEqual(self.collection("--report").returncode, 0)
@@ -136,7 +145,7 @@ class Run(unittest.TestCase):
     def test_a_budget_ends_the_run_and_the_same_command_continues(self):
         cut = self.collection("--budget", "0.01s")
         self.assertEqual(cut.returncode, 1)
-        self.assertIn("the budget left out 9 of 9 pairs", cut.stderr)
+        self.assertRegex(cut.stderr, r"the budget left out 9 of 9 pairs: \S+, .*, \.\.\.; the same command continues\n")
         self.assertIn("no pair is measured yet", cut.stderr)
         self.assertEqual(self.units(), [])
         self.assertEqual(self.collection("--partners", "self").returncode, 0)
@@ -145,7 +154,9 @@ class Run(unittest.TestCase):
     def test_a_signal_leaves_whole_files_only(self):
         with subprocess.Popen(self.command(), stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
                               env=self.environment) as process:
-            process.stderr.readline()  # the first pair is measured
+            while line := process.stderr.readline():
+                if self.ended(line):  # the first pair is measured
+                    break
             process.send_signal(signal.SIGTERM)
             process.communicate()
         self.assertEqual(process.returncode, 130)
@@ -221,8 +232,7 @@ class Run(unittest.TestCase):
         self.assertIn("Algorithms that did not end: 1\n  box-1k.self: exact: not done in 10 s\n", cut.stdout)
         again = self.collection("--partners", "self", "--retry")
         self.assertEqual(again.returncode, 0, again.stderr)
-        self.assertEqual(sorted(line.split(": ")[1] for line in again.stderr.splitlines()),
-                         ["box-1k.self", "torus-2k.self"])
+        self.assertEqual(sorted(self.ended(again.stderr)), ["box-1k.self", "torus-2k.self"])
         for result in object_runs.results(self.out):
             self.assertEqual((result["set"]["status"], result["algorithms"]["exact"]["status"]), ("ok", "ok"))
         self.assertIn("ode", object_runs.result_of(self.out, "box-1k.self")["algorithms"])

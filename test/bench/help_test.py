@@ -68,11 +68,6 @@ class Help(unittest.TestCase):
             self.assertIn(said, self.succeed([str(BENCH / "scripts" / script), *measure[1:], *programs]))
             self.assertIn(said, self.succeed([str(BENCH / "scripts" / script), *report[1:], *programs]))
 
-    def test_response_table(self):
-        both, one = self.examples([str(BENCH / "scripts/response-table")])
-        self.assertEqual(both, ["bench/scripts/response-table"], "takes minutes; the other one prints a part of it")
-        self.assertIn("| Ia | sigma_F |", self.succeed([str(BENCH / "scripts/response-table"), "--program", SIXDOF, *one[1:]]))
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -3,6 +3,8 @@
 usage: publish_test.py SIXDOF
 """
 
+import importlib.machinery
+import importlib.util
 import json
 import pathlib
 import shutil
@@ -130,6 +132,27 @@ class Short(unittest.TestCase):
             for command in parts.commands_of(part):
                 self.assertNotIn("{", command)
                 self.assertRegex(command, "^(sixdof|sixdof-bench|bench/(scripts/)?[a-z]+) ")
+
+
+class Steps(unittest.TestCase):
+    def test_what_broke_off_is_continued(self):
+        loader = importlib.machinery.SourceFileLoader("publish", str(ROOT / "bench/publish"))
+        publish = importlib.util.module_from_spec(importlib.util.spec_from_loader("publish", loader))
+        loader.exec_module(publish)
+        steps = [step for part in parts.parts() for step in part.steps if step.resumes]
+        self.assertIn("equivalent.json", [step.file for step in steps])
+        for step in steps:
+            with tempfile.TemporaryDirectory() as name:
+                folder = pathlib.Path(name)
+                for begun in (False, True):
+                    words = " ".join(publish.command_of(step, folder, folder))
+                    self.assertEqual("--resume" in words, begun, words)
+                    self.assertIn(str(folder / step.file), words)
+                    (folder / (step.file + ".journal")).touch()
+
+    def test_measurements_are_not_published(self):
+        short = parts.compact({"context": {}, "benchmarks": [], "measurements": [1], "paper": [{"printed": 2.4}]})
+        self.assertEqual(short, {"context": {}, "benchmarks": [], "paper": [{"printed": 2.4}]})
 
 
 class Plan(unittest.TestCase):

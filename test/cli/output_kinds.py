@@ -48,7 +48,7 @@ KINDS = [
     Kind("rows of precision", "x.json", ["precision", "--question", "distance", *STUDY, "-o", "OUT"], times=True),
     Kind("rows of equivalent", "x.json",
          ["equivalent", "--scenario", "II", "--algorithm", "vps", "--tau", "10us", "--steps", "60", "--grid",
-          "voxel_size=0.1,0.07,0.05", "--grid", "point_spacing=0.1,0.07,0.05", "-o", "OUT"], times=True),
+          "voxel_size=0.1,0.07,0.05", "--grid", "point_spacing=0.1,0.07,0.05", "-o", "OUT"], times=True, replaces=False),
     Kind("cells of stress", "x.json",
          ["stress", "--algorithms", "exact", "--families", "kissing", "--cases", "cases", "-o", "OUT"], times=True),
     Kind("page of results", "x.html", ["report", "results.json", "-o", "OUT"]),

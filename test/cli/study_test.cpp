@@ -84,6 +84,21 @@ TEST_F(Studies, PrecisionSaysWhatABudgetLeavesOut) {
   }
 }
 
+TEST_F(Studies, PrecisionTellsHowMuchThereIsHowFarItIsAndWhatIsLeftOut) {
+  const auto done = run(quick + "--algorithms vps,exact --params vps:voxel_size=0.04,0.02");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("sixdof precision: pairs: 1, algorithms: 2, points of each pair: 3, poses: 16 at "
+                                  "most\nsixdof precision: about "));
+  EXPECT_THAT(done.err, HasSubstr(" in all, the budget is 1 min\n"));
+  EXPECT_THAT(done.err, ::testing::ContainsRegex(
+                            "precision: cone-1k-torus-1k: 3 of 3 points: [0-9]+ % done, [0-9:]+ left\n"));
+  EXPECT_THAT(done.err, HasSubstr("precision: cone-1k-torus-1k: round 5 of timing: 100 % done, 0:00:00 left\n"));
+  EXPECT_THAT(done.err, HasSubstr("sixdof precision: nothing was left out\n"));
+  const auto cut = run("precision --a cone-1k --b torus-1k --sample 16 --budget 1ms --algorithms vps");
+  EXPECT_THAT(cut.err, ::testing::ContainsRegex("sixdof precision: left out: cone-1k-torus-1k: vps voxel_size=[0-9.]+ "
+                                                "point_spacing=[0-9.]+: [^\n]*budget"));
+}
+
 TEST_F(Studies, PrecisionOfDistancesAndCollisions) {
   const auto distance = run(quick + "--question distance --algorithms exact,ist --params ist:spheres=200 --json");
   ASSERT_EQ(distance.exit_code, 0) << distance.err;

@@ -1,6 +1,7 @@
 #include "bench/study/equivalent_rows.h"
 
 #include <limits>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -74,6 +75,31 @@ TEST(EquivalentRows, WithoutAForceSayWhy) {
   const auto json = to_json_object(equivalent_rows(none).front());
   EXPECT_EQ(json.at("error_occurred"), true);
   EXPECT_THAT(json.at("error_message").get<std::string>(), HasSubstr("no force"));
+}
+
+TEST(EquivalentRows, HaveTheMeasurementWithTheSettingsAsTheyAre) {
+  EquivalentResult made = result(0.02, 0.01);
+  made.at_defaults = Measurement{.at = {1.0, 10.0}, .time_ns = 4e5, .eta = 0.7, .bytes = 3};
+  const results::Row row = equivalent_rows(made).back();
+  EXPECT_EQ(row.name, "equivalent/scenario:II/algorithm:fake/tau:0.9ms/defaults");
+  EXPECT_EQ(to_json_object(row).at("eta_measured"), 0.7);
+}
+
+TEST(EqualTimeAnswers, AreThoseOfSearchesForATimeWithTheirReadings) {
+  EquivalentResult made = result(0.02, 0.01), reverse = made;
+  made.search.steps[1].measured.counters = {{"sigma_F", 0.125}};
+  made.search.steps[1].reach = Reach::below;
+  made.at_defaults = Measurement{.at = {1.0, 10.0}, .time_ns = 4e5, .eta = 0.7, .counters = {{"sigma_F", 0.25}}};
+  reverse.options.goal = Goal::eta;
+  const std::vector<results::EqualTimeAnswer> answers = equal_time_answers(std::vector{made, reverse});
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0].tau_ns, 9e5);
+  EXPECT_EQ(answers[0].resolution, "size=0.25 count=40");
+  EXPECT_EQ(answers[0].remark, "all faster, not converged");
+  EXPECT_EQ(answers[0].found.mean_ns, 8e5);
+  EXPECT_EQ(answers[0].found.values.at("sigma_F"), 0.125);
+  ASSERT_TRUE(answers[0].at_defaults);
+  EXPECT_EQ(answers[0].at_defaults->values.at("sigma_F"), 0.25);
 }
 
 TEST(PredictionError, IsAMeanOfDifferencesAndOfShares) {

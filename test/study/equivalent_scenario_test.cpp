@@ -1,6 +1,8 @@
 #include "bench/study/equivalent_scenario.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -112,6 +114,36 @@ TEST_F(EquivalentInAScenario, MeasuresTheErrorInRadiansAndProcessorTime) {
   ScenarioStudy doubled = study(40);
   doubled.weights = {.sigma = 1.0, .gamma = 3.0};
   EXPECT_NEAR(measure_scenario(doubled, axes_, {500, 500}).eta, 3.0 * coarse.eta, k_rounding);
+}
+
+TEST_F(EquivalentInAScenario, HasEveryReadingOfTheMeasuresThatThePaperPrints) {
+  const Measurement measured = measure_scenario(study(40), axes_, {500, 500});
+  const std::map<std::string, double> values(measured.counters.begin(), measured.counters.end());
+  const auto query = algorithm_->prepare(scenario_->a(), scenario_->b(),
+                                         with_resolution(algorithm_->settings(), axes_, {500, 500}));
+  const Recording recording = record(*scenario_, *query, 40);
+  const auto expect = [&](IdealLaw law, const std::string& measure, const std::string& name) {
+    const Measures measures = evaluate(*scenario_, recording, law);
+    const auto found = std::ranges::find(measures, measure, &Measures::value_type::first);
+    ASSERT_TRUE(found != measures.end()) << measure;
+    ASSERT_TRUE(values.contains(name)) << name;
+    EXPECT_EQ(values.at(name), found->second) << name;
+  };
+  expect(IdealLaw::depth, "sigma_F", "sigma_F");
+  expect(IdealLaw::depth, "gamma_F_deg", "gamma_F_deg");
+  // In II all of the path is in the window.
+  expect(IdealLaw::paper_depth, "sigma_paper_F", "sigma_paper_F_all_by_paper");
+  expect(IdealLaw::paper_depth, "gamma_F_deg", "gamma_F_deg_all_by_paper");
+  EXPECT_FALSE(values.contains("sigma_F_all"));
+  EXPECT_EQ(values.at("misses"), 0.0);
+}
+
+TEST(WrenchLaw, IsThatOfTheWrenchWhereLawsDiffer) {
+  EXPECT_EQ(wrench_law("III", "vps"), "traction");
+  EXPECT_EQ(wrench_law("IV", "vps-field"), "wall-traction");
+  EXPECT_EQ(wrench_law("III", "ist"), "volume");
+  EXPECT_EQ(wrench_law("II", "vps"), "own");
+  EXPECT_EQ(wrench_law("III", "fake"), "own");
 }
 
 TEST_F(EquivalentInAScenario, FindsTheBestShareOfTheWork) {
