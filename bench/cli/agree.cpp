@@ -12,13 +12,13 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/shell_text.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
 #include "bench/common/progress_line.h"
 #include "bench/common/run_guarded.h"
-#include "bench/common/shell_text.h"
 #include "bench/harness/options.h"
 #include "bench/study/set_agreement.h"
 #include "bench/study/study_pairs.h"

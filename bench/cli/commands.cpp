@@ -13,6 +13,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include <sixdof/base/shell_text.h>
 #include <sixdof/models/model_catalogue.h>
 #include "bench/cli/scene.h"
 #include "bench/cli/shared.h"
@@ -21,7 +22,6 @@
 #include "bench/common/program_end.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/serve_algorithm.h"
-#include "bench/common/shell_text.h"
 #include "bench/common/unknown_word.h"
 
 namespace sixdof::cli {

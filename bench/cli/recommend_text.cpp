@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include "bench/cli/recommend.h"
 #include "bench/common/duration.h"
 #include "bench/common/json_text.h"
-#include "bench/common/own_command.h"
-#include "bench/common/shell_text.h"
 
 namespace sixdof::cli {
 namespace {

@@ -11,7 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/scene/scene_file.h>
 #include <sixdof/scene/score.h>
 #include "bench/cli/scene.h"
@@ -20,10 +22,8 @@
 #include "bench/common/duration.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
-#include "bench/common/own_command.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/scene_algorithms.h"
-#include "bench/common/shell_text.h"
 
 namespace sixdof::cli {
 namespace {

@@ -7,8 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
-
-#include "bench/common/shell_text.h"
+#include <sixdof/base/shell_text.h>
 
 namespace sixdof::cli {
 

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/process/remote_algorithm.h>
-#include "bench/common/own_command.h"
-#include "bench/common/shell_text.h"
 
 namespace sixdof::bench {
 namespace {

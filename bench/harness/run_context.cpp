@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/base/visible_text.h>
 #include <sixdof/process/remote_algorithm.h>
 #include "bench/common/build_info.h"
-#include "bench/common/own_command.h"
-#include "bench/common/shell_text.h"
 #include "bench/harness/timing.h"
 
 namespace sixdof::bench {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
 #include <sixdof/query/ask.h>
-#include "bench/common/own_command.h"
 #include "bench/harness/judge.h"
 #include "bench/harness/query_command.h"
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/common/own_command.h"
+#include <sixdof/base/own_command.h>
 #include "bench/harness/query_command.h"
 
 namespace sixdof::study {
