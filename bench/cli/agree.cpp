@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-#include <sixdof/base/shell_text.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
@@ -56,11 +55,7 @@ std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const Ar
   std::vector<AskedAlgorithm> chosen;
   const auto add = [&](const Algorithm& algorithm) {
     const std::string& name = algorithm.traits().name;
-    AskedAlgorithm asked{&algorithm, settings.at(name), {}};
-    for (const std::string& parameter : arguments.parameters) {
-      if (parameter.starts_with(name + ":")) asked.assignments.push_back(parameter.substr(name.size() + 1));
-    }
-    chosen.push_back(std::move(asked));
+    chosen.push_back({&algorithm, settings.at(name)});
   };
   const auto asked_already = [&](const Algorithm& algorithm) {
     return std::ranges::any_of(chosen, [&](const AskedAlgorithm& each) { return each.algorithm == &algorithm; });
@@ -172,8 +167,7 @@ void agree(const Arguments& arguments) {
   json["pairs"] = Json::array();
   std::size_t differences = 0;
   for (const CatalogueEntry* const entry : pairs.pairs()) {
-    const std::string meshes =
-        fmt::format("--a {} --b {}", shell_quoted(pairs.argument(entry->a)), shell_quoted(pairs.argument(entry->b)));
+    const study::MeshWords meshes{pairs.argument(entry->a), pairs.argument(entry->b)};
     PairAgreement pair;
     {
       ProgressLine line(entry->pair);

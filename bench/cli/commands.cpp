@@ -123,7 +123,7 @@ const std::vector<Group>& groups() {
        {add_recommend_command, add_precision_command, add_equivalent_command, add_quality_command, add_stress_command,
         add_hulls_command}},
       {"Scenes (many bodies that move)", {add_scene_command}},
-      {"Your own", {add_new_algorithm_command, add_completion_command}}};
+      {"Your own", {add_new_algorithm_command, add_conform_command, add_completion_command}}};
   return list;
 }
 

@@ -11,9 +11,11 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/process/remote_algorithm.h>
 #include <sixdof/results/results.h>
 #include <sixdof/scenario/scenario.h>
@@ -201,6 +203,19 @@ void check(const Options& options) {
   parse_weights(options.weights);
 }
 
+/// The command line, for the context of the result.
+std::string arguments_of(const Options& options) {
+  std::string text = fmt::format("equivalent --scenario {} --algorithm {}", fmt::join(options.scenarios, ","),
+                                 fmt::join(options.algorithms, ","));
+  text += options.reverse > 0.0 ? fmt::format(" --reverse {}", options.reverse)
+                                : fmt::format(" --tau {}", fmt::join(options.taus, ","));
+  for (const std::string& parameter : options.parameters) text += " -p " + shell_quoted(parameter);
+  for (const std::string& grid : options.grids) text += " --grid " + shell_quoted(grid);
+  text += fmt::format(" --weights {} --law {} --reach {} --memory {} --steps {}", options.weights, options.law,
+                      options.reach, options.largest_gb, options.steps);
+  return text + process_words(options.process, Options().process);
+}
+
 void run(const Options& options) {
   check(options);
   Registry registry;
@@ -208,7 +223,8 @@ void run(const Options& options) {
   const std::map<std::string, Settings> settings = bench::parse_parameters(options.parameters, registry);
   const std::vector<Candidate> candidates = select(options, registry, settings);
 
-  const nlohmann::ordered_json context = bench::run_context({}, registry, settings);
+  const nlohmann::ordered_json context = bench::run_context(
+      {.program = "sixdof", .arguments = arguments_of(options)}, registry, settings);
   std::vector<EquivalentResult> results;
   StatusLine line;
   for (const std::string& scenario : options.scenarios) {

@@ -110,8 +110,11 @@ void run_stress_command(const Options& options) {
   });
   progress.clear();
 
+  const ProcessLimits limits{.query_s = plan.timeout_s,
+                             .prepare_s = plan.timeout_s,
+                             .memory_bytes = static_cast<std::size_t>(plan.memory_bytes)};
   std::vector<study::StressLine> lines;
-  for (const study::StressCell& cell : cells) lines.push_back(study::stress_line(cell, options.cases));
+  for (const study::StressCell& cell : cells) lines.push_back(study::stress_line(cell, options.cases, limits));
   const nlohmann::ordered_json json = study::stress_json(cells, lines, options.seed);
   if (!options.output.empty()) write_file_atomically(options.output, json_text(json) + "\n");
   std::set<std::string> own = own_algorithms();

@@ -118,8 +118,8 @@ void check_respond(const Subject& subject, Findings& findings) {
   const double mean = degrees / std::max(judged, 1);
   if (mean <= subject.declared.force_degrees) return;
   const std::string what = fmt::format(
-      "the forces are {:.3g} degrees off the exact ones on average, {:.3g} at most; an average of {:.3g} is claimed", mean,
-      largest, subject.declared.force_degrees);
+      "the forces are {:.3g} degrees off the exact ones on average, {:.3g} at most; an average of {:.3g} is claimed",
+      mean, largest, subject.declared.force_degrees);
   worst ? findings.fail(what, *worst) : findings.fail(what);
 }
 
