@@ -110,7 +110,8 @@ TEST_F(Conform, RefusesWhatItCannotCheck) {
   refuses("--algorithm exactly", "exactly: no such algorithm");
   refuses("--algorithm exact --checks Colide", "Colide: no such check; there are Declaration, Collide, ");
   refuses("--algorithm exact --claim collide=bodies", "--claim collide=bodies: must read ALGORITHM:NAME=VALUE");
-  refuses("--algorithm exact --claim vps:collide=bodies", "--claim vps:collide=bodies: vps is not among the algorithms");
+  refuses("--algorithm exact --claim vps:collide=bodies",
+          "--claim vps:collide=bodies: vps is not among the algorithms");
   refuses("--algorithm exact --claim exact:speed=1", "claim speed: no such claim");
   refuses("--algorithm exact -p exact:speed=1", "speed: no such parameter");
   EXPECT_EQ(run("--algorithm exact --json").exit_code, k_exit_usage);

@@ -3,7 +3,7 @@
 turbo-bvh-sixdof and turbo-bvh-bench and no others in the PATH, mesh files of its own, an external program. Each shows
 the same wrong answer, or measures the same row again. test/README.md lists them all.
 
-usage: printed_commands_test.py PROGRAM BENCH (both with the algorithm `balls`, added_algorithm.cpp)
+usage: printed_commands_test.py SIXDOF PROGRAM BENCH (the last two with the algorithm `balls`, added_algorithm.cpp)
 """
 
 import csv
@@ -18,7 +18,7 @@ import sys
 import tempfile
 import unittest
 
-PROGRAM, BENCH = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+SIXDOF, PROGRAM, BENCH = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 del sys.argv[1:]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DEFECTS = 3  # exit code
@@ -283,6 +283,24 @@ class Printed(unittest.TestCase):
         done = self.succeed("turbo-bvh-sixdof generate --a 'two boxes.off' --grid 90 --distances 5 -o two.h5")
         [command] = re.findall(r"\((turbo-bvh-sixdof info --check .*)\)$", done.stderr, re.MULTILINE)
         self.assertIn("pairs of triangles meet", self.succeed(command, DEFECTS).stderr)
+
+    def test_view_in_3d(self):
+        """All that a page shows in 3D: worst poses of rows, hard cases, paths and models. `sixdof` makes the page."""
+        self.measured("--a torus-300 --b cone-200 --suite all '--benchmark_filter=^distance/algorithm:balls/.*:05$'")
+        self.succeed(f"turbo-bvh-sixdof stress --families contained --cases 'my cases' --algorithms never {EXTERNAL} -o stress.json")
+        self.succeed("turbo-bvh-sixdof quality --scenario II --algorithm balls -p scale_a=0.5 --steps 40 -o II.h5")
+        path = f"PATH={shlex.quote(str(SIXDOF.parent))}:$PATH; "
+        made = self.shell(path + "sixdof report results.json stress.json --series II.h5 -o page.html")
+        if "cmake/setup report" in made.stderr:
+            self.skipTest(made.stderr)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        page = (self.folder / "page.html").read_text(encoding="utf-8")
+        scenes = json.loads(re.search(r'<script id="report-data" type="application/json">(.*?)</script>', page, re.DOTALL).group(1))["scenes"]
+        self.assertEqual({scene["kind"] for scene in scenes}, {"pose", "case", "path", "object"})
+        for scene in scenes:
+            program = "sixdof" if scene["kind"] == "object" else "turbo-bvh-sixdof"
+            self.assertEqual(scene["command"].split()[0], program)
+            self.succeed(path + scene["command"])
 
     def test_commands_of_pages_without_data(self):
         """They take minutes: here the programs only say that they know every word but the last."""
