@@ -269,6 +269,18 @@ class Printed(unittest.TestCase):
         self.succeed(command)
         self.assertTrue((self.folder / "SET").exists())
 
+    def test_help(self):
+        done = self.succeed("turbo-bvh-sixdof query --zzzzqqqq", 2)
+        [command] = re.findall(r"\((turbo-bvh-sixdof query --help) lists them\)", done.stderr)
+        text = self.succeed(command).stdout
+        self.assertIn("Usage: turbo-bvh-sixdof query --a MESH ", text)
+        for line in text[text.index("Examples:\n"):].splitlines()[1:]:
+            self.assertTrue(line.startswith("  turbo-bvh-sixdof query "), line)
+            self.succeed(line)
+        first_steps = self.succeed("turbo-bvh-sixdof", 2).stderr
+        [command] = re.findall(r"^  (turbo-bvh-sixdof query .*)$", first_steps, re.MULTILINE)
+        self.assertIs(self.answers(command)["colliding"], True)
+
     def test_a_mesh_that_is_no_solid(self):
         """The warning names the command that finds the place."""
         self.succeed("turbo-bvh-sixdof models make box-12 -o box.off")
