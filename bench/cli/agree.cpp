@@ -12,14 +12,13 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 #include "bench/cli/study_options.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
-#include "bench/common/own_command.h"
 #include "bench/common/run_guarded.h"
-#include "bench/common/shell_text.h"
 #include "bench/common/study_progress.h"
 #include "bench/harness/options.h"
 #include "bench/study/set_agreement.h"
@@ -58,11 +57,7 @@ std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const Ar
   std::vector<AskedAlgorithm> chosen;
   const auto add = [&](const Algorithm& algorithm) {
     const std::string& name = algorithm.traits().name;
-    AskedAlgorithm asked{&algorithm, settings.at(name), {}};
-    for (const std::string& parameter : arguments.parameters) {
-      if (parameter.starts_with(name + ":")) asked.assignments.push_back(parameter.substr(name.size() + 1));
-    }
-    chosen.push_back(std::move(asked));
+    chosen.push_back({&algorithm, settings.at(name)});
   };
   const auto asked_already = [&](const Algorithm& algorithm) {
     return std::ranges::any_of(chosen, [&](const AskedAlgorithm& each) { return each.algorithm == &algorithm; });
@@ -209,8 +204,7 @@ void agree(const Arguments& arguments) {
   std::size_t differences = 0;
   AgreeProgress progress(pairs, algorithms.size(), arguments.sample);
   for (const CatalogueEntry* const entry : pairs.pairs()) {
-    const std::string meshes =
-        fmt::format("--a {} --b {}", shell_quoted(pairs.argument(entry->a)), shell_quoted(pairs.argument(entry->b)));
+    const study::MeshWords meshes{pairs.argument(entry->a), pairs.argument(entry->b)};
     const auto step = [&](std::uint64_t done, std::uint64_t total) {
       progress.step(*entry, static_cast<double>(done) / static_cast<double>(total));
     };

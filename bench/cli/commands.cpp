@@ -13,6 +13,8 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/models/model_catalogue.h>
 #include "bench/cli/scene.h"
 #include "bench/cli/shared.h"
@@ -21,7 +23,6 @@
 #include "bench/common/program_end.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/serve_algorithm.h"
-#include "bench/common/shell_text.h"
 #include "bench/common/unknown_word.h"
 
 namespace sixdof::cli {
@@ -30,12 +31,12 @@ namespace {
 constexpr const char* k_first_query = "sixdof query --a cone-1k --b torus-1k --pose '0.9 0 0.1 1 0 0 0'";
 
 constexpr const char* k_first_steps =
-    R"(sixdof: no command given. To begin with:
-  sixdof models list       the models that every command takes by name, besides mesh files
-  {}
+    R"({0}: no command given. To begin with:
+  {0} models list       the models that every command takes by name, besides mesh files
+  {1}
                            distance, overlap and force of two bodies at one pose
-  sixdof generate --help   how to make a configuration set, which sixdof-bench runs on
-  sixdof --help            all commands
+  {0} generate --help   how to make a configuration set, which {2} runs on
+  {0} --help            all commands
 )";
 
 /// "sixdof models make".
@@ -123,7 +124,7 @@ const std::vector<Group>& groups() {
        {add_recommend_command, add_precision_command, add_equivalent_command, add_quality_command, add_stress_command,
         add_hulls_command}},
       {"Scenes (many bodies that move)", {add_scene_command}},
-      {"Your own", {add_new_algorithm_command, add_completion_command}}};
+      {"Your own", {add_new_algorithm_command, add_conform_command, add_completion_command}}};
   return list;
 }
 
@@ -141,14 +142,15 @@ void add_commands(CLI::App& app) {
 int run(int argc, const char* const* argv) {
   if (const auto code = serve_if_asked(argc, argv)) return *code;
   if (const auto code = run_stress_cell_if_asked(argc, argv)) return *code;
+  const std::string program = own_command("sixdof");
   if (argc < 2) {
-    fmt::print(stderr, k_first_steps, k_first_query);
+    fmt::print(stderr, k_first_steps, program, own_command(k_first_query), own_bench_program());
     return k_exit_usage;
   }
   CLI::App app(
       "Measures the speed and the errors of collision queries on rigid bodies: whether two meshes collide, how far "
       "apart they are, and the force that separates them.",
-      "sixdof");
+      program);
   app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("--version", std::string("sixdof ") + SIXDOF_VERSION);
   app.require_subcommand(1);

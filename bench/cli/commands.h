@@ -79,6 +79,9 @@ void add_compare_command(CLI::App& app);
 /// `sixdof new-algorithm NAME [-o FOLDER]`: a project of its own with an algorithm that is to be replaced, made of
 /// the files in bench/new_algorithm/. The folder appears whole or not at all; nothing is overwritten.
 void add_new_algorithm_command(CLI::App& app);
+/// `sixdof conform [--algorithm LIST] [--external NAME=COMMAND]`: the checks of the conformance kit for any algorithm,
+/// a line for each; k_exit_defects if one failed (lib/sixdof/conformance/README.md).
+void add_conform_command(CLI::App& app);
 /// `sixdof completion bash`: a script that completes the commands, options and values of all of these
 /// (common/completion.h).
 void add_completion_command(CLI::App& app);

@@ -7,6 +7,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/configuration/set_catalogue.h>
+#include <sixdof/conformance/checks.h>
 #include <sixdof/measure/metrics.h>
 #include <sixdof/stability/families.h>
 #include "bench/cli/commands.h"
@@ -28,6 +29,7 @@ ValueTable values() {
     if (metric.name.find('*') == std::string_view::npos) add("METRIC", std::string(metric.name));
   }
   for (const stability::Family& family : stability::families()) add("FAMILY", std::string(family.name));
+  for (const conformance::Check& check : conformance::all_checks()) add("CHECK", check.name);
   try {
     const SetCatalogue catalogue = SetCatalogue::read(bench::default_manifest());
     for (const CatalogueEntry& set : catalogue.sets()) add("PAIR", set.pair);

@@ -16,6 +16,8 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/process/remote_algorithm.h>
 #include <sixdof/results/paper.h>
 #include <sixdof/results/results.h>
@@ -24,8 +26,6 @@
 #include "bench/cli/shared.h"
 #include "bench/common/duration.h"
 #include "bench/common/json_text.h"
-#include "bench/common/own_command.h"
-#include "bench/common/shell_text.h"
 #include "bench/common/study_progress.h"
 #include "bench/harness/options.h"
 #include "bench/harness/run_context.h"
@@ -200,10 +200,10 @@ std::string arguments(const Options& options) {
                                 : fmt::format(" --tau {}", fmt::join(options.taus, ","));
   for (const std::string& grid : options.grids) text += " --grid " + shell_quoted(grid);
   for (const std::string& parameter : options.parameters) text += " -p " + shell_quoted(parameter);
-  for (const std::string& external : options.process.external) text += " --external " + shell_quoted(external);
   if (options.reach > 0.0) text += fmt::format(" --reach {}", options.reach);
   text += fmt::format(" --memory {}", options.largest_gb);
-  return options.paper ? text + " --paper" : text;
+  if (options.paper) text += " --paper";
+  return text + process_words(options.process, Options().process);
 }
 
 class EquivalentCommand {

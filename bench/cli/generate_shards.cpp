@@ -12,6 +12,8 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/configuration/shard_file.h>
 #include <sixdof/generation/shard_generator.h>
 #include "bench/common/interrupt.h"
@@ -195,9 +197,9 @@ void generate_shards(const GenerationWork& work, const std::filesystem::path& fo
     write_shard(folder / shard_file_name(shard), work.job, work.set, shard, values.buckets);
   }
   const std::size_t asked = shards.number == 0 ? shards.count : 1;
-  fmt::print("{}: {} of {} shards of {} with {} made in {}, {} kept; merge all {}: sixdof merge {} -o SET\n",
-             folder.string(), missing.size(), asked, work.a.name(), work.b.name(), seconds_since(start),
-             asked - missing.size(), shards.count, folder.string());
+  fmt::print("{}: {} of {} shards of {} with {} made in {}, {} kept; merge all {}: {} {} -o SET\n", folder.string(),
+             missing.size(), asked, work.a.name(), work.b.name(), seconds_since(start), asked - missing.size(),
+             shards.count, own_command("sixdof merge"), shell_quoted(folder.string()));
 }
 
 }  // namespace sixdof::cli

@@ -14,6 +14,7 @@
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/data_folder.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/shell_text.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 
@@ -127,9 +128,9 @@ void write_project(const Arguments& arguments) {
   folder.commit();
   fmt::print(
       "{0}: a project with the algorithm {1}. To build it and see its first row:\n"
-      "  cd {0} && cmake -S . -B build && cmake --build build\n"
+      "  cd {2} && cmake -S . -B build && cmake --build build\n"
       "  build/{1}-bench --a cone-1k --b torus-1k\n",
-      output.string(), name);
+      output.string(), name, shell_quoted(output.string()));
 }
 
 }  // namespace

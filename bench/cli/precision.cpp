@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
 #include <sixdof/results/results.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/precision_table.h"
@@ -19,7 +20,6 @@
 #include "bench/cli/study_options.h"
 #include "bench/common/duration.h"
 #include "bench/common/json_text.h"
-#include "bench/common/own_command.h"
 #include "bench/common/study_progress.h"
 #include "bench/harness/run_context.h"
 #include "bench/study/precision.h"

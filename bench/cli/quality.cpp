@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/measure/metrics.h>
 #include <sixdof/results/paper.h>
 #include <sixdof/scenario/evaluation.h>
@@ -68,6 +70,16 @@ void print_text(const Scenario& scenario, IdealLaw law, const SeriesSource& sour
   }
 }
 
+/// The command line, for the file.
+std::string command_of(const Options& options) {
+  std::string text =
+      fmt::format("sixdof quality --scenario {} --algorithm {}", options.scenario, options.algorithm.name);
+  for (const std::string& parameter : options.algorithm.parameters) text += " -p " + shell_quoted(parameter);
+  for (const std::string& shape : options.shape) text += " --shape " + shell_quoted(shape);
+  text += fmt::format(" --steps {} --law {}", options.steps, options.law);
+  return own_command(text + process_words(options.algorithm.process));
+}
+
 void run(const Options& options) {
   Settings shape = scenario_settings(options.scenario);
   shape.set_all(options.shape);
@@ -82,7 +94,7 @@ void run(const Options& options) {
   const Recording recording = record(*scenario, *query, options.steps);
   Measures measures = evaluate(*scenario, recording, law);
   for (const auto& measure : evaluate_jumps(*scenario, *query, recording, law)) measures.push_back(measure);
-  const SeriesSource source{traits.name, traits.version, settings.to_string(), shape.to_string()};
+  const SeriesSource source{traits.name, traits.version, settings.to_string(), shape.to_string(), command_of(options)};
   if (!options.series.empty()) write_series(options.series, *scenario, recording, law, source, measures);
   options.json ? print_json(options, law, source, recording, measures)
                : print_text(*scenario, law, source, recording, measures);

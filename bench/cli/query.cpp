@@ -39,8 +39,8 @@ struct Arguments {
   bool json = false;
 };
 
-/// Exactly `count` numbers separated by white space or commas; `what` names them in the message.
-std::vector<double> parse_numbers(const std::string& text, std::size_t count, const char* what) {
+/// Numbers separated by white space or commas; `what` names them in the message.
+std::vector<double> parse_numbers(const std::string& text, const char* what) {
   std::vector<double> numbers;
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -56,15 +56,29 @@ std::vector<double> parse_numbers(const std::string& text, std::size_t count, co
     numbers.push_back(value);
     at = stop;
   }
-  if (numbers.size() != count) {
-    throw BadArgument(fmt::format("{} \"{}\": {} numbers instead of {}", what, text, numbers.size(), count));
-  }
   return numbers;
 }
 
+/// The same, exactly `count` numbers.
+std::vector<double> parse_numbers(const std::string& text, std::size_t count, const char* what) {
+  const std::vector<double> numbers = parse_numbers(text, what);
+  if (numbers.size() == count) return numbers;
+  throw BadArgument(fmt::format("{} \"{}\": {} numbers instead of {}", what, text, numbers.size(), count));
+}
+
+/// Numbers of a rotation matrix, by rows, and a translation.
+constexpr std::size_t k_matrix_numbers = 12;
+
+/// Seven numbers, or twelve, which may be no rigid motion.
 /// @param words the numbers, in one argument or in several
 Pose parse_pose(const std::vector<std::string>& words) {
-  const std::vector<double> n = parse_numbers(fmt::format("{}", fmt::join(words, " ")), 7, "--pose");
+  const std::string text = fmt::format("{}", fmt::join(words, " "));
+  std::vector<double> n = parse_numbers(text, "--pose");
+  if (n.size() == k_matrix_numbers) {
+    Pose X_AB{.R = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>(n.data()), .t = {n[9], n[10], n[11]}};
+    return X_AB;
+  }
+  n = parse_numbers(text, 7, "--pose");
   return Pose::from_quaternion(n[3], n[4], n[5], n[6], {n[0], n[1], n[2]});
 }
 
@@ -228,10 +242,11 @@ void add_query_command(CLI::App& app) {
   command
       ->add_option("--pose", arguments->pose,
                    "Where B is in A's frame: \"tx ty tz qw qx qy qz\", a translation (in the meshes' unit) and a unit "
-                   "quaternion; a point p of B is at q p q* + t in A")
+                   "quaternion; a point p of B is at q p q* + t in A. Or twelve numbers, a matrix by rows and t, which "
+                   "are passed on whatever they are")
       ->required()
       ->type_name("POSE")
-      ->expected(1, 7);
+      ->expected(1, static_cast<int>(k_matrix_numbers));
   command->add_option("--only", arguments->only, "Questions to ask: distance; collide,distance")
       ->type_name("QUESTION")
       ->delimiter(',')

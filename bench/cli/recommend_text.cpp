@@ -4,11 +4,12 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
+#include <sixdof/results/results.h>
 #include "bench/cli/recommend.h"
 #include "bench/common/duration.h"
 #include "bench/common/json_text.h"
-#include "bench/common/own_command.h"
-#include "bench/common/shell_text.h"
 
 namespace sixdof::cli {
 namespace {
@@ -118,18 +119,23 @@ void print_candidates(const Verdict& verdict) {
 /// The command that measures what was taken again as rows of sixdof-bench.
 std::string command_again(const Verdict& verdict, const RecommendOptions& options, const CatalogueEntry& pair) {
   const Candidate& taken = *verdict.choice.taken();
-  const std::string& algorithm = verdict.rows[taken.place].fields.algorithm;
+  const results::RowFields& row = verdict.rows[taken.place].fields;
+  const std::string& algorithm = row.algorithm;
   std::string text = own_bench_program();
   if (!options.study.a.empty()) text += " --a " + shell_quoted(options.study.a);
   if (!options.study.b.empty()) text += " --b " + shell_quoted(options.study.b);
   for (const std::string& set : options.study.sets) text += " --no-manifest --set " + shell_quoted(set);
-  for (const std::string& external : options.study.process.external) text += " --external " + shell_quoted(external);
+  ProcessOptions process = options.study.process;
+  if (!row.isolated) process.isolate = ProcessOptions().isolate;
+  text += process_words(process);
   for (const std::string& assignment : verdict.assignments[taken.place]) {
     text += fmt::format(" -p {}:{}", algorithm, assignment);
   }
-  return text + fmt::format(" --suite all --benchmark_filter='^{}/algorithm:{}/pair:{}/[^/]*{}$'",
-                            to_string(verdict.question), algorithm, pair.pair,
-                            options.in_motion() ? "/order:motion" : "");
+  const std::string rows =
+      fmt::format("{}/algorithm:{}/pair:{}/", to_string(verdict.question), algorithm, pair.pair);
+  const std::string filter = fmt::format("--benchmark_filter=^{}[^/]*{}$", results::name_expression(rows),
+                                         options.in_motion() ? "/order:motion" : "");
+  return text + fmt::format(" --suite all {}", shell_quoted(filter));
 }
 
 nlohmann::ordered_json as_json(const Verdict& verdict, const Candidate& candidate) {

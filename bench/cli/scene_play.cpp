@@ -11,7 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/scene/scene_file.h>
 #include <sixdof/scene/score.h>
 #include "bench/cli/scene.h"
@@ -20,10 +22,8 @@
 #include "bench/common/duration.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
-#include "bench/common/own_command.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/scene_algorithms.h"
-#include "bench/common/shell_text.h"
 
 namespace sixdof::cli {
 namespace {
@@ -58,6 +58,7 @@ wrench body, force fx, fy, fz and torque tx, ty, tz about the centre of the body
 struct NamedPlay {
   const SceneAlgorithm& algorithm;
   Play play;
+  std::string command;       ///< That plays it again.
   std::string reproduction;  ///< The first wrong answer's command; empty if all are right.
 };
 
@@ -122,12 +123,16 @@ std::pair<std::size_t, std::size_t> parse_frames(const std::string& text, const 
   return {parse(view.substr(0, colon)), parse(view.substr(colon + 1))};
 }
 
+/// `sixdof scene play ...` of one algorithm, without --bodies and --frames.
+std::string play_command(const PlayOptions& options, Question question, const SceneAlgorithm& algorithm) {
+  return own_command(fmt::format("sixdof scene play {} --question {} --algorithms {}", shell_quoted(options.file),
+                                 to_string(question), algorithm.traits().name));
+}
+
 /// The shortest command that shows a wrong answer again: of the two bodies in that frame alone, or of all up to it.
 std::string reproduction(const Part& part, const PlayOptions& options, Question question,
                          const SceneAlgorithm& algorithm, const scene::WrongPair& wrong) {
-  std::string command =
-      own_command(fmt::format("sixdof scene play {} --question {} --algorithms {}", shell_quoted(options.file),
-                              to_string(question), algorithm.traits().name));
+  std::string command = play_command(options, question, algorithm);
   const std::vector<std::uint32_t> bodies{wrong.pair.a, wrong.pair.b};
   const Scene two = scene::excerpt(part.scene, bodies, wrong.frame, wrong.frame);
   const SceneAnswers truth = scene::truth_of(two, question);
@@ -162,12 +167,13 @@ void print_table(const Scene& scene, const Played& played) {
                percent(candidates, static_cast<double>(each.play.pairs_in_all)),
                percent(static_cast<double>(each.play.work.put_off), candidates), s.same_bits ? "yes" : "-");
   }
-  for (const auto& [algorithm, play, again] : played.plays) {
-    if (!play.score.first) continue;
-    const scene::WrongPair& wrong = *play.score.first;
+  for (const NamedPlay& each : played.plays) {
+    const auto& s = each.play.score;
+    if (!s.first) continue;
+    const scene::WrongPair& wrong = *s.first;
     fmt::print("! {}: {} missed, {} wrong; the first: frame {}, bodies {} and {}, distance {:.6g}, {}\n  {}\n",
-               algorithm.traits().name, play.score.missed, play.score.wrong, wrong.frame, wrong.pair.a, wrong.pair.b,
-               wrong.truth, wrong.missed ? "not reported" : "reported", again);
+               each.algorithm.traits().name, s.missed, s.wrong, wrong.frame, wrong.pair.a, wrong.pair.b, wrong.truth,
+               wrong.missed ? "not reported" : "reported", each.reproduction);
   }
   for (const auto& [algorithm, reason] : played.left_out) fmt::print("- {}: left out: {}\n", algorithm, reason);
 }
@@ -176,6 +182,7 @@ nlohmann::ordered_json json_of(const NamedPlay& named, bool is_fastest) {
   const Play& play = named.play;
   nlohmann::ordered_json json;
   json["algorithm"] = named.algorithm.traits().name;
+  json["command"] = named.command;
   json["version"] = named.algorithm.traits().version;
   json["fastest"] = is_fastest;
   json["processor_us"] = play.timing.processor_us;
@@ -224,7 +231,12 @@ nlohmann::ordered_json json_of(const Played& played) {
 
 NamedPlay play_one(const Part& part, const PlayOptions& options, Question question, const SceneAnswers& truth,
                    const SceneAlgorithm& algorithm) {
-  NamedPlay named{algorithm, scene::play(part.scene, algorithm, question, truth, InterruptGuard::requested), ""};
+  NamedPlay named{.algorithm = algorithm,
+                  .play = scene::play(part.scene, algorithm, question, truth, InterruptGuard::requested),
+                  .command = play_command(options, question, algorithm),
+                  .reproduction = {}};
+  if (!options.bodies.empty()) named.command += fmt::format(" --bodies {}", fmt::join(options.bodies, ","));
+  if (!options.frames.empty()) named.command += fmt::format(" --frames {}", options.frames);
   if (auto& wrong = named.play.score.first) {
     named.reproduction = reproduction(part, options, question, algorithm, *wrong);
     wrong->frame += part.first;  // frames are those of the file

@@ -7,6 +7,7 @@
 #include <CLI/App.hpp>
 #include <Eigen/Core>
 
+#include <sixdof/base/own_command.h>
 #include <sixdof/query/registry.h>
 #include "bench/common/all_algorithms.h"
 #include "bench/common/help_format.h"
@@ -15,12 +16,14 @@
 
 namespace sixdof::cli {
 
-/// Ends the help of `command` with `more`, if there is any, and two examples, each a full command line for a shell.
+/// Ends the help of `command` with `more`, if there is any, and two examples, each a full command line for a shell. One
+/// that begins with a program of this project gets its name in a project of `sixdof new-algorithm`.
 /// test/cli/examples_test.cpp runs the examples of all commands in one empty folder, in the order in which `sixdof
 /// --help` lists the commands, so a later example may use a file that an earlier one wrote. None needs a fetched model.
 inline void add_examples(CLI::App& command, const std::string& first, const std::string& second,
                          const std::string& more = {}) {
-  command.footer((more.empty() ? "" : more + "\n\n") + "Examples:\n  " + first + "\n  " + second);
+  command.footer((more.empty() ? "" : more + "\n\n") + "Examples:\n  " + own_command(first) + "\n  " +
+                 own_command(second));
 }
 
 /// As JSON takes it.

@@ -16,12 +16,12 @@
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
 #include <sixdof/stability/ray_algorithm.h>
 #include "bench/cli/shared.h"
 #include "bench/cli/study_options.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
-#include "bench/common/own_command.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/study_progress.h"
 #include "bench/study/stress_processes.h"
@@ -132,8 +132,11 @@ void run_stress_command(const Options& options) {
   leave_out(options, plan, registry, progress);
   progress.end();
 
+  const ProcessLimits limits{.query_s = plan.timeout_s,
+                             .prepare_s = plan.timeout_s,
+                             .memory_bytes = static_cast<std::size_t>(plan.memory_bytes)};
   std::vector<study::StressLine> lines;
-  for (const study::StressCell& cell : cells) lines.push_back(study::stress_line(cell, options.cases));
+  for (const study::StressCell& cell : cells) lines.push_back(study::stress_line(cell, options.cases, limits));
   const nlohmann::ordered_json json = study::stress_json(cells, lines, options.seed);
   if (!options.output.empty()) write_file_atomically(options.output, json_text(json) + "\n");
   std::set<std::string> own = own_algorithms();

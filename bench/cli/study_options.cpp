@@ -7,8 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <sixdof/base/error.h>
-
-#include "bench/common/shell_text.h"
+#include <sixdof/base/shell_text.h>
 
 namespace sixdof::cli {
 
@@ -123,8 +122,8 @@ std::string arguments_of(const std::string& command, const StudyOptions& options
   if (!options.b.empty()) text += " --b " + shell_quoted(options.b);
   if (!options.algorithms.empty()) text += fmt::format(" --algorithms {}", fmt::join(options.algorithms, ","));
   for (const std::string& values : options.values) text += " --params " + shell_quoted(values);
-  for (const std::string& external : options.process.external) text += " --external " + shell_quoted(external);
-  return text + fmt::format(" --seed {} --budget {}", options.seed, options.budget);
+  return text + process_words(options.process, StudyOptions().process) +
+         fmt::format(" --seed {} --budget {}", options.seed, options.budget);
 }
 
 }  // namespace sixdof::cli

@@ -10,6 +10,8 @@
 
 #include <sixdof/base/cache.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include "bench/common/interrupt.h"
 
 namespace sixdof {
@@ -78,8 +80,8 @@ std::string mesh_warning(const Mesh& mesh, const std::string& argument) {
     store_summary(mesh, *found);
   }
   if (found->empty()) return {};
-  return fmt::format("warning: {}: {}; volumes count a region once for every shell around it (sixdof info --check {})",
-                     mesh.name(), *found, argument);
+  return fmt::format("warning: {}: {}; volumes count a region once for every shell around it ({} {})", mesh.name(),
+                     *found, own_command("sixdof info --check"), shell_quoted(argument));
 }
 
 }  // namespace sixdof

@@ -9,6 +9,7 @@
 #include <CLI/Formatter.hpp>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/shell_text.h>
 #include "bench/common/duration.h"
 
 namespace sixdof {
@@ -59,6 +60,20 @@ void add_process_options(CLI::App& command, ProcessOptions& options) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->group(group);
+}
+
+std::string process_words(const ProcessOptions& options, const ProcessOptions& usual) {
+  std::string words;
+  if (options.isolate != usual.isolate) words += fmt::format(" --isolate={}", options.isolate);
+  for (const std::string& external : options.external) words += fmt::format(" --external {}", shell_quoted(external));
+  if (options.query_timeout != usual.query_timeout) {
+    words += fmt::format(" --query-timeout {}", shell_quoted(options.query_timeout));
+  }
+  if (options.prepare_timeout != usual.prepare_timeout) {
+    words += fmt::format(" --prepare-timeout {}", shell_quoted(options.prepare_timeout));
+  }
+  if (options.memory_gb != usual.memory_gb) words += fmt::format(" --memory-limit {}", options.memory_gb);
+  return words;
 }
 
 std::pair<std::string, std::string> parse_external(const std::string& text) {

@@ -30,6 +30,9 @@ struct ProcessOptions {
 /// `options` has.
 void add_process_options(CLI::App& command, ProcessOptions& options);
 
+/// The options as words for a shell, each with a space before it, without those that are as in `usual`.
+std::string process_words(const ProcessOptions& options, const ProcessOptions& usual = {});
+
 /// "NAME=COMMAND". @throws BadArgument
 std::pair<std::string, std::string> parse_external(const std::string& text);
 

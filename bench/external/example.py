@@ -20,6 +20,8 @@ def sphere(mesh):
 
 
 def answer(query, pose):
+    if any(isinstance(number, str) for number in pose):  # "nan" or "inf"
+        return {"status": "non_finite", "words": "the pose is not finite"}
     (center_a, radius_a), (center_b, radius_b) = spheres
     moved = [math.fsum(pose[3 * i + k] * center_b[k] for k in range(3)) + pose[9 + i] for i in range(3)]
     gap = max(0.0, math.dist(moved, center_a) - radius_a - radius_b)

@@ -17,10 +17,10 @@
 
 #include <sixdof/base/data_folder.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/shell_text.h>
 #include "bench/common/completion.h"
 #include "bench/common/help_format.h"
 #include "bench/common/run_guarded.h"
-#include "bench/common/shell_text.h"
 #include "bench/common/unknown_word.h"
 
 namespace sixdof::bench {

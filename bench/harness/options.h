@@ -41,7 +41,7 @@ struct Options {
   bool list_only = false;
   ProcessOptions process;
 
-  /// The words of the command line on which it depends what a row asks and whom: meshes, sets, parameters, programs.
+  /// The words of the command line on which it depends what a row asks and whom: meshes, sets, parameters, processes.
   std::string reproduction_words() const;
 
   /// Whether a coarse set of the meshes is to be made (coarse_set.h), the only one of the run.

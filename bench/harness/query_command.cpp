@@ -6,9 +6,10 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/process/remote_algorithm.h>
-#include "bench/common/own_command.h"
-#include "bench/common/shell_text.h"
+#include "bench/common/process_options.h"
 
 namespace sixdof::bench {
 namespace {
@@ -30,14 +31,24 @@ std::string query_command(const std::string& a, const std::string& b, const Algo
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (chosen[i] != defaults[i]) command += " -p " + shell_quoted(chosen[i]);
   }
-  const std::string external = external_option(algorithm);
-  return own_command(command + external + (external.empty() && is_isolated(algorithm) ? " --isolate" : ""));
+  return own_command(command + process_option(algorithm));
 }
 
-std::string external_option(const Algorithm& algorithm) {
+std::string process_option(const Algorithm& algorithm) {
   const auto* const remote = dynamic_cast<const RemoteAlgorithm*>(&algorithm);
-  if (remote == nullptr || remote->command_line().empty()) return {};
-  return " --external " + shell_quoted(algorithm.traits().name + "=" + remote->command_line());
+  if (remote == nullptr) return {};
+  std::string words = " --isolate";
+  if (!remote->command_line().empty()) {
+    words = fmt::format(" --external {}", shell_quoted(algorithm.traits().name + "=" + remote->command_line()));
+  }
+  constexpr double k_gb = 1e9;
+  const ProcessLimits &limits = remote->limits(), usual = ProcessOptions().limits();
+  if (limits.query_s != usual.query_s) words += fmt::format(" --query-timeout {}s", limits.query_s);
+  if (limits.prepare_s != usual.prepare_s) words += fmt::format(" --prepare-timeout {}s", limits.prepare_s);
+  if (limits.memory_bytes != usual.memory_bytes) {
+    words += fmt::format(" --memory-limit {}", static_cast<double>(limits.memory_bytes) / k_gb);
+  }
+  return words;
 }
 
 }  // namespace sixdof::bench

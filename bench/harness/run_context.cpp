@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/base/visible_text.h>
 #include <sixdof/process/remote_algorithm.h>
 #include "bench/common/build_info.h"
-#include "bench/common/own_command.h"
-#include "bench/common/shell_text.h"
 #include "bench/harness/timing.h"
 
 namespace sixdof::bench {
@@ -66,12 +66,13 @@ std::string Options::reproduction_words() const {
   if (!a.empty()) add("--a", a);
   if (!b.empty()) add("--b", b);
   if (!sets.empty() && manifest.empty()) words += words.empty() ? "--no-manifest" : " --no-manifest";
+  if (!own_pair() && !manifest.empty() && manifest != default_manifest()) add("--manifest", manifest.string());
   for (const auto& set : sets) add("--set", set.string());
   for (const auto& mesh : meshes) add("--mesh", mesh.string());
   for (const std::string& parameter : parameters) add("-p", parameter);
-  for (const std::string& external : process.external) add("--external", external);
+  words += process_words(process);
   if (own_pair()) words += " --suite all";
-  return words;
+  return words.starts_with(' ') ? words.substr(1) : words;
 }
 
 Json run_context(const Options& options, const Registry& registry, const std::map<std::string, Settings>& settings) {

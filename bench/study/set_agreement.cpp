@@ -7,7 +7,6 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/query/ask.h>
-#include "bench/common/own_command.h"
 #include "bench/harness/judge.h"
 #include "bench/harness/query_command.h"
 
@@ -23,16 +22,15 @@ std::string as_word(const Separation& answer) { return fmt::format("{}", answer.
 struct Bucket {
   const BucketSample& sample;
   std::vector<TypedPose> poses;
-  const std::string& meshes;  ///< "--a A --b B"
+  const MeshWords& meshes;
   std::vector<Difference>& differences;
   const RunOptions& run;
 };
 
 std::string command_of(const Bucket& bucket, const AskedAlgorithm& asked, const TypedPose& pose) {
-  std::string command = fmt::format("sixdof query {} --pose '{}' --algorithm {}", bucket.meshes, pose.text(),
-                                    asked.algorithm->traits().name);
-  for (const std::string& assignment : asked.assignments) command += " -p " + assignment;
-  return own_command(command + bench::external_option(*asked.algorithm));
+  return fmt::format("{} --pose '{}'",
+                     bench::query_command(bucket.meshes.a, bucket.meshes.b, *asked.algorithm, asked.settings),
+                     pose.text());
 }
 
 /// Asks one kind of query at every pose. Failures go to `counts`, and each answer to `answered`.
@@ -153,7 +151,7 @@ std::size_t PairAgreement::configurations() const {
   return count;
 }
 
-PairAgreement compare_with_set(bench::PairCache& cache, const CatalogueEntry& pair, const std::string& meshes,
+PairAgreement compare_with_set(bench::PairCache& cache, const CatalogueEntry& pair, const MeshWords& meshes,
                                const std::vector<AskedAlgorithm>& wanted, const RunOptions& run) {
   PairAgreement result{.pair = pair.pair};
   const std::vector<AskedAlgorithm> algorithms = usable(cache, pair, wanted, result.refusals);

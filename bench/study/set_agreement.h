@@ -21,7 +21,11 @@ namespace sixdof::study {
 struct AskedAlgorithm {
   const Algorithm* algorithm = nullptr;
   Settings settings;
-  std::vector<std::string> assignments;  ///< The settings that are not defaults, as typed: "margin=0.1".
+};
+
+/// The meshes of a pair as words of a command line: names of models or files.
+struct MeshWords {
+  std::string a, b;
 };
 
 /// A configuration whose answer is not the set's truth, or that got none.
@@ -65,9 +69,9 @@ struct PairAgreement {
 
 /// Asks yes/no and distance of every algorithm, as far as it answers them, at the configurations that `cache` draws of
 /// each bucket. Poses are asked as they are typed: they differ from the set's by some roundings.
-/// @param meshes of the pair on a command line, "--a A --b B"
+/// @param meshes of the pair, for the commands
 /// @param run a step is one question of one algorithm to one bucket; one thread is used @throws Interrupted
-PairAgreement compare_with_set(bench::PairCache& cache, const CatalogueEntry& pair, const std::string& meshes,
+PairAgreement compare_with_set(bench::PairCache& cache, const CatalogueEntry& pair, const MeshWords& meshes,
                                const std::vector<AskedAlgorithm>& wanted, const RunOptions& run = {});
 
 }  // namespace sixdof::study

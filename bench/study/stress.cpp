@@ -1,17 +1,18 @@
 #include "bench/study/stress.h"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/geometry/save.h>
 #include <sixdof/stability/bodies.h>
 #include <sixdof/stability/ray_algorithm.h>
 #include <sixdof/stability/search.h>
+#include "bench/harness/query_command.h"
 
 namespace sixdof::study {
 namespace {
@@ -96,14 +97,6 @@ void add(StressCell& cell, const CaseId& id, const Judgement& judgement) {
   cell.id = id;
 }
 
-/// "name=value" of every parameter.
-std::vector<std::string> assignments(const std::string& settings) {
-  std::vector<std::string> parts;
-  std::istringstream text(settings);
-  for (std::string part; std::getline(text, part, ',');) parts.push_back(part);
-  return parts;
-}
-
 std::string mesh_file(const Mesh& mesh, const std::filesystem::path& folder) {
   constexpr std::size_t k_digits = 12;
   const std::filesystem::path file = folder / (mesh.hash().substr(0, k_digits) + ".off");
@@ -124,8 +117,9 @@ std::string reproduction_of_ray(const Case& member, const Shot& shot, const RayA
     const double part = target / (distances ? a.diagonal() : std::abs(a.volume()));
     percents += fmt::format("{}{:.3f}", percents.empty() ? "" : ",", std::min(100.0, 100.0 * part));
   }
-  return fmt::format("sixdof generate --a {} --b {} --grid 180 --{} {} -o rays.h5", mesh_file(a, folder),
-                     mesh_file(b, folder), distances ? "distances" : "volumes", percents);
+  return own_command(fmt::format("sixdof generate --a {} --b {} --grid 180 --{} {} -o rays.h5",
+                                 shell_quoted(mesh_file(a, folder)), shell_quoted(mesh_file(b, folder)),
+                                 distances ? "distances" : "volumes", percents));
 }
 
 }  // namespace
@@ -194,25 +188,24 @@ StressCell run_cell(const Family& family, const Algorithm& algorithm, StressSett
   return cell;
 }
 
-std::string reproduction(const Case& member, std::size_t index, const Algorithm& algorithm, const std::string& settings,
+std::string reproduction(const Case& member, std::size_t index, const Algorithm& algorithm, const Settings& settings,
                          const std::filesystem::path& folder) {
   const Shot& shot = member.shots.at(index);
   if (const auto* const rays = dynamic_cast<const RayAlgorithm*>(&algorithm))
     return reproduction_of_ray(member, shot, *rays, folder);
-  // The program refuses a pose that is none: such a line shows the meshes and the numbers.
-  constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-  const bool rotates = !shot.raw || shot.raw->R.allFinite();
-  const Eigen::Quaterniond q = rotates ? shot.X_AB.q : Eigen::Quaterniond(k_nan, k_nan, k_nan, k_nan);
-  const Eigen::Vector3d t = shot.raw ? shot.raw->t : shot.X_AB.t;
-  std::string line = fmt::format("sixdof query --a {} --b {} --pose \"{} {} {} {} {} {} {}\" --algorithm {}",
-                                 mesh_file(*shot.a, folder), mesh_file(*shot.b, folder), t.x(), t.y(), t.z(), q.w(),
-                                 q.x(), q.y(), q.z(), algorithm.traits().name);
-  const std::vector<std::string> chosen = assignments(settings),
-                                 defaults = assignments(algorithm.settings().to_string());
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (chosen[i] != defaults[i]) line += " -p " + chosen[i];
+  std::string pose;
+  const auto append = [&](double number) { pose += fmt::format("{}{}", pose.empty() ? "" : " ", number); };
+  if (shot.raw) {
+    for (int i = 0; i < 9; ++i) append(shot.raw->R(i / 3, i % 3));
+    for (const double number : shot.raw->t) append(number);
+  } else {
+    const Eigen::Quaterniond& q = shot.X_AB.q;
+    for (const double number : shot.X_AB.t) append(number);
+    for (const double number : {q.w(), q.x(), q.y(), q.z()}) append(number);
   }
-  return line;
+  return fmt::format(
+      "{} --pose '{}'",
+      bench::query_command(mesh_file(*shot.a, folder), mesh_file(*shot.b, folder), algorithm, settings), pose);
 }
 
 }  // namespace sixdof::study

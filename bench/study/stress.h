@@ -79,10 +79,10 @@ StressCell run_cell(const stability::Family& family, const Algorithm& algorithm,
                     const StressEffort& effort, std::uint64_t seed, const StressWatch& watch);
 
 /// The command that asks a case's shot again, one line: numbers with all digits, settings that differ from the
-/// defaults. Of a generator: the same ray, turned to an axis, with targets to a thousandth of a percent.
-/// @param settings of StressCell
+/// defaults; a pose that is none by its twelve numbers. Of a generator: the same ray, turned to an axis, with targets
+/// to a thousandth of a percent.
 /// @param folder gets the two meshes as OFF files named by content
 std::string reproduction(const stability::Case& member, std::size_t shot, const Algorithm& algorithm,
-                         const std::string& settings, const std::filesystem::path& folder);
+                         const Settings& settings, const std::filesystem::path& folder);
 
 }  // namespace sixdof::study

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/common/own_command.h"
-#include "bench/harness/query_command.h"
+#include <sixdof/process/remote_algorithm.h>
+#include <sixdof/stability/ray_algorithm.h>
 
 namespace sixdof::study {
 namespace {
@@ -19,21 +19,30 @@ std::string_view word(Verdict verdict) {
   return k_words[static_cast<std::size_t>(verdict)];
 }
 
+/// Options of `sixdof query` with which a case ends a process, not the program; empty for a case that ended none.
+std::string process_words(const StressCell& cell, const ProcessLimits& limits) {
+  const bool ended = cell.worst.verdict >= Verdict::out_of_memory;
+  if (!ended || dynamic_cast<const stability::RayAlgorithm*>(cell.algorithm) != nullptr) return {};
+  constexpr double k_gb = 1e9;
+  return fmt::format("{} --query-timeout {}s --prepare-timeout {}s --memory-limit {}",
+                     is_isolated(*cell.algorithm) ? "" : " --isolate", limits.query_s, limits.prepare_s,
+                     static_cast<double>(limits.memory_bytes) / k_gb);
+}
+
 }  // namespace
 
-StressLine stress_line(const StressCell& cell, const std::filesystem::path& folder) {
+StressLine stress_line(const StressCell& cell, const std::filesystem::path& folder, const ProcessLimits& limits) {
   const auto& worst = cell.worst;
   const stability::Case member = make_case(*cell.family, cell.id), slow = make_case(*cell.family, cell.slow_id);
-  const auto again = [&](const std::string& command) {
-    return own_command(command + bench::external_option(*cell.algorithm));
-  };
+  const Settings settings = settings_of(*cell.algorithm, cell.which);
   return {.verdict = std::string(to_string(worst.verdict)),
           .metric = worst.metric,
           .worst = fmt::format("{:.3g} {}", worst.value, worst.unit),
           .member = member.name,
           .thread = member.thread,
-          .reproduction = again(reproduction(member, worst.shot, *cell.algorithm, cell.settings, folder)),
-          .slow_reproduction = again(reproduction(slow, cell.slow_shot, *cell.algorithm, cell.settings, folder)),
+          .reproduction =
+              reproduction(member, worst.shot, *cell.algorithm, settings, folder) + process_words(cell, limits),
+          .slow_reproduction = reproduction(slow, cell.slow_shot, *cell.algorithm, settings, folder),
           .words = worst.words,
           .parameter = member.parameter};
 }

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <sixdof/process/remote_query.h>
 #include "bench/study/stress.h"
 
 namespace sixdof::study {
@@ -18,7 +19,8 @@ struct StressLine {
 };
 
 /// @param folder gets the meshes of the reproductions; see reproduction()
-StressLine stress_line(const StressCell& cell, const std::filesystem::path& folder);
+/// @param limits of the processes; the command of a case that ended one asks in such a process
+StressLine stress_line(const StressCell& cell, const std::filesystem::path& folder, const ProcessLimits& limits);
 
 /// Families down, algorithms across (StressCell::name()), a word per cell: "exact", "within", "-" for declared
 /// unsupported, else a red one in capital letters.

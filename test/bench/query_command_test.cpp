@@ -25,7 +25,13 @@ TEST(QueryCommand, NamesTheProgramOfAnExternalAlgorithm) {
   const Algorithm& spheres = registry.find("spheres");
   EXPECT_EQ(query_command("a", "b", spheres, spheres.settings()),
             "sixdof query --a a --b b --algorithm spheres --external '" + command + "'");
-  EXPECT_EQ(external_option(registry.find("exact")), "");
+  EXPECT_EQ(process_option(registry.find("exact")), "");
+}
+
+TEST(QueryCommand, HasTheLimitsThatAreNotUsual) {
+  Registry registry;
+  register_all_algorithms(registry, {.isolate = "all", .query_timeout = "50ms", .memory_gb = 1.5});
+  EXPECT_EQ(process_option(registry.find("exact")), " --isolate --query-timeout 0.05s --memory-limit 1.5");
 }
 
 }  // namespace

@@ -75,6 +75,7 @@ TEST_F(Completion, OfValues) {
   EXPECT_THAT(complete({"sixdof", "recommend", "--order", ""}), ElementsAre("random", "motion"));
   EXPECT_THAT(complete({"sixdof", "query", "--isolate", "=", "th"}), ElementsAre("third-party"));
   EXPECT_THAT(complete({"sixdof", "quality", "--scenario", "I"}), ElementsAre("Ia", "Ib", "II", "III", "IV"));
+  EXPECT_THAT(complete({"sixdof", "conform", "--checks", "Wit"}), ElementsAre("Witnesses"));
   EXPECT_THAT(complete({"sixdof", "agree", "--pair", "torus"}), Contains("torus-knot-10k"));
   // A number, a pose: nothing to complete.
   EXPECT_THAT(complete({"sixdof", "generate", "--threads", ""}), IsEmpty());

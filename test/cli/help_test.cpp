@@ -26,7 +26,7 @@ const std::vector<std::string>& commands() {
       "",           "models",     "models list", "models make",   "info",      "repair", "show",   "query",
       "algorithms", "generate",   "merge",       "verify",        "agree",     "table",  "report", "history",
       "compare",    "precision",  "recommend",   "equivalent",    "quality",   "stress", "hulls",  "scene",
-      "scene make", "scene info", "scene play",  "new-algorithm", "completion"};
+      "scene make", "scene info", "scene play",  "new-algorithm", "conform",   "completion"};
   return list;
 }
 

@@ -51,6 +51,8 @@ KINDS = [
           "voxel_size=0.1,0.07,0.05", "--grid", "point_spacing=0.1,0.07,0.05", "-o", "OUT"], times=True, replaces=False),
     Kind("cells of stress", "x.json",
          ["stress", "--algorithms", "exact", "--families", "kissing", "--cases", "cases", "-o", "OUT"], times=True),
+    Kind("findings of conform", "x.json",
+         ["conform", "--algorithm", "brute-force", "--checks", "Declaration", "--json", "OUT"]),
     Kind("page of results", "x.html", ["report", "results.json", "-o", "OUT"]),
     Kind("page of history", "x.html", ["history", "runs", "-o", "OUT"]),
     Kind("results", "x.json",

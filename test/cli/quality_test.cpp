@@ -1,11 +1,14 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <sixdof/report/series.h>
 #include "bench/common/run_guarded.h"
 
 #include "run_program.h"
@@ -42,6 +45,33 @@ TEST(Quality, PrintsATableAndWritesTheSeries) {
   EXPECT_THAT(result.out, HasSubstr("misses"));
   EXPECT_THAT(result.out, HasSubstr("tunnelling"));
   EXPECT_TRUE(std::filesystem::remove(path));
+}
+
+/// Measures but those of times.
+std::map<std::string, nlohmann::json> measures_of_answers(const std::string& out) {
+  std::map<std::string, nlohmann::json> measures;
+  const nlohmann::json json = nlohmann::json::parse(out);
+  for (const auto& [name, value] : json.at("measures").items()) {
+    if (!name.ends_with("_ns") && !name.starts_with("over_")) measures[name] = value;
+  }
+  return measures;
+}
+
+TEST(Quality, StoresTheCommandThatRecordsTheSeriesAgain) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("sixdof_quality_again" + std::to_string(::getpid()) + ".h5");
+  const std::string arguments =
+      "--scenario II --algorithm vps -p voxel_size=0.1 -p point_spacing=0.1 --shape facets=16 --steps 40 --law own";
+  const auto recorded = quality(arguments + " --json -o " + path.string());
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.err;
+  const std::string command = report::read_series(path).command;
+  std::filesystem::remove(path);
+  EXPECT_EQ(command, "sixdof quality " + arguments);
+  const std::string programs = std::filesystem::path(SIXDOF_PROGRAM).parent_path().string();
+  const auto again = test::run_program("export PATH=" + programs + ":$PATH; " + command + " --json");
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_FALSE(measures_of_answers(recorded.out).empty());
+  EXPECT_EQ(measures_of_answers(recorded.out), measures_of_answers(again.out));
 }
 
 TEST(Quality, RefusesBadArgumentsAndNamesThem) {

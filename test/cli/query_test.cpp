@@ -216,6 +216,16 @@ TEST(Query, RefusesBadArgumentsAndNamesThem) {
   EXPECT_EQ(query("--a box-100 --b box-100").exit_code, k_exit_usage);
 }
 
+TEST(Query, PassesOnTwelveNumbersWhateverTheyAre) {
+  const std::string pair = "--a cone-1k --b torus-1k --json --pose ";
+  const auto typed = query(pair + "'2.5 0.2 0.1 0 1 0 0'"), matrix = query(pair + "'1 0 0 0 -1 0 0 0 -1 2.5 0.2 0.1'");
+  ASSERT_EQ(matrix.exit_code, 0) << matrix.err;
+  EXPECT_EQ(nlohmann::json::parse(matrix.out).at("distance"), nlohmann::json::parse(typed.out).at("distance"));
+  const auto bad = query(pair + "'1 0 0 0 nan 0 0 0 1 2.5 0.2 0.1'");
+  EXPECT_EQ(bad.exit_code, k_exit_error);
+  EXPECT_EQ(nlohmann::json::parse(bad.out).at("status"), "non_finite");
+}
+
 class ColladaBesideOff : public test::ScratchFolder {};
 
 TEST_F(ColladaBesideOff, WhatTheFileStatesIsSaidAndOneWordMakesThemMeet) {

@@ -29,8 +29,10 @@ def main():
         for bucket, measure in (("distance/05", "distance"), ("volume/02", "volume")):
             for where in ([], ["--rotation", "31", "--direction", "5"]):
                 out = run(sys.executable, "-B", example, path, bucket, *where)
-                pose = re.search(r'--pose "(.*)"', out).group(1)
-                answer = json.loads(run(sixdof, "query", "--a", A, "--b", B, "--pose", pose, "--json"))
+                command = re.search(r"^sixdof query .*$", out, re.MULTILINE).group(0)
+                programs = f"{os.path.dirname(sixdof)}:{os.environ['PATH']}"
+                answer = json.loads(subprocess.run(command + " --json", shell=True, check=True, capture_output=True, text=True,
+                                                   env={**os.environ, "PATH": programs}).stdout)
                 error = abs(answer[measure] - targets[bucket])
                 assert error <= TOLERANCE, f"{bucket} {where}: {answer[measure]} instead of {targets[bucket]}\n{out}"
                 assert f"{A} with {B}" in out and (not where or "rotation 31, direction 5" in out), out

@@ -104,17 +104,33 @@ class Installed(Project):
         self.assertIn(str(ARGUMENTS.installed / "share/sixdof/models/cache"),
                       run(programs / "sixdof", "info", "elephant", expected=1))
 
+    def check_printed_commands(self, build):
+        """Failures of the two programs of a project name its own program, which asks the same."""
+        for words, code in (("fast-boxes-sixdof conform --checks Collide", 3), ("fast-boxes-conformance --gtest_filter='*_Collide'", 0)):
+            done = subprocess.run(f"{build}/{words}", shell=True, cwd=ARGUMENTS.work, capture_output=True, text=True,
+                                  env={**os.environ, "SIXDOF_CACHE": str(ARGUMENTS.work / "cache")}, check=False)
+            self.assertEqual(done.returncode, code, done.stderr)
+            command = re.search(r"fast-boxes-sixdof query .*", done.stdout).group(0)
+            self.assertIn(" --algorithm fast-boxes", command)
+            asked, exact = (json.loads(run("sh", "-c", f"PATH={build}:$PATH; {line} --json", cwd=ARGUMENTS.work))
+                            for line in (command, command.replace("--algorithm fast-boxes", "--algorithm exact")))
+            self.assertNotEqual(asked["colliding"], exact["colliding"], command)
+
     def test_new_algorithm(self):
         program = ARGUMENTS.installed / "bin" / "sixdof"
         folder = ARGUMENTS.work / "mine"
         shutil.rmtree(folder, ignore_errors=True)
-        run(program, "new-algorithm", "fast-boxes", "-o", folder)
+        printed = run(program, "new-algorithm", "fast-boxes", "-o", folder)
         self.assertEqual(sorted(path.name for path in folder.iterdir()), ["CMakeLists.txt", "README.md", "fast_boxes.cpp", "fast_boxes_conformance.cpp"])
         configure_and_build(folder, folder / "build")
         # What its README says.
         commands = re.search(r"```sh\n(.*?)```", (folder / "README.md").read_text(), re.DOTALL).group(1)
         for line in commands.splitlines()[2:]:
             run("sh", "-c", line, cwd=folder)
+        # What new-algorithm printed; the build's options are kept, and the rows are few.
+        build, bench = printed.splitlines()[1:]
+        run("sh", "-c", f"{build} && {bench} --benchmark_filter=/algorithm:fast-boxes/ --sample 16 --budget 20", cwd=ARGUMENTS.work)
+        self.check_printed_commands(folder / "build")
         self.check_lists(folder / "build" / "fast-boxes-sixdof", "fast-boxes", r"^0\.1\.0 ")
 
     def test_program_of_the_readme(self):

@@ -116,6 +116,13 @@ TEST(RemoteQuery, TakesSettingsAndSaysWhatItIs) {
   EXPECT_GT(query.prepared().wall_ns.value_or(0.0), 0.0);
 }
 
+TEST(RemoteQuery, DoesNotAskWhatTheProgramDoesNotAnswer) {
+  const auto algorithm = script("exit 3");
+  const auto query = algorithm->prepare(torus(), cone(), algorithm->settings());
+  EXPECT_EQ(query->respond(Pose()).status, Status::unsupported);
+  EXPECT_EQ(query->collide(Pose()).status, Status::crashed);
+}
+
 /// Each way to die costs exactly the poses at which it happens.
 TEST(RemoteQuery, EveryDeathCostsItsPoseOnly) {
   const std::vector<Pose> list = poses(160);

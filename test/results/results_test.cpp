@@ -104,6 +104,33 @@ TEST(Results, ReproductionHasTheRunsProgramMeshesAndParameters) {
                 "$' --sample 64 --seed 4");
 }
 
+TEST(Results, ReproductionIsAnExpressionAndAWordForAShell) {
+  EXPECT_EQ(name_expression("pair:a+b (2)/distance:0.5"), "pair:a\\+b \\(2\\)/distance:0.5");
+  EXPECT_EQ(name_expression("\\^$|?*["), "\\\\\\^\\$\\|\\?\\*\\[");
+  const Results results = test::results_of({test::row("distance", "exact", "it's", "distance", 5.0, 1.0)});
+  EXPECT_EQ(reproduction(results.rows[0], results.files[0]).find("sixdof-bench '--benchmark_filter=^distance/algorithm:"
+                                                                 "exact/pair:it'\\''s/distance:"),
+            0u);
+}
+
+TEST(Results, ReproductionOfAStudyIsItsCommandLine) {
+  const test::Json row = test::row("precision", "exact", "p", "distance", 5.0, 1.0);
+  const Results results =
+      test::results_of({row}, {{"program", "turbo-sixdof"}, {"arguments", "recommend --a x --budget 1min"}});
+  EXPECT_EQ(reproduction(results.rows[0], results.files[0]), "turbo-sixdof recommend --a x --budget 1min");
+  const Results unknown = test::results_of({row});
+  EXPECT_EQ(reproduction(unknown.rows[0], unknown.files[0]), "");
+}
+
+TEST(Results, ReproductionOfAPlayedSceneIsInItsFile) {
+  Results results;
+  parse_results(R"([{"question":"near","algorithms":[{"algorithm":"exact","command":"sixdof scene play a.h5"},
+                    {"algorithm":"fcl-hash"}]}])",
+                "play.json", results);
+  EXPECT_EQ(reproduction(results.rows.at(0), results.files.at(0)), "sixdof scene play a.h5");
+  EXPECT_EQ(reproduction(results.rows.at(1), results.files.at(0)), "");
+}
+
 TEST(Results, HardCasesAreRead) {
   Results results;
   parse_results(R"([{"family":"scale","algorithm":"ode","verdict":"wrong","cases":12,"worst":0.5,"unit":"size",

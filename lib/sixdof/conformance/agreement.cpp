@@ -1,9 +1,10 @@
-#include <sixdof/conformance/subject.h>
+#include <sixdof/conformance/checks.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include <gtest/gtest.h>
+#include <fmt/format.h>
 
 #include <sixdof/base/error.h>
 #include <sixdof/conformance/poses.h>
@@ -13,46 +14,59 @@
 namespace sixdof::conformance {
 namespace {
 
-/// check(the pair, one of its cases, the answers) for all cases of all pairs, each pair prepared once.
+/// check(one of the cases, the answers, where) for all cases of all pairs, each pair prepared once.
 template <class CheckCase>
-void for_each_case(const Subject& subject, Kind kind, const CheckCase& check) {
+void for_each_case(const Subject& subject, Kind kind, Findings& findings, const CheckCase& check) {
   for (const Pair& pair : pairs()) {
     const auto query = subject.prepare(pair.a, pair.b);
     for (const Case& each : pair.cases) {
       const At at{subject, pair.a, pair.b, each.pose};
       const Answers answers = subject.ask(*query, kind, each.pose.X_AB);
-      EXPECT_EQ(to_string(answers.status(kind)), to_string(Status::ok)) << answers.words << at;
-      if (answers.status(kind) == Status::ok) check(each, answers, at);
+      if (findings.expect_ok(answers, kind, at)) check(each, answers, at);
     }
   }
 }
 
-void check_collide(const Subject& subject) {
-  for_each_case(subject, Kind::collide, [](const Case& each, const Answers& answers, const At& at) {
+/// "yes instead of no: ..."
+std::string wrong_answer(bool answer, const std::string& why) {
+  return fmt::format("{} instead of {}: {}", yes_or_no(answer), yes_or_no(!answer), why);
+}
+
+void check_collide(const Subject& subject, Findings& findings) {
+  for_each_case(subject, Kind::collide, findings, [&](const Case& each, const Answers& answers, const At& at) {
     if (each.place == Place::contained) return;
-    EXPECT_EQ(answers.collide.value, each.place == Place::overlapping)
-        << "the surfaces are " << each.distance << " apart, the overlap is " << each.volume << at;
+    const bool answer = answers.collide.value;
+    if (answer == (each.place == Place::overlapping)) return;
+    const std::string why =
+        fmt::format("the surfaces are {:.6g} apart, the overlap is {:.6g}", each.distance, each.volume);
+    findings.fail(wrong_answer(answer, why), at);
   });
 }
 
-void check_contained_collide(const Subject& subject) {
-  for_each_case(subject, Kind::collide, [&](const Case& each, const Answers& answers, const At& at) {
+void check_contained_collide(const Subject& subject, Findings& findings) {
+  for_each_case(subject, Kind::collide, findings, [&](const Case& each, const Answers& answers, const At& at) {
     if (each.place != Place::contained) return;
-    EXPECT_EQ(answers.collide.value, subject.declared.collide == Meaning::bodies)
-        << "one body is inside the other" << at;
+    const bool answer = answers.collide.value;
+    const bool wanted = subject.declared.collide == Meaning::bodies;
+    if (answer == wanted) return;
+    findings.fail(wrong_answer(answer, fmt::format("one body is inside the other, and yes/no is claimed for {}",
+                                                   wanted ? "bodies" : "surfaces")),
+                  at);
   });
 }
 
-void check_distance(const Subject& subject) {
-  for_each_case(subject, Kind::distance, [&](const Case& each, const Answers& answers, const At& at) {
-    EXPECT_NEAR(answers.distance.value.distance, each.distance, subject.declared.distance_error * at.a.diagonal())
-        << at;
-    EXPECT_GE(answers.distance.value.distance, 0.0) << at;
+void check_distance(const Subject& subject, Findings& findings) {
+  for_each_case(subject, Kind::distance, findings, [&](const Case& each, const Answers& answers, const At& at) {
+    const double distance = answers.distance.value.distance;
+    findings.expect_near("the distance", distance, each.distance, subject.declared.distance_error * at.a.diagonal(),
+                         at);
+    if (distance < 0.0) findings.fail(fmt::format("the distance is negative: {}", distance), at);
   });
 }
 
-void check_witnesses(const Subject& subject) {
-  if (subject.declared.witness_error == k_no_claim) return;
+void check_witnesses(const Subject& subject, Findings& findings) {
+  if (subject.declared.witness_error == k_no_claim) return findings.has_no_claim("witness_error");
+  bool judged = false;
   for (const Pair& pair : pairs()) {
     const Tree tree_a(pair.a), tree_b(pair.b);
     const auto query = subject.prepare(pair.a, pair.b);
@@ -61,81 +75,110 @@ void check_witnesses(const Subject& subject) {
       const At at{subject, pair.a, pair.b, each.pose};
       const Answers answers = subject.ask(*query, Kind::distance, each.pose.X_AB);
       const Separation& gap = answers.distance.value;
-      EXPECT_TRUE(answers.distance.ok()) << answers.words << at;
-      if (!answers.distance.ok() || !gap.has_witnesses) continue;
-      EXPECT_NEAR((gap.witness_a - gap.witness_b).norm(), gap.distance, allowed)
-          << "the witnesses are not `distance` apart" << at;
-      EXPECT_LE(closest_point(tree_a, gap.witness_a)->distance, allowed) << "witness_a is not on A" << at;
-      EXPECT_LE(closest_point(tree_b, each.pose.X_AB.inverse() * gap.witness_b)->distance, allowed)
-          << "witness_b is not on B, or not in A's frame" << at;
+      if (!findings.expect_ok(answers, Kind::distance, at) || !gap.has_witnesses) continue;
+      judged = true;
+      findings.expect_near("the distance of the witnesses", (gap.witness_a - gap.witness_b).norm(), gap.distance,
+                           allowed, at);
+      const auto expect_on = [&](const char* what, const Tree& tree, const Eigen::Vector3d& witness) {
+        const auto closest = closest_point(tree, witness);
+        if (closest && closest->distance <= allowed) return;
+        const std::string away = closest ? fmt::format("{:.3g} away", closest->distance) : "not finite";
+        findings.fail(fmt::format("{}: it is {}", what, away), at);
+      };
+      expect_on("witness_a is not on A", tree_a, gap.witness_a);
+      expect_on("witness_b is not on B, or not in A's frame", tree_b, each.pose.X_AB.inverse() * gap.witness_b);
     }
   }
+  if (!judged) findings.has_no_answers("its distances have no witnesses");
 }
 
-void check_respond(const Subject& subject) {
-  double degrees = 0.0, largest = 0.0;
+void check_respond(const Subject& subject, Findings& findings) {
+  double degrees = 0.0, largest = -1.0;
   int judged = 0;
-  for_each_case(subject, Kind::respond, [&](const Case& each, const Answers& answers, const At& at) {
+  std::optional<At> worst;
+  for_each_case(subject, Kind::respond, findings, [&](const Case& each, const Answers& answers, const At& at) {
     if (each.place == Place::contained) return;
     const Response& response = answers.respond.value;
     const bool overlap = each.place == Place::overlapping;
-    EXPECT_EQ(response.penalty > 0.0, overlap) << "penalty " << response.penalty << at;
-    EXPECT_EQ(response.force.norm() > 0.0, overlap) << "a miss, or a force on bodies that are apart" << at;
+    if ((response.penalty > 0.0) != overlap) {
+      const char* const bodies = overlap ? "bodies that overlap" : "bodies that are apart";
+      findings.fail(fmt::format("penalty {:.6g} of {}", response.penalty, bodies), at);
+    }
+    if ((response.force.norm() > 0.0) != overlap) {
+      findings.fail(overlap ? "no force on bodies that overlap" : "a force on bodies that are apart", at);
+    }
     if (!overlap) return;
     const double angle = angle_between(response.force, each.force);
     degrees += angle;
-    largest = std::max(largest, angle);
     ++judged;
+    if (angle <= largest) return;
+    largest = angle;
+    worst.emplace(at);
   });
-  EXPECT_LE(degrees / std::max(judged, 1), subject.declared.force_degrees)
-      << "mean angle of " << subject.traits().name << "'s forces to the exact ones; the largest is " << largest;
+  const double mean = degrees / std::max(judged, 1);
+  if (mean <= subject.declared.force_degrees) return;
+  const std::string what = fmt::format(
+      "the forces are {:.3g} degrees off the exact ones on average, {:.3g} at most; an average of {:.3g} is claimed",
+      mean, largest, subject.declared.force_degrees);
+  worst ? findings.fail(what, *worst) : findings.fail(what);
 }
 
-void check_volume(const Subject& subject) {
-  for_each_case(subject, Kind::respond, [&](const Case& each, const Answers& answers, const At& at) {
+void check_volume(const Subject& subject, Findings& findings) {
+  if (subject.declared.volume_error == k_no_claim) return findings.has_no_claim("volume_error");
+  bool judged = false;
+  for_each_case(subject, Kind::respond, findings, [&](const Case& each, const Answers& answers, const At& at) {
     const double volume = answers.respond.value.volume;
-    if (std::isnan(volume) || subject.declared.volume_error == k_no_claim) return;
-    if (each.place == Place::apart) {
-      EXPECT_EQ(volume, 0.0) << at;
-    } else {
-      EXPECT_NEAR(volume, each.volume, subject.declared.volume_error * each.volume) << at;
-    }
+    if (std::isnan(volume)) return;
+    judged = true;
+    const double allowed = each.place == Place::apart ? 0.0 : subject.declared.volume_error * each.volume;
+    findings.expect_near("the volume", volume, each.place == Place::apart ? 0.0 : each.volume, allowed, at);
   });
+  if (!judged) findings.has_no_answers("its responses have no volume");
+}
+
+void expect_refusal(const Subject& subject, const Mesh& a, const Mesh& b, Findings& findings) {
+  try {
+    static_cast<void>(subject.prepare(a, b));
+    findings.fail(fmt::format("takes {} (A) and {} (B), one with a border; it should be refused by BadMesh", a.name(),
+                              b.name()));
+  } catch (const BadMesh&) {
+  }
 }
 
 /// A surface with a border is refused by BadMesh, or yes/no and distance are those of the surface. A response must not
 /// be made up: it needs a closed surface, or contacts of triangles.
-void check_open_surfaces(const Subject& subject) {
+void check_open_surfaces(const Subject& subject, Findings& findings) {
   const Pair pair = open_pair();
   if (!subject.declared.open_meshes) {
-    EXPECT_THROW(subject.prepare(pair.a, pair.b), BadMesh);
-    EXPECT_THROW(subject.prepare(pair.b, pair.a), BadMesh);
+    expect_refusal(subject, pair.a, pair.b, findings);
+    expect_refusal(subject, pair.b, pair.a, findings);
     return;
   }
   const auto query = subject.prepare(pair.a, pair.b);
   for (const Case& each : pair.cases) {
     const At at{subject, pair.a, pair.b, each.pose};
     const Answers answers = subject.ask(*query, each.pose.X_AB);
-    if (subject.answers(Kind::collide)) {
-      EXPECT_TRUE(answers.collide.ok()) << answers.words << at;
-      EXPECT_EQ(answers.collide.value, each.place == Place::overlapping) << at;
+    const bool answer = answers.collide.value, meet = each.place == Place::overlapping;
+    if (subject.answers(Kind::collide) && findings.expect_ok(answers, Kind::collide, at) && answer != meet) {
+      findings.fail(wrong_answer(answer, fmt::format("the surfaces are {:.6g} apart", each.distance)), at);
     }
-    if (subject.answers(Kind::distance)) {
-      EXPECT_TRUE(answers.distance.ok()) << answers.words << at;
-      EXPECT_NEAR(answers.distance.value.distance, each.distance, subject.declared.distance_error * pair.a.diagonal())
-          << at;
+    if (subject.answers(Kind::distance) && findings.expect_ok(answers, Kind::distance, at)) {
+      findings.expect_near("the distance", answers.distance.value.distance, each.distance,
+                           subject.declared.distance_error * pair.a.diagonal(), at);
     }
-    if (subject.answers(Kind::respond) && answers.respond.ok() && each.place == Place::apart) {
-      EXPECT_EQ(answers.respond.value.force.norm(), 0.0) << at;
-    }
+    const bool is_pushed = answers.respond.ok() && answers.respond.value.force.norm() != 0.0;
+    if (each.place == Place::apart && is_pushed) findings.fail("a force on surfaces that are apart", at);
   }
 }
 
 constexpr Check k_checks[] = {
-    {"Collide", if_collide, check_collide},        {"CollideOfContained", if_collide, check_contained_collide},
-    {"Distance", if_distance, check_distance},     {"Witnesses", if_distance, check_witnesses},
-    {"Respond", if_respond, check_respond},        {"Volume", if_respond, check_volume},
-    {"OpenSurfaces", always, check_open_surfaces},
+    {"Collide", Needs::collide, check_collide},
+    {"CollideOfContained", Needs::collide, check_contained_collide},
+    {"Distance", Needs::distance, check_distance},
+    {"Witnesses", Needs::distance, check_witnesses},
+    {"Respond", Needs::respond, check_respond},
+    {"Volume", Needs::respond, check_volume},
+    {"OpenSurfaces", Needs::nothing, check_open_surfaces},
 };
 
 }  // namespace

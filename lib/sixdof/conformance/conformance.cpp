@@ -5,17 +5,19 @@
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/conformance/subject.h>
+#include <sixdof/base/own_command.h>
+#include <sixdof/conformance/checks.h>
+#include <sixdof/conformance/declared.h>
 #include <sixdof/query/registrar.h>
 #include <sixdof/query/registry.h>
 
@@ -34,7 +36,7 @@ namespace {
 
 struct Added {
   Source source;
-  Declaration declaration;
+  std::optional<Declaration> declaration;
 };
 
 std::vector<Added>& added() {
@@ -42,39 +44,20 @@ std::vector<Added>& added() {
   return list;
 }
 
-/// What is known before anything is prepared: the algorithm's traits and the declaration.
-void check_declaration(const Subject& subject);
+/// An algorithm with the subject that refers to it.
+struct Candidate {
+  Candidate(std::unique_ptr<Algorithm> made, Declaration declaration)
+      : algorithm(std::move(made)),
+        subject(*algorithm, std::move(declaration),
+                {.program = own_command("sixdof"), .folder = ::testing::TempDir()}) {}
 
-constexpr Check k_declaration{"Declaration", always, check_declaration};
-
-std::vector<const Check*> all_checks() {
-  std::vector<const Check*> list{&k_declaration};
-  for (const auto& room : {agreement_checks(), invariance_checks(), state_checks()}) {
-    for (const Check& check : room) list.push_back(&check);
-  }
-  return list;
-}
-
-void check_declaration(const Subject& subject) {
-  const Traits& traits = subject.traits();
-  EXPECT_FALSE(traits.version.empty()) << "Traits::version is empty";
-  EXPECT_FALSE(traits.summary.empty()) << "Traits::summary is empty";
-  EXPECT_TRUE(traits.answers.collide || traits.answers.distance || traits.answers.respond)
-      << "Traits::answers has no kind of query";
-  EXPECT_EQ(traits.answers.respond, traits.law != ResponseLaw::none)
-      << "Traits::law belongs to an algorithm that answers respond, and to no other";
-  const std::vector<const Check*> checks = all_checks();
-  for (const KnownFailure& known : subject.declared.known_failures) {
-    const auto found = std::ranges::find(checks, known.check, [](const Check* check) { return check->name; });
-    EXPECT_TRUE(found != checks.end() && (*found)->applies(traits.answers))
-        << "known failure \"" << known.check << "\": no such check of this algorithm";
-    EXPECT_NE(known.reason, "") << "known failure \"" << known.check << "\": no reason";
-  }
-}
+  const std::unique_ptr<Algorithm> algorithm;
+  const Subject subject;
+};
 
 /// A GoogleTest case: one check of one algorithm; or, without a check, why there is no algorithm.
 struct Instance {
-  std::shared_ptr<const Subject> subject;
+  std::shared_ptr<const Candidate> candidate;
   const Check* check = nullptr;
   std::string name;
   std::string problem;
@@ -96,10 +79,12 @@ std::vector<Instance> make_instances() {
       // As the programs do: refuses names and sweeps that they cannot use.
       Registry registry;
       registry.add(each.source.make());
-      const auto subject = std::make_shared<const Subject>(std::move(algorithm), each.declaration);
-      for (const Check* check : all_checks()) {
-        if (!check->applies(subject->traits().answers)) continue;
-        list.push_back({subject, check, test_name(subject->traits().name, check->name), {}});
+      const std::string name = algorithm->traits().name;
+      const auto candidate = std::make_shared<const Candidate>(
+          std::move(algorithm), each.declaration ? *each.declaration : declaration_of(name));
+      for (const Check& check : all_checks()) {
+        if (!applies(check, candidate->subject.traits().answers)) continue;
+        list.push_back({candidate, &check, test_name(name, check.name), {}});
       }
     } catch (const std::exception& e) {
       list.push_back({nullptr, nullptr, fmt::format("Unusable_{}", list.size()), e.what()});
@@ -108,49 +93,22 @@ std::vector<Instance> make_instances() {
   return list;
 }
 
-/// Runs the check with its failures held back. @return the first failure, empty if the check passes
-std::string first_failure_of(const Check& check, const Subject& subject) {
-  ::testing::TestPartResultArray results;
-  {
-    const ::testing::ScopedFakeTestPartResultReporter held_back(
-        ::testing::ScopedFakeTestPartResultReporter::INTERCEPT_ALL_THREADS, &results);
-    try {
-      check.run(subject);
-    } catch (const std::exception& e) {
-      ADD_FAILURE() << "thrown: " << e.what();
-    }
-  }
-  for (int i = 0; i < results.size(); ++i) {
-    if (results.GetTestPartResult(i).failed()) return results.GetTestPartResult(i).message();
-  }
-  return {};
-}
-
-void run_known_failure(const Instance& instance, const KnownFailure& known) {
-  const std::string failure = first_failure_of(*instance.check, *instance.subject);
-  EXPECT_NE(failure, "") << instance.name << " is listed as known, but passes: " << known.reason;
-  std::cout << "known failure: " << known.reason << (known.issue.empty() ? "" : " (" + known.issue + ")") << "\n"
-            << failure << "\n";
-}
-
 class Conformance : public ::testing::TestWithParam<Instance> {};
 
 std::ostream& operator<<(std::ostream& out, const Instance& instance) {
-  if (instance.subject == nullptr) return out << instance.problem;
-  return out << instance.subject->traits().name << " " << instance.subject->traits().version;
+  if (instance.candidate == nullptr) return out << instance.problem;
+  return out << instance.candidate->subject.traits().name << " " << instance.candidate->subject.traits().version;
 }
 
 TEST_P(Conformance, Of) {
   const Instance& instance = GetParam();
-  ASSERT_NE(instance.subject, nullptr) << instance.problem;
-  const auto& known_failures = instance.subject->declared.known_failures;
-  const auto known = std::ranges::find(known_failures, std::string(instance.check->name),
-                                       [](const KnownFailure& k) { return k.check; });
-  if (known != known_failures.end() && instance.check != &k_declaration) {
-    run_known_failure(instance, *known);
-  } else {
-    instance.check->run(*instance.subject);
+  ASSERT_NE(instance.candidate, nullptr) << instance.problem;
+  const Finding found = run_check(*instance.check, instance.candidate->subject);
+  if (found.verdict == Verdict::known_failure) {
+    std::cout << "known failure: " << found.why << "\n" << to_string(found.failures.front()) << "\n";
+    return;
   }
+  for (const Failure& failure : found.failures) ADD_FAILURE() << to_string(failure);
 }
 
 /// A program may name no algorithm, for instance where an optional library is missing.
@@ -165,10 +123,9 @@ bool add_algorithm(Source source, Declaration declaration) {
   return true;
 }
 
-std::vector<std::string> check_names() {
-  std::vector<std::string> names;
-  for (const Check* check : all_checks()) names.emplace_back(check->name);
-  return names;
+bool add_algorithm(Source source) {
+  added().push_back({std::move(source), std::nullopt});
+  return true;
 }
 
 }  // namespace sixdof::conformance

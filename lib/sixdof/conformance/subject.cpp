@@ -1,16 +1,12 @@
 #include <sixdof/conformance/subject.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <filesystem>
 #include <map>
-#include <ostream>
 #include <utility>
 
-#include <gtest/gtest.h>
+#include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/geometry/save.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/query/ask.h>
@@ -28,15 +24,15 @@ bool is_model(const Mesh& mesh) {
 }
 
 /// The word for the mesh on a command line: its name, or a file that is written.
-std::string word_of(const Mesh& mesh) {
-  static std::map<std::string, std::string> words;  // by content; making a model may take long
-  std::string& word = words[mesh.hash()];
-  if (!word.empty()) return word;
-  if (is_model(mesh)) return word = mesh.name();
-  const std::filesystem::path file =
-      std::filesystem::path(::testing::TempDir()) / ("sixdof-conformance-" + mesh.hash() + ".ply");
+std::string word_of(const Mesh& mesh, const std::filesystem::path& folder) {
+  static std::map<std::string, bool> models;  // by content; making a model may take long
+  const auto [known, is_new] = models.try_emplace(mesh.hash());
+  if (is_new) known->second = is_model(mesh);
+  if (known->second) return mesh.name();
+  const std::filesystem::path file = folder / ("sixdof-conformance-" + mesh.hash() + ".ply");
+  if (!folder.empty()) std::filesystem::create_directories(folder);
   if (!std::filesystem::exists(file)) save_mesh(mesh, file);
-  return word = file.string();
+  return file.string();
 }
 
 template <class T>
@@ -47,18 +43,15 @@ void ask_into(Query& query, Outcome<T> (Query::*question)(const Pose&), const Po
   if (words.empty()) examine(query, answer, failed);
 }
 
-/// Bits of two doubles; NaN equals NaN.
-bool same_bits(double x, double y) { return std::memcmp(&x, &y, sizeof x) == 0 || x == y; }
-
 }  // namespace
 
-Subject::Subject(std::unique_ptr<Algorithm> made, Declaration declaration)
-    : algorithm(std::move(made)), declared(std::move(declaration)), settings(algorithm->settings()) {
+Subject::Subject(const Algorithm& asked, Declaration declaration, Commands how)
+    : algorithm(asked), declared(std::move(declaration)), commands(std::move(how)), settings(asked.settings()) {
   settings.set_all(declared.settings);
 }
 
 std::unique_ptr<Query> Subject::prepare(const Mesh& a, const Mesh& b) const {
-  return algorithm->prepare(a, b, settings);
+  return algorithm.prepare(a, b, settings);
 }
 
 Answers Subject::ask(Query& query, Kind kind, const Pose& X_AB) const {
@@ -82,51 +75,15 @@ Answers Subject::ask(Query& query, const Pose& X_AB) const {
   return all;
 }
 
-std::ostream& operator<<(std::ostream& out, const At& at) {
-  out << "\nat: " << at.a.name() << " (A), " << at.b.name() << " (B)\n  sixdof query --a " << word_of(at.a) << " --b "
-      << word_of(at.b) << " --pose '" << at.pose.text() << "' --algorithm " << at.subject.traits().name;
-  for (const std::string& setting : at.subject.declared.settings) out << " -p " << setting;
-  return out;
-}
+std::string meshes_of(const At& at) { return fmt::format("{} (A), {} (B)", at.a.name(), at.b.name()); }
 
-double wrench_difference(const Response& x, const Response& y, double length) {
-  const double force = x.force.norm();
-  const double forces = (x.force - y.force).norm(), torques = (x.torque - y.torque).norm() / length;
-  const double difference = std::max(forces, torques);
-  return difference == 0.0 ? 0.0 : difference / force;
-}
-
-double angle_between(const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
-  constexpr double k_degrees = 180.0 / 3.14159265358979323846;
-  return std::atan2(x.cross(y).norm(), x.dot(y)) * k_degrees;
-}
-
-bool expect_answered(const Subject& subject, const Answers& answers, const At& at) {
-  for (const Kind kind : k_kinds) {
-    if (!subject.answers(kind)) continue;
-    const Status status = answers.status(kind);
-    EXPECT_EQ(to_string(status), to_string(Status::ok)) << answers.words << at;
-    if (status != Status::ok) return false;
-  }
-  return true;
-}
-
-void expect_repeated(const Subject& subject, const Answers& first, const Answers& again, const At& at) {
-  const double allowed = subject.declared.repeat_error;
-  if (!expect_answered(subject, first, at) || !expect_answered(subject, again, at)) return;
-  if (subject.answers(Kind::collide)) {
-    EXPECT_EQ(first.collide.value, again.collide.value) << at;
-  }
-  if (subject.answers(Kind::distance)) {
-    EXPECT_NEAR(first.distance.value.distance, again.distance.value.distance, allowed * at.a.diagonal()) << at;
-  }
-  if (subject.answers(Kind::respond)) {
-    const Response &x = first.respond.value, &y = again.respond.value;
-    EXPECT_LE(wrench_difference(x, y, at.a.diagonal()), allowed)
-        << "force " << x.force.transpose() << " and " << y.force.transpose() << at;
-    EXPECT_LE(std::abs(x.penalty - y.penalty), allowed * std::abs(x.penalty)) << at;
-    EXPECT_TRUE(allowed > 0.0 || same_bits(x.volume, y.volume)) << "volume " << x.volume << " and " << y.volume << at;
-  }
+std::string command_of(const At& at) {
+  const Subject& subject = at.subject;
+  const auto word = [&](const Mesh& mesh) { return shell_quoted(word_of(mesh, subject.commands.folder)); };
+  std::string command = fmt::format("{} query --a {} --b {} --pose '{}' --algorithm {}", subject.commands.program,
+                                    word(at.a), word(at.b), at.pose.text(), subject.traits().name);
+  for (const std::string& setting : subject.declared.settings) command += " -p " + shell_quoted(setting);
+  return command + subject.commands.options;
 }
 
 }  // namespace sixdof::conformance

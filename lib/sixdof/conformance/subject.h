@@ -1,11 +1,10 @@
 #pragma once
 
-#include <iosfwd>
+#include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 
-#include <sixdof/conformance/conformance.h>
+#include <sixdof/conformance/declaration.h>
 #include <sixdof/geometry/typed_pose.h>
 #include <sixdof/query/algorithm.h>
 
@@ -18,6 +17,10 @@ enum class Kind {
   respond
 };
 constexpr Kind k_kinds[] = {Kind::collide, Kind::distance, Kind::respond};
+
+constexpr const char* to_string(Kind kind) {
+  return kind == Kind::collide ? "collide" : kind == Kind::distance ? "distance" : "respond";
+}
 
 inline bool answers(const QuerySet& set, Kind kind) {
   return kind == Kind::collide ? set.collide : kind == Kind::distance ? set.distance : set.respond;
@@ -35,16 +38,26 @@ struct Answers {
   }
 };
 
+/// How a user asks what a check asked.
+struct Commands {
+  std::string program = "sixdof";  ///< One that knows the algorithm.
+  std::string options = {};        ///< Behind all others, with a space before: " --external 'mine=python3 mine.py'".
+  /// Where meshes that are no models of the catalogue are written; made when the first one is.
+  std::filesystem::path folder = {};
+};
+
 /// The algorithm under test with what it claims.
 struct Subject {
+  /// @param asked outlives the subject
   /// @throws BadArgument for settings that the algorithm does not have
-  Subject(std::unique_ptr<Algorithm> made, Declaration declaration);
+  Subject(const Algorithm& asked, Declaration declaration, Commands how);
 
-  std::unique_ptr<Algorithm> algorithm;
+  const Algorithm& algorithm;
   Declaration declared;
+  Commands commands;
   Settings settings;  ///< Default ones with those of the declaration.
 
-  const Traits& traits() const { return algorithm->traits(); }
+  const Traits& traits() const { return algorithm.traits(); }
   bool answers(Kind kind) const { return conformance::answers(traits().answers, kind); }
   std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b) const;
   /// Asks all kinds that the algorithm answers. What is thrown counts as failed, an answer with a NaN as non_finite.
@@ -53,45 +66,18 @@ struct Subject {
   Answers ask(Query& query, Kind kind, const Pose& X_AB) const;
 };
 
-/// Where a check failed: meshes, pose and a command line that asks the same. A mesh that is no model of the catalogue
-/// is written to a file for it. To be streamed into the message of an assertion.
+/// Where a check asked.
 struct At {
   const Subject& subject;
   const Mesh& a;
   const Mesh& b;
   const TypedPose& pose;
 };
-std::ostream& operator<<(std::ostream& out, const At& at);
 
-/// Largest relative difference of two wrenches about one point: of forces by |x.force|, of torques by |x.force| length.
-/// 0 if both are zero; infinite if only x is.
-double wrench_difference(const Response& x, const Response& y, double length);
+/// "torus-300 (A), cone-100 (B)"
+std::string meshes_of(const At& at);
 
-/// Angle in degrees, exact for small ones.
-double angle_between(const Eigen::Vector3d& x, const Eigen::Vector3d& y);
-
-/// Whether every kind that the algorithm answers has an answer; fails with the words if not.
-bool expect_answered(const Subject& subject, const Answers& answers, const At& at);
-
-/// Two answers of one pose must agree within Declaration::repeat_error.
-void expect_repeated(const Subject& subject, const Answers& first, const Answers& again, const At& at);
-
-/// One check of the kit.
-struct Check {
-  const char* name;
-  /// Whether it applies to an algorithm that answers these kinds.
-  bool (*applies)(const QuerySet&);
-  /// Fails by GoogleTest's assertions.
-  void (*run)(const Subject&);
-};
-
-inline bool always(const QuerySet&) { return true; }
-inline bool if_collide(const QuerySet& set) { return set.collide; }
-inline bool if_distance(const QuerySet& set) { return set.distance; }
-inline bool if_respond(const QuerySet& set) { return set.respond; }
-
-std::span<const Check> agreement_checks();   ///< With the oracles.
-std::span<const Check> invariance_checks();  ///< What must not change the answers.
-std::span<const Check> state_checks();       ///< Statuses, repetition, threads, lifetimes.
+/// `sixdof query ...`, which asks the same. A mesh that is no model of the catalogue is written to a file for it.
+std::string command_of(const At& at);
 
 }  // namespace sixdof::conformance

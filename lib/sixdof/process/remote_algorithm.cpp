@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/visible_text.h>
 
 namespace sixdof {
 
@@ -13,6 +14,7 @@ std::unique_ptr<RemoteAlgorithm> RemoteAlgorithm::external(const std::string& na
   try {
     Traits traits = ask_greeting(program).traits;
     traits.name = name;
+    if (traits.summary.empty()) traits.summary = visible_words(fmt::format("answers of {}", command_line));
     const QuerySet& answers = traits.answers;
     if (!answers.collide && !answers.distance && !answers.respond) throw Error("answers no kind of query");
     static_cast<void>(Settings(traits.parameters));

@@ -30,6 +30,8 @@ class RemoteAlgorithm final : public Algorithm {
   /// The algorithm in this process; null for an external one.
   const Algorithm* local() const { return local_.get(); }
 
+  const ProcessLimits& limits() const { return program_.limits; }
+
   /// The command line of an external one; empty for others.
   const std::string& command_line() const { return command_line_; }
 

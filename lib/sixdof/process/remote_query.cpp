@@ -247,9 +247,18 @@ Outcome<Answer> RemoteQuery::ask(const Pose& X_AB) {
   }
 }
 
-Outcome<bool> RemoteQuery::collide(const Pose& X_AB) { return ask<bool>(X_AB); }
-Outcome<Separation> RemoteQuery::distance(const Pose& X_AB) { return ask<Separation>(X_AB); }
-Outcome<Response> RemoteQuery::respond(const Pose& X_AB) { return ask<Response>(X_AB); }
+Outcome<bool> RemoteQuery::collide(const Pose& X_AB) {
+  if (!greeting_.traits.answers.collide) return Status::unsupported;
+  return ask<bool>(X_AB);
+}
+Outcome<Separation> RemoteQuery::distance(const Pose& X_AB) {
+  if (!greeting_.traits.answers.distance) return Status::unsupported;
+  return ask<Separation>(X_AB);
+}
+Outcome<Response> RemoteQuery::respond(const Pose& X_AB) {
+  if (!greeting_.traits.answers.respond) return Status::unsupported;
+  return ask<Response>(X_AB);
+}
 
 template <class Answer>
 Timed RemoteQuery::time(std::span<const Pose> poses, const Time& how) {

@@ -39,6 +39,8 @@ class RemoteQuery final : public Query {
   RemoteQuery(RemoteProgram program, const Traits& traits, const Mesh& a, const Mesh& b, const Settings& settings);
   ~RemoteQuery() override;
 
+  /// A kind of query that the program does not answer is unsupported, and not asked.
+  ///
   /// If the process crashes, does not answer in time or sends a malformed reply, it is killed, and the status is
   /// crashed, timed_out, out_of_memory or failed. The next query starts a new process, which prepares the pair again. A
   /// pose that ended a process is not asked again: it keeps its status. After k_most_deaths in a row, or

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <map>
 
-#include <fmt/format.h>
 
 #include <sixdof/report/tables.h>
 #include <sixdof/results/frontier.h>
@@ -147,10 +146,9 @@ DataTable scenario_measures_table(const Results& results, const std::vector<RowG
     for (const Measure& measure : k_scenario_measures) {
       const auto value = group.value(measure.value);
       if (!value) continue;
-      table.rows.push_back(
-          {run_name(results, row.file), std::string(measure.title), row.fields.scenario, group.algorithm(), *value,
-           cell_of(group.value("steps")),
-           fmt::format("sixdof quality --scenario {} --algorithm {}", row.fields.scenario, row.fields.algorithm)});
+      table.rows.push_back({run_name(results, row.file), std::string(measure.title), row.fields.scenario,
+                            group.algorithm(), *value, cell_of(group.value("steps")),
+                            reproduction(row, results.files[row.file])});
     }
   }
   return table;

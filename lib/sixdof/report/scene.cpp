@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/own_command.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/geometry/load.h>
 #include <sixdof/geometry/pose.h>
 #include <sixdof/models/model_catalogue.h>
@@ -73,8 +75,12 @@ void add_objects(const Results& results, Scenes& scenes) {
       try {
         if (names_file(name)) continue;
         const std::size_t mesh = add_mesh(load_model(name), scenes);
-        scenes.scenes.push_back(
-            {.name = name, .kind = "object", .command = "sixdof info " + name, .a = mesh, .b = mesh, .moments = {}});
+        scenes.scenes.push_back({.name = name,
+                                 .kind = "object",
+                                 .command = own_command(fmt::format("sixdof info {}", shell_quoted(name))),
+                                 .a = mesh,
+                                 .b = mesh,
+                                 .moments = {}});
       } catch (const Error&) {  // A mesh of the user's, or a model that is not fetched here.
       }
     }
@@ -93,7 +99,7 @@ Scene path_scene(const Series& series) {
   Scene scene{.name = fmt::format("{}: {}", series.scenario, series.algorithm),
               .algorithm = series.algorithm,
               .kind = "path",
-              .command = fmt::format("sixdof quality --scenario {} --algorithm {}", series.scenario, series.algorithm),
+              .command = series.command,
               .rate_hz = series.rate_hz,
               .moments = {}};
   scene.stride = (series.poses.size() + k_most_moments - 1) / k_most_moments;

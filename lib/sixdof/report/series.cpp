@@ -48,6 +48,7 @@ Series read_series(const std::filesystem::path& path) {
                 .version = file.read_string("/", "version"),
                 .settings = file.read_string("/", "settings"),
                 .shape = file.read_string("/", "shape"),
+                .command = file.has_attribute("/", "command") ? file.read_string("/", "command") : std::string(),
                 .rate_hz = file.read_attribute<double>("/", "rate_hz"),
                 .force = vectors_of(file, "/force"),
                 .torque = vectors_of(file, "/torque"),

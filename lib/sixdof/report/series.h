@@ -11,6 +11,7 @@ namespace sixdof::report {
 /// A recorded response along a scenario's path with its ideal: a file of `sixdof quality -o` (scenario/evaluation.h).
 struct Series {
   std::string path, scenario, law, algorithm, version, settings, shape;
+  std::string command = {};  ///< That records it again; empty in files of earlier versions.
   double rate_hz = 0.0;
   using Vectors = std::vector<std::array<double, 3>>;
   Vectors force, torque, ideal_force, ideal_torque;  ///< One row per step, on B in A's frame.

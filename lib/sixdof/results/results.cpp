@@ -4,6 +4,7 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
+#include <sixdof/base/shell_text.h>
 #include <sixdof/base/visible_text.h>
 #include <sixdof/results/result_json.h>
 
@@ -28,6 +30,9 @@ double number_at(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? found->get<double>() : 0.0;
 }
+
+/// Key in Source::context of the command of a row, in a file of played scenes.
+std::string play_command_key(const std::string& row) { return fmt::format("command:{}", row); }
 
 std::string as_text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
@@ -109,6 +114,7 @@ void take_plays(const Json& document, Source source, Results& results) {
     for (const Json& play : part.at("algorithms")) {
       if (!play.is_object()) throw BadFile(source.path, "an algorithm that is no object");
       rows.push_back(played_row(play, text_at(part, "question"), source.path, results.files.size()));
+      source.context.emplace_back(play_command_key(rows.back().name), text_at(play, "command"));
     }
   }
   results.rows.insert(results.rows.end(), rows.begin(), rows.end());
@@ -211,19 +217,28 @@ bool is_red(const HardCase& cell) {
 
 std::string reproduction(const Row& row, const Source& source) {
   const std::string program = source.at("program");
-  if (source.kind == "play") return fmt::format("sixdof scene play FILE --question {}", row.fields.question);
+  if (source.kind == "play") return source.at(play_command_key(row.name));
   const std::string& query = row.fields.query;
   if (query != "precision" && query != "equivalent") {
     const std::string words = source.at("reproduction");
-    std::string command = fmt::format("{}{}{} '--benchmark_filter=^{}$'", program.empty() ? "sixdof-bench" : program,
-                                      words.empty() ? "" : " ", words, row.name);
+    std::string command =
+        fmt::format("{}{}{} {}", program.empty() ? "sixdof-bench" : program, words.empty() ? "" : " ", words,
+                    shell_quoted(fmt::format("--benchmark_filter=^{}$", name_expression(row.name))));
     if (const auto asked = row.value("configurations")) command += fmt::format(" --sample {:.0f}", *asked);
     if (const std::string seed = source.at("seed"); !seed.empty()) command += " --seed " + seed;
     return command;
   }
-  const std::string arguments = source.at("arguments");
-  return fmt::format("{} {}{}{}", program.empty() ? "sixdof" : program, arguments.starts_with(query) ? "" : query,
-                     arguments.starts_with(query) ? "" : " ", arguments);
+  const std::string arguments = source.at("arguments");  // of a study, with its name, which need not be the query's
+  return arguments.empty() ? std::string() : fmt::format("{} {}", program.empty() ? "sixdof" : program, arguments);
+}
+
+std::string name_expression(const std::string& text) {
+  std::string expression;
+  for (const char c : text) {
+    if (std::string_view("\\^$|?*+()[{").find(c) != std::string_view::npos) expression += '\\';
+    expression += c;
+  }
+  return expression;
 }
 
 }  // namespace sixdof::results

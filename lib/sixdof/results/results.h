@@ -64,7 +64,11 @@ void write_rows(const std::filesystem::path& file, const nlohmann::ordered_json&
 /// Whether an algorithm failed a hard case: neither right, within its resolution, nor declared unsupported.
 bool is_red(const HardCase& cell);
 
-/// A command line that measures the row again, on as many configurations and with the file's seed.
+/// A command line that measures the row again, on as many configurations and with the file's seed; empty if the file
+/// does not say how it was made.
 std::string reproduction(const Row& row, const Source& source);
+
+/// A part of a row's name as an expression for --benchmark_filter that matches just this text (a dot matches any).
+std::string name_expression(const std::string& text);
 
 }  // namespace sixdof::results

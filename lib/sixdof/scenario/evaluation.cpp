@@ -274,6 +274,7 @@ void write_series(const std::filesystem::path& path, const Scenario& scenario, c
   file.write_attribute("/", "version", source.version);
   file.write_attribute("/", "settings", source.settings);
   file.write_attribute("/", "shape", source.shape);
+  if (!source.command.empty()) file.write_attribute("/", "command", source.command);
   file.write_attribute("/", "rate_hz", k_haptic_rate_hz);
   for (const auto& [name, value] : measures) file.write_attribute("/", name.c_str(), value);
   write_rows(file, "/progress", recording.progress, 1);

@@ -73,15 +73,16 @@ struct Ideals {
 /// What a series was recorded with.
 struct SeriesSource {
   std::string algorithm;
-  std::string version;   ///< Of the algorithm.
-  std::string settings;  ///< Settings::to_string of the algorithm.
-  std::string shape;     ///< Settings::to_string of the scenario.
+  std::string version;       ///< Of the algorithm.
+  std::string settings;      ///< Settings::to_string of the algorithm.
+  std::string shape;         ///< Settings::to_string of the scenario.
+  std::string command = {};  ///< That records it again; empty if there is none.
 };
 
 /// Writes one recording with its ideal as an HDF5 file. The file appears complete or not at all.
 ///
-/// Attributes of "/": format, format_version, scenario, law, algorithm, version, settings, shape, rate_hz, and every
-/// measure by its name. Datasets, float64, one row per step: /progress, /pose (w, x, y, z, tx, ty, tz), /force,
+/// Attributes of "/": format, format_version, scenario, law, algorithm, version, settings, shape, command, rate_hz, and
+/// every measure by its name. Datasets, float64, one row per step: /progress, /pose (w, x, y, z, tx, ty, tz), /force,
 /// /torque, /penalty, /time_ns, /ideal_force, /ideal_torque, /ideal_penalty; /status int32 in the order of Status.
 /// Time-frequency diagrams (rows: times in s, columns: frequencies in Hz) of the magnitudes of force and torque, and of
 /// their residuals after the least-squares gain (the signal itself where the ideal is zero): /spectrum/force_signal,

@@ -10,18 +10,7 @@
 namespace sixdof {
 namespace {
 
-const char* const k_behind = "takes what is behind a triangle, in its box, for a contact: the plate of large triangles";
-const char* const k_behind_issue = "bulletphysics/bullet3#4318";
-
-SIXDOF_CONFORMANCE(make_bullet_gimpact_algorithm,
-                   {.known_failures = {
-                        {"Collide", k_behind, k_behind_issue},
-                        {"Respond", k_behind, k_behind_issue},
-                        {"MotionOfCollide", k_behind, k_behind_issue},
-                        {"MotionOfRespond", k_behind, k_behind_issue},
-                        {"ScaleOfRespond", "CONTACT_DIFF_EPSILON and others are lengths of 1e-5, whatever the unit",
-                         ""},
-                    }});
+SIXDOF_CONFORMANCE(make_bullet_gimpact_algorithm);
 
 TEST(Bullet, PushesABallOutOfAFace) {
   // GImpact also sees the facets that lie wholly below the face.

@@ -10,8 +10,7 @@
 namespace sixdof {
 namespace {
 
-// Both profiles have the same traversal and test of triangles; this one keeps a tree from query to query.
-SIXDOF_CONFORMANCE(make_embree_algorithm, {.settings = {"profile=tuned"}});
+SIXDOF_CONFORMANCE(make_embree_algorithm);
 
 class Embree : public ::testing::TestWithParam<const char*> {
  protected:

@@ -10,13 +10,7 @@ namespace {
 
 constexpr double k_slope_error = 1e-6;  // relative: of a slope from a central difference
 
-// Measured: 55 degrees. A spring pushes towards the nearest point of the other surface, through a thin body, too.
-SIXDOF_CONFORMANCE(make_simbody_algorithm,
-                   {.open_meshes = false,
-                    .force_degrees = 65.0,
-                    .known_failures = {{"ScaleOfRespond",
-                                        "forces differ by up to 0.3 % on meshes 1000 times larger; cause not traced",
-                                        ""}}});
+SIXDOF_CONFORMANCE(make_simbody_algorithm);
 
 TEST(Simbody, AnswersAsExactWhereItIsClear) { test::expect_clear_yes_no(*make_simbody_algorithm()); }
 

@@ -223,7 +223,7 @@
       this.peaks = ["force", "idealForce", "torque", "idealTorque"].map((name) =>
         [name, Math.max(0, ...scene.moments.map((each) => Math.hypot(...parts(each)[name])))]);
       this.peaks = Object.fromEntries(this.peaks);
-      this.command.replaceChildren(report.commandLine(scene.command));
+      this.command.replaceChildren(...(scene.command ? [report.commandLine(scene.command)] : []));
       this.key.replaceChildren(...this.legend());
       this.update();
     }

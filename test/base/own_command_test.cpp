@@ -1,4 +1,4 @@
-#include "bench/common/own_command.h"
+#include <sixdof/base/own_command.h>
 
 #include <cerrno>
 
@@ -31,7 +31,7 @@ TEST(OwnCommand, IsUnchangedInThisProjectsPrograms) {
 }
 
 TEST(OwnCommand, HasTheNamesOfAProjectOfNewAlgorithm) {
-  for (const char* const name : {"turbo-bvh-sixdof", "turbo-bvh-bench"}) {
+  for (const char* const name : {"turbo-bvh-sixdof", "turbo-bvh-bench", "turbo-bvh-conformance"}) {
     const Named named(name);
     EXPECT_EQ(own_command("sixdof query --a x"), "turbo-bvh-sixdof query --a x") << name;
     EXPECT_EQ(own_command("sixdof-bench --a x"), "turbo-bvh-bench --a x") << name;

@@ -1,4 +1,4 @@
-#include "bench/common/shell_text.h"
+#include <sixdof/base/shell_text.h>
 
 namespace sixdof {
 

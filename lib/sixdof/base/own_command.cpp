@@ -1,4 +1,4 @@
-#include "bench/common/own_command.h"
+#include <sixdof/base/own_command.h>
 
 #include <cerrno>
 #include <string_view>
@@ -6,14 +6,18 @@
 namespace sixdof {
 namespace {
 
-constexpr std::string_view k_cli = "sixdof", k_bench = "sixdof-bench", k_bench_suffix = "-bench";
+constexpr std::string_view k_cli = "sixdof", k_bench = "sixdof-bench";
+/// Ends of the names of a project's programs.
+constexpr std::string_view k_ends[] = {"-sixdof", "-bench", "-conformance"};
 
-/// What this program's name has before "sixdof" or "bench"; empty for the programs of this project, and for others.
+/// What this program's name has before "sixdof", "bench" or "conformance"; empty for the programs of this project, and
+/// for others.
 std::string prefix() {
   const std::string_view name = program_invocation_short_name;
   if (name == k_bench) return {};
-  if (name.ends_with("-sixdof")) return std::string(name.substr(0, name.size() - k_cli.size()));
-  if (name.ends_with(k_bench_suffix)) return std::string(name.substr(0, name.size() - k_bench_suffix.size() + 1));
+  for (const std::string_view end : k_ends) {
+    if (name.ends_with(end)) return std::string(name.substr(0, name.size() - end.size() + 1));
+  }
   return {};
 }
 

@@ -4,8 +4,8 @@
 
 namespace sixdof {
 
-/// A command that begins with "sixdof" or "sixdof-bench", with the names of this program and its sibling in their
-/// place: those of `sixdof new-algorithm turbo-bvh` are turbo-bvh-sixdof and turbo-bvh-bench.
+/// A command that begins with "sixdof" or "sixdof-bench", with the names of this program's siblings in their place. The
+/// programs of `sixdof new-algorithm turbo-bvh` are turbo-bvh-sixdof, turbo-bvh-bench and turbo-bvh-conformance.
 std::string own_command(const std::string& command);
 
 /// The name of the program that has the rows, beside this one: "sixdof-bench", "turbo-bvh-bench".
