@@ -224,6 +224,16 @@ function readPose(numbers) {
   return numbers.map((x) => (typeof x === "string" ? special[x] : x));
 }
 
+/** Longest edge of the box around a mesh. */
+function extent(mesh) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  mesh.vertices.forEach((x, i) => {
+    low[i % 3] = Math.min(low[i % 3], x);
+    high[i % 3] = Math.max(high[i % 3], x);
+  });
+  return Math.max(...high.map((x, i) => x - low[i]));
+}
+
 /** A parameter with a few values, for the description. */
 function choice(name, meaning, initial, choices) {
   return { name, meaning, unit: "1", default: initial, choices };
@@ -234,4 +244,4 @@ function version(name) {
   return JSON.parse(fs.readFileSync(`${process.env.NODE_PATH}/${name}/package.json`)).version;
 }
 
-module.exports = { serve, version, choice, BadMesh, BadArgument, Failed };
+module.exports = { serve, version, choice, extent, BadMesh, BadArgument, Failed };
