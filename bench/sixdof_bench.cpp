@@ -1,12 +1,15 @@
 // The program sixdof-bench: every algorithm of this build and every Registrar, every family of rows.
 
 #include <algorithm>
+#include <cctype>
 #include <iterator>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <sixdof/configuration/set_catalogue.h>
 #include "bench/common/all_algorithms.h"
@@ -29,6 +32,32 @@ constexpr const char* k_cold = "cold";
 constexpr const char* k_motion = "motion";
 /// So are rows of scenes, where it begins with this one.
 constexpr const char* k_scene = "scene/";
+
+/// Whether `name` stands in `text`, and is not a part of a longer name.
+bool has_name(const std::string& text, const std::string& name) {
+  const auto is_of_name = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
+  };
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+    const bool begins = at == 0 || !is_of_name(text[at - 1]);
+    if (begins && (at + name.size() == text.size() || !is_of_name(text[at + name.size()]))) return true;
+  }
+  return false;
+}
+
+/// Says which algorithms the filter names that have rows, but none in the suite.
+void say_what_the_suite_lacks(const Options& options, const std::vector<PlannedRow>& rows, const Suite& suite) {
+  const std::string filter = benchmark::GetBenchmarkFilter();
+  std::map<std::string, bool> in_suite;
+  for (const PlannedRow& row : rows) {
+    if (has_name(filter, row.fields.algorithm)) in_suite[row.fields.algorithm] |= suite(row.name).has_value();
+  }
+  for (const auto& [algorithm, is_there] : in_suite) {
+    if (is_there) continue;
+    print_message(options.program, fmt::format("{} has no rows in the suite {}; --suite all has them", algorithm,
+                                               options.suite.filename().string()));
+  }
+}
 
 void run(const Options& options) {
   Registry registry;
@@ -58,6 +87,7 @@ void run(const Options& options) {
       if (!algorithm->traits().in_default_runs()) named_only.push_back(algorithm->traits().name);
     }
     const Suite suite = read_suite(options.suite, external, named_only);
+    say_what_the_suite_lacks(options, rows, suite);
     std::erase_if(rows, [&](const PlannedRow& row) { return !suite(row.name); });
     const std::size_t sample = options.sample > 0 ? options.sample : Share().configurations;
     for (PlannedRow& row : rows) {

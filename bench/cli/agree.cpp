@@ -18,6 +18,7 @@
 #include "bench/common/json_text.h"
 #include "bench/common/progress_line.h"
 #include "bench/common/run_guarded.h"
+#include "bench/common/shell_text.h"
 #include "bench/harness/options.h"
 #include "bench/study/set_agreement.h"
 #include "bench/study/study_pairs.h"
@@ -36,6 +37,7 @@ struct Arguments {
   std::uint64_t seed = 1;
   std::size_t show = 1;
   bool json = false;
+  ProcessOptions process;
 };
 
 constexpr const char* k_keys =
@@ -154,7 +156,7 @@ void print_differences(const PairAgreement& pair, std::size_t show) {
 
 void agree(const Arguments& arguments) {
   Registry registry;
-  register_all_algorithms(registry);
+  register_all_algorithms(registry, arguments.process);
   const std::vector<AskedAlgorithm> algorithms = chosen_algorithms(registry, arguments);
   bench::Options options{.program = "sixdof", .sample = arguments.sample, .seed = arguments.seed};
   for (const std::string& set : arguments.sets) options.sets.emplace_back(set);
@@ -170,7 +172,8 @@ void agree(const Arguments& arguments) {
   json["pairs"] = Json::array();
   std::size_t differences = 0;
   for (const CatalogueEntry* const entry : pairs.pairs()) {
-    const std::string meshes = fmt::format("--a {} --b {}", pairs.argument(entry->a), pairs.argument(entry->b));
+    const std::string meshes =
+        fmt::format("--a {} --b {}", shell_quoted(pairs.argument(entry->a)), shell_quoted(pairs.argument(entry->b)));
     PairAgreement pair;
     {
       ProgressLine line(entry->pair);
@@ -217,6 +220,7 @@ void add_agree_command(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Seed of the draw")->type_name("N")->capture_default_str();
+  add_process_options(*command, arguments->process);
   command
       ->add_option("--show", arguments->show,
                    "Differences to print of each algorithm, bucket and question; --json has all")

@@ -120,7 +120,8 @@ const std::vector<Group>& groups() {
        {add_generate_command, add_merge_command, add_verify_command, add_agree_command}},
       {"Results (of sixdof-bench)", {add_table_command, add_report_command, add_history_command, add_compare_command}},
       {"Studies (many measurements, one answer)",
-       {add_recommend_command, add_precision_command, add_equivalent_command, add_quality_command, add_stress_command}},
+       {add_recommend_command, add_precision_command, add_equivalent_command, add_quality_command, add_stress_command,
+        add_hulls_command}},
       {"Scenes (many bodies that move)", {add_scene_command}},
       {"Your own", {add_new_algorithm_command, add_completion_command}}};
   return list;

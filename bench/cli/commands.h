@@ -35,9 +35,12 @@ void add_quality_command(CLI::App& app);
 /// `sixdof precision --pair elephant [--question distance] [--budget 10min] [-o FILE.json]`: time and error of every
 /// algorithm at every resolution on the same configurations, with the frontiers (study/precision.h).
 void add_precision_command(CLI::App& app);
-/// `sixdof recommend --a A --b B --deadline 1ms [--metric gamma_F_deg]`: which algorithm and parameters keep the
-/// deadline on this pair with the least error, and what else there is; k_exit_defects if none does (results/choice.h).
+/// `sixdof recommend --a A --b B --deadline 1ms [--question respond]`: which algorithm and parameters keep the
+/// deadline on this pair with right answers, and what the others lack; k_exit_defects if none does (results/choice.h).
 void add_recommend_command(CLI::App& app);
+/// `sixdof hulls --a A --b B [--parts-a FILE ...]`: what convex hulls, or the parts of a decomposition, change in
+/// answers and times (study/stand_ins.h).
+void add_hulls_command(CLI::App& app);
 /// `sixdof equivalent [--scenario LIST] [--algorithm LIST] [--tau TIME]`: the resolutions of A and B with the least
 /// error of a response at a given mean time (study/equivalent.h).
 void add_equivalent_command(CLI::App& app);

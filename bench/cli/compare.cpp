@@ -1,6 +1,11 @@
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,7 +35,7 @@ before, after}, each side [least, largest], the message of an error, or null; co
 
 struct Arguments {
   std::string before, after;
-  bool json = false, fail_on_answers = false;
+  bool json = false, markdown = false, fail_on_answers = false;
 };
 
 void print_text(const Differences& found, const Arguments& arguments) {
@@ -44,10 +49,56 @@ void print_text(const Differences& found, const Arguments& arguments) {
   print_rows(arguments.before, found.only_before);
   print_rows(arguments.after, found.only_after);
   for (const Difference& each : found.values) {
-    fmt::print("{} {}: {} {} -> {}\n", each.kind == MetricKind::work ? "work    " : "ANSWER  ", each.row, each.counter,
-               text_before(each), text_after(each));
+    fmt::print("{} {}: {} {}\n", each.kind == MetricKind::work ? "work    " : "ANSWER  ", each.row, each.counter,
+               to_string(each));
   }
   fmt::print("answers: {} counters of {} rows changed\n", found.changed_answers(), found.common_rows);
+}
+
+/// What changed in the rows of one query and algorithm.
+struct Group {
+  std::string what, counter;
+  std::size_t rows = 0;
+  const Difference* largest = nullptr;
+
+  /// Relative to the larger side; infinite where a side has no value.
+  static double size(const Difference& each) {
+    if (!each.before || !each.after) return std::numeric_limits<double>::infinity();
+    const double before = each.before->largest, after = each.after->largest;
+    return std::abs(after - before) / std::max(std::abs(before), std::abs(after));
+  }
+};
+
+/// Changed answers by query, algorithm and counter, those in most rows first.
+std::vector<Group> groups_of(const Differences& found) {
+  std::vector<Group> groups;
+  for (const Difference& each : found.values) {
+    if (each.kind == MetricKind::work) continue;
+    const std::string what = each.row.substr(0, each.row.find('/', each.row.find('/') + 1));
+    auto group =
+        std::ranges::find_if(groups, [&](const Group& g) { return g.what == what && g.counter == each.counter; });
+    if (group == groups.end()) group = groups.insert(group, {what, each.counter, 0, nullptr});
+    ++group->rows;
+    if (group->largest == nullptr || Group::size(each) > Group::size(*group->largest)) group->largest = &each;
+  }
+  std::ranges::stable_sort(groups, std::ranges::greater(), &Group::rows);
+  return groups;
+}
+
+/// At most 20 lines.
+void print_markdown(const Differences& found) {
+  constexpr std::size_t k_most_groups = 12;
+  const std::vector<Group> groups = groups_of(found);
+  fmt::print("{} answers changed in {} common rows; {} rows only before, {} only after; {} versions differ.\n",
+             found.changed_answers(), found.common_rows, found.only_before.size(), found.only_after.size(),
+             found.versions.size());
+  if (groups.empty()) return;
+  fmt::print("\n| rows | counter | how many | largest change | in |\n|---|---|---:|---|---|\n");
+  for (const Group& group : std::span(groups).first(std::min(groups.size(), k_most_groups))) {
+    fmt::print("| {} | {} | {} | {} | `{}` |\n", group.what, group.counter, group.rows, to_string(*group.largest),
+               group.largest->row);
+  }
+  if (groups.size() > k_most_groups) fmt::print("\nand {} more kinds of changes\n", groups.size() - k_most_groups);
 }
 
 Json side(const std::optional<results::Range>& range, const std::string& error) {
@@ -79,6 +130,8 @@ void run(const Arguments& arguments) {
   const Differences found = differences(results, row_groups(results), 0, 1);
   if (arguments.json) {
     fmt::print("{}\n", json_text(as_json(found)));
+  } else if (arguments.markdown) {
+    print_markdown(found);
   } else {
     print_text(found, arguments);
   }
@@ -96,7 +149,8 @@ void add_compare_command(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("before", arguments->before, "Result file (JSON)")->required()->type_name("BEFORE");
   command->add_option("after", arguments->after, "Result file of the same rows")->required()->type_name("AFTER");
-  command->add_flag("--json", arguments->json, "As JSON");
+  auto* const json = command->add_flag("--json", arguments->json, "As JSON");
+  command->add_flag("--markdown", arguments->markdown, "A summary of at most 20 lines, as Markdown")->excludes(json);
   command->add_flag("--fail-on-answers", arguments->fail_on_answers,
                     "Exit code 3 if an answer changed or a row is in one file only");
   command->callback([arguments] { run(*arguments); });

@@ -1,3 +1,5 @@
+#include "bench/cli/recommend.h"
+
 #include <algorithm>
 #include <chrono>
 #include <iterator>
@@ -10,41 +12,46 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
-#include <sixdof/results/choice.h>
 #include <sixdof/results/results.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
-#include "bench/cli/study_options.h"
 #include "bench/common/duration.h"
 #include "bench/common/json_text.h"
 #include "bench/common/progress_line.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/run_context.h"
-#include "bench/study/precision.h"
 #include "bench/study/study_pairs.h"
+#include "bench/study/verdict_sample.h"
 
 namespace sixdof::cli {
 namespace {
 
 using bench::QueryKind;
-using results::Candidate;
-using results::Choice;
-using study::PrecisionPoint;
-using study::PrecisionStudy;
 
-/// Enough for a p99.9.
+/// Enough that two late ones are less than 0.1 %.
 constexpr std::size_t k_queries = 2100;
 constexpr unsigned k_most_threads = 64;
 
-struct Options {
-  StudyOptions study{.budget = "3min"};
-  std::string deadline = "1ms";
-  std::string metric = "gamma_F_deg";
-  std::string order = "random";
-  unsigned threads = 1;
+constexpr const char* k_details =
+    R"(Asks every algorithm the same poses of the pair: apart, near contact (0.01 to 0.3 % of A's diagonal, apart and
+pushed in) and overlapping. Answers are compared with those of exact. Then every query is timed alone, once, as it
+comes: the deadline is kept if at most 0.1 % of the queries are late. Beside them stands how many waits of a loop that
+asks nothing were late on this machine; nothing is subtracted.
 
-  bool in_motion() const { return order == "motion"; }
-};
+An algorithm that gives one wrong yes/no is unsafe and is not taken. Right answers come before approximations. Of
+equally right algorithms the fastest is taken. Where too few poses could be judged, there is no verdict. "0 of 2,100
+wrong" means that with 95 % confidence at most 3 of 2,100 are (rule of three).
+
+Exit code 3 if nothing can be taken.
+
+Keys of --json: pair, order, deadline_ns; questions[] {question, metric, judged, missing (why there is no verdict, or
+null), candidates[] {standing, algorithm, settings, exact, METRIC, METRIC_low, METRIC_high, mean_ns, late, timed,
+idle_late, reason}, again}.)";
+
+/// The error that is to be small where the user names none.
+std::string default_metric(QueryKind question) {
+  return question == QueryKind::collide ? "mismatch" : question == QueryKind::distance ? "error_max" : "gamma_F_deg";
+}
 
 /// The question that has the metric among its errors. @throws BadArgument, which lists them
 QueryKind question_of(const std::string& metric) {
@@ -54,180 +61,228 @@ QueryKind question_of(const std::string& metric) {
     if (std::ranges::find(metrics, metric) != metrics.end()) return question;
     known.insert(known.end(), metrics.begin(), metrics.end() - 1);  // all end with "failed"
   }
-  known.emplace_back("failed");
   require_metric("--metric", metric, known);
   return QueryKind::respond;
 }
 
-std::string name_of(const PrecisionPoint& point) {
-  const auto& assignments = point.sweep.assignments;
-  return fmt::format("{}{}{}", point.algorithm->traits().name, assignments.empty() ? "" : " ",
-                     fmt::join(assignments, " "));
-}
-
-std::string error_text(const Candidate& candidate, const PrecisionPoint& point, const std::string& metric) {
-  std::string text = fmt::format("{} {:.3g}", metric, candidate.error.value);
-  if (candidate.error.low < candidate.error.high) {
-    text += fmt::format(" [{:.3g}, {:.3g}]", candidate.error.low, candidate.error.high);
+/// What is asked, with the error of each. @throws BadArgument for a metric of another question
+std::vector<std::pair<QueryKind, std::string>> asked(const RecommendOptions& options) {
+  if (!options.metric.empty()) {
+    const QueryKind question = question_of(options.metric);
+    if (options.question != "all" && options.question != words_of(question)) {
+      throw BadArgument(fmt::format("--metric {}: is an error of {}, not of {}", options.metric, words_of(question),
+                                    options.question));
+    }
+    return {{question, options.metric}};
   }
-  if (metric != "gamma_F_deg") return text;
-  const auto p95 = point.metric("gamma_F_p95_deg"), most = point.metric("gamma_max_F_deg");
-  if (p95 && most) text += fmt::format(", 95 % below {:.3g}, largest {:.3g}", p95->value, most->value);
-  return text;
-}
-
-std::string line(const Candidate& candidate, const Choice& choice, const PrecisionStudy& study) {
-  const PrecisionPoint& point = study.points()[candidate.place];
-  return fmt::format("{}: {} {} ({} in one pass), {}", name_of(point), choice.tail,
-                     duration_text(1e-9 * candidate.tail_ns), duration_text(1e-9 * candidate.tail_once_ns),
-                     error_text(candidate, point, study.plan().error));
-}
-
-/// The command that measures the recommended point again as rows of sixdof-bench.
-std::string command_again(const PrecisionPoint& point, const Options& options, const CatalogueEntry& pair) {
-  const std::string& algorithm = point.algorithm->traits().name;
-  std::string text = "sixdof-bench";
-  if (!options.study.a.empty()) text += " --a " + options.study.a;
-  if (!options.study.b.empty()) text += " --b " + options.study.b;
-  for (const std::string& set : options.study.sets) text += " --no-manifest --set " + set;
-  for (const std::string& assignment : point.sweep.assignments) {
-    text += fmt::format(" -p {}:{}", algorithm, assignment);
-  }
-  return text + fmt::format(" --suite all --benchmark_filter='^{}/algorithm:{}/pair:{}/[^/]*{}$'",
-                            to_string(question_of(options.metric)), algorithm, pair.pair,
-                            options.in_motion() ? "/order:motion" : "");
-}
-
-nlohmann::ordered_json as_json(const Candidate& candidate, const PrecisionStudy& study) {
-  const PrecisionPoint& point = study.points()[candidate.place];
-  const std::string& metric = study.plan().error;
-  return {{"algorithm", point.algorithm->traits().name},
-          {"settings", point.sweep.settings.to_string()},
-          {"tail_ns", candidate.tail_ns},
-          {"tail_once_ns", candidate.tail_once_ns},
-          {metric, candidate.error.value},
-          {metric + "_low", candidate.error.low},
-          {metric + "_high", candidate.error.high}};
-}
-
-void print_text(const Options& options, double deadline_s, const Choice& found, const PrecisionStudy& study) {
-  const study::StudySample& sample = study.sample();
-  std::vector<std::string> buckets;
-  for (const BucketKey key : sample.buckets) buckets.push_back(key.name());
-  fmt::print("pair        {}: {} configurations of each algorithm, of {}\n", study.pair().pair, sample.poses.size(),
-             fmt::join(buckets, " "));
-  if (options.in_motion()) {
-    fmt::print("timed       {} motions from some of these, poses {} to {} of each\n",
-               sample.motions.poses.size() / sample.motions.period, sample.motions.lead + 1, sample.motions.period);
-  }
-  fmt::print("deadline    {}, for the {} of a query (the least of three times of each)\n", options.deadline,
-             found.tail);
-  if (found.best) {
-    fmt::print("take        {}\n", line(*found.best, found, study));
-    fmt::print("because     its {} is the smallest of all that keep the deadline; its {} is {:.0f} % of it\n",
-               options.metric, found.tail, 1e-7 * found.best->tail_ns / deadline_s);
-  } else {
-    fmt::print("take        none: no algorithm keeps this deadline\n");
-  }
-  for (const Candidate& slow : found.too_slow) {
-    fmt::print("too slow    {}\n", line(slow, found, study));
-  }
-  if (found.second) fmt::print("runner-up   {}\n", line(*found.second, found, study));
-  for (const study::PrecisionPoint& point : study.points()) {
-    const std::string name = name_of(point);
-    if (!point.left_out.empty()) fmt::print("left out    {}: {}\n", name, point.left_out);
-    if (point.measured() && point.faulty()) {
-      fmt::print("fault       {}: {}\n", name, results::to_string(point.faults(sample.asked())));
+  std::vector<std::pair<QueryKind, std::string>> all;
+  for (const QueryKind question : bench::k_query_kinds) {
+    if (options.question == "all" || options.question == words_of(question)) {
+      all.emplace_back(question, default_metric(question));
     }
   }
-  if (found.best)
-    fmt::print("again       {}\n", command_again(study.points()[found.best->place], options, study.pair()));
+  return all;
 }
 
-void print_json(const Options& options, double deadline_s, const Choice& found, const PrecisionStudy& study) {
-  nlohmann::ordered_json json = {{"pair", study.pair().pair},
-                                 {"order", options.order},
-                                 {"deadline_ns", 1e9 * deadline_s},
-                                 {"tail", found.tail},
-                                 {"metric", options.metric}};
-  json["best"] = found.best ? as_json(*found.best, study) : nlohmann::ordered_json();
-  json["second"] = found.second ? as_json(*found.second, study) : nlohmann::ordered_json();
-  json["too_slow"] = nlohmann::ordered_json::array();
-  for (const Candidate& slow : found.too_slow) json["too_slow"].push_back(as_json(slow, study));
-  if (found.best) json["again"] = command_again(study.points()[found.best->place], options, study.pair());
-  fmt::print("{}\n", json_text(json));
-}
-
-void run(const Options& options) {
-  Registry registry;
-  register_all_algorithms(registry, options.study.process);
-  const double deadline_s = parse_duration("--deadline", options.deadline);
-  study::PrecisionPlan plan{.question = question_of(options.metric), .error = options.metric};
-  plan.cost = "p99_least_ns";
-  plan.seed = options.study.seed;
-  const double budget_s = parse_duration("--budget", options.study.budget);
-  const auto start = std::chrono::steady_clock::now();
-  plan.single_queries = true;
-  plan.deadline_ns = 1e9 * deadline_s;
-  plan.rounds = 1;
-  plan.most_rounds = 1;
-  plan.algorithms = study_algorithms(registry, options.study.algorithms, plan.question);
-  plan.values = swept_values(options.study, plan.algorithms);
-  if (options.in_motion()) {
-    std::ranges::move(study::warm_starts(plan.algorithms, plan.values), std::back_inserter(plan.values));
-  }
-  std::ranges::move(study::thread_counts(plan.algorithms, plan.values, options.threads),
-                    std::back_inserter(plan.values));
-  if (options.study.pairs.size() + options.study.sets.size() > 1) throw BadArgument("one pair at a time");
-  study::StudyPairs pairs(
-      harness_options(options.study, k_queries,
-                      arguments_of("recommend", options.study) +
-                          fmt::format(" --deadline {} --metric {} --order {} --threads {}", options.deadline,
-                                      options.metric, options.order, options.threads)),
-      options.study.pairs);
-  const CatalogueEntry& pair = *pairs.pairs().front();
-  const auto started = bench::run_context(pairs.options(), registry, bench::parse_parameters({}, registry));
-  StatusLine status;
-  status.show("truth");
-  study::StudySample sample = study::draw_sample(pairs.cache(), pair, plan.question, pair.buckets, k_queries);
-  if (options.in_motion()) {
-    sample.motions = study::draw_motions(sample, pairs.cache().mesh(pair.a), pairs.cache().mesh(pair.b), plan.seed);
-  }
-  plan.budget_s = budget_s - std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  study::PrecisionStudy study(plan, pairs.cache(), pair, sample);
-  const auto write = [&](bool interrupted) {
-    if (options.study.output.empty()) return;
-    auto context = started;
-    for (const auto& [key, hash] : pairs.cache().hashes()) context[key] = hash;
-    if (interrupted) context["interrupted"] = "true";
-    results::write_rows(options.study.output, context, study.rows());
+/// `exact` and FCL first, so that no budget leaves them out.
+std::vector<const Algorithm*> in_order(std::vector<const Algorithm*> algorithms) {
+  const auto place = [](const Algorithm* algorithm) {
+    const std::string& name = algorithm->traits().name;
+    return name == "exact" ? 0 : name.starts_with("fcl-") ? 1 : 2;
   };
-  study.run([&](const std::string& what, std::size_t done,
-                std::size_t total) { status.show(fmt::format("{}, {} of {} points", what, done, total)); },
-            [&] { write(true); });
-  status.clear();
-  write(false);
-  const Choice found = results::choose(study.rows(), study.plan().error, 1e9 * deadline_s);
-  options.study.json ? print_json(options, deadline_s, found, study) : print_text(options, deadline_s, found, study);
-  if (!found.best) throw DefectsFound(fmt::format("no algorithm keeps a deadline of {}", options.deadline));
+  std::ranges::stable_sort(algorithms, {}, place);
+  return algorithms;
+}
+
+/// The defaults of swept parameters, for algorithms that promise right answers: their sweeps only loosen the promise.
+std::vector<study::SweptValues> exact_settings(const std::vector<const Algorithm*>& algorithms,
+                                               const std::vector<study::SweptValues>& values) {
+  std::vector<study::SweptValues> fixed;
+  for (const Algorithm* const algorithm : algorithms) {
+    const Traits& traits = algorithm->traits();
+    const bool chosen = std::ranges::any_of(values, [&](const auto& each) { return each.algorithm == traits.name; });
+    if (traits.approximates || chosen) continue;
+    for (const Parameter& parameter : traits.parameters) {
+      if (!parameter.sweep.empty()) fixed.push_back({traits.name, parameter.name, {parameter.default_value}});
+    }
+  }
+  return fixed;
+}
+
+/// One pair with its algorithms, asked one question after the other.
+class Recommendation {
+ public:
+  explicit Recommendation(const RecommendOptions& options)
+      : options_(options),
+        budget_s_(parse_duration("--budget", options.study.budget)),
+        deadline_s_(parse_duration("--deadline", options.deadline)),
+        questions_(asked(options)) {
+    register_all_algorithms(registry_, options.study.process);
+    if (options.study.pairs.size() + options.study.sets.size() > 1) throw BadArgument("one pair at a time");
+    pairs_ = std::make_unique<study::StudyPairs>(harness_options(options.study, k_queries, arguments()),
+                                                 options.study.pairs);
+    context_ = bench::run_context(pairs_->options(), registry_, bench::parse_parameters({}, registry_));
+  }
+
+  std::vector<Verdict> run() {
+    std::vector<Verdict> verdicts;
+    for (std::size_t i = 0; i < questions_.size(); ++i) {
+      const double share_s = left_s() / static_cast<double>(questions_.size() - i);
+      verdicts.push_back(verdict_on(questions_[i].first, questions_[i].second, share_s));
+      rows_.insert(rows_.end(), verdicts.back().rows.begin(), verdicts.back().rows.end());
+    }
+    write(rows_, false);
+    return verdicts;
+  }
+
+  const CatalogueEntry& pair() const { return *pairs_->pairs().front(); }
+  double deadline_s() const { return deadline_s_; }
+
+ private:
+  std::string arguments() const {
+    return arguments_of("recommend", options_.study) +
+           fmt::format(" --question {} --deadline {} {}--order {} --threads {}", options_.question, options_.deadline,
+                       options_.metric.empty() ? "" : "--metric " + options_.metric + " ", options_.order,
+                       options_.threads);
+  }
+
+  double left_s() const {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+    return budget_s_ - spent.count();
+  }
+
+  /// Those of --algorithms that answer the question; where a single question is asked, all of them.
+  std::vector<std::string> names_that_answer(QueryKind question) const {
+    std::vector<std::string> names = options_.study.algorithms;
+    if (questions_.size() == 1) return names;
+    std::erase_if(names, [&](const std::string& name) {
+      return !bench::answers(registry_.find(name).traits().answers, question);
+    });
+    return names;
+  }
+
+  /// Whether --params of an algorithm concern a question; those of one that does not answer it do not.
+  bool concerns(const std::string& params, QueryKind question) const {
+    const std::string name = study::parse_swept_values(params).algorithm;
+    return questions_.size() == 1 || bench::answers(registry_.find(name).traits().answers, question);
+  }
+
+  study::PrecisionPlan plan_of(QueryKind question, const std::string& metric, double budget_s) {
+    study::PrecisionPlan plan{.question = question, .error = metric};
+    plan.cost = "p99_least_ns";
+    plan.seed = options_.study.seed;
+    plan.single_queries = true;
+    plan.deadline_ns = 1e9 * deadline_s_;
+    plan.rounds = 1;
+    plan.most_rounds = 1;
+    plan.budget_s = budget_s;
+    plan.algorithms = in_order(study_algorithms(registry_, names_that_answer(question), question));
+    StudyOptions study = options_.study;
+    std::erase_if(study.values, [&](const std::string& text) { return !concerns(text, question); });
+    plan.values = swept_values(study, plan.algorithms);
+    std::ranges::move(exact_settings(plan.algorithms, plan.values), std::back_inserter(plan.values));
+    if (options_.in_motion()) {
+      std::ranges::move(study::warm_starts(plan.algorithms, plan.values), std::back_inserter(plan.values));
+    }
+    std::ranges::move(study::thread_counts(plan.algorithms, plan.values, options_.threads),
+                      std::back_inserter(plan.values));
+    return plan;
+  }
+
+  Verdict verdict_on(QueryKind question, const std::string& metric, double share_s) {
+    const auto begun = std::chrono::steady_clock::now();
+    Verdict verdict{.question = question, .metric = metric};
+    if (!options_.study.algorithms.empty() && names_that_answer(question).empty()) {
+      verdict.choice.missing = "none of the chosen algorithms answers it";
+      return verdict;
+    }
+    StatusLine status;
+    status.show(fmt::format("{}: truth", words_of(question)));
+    study::StudySample sample;
+    try {
+      sample = study::draw_verdict_sample(pairs_->cache(), pair(), question, k_queries);
+    } catch (const BadMesh& e) {
+      verdict.choice.missing = e.what();
+      return verdict;
+    } catch (const BadArgument& e) {
+      verdict.choice.missing = e.what();
+      return verdict;
+    }
+    if (options_.in_motion()) {
+      sample.motions = study::draw_motions(sample, pairs_->cache().mesh(pair().a), pairs_->cache().mesh(pair().b),
+                                           options_.study.seed);
+    }
+    verdict.poses = study::poses_text(sample);
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begun;
+    study::PrecisionStudy study(plan_of(question, metric, share_s - spent.count()), pairs_->cache(), pair(), sample);
+    study.run(
+        [&](const std::string& what, std::size_t done, std::size_t total) {
+          status.show(fmt::format("{}: {}, {} of {} settings", words_of(question), what, done, total));
+        },
+        [&] {
+          std::vector<results::Row> so_far = rows_;
+          std::ranges::move(study.rows(), std::back_inserter(so_far));
+          write(so_far, true);
+        });
+    status.clear();
+    verdict.rows = study.rows();
+    for (const study::PrecisionPoint& point : study.points()) verdict.assignments.push_back(point.sweep.assignments);
+    verdict.choice = results::choose(verdict.rows, std::string(to_string(question)), metric);
+    return verdict;
+  }
+
+  void write(const std::vector<results::Row>& rows, bool interrupted) {
+    if (options_.study.output.empty()) return;
+    auto context = context_;
+    for (const auto& [key, hash] : pairs_->cache().hashes()) context[key] = hash;
+    if (interrupted) context["interrupted"] = "true";
+    results::write_rows(options_.study.output, context, rows);
+  }
+
+  const RecommendOptions& options_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const double budget_s_, deadline_s_;
+  const std::vector<std::pair<QueryKind, std::string>> questions_;
+  Registry registry_;
+  std::unique_ptr<study::StudyPairs> pairs_;
+  decltype(bench::run_context(std::declval<bench::Options>(), registry_, {})) context_;
+  std::vector<results::Row> rows_;
+};
+
+void run(const RecommendOptions& options) {
+  Recommendation recommendation(options);
+  const std::vector<Verdict> verdicts = recommendation.run();
+  if (options.study.json) {
+    print_json(options, recommendation.deadline_s(), recommendation.pair(), verdicts);
+  } else {
+    print_text(options, recommendation.deadline_s(), recommendation.pair(), verdicts);
+  }
+  if (std::ranges::none_of(verdicts, [](const Verdict& verdict) { return verdict.choice.taken() != nullptr; })) {
+    throw DefectsFound(fmt::format("no algorithm can be taken for a deadline of {}", options.deadline));
+  }
 }
 
 }  // namespace
 
 void add_recommend_command(CLI::App& app) {
   auto* const command = app.add_subcommand(
-      "recommend", "Say which algorithm, with which parameters, keeps a deadline with the least error");
-  const auto options = std::make_shared<Options>();
+      "recommend", "Say which algorithm, with which parameters, keeps a deadline with right answers");
+  const auto options = std::make_shared<RecommendOptions>();
   add_study_options(*command, options->study);
   command->add_option("--deadline", options->deadline, "Longest time of a query: 1ms, 200us")
       ->type_name("TIME")
       ->capture_default_str();
   command
-      ->add_option("--metric", options->metric,
-                   "Error to minimise: gamma_F_deg (angle of the force, degrees), magnitude_error_F, error_rms "
-                   "(distance, diagonals of A), ...")
-      ->type_name("METRIC")
+      ->add_option("--question", options->question,
+                   "What is asked: yes-no (do the bodies touch?), distance, respond (force and torque), or all three")
+      ->check(CLI::IsMember({"yes-no", "distance", "respond", "all"}))
+      ->type_name("QUESTION")
       ->capture_default_str();
+  command
+      ->add_option("--metric", options->metric,
+                   "Error to minimise instead of the usual one of its question: gamma_F_deg (mean angle of the force, "
+                   "degrees), magnitude_error_F, error_rms (distance, diagonals of A), ...")
+      ->type_name("METRIC");
   command
       ->add_option(
           "--order", options->order,
@@ -246,7 +301,8 @@ void add_recommend_command(CLI::App& app) {
   command->callback([options] { run(*options); });
   add_examples(
       *command, "sixdof recommend --a cone-1k --b torus-1k --deadline 1ms --algorithms exact,vps --budget 30s",
-      "sixdof recommend --a cone-1k --b torus-1k --order motion --metric error_rms --algorithms exact,fcl-rss");
+      "sixdof recommend --a cone-1k --b torus-1k --order motion --question distance --algorithms exact,fcl-rss",
+      k_details);
 }
 
 }  // namespace sixdof::cli

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/geometry/save.h>
 #include <sixdof/models/model_catalogue.h>
+#include <sixdof/repair/advice.h>
 #include <sixdof/repair/repair.h>
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
@@ -111,6 +113,23 @@ void print_text(const Mesh& before, const RepairedMesh& repaired) {
   if (!repaired.converged) fmt::print("{:<8} repairing the result again may change more\n", "");
 }
 
+/// The option that an attempt has and `tried` has not, as it is typed.
+std::string option_text(const RepairOptions& attempt, const RepairOptions& tried) {
+  std::string text;
+  if (attempt.weld != tried.weld) text += fmt::format(" --weld {:g}", attempt.weld);
+  if (attempt.max_hole != tried.max_hole) text += fmt::format(" --max-hole {}", attempt.max_hole);
+  return text.empty() ? " as it is" : text;
+}
+
+void print_advice(const Mesh& mesh, const RepairOptions& tried) {
+  const std::vector<RepairAttempt> attempts = try_other_repairs(mesh, tried);
+  for (const RepairAttempt& each : attempts) {
+    fmt::print("{:<8}{}: {}\n", "tried", option_text(each.options, tried),
+               each.solid ? "a solid" : fmt::format("no solid, {} open edges", each.border_edges));
+  }
+  if (attempts.back().solid) fmt::print("{:<8} add{}\n", "advice", option_text(attempts.back().options, tried));
+}
+
 void repair(const Arguments& arguments) {
   std::error_code none;
   if (std::filesystem::equivalent(arguments.input, arguments.output, none)) {
@@ -121,6 +140,7 @@ void repair(const Arguments& arguments) {
   save_mesh(repaired.mesh, arguments.output);
   arguments.json ? print_json(mesh, repaired) : print_text(mesh, repaired);
   if (!repaired.mesh.solid()) {
+    if (!arguments.json) print_advice(mesh, arguments.options);
     throw DefectsFound(
         fmt::format("{}: written, but still no solid: {}", arguments.output, repaired.mesh.why_not_solid()));
   }

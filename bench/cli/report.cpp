@@ -25,11 +25,15 @@ constexpr const char* k_details =
 All go into one page, which opens from disk without a network. Files with the same rows are compared with the first
 one: answers, then times, each change with its interval. Files of --series (sixdof quality -o) are drawn as signals
 and time-frequency diagrams. A section without data says which command makes them. --choose selects what the figures
-show at first, by a column of the tables and one of its values: --choose pair=bunny --choose statistic=longest.)";
+show at first, by a column of the tables and one of its values: --choose pair=bunny --choose statistic=longest.
+Figures for a paper: --pdf figures --width 84mm --font "Times New Roman" --no-title. Texts keep their size at any width,
+and a PDF has its fonts. --tikz writes a document for LaTeX and PGFPlots for each figure of lines or points.)";
 
 struct Arguments {
   std::vector<std::string> files, series, choices;
-  std::string output, csv, markdown, svg, pdf;
+  std::string output, csv, markdown, svg, pdf, tikz;
+  report::FigureStyle style;
+  bool has_no_title = false;
 };
 
 /// @throws BadFile
@@ -49,9 +53,20 @@ void write_tables(const report::Report& report, const std::filesystem::path& fol
 
 void run(const Arguments& arguments) {
   if (arguments.files.empty() && arguments.series.empty()) throw BadArgument("a result file or --series is needed");
-  const std::array outputs{&arguments.output, &arguments.csv, &arguments.markdown, &arguments.svg, &arguments.pdf};
+  const std::array outputs{&arguments.output, &arguments.csv, &arguments.markdown,
+                           &arguments.svg,    &arguments.pdf, &arguments.tikz};
   if (std::ranges::all_of(outputs, &std::string::empty, [](const std::string* output) { return *output; })) {
-    throw BadArgument("-o, --csv, --markdown, --svg or --pdf is needed");
+    throw BadArgument("-o, --csv, --markdown, --svg, --pdf or --tikz is needed");
+  }
+  const std::array<std::pair<const std::string*, report::FigureFormat>, 3> figures{
+      {{&arguments.svg, report::FigureFormat::svg},
+       {&arguments.pdf, report::FigureFormat::pdf},
+       {&arguments.tikz, report::FigureFormat::tikz}}};
+  const bool has_figures = std::ranges::any_of(figures, [](const auto& figure) { return !figure.first->empty(); });
+  report::FigureStyle style = arguments.style;
+  style.has_title = !arguments.has_no_title;
+  if (!has_figures && (!style.width.empty() || !style.font.empty() || !style.has_title)) {
+    throw BadArgument("--width, --font and --no-title are about --svg, --pdf and --tikz");
   }
   results::Results results;
   for (const std::string& file : arguments.files) results::read_results(file, results);
@@ -67,11 +82,12 @@ void run(const Arguments& arguments) {
   }
   if (!arguments.csv.empty()) write_tables(report, arguments.csv, ".csv", report::as_csv);
   if (!arguments.markdown.empty()) write_tables(report, arguments.markdown, ".md", report::as_markdown);
-  if (arguments.output.empty() && arguments.svg.empty() && arguments.pdf.empty()) return;
+  if (arguments.output.empty() && !has_figures) return;
   const report::PageFiles files = report::read_page_files(data_folder() / "report");
   if (!arguments.output.empty()) write_file_atomically(arguments.output, report::page_html(report, files));
-  if (!arguments.svg.empty()) write_figures(report, files, arguments.svg, report::FigureFormat::svg);
-  if (!arguments.pdf.empty()) write_figures(report, files, arguments.pdf, report::FigureFormat::pdf);
+  for (const auto& [folder, format] : figures) {
+    if (!folder->empty()) write_figures(report, files, *folder, format, style);
+  }
 }
 
 }  // namespace
@@ -92,6 +108,14 @@ void add_report_command(CLI::App& app) {
       ->add_option("--pdf", arguments->pdf,
                    "Write every figure to this folder, as PDF (needs Node.js and rsvg-convert)")
       ->type_name("FOLDER");
+  command
+      ->add_option("--tikz", arguments->tikz,
+                   "Write every figure of lines or points to this folder, for LaTeX with PGFPlots (needs Node.js)")
+      ->type_name("FOLDER");
+  command->add_option("--width", arguments->style.width, "Width of figures in files: 84mm, 3.3in or 320px")
+      ->type_name("WIDTH");
+  command->add_option("--font", arguments->style.font, "Font family of figures in files")->type_name("FAMILY");
+  command->add_flag("--no-title", arguments->has_no_title, "Figures in files have no title");
   command->add_option("--choose", arguments->choices, "What figures show at first (below); may be repeated")
       ->type_name("COLUMN=VALUE")
       ->allow_extra_args(false);

@@ -20,6 +20,7 @@
 #include "bench/common/duration.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
+#include "bench/common/own_command.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/scene_algorithms.h"
 #include "bench/common/shell_text.h"
@@ -124,8 +125,9 @@ std::pair<std::size_t, std::size_t> parse_frames(const std::string& text, const 
 /// The shortest command that shows a wrong answer again: of the two bodies in that frame alone, or of all up to it.
 std::string reproduction(const Part& part, const PlayOptions& options, Question question,
                          const SceneAlgorithm& algorithm, const scene::WrongPair& wrong) {
-  std::string command = fmt::format("sixdof scene play {} --question {} --algorithms {}", shell_quoted(options.file),
-                                    to_string(question), algorithm.traits().name);
+  std::string command =
+      own_command(fmt::format("sixdof scene play {} --question {} --algorithms {}", shell_quoted(options.file),
+                              to_string(question), algorithm.traits().name));
   const std::vector<std::uint32_t> bodies{wrong.pair.a, wrong.pair.b};
   const Scene two = scene::excerpt(part.scene, bodies, wrong.frame, wrong.frame);
   const SceneAnswers truth = scene::truth_of(two, question);

@@ -34,6 +34,7 @@ struct Options {
   std::string effort = "quick", output, cases = "stress-cases";
   std::uint64_t seed = 1;
   double timeout_s = 60.0, memory_gb = 4.0;
+  std::vector<std::string> external, fail_on;
   bool at_defaults = false, json = false;
 };
 
@@ -60,7 +61,8 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
       .seed = options.seed,
       .timeout_s = options.timeout_s,
       .memory_bytes = 1e9 * options.memory_gb,
-      .processes = std::max(1u, std::thread::hardware_concurrency())};
+      .processes = std::max(1u, std::thread::hardware_concurrency()),
+      .external = options.external};
   for (const std::string& name : options.algorithms) {
     const Algorithm& algorithm = registry.find(name);
     if (algorithm.traits().body != Body::mesh) {
@@ -93,8 +95,9 @@ void print_red(const study::StressCell& cell, const study::StressLine& line) {
 
 void run_stress_command(const Options& options) {
   Registry registry;
-  register_all_algorithms(registry);
+  register_all_algorithms(registry, {.external = options.external});
   add_generators(registry);
+  for (const std::string& name : options.fail_on) static_cast<void>(registry.find(name));
   const study::StressPlan plan = plan_of(options, registry);
   // Bodies are new for every seed: in the user's cache they would stay for good. Here they are shared by algorithms and
   // by the shots of a case.
@@ -111,7 +114,8 @@ void run_stress_command(const Options& options) {
   for (const study::StressCell& cell : cells) lines.push_back(study::stress_line(cell, options.cases));
   const nlohmann::ordered_json json = study::stress_json(cells, lines, options.seed);
   if (!options.output.empty()) write_file_atomically(options.output, json_text(json) + "\n");
-  const std::set<std::string> own = own_algorithms();
+  std::set<std::string> own = own_algorithms();
+  own.insert(options.fail_on.begin(), options.fail_on.end());
   std::string defects;
   if (options.json) fmt::print("{}\n", json_text(json));
   if (!options.json) fmt::print("{}", study::stress_matrix(cells));
@@ -121,18 +125,19 @@ void run_stress_command(const Options& options) {
     if (own.contains(cells[i].algorithm->traits().name))
       defects += fmt::format("{}{} on {}", defects.empty() ? "" : ", ", cells[i].name(), cells[i].family->name);
   }
-  if (!defects.empty()) throw DefectsFound("algorithms of this project fail: " + defects);
+  if (!defects.empty()) throw DefectsFound("these fail: " + defects);
 }
 
 }  // namespace
 
 std::optional<int> run_stress_cell_if_asked(int argc, const char* const* argv) {
   Registry registry;
-  return study::run_stress_cell_if_asked(argc, argv, [&](const std::string& name) -> const Algorithm& {
-    register_all_algorithms(registry);
-    add_generators(registry);
-    return registry.find(name);
-  });
+  return study::run_stress_cell_if_asked(
+      argc, argv, [&](const std::string& name, const std::vector<std::string>& external) -> const Algorithm& {
+        register_all_algorithms(registry, {.external = external});
+        add_generators(registry);
+        return registry.find(name);
+      });
 }
 
 void add_stress_command(CLI::App& app) {
@@ -160,15 +165,10 @@ void add_stress_command(CLI::App& app) {
       ->check(CLI::IsMember({"quick", "full"}))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the cases and searches")->type_name("N")->capture_default_str();
-  command
-      ->add_option("--cases", options->cases,
-                   "Folder for the meshes that the printed commands read, and for prepared structures unless "
-                   "SIXDOF_CACHE is set")
+  command->add_option("--cases", options->cases, "Folder for the meshes and structures of the cases")
       ->type_name("FOLDER")
       ->capture_default_str();
-  command
-      ->add_option("--query-timeout", options->timeout_s,
-                   "Longest time of one query or one preparation, in seconds; a process that takes longer is ended")
+  command->add_option("--query-timeout", options->timeout_s, "Limit of a query and of a preparation")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -180,6 +180,15 @@ void add_stress_command(CLI::App& app) {
       ->add_option("-o,--output", options->output,
                    "Write the result of each algorithm on each family to this file (JSON)")
       ->type_name("FILE");
+  command
+      ->add_option("--external", options->external,
+                   "A program that answers the protocol (lib/sixdof/process/README.md)")
+      ->type_name("NAME=COMMAND")
+      ->allow_extra_args(false);
+  command->add_option("--fail-on", options->fail_on, "Exit code 3 if one of these fails, too")
+      ->type_name("ALGORITHM")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command->add_flag("--at-defaults", options->at_defaults, "Also ask approximations at their defaults; takes hours");
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { run_stress_command(*options); });

@@ -8,6 +8,8 @@
 
 #include <sixdof/base/error.h>
 
+#include "bench/common/shell_text.h"
+
 namespace sixdof::cli {
 
 void add_study_options(CLI::App& command, StudyOptions& options) {
@@ -104,11 +106,12 @@ void require_metric(const std::string& option, const std::string& name, const st
 std::string arguments_of(const std::string& command, const StudyOptions& options) {
   std::string text = command;
   if (!options.pairs.empty()) text += fmt::format(" --pair {}", fmt::join(options.pairs, ","));
-  for (const std::string& set : options.sets) text += " --set " + set;
-  if (!options.a.empty()) text += " --a " + options.a;
-  if (!options.b.empty()) text += " --b " + options.b;
+  for (const std::string& set : options.sets) text += " --set " + shell_quoted(set);
+  if (!options.a.empty()) text += " --a " + shell_quoted(options.a);
+  if (!options.b.empty()) text += " --b " + shell_quoted(options.b);
   if (!options.algorithms.empty()) text += fmt::format(" --algorithms {}", fmt::join(options.algorithms, ","));
-  for (const std::string& values : options.values) text += " --params " + values;
+  for (const std::string& values : options.values) text += " --params " + shell_quoted(values);
+  for (const std::string& external : options.process.external) text += " --external " + shell_quoted(external);
   return text + fmt::format(" --seed {} --budget {}", options.seed, options.budget);
 }
 

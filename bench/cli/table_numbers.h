@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <sixdof/configuration/bucket.h>
+#include <sixdof/results/fault.h>
 
-/// How `sixdof table` writes numbers.
+/// How `sixdof table` writes numbers, and sums of faults.
 
 namespace sixdof::cli {
 
@@ -31,5 +34,16 @@ inline std::string as_small(double value) { return value == 0.0 ? "0" : fmt::for
 inline std::string as_count(double value) { return fmt::format("{:.0f}", value); }
 
 inline std::string bucket_text(BucketKey bucket) { return bucket.percent_text() + " %"; }
+
+/// Adds the counts of a fault to those with equal words.
+inline void add_fault(std::vector<results::Fault>& sums, const results::Fault& fault) {
+  const auto found = std::ranges::find(sums, fault.what, &results::Fault::what);
+  if (found == sums.end()) {
+    sums.push_back(fault);
+  } else {
+    found->count += fault.count;
+    found->of += fault.of;
+  }
+}
 
 }  // namespace sixdof::cli

@@ -54,13 +54,7 @@ std::vector<std::string> fault_texts(const OverviewLine& line) {
       for (const Fault& fault : group->faults) {
         // How far distances of approximations are off says more than how many.
         if (line.approximates && std::string_view(query) == "distance" && fault.counter == "mismatch") continue;
-        const auto found = std::ranges::find(sums, fault.what, &Fault::what);
-        if (found == sums.end()) {
-          sums.push_back(fault);
-        } else {
-          found->count += fault.count;
-          found->of += fault.of;
-        }
+        add_fault(sums, fault);
       }
     }
     if (!sums.empty()) texts.push_back(fmt::format("{}: {}", words, results::to_string(sums)));

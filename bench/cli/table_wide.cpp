@@ -92,15 +92,7 @@ std::vector<ErrorColumn> error_columns(const std::string& query) {
 std::string faults_cell(const WideLine& line) {
   std::vector<Fault> sums;
   for (const auto& [bucket, ranked] : line.rows) {
-    for (const Fault& fault : ranked->group->faults) {
-      const auto found = std::ranges::find(sums, fault.what, &Fault::what);
-      if (found == sums.end()) {
-        sums.push_back(fault);
-      } else {
-        found->count += fault.count;
-        found->of += fault.of;
-      }
-    }
+    for (const Fault& fault : ranked->group->faults) add_fault(sums, fault);
   }
   return results::to_string(sums);
 }

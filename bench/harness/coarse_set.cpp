@@ -1,5 +1,6 @@
 #include "bench/harness/coarse_set.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -33,17 +34,28 @@ constexpr const char* k_volume_grid = "so3:64:16";
 constexpr const char* k_large_volume_grid = "so3:32:8";
 constexpr std::size_t k_large_triangles = 400'000;  ///< Of both.
 constexpr double k_distances[] = {0, 1, 5, 10, 20};
-constexpr double k_volumes[] = {1, 5, 10};
+constexpr double k_volumes[] = {1, 5, 10};  ///< In percent of the smaller body.
 
 const char* volume_grid(const Mesh& a, const Mesh& b) {
   return a.triangles().size() + b.triangles().size() > k_large_triangles ? k_large_volume_grid : k_volume_grid;
 }
 
+bool are_solids(const Mesh& a, const Mesh& b) { return a.solid() && b.solid(); }
+
+/// The volumes in percent of A, in which buckets are named, with six significant digits.
+std::vector<double> volume_percents(const Mesh& a, const Mesh& b) {
+  std::vector<double> percents;
+  const double smaller = std::min(1.0, b.volume() / a.volume());
+  for (const double percent : k_volumes) percents.push_back(std::stod(fmt::format("{:.6g}", percent * smaller)));
+  return percents;
+}
+
 /// Everything that the content of the set depends on.
 std::string cache_key(const DistanceGenerator& generator, const Mesh& a, const Mesh& b) {
-  return fmt::format("sixdof {}, {} {}, {} with {}, distances {} on {}, volumes {} on {}", SIXDOF_VERSION,
-                     generator.oracle_name(), generator.oracle_version(), a.hash(), b.hash(),
-                     fmt::join(k_distances, ","), k_distance_grid, fmt::join(k_volumes, ","), volume_grid(a, b));
+  return fmt::format(
+      "sixdof {}, {} {}, {} with {}, distances {} on {}, volumes {} on {}", SIXDOF_VERSION, generator.oracle_name(),
+      generator.oracle_version(), a.hash(), b.hash(), fmt::join(k_distances, ","), k_distance_grid,
+      are_solids(a, b) ? fmt::format("{}", fmt::join(volume_percents(a, b), ",")) : "none", volume_grid(a, b));
 }
 
 /// A new folder that nobody else can read or write.
@@ -99,7 +111,7 @@ void make(const fs::path& file, const DistanceGenerator& generator, const Mesh& 
   sweep(BucketKind::distance, generate_distances, k_distances);
   if (description.volume_grid) {
     try {
-      sweep(BucketKind::volume, generate_volumes, k_volumes);
+      sweep(BucketKind::volume, generate_volumes, volume_percents(a, b));
     } catch (const Interrupted&) {
       throw;
     } catch (const Error& e) {  // e.g. of surfaces that intersect themselves
@@ -114,8 +126,8 @@ void make(const fs::path& file, const DistanceGenerator& generator, const Mesh& 
 std::vector<BucketKey> CoarseSet::buckets(const Mesh& a, const Mesh& b) {
   std::vector<BucketKey> keys;
   for (const double percent : k_distances) keys.push_back({BucketKind::distance, percent});
-  if (!a.solid() || !b.solid()) return keys;
-  for (const double percent : k_volumes) keys.push_back({BucketKind::volume, percent});
+  if (!are_solids(a, b)) return keys;
+  for (const double percent : volume_percents(a, b)) keys.push_back({BucketKind::volume, percent});
   return keys;
 }
 

@@ -15,7 +15,8 @@ namespace sixdof::bench {
 /// hashes of the meshes and the versions of what makes it; without a cache it is a temporary file.
 class CoarseSet {
  public:
-  /// Distances of 0, 1, 5, 10 and 20 % and, of two solids, volumes of 1, 5 and 10 %.
+  /// Distances of 0, 1, 5, 10 and 20 % and, of two solids, volumes of 1, 5 and 10 % of the smaller one, which the keys
+  /// give in percent of A.
   static std::vector<BucketKey> buckets(const Mesh& a, const Mesh& b);
 
   /// Finds the set in the cache or makes it, on all cores. On stderr: a progress line, one line that says where the set

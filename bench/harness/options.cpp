@@ -202,6 +202,8 @@ void add_row_options(CLI::App& app, Options& options, CommandLine& line) {
           ->check(CLI::NonNegativeNumber)
           ->capture_default_str();
   app.add_option("--seed", options.seed, "Seed of samples and orders")->type_name("N")->capture_default_str();
+  app.add_flag("--fail-on-wrong", options.fail_on_wrong,
+               "Exit code 3 if an answer is missing, or is wrong though the algorithm does not approximate");
   app.add_flag("--stats", options.stats, "Print on stderr how many sets, buckets, meshes and structures were used");
   add_process_options(app, options.process);
 }

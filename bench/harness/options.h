@@ -37,8 +37,12 @@ struct Options {
   std::optional<ResultFormat> format;  ///< Of standard output; none for the console's table.
   std::string arguments;               ///< The command line, but for the result file, as a shell takes it.
   std::string benchmark_flags;         ///< Those of Google Benchmark's flags that change how a row is measured.
+  bool fail_on_wrong = false;          ///< Exit code 3 for wrong or missing answers.
   bool list_only = false;
   ProcessOptions process;
+
+  /// The words of the command line on which it depends what a row asks and whom: meshes, sets, parameters, programs.
+  std::string reproduction_words() const;
 
   /// Whether a coarse set of the meshes is to be made (coarse_set.h), the only one of the run.
   bool own_pair() const { return !a.empty() && sets.empty(); }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/process/remote_algorithm.h>
+#include "bench/common/own_command.h"
 #include "bench/common/shell_text.h"
 
 namespace sixdof::bench {
@@ -23,15 +24,20 @@ std::vector<std::string> assignments(const Settings& settings) {
 
 std::string query_command(const std::string& a, const std::string& b, const Algorithm& algorithm,
                           const Settings& settings) {
-  const auto* const remote = dynamic_cast<const RemoteAlgorithm*>(&algorithm);
-  if (remote != nullptr && remote->local() == nullptr) return {};
   std::string command = fmt::format("sixdof query --a {} --b {} --algorithm {}", shell_quoted(a), shell_quoted(b),
                                     algorithm.traits().name);
   const std::vector<std::string> chosen = assignments(settings), defaults = assignments(algorithm.settings());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (chosen[i] != defaults[i]) command += " -p " + shell_quoted(chosen[i]);
   }
-  return command + (is_isolated(algorithm) ? " --isolate" : "");
+  const std::string external = external_option(algorithm);
+  return own_command(command + external + (external.empty() && is_isolated(algorithm) ? " --isolate" : ""));
+}
+
+std::string external_option(const Algorithm& algorithm) {
+  const auto* const remote = dynamic_cast<const RemoteAlgorithm*>(&algorithm);
+  if (remote == nullptr || remote->command_line().empty()) return {};
+  return " --external " + shell_quoted(algorithm.traits().name + "=" + remote->command_line());
 }
 
 }  // namespace sixdof::bench

@@ -12,6 +12,8 @@
 #include <sixdof/base/visible_text.h>
 #include <sixdof/process/remote_algorithm.h>
 #include "bench/common/build_info.h"
+#include "bench/common/own_command.h"
+#include "bench/common/shell_text.h"
 #include "bench/harness/timing.h"
 
 namespace sixdof::bench {
@@ -56,6 +58,22 @@ std::string differences(const Json& before, const Json& now, const std::set<std:
 
 }  // namespace
 
+std::string Options::reproduction_words() const {
+  std::string words;
+  const auto add = [&](const std::string& option, const std::string& value) {
+    words += fmt::format("{}{} {}", words.empty() ? "" : " ", option, shell_quoted(value));
+  };
+  if (!a.empty()) add("--a", a);
+  if (!b.empty()) add("--b", b);
+  if (!sets.empty() && manifest.empty()) words += words.empty() ? "--no-manifest" : " --no-manifest";
+  for (const auto& set : sets) add("--set", set.string());
+  for (const auto& mesh : meshes) add("--mesh", mesh.string());
+  for (const std::string& parameter : parameters) add("-p", parameter);
+  for (const std::string& external : process.external) add("--external", external);
+  if (own_pair()) words += " --suite all";
+  return words;
+}
+
 Json run_context(const Options& options, const Registry& registry, const std::map<std::string, Settings>& settings) {
   Json context = context_of_benchmark();
   for (const auto& [key, value] : build_info()) context[key] = value;
@@ -71,6 +89,8 @@ Json run_context(const Options& options, const Registry& registry, const std::ma
   }
   if (!isolated.empty()) context["isolated"] = fmt::format("{}", fmt::join(isolated, ","));
   context["arguments"] = options.arguments;
+  context["program"] = own_command(options.program);
+  context["reproduction"] = options.reproduction_words();
   context["benchmark_flags"] = options.benchmark_flags;
   context["seed"] = std::to_string(options.seed);
   context["sample"] = std::to_string(options.sample);

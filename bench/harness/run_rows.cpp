@@ -10,10 +10,12 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/library_build.h>
 #include <sixdof/oracle/solid.h>
+#include <sixdof/results/fault.h>
 #include "bench/common/interrupt.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/reporter.h"
@@ -154,6 +156,22 @@ int measure(const std::vector<const PlannedRow*>& rows, const Options& options, 
   return result.failed();
 }
 
+/// @throws DefectsFound if a row has answers that are missing, or wrong though its algorithm promises right ones
+void require_right_answers(const nlohmann::ordered_json& document) {
+  std::vector<std::string> wrong;
+  for (const auto& entry : document.at("benchmarks")) {
+    if (entry.value("run_type", "iteration") != "iteration") continue;
+    const results::Row row = results::parse_row(entry);
+    std::vector<results::Fault> faults = results::own_faults(row);
+    if (row.fields.approximates) {
+      std::erase_if(faults, [](const results::Fault& f) { return f.counter == "mismatch" || f.counter == "misses"; });
+    }
+    if (!faults.empty()) wrong.push_back(row.name + ": " + results::to_string(faults));
+  }
+  if (wrong.empty()) return;
+  throw DefectsFound(fmt::format("{} rows have wrong or missing answers, the first {}", wrong.size(), wrong.front()));
+}
+
 void warn_of_build() {
   if (library_build() != LibraryBuild::unoptimised) return;
   print_message(k_program,
@@ -179,6 +197,7 @@ void run_rows(const std::vector<PlannedRow>& rows, const Options& options, const
   if (const int failed = measure(chosen, options, resources, store); failed > 0) {
     throw Error(fmt::format("{} rows could not be run", failed));
   }
+  if (options.fail_on_wrong) require_right_answers(store.document(false));
 }
 
 }  // namespace sixdof::bench

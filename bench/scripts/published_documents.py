@@ -48,6 +48,12 @@ def facts():
     return json.loads(FACTS.read_text(encoding="utf-8")) if FACTS.exists() else {}
 
 
+def report_missing(file):
+    """@raises Missing for a file of a part that is not published; Stale where the part is"""
+    name = str(file.relative_to(PUBLISHED)) if isinstance(file, pathlib.Path) else file
+    raise (Stale if name.split("/")[0] in facts() else Missing)(f"{name} is not there")
+
+
 def selected(value, path):
     """The element of a JSON value that a path names. @raises Stale"""
     for step in STEP.finditer(path):
@@ -73,7 +79,7 @@ def value_of(words):
     words = named.get(words[0], words)
     file = FACTS if words[0] == "parts" else PUBLISHED / words[0]
     if not file.exists() or (words[0] == "parts" and words[1].split(".")[0] not in facts()):
-        raise Missing(f"{file.relative_to(ROOT)} is not there, or lacks the part")
+        report_missing(words[1].split(".")[0] if words[0] == "parts" else file)
     value = selected(json.loads(file.read_text(encoding="utf-8")), words[1])
     return format(value, words[2]) if len(words) > 2 else str(value)
 
@@ -85,7 +91,7 @@ def expanded(words):
         is_pattern = "*" in word and "/" in word
         files = sorted(str(file.relative_to(PUBLISHED)) for file in PUBLISHED.glob(word)) if is_pattern else [word]
         if not files or any("/" in file and file.endswith(".json") and not (PUBLISHED / file).exists() for file in files):
-            raise Missing(f"{word} is not there")
+            report_missing(word)
         found += files
     return found
 
@@ -108,7 +114,7 @@ def output_of(command, program):
     if command[0] != "sixdof":
         file = PUBLISHED / command[0]
         if not file.exists():
-            raise Missing(f"{file.relative_to(ROOT)} is not there")
+            report_missing(file)
         return file.read_text(encoding="utf-8")
     done = subprocess.run([program, *expanded(command[1:])], cwd=PUBLISHED, capture_output=True, text=True, check=False)
     if done.returncode:

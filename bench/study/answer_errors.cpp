@@ -1,6 +1,7 @@
 #include "bench/study/answer_errors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -33,18 +34,41 @@ double quantile(std::vector<double> values, double q) {
   return values[place];
 }
 
+/// Judged and wrong answers by how far the bodies are from contact.
+class ByNearness {
+ public:
+  void add(Nearness nearness, bool judged, bool wrong) {
+    const auto i = static_cast<std::size_t>(nearness);
+    judged_[i] += judged;
+    wrong_[i] += wrong;
+  }
+  void count(Counters& counters) const {
+    constexpr const char* k_names[] = {"apart", "near", "overlapping"};
+    for (std::size_t i = 0; i < 3; ++i) {
+      counters[std::string("judged_") + k_names[i]] = judged_[i];
+      counters[std::string("wrong_") + k_names[i]] = wrong_[i];
+    }
+  }
+
+ private:
+  std::array<double, 3> judged_{}, wrong_{};
+};
+
 /// Answers yes/no.
 class Collisions {
  public:
   void add(const Reference& reference, bool answer) {
     judgements_.push_back(bench::judge(reference.known, answer));
+    nearness_.push_back(reference.nearness);
     yes_.push_back(answer);
   }
   std::size_t size() const { return yes_.size(); }
   Counters counters(Indices chosen) const {
     Counters counts{
         {"mismatch", 0}, {"false_positives", 0}, {"false_negatives", 0}, {"touching", 0}, {"touching_yes", 0}};
+    ByNearness by_nearness;
     for (const std::size_t i : chosen) {
+      by_nearness.add(nearness_[i], judgements_[i].judged, judgements_[i].wrong);
       if (!judgements_[i].judged) {
         ++counts["touching"];
         if (yes_[i]) ++counts["touching_yes"];
@@ -53,11 +77,13 @@ class Collisions {
         ++counts[yes_[i] ? "false_positives" : "false_negatives"];
       }
     }
+    by_nearness.count(counts);
     return counts;
   }
 
  private:
   std::vector<bench::Judgement> judgements_;
+  std::vector<Nearness> nearness_;
   std::vector<bool> yes_;
 };
 
@@ -65,13 +91,16 @@ class Distances {
  public:
   void add(const Reference& reference, const Separation& answer) {
     judgements_.push_back(bench::judge(reference.known, answer));
+    nearness_.push_back(reference.nearness);
   }
   std::size_t size() const { return judgements_.size(); }
   Counters counters(Indices chosen) const {
     Errors absolute;
     double sum = 0.0;
     Counters counts{{"too_small", 0}, {"too_large", 0}};
+    ByNearness by_nearness;
     for (const std::size_t i : chosen) {
+      by_nearness.add(nearness_[i], judgements_[i].judged, judgements_[i].wrong);
       const double error = *judgements_[i].error;
       absolute.add(error);
       sum += error;
@@ -80,11 +109,13 @@ class Distances {
     counts["error_mean"] = sum / static_cast<double>(chosen.size());
     counts["error_rms"] = absolute.rms();
     counts["error_max"] = absolute.largest();
+    by_nearness.count(counts);
     return counts;
   }
 
  private:
   std::vector<bench::Judgement> judgements_;
+  std::vector<Nearness> nearness_;
 };
 
 /// Forces or torques.
@@ -135,7 +166,7 @@ class Responses {
   }
   std::size_t size() const { return judgements_.size(); }
   Counters counters(Indices chosen) const {
-    Counters counters{{"misses", 0}};
+    Counters counters{{"misses", 0}, {"judged_overlapping", static_cast<double>(chosen.size())}};
     std::vector<double> volumes, penalties;
     double volume_error = 0.0;
     for (const std::size_t i : chosen) {
@@ -159,6 +190,7 @@ class Responses {
 };
 
 bool is_count(const std::string& counter) {
+  if (counter.starts_with("judged_") || counter.starts_with("wrong_")) return true;
   for (const char* const count : {"mismatch", "false_positives", "false_negatives", "touching", "touching_yes",
                                   "too_small", "too_large", "misses"}) {
     if (counter == count) return true;

@@ -16,7 +16,9 @@ using results::Estimate;
 
 /// The errors of an algorithm's answers to the judged configurations of a sample, by names of the table of metrics.
 ///
-/// collide: mismatch, false_positives, false_negatives; touching (configurations of bucket 0, where both answers are
+/// collide, distance: judged_apart, judged_near, judged_overlapping and wrong_... (Nearness); respond:
+/// judged_overlapping. collide: mismatch, false_positives, false_negatives; touching (configurations of bucket 0, where
+/// both answers are
 ///   right, so they are in none of the others) and touching_yes.
 /// distance: error_mean (signed), error_rms, error_max, in A's diagonals; too_small and too_large count answers beyond
 ///   the tolerance: a distance that is too small is conservative, one that is too large is not.

@@ -47,6 +47,9 @@ std::optional<Estimate> PrecisionPoint::metric(const std::string& name) const {
     if (name == "p99_ns") return percentile(single->once.p99);
     if (name == "p999_ns") return percentile(single->once.p999);
     if (name == "max_ns") return Estimate::exactly(single->once.max);
+    if (name == "late") return Estimate::exactly(static_cast<double>(single->late));
+    if (name == "timed") return Estimate::exactly(static_cast<double>(single->timed));
+    if (name == "idle_late") return Estimate::exactly(static_cast<double>(single->idle_late));
     if (name == "over_1ms") return Estimate::exactly(single->once.over_deadline);
     if (name == "p99_least_ns") return percentile(single->least.p99);
     if (name == "p999_least_ns") return percentile(single->least.p999);
@@ -139,15 +142,27 @@ std::string PrecisionStudy::why_left_out(const PrecisionPoint& point) const {
   return fmt::format("it would take about {:.0f} s, and {:.0f} s of the budget were left", needed, left);
 }
 
-/// @throws Error if the plan's deadline cannot be kept
-void PrecisionStudy::check_deadline(Query& query) const {
+/// @throws Error if the plan's deadline cannot be kept, or if the point does not fit into the budget
+void PrecisionStudy::check_first_queries(Query& query) const {
   if (std::isinf(plan_.deadline_ns)) return;
   constexpr std::size_t k_trial = 16, k_trial_motions = 2;
+  constexpr double k_hopeless = 20.0;  // times the deadline: one query says enough
+  const TimedPoses one = TimedPoses{sample_.poses}.first(1);
+  if (const double ns = time_single_queries(query, sample_.question, one, plan_.deadline_ns).least.p50;
+      ns > k_hopeless * plan_.deadline_ns) {
+    throw Error(fmt::format("its first query takes {}, over the deadline", duration_text(1e-9 * ns)));
+  }
   const TimedPoses first =
       sample_.motions.poses.empty() ? TimedPoses{sample_.poses}.first(k_trial) : sample_.motions.first(k_trial_motions);
-  const double p50 = time_single_queries(query, sample_.question, first).least.p50;
+  const double p50 = time_single_queries(query, sample_.question, first, plan_.deadline_ns).least.p50;
   if (p50 > plan_.deadline_ns) {
     throw Error(fmt::format("half of its queries take longer than {}, over the deadline", duration_text(1e-9 * p50)));
+  }
+  constexpr double k_passes = 6.0;  // errors, three of single queries, the idle loop, the mean
+  const double needed = 1e-9 * p50 * k_passes * static_cast<double>(sample_.asked());
+  if (left_s() <= 0.0) throw Error("the budget was spent");
+  if (needed > left_s()) {
+    throw Error(fmt::format("it would take about {:.1f} s, and {:.1f} s of the budget were left", needed, left_s()));
   }
 }
 
@@ -162,13 +177,13 @@ void PrecisionStudy::measure(PrecisionPoint& point) {
       point.prepare_s = 1e-9 * *remote->prepared().wall_ns;
     }
     point.bytes = query.footprint().bytes;
-    check_deadline(query);
+    check_first_queries(query);
     point.errors = measure_errors(query, sample_, plan_.seed);
     if (point.errors.answered.empty()) {
       throw Error(fmt::format("no configuration has an answer: {}", point.errors.first_failure));
     }
     if (plan_.single_queries) {
-      point.single = time_single_queries(query, sample_.question, timed_poses(point));
+      point.single = time_single_queries(query, sample_.question, timed_poses(point), plan_.deadline_ns);
       point.errors.add_failures(point.single->failed, point.single->first_failure);
     }
     time_once(point);

@@ -112,7 +112,7 @@ class PrecisionStudy {
   Query& query_of(const PrecisionPoint& point);
   double slowest_preparation(const PrecisionPoint& point) const;
   std::string why_left_out(const PrecisionPoint& point) const;
-  void check_deadline(Query& query) const;
+  void check_first_queries(Query& query) const;
   void measure(PrecisionPoint& point);
   bool affordable(const PrecisionPoint& point) const;
   void time_once(PrecisionPoint& point);

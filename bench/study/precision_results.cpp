@@ -59,6 +59,7 @@ results::Row PrecisionStudy::row(const PrecisionPoint& point) const {
                  .settings = point.sweep.settings.to_string(),
                  .pair = pair_.pair,
                  .isolated = is_isolated(*point.algorithm),
+                 .approximates = point.algorithm->traits().approximates,
                  .question = question,
                  .configurations = sample_.poses.size()}};
   for (std::string assignment : point.sweep.assignments) {
@@ -82,7 +83,7 @@ results::Row PrecisionStudy::row(const PrecisionPoint& point) const {
   add(results::k_wall_mean, point.times.wall_ns());
   for (const auto& [name, estimate] : point.errors.values) add(name, estimate);
   for (const char* const name : {"bytes", "prepare_ns", "p50_ns", "p99_ns", "p999_ns", "max_ns", "over_1ms",
-                                 "p99_least_ns", "p999_least_ns", "max_least_ns"}) {
+                                 "p99_least_ns", "p999_least_ns", "max_least_ns", "late", "timed", "idle_late"}) {
     add(name, point.metric(name));
   }
   row.values["timing_rounds"] = static_cast<double>(point.times.count());

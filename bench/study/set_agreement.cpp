@@ -7,7 +7,9 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/query/ask.h>
+#include "bench/common/own_command.h"
 #include "bench/harness/judge.h"
+#include "bench/harness/query_command.h"
 
 namespace sixdof::study {
 namespace {
@@ -30,7 +32,7 @@ std::string command_of(const Bucket& bucket, const AskedAlgorithm& asked, const 
   std::string command = fmt::format("sixdof query {} --pose '{}' --algorithm {}", bucket.meshes, pose.text(),
                                     asked.algorithm->traits().name);
   for (const std::string& assignment : asked.assignments) command += " -p " + assignment;
-  return command;
+  return own_command(command + bench::external_option(*asked.algorithm));
 }
 
 /// Asks one kind of query at every pose. Failures go to `counts`, and each answer to `answered`.

@@ -58,7 +58,7 @@ void run_apart(const StressPlan& plan, StressCell& cell, const std::atomic<bool>
     return stopped || silent_s() >= plan.timeout_s;
   };
   try {
-    ChildProcess process(stress_cell_command(cell, plan.effort, plan.seed), {memory.descriptor()},
+    ChildProcess process(stress_cell_command(cell, plan.effort, plan.seed, plan.external), {memory.descriptor()},
                          static_cast<std::size_t>(plan.memory_bytes));
     read_result(process.receive(silent), cell);
   } catch (const ChildFailure& failure) {

@@ -16,9 +16,10 @@ struct StressPlan {
   StressEffort effort;
   bool at_defaults = false;  ///< Another cell for each algorithm that has_finer_defaults().
   std::uint64_t seed = 1;
-  double timeout_s = 60.0;    ///< Longest wall time of one query or one preparation.
-  double memory_bytes = 4e9;  ///< Of data, for each process.
-  std::size_t processes = 2;  ///< At once.
+  double timeout_s = 60.0;                 ///< Longest wall time of one query or one preparation.
+  double memory_bytes = 4e9;               ///< Of data, for each process.
+  std::size_t processes = 2;               ///< At once.
+  std::vector<std::string> external = {};  ///< "NAME=COMMAND", which the processes need as well.
 };
 
 /// All cells, by family, then by algorithm. All but times, and verdicts that depend on them, is determined by the seed.

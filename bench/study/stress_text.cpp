@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/common/own_command.h"
+#include "bench/harness/query_command.h"
+
 namespace sixdof::study {
 namespace {
 
@@ -21,13 +24,16 @@ std::string_view word(Verdict verdict) {
 StressLine stress_line(const StressCell& cell, const std::filesystem::path& folder) {
   const auto& worst = cell.worst;
   const stability::Case member = make_case(*cell.family, cell.id), slow = make_case(*cell.family, cell.slow_id);
+  const auto again = [&](const std::string& command) {
+    return own_command(command + bench::external_option(*cell.algorithm));
+  };
   return {.verdict = std::string(to_string(worst.verdict)),
           .metric = worst.metric,
           .worst = fmt::format("{:.3g} {}", worst.value, worst.unit),
           .member = member.name,
           .thread = member.thread,
-          .reproduction = reproduction(member, worst.shot, *cell.algorithm, cell.settings, folder),
-          .slow_reproduction = reproduction(slow, cell.slow_shot, *cell.algorithm, cell.settings, folder),
+          .reproduction = again(reproduction(member, worst.shot, *cell.algorithm, cell.settings, folder)),
+          .slow_reproduction = again(reproduction(slow, cell.slow_shot, *cell.algorithm, cell.settings, folder)),
           .words = worst.words,
           .parameter = member.parameter};
 }

@@ -76,7 +76,8 @@ StressCell run_job(const json& job, const FindAlgorithm& find) {
   const StressWatch watch{.begins_case = [&](const CaseId& id) { beacon->id = id, beacon->pose = {}, ++beacon->beats; },
                           .prepares = [&] { ++beacon->beats; },
                           .asks = [&](const Pose& X_AB) { beacon->pose = pose_numbers(X_AB), ++beacon->beats; }};
-  return run_cell(stability::find_family(job.at("family").get<std::string>()), find(job.at("algorithm")),
+  return run_cell(stability::find_family(job.at("family").get<std::string>()),
+                  find(job.at("algorithm"), job.at("external").get<std::vector<std::string>>()),
                   job.at("at_defaults") ? StressSettings::defaults : StressSettings::coarsest, effort, job.at("seed"),
                   watch);
 }
@@ -98,7 +99,8 @@ SharedBeacon::SharedBeacon(int descriptor) {
 
 SharedBeacon::~SharedBeacon() { ::munmap(beacon_, sizeof(StressBeacon)); }
 
-std::vector<std::string> stress_cell_command(const StressCell& cell, const StressEffort& effort, std::uint64_t seed) {
+std::vector<std::string> stress_cell_command(const StressCell& cell, const StressEffort& effort, std::uint64_t seed,
+                                             const std::vector<std::string>& external) {
   const json job{{"family", cell.family->name},
                  {"algorithm", cell.algorithm->traits().name},
                  {"at_defaults", cell.which == StressSettings::defaults},
@@ -106,7 +108,8 @@ std::vector<std::string> stress_cell_command(const StressCell& cell, const Stres
                  {"declared_samples", effort.declared_samples},
                  {"generations", effort.generations},
                  {"children", effort.children},
-                 {"seed", seed}};
+                 {"seed", seed},
+                 {"external", external}};
   return {"/proc/self/exe", k_word, job.dump()};
 }
 

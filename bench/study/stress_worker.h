@@ -45,9 +45,12 @@ class SharedBeacon {
 
 /// The command line by which this program runs a cell (its family, algorithm and choice of settings) in another process
 /// of itself.
-std::vector<std::string> stress_cell_command(const StressCell& cell, const StressEffort& effort, std::uint64_t seed);
+/// @param external of --external
+std::vector<std::string> stress_cell_command(const StressCell& cell, const StressEffort& effort, std::uint64_t seed,
+                                             const std::vector<std::string>& external);
 
-using FindAlgorithm = std::function<const Algorithm&(const std::string& name)>;
+using FindAlgorithm =
+    std::function<const Algorithm&(const std::string& name, const std::vector<std::string>& external)>;
 
 /// Runs the cell if the command line is stress_cell_command(). @returns the exit code; nothing for another command line
 std::optional<int> run_stress_cell_if_asked(int argc, const char* const* argv, const FindAlgorithm& find);

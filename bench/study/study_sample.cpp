@@ -30,6 +30,11 @@ BucketTruth truth_of(bench::PairCache& cache, const CatalogueEntry& pair, QueryK
   return truth;
 }
 
+Nearness nearness_of(BucketKey key) {
+  if (key.kind == BucketKind::volume) return key.percent > 0 ? Nearness::overlapping : Nearness::near;
+  return key.percent < 100.0 * k_near ? Nearness::near : Nearness::apart;
+}
+
 }  // namespace
 
 StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, QueryKind question,
@@ -58,6 +63,7 @@ StudySample draw_sample(bench::PairCache& cache, const CatalogueEntry& pair, Que
       judged = judged && (question != QueryKind::respond || i < bucket.exact.size());
       if (!judged) continue;
       sample.references.push_back({.known = bench::KnownAnswer::of(from),
+                                   .nearness = nearness_of(from.key),
                                    .exact = question == QueryKind::respond ? bucket.exact[i] : Response{}});
     }
   }

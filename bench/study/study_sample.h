@@ -12,9 +12,18 @@
 
 namespace sixdof::study {
 
+/// How far bodies are from contact.
+enum class Nearness {
+  apart,       ///< 1 % of A's diagonal or more.
+  near,        ///< Less than 1 % apart, or pushed into each other by less.
+  overlapping  ///< Deeper.
+};
+inline constexpr double k_near = 0.01;  ///< Of A's diagonal.
+
 /// What an answer is compared with.
 struct Reference {
   bench::KnownAnswer known;
+  Nearness nearness = Nearness::apart;
   Response exact;  ///< The response of `exact`; only for QueryKind::respond.
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include <sixdof/base/error.h>
@@ -57,7 +58,20 @@ void TimingRounds::add(Query& query, bench::QueryKind question, std::span<const 
   });
 }
 
-SingleQueries time_single_queries(Query& query, bench::QueryKind question, const TimedPoses& timed) {
+std::size_t late_waits(std::size_t count, double wait_ns, double deadline_ns) {
+  std::size_t late = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double start = wall_clock_ns();
+    double took = 0.0;
+    while ((took = wall_clock_ns() - start) < wait_ns) {
+    }
+    late += took > deadline_ns;
+  }
+  return late;
+}
+
+SingleQueries time_single_queries(Query& query, bench::QueryKind question, const TimedPoses& timed,
+                                  double deadline_ns) {
   SingleQueries result;
   bench::Failures failures;
   bench::with_query_kind(query, question, failures, [&](auto guarded) {
@@ -68,8 +82,17 @@ SingleQueries time_single_queries(Query& query, bench::QueryKind question, const
       once_ns.push_back(times.once_ns[i]);
       least_ns.push_back(times.least_ns[i]);
     }
-    result = {latency(once_ns), latency(least_ns), failures.count(), failures.first()};
+    const auto late = std::ranges::count_if(once_ns, [&](double ns) { return ns > deadline_ns; });
+    result = {.once = latency(once_ns),
+              .least = latency(least_ns),
+              .timed = once_ns.size(),
+              .late = static_cast<std::size_t>(late),
+              .failed = failures.count(),
+              .first_failure = failures.first()};
   });
+  if (result.once.p50 < deadline_ns && std::isfinite(deadline_ns)) {
+    result.idle_late = late_waits(result.timed, result.once.p50, deadline_ns);
+  }
   return result;
 }
 

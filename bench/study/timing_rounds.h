@@ -33,12 +33,19 @@ class TimingRounds {
   std::vector<double> cpu_ns_, wall_ns_;
 };
 
+/// How many of `count` waits of wait_ns, in a loop that does nothing else, took longer than the deadline: other work on
+/// the machine interrupted them.
+std::size_t late_waits(std::size_t count, double wait_ns, double deadline_ns);
+
 /// Times of single queries that count: of one pass, and of the least of three (bench/harness/timing.h).
 struct SingleQueries {
   Latency once, least;
-  std::size_t failed = 0;  ///< Poses, counted or not, without an answer in one of the passes.
+  std::size_t timed = 0;      ///< Queries whose times count,
+  std::size_t late = 0;       ///< those over the deadline in the first pass,
+  std::size_t idle_late = 0;  ///< and how many waits of their median time, as many, took longer than the deadline.
+  std::size_t failed = 0;     ///< Poses, counted or not, without an answer in one of the passes.
   std::string first_failure;
 };
-SingleQueries time_single_queries(Query& query, bench::QueryKind question, const TimedPoses& timed);
+SingleQueries time_single_queries(Query& query, bench::QueryKind question, const TimedPoses& timed, double deadline_ns);
 
 }  // namespace sixdof::study

@@ -214,6 +214,13 @@ TEST_F(Faulty, TheTableNeverCallsAConstantAnswerTheFastest) {
   EXPECT_THAT(fastest[2], AnyOf(HasSubstr(" exact "), HasSubstr(" always-apart ")));
 }
 
+TEST_F(Faulty, WrongAnswersEndWithDefectsOnRequest) {
+  const std::string filter =
+      "'--benchmark_filter=^collide/algorithm:(exact|{})/pair:torus-1k/volume:03$' --fail-on-wrong";
+  run(fmt::format(fmt::runtime(filter), "always-apart"), k_exit_defects);
+  run(fmt::format(fmt::runtime(filter), "ist"));
+}
+
 TEST_F(Faulty, NullPointersAreErrorsWithWords) {
   const json document = run(filter("null-pointer|throws-int"), k_exit_error);
   const json refused = row(document, "distance", "null-pointer", "distance:05");

@@ -78,7 +78,7 @@ class Marks(unittest.TestCase):
         self.assertEqual(documents.check(SIXDOF), 1)
 
     def test_what_cannot_be_filled_names_document_and_mark(self):
-        for mark in ("rows.json context.gone", "rows.json benchmarks[name=other].cpu_time",
+        for mark in ("one/gone.json a", "two/gone.txt", "sixdof table one/*.json", "rows.json context.gone", "rows.json benchmarks[name=other].cpu_time",
                      "sixdof table gone.json"):
             with self.assertRaisesRegex(documents.Stale, f"README.md: <!--= {mark[:9]}"):
                 self.fill(f"<!--= {mark.replace('[', '[')} --><!--=-->")

@@ -86,6 +86,26 @@ TEST_F(Stress, IsDeterministicBySeedButForTimes) {
   EXPECT_NE(one, without_times("--seed 4"));
 }
 
+/// An adapter that says that nothing touches, one line of Python a request.
+constexpr const char* k_never = R"(import json, sys
+for line in sys.stdin:
+    do = json.loads(line)["do"]
+    print(json.dumps({"protocol": 1, "name": "never", "version": "1", "answers": ["collide"]} if do == "hello" else
+                     {"prepared": True} if do == "prepare" else {"collide": False, "ns": 1}), flush=True)
+)";
+
+TEST_F(Stress, AsksExternalProgramsAndFailsOnRequest) {
+  std::ofstream(path("never.py")) << k_never;
+  const std::string words = "stress --families contained --algorithms never --external 'never=python3 never.py'";
+  const auto told = run(words);
+  EXPECT_EQ(told.exit_code, 0) << told.err << "others' faults are told, not failed on";
+  EXPECT_THAT(told.out, HasSubstr("never on contained: wrong"));
+  EXPECT_THAT(told.out, HasSubstr(" --external 'never=python3 never.py'"));
+  const auto gate = run(words + " --fail-on never");
+  EXPECT_EQ(gate.exit_code, k_exit_defects);
+  EXPECT_EQ(gate.err, "sixdof: these fail: never on contained\n");
+}
+
 TEST_F(Stress, RefusesWhatDoesNotExist) {
   const auto family = run("stress --families kissings");
   EXPECT_EQ(family.exit_code, k_exit_error);

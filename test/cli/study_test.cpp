@@ -97,29 +97,43 @@ TEST_F(Studies, PrecisionOfDistancesAndCollisions) {
   EXPECT_EQ(rows_of(json::parse(collide.out)).begin()->second.at("mismatch"), 0.0);
 }
 
-TEST_F(Studies, RecommendNamesAnAlgorithmAndTheCommandThatMeasuresItAgain) {
+TEST_F(Studies, RecommendAnswersEveryQuestion) {
   const auto done =
-      run("recommend --a cone-1k --b torus-1k --deadline 1s --budget 60s --algorithms exact,vps --params "
+      run("recommend --a cone-1k --b torus-1k --deadline 1s --budget 90s --algorithms exact,vps --params "
           "vps:voxel_size=0.04 --json");
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  const json found = json::parse(done.out);
-  EXPECT_EQ(found.at("tail"), "p99.9");
-  EXPECT_EQ(found.at("best").at("algorithm"), "exact");
-  EXPECT_EQ(found.at("second").at("algorithm"), "vps");
-  EXPECT_THAT(found.at("again").get<std::string>(), HasSubstr("sixdof-bench --a cone-1k --b torus-1k"));
-  const auto none = run("recommend --a cone-1k --b torus-1k --deadline 1ns --budget 60s --algorithms exact");
+  const json questions = json::parse(done.out).at("questions");
+  ASSERT_EQ(questions.size(), 3u);
+  std::map<std::string, std::size_t> candidates;
+  for (const json& question : questions) candidates[question.at("question")] = question.at("candidates").size();
+  EXPECT_EQ(candidates, (std::map<std::string, std::size_t>{{"yes-no", 2}, {"distance", 1}, {"respond", 2}}))
+      << "vps has no distances";
+}
+
+TEST_F(Studies, RecommendNamesAnAlgorithmAndTheCommandThatMeasuresItAgain) {
+  const auto done = run("recommend --a cone-1k --b torus-1k --deadline 1s --budget 90s --algorithms exact --json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const json questions = json::parse(done.out).at("questions");
+  ASSERT_EQ(questions.size(), 3u);
+  for (const json& question : questions) {
+    EXPECT_TRUE(question.at("missing").is_null()) << question;
+    EXPECT_EQ(question.at("candidates").at(0).at("standing"), "taken");
+    EXPECT_EQ(question.at("candidates").at(0).at("algorithm"), "exact");
+    EXPECT_THAT(question.at("again").get<std::string>(), HasSubstr("sixdof-bench --a cone-1k --b torus-1k"));
+  }
+  const auto none = run("recommend --a cone-1k --b torus-1k --deadline 1ns --budget 90s --algorithms exact");
   EXPECT_EQ(none.exit_code, k_exit_defects) << none.err;
-  EXPECT_THAT(none.out, HasSubstr("no algorithm keeps this deadline"));
+  EXPECT_THAT(none.out, HasSubstr("yes-no      none: no algorithm keeps the deadline with safe answers"));
 }
 
 TEST_F(Studies, RecommendTriesWarmStartsInMotion) {
   const std::string arguments =
-      "recommend --a cone-1k --b torus-1k --order motion --deadline 1s --budget 60s --algorithms exact -o " +
+      "recommend --a cone-1k --b torus-1k --question respond --order motion --deadline 1s --budget 60s --algorithms "
+      "exact -o " +
       path("r.json");
   const auto done = run(arguments);
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("38 motions from some of these, poses 9 to 64 of each\n"));
-  EXPECT_THAT(done.out, ::testing::ContainsRegex("take        exact warm_start=o[nf]+: p99.9 "));
+  EXPECT_THAT(done.out, ::testing::ContainsRegex("respond     take exact warm_start=o[nf]+: the exact force"));
   EXPECT_THAT(done.out, ::testing::ContainsRegex("-p exact:warm_start=o[nf]+ .*/order:motion\\$'"));
   std::ifstream file(path("r.json"));
   const json rows = json::parse(file).at("benchmarks");
@@ -130,10 +144,11 @@ TEST_F(Studies, RecommendTriesWarmStartsInMotion) {
 
 TEST_F(Studies, RecommendTriesAsManyThreadsAsAllowed) {
   const auto done =
-      run("recommend --a cone-1k --b torus-1k --deadline 1s --budget 60s --algorithms exact --threads 2 -o " +
+      run("recommend --a cone-1k --b torus-1k --question respond --deadline 1s --budget 60s --algorithms exact "
+          "--threads 2 -o " +
           path("r.json"));
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, ::testing::ContainsRegex("take        exact threads=[12]: p99.9 "));
+  EXPECT_THAT(done.out, ::testing::ContainsRegex("respond     take exact threads=[12]: "));
   std::ifstream file(path("r.json"));
   const json rows = json::parse(file).at("benchmarks");
   ASSERT_EQ(rows.size(), 2u);

@@ -135,7 +135,7 @@ class Page(unittest.TestCase):
         self.browser.run(f"{card}.querySelector('.chips input').click()")
         self.browser.wait_for(f"{lines} === 3")
         self.assertLess(int(self.browser.run(f"{card}.dataset.drawn")), int(before))
-        self.assertIn("1 algorithms are switched off", self.browser.run(f"{card}.querySelector('.missing').textContent"))
+        self.assertIn("1 algorithm is switched off", self.browser.run(f"{card}.querySelector('.missing').textContent"))
         self.browser.run(f"""(() => {{ const select = [...{card}.querySelectorAll('select')].find(s => s.textContent.includes('longest'));
             select.value = 'longest'; select.dispatchEvent(new Event('change')); }})()""")
         self.browser.wait_for("[...document.querySelectorAll('#figure-time_distance select')].some(s => s.value === 'longest')")
@@ -272,10 +272,10 @@ class Page(unittest.TestCase):
         for page in self.pages():
             self.go_to(page)
             for figure in self.figures():
-                if not self.browser.run(f"!!document.querySelector('#{figure} .outlier a')"):
+                if not self.browser.run(f"!!document.querySelector('#{figure} .finding a')"):
                     continue
                 linked.append(figure[7:])
-                self.browser.run(f"document.querySelector('#{figure} .outlier a').click()")
+                self.browser.run(f"document.querySelector('#{figure} .finding a').click()")
                 self.wait_for_view()
                 if self.browser.run("sixdofReport.view.scene.kind") == "pose":
                     drawn, typed, command = self.pose_in_view()
@@ -331,6 +331,34 @@ class Page(unittest.TestCase):
             self.assertLessEqual(self.browser.run("document.documentElement.scrollWidth"), 390, page)
             self.shot(f"{page}-phone")
         self.assertEqual(self.browser.errors, [])
+
+    def test_pages_without_data_are_folded_and_tabs_take_two_rows(self):
+        self.open(width=1400)
+        self.assertLessEqual(self.browser.run("document.querySelector('nav').getBoundingClientRect().height"), 90)
+        self.open(width=1400, page=self.plain)
+        empty = self.browser.run("[...document.querySelectorAll('nav details a')].map(a => a.hash.slice(1))")
+        self.assertEqual(sorted(empty), ["collection", "compare", "history", "scenes", "signals", "stability"])
+        self.assertIn("without data: 6", self.browser.run("document.querySelector('nav summary').textContent"))
+        self.assertEqual(self.browser.run("document.querySelectorAll('nav > a').length + document.querySelectorAll('nav details a').length"), len(self.pages()))
+
+    def test_figures_have_no_scrollbars_on_a_desk(self):
+        self.open(width=1400)
+        for page in self.pages():
+            self.go_to(page)
+            scrolled = self.browser.run("[...document.querySelectorAll('.plots')].filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.parentElement.id)")
+            self.assertEqual(scrolled, [], page)
+
+    def test_algorithms_have_their_colours_everywhere(self):
+        self.open()
+        self.go_to("speed")
+        chip = self.browser.run("""[...document.querySelectorAll('#figure-time_distance .chip')].filter(c => c.textContent === 'vps')
+            .map(c => c.querySelector('.swatch')).map(s => [s.className, s.style.getPropertyValue('--colour')])[0]""")
+        self.assertEqual(chip, ["swatch square", "#d55e00"])
+        drawn = "[...document.querySelectorAll('#figure-time_distance .mark-line path')].map(p => p.getAttribute('stroke'))"
+        self.assertIn("#d55e00", self.browser.run(drawn))
+        self.go_to("view")
+        entry = "[...document.querySelectorAll('#figure-view .chip')].filter(c => c.textContent.startsWith('vps')).map(c => c.querySelector('.swatch').style.getPropertyValue('--colour'))"
+        self.assertEqual(self.browser.run(entry), ["#d55e00"])
 
     def test_keyboard_reaches_pages_and_controls(self):
         self.open()

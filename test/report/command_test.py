@@ -14,6 +14,7 @@ import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree
+import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from sample_results import HOSTILE, STRESS, collection, row, rows, scene_rows  # noqa: E402
@@ -80,6 +81,7 @@ class Report(unittest.TestCase):
         for words in ("Time against distance", "time of a query, µs", "distance of the bodies", "exact", "vps", "ist"):
             self.assertIn(words, text)
         self.assertEqual(len(re.findall(r"mark-line role-mark", text)), 4, "a line for each algorithm")
+        self.assertNotIn("[1]", text, "one file needs no name")
         self.assertNotIn("<img", text)
         self.assertIn("role-legend", (self.folder / "figures" / "frontier.svg").read_text())
 
@@ -103,6 +105,59 @@ class Report(unittest.TestCase):
         self.assertIn("no figure has this choice, but", self.refused("report", "run.json", "--svg", "no", "--choose", "colour=red"))
         self.assertIn("not COLUMN=VALUE", self.refused("report", "run.json", "--svg", "no", "--choose", "red"))
         self.assertEqual(os.listdir(self.folder / "no") if (self.folder / "no").exists() else [], [])
+
+    def figures(self, option, *words):
+        """Texts of the figures that a command writes, by name."""
+        if not shutil.which("node"):
+            self.skipTest("no node here")
+        folder = self.folder / "of-command"
+        shutil.rmtree(folder, ignore_errors=True)
+        done = self.run_it("report", "run.json", "stress.json", option, str(folder), *words)
+        self.need_libraries(done)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return {path.name: path.read_text() for path in folder.iterdir()}
+
+    def test_figures_have_the_width_and_font_of_a_paper(self):
+        for width, pixels in (("84mm", 84 / 25.4 * 96), ("3.3in", 3.3 * 96), ("320px", 320)):
+            for name, text in self.figures("--svg", "--width", width, "--font", "DejaVu Serif", "--no-title").items():
+                root = xml.etree.ElementTree.fromstring(text)
+                self.assertEqual(root.get("width"), width, name)
+                self.assertAlmostEqual(float(root.get("viewBox").split()[2]), pixels, delta=1, msg=name)
+                self.assertAlmostEqual(float(root.get("height")[:-2]) / float(width[:-2]), float(root.get("viewBox").split()[3]) / pixels, delta=0.01)
+                texts = [each for each in root.iter("{http://www.w3.org/2000/svg}text") if each.text]
+                self.assertEqual({each.get("font-family") for each in texts}, {"DejaVu Serif"}, name)
+                self.assertGreaterEqual(min(float(each.get("font-size")[:-2]) for each in texts), 10, f"{name}: 7.5 points")
+                self.assertNotIn("role-title-text", text, name)
+        self.assertIn("Time against distance", self.figures("--svg", "--width", "84mm")["time_distance.svg"])
+
+    def test_tikz_has_the_numbers_of_the_curves(self):
+        files = self.figures("--tikz", "--width", "84mm", "--choose", "pair=elephant")
+        self.assertNotIn("stability.tex", files, "neither lines nor points")
+        text = files["time_distance.tex"]
+        self.assertIn("width=8.40cm", text)
+        self.assertEqual(re.findall(r"\\addlegendentry\{(\w+)\}", text), ["ist", "vps", "exact"], "and one with a name that LaTeX would run")
+        self.assertIn("\\textless{}/script", text)
+        of_exact = re.findall(r"\{(time_distance-\d\.dat)\}", text)[-1]
+        lines = [line.split() for line in files[of_exact].splitlines()[2:]]
+        self.assertEqual([(float(x), float(y)) for x, y, *_ in lines], [(0, 1), (1, 0.5), (5, 0.166667), (10, 0.0909091)])
+        for name, document in files.items():
+            if name.endswith(".tex"):
+                self.assertEqual(set(re.findall(r"\{([\w-]+\.dat)\}", document)), {each for each in files if each.startswith(name[:-4] + "-") and each.endswith(".dat")})
+        if not shutil.which("pdflatex") or not shutil.which("kpsewhich") or not subprocess.run(["kpsewhich", "pgfplots.sty"], capture_output=True, check=False).stdout:
+            return
+        for name in ("time_distance", "winners", "frontier"):
+            done = subprocess.run(["pdflatex", "-interaction=batchmode", "-halt-on-error", name], cwd=self.folder / "of-command", capture_output=True, check=False)
+            self.assertEqual(done.returncode, 0, name)
+
+    def test_looks_that_are_none_are_refused(self):
+        self.assertIn("are about --svg, --pdf and --tikz", self.refused("report", "run.json", "-o", "x.html", "--width", "84mm"))
+        self.assertIn("are about --svg, --pdf and --tikz", self.refused("report", "run.json", "--csv", "x", "--no-title"))
+        if not shutil.which("node"):
+            self.skipTest("no node here")
+        for width in ("84", "mm", "-5mm", "1mm", "9e9px", "nanmm", "84 mm", "84mmx"):
+            refused = self.refused("report", "run.json", "--svg", "no", f"--width={width}")
+            if "cmake/setup report" not in refused:
+                self.assertIn(f"--width {width}: not a width", refused)
 
     def test_csv_has_outliers_scenes_and_the_collection(self):
         (self.folder / "more.json").write_text(json.dumps({"context": {}, "benchmarks": scene_rows(), **collection()}))
@@ -130,9 +185,11 @@ class Report(unittest.TestCase):
         data = (self.folder / "figures" / "stability.pdf").read_bytes()
         self.assertTrue(data.startswith(b"%PDF-"))
         self.assertGreater(len(data), 5000)
+        pieces = [zlib.decompress(piece) for piece in re.findall(rb"/FlateDecode.*?stream\r?\n(.*?)\r?\nendstream", data, re.DOTALL)[:-1]]
+        self.assertTrue(any(b"/FontFile" in piece for piece in [data, *pieces]), "fonts are in the file")
 
     def test_what_cannot_be_done_is_refused_in_a_line(self):
-        self.assertIn("-o, --csv, --markdown, --svg or --pdf is needed", self.refused("report", "run.json"))
+        self.assertIn("-o, --csv, --markdown, --svg, --pdf or --tikz is needed", self.refused("report", "run.json"))
         self.assertIn("a result file or --series is needed", self.refused("report", "-o", "x.html"))
         self.assertIn("absent.json: cannot be opened", self.refused("report", "absent.json", "-o", "x.html"))
         (self.folder / "other.json").write_text('{"a": 1}')

@@ -80,6 +80,19 @@ TEST_F(Page, DataAreJsonWithEveryTableThatFiguresAndPagesName) {
   }
 }
 
+TEST_F(Page, RunsOnABusyMachineAreMarked) {
+  const auto is_busy = [&](const test::Json& context) {
+    const Results results = test::results_of({test::row("distance", "exact", "p", "distance", 5.0, 1.0)}, context);
+    const test::Json data = test::Json::parse(page_data(make_report(results, {}), read_page_files(folder)));
+    EXPECT_EQ(data["runs"].size(), 1u);
+    return data["runs"][0]["is_busy"].get<bool>();
+  };
+  EXPECT_TRUE(is_busy({{"num_cpus", 2}, {"load_avg", {1.1, 0.0, 0.0}}}));
+  EXPECT_FALSE(is_busy({{"num_cpus", 2}, {"load_avg", {0.9, 8.0, 8.0}}})) << "the last minute counts";
+  EXPECT_FALSE(is_busy({{"load_avg", {9.0}}})) << "of how many processors is not known";
+  EXPECT_FALSE(is_busy({{"num_cpus", 2}, {"load_avg", "high"}}));
+}
+
 TEST_F(Page, BytesThatAreNoTextDoNotStopIt) {
   Results results = test::results_of({test::row("distance", "exact", "p", "distance", 5.0, 1.0)});
   results.rows[0].fields.pair = "\xff\xfe";

@@ -34,8 +34,9 @@ TEST(Summary, WinnerIsTheFastestWithoutAFault) {
   EXPECT_EQ(text_in(summary.winners, summary.winners.rows[1], "verdict"), "tie") << "10 % is within two runs' noise";
   EXPECT_THAT(
       summary.sentences,
-      ElementsAre("Distance: exact is the fastest in 2 of 2 buckets, clearly in 1, 2.35 times faster than the next on "
-                  "average, 1.1 to 5.",
+      ElementsAre("Distance: the fastest without a wrong answer is exact, in 2 of 2 places, 2.35 times faster than the "
+                  "next on average.",
+                  "How far the others are off: wrong answers, wrong 1 of 64 (distance).",
                   HasSubstr("1 of 6 rows have failures or wrong answers and are not ranked (wrong 1)")));
 }
 
@@ -59,14 +60,44 @@ TEST(Summary, RowsOfOtherOrdersAndOfColdCachesAreNotRanked) {
   EXPECT_EQ(test::number_in(summary.winners, summary.winners.rows[0], "times_faster"), 3.0);
 }
 
-TEST(Summary, NearestForcesAreNamed) {
-  const Results results =
-      test::results_of({row("respond", "exact", "p", "volume", 5.0, 9.0, {{"gamma_F_deg", 0.0}}),
-                        row("respond", "vps", "p", "volume", 5.0, 9.0, {{"gamma_F_deg", 12.0}}),
-                        row("respond", "ist-descent", "p", "volume", 5.0, 9.0, {{"gamma_F_deg", 2.0}})});
+TEST(Summary, AlgorithmWithAWrongAnswerAnywhereIsNotTheFastest) {
+  Json hasty = row("collide", "hasty", "p", "distance", 5.0, 1.0);
+  const Results results = test::results_of(
+      {hasty, row("collide", "hasty", "p", "distance", 9.0, 1.0, {{"mismatch", 2}}),
+       row("collide", "exact", "p", "distance", 5.0, 100.0), row("collide", "exact", "p", "distance", 9.0, 100.0),
+       row("collide", "fcl-rss", "p", "distance", 5.0, 50.0), row("collide", "fcl-rss", "p", "distance", 9.0, 400.0)});
   EXPECT_THAT(
       summarise(results, row_groups(results)).sentences,
-      Contains(HasSubstr("nearest to the exact ones: ist-descent (2 degrees on average), then vps (12 degrees)")));
+      ElementsAre(HasSubstr("Yes or no: the fastest without a wrong answer is exact, in 1 of 2 places, 4 times "
+                            "faster than the next; fcl-rss is in 1; faster, but approximate or elsewhere wrong: "
+                            "hasty in 1 (50 times)."),
+                  "How far the others are off: wrong answers, hasty 2 of 128 (yes or no).", HasSubstr("1 of 6 rows")));
+}
+
+TEST(Summary, ApproximationsAreNotTheFastestButNamedWithTheirErrors) {
+  Json vps = row("distance", "vps", "p", "distance", 5.0, 1.0, {{"error_max", 0.004}});
+  vps["sixdof"]["approximates"] = true;
+  const Results results = test::results_of({vps, row("distance", "exact", "p", "distance", 5.0, 100.0)});
+  EXPECT_THAT(summarise(results, row_groups(results)).sentences,
+              ElementsAre("Distance: the fastest without a wrong answer is exact, in 1 of 1 place; faster, but "
+                          "approximate or elsewhere wrong: vps in 1 (100 times).",
+                          "How far the others are off: distances, vps by up to 0.4 % of A's diagonal.",
+                          HasSubstr("All 2 rows ran")));
+}
+
+TEST(Summary, ForcesAreRightToADegreeAndOthersAreNamedFarthestFirst) {
+  const Results results =
+      test::results_of({row("respond", "exact", "p", "volume", 5.0, 9.0, {{"gamma_F_deg", 0.0}}),
+                        row("respond", "vps", "p", "volume", 5.0, 3.0, {{"gamma_F_deg", 12.0}}),
+                        row("respond", "ist-descent", "p", "volume", 5.0, 18.0, {{"gamma_F_deg", 0.9}}),
+                        row("respond", "ist", "p", "volume", 5.0, 18.0, {{"gamma_F_deg", 20.0}})});
+  EXPECT_THAT(summarise(results, row_groups(results)).sentences,
+              ElementsAre("Force and torque: the fastest with forces within 1 degree of the exact ones is exact, in 1 "
+                          "of 1 place, 2 times faster than the next; faster, but approximate or elsewhere wrong: "
+                          "vps in 1 (3 times).",
+                          "How far the others are off: directions of forces on average, ist by 20 degrees, vps by 12 "
+                          "degrees.",
+                          HasSubstr("All 4 rows ran")));
 }
 
 TEST(Summary, HardCasesAreCountedByAlgorithm) {

@@ -25,7 +25,8 @@ using test::text_in;
 using ::testing::HasSubstr;
 
 TEST(TimesTable, LineForEveryStatistic) {
-  const Results results = test::results_of({test::row("distance", "exact", "bunny", "distance", 5.0, 2000.0)});
+  const Results results =
+      test::results_of({test::row("distance", "exact", "bunny", "distance", 5.0, 2000.0, {{"p999_ns", 7000.0}})});
   const DataTable table = times_table(results, row_groups(results));
   const auto mean = lines_with(table, {{"statistic", "mean"}});
   ASSERT_EQ(mean.size(), 1u);
@@ -34,6 +35,8 @@ TEST(TimesTable, LineForEveryStatistic) {
   EXPECT_DOUBLE_EQ(number_in(table, mean[0], "high_us"), 2.2);
   EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "median"}}).at(0), "time_us"), 1.8);
   EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "longest"}}).at(0), "time_us"), 18.0);
+  EXPECT_EQ(number_in(table, lines_with(table, {{"statistic", "99.9th percentile"}}).at(0), "time_us"), 7.0);
+  EXPECT_EQ(number_in(table, mean[0], "repetitions"), 1.0);
   EXPECT_TRUE(lines_with(table, {{"statistic", "99th percentile"}}).empty()) << "the row has none";
 }
 
@@ -59,6 +62,7 @@ TEST(TimesTable, RepetitionsAreOneLineWithTheirInterval) {
   const auto mean = lines_with(table, {{"statistic", "mean"}});
   ASSERT_EQ(mean.size(), 1u);
   EXPECT_NEAR(number_in(table, mean[0], "time_us"), 2.0, k_rounding) << "geometric mean";
+  EXPECT_EQ(number_in(table, mean[0], "repetitions"), 3.0);
   // Student's t of two degrees of freedom at 97.5 % is 4.30265; the logarithms are 0, 0 and 3 log 2.
   const double half = 4.30265 * std::sqrt(3.0 * std::pow(std::log(2.0), 2) / 3.0);
   EXPECT_NEAR(number_in(table, mean[0], "high_us"), 2.0 * std::exp(half), k_quantile);

@@ -30,8 +30,7 @@ Differences between(const std::vector<Json>& before, const std::vector<Json>& af
 std::vector<std::string> texts(const Differences& found) {
   std::vector<std::string> list;
   for (const Difference& each : found.values) {
-    list.push_back(each.counter + (each.kind == MetricKind::work ? " (work): " : ": ") + text_before(each) + " -> " +
-                   text_after(each));
+    list.push_back(each.counter + (each.kind == MetricKind::work ? " (work): " : ": ") + to_string(each));
   }
   return list;
 }
@@ -44,6 +43,12 @@ TEST(Differences, AreAnswersAndWorkBeyondRounding) {
                                         "nodes_tested (work): 10 -> 20"));
   EXPECT_EQ(found.changed_answers(), 2u);
   EXPECT_EQ(found.common_rows, 1u);
+}
+
+TEST(Differences, ShowTheDigitsThatDiffer) {
+  const Differences found = between({row("x", {{"error_max", 0.199575}, {"gamma_F_deg", 1.0}})},
+                                    {row("x", {{"error_max", 0.199575001}, {"gamma_F_deg", 2.0}})});
+  EXPECT_THAT(texts(found), ElementsAre("error_max: 0.199575 -> 0.199575001", "gamma_F_deg: 1 -> 2"));
 }
 
 TEST(Differences, OfRepetitionsAreBeyondTheirRange) {

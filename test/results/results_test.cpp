@@ -95,6 +95,15 @@ TEST(Results, ReproductionHasSampleAndSeed) {
             "sixdof-bench '--benchmark_filter=^" + results.rows[0].name + "$' --sample 64 --seed 4");
 }
 
+TEST(Results, ReproductionHasTheRunsProgramMeshesAndParameters) {
+  const Results results = test::results_of(
+      {test::row("distance", "exact", "p", "distance", 5.0, 1.0)},
+      {{"program", "turbo-bench"}, {"reproduction", "--a tool.ply -p ist:spheres=300"}, {"seed", "4"}});
+  EXPECT_EQ(reproduction(results.rows[0], results.files[0]),
+            "turbo-bench --a tool.ply -p ist:spheres=300 '--benchmark_filter=^" + results.rows[0].name +
+                "$' --sample 64 --seed 4");
+}
+
 TEST(Results, HardCasesAreRead) {
   Results results;
   parse_results(R"([{"family":"scale","algorithm":"ode","verdict":"wrong","cases":12,"worst":0.5,"unit":"size",

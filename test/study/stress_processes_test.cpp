@@ -147,7 +147,9 @@ TEST(StressProcesses, WhatProgressThrowsEndsTheRun) {
 
 int main(int argc, char** argv) {
   using namespace sixdof;
-  const auto find = [](const std::string& name) -> const Algorithm& { return study::algorithms().find(name); };
+  const auto find = [](const std::string& name, const auto& /*external*/) -> const Algorithm& {
+    return study::algorithms().find(name);
+  };
   if (const auto code = study::run_stress_cell_if_asked(argc, argv, find)) return *code;
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();

@@ -16,7 +16,9 @@ std::unique_ptr<RemoteAlgorithm> RemoteAlgorithm::external(const std::string& na
     const QuerySet& answers = traits.answers;
     if (!answers.collide && !answers.distance && !answers.respond) throw Error("answers no kind of query");
     static_cast<void>(Settings(traits.parameters));
-    return std::unique_ptr<RemoteAlgorithm>(new RemoteAlgorithm(std::move(traits), std::move(program)));
+    std::unique_ptr<RemoteAlgorithm> algorithm(new RemoteAlgorithm(std::move(traits), std::move(program)));
+    algorithm->command_line_ = command_line;
+    return algorithm;
   } catch (const Error& e) {
     throw BadArgument(fmt::format("external algorithm {} ({}): {}", name, command_line, e.what()));
   }

@@ -30,12 +30,16 @@ class RemoteAlgorithm final : public Algorithm {
   /// The algorithm in this process; null for an external one.
   const Algorithm* local() const { return local_.get(); }
 
+  /// The command line of an external one; empty for others.
+  const std::string& command_line() const { return command_line_; }
+
  private:
   RemoteAlgorithm(Traits traits, RemoteProgram program) : traits_(std::move(traits)), program_(std::move(program)) {}
 
   Traits traits_;
   std::unique_ptr<Algorithm> local_;
   RemoteProgram program_;
+  std::string command_line_;
 };
 
 /// Whether the queries of an algorithm run in processes of their own.

@@ -157,11 +157,12 @@ DataTable scenario_measures_table(const Results& results, const std::vector<RowG
 }
 
 DataTable frontier_table(const Results& results, const std::vector<RowGroup>& groups) {
-  DataTable table{.name = "frontier",
-                  .title = "Cost against error",
-                  .columns = {"run", "pair", "measured", "cost", "measure", "algorithm", "settings", "spent",
-                              "spent_low", "spent_high", "error", "low", "high", "frontier", "command", "worst_pose"},
-                  .rows = {}};
+  DataTable table{
+      .name = "frontier",
+      .title = "Cost against error",
+      .columns = {"run", "pair", "measured", "cost", "measure", "algorithm", "settings", "spent", "spent_low",
+                  "spent_high", "error", "low", "high", "frontier", "faults", "command", "worst_pose"},
+      .rows = {}};
   std::map<Plot, std::vector<Point>> plots;
   for (const RowGroup& group : groups) add_points(results, group, plots);
   for (const auto& [plot, points] : plots) {
@@ -176,7 +177,8 @@ DataTable frontier_table(const Results& results, const std::vector<RowGroup>& gr
       table.rows.push_back({plot.run, plot.pair, plot.measured, std::string(title), plot.measure, row.fields.algorithm,
                             row.fields.settings, cost.value / unit, cost.low / unit, cost.high / unit, error.value,
                             bound(error.low), bound(error.high), std::string(leads[i] ? "yes" : "no"),
-                            reproduction(row, results.files[row.file]), points[i].worst_pose});
+                            to_string(points[i].group->faults), reproduction(row, results.files[row.file]),
+                            points[i].worst_pose});
     }
   }
   return table;

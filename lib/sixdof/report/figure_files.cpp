@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -14,6 +15,7 @@
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <sixdof/base/atomic_file.h>
 #include <sixdof/base/error.h>
@@ -44,7 +46,7 @@ std::string text_of(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// The exit code of write_svg.js for a choice that no figure offers.
+/// The exit code of write_figures.js for a choice that no figure offers.
 constexpr int k_no_such_choice = 3;
 
 /// Reads to the end of what the other end of a pipe writes.
@@ -97,6 +99,33 @@ std::string run(const std::vector<std::string>& words, const std::filesystem::pa
   throw BadFile(folder.string(), fmt::format("{} failed: {}", words[0], printed));
 }
 
+/// Bounds of a width: a figure has axes, and a page an end.
+constexpr double k_least_px = 120.0, k_most_px = 4000.0;
+
+/// In CSS pixels, of which an inch has 96. @throws BadArgument
+double pixels_of(const std::string& width) {
+  constexpr std::array<std::pair<std::string_view, double>, 3> units{{{"mm", 96.0 / 25.4}, {"in", 96.0}, {"px", 1.0}}};
+  for (const auto& [unit, pixels] : units) {
+    if (!width.ends_with(unit)) continue;
+    double number = 0.0;
+    const char* const end = width.data() + width.size() - unit.size();
+    const auto [at, error] = std::from_chars(width.data(), end, number);
+    if (error == std::errc() && at == end && number * pixels >= k_least_px && number * pixels <= k_most_px) {
+      return number * pixels;
+    }
+  }
+  throw BadArgument(fmt::format("--width {}: not a width between 32mm and 1058mm, e.g. 84mm, 3.3in or 320px", width));
+}
+
+/// What page/write_figures.js reads.
+std::string json_of(const FigureStyle& style, FigureFormat format) {
+  nlohmann::json json = {{"title", style.has_title}, {"format", format == FigureFormat::tikz ? "tikz" : "svg"}};
+  if (!style.width.empty()) json["width"] = pixels_of(style.width);
+  if (!style.width.empty()) json["written"] = style.width;
+  if (!style.font.empty()) json["font"] = style.font;
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 void need(const char* program, const char* package) {
   if (!is_in_path(program)) {
     throw BadArgument(fmt::format("{} is not in PATH (package {}; cmake/setup report installs it)", program, package));
@@ -106,7 +135,9 @@ void need(const char* program, const char* package) {
 }  // namespace
 
 std::vector<std::string> write_figures(const Report& report, const PageFiles& files,
-                                       const std::filesystem::path& folder, FigureFormat format) {
+                                       const std::filesystem::path& folder, FigureFormat format,
+                                       const FigureStyle& style) {
+  const std::string looks = json_of(style, format);
   need("node", "nodejs");
   if (format == FigureFormat::pdf) need("rsvg-convert", "librsvg2-bin");
   std::error_code error;
@@ -117,7 +148,8 @@ std::vector<std::string> write_figures(const Report& report, const PageFiles& fi
   const std::filesystem::path programs = std::filesystem::absolute(files.folder);
   std::vector<std::string> names;
   std::istringstream lines(
-      run({"node", (programs / "page" / "write_svg.js").string(), programs.string(), "data.json", "."}, work.path()));
+      run({"node", (programs / "page" / "write_figures.js").string(), programs.string(), "data.json", ".", looks},
+          work.path()));
   for (std::string name; std::getline(lines, name);) names.push_back(name);
   for (std::string& name : names) {
     if (format == FigureFormat::pdf) {

@@ -22,7 +22,8 @@ using Json = nlohmann::ordered_json;
 
 /// In the order in which they run.
 constexpr const char* k_libraries[] = {"vega.min.js", "vega-lite.min.js", "vega-embed.min.js", "three.min.js"};
-constexpr const char* k_scripts[] = {"figure_spec.js", "elements.js", "figure_card.js", "scene_view.js", "app.js"};
+constexpr const char* k_scripts[] = {"figure_spec.js", "figure_text.js", "elements.js",
+                                     "figure_card.js", "scene_view.js",  "app.js"};
 
 std::string read_text(const std::filesystem::path& path, const std::string& missing) {
   std::ifstream in(path, std::ios::binary);
@@ -99,6 +100,7 @@ Json as_json(const Scene& scene) {
     moments.push_back(std::move(numbers));
   }
   return {{"name", scene.name},
+          {"algorithm", scene.algorithm},
           {"kind", scene.kind},
           {"command", scene.command},
           {"a", scene.a},
@@ -183,6 +185,22 @@ std::vector<std::string> algorithms_of(const Results& results, const std::vector
   return names;
 }
 
+/// Names of the runs, with how busy the machine was where it did other work.
+std::vector<RunLoad> loads_of(const Results& results) {
+  std::vector<RunLoad> loads;
+  for (std::size_t file = 0; file < results.files.size(); ++file) {
+    const nlohmann::json load = nlohmann::json::parse(results.files[file].at("load_avg"), nullptr, false);
+    const nlohmann::json processors = nlohmann::json::parse(results.files[file].at("num_cpus"), nullptr, false);
+    RunLoad run{.name = run_name(results, file)};
+    if (load.is_array() && !load.empty() && load[0].is_number() && processors.is_number()) {
+      run.load = load[0].get<double>();
+      run.processors = processors.get<double>();
+    }
+    loads.push_back(std::move(run));
+  }
+  return loads;
+}
+
 std::string made_from(const Results& results, const std::vector<Series>& series) {
   std::string text;
   for (std::size_t file = 0; file < results.files.size(); ++file) {
@@ -224,6 +242,7 @@ Report make_report(const Results& results, const std::vector<Series>& series) {
                            runs_table(results, series)},
                 .scenes = make_scenes(results, series),
                 .algorithms = algorithms_of(results, series),
+                .runs = loads_of(results),
                 .made_from = made_from(results, series)};
   report.tables.push_back(report.summary.winners);
   DataTable changes{.name = "changes", .title = "Times that changed", .columns = {}, .rows = {}};
@@ -247,6 +266,7 @@ Report make_history(const Results& results) {
                 .tables = {history_table(results, groups), settings_table(results), runs_table(results, {})},
                 .scenes = {},
                 .algorithms = algorithms_of(results, {}),
+                .runs = loads_of(results),
                 .made_from = fmt::format("{} runs, {} to {}", results.files.size(),
                                          results.files.front().at("date").substr(0, 10),
                                          results.files.back().at("date").substr(0, 10))};
@@ -304,6 +324,11 @@ std::string page_data(const Report& report, const PageFiles& files) {
   for (const DataTable& table : report.tables) data["tables"][table.name] = as_json(table);
   data["metrics"] = metrics_json(report);
   data["choices"] = report.choices;
+  data["runs"] = Json::array();
+  for (const RunLoad& run : report.runs) {
+    data["runs"].push_back(
+        {{"name", run.name}, {"load", run.load}, {"processors", run.processors}, {"is_busy", run.is_busy()}});
+  }
   data["meshes"] = Json::array();
   for (const DrawnMesh& mesh : report.scenes.meshes) data["meshes"].push_back(as_json(mesh));
   data["scenes"] = Json::array();

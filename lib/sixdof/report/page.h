@@ -16,6 +16,15 @@ namespace sixdof::report {
 
 using namespace results;
 
+/// How busy the machine was before a run: other programs make its times longer and less equal.
+struct RunLoad {
+  std::string name;                     ///< As in the tables.
+  double load = 0.0, processors = 0.0;  ///< Load average of the last minute; both 0 where the file has none.
+
+  bool is_busy() const { return load > k_busy_share * processors; }
+  static constexpr double k_busy_share = 0.5;  ///< Of the processors.
+};
+
 /// Everything that a report shows.
 struct Report {
   Summary summary;
@@ -23,6 +32,7 @@ struct Report {
   std::vector<DataTable> tables;  ///< Those of tables.h, then those of the comparisons.
   Scenes scenes;
   std::vector<std::string> algorithms;  ///< In the order of the files; figures colour them in this order.
+  std::vector<RunLoad> runs;            ///< In the order of the files.
   std::string made_from;                ///< One line: files, commit, date.
   /// What figures show at first, by the column from which a reader chooses; the default of a figure where it offers no
   /// such value.
@@ -50,7 +60,7 @@ struct PageFiles {
 /// @throws BadFile that names what is missing and, for a library, how it gets there
 PageFiles read_page_files(const std::filesystem::path& folder);
 
-/// What figures and tables are made from, as JSON text: read by the page and by page/write_svg.js.
+/// What figures and tables are made from, as JSON text: read by the page and by page/write_figures.js.
 std::string page_data(const Report& report, const PageFiles& files);
 
 /// One HTML file that opens from disk without a network. Texts of results are data in it, never markup: the JSON has no

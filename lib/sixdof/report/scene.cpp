@@ -91,6 +91,7 @@ std::vector<std::string> assignments(const std::string& settings) {
 
 Scene path_scene(const Series& series) {
   Scene scene{.name = fmt::format("{}: {}", series.scenario, series.algorithm),
+              .algorithm = series.algorithm,
               .kind = "path",
               .command = fmt::format("sixdof quality --scenario {} --algorithm {}", series.scenario, series.algorithm),
               .rate_hz = series.rate_hz,
@@ -147,6 +148,7 @@ void add_cases(const Results& results, Scenes& scenes) {
     try {
       const Mesh a = load_mesh(option(cell.reproduction, "--a")), b = load_mesh(option(cell.reproduction, "--b"));
       Scene scene{.name = fmt::format("{}: {}", cell.family, cell.algorithm),
+                  .algorithm = cell.algorithm,
                   .kind = "case",
                   .command = cell.reproduction,
                   .moments = {Moment{.pose = *pose}}};
@@ -192,6 +194,7 @@ class NamedMeshes {
 Scene pose_scene(const Row& row, const std::string& counter, const ComparedResponse* response) {
   Scene scene{.name = fmt::format("{} of {}: {} {}, {}", row.fields.query, row.fields.algorithm, row.fields.pair,
                                   place_of(row.fields), words_of_outlier(counter)),
+              .algorithm = row.fields.algorithm,
               .kind = "pose",
               .command = row.outliers.command_of(counter),
               .moments = {}};

@@ -39,6 +39,7 @@ struct Moment {
 
 struct Scene {
   std::string name;
+  std::string algorithm = {};         ///< Whose forces or answers; empty for an object.
   std::string kind;                   ///< "object", "path", "case" or "pose" (an outlier of a row).
   std::string command;                ///< That asks or measures it again.
   std::size_t a = 0, b = 0;           ///< Indices in Scenes::meshes; of an object both are the same.

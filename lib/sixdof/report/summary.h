@@ -13,8 +13,9 @@ using namespace results;
 
 /// What a report says first.
 struct Summary {
-  std::vector<std::string> sentences;  ///< Made of the data; never empty.
-  DataTable winners;                   ///< "winners": the fastest without a fault, a line per query, pair and bucket.
+  /// Which algorithm is the fastest without a wrong answer, how wrong the others are, what failed. Never empty.
+  std::vector<std::string> sentences;
+  DataTable winners;  ///< "winners": the fastest without a fault, a line per query, pair and bucket.
 };
 
 /// An algorithm wins a bucket if its mean processor time is the least among ranked rows (is_ranked). It wins clearly if

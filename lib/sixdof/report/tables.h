@@ -18,9 +18,9 @@ using namespace results;
 /// Name of the pair whose times are means over all pairs of a run.
 inline constexpr const char* k_all_objects = "all objects (mean)";
 
-/// "times": times of queries on buckets, in us. `low_us` and `high_us` bound the interval of a mean; of k_all_objects
-/// they are the geometric mean over the pairs divided and multiplied by its geometric standard deviation, over pairs
-/// that all algorithms of the bucket have.
+/// "times": times of queries on buckets, in us. `repetitions` is empty for k_all_objects. `low_us` and `high_us` bound
+/// the interval of a mean; of k_all_objects they are the geometric mean over the pairs divided and multiplied by its
+/// geometric standard deviation, over pairs that all algorithms of the bucket have.
 DataTable times_table(const Results& results, const std::vector<RowGroup>& groups);
 
 /// "response_errors": errors of responses by overlap volume, each measure of a row in a line.

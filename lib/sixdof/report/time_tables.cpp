@@ -21,14 +21,14 @@ struct Statistic {
   const char* outlier;  ///< The value whose outlier stands for it.
 };
 constexpr const char* k_slowest = "max_least_ns";
-constexpr std::array k_statistics{Statistic{"median", "p50_ns", k_slowest},
-                                  Statistic{"99th percentile", "p99_ns", k_slowest},
-                                  Statistic{"longest", "max_ns", "max_ns"}};
+constexpr std::array k_statistics{
+    Statistic{"median", "p50_ns", k_slowest}, Statistic{"99th percentile", "p99_ns", k_slowest},
+    Statistic{"99.9th percentile", "p999_ns", k_slowest}, Statistic{"longest", "max_ns", "max_ns"}};
 
 struct TimeLine {
   std::string run, query, kind, pair, statistic, algorithm;
   double percent = 0.0, us = 0.0;
-  std::optional<double> low, high;
+  std::optional<double> low, high, repetitions;
   std::string faults, command, worst_pose;
 };
 
@@ -43,6 +43,7 @@ std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
                 .percent = row.fields.bucket->percent,
                 .low = {},
                 .high = {},
+                .repetitions = static_cast<double>(group.repetitions.size()),
                 .faults = to_string(group.faults),
                 .command = reproduction(row, results.files[row.file]),
                 .worst_pose = row.outliers.command_of(k_slowest)};
@@ -101,6 +102,7 @@ std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
                        .us = std::exp(mean),
                        .low = std::exp(mean - spread),
                        .high = std::exp(mean + spread),
+                       .repetitions = {},
                        .faults = {},
                        .command = {},
                        .worst_pose = slowest->worst_pose});
@@ -124,12 +126,12 @@ DataTable times_table(const Results& results, const std::vector<RowGroup>& group
   DataTable table{.name = "times",
                   .title = "Times of queries on buckets",
                   .columns = {"run", "query", "bucket", "pair", "statistic", "algorithm", "percent", "time_us",
-                              "low_us", "high_us", "faults", "command", "worst_pose"},
+                              "low_us", "high_us", "repetitions", "faults", "command", "worst_pose"},
                   .rows = {}};
   for (const TimeLine& line : lines) {
     table.rows.push_back({line.run, line.query, line.kind, line.pair, line.statistic, line.algorithm, line.percent,
-                          line.us, optional_cell(line.low), optional_cell(line.high), line.faults, line.command,
-                          line.worst_pose});
+                          line.us, optional_cell(line.low), optional_cell(line.high), optional_cell(line.repetitions),
+                          line.faults, line.command, line.worst_pose});
   }
   return table;
 }

@@ -1,58 +1,159 @@
 #include <sixdof/results/choice.h>
 
 #include <algorithm>
-#include <functional>
-#include <utility>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <sixdof/results/fault.h>
 
 namespace sixdof::results {
 namespace {
 
-/// A tail, and the metrics of it in one pass and of the least of three times.
-struct Tail {
-  const char *name, *once, *least;
+/// Kinds of poses, and the counters of the judged and of the wrong answers to them.
+struct Place {
+  const char *words, *judged, *wrong;
 };
-constexpr Tail k_tails[] = {
-    {"p99.9", "p999_ns", "p999_least_ns"}, {"p99", "p99_ns", "p99_least_ns"}, {"max", "max_ns", "max_least_ns"}};
+constexpr Place k_apart{"apart", "judged_apart", "wrong_apart"};
+constexpr Place k_near{"near contact", "judged_near", "wrong_near"};
+constexpr Place k_overlapping{"overlapping", "judged_overlapping", "wrong_overlapping"};
+constexpr std::array k_places{k_apart, k_near, k_overlapping};
+
+/// What a verdict on a query needs.
+std::vector<Place> needed(const std::string& query) {
+  if (query == "collide") return {k_apart, k_near, k_overlapping};
+  return {query == "distance" ? k_apart : k_overlapping};
+}
+
+/// Why the rows cannot say anything; empty if they can. All rows are of the same poses, so the most judged counts.
+std::string missing_poses(std::span<const Row> rows, const std::string& query) {
+  if (std::ranges::none_of(rows, [](const Row& row) { return row.error.empty(); })) return {};  // nothing was judged
+  std::vector<std::string> lacking;
+  for (const Place& place : needed(query)) {
+    double most = 0.0;
+    for (const Row& row : rows) most = std::max(most, row.count(place.judged));
+    if (most < k_fewest_judged) {
+      lacking.push_back(fmt::format("{:.0f} of the {:.0f} poses {} that it needs", most, k_fewest_judged, place.words));
+    }
+  }
+  return lacking.empty() ? std::string() : fmt::format("there are {}", fmt::join(lacking, ", and "));
+}
+
+/// "12 of 2,100 wrong (near contact 12 of 500)"; empty for none.
+std::string wrong_answers(const Row& row) {
+  double judged = 0.0, wrong = 0.0;
+  std::vector<std::string> where;
+  for (const Place& place : k_places) {
+    judged += row.count(place.judged);
+    wrong += row.count(place.wrong);
+    if (row.count(place.wrong) > 0.0) {
+      where.push_back(fmt::format("{} {:.0f} of {:.0f}", place.words, row.count(place.wrong), row.count(place.judged)));
+    }
+  }
+  if (wrong == 0.0) return {};
+  return fmt::format("{:.0f} of {:.0f} answers wrong ({})", wrong, judged, fmt::join(where, ", "));
+}
+
+/// Why the row's answers may not be used at all; empty if they may.
+std::string why_unsafe(const Row& row, const std::string& query) {
+  const bool approximates = row.fields.approximates;
+  if (query == "collide" || (query == "distance" && !approximates)) return wrong_answers(row);
+  const auto angle = row.value("gamma_F_deg");
+  if (query == "respond" && angle && *angle >= k_useless_angle_deg) {
+    return fmt::format("its forces are no better than a constant one: mean angle {:.0f} degrees", *angle);
+  }
+  return {};
+}
+
+Candidate candidate_of(const Row& row, std::size_t place, const std::string& query, const std::string& error) {
+  Candidate candidate{.place = place};
+  if (!row.error.empty()) {
+    constexpr std::string_view k_prefix = "left out: ";
+    candidate.reason = row.error.starts_with(k_prefix) ? row.error.substr(k_prefix.size()) : row.error;
+    return candidate;
+  }
+  candidate.late = row.count("late");
+  candidate.timed = row.count("timed");
+  candidate.mean_ns = row.estimate(k_wall_mean).value_or(Estimate{});
+  candidate.error = row.estimate(error).value_or(Estimate{});
+  const std::vector<Fault> faults = own_faults(row);
+  if (!faults.empty()) {
+    candidate.standing = Standing::faulty;
+    candidate.reason = to_string(faults);
+  } else if (!row.value(error) || candidate.timed == 0.0) {
+    candidate.standing = Standing::faulty;
+    candidate.reason = fmt::format("no {} could be measured", row.value(error) ? "time" : error);
+  } else if (const std::string why = why_unsafe(row, query); !why.empty()) {
+    candidate.standing = Standing::unsafe;
+    candidate.reason = why;
+  } else if (candidate.late > k_most_late * candidate.timed) {
+    candidate.standing = Standing::late;
+    candidate.reason = fmt::format("{:.0f} of {:.0f} queries late", candidate.late, candidate.timed);
+  } else {
+    candidate.standing = Standing::not_ranked;
+    const bool no_error = query != "respond" || candidate.error.value <= k_rounding;
+    candidate.exact = !row.fields.approximates && no_error;
+  }
+  return candidate;
+}
+
+/// What is to be small: answers that promise nothing after those that do, then the error, then the time.
+auto rank_of(const Candidate& candidate) {
+  const double error = candidate.exact || candidate.error.value <= k_rounding ? 0.0 : candidate.error.value;
+  return std::tuple(!candidate.exact, error, candidate.mean_ns.value);
+}
+
+/// Says of the candidates that keep the deadline which is taken, and what the others lack.
+void judge_the_rest(std::vector<Candidate>& candidates) {
+  Candidate* best = nullptr;
+  for (Candidate& candidate : candidates) {
+    if (candidate.standing == Standing::not_ranked && (best == nullptr || rank_of(candidate) < rank_of(*best))) {
+      best = &candidate;
+    }
+  }
+  if (best == nullptr) return;
+  for (Candidate& candidate : candidates) {
+    if (candidate.standing != Standing::not_ranked || &candidate == best) continue;
+    const bool as_right = candidate.exact == best->exact && (candidate.exact || overlap(candidate.error, best->error));
+    if (!as_right) {
+      candidate.standing = Standing::less_right;
+      candidate.reason = candidate.exact == best->exact ? "larger error" : "approximate";
+    } else if (overlap(candidate.mean_ns, best->mean_ns)) {
+      candidate.standing = Standing::tied;
+      candidate.reason = "its time does not differ clearly";
+    } else {
+      candidate.standing = Standing::slower;
+      candidate.reason = fmt::format("takes {:.3g} times as long", candidate.mean_ns.value / best->mean_ns.value);
+    }
+  }
+  best->standing = Standing::taken;
+}
 
 }  // namespace
 
-Choice choose(std::span<const Row> points, const std::string& error, double deadline_ns) {
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Row& point = points[i];
-    if (own_faults(point).empty() && point.value("max_least_ns") && point.value("max_ns") && point.value(error)) {
-      places.push_back(i);
-    }
-  }
-  const auto has = [&](const Tail& tail) {
-    return std::ranges::all_of(
-        places, [&](std::size_t i) { return points[i].value(tail.least) && points[i].value(tail.once); });
-  };
-  const Tail& tail = *std::ranges::find_if(k_tails, has);  // all have the last
-  Choice result{.tail = tail.name, .best = {}, .second = {}, .too_slow = {}};
-  std::vector<Candidate> candidates;
-  for (const std::size_t i : places) {
-    const double tail_ns = points[i].count(tail.least);
-    candidates.push_back({i, tail_ns, points[i].count(tail.once), *points[i].estimate(error), tail_ns <= deadline_ns});
-  }
-  // Of equal errors, rounding aside, the faster one.
-  const auto key = [](const Candidate& c) {
-    return std::pair(c.error.value <= k_rounding ? 0.0 : c.error.value, c.tail_ns);
-  };
-  std::ranges::stable_sort(candidates, std::less<>(), key);
-  for (const Candidate& candidate : candidates) {
-    if (!candidate.keeps_deadline) {
-      if (!result.best) result.too_slow.push_back(candidate);
-    } else if (!result.best) {
-      result.best = candidate;
-    } else if (!result.second &&
-               points[candidate.place].fields.algorithm != points[result.best->place].fields.algorithm) {
-      result.second = candidate;
-    }
-  }
-  return result;
+std::string_view to_string(Standing standing) {
+  constexpr std::string_view k_names[] = {"taken", "tied",   "slower", "less right", "not ranked",
+                                          "late",  "unsafe", "faulty", "left out"};
+  return k_names[static_cast<std::size_t>(standing)];
 }
+
+const Candidate* Choice::taken() const {
+  return !candidates.empty() && candidates.front().standing == Standing::taken ? &candidates.front() : nullptr;
+}
+
+Choice choose(std::span<const Row> rows, const std::string& query, const std::string& error) {
+  Choice choice{.candidates = {}, .missing = missing_poses(rows, query)};
+  for (std::size_t i = 0; i < rows.size(); ++i) choice.candidates.push_back(candidate_of(rows[i], i, query, error));
+  if (choice.missing.empty()) judge_the_rest(choice.candidates);
+  std::ranges::stable_sort(choice.candidates, {}, [](const Candidate& candidate) {
+    return std::tuple_cat(std::tuple(candidate.standing), rank_of(candidate));
+  });
+  return choice;
+}
+
+double most_wrong(double count) { return count > 0.0 ? std::min(1.0, 3.0 / count) : 1.0; }
 
 }  // namespace sixdof::results

@@ -8,30 +8,62 @@
 
 #include <sixdof/results/row.h>
 
-/// Which algorithm, with which parameters, keeps a deadline with the smallest error.
+/// Which algorithm, with which parameters, keeps a deadline with right answers or, where no right ones keep it, with
+/// the smallest error: the verdict of `sixdof recommend`.
+///
+/// Rules, by rows of `sixdof precision`:
+/// - A row counts only if every query was answered (fault.h).
+/// - An algorithm that does not approximate (RowFields::approximates) promises right answers: one wrong answer makes it
+///   unsafe. So does one wrong yes/no of any algorithm, and forces that are no better than a constant one.
+/// - A deadline is kept if at most k_most_late of the queries were late as they came, in one pass.
+/// - Of those that keep it, answers without an error (above k_rounding) win, then the smallest error. Approximations
+///   come after those that promise right answers, also where none of their answers was wrong. Of equal ones the fastest
+///   wins; those whose times do not differ clearly are tied with it.
+/// - Without enough judged poses there is no verdict.
 
 namespace sixdof::results {
 
+inline constexpr double k_most_late = 0.001;
+inline constexpr double k_fewest_judged = 30;  ///< Of each kind of pose that a verdict needs.
+/// Mean angle to the exact force in degrees from which forces say nothing: a constant one has 90 over all directions.
+inline constexpr double k_useless_angle_deg = 60.0;
+
+enum class Standing {
+  taken,
+  tied,        ///< As good as the one that is taken, and not clearly slower.
+  slower,      ///< As right, but slower.
+  less_right,  ///< Keeps the deadline with larger errors.
+  not_ranked,  ///< Keeps the deadline, but there is no verdict.
+  late,        ///< Misses the deadline.
+  unsafe,      ///< Wrong answers.
+  faulty,      ///< Queries without an answer.
+  left_out     ///< Not measured.
+};
+
+/// "taken", "tied", "slower", "less right", "not ranked", "late", "unsafe", "faulty", "left out".
+std::string_view to_string(Standing standing);
+
 struct Candidate {
-  std::size_t place = 0;      ///< Among the points.
-  double tail_ns = 0.0;       ///< The percentile of Choice::tail, of the least of three times of every query.
-  double tail_once_ns = 0.0;  ///< The same of one pass, which other work on the machine may interrupt.
-  Estimate error;
-  bool keeps_deadline = false;
+  std::size_t place = 0;  ///< Among the rows.
+  Standing standing = Standing::left_out;
+  bool exact = false;              ///< Promises right answers and gave no wrong one.
+  Estimate error;                  ///< The metric.
+  Estimate mean_ns;                ///< Wall time of a query, in a loop over all.
+  double late = 0.0, timed = 0.0;  ///< Queries over the deadline in one pass, of how many.
+  std::string reason;              ///< Why it stands so, in words.
 };
 
 struct Choice {
-  std::string tail;                 ///< "p99.9", "p99" or "max": the highest that all points have.
-  std::optional<Candidate> best;    ///< The smallest error of those that keep the deadline; empty if none does.
-  std::optional<Candidate> second;  ///< The next one of another algorithm.
-  /// The points without a fault that would have a smaller error than the best, or all if there is no best, but miss
-  /// the deadline.
-  std::vector<Candidate> too_slow;
+  std::vector<Candidate> candidates;  ///< The one that is taken first, then by standing, error and time.
+  std::string missing;                ///< Why there is no verdict; empty if there is one.
+
+  const Candidate* taken() const;
 };
 
-/// @param points rows of `sixdof precision`; those with a fault, without times of single queries or without the error
-/// are left out
-/// @param error the metric that is to be small
-Choice choose(std::span<const Row> points, const std::string& error, double deadline_ns);
+/// @param query "collide", "distance" or "respond"; @param error the metric that is to be small
+Choice choose(std::span<const Row> rows, const std::string& query, const std::string& error);
+
+/// An upper bound, with 95 % confidence, on the share of wrong answers where 0 of `count` were wrong (rule of three).
+double most_wrong(double count);
 
 }  // namespace sixdof::results

@@ -86,10 +86,11 @@ std::vector<Changed> changed_versions(const Source& before, const Source& after)
   return changed;
 }
 
-std::string text_of(const std::optional<Range>& range, const std::string& error) {
+std::string text_of(const std::optional<Range>& range, const std::string& error, int digits) {
   if (!range) return error.empty() ? "none" : error;
-  return range->least == range->largest ? fmt::format("{:.6g}", range->least)
-                                        : fmt::format("{:.6g} to {:.6g}", range->least, range->largest);
+  return range->least == range->largest
+             ? fmt::format("{:.{}g}", range->least, digits)
+             : fmt::format("{:.{}g} to {:.{}g}", range->least, digits, range->largest, digits);
 }
 
 }  // namespace
@@ -101,8 +102,15 @@ bool differ(const Range& before, const Range& after) {
   return gap > k_rounding + k_relative_rounding * size || !std::isfinite(size);
 }
 
-std::string text_before(const Difference& difference) { return text_of(difference.before, difference.error_before); }
-std::string text_after(const Difference& difference) { return text_of(difference.after, difference.error_after); }
+std::string to_string(const Difference& difference) {
+  constexpr int k_usual_digits = 6, k_all_digits = 17;
+  std::string before, after;
+  for (int digits = k_usual_digits; digits <= k_all_digits && before == after; ++digits) {
+    before = text_of(difference.before, difference.error_before, digits);
+    after = text_of(difference.after, difference.error_after, digits);
+  }
+  return before + " -> " + after;
+}
 
 std::size_t Differences::changed_answers() const {
   return static_cast<std::size_t>(std::ranges::count(values, MetricKind::answer, &Difference::kind));

@@ -33,9 +33,8 @@ struct Difference {
   std::string error_before = {}, error_after = {};  ///< Of "error"; empty where the row ran.
 };
 
-/// "0.2", "0.2 to 0.3", "none"; words of an error.
-std::string text_before(const Difference& difference);
-std::string text_after(const Difference& difference);
+/// "0.2 -> 0.3", "0.2 to 0.3 -> none", or words of errors; with as many digits as tell the sides apart.
+std::string to_string(const Difference& difference);
 
 /// Of the context: what a result depends on besides the machine's load.
 struct Changed {

@@ -210,15 +210,20 @@ bool is_red(const HardCase& cell) {
 }
 
 std::string reproduction(const Row& row, const Source& source) {
+  const std::string program = source.at("program");
   if (source.kind == "play") return fmt::format("sixdof scene play FILE --question {}", row.fields.question);
   const std::string& query = row.fields.query;
   if (query != "precision" && query != "equivalent") {
-    std::string command = fmt::format("sixdof-bench '--benchmark_filter=^{}$'", row.name);
+    const std::string words = source.at("reproduction");
+    std::string command = fmt::format("{}{}{} '--benchmark_filter=^{}$'", program.empty() ? "sixdof-bench" : program,
+                                      words.empty() ? "" : " ", words, row.name);
     if (const auto asked = row.value("configurations")) command += fmt::format(" --sample {:.0f}", *asked);
     if (const std::string seed = source.at("seed"); !seed.empty()) command += " --seed " + seed;
     return command;
   }
-  return fmt::format("sixdof {} {}", query, source.at("arguments"));
+  const std::string arguments = source.at("arguments");
+  return fmt::format("{} {}{}{}", program.empty() ? "sixdof" : program, arguments.starts_with(query) ? "" : query,
+                     arguments.starts_with(query) ? "" : " ", arguments);
 }
 
 }  // namespace sixdof::results

@@ -28,7 +28,7 @@
     const node = element("article", { id: "page-" + page.id },
       element("h2", {}, page.title), element("p", { class: "intro" }, page.intro));
     if (page.summary) {
-      node.append(element("div", { class: "sentences" }, ...data.summary.map((sentence) => element("p", {}, sentence))));
+      node.append(element("div", { class: "sentences verdict" }, ...data.summary.map((sentence) => element("p", {}, sentence))));
     }
     if (page.comparisons) node.append(...comparisonText());
     const extra = page.pictures && report.objectPictures(data);
@@ -73,6 +73,7 @@
   async function show(address) {
     const [id, scene, moment] = address.split("/");
     const page = data.pages.find((each) => each.id === id) || data.pages[0];
+    for (const folded of document.querySelectorAll("nav details")) folded.open = false;
     for (const link of document.querySelectorAll("nav a")) {
       if (link.hash === "#" + page.id) link.setAttribute("aria-current", "page"); else link.removeAttribute("aria-current");
     }
@@ -115,10 +116,12 @@
   }
 
   document.getElementById("made-from").textContent = data.made_from;
-  document.getElementById("pages").append(...data.pages.map((page) => {
-    const isFull = page.figures.some((id) => data.figures[id] && hasRows(data.figures[id].usermeta.table)) || page.tables.some(hasRows) || (page.scenes && data.scenes.length > 0);
-    return element("a", { href: "#" + page.id, class: isFull ? null : "without-data" }, page.title);
-  }));
+  const isFull = (page) => page.summary || page.tables.some(hasRows) || (page.scenes && data.scenes.length > 0) ||
+    page.figures.some((id) => data.figures[id] && report.figureRows(data.figures[id], data.tables).length > 0);
+  const linkOf = (page) => element("a", { href: "#" + page.id }, page.title);
+  const empty = data.pages.filter((page) => !isFull(page));
+  const folded = element("details", { class: "others" }, element("summary", {}, `without data: ${empty.length}`), element("div", {}, ...empty.map(linkOf)));
+  document.getElementById("pages").append(...data.pages.filter(isFull).map(linkOf), ...(empty.length > 0 ? [folded] : []));
   document.getElementById("theme").addEventListener("click", () => {
     setTheme(report.theme === "dark" ? "light" : "dark");
     show(location.hash.slice(1));

@@ -15,24 +15,6 @@
     return element("label", { class: "chip" }, box, swatch, name);
   }
 
-  /** The sentence under a plot: what is not in it. */
-  function missingText(rows, shown, field) {
-    const faulty = rows.filter((row) => row.faults).length;
-    const hidden = new Set(rows.map((row) => row[field])).size - new Set(shown.map((row) => row[field])).size;
-    const parts = [];
-    if (faulty) parts.push(`${faulty} of ${rows.length} values are of rows with faults (see Failures)`);
-    if (hidden) parts.push(`${hidden} algorithms are switched off`);
-    return parts.join("; ");
-  }
-
-  /** "Longest: vps, bunny, 5 %, 812": the row that a figure's caption line names. */
-  function wordsOf(row, { field, label, unit }) {
-    const number = row[field].toLocaleString("en", { maximumSignificantDigits: 3 });
-    const parts = [row.algorithm ?? row.fastest, row.pair, row.scenario, row.percent === undefined ? null : `${row.percent} %`,
-                   row.bucket && row.percent === undefined ? row.bucket : null, row.time_ms === undefined ? null : `at ${row.time_ms} ms`];
-    return `${label}: ${parts.filter((part) => part !== null && part !== undefined && part !== "").join(", ")}: ${number} ${unit ?? ""}`.trim();
-  }
-
   /** Puts new controls in the place of old ones. The focus stays where it was, so that a keyboard goes on from there. */
   function replaceControls(parent, parts) {
     const at = [...parent.children].findIndex((child) => child.contains(document.activeElement));
@@ -55,9 +37,10 @@
       this.plots = element("div", { class: "plots" });
       this.detail = element("div", { class: "detail", "aria-live": "polite" });
       this.missing = element("p", { class: "missing" });
-      this.outlier = element("p", { class: "outlier" });
+      this.finding = element("p", { class: "finding" });
+      this.advice = element("p", { class: "advice" });
       this.element = element("section", { class: "figure", id: "figure-" + this.meta.id },
-        element("h3", {}, this.meta.title), this.controls, this.plots, this.chips, this.outlier, this.missing, this.detail,
+        element("h3", {}, this.meta.title), this.controls, this.plots, this.chips, this.finding, this.missing, this.advice, this.detail,
         element("p", { class: "caption" }, this.meta.caption), this.downloads());
     }
 
@@ -67,7 +50,7 @@
         element("button", { type: "button", onclick: () => {
           const columns = this.data.tables[this.meta.table].columns;
           const rows = this.shown().rows.map((row) => columns.map((column) => row[column]));
-          report.download(this.meta.id + ".csv", "text/csv", report.csvOf(columns, rows));
+          report.download(this.meta.id + ".csv", "text/csv", report.csvOf(columns, [...new Map(rows.map((row) => [JSON.stringify(row), row])).values()]));
         } }, "data"));
     }
 
@@ -93,35 +76,31 @@
     }
 
     drawChips(rows) {
-      const names = report.valuesOf(rows, this.field());
+      const names = report.legendOrder(this.figure, report.drawnRows(this.figure, rows), this.data.algorithms);
       const style = (name) => report.styleOf(name, this.data.algorithms);
-      names.sort((a, b) => style(a) - style(b));
       replaceControls(this.chips, this.meta.noChips ? [] : names.map((name) => chip(name, style(name), this.state, () => this.draw())));
     }
 
-    /** The worst value that is drawn, with a link to its pose or moment. */
-    drawOutlier(rows) {
-      const rated = this.meta.outlier;
-      this.outlier.replaceChildren();
-      if (!rated) return;
-      const worse = (a, b) => (Math.abs(b[rated.field]) > Math.abs(a[rated.field]) ? b : a);
-      const known = report.ratedRows(rows, rated).filter((row) => Number.isFinite(row[rated.field]) && report.sceneAddress(row));
-      if (known.length === 0) return;
-      const worst = known.reduce(worse);
-      this.outlier.append(wordsOf(worst, rated), ". ", element("a", { href: report.sceneAddress(worst) }, "Show its pose in 3D"));
+    /** The sentences under the plot, with a link to the pose or moment of the worst value that is known. */
+    drawTexts(shown) {
+      const { ranked, finding, missing, advice } = report.figureTexts(this.figure, shown, this.all, this.data);
+      const known = ranked.find((row) => report.sceneAddress(row));
+      const what = known === ranked[0] && this.meta.value ? "its pose" : known && report.rowText(known, ranked, this.meta);
+      this.finding.replaceChildren(finding, ...(known ? [" ", element("a", { href: report.sceneAddress(known) }, `Show ${what} in 3D`)] : []));
+      this.missing.textContent = missing;
+      this.advice.textContent = advice;
     }
 
     spec(rows, choices, more) {
       return report.prepareSpec(this.figure, rows, choices,
-        { theme: report.theme, algorithms: this.data.algorithms, width: "container", legend: false, linear: this.linear, ...more });
+        { theme: report.theme, algorithms: this.data.algorithms, width: "container", room: Math.max(this.plots.clientWidth, this.meta.minWidth || 0), legend: false, linear: this.linear, ...more });
     }
 
     async draw() {
-      const { resolved, choices, before, rows } = this.shown();
+      const shown = this.shown(), { resolved, choices, before, rows } = shown;
       this.drawControls(resolved);
-      this.drawChips(before);
-      this.missing.textContent = missingText(before, rows, this.field());
-      this.drawOutlier(rows);
+      this.drawChips(report.withAxes(this.figure, before, choices, this.data.metrics));
+      this.drawTexts(shown);
       for (const view of this.views) view.finalize();
       this.views = [];
       const facets = this.meta.facet ? report.valuesOf(rows, this.meta.facet) : [null];
@@ -158,7 +137,7 @@
       const { choices, rows } = this.shown();
       const facet = this.meta.facet ? report.valuesOf(rows, this.meta.facet)[0] : null;
       const part = facet === null ? rows : rows.filter((row) => row[this.meta.facet] === facet);
-      const spec = this.spec(part, choices, { width: 640, legend: true, title: this.meta.title });
+      const spec = this.spec(part, choices, { width: 640, legend: true, title: report.titleOf(this.figure, choices, facet, this.all) });
       const view = new vega.View(vega.parse(vegaLite.compile(spec).spec), { renderer: "none" });
       report.download(this.meta.id + ".svg", "image/svg+xml", await view.toSVG());
       view.finalize();

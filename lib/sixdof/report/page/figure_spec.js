@@ -1,5 +1,5 @@
 // From a figure's data file, the tables and a reader's choices to a Vega-Lite specification that can be drawn. No page
-// is needed here: page/write_svg.js does the same under node.
+// is needed here: page/write_figures.js does the same under node.
 
 "use strict";
 
@@ -53,18 +53,67 @@ sixdofReport.baseAlgorithm = function (name) {
   return String(name).replace(/ \((?:path order|motion|cold)\)$/, "");
 };
 
-/** The rows of a figure before any choice. */
+/** The rows of a figure before any choice, with the columns that it scales; a row for each of the columns that it folds. */
 sixdofReport.figureRows = function (figure, tables) {
   const table = tables[figure.usermeta.table];
-  const { where = {}, need = [] } = figure.usermeta;
+  const { where = {}, need = [], scaled = {}, fold } = figure.usermeta;
   if (!table) return [];
-  return sixdofReport.rowsOf(table).filter((row) => Object.entries(where).every(([key, value]) => row[key] === value) &&
-                                                    need.every((column) => row[column] !== null));
+  const rows = sixdofReport.rowsOf(table).filter((row) => Object.entries(where).every(([key, value]) => row[key] === value) &&
+                                                          need.every((column) => row[column] !== null));
+  for (const [column, { of, by }] of Object.entries(scaled)) for (const row of rows) row[column] = row[of] * by;
+  if (!fold) return rows;
+  return rows.flatMap((row) => Object.entries(fold.columns).filter(([, column]) => row[column] !== null)
+    .map(([name, column]) => ({ ...row, [fold.as[0]]: name, [fold.as[1]]: row[column] })));
+};
+
+/** What a figure says of a channel, in itself or in the first of its layers that is about its rows and has a title. */
+sixdofReport.encodingOf = function (figure, channel) {
+  const layers = (figure.layer || []).filter((layer) => !layer.data);
+  const encodings = [figure, ...layers].map((part) => part.encoding?.[channel]).filter((encoding) => encoding?.field);
+  return encodings.find((encoding) => encoding.title !== undefined) ?? encodings[0];
+};
+
+/** Of the rows of all choices those that a figure draws, in its order. */
+sixdofReport.drawnRows = function (figure, rows) {
+  const { value, largest, order } = figure.usermeta;
+  let drawn = value && !figure.usermeta.gaps ? rows.filter((row) => typeof row[value.field] === "number") : rows;
+  if (largest) drawn = largestOf(drawn, largest);
+  if (order) drawn = [...drawn].sort((a, b) => (b[order] ?? 0) - (a[order] ?? 0));
+  return drawn;
+};
+
+/** Algorithms in the order of a legend: where a figure has lines, from top to bottom at their right ends; elsewhere the
+ * same in every report. */
+sixdofReport.legendOrder = function (figure, rows, algorithms) {
+  const field = figure.usermeta.algorithm || "algorithm", x = sixdofReport.encodingOf(figure, "x"), y = sixdofReport.encodingOf(figure, "y");
+  const names = [...new Set(rows.map((row) => row[field]))];
+  const fixed = (a, b) => sixdofReport.styleOf(a, algorithms) - sixdofReport.styleOf(b, algorithms);
+  const hasLines = [figure, ...(figure.layer || [])].some((part) => part.mark?.type === "line" && part.encoding?.color !== null);
+  if (!hasLines || !x || !y) return names.sort(fixed);
+  const column = y.field === "shown" ? figure.usermeta.floor : y.field, place = (row) => (x.sort ? x.sort.indexOf(row[x.field]) : row[x.field]);
+  const ends = new Map();
+  for (const row of rows) {
+    if (typeof row[column] === "number" && !(place(ends.get(row[field]) ?? row) > place(row))) ends.set(row[field], row);
+  }
+  const end = (name) => ends.get(name)?.[column] ?? -Infinity;
+  return names.sort((a, b) => end(b) - end(a) || fixed(a, b));
 };
 
 /** Values from which a reader chooses, of a filter under the choices of the filters before it. */
 sixdofReport.valuesOf = function (rows, field) {
   return [...new Set(rows.map((row) => row[field]).filter((value) => value !== null && value !== ""))];
+};
+
+/** Title of a figure in a file: what is chosen stands below; the name of the run only where there are several. */
+sixdofReport.titleOf = function (figure, choices, facet, all) {
+  const { title, filters = [] } = figure.usermeta, fields = filters.map((filter) => filter.field);
+  const words = ({ field }) => {
+    if (field === "run" && sixdofReport.valuesOf(all, "run").length < 2) return undefined;
+    if (field === "bucket" && fields.includes("percent")) return undefined;
+    return field === "percent" ? `${choices.bucket} ${choices.percent} %` : choices[field];
+  };
+  const said = filters.map(words).filter((text) => text !== undefined && text !== "all");
+  return { text: title, subtitle: [...said, ...(facet === null ? [] : [facet])].join(", ") };
 };
 
 /** Completes choices: each filter offers what is left by those before it, each axis the metrics that differ in what is
@@ -90,7 +139,7 @@ sixdofReport.resolveChoices = function (figure, rows, wanted, metrics) {
     choose({ ...axis, names: (name) => `${name}: ${metrics[name].meaning}` }, metricsOf(left, metrics));
   }
   const choices = Object.fromEntries(resolved.map(({ filter, value }) => [filter.field, value]));
-  for (const axis of figure.usermeta.axes || []) choices[axis.field + "_title"] = linesOf(titleOfMetric(choices[axis.field], metrics));
+  for (const axis of figure.usermeta.axes || []) choices[axis.field + "_title"] = titleOfMetric(choices[axis.field], metrics);
   return { resolved, choices, rows: left };
 };
 
@@ -105,16 +154,15 @@ function titleOfMetric(name, metrics) {
   return unit === "1" ? meaning : `${meaning}, ${unit}`;
 }
 
-/** Lines of whole words that the side of a figure has room for. */
-function linesOf(text) {
-  const longest = 44;
+/** Lines of whole words. @param longest letters of a line */
+sixdofReport.linesOf = function (text, longest) {
   const lines = [""];
   for (const word of text.split(" ")) {
     if (lines.at(-1) && lines.at(-1).length + 1 + word.length > longest) lines.push(word);
     else lines[lines.length - 1] += (lines.at(-1) ? " " : "") + word;
   }
   return lines;
-}
+};
 
 /** Gives rows of a figure with free axes their x and y; of the metrics they keep these two. */
 sixdofReport.withAxes = function (figure, rows, choices, metrics) {
@@ -129,7 +177,7 @@ sixdofReport.withAxes = function (figure, rows, choices, metrics) {
 /** Rows with the value by which the worst is found: as they are or, with `against`, the difference from the row of the
  * other curve at the same place. */
 sixdofReport.ratedRows = function (rows, { field, against }) {
-  if (!against) return rows;
+  if (!against || !rows.some((row) => row[against.column] === against.value)) return rows;
   const key = (row) => JSON.stringify(against.same.map((column) => row[column]));
   const other = new Map(rows.filter((row) => row[against.column] === against.value).map((row) => [key(row), row[field]]));
   return rows.filter((row) => row[against.column] !== against.value && other.has(key(row))).map((row) => ({ ...row, [field]: row[field] - other.get(key(row)) }));
@@ -145,13 +193,13 @@ function floorOf(rows, field) {
 }
 
 /** 1, 2 and 5 times the powers of ten between two numbers; powers alone where there are many. */
-function logTicks(from, to) {
+sixdofReport.logTicks = function (from, to) {
   const decades = Math.log10(to / from), ticks = [];
   for (let power = Math.floor(Math.log10(from)); power <= Math.ceil(Math.log10(to)); ++power) {
     for (const factor of decades > 4 ? [1] : [1, 2, 5]) ticks.push(Number(`${factor}e${power}`));
   }
   return ticks.filter((tick) => tick >= from && tick <= to);
-}
+};
 
 /** Gives every row its place `shown` on the axis `channel`; values below rounding share the lower edge, whose tick says
  * so. An axis with values below zero is linear. */
@@ -168,7 +216,7 @@ function withFloor(spec, rows, { field, shown, channel, include = 0 }, linear) {
   visit(spec, (node) => {
     if (!node[channel] || node[channel].field !== shown) return;
     node[channel].scale = { type: "log", domain: [low, top], nice: false };
-    node[channel].axis = { values: [...(isFloored ? [floor] : []), ...logTicks(isFloored ? floor * 1.5 : low, top)],
+    node[channel].axis = { values: [...(isFloored ? [floor] : []), ...sixdofReport.logTicks(isFloored ? floor * 1.5 : low, top)],
                     labelExpr: isFloored ? `datum.value < ${floor * 1.01} ? '≈ 0' : ${label}` : label };
   });
   return rows.map((row) => ({ ...row, [shown]: row[field] === null ? null : Math.max(row[field], floor) }));
@@ -214,57 +262,95 @@ sixdofReport.themes = {
   dark: { text: "#e8edf2", quiet: "#a7b3c0", grid: "#2c3742", background: "#161d24" },
 };
 
-function configOf(theme) {
+/** Space for a letter of the usual size, in pixels. */
+const letterWidth = 6.6;
+
+function configOf(theme, font) {
   const { text, quiet, grid, background } = sixdofReport.themes[theme];
   return {
     background,
-    font: "system-ui, sans-serif",
+    font: font || "system-ui, sans-serif",
     view: { stroke: grid },
     axis: { labelColor: text, titleColor: text, gridColor: grid, domainColor: quiet, tickColor: quiet, labelFontSize: 12,
             titleFontSize: 13, titleFontWeight: "normal" },
-    legend: { labelColor: text, titleColor: text, labelFontSize: 12, symbolSize: 90, symbolOpacity: 1, orient: "bottom", columns: 4, labelLimit: 220 },
+    legend: { labelColor: text, titleColor: text, labelFontSize: 12, symbolSize: 90, symbolOpacity: 1, orient: "bottom", labelLimit: 220 },
     header: { labelColor: text, titleColor: text },
-    title: { color: text, fontSize: 14 },
+    title: { color: text, fontSize: 14, subtitleColor: quiet, anchor: "start", frame: "bounds" },
     text: { color: text, fontSize: 12 },
   };
 }
 
+/** As many columns of a legend as a width has room for. */
+sixdofReport.legendColumns = function (names, width, most) {
+  const longest = Math.max(...names.map((name) => String(name).length), 1);
+  return Math.max(1, Math.min(most, Math.floor(width / (Math.min(220, longest * letterWidth) + 34))));
+};
+
+/** Names below an axis that has no room for them beside each other are turned; those at its side are cut. */
+function fitNames(spec, rows, width) {
+  visit(spec, (node) => {
+    const { x, y } = node;
+    if (x?.field && x.type === "nominal" && x.axis?.labelAngle === 0) {
+      const names = sixdofReport.valuesOf(rows, x.field).map((name) => String(name).length);
+      if (Math.max(...names) * names.length * letterWidth > width - 80) x.axis = { ...x.axis, labelAngle: -35 };
+    }
+    if (y?.field && y.type === "nominal") y.axis = { ...y.axis, labelLimit: Math.round(Math.min(y.axis?.labelLimit ?? 180, 0.4 * width)) };
+  });
+}
+
+/** In cells that are too narrow for words, colours tell the verdicts. */
+function shortenWords(spec, rows, cells, width) {
+  const narrowest = 44, names = sixdofReport.valuesOf(rows, cells.field).length;
+  if ((width - 120) / names < narrowest) spec.transform.push({ calculate: "datum.class == 'fault' ? '×' : ''", as: "word" });
+}
+
+/** Breaks titles that are longer than their axis. */
+function breakTitles(spec, width, height) {
+  visit(spec, (node) => {
+    for (const [channel, room] of [["x", width], ["y", height]]) {
+      const title = node[channel]?.title;
+      if (typeof title === "string" || Array.isArray(title)) node[channel].title = sixdofReport.linesOf([title].flat().join(" "), Math.max(12, Math.floor(room / letterWidth)));
+    }
+  });
+}
+
 /**
  * @param figure a file of figures/
- * @param rows already filtered by all choices
+ * @param chosen rows, already filtered by all choices
  * @param choices value by field
  * @param context {theme, algorithms (all of the report, in order), width (a number or "container"), legend (boolean),
- *                 linear (boolean), title (text or nothing)}
+ *                 linear (boolean), title (text or nothing), font (nothing for the page's), room (width in pixels, of a
+ *                 container)}
  */
-sixdofReport.prepareSpec = function (figure, rows, choices, context) {
+sixdofReport.prepareSpec = function (figure, chosen, choices, context) {
   const spec = JSON.parse(JSON.stringify(figure));
   const meta = spec.usermeta;
   delete spec.usermeta;
+  let rows = sixdofReport.drawnRows(figure, chosen);
+  const algorithms = sixdofReport.legendOrder(figure, rows, context.algorithms);
   if (meta.floor) rows = withFloor(spec, rows, { field: meta.floor, shown: "shown", channel: "y", include: meta.include }, context.linear);
   if (meta.axes) {
     for (const channel of ["x", "y"]) rows = withFloor(spec, rows, { field: channel, shown: "shown_" + channel, channel }, context.linear);
   }
-  if (meta.largest) rows = largestOf(rows, meta.largest);
-  if (meta.order) rows = [...rows].sort((a, b) => (b[meta.order] ?? 0) - (a[meta.order] ?? 0));
-  const field = meta.algorithm || "algorithm";
-  const present = new Set(rows.map((row) => row[field]));
-  const algorithms = [...present].sort(
-    (a, b) => sixdofReport.styleOf(a, context.algorithms) - sixdofReport.styleOf(b, context.algorithms));
-  paintAlgorithms(spec, field, algorithms, context);
+  paintAlgorithms(spec, meta.algorithm || "algorithm", algorithms, context);
   if (context.linear) useLinearAxes(spec, meta.logAxes || []);
   visit(spec, (node) => {
     if (!node.title || !node.title.from) return;
     const title = choices[node.title.from] ?? node.title.from;
     node.title = Array.isArray(title) ? title : String(title);
   });
+  const width = typeof context.width === "number" ? context.width : context.room || 900;
   spec.data = { values: rows };
   spec.width = context.width;
-  // A figure with a row per name grows with the names; the others have one height.
+  // A figure with a row per name grows with the names; the others have one height, and less where they are narrow.
   const names = meta.rows ? new Set(rows.map((row) => row[meta.rows])).size : 0;
-  spec.height = meta.rows ? Math.max(60, (meta.rowHeight || 24) * names) : meta.height || 340;
+  spec.height = meta.rows ? Math.max(60, (meta.rowHeight || 24) * names) : meta.height || Math.round(Math.min(340, Math.max(190, 0.65 * width)));
   spec.autosize = { type: "fit-x", contains: "padding" };
+  breakTitles(spec, meta.rows ? 0.55 * width : width - 80, spec.height);
+  fitNames(spec, rows, width);
+  if (meta.cells && typeof context.width === "number") shortenWords(spec, rows, meta.cells, width);
   if (context.title) spec.title = context.title;
-  spec.config = configOf(context.theme);
-  if (algorithms.some((name) => String(name).length > 16)) spec.config.legend.columns = 3;  // as many as fit
+  spec.config = configOf(context.theme, context.font);
+  spec.config.legend.columns = sixdofReport.legendColumns(meta.noChips ? ["no change shown"] : algorithms, width, meta.noChips ? 4 : algorithms.length);
   return spec;
 };

@@ -1,11 +1,11 @@
 // Bodies in three dimensions: objects, moments of a scenario's path with the forces, poses of hard cases. A is grey, B
-// blue; a solid arrow is measured, a pale one ideal. Drawn when something changes, not all the time.
+// the colour of sand. A measured arrow has the colour of its algorithm, an ideal one is grey; torques have two heads. Drawn when something changes, not all the time.
 
 "use strict";
 
 (function (report) {
   const element = report.element;
-  const colours = { a: 0xa8b0b8, b: 0x4ea3e0, force: 0xd55e00, idealForce: 0xf3b98b, torque: 0x7b3294, idealTorque: 0xcbb0d6 };
+  const colours = { a: 0xa8b0b8, b: 0xd8c39a, ideal: 0x8a8a8a };
   const numbersOfMoment = { pose: [0, 7], force: [7, 10], idealForce: [10, 13], torque: [13, 16], idealTorque: [16, 19] };
   const parts = (moment) => Object.fromEntries(Object.entries(numbersOfMoment).map(([name, [from, to]]) => [name, moment.slice(from, to)]));
 
@@ -31,16 +31,19 @@
     scene.add(light);
   }
 
-  /** Shaft and head. The ideal one is thicker and pale, so that it frames a measured one that agrees with it. */
-  function arrowOf(from, direction, length, radius, name) {
+  /** Shaft and head, of a torque two. The ideal one is thicker, so that it frames a measured one that agrees with it. */
+  function arrowOf(from, direction, length, radius, name, colour) {
     const isIdeal = name.startsWith("ideal"), thick = (isIdeal ? 0.02 : 0.01) * radius, head = Math.min(0.4 * length, 0.14 * radius);
-    const material = new THREE.MeshBasicMaterial({ color: colours[name], depthTest: false, transparent: true });
+    const material = new THREE.MeshBasicMaterial({ color: isIdeal ? colours.ideal : colour, depthTest: false, transparent: true });
     const shaft = new THREE.Mesh(new THREE.CylinderGeometry(thick, thick, length - head, 12), material);
-    const cone = new THREE.Mesh(new THREE.ConeGeometry((isIdeal ? 0.065 : 0.05) * radius, head, 16), material);
     shaft.position.y = (length - head) / 2;
-    cone.position.y = length - head / 2;
+    const heads = (/torque/i.test(name) ? [0, 1] : [0]).map((k) => {
+      const cone = new THREE.Mesh(new THREE.ConeGeometry((isIdeal ? 0.065 : 0.05) * radius, head, 16), material);
+      cone.position.y = length - (k + 0.5) * head;
+      return cone;
+    });
     const arrow = new THREE.Group();
-    for (const piece of [shaft, cone]) {
+    for (const piece of [shaft, ...heads]) {
       piece.renderOrder = isIdeal ? 2 : 3;
       arrow.add(piece);
     }
@@ -121,8 +124,9 @@
       this.place = element("div", { class: "scene", tabindex: 0, role: "img", "aria-label": "Bodies in three dimensions; arrow keys turn, plus and minus zoom" });
       this.play = element("button", { type: "button", onclick: () => this.toggle() }, "play");
       this.command = element("div");
+      this.key = element("div", { class: "chips" });
       this.element = element("section", { class: "figure", id: "figure-view" },
-        element("div", { class: "controls" }, element("label", {}, "Show ", this.select), this.play, this.slider), this.place, this.legend(), this.note, this.command);
+        element("div", { class: "controls" }, element("label", {}, "Show ", this.select), this.play, this.slider), this.place, this.key, this.note, this.command);
       this.choose(0);
     }
 
@@ -136,14 +140,19 @@
       }).filter(Boolean)];
     }
 
+    style() { return report.styleOf(this.scene.algorithm, this.data.algorithms); }
+
     legend() {
-      const entry = (colour, text) => {
-        const swatch = element("span", { class: "swatch" });
-        swatch.style.setProperty("--colour", "#" + colour.toString(16).padStart(6, "0"));
+      const entry = (colour, shape, text) => {
+        const swatch = element("span", { class: "swatch " + shape });
+        swatch.style.setProperty("--colour", typeof colour === "number" ? "#" + colour.toString(16).padStart(6, "0") : colour);
         return element("span", { class: "chip" }, swatch, text);
       };
-      return element("div", { class: "chips" }, entry(colours.a, "A, fixed"), entry(colours.b, "B, moving"), entry(colours.force, "force, measured"),
-        entry(colours.idealForce, "force, ideal"), entry(colours.torque, "torque, measured"), entry(colours.idealTorque, "torque, ideal"));
+      const { algorithm, kind } = this.scene, style = this.style();
+      const hasArrows = Object.values(this.peaks).some((peak) => peak > 0);
+      return [entry(colours.a, "", "A, fixed"), kind === "object" ? null : entry(colours.b, "", "B, moving"),
+              algorithm ? entry(report.colourOf(style, report.theme), report.shapeOf(style), hasArrows ? `${algorithm}: force, and torque with two heads` : algorithm) : null,
+              hasArrows ? entry(colours.ideal, "", "ideal or exact ones") : null].filter(Boolean);
     }
 
     /** Once the element is in the page: it has a size then. */
@@ -215,6 +224,7 @@
         [name, Math.max(0, ...scene.moments.map((each) => Math.hypot(...parts(each)[name])))]);
       this.peaks = Object.fromEntries(this.peaks);
       this.command.replaceChildren(report.commandLine(scene.command));
+      this.key.replaceChildren(...this.legend());
       this.update();
     }
 
@@ -253,7 +263,7 @@
         const full = this.fullOf(name), share = full > 0 ? vector.length() / full : 0;
         if (share < 0.005) continue;
         const length = 0.8 * this.orbit.radius * share;
-        this.arrows.add(arrowOf(from, vector.normalize(), length, this.orbit.radius, name));
+        this.arrows.add(arrowOf(from, vector.normalize(), length, this.orbit.radius, name, report.colourOf(this.style(), report.theme)));
       }
       this.space.add(this.arrows);
     }

@@ -1,0 +1,195 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/cli/recommend.h"
+#include "bench/common/duration.h"
+#include "bench/common/json_text.h"
+#include "bench/common/own_command.h"
+#include "bench/common/shell_text.h"
+
+namespace sixdof::cli {
+namespace {
+
+using bench::QueryKind;
+using results::Candidate;
+using results::Standing;
+
+std::string name_of(const Verdict& verdict, const Candidate& candidate) {
+  const auto& assignments = verdict.assignments[candidate.place];
+  return fmt::format("{}{}{}", verdict.rows[candidate.place].fields.algorithm, assignments.empty() ? "" : " ",
+                     fmt::join(assignments, " "));
+}
+
+/// How right its answers are.
+std::string answers_text(const Verdict& verdict, const Candidate& candidate) {
+  const results::Row& row = verdict.rows[candidate.place];
+  const auto value = [&](const char* name) { return row.value(name).value_or(0.0); };
+  const double judged = value("judged_apart") + value("judged_near") + value("judged_overlapping");
+  std::string text = row.fields.approximates ? "approximate, " : "";
+  if (verdict.question == QueryKind::collide || (verdict.question == QueryKind::distance && candidate.exact)) {
+    text += fmt::format("0 of {:.0f} answers wrong (at most {:.2g} %, with 95 % confidence)", judged,
+                        100.0 * results::most_wrong(judged));
+  } else if (verdict.question == QueryKind::distance) {
+    text += fmt::format("distances off by at most {:.2g} % of the size", 100.0 * value("error_max"));
+  } else if (row.value("gamma_F_deg").value_or(1.0) <= results::k_rounding) {
+    text += fmt::format("the exact force at all {:.0f} poses", judged);
+  } else {
+    text += fmt::format("force off by {:.1f} degrees on average, {:.0f} at most", value("gamma_F_deg"),
+                        value("gamma_max_F_deg"));
+  }
+  const bool is_usual =
+      verdict.metric == "mismatch" || verdict.metric == "error_max" || verdict.metric == "gamma_F_deg";
+  return is_usual ? text : text + fmt::format("; {} {:.3g}", verdict.metric, candidate.error.value);
+}
+
+std::string time_text(const Verdict& verdict, const Candidate& candidate) {
+  const results::Row& row = verdict.rows[candidate.place];
+  std::string text = fmt::format("{} on average, {:.0f} of {:.0f} queries late",
+                                 duration_text(1e-9 * candidate.mean_ns.value), candidate.late, candidate.timed);
+  const double idle = row.count("idle_late");
+  if (candidate.late > 0.0 || idle > 0.0) text += fmt::format(" (of a loop that only waits: {:.0f})", idle);
+  return text;
+}
+
+/// Where the machine alone misses the deadline, no algorithm can keep it.
+bool is_noisy(const Verdict& verdict) {
+  return std::ranges::any_of(verdict.rows, [](const results::Row& row) {
+    return row.count("idle_late") > results::k_most_late * row.count("timed");
+  });
+}
+
+void print_verdict(const Verdict& verdict) {
+  const Candidate* const taken = verdict.choice.taken();
+  const std::string label = fmt::format("{:<11}", words_of(verdict.question));
+  if (!verdict.choice.missing.empty()) {
+    fmt::print("{} cannot say: {}\n", label, verdict.choice.missing);
+  } else if (taken == nullptr) {
+    fmt::print("{} none: no algorithm keeps the deadline with safe answers\n", label);
+  } else {
+    fmt::print("{} take {}: {}; {}\n", label, name_of(verdict, *taken), answers_text(verdict, *taken),
+               time_text(verdict, *taken));
+  }
+}
+
+std::string candidate_text(const Verdict& verdict, const Candidate& candidate) {
+  switch (candidate.standing) {
+    case Standing::left_out:
+    case Standing::faulty:
+    case Standing::unsafe:
+      return candidate.reason;
+    case Standing::late:
+      return fmt::format("{}; {}", candidate.reason, answers_text(verdict, candidate));
+    case Standing::taken:
+    case Standing::not_ranked:
+      return fmt::format("{}; {}", answers_text(verdict, candidate), time_text(verdict, candidate));
+    case Standing::tied:
+    case Standing::slower:
+    case Standing::less_right:
+      break;
+  }
+  if (candidate.reason == "approximate") {
+    return fmt::format("{}; {}", answers_text(verdict, candidate), time_text(verdict, candidate));
+  }
+  return fmt::format("{}; {}; {}", candidate.reason, answers_text(verdict, candidate), time_text(verdict, candidate));
+}
+
+/// Those of one algorithm that were left out for the same reason share a line.
+void print_candidates(const Verdict& verdict) {
+  std::vector<std::pair<std::string, std::size_t>> told;  // of those left out: algorithm and reason, how many
+  for (const Candidate& candidate : verdict.choice.candidates) {
+    if (candidate.standing != Standing::left_out) {
+      fmt::print("  {:<10} {}: {}\n", to_string(candidate.standing), name_of(verdict, candidate),
+                 candidate_text(verdict, candidate));
+      continue;
+    }
+    const std::string words = verdict.rows[candidate.place].fields.algorithm + ": " + candidate.reason;
+    const auto same = std::ranges::find(told, words, [](const auto& each) { return each.first; });
+    same == told.end() ? static_cast<void>(told.emplace_back(words, 1)) : static_cast<void>(++same->second);
+  }
+  for (const auto& [words, count] : told) {
+    fmt::print("  {:<10} {}{}\n", to_string(Standing::left_out), words,
+               count > 1 ? fmt::format(" ({} settings)", count) : std::string());
+  }
+}
+
+/// The command that measures what was taken again as rows of sixdof-bench.
+std::string command_again(const Verdict& verdict, const RecommendOptions& options, const CatalogueEntry& pair) {
+  const Candidate& taken = *verdict.choice.taken();
+  const std::string& algorithm = verdict.rows[taken.place].fields.algorithm;
+  std::string text = own_bench_program();
+  if (!options.study.a.empty()) text += " --a " + shell_quoted(options.study.a);
+  if (!options.study.b.empty()) text += " --b " + shell_quoted(options.study.b);
+  for (const std::string& set : options.study.sets) text += " --no-manifest --set " + shell_quoted(set);
+  for (const std::string& external : options.study.process.external) text += " --external " + shell_quoted(external);
+  for (const std::string& assignment : verdict.assignments[taken.place]) {
+    text += fmt::format(" -p {}:{}", algorithm, assignment);
+  }
+  return text + fmt::format(" --suite all --benchmark_filter='^{}/algorithm:{}/pair:{}/[^/]*{}$'",
+                            to_string(verdict.question), algorithm, pair.pair,
+                            options.in_motion() ? "/order:motion" : "");
+}
+
+nlohmann::ordered_json as_json(const Verdict& verdict, const Candidate& candidate) {
+  const results::Row& row = verdict.rows[candidate.place];
+  nlohmann::ordered_json json = {{"standing", to_string(candidate.standing)},
+                                 {"algorithm", row.fields.algorithm},
+                                 {"settings", row.fields.settings},
+                                 {"reason", candidate.reason}};
+  if (candidate.standing == Standing::left_out) return json;
+  json["exact"] = candidate.exact;
+  json[verdict.metric] = candidate.error.value;
+  json[verdict.metric + "_low"] = candidate.error.low;
+  json[verdict.metric + "_high"] = candidate.error.high;
+  json["mean_ns"] = candidate.mean_ns.value;
+  json["late"] = candidate.late;
+  json["timed"] = candidate.timed;
+  json["idle_late"] = row.count("idle_late");
+  return json;
+}
+
+}  // namespace
+
+std::string_view words_of(QueryKind question) {
+  return question == QueryKind::collide ? "yes-no" : to_string(question);
+}
+
+void print_text(const RecommendOptions& options, double deadline_s, const CatalogueEntry& pair,
+                const std::vector<Verdict>& verdicts) {
+  fmt::print("{}, a query within {}{}:\n\n", pair.pair, duration_text(deadline_s),
+             options.in_motion() ? ", poses that follow each other" : "");
+  for (const Verdict& verdict : verdicts) print_verdict(verdict);
+  if (std::ranges::any_of(verdicts, is_noisy)) {
+    fmt::print(
+        "\nThis machine is too noisy for the deadline: waiting without a query was late in more than 0.1 % of the "
+        "cases.\nStop other work, or give the program a core of its own (isolcpus, taskset) and a priority (chrt).\n");
+  }
+  for (const Verdict& verdict : verdicts) {
+    if (verdict.choice.candidates.empty()) continue;
+    fmt::print("\n{}, {}\n", words_of(verdict.question), verdict.poses);
+    print_candidates(verdict);
+    if (verdict.choice.taken() != nullptr) fmt::print("  again      {}\n", command_again(verdict, options, pair));
+  }
+}
+
+void print_json(const RecommendOptions& options, double deadline_s, const CatalogueEntry& pair,
+                const std::vector<Verdict>& verdicts) {
+  nlohmann::ordered_json json = {{"pair", pair.pair}, {"order", options.order}, {"deadline_ns", 1e9 * deadline_s}};
+  json["questions"] = nlohmann::ordered_json::array();
+  for (const Verdict& verdict : verdicts) {
+    nlohmann::ordered_json entry = {
+        {"question", words_of(verdict.question)}, {"metric", verdict.metric}, {"judged", verdict.poses}};
+    entry["missing"] =
+        verdict.choice.missing.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(verdict.choice.missing);
+    entry["candidates"] = nlohmann::ordered_json::array();
+    for (const Candidate& candidate : verdict.choice.candidates)
+      entry["candidates"].push_back(as_json(verdict, candidate));
+    if (verdict.choice.taken() != nullptr) entry["again"] = command_again(verdict, options, pair);
+    json["questions"].push_back(std::move(entry));
+  }
+  fmt::print("{}\n", json_text(json));
+}
+
+}  // namespace sixdof::cli
