@@ -17,6 +17,7 @@
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
 #include "bench/common/progress_line.h"
+#include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/shell_text.h"
 #include "bench/harness/options.h"
@@ -65,7 +66,8 @@ std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const Ar
   const auto asked_already = [&](const Algorithm& algorithm) {
     return std::ranges::any_of(chosen, [&](const AskedAlgorithm& each) { return each.algorithm == &algorithm; });
   };
-  for (const std::string& name : arguments.algorithms) {
+  const auto suits = [](const Traits& traits) { return traits.answers.collide || traits.answers.distance; };
+  for (const std::string& name : with_rivals(arguments.algorithms, registry, suits)) {
     const Algorithm& algorithm = registry.find(name);
     const Traits& traits = algorithm.traits();
     if (!traits.answers.collide && !traits.answers.distance) {
@@ -207,7 +209,7 @@ void add_agree_command(CLI::App& app) {
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->excludes(pairs);
-  command->add_option("--algorithms", arguments->algorithms, "Algorithms to compare: exact,ode,...")
+  command->add_option("--algorithms", arguments->algorithms, "Algorithms to compare: exact,ode,...; rivals: all that are set up")
       ->type_name("ALGORITHM")
       ->default_str("all that answer, except slow ones")
       ->delimiter(',');

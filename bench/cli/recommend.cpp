@@ -18,6 +18,7 @@
 #include "bench/common/duration.h"
 #include "bench/common/json_text.h"
 #include "bench/common/progress_line.h"
+#include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/run_context.h"
 #include "bench/study/study_pairs.h"
@@ -153,10 +154,12 @@ class Recommendation {
 
   /// Those of --algorithms that answer the question; where a single question is asked, all of them.
   std::vector<std::string> names_that_answer(QueryKind question) const {
-    std::vector<std::string> names = options_.study.algorithms;
-    if (questions_.size() == 1) return names;
+    if (questions_.size() == 1) return options_.study.algorithms;
+    std::vector<std::string> names = with_rivals(options_.study.algorithms, registry_);
     std::erase_if(names, [&](const std::string& name) {
-      return !bench::answers(registry_.find(name).traits().answers, question);
+      const Traits& traits = registry_.find(name).traits();
+      const bool is_of_hulls = traits.is_rival() && traits.body != Body::mesh;
+      return is_of_hulls || !bench::answers(traits.answers, question);
     });
     return names;
   }

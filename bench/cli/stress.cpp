@@ -21,6 +21,7 @@
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
 #include "bench/common/progress_line.h"
+#include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/study/stress_processes.h"
 #include "bench/study/stress_text.h"
@@ -63,7 +64,7 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
       .memory_bytes = 1e9 * options.memory_gb,
       .processes = std::max(1u, std::thread::hardware_concurrency()),
       .external = options.external};
-  for (const std::string& name : options.algorithms) {
+  for (const std::string& name : with_rivals(options.algorithms, registry)) {
     const Algorithm& algorithm = registry.find(name);
     if (algorithm.traits().body != Body::mesh) {
       throw BadArgument(fmt::format("{} answers for the {} of the meshes; the true answers for these are not known",

@@ -8,6 +8,7 @@
 
 #include <sixdof/base/error.h>
 
+#include "bench/common/rivals.h"
 #include "bench/common/shell_text.h"
 
 namespace sixdof::cli {
@@ -26,7 +27,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
       ->type_name("MESH")
       ->default_str("a copy of A")
       ->needs(a);
-  command.add_option("--algorithms", options.algorithms, "Algorithms to try: vps,ist,...")
+  command.add_option("--algorithms", options.algorithms, "Algorithms to try: vps,ist,...; rivals: all that are set up")
       ->type_name("ALGORITHM")
       ->default_str("all that answer")
       ->delimiter(',');
@@ -63,7 +64,10 @@ bench::Options harness_options(const StudyOptions& options, std::size_t sample, 
 std::vector<const Algorithm*> study_algorithms(const Registry& registry, const std::vector<std::string>& names,
                                                bench::QueryKind question) {
   std::vector<const Algorithm*> chosen;
-  for (const std::string& name : names) {
+  const auto suits = [&](const Traits& traits) {
+    return bench::answers(traits.answers, question) && traits.body == Body::mesh;
+  };
+  for (const std::string& name : with_rivals(names, registry, suits)) {
     const Algorithm& algorithm = registry.find(name);
     if (!bench::answers(algorithm.traits().answers, question)) {
       throw BadArgument(fmt::format("{} does not answer {}", name, to_string(question)));

@@ -30,13 +30,13 @@ std::string query_command(const std::string& a, const std::string& b, const Algo
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (chosen[i] != defaults[i]) command += " -p " + shell_quoted(chosen[i]);
   }
-  const std::string external = external_option(algorithm);
-  return own_command(command + external + (external.empty() && is_isolated(algorithm) ? " --isolate" : ""));
+  const bool is_of_this_program = &in_this_process(algorithm) != &algorithm;
+  return own_command(command + external_option(algorithm) + (is_of_this_program ? " --isolate" : ""));
 }
 
 std::string external_option(const Algorithm& algorithm) {
   const auto* const remote = dynamic_cast<const RemoteAlgorithm*>(&algorithm);
-  if (remote == nullptr || remote->command_line().empty()) return {};
+  if (remote == nullptr || remote->command_line().empty() || algorithm.traits().is_rival()) return {};
   return " --external " + shell_quoted(algorithm.traits().name + "=" + remote->command_line());
 }
 

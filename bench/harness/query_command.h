@@ -10,7 +10,7 @@ namespace sixdof::bench {
 std::string query_command(const std::string& a, const std::string& b, const Algorithm& algorithm,
                           const Settings& settings);
 
-/// " --external NAME=COMMAND" for an algorithm of --external, for a shell; empty for others.
+/// " --external NAME=COMMAND" for an algorithm of --external, for a shell; empty for others, which every program finds.
 std::string external_option(const Algorithm& algorithm);
 
 }  // namespace sixdof::bench

@@ -89,6 +89,7 @@ struct QueryRow {
             .bucket = key,
             .order = to_string(order),
             .body = is_judged() ? "" : std::string(to_string(algorithm.traits().body)),
+            .runtime = algorithm.traits().runtime,
             .cache = evict ? "cold" : "warm",
             .isolated = is_isolated(algorithm),
             .approximates = algorithm.traits().approximates};

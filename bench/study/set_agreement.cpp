@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/process/remote_algorithm.h>
 #include <sixdof/query/ask.h>
 #include "bench/common/own_command.h"
 #include "bench/harness/judge.h"
@@ -121,6 +122,10 @@ std::vector<AskedAlgorithm> usable(bench::PairCache& cache, const CatalogueEntry
       kept.push_back(asked);
     } catch (const BadMesh& e) {
       refusals.push_back(fmt::format("{}: {}", asked.algorithm->traits().name, e.what()));
+    } catch (const Error& e) {
+      // A program that is not there, or ends, costs its own answers only.
+      if (!is_isolated(*asked.algorithm)) throw;
+      refusals.push_back(e.what());
     }
   }
   return kept;

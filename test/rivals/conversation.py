@@ -1,6 +1,8 @@
 """A program of the protocol (lib/sixdof/process/README.md) that is asked line by line, and meshes as it reads them."""
 
 import array
+import importlib.machinery
+import importlib.util
 import json
 import os
 import select
@@ -8,6 +10,15 @@ import subprocess
 import sys
 
 LONGEST_ANSWER = 120  # s; only a program that hangs takes that long
+
+
+def load_setup(rivals):
+    """bench/rivals/setup as a module."""
+    loader = importlib.machinery.SourceFileLoader("setup", str(rivals / "setup"))
+    sys.dont_write_bytecode = True
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("setup", loader))
+    loader.exec_module(module)
+    return module
 
 
 class Mesh:

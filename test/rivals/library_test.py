@@ -6,15 +6,13 @@ usage: library_test.py NAME RIVALS
 Skipped where bench/rivals/setup has not installed the library.
 """
 
-import importlib.machinery
-import importlib.util
 import math
 import pathlib
 import sys
 import tempfile
 import unittest
 
-from conversation import Mesh, Program, end
+from conversation import Mesh, Program, end, load_setup
 
 NAME, RIVALS = sys.argv[1], pathlib.Path(sys.argv[2])
 del sys.argv[1:]
@@ -22,14 +20,6 @@ del sys.argv[1:]
 SINGLE = 3e-6
 LOW, HIGH = (-1.0, -0.8, -0.6), (1.0, 0.8, 0.6)  # of both boxes
 YAW = 0.7
-
-
-def load_setup():
-    loader = importlib.machinery.SourceFileLoader("setup", str(RIVALS / "setup"))
-    sys.dont_write_bytecode = True
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("setup", loader))
-    loader.exec_module(module)
-    return module
 
 
 def box():
@@ -79,7 +69,7 @@ def point(X, p):
 class Library(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        setup = load_setup()
+        setup = load_setup(RIVALS)
         if not setup.is_ready(NAME):
             raise unittest.SkipTest("not set up")
         cls.commands = {each: setup.json.loads(setup.ready_file(each).read_text())["command"]

@@ -11,7 +11,10 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+
+from conversation import load_setup
 
 RIVALS = pathlib.Path(sys.argv[1])
 del sys.argv[1:]
@@ -65,6 +68,23 @@ class Setup(unittest.TestCase):
         self.assertIn("not ready: cargo: error: failed to download", done.stdout)
         self.assertFalse((self.folder / "rivals/ready/parry.json").exists())
 
+    def test_what_takes_too_long_ends_with_all_it_has_started(self):
+        pid = self.folder / "pid"
+        self.fake("cargo", f"sleep 1000 & echo $! > {pid}; wait")
+        setup = load_setup(RIVALS)
+        setup.INSTALL_SECONDS = 2
+        with self.assertRaisesRegex(setup.NotReady, "cargo took longer than 2 s"):
+            setup.run(self.path / "cargo")
+        stat = pathlib.Path("/proc", pid.read_text().strip(), "stat")
+        for _ in range(1000):
+            try:
+                if "(sleep) Z" in stat.read_text():
+                    return
+            except OSError:
+                return  # gone
+            time.sleep(0.01)
+        self.fail(f"{stat.parent} survives")
+
     def test_another_package_than_the_recipe_has(self):
         self.fake("node", "exit 0")
         self.fake("npm", """echo '{"packages": {"": {}, "node_modules/jolt-physics": {"integrity": "sha512-x"}}}' \
@@ -84,7 +104,7 @@ class Setup(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertTrue(done.stdout.strip().endswith(" ready"))
         ready = json.loads((self.folder / "rivals/ready/jolt.json").read_text())
-        self.assertEqual((ready["name"], ready["runtime"], ready["answers"]), ("jolt", "wasm", ["collide"]))
+        self.assertEqual((ready["name"], ready["runtime"], ready["hello"]), ("jolt", "wasm", hello))
         self.assertIn("adapter.js", ready["command"])
         self.assertTrue(self.run_setup("jolt", "--list").stdout.strip().endswith(" ready"))
         self.fake("npm", "exit 1")  # what is ready is not installed again

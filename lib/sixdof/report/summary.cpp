@@ -36,6 +36,9 @@ bool is_usual(const RowGroup& group) {
   return !group.is_special() && group.fields().body.empty() && group.fields().algorithm != "null";
 }
 
+/// Whether its time counts in a sentence on who is the fastest.
+bool is_ranked(const RowGroup& group) { return is_usual(group) && interpreter_of(group.fields()).empty(); }
+
 Records records_of(const std::vector<RowGroup>& groups, const std::string& query) {
   Records records;
   for (const RowGroup& group : groups) {
@@ -105,7 +108,7 @@ std::string speed_sentence(const Question& question, const std::vector<Contest>&
   std::map<std::string, Wins> by_winner, faster;
   std::size_t places = 0;
   for (const Contest& contest : contests) {
-    if (contest.query != question.query || contest.order != "random" || !is_usual(contest.winner())) continue;
+    if (contest.query != question.query || contest.order != "random" || !is_ranked(contest.winner())) continue;
     Contest right = contest;
     std::erase_if(right.entries, [&](const RowGroup* entry) {
       const auto found = records.find(entry->algorithm());
