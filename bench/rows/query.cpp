@@ -37,6 +37,8 @@ constexpr std::size_t k_trial = 8;
 constexpr double k_trial_time = 0.1;
 /// Most configurations on cold caches: emptying them takes far longer than most queries.
 constexpr std::size_t k_most_cold = 64;
+/// Count of a footprint, and counter of a row; bench/rivals/python/sixdof_rival.py measures it.
+constexpr const char* k_empty_call = "empty_call_ns";
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -80,6 +82,7 @@ struct QueryRow {
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
   std::optional<std::array<VectorError, 2>> errors = {};
   results::Outliers worst = {};
+  std::optional<double> empty_call_ns = {};  ///< That a call from Python takes without the library's work.
 
   results::RowFields fields() const {
     return {.query = std::string(to_string(question)),
@@ -113,6 +116,7 @@ struct QueryRow {
       if (!check) {
         if constexpr (requires { query.ask(poses[0]).value.force; }) compare_with_exact(bucket, exact, query);
         check = check_answers(bucket, count, query, is_judged());
+        empty_call_ns = empty_call_of(query.query());
         poses = poses_to_time(bucket, count);
         if (!evict) {
           const SingleTimes times = time_each(poses, query);
@@ -178,6 +182,14 @@ struct QueryRow {
   }
 
  private:
+  static std::optional<double> empty_call_of(const Query& query) {
+    const Footprint footprint = query.footprint();
+    for (const auto& [name, count] : footprint.counts) {
+      if (name == k_empty_call) return count;
+    }
+    return std::nullopt;
+  }
+
   /// The set's truth is that of the meshes.
   bool is_judged() const { return algorithm.traits().body == Body::mesh; }
 
@@ -274,6 +286,7 @@ struct QueryRow {
     count_statuses(state.counters, failures);
     count("judged", check->judged);
     count("mismatch", check->wrong);
+    if (empty_call_ns) count(k_empty_call, *empty_call_ns);
     check->work.report(state.counters);
     if (question == QueryKind::distance && is_judged()) {
       count("error_rms", check->errors.rms());
@@ -303,6 +316,9 @@ struct QueryRow {
     }
     if (failures.count() > 0) {
       label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures.first());
+    }
+    if (empty_call_ns) {
+      label += fmt::format("{}an empty call takes {:.2g} us", label.empty() ? "" : "; ", 1e-3 * *empty_call_ns);
     }
     if (timed_outside) label += fmt::format("{}times include communication", label.empty() ? "" : "; ");
     state.SetLabel(label);

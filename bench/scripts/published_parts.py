@@ -15,7 +15,7 @@ KEPT = ["name", "run_name", "run_type", "sixdof", "error_occurred", "error_messa
         "mismatch", "misses", "p50_ns", "p99_ns", "p999_ns", "p99_least_ns", "p999_least_ns", "max_ns", "max_least_ns",
         "over_1ms", "error_rms", "error_max", "gamma_F_deg", "gamma_F_deg_low", "gamma_F_deg_high", "gamma_F_p95_deg",
         "gamma_max_F_deg", "gamma_T_deg", "magnitude_error_F", "magnitude_error_T", "volume_error_mean", "bytes",
-        "prepare_ns", "ns_per_configuration", "triangles", "on_frontier", "label"]
+        "prepare_ns", "ns_per_configuration", "triangles", "on_frontier", "label", "empty_call_ns"]
 DIGITS = 4  # Significant digits of the numbers that are kept.
 FCL = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts"]
 APPROXIMATE = ["ist", "ist-descent", "vps", "vps-field"]
