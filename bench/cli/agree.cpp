@@ -44,7 +44,8 @@ struct Arguments {
 constexpr const char* k_keys =
     "An answer differs if it contradicts the set: yes at a distance, no at an overlap, or a distance whose error\n"
     "is larger than the set's tolerance plus 1e-9 of A's diagonal. For touching bodies (0 %) both yes and no are\n"
-    "right. A missing answer counts as a difference. Exit code 3 if any answer differs.\n"
+    "right. A missing answer counts as a difference. Algorithms about convex hulls are compared with exact on the\n"
+    "hulls. Exit code 3 if any answer differs.\n"
     "Keys of --json: seed, sample, algorithms[] {name, version, settings}, pairs[] {pair, refusals[], buckets[]\n"
     "{bucket, configurations, split, algorithms[] {algorithm, yes, judged_collide, wrong_collide, judged_distance,\n"
     "wrong_distance, failed, largest_distance_error}}, differences[] {algorithm, bucket, cell, question, answer, "
@@ -73,7 +74,6 @@ std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const Ar
     if (!traits.answers.collide && !traits.answers.distance) {
       throw BadArgument(name + " answers neither yes/no nor distance");
     }
-    if (traits.body != Body::mesh) throw BadArgument(name + " answers for other bodies than the sets' meshes");
     if (!asked_already(algorithm)) add(algorithm);
   }
   if (!arguments.algorithms.empty()) return chosen;

@@ -82,6 +82,7 @@ struct QueryRow {
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
   std::optional<std::array<VectorError, 2>> errors = {};
   results::Outliers worst = {};
+  std::vector<Response> hull_responses = {};  ///< Of `exact`, where the row is about convex hulls.
   std::optional<double> empty_call_ns = {};  ///< That a call from Python takes without the library's work.
 
   results::RowFields fields() const {
@@ -91,7 +92,7 @@ struct QueryRow {
             .pair = pair.pair,
             .bucket = key,
             .order = to_string(order),
-            .body = is_judged() ? "" : std::string(to_string(algorithm.traits().body)),
+            .body = is_about_meshes() ? "" : std::string(to_string(algorithm.traits().body)),
             .runtime = algorithm.traits().runtime,
             .cache = evict ? "cold" : "warm",
             .isolated = is_isolated(algorithm),
@@ -111,11 +112,11 @@ struct QueryRow {
     const std::size_t most = evict ? k_most_cold : bucket.poses.size();
     const std::size_t count = std::min({share.configurations, most, bucket.poses.size()});
     std::span<const Response> exact;
-    if (question == QueryKind::respond) exact = resources.cache.exact_responses(pair, key, count);
+    if (question == QueryKind::respond) exact = exact_responses(bucket, count);
     with_query(failures, [&](auto query) {
       if (!check) {
         if constexpr (requires { query.ask(poses[0]).value.force; }) compare_with_exact(bucket, exact, query);
-        check = check_answers(bucket, count, query, is_judged());
+        check = check_answers(bucket, count, query, hulls());
         empty_call_ns = empty_call_of(query.query());
         poses = poses_to_time(bucket, count);
         if (!evict) {
@@ -159,7 +160,7 @@ struct QueryRow {
   /// PlannedRow::trial.
   double trial(double seconds) {
     const BucketSample& bucket = sample();
-    double each = question == QueryKind::respond ? time_exact() : 0.0;
+    double each = question == QueryKind::respond && is_about_meshes() ? time_exact() : 0.0;
     Failures ignored;
     with_query(ignored, [&](auto query) {
       const auto start = std::chrono::steady_clock::now();
@@ -190,8 +191,19 @@ struct QueryRow {
     return std::nullopt;
   }
 
-  /// The set's truth is that of the meshes.
-  bool is_judged() const { return algorithm.traits().body == Body::mesh; }
+  bool is_about_meshes() const { return algorithm.traits().body == Body::mesh; }
+
+  /// The truth of answers that are not about the meshes, as the set's truth is; null of others.
+  HullTruth* hulls() const { return is_about_meshes() ? nullptr : &resources.cache.hull_truth(pair); }
+
+  /// Those of `exact` to the first configurations, about the bodies that the algorithm answers for.
+  std::span<const Response> exact_responses(const BucketSample& bucket, std::size_t count) {
+    if (is_about_meshes()) return resources.cache.exact_responses(pair, key, count);
+    if (hull_responses.empty()) {
+      hull_responses = hulls()->responses(std::span(bucket.poses).first(std::min(count, PairCache::k_most_exact)));
+    }
+    return hull_responses;
+  }
 
   /// @throws BadArgument for an empty bucket, NeedsSolid
   const BucketSample& sample() const {
@@ -288,7 +300,7 @@ struct QueryRow {
     count("mismatch", check->wrong);
     if (empty_call_ns) count(k_empty_call, *empty_call_ns);
     check->work.report(state.counters);
-    if (question == QueryKind::distance && is_judged()) {
+    if (question == QueryKind::distance) {
       count("error_rms", check->errors.rms());
       count("error_max", check->errors.largest());
     }
@@ -310,9 +322,8 @@ struct QueryRow {
       count("compared", errors->at(0).direction.compared);
     }
     std::string label = resources.settings_of(algorithm).to_string();
-    if (!is_judged()) {
-      label += fmt::format("{}{} instead of the mesh, not judged", label.empty() ? "" : "; ",
-                           to_string(algorithm.traits().body));
+    if (!is_about_meshes()) {
+      label += fmt::format("{}{} instead of the mesh", label.empty() ? "" : "; ", to_string(algorithm.traits().body));
     }
     if (failures.count() > 0) {
       label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures.first());
