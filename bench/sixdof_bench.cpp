@@ -56,6 +56,7 @@ void name_rivals_in_filter(const Registry& registry) {
   std::string filter = benchmark::GetBenchmarkFilter();
   const std::size_t at = find_name(filter, k_rivals);
   if (at == std::string::npos) return;
+  if (filter.starts_with('-') && rival_names(registry).empty()) return;  // all rows but theirs
   const std::vector<std::string> names = with_rivals({k_rivals}, registry);
   filter.replace(at, std::string_view(k_rivals).size(), fmt::format("({})", fmt::join(names, "|")));
   benchmark::SetBenchmarkFilter(filter);
@@ -108,7 +109,8 @@ void run(const Options& options) {
     std::vector<std::string> named_only;
     for (const auto& algorithm : registry.all()) {
       const Traits& traits = algorithm->traits();
-      const bool is_named = traits.is_rival() && has_name(filter, traits.name);
+      // The suite for two meshes of the user's lists all algorithms, and these need no list that names them.
+      const bool is_named = options.own_pair() && traits.is_rival() && has_name(filter, traits.name);
       if (!traits.in_default_runs() && !is_named) named_only.push_back(traits.name);
     }
     const Suite suite = read_suite(options.suite, external, named_only, rival_names(registry));

@@ -40,6 +40,7 @@ class Part:
     name: str
     about: str
     steps: list
+    setup: tuple = ()  # A command that installs what is measured; what it cannot install is not measured.
 
     @property
     def minutes(self):
@@ -57,10 +58,10 @@ def respond_rows(file, minutes, order, *words):
                 f"--benchmark_filter=^respond/algorithm:exact/.*volume:(01|10){order}$", *words)
 
 
-def object_steps(script, minutes, *words):
+def object_steps(script, minutes, *words, algorithms=("exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE)):
     """Steps of bench/scripts/collection or growth: the measurement, and its tables."""
     folder = ["--out", f"{{folder}}/{script}"]
-    algorithms = ",".join(["exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE])
+    algorithms = ",".join(algorithms)
     return [Step(f"{script}/{'results' if script == 'collection' else script}.json",
                  [f"bench/scripts/{script}", *folder, "--jobs", "2", "--grid", "so3:4:2", "--sample", "8", *words, "--algorithms",
                   algorithms, "--budget", f"{minutes}min"], minutes),
@@ -123,9 +124,15 @@ def parts():
         Part("scenes", "scenes of 1,000 and 100,000 bodies", scene_steps()),
         Part("growth", "growth with the number of triangles", object_steps("growth", 10)),
         Part("pairs", "every algorithm on four pairs",
-             [rows("pairs.json", 15, "--suite", "all-algorithms", "--sample", "200", "--budget", "900")]),
+             [rows("pairs.json", 15, "--suite", "all-algorithms", "--benchmark_filter=-algorithm:rivals/", "--sample", "200",
+                   "--budget", "900")]),
         Part("collection", "every algorithm on the objects of the collection",
              object_steps("collection", 25, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10")),
+        Part("rivals", "what bench/rivals/setup has made ready, on four pairs and the collection",
+             [rows("rivals.json", 30, "--suite", "all-algorithms", "--benchmark_filter=algorithm:(exact|fcl-rss|rivals)/",
+                   "--sample", "200", "--budget", "1800"),
+              *object_steps("collection", 30, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10",
+                            algorithms=("exact", "rivals"))], setup=("bench/rivals/setup",)),
     ]
 
 
