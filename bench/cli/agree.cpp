@@ -209,7 +209,9 @@ void add_agree_command(CLI::App& app) {
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->excludes(pairs);
-  command->add_option("--algorithms", arguments->algorithms, "Algorithms to compare: exact,ode,...; rivals: all that are set up")
+  command
+      ->add_option("--algorithms", arguments->algorithms,
+                   "Algorithms to compare: exact,ode,...; rivals: all that are set up")
       ->type_name("ALGORITHM")
       ->default_str("all that answer, except slow ones")
       ->delimiter(',');

@@ -142,10 +142,9 @@ void add_stress_command(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command
       ->add_option("--algorithms,--algorithm", options->algorithms,
-                   "One or more; rivals: all that are set up; generate-distances and generate-volumes are the "
-                   "generators of sets. Those about convex hulls are asked where both bodies are convex")
+                   "One or more; rivals: all set up; generate-distances, generate-volumes: generators of sets")
       ->type_name("ALGORITHM")
-      ->default_str("all but null, slow ones and those of convex hulls")
+      ->default_str("all but null, slow ones and hulls")
       ->delimiter(',')
       ->allow_extra_args(false);
   std::string names = "Families:\n";

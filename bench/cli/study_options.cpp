@@ -27,7 +27,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
       ->type_name("MESH")
       ->default_str("a copy of A")
       ->needs(a);
-  command.add_option("--algorithms", options.algorithms, "Algorithms to try: vps,ist,...; rivals: all that are set up")
+  command.add_option("--algorithms", options.algorithms, "Those to try: vps,ist,...; rivals: all set up")
       ->type_name("ALGORITHM")
       ->default_str("all that answer")
       ->delimiter(',');

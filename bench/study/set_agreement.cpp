@@ -46,7 +46,8 @@ std::string command_of(const Bucket& bucket, const AskedAlgorithm& asked, const 
 /// Asks one kind of query at every pose. Failures go to `counts`, and each answer to `answered`.
 template <class T, class Answered>
 bench::JudgedAnswers ask_bucket(const Bucket& bucket, const AskedAlgorithm& asked, Query& query, QueryKind question,
-                                Outcome<T> (Query::*kind)(const Pose&), AnswerCounts& counts, const Answered& answered) {
+                                Outcome<T> (Query::*kind)(const Pose&), AnswerCounts& counts,
+                                const Answered& answered) {
   bench::KnownAnswer known = bench::KnownAnswer::of(bucket.sample);
   bench::JudgedAnswers judged;
   for (std::size_t i = 0; i < bucket.poses.size(); ++i) {

@@ -13,8 +13,8 @@
 #include "bench/harness/pair_cache.h"
 #include "bench/harness/query_kind.h"
 
-/// Whether algorithms give the answers that a configuration set is made for, and where not. Those about convex hulls are
-/// compared with the truth of the hulls (bench/harness/hull_truth.h) at the same poses.
+/// Whether algorithms give the answers that a configuration set is made for, and where not. Those about convex hulls
+/// are compared with the truth of the hulls (bench/harness/hull_truth.h) at the same poses.
 
 namespace sixdof::study {
 

@@ -19,7 +19,8 @@
 /// - Of those that keep it, answers without an error (above k_rounding) win, then the smallest error. Approximations
 ///   come after those that promise right answers, also where none of their answers was wrong. Of equal ones the fastest
 ///   wins; those whose times do not differ clearly are tied with it.
-/// - Interpreted algorithms (interpreter_of()) are not ranked: their times hold calls that a user's program need not make.
+/// - Interpreted algorithms (interpreter_of()) are not ranked: their times hold calls that a user's program need not
+///   make.
 /// - Without enough judged poses there is no verdict.
 
 namespace sixdof::results {
