@@ -83,7 +83,7 @@ struct QueryRow {
   std::optional<std::array<VectorError, 2>> errors = {};
   results::Outliers worst = {};
   std::vector<Response> hull_responses = {};  ///< Of `exact`, where the row is about convex hulls.
-  std::optional<double> empty_call_ns = {};  ///< That a call from Python takes without the library's work.
+  std::optional<double> empty_call_ns = {};   ///< That a call from Python takes without the library's work.
 
   results::RowFields fields() const {
     return {.query = std::string(to_string(question)),
