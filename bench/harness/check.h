@@ -34,7 +34,7 @@ Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<
     const auto answer = query.ask(pose);
     check.answered.push_back(answer.ok());
     if (!answer.ok()) continue;
-    const Judgement judgement = judge(hulls == nullptr ? of_set : hulls->at(pose), answer.value);
+    const Judgement judgement = judge(hulls == nullptr ? of_set : hulls->at(bucket, pose), answer.value);
     const double largest = check.errors.largest();
     check.add(judgement);
     if (judgement.wrong && !check.first_wrong) check.first_wrong = pose;

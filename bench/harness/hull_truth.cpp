@@ -26,19 +26,20 @@ HullTruth::HullTruth(const Mesh& a, const Mesh& b) : diagonal_(a.diagonal()), a_
   exact_ = exact->prepare(a_, b_ ? *b_ : a_, exact->settings());
 }
 
-KnownAnswer HullTruth::at(const Pose& X_AB) {
+KnownAnswer HullTruth::at(const BucketSample& bucket, const Pose& X_AB) {
   KnownAnswer known{.key = {BucketKind::distance, k_percent}, .target = 0.0, .tolerance = 0.0, .diagonal = diagonal_};
-  const double slack = k_distance_slack * diagonal_;
+  const double of_meshes = bucket.key.percent == 0 ? bucket.target + bucket.tolerance : 0.0;
+  const double near = of_meshes + k_distance_slack * diagonal_;
   if (!required(*exact_, exact_->collide(X_AB))) {
     known.target = required(*exact_, exact_->distance(X_AB)).distance;
-    if (known.target <= slack) known.key.percent = 0.0;
+    if (known.target <= near) known.key.percent = 0.0;
     return known;
   }
   const Response response = required(*exact_, exact_->respond(X_AB));
   known.key.kind = BucketKind::volume;
   known.target = response.volume;
   Pose out = X_AB;
-  if (!response.force.isZero(0.0)) out.t += 2.0 * slack * response.force.normalized();
+  if (!response.force.isZero(0.0)) out.t += 2.0 * near * response.force.normalized();
   if (response.force.isZero(0.0) || !required(*exact_, exact_->collide(out))) known.key.percent = 0.0;
   return known;
 }

@@ -52,7 +52,7 @@ bench::JudgedAnswers ask_bucket(const Bucket& bucket, const AskedAlgorithm& aske
   bench::JudgedAnswers judged;
   for (std::size_t i = 0; i < bucket.poses.size(); ++i) {
     bucket.run.check_cancelled();
-    if (bucket.hulls != nullptr) known = bucket.hulls->at(bucket.poses[i].X_AB);
+    if (bucket.hulls != nullptr) known = bucket.hulls->at(bucket.sample, bucket.poses[i].X_AB);
     std::string words;
     const auto failed = [&words](const std::string& why) { words = why; };
     Outcome<T> outcome = ask_guarded([&] { return (query.*kind)(bucket.poses[i].X_AB); }, failed);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/configuration/bucket_sample.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/scenario/solids.h>
 
@@ -19,7 +20,9 @@ Pose at(double x, double y, double z) { return {Eigen::Matrix3d::Identity(), {x,
 struct Cubes : ::testing::Test {
   const Mesh cube = box_solid({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}, "cube");
   HullTruth hulls{cube, cube};
-  KnownAnswer known(double gap) { return hulls.at(at(0.1, 0.2, 2.0 + gap)); }
+  KnownAnswer known(double gap, const BucketSample& bucket = {.key = {BucketKind::distance, 5}}) {
+    return hulls.at(bucket, at(0.1, 0.2, 2.0 + gap));
+  }
 };
 
 TEST_F(Cubes, HaveDistancesAndVolumes) {
@@ -49,6 +52,13 @@ TEST_F(Cubes, AreNotJudgedNearContact) {
   }
 }
 
+TEST_F(Cubes, AreNotJudgedWhereMeshesTouch) {
+  const BucketSample contact{.key = {BucketKind::distance, 0}, .target = 1e-5};
+  for (const double gap : {0.9e-5, -0.9e-5}) EXPECT_FALSE(judge(known(gap, contact), true).judged) << gap;
+  EXPECT_TRUE(judge(known(0.9e-5), true).wrong) << "of another bucket";
+  EXPECT_TRUE(judge(known(-0.1, contact), false).wrong) << "hulls that overlap where the meshes touch";
+}
+
 TEST_F(Cubes, HaveResponses) {
   const std::vector<Pose> poses{at(0.1, 0.2, 1.9), at(0.0, 0.0, 5.0)};
   const std::vector<Response> responses = hulls.responses(poses);
@@ -63,7 +73,7 @@ TEST(HullTruth, IsNotThatOfTheMeshes) {
   const auto exact = make_exact_algorithm();
   ASSERT_FALSE(exact->prepare(torus, ball, exact->settings())->collide(in_the_hole).value);
   HullTruth hulls(torus, ball);
-  const KnownAnswer known = hulls.at(in_the_hole);
+  const KnownAnswer known = hulls.at({.key = {BucketKind::distance, 5}}, in_the_hole);
   EXPECT_EQ(known.key.kind, BucketKind::volume);
   EXPECT_GT(known.target, 0.0);
   EXPECT_TRUE(judge(known, false).wrong);
