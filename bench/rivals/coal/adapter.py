@@ -77,6 +77,6 @@ class Query:
 
 sixdof_rival.serve(
     Query, name="coal", version=coal.__version__, answers=["collide", "distance"],
-    summary="Coal from Python, trees of OBB and RSS; surfaces only",
+    summary="Coal from Python, trees of OBB and RSS; surfaces only", limits=["collide_of_surfaces"],
     parameters=[sixdof_rival.choice("profile", "requests as constructed, or as Coal's developers advise", "default",
                                     ["default", "tuned"])])

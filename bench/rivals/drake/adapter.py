@@ -90,5 +90,5 @@ class Query:
 
 
 sixdof_rival.serve(Query, name="drake", version=importlib.metadata.version("drake"), body="convex_hull", law="volume",
-                   answers=["collide", "distance", "respond"],
+                   answers=["collide", "distance", "respond"], limits=["own_direction"],
                    summary="Drake from Python: convex hulls, hydroelastic force of a compliant A on a rigid B")

@@ -42,4 +42,5 @@ class Query:
 
 
 sixdof_rival.serve(Query, name="python-fcl", version=importlib.metadata.version("python-fcl"),
-                   summary="FCL from Python, trees of OBB and RSS; surfaces only", answers=["collide", "distance"])
+                   summary="FCL from Python, trees of OBB and RSS; surfaces only", answers=["collide", "distance"],
+                   limits=["collide_of_surfaces"])

@@ -88,10 +88,10 @@ def choice(name, meaning, default, choices):
     return {"name": name, "meaning": meaning, "unit": "1", "default": default, "choices": choices}
 
 
-def serve(query_class, *, name, version, summary, answers, law="none", body="mesh", parameters=()):
+def serve(query_class, *, name, version, summary, answers, law="none", body="mesh", limits=(), parameters=()):
     """Answers requests until the input ends. What the library prints to standard output goes to standard error."""
-    hello = {"protocol": 1, "name": name, "version": version, "summary": summary, "answers": list(answers),
-             "law": law, "body": body, "parameters": list(parameters), "can": ["time", "progress"]}
+    hello = {"protocol": 1, "name": name, "version": version, "summary": summary, "answers": list(answers), "law": law,
+             "body": body, "limits": list(limits), "parameters": list(parameters), "can": ["time", "progress"]}
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     server = _Server(query_class, hello)

@@ -53,5 +53,6 @@ serve(Query, {
   version: version("three-mesh-bvh"),
   summary: "three-mesh-bvh in Node, trees of axis-aligned boxes; surfaces only",
   answers: ["collide", "distance"],
+  limits: ["collide_of_surfaces"],
   parameters: [choice("profile", "how trees are built: CENTER, or SAH", "default", ["default", "tuned"])],
 });

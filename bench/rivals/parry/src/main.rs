@@ -105,6 +105,7 @@ fn main() {
         "summary": "parry3d-f64, two TriMesh; surfaces only",
         "answers": ["collide", "distance", "respond"],
         "law": "depth",
+        "limits": ["collide_of_surfaces", "respond_of_surfaces", "own_direction"],
         "parameters": [
             choice("profile", "anew each query; or contacts kept, internal edges fixed", "default", &["default", "tuned"]),
             choice("points", "distance with closest points", "off", &["off", "on"]),

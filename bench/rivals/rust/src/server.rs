@@ -12,7 +12,7 @@ use crate::{Failed, Mesh, Point, Pose, Query, Refusal, Response, Separation};
 const MOST_WORDS: usize = 400;
 
 /// Answers requests until the input ends. `description` has the keys of the reply to hello: `name`, `version`,
-/// `summary`, `answers`, and optional `law`, `body`, `parameters`. A panic of the library is a failed query.
+/// `summary`, `answers`, and optional `law`, `body`, `limits`, `parameters`. A panic of the library is a failed query.
 pub fn serve<Q: Query>(description: Value) {
     let mut hello = description;
     hello["protocol"] = json!(1);
