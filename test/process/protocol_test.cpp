@@ -227,7 +227,8 @@ TEST(Protocol, RefusesNonsenseWithTheLine) {
   }
   EXPECT_THROW(greeting_of(R"({"protocol": 2, "name": "x", "version": "1", "answers": []})"), Malformed);
   EXPECT_THROW(greeting_of(R"({"protocol": 1, "name": "x", "version": "1", "answers": ["dance"]})"), Malformed);
-  EXPECT_THROW(greeting_of(R"({"protocol": 1, "name": "x", "version": "1", "answers": [], "limits": ["no"]})"), Malformed);
+  EXPECT_THROW(greeting_of(R"({"protocol": 1, "name": "x", "version": "1", "answers": [], "limits": ["no"]})"),
+               Malformed);
   EXPECT_THROW(prepared_of(R"({"prepared": false})"), Malformed);
 }
 

@@ -108,6 +108,12 @@ class Setup(unittest.TestCase):
         self.assertIn("adapter.js", ready["command"])
         self.assertTrue(self.run_setup("jolt", "--list").stdout.strip().endswith(" ready"))
         self.fake("npm", "exit 1")  # what is ready is not installed again
+        ready["adapter"] = "another script, with a greeting of its own"
+        ready["hello"] = None
+        (self.folder / "rivals/ready/jolt.json").write_text(json.dumps(ready))
+        self.assertFalse(self.run_setup("jolt", "--list").stdout.strip().endswith(" ready"))
+        self.assertEqual(self.run_setup("jolt", PATH=path).returncode, 0)
+        self.assertEqual(json.loads((self.folder / "rivals/ready/jolt.json").read_text())["hello"], hello)
         self.assertEqual(self.run_setup("jolt", PATH=path).returncode, 0)
 
     def test_recipes_are_complete(self):
