@@ -127,6 +127,10 @@ class Rivals(unittest.TestCase):
                                            "--algorithms", "rivals,exact", "--sample", "16", "--budget", "20s",
                                            "--json").stdout)
         self.assertIn("spheres", json.dumps(precision))
+        told = self.sixdof("precision", "--a", "cone-1k", "--b", "torus-1k", "--question", "distance", "--algorithms",
+                           "spheres,exact", "--sample", "16", "--budget", "20s").stdout
+        self.assertIn("spheres (python)", told)
+        self.assertIn("algorithms of Python and Node have frontiers of their own", told)
         stress = json.loads(self.sixdof("stress", "--algorithms", "rivals", "--families", "kissing", "--json", "--cases",
                                         self.folder / "cases").stdout)
         self.assertEqual([each["algorithm"] for each in stress], ["spheres"])
