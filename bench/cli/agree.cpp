@@ -60,7 +60,11 @@ std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const Ar
     const std::string& name = algorithm.traits().name;
     AskedAlgorithm asked{&algorithm, settings.at(name), {}};
     for (const std::string& parameter : arguments.parameters) {
-      if (parameter.starts_with(name + ":")) asked.assignments.push_back(parameter.substr(name.size() + 1));
+      const std::size_t colon = parameter.find(':');
+      const std::string whose = parameter.substr(0, colon), assignment = parameter.substr(colon + 1);
+      const Traits& traits = algorithm.traits();
+      const bool of_rivals = whose == k_rivals && traits.is_rival() && bench::has_parameter(traits, assignment);
+      if (whose == name || of_rivals) asked.assignments.push_back(assignment);
     }
     chosen.push_back(std::move(asked));
   };

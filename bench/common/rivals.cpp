@@ -111,7 +111,7 @@ std::vector<std::string> with_rivals(const std::vector<std::string>& names, cons
       if (!suits || suits(registry.find(rival).traits())) all.push_back(rival);
     }
     if (all.size() == before) {
-      throw BadArgument("rivals: none that answers this is set up; bench/rivals/setup does it");
+      throw BadArgument("rivals: none that suits is set up (bench/rivals/setup)");
     }
   }
   return all;

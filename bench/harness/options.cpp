@@ -19,6 +19,7 @@
 #include <sixdof/base/error.h>
 #include "bench/common/completion.h"
 #include "bench/common/help_format.h"
+#include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/shell_text.h"
 #include "bench/common/unknown_word.h"
@@ -287,6 +288,11 @@ int pass_on(std::vector<std::string> flags, Options& options, const std::vector<
 
 }  // namespace
 
+bool has_parameter(const Traits& traits, const std::string& assignment) {
+  return std::ranges::any_of(traits.parameters,
+                             [&](const Parameter& each) { return assignment.starts_with(each.name + "="); });
+}
+
 std::filesystem::path default_manifest() { return data_folder() / "fixtures" / "manifest.json"; }
 
 int parse_options(int argc, const char* const* argv, Options& options) {
@@ -321,8 +327,11 @@ std::map<std::string, Settings> parse_parameters(const std::vector<std::string>&
     if (colon == std::string::npos) {
       throw BadArgument(fmt::format("--parameter {}: must read ALGORITHM:NAME=VALUE", text));
     }
-    const Algorithm& algorithm = registry.find(text.substr(0, colon));
-    settings.at(algorithm.traits().name).set_all({text.substr(colon + 1)});
+    const std::string name = text.substr(0, colon), assignment = text.substr(colon + 1);
+    const auto suits = [&](const Traits& traits) { return has_parameter(traits, assignment); };
+    for (const std::string& each : with_rivals({name}, registry, suits)) {
+      settings.at(registry.find(each).traits().name).set_all({assignment});
+    }
   }
   return settings;
 }

@@ -131,6 +131,8 @@ def parts():
         Part("rivals", "what bench/rivals/setup has made ready, on four pairs and the collection",
              [rows("rivals.json", 30, "--suite", "all-algorithms", "--benchmark_filter=algorithm:(exact|fcl-rss|rivals)/",
                    "--sample", "200", "--budget", "1800"),
+              rows("tuned.json", 15, "--suite", "all-algorithms", "--benchmark_filter=algorithm:(exact|rivals)/", "-p",
+                   "rivals:profile=tuned", "--sample", "200", "--budget", "900"),
               *object_steps("collection", 30, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10",
                             algorithms=("exact", "rivals"))], setup=("bench/rivals/setup",)),
     ]

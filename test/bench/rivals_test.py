@@ -93,6 +93,18 @@ class Rivals(unittest.TestCase):
         self.assertNotIn("--external", measured["outliers"]["command"], "found by name")
         self.assertTrue(self.started.exists())
 
+    def test_parameters_of_all_rivals(self):
+        mode = {"name": "mode", "meaning": "m", "unit": "", "default": "a", "choices": ["a", "b"]}
+        self.set_up("spheres", command=f"{sys.executable} {EXAMPLE}", hello=HELLO | {"parameters": [mode]})
+        self.set_up("plain")
+        out = self.folder / "out.json"
+        words = ["--manifest", MANIFEST, f"--benchmark_filter=^distance/algorithm:spheres/{BUCKET}$", "--sample", "8",
+                 "--benchmark_min_time=0.000001", "--out", out]
+        self.run_program(SIXDOF_BENCH, *words, "-p", "rivals:mode=b")
+        self.assertEqual(json.loads(out.read_text())["benchmarks"][0]["sixdof"]["settings"], {"mode": "b"})
+        refused = self.run_program(SIXDOF_BENCH, *words, "-p", "rivals:size=3", code=1)
+        self.assertIn("rivals: none that suits is set up", refused.stderr)
+
     def test_rows_only_where_they_are_named(self):
         row = f"distance/algorithm:spheres/{BUCKET}"
         self.assertNotIn(row, self.rows(f"--benchmark_filter=^distance/.*/{BUCKET}$"))
