@@ -35,12 +35,6 @@ sixdof_optional_backend(ODE ode libode-dev)
 sixdof_optional_backend(GTS gts libgts-dev)
 sixdof_optional_backend(SIMBODY simbody libsimbody-dev)
 sixdof_optional_backend(CCD ccd libccd-dev)
-if(SIXDOF_WITH_CCD AND TARGET PkgConfig::CCD)
-  pkg_check_modules(QHULL QUIET IMPORTED_TARGET GLOBAL qhull_r)
-  if(NOT QHULL_FOUND)
-    message(STATUS "No qhull_r: without the backend SIXDOF_WITH_CCD (Debian: libqhull-dev)")
-  endif()
-endif()
 
 # sixdof_optional_package(BACKEND TARGET PACKAGE NAME [VERSION]): TARGET if SIXDOF_WITH_BACKEND is on and find_package(NAME
 # VERSION) has it; else a message that names the Debian package, and the backend is left out.

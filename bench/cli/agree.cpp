@@ -18,6 +18,7 @@
 #include "bench/cli/study_options.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
+#include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/study_progress.h"
 #include "bench/harness/options.h"
@@ -44,7 +45,8 @@ struct Arguments {
 constexpr const char* k_keys =
     "An answer differs if it contradicts the set: yes at a distance, no at an overlap, or a distance whose error\n"
     "is larger than the set's tolerance plus 1e-9 of A's diagonal. For touching bodies (0 %) both yes and no are\n"
-    "right. A missing answer counts as a difference. Exit code 3 if any answer differs.\n"
+    "right. A missing answer counts as a difference. Algorithms about convex hulls are compared with exact on the\n"
+    "hulls. Exit code 3 if any answer differs.\n"
     "Keys of --json: seed, sample, algorithms[] {name, version, settings}, pairs[] {pair, refusals[], buckets[]\n"
     "{bucket, configurations, split, algorithms[] {algorithm, yes, judged_collide, wrong_collide, judged_distance,\n"
     "wrong_distance, failed, largest_distance_error}}, differences[] {algorithm, bucket, cell, question, answer, "
@@ -62,13 +64,13 @@ std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const Ar
   const auto asked_already = [&](const Algorithm& algorithm) {
     return std::ranges::any_of(chosen, [&](const AskedAlgorithm& each) { return each.algorithm == &algorithm; });
   };
-  for (const std::string& name : arguments.algorithms) {
+  const auto suits = [](const Traits& traits) { return traits.answers.collide || traits.answers.distance; };
+  for (const std::string& name : with_rivals(arguments.algorithms, registry, suits)) {
     const Algorithm& algorithm = registry.find(name);
     const Traits& traits = algorithm.traits();
     if (!traits.answers.collide && !traits.answers.distance) {
       throw BadArgument(name + " answers neither yes/no nor distance");
     }
-    if (traits.body != Body::mesh) throw BadArgument(name + " answers for other bodies than the sets' meshes");
     if (!asked_already(algorithm)) add(algorithm);
   }
   if (!arguments.algorithms.empty()) return chosen;
@@ -242,7 +244,9 @@ void add_agree_command(CLI::App& app) {
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->excludes(pairs);
-  command->add_option("--algorithms", arguments->algorithms, "Algorithms to compare: exact,ode,...")
+  command
+      ->add_option("--algorithms", arguments->algorithms,
+                   "Algorithms to compare: exact,ode,...; rivals: all that are set up")
       ->type_name("ALGORITHM")
       ->default_str("all that answer, except slow ones")
       ->delimiter(',');

@@ -60,6 +60,7 @@ void print_json(const Registry& registry) {
                     {"timed", traits.timed},
                     {"by_default", traits.in_default_runs()},
                     {"body", to_string(traits.body)},
+                    {"runtime", traits.is_rival() ? nlohmann::ordered_json(traits.runtime) : nlohmann::ordered_json()},
                     {"parameters", parameters}});
   }
   fmt::print("{}\n", json_text(list));
@@ -67,6 +68,7 @@ void print_json(const Registry& registry) {
 
 std::string remark_of(const Traits& traits) {
   if (!traits.timed) return " (not timed)";
+  if (traits.is_rival()) return fmt::format(" (rival, {}: only where it is named)", traits.runtime);
   if (traits.body != Body::mesh) return " (another question: only where it is named)";
   return traits.by_default ? "" : " (slow: only where it is named)";
 }
@@ -102,7 +104,9 @@ void add_algorithms_command(CLI::App& app) {
     register_all_algorithms(registry, options->process);
     options->json ? print_json(registry) : print_text(registry);
   });
-  add_examples(*command, "sixdof algorithms", "sixdof algorithms --json");
+  add_examples(*command, "sixdof algorithms", "sixdof algorithms --json",
+               "Rivals are the libraries that bench/rivals/setup has made ready, below $SIXDOF_RIVALS or "
+               "~/.cache/sixdof-rivals. Lists of algorithms may name all of them: rivals. No program is started here.");
 }
 
 }  // namespace sixdof::cli

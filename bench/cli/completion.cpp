@@ -12,6 +12,7 @@
 #include <sixdof/stability/families.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
+#include "bench/common/rivals.h"
 #include "bench/common/scene_algorithms.h"
 #include "bench/harness/options.h"
 
@@ -24,6 +25,7 @@ ValueTable values() {
   Registry registry;
   register_all_algorithms(registry);
   for (const auto& algorithm : registry.all()) add("ALGORITHM", algorithm->traits().name);
+  if (!rival_names(registry).empty()) add("ALGORITHM", k_rivals);
   for (const auto& algorithm : all_scene_algorithms()) add("PAIR-FINDER", algorithm->traits().name);
   for (const Metric& metric : metrics()) {
     if (metric.name.find('*') == std::string_view::npos) add("METRIC", std::string(metric.name));

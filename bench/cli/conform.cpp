@@ -18,6 +18,7 @@
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
+#include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/query_command.h"
 
@@ -52,7 +53,9 @@ struct Options {
 /// @throws BadArgument for an algorithm that does not exist, or whose right answers are not known
 std::vector<const Algorithm*> chosen_algorithms(const Registry& registry, const std::vector<std::string>& added,
                                                 const Options& options) {
-  std::vector<std::string> names = options.algorithms.empty() ? added : options.algorithms;
+  const auto suits = [](const Traits& traits) { return traits.body == Body::mesh; };
+  std::vector<std::string> names =
+      options.algorithms.empty() ? added : with_rivals(options.algorithms, registry, suits);
   if (names.empty()) {
     for (const auto& algorithm : registry.all()) {
       // `null` answers with constants.
@@ -213,7 +216,9 @@ void add_conform_command(CLI::App& app) {
   auto* const command =
       app.add_subcommand("conform", "Check an algorithm of your own, or any other, against the rules for adapters");
   const auto options = std::make_shared<Options>();
-  command->add_option("--algorithms,--algorithm", options->algorithms, "Algorithms to check, one or more")
+  command
+      ->add_option("--algorithms,--algorithm", options->algorithms,
+                   "Algorithms to check, one or more; rivals: all that are set up")
       ->type_name("ALGORITHM")
       ->default_str("those of --external and those added to this program; without any, those of default runs")
       ->delimiter(',')

@@ -48,6 +48,17 @@ std::string settings_of(const PrecisionPoint& point) {
   return fmt::format("{}", fmt::join(point.sweep.assignments, " "));
 }
 
+std::string interpreter_of(const PrecisionPoint& point) {
+  const Traits& traits = point.algorithm->traits();
+  return results::interpreter_of({.query = "precision", .algorithm = traits.name, .runtime = traits.runtime});
+}
+
+/// "vps", "coal (python)".
+std::string label_of(const PrecisionPoint& point) {
+  const std::string name = point.algorithm->traits().name, interpreter = interpreter_of(point);
+  return interpreter.empty() ? name : fmt::format("{} ({})", name, interpreter);
+}
+
 void add_notes(const PrecisionStudy& study, Sheet& sheet) {
   for (const study::ErrorOrder& order : study::error_orders(study)) {
     sheet.notes.push_back(fmt::format("{} of {}: proportional to {}^{:.2f} (standard error {:.2f}, {} points)",
@@ -61,6 +72,9 @@ void add_notes(const PrecisionStudy& study, Sheet& sheet) {
       sheet.notes.push_back(fmt::format("! {}: {} of {} failed, first: {}", name, point.errors.failed,
                                         study.sample().asked(), point.errors.first_failure));
     }
+  }
+  if (std::ranges::any_of(study.points(), [](const PrecisionPoint& point) { return !interpreter_of(point).empty(); })) {
+    sheet.notes.emplace_back("algorithms of Python and Node have frontiers of their own");
   }
   if (const std::size_t undecided = study.undecided(); undecided > 0) {
     sheet.notes.push_back(fmt::format("{} points of the frontier have costs whose intervals overlap", undecided));
@@ -93,7 +107,7 @@ Sheet precision_sheet(const PrecisionStudy& study) {
     if (!point.measured()) continue;
     std::vector<std::string> line{
         point.faulty() ? "!" : fmt::format("{}{}", on[i].overall ? "*" : "", on[i].own ? "+" : ""),
-        point.algorithm->traits().name,
+        label_of(point),
         settings_of(point),
         fmt::format("{:.2f}", point.prepare_s),
         with_interval(point.metric(cost), factor_of_cost(cost)),

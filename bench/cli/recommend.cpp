@@ -19,6 +19,7 @@
 #include "bench/common/duration.h"
 #include "bench/common/json_text.h"
 #include "bench/common/progress_line.h"
+#include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/harness/run_context.h"
 #include "bench/study/study_pairs.h"
@@ -115,7 +116,11 @@ std::string unmeasured(const results::Choice& choice) {
   const auto count = std::ranges::count_if(choice.candidates, [](const results::Candidate& each) {
     return each.standing == results::Standing::left_out && each.reason.find("budget") != std::string::npos;
   });
-  if (choice.taken() != nullptr || count == 0) return {};
+  if (choice.taken() != nullptr) return {};
+  if (std::ranges::any_of(choice.candidates, &results::Candidate::interpreted)) {
+    return "those that keep the deadline are interpreted, and not ranked";
+  }
+  if (count == 0) return {};
   return fmt::format("nothing that was measured can be taken, and {} of {} settings did not fit into the budget", count,
                      choice.candidates.size());
 }
@@ -178,10 +183,12 @@ class Recommendation {
 
   /// Those of --algorithms that answer the question; where a single question is asked, all of them.
   std::vector<std::string> names_that_answer(QueryKind question) const {
-    std::vector<std::string> names = options_.study.algorithms;
-    if (questions_.size() == 1) return names;
+    if (questions_.size() == 1) return options_.study.algorithms;
+    std::vector<std::string> names = with_rivals(options_.study.algorithms, registry_);
     std::erase_if(names, [&](const std::string& name) {
-      return !bench::answers(registry_.find(name).traits().answers, question);
+      const Traits& traits = registry_.find(name).traits();
+      const bool is_of_hulls = traits.is_rival() && traits.body != Body::mesh;
+      return is_of_hulls || !bench::answers(traits.answers, question);
     });
     return names;
   }

@@ -83,8 +83,10 @@ std::string candidate_text(const Verdict& verdict, const Candidate& candidate) {
       return candidate.reason;
     case Standing::late:
       return fmt::format("{}; {}", candidate.reason, answers_text(verdict, candidate));
-    case Standing::taken:
     case Standing::not_ranked:
+      if (candidate.interpreted) break;
+      return fmt::format("{}; {}", answers_text(verdict, candidate), time_text(verdict, candidate));
+    case Standing::taken:
       return fmt::format("{}; {}", answers_text(verdict, candidate), time_text(verdict, candidate));
     case Standing::tied:
     case Standing::slower:

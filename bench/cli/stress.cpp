@@ -22,6 +22,7 @@
 #include "bench/cli/study_options.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
+#include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/study_progress.h"
 #include "bench/study/stress_processes.h"
@@ -65,13 +66,8 @@ study::StressPlan plan_of(const Options& options, const Registry& registry) {
       .memory_bytes = 1e9 * options.memory_gb,
       .processes = std::max(1u, std::thread::hardware_concurrency()),
       .external = options.external};
-  for (const std::string& name : options.algorithms) {
-    const Algorithm& algorithm = registry.find(name);
-    if (algorithm.traits().body != Body::mesh) {
-      throw BadArgument(fmt::format("{} answers for the {} of the meshes; the true answers for these are not known",
-                                    name, to_string(algorithm.traits().body)));
-    }
-    plan.algorithms.push_back(&algorithm);
+  for (const std::string& name : with_rivals(options.algorithms, registry)) {
+    plan.algorithms.push_back(&registry.find(name));
   }
   if (plan.algorithms.empty()) {
     for (const auto& algorithm : registry.all()) {
@@ -171,9 +167,9 @@ void add_stress_command(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command
       ->add_option("--algorithms,--algorithm", options->algorithms,
-                   "One or more; generate-distances and generate-volumes are the generators of sets")
+                   "One or more; rivals: all set up; generate-distances, generate-volumes: generators of sets")
       ->type_name("ALGORITHM")
-      ->default_str("all but null, slow ones and those of convex hulls")
+      ->default_str("all but null, slow ones and hulls")
       ->delimiter(',')
       ->allow_extra_args(false);
   std::string names = "Families:\n";

@@ -8,6 +8,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/shell_text.h>
+#include "bench/common/rivals.h"
 
 namespace sixdof::cli {
 
@@ -25,7 +26,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
       ->type_name("MESH")
       ->default_str("a copy of A")
       ->needs(a);
-  command.add_option("--algorithms", options.algorithms, "Algorithms to try: vps,ist,...")
+  command.add_option("--algorithms", options.algorithms, "Those to try: vps,ist,...; rivals: all set up")
       ->type_name("ALGORITHM")
       ->default_str("all that answer")
       ->delimiter(',');
@@ -62,7 +63,10 @@ bench::Options harness_options(const StudyOptions& options, std::size_t sample, 
 std::vector<const Algorithm*> study_algorithms(const Registry& registry, const std::vector<std::string>& names,
                                                bench::QueryKind question) {
   std::vector<const Algorithm*> chosen;
-  for (const std::string& name : names) {
+  const auto suits = [&](const Traits& traits) {
+    return bench::answers(traits.answers, question) && traits.body == Body::mesh;
+  };
+  for (const std::string& name : with_rivals(names, registry, suits)) {
     const Algorithm& algorithm = registry.find(name);
     if (!bench::answers(algorithm.traits().answers, question)) {
       throw BadArgument(fmt::format("{} does not answer {}", name, to_string(question)));
@@ -109,6 +113,7 @@ void leave_out_unasked(const Registry& registry, const std::vector<const Algorit
     std::string why = "does not answer what is asked";
     if (!traits.timed || !traits.by_default) why = "too slow for all; asked where it is named";
     if (traits.body != Body::mesh) why = fmt::format("answers for the {} of the meshes", to_string(traits.body));
+    if (traits.is_rival()) why = "a rival; asked where it is named";
     if (traits.name == "null") why = "answers with constants";
     progress.leave_out(traits.name, std::move(why));
   }

@@ -33,7 +33,8 @@ void add_study_options(CLI::App& command, StudyOptions& options);
 /// @param arguments the command line for the result's context @throws BadArgument
 bench::Options harness_options(const StudyOptions& options, std::size_t sample, std::string arguments);
 
-/// The algorithms that answer the question: those of --algorithms, or all that are timed but `null`.
+/// The algorithms that answer the question: those of --algorithms, where "rivals" names all rivals that do, or all of
+/// default runs but `null`.
 /// @throws BadArgument for one that does not exist or gives no such answer
 std::vector<const Algorithm*> study_algorithms(const Registry& registry, const std::vector<std::string>& names,
                                                bench::QueryKind question);

@@ -54,8 +54,10 @@ struct TableLine {
 
 /// The lines of a pair, query and kind of bucket: by bucket, then in the order in which the files name the algorithms.
 struct ResultTable {
-  std::string pair, query;
+  std::string pair;  ///< results::bodies_of() its rows.
+  std::string query;
   BucketKind kind;
+  std::string apart;  ///< results::class_of() its rows.
   std::vector<TableLine> lines;
 };
 
@@ -84,8 +86,8 @@ struct Sheet {
 /// @param input that of `table`; columns of several files stand side by side, with fewer of each
 Sheet sheet_of(const ResultTable& table, const TableInput& input);
 
-/// One sheet per query over all pairs, a line per pair and algorithm, a column per bucket. Errors are over all buckets:
-/// the mean of means, or the largest; faults are sums.
+/// One sheet per query and class over all pairs, a line per pair and algorithm, a column per bucket. Errors are over
+/// all buckets: the mean of means, or the largest; faults are sums.
 /// @param tables of one file
 std::vector<Sheet> wide_sheets_of(const std::vector<ResultTable>& tables);
 

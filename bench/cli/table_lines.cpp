@@ -76,7 +76,7 @@ std::vector<ResultTable> tables_of(const TableInput& input) {
   for (const results::RowGroup& group : input.groups) {
     const results::RowFields& fields = group.fields();
     if (!fields.bucket) continue;
-    // Answers about other bodies stand in tables of their own.
+    // Answers about other bodies, and those of interpreted algorithms, stand in tables of their own.
     const std::string pair = bodies_of(fields);
     ResultTable& table = find_or_add(
         tables,
@@ -84,7 +84,7 @@ std::vector<ResultTable> tables_of(const TableInput& input) {
           return t.pair == pair && t.query == fields.query && t.kind == fields.bucket->kind;
         },
         [&] {
-          return ResultTable{pair, fields.query, fields.bucket->kind, {}};
+          return ResultTable{pair, fields.query, fields.bucket->kind, class_of(fields), {}};
         });
     TableLine& line = find_or_add(
         table.lines,

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -107,22 +110,25 @@ std::string configurations_cell(const WideLine& line) {
 }  // namespace
 
 std::vector<Sheet> wide_sheets_of(const std::vector<ResultTable>& tables) {
-  std::vector<std::string> queries;
+  std::vector<std::pair<std::string, std::string>> kinds;  // class and query
   for (const ResultTable& table : tables) {
-    if (std::ranges::find(queries, table.query) == queries.end()) queries.push_back(table.query);
+    const std::pair kind(table.apart, table.query);
+    if (std::ranges::find(kinds, kind) == kinds.end()) kinds.push_back(kind);
   }
+  std::ranges::stable_sort(kinds, {}, [](const auto& kind) { return !kind.first.empty(); });
   std::vector<Sheet> sheets;
-  for (const std::string& query : queries) {
+  for (const auto& [apart, query] : kinds) {
     std::vector<const ResultTable*> of_query;
     std::set<BucketKey> buckets;
     for (const ResultTable& table : tables) {
-      if (table.query != query) continue;
+      if (table.query != query || table.apart != apart) continue;
       of_query.push_back(&table);
       for (const TableLine& line : table.lines) buckets.insert(line.bucket);
     }
     const std::vector<ErrorColumn> errors = error_columns(query);
     Sheet& sheet = sheets.emplace_back();
-    sheet.title = query + ": cpu mean / wall clock p99, us";
+    sheet.title = apart.empty() ? query : fmt::format("{}, {}", query, apart);
+    sheet.title += ": cpu mean / wall clock p99, us";
     sheet.columns = {{"", "pair", true}, {"", "algorithm", true}, {"", "n"}};
     for (const BucketKey bucket : buckets) sheet.columns.push_back({to_string(bucket.kind), bucket_text(bucket)});
     for (const ErrorColumn& column : errors) sheet.columns.push_back({"", column.title});

@@ -1,8 +1,15 @@
 #include "bench/common/all_algorithms.h"
 
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/process/remote_algorithm.h>
 #include <sixdof/query/registrar.h>
+#include "bench/common/rivals.h"
+#include "bench/common/run_guarded.h"
 #include "bench/common/serve_algorithm.h"
 #ifdef SIXDOF_WITH_BULLET
 #include <sixdof/algorithm/bullet/bullet.h>
@@ -75,7 +82,8 @@ void register_backends(Registry& registry) {
 
 }  // namespace
 
-std::vector<std::string> register_all_algorithms(Registry& registry, const ProcessOptions& options) {
+std::vector<std::string> register_all_algorithms(Registry& registry, const ProcessOptions& options,
+                                                 std::string_view program) {
   Registry local;
   register_core_algorithms(local);
   const std::size_t own = local.all().size();
@@ -95,8 +103,18 @@ std::vector<std::string> register_all_algorithms(Registry& registry, const Proce
     }
     registry.add(std::move(algorithm));
   }
+  std::vector<std::pair<std::string, std::string>> external;
+  std::set<std::string> replaced;
   for (const std::string& text : options.external) {
-    const auto [name, command] = parse_external(text);
+    external.push_back(parse_external(text));
+    replaced.insert(external.back().first);
+  }
+  if (options.rivals) {
+    for (const std::string& warning : register_rivals(registry, rivals_folder(), limits, replaced)) {
+      print_message(program, fmt::format("warning: rival left out: {}", warning));
+    }
+  }
+  for (const auto& [name, command] : external) {
     registry.add(RemoteAlgorithm::external(name, command, limits));
     added.push_back(name);
   }

@@ -4,11 +4,8 @@
 
 namespace sixdof {
 
-/// Whether this build has Qhull, which makes convex hulls.
-bool has_hulls();
-
-/// The convex hull of a mesh's vertices as a solid (algorithm/ccd/convex_hull.h).
-/// @throws BadArgument in a build without Qhull; BadMesh if the vertices lie in a plane
+/// convex_hull() (oracle/convex_hull.h) of a mesh, kept in the cache on disk (base/cache.h) by the mesh's content hash.
+/// @throws BadMesh if the vertices lie in a plane
 Mesh hull_of(const Mesh& mesh);
 
 }  // namespace sixdof

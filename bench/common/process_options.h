@@ -19,6 +19,7 @@ struct ProcessOptions {
   std::string query_timeout = "10s";
   std::string prepare_timeout = "10min";
   double memory_gb = default_memory_gb();  ///< 0 for no limit.
+  bool rivals = true;                      ///< Those that are set up (rivals.h).
 
   static double default_memory_gb();
 

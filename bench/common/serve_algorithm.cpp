@@ -20,7 +20,7 @@ std::optional<int> serve_if_asked(int argc, const char* const* argv) {
   if (argc != 3 || std::strcmp(argv[1], k_word) != 0) return std::nullopt;
   return run_guarded("sixdof", [&] {
     Registry registry;
-    register_all_algorithms(registry);
+    register_all_algorithms(registry, {.rivals = false});
     serve_on_standard_streams(registry.find(argv[2]));
   });
 }

@@ -7,10 +7,11 @@
 
 #include <sixdof/configuration/bucket_sample.h>
 #include "bench/harness/guarded_query.h"
+#include "bench/harness/hull_truth.h"
 #include "bench/harness/judge.h"
 #include "bench/harness/work.h"
 
-/// Compares answers with the set's truth, before anything is timed.
+/// Compares answers with the truth, before anything is timed.
 
 namespace sixdof::bench {
 
@@ -23,32 +24,25 @@ struct Check : JudgedAnswers {
 };
 
 /// Asks the first `count` configurations once, however long it takes: rows that are compared ask the same ones.
-/// @param known_at of a pose what its answer is compared with, as a std::optional<KnownAnswer>; empty: not judged
-template <class Ask, class KnownAt>
-Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query, KnownAt known_at) {
+/// @param hulls the truth of answers about convex hulls; null for answers about the meshes, as the set's truth is
+template <class Ask>
+Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query,
+                    HullTruth* hulls = nullptr) {
+  const KnownAnswer of_set = KnownAnswer::of(bucket);
   Check check;
   for (const Pose& pose : std::span(bucket.poses).first(count)) {
     const auto answer = query.ask(pose);
     check.answered.push_back(answer.ok());
     if (!answer.ok()) continue;
-    if (const std::optional<KnownAnswer> known = known_at(pose)) {
-      const Judgement judgement = judge(*known, answer.value);
-      const double largest = check.errors.largest();
-      check.add(judgement);
-      if (judgement.wrong && !check.first_wrong) check.first_wrong = pose;
-      if (judgement.missed && !check.first_missed) check.first_missed = pose;
-      if (check.errors.largest() > largest) check.largest_error = pose;
-    }
+    const Judgement judgement = judge(hulls == nullptr ? of_set : hulls->at(bucket, pose), answer.value);
+    const double largest = check.errors.largest();
+    check.add(judgement);
+    if (judgement.wrong && !check.first_wrong) check.first_wrong = pose;
+    if (judgement.missed && !check.first_missed) check.first_missed = pose;
+    if (check.errors.largest() > largest) check.largest_error = pose;
     check.work.add(query.query().work());
   }
   return check;
-}
-
-/// Against the truth of the bucket, which is about the meshes.
-template <class Ask>
-Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query) {
-  const KnownAnswer known = KnownAnswer::of(bucket);
-  return check_answers(bucket, count, query, [&known](const Pose&) { return std::optional<KnownAnswer>(known); });
 }
 
 }  // namespace sixdof::bench

@@ -1,44 +1,53 @@
 #include "bench/harness/hull_truth.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/error.h>
 #include "bench/common/hulls.h"
 
 namespace sixdof::bench {
+namespace {
 
-HullTruth::HullTruth(const Mesh& a, const Mesh& b)
-    : a_(hull_of(a)), b_(hull_of(b)), diagonal_(a.diagonal()), smaller_volume_(std::min(a_.volume(), b_.volume())) {
-  const auto exact = make_exact_algorithm();
-  query_ = exact->prepare(a_, b_, exact->settings());
+/// Any bucket but that of contact.
+constexpr double k_percent = 1.0;
+
+template <class T>
+T required(const Query& exact, const Outcome<T>& answer) {
+  if (!answer.ok()) throw Error(fmt::format("exact gives no answer about convex hulls: {}", exact.diagnosis()));
+  return answer.value;
 }
 
-std::optional<KnownAnswer> HullTruth::at(const Pose& X_AB) {
-  const Outcome<bool> touches = query_->collide(X_AB);
-  if (!touches.ok()) return std::nullopt;
-  KnownAnswer known{.key = {BucketKind::volume, 1.0}, .diagonal = diagonal_};  // any volume
-  if (touches.value) {
-    const Outcome<Response> overlap = query_->respond(X_AB);
-    if (!overlap.ok() || overlap.value.volume < k_contact * smaller_volume_) return std::nullopt;
-    known.target = overlap.value.volume;
-  } else {
-    const Outcome<Separation> gap = query_->distance(X_AB);
-    if (!gap.ok() || gap.value.distance < k_contact * diagonal_) return std::nullopt;
-    known.target = gap.value.distance;
-    known.key = {BucketKind::distance, 100.0 * known.target / diagonal_};
+}  // namespace
+
+HullTruth::HullTruth(const Mesh& a, const Mesh& b) : diagonal_(a.diagonal()), a_(hull_of(a)) {
+  if (&a != &b) b_ = std::make_unique<const Mesh>(hull_of(b));
+  const auto exact = make_exact_algorithm();
+  exact_ = exact->prepare(a_, b_ ? *b_ : a_, exact->settings());
+}
+
+KnownAnswer HullTruth::at(const BucketSample& bucket, const Pose& X_AB) {
+  KnownAnswer known{.key = {BucketKind::distance, k_percent}, .target = 0.0, .tolerance = 0.0, .diagonal = diagonal_};
+  const double of_meshes = bucket.key.percent == 0 ? bucket.target + bucket.tolerance : 0.0;
+  const double near = of_meshes + k_distance_slack * diagonal_;
+  if (!required(*exact_, exact_->collide(X_AB))) {
+    known.target = required(*exact_, exact_->distance(X_AB)).distance;
+    if (known.target <= near) known.key.percent = 0.0;
+    return known;
   }
+  const Response response = required(*exact_, exact_->respond(X_AB));
+  known.key.kind = BucketKind::volume;
+  known.target = response.volume;
+  Pose out = X_AB;
+  if (!response.force.isZero(0.0)) out.t += 2.0 * near * response.force.normalized();
+  if (response.force.isZero(0.0) || !required(*exact_, exact_->collide(out))) known.key.percent = 0.0;
   return known;
 }
 
 std::vector<Response> HullTruth::responses(std::span<const Pose> poses) {
-  std::vector<Response> responses;
-  for (const Pose& pose : poses) {
-    const Outcome<Response> answer = query_->respond(pose);
-    if (!answer.ok()) throw Error("exact gives no response of the hulls: " + query_->diagnosis());
-    responses.push_back(answer.value);
-  }
-  return responses;
+  std::vector<Response> list;
+  for (const Pose& pose : poses) list.push_back(required(*exact_, exact_->respond(pose)));
+  return list;
 }
 
 }  // namespace sixdof::bench

@@ -1,41 +1,38 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include <sixdof/geometry/mesh.h>
-#include <sixdof/geometry/pose.h>
 #include <sixdof/query/algorithm.h>
 #include "bench/harness/judge.h"
 
 namespace sixdof::bench {
 
-/// What `exact` says of the convex hulls of two meshes: the truth of algorithms that answer for hulls
-/// (Body::convex_hull).
+/// The true answers about the convex hulls of two meshes: those of `exact` on the hulls (common/hulls.h). A set's poses
+/// are solved for the meshes, so each has a truth of its own.
 class HullTruth {
  public:
-  /// Nearer to contact than this fraction of A's diagonal, or overlapping by less than this fraction of the smaller
-  /// hull's volume, nothing is judged: Qhull takes points within its rounding for coplanar, and some libraries keep
-  /// vertices in 32 bits.
-  static constexpr double k_contact = 1e-6;
-
-  /// @throws BadArgument in a build without Qhull; BadMesh if the vertices of a mesh lie in a plane
+  /// @throws BadMesh if the vertices of a mesh lie in a plane
   HullTruth(const Mesh& a, const Mesh& b);
   HullTruth(const HullTruth&) = delete;
   HullTruth& operator=(const HullTruth&) = delete;
 
-  /// Empty near contact, and where `exact` has no answer.
-  std::optional<KnownAnswer> at(const Pose& X_AB);
+  /// As a bucket of hulls would have it: a distance, or an overlap volume. It is the bucket of contact (0 %), where
+  /// yes/no is not judged, if the hulls are as close to contact as k_distance_slack or, where the pose is of the set's
+  /// bucket of contact, as the meshes are: if they are so far apart at most, or apart once B is moved by twice that
+  /// length along the force. @throws Error if `exact` has no answer
+  KnownAnswer at(const BucketSample& bucket, const Pose& X_AB);
 
-  /// @throws Error where `exact` has no answer
+  /// Responses of `exact` at these poses. @throws Error likewise
   std::vector<Response> responses(std::span<const Pose> poses);
 
  private:
-  const Mesh a_, b_;
-  const double diagonal_, smaller_volume_;
-  std::unique_ptr<Query> query_;  ///< Of a_ and b_.
+  const double diagonal_;  ///< Of A's box.
+  const Mesh a_;
+  std::unique_ptr<const Mesh> b_;  ///< Null for copies of one mesh.
+  std::unique_ptr<Query> exact_;
 };
 
 }  // namespace sixdof::bench

@@ -20,6 +20,7 @@
 #include <sixdof/base/shell_text.h>
 #include "bench/common/completion.h"
 #include "bench/common/help_format.h"
+#include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/unknown_word.h"
 
@@ -285,6 +286,12 @@ int pass_on(std::vector<std::string> flags, Options& options, const std::vector<
   return k_exit_usage;
 }
 
+/// Whether an algorithm has the parameter of "NAME=VALUE".
+bool has_parameter(const Traits& traits, const std::string& assignment) {
+  return std::ranges::any_of(traits.parameters,
+                             [&](const Parameter& each) { return assignment.starts_with(each.name + "="); });
+}
+
 }  // namespace
 
 std::filesystem::path default_manifest() { return data_folder() / "fixtures" / "manifest.json"; }
@@ -321,8 +328,11 @@ std::map<std::string, Settings> parse_parameters(const std::vector<std::string>&
     if (colon == std::string::npos) {
       throw BadArgument(fmt::format("--parameter {}: must read ALGORITHM:NAME=VALUE", text));
     }
-    const Algorithm& algorithm = registry.find(text.substr(0, colon));
-    settings.at(algorithm.traits().name).set_all({text.substr(colon + 1)});
+    const std::string name = text.substr(0, colon), assignment = text.substr(colon + 1);
+    const auto suits = [&](const Traits& traits) { return has_parameter(traits, assignment); };
+    for (const std::string& each : with_rivals({name}, registry, suits)) {
+      settings.at(registry.find(each).traits().name).set_all({assignment});
+    }
   }
   return settings;
 }

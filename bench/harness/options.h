@@ -56,7 +56,7 @@ std::filesystem::path default_manifest();
 int parse_options(int argc, const char* const* argv, Options& options);
 
 /// The settings of every algorithm by its name: defaults, and what the command line says.
-/// @param parameters "ALGORITHM:NAME=VALUE"
+/// @param parameters "ALGORITHM:NAME=VALUE"; "rivals" stands for all rivals that have the parameter
 /// @throws BadArgument for an algorithm or parameter that does not exist
 std::map<std::string, Settings> parse_parameters(const std::vector<std::string>& parameters, const Registry& registry);
 

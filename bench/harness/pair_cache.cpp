@@ -78,6 +78,12 @@ std::span<const Response> PairCache::exact_responses(const CatalogueEntry& entry
   return std::span(responses).first(count);
 }
 
+HullTruth& PairCache::hull_truth(const CatalogueEntry& entry) {
+  std::unique_ptr<HullTruth>& truth = hull_truths_[entry.pair];
+  if (!truth) truth = std::make_unique<HullTruth>(mesh(entry.a), mesh(entry.b));
+  return *truth;
+}
+
 std::unique_ptr<Query> PairCache::prepare(const Algorithm& algorithm, const Settings& settings, const Mesh& a,
                                           const Mesh& b) {
   ++counts_.structures_prepared;

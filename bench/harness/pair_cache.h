@@ -17,6 +17,7 @@
 #include <sixdof/configuration/set_catalogue.h>
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/query/algorithm.h>
+#include "bench/harness/hull_truth.h"
 
 namespace sixdof::bench {
 
@@ -60,6 +61,9 @@ class PairCache {
   /// prepared queries. The span is valid until the next call of exact_responses().
   /// @throws NeedsSolid
   std::span<const Response> exact_responses(const CatalogueEntry& set, BucketKey key, std::size_t count);
+
+  /// Of the pair's convex hulls, which are made once. Valid while the cache lives. @throws BadMesh as HullTruth does
+  HullTruth& hull_truth(const CatalogueEntry& set);
 
   /// Enough for a mean.
   static constexpr std::size_t k_most_exact = 256;
@@ -110,6 +114,7 @@ class PairCache {
   std::map<PairBucket, BucketSample> buckets_;
   std::size_t poses_ = 0;  ///< In buckets_.
   std::map<PairBucket, std::vector<Response>> exact_responses_;
+  std::map<std::string, std::unique_ptr<HullTruth>> hull_truths_;  ///< By name of the pair.
   std::list<Prepared> prepared_;  ///< Most recently used first.
 };
 

@@ -37,8 +37,10 @@ std::string query_command(const std::string& a, const std::string& b, const Algo
 std::string process_option(const Algorithm& algorithm) {
   const auto* const remote = dynamic_cast<const RemoteAlgorithm*>(&algorithm);
   if (remote == nullptr) return {};
-  std::string words = " --isolate";
-  if (!remote->command_line().empty()) {
+  std::string words;
+  if (remote->local() != nullptr) {
+    words = " --isolate";
+  } else if (!algorithm.traits().is_rival()) {
     words = fmt::format(" --external {}", shell_quoted(algorithm.traits().name + "=" + remote->command_line()));
   }
   constexpr double k_gb = 1e9;

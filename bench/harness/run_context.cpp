@@ -75,18 +75,18 @@ std::string Options::reproduction_words() const {
   return words.starts_with(' ') ? words.substr(1) : words;
 }
 
-Json run_context(const Options& options, const Registry& registry, const std::map<std::string, Settings>& settings) {
+Json run_context(const Options& options, const Registry& registry, const std::map<std::string, Settings>& settings,
+                 const std::function<bool(const Traits&)>& is_asked) {
   Json context = context_of_benchmark();
   for (const auto& [key, value] : build_info()) context[key] = value;
+  std::vector<std::string> isolated;
   for (const auto& algorithm : registry.all()) {
     const Traits& traits = algorithm->traits();
+    if (is_asked && !is_asked(traits)) continue;
+    if (is_isolated(*algorithm)) isolated.push_back(traits.name);
     context["algorithm:" + traits.name] = traits.version;
     const std::string text = settings.at(traits.name).to_string();
     if (!text.empty()) context["settings:" + traits.name] = text;
-  }
-  std::vector<std::string> isolated;
-  for (const auto& algorithm : registry.all()) {
-    if (is_isolated(*algorithm)) isolated.push_back(algorithm->traits().name);
   }
   if (!isolated.empty()) context["isolated"] = fmt::format("{}", fmt::join(isolated, ","));
   context["arguments"] = options.arguments;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -14,8 +15,10 @@ namespace sixdof::bench {
 /// The "context" of a result file when a run begins: Google Benchmark's own keys, build, processor, algorithms with
 /// their settings, options. The store adds "mesh:NAME" and "set:NAME", the content hashes of what rows use.
 /// @param settings of every algorithm, by name
+/// @param is_asked which algorithms it names; all without it
 nlohmann::ordered_json run_context(const Options& options, const Registry& registry,
-                                   const std::map<std::string, Settings>& settings);
+                                   const std::map<std::string, Settings>& settings,
+                                   const std::function<bool(const Traits&)>& is_asked = {});
 
 /// Why rows of two runs do not belong in one file: another machine, build, algorithm, setting, sample, seed or way to
 /// measure. "sample is 64, now 32; ..."; empty if they belong together. The choice of rows and --budget may differ,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <mutex>
 #include <regex>
+#include <set>
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -187,8 +188,14 @@ void run_rows(const std::vector<PlannedRow>& rows, const Options& options, const
   if (options.list_only) return list_rows(chosen);
   warn_of_build();
   std::vector<std::string> order;
-  for (const PlannedRow* const row : chosen) order.push_back(row->name);
-  ResultStore store(std::move(order), run_context(options, resources.registry, resources.settings));
+  std::set<std::string> algorithms;
+  for (const PlannedRow* const row : chosen) {
+    order.push_back(row->name);
+    algorithms.insert(row->fields.algorithm);
+  }
+  // Another rival that is set up must not keep a run from being continued.
+  const auto is_asked = [&](const Traits& traits) { return !traits.is_rival() || algorithms.contains(traits.name); };
+  ResultStore store(std::move(order), run_context(options, resources.registry, resources.settings, is_asked));
   if (!options.out.empty()) store.open(options.out, options.out_format, options.resume);
   if (const auto there = std::erase_if(chosen, [&](const PlannedRow* row) { return store.has(row->name); });
       there > 0) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/results/row.h>
 #include "bench/common/interrupt.h"
 
 namespace sixdof::bench {
@@ -28,8 +29,8 @@ double trial(const PlannedRow& row, double seconds) {
 
 std::string group_of(const results::RowFields& fields) {
   if (!fields.bucket) return {};
-  return fmt::format("{}/{}/{}/{}/{}/{}", fields.query, fields.pair, fields.bucket->name(), fields.order, fields.cache,
-                     fields.sample_limit.value_or(0));
+  return fmt::format("{}/{}/{}/{}/{}/{}", fields.query, bodies_of(fields), fields.bucket->name(), fields.order,
+                     fields.cache, fields.sample_limit.value_or(0));
 }
 
 SamplePlan::SamplePlan(const std::vector<const PlannedRow*>& rows) {

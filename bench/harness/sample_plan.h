@@ -10,7 +10,7 @@
 
 namespace sixdof::bench {
 
-/// What rows have in common that differ in the algorithm alone: query, pair, bucket, order, state of the caches and
+/// What rows have in common that differ in the algorithm alone: query, bodies, bucket, order, state of the caches and
 /// limit of the sample. Empty for rows that ask no configurations of a bucket.
 std::string group_of(const results::RowFields& fields);
 

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sixdof/base/error.h>
+#include "bench/common/rivals.h"
 
 namespace sixdof::bench {
 namespace {
@@ -35,7 +36,7 @@ bool is_one_of(const std::vector<std::string>& list, const std::string& word) {
 }  // namespace
 
 Suite read_suite(const std::filesystem::path& file, const std::vector<std::string>& external_algorithms,
-                 const std::vector<std::string>& named_only) {
+                 const std::vector<std::string>& named_only, const std::vector<std::string>& rivals) {
   std::ifstream in(file);
   if (!in) throw BadFile(file.string(), "cannot be opened");
   struct Entry {
@@ -57,7 +58,9 @@ Suite read_suite(const std::filesystem::path& file, const std::vector<std::strin
         if (values == "all") continue;
         allowed = values.get<std::vector<std::string>>();
         if (allowed.empty()) throw BadFile(file.string(), key, "an empty list");
-        if (key == "algorithm") allowed.insert(allowed.end(), external_algorithms.begin(), external_algorithms.end());
+        if (key != "algorithm") continue;
+        if (is_one_of(allowed, k_rivals)) allowed.insert(allowed.end(), rivals.begin(), rivals.end());
+        allowed.insert(allowed.end(), external_algorithms.begin(), external_algorithms.end());
       }
     }
   } catch (const nlohmann::json::exception& e) {

@@ -21,8 +21,9 @@ using Suite = std::function<std::optional<std::size_t>(std::string_view)>;
 /// that a row belongs to counts.
 /// @param external_algorithms belong wherever an entry lists algorithms
 /// @param named_only algorithms that "all" leaves out
+/// @param rivals for which "rivals" stands in a list of algorithms (common/rivals.h)
 /// @throws BadFile
 Suite read_suite(const std::filesystem::path& file, const std::vector<std::string>& external_algorithms,
-                 const std::vector<std::string>& named_only);
+                 const std::vector<std::string>& named_only, const std::vector<std::string>& rivals = {});
 
 }  // namespace sixdof::bench

@@ -51,6 +51,7 @@ std::vector<PlannedRow> prepare_rows(const Resources& resources) {
                                  .algorithm = algorithm->traits().name,
                                  .settings = resources.settings_of(*algorithm).to_string(),
                                  .pair = pair.pair,
+                                 .runtime = algorithm->traits().runtime,
                                  .isolated = is_isolated(*algorithm)},
                       .unit = benchmark::kMillisecond,
                       .manual_time = is_isolated(*algorithm)});

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
-#include "bench/common/hulls.h"
 #include "bench/harness/cache_eviction.h"
 #include "bench/harness/check.h"
 #include "bench/harness/failure_counters.h"
@@ -39,6 +38,8 @@ constexpr std::size_t k_trial = 8;
 constexpr double k_trial_time = 0.1;
 /// Most configurations on cold caches: emptying them takes far longer than most queries.
 constexpr std::size_t k_most_cold = 64;
+/// Count of a footprint, and counter of a row; bench/rivals/python/sixdof_rival.py measures it.
+constexpr const char* k_empty_call = "empty_call_ns";
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -82,6 +83,8 @@ struct QueryRow {
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
   std::optional<std::array<VectorError, 2>> errors = {};
   results::Outliers worst = {};
+  std::vector<Response> hull_responses = {};  ///< Of `exact`, where the row is about convex hulls.
+  std::optional<double> empty_call_ns = {};   ///< That a call from Python takes without the library's work.
 
   results::RowFields fields() const {
     return {.query = std::string(to_string(question)),
@@ -91,6 +94,7 @@ struct QueryRow {
             .bucket = key,
             .order = to_string(order),
             .body = is_about_meshes() ? "" : std::string(to_string(algorithm.traits().body)),
+            .runtime = algorithm.traits().runtime,
             .cache = evict ? "cold" : "warm",
             .isolated = is_isolated(algorithm),
             .approximates = algorithm.traits().approximates};
@@ -109,16 +113,12 @@ struct QueryRow {
     const std::size_t most = evict ? k_most_cold : bucket.poses.size();
     const std::size_t count = std::min({share.configurations, most, bucket.poses.size()});
     std::span<const Response> exact;
-    if (question == QueryKind::respond) exact = resources.cache.exact_responses(pair, key, count);
+    if (question == QueryKind::respond) exact = exact_responses(bucket, count);
     with_query(failures, [&](auto query) {
       if (!check) {
-        const std::unique_ptr<HullTruth> hulls = truth_of_hulls();
-        if constexpr (requires { query.ask(poses[0]).value.force; }) {
-          std::vector<Response> of_hulls;
-          if (hulls) of_hulls = hulls->responses(std::span(bucket.poses).first(exact.size()));
-          compare_with_exact(bucket, hulls ? std::span<const Response>(of_hulls) : exact, query);
-        }
-        check = checked(bucket, count, query, hulls.get());
+        if constexpr (requires { query.ask(poses[0]).value.force; }) compare_with_exact(bucket, exact, query);
+        check = check_answers(bucket, count, query, hulls());
+        empty_call_ns = empty_call_of(query.query());
         poses = poses_to_time(bucket, count);
         if (!evict) {
           const SingleTimes times = time_each(poses, query);
@@ -161,7 +161,7 @@ struct QueryRow {
   /// PlannedRow::trial.
   double trial(double seconds) {
     const BucketSample& bucket = sample();
-    double each = question == QueryKind::respond ? time_exact() : 0.0;
+    double each = question == QueryKind::respond && is_about_meshes() ? time_exact() : 0.0;
     Failures ignored;
     with_query(ignored, [&](auto query) {
       const auto start = std::chrono::steady_clock::now();
@@ -180,27 +180,31 @@ struct QueryRow {
       if (answers > 0) each += passes * 1e-9 * answers_ns / static_cast<double>(answers);
     });
     if (evict) each += time_eviction();
-    if (!is_about_meshes() && has_hulls()) each += time_truth_of_hulls(bucket);
+    if (!is_about_meshes()) each += time_truth_of_hulls(bucket);
     return each;
   }
 
  private:
-  /// As the set's truth is.
-  bool is_about_meshes() const { return algorithm.traits().body == Body::mesh; }
-  bool is_judged() const { return is_about_meshes() || has_hulls(); }
-
-  /// What answers about hulls are compared with; null for answers about the meshes, and in a build without hulls.
-  std::unique_ptr<HullTruth> truth_of_hulls() const {
-    if (is_about_meshes() || !has_hulls()) return nullptr;
-    return std::make_unique<HullTruth>(resources.cache.mesh(pair.a), resources.cache.mesh(pair.b));
+  static std::optional<double> empty_call_of(const Query& query) {
+    const Footprint footprint = query.footprint();
+    for (const auto& [name, count] : footprint.counts) {
+      if (name == k_empty_call) return count;
+    }
+    return std::nullopt;
   }
 
-  template <class Ask>
-  Check checked(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query, HullTruth* hulls) const {
-    if (is_about_meshes()) return check_answers(bucket, count, query);
-    return check_answers(bucket, count, query, [hulls](const Pose& pose) {
-      return hulls == nullptr ? std::optional<KnownAnswer>() : hulls->at(pose);
-    });
+  bool is_about_meshes() const { return algorithm.traits().body == Body::mesh; }
+
+  /// The truth of answers that are not about the meshes, as the set's truth is; null of others.
+  HullTruth* hulls() const { return is_about_meshes() ? nullptr : &resources.cache.hull_truth(pair); }
+
+  /// Those of `exact` to the first configurations, about the bodies that the algorithm answers for.
+  std::span<const Response> exact_responses(const BucketSample& bucket, std::size_t count) {
+    if (is_about_meshes()) return resources.cache.exact_responses(pair, key, count);
+    if (hull_responses.empty()) {
+      hull_responses = hulls()->responses(std::span(bucket.poses).first(std::min(count, PairCache::k_most_exact)));
+    }
+    return hull_responses;
   }
 
   /// @throws BadArgument for an empty bucket, NeedsSolid
@@ -244,10 +248,10 @@ struct QueryRow {
 
   /// Seconds for a configuration.
   double time_truth_of_hulls(const BucketSample& bucket) const {
-    const std::unique_ptr<HullTruth> hulls = truth_of_hulls();
+    HullTruth& truth = *hulls();  // prepares
     const std::size_t count = std::min(k_trial, bucket.poses.size());
     const auto start = std::chrono::steady_clock::now();
-    for (const Pose& pose : std::span(bucket.poses).first(count)) static_cast<void>(hulls->at(pose));
+    for (const Pose& pose : std::span(bucket.poses).first(count)) static_cast<void>(truth.at(bucket, pose));
     return seconds_since(start) / static_cast<double>(count);
   }
 
@@ -309,8 +313,9 @@ struct QueryRow {
     count_statuses(state.counters, failures);
     count("judged", check->judged);
     count("mismatch", check->wrong);
+    if (empty_call_ns) count(k_empty_call, *empty_call_ns);
     check->work.report(state.counters);
-    if (question == QueryKind::distance && is_judged()) {
+    if (question == QueryKind::distance) {
       count("error_rms", check->errors.rms());
       count("error_max", check->errors.largest());
     }
@@ -333,11 +338,14 @@ struct QueryRow {
     }
     std::string label = resources.settings_of(algorithm).to_string();
     if (!is_about_meshes()) {
-      label += fmt::format("{}{} instead of the mesh, {}", label.empty() ? "" : "; ",
-                           to_string(algorithm.traits().body), is_judged() ? "judged by the hulls" : "not judged");
+      label += fmt::format("{}{} instead of the mesh, judged by the hulls", label.empty() ? "" : "; ",
+                           to_string(algorithm.traits().body));
     }
     if (failures.count() > 0) {
       label += fmt::format("{}first failure: {}", label.empty() ? "" : "; ", failures.first());
+    }
+    if (empty_call_ns) {
+      label += fmt::format("{}an empty call takes {:.2g} us", label.empty() ? "" : "; ", 1e-3 * *empty_call_ns);
     }
     if (timed_outside) label += fmt::format("{}times include communication", label.empty() ? "" : "; ");
     state.SetLabel(label);

@@ -105,6 +105,7 @@ std::vector<PlannedRow> scenario_rows(const Resources& resources) {
                       .fields = {.query = "scenario",
                                  .algorithm = algorithm->traits().name,
                                  .settings = resources.settings_of(*algorithm).to_string(),
+                                 .runtime = algorithm->traits().runtime,
                                  .scenario = scenario,
                                  .isolated = is_isolated(*algorithm)},
                       .manual_time = is_isolated(*algorithm)});

@@ -410,9 +410,14 @@ def printed(command, text=None):
 
 
 def chosen_algorithms(program, names):
-    """The named algorithms; without names those that benchmarks ask by default, but for the one that answers with
-    constants. @raises Failure for a name that does not exist"""
+    """The named algorithms, with those of all rivals about meshes for "rivals"; without names those that benchmarks ask by
+    default, but for the one that answers with constants. @raises Failure for a name that does not exist"""
     listed = json.loads(printed([program, "algorithms", "--json"]))
+    if names and "rivals" in names:
+        rivals = [one["name"] for one in listed if one["runtime"] and one["body"] == "mesh"]
+        if not rivals:
+            raise Failure("rivals: none is set up; bench/rivals/setup does it")
+        names = [name for name in names if name not in ("rivals", *rivals)] + rivals
     unknown = set(names or []) - {one["name"] for one in listed}
     if unknown:
         raise Failure(f"no algorithm is called {', '.join(sorted(unknown))}")

@@ -17,9 +17,9 @@ KEPT = ["name", "run_name", "run_type", "sixdof", "error_occurred", "error_messa
         "mismatch", "misses", "p50_ns", "p99_ns", "p999_ns", "p99_least_ns", "p999_least_ns", "max_ns", "max_least_ns",
         "over_1ms", "error_rms", "error_max", "gamma_F_deg", "gamma_F_deg_low", "gamma_F_deg_high", "gamma_F_p95_deg",
         "gamma_max_F_deg", "gamma_T_deg", "magnitude_error_F", "magnitude_error_T", "volume_error_mean", "bytes",
-        "prepare_ns", "ns_per_configuration", "triangles", "on_frontier", "label", "tau_ns", "measured_ns", "eta_measured",
-        "eta_predicted", "sigma_F", "sigma_T", "nu_F", "nu_T", "noise_F", "noise_T", "leakage", "jump_F", "jump_T",
-        "loop_work", "lag", "steps"]
+        "prepare_ns", "ns_per_configuration", "triangles", "on_frontier", "label", "empty_call_ns", "tau_ns", "measured_ns",
+        "eta_measured", "eta_predicted", "sigma_F", "sigma_T", "nu_F", "nu_T", "noise_F", "noise_T", "leakage", "jump_F",
+        "jump_T", "loop_work", "lag", "steps"]
 DIGITS = 4  # Significant digits of the numbers that are kept.
 FCL = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts"]
 APPROXIMATE = ["ist", "ist-descent", "vps", "vps-field"]
@@ -46,6 +46,7 @@ class Part:
     name: str
     about: str
     steps: list
+    setup: tuple = ()  # A command that installs what is measured; what it cannot install is not measured.
 
     @property
     def minutes(self):
@@ -63,10 +64,10 @@ def respond_rows(file, minutes, order, *words):
                 f"--benchmark_filter=^respond/algorithm:exact/.*volume:(01|10){order}$", *words)
 
 
-def object_steps(script, minutes, *words):
+def object_steps(script, minutes, *words, algorithms=("exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE)):
     """Steps of bench/scripts/collection or growth: the measurement, and its tables."""
     folder = ["--out", f"{{folder}}/{script}"]
-    algorithms = ",".join(["exact", *FCL, "bullet-gimpact", "ode", *APPROXIMATE])
+    algorithms = ",".join(algorithms)
     return [Step(f"{script}/{'results' if script == 'collection' else script}.json",
                  [f"bench/scripts/{script}", *folder, "--jobs", "2", "--grid", "so3:4:2", "--sample", "8", *words, "--algorithms",
                   algorithms, "--budget", f"{minutes}min"], minutes),
@@ -129,10 +130,17 @@ def parts():
         Part("scenes", "scenes of 1,000 and 100,000 bodies", scene_steps()),
         Part("growth", "growth with the number of triangles", object_steps("growth", 10)),
         Part("pairs", "every algorithm on four pairs",
-             [rows("pairs.json", 15, "--isolate=third-party", "--suite", "all-algorithms", "--sample", "200", "--budget",
-                   "900")]),
+             [rows("pairs.json", 15, "--isolate=third-party", "--suite", "all-algorithms",
+                   "--benchmark_filter=-algorithm:rivals/", "--sample", "200", "--budget", "900")]),
         Part("collection", "every algorithm on the objects of the collection",
              object_steps("collection", 25, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10")),
+        Part("rivals", "what bench/rivals/setup has made ready, on four pairs and the collection",
+             [rows("rivals.json", 30, "--suite", "all-algorithms", "--benchmark_filter=algorithm:(exact|fcl-rss|rivals)/",
+                   "--sample", "200", "--budget", "1800"),
+              rows("tuned.json", 15, "--suite", "all-algorithms", "--benchmark_filter=algorithm:(exact|rivals)/", "-p",
+                   "rivals:profile=tuned", "--sample", "200", "--budget", "900"),
+              *object_steps("collection", 30, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10",
+                            algorithms=("exact", "rivals"))], setup=("bench/rivals/setup",)),
     ]
 
 

@@ -58,6 +58,7 @@ results::Row PrecisionStudy::row(const PrecisionPoint& point) const {
                  .algorithm = point.algorithm->traits().name,
                  .settings = point.sweep.settings.to_string(),
                  .pair = pair_.pair,
+                 .runtime = point.algorithm->traits().runtime,
                  .isolated = is_isolated(*point.algorithm),
                  .approximates = point.algorithm->traits().approximates,
                  .question = question,

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/process/remote_algorithm.h>
 #include <sixdof/query/ask.h>
 #include "bench/harness/judge.h"
 #include "bench/harness/query_command.h"
@@ -18,6 +19,12 @@ using bench::QueryKind;
 std::string as_word(bool answer) { return answer ? "yes" : "no"; }
 std::string as_word(const Separation& answer) { return fmt::format("{}", answer.distance); }
 
+/// What is true, as an answer of the same kind.
+bool true_answer(const bench::KnownAnswer& known, bool /*answer*/) { return known.key.kind == BucketKind::volume; }
+Separation true_answer(const bench::KnownAnswer& known, const Separation& /*answer*/) {
+  return {.distance = known.key.kind == BucketKind::volume ? 0.0 : known.target};
+}
+
 /// What is asked of one bucket, and where differences go.
 struct Bucket {
   const BucketSample& sample;
@@ -25,6 +32,7 @@ struct Bucket {
   const MeshWords& meshes;
   std::vector<Difference>& differences;
   const RunOptions& run;
+  bench::HullTruth* hulls;  ///< The truth of answers about convex hulls; null of others.
 };
 
 std::string command_of(const Bucket& bucket, const AskedAlgorithm& asked, const TypedPose& pose) {
@@ -36,12 +44,13 @@ std::string command_of(const Bucket& bucket, const AskedAlgorithm& asked, const 
 /// Asks one kind of query at every pose. Failures go to `counts`, and each answer to `answered`.
 template <class T, class Answered>
 bench::JudgedAnswers ask_bucket(const Bucket& bucket, const AskedAlgorithm& asked, Query& query, QueryKind question,
-                                Outcome<T> (Query::*kind)(const Pose&), const T& truth, AnswerCounts& counts,
+                                Outcome<T> (Query::*kind)(const Pose&), AnswerCounts& counts,
                                 const Answered& answered) {
-  const bench::KnownAnswer known = bench::KnownAnswer::of(bucket.sample);
+  bench::KnownAnswer known = bench::KnownAnswer::of(bucket.sample);
   bench::JudgedAnswers judged;
   for (std::size_t i = 0; i < bucket.poses.size(); ++i) {
     bucket.run.check_cancelled();
+    if (bucket.hulls != nullptr) known = bucket.hulls->at(bucket.sample, bucket.poses[i].X_AB);
     std::string words;
     const auto failed = [&words](const std::string& why) { words = why; };
     Outcome<T> outcome = ask_guarded([&] { return (query.*kind)(bucket.poses[i].X_AB); }, failed);
@@ -62,7 +71,7 @@ bench::JudgedAnswers ask_bucket(const Bucket& bucket, const AskedAlgorithm& aske
                                   .cell = bucket.sample.cells[i],
                                   .question = question,
                                   .answer = answer,
-                                  .truth = as_word(truth),
+                                  .truth = as_word(true_answer(known, outcome.value)),
                                   .pose = bucket.poses[i],
                                   .command = command_of(bucket, asked, bucket.poses[i])});
   }
@@ -86,22 +95,20 @@ class Votes {
 
 AnswerCounts ask_algorithm(const Bucket& bucket, const AskedAlgorithm& asked, Query& query, Votes& votes) {
   const Traits& traits = asked.algorithm->traits();
-  const bool overlap = bucket.sample.key.kind == BucketKind::volume;
   AnswerCounts counts{.algorithm = traits.name};
   if (traits.answers.collide) {
     const auto count = [&](std::size_t i, bool answer) {
-      votes.add(i, answer);
+      if (bucket.hulls == nullptr) votes.add(i, answer);
       counts.yes += answer;
     };
     const bench::JudgedAnswers judged =
-        ask_bucket(bucket, asked, query, QueryKind::collide, &Query::collide, overlap, counts, count);
+        ask_bucket(bucket, asked, query, QueryKind::collide, &Query::collide, counts, count);
     counts.judged_collide = judged.judged;
     counts.wrong_collide = judged.wrong;
   }
   if (traits.answers.distance) {
-    const Separation truth{.distance = overlap ? 0.0 : bucket.sample.target};
-    const bench::JudgedAnswers judged = ask_bucket(bucket, asked, query, QueryKind::distance, &Query::distance, truth,
-                                                   counts, [](std::size_t, const Separation&) {});
+    const bench::JudgedAnswers judged = ask_bucket(bucket, asked, query, QueryKind::distance, &Query::distance, counts,
+                                                   [](std::size_t, const Separation&) {});
     counts.judged_distance = judged.judged;
     counts.wrong_distance = judged.wrong;
     counts.largest_distance_error = judged.errors.largest();
@@ -109,16 +116,23 @@ AnswerCounts ask_algorithm(const Bucket& bucket, const AskedAlgorithm& asked, Qu
   return counts;
 }
 
+bool is_about_hulls(const AskedAlgorithm& asked) { return asked.algorithm->traits().body == Body::convex_hull; }
+
 /// The algorithms that can be prepared for the pair; the words of the others go to `refusals`.
 std::vector<AskedAlgorithm> usable(bench::PairCache& cache, const CatalogueEntry& pair,
                                    const std::vector<AskedAlgorithm>& algorithms, std::vector<std::string>& refusals) {
   std::vector<AskedAlgorithm> kept;
   for (const AskedAlgorithm& asked : algorithms) {
     try {
+      if (is_about_hulls(asked)) static_cast<void>(cache.hull_truth(pair));
       static_cast<void>(cache.query(*asked.algorithm, asked.settings, pair.a, pair.b));
       kept.push_back(asked);
     } catch (const BadMesh& e) {
       refusals.push_back(fmt::format("{}: {}", asked.algorithm->traits().name, e.what()));
+    } catch (const Error& e) {
+      // A program that is not there, or ends, costs its own answers only.
+      if (!is_isolated(*asked.algorithm)) throw;
+      refusals.push_back(e.what());
     }
   }
   return kept;
@@ -158,7 +172,7 @@ PairAgreement compare_with_set(bench::PairCache& cache, const CatalogueEntry& pa
   std::uint64_t done = 0;
   const std::uint64_t total = pair.buckets.size() * algorithms.size();
   for (const BucketKey key : pair.buckets) {
-    Bucket bucket{cache.bucket(pair, key), {}, meshes, result.differences, run};
+    Bucket bucket{cache.bucket(pair, key), {}, meshes, result.differences, run, nullptr};
     for (const Pose& pose : bucket.sample.poses) bucket.poses.push_back(TypedPose::of(pose));
     Votes votes(bucket.poses.size());
     BucketAgreement& agreement = result.buckets.emplace_back();
@@ -166,6 +180,7 @@ PairAgreement compare_with_set(bench::PairCache& cache, const CatalogueEntry& pa
     agreement.configurations = bucket.poses.size();
     for (const AskedAlgorithm& asked : algorithms) {
       if (run.progress) run.progress(done++, total);
+      bucket.hulls = is_about_hulls(asked) ? &cache.hull_truth(pair) : nullptr;
       Query& query = cache.query(*asked.algorithm, asked.settings, pair.a, pair.b);
       agreement.algorithms.push_back(ask_algorithm(bucket, asked, query, votes));
     }

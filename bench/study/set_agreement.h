@@ -13,7 +13,8 @@
 #include "bench/harness/pair_cache.h"
 #include "bench/harness/query_kind.h"
 
-/// Whether algorithms give the answers that a configuration set is made for, and where not.
+/// Whether algorithms give the answers that a configuration set is made for, and where not. Those about convex hulls
+/// are compared with the truth of the hulls (bench/harness/hull_truth.h) at the same poses.
 
 namespace sixdof::study {
 
@@ -52,7 +53,7 @@ struct AnswerCounts {
 struct BucketAgreement {
   BucketKey bucket;
   std::size_t configurations = 0;
-  std::size_t split = 0;  ///< Configurations where not all algorithms say the same yes or no.
+  std::size_t split = 0;  ///< Configurations where not all algorithms about the meshes say the same yes or no.
   std::vector<AnswerCounts> algorithms;
 };
 

@@ -66,14 +66,22 @@ bool too_large(const Case& member, const Algorithm& algorithm) {
   });
 }
 
+Judgement declined(const char* metric, const char* words) {
+  Judgement judgement;
+  judgement.findings.push_back({.verdict = Verdict::unsupported, .metric = metric, .unit = "1", .words = words});
+  return judgement;
+}
+
 Judgement judge_case(const Case& member, const Subject& subject) {
   if (const auto* const rays = dynamic_cast<const RayAlgorithm*>(&subject.algorithm))
     return rays->judge_rays(member, subject.watch.asks);
-  if (!too_large(member, subject.algorithm)) return judge(member, subject.algorithm.traits(), subject.prepare);
-  Judgement judgement;
-  judgement.findings.push_back(
-      {.verdict = Verdict::unsupported, .metric = "size", .unit = "1", .words = "a check for small meshes"});
-  return judgement;
+  if (too_large(member, subject.algorithm)) return declined("size", "a check for small meshes");
+  Traits traits = subject.algorithm.traits();
+  if (traits.body == Body::convex_hull) {
+    if (!member.convex) return declined("bodies", "they are not convex: their hulls are other bodies");
+    traits.limits.distance_of_bodies = true;
+  }
+  return judge(member, traits, subject.prepare);
 }
 
 void note_time(StressCell& cell, const CaseId& id, const Judgement& judgement) {

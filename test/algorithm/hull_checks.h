@@ -1,6 +1,6 @@
 #pragma once
 
-#include <sixdof/algorithm/ccd/convex_hull.h>
+#include <sixdof/oracle/convex_hull.h>
 
 #include "contact_checks.h"
 

@@ -13,7 +13,6 @@
 #include <sixdof/measure/direction.h>
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/scenario/evaluation.h>
-#include "bench/common/hulls.h"
 #include "bench/common/run_guarded.h"
 
 #include "../cli/run_program.h"
@@ -224,7 +223,6 @@ TEST_F(Faulty, WrongAnswersEndWithDefectsOnRequest) {
 }
 
 TEST_F(Faulty, AnswersAboutHullsAreJudgedByTheHulls) {
-  if (!has_hulls()) GTEST_SKIP() << "this build has no Qhull";
   const json document = run(filter("hulls-apart"));
   const json deep = row(document, "collide", "hulls-apart", "volume:03");
   const json apart = row(document, "collide", "hulls-apart", "distance:05");

@@ -44,6 +44,16 @@ TEST_F(SuiteFile, TakesExternalAlgorithmsWhereAlgorithmsAreListed) {
   EXPECT_FALSE(suite("distance/algorithm:mine"));
 }
 
+TEST_F(SuiteFile, TakesRivalsWhereTheyAreListed) {
+  std::ofstream(path) << R"({"rows": [{"query": ["collide"], "algorithm": ["rivals"]},
+                                      {"query": ["distance"], "algorithm": ["exact"]}]})";
+  const Suite suite = read_suite(path, {}, {"parry"}, {"parry"});
+  EXPECT_TRUE(suite("collide/algorithm:parry"));
+  EXPECT_FALSE(suite("collide/algorithm:exact"));
+  EXPECT_FALSE(suite("distance/algorithm:parry"));
+  EXPECT_FALSE(read_suite(path, {}, {}, {})("collide/algorithm:exact")) << "no rival is not all algorithms";
+}
+
 TEST_F(SuiteFile, LeavesOutOfAllWhatMustBeNamed) {
   const Suite all = read(R"({"query": ["collide"], "algorithm": "all", "pair": "all"})", {}, {"slow"});
   EXPECT_TRUE(all("collide/algorithm:exact/pair:slow"));

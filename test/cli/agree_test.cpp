@@ -1,6 +1,7 @@
 // `sixdof agree`: `null`, which always says no and 0, differs from the truth in known places.
 
 #include <algorithm>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -113,6 +114,43 @@ TEST_F(Agree, TellsHowMuchThereIsHowFarItIsAndWhatIsLeftOut) {
   const auto all = agree("--sample 2");
   EXPECT_THAT(all.err, HasSubstr("sixdof agree: left out: null: answers with constants\n"));
   EXPECT_THAT(all.err, HasSubstr("sixdof agree: left out: brute-force: too slow for all; asked where it is named\n"));
+}
+
+/// An adapter about convex hulls that says that nothing touches, one line of Python a request.
+constexpr const char* k_never = R"(import json, sys
+for line in sys.stdin:
+    do = json.loads(line)["do"]
+    print(json.dumps({"protocol": 1, "name": "never", "version": "1", "answers": ["collide"], "body": "convex_hull"}
+                     if do == "hello" else {"prepared": True} if do == "prepare" else {"collide": False, "ns": 1}),
+          flush=True)
+)";
+
+TEST_F(Agree, JudgesAnswersAboutConvexHulls) {
+  std::ofstream(path("never.py")) << k_never;
+  const std::string external = " --external 'never=python3 " + path("never.py") + "'";
+  const auto wrong = agree("--algorithms never,exact --sample 20 --json" + external);
+  EXPECT_EQ(wrong.exit_code, k_exit_defects) << wrong.err;
+  const auto pair = nlohmann::json::parse(wrong.out).at("pairs").at(0);
+  for (const auto& difference : pair.at("differences")) {
+    EXPECT_EQ(difference.at("algorithm"), "never");
+    EXPECT_EQ(difference.at("answer"), "no");
+    EXPECT_EQ(difference.at("truth"), "yes");
+  }
+  for (const auto& bucket : pair.at("buckets")) {
+    const auto& counts = bucket.at("algorithms").at(0);
+    EXPECT_EQ(bucket.at("split"), 0) << "hulls are other bodies";
+    if (bucket.at("bucket") == "volume/05") {
+      EXPECT_EQ(counts.at("wrong_collide"), 20) << "hulls contain the meshes";
+    }
+  }
+#ifdef SIXDOF_TEST_CCD
+  const auto right = nlohmann::json::parse(agree("--algorithms ccd-hull --sample 20 --json").out).at("pairs").at(0);
+  for (const auto& bucket : right.at("buckets")) {
+    if (bucket.at("bucket") == "distance/00") continue;  // nearer to contact than libccd can tell
+    EXPECT_EQ(bucket.at("algorithms").at(0).at("judged_collide"), 20);
+    EXPECT_EQ(bucket.at("algorithms").at(0).at("wrong_collide"), 0);
+  }
+#endif
 }
 
 TEST_F(Agree, RefusesWhatItCannotAsk) {

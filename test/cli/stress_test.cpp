@@ -117,6 +117,20 @@ TEST_F(Stress, TellsHowManyCellsThereAreHowFarItIsAndWhatIsLeftOut) {
               HasSubstr("\nsixdof stress: nothing was left out\n"));
 }
 
+TEST_F(Stress, JudgesAlgorithmsAboutConvexHullsWhereBodiesAreConvex) {
+  std::string about_hulls = k_never;
+  const std::string answers = R"("answers": ["collide"])";
+  about_hulls.insert(about_hulls.find(answers), R"("body": "convex_hull", )");
+  std::ofstream(path("never.py")) << about_hulls;
+  const json list =
+      cells("--families thin-plate,holes --algorithms never --external 'never=python3 " + path("never.py") + "'");
+  ASSERT_EQ(list.size(), 2u);
+  for (const json& cell : list) {
+    const bool is_convex = cell.at("family") == "thin-plate";
+    EXPECT_EQ(cell.at("verdict"), is_convex ? "wrong" : "declared unsupported") << cell;
+  }
+}
+
 TEST_F(Stress, RefusesWhatDoesNotExist) {
   const auto family = run("stress --families kissings");
   EXPECT_EQ(family.exit_code, k_exit_error);

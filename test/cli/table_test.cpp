@@ -162,6 +162,18 @@ TEST_F(TableCommand, AnswersAboutOtherBodiesHaveATableOfTheirOwn) {
   for (const Json& table : tables) EXPECT_EQ(table.at("rows").size(), 1u) << table;
 }
 
+TEST_F(TableCommand, InterpretedAlgorithmsHaveTablesOfTheirOwn) {
+  Json python = row("distance", "coal", "distance", 5, 1.0);
+  python["sixdof"]["runtime"] = "python";
+  const std::string file = write("r.json", {row("distance", "x", "distance", 5, 1500), python});
+  EXPECT_THAT(printed(file), HasSubstr("p (python): distance"));
+  EXPECT_THAT(printed("--wide " + file), HasSubstr("distance, python: cpu mean"));
+  EXPECT_THAT(printed("--overview " + file), HasSubstr("p (python): mean processor time"));
+  const Json tables = Json::parse(printed("--json " + file)).at("tables");
+  ASSERT_EQ(tables.size(), 2u);
+  for (const Json& table : tables) EXPECT_EQ(table.at("rows")[0].at("files")[0].at("fastest"), true) << table;
+}
+
 TEST_F(TableCommand, WideHasALinePerPairAndAlgorithmAndAColumnPerBucket) {
   Json other_pair = row("distance", "x", "distance", 5, 500, {{"error_max", 0.0}});
   other_pair["sixdof"]["pair"] = "q";

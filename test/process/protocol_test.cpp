@@ -107,6 +107,7 @@ TEST(Protocol, GreetingsAndPreparations) {
                        .summary = "s",
                        .answers = {.collide = true, .respond = true},
                        .law = ResponseLaw::volume,
+                       .limits = {.surfaces_only = {.respond = true}, .own_direction = true},
                        .parameters = {Parameter::count("n", "how many", "5", 1, 9).swept({"1", "5"}),
                                       Parameter::choice("mode", "which", "b", {"a", "b"})}},
                       true,
@@ -115,6 +116,9 @@ TEST(Protocol, GreetingsAndPreparations) {
   EXPECT_EQ(read.traits.version, "1.5");
   EXPECT_TRUE(read.traits.answers.collide && read.traits.answers.respond && !read.traits.answers.distance);
   EXPECT_EQ(read.traits.law, ResponseLaw::volume);
+  const MethodLimits& limits = read.traits.limits;
+  EXPECT_TRUE(limits.surfaces_only.respond && limits.own_direction);
+  EXPECT_FALSE(limits.surfaces_only.collide || limits.distance_of_bodies || limits.points_of_b_only);
   EXPECT_EQ(read.traits.parameters.at(0).high, 9.0);
   EXPECT_TRUE(read.traits.parameters.at(0).integer);
   EXPECT_EQ(read.traits.parameters.at(0).sweep, (std::vector<std::string>{"1", "5"}));
@@ -223,6 +227,8 @@ TEST(Protocol, RefusesNonsenseWithTheLine) {
   }
   EXPECT_THROW(greeting_of(R"({"protocol": 2, "name": "x", "version": "1", "answers": []})"), Malformed);
   EXPECT_THROW(greeting_of(R"({"protocol": 1, "name": "x", "version": "1", "answers": ["dance"]})"), Malformed);
+  EXPECT_THROW(greeting_of(R"({"protocol": 1, "name": "x", "version": "1", "answers": [], "limits": ["no"]})"),
+               Malformed);
   EXPECT_THROW(prepared_of(R"({"prepared": false})"), Malformed);
 }
 

@@ -161,6 +161,24 @@ TEST(Summary, NextOneIsNamed) {
             "the next, most often fcl-rss.");
 }
 
+TEST(Summary, InterpretedAlgorithmsAreRankedAmongThemselves) {
+  std::vector<Json> rows{row("distance", "quick", "p", "distance", 5.0, 1.0),
+                         row("distance", "slow", "p", "distance", 5.0, 2.0)};
+  for (Json& each : rows) each["sixdof"]["runtime"] = "python";
+  rows.push_back(row("distance", "exact", "p", "distance", 5.0, 10.0));
+  rows.push_back(row("distance", "fcl-rss", "p", "distance", 5.0, 20.0));
+  const Results results = test::results_of(rows);
+  const Summary summary = summarise(results, row_groups(results));
+  EXPECT_EQ(summary.sentences.front(),
+            "Distance: the fastest without a wrong answer is exact, in 1 of 1 place, 2 times faster than the next, "
+            "fcl-rss.");
+  ASSERT_EQ(summary.winners.rows.size(), 2u);
+  EXPECT_EQ(text_in(summary.winners, summary.winners.rows[0], "body"), "meshes (python)");
+  EXPECT_EQ(text_in(summary.winners, summary.winners.rows[0], "fastest"), "quick");
+  EXPECT_EQ(text_in(summary.winners, summary.winners.rows[1], "body"), "meshes");
+  EXPECT_EQ(text_in(summary.winners, summary.winners.rows[1], "fastest"), "exact");
+}
+
 TEST(Summary, HardCasesAreCountedByAlgorithm) {
   Results results;
   parse_results(R"([{"family":"scale","algorithm":"ode","verdict":"wrong"},

@@ -41,5 +41,21 @@ TEST(Uncertain, ArePointsOfTheFrontierWithCostsThatOverlap) {
   EXPECT_EQ(uncertain(points), (std::vector<bool>{true, true, false, false}));
 }
 
+TEST(Frontiers, OfInterpretedAlgorithmsAreTheirOwn) {
+  const auto point = [](const char* algorithm, const char* runtime, double ns, double error) {
+    return Row{.name = algorithm,
+               .fields = {.query = "precision", .algorithm = algorithm, .runtime = runtime},
+               .values = {{k_processor_mean, ns}, {"error_rms", error}}};
+  };
+  const std::vector<Row> points{point("a", "", 10, 0.5), point("b", "native", 5, 0.4), point("c", "python", 1, 0.1),
+                                point("d", "python", 2, 0.2)};
+  const std::vector<OnFrontier> on = frontiers(points, "cpu_time", "error_rms");
+  EXPECT_FALSE(on[0].overall) << "b is compiled, faster and better";
+  EXPECT_TRUE(on[1].overall) << "c is not compiled";
+  EXPECT_TRUE(on[2].overall);
+  EXPECT_FALSE(on[3].overall);
+  EXPECT_TRUE(on[3].own);
+}
+
 }  // namespace
 }  // namespace sixdof::results

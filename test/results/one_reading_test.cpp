@@ -41,13 +41,14 @@ class Generator {
   std::vector<Json> rows() {
     std::vector<Json> all;
     for (const char* const query : {"collide", "distance", "respond"}) {
-      for (const char* const algorithm : {"exact", "fast", "constant", "hulls", "other-hulls", "null"}) {
+      for (const char* const algorithm : {"exact", "fast", "constant", "hulls", "other-hulls", "interpreted", "null"}) {
         const bool is_constant = algorithm == std::string("constant") && one_in(2);
         for (const auto& [kind, percent] : {std::pair("distance", 5.0), {"volume", 1.0}, {"volume", 5.0}}) {
           if (one_in(8)) continue;
           Json row = test::row(query, algorithm, "p", kind, percent, 0.0, faults());
           if (is_constant && percent == 1.0) row["mismatch"] = 64;
           if (std::string(algorithm).ends_with("hulls")) row["sixdof"]["body"] = "convex_hull";
+          if (algorithm == std::string("interpreted")) row["sixdof"]["runtime"] = "python";
           if (one_in(3)) row.update({{"gamma_F_deg", above(1.0)}, {"error_rms", above(1e-3)}});
           add(row, all);
           if (one_in(4)) add(special(row, "order", "motion"), all);
@@ -63,12 +64,13 @@ class Generator {
   std::vector<Json> points() {
     std::vector<Json> all;
     for (int k = 0; k < 12; ++k) {
-      const std::string algorithm = k % 3 == 0 ? "exact" : k % 3 == 1 ? "vps" : "ist";
+      const std::string algorithm = k % 4 == 0 ? "exact" : k % 4 == 1 ? "vps" : k % 4 == 2 ? "ist" : "interpreted";
       const double ns = above(1e3), error = algorithm == "exact" ? 1e-16 : above(0.5);
       Json row = test::row("precision", algorithm, "p", "volume", 1.0, ns, faults());
       row["name"] = fmt::format("precision/respond/algorithm:{}/pair:p/size:{}", algorithm, k);
       row["sixdof"].erase("bucket");
       row["sixdof"]["question"] = "respond";
+      if (algorithm == "interpreted") row["sixdof"]["runtime"] = "python";
       row["sixdof"]["settings"] = {{"size", k}};
       row.update({{"cpu_time_low", 0.9 * ns}, {"cpu_time_high", 1.1 * ns}, {"gamma_F_deg", error}});
       row.update({{"max_ns", 30.0 * ns}, {"max_least_ns", 20.0 * ns}});
@@ -280,6 +282,7 @@ TEST_F(OneReading, OfFrontiersAndChoices) {
     }
     if (choice.taken() == nullptr) continue;
     ++chosen;
+    ASSERT_EQ(interpreter_of(results.rows[choice.taken()->place].fields), "") << "seed " << seed;
     const Row& best = results.rows[choice.taken()->place];
     ASSERT_EQ(best.count("late"), 0.0) << "seed " << seed;
   }

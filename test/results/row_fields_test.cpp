@@ -37,6 +37,13 @@ TEST(RowFields, SayThatTheAlgorithmIsIsolated) {
             32u);
 }
 
+TEST(RowFields, SayWhatExecutesARival) {
+  const Json object = to_json_object({.query = "collide", .algorithm = "jolt", .runtime = "wasm"});
+  EXPECT_EQ(object.at("runtime"), "wasm");
+  EXPECT_EQ(row_fields_of(object).runtime, "wasm");
+  EXPECT_FALSE(to_json_object(k_query).contains("runtime"));
+}
+
 TEST(RowFields, HavePartsOfAPercent) {
   const Json half = to_json_object({.query = "collide", .bucket = BucketKey{BucketKind::distance, 0.5}});
   EXPECT_EQ(half.at("bucket").dump(), R"({"kind":"distance","percent":0.5})");

@@ -67,6 +67,23 @@ TEST(Faults, OfAStudyAreNotItsErrors) {
   EXPECT_THAT(faults_of(test::results_of({point})), ElementsAre("1 of 32 without a force though the bodies overlap"));
 }
 
+TEST(Contest, RanksInterpretedAlgorithmsApart) {
+  const auto of = [](const char* algorithm, const char* runtime, double ns) {
+    Json json = row("distance", algorithm, "p", "distance", 5.0, ns);
+    json["sixdof"]["runtime"] = runtime;
+    return json;
+  };
+  const Results results = test::results_of({row("distance", "exact", "p", "distance", 5.0, 300.0),
+                                            of("parry", "native", 200.0), of("coal", "python", 100.0),
+                                            of("fcl", "python", 150.0), of("jolt", "wasm", 50.0)});
+  const std::vector<RowGroup> groups = row_groups(results);
+  const std::vector<Contest> all = contests(groups);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_EQ(all[0].bodies + ": " + all[0].winner().algorithm(), "p: parry");
+  EXPECT_EQ(all[1].bodies + ": " + all[1].winner().algorithm(), "p (python): coal");
+  EXPECT_EQ(all[2].bodies + ": " + all[2].winner().algorithm(), "p (wasm): jolt");
+}
+
 TEST(Contest, IsWonByTheFastestWithoutAFault) {
   Json motion = row("distance", "slow", "p", "distance", 5.0, 1.0), cold = motion;
   motion["sixdof"]["order"] = "motion";

@@ -23,6 +23,18 @@ Row row() {
       .values = {{k_wall_mean, 12.5}, {k_processor_mean, 12.0}, {"processor_mean_ns_low", 11.0}, {"gamma_F_deg", 3.0}}};
 }
 
+TEST(Row, HaveAClassWhereTheyAreComparedWithFewOthers) {
+  const auto bodies = [](const char* pair, const char* body, const char* runtime) {
+    return bodies_of({.query = "collide", .algorithm = "x", .pair = pair, .body = body, .runtime = runtime});
+  };
+  EXPECT_EQ(bodies("p", "", ""), "p");
+  EXPECT_EQ(bodies("p", "", "native"), "p");
+  EXPECT_EQ(bodies("p", "convex_hull", "native"), "p (convex_hull)");
+  EXPECT_EQ(bodies("p", "", "node"), "p (node)");
+  EXPECT_EQ(bodies("p", "convex_hull", "wasm"), "p (convex_hull, wasm)");
+  EXPECT_EQ(bodies("", "", "python"), "python");
+}
+
 TEST(Row, AreRowsOfGoogleBenchmark) {
   const auto json = to_json_object(row());
   EXPECT_EQ(json.at("name"), json.at("run_name"));

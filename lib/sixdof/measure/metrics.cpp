@@ -130,6 +130,7 @@ constexpr std::array k_metrics{
     Metric{"late", "queries", lower, "queries over the study's deadline, in one pass", k_precision},
     Metric{"timed", "queries", neither, "queries of that pass", k_precision},
     Metric{"idle_late", "queries", lower, "the same of a loop that takes the median time of a query and asks nothing", k_precision},
+    Metric{"empty_call_ns", "ns", neither, "of a query's time: a call from Python without the library's work", k_query_row},
     Metric{"over_1ms", "1", lower, "fraction of the queries over 1 ms, the haptic deadline", k_latency},
     Metric{"ns_per_configuration", "ns", lower, "processor time to make one configuration of a set", k_generate_row},
     // Of the search for equivalent resolutions.

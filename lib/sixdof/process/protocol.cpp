@@ -20,6 +20,8 @@ constexpr std::array k_kinds{"collide", "distance", "respond"};
 constexpr std::array k_kind_members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond};
 constexpr std::array k_laws{"none", "depth", "volume"};
 constexpr std::array k_bodies{"mesh", "convex_hull"};
+constexpr std::array k_limits{"collide_of_surfaces", "respond_of_surfaces", "distance_of_bodies", "own_direction",
+                              "points_of_b_only"};
 constexpr std::array k_refusals{"error", "bad_mesh", "bad_argument"};
 
 // JSON has no words for what is not finite.
@@ -157,6 +159,12 @@ Status status_of(const std::string& name) {
   throw Malformed(fmt::format("\"{}\" is no status", name));
 }
 
+/// In the order of k_limits.
+std::array<bool*, k_limits.size()> members_of(MethodLimits& limits) {
+  return {&limits.surfaces_only.collide, &limits.surfaces_only.respond, &limits.distance_of_bodies,
+          &limits.own_direction, &limits.points_of_b_only};
+}
+
 Json mesh(const MeshPlace& place) {
   return {{"name", place.name},
           {"vertices", place.vertices},
@@ -288,9 +296,13 @@ Request request_of(const std::string& line) {
 
 std::string to_line(const Greeting& greeting) {
   const Traits& traits = greeting.traits;
-  Json answers = Json::array(), can = Json::array(), parameters = Json::array();
+  Json answers = Json::array(), limits = Json::array(), can = Json::array(), parameters = Json::array();
   for (std::size_t i = 0; i < k_kinds.size(); ++i) {
     if (traits.answers.*k_kind_members.at(i)) answers.push_back(k_kinds.at(i));
+  }
+  MethodLimits copy = traits.limits;
+  for (std::size_t i = 0; i < k_limits.size(); ++i) {
+    if (*members_of(copy).at(i)) limits.push_back(k_limits.at(i));
   }
   if (greeting.times) can.push_back("time");
   if (greeting.progress) can.push_back("progress");
@@ -302,6 +314,7 @@ std::string to_line(const Greeting& greeting) {
                {"answers", answers},
                {"law", k_laws.at(static_cast<std::size_t>(traits.law))},
                {"body", k_bodies.at(static_cast<std::size_t>(traits.body))},
+               {"limits", limits},
                {"parameters", parameters},
                {"can", can}});
 }
@@ -317,6 +330,9 @@ Greeting greeting_of(const std::string& line) {
     for (const std::string kind : json.at("answers")) traits.answers.*k_kind_members.at(place_of(k_kinds, kind)) = true;
     traits.law = static_cast<ResponseLaw>(place_of(k_laws, json.value("law", "none")));
     traits.body = static_cast<Body>(place_of(k_bodies, json.value("body", "mesh")));
+    for (const std::string limit : json.value("limits", Json::array())) {
+      *members_of(traits.limits).at(place_of(k_limits, limit)) = true;
+    }
     for (const Json& each : json.value("parameters", Json::array())) traits.parameters.push_back(parameter_of(each));
     for (const std::string ability : json.value("can", Json::array())) {
       greeting.times = greeting.times || ability == "time";

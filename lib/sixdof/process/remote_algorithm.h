@@ -22,6 +22,11 @@ class RemoteAlgorithm final : public Algorithm {
   static std::unique_ptr<RemoteAlgorithm> external(const std::string& name, const std::string& command_line,
                                                    const ProcessLimits& limits);
 
+  /// The same, where it is known what the program says of itself: starts no program.
+  /// @throws BadArgument if it answers nothing, or for parameters that no Settings can have
+  static std::unique_ptr<RemoteAlgorithm> described(Traits traits, const std::string& command_line,
+                                                    const ProcessLimits& limits);
+
   const Traits& traits() const override { return traits_; }
   std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& settings) const override {
     return std::make_unique<RemoteQuery>(program_, traits_, a, b, settings);

@@ -167,7 +167,11 @@ struct Traits {
   /// Whether suites and studies of "all" algorithms take this one. False where thousands of queries would take hours:
   /// it is measured only where it is named.
   bool by_default = true;
+  /// Of a program that bench/rivals/setup has made ready, what executes it: "native", "python", "node" or "wasm" (in
+  /// Node.js). Empty for all others.
+  std::string runtime = {};
 
+  bool is_rival() const { return !runtime.empty(); }
   /// Whether suites and studies of "all" algorithms include it.
   bool in_default_runs() const { return timed && by_default && body == Body::mesh; }
 };

@@ -127,9 +127,9 @@ DataTable response_errors_table(const Results& results, const std::vector<RowGro
     for (const Measure& measure : k_response_errors) {
       const auto value = group.value(measure.value);
       if (!value) continue;
-      table.rows.push_back({run_name(results, row.file), row.fields.pair, std::string(measure.title), group.algorithm(),
-                            row.fields.bucket->percent, *value, reproduction(row, results.files[row.file]),
-                            row.outliers.command_of(measure.value)});
+      table.rows.push_back({run_name(results, row.file), bodies_of(row.fields), std::string(measure.title),
+                            group.algorithm(), row.fields.bucket->percent, *value,
+                            reproduction(row, results.files[row.file]), row.outliers.command_of(measure.value)});
     }
   }
   return table;

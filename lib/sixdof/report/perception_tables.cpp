@@ -86,9 +86,9 @@ DataTable update_rates_table(const Results& results, const std::vector<RowGroup>
     const double tail_ns = p99.value_or(longest.value_or(0.0));
     if (!(tail_ns > 0.0)) continue;
     const double rate = 1e9 / tail_ns;
-    table.rows.push_back({run_name(results, row.file), row.fields.pair, group.algorithm(), row.fields.bucket->percent,
-                          tail_ns / 1e3, rate, words_of(rate), 2.0 * rate, reproduction(row, results.files[row.file]),
-                          row.outliers.command_of("max_ns")});
+    table.rows.push_back({run_name(results, row.file), bodies_of(row.fields), group.algorithm(),
+                          row.fields.bucket->percent, tail_ns / 1e3, rate, words_of(rate), 2.0 * rate,
+                          reproduction(row, results.files[row.file]), row.outliers.command_of("max_ns")});
   }
   return table;
 }

@@ -129,7 +129,7 @@ std::string faster_words(const WinsByName& faster) {
   return parts.empty() ? "" : fmt::format("; faster, but approximate or elsewhere wrong: {}", fmt::join(parts, ", "));
 }
 
-/// ", 4.1 times faster on average than the next, most often fcl-rss"; empty for an algorithm without rivals.
+/// ", 4.1 times faster on average than the next, most often fcl-rss"; empty where there is no next one.
 std::string lead_words(const Wins& wins) {
   if (wins.factors.empty()) return {};
   const auto most = std::ranges::max_element(wins.next, {}, [](const auto& each) { return each.second; });
@@ -145,7 +145,7 @@ std::string speed_sentence(const Question& question, const std::vector<Race>& ra
   std::size_t places = 0;
   for (const Race& race : races) {
     const RowGroup& first = race.all->winner();
-    if (race.all->query != question.query || race.all->order != "random" || !first.fields().body.empty()) continue;
+    if (race.all->query != question.query || race.all->order != "random" || !class_of(first.fields()).empty()) continue;
     ++places;
     if (race.is_beaten()) {
       Wins& wins = faster[first.algorithm()];
@@ -252,6 +252,13 @@ std::string stability_sentence(const Results& results) {
                      bad.empty() ? "" : "; families with a wrong or missing answer: ", fmt::join(bad, ", "));
 }
 
+/// What a row is about, and what interprets its algorithm: "meshes", "convex hulls", "meshes (python)". The page has the
+/// same words (page/figure_text.js).
+std::string body_words(const RowFields& fields) {
+  const std::string words = fields.body.empty() ? "meshes" : "convex hulls", interpreter = interpreter_of(fields);
+  return interpreter.empty() ? words : fmt::format("{} ({})", words, interpreter);
+}
+
 DataTable winners_table(const Results& results, const std::vector<Race>& races) {
   DataTable table{.name = "winners",
                   .title = "The fastest right algorithm of each place",
@@ -266,8 +273,7 @@ DataTable winners_table(const Results& results, const std::vector<Race>& races) 
                                 : !has_next             ? "no other is right"
                                 : race.right.is_clear() ? "clear"
                                                         : "tie";
-    table.rows.push_back({run_name(results, race.all->file),
-                          std::string(first.fields().body.empty() ? "meshes" : "convex hulls"), race.all->query,
+    table.rows.push_back({run_name(results, race.all->file), body_words(first.fields()), race.all->query,
                           race.all->order, race.all->bodies, place_of(first.fields()),
                           best == nullptr ? std::string() : best->algorithm(),
                           best == nullptr ? Cell() : Cell(best->mean_time()->value / 1e3),

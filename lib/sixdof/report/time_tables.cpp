@@ -29,6 +29,7 @@ constexpr std::array k_statistics{
 
 struct TimeLine {
   std::string run, query, kind, pair, statistic, algorithm;
+  std::string apart;  ///< class_of() the row.
   double percent = 0.0, us = 0.0;
   std::optional<double> low, high, repetitions;
   std::string faults, command, worst_pose;
@@ -39,9 +40,10 @@ std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
   TimeLine line{.run = run_name(results, row.file),
                 .query = row.fields.query,
                 .kind = to_string(row.fields.bucket->kind),
-                .pair = row.fields.pair,
+                .pair = bodies_of(row.fields),
                 .statistic = k_mean,
                 .algorithm = group.algorithm(),
+                .apart = class_of(row.fields),
                 .percent = row.fields.bucket->percent,
                 .low = {},
                 .high = {},
@@ -68,14 +70,15 @@ std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
   return lines;
 }
 
-/// Means over the pairs: comparable between algorithms only over pairs that all of them have. The worst pose is that of
-/// the slowest pair.
+/// Means over the pairs: comparable between algorithms of one class only, over pairs that all of them have. The worst
+/// pose is that of the slowest pair.
 std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
-  using Place = std::tuple<std::string, std::string, std::string, std::string, double>;
+  using Place = std::tuple<std::string, std::string, std::string, std::string, double, std::string>;
   std::map<Place, std::map<std::string, std::map<std::string, const TimeLine*>>> by_place;  // algorithm, pair
   for (const TimeLine& line : lines) {
     if (line.us > 0.0 && line.algorithm != "null") {
-      by_place[{line.run, line.query, line.kind, line.statistic, line.percent}][line.algorithm][line.pair] = &line;
+      by_place[{line.run, line.query, line.kind, line.statistic, line.percent, line.apart}][line.algorithm][line.pair] =
+          &line;
     }
   }
   std::vector<TimeLine> means;
@@ -93,13 +96,14 @@ std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
       }
       const auto [mean, variance, count] = log_moments(times);
       const double spread = std::sqrt(variance);
-      const auto& [run, query, kind, statistic, percent] = place;
+      const auto& [run, query, kind, statistic, percent, apart] = place;
       means.push_back({.run = run,
                        .query = query,
                        .kind = kind,
-                       .pair = k_all_objects,
+                       .pair = apart.empty() ? k_all_objects : fmt::format("{} ({})", k_all_objects, apart),
                        .statistic = statistic,
                        .algorithm = algorithm,
+                       .apart = apart,
                        .percent = percent,
                        .us = std::exp(mean),
                        .low = std::exp(mean - spread),

@@ -96,6 +96,9 @@ Candidate candidate_of(const Row& row, std::size_t place, const std::string& que
     candidate.standing = Standing::not_ranked;
     const bool no_error = query != "respond" || candidate.error.value <= k_rounding;
     candidate.exact = !row.fields.approximates && no_error;
+    const std::string interpreter = interpreter_of(row.fields);
+    candidate.interpreted = !interpreter.empty();
+    if (candidate.interpreted) candidate.reason = fmt::format("runs in {}: not ranked with compiled code", interpreter);
   }
   return candidate;
 }
@@ -109,14 +112,15 @@ auto rank_of(const Candidate& candidate) {
 /// Says of the candidates that keep the deadline which is taken, and what the others lack.
 void judge_the_rest(std::vector<Candidate>& candidates) {
   Candidate* best = nullptr;
+  const auto is_rankable = [](const Candidate& candidate) {
+    return candidate.standing == Standing::not_ranked && !candidate.interpreted;
+  };
   for (Candidate& candidate : candidates) {
-    if (candidate.standing == Standing::not_ranked && (best == nullptr || rank_of(candidate) < rank_of(*best))) {
-      best = &candidate;
-    }
+    if (is_rankable(candidate) && (best == nullptr || rank_of(candidate) < rank_of(*best))) best = &candidate;
   }
   if (best == nullptr) return;
   for (Candidate& candidate : candidates) {
-    if (candidate.standing != Standing::not_ranked || &candidate == best) continue;
+    if (!is_rankable(candidate) || &candidate == best) continue;
     const bool as_right = candidate.exact == best->exact && (candidate.exact || overlap(candidate.error, best->error));
     if (!as_right) {
       candidate.standing = Standing::less_right;

@@ -19,6 +19,8 @@
 /// - Of those that keep it, answers without an error (above k_rounding) win, then the smallest error. Approximations
 ///   come after those that promise right answers, also where none of their answers was wrong. Of equal ones the fastest
 ///   wins; those whose times do not differ clearly are tied with it.
+/// - Interpreted algorithms (interpreter_of()) are not ranked: their times hold calls that a user's program need not
+///   make.
 /// - Without enough judged poses there is no verdict.
 
 namespace sixdof::results {
@@ -33,7 +35,7 @@ enum class Standing {
   tied,        ///< As good as the one that is taken, and not clearly slower.
   slower,      ///< As right, but slower.
   less_right,  ///< Keeps the deadline with larger errors.
-  not_ranked,  ///< Keeps the deadline, but there is no verdict.
+  not_ranked,  ///< Keeps the deadline, but there is no verdict, or it is interpreted.
   late,        ///< Misses the deadline.
   unsafe,      ///< Wrong answers.
   faulty,      ///< Queries without an answer.
@@ -46,6 +48,7 @@ std::string_view to_string(Standing standing);
 struct Candidate {
   std::size_t place = 0;  ///< Among the rows.
   Standing standing = Standing::left_out;
+  bool interpreted = false;
   bool exact = false;              ///< Promises right answers and gave no wrong one.
   Estimate error;                  ///< The metric.
   Estimate mean_ns;                ///< Wall time of a query, in a loop over all.

@@ -132,7 +132,9 @@ Collection collection_of(std::span<const RowGroup> groups) {
       collection.faults.push_back(
           {fmt::format("{}.{}", fields.object, fields.partner), {}, group.row().name, to_string(group.faults)});
     } else if (const auto time = group.mean_time(); time && fields.bucket && !group.is_special()) {
-      times[{fields.partner, asked_bucket(fields), fields.algorithm}][fields.object] = time->value;
+      const std::string apart = class_of(fields);
+      const std::string name = apart.empty() ? fields.algorithm : fmt::format("{} ({})", fields.algorithm, apart);
+      times[{fields.partner, asked_bucket(fields), name}][fields.object] = time->value;
     }
   }
   for (const auto& [object, fields] : objects) collection.objects.push_back(object);

@@ -15,7 +15,8 @@
 
 namespace sixdof::results {
 
-/// One algorithm on all objects in one bucket; times in us of one query, over the objects.
+/// One algorithm on all objects in one bucket; times in us of one query, over the objects. Behind the name of an
+/// algorithm stands here and below the class of its rows (class_of()), if they have one: "coal (python)".
 struct CollectionCell {
   std::size_t file = 0;
   std::string partner = {}, query = {}, algorithm = {}, greatest_object = {};

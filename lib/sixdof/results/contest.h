@@ -11,8 +11,8 @@
 
 namespace sixdof::results {
 
-/// The rows of a file that compete: one query on one bucket of the same bodies, with one order of poses, on warm
-/// caches.
+/// The rows of a file that compete: one query on one bucket of the same bodies_of(), with one order of poses, on warm
+/// caches. Interpreted algorithms compete with none that are compiled.
 struct Contest {
   std::size_t file = 0;
   std::string query, bodies, order;

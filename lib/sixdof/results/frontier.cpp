@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include <sixdof/results/fault.h>
 
@@ -48,18 +49,19 @@ std::optional<Tradeoff> tradeoff_of(const Row& point, const std::string& cost, c
 
 std::vector<OnFrontier> frontiers(std::span<const Row> points, const std::string& cost, const std::string& error) {
   std::vector<OnFrontier> on(points.size());
-  std::map<std::string, std::vector<std::size_t>> places;  // by algorithm; all under ""
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> places;  // interpreter, algorithm; all: ""
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!tradeoff_of(points[i], cost, error)) continue;
-    places[""].push_back(i);
-    places[points[i].fields.algorithm].push_back(i);
+    const std::string interpreter = interpreter_of(points[i].fields);
+    places[{interpreter, ""}].push_back(i);
+    places[{interpreter, points[i].fields.algorithm}].push_back(i);
   }
-  for (const auto& [algorithm, list] : places) {
+  for (const auto& [key, list] : places) {
     std::vector<Tradeoff> tradeoffs;
     for (const std::size_t i : list) tradeoffs.push_back(*tradeoff_of(points[i], cost, error));
     const std::vector<bool> leads = frontier(tradeoffs);
     for (std::size_t k = 0; k < list.size(); ++k)
-      (algorithm.empty() ? on[list[k]].overall : on[list[k]].own) = leads[k];
+      (key.second.empty() ? on[list[k]].overall : on[list[k]].own) = leads[k];
   }
   return on;
 }

@@ -34,7 +34,8 @@ std::vector<bool> uncertain(std::span<const Tradeoff> points);
 /// A point of a study (a row of `sixdof precision`) in the plane of two metrics; empty where it lacks one of them.
 std::optional<Tradeoff> tradeoff_of(const Row& point, const std::string& cost, const std::string& error);
 
-/// Per point: on the frontier of all points, and on that of its own algorithm.
+/// Per point: on the frontier of all points, and on that of its own algorithm. Interpreted algorithms
+/// (interpreter_of()) have frontiers of their own.
 struct OnFrontier {
   bool overall = false, own = false;
 };

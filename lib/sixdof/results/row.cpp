@@ -16,6 +16,8 @@ using Json = nlohmann::ordered_json;
 
 /// Google Benchmark's name and ours.
 constexpr std::pair<const char*, const char*> k_means[] = {{"cpu_time", k_processor_mean}, {"real_time", k_wall_mean}};
+/// Of RowFields::runtime.
+constexpr const char* k_native = "native";
 constexpr const char* k_bounds[] = {"", "_low", "_high"};
 
 /// Means and their bounds in ns, under names that say so.
@@ -50,8 +52,18 @@ std::optional<Estimate> Row::estimate(const std::string& metric) const {
   return Estimate{*middle, value(metric + "_low").value_or(*middle), value(metric + "_high").value_or(*middle)};
 }
 
+std::string interpreter_of(const RowFields& fields) { return fields.runtime == k_native ? "" : fields.runtime; }
+
+std::string class_of(const RowFields& fields) {
+  const std::string interpreter = interpreter_of(fields);
+  if (fields.body.empty() || interpreter.empty()) return fields.body + interpreter;
+  return fmt::format("{}, {}", fields.body, interpreter);
+}
+
 std::string bodies_of(const RowFields& fields) {
-  return fields.body.empty() ? fields.pair : fmt::format("{} ({})", fields.pair, fields.body);
+  const std::string apart = class_of(fields);
+  if (fields.pair.empty() || apart.empty()) return fields.pair + apart;
+  return fmt::format("{} ({})", fields.pair, apart);
 }
 
 std::string place_of(const RowFields& fields) {

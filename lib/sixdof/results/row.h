@@ -36,7 +36,15 @@ struct Row {
   std::optional<Estimate> estimate(const std::string& metric) const;
 };
 
-/// What the answers are about: "bunny", or "bunny (convex_hull)" where they are not about the meshes.
+/// What executes the algorithm, where calls or the code itself cost more than those of a compiled program: "python",
+/// "node", "wasm". Empty elsewhere.
+std::string interpreter_of(const RowFields& fields);
+
+/// Why a row is not compared with others of its pair, and stands in tables of its own: "convex_hull" where answers are
+/// not about the meshes, what interprets the algorithm, or both: "convex_hull, wasm". Empty for most.
+std::string class_of(const RowFields& fields);
+
+/// What rows are compared on: "bunny", or "bunny (CLASS)" of a row that has a class.
 std::string bodies_of(const RowFields& fields);
 
 /// "distance 5 %"; the scenario of a row without a bucket.

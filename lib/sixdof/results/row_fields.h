@@ -20,6 +20,7 @@ struct RowFields {
   std::optional<BucketKey> bucket = {};
   std::string order = {};     ///< Of a query's poses: "random", "path" (the grid's own order) or "motion".
   std::string body = {};      ///< "convex_hull" where answers are not about the meshes; empty where they are.
+  std::string runtime = {};   ///< Of a rival: "native", "python", "node" or "wasm" (Traits::runtime); empty elsewhere.
   std::string cache = {};     ///< Of a query: "warm", or "cold" where data leaves the caches before each.
   std::string scenario = {};  ///< "II"; of a scene row its family.
   std::string target = {};    ///< Of a generate row: "distance" or "volume".

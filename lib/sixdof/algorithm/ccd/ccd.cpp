@@ -5,7 +5,7 @@
 #include <limits>
 #include <type_traits>
 
-#include <sixdof/algorithm/ccd/convex_hull.h>
+#include <sixdof/oracle/convex_hull.h>
 
 namespace sixdof {
 namespace {

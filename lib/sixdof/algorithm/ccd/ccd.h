@@ -9,14 +9,13 @@ namespace sixdof {
 /// `ccd-hull`: libccd on the convex hulls of both meshes. Answers collide.
 ///
 /// **Another question.** The answers are about the hulls (Traits::body): yes where the hulls overlap, although the
-/// meshes may be apart. Rows of it are not judged by the truth of the meshes, stand in tables of their own, and are in
-/// no suite or study of all algorithms. convex_hull() gives the hulls as meshes: what `exact` says of these is the
-/// truth.
+/// meshes may be apart. Rows of it are judged by what `exact` says of the hulls (oracle/convex_hull.h), stand in tables
+/// of their own, and are in no suite or study of all algorithms.
 ///
-/// **Prepare** makes both hulls with Qhull. **A query** runs ccdGJKIntersect(), or ccdMPRIntersect() with `method=mpr`,
-/// with a support function that goes through all vertices of a hull, as libccd leaves it to its user. It stops after
-/// `max_iterations`, 100 as in libccd's first example, and then says no. Nothing is kept from query to query. Hulls are
-/// solids: one inside the other is a contact.
+/// **Prepare** makes both hulls by convex_hull(). **A query** runs ccdGJKIntersect(), or ccdMPRIntersect() with
+/// `method=mpr`, with a support function that goes through all vertices of a hull, as libccd leaves it to its user. It
+/// stops after `max_iterations`, 100 as in libccd's first example, and then says no. Nothing is kept from query to
+/// query. Hulls are solids: one inside the other is a contact.
 ///
 /// **Precision.** Double precision; the answer to hulls whose distance or depth is about 1e-6 of their size is by
 /// chance.

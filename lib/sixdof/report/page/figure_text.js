@@ -72,7 +72,16 @@
       `${count.unsupported} declared unsupported, ${countText(count.fault, "fault")}${faults.length ? ": " + listText(faults, mostFailures) : ""}.` };
   }
 
-  const isAll = (pair) => pair === undefined || pair === "all objects (mean)" || pair === "all";
+  const isAll = (pair) => pair === undefined || pair === "all" || pair.startsWith("all objects (mean)");
+  /** Why rows of a pair stand apart: "convex_hull", "python", "convex_hull, wasm"; "" for most (class_of() in results/row.h). */
+  const apartOf = (pair) => / \(((?:convex_hull|python|node|wasm)[^()]*)\)$/.exec(pair)?.[1] ?? "";
+  /** As the table of winners says it (body_words() in summary.cpp). */
+  const bodyOf = (pair) => {
+    const body = apartOf(pair).startsWith("convex_hull") ? "convex hulls" : "meshes", interpreter = apartOf(pair).replace(/^convex_hull(, )?/, "");
+    return interpreter ? `${body} (${interpreter})` : body;
+  };
+  /** Means over all objects are of one class of rows. */
+  const isOfPair = (pair, wanted) => !wanted || wanted === "all" || pair === wanted || (isAll(wanted) && apartOf(pair) === apartOf(wanted));
   const percentOf = (row) => row.percent ?? Number(/ (\S+) %$/.exec(row.bucket ?? "")?.[1]);
 
   /** What a row of the table of failures has in common with the row of a figure that would stand for it, if it had not failed. */
@@ -88,11 +97,11 @@
     const pair = row.pair ?? "", bucket = row.bucket ?? "", query = fails.query ?? wanted.query, order = row.algorithm.slice(report.baseAlgorithm(row.algorithm).length);
     const isOf = (column, value) => wanted[column] === undefined || wanted[column] === value;
     const isStudy = row.query === "precision" && wanted.measured === `${row.question}, every resolution`;
-    return isOf("run", row.run) && (query === undefined || row.query === query) && (isAll(wanted.pair) || pair === wanted.pair) &&
+    return isOf("run", row.run) && (query === undefined || row.query === query) && isOfPair(pair, wanted.pair) &&
       (!wanted.bucket || bucket.startsWith(wanted.bucket)) && (!fails.bucket || bucket.startsWith(fails.bucket)) && isOf("percent", percentOf(row)) &&
       isOf("scenario", bucket) && isOf("scene", bucket) && isOf("question", row.question) &&
       isOf("where", [pair, row.query === "scenario" ? `scenario ${bucket}` : bucket].filter(Boolean).join(", ")) &&
-      (isStudy || isOf("measured", `${row.query}, ${bucket}${order}`)) && isOf("body", pair.endsWith("(convex_hull)") ? "convex hulls" : "meshes") &&
+      (isStudy || isOf("measured", `${row.query}, ${bucket}${order}`)) && isOf("body", bodyOf(pair)) &&
       (wanted.poses === undefined || order === ({ motion: " (motion)", path: " (path order)" }[wanted.poses] ?? ""));
   }
 
