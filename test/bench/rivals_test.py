@@ -90,7 +90,8 @@ class Rivals(unittest.TestCase):
         self.assertEqual((measured["name"], measured["failed"], measured["mismatch"]), (row, 0, 16))
         self.assertEqual(measured["sixdof"]["runtime"], "python")
         self.assertEqual(document["context"]["algorithm:spheres"], "1.0")
-        self.assertNotIn("--external", measured["outliers"]["command"], "found by name")
+        for option in ("--external", "--isolate"):
+            self.assertNotIn(option, measured["outliers"]["command"], "found by name")
         self.assertTrue(self.started.exists())
 
     def test_parameters_of_all_rivals(self):
@@ -164,7 +165,8 @@ class Rivals(unittest.TestCase):
 
     def test_none_is_set_up(self):
         (self.folder / "ready/spheres.json").unlink()
-        for words in (["stress", "--algorithms", "rivals"], ["precision", *POSE[:4], "--algorithms", "rivals"]):
+        for words in (["stress", "--algorithms", "rivals"], ["conform", "--algorithms", "rivals"],
+                      ["precision", *POSE[:4], "--algorithms", "rivals"]):
             self.assertIn("bench/rivals/setup", self.sixdof(*words, code=1).stderr)
 
     def test_an_external_one_comes_instead(self):
