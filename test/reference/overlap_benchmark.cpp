@@ -86,10 +86,10 @@ void corefinement(benchmark::State& state) {
 }
 
 /// Generic, because the type's namespace depends on the version.
-constexpr auto sizes = [](auto* benchmark) {
-  benchmark->ArgNames({"triangles", "volume"})->Unit(benchmark::kMillisecond);
+constexpr auto sizes = [](auto* b) {
+  b->ArgNames({"triangles", "volume"})->Unit(benchmark::kMillisecond);
   for (const std::int64_t triangles : {1000, 10000, 100000}) {
-    for (const std::int64_t percent : {1, 3, 10}) benchmark->Args({triangles, percent});
+    for (const std::int64_t percent : {1, 3, 10}) b->Args({triangles, percent});
   }
 };
 
