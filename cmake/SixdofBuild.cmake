@@ -18,7 +18,7 @@ target_compile_features(sixdof_build_flags INTERFACE cxx_std_20)
 target_compile_options(sixdof_build_flags INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align
   # Designated initializers may leave members to their defaults; gcc 12 sees overlaps in std::string that are not there.
-  -Wno-missing-field-initializers -Wno-restrict -ffp-contract=off)
+  -Wno-missing-field-initializers $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off)
 if(SIXDOF_SANITIZE)
   target_compile_options(sixdof_build_flags INTERFACE -fsanitize=${SIXDOF_SANITIZE} -fno-sanitize-recover=all)
   target_link_options(sixdof_build_flags INTERFACE -fsanitize=${SIXDOF_SANITIZE})

@@ -9,6 +9,9 @@ find_package(assimp 5 REQUIRED)
 find_package(nanoflann 1.4 REQUIRED)
 find_package(HDF5 1.10 REQUIRED COMPONENTS C)
 
+if(POLICY CMP0167)
+  cmake_policy(SET CMP0167 NEW)  # CMake 3.30 has no module for it: Boost has a package of its own
+endif()
 find_package(Boost 1.74 REQUIRED)
 
 find_package(PkgConfig REQUIRED)
@@ -20,7 +23,8 @@ if(SIXDOF_WITH_FCL)
 endif()
 
 # sixdof_optional_backend(BACKEND MODULE PACKAGE): PkgConfig::BACKEND if SIXDOF_WITH_BACKEND is on and pkg-config knows
-# MODULE; else a message that names the Debian package, and the backend is left out.
+# MODULE; else a message that names the Debian package, and the backend is left out. The C++ standard is this project's to
+# choose: a MODULE that names one (Simbody: -std=c++11) does not.
 function(sixdof_optional_backend backend module package)
   if(NOT SIXDOF_WITH_${backend})
     return()
@@ -28,6 +32,12 @@ function(sixdof_optional_backend backend module package)
   pkg_check_modules(${backend} QUIET IMPORTED_TARGET GLOBAL ${module})
   if(NOT ${backend}_FOUND)
     message(STATUS "No ${module}: without the backend SIXDOF_WITH_${backend} (Debian: ${package})")
+    return()
+  endif()
+  get_target_property(options PkgConfig::${backend} INTERFACE_COMPILE_OPTIONS)
+  if(options)
+    list(FILTER options EXCLUDE REGEX "^-std=")
+    set_target_properties(PkgConfig::${backend} PROPERTIES INTERFACE_COMPILE_OPTIONS "${options}")
   endif()
 endfunction()
 sixdof_optional_backend(BULLET bullet-float64 libbullet-dev)
@@ -36,22 +46,31 @@ sixdof_optional_backend(GTS gts libgts-dev)
 sixdof_optional_backend(SIMBODY simbody libsimbody-dev)
 sixdof_optional_backend(CCD ccd libccd-dev)
 
-# sixdof_optional_package(BACKEND TARGET PACKAGE NAME [VERSION]): TARGET if SIXDOF_WITH_BACKEND is on and find_package(NAME
-# VERSION) has it; else a message that names the Debian package, and the backend is left out.
+# sixdof_optional_package(BACKEND TARGET PACKAGE NAME [VERSION...]): TARGET if SIXDOF_WITH_BACKEND is on and
+# find_package(NAME VERSION) has it; else a message that names the Debian package, and the backend is left out. Where
+# packages refuse other major versions, VERSIONs are tried in this order; SIXDOF_NAME_VERSION is the one that was found.
 function(sixdof_optional_package backend target package name)
   if(NOT SIXDOF_WITH_${backend})
     return()
   endif()
-  find_package(${name} ${ARGN} QUIET GLOBAL)
+  if(NOT ARGN)
+    find_package(${name} QUIET GLOBAL)
+  endif()
+  foreach(version IN LISTS ARGN)
+    if(NOT TARGET ${target})
+      find_package(${name} ${version} QUIET GLOBAL)
+      set(SIXDOF_${name}_VERSION ${version} PARENT_SCOPE)
+    endif()
+  endforeach()
   if(NOT TARGET ${target})
     message(STATUS "No ${name}: without the backend SIXDOF_WITH_${backend} (Debian: ${package})")
   endif()
 endfunction()
-sixdof_optional_package(EMBREE embree libembree-dev embree 3.13)
+sixdof_optional_package(EMBREE embree libembree-dev embree 4 3.13)
 sixdof_optional_package(MUJOCO mujoco::mujoco libmujoco-dev mujoco 2.2)
 sixdof_optional_package(COAL coal::coal "no package" coal)
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
-sixdof_optional_package(CGAL CGAL::CGAL libcgal-dev CGAL 5.5)
+sixdof_optional_package(CGAL CGAL::CGAL libcgal-dev CGAL 6 5.5)
 
 # In the order in which programs list their algorithms. A backend is built if sixdof_NAME is a target.
 set(SIXDOF_BACKENDS fcl bullet ode embree gts simbody ccd mujoco coal cgal)

@@ -1,5 +1,6 @@
 # Installation and export: find_package(sixdof) gives sixdof::sixdof, the backends that were built, and sixdof::bench_main
-# and sixdof::cli_main if the programs were built. Nothing installed names its folder: it may be moved.
+# and sixdof::cli_main if the programs were built. Nothing installed names its folder: it may be moved. Two components:
+# `programs` with their data, and `development`, what programs of others are built with.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/sixdof)
@@ -11,40 +12,69 @@ foreach(backend IN LISTS SIXDOF_BACKENDS)
   endif()
 endforeach()
 get_property(libraries GLOBAL PROPERTY sixdof_libraries)
+
+# Target install-ready builds what `cmake --install` copies: bench/run builds less, the tests need more. An installation
+# that lacks something says so before it copies anything.
+# expect_built(COMPONENT TARGET...): the files of these targets must be there when COMPONENT is installed.
+function(expect_built component)
+  list(TRANSFORM ARGN REPLACE "(.+)" "\"$<TARGET_FILE:\\1>\"" OUTPUT_VARIABLE files)
+  list(JOIN files " " files)
+  set(first "cmake --build ${PROJECT_BINARY_DIR} --target install-ready")
+  install(CODE "
+    foreach(file IN ITEMS ${files})
+      if(NOT EXISTS \"\${file}\")
+        message(FATAL_ERROR \"\${file} is not built yet. First: ${first}\")
+      endif()
+    endforeach()" COMPONENT ${component})
+endfunction()
+if(PROJECT_IS_TOP_LEVEL)
+  add_custom_target(install-ready)
+  add_dependencies(install-ready ${libraries})
+  expect_built(development ${libraries})
+  if(SIXDOF_BUILD_BENCH)
+    add_dependencies(install-ready sixdof_program sixdof-bench sixdof_completions)
+    expect_built(programs sixdof_program sixdof-bench)
+  endif()
+endif()
+
 # In an export of its own: a project without GoogleTest has everything else.
 list(REMOVE_ITEM libraries sixdof_conformance)
 if(TARGET sixdof_conformance)
   set(SIXDOF_HAS_conformance ON)
-  install(TARGETS sixdof_conformance EXPORT sixdof_conformance ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS sixdof_conformance EXPORT sixdof_conformance
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
   install(EXPORT sixdof_conformance NAMESPACE sixdof:: DESTINATION ${package_folder}
-    FILE sixdof-conformance-targets.cmake)
+    FILE sixdof-conformance-targets.cmake COMPONENT development)
 endif()
 install(TARGETS ${libraries} EXPORT sixdof
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT sixdof NAMESPACE sixdof:: DESTINATION ${package_folder} FILE sixdof-targets.cmake)
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(EXPORT sixdof NAMESPACE sixdof:: DESTINATION ${package_folder} FILE sixdof-targets.cmake COMPONENT development)
 
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/sixdof DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/sixdof DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
   FILES_MATCHING PATTERN "*.h" PATTERN "query/README.md" PATTERN "process/README.md" PATTERN "conformance/README.md"
   PATTERN "*-inl.h" EXCLUDE)
 
 if(SIXDOF_BUILD_BENCH)
-  install(TARGETS sixdof_program sixdof-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS sixdof_program sixdof-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+  install(PROGRAMS ${PROJECT_SOURCE_DIR}/bench/compare DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME sixdof-compare
+    COMPONENT programs)
   install(FILES ${PROJECT_SOURCE_DIR}/bench/all_algorithms_suite.json ${PROJECT_SOURCE_DIR}/bench/default_suite.json
     ${PROJECT_SOURCE_DIR}/bench/own_pair_suite.json ${PROJECT_SOURCE_DIR}/bench/scenes_suite.json
-    DESTINATION ${data_folder}/bench)
+    DESTINATION ${data_folder}/bench COMPONENT programs)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/new_algorithm ${PROJECT_SOURCE_DIR}/bench/external
-    DESTINATION ${data_folder}/bench)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/fixtures DESTINATION ${data_folder}
-    FILES_MATCHING PATTERN "manifest.json" PATTERN "*.h5")
+    DESTINATION ${data_folder}/bench COMPONENT programs)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/fixtures DESTINATION ${data_folder} COMPONENT programs
+    FILES_MATCHING PATTERN "manifest.json" PATTERN "*.h5" PATTERN "whole_file.py")
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/lib/sixdof/report/page ${PROJECT_SOURCE_DIR}/lib/sixdof/report/figures
     ${PROJECT_BINARY_DIR}/share/sixdof/report/vendor
-    DESTINATION ${data_folder}/report)
+    DESTINATION ${data_folder}/report COMPONENT programs)
   install(FILES ${PROJECT_SOURCE_DIR}/models/models.json ${PROJECT_SOURCE_DIR}/models/collection.json
-    DESTINATION ${data_folder}/models)
-  install(PROGRAMS ${PROJECT_SOURCE_DIR}/models/fetch DESTINATION ${data_folder}/models)
-  install(FILES ${PROJECT_SOURCE_DIR}/cmake/linked_data_folder.cpp DESTINATION ${data_folder}/cmake)
-  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/bash-completion DESTINATION share)
+    DESTINATION ${data_folder}/models COMPONENT programs)
+  install(PROGRAMS ${PROJECT_SOURCE_DIR}/models/fetch DESTINATION ${data_folder}/models COMPONENT programs)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/linked_data_folder.cpp DESTINATION ${data_folder}/cmake
+    COMPONENT development)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/bash-completion DESTINATION share COMPONENT programs)
 endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sixdof-config.cmake.in
@@ -53,7 +83,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sixdof-config.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/sixdof-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/sixdof-config.cmake ${PROJECT_BINARY_DIR}/sixdof-config-version.cmake
   ${PROJECT_SOURCE_DIR}/cmake/SixdofCommit.cmake ${PROJECT_SOURCE_DIR}/cmake/SixdofCommitHeader.cmake
-  DESTINATION ${package_folder})
+  DESTINATION ${package_folder} COMPONENT development)
 
 # What a project needs that uses the package, by Debian's names. test/downstream/chroot installs these and nothing else.
 set(needed
@@ -85,11 +115,15 @@ endif()
 if(SIXDOF_HAS_conformance)
   list(APPEND needed "libgtest-dev        # tests of your own: sixdof::conformance")
 endif()
-list(JOIN needed "\n" needed)
-file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/packages.txt CONTENT "${needed}\n")
-install(FILES ${PROJECT_BINARY_DIR}/packages.txt DESTINATION ${data_folder})
+list(JOIN needed "\n" lines)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/packages.txt CONTENT "${lines}\n")
+install(FILES ${PROJECT_BINARY_DIR}/packages.txt DESTINATION ${data_folder} COMPONENT development)
 
 # pkg-config, for the core library alone.
 file(RELATIVE_PATH prefix_of_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/sixdof.pc.in ${PROJECT_BINARY_DIR}/sixdof.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/sixdof.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/sixdof.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+
+if(PROJECT_IS_TOP_LEVEL)
+  include(SixdofPackages)
+endif()

@@ -61,12 +61,17 @@ std::string class_name(const std::string& name) {
   return result + "Query";
 }
 
-/// The sixdof that the project uses: the source that this program was built in, else the installation that it is part
-/// of.
-Path sixdof_root() {
+/// The sixdof that the project uses.
+struct Root {
+  Path path;
+  bool is_source = false;  ///< The source that this program was built in; else the installation that it is part of.
+};
+
+Root find_root() {
   std::error_code ignored;
   const Path root = std::filesystem::weakly_canonical(data_folder() / "bench", ignored).parent_path();
-  return std::filesystem::exists(root / "lib" / "CMakeLists.txt", ignored) ? root : root.parent_path().parent_path();
+  if (std::filesystem::exists(root / "lib" / "CMakeLists.txt", ignored)) return {root, true};
+  return {root.parent_path().parent_path(), false};
 }
 
 using Words = std::vector<std::pair<std::string, std::string>>;
@@ -118,7 +123,8 @@ void write_project(const Arguments& arguments) {
   check_name(name);
   const Path templates = data_folder() / "bench" / "new_algorithm";
   const std::string stem = file_stem(name);
-  const Words words{{"NAME", name}, {"FILE", stem}, {"CLASS", class_name(name)}, {"SIXDOF", sixdof_root().string()}};
+  const Root root = find_root();
+  const Words words{{"NAME", name}, {"FILE", stem}, {"CLASS", class_name(name)}, {"SIXDOF", root.path.string()}};
   const Path output = arguments.output.empty() ? name : arguments.output;
   NewFolder folder(output);
   folder.write("CMakeLists.txt", fill_in(templates / "CMakeLists.txt.in", words));
@@ -127,10 +133,17 @@ void write_project(const Arguments& arguments) {
   folder.write(stem + "_conformance.cpp", fill_in(templates / "conformance.cpp.in", words));
   folder.commit();
   fmt::print(
-      "{0}: a project with the algorithm {1}. To build it and see its first row:\n"
-      "  cd {2} && cmake -S . -B build && cmake --build build\n"
+      "{0}: a project with the algorithm {1}. It uses {2}\n"
+      "To build it and see its first row:\n"
+      "  cd {3} && cmake -S . -B build && cmake --build build -j \"$(nproc)\"\n"
       "  build/{1}-bench --a cone-1k --b torus-1k\n",
-      output.string(), name, shell_quoted(output.string()));
+      output.string(), name,
+      root.is_source
+          ? fmt::format("the source of sixdof, {}, and builds it in many minutes.\nWith an installation it builds in "
+                        "one: cmake prints how to make one.",
+                        root.path.string())
+          : fmt::format("the installation of sixdof in {}.", root.path.string()),
+      shell_quoted(output.string()));
 }
 
 }  // namespace

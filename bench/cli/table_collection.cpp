@@ -1,8 +1,8 @@
 #include "bench/cli/table_collection.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
-#include <ranges>
 #include <set>
 
 #include <fmt/format.h>
@@ -145,7 +145,8 @@ std::string missing_text(const char* title, const std::vector<results::Missing>&
   }
   std::ranges::stable_sort(causes, std::ranges::greater(), [](const auto& entry) { return entry.second.size(); });
   std::string text = fmt::format("\n{}: {}\n", title, list.size());
-  for (const auto& [cause, pairs] : causes | std::views::take(k_most_causes)) {
+  for (std::size_t i = 0; i < std::min(causes.size(), k_most_causes); ++i) {
+    const auto& [cause, pairs] = causes[i];
     text += pairs.size() == 1 ? fmt::format("  {}: {}\n", pairs[0], cause)
                               : fmt::format("  {} x {}\n", pairs.size(), cause);
   }

@@ -23,6 +23,7 @@
 #include "bench/common/rivals.h"
 #include "bench/common/run_guarded.h"
 #include "bench/common/unknown_word.h"
+#include "bench/harness/benchmark_versions.h"
 
 namespace sixdof::bench {
 namespace {
@@ -112,7 +113,9 @@ std::string conflict_of_meshes(const Options& options, bool has_manifest) {
 std::string initialize_benchmark(const std::vector<std::string>& flags) {
   static std::vector<std::string> words;
   words = {"sixdof-bench"};
-  words.insert(words.end(), flags.begin(), flags.end());
+  for (const std::string& flag : flags) {
+    words.push_back(flag_of_version<benchmark::BenchmarkReporter::Run>(flag));
+  }
   // It insists on a file name before it calls a reporter of files; ours keeps the text in memory.
   words.emplace_back("--benchmark_out=/dev/null");
   std::vector<char*> pointers;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/harness/benchmark_versions.h"
 #include "bench/harness/timing.h"
 
 namespace sixdof::bench {
@@ -43,15 +44,14 @@ void RowReporter::ReportRuns(const std::vector<Run>& runs) {
     if (run.aggregate_name == "cv") {
       if (!std::isfinite(run.real_accumulated_time) || !std::isfinite(run.cpu_accumulated_time)) continue;
       std::erase_if(run.counters, std::not_fn(is_finite));
-    } else if (!run.error_occurred) {
+    } else if (!has_error(run)) {
       const auto bad = std::ranges::find_if_not(run.counters, is_finite);
       if (bad != run.counters.end()) {
-        run.error_occurred = true;
-        run.error_message = fmt::format("counter {} is not finite ({})", bad->first, bad->second.value);
+        set_error(run, fmt::format("counter {} is not finite ({})", bad->first, bad->second.value));
         run.counters.clear();
       }
     }
-    failed_ += run.error_occurred ? 1 : 0;
+    failed_ += has_error(run) ? 1 : 0;
     kept.push_back(std::move(run));
   }
   if (next_ != nullptr && !kept.empty()) next_->ReportRuns(kept);

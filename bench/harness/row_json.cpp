@@ -6,6 +6,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/visible_text.h>
+#include "bench/harness/benchmark_versions.h"
 
 namespace sixdof::bench {
 
@@ -30,7 +31,7 @@ Json row_json(const Run& run, const FieldsByName& fields, const OutliersByName& 
   }
   json[results::k_row_fields_key] = results::to_json_object(of_run);
   const auto found = outliers.find(run.run_name.function_name);
-  if (found != outliers.end() && run.run_type == Run::RT_Iteration && !run.error_occurred) {
+  if (found != outliers.end() && run.run_type == Run::RT_Iteration && !has_error(run)) {
     json[results::k_outliers_key] = results::to_json_object(found->second());
   }
   return json;

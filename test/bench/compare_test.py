@@ -97,7 +97,7 @@ class ComparePy(unittest.TestCase):
                        "real_time": time, "cpu_time": time, "time_unit": "ns", "sixdof": fields}
                 files.append(pathlib.Path(folder) / side)
                 files[-1].write_text(json.dumps({"context": {"date": "today"}, "benchmarks": [row]}), encoding="utf-8")
-            done = subprocess.run(compare.COMPARE + ["benchmarks", *map(str, files)], capture_output=True, text=True)
+            done = subprocess.run(compare.compare_py("benchmarks", *map(str, files)), capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("+0.5000", done.stdout)
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/harness/benchmark_versions.h"
 #include "bench/harness/timing.h"
 
 namespace sixdof::bench {
@@ -70,7 +71,7 @@ TEST_F(Collector, MakesARowWithANonFiniteCounterAnError) {
 
 TEST_F(Collector, OutliersStandBesideTheFieldsOfRowsThatRan) {
   ResultRow failed = row("c");
-  failed.error_occurred = true;
+  set_error(failed, "it failed");
   report({row("a")});
   report({row("b")});
   report({failed});
@@ -146,8 +147,7 @@ TEST_F(Collector, LeavesOutTheCoefficientOfVariationOfZeros) {
 
 TEST_F(Collector, KeepsAndCountsFailures) {
   ResultRow failure = row("a");
-  failure.error_occurred = true;
-  failure.error_message = "no such model";
+  set_error(failure, "no such model");
   report({failure});
   report({row("c")});
   EXPECT_EQ(collector.failed(), 1);
@@ -160,7 +160,7 @@ TEST_F(Collector, KeepsAndCountsFailures) {
 TEST_F(Collector, LeavesOutRowsByName) {
   left_out.insert("needs-a-solid");
   ResultRow skipped = row("needs-a-solid");
-  skipped.error_occurred = true;
+  set_error(skipped, "not closed");
   report({skipped});
   report({row("b")});
   EXPECT_EQ(collector.failed(), 0);

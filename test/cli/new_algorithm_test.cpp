@@ -41,7 +41,8 @@ class NewAlgorithm : public test::ScratchFolder {
 TEST_F(NewAlgorithm, WritesAProjectUnderItsName) {
   const auto result = run("fast-boxes-2 -o " + path("mine"));
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("cmake -S . -B build"), HasSubstr("build/fast-boxes-2-bench --a")));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("cmake -S . -B build"), HasSubstr("build/fast-boxes-2-bench --a"),
+                                HasSubstr("It uses the source of sixdof, ")));
   EXPECT_EQ(files(), 5u);  // the folder and four in it
   const std::string build = text_of(path("mine/CMakeLists.txt")), source = text_of(path("mine/fast_boxes_2.cpp")),
                     readme = text_of(path("mine/README.md")),

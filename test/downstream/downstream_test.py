@@ -116,19 +116,31 @@ class Installed(Project):
                             for line in (command, command.replace("--algorithm fast-boxes", "--algorithm exact")))
             self.assertNotEqual(asked["colliding"], exact["colliding"], command)
 
+    def test_compares_two_programs(self):
+        programs = ARGUMENTS.installed / "bin"
+        out = run(programs / "sixdof-compare", "--programs", programs / "sixdof-bench", programs / "sixdof-bench",
+                  "--fail-on-answers", "--filter", "^collide/algorithm:exact/pair:torus-knot-10k/distance:05$",
+                  "--sample", 16, "--folder", ARGUMENTS.work / "compare")
+        self.assertIn("answers: 0 counters of 1 rows changed", out)
+        self.assertIn("commits are compared in a clone", run(programs / "sixdof-compare", "HEAD", expected=2))
+
     def test_new_algorithm(self):
         program = ARGUMENTS.installed / "bin" / "sixdof"
         folder = ARGUMENTS.work / "mine"
         shutil.rmtree(folder, ignore_errors=True)
         printed = run(program, "new-algorithm", "fast-boxes", "-o", folder)
+        self.assertIn("It uses the installation of sixdof in ", printed)
         self.assertEqual(sorted(path.name for path in folder.iterdir()), ["CMakeLists.txt", "README.md", "fast_boxes.cpp", "fast_boxes_conformance.cpp"])
         configure_and_build(folder, folder / "build")
+        self.assertIn("fast-boxes: uses the installation of sixdof in ", run("cmake", folder / "build"))
+        self.assertIn("--prefix FOLDER", run("cmake", "-S", folder, "-B", folder / "without", "-DSIXDOF=/nowhere",
+                                             "-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=OFF", expected=1))
         # What its README says.
         commands = re.search(r"```sh\n(.*?)```", (folder / "README.md").read_text(), re.DOTALL).group(1)
         for line in commands.splitlines()[2:]:
             run("sh", "-c", line, cwd=folder)
         # What new-algorithm printed; the build's options are kept, and the rows are few.
-        build, bench = printed.splitlines()[1:]
+        build, bench = printed.splitlines()[-2:]
         run("sh", "-c", f"{build} && {bench} --benchmark_filter=/algorithm:fast-boxes/ --sample 16 --budget 20", cwd=ARGUMENTS.work)
         self.check_printed_commands(folder / "build")
         self.check_lists(folder / "build" / "fast-boxes-sixdof", "fast-boxes", r"^0\.1\.0 ")

@@ -357,7 +357,8 @@ TEST(VolumeGenerator, RefusesMeshesThatAreNotSolids) {
   const Mesh open = Mesh::build(a.vertices(), triangles, "open-lump");
   const Grid grid = make_grid("90");
   for (const auto& [first, second] : {std::pair(&a, &open), std::pair(&open, &a)}) {
-    EXPECT_THAT([&] { generate_volumes(*k_touching, *first, *second, grid, k_percents); },
+    const Mesh &left = *first, &right = *second;
+    EXPECT_THAT([&] { generate_volumes(*k_touching, left, right, grid, k_percents); },
                 ThrowsMessage<BadMesh>(testing::AllOf(HasSubstr("open-lump"), HasSubstr("border"))));
   }
   EXPECT_THAT(

@@ -1,5 +1,5 @@
 # Configures without any backend, and with packages of the optional ones that pkg-config cannot use: both work, the
-# second says what is left out, and the list of algorithms compiles.
+# second says what is left out, and the list of algorithms compiles. What is not built is not installed.
 function(run output_variable)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(result)
@@ -19,12 +19,19 @@ function(expect_no_backend build)
     --target bench/CMakeFiles/sixdof_bench_common.dir/common/all_algorithms.cpp.o)
 endfunction()
 
-file(REMOVE_RECURSE ${WORK}/without ${WORK}/unusable ${WORK}/pkgconfig)
+file(REMOVE_RECURSE ${WORK}/without ${WORK}/unusable ${WORK}/pkgconfig ${WORK}/prefix)
 set(configure ${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -DSIXDOF_BUILD_TESTS=OFF -DSIXDOF_INSTALL=OFF)
-run(output ${configure} -B ${WORK}/without -DSIXDOF_WITH_FCL=OFF -DSIXDOF_WITH_BULLET=OFF -DSIXDOF_WITH_ODE=OFF
+run(output ${configure} -B ${WORK}/without -DSIXDOF_INSTALL=ON -DSIXDOF_WITH_FCL=OFF -DSIXDOF_WITH_BULLET=OFF -DSIXDOF_WITH_ODE=OFF
   -DSIXDOF_WITH_EMBREE=OFF -DSIXDOF_WITH_GTS=OFF -DSIXDOF_WITH_SIMBODY=OFF -DSIXDOF_WITH_CCD=OFF -DSIXDOF_WITH_MUJOCO=OFF -DSIXDOF_WITH_COAL=OFF)
 # CGAL is off by default: a program that links it is under the GPL.
 expect_no_backend(${WORK}/without fcl bullet ode embree gts simbody ccd mujoco coal cgal)
+
+# An installation of what is not built says how to build it, and copies nothing.
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${WORK}/without --prefix ${WORK}/prefix
+  RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+if(NOT result OR NOT output MATCHES "install-ready" OR EXISTS ${WORK}/prefix/lib)
+  message(FATAL_ERROR "an installation of nothing exited with ${result}:\n${output}")
+endif()
 
 foreach(module IN ITEMS bullet-float64 ode gts simbody ccd)
   file(WRITE ${WORK}/pkgconfig/${module}.pc

@@ -85,12 +85,13 @@ void corefinement(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(pair.cgal.volume(pair.vertices_b[i++ % k_poses]));
 }
 
-void sizes(benchmark::internal::Benchmark* b) {
+/// Generic, because the type's namespace depends on the version.
+constexpr auto sizes = [](auto* b) {
   b->ArgNames({"triangles", "volume"})->Unit(benchmark::kMillisecond);
   for (const std::int64_t triangles : {1000, 10000, 100000}) {
     for (const std::int64_t percent : {1, 3, 10}) b->Args({triangles, percent});
   }
-}
+};
 
 BENCHMARK(exact)->Name("oracle/overlap/by:exact")->Apply(sizes)->Args({1000000, 10});
 BENCHMARK(corefinement)->Name("oracle/overlap/by:corefinement")->Apply(sizes);

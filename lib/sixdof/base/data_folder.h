@@ -22,6 +22,7 @@ std::filesystem::path find_above(std::filesystem::path folder, const std::filesy
 /// Tells a program that lies elsewhere where the data of the package are that it was linked with. Each program that
 /// links sixdof::bench_main or sixdof::cli_main has one (cmake/linked_data_folder.cpp).
 struct LinkedDataFolder {
+  /// The folder that data_folder() then returns if it exists.
   explicit LinkedDataFolder(std::filesystem::path folder);
 };
 

@@ -24,7 +24,9 @@ struct BadMesh : Error {
 /// A file that cannot be read, is malformed, damaged or of another kind, or cannot be written. The message reads
 /// "FILE: LOCATION: CAUSE" or "FILE: CAUSE", e.g. "hull.off: face 7: vertex index 12 of 9".
 struct BadFile : Error {
+  /// "FILE: CAUSE".
   BadFile(const std::string& file, const std::string& cause) : Error(file + ": " + cause) {}
+  /// "FILE: LOCATION: CAUSE"; a location is an element, from 0, or a line, from 1.
   BadFile(const std::string& file, const std::string& location, const std::string& cause)
       : Error(file + ": " + location + ": " + cause) {}
 };

@@ -19,12 +19,15 @@ enum class BucketKind {
   volume     ///< Of the overlap, in percent of A's volume.
 };
 
+/// "distance" or "volume".
 std::string to_string(BucketKind kind);
 
+/// Which bucket of a set: a kind and a percentage.
 struct BucketKey {
-  BucketKind kind = BucketKind::distance;
+  BucketKind kind = BucketKind::distance;  ///< What the percentage is of.
   double percent = 0.0;  ///< 0 to k_max_percent, a decimal number with at most k_max_decimals digits behind the point.
 
+  /// Distances before volumes, each by percentage.
   auto operator<=>(const BucketKey&) const = default;
 
   /// Name of the bucket's dataset: "distance/05", "volume/10", "distance/0.5". Whole percentages have two digits at
@@ -34,7 +37,9 @@ struct BucketKey {
   /// The inverse of name(). @throws BadArgument
   static BucketKey parse(std::string_view name);
 
+  /// Largest percentage.
   static constexpr int k_max_percent = 100;
+  /// Most digits behind the point.
   static constexpr int k_max_decimals = 3;
 };
 
@@ -44,7 +49,7 @@ std::optional<double> parse_percent(std::string_view text);
 
 /// Everything about a bucket but its values. Distances in the meshes' length unit, volumes in its cube.
 struct BucketSummary {
-  BucketKey key;
+  BucketKey key;         ///< Its name.
   double nominal = 0.0;  ///< The percentage as a distance or a volume.
   /// The distance or volume that the configurations have: `nominal`, but a distance just outside contact in
   /// distance bucket 0.
@@ -53,12 +58,13 @@ struct BucketSummary {
   double largest_residual = 0.0;  ///< Largest |measured - target| when the set was made.
   std::uint64_t reachable = 0;    ///< Configurations whose translation is not NaN. The writer fills it in.
   std::string oracle;             ///< The method that measured, e.g. "fcl-rss".
-  std::string oracle_version;
-  std::string hash;  ///< Content hash of the values. The writer fills it in.
+  std::string oracle_version;     ///< Of that method.
+  std::string hash;               ///< Content hash of the values. The writer fills it in.
 };
 
 /// A bucket with its values, in memory.
 struct Bucket {
+  /// Everything but the values.
   BucketSummary summary;
   /// Translation s of B along the direction, [rotation][direction], NaN where the target is not met.
   std::vector<double> translations;

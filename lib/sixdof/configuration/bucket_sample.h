@@ -12,7 +12,7 @@ namespace sixdof {
 
 /// Configurations drawn from one bucket, with what their answers are compared with.
 struct BucketSample {
-  BucketKey key;
+  BucketKey key;  ///< Of the bucket.
   /// In the order of drawing: every prefix is a stratified sample of the bucket (CellOrder).
   std::vector<Pose> poses;
   std::vector<std::uint64_t> cells;  ///< Place of each pose in the grid: rotation * number of directions + direction.
@@ -31,6 +31,7 @@ class CellOrder {
   /// Neither number is 0. The same seed gives the same order.
   CellOrder(std::size_t rotations, std::size_t directions, std::uint64_t seed);
 
+  /// Number of cells: rotations times directions.
   std::uint64_t size() const { return rotations_.size() * directions_.size(); }
   /// rotation * number of directions + direction, of 0 <= t < size().
   std::uint64_t operator[](std::uint64_t t) const;

@@ -18,27 +18,31 @@ namespace sixdof {
 
 /// Identifies a mesh in a set, so that the set is never used with another one.
 struct MeshIdentity {
-  std::string name;
-  std::string hash;  ///< Mesh::hash()
-  std::uint64_t triangles = 0;
-  Eigen::Vector3d box_min = Eigen::Vector3d::Zero();
-  Eigen::Vector3d box_max = Eigen::Vector3d::Zero();
-  double volume = 0.0;
+  std::string name;                                   ///< Mesh::name()
+  std::string hash;                                   ///< Mesh::hash()
+  std::uint64_t triangles = 0;                        ///< How many it has.
+  Eigen::Vector3d box_min = Eigen::Vector3d::Zero();  ///< Lower corner of Mesh::box(), in the mesh's frame (length).
+  Eigen::Vector3d box_max = Eigen::Vector3d::Zero();  ///< Upper corner.
+  double volume = 0.0;                                ///< Mesh::volume() (length^3).
   /// Where a mesh that is no model of the catalogue was when the set was made: as the user wrote it, and absolute. Both
   /// are empty for a model. They are no part of content hashes: the same mesh may lie anywhere (set_meshes.h).
   std::string path, absolute_path;
 
+  /// That of a mesh, without paths.
   static MeshIdentity of(const Mesh& mesh);
+  /// Length of the box's diagonal.
   double diagonal() const { return (box_max - box_min).norm(); }
 };
 
 /// Everything that defines the configurations of a set but their translations.
 struct SetDescription {
   std::string generator_version;  ///< Version of the program that made the set.
-  MeshIdentity a, b;
-  Grid grid;
+  MeshIdentity a;                 ///< The fixed mesh.
+  MeshIdentity b;                 ///< The moving mesh.
+  Grid grid;                      ///< Of the distance buckets, and of the volume buckets unless they have their own.
   std::optional<Grid> volume_grid;  ///< Grid of the volume buckets, if it is not `grid`; the paper's is coarser.
 
+  /// The grid of the buckets of a kind.
   const Grid& grid_of(BucketKind kind) const { return kind == BucketKind::volume && volume_grid ? *volume_grid : grid; }
 };
 
@@ -47,15 +51,16 @@ class ConfigurationSetWriter {
  public:
   /// @throws BadFile if the file cannot be created; BadArgument if the grid is empty.
   ConfigurationSetWriter(std::filesystem::path path, SetDescription description);
+  /// Without commit() nothing is left of the file.
   ~ConfigurationSetWriter();
   ConfigurationSetWriter(const ConfigurationSetWriter&) = delete;
   ConfigurationSetWriter& operator=(const ConfigurationSetWriter&) = delete;
 
-  /// @param translations s of rotation r and direction u at [r * directions + u], NaN where unreachable
+  /// Adds a bucket. @param translations s of rotation r and direction u at [r * directions + u], NaN where unreachable
   /// @throws BadArgument if the bucket is there already, the size is wrong, or a value is infinite or negative.
   void write(BucketSummary summary, std::span<const double> translations);
 
-  /// Makes the file appear under its name.
+  /// Makes the file appear under its name. @throws BadFile if it cannot be written whole
   void commit();
 
  private:
@@ -70,8 +75,11 @@ class ConfigurationSet {
   /// @throws BadFile if the file is not a configuration set, is of another format version, truncated or damaged.
   explicit ConfigurationSet(std::filesystem::path path);
 
+  /// The file, as it was named.
   const std::filesystem::path& path() const { return path_; }
+  /// Meshes and grids.
   const SetDescription& description() const { return description_; }
+  /// The grid of the buckets of a kind.
   const Grid& grid(BucketKind kind) const { return description_.grid_of(kind); }
   /// Distances before volumes, each by percentage.
   const std::vector<BucketSummary>& buckets() const { return buckets_; }
@@ -79,6 +87,7 @@ class ConfigurationSet {
   /// depend on compression.
   const std::string& hash() const { return hash_; }
 
+  /// Everything about a bucket but its values.
   /// @throws BadArgument naming the buckets of the set if this is none of them.
   const BucketSummary& summary(BucketKey key) const;
 

@@ -18,7 +18,7 @@ namespace sixdof {
 
 /// Number of buckets in the paper: distances of 0..30 % of the diagonal of A's box, volumes of 0..10 % of A's volume.
 constexpr std::size_t k_paper_distance_buckets = 31;
-constexpr std::size_t k_paper_volume_buckets = 11;
+constexpr std::size_t k_paper_volume_buckets = 11;  ///< The same for volumes.
 
 /// A grid of directions and rotations, with its description.
 struct Grid {
@@ -32,6 +32,7 @@ struct Grid {
   /// have equal bits.
   std::vector<Eigen::Vector4d> rotations;
 
+  /// Directions times rotations.
   std::size_t configurations() const { return directions.size() * rotations.size(); }
 };
 
@@ -52,6 +53,7 @@ struct DistinctRotations {
   std::vector<std::uint32_t> first;           ///< First index in the list of each distinct rotation, ascending.
   std::vector<std::uint32_t> representative;  ///< For each rotation of the list, the first index of an equal one.
 
+  /// Of a list of unit quaternions; only equal bits count as equal.
   explicit DistinctRotations(std::span<const Eigen::Vector4d> rotations);
 
   /// Copies the row of every distinct rotation to its repeats.
@@ -68,12 +70,13 @@ struct ConfigurationRay {
   Eigen::Vector3d rotated_center_b = Eigen::Vector3d::Zero();  ///< R c_B, in A's axes.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();         ///< u, unit vector in A's frame.
 
+  /// The identity, without a direction.
   ConfigurationRay() = default;
-  /// @param rotation (w, x, y, z); @param along the direction
+  /// Of one rotation. @param rotation (w, x, y, z); @param along the direction
   ConfigurationRay(const Mesh& a, const Mesh& b, const Eigen::Vector4d& rotation,
                    const Eigen::Vector3d& along = Eigen::Vector3d::Zero());
 
-  /// @param s translation along u, in the meshes' length unit
+  /// X_AB at a translation. @param s translation along u, in the meshes' length unit
   Pose pose(double s) const { return {R, (center_a + s * direction) - rotated_center_b}; }
 };
 

@@ -15,7 +15,7 @@ struct CatalogueEntry {
   std::string pair;            ///< Name of the pair in benchmarks: a-z 0-9 '-' '_'.
   std::string a, b;            ///< Keys of the meshes (SetCatalogue::mesh()).
   std::filesystem::path file;  ///< Absolute, or relative to the working directory.
-  std::vector<BucketKey> buckets;
+  std::vector<BucketKey> buckets;  ///< Those that the set has.
 };
 
 /// A mesh of a set, for find_mesh().
@@ -38,6 +38,7 @@ class SetCatalogue {
   const CatalogueEntry& add(const std::filesystem::path& set, const MeshIdentity& a, const MeshIdentity& b,
                             std::vector<BucketKey> buckets);
 
+  /// All sets, in the order in which they were read and added.
   const std::vector<CatalogueEntry>& sets() const { return sets_; }
 
   /// The mesh of a key; null if no set has it. The key of a model is its name. Keys of other meshes have a part of

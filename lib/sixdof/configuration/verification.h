@@ -16,12 +16,12 @@ namespace sixdof {
 /// Which configurations verify_set() measures again.
 struct VerificationSample {
   std::size_t size = 50;  ///< Configurations per bucket, drawn with repetition.
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  ///< Of the draw.
 };
 
 /// Results of one bucket.
 struct BucketVerdict {
-  BucketSummary summary;
+  BucketSummary summary;          ///< As the set has it.
   std::string oracle;             ///< The method that measured.
   double scale = 0.0;             ///< Diagonal of A's box (distances) or A's volume (volumes).
   double tolerance = 0.0;         ///< Upper bound of |measured - target|, in the unit of `scale`.
@@ -33,10 +33,12 @@ struct BucketVerdict {
   std::uint64_t false_nan = 0;    ///< Unreachable in the set, but the target is passed.
 };
 
+/// Answer of verify_set().
 struct Verdict {
-  std::vector<BucketVerdict> buckets;
+  std::vector<BucketVerdict> buckets;  ///< In the order of ConfigurationSet::buckets().
   /// In words: problems of the set as a whole, and the first of each kind in each bucket.
   std::vector<std::string> problems;
+  /// Whether the set has no problem.
   bool ok() const { return problems.empty(); }
 };
 

@@ -24,7 +24,9 @@ namespace sixdof::conformance {
 /// Where the algorithm comes from: the name of one that a Registrar of the program makes, or a function.
 class Source {
  public:
+  /// An algorithm that a Registrar makes.
   Source(const char* name) : name_(name) {}  // NOLINT(google-explicit-constructor): reads as a value
+  /// One that a function makes.
   template <class Make>
   requires std::is_invocable_r_v<std::unique_ptr<Algorithm>, Make> Source(Make maker)
       : make_(std::move(maker)) {}  // NOLINT(google-explicit-constructor)
@@ -44,7 +46,9 @@ bool add_algorithm(Source source);
 
 }  // namespace sixdof::conformance
 
+/// Joins two words; for SIXDOF_CONFORMANCE alone.
 #define SIXDOF_CONFORMANCE_JOIN_(a, b) a##b
+/// A name for each use; for SIXDOF_CONFORMANCE alone.
 #define SIXDOF_CONFORMANCE_NAME_(number) SIXDOF_CONFORMANCE_JOIN_(k_sixdof_conformance_, number)
 
 /// At namespace scope: SIXDOF_CONFORMANCE(source) or SIXDOF_CONFORMANCE(source, {members of a Declaration}).

@@ -47,7 +47,7 @@ struct Declaration {
   /// An algorithm with a warm start may need the size of roundings.
   double repeat_error = 0.0;
 
-  std::vector<KnownFailure> known_failures = {};
+  std::vector<KnownFailure> known_failures = {};  ///< Checks that are expected to fail.
 };
 
 /// Sets a member of the declaration by its name, as typed: "collide" to "surfaces" or "bodies", "open_meshes" to "yes"

@@ -22,7 +22,7 @@ class Algorithm;
 /// depend on the rays solved since set_rotation() and their order, but on nothing before.
 class RaySolver {
  public:
-  virtual ~RaySolver() = default;
+  virtual ~RaySolver() = default;  ///< Of whatever derives from it.
 
   /// Sets B's rotation (w, x, y, z) for the rays that follow.
   virtual void set_rotation(const Eigen::Vector4d& rotation) = 0;
@@ -44,9 +44,10 @@ class RaySolver {
 /// A method that finds the configurations of distance buckets.
 class DistanceGenerator {
  public:
-  virtual ~DistanceGenerator() = default;
+  virtual ~DistanceGenerator() = default;  ///< Of whatever derives from it.
   /// The method that measures distances, for the attributes of the set.
   virtual const std::string& oracle_name() const = 0;
+  /// Of that method.
   virtual const std::string& oracle_version() const = 0;
   /// May be called from several threads. Both meshes outlive the solver. @throws BadMesh
   virtual std::unique_ptr<RaySolver> prepare(const Mesh& a, const Mesh& b) const = 0;
@@ -91,11 +92,12 @@ std::unique_ptr<DistanceGenerator> make_sphere_method(const Algorithm& algorithm
 /// In units of the diagonal of A's box. The distance falls below the target by at most half of it in a hit so short.
 constexpr double k_first_hit_resolution = 1e-6;
 
+/// Buckets as they were solved.
 struct Generated {
   /// In the order of the percentages asked for. The rows of a bucket are in the order of the rotations asked for; those
   /// of a whole grid are as ConfigurationSetWriter::write() takes them.
   std::vector<Bucket> buckets;
-  std::uint64_t measurements = 0;
+  std::uint64_t measurements = 0;  ///< Distances or volumes that were measured.
 };
 
 /// Finds all configurations of distance buckets. Every distinct rotation is solved once. The result has the same bits

@@ -26,25 +26,29 @@ enum class Forgiven : std::uint8_t {
   outside_solids,       ///< Lines outside of the solids of a text STL, skipped.
   trailing_blanks,      ///< Blank bytes behind the data of a binary file.
 };
+/// Number of kinds.
 inline constexpr std::size_t k_forgiven_kinds = 15;
 
 /// Deviations of one kind.
 struct FileRepairs {
-  std::size_t count = 0;
+  std::size_t count = 0;    ///< How many were accepted.
   std::string first_place;  ///< Where in the file the first one is: "line 6", "face 2"; empty if there is none.
 };
 
 /// All accepted deviations of one file.
 struct ForgivenKinds {
+  /// By the number of the kind; of() finds them.
   std::array<FileRepairs, k_forgiven_kinds> kinds;
 
+  /// Those of one kind.
   const FileRepairs& of(Forgiven kind) const { return kinds[static_cast<std::size_t>(kind)]; }
-  /// @param place gives the place in the file; called for the first of a kind only
+  /// Counts one more. @param place gives the place in the file; called for the first of a kind only
   template <class Place>
   void add(Forgiven kind, const Place& place) {
     FileRepairs& of_kind = kinds[static_cast<std::size_t>(kind)];
     if (of_kind.count++ == 0) of_kind.first_place = place();
   }
+  /// Replaces those of one kind.
   void set(Forgiven kind, const FileRepairs& repairs) { kinds[static_cast<std::size_t>(kind)] = repairs; }
 };
 

@@ -6,6 +6,7 @@
 
 namespace sixdof {
 
+/// What load_mesh() may do besides what it always does.
 struct LoadOptions {
   /// PLY, OBJ, OFF, STL: drops faces with a corner that is not finite, and counts them, instead of refusing the file.
   bool drop_faces_not_finite = false;

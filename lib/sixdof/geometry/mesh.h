@@ -37,7 +37,7 @@ struct MeshTopology {
   std::size_t nonmanifold_edges = 0;     ///< Edges with three or more triangles.
   std::size_t nonmanifold_vertices = 0;  ///< Vertices around which the triangles form more than one fan.
   std::size_t misoriented_edges = 0;     ///< Edges of two or more triangles that are not oriented.
-  std::size_t edges = 0;
+  std::size_t edges = 0;       ///< Of all kinds; two triangles that share one count it once.
   std::size_t components = 0;  ///< Parts connected through edges.
   /// V - E + F; for closed connected surfaces 2 - 2 * genus.
   std::int64_t euler_characteristic = 0;
@@ -59,15 +59,20 @@ class Mesh {
   static Mesh build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> triangles, std::string name = {},
                     MeshRepairs repairs = {});
 
+  /// Shown in messages and tables: a file name or a model's name.
   const std::string& name() const { return name_; }
   /// The same mesh under another name: `std::move(mesh).renamed("b")`.
   Mesh renamed(std::string name) && {
     name_ = std::move(name);
     return std::move(*this);
   }
+  /// [vertex], in the mesh's own frame and length unit; all finite, no two equal.
   const std::vector<Eigen::Vector3d>& vertices() const { return vertices_; }
+  /// [triangle], each three different indices into vertices().
   const std::vector<Triangle>& triangles() const { return triangles_; }
+  /// How the triangles are connected.
   const MeshTopology& topology() const { return topology_; }
+  /// What reading and build() changed or found.
   const MeshRepairs& repairs() const { return repairs_; }
 
   const Eigen::AlignedBox3d& box() const { return box_; }     ///< Axis-aligned bounding box.

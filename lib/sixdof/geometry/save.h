@@ -27,8 +27,8 @@ using Colour = std::array<std::uint8_t, 3>;  ///< Red, green, blue.
 
 /// What a PLY file can hold. The spans must outlive the call only.
 struct PlyContent {
-  std::span<const Eigen::Vector3d> vertices;
-  std::span<const Triangle> triangles;
+  std::span<const Eigen::Vector3d> vertices;             ///< [vertex], in any length unit.
+  std::span<const Triangle> triangles;                   ///< [triangle], indices into `vertices`; may be empty.
   std::span<const Colour> vertex_colours = {};           ///< One per vertex, or empty for none.
   std::span<const Eigen::Vector3d> vertex_normals = {};  ///< One per vertex, or empty for none.
 };

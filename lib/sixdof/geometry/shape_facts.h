@@ -20,13 +20,14 @@ struct ShapeFacts {
   /// planes, cylinders or cones, few where the surface is curved everywhere. Independent of the number of triangles.
   double flat_share = 0.0;
 
-  static constexpr double k_aligned_deg = 1.0;
-  static constexpr double k_flat_share = 0.05;
+  static constexpr double k_aligned_deg = 1.0;  ///< Of aligned_share, in degrees.
+  static constexpr double k_flat_share = 0.05;  ///< Of flat_share: part of the mean bend.
 };
 
-/// Cost O(triangles log triangles).
+/// The numbers of a mesh. Cost O(triangles log triangles).
 ShapeFacts shape_facts(const Mesh& mesh);
 
+/// What a shape is like, by its facts.
 enum class ShapeKind {
   handles,  ///< Genus of 10 or more.
   thin,     ///< A sheet, a rod, a wire: thickness below 0.02, or box_aspect below 0.04.

@@ -9,18 +9,20 @@ namespace sixdof {
 /// One cycle of a haptic loop at 1 kHz. A query that takes longer misses it.
 inline constexpr double k_haptic_deadline_ns = 1e6;
 
-/// Fewest times for a p99 and for a p999: at least two times lie above the percentile. So it is neither the maximum nor
+/// Fewest times for a p99: at least two times lie above the percentile. So it is neither the maximum nor
 /// a single query that other work on the machine interrupted.
 inline constexpr std::size_t k_fewest_for_p99 = 200;
+/// Likewise for a p999.
 inline constexpr std::size_t k_fewest_for_p999 = 2000;
 
 /// Distribution of the times of single queries, in ns.
 struct Latency {
-  double mean = 0.0;
+  double mean = 0.0;  ///< Arithmetic mean.
+  /// Quantiles; p50 is the median.
   double p10 = 0.0, p25 = 0.0, p50 = 0.0, p75 = 0.0, p90 = 0.0;
   std::optional<double> p99;   ///< Empty for fewer than k_fewest_for_p99 times.
   std::optional<double> p999;  ///< Empty for fewer than k_fewest_for_p999 times.
-  double max = 0.0;
+  double max = 0.0;            ///< Longest time.
   double over_deadline = 0.0;  ///< Fraction of the times above k_haptic_deadline_ns, 0..1.
 };
 

@@ -11,6 +11,7 @@ namespace sixdof {
 /// One vector per step of a path: forces or torques, in any consistent unit.
 using Vectors = std::span<const Eigen::Vector3d>;
 
+/// Length of each vector, in its unit.
 std::vector<double> magnitudes(Vectors vectors);
 
 /// Largest magnitude; 0 for an empty series.
@@ -30,6 +31,7 @@ std::optional<double> sigma(Vectors ideal, Vectors measured);
 /// Formula (1) as printed: (1/N) sqrt(sum ...) = sigma / sqrt(N). Shrinks as the same path gets more steps.
 std::optional<double> sigma_paper(Vectors ideal, Vectors measured);
 
+/// Answer of fit_gain().
 struct GainFit {
   double gain = 0.0;   ///< Factor on the ideal magnitudes that fits the measured ones best, >= 0; unit measured/ideal.
   double sigma = 0.0;  ///< RMS of |m| - gain |i| over gain max|i|, a pure number.
@@ -39,6 +41,7 @@ struct GainFit {
 /// it. Empty where the ideal or the measured series is zero throughout.
 std::optional<GainFit> fit_gain(Vectors ideal, Vectors measured);
 
+/// Answer of magnitude_error().
 struct MagnitudeError {
   double gain = 0.0;      ///< As in GainFit; 0 where the measured magnitudes are all zero.
   double relative = 0.0;  ///< RMS of m - gain i over the RMS of m, 0..1, a pure number.

@@ -13,6 +13,7 @@ enum class Better {
   neither,     ///< Describes the row, does not rate it.
 };
 
+/// The word as it stands in tables: "nearer 1".
 std::string_view to_string(Better better);
 
 /// Whether `value` is strictly better than `other`; false for Better::neither.
@@ -24,7 +25,7 @@ struct Metric {
   /// As in the results. A '*' stands for a unit of work: "*_tested" is points_tested and so on.
   std::string_view name;
   std::string_view unit;  ///< "1" for pure numbers.
-  Better better;
+  Better better;          ///< Which values are better.
   std::string_view meaning;  ///< One sentence.
   std::string_view source;   ///< Where the formula is from, or the file that computes it.
 };

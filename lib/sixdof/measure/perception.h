@@ -10,6 +10,7 @@
 
 namespace sixdof {
 
+/// Answer of perceptual_scores(), each in units of a threshold.
 struct PerceptualScores {
   double magnitude = 0.0;  ///< RMS of |m| / (g |i|) - 1 over the steps with a noticeable ideal, over k_force_fraction.
   double direction = 0.0;  ///< RMS angle over the same steps, over k_direction_degrees.

@@ -45,7 +45,9 @@ class DistanceOracle {
   /// @throws BadMesh as Tree does.
   DistanceOracle(const Mesh& a, const Mesh& b);
 
+  /// The bounding-volume tree of A, in A's mesh frame.
   const Tree& tree_a() const { return a_->tree; }
+  /// That of B, in B's mesh frame; the same object as tree_a() if both meshes are one.
   const Tree& tree_b() const { return b_->tree; }
 
   /// Distances that differ by no more than this length count as equal: see Ties. 0 unless both meshes have a coplanar
@@ -53,6 +55,7 @@ class DistanceOracle {
   /// times (distances of the meshes' centres from their origins + |t|).
   double tie_width(const Pose& X_AB) const;
 
+  /// Memory of both trees and of the patches; what A and B share counts once.
   std::size_t bytes() const;
 
  private:
@@ -68,6 +71,7 @@ class DistanceOracle {
 /// the object's last answer: it changes the time, never the answer.
 class DistanceQuery {
  public:
+  /// Nothing is computed here; the first query begins cold.
   explicit DistanceQuery(const DistanceOracle& oracle) : search_{{}, *oracle.a_, *oracle.b_} {}
 
   /// The distance of the surfaces with witnesses and their triangles. 0 if and only if the surfaces have a point in

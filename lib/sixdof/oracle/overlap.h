@@ -50,6 +50,7 @@ struct Overlap {
   /// Integral of (p - reference) x (B's outward normal) over the same part (length^3): the gradient of volume with
   /// respect to rotating B about `reference`. The torque of the volume law is its negative.
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  /// The point of `moment`, in A's frame.
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();
   /// Centre of mass of the intersection (length); NaN where volume is not positive.
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
@@ -95,6 +96,7 @@ class OverlapQuery {
 
   /// Pairs of volumes that queries with a warm start have expanded so far.
   std::size_t warm_expansions() const { return kept_.expansions(); }
+  /// Memory of the scratch and of what a warm start keeps, without the solids.
   std::size_t bytes() const;
 
  private:

@@ -41,6 +41,7 @@ inline constexpr const char* k_repair_hint = "; `sixdof repair IN -o OUT` may me
 /// Memory: 66 bytes per triangle, besides the tree's. Preparation: linear, but for sorting.
 class Solid {
  public:
+  /// A flux in fixed point.
   using Integer = __int128;
 
   /// Fluxes through a piece of surface, about some origin: volume and first moment of what the piece spans.
@@ -49,14 +50,17 @@ class Solid {
     Eigen::Vector3d first = Eigen::Vector3d::Zero();  ///< Integral of |p|^2 n / 2 (length^4).
   };
 
+  /// One potential for each of the four fluxes.
   struct alignas(64) Potential {
-    Integer volume = 0;
-    std::array<Integer, 3> first{};
+    Integer volume = 0;              ///< That of the volume.
+    std::array<Integer, 3> first{};  ///< Those of the first moment.
 
+    /// Adds to each of the four.
     void add(const Potential& x) {
       volume += x.volume;
       for (std::size_t k = 0; k < 3; ++k) first[k] += x.first[k];
     }
+    /// Adds `factor` times.
     void add(const Potential& x, int factor) {
       volume += factor * x.volume;
       for (std::size_t k = 0; k < 3; ++k) first[k] += factor * x.first[k];
@@ -74,6 +78,7 @@ class Solid {
     std::uint8_t lowest : 2;  ///< Corner of lowest index.
     bool rises : 1;           ///< The corner after it has a lower index than the one after that.
 
+    /// The corner whose vertex index is neither the lowest nor the highest.
     std::size_t middle() const { return k_remainder[lowest + (rises ? 1u : 2u)]; }
     /// Number of the side opposite the lowest corner; side k runs from corner k to the next.
     std::size_t opposite_side() const { return k_remainder[lowest + 1u]; }
@@ -87,17 +92,22 @@ class Solid {
   /// if a coordinate lies outside the range of the exact predicates.
   Solid(const Mesh& mesh, const Tree& tree);
 
+  /// The mesh, in its own frame.
   const Mesh& mesh() const { return *mesh_; }
+  /// The tree of the mesh.
   const Tree& tree() const { return *tree_; }
+  /// Connected pieces of the surface.
   std::span<const Piece> pieces() const { return pieces_; }
 
   /// Potential of the side from lowest to middle index, per triangle in tree order.
   const Potential& potential(std::uint32_t triangle) const { return potentials_[triangle]; }
+  /// Order of the corners, per triangle in tree order.
   const Order& order(std::uint32_t triangle) const { return orders_[triangle]; }
 
   /// A sum of potentials as fluxes about Tree::center().
   Moments to_moments(const Potential& sum) const;
 
+  /// Memory, without the mesh and the tree.
   std::size_t bytes() const;
 
  private:

@@ -37,7 +37,7 @@ namespace sixdof {
 
 /// How a query ended.
 enum class Status {
-  ok,
+  ok,             ///< There is an answer.
   unsupported,    ///< The algorithm does not answer this kind of query.
   failed,         ///< The algorithm gave up, threw, or returned something that is no answer.
   non_finite,     ///< The algorithm returned, or was given, a NaN or an infinity.
@@ -46,6 +46,7 @@ enum class Status {
   out_of_memory,  ///< It asked for more memory than there is, or than it may have.
 };
 
+/// The name as it stands in results: "timed_out".
 constexpr std::string_view to_string(Status status) {
   constexpr std::string_view k_names[] = {"ok",      "unsupported", "failed",       "non_finite",
                                           "crashed", "timed_out",   "out_of_memory"};
@@ -58,30 +59,36 @@ inline constexpr std::array<Status, 3> k_counted_statuses{Status::crashed, Statu
 /// A value, or why there is none. `value` is meaningful only if ok(); Query::diagnosis() has the words for a failure.
 template <class T>
 struct Outcome {
-  Status status = Status::unsupported;
-  T value{};
+  Status status = Status::unsupported;  ///< How the query ended.
+  T value{};                            ///< The answer, if ok().
 
+  /// Status::unsupported.
   Outcome() = default;
-  Outcome(Status why) : status(why) {}                      // NOLINT(google-explicit-constructor): reads as a value
+  /// No answer, for a reason other than Status::ok.
+  Outcome(Status why) : status(why) {}  // NOLINT(google-explicit-constructor): reads as a value
+  /// An answer, with Status::ok.
   Outcome(T answer) : status(Status::ok), value(answer) {}  // NOLINT(google-explicit-constructor)
 
+  /// Whether there is an answer.
   bool ok() const { return status == Status::ok; }
 };
 
 /// Answer of a distance query.
 struct Separation {
+  /// The index of no triangle.
   static constexpr std::uint32_t k_no_triangle = std::numeric_limits<std::uint32_t>::max();
   double distance = 0.0;                                ///< Smallest one between the two surfaces, >= 0 (length).
   bool has_witnesses = false;                           ///< Whether the witness points are set.
   Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();  ///< Closest point on A, in A's frame.
   Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();  ///< Closest point on B, in A's frame.
-  /// Triangles of the witnesses, indices into Mesh::triangles(); k_no_triangle where the algorithm gives none.
+  /// Triangle of witness_a, an index into Mesh::triangles() of A; k_no_triangle where the algorithm gives none.
   std::uint32_t triangle_a = k_no_triangle;
-  std::uint32_t triangle_b = k_no_triangle;
+  std::uint32_t triangle_b = k_no_triangle;  ///< Likewise of witness_b and B.
 };
 
 /// Answer of a response query: the penalty wrench that pushes B out of A, in A's frame.
 struct Response {
+  /// A volume that is not there: NaN.
   static constexpr double k_absent = std::numeric_limits<double>::quiet_NaN();
   double penalty = 0.0;      ///< By Traits::law: a penetration depth (length) or an intersection volume (length^3).
   double volume = k_absent;  ///< Intersection volume (length^3); k_absent where the algorithm gives none.
@@ -100,17 +107,18 @@ struct Response {
 
 /// Which kinds of query an algorithm answers.
 struct QuerySet {
-  bool collide = false;
-  bool distance = false;
-  bool respond = false;
+  bool collide = false;   ///< Query::collide()
+  bool distance = false;  ///< Query::distance()
+  bool respond = false;   ///< Query::respond()
 };
 
 /// Which bodies an algorithm's answers are about.
 enum class Body {
-  mesh,
+  mesh,        ///< The mesh as it is.
   convex_hull  ///< Of each mesh: another question than that of the other algorithms, with another truth.
 };
 
+/// The name as it stands in results: "convex_hull".
 constexpr std::string_view to_string(Body body) { return body == Body::mesh ? "mesh" : "convex_hull"; }
 
 /// What a method does not promise by its nature. `sixdof stress` shows an answer that one of these explains as
@@ -130,15 +138,15 @@ struct MethodLimits {
 
 /// What the magnitude of a response is proportional to. It selects the ideal model that scenarios compare with.
 enum class ResponseLaw {
-  none,
-  depth,
-  volume
+  none,   ///< Of neither, or not known.
+  depth,  ///< Of the penetration depth.
+  volume  ///< Of the volume of the intersection.
 };
 
 /// Size of a prepared structure and the counts that explain it ("nodes", "voxels", "spheres", ...).
 struct Footprint {
-  std::size_t bytes = 0;
-  std::vector<std::pair<std::string, double>> counts;
+  std::size_t bytes = 0;                               ///< Of memory; 0 where the algorithm does not tell.
+  std::vector<std::pair<std::string, double>> counts;  ///< Name (lower case, '_') and number.
 };
 
 /// How many elements a query tested. Rows report `<unit>_tested`, `<unit>_total` and the time per tested element.
@@ -171,6 +179,7 @@ struct Traits {
   /// Node.js). Empty for all others.
   std::string runtime = {};
 
+  /// Whether it is such a program.
   bool is_rival() const { return !runtime.empty(); }
   /// Whether suites and studies of "all" algorithms include it.
   bool in_default_runs() const { return timed && by_default && body == Body::mesh; }
@@ -189,7 +198,7 @@ struct Traits {
 /// **Time.** Only the three queries are timed. Memory that they need is best kept between calls.
 class Query {
  public:
-  virtual ~Query() = default;
+  virtual ~Query() = default;  ///< Frees the prepared structures.
 
   /// Do the two bodies (for some algorithms, the two surfaces) have a point in common? Contact counts.
   virtual Outcome<bool> collide(const Pose& /*X_AB*/) { return Status::unsupported; }
@@ -216,6 +225,7 @@ class Query {
     return status;
   }
 
+  /// Whether the pose holds no NaN and no infinity.
   static bool is_finite(const Pose& X_AB) { return X_AB.R.allFinite() && X_AB.t.allFinite(); }
 
  private:
@@ -225,7 +235,8 @@ class Query {
 /// What is under test: prepared once per pair of meshes, then queried. Immutable.
 class Algorithm {
  public:
-  virtual ~Algorithm() = default;
+  virtual ~Algorithm() = default;  ///< Of whatever derives from it.
+  /// What is known of it before it is prepared; the same object at every call.
   virtual const Traits& traits() const = 0;
 
   /// Builds all structures for A (fixed) and B (moving); `a` and `b` may be the same object. Several threads may call

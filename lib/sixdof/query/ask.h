@@ -15,7 +15,9 @@
 
 namespace sixdof {
 
+/// A yes or no always is.
 inline bool is_finite(bool) { return true; }
+/// Of the distance; witnesses are not looked at.
 inline bool is_finite(const Separation& answer) { return std::isfinite(answer.distance); }
 /// A volume may be absent, which is NaN.
 inline bool is_finite(const Response& answer) {

@@ -22,11 +22,14 @@ std::unique_ptr<Algorithm> with_visible_words(std::unique_ptr<Algorithm> algorit
 /// `sixdof new-algorithm` writes a project.
 class Registrar {
  public:
+  /// Makes the algorithm, each time when a registry is filled.
   using Maker = std::function<std::unique_ptr<Algorithm>()>;
+  /// Keeps the maker for makers().
   explicit Registrar(Maker maker) {
     makers().push_back([maker = std::move(maker)] { return with_visible_words(maker()); });
   }
 
+  /// Those of all Registrars of the program, in the order of their construction.
   static std::vector<Maker>& makers() {
     static std::vector<Maker> list;
     return list;

@@ -20,6 +20,7 @@ class Registry {
   /// @throws BadArgument that lists the registered names
   const Algorithm& find(std::string_view name) const;
 
+  /// All algorithms in the order in which they were added; none is null.
   const std::vector<std::unique_ptr<Algorithm>>& all() const { return algorithms_; }
 
   /// All algorithms; leaves none.

@@ -21,10 +21,12 @@ struct Parameter {
   /// such parameter of an algorithm to its k-th value together, so all of them have equally many.
   std::vector<std::string> sweep = {};
 
+  /// A number from `low` to `high`, in `unit` (see the member).
   static Parameter number(std::string name, std::string meaning, std::string unit, std::string default_value,
                           double low, double high) {
     return {std::move(name), std::move(meaning), std::move(unit), std::move(default_value), low, high};
   }
+  /// A whole number from `low` to `high`.
   static Parameter count(std::string name, std::string meaning, std::string default_value, double low, double high) {
     return {std::move(name), std::move(meaning), "1", std::move(default_value), low, high, true};
   }
@@ -35,6 +37,7 @@ struct Parameter {
     return parameter;
   }
 
+  /// One of these words.
   static Parameter choice(std::string name, std::string meaning, std::string default_value,
                           std::vector<std::string> choices) {
     return {.name = std::move(name),
@@ -50,10 +53,11 @@ class Settings {
   /// All defaults. @throws BadArgument for a default, or a value of a sweep, that its parameter does not allow
   explicit Settings(std::vector<Parameter> parameters = {});
 
+  /// Sets one value.
   /// @throws BadArgument if there is no such parameter, or the text is not a number in range or a choice
   void set(const std::string& parameter, const std::string& text);
 
-  /// @param assignments each reads "parameter=value"
+  /// set() for each in turn. @param assignments each reads "parameter=value" @throws BadArgument as set() does
   void set_all(const std::vector<std::string>& assignments);
 
   double number(const std::string& parameter) const;              ///< Value of a numeric parameter.

@@ -12,6 +12,15 @@
 
 namespace sixdof::repairing {
 
+/// What a search is given and finds, a place and a squared distance, in nanoflann 1.5 and later, and before.
+#if NANOFLANN_VERSION >= 0x150
+using Found = nanoflann::ResultItem<std::uint32_t, double>;
+inline nanoflann::SearchParameters unsorted() { return nanoflann::SearchParameters(0.0F, false); }
+#else
+using Found = std::pair<std::uint32_t, double>;
+inline nanoflann::SearchParams unsorted() { return nanoflann::SearchParams(0, 0.0F, false); }
+#endif
+
 /// Points by position: a k-d tree of nanoflann.
 class Neighbours {
  public:
@@ -21,8 +30,8 @@ class Neighbours {
 
   /// Numbers of the chosen vertices closer than `radius` to `p`, in ascending order.
   std::vector<std::uint32_t> within(const Eigen::Vector3d& p, double radius) const {
-    std::vector<std::pair<std::uint32_t, double>> found;
-    tree_.radiusSearch(p.data(), radius * radius, found, nanoflann::SearchParams(0, 0.0F, false));
+    std::vector<Found> found;
+    tree_.radiusSearch(p.data(), radius * radius, found, unsorted());
     std::vector<std::uint32_t> numbers;
     numbers.reserve(found.size());
     for (const auto& [i, squared] : found) numbers.push_back(cloud_.chosen[i]);

@@ -25,10 +25,11 @@
 /// nested shells stay, see oracle/mesh_check.h.
 namespace sixdof {
 
+/// How far a repair may go.
 struct RepairOptions {
-  static constexpr double k_default_weld = 1e-6;
-  static constexpr std::size_t k_default_max_hole = 32;
-  static constexpr std::size_t k_largest_max_hole = 512;
+  static constexpr double k_default_weld = 1e-6;           ///< Of `weld`.
+  static constexpr std::size_t k_default_max_hole = 32;    ///< Of `max_hole`.
+  static constexpr std::size_t k_largest_max_hole = 512;   ///< Largest value of `max_hole`.
   /// Above a stray facet of a cube's edge (6 %), below what someone may have modelled as a sheet.
   static constexpr double k_default_max_fin = 0.1;
 
@@ -41,35 +42,41 @@ struct RepairOptions {
   double max_fin = k_default_max_fin;
 };
 
+/// What was done to a mesh.
 enum class RepairKind {
-  welded_vertices,
+  welded_vertices,       ///< Moved to another vertex, with which they became one.
   duplicate_triangles,   ///< Dropped.
   degenerate_triangles,  ///< Of no area; dropped.
   split_edges,           ///< By vertices that lay on them.
-  flipped_triangles,
-  filled_holes,
-  fins,             ///< Triangles that hang on a closed surface and enclose nothing; dropped, as the next two.
-  inner_walls,      ///< Triangles inside of the outline of what they hang on.
-  stray_triangles,  ///< Triangles beside closed surfaces.
+  flipped_triangles,     ///< Turned over.
+  filled_holes,          ///< Each counts once, however many triangles it takes.
+  fins,                  ///< Triangles that hang on a closed surface and enclose nothing; dropped, as the next two.
+  inner_walls,           ///< Triangles inside of the outline of what they hang on.
+  stray_triangles,       ///< Triangles beside closed surfaces.
 };
+/// Number of kinds.
 inline constexpr std::size_t k_repair_kinds = 9;
 
 /// Repairs of one kind.
 struct RepairsOfKind {
-  static constexpr std::size_t k_listed = 5;
-  std::size_t count = 0;
-  std::vector<Eigen::Vector3d> first;  ///< Where the first k_listed were made, in the mesh's frame.
+  static constexpr std::size_t k_listed = 5;  ///< Most places that are kept.
+  std::size_t count = 0;                      ///< How many.
+  std::vector<Eigen::Vector3d> first;         ///< Where the first k_listed were made, in the mesh's frame.
 };
 
 /// What was done, by kind.
 struct RepairLog {
+  /// By the number of the kind; of() finds them.
   std::array<RepairsOfKind, k_repair_kinds> kinds;
 
+  /// Counts one more. @param place in the mesh's frame
   void add(RepairKind kind, const Eigen::Vector3d& place) {
     RepairsOfKind& of_kind = kinds[static_cast<std::size_t>(kind)];
     if (of_kind.count++ < RepairsOfKind::k_listed) of_kind.first.push_back(place);
   }
+  /// Those of one kind.
   const RepairsOfKind& of(RepairKind kind) const { return kinds[static_cast<std::size_t>(kind)]; }
+  /// Of all kinds.
   std::size_t total() const {
     std::size_t sum = 0;
     for (const RepairsOfKind& of_kind : kinds) sum += of_kind.count;
@@ -77,14 +84,16 @@ struct RepairLog {
   }
 };
 
+/// Answer of repair_mesh().
 struct RepairedMesh {
-  Mesh mesh;
-  RepairLog log;
+  Mesh mesh;               ///< In the frame and unit of the damaged one.
+  RepairLog log;           ///< What was done.
   std::size_t passes = 0;  ///< Rounds of all steps, the last without work included.
   /// Whether the last round found nothing to do. If not, repairing the result again may change it.
   bool converged = false;
 };
 
+/// Repairs a mesh by the steps above.
 /// @throws BadArgument if `weld` is not in [0, 0.1], `max_hole` above k_largest_max_hole or `max_fin` not in [0, 1];
 /// BadMesh if no triangle is left.
 RepairedMesh repair_mesh(const Mesh& mesh, const RepairOptions& options = {});

@@ -171,7 +171,8 @@ DataTable frontier_table(const Results& results, const std::vector<RowGroup>& gr
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto& [cost, error, faulty] = points[i].tradeoff;
       const Row& row = points[i].group->row();
-      const auto bound = [&](double at) { return error.low < error.high ? Cell(at) : Cell(); };
+      const bool has_bounds = error.low < error.high;
+      const auto bound = [has_bounds](double at) { return has_bounds ? Cell(at) : Cell(); };
       table.rows.push_back({plot.run, plot.pair, plot.measured, std::string(title), plot.measure, row.fields.algorithm,
                             row.fields.settings, cost.value / unit, cost.low / unit, cost.high / unit, error.value,
                             bound(error.low), bound(error.high), std::string(leads[i] ? "yes" : "no"),

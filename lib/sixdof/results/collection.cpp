@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
-#include <ranges>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -39,8 +39,10 @@ using ByObject = std::map<std::string, double>;
 using Times = std::map<std::tuple<std::string, AskedBucket, std::string>, ByObject>;
 
 std::vector<double> values_of(const ByObject& by_object) {
-  const auto values = std::views::values(by_object);
-  return {values.begin(), values.end()};
+  std::vector<double> values;
+  values.reserve(by_object.size());
+  for (const auto& [object, value] : by_object) values.push_back(value);
+  return values;
 }
 
 CollectionCell cell_of(const ByObject& by_object) {

@@ -13,22 +13,25 @@ namespace sixdof {
 
 /// Steps follow one another at the rate of a haptic loop, so a recording of 1,000 steps is one second.
 inline constexpr double k_haptic_rate_hz = 1000.0;
+/// Steps of a recording of one second.
 inline constexpr std::size_t k_default_steps = 1000;
 
 /// An algorithm's answers along a scenario's path: one entry per step in every array. A step without an answer has a
 /// status that says why, and zero wrench and penalty (a device would be sent zero).
 struct Recording {
-  std::vector<double> progress;
-  std::vector<Pose> poses;  ///< X_AB.
-  std::vector<Status> status;
+  std::vector<double> progress;          ///< As Scenario::steps() gives it.
+  std::vector<Pose> poses;               ///< X_AB.
+  std::vector<Status> status;            ///< Of the answer.
   std::vector<Eigen::Vector3d> forces;   ///< On B, in A's frame.
   std::vector<Eigen::Vector3d> torques;  ///< On B about the scenario's reference point, in A's frame.
-  std::vector<double> penalties;
-  std::vector<double> times_ns;  ///< Wall-clock time of each query alone, successful or not.
-  double processor_ns = 0.0;     ///< Mean processor time per step, the recorder's own overhead included; of an isolated
-                                 ///< query that of another pass over the answered steps in its process.
-  std::string first_failure;     ///< Diagnosis of the first step without an answer; empty if there is none.
+  std::vector<double> penalties;         ///< A depth (length) or a volume (length^3), by the algorithm's law.
+  std::vector<double> times_ns;          ///< Wall-clock time of each query alone, successful or not.
+  /// Mean processor time per step, the recorder's own overhead included; of an isolated query that of another pass over
+  /// the answered steps in its process.
+  double processor_ns = 0.0;
+  std::string first_failure;  ///< Diagnosis of the first step without an answer; empty if there is none.
 
+  /// Number of steps.
   std::size_t size() const { return progress.size(); }
 };
 
@@ -63,16 +66,17 @@ Measures evaluate_jumps(const Scenario& scenario, Query& query, const Recording&
 
 /// The ideal at every step of a recording.
 struct Ideals {
-  std::vector<Eigen::Vector3d> forces, torques;
-  std::vector<double> penalties;
+  std::vector<Eigen::Vector3d> forces;   ///< On B, in A's frame.
+  std::vector<Eigen::Vector3d> torques;  ///< On B about the scenario's reference point, in A's frame.
+  std::vector<double> penalties;         ///< By the law, see IdealWrench.
 
-  /// @throws BadArgument if the scenario has no such ideal
+  /// Asks the scenario at every step. @throws BadArgument if the scenario has no such ideal
   Ideals(const Scenario& scenario, const Recording& recording, IdealLaw law);
 };
 
 /// What a series was recorded with.
 struct SeriesSource {
-  std::string algorithm;
+  std::string algorithm;     ///< Its name.
   std::string version;       ///< Of the algorithm.
   std::string settings;      ///< Settings::to_string of the algorithm.
   std::string shape;         ///< Settings::to_string of the scenario.

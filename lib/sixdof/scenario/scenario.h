@@ -48,6 +48,7 @@ struct IdealWrench {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< On B about the scenario's reference point, in A's frame.
 };
 
+/// One scenario; immutable.
 class Scenario {
  public:
   /// The constants of a scenario besides its solids.
@@ -60,11 +61,13 @@ class Scenario {
     bool closed = false;            ///< The path ends where it starts.
   };
 
-  virtual ~Scenario() = default;
+  virtual ~Scenario() = default;  ///< Of whatever derives from it.
   Scenario(const Scenario&) = delete;
   Scenario& operator=(const Scenario&) = delete;
 
+  /// Its constants.
   const Description& description() const { return description_; }
+  /// Description::name.
   const std::string& name() const { return description_.name; }
 
   const Mesh& a() const { return a_; }  ///< Fixed. Its mesh frame is the frame of all answers.
@@ -85,6 +88,7 @@ class Scenario {
   virtual std::optional<IdealWrench> ideal(IdealLaw law, double progress) const = 0;
 
  protected:
+  /// Of both solids, A fixed and B moving.
   Scenario(Description description, Mesh a, Mesh b)
       : description_(std::move(description)), a_(std::move(a)), b_(std::move(b)) {}
 
@@ -100,6 +104,7 @@ std::vector<std::string> scenario_names();
 /// Every length, angle and tessellation of a scenario with the paper's default. @throws BadArgument for another name
 Settings scenario_settings(std::string_view name);
 
+/// The scenario of a name.
 /// @throws BadArgument if the lengths contradict each other (a cone wider than its block, pins that overlap)
 std::unique_ptr<Scenario> make_scenario(std::string_view name, const Settings& settings);
 

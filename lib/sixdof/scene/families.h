@@ -14,21 +14,22 @@ namespace sixdof::scene {
 
 /// Parameters of a family, which ignores those that it does not use. NaN stands for the family's own value.
 struct SceneNumbers {
-  std::size_t bodies = 1000;
+  std::size_t bodies = 1000;  ///< How many.
   std::size_t frames = 50;    ///< Including the first, in which nothing moves.
   double density = k_own;     ///< Volume of the bodies' boxes over the volume of the space that they are in.
   double size_ratio = k_own;  ///< Of the largest to the smallest body of a shape; sizes are spread by their logarithm.
   double moving = k_own;      ///< Share of the bodies that moves in a frame, 0 to 1.
   double step = k_own;        ///< Largest translation in a frame, in sizes of a body; coherence is its inverse.
   double margin = k_own;      ///< In mean sizes of a body.
-  std::uint64_t seed = 1;
-  static constexpr double k_own = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t seed = 1;     ///< Of everything that is drawn.
+  static constexpr double k_own = std::numeric_limits<double>::quiet_NaN();  ///< The family's own value.
 };
 
+/// One family.
 struct SceneFamily {
-  std::string_view name;
+  std::string_view name;      ///< a-z and '-'.
   std::string_view stresses;  ///< One sentence.
-  Scene (*make)(const SceneNumbers& numbers);
+  Scene (*make)(const SceneNumbers& numbers);  ///< For make_scene(), which checks the numbers.
 };
 
 /// All families.

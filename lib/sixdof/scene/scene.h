@@ -19,23 +19,26 @@ namespace sixdof::scene {
 /// A pose X_WB of a body in the world as it is recorded: unit quaternion (w, x, y, z) and translation (length). Files
 /// hold these numbers, so that a scene read back has the same bits.
 struct RecordedPose {
-  std::array<double, 7> numbers{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  std::array<double, 7> numbers{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};  ///< w, x, y, z of the quaternion; translation.
 
-  /// @param R a rotation matrix
+  /// The recorded pose nearest to another. @param R a rotation matrix
   static RecordedPose of(const Eigen::Matrix3d& R, const Eigen::Vector3d& t);
-  /// @throws BadArgument as Pose::from_quaternion() does
+  /// X_WB of these numbers. @throws BadArgument as Pose::from_quaternion() does
   Pose pose() const;
 };
 
 /// Two bodies by their identifiers, a < b.
 struct BodyPair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
+  std::uint32_t a = 0;  ///< The lower one.
+  std::uint32_t b = 0;  ///< The higher one.
 
+  /// Of two different identifiers in either order.
   static BodyPair of(std::uint32_t i, std::uint32_t j) { return i < j ? BodyPair{i, j} : BodyPair{j, i}; }
+  /// By the lower identifier, then by the higher one.
   auto operator<=>(const BodyPair&) const = default;
 };
 
+/// One body of a scene.
 struct Body {
   std::uint32_t id = 0;    ///< Unique. Answers name bodies by it, so that they do not depend on the order of insertion.
   std::uint32_t mesh = 0;  ///< Index into Scene::meshes; bodies may share a mesh.
@@ -58,8 +61,8 @@ struct Scene {
   std::string name;     ///< Of the family, or as the user likes.
   std::string recipe;   ///< What it was made with, "bodies=1000 seed=1"; empty if it was not made here.
   double margin = 0.0;  ///< Of the query for near pairs (length).
-  std::vector<std::shared_ptr<const Mesh>> meshes;
-  std::vector<Body> bodies;
+  std::vector<std::shared_ptr<const Mesh>> meshes;  ///< None is null.
+  std::vector<Body> bodies;                         ///< In their order of insertion.
   std::vector<BodyPair> ignored;  ///< Sorted, each once.
   std::vector<Frame> frames;      ///< The first one moves nothing: it is the start.
 
@@ -77,8 +80,9 @@ struct Scene {
 /// Whether a pair matters, in constant time or logarithmic in the number of ignored pairs.
 class PairFilter {
  public:
+  /// Of a scene that has passed check(); it need not outlive this object.
   explicit PairFilter(const Scene& scene);
-  /// @param i, j indices of different bodies
+  /// Whether this pair matters. @param i, j indices of different bodies
   bool matters(std::uint32_t i, std::uint32_t j) const;
   std::uint64_t pairs() const { return pairs_; }  ///< That matter.
 
@@ -103,9 +107,11 @@ Scene excerpt(const Scene& scene, std::span<const std::uint32_t> ids, std::size_
 /// Frames with their poses as matrices, as algorithms take them.
 struct Moved {
   std::uint32_t body = 0;  ///< Index into Scene::bodies.
-  Pose X_WB;
+  Pose X_WB;               ///< Where it is now, in the world's frame.
 };
+/// All bodies at the start, in their order.
 std::vector<Moved> start_of(const Scene& scene);
+/// The motions of one frame, in their order.
 std::vector<Moved> moves_of(const Frame& frame);
 
 }  // namespace sixdof::scene

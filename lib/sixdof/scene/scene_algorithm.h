@@ -18,6 +18,7 @@
 /// of each frame what has moved, and asked one question in each frame.
 namespace sixdof::scene {
 
+/// What a query is asked in each frame.
 enum class Question {
   touching,  ///< All pairs of bodies that have a point in common: their surfaces meet, or one lies inside the other.
   near,      ///< All pairs whose surfaces are no further apart than the margin, with their distances.
@@ -28,23 +29,26 @@ enum class Question {
 constexpr bool is_of_bodies(Question question) {
   return question == Question::touching || question == Question::wrenches;
 }
+/// All questions.
 inline constexpr Question k_questions[] = {Question::touching, Question::near, Question::closest, Question::wrenches};
 
+/// "touching", "near", "closest" or "wrenches".
 std::string_view to_string(Question question);
-/// @throws BadArgument listing the words
+/// The question of a word. @throws BadArgument listing the words
 Question parse_question(std::string_view word);
 
 /// Of two bodies by their identifiers, a < b.
 struct NearPair {
-  BodyPair pair;
+  BodyPair pair;          ///< Which two.
   double distance = 0.0;  ///< Of the surfaces (length); 0 where they meet. touching, wrenches: 0.
+  /// By pair, then by distance.
   auto operator<=>(const NearPair&) const = default;
 };
 
 /// In the world's frame. By the volume law (oracle/overlap.h): force in area, torque in area times length.
 struct BodyWrench {
-  std::uint32_t body = 0;  ///< Identifier.
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  std::uint32_t body = 0;                            ///< Identifier.
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< On the body.
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< About the centre of the body's box.
 };
 
@@ -68,7 +72,7 @@ struct SceneWork {
 /// An algorithm prepared for one scene and one question. One thread at a time uses it.
 class SceneQuery {
  public:
-  virtual ~SceneQuery() = default;
+  virtual ~SceneQuery() = default;  ///< Frees the prepared structures.
 
   /// The next frame: the bodies that have moved, each once, with their poses. The first frame is known already.
   virtual void update(std::span<const Moved> moved) = 0;
@@ -76,39 +80,45 @@ class SceneQuery {
   /// Of the frame at hand. Valid until the next call of either.
   virtual const SceneAnswer& answer() = 0;
 
+  /// Of all frames so far; zeros where nothing is counted.
   virtual SceneWork work() const { return {}; }
   virtual std::size_t bytes() const { return 0; }  ///< Of everything prepared; 0 if unknown.
 };
 
+/// What is known of an algorithm before it is prepared.
 struct SceneTraits {
   std::string name;     ///< Unique; a-z, 0-9 and '-'.
   std::string version;  ///< Of the library behind it.
   std::string summary;  ///< One line.
-  std::vector<Question> answers;
+  std::vector<Question> answers;  ///< The questions that it answers.
   bool own = false;  ///< Of this project: its answers must have the bits of the truth.
   /// It does not find that a body lies inside another whose surface it does not meet.
   bool surfaces_only = false;
   /// Whether it is compared where all are: not the quadratic reference.
   bool by_default = true;
 
+  /// Whether `answers` has it.
   bool answers_to(Question question) const;
 };
 
-/// @throws BadArgument if the question is none of those that are answered
+/// Refuses other questions. @throws BadArgument if the question is none of those that are answered
 void check_answers(const SceneTraits& traits, Question question);
 
+/// What is under test: prepared once per scene and question. Immutable.
 class SceneAlgorithm {
  public:
-  virtual ~SceneAlgorithm() = default;
+  virtual ~SceneAlgorithm() = default;  ///< Of whatever derives from it.
+  /// The same object at every call.
   virtual const SceneTraits& traits() const = 0;
-  /// @param scene outlives the query; has passed Scene::check()
+  /// Builds all structures for the start of the scene. @param scene outlives the query; has passed Scene::check()
   /// @throws BadArgument if it does not answer the question; BadMesh if a mesh cannot be used
   virtual std::unique_ptr<SceneQuery> prepare(const Scene& scene, Question question) const = 0;
 };
 
+/// In the order in which tables list them; none is null.
 using SceneAlgorithms = std::vector<std::unique_ptr<SceneAlgorithm>>;
 
-/// @throws BadArgument listing the names if there is none of this name
+/// The one of a name. @throws BadArgument listing the names if there is none of this name
 const SceneAlgorithm& find_algorithm(const SceneAlgorithms& algorithms, std::string_view name);
 
 /// An algorithm whose prepare() returns a QueryType(scene, question, extra...).
@@ -131,7 +141,7 @@ std::unique_ptr<SceneAlgorithm> make_scene_algorithm(SceneTraits traits, Extra..
   return std::make_unique<Made>(std::move(traits), std::move(extra)...);
 }
 
-/// `exact` and `all-pairs`.
+/// Adds `exact` and `all-pairs`.
 void add_own_algorithms(SceneAlgorithms& algorithms);
 
 }  // namespace sixdof::scene

@@ -12,10 +12,10 @@ namespace sixdof::scene {
 
 /// A pair that an algorithm missed or reported wrongly, with what is needed to ask for it alone.
 struct WrongPair {
-  std::size_t frame = 0;
-  BodyPair pair;
-  double truth = 0.0;   ///< Distance (length).
-  bool missed = false;  ///< Else it is reported, but not true.
+  std::size_t frame = 0;  ///< Index into Scene::frames.
+  BodyPair pair;          ///< Which two.
+  double truth = 0.0;     ///< Distance (length).
+  bool missed = false;    ///< Else it is reported, but not true.
 };
 
 /// Answers against the truth. Answers may differ where bodies graze: where a translation by k_grazing times their size
@@ -26,7 +26,7 @@ struct Score {
   /// size.
   static constexpr double k_grazing = 1e-5;
 
-  std::size_t frames = 0;
+  std::size_t frames = 0;      ///< That were answered.
   std::size_t true_pairs = 0;  ///< Of all frames.
   std::size_t missed = 0;      ///< True pairs that are not reported. One is a failure.
   std::size_t wrong = 0;       ///< Pairs that are reported and not true.
@@ -38,9 +38,11 @@ struct Score {
   std::string hash;                ///< Of all answers, as SceneAnswers::hash.
   std::optional<WrongPair> first;  ///< The first that is missed, else the first that is wrong.
 
+  /// Whether a pair is missed or wrong.
   bool failed() const { return missed > 0 || wrong > 0; }
 };
 
+/// Compares answers with the truth.
 /// @param answers of every frame, in order
 /// @param exactly no pair counts as grazing
 /// @param surfaces_only SceneTraits::surfaces_only of who answers
@@ -52,16 +54,19 @@ struct Timing {
   double prepare_s = 0.0;  ///< Wall time of preparing.
   double first_us = 0.0;   ///< Wall time of the first frame, in which all pairs are new.
   // Of the further frames, or of the first if there is no other: update() and answer().
-  double mean_us = 0.0, p99_us = 0.0, max_us = 0.0;  ///< Wall time.
-  double processor_us = 0.0;                         ///< Mean processor time of all threads.
+  double mean_us = 0.0;       ///< Mean wall time.
+  double p99_us = 0.0;        ///< 99th percentile of the wall times, by the nearest-rank rule.
+  double max_us = 0.0;        ///< Longest wall time.
+  double processor_us = 0.0;  ///< Mean processor time of all threads.
 };
 
+/// A replay, judged.
 struct Play {
-  SceneAnswers answers;
-  Score score;
-  Timing timing;
-  SceneWork work;  ///< Of all frames.
-  std::size_t bytes = 0;
+  SceneAnswers answers;            ///< What the algorithm said.
+  Score score;                     ///< How right that was.
+  Timing timing;                   ///< How long it took.
+  SceneWork work;                  ///< Of all frames.
+  std::size_t bytes = 0;           ///< SceneQuery::bytes()
   std::uint64_t pairs_in_all = 0;  ///< Pairs that matter, times frames.
 
   /// Pairs asked of the narrow phase that are not true, per true pair.

@@ -10,9 +10,9 @@ namespace sixdof::scene {
 
 /// The answers to a question in a scene, one for each frame: what they should be, or what an algorithm says.
 struct SceneAnswers {
-  std::vector<SceneAnswer> frames;
-  std::string hash;  ///< Of all bits of all frames.
-  std::size_t pairs() const;
+  std::vector<SceneAnswer> frames;  ///< One for each frame of the scene.
+  std::string hash;                 ///< Of all bits of all frames.
+  std::size_t pairs() const;        ///< Of all frames.
 };
 
 /// Sets SceneAnswers::hash from the frames.

@@ -29,6 +29,7 @@ namespace sixdof {
 /// Coal's default tolerance of 1e-6. **Known failures.** Surfaces only: a body wholly inside the other does not
 /// collide.
 std::unique_ptr<Algorithm> make_coal_obbrss_algorithm();
+/// `coal-contacts`: a response from Coal's contacts.
 std::unique_ptr<Algorithm> make_coal_contacts_algorithm();
 
 /// Adds both.

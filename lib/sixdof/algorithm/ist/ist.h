@@ -29,7 +29,7 @@ namespace ist {
 
 /// A packed solid with its hierarchy.
 struct InnerSphereTree {
-  SphereTree tree;
+  SphereTree tree;    ///< Spheres and their hierarchy, in the mesh's frame.
   double fill = 0.0;  ///< Fraction of the solid's volume that the spheres fill.
 };
 

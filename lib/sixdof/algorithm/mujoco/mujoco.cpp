@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -51,6 +52,18 @@ void refuse_flat(const Mesh& mesh) {
   }
 }
 
+/// Adds a file to those that mj_loadXML() reads. @throws Error if it cannot be added
+void add_file(mjVFS& files, const char* name, const std::string& text) {
+  const int size = static_cast<int>(text.size());
+#if mjVERSION_HEADER >= 320
+  const bool added = mj_addBufferVFS(&files, name, text.data(), size) == 0;
+#else
+  const bool added = mj_makeEmptyFileVFS(&files, name, size) == 0;
+  if (added) std::ranges::copy(text, static_cast<char*>(files.filedata[mj_findFileVFS(&files, name)]));
+#endif
+  if (!added) throw Error("MuJoCo takes no model");
+}
+
 /// @throws BadMesh if MuJoCo refuses a mesh
 Model compile(const Mesh& a, const Mesh& b) {
   std::string xml = "<mujoco><asset><mesh name='a' vertex='";
@@ -63,8 +76,7 @@ Model compile(const Mesh& a, const Mesh& b) {
   constexpr const char* k_file = "pair.xml";
   const std::unique_ptr<mjVFS, DeleteFiles> files(new mjVFS);
   mj_defaultVFS(files.get());
-  if (mj_makeEmptyFileVFS(files.get(), k_file, static_cast<int>(xml.size())) != 0) throw Error("MuJoCo takes no model");
-  std::ranges::copy(xml, static_cast<char*>(files->filedata[mj_findFileVFS(files.get(), k_file)]));
+  add_file(*files, k_file, xml);
   char error[500] = "";
   Model model(mj_loadXML(k_file, files.get(), error, sizeof(error)));
   if (!model) throw BadMesh(fmt::format("{}, {}: MuJoCo refuses a mesh: {}", a.name(), b.name(), error));

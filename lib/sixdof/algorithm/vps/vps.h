@@ -37,6 +37,7 @@ namespace sixdof {
 /// - Both bodies must be solid; prepare() throws BadMesh otherwise, also for inside-out meshes. Inner walls of a mesh
 ///   that intersects itself count as surface.
 std::unique_ptr<Algorithm> make_vps_algorithm();
+/// `vps-field`.
 std::unique_ptr<Algorithm> make_vps_field_algorithm();
 
 namespace vps {
@@ -44,6 +45,7 @@ namespace vps {
 /// The structures that the queries use, built with the algorithms' settings or taken from the cache on disk
 /// (base/cache.h). They throw what the structures' build() functions do.
 VoxelMap prepare_voxelmap(const Mesh& mesh, const Settings& settings);
+/// The points of B.
 PointShell prepare_pointshell(const Mesh& mesh, const Settings& settings);
 /// @param map prepare_voxelmap() of the same mesh
 DistanceField prepare_field(const Mesh& mesh, const VoxelMap& map);

@@ -1,0 +1,66 @@
+# A minimal Debian or Ubuntu in a folder, for scripts that set `program` to their name and source this. Needs root and
+# debootstrap.
+
+# fail MESSAGE [CODE]: ends the script.
+fail() {
+  echo "$program: $1" >&2
+  exit "${2-1}"
+}
+
+# need_chroot: ends with 77, the code of a skipped test, where none can be made.
+need_chroot() {
+  ((EUID == 0)) || fail "skipped: needs root" 77
+  command -v debootstrap >/dev/null || fail "skipped: debootstrap is not installed (apt-get install debootstrap)" 77
+}
+
+# system_here: the code name of this machine's system.
+system_here() { (. /etc/os-release && echo "$VERSION_CODENAME"); }
+
+# distribution_of SYSTEM: debian or ubuntu.
+distribution_of() {
+  case $1 in
+    bookworm | trixie) echo debian ;;
+    noble) echo ubuntu ;;
+    *) fail "$1: no such system; known are bookworm, trixie and noble" 2 ;;
+  esac
+}
+
+# mirror_of SYSTEM: $SIXDOF_MIRROR, or where this machine's apt has its own packages from if that has SYSTEM's, too.
+mirror_of() {
+  local mirror=${SIXDOF_MIRROR-} here
+  if [[ -z $mirror && $(. /etc/os-release && echo "$ID") == $(distribution_of "$1") ]]; then
+    here=$(system_here)
+    mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' "Codename: $here" | head -n 1)
+    [[ -n $mirror ]] || fail "apt knows no mirror of $here; run apt-get update"
+  fi
+  [[ -n $mirror ]] || fail "skipped: no mirror of $1 is known; SIXDOF_MIRROR names one" 77
+  echo "$mirror"
+}
+
+# make_system SYSTEM FOLDER: a minimal one with the settings of this machine's apt.
+make_system() {
+  local distribution components=main script= mirror file
+  distribution=$(distribution_of "$1")
+  mirror=$(mirror_of "$1")
+  if [[ $distribution == ubuntu ]]; then components=main,universe; fi
+  if [[ ! -e /usr/share/debootstrap/scripts/$1 ]]; then # newer than this debootstrap: as its relatives are made
+    script=/usr/share/debootstrap/scripts/sid
+    if [[ $distribution == ubuntu ]]; then script=/usr/share/debootstrap/scripts/gutsy; fi
+  fi
+  debootstrap --variant=minbase --components="$components" "$1" "$2" "$mirror" ${script:+"$script"}
+  for file in apt.conf apt.conf.d auth.conf auth.conf.d; do
+    if [[ -e /etc/apt/$file ]]; then cp -a "/etc/apt/$file" "$2/etc/apt/"; fi
+  done
+  cp /etc/resolv.conf /etc/hosts "$2/etc/"
+}
+
+# inside FOLDER COMMAND...: in that system, with nothing of this environment but its way to the network.
+inside() {
+  local root=$1 name kept=()
+  shift
+  for name in http_proxy https_proxy no_proxy npm_config_registry; do
+    if [[ -n ${!name-} ]]; then kept+=("$name=${!name}"); fi
+  done
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "${kept[@]}" \
+    chroot "$root" "$@"
+}
