@@ -225,9 +225,14 @@ class EquivalentCommand {
     for (const std::string& scenario : options_.scenarios) {
       for (const Candidate& candidate : candidates_) tasks.push_back(task_of(options_, scenario, candidate));
     }
+    // Another rival that is set up must not keep a run from being continued.
+    const auto is_asked = [&](const Traits& traits) {
+      const auto is_it = [&](const Candidate& each) { return each.algorithm->traits().name == traits.name; };
+      return !traits.is_rival() || std::ranges::any_of(candidates_, is_it);
+    };
     context_ = bench::run_context(
         {.program = "sixdof", .arguments = arguments(options_), .benchmark_flags = measured_with(options_)}, registry_,
-        settings_);
+        settings_, is_asked);
     study::MeasurementStore store(context_);
     if (!options_.output.empty()) store.open(options_.output, options_.resume);
     StudyProgress progress(own_command("sixdof equivalent"), budget_s_);
