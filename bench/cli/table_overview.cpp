@@ -68,7 +68,8 @@ std::string answers_cell(const OverviewLine& line) {
   if (line.approximates && !errors.empty()) {
     texts.push_back(fmt::format("distances off by at most {:.2g} % of the size", 100.0 * std::ranges::max(errors)));
   }
-  const char* const verdict = line.approximates ? "approximate" : texts.empty() ? "right" : "wrong";
+  const bool judged = line.by_query.contains("collide") || line.by_query.contains("distance");
+  const char* const verdict = line.approximates ? "approximate" : !texts.empty() ? "wrong" : judged ? "right" : "-";
   return texts.empty() ? verdict : fmt::format("{}; {}", verdict, fmt::join(texts, "; "));
 }
 
@@ -111,8 +112,9 @@ std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
 std::vector<std::string> lines_below_overview() {
   return {
       "force off by: mean angle to the exact force; contact forces of libraries follow laws of their own",
-      "answers: right: none differs from the truth; approximate: the method replaces the bodies by others (spheres, "
-      "voxels, points), and its errors follow; wrong: an algorithm that promises right answers gave wrong ones"};
+      "answers: right: no yes/no and no distance differs from the truth; approximate: the method replaces the bodies by "
+      "others (spheres, voxels, points), and its errors follow; wrong: an algorithm that promises right answers gave "
+      "wrong ones"};
 }
 
 }  // namespace sixdof::cli

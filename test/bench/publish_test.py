@@ -66,6 +66,14 @@ class Marks(unittest.TestCase):
         with self.assertRaisesRegex(documents.Stale, "names no 'gone'"):
             self.fill("<!--= gone --><!--=-->")
 
+    def test_columns_and_pivot_of_a_table(self):
+        lines = ["| a\\_1 | b | c |", "|---|---|---:|", "| x | p | 1 |", "| x | q | 2 |", "| y | q | 3 |"]
+        self.assertEqual(documents.with_columns(lines[:3], ["c", "a_1"]), ["| c | a\\_1 |", "| ---: | --- |", "| 1 | x |"])
+        self.assertEqual(documents.pivoted(lines, "b", "c"),
+                         ["| a\\_1 | p | q |", "|---|---:|---:|", "| x | 1 | 2 |", "| y |  | 3 |"])
+        with self.assertRaisesRegex(documents.Stale, "no column is called d"):
+            documents.with_columns(lines, ["d"])
+
     def test_a_planted_digit_is_found(self):
         mark = "<!--= rows.json benchmarks[time_unit=us].cpu_time .2f -->"
         text = self.fill(f"{mark}<!--=-->")
