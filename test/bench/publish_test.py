@@ -114,6 +114,24 @@ class Marks(unittest.TestCase):
             documents.check(SIXDOF)
 
 
+class Repository(unittest.TestCase):
+    def test_figures_in_documents_are_the_published_ones(self):
+        self.assertEqual(documents.check(SIXDOF), 0)
+
+    def test_a_stale_figure_of_the_readme_is_found(self):
+        """In a copy of the documents."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            text = (ROOT / "README.md").read_text(encoding="utf-8")
+            mark = documents.MARK.search(text)
+            (folder / "README.md").write_text(text.replace(mark.group(), f"<!--= {mark['what']} -->{mark['text']}9<!--=-->"))
+            subprocess.run(["git", "init", "-q", folder], check=True)
+            subprocess.run(["git", "add", "README.md"], cwd=folder, check=True)
+            self.addCleanup(setattr, documents, "ROOT", documents.ROOT)
+            documents.ROOT = folder
+            self.assertEqual(documents.check(SIXDOF), 1)
+
+
 class Short(unittest.TestCase):
     def test_rows_keep_what_tables_show_in_few_digits(self):
         row = ROW | {"cpu_time": 1.23456789, "outliers": {"a": "p"}, "checksum": "0", "nodes": 17}
