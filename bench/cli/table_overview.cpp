@@ -112,7 +112,8 @@ std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
 std::vector<std::string> lines_below_overview() {
   return {
       "force off by: mean angle to the exact force; contact forces of libraries follow laws of their own",
-      "answers: right: no yes/no and no distance differs from the truth; approximate: the method replaces the bodies by "
+      "answers: right: no yes/no and no distance differs from the truth; approximate: the method replaces the bodies "
+      "by "
       "others (spheres, voxels, points), and its errors follow; wrong: an algorithm that promises right answers gave "
       "wrong ones"};
 }
