@@ -188,7 +188,7 @@ TEST_F(TableCommand, OverviewHasALinePerAlgorithmAndWhatIsWrongWithIt) {
   EXPECT_THAT(out, HasSubstr("| y | 1.00 | - | - | - | wrong; yes/no: 3 of 64 wrong |\n"));
   EXPECT_THAT(out, HasSubstr("| contacts | - | - | 9.00 | 12.0 | - |\n")) << "there is no right or wrong";
   EXPECT_THAT(out,
-              HasSubstr("| spheres | - | 3.00 | - | - | approximate; distances off by at most 0.3 % of the size |\n"));
+              HasSubstr("| spheres | - | 3.00 | - | - | approximate; largest distance error 0.3 % of A's diagonal |\n"));
 }
 
 TEST_F(TableCommand, OrdersBucketsByTheirNumbers) {
