@@ -187,8 +187,8 @@ TEST_F(TableCommand, OverviewHasALinePerAlgorithmAndWhatIsWrongWithIt) {
   EXPECT_THAT(out, HasSubstr("| x | 2.00 | - | 8.00 | 1.50 | right |\n"));
   EXPECT_THAT(out, HasSubstr("| y | 1.00 | - | - | - | wrong; yes/no: 3 of 64 wrong |\n"));
   EXPECT_THAT(out, HasSubstr("| contacts | - | - | 9.00 | 12.0 | - |\n")) << "there is no right or wrong";
-  EXPECT_THAT(out,
-              HasSubstr("| spheres | - | 3.00 | - | - | approximate; largest distance error 0.3 % of A's diagonal |\n"));
+  EXPECT_THAT(
+      out, HasSubstr("| spheres | - | 3.00 | - | - | approximate; largest distance error 0.3 % of A's diagonal |\n"));
 }
 
 TEST_F(TableCommand, OrdersBucketsByTheirNumbers) {
