@@ -66,9 +66,10 @@ std::string answers_cell(const OverviewLine& line) {
   std::vector<std::string> texts = fault_texts(line);
   const std::vector<double> errors = line.values("distance", "error_max");
   if (line.approximates && !errors.empty()) {
-    texts.push_back(fmt::format("distances off by at most {:.2g} % of the size", 100.0 * std::ranges::max(errors)));
+    texts.push_back(fmt::format("largest distance error {:.2g} % of A's diagonal", 100.0 * std::ranges::max(errors)));
   }
-  const char* const verdict = line.approximates ? "approximate" : texts.empty() ? "right" : "wrong";
+  const bool judged = line.by_query.contains("collide") || line.by_query.contains("distance");
+  const char* const verdict = line.approximates ? "approximate" : !texts.empty() ? "wrong" : judged ? "right" : "-";
   return texts.empty() ? verdict : fmt::format("{}; {}", verdict, fmt::join(texts, "; "));
 }
 
@@ -94,7 +95,7 @@ std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
     sheet.title = pair + ": mean processor time of a query over all distances and overlaps";
     sheet.columns = {{"", "algorithm", true}};
     for (const auto& [query, words] : k_queries) sheet.columns.push_back({"", fmt::format("{}, us", words)});
-    sheet.columns.push_back({"", "force off by, degrees"});
+    sheet.columns.push_back({"", "force angle, degrees"});
     sheet.columns.push_back({"", "answers", true});
     for (const OverviewLine& line : lines) {
       auto& cells = sheet.lines.emplace_back(std::vector{line.algorithm});
@@ -110,9 +111,11 @@ std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
 
 std::vector<std::string> lines_below_overview() {
   return {
-      "force off by: mean angle to the exact force; contact forces of libraries follow laws of their own",
-      "answers: right: none differs from the truth; approximate: the method replaces the bodies by others (spheres, "
-      "voxels, points), and its errors follow; wrong: an algorithm that promises right answers gave wrong ones"};
+      "force angle: mean angle to the exact force -dV/dx; contact forces of libraries follow laws of their own",
+      "answers: right: no yes/no and no distance differs from the truth; approximate: the method replaces the bodies "
+      "by "
+      "others (spheres, voxels, points), and its errors follow; wrong: an algorithm that promises right answers gave "
+      "wrong ones"};
 }
 
 }  // namespace sixdof::cli

@@ -7,7 +7,9 @@ A mark in a Markdown file names where its text comes from:
                                                              a value of a file, by a path of keys, in Python's format
   <!--= sixdof ... | head 12 -->TEXT<!--=-->                 the first lines; `grep WORDS` for lines that have the words,
                                                              `from WORDS`, `until WORDS` for lines from or before one,
-                                                             `tables` for Markdown tables, their titles and faults
+                                                             `tables` for Markdown tables, their titles and faults;
+                                                             `columns NAME...` for these columns of a Markdown table;
+                                                             `pivot NAMED VALUE` for a column per value of column NAMED
   <!--= fenced recommend/random.txt | head 4 -->TEXT<!--=--> what a command printed when it was measured
   <!--= report equal_time equivalent/*.json -->TEXT<!--=-->  a table of `sixdof report --markdown`, without its title
   <!--= fcl-distance.ratio -->11.3<!--=-->                    a figure that bench/scripts/figures.json names
@@ -129,6 +131,44 @@ def output_of(command, program):
     return done.stdout
 
 
+def cells_of(line):
+    """Of a row of a Markdown table."""
+    return [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
+
+
+def row_of(cells):
+    return f"| {' | '.join(cells)} |"
+
+
+def places_of(header, names):
+    """Where columns stand; names are written without backslashes. @raises Stale"""
+    there = [cell.replace("\\", "") for cell in header]
+    gone = [name for name in names if name not in there]
+    if gone:
+        raise Stale(f"no column is called {gone[0]}, but {', '.join(there)}")
+    return [there.index(name) for name in names]
+
+
+def with_columns(lines, names):
+    """These columns of a Markdown table, in this order."""
+    table = [cells_of(line) for line in lines]
+    places = places_of(table[0], names)
+    return [row_of([cells[place] for place in places]) for cells in table]
+
+
+def pivoted(lines, named, value):
+    """A table with a row for equal cells in all other columns, and a column of values for each cell of column `named`."""
+    header, _, *table = [cells_of(line) for line in lines]
+    name_place, value_place = places_of(header, [named, value])
+    others = [place for place in range(len(header)) if place not in (name_place, value_place)]
+    columns = list(dict.fromkeys(cells[name_place] for cells in table))
+    rows = {}
+    for cells in table:
+        rows.setdefault(tuple(cells[place] for place in others), {})[cells[name_place]] = cells[value_place]
+    return [row_of([header[place] for place in others] + columns), "|" + "---|" * len(others) + "---:|" * len(columns),
+            *(row_of([*key, *(values.get(column, "") for column in columns)]) for key, values in rows.items())]
+
+
 def chosen_lines(lines, words):
     """The lines that a filter keeps."""
     name, *arguments = words
@@ -138,6 +178,10 @@ def chosen_lines(lines, words):
         return [line for line in lines if not line or line.startswith(("|", "#", "- !", "- \\!"))]
     if name == "grep":
         return [line for line in lines if any(text in line for text in arguments)]
+    if name == "columns":
+        return with_columns(lines, arguments)
+    if name == "pivot":
+        return pivoted(lines, *arguments)
     if name in ("from", "until"):
         places = [i for i, line in enumerate(lines) if arguments[0] in line]
         if not places:

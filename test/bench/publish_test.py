@@ -68,6 +68,14 @@ class Marks(unittest.TestCase):
         with self.assertRaisesRegex(documents.Stale, "names no 'gone'"):
             self.fill("<!--= gone --><!--=-->")
 
+    def test_columns_and_pivot_of_a_table(self):
+        lines = ["| a\\_1 | b | c |", "|---|---|---:|", "| x | p | 1 |", "| x | q | 2 |", "| y | q | 3 |"]
+        self.assertEqual(documents.with_columns(lines[:3], ["c", "a_1"]), ["| c | a\\_1 |", "| ---: | --- |", "| 1 | x |"])
+        self.assertEqual(documents.pivoted(lines, "b", "c"),
+                         ["| a\\_1 | p | q |", "|---|---:|---:|", "| x | 1 | 2 |", "| y |  | 3 |"])
+        with self.assertRaisesRegex(documents.Stale, "no column is called d"):
+            documents.with_columns(lines, ["d"])
+
     def test_a_planted_digit_is_found(self):
         mark = "<!--= rows.json benchmarks[time_unit=us].cpu_time .2f -->"
         text = self.fill(f"{mark}<!--=-->")
@@ -106,6 +114,24 @@ class Marks(unittest.TestCase):
         documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "two": {"commit": "def"}}))
         with self.assertRaisesRegex(documents.Stale, "2 commits: abc, def"):
             documents.check(SIXDOF)
+
+
+class Repository(unittest.TestCase):
+    def test_figures_in_documents_are_the_published_ones(self):
+        self.assertEqual(documents.check(SIXDOF), 0)
+
+    def test_a_stale_figure_of_the_readme_is_found(self):
+        """In a copy of the documents."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            text = (ROOT / "README.md").read_text(encoding="utf-8")
+            mark = documents.MARK.search(text)
+            (folder / "README.md").write_text(text.replace(mark.group(), f"<!--= {mark['what']} -->{mark['text']}9<!--=-->"))
+            subprocess.run(["git", "init", "-q", folder], check=True)
+            subprocess.run(["git", "add", "README.md"], cwd=folder, check=True)
+            self.addCleanup(setattr, documents, "ROOT", documents.ROOT)
+            documents.ROOT = folder
+            self.assertEqual(documents.check(SIXDOF), 1)
 
 
 class Short(unittest.TestCase):

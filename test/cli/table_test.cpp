@@ -203,15 +203,17 @@ TEST_F(TableCommand, OverviewHasALinePerAlgorithmAndWhatIsWrongWithIt) {
   Json spheres =
       row("distance", "spheres", "distance", 5, 3000, {{"error_max", 0.003}, {"mismatch", 64}, {"judged", 64}});
   spheres["sixdof"]["approximates"] = true;
-  const std::string file = write(
-      "r.json", {row("collide", "x", "distance", 1, 1000), row("collide", "x", "volume", 5, 3000),
-                 row("respond", "x", "volume", 5, 8000, {{"gamma_F_deg", 1.5}}),
-                 row("collide", "y", "distance", 1, 1000), row("collide", "y", "volume", 5, 1000, wrong), spheres});
+  const std::string file =
+      write("r.json", {row("collide", "x", "distance", 1, 1000), row("collide", "x", "volume", 5, 3000),
+                       row("respond", "x", "volume", 5, 8000, {{"gamma_F_deg", 1.5}}),
+                       row("collide", "y", "distance", 1, 1000), row("collide", "y", "volume", 5, 1000, wrong),
+                       row("respond", "contacts", "volume", 5, 9000, {{"gamma_F_deg", 12.0}}), spheres});
   const std::string out = printed("--overview --markdown " + file);
   EXPECT_THAT(out, HasSubstr("| x | 2.00 | - | 8.00 | 1.50 | right |\n"));
   EXPECT_THAT(out, HasSubstr("| y | 1.00 | - | - | - | wrong; yes/no: 3 of 64 wrong |\n"));
-  EXPECT_THAT(out,
-              HasSubstr("| spheres | - | 3.00 | - | - | approximate; distances off by at most 0.3 % of the size |\n"));
+  EXPECT_THAT(out, HasSubstr("| contacts | - | - | 9.00 | 12.0 | - |\n")) << "there is no right or wrong";
+  EXPECT_THAT(
+      out, HasSubstr("| spheres | - | 3.00 | - | - | approximate; largest distance error 0.3 % of A's diagonal |\n"));
 }
 
 TEST_F(TableCommand, OrdersBucketsByTheirNumbers) {
