@@ -117,7 +117,9 @@ std::string unmeasured(const results::Choice& choice) {
     return each.standing == results::Standing::left_out && each.reason.find("budget") != std::string::npos;
   });
   if (choice.taken() != nullptr) return {};
-  if (std::ranges::any_of(choice.candidates, &results::Candidate::interpreted)) {
+  if (std::ranges::any_of(choice.candidates, [](const results::Candidate& each) {
+        return each.interpreted && each.standing == results::Standing::not_ranked;
+      })) {
     return "those that keep the deadline are interpreted, and not ranked";
   }
   if (count == 0) return {};

@@ -55,11 +55,24 @@ std::string time_text(const Verdict& verdict, const Candidate& candidate) {
   return text;
 }
 
-/// Where the machine alone misses the deadline, no algorithm can keep it.
-bool is_noisy(const Verdict& verdict) {
-  return std::ranges::any_of(verdict.rows, [](const results::Row& row) {
-    return row.count("idle_late") > results::k_most_late * row.count("timed");
-  });
+/// Advice where the machine alone misses the deadline, or too often to say what an algorithm does; empty otherwise.
+std::string noise_text(const std::vector<Verdict>& verdicts) {
+  double idle = 0.0, timed = 0.0;
+  bool is_noisy = false;
+  for (const Verdict& verdict : verdicts) {
+    for (const results::Row& row : verdict.rows) {
+      is_noisy |= row.count("idle_late") > results::k_most_late * row.count("timed");
+      if (row.count("idle_late") > idle) idle = row.count("idle_late"), timed = row.count("timed");
+    }
+    is_noisy |= std::ranges::any_of(verdict.choice.candidates, [](const Candidate& candidate) {
+      return candidate.standing == Standing::undecided;
+    });
+  }
+  if (!is_noisy) return {};
+  return fmt::format(
+      "\nThis machine is too noisy for the deadline: a loop that asks nothing was late up to {:.0f} times of {:.0f}.\n"
+      "Stop other work, or give the program a core of its own (isolcpus, taskset) and a priority (chrt).\n",
+      idle, timed);
 }
 
 void print_verdict(const Verdict& verdict) {
@@ -81,6 +94,7 @@ std::string candidate_text(const Verdict& verdict, const Candidate& candidate) {
     case Standing::faulty:
     case Standing::unsafe:
       return candidate.reason;
+    case Standing::undecided:
     case Standing::late:
       return fmt::format("{}; {}", candidate.reason, answers_text(verdict, candidate));
     case Standing::not_ranked:
@@ -169,11 +183,7 @@ void print_text(const RecommendOptions& options, double deadline_s, const Catalo
   fmt::print("{}, a query within {}{}:\n\n", pair.pair, duration_text(deadline_s),
              options.in_motion() ? ", poses that follow each other" : "");
   for (const Verdict& verdict : verdicts) print_verdict(verdict);
-  if (std::ranges::any_of(verdicts, is_noisy)) {
-    fmt::print(
-        "\nThis machine is too noisy for the deadline: waiting without a query was late in more than 0.1 % of the "
-        "cases.\nStop other work, or give the program a core of its own (isolcpus, taskset) and a priority (chrt).\n");
-  }
+  fmt::print("{}", noise_text(verdicts));
   for (const Verdict& verdict : verdicts) {
     if (verdict.choice.candidates.empty()) continue;
     fmt::print("\n{}, {}\n", words_of(verdict.question), verdict.poses);

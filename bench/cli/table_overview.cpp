@@ -110,12 +110,10 @@ std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
 }
 
 std::vector<std::string> lines_below_overview() {
-  return {
-      "force angle: mean angle to the exact force -dV/dx; contact forces of libraries follow laws of their own",
-      "answers: right: no yes/no and no distance differs from the truth; approximate: the method replaces the bodies "
-      "by "
-      "others (spheres, voxels, points), and its errors follow; wrong: an algorithm that promises right answers gave "
-      "wrong ones"};
+  return {"force angle: mean angle to the exact force -dV/dx; contact forces of libraries follow laws of their own",
+          "answers: right: no yes/no and no distance differs from the truth; approximate: spheres, voxels or points "
+          "take the "
+          "place of the bodies, and errors follow; wrong: an algorithm that promises right answers gave wrong ones"};
 }
 
 }  // namespace sixdof::cli

@@ -105,14 +105,20 @@ def expanded(words):
     return found
 
 
+def report_file(name, words, kind, program):
+    """One of the files that `sixdof report WORDS... --KIND FOLDER` writes. @raises Stale"""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([program, "report", *expanded(words), kind, folder], cwd=PUBLISHED, capture_output=True,
+                              text=True, check=False)
+        file = pathlib.Path(folder) / name
+        if done.returncode or not file.exists():
+            raise Stale(f"sixdof report: {done.stderr.strip() or f'nothing to show in {name}'}")
+        return file.read_text(encoding="utf-8")
+
+
 def report_table(name, files, program):
     """Lines of a table of `sixdof report --markdown`. @raises Stale"""
-    with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([program, "report", *expanded(files), "--markdown", folder], cwd=PUBLISHED, capture_output=True,
-                              text=True, check=False)
-        if done.returncode:
-            raise Stale(f"sixdof report: {done.stderr.strip()}")
-        text = (pathlib.Path(folder) / f"{name}.md").read_text(encoding="utf-8")
+    text = report_file(f"{name}.md", files, "--markdown", program)
     return "\n".join(line for line in text.splitlines() if line.startswith("|"))
 
 
@@ -142,6 +148,8 @@ def row_of(cells):
 
 def places_of(header, names):
     """Where columns stand; names are written without backslashes. @raises Stale"""
+    if not header:
+        raise Stale("there is no table")
     there = [cell.replace("\\", "") for cell in header]
     gone = [name for name in names if name not in there]
     if gone:
@@ -152,13 +160,13 @@ def places_of(header, names):
 def with_columns(lines, names):
     """These columns of a Markdown table, in this order."""
     table = [cells_of(line) for line in lines]
-    places = places_of(table[0], names)
+    places = places_of(table[0] if table else [], names)
     return [row_of([cells[place] for place in places]) for cells in table]
 
 
 def pivoted(lines, named, value):
     """A table with a row for equal cells in all other columns, and a column of values for each cell of column `named`."""
-    header, _, *table = [cells_of(line) for line in lines]
+    header, _, *table = [cells_of(line) for line in lines] or [[], []]
     name_place, value_place = places_of(header, [named, value])
     others = [place for place in range(len(header)) if place not in (name_place, value_place)]
     columns = list(dict.fromkeys(cells[name_place] for cells in table))
@@ -227,21 +235,11 @@ def filled(file, program):
     return MARK.sub(fill, file.read_text(encoding="utf-8"))
 
 
-def drawing(figure, words, program):
-    """An SVG of `sixdof report`. @raises Stale, Missing"""
-    with tempfile.TemporaryDirectory() as folder:
-        done = subprocess.run([program, "report", *expanded(words), "--svg", folder], cwd=PUBLISHED, capture_output=True,
-                              text=True, check=False)
-        if done.returncode:
-            raise Stale(f"sixdof report: {done.stderr.strip()}")
-        return (pathlib.Path(folder) / f"{figure}.svg").read_text(encoding="utf-8")
-
-
 def drawings(program):
     """(file in bench/published, its text) of every figure whose data are published. @raises Stale"""
     for name, (figure, *words) in json.loads(DRAWINGS.read_text(encoding="utf-8")).items():
         try:
-            yield PUBLISHED / name, drawing(figure, words, program)
+            yield PUBLISHED / name, report_file(f"{figure}.svg", words, "--svg", program)
         except Missing:
             continue
 

@@ -75,6 +75,9 @@ class Marks(unittest.TestCase):
                          ["| a\\_1 | p | q |", "|---|---:|---:|", "| x | 1 | 2 |", "| y |  | 3 |"])
         with self.assertRaisesRegex(documents.Stale, "no column is called d"):
             documents.with_columns(lines, ["d"])
+        for filtered in (lambda: documents.with_columns([], ["a"]), lambda: documents.pivoted([], "b", "c")):
+            with self.assertRaisesRegex(documents.Stale, "there is no table"):
+                filtered()
 
     def test_a_planted_digit_is_found(self):
         mark = "<!--= rows.json benchmarks[time_unit=us].cpu_time .2f -->"

@@ -290,6 +290,45 @@ TEST_F(OneReading, OfFrontiersAndChoices) {
   EXPECT_GT(faulty, k_files);
 }
 
+/// A row of single queries, of which some were late, as some waits beside it.
+Row timed_row(const std::string& algorithm, double late, double idle_late, double error) {
+  Row row;
+  row.fields.query = "precision";
+  row.fields.algorithm = algorithm;
+  row.fields.approximates = error > 0.0;
+  row.values = {{"timed", 2100.0},       {"judged_apart", 64.0}, {"late", late},
+                {"idle_late", idle_late}, {"error_max", error},  {std::string(k_wall_mean), 1e4}};
+  return row;
+}
+
+TEST(Choice, HoldsOnlyWhatIsClearlyMoreThanNoiseAgainstAnAlgorithm) {
+  const auto standing = [](double late, double idle) {
+    const Row row = timed_row("one", late, idle, 0.0);
+    return choose({&row, 1}, "distance", "error_max").candidates.at(0).standing;
+  };
+  EXPECT_EQ(standing(2, 0), Standing::taken) << "not more than 0.1 %";
+  EXPECT_EQ(standing(2, 30), Standing::taken) << "as they came";
+  EXPECT_EQ(standing(3, 0), Standing::late);
+  EXPECT_EQ(standing(4, 3), Standing::undecided);
+  EXPECT_EQ(standing(40, 3), Standing::late);
+}
+
+TEST(Choice, TakesNothingInPlaceOfWhatNoiseMadeLate) {
+  // The least noise was beside the first row, the most beside the third.
+  std::vector<Row> rows{timed_row("right", 13, 3, 0.0), timed_row("rough", 1, 0, 0.01), timed_row("other", 300, 8, 0.0)};
+  const Choice noisy = choose(rows, "distance", "error_max");
+  EXPECT_EQ(noisy.taken(), nullptr);
+  EXPECT_EQ(noisy.missing,
+            "the machine is too noisy for the deadline (right: 13 of 2100 queries late, the loop that asks nothing up "
+            "to 8)");
+  EXPECT_EQ(noisy.candidates.back().standing, Standing::late);
+  rows[0].fields.approximates = true;
+  rows[0].values["error_max"] = 0.02;
+  const Choice chosen = choose(rows, "distance", "error_max");
+  ASSERT_NE(chosen.taken(), nullptr);
+  EXPECT_EQ(chosen.taken()->place, 1u) << "what is undecided would not be better";
+}
+
 TEST(Choice, SaysInPlainWordsWhatCouldNotBeMeasured) {
   Row row;
   row.fields.query = "precision";

@@ -68,7 +68,34 @@ std::string why_unsafe(const Row& row, const std::string& query) {
   return {};
 }
 
-Candidate candidate_of(const Row& row, std::size_t place, const std::string& query, const std::string& error) {
+/// The largest share of late waits among the loops that asked nothing beside each row. Noise changes from second to
+/// second, so a row may have met what another row's loop did.
+double idle_share(std::span<const Row> rows) {
+  double most = 0.0;
+  for (const Row& row : rows) {
+    if (row.count("timed") > 0.0) most = std::max(most, row.count("idle_late") / row.count("timed"));
+  }
+  return most;
+}
+
+/// Whether one count of rare events has clearly more of them than another: 95 % confidence, by the normal approximation
+/// of the difference of the square roots of two Poisson variables, whose variances are 1/4.
+bool clearly_more(double count, double other) {
+  return std::sqrt(count) - std::sqrt(other) > 1.645 * std::sqrt(0.5);
+}
+
+/// Judges a row by the deadline; gives no reason if it keeps it.
+void judge_lateness(Candidate& candidate, double idle_share) {
+  if (candidate.late <= k_most_late * candidate.timed) return;
+  const double idle = idle_share * candidate.timed;
+  const bool clear = idle == 0.0 || clearly_more(candidate.late, idle);
+  candidate.standing = clear ? Standing::late : Standing::undecided;
+  candidate.reason = fmt::format("{:.0f} of {:.0f} queries late", candidate.late, candidate.timed);
+  if (!clear) candidate.reason += fmt::format(", the loop that asks nothing up to {:.0f}", idle);
+}
+
+Candidate candidate_of(const Row& row, std::size_t place, const std::string& query, const std::string& error,
+                       double idle_share) {
   Candidate candidate{.place = place};
   if (!row.error.empty()) {
     constexpr std::string_view k_prefix = "left out: ";
@@ -89,9 +116,6 @@ Candidate candidate_of(const Row& row, std::size_t place, const std::string& que
   } else if (const std::string why = why_unsafe(row, query); !why.empty()) {
     candidate.standing = Standing::unsafe;
     candidate.reason = why;
-  } else if (candidate.late > k_most_late * candidate.timed) {
-    candidate.standing = Standing::late;
-    candidate.reason = fmt::format("{:.0f} of {:.0f} queries late", candidate.late, candidate.timed);
   } else {
     candidate.standing = Standing::not_ranked;
     const bool no_error = query != "respond" || candidate.error.value <= k_rounding;
@@ -99,14 +123,36 @@ Candidate candidate_of(const Row& row, std::size_t place, const std::string& que
     const std::string interpreter = interpreter_of(row.fields);
     candidate.interpreted = !interpreter.empty();
     if (candidate.interpreted) candidate.reason = fmt::format("runs in {}: not ranked with compiled code", interpreter);
+    judge_lateness(candidate, idle_share);
   }
   return candidate;
 }
 
-/// What is to be small: answers that promise nothing after those that do, then the error, then the time.
-auto rank_of(const Candidate& candidate) {
+/// How right a candidate is, the best first: answers that promise nothing after those that do, then the error.
+auto rightness_of(const Candidate& candidate) {
   const double error = candidate.exact || candidate.error.value <= k_rounding ? 0.0 : candidate.error.value;
-  return std::tuple(!candidate.exact, error, candidate.mean_ns.value);
+  return std::tuple(!candidate.exact, error);
+}
+
+/// The same, then the time.
+auto rank_of(const Candidate& candidate) {
+  return std::tuple_cat(rightness_of(candidate), std::tuple(candidate.mean_ns.value));
+}
+
+/// Why nothing can be taken for the noise of the machine: what keeps the deadline is less right than something that is
+/// undecided, or nothing keeps it. Empty if something can.
+std::string too_noisy(std::span<const Candidate> candidates, std::span<const Row> rows) {
+  const Candidate *kept = nullptr, *undecided = nullptr;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.interpreted) continue;
+    const Candidate** const best = candidate.standing == Standing::not_ranked  ? &kept
+                                   : candidate.standing == Standing::undecided ? &undecided
+                                                                               : nullptr;
+    if (best != nullptr && (*best == nullptr || rank_of(candidate) < rank_of(**best))) *best = &candidate;
+  }
+  if (undecided == nullptr || (kept != nullptr && rightness_of(*kept) <= rightness_of(*undecided))) return {};
+  return fmt::format("the machine is too noisy for the deadline ({}: {})", rows[undecided->place].fields.algorithm,
+                     undecided->reason);
 }
 
 /// Says of the candidates that keep the deadline which is taken, and what the others lack.
@@ -139,8 +185,8 @@ void judge_the_rest(std::vector<Candidate>& candidates) {
 }  // namespace
 
 std::string_view to_string(Standing standing) {
-  constexpr std::string_view k_names[] = {"taken", "tied",   "slower", "less right", "not ranked",
-                                          "late",  "unsafe", "faulty", "left out"};
+  constexpr std::string_view k_names[] = {"taken",     "tied", "slower", "less right", "not ranked",
+                                          "undecided", "late", "unsafe", "faulty",     "left out"};
   return k_names[static_cast<std::size_t>(standing)];
 }
 
@@ -150,7 +196,11 @@ const Candidate* Choice::taken() const {
 
 Choice choose(std::span<const Row> rows, const std::string& query, const std::string& error) {
   Choice choice{.candidates = {}, .missing = missing_poses(rows, query)};
-  for (std::size_t i = 0; i < rows.size(); ++i) choice.candidates.push_back(candidate_of(rows[i], i, query, error));
+  const double idle = idle_share(rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    choice.candidates.push_back(candidate_of(rows[i], i, query, error, idle));
+  }
+  if (choice.missing.empty()) choice.missing = too_noisy(choice.candidates, rows);
   if (choice.missing.empty()) judge_the_rest(choice.candidates);
   std::ranges::stable_sort(choice.candidates, {}, [](const Candidate& candidate) {
     return std::tuple_cat(std::tuple(candidate.standing), rank_of(candidate));

@@ -15,7 +15,9 @@
 /// - A row counts only if every query was answered (fault.h).
 /// - An algorithm that does not approximate (RowFields::approximates) promises right answers: one wrong answer makes it
 ///   unsafe. So does one wrong yes/no of any algorithm, and forces that are no better than a constant one.
-/// - A deadline is kept if at most k_most_late of the queries were late as they came, in one pass.
+/// - A deadline is kept if at most k_most_late of the queries were late as they came, in one pass. More are held against
+///   an algorithm only if they are clearly more than those of the latest loop that asked nothing (counter idle_late);
+///   otherwise nothing is said of it, and nothing that has larger errors is taken in its place.
 /// - Of those that keep it, answers without an error (above k_rounding) win, then the smallest error. Approximations
 ///   come after those that promise right answers, also where none of their answers was wrong. Of equal ones the fastest
 ///   wins; those whose times do not differ clearly are tied with it.
@@ -36,13 +38,15 @@ enum class Standing {
   slower,      ///< As right, but slower.
   less_right,  ///< Keeps the deadline with larger errors.
   not_ranked,  ///< Keeps the deadline, but there is no verdict, or it is interpreted.
+  undecided,   ///< Misses the deadline not clearly more often than the machine does without it.
   late,        ///< Misses the deadline.
   unsafe,      ///< Wrong answers.
   faulty,      ///< Queries without an answer.
   left_out     ///< Not measured.
 };
 
-/// "taken", "tied", "slower", "less right", "not ranked", "late", "unsafe", "faulty", "left out".
+/// "taken", "tied", "slower", "less right", "not ranked", "undecided", "late", "unsafe", "faulty",
+/// "left out".
 std::string_view to_string(Standing standing);
 
 struct Candidate {
