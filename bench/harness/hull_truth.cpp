@@ -38,9 +38,13 @@ KnownAnswer HullTruth::at(const BucketSample& bucket, const Pose& X_AB) {
   const Response response = required(*exact_, exact_->respond(X_AB));
   known.key.kind = BucketKind::volume;
   known.target = response.volume;
+  if (response.force.isZero(0.0)) {  // one hull is within the other, or the overlap is too thin for a force
+    if (response.volume <= near * diagonal_ * diagonal_) known.key.percent = 0.0;
+    return known;
+  }
   Pose out = X_AB;
-  if (!response.force.isZero(0.0)) out.t += 2.0 * near * response.force.normalized();
-  if (response.force.isZero(0.0) || !required(*exact_, exact_->collide(out))) known.key.percent = 0.0;
+  out.t += 2.0 * near * response.force.normalized();
+  if (!required(*exact_, exact_->collide(out))) known.key.percent = 0.0;
   return known;
 }
 

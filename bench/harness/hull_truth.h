@@ -22,7 +22,8 @@ class HullTruth {
   /// As a bucket of hulls would have it: a distance, or an overlap volume. It is the bucket of contact (0 %), where
   /// yes/no is not judged, if the hulls are as close to contact as k_distance_slack or, where the pose is of the set's
   /// bucket of contact, as the meshes are: if they are so far apart at most, or apart once B is moved by twice that
-  /// length along the force. @throws Error if `exact` has no answer
+  /// length along the force (without a force, if the overlap is thinner than that length).
+  /// @throws Error if `exact` has no answer
   KnownAnswer at(const BucketSample& bucket, const Pose& X_AB);
 
   /// Responses of `exact` at these poses. @throws Error likewise
