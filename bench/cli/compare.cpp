@@ -91,16 +91,16 @@ void print_markdown(const Differences& found) {
   constexpr std::size_t k_most_groups = 12;
   const std::vector<Group> groups = groups_of(found);
   Sheet sheet;
-  sheet.title = fmt::format(
-      "{} answers changed in {} common rows; {} rows only before, {} only after; {} versions differ",
-      found.changed_answers(), found.common_rows, found.only_before.size(), found.only_after.size(),
-      found.versions.size());
+  sheet.title =
+      fmt::format("{} answers changed in {} common rows; {} rows only before, {} only after; {} versions differ",
+                  found.changed_answers(), found.common_rows, found.only_before.size(), found.only_after.size(),
+                  found.versions.size());
   for (const char* const title : {"rows", "counter", "how many", "largest change", "in"}) {
     sheet.columns.push_back({.group = "", .title = title, .left = true});
   }
   for (const Group& group : std::span(groups).first(std::min(groups.size(), k_most_groups))) {
-    sheet.lines.push_back({group.what, group.counter, std::to_string(group.rows), to_string(*group.largest),
-                           group.largest->row});
+    sheet.lines.push_back(
+        {group.what, group.counter, std::to_string(group.rows), to_string(*group.largest), group.largest->row});
   }
   if (groups.size() > k_most_groups) {
     sheet.notes.push_back(fmt::format("and {} more kinds of changes", groups.size() - k_most_groups));

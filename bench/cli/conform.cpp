@@ -91,8 +91,8 @@ std::vector<Assignment> parse_assignments(const char* option, const std::vector<
       throw BadArgument(fmt::format("{} {}: must read ALGORITHM:NAME=VALUE", option, text));
     }
     Assignment parsed{text.substr(0, colon), text.substr(colon + 1, equals - colon - 1), text.substr(equals + 1)};
-    const bool is_asked = std::ranges::any_of(
-        algorithms, [&](const Algorithm* each) { return each->traits().name == parsed.algorithm; });
+    const bool is_asked =
+        std::ranges::any_of(algorithms, [&](const Algorithm* each) { return each->traits().name == parsed.algorithm; });
     if (!is_asked) {
       throw BadArgument(fmt::format("{} {}: {} is not among the algorithms", option, text, parsed.algorithm));
     }
@@ -153,8 +153,8 @@ Json as_json(const Finding& finding) {
 /// "mine: 12 passed, 1 failed"
 std::string summary(const std::string& name, const std::vector<Finding>& findings) {
   std::string text;
-  for (const Verdict verdict : {Verdict::passed, Verdict::failed, Verdict::known_failure, Verdict::not_answered,
-                                Verdict::not_claimed}) {
+  for (const Verdict verdict :
+       {Verdict::passed, Verdict::failed, Verdict::known_failure, Verdict::not_answered, Verdict::not_claimed}) {
     const auto count = std::ranges::count(findings, verdict, &Finding::verdict);
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, to_string(verdict));
   }
@@ -187,9 +187,8 @@ void run(const Options& options) {
   for (const Algorithm* const algorithm : algorithms) {
     subjects.push_back(std::make_unique<Subject>(
         *algorithm, declaration_for(*algorithm, parameters, claims, known_failures),
-        conformance::Commands{.program = own_command("sixdof"),
-                              .options = bench::process_option(*algorithm),
-                              .folder = options.meshes}));
+        conformance::Commands{
+            .program = own_command("sixdof"), .options = bench::process_option(*algorithm), .folder = options.meshes}));
   }
   Json json = Json::array();
   std::string failed;

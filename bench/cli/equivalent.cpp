@@ -108,9 +108,8 @@ struct Candidate {
 
 /// In the paper's table counts, such as spheres, are not searched beyond the sweep: more take many minutes to pack.
 double reach_of(const Options& options, const Traits& traits) {
-  const bool counts = std::ranges::any_of(traits.parameters, [](const Parameter& parameter) {
-    return parameter.integer && !parameter.sweep.empty();
-  });
+  const bool counts = std::ranges::any_of(
+      traits.parameters, [](const Parameter& parameter) { return parameter.integer && !parameter.sweep.empty(); });
   if (options.reach > 0.0) return options.reach;
   return options.paper && counts ? 1.0 : study::k_default_reach;
 }

@@ -165,10 +165,10 @@ std::vector<Sheet> paper_sheets(std::span<const PaperLine> lines) {
 nlohmann::ordered_json paper_json(std::span<const PaperLine> lines) {
   auto list = nlohmann::ordered_json::array();
   for (const PaperLine& line : lines) {
-    nlohmann::ordered_json json = {{"measure", line.measure},       {"scenario", line.scenario},
-                                   {"algorithm", line.algorithm},   {"tau_ns", line.tau_ns},
-                                   {"printed", line.printed},       {"resolution", line.resolution},
-                                   {"measured_ns", line.mean_ns},   {"remark", line.remark}};
+    nlohmann::ordered_json json = {{"measure", line.measure},     {"scenario", line.scenario},
+                                   {"algorithm", line.algorithm}, {"tau_ns", line.tau_ns},
+                                   {"printed", line.printed},     {"resolution", line.resolution},
+                                   {"measured_ns", line.mean_ns}, {"remark", line.remark}};
     const std::pair<const char*, const std::optional<Reading>*> readings[] = {
         {"as_printed", &line.as_printed},
         {"whole_path", &line.whole_path},

@@ -65,10 +65,10 @@ class PairProgress {
     ++steps_;
     const std::size_t points = study_.points().size(), rounds = steps_ > points ? steps_ - points : 0;
     if (rounds >= study_.plan().rounds) return;
-    const double done = work_of(study_.points(), true) +
-                        k_round_work * static_cast<double>(rounds) * work_of(study_.points(), false);
-    const std::string part = rounds == 0 ? fmt::format("{} of {} points", steps_, points)
-                                         : fmt::format("round {} of timing", rounds + 1);
+    const double done =
+        work_of(study_.points(), true) + k_round_work * static_cast<double>(rounds) * work_of(study_.points(), false);
+    const std::string part =
+        rounds == 0 ? fmt::format("{} of {} points", steps_, points) : fmt::format("round {} of timing", rounds + 1);
     progress_.finished(fmt::format("{}: {}", study_.pair().pair, part), done - told_);
     told_ = done;
   }

@@ -147,8 +147,7 @@ std::string command_again(const Verdict& verdict, const RecommendOptions& option
   for (const std::string& assignment : verdict.assignments[taken.place]) {
     text += fmt::format(" -p {}:{}", algorithm, assignment);
   }
-  const std::string rows =
-      fmt::format("{}/algorithm:{}/pair:{}/", to_string(verdict.question), algorithm, pair.pair);
+  const std::string rows = fmt::format("{}/algorithm:{}/pair:{}/", to_string(verdict.question), algorithm, pair.pair);
   const std::string filter = fmt::format("--benchmark_filter=^{}[^/]*{}$", results::name_expression(rows),
                                          options.in_motion() ? "/order:motion" : "");
   return text + fmt::format(" --suite all {}", shell_quoted(filter));

@@ -99,9 +99,8 @@ struct Advice {
 Json as_json(const Advice& advice, const RepairOptions& tried) {
   auto attempts = Json::array();
   for (const RepairAttempt& each : advice.attempts) {
-    attempts.push_back({{"options", option_text(each.options, tried)},
-                        {"border_edges", each.border_edges},
-                        {"solid", each.solid}});
+    attempts.push_back(
+        {{"options", option_text(each.options, tried)}, {"border_edges", each.border_edges}, {"solid", each.solid}});
   }
   Json json{{"tried", std::move(attempts)}, {"add", advice.options(tried)}};
   if (advice.gaps) {

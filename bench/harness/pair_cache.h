@@ -115,7 +115,7 @@ class PairCache {
   std::size_t poses_ = 0;  ///< In buckets_.
   std::map<PairBucket, std::vector<Response>> exact_responses_;
   std::map<std::string, std::unique_ptr<HullTruth>> hull_truths_;  ///< By name of the pair.
-  std::list<Prepared> prepared_;  ///< Most recently used first.
+  std::list<Prepared> prepared_;                                   ///< Most recently used first.
 };
 
 }  // namespace sixdof::bench

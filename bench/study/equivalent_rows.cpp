@@ -124,7 +124,7 @@ PredictionError prediction_error(std::span<const EquivalentResult> results, bool
 
 std::string given_text(const SearchOptions& options) {
   return options.goal == Goal::time ? fmt::format("tau = {}", time_text(options.target))
-                                     : fmt::format("eta = {:.4g}", options.target);
+                                    : fmt::format("eta = {:.4g}", options.target);
 }
 
 std::string resolution_text(const std::array<ResolutionAxis, 2>& axes, const Resolution& at) {

@@ -238,7 +238,7 @@ class Run {
   MeasurementStore& store_;
   StudyProgress& progress_;
   EquivalentRun run_;
-  std::vector<std::size_t> targets_left_;                        ///< By task.
+  std::vector<std::size_t> targets_left_;                       ///< By task.
   std::map<std::pair<std::string, std::string>, Spent> spent_;  ///< By scenario and algorithm.
   bool counts_ = false;  ///< Whether measurements are parts: not before the estimate.
 };

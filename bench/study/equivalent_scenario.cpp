@@ -93,8 +93,8 @@ std::string_view rated_wrench(std::string_view scenario) { return scenario == "I
 
 std::string_view wrench_law(std::string_view scenario, std::string_view algorithm) {
   using Law = std::pair<std::string_view, std::string_view>;  // of an algorithm
-  constexpr std::array<Law, 4> k_laws{
-      Law{"vps", "traction"}, Law{"vps-field", "wall-traction"}, Law{"ist", "volume"}, Law{"ist-descent", "volume"}};
+  constexpr std::array<Law, 4> k_laws{Law{"vps", "traction"}, Law{"vps-field", "wall-traction"}, Law{"ist", "volume"},
+                                      Law{"ist-descent", "volume"}};
   if (scenario != "III" && scenario != "IV") return "own";
   const auto* const found = std::ranges::find(k_laws, algorithm, &Law::first);
   return found == k_laws.end() ? "own" : found->second;

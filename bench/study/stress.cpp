@@ -211,9 +211,9 @@ std::string reproduction(const Case& member, std::size_t index, const Algorithm&
     for (const double number : shot.X_AB.t) append(number);
     for (const double number : {q.w(), q.x(), q.y(), q.z()}) append(number);
   }
-  return fmt::format(
-      "{} --pose '{}'",
-      bench::query_command(mesh_file(*shot.a, folder), mesh_file(*shot.b, folder), algorithm, settings), pose);
+  return fmt::format("{} --pose '{}'",
+                     bench::query_command(mesh_file(*shot.a, folder), mesh_file(*shot.b, folder), algorithm, settings),
+                     pose);
 }
 
 }  // namespace sixdof::study

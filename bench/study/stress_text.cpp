@@ -35,16 +35,16 @@ StressLine stress_line(const StressCell& cell, const std::filesystem::path& fold
   const auto& worst = cell.worst;
   const stability::Case member = make_case(*cell.family, cell.id), slow = make_case(*cell.family, cell.slow_id);
   const Settings settings = settings_of(*cell.algorithm, cell.which);
-  return {.verdict = std::string(to_string(worst.verdict)),
-          .metric = worst.metric,
-          .worst = fmt::format("{:.3g} {}", worst.value, worst.unit),
-          .member = member.name,
-          .thread = member.thread,
-          .reproduction =
-              reproduction(member, worst.shot, *cell.algorithm, settings, folder) + process_words(cell, limits),
-          .slow_reproduction = reproduction(slow, cell.slow_shot, *cell.algorithm, settings, folder),
-          .words = worst.words,
-          .parameter = member.parameter};
+  return {
+      .verdict = std::string(to_string(worst.verdict)),
+      .metric = worst.metric,
+      .worst = fmt::format("{:.3g} {}", worst.value, worst.unit),
+      .member = member.name,
+      .thread = member.thread,
+      .reproduction = reproduction(member, worst.shot, *cell.algorithm, settings, folder) + process_words(cell, limits),
+      .slow_reproduction = reproduction(slow, cell.slow_shot, *cell.algorithm, settings, folder),
+      .words = worst.words,
+      .parameter = member.parameter};
 }
 
 std::string stress_matrix(const std::vector<StressCell>& cells) {

@@ -22,10 +22,8 @@ class BallQuery final : public sixdof::Query {
 };
 
 const sixdof::Registrar k_balls([] {
-  return sixdof::make_algorithm<BallQuery>({.name = "balls",
-                                            .version = "1.0",
-                                            .summary = "balls around the bounding boxes",
-                                            .answers = {.distance = true}});
+  return sixdof::make_algorithm<BallQuery>(
+      {.name = "balls", .version = "1.0", .summary = "balls around the bounding boxes", .answers = {.distance = true}});
 });
 
 }  // namespace

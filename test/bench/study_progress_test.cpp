@@ -29,10 +29,9 @@ TEST(StudyProgress, TheFirstPartTellsHowLongAllTakes) {
   progress.begin("2 pairs", 4.0);
   progress.finished("bunny", 1.0);
   progress.finished("ship", 3.0);
-  EXPECT_THAT(told.lines,
-              ElementsAre("agree: 2 pairs", MatchesRegex("agree: about .* in all, the budget is 24 h"),
-                          MatchesRegex("agree: bunny: 25 % done, [0-9:]+ left"),
-                          MatchesRegex("agree: ship: 100 % done, 0:00:00 left")));
+  EXPECT_THAT(told.lines, ElementsAre("agree: 2 pairs", MatchesRegex("agree: about .* in all, the budget is 24 h"),
+                                      MatchesRegex("agree: bunny: 25 % done, [0-9:]+ left"),
+                                      MatchesRegex("agree: ship: 100 % done, 0:00:00 left")));
 }
 
 TEST(StudyProgress, AnEstimateMayComeBeforeAndTheWorkMayGrow) {

@@ -33,9 +33,7 @@ constexpr const char* k_small_paper =
 
 class Equivalent : public test::ScratchFolder {
  protected:
-  test::ProgramResult equivalent(const std::string& arguments) const {
-    return test::run_program(command(arguments));
-  }
+  test::ProgramResult equivalent(const std::string& arguments) const { return test::run_program(command(arguments)); }
 
   std::string command(const std::string& arguments) const {
     return "SIXDOF_CACHE=" + path("cache") + " " + SIXDOF_PROGRAM + " equivalent " + arguments;
@@ -216,8 +214,8 @@ TEST_F(Equivalent, PrintsThePapersTableAndWhatIsWorse) {
   EXPECT_EQ(line.at("tau_ns"), 3000.0);
   const std::string resolution = line.at("resolution");
   EXPECT_THAT(resolution, ContainsRegex("^voxel_size=[0-9.]+ point_spacing=[0-9.]+$"));
-  for (const auto& [law, name] : {std::pair("paper", "as_printed"), std::pair("own", "whole_path"),
-                                  std::pair("own", "window")}) {
+  for (const auto& [law, name] :
+       {std::pair("paper", "as_printed"), std::pair("own", "whole_path"), std::pair("own", "window")}) {
     const double value = line.at(name).at("value");
     EXPECT_NEAR(value, quality(resolution, law).at("gamma_F_deg").get<double>(), k_rounding) << name;
     EXPECT_EQ(line.at(name).at("worse"), value > 2.4) << name;

@@ -90,8 +90,8 @@ TEST_F(Studies, PrecisionTellsHowMuchThereIsHowFarItIsAndWhatIsLeftOut) {
   EXPECT_THAT(done.err, HasSubstr("sixdof precision: pairs: 1, algorithms: 2, points of each pair: 3, poses: 16 at "
                                   "most\nsixdof precision: about "));
   EXPECT_THAT(done.err, HasSubstr(" in all, the budget is 1 min\n"));
-  EXPECT_THAT(done.err, ::testing::ContainsRegex(
-                            "precision: cone-1k-torus-1k: 3 of 3 points: [0-9]+ % done, [0-9:]+ left\n"));
+  EXPECT_THAT(done.err,
+              ::testing::ContainsRegex("precision: cone-1k-torus-1k: 3 of 3 points: [0-9]+ % done, [0-9:]+ left\n"));
   EXPECT_THAT(done.err, HasSubstr("precision: cone-1k-torus-1k: round 5 of timing: 100 % done, 0:00:00 left\n"));
   EXPECT_THAT(done.err, HasSubstr("sixdof precision: nothing was left out\n"));
   const auto cut = run("precision --a cone-1k --b torus-1k --sample 16 --budget 1ms --algorithms vps");

@@ -66,8 +66,8 @@ TEST_F(Examples, ReadSet) {
   const Pose X_AB = ConfigurationRay(a, b, grid.rotations[0], grid.directions[k_reachable]).pose(k_translation);
   char place[100];
   std::snprintf(place, sizeof(place), "%g %g %g", X_AB.t.x(), X_AB.t.y(), X_AB.t.z());
-  EXPECT_EQ(result.out, "distance/05: 1 of " + std::to_string(grid.configurations()) + " reachable, the first at " +
-                            place + "\n");
+  EXPECT_EQ(result.out,
+            "distance/05: 1 of " + std::to_string(grid.configurations()) + " reachable, the first at " + place + "\n");
   const auto refused = test::run_program(std::string(EXAMPLE_READ_SET) + " " + path("set.h5") + " " + path("b.off") +
                                          " " + path("a.off"));
   EXPECT_EQ(refused.exit_code, 1) << "for other meshes";

@@ -25,9 +25,8 @@ using test::text_in;
 using ::testing::HasSubstr;
 
 TEST(TimesTable, LineForEveryStatistic) {
-  const Results results =
-      test::results_of({test::row("distance", "exact", "bunny", "distance", 5.0, 2000.0,
-                                  {{"p999_ns", 7000.0}, {"p10_ns", 1500.0}, {"p90_ns", 2500.0}})});
+  const Results results = test::results_of({test::row("distance", "exact", "bunny", "distance", 5.0, 2000.0,
+                                                      {{"p999_ns", 7000.0}, {"p10_ns", 1500.0}, {"p90_ns", 2500.0}})});
   const DataTable table = times_table(results, row_groups(results));
   const auto mean = lines_with(table, {{"statistic", "mean"}});
   ASSERT_EQ(mean.size(), 1u);

@@ -296,8 +296,8 @@ Row timed_row(const std::string& algorithm, double late, double idle_late, doubl
   row.fields.query = "precision";
   row.fields.algorithm = algorithm;
   row.fields.approximates = error > 0.0;
-  row.values = {{"timed", 2100.0},       {"judged_apart", 64.0}, {"late", late},
-                {"idle_late", idle_late}, {"error_max", error},  {std::string(k_wall_mean), 1e4}};
+  row.values = {{"timed", 2100.0},        {"judged_apart", 64.0}, {"late", late},
+                {"idle_late", idle_late}, {"error_max", error},   {std::string(k_wall_mean), 1e4}};
   return row;
 }
 
@@ -315,7 +315,8 @@ TEST(Choice, HoldsOnlyWhatIsClearlyMoreThanNoiseAgainstAnAlgorithm) {
 
 TEST(Choice, TakesNothingInPlaceOfWhatNoiseMadeLate) {
   // The least noise was beside the first row, the most beside the third.
-  std::vector<Row> rows{timed_row("right", 13, 3, 0.0), timed_row("rough", 1, 0, 0.01), timed_row("other", 300, 8, 0.0)};
+  std::vector<Row> rows{timed_row("right", 13, 3, 0.0), timed_row("rough", 1, 0, 0.01),
+                        timed_row("other", 300, 8, 0.0)};
   const Choice noisy = choose(rows, "distance", "error_max");
   EXPECT_EQ(noisy.taken(), nullptr);
   EXPECT_EQ(noisy.missing,

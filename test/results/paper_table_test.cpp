@@ -98,8 +98,8 @@ TEST(PaperLines, AreByTimeThenInTheOrderOfThePaper) {
   for (const PaperLine& line : lines) {
     names.push_back(line.measure + " " + line.algorithm + (line.tau_ns > 5e5 ? "" : " fast"));
   }
-  EXPECT_THAT(names, ElementsAre("sigma_T vps", "sigma_T ist", "nu_T vps", "nu_T ist", "sigma_T ist fast",
-                                 "nu_T ist fast"));
+  EXPECT_THAT(names,
+              ElementsAre("sigma_T vps", "sigma_T ist", "nu_T vps", "nu_T ist", "sigma_T ist fast", "nu_T ist fast"));
   EXPECT_THAT(paper_lines({}), IsEmpty());
 }
 

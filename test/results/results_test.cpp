@@ -108,8 +108,9 @@ TEST(Results, ReproductionIsAnExpressionAndAWordForAShell) {
   EXPECT_EQ(name_expression("pair:a+b (2)/distance:0.5"), "pair:a\\+b \\(2\\)/distance:0.5");
   EXPECT_EQ(name_expression("\\^$|?*["), "\\\\\\^\\$\\|\\?\\*\\[");
   const Results results = test::results_of({test::row("distance", "exact", "it's", "distance", 5.0, 1.0)});
-  EXPECT_EQ(reproduction(results.rows[0], results.files[0]).find("sixdof-bench '--benchmark_filter=^distance/algorithm:"
-                                                                 "exact/pair:it'\\''s/distance:"),
+  EXPECT_EQ(reproduction(results.rows[0], results.files[0])
+                .find("sixdof-bench '--benchmark_filter=^distance/algorithm:"
+                      "exact/pair:it'\\''s/distance:"),
             0u);
 }
 

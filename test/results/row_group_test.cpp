@@ -73,9 +73,9 @@ TEST(Contest, RanksInterpretedAlgorithmsApart) {
     json["sixdof"]["runtime"] = runtime;
     return json;
   };
-  const Results results = test::results_of({row("distance", "exact", "p", "distance", 5.0, 300.0),
-                                            of("parry", "native", 200.0), of("coal", "python", 100.0),
-                                            of("fcl", "python", 150.0), of("jolt", "wasm", 50.0)});
+  const Results results =
+      test::results_of({row("distance", "exact", "p", "distance", 5.0, 300.0), of("parry", "native", 200.0),
+                        of("coal", "python", 100.0), of("fcl", "python", 150.0), of("jolt", "wasm", 50.0)});
   const std::vector<RowGroup> groups = row_groups(results);
   const std::vector<Contest> all = contests(groups);
   ASSERT_EQ(all.size(), 3u);

@@ -29,7 +29,7 @@ using ::testing::SizeIs;
 using ::testing::StartsWith;
 
 constexpr double k_tau = 2e4;
-constexpr double k_moment_s = 1e-9;  // a budget that is spent at once
+constexpr double k_moment_s = 1e-9;     // a budget that is spent at once
 constexpr std::size_t k_settings = 10;  // nine of the grid, and the defaults
 
 /// Algorithms whose time and error are known functions of their resolutions. After `allowed` measurements the run ends.
@@ -149,8 +149,8 @@ TEST_F(EquivalentRuns, TellHowMuchThereIsAndEveryMeasurement) {
   ASSERT_GT(lines_.size(), 2u);
   EXPECT_EQ(lines_[0], "equivalent: 4 searches: 20 settings, of which 0 are measured, and about 8 predictions");
   EXPECT_THAT(lines_[1], MatchesRegex("equivalent: about .* in all"));
-  const auto parts = std::ranges::count_if(
-      lines_, [](const std::string& line) { return line.find("% done, ") != std::string::npos; });
+  const auto parts =
+      std::ranges::count_if(lines_, [](const std::string& line) { return line.find("% done, ") != std::string::npos; });
   EXPECT_EQ(static_cast<std::size_t>(parts), fake.calls - 2) << "the coarsest two come before the estimate";
   EXPECT_THAT(lines_, Contains(MatchesRegex("equivalent: II vps x=0.003 y=0.01: [0-9]+ % done, [0-9:]+ left")));
   EXPECT_EQ(lines_.back(), "equivalent: nothing was left out");

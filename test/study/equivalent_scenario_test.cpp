@@ -119,8 +119,8 @@ TEST_F(EquivalentInAScenario, MeasuresTheErrorInRadiansAndProcessorTime) {
 TEST_F(EquivalentInAScenario, HasEveryReadingOfTheMeasuresThatThePaperPrints) {
   const Measurement measured = measure_scenario(study(40), axes_, {500, 500});
   const std::map<std::string, double> values(measured.counters.begin(), measured.counters.end());
-  const auto query = algorithm_->prepare(scenario_->a(), scenario_->b(),
-                                         with_resolution(algorithm_->settings(), axes_, {500, 500}));
+  const auto query =
+      algorithm_->prepare(scenario_->a(), scenario_->b(), with_resolution(algorithm_->settings(), axes_, {500, 500}));
   const Recording recording = record(*scenario_, *query, 40);
   const auto expect = [&](IdealLaw law, const std::string& measure, const std::string& name) {
     const Measures measures = evaluate(*scenario_, recording, law);

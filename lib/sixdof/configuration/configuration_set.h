@@ -36,10 +36,10 @@ struct MeshIdentity {
 
 /// Everything that defines the configurations of a set but their translations.
 struct SetDescription {
-  std::string generator_version;  ///< Version of the program that made the set.
-  MeshIdentity a;                 ///< The fixed mesh.
-  MeshIdentity b;                 ///< The moving mesh.
-  Grid grid;                      ///< Of the distance buckets, and of the volume buckets unless they have their own.
+  std::string generator_version;    ///< Version of the program that made the set.
+  MeshIdentity a;                   ///< The fixed mesh.
+  MeshIdentity b;                   ///< The moving mesh.
+  Grid grid;                        ///< Of the distance buckets, and of the volume buckets unless they have their own.
   std::optional<Grid> volume_grid;  ///< Grid of the volume buckets, if it is not `grid`; the paper's is coarser.
 
   /// The grid of the buckets of a kind.

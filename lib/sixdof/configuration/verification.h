@@ -15,7 +15,7 @@ namespace sixdof {
 
 /// Which configurations verify_set() measures again.
 struct VerificationSample {
-  std::size_t size = 50;  ///< Configurations per bucket, drawn with repetition.
+  std::size_t size = 50;   ///< Configurations per bucket, drawn with repetition.
   std::uint64_t seed = 1;  ///< Of the draw.
 };
 

@@ -139,8 +139,8 @@ void check_volume(const Subject& subject, Findings& findings) {
 void expect_refusal(const Subject& subject, const Mesh& a, const Mesh& b, Findings& findings) {
   try {
     static_cast<void>(subject.prepare(a, b));
-    findings.fail(fmt::format("takes {} (A) and {} (B), one with a border; it should be refused by BadMesh", a.name(),
-                              b.name()));
+    findings.fail(
+        fmt::format("takes {} (A) and {} (B), one with a border; it should be refused by BadMesh", a.name(), b.name()));
   } catch (const BadMesh&) {
   }
 }

@@ -118,8 +118,7 @@ Finding run_check(const Check& check, const Subject& subject) {
   const KnownFailure* const known = known_failure(check, subject);
   Finding result{.check = check.name, .failures = findings.failures()};
   if (known != nullptr && result.failures.empty()) {
-    result.failures.push_back(
-        {fmt::format("{} is listed as known, but passes: {}", check.name, known->reason), {}});
+    result.failures.push_back({fmt::format("{} is listed as known, but passes: {}", check.name, known->reason), {}});
   } else if (known != nullptr) {
     result.verdict = Verdict::known_failure;
     result.why = known->reason + (known->issue.empty() ? "" : " (" + known->issue + ")");

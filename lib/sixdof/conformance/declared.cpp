@@ -76,9 +76,7 @@ Declaration of_ode() {
 }
 
 /// GTS's hash tables are in the order of addresses, and so are its sums: they repeat to some roundings.
-Declaration of_gts() {
-  return {.collide = Meaning::bodies, .open_meshes = false, .repeat_error = 1e-9};
-}
+Declaration of_gts() { return {.collide = Meaning::bodies, .open_meshes = false, .repeat_error = 1e-9}; }
 
 /// Measured: 55 degrees. A spring pushes towards the nearest point of the other surface, through a thin body, too.
 Declaration of_simbody() {

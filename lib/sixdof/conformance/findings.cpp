@@ -64,8 +64,7 @@ void expect_repeated(const Subject& subject, const Answers& first, const Answers
   const double allowed = subject.declared.repeat_error;
   if (!expect_answered(subject, first, at, findings) || !expect_answered(subject, again, at, findings)) return;
   if (first.collide.value != again.collide.value) {
-    findings.fail(
-        fmt::format("{}, then {}", yes_or_no(first.collide.value), yes_or_no(again.collide.value)), at);
+    findings.fail(fmt::format("{}, then {}", yes_or_no(first.collide.value), yes_or_no(again.collide.value)), at);
   }
   if (subject.answers(Kind::distance)) {
     findings.expect_near("the distance, asked again,", again.distance.value.distance, first.distance.value.distance,

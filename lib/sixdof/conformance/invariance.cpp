@@ -67,9 +67,9 @@ void expect_same_collide(const Subject& subject, Findings& findings, const Chang
       subject, findings, change,
       [&](const Answers& first, const Answers& second, const Case&, const auto&, const At& at, const At& there) {
         if (first.collide.value == second.collide.value) return;
-        findings.fail(fmt::format("{}, and {} after the change", yes_or_no(first.collide.value),
-                                  yes_or_no(second.collide.value)),
-                      at, there);
+        findings.fail(
+            fmt::format("{}, and {} after the change", yes_or_no(first.collide.value), yes_or_no(second.collide.value)),
+            at, there);
       });
 }
 
@@ -82,8 +82,8 @@ void expect_same_distances(const Subject& subject, Findings& findings, const Cha
       [&](const Answers& first, const Answers& second, const Case&, const auto&, const At& at, const At& there) {
         const double diagonal = std::max(factor * at.a.diagonal(), there.a.diagonal());
         findings.expect_near("the distance after the change", second.distance.value.distance,
-                             factor * first.distance.value.distance,
-                             2.0 * subject.declared.distance_error * diagonal, at, there);
+                             factor * first.distance.value.distance, 2.0 * subject.declared.distance_error * diagonal,
+                             at, there);
       });
 }
 
@@ -95,20 +95,19 @@ void check_order_of_distance(const Subject& subject, Findings& findings) {
 }
 void check_order_of_respond(const Subject& subject, Findings& findings) {
   if (subject.declared.order_error == k_no_claim) return findings.has_no_claim("order_error");
-  compare_all<Kind::respond>(
-      subject, findings, swapped,
-      [&](const Answers& first, const Answers& second, const Case& each, const Swapped&, const At& at,
-          const At& there) {
-        // The wrench on A in B's frame becomes the opposite one on B in A's frame.
-        const Pose& X_AB = each.pose.X_AB;
-        Response back = second.respond.value;
-        back.force = -(X_AB.R * back.force);
-        back.torque = -(X_AB.R * back.torque);
-        back.reference = X_AB * back.reference;
-        const Response& forth = first.respond.value;
-        expect_same_wrench(forth, back.about(forth.reference), at.a.diagonal(), subject.declared.order_error, at, there,
-                           findings);
-      });
+  compare_all<Kind::respond>(subject, findings, swapped,
+                             [&](const Answers& first, const Answers& second, const Case& each, const Swapped&,
+                                 const At& at, const At& there) {
+                               // The wrench on A in B's frame becomes the opposite one on B in A's frame.
+                               const Pose& X_AB = each.pose.X_AB;
+                               Response back = second.respond.value;
+                               back.force = -(X_AB.R * back.force);
+                               back.torque = -(X_AB.R * back.torque);
+                               back.reference = X_AB * back.reference;
+                               const Response& forth = first.respond.value;
+                               expect_same_wrench(forth, back.about(forth.reference), at.a.diagonal(),
+                                                  subject.declared.order_error, at, there, findings);
+                             });
 }
 
 void check_motion_of_collide(const Subject& subject, Findings& findings) {
@@ -139,7 +138,8 @@ void check_scale_of_collide(const Subject& subject, Findings& findings) {
 
 void check_scale_of_distance(const Subject& subject, Findings& findings) {
   for (const double factor : {k_small, k_large}) {
-    expect_same_distances(subject, findings, [factor](const Pair& pair) { return Scaled(pair, factor); }, factor);
+    expect_same_distances(
+        subject, findings, [factor](const Pair& pair) { return Scaled(pair, factor); }, factor);
   }
 }
 

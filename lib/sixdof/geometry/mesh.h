@@ -37,8 +37,8 @@ struct MeshTopology {
   std::size_t nonmanifold_edges = 0;     ///< Edges with three or more triangles.
   std::size_t nonmanifold_vertices = 0;  ///< Vertices around which the triangles form more than one fan.
   std::size_t misoriented_edges = 0;     ///< Edges of two or more triangles that are not oriented.
-  std::size_t edges = 0;       ///< Of all kinds; two triangles that share one count it once.
-  std::size_t components = 0;  ///< Parts connected through edges.
+  std::size_t edges = 0;                 ///< Of all kinds; two triangles that share one count it once.
+  std::size_t components = 0;            ///< Parts connected through edges.
   /// V - E + F; for closed connected surfaces 2 - 2 * genus.
   std::int64_t euler_characteristic = 0;
 };

@@ -24,8 +24,8 @@ bool is_better(Better better, double value, double other);
 struct Metric {
   /// As in the results. A '*' stands for a unit of work: "*_tested" is points_tested and so on.
   std::string_view name;
-  std::string_view unit;  ///< "1" for pure numbers.
-  Better better;          ///< Which values are better.
+  std::string_view unit;     ///< "1" for pure numbers.
+  Better better;             ///< Which values are better.
   std::string_view meaning;  ///< One sentence.
   std::string_view source;   ///< Where the formula is from, or the file that computes it.
 };

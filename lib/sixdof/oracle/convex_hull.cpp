@@ -163,12 +163,10 @@ std::array<std::uint32_t, 4> tetrahedron_of(const Mesh& mesh) {
   const Points& points = mesh.vertices();
   const std::uint32_t a = greatest(points, [](const Eigen::Vector3d& p) { return p.x(); });
   std::uint32_t b = greatest(points, [&](const Eigen::Vector3d& p) { return (p - points[a]).squaredNorm(); });
-  std::uint32_t c = greatest(points, [&](const Eigen::Vector3d& p) {
-    return (points[b] - points[a]).cross(p - points[a]).squaredNorm();
-  });
-  const std::uint32_t d = greatest(points, [&](const Eigen::Vector3d& p) {
-    return std::abs(orient3d_value(points[a], points[b], points[c], p));
-  });
+  std::uint32_t c = greatest(
+      points, [&](const Eigen::Vector3d& p) { return (points[b] - points[a]).cross(p - points[a]).squaredNorm(); });
+  const std::uint32_t d = greatest(
+      points, [&](const Eigen::Vector3d& p) { return std::abs(orient3d_value(points[a], points[b], points[c], p)); });
   const int side = orient3d(points[a], points[b], points[c], points[d]);
   if (side == 0) throw BadMesh(mesh.name() + ": no convex hull: the vertices lie in a plane");
   if (side > 0) std::swap(b, c);

@@ -33,8 +33,7 @@ std::unique_ptr<RemoteAlgorithm> RemoteAlgorithm::described(Traits traits, const
   const QuerySet& answers = traits.answers;
   if (!answers.collide && !answers.distance && !answers.respond) throw BadArgument("answers no kind of query");
   static_cast<void>(Settings(traits.parameters));
-  std::unique_ptr<RemoteAlgorithm> algorithm(
-      new RemoteAlgorithm(std::move(traits), program_of(command_line, limits)));
+  std::unique_ptr<RemoteAlgorithm> algorithm(new RemoteAlgorithm(std::move(traits), program_of(command_line, limits)));
   algorithm->command_line_ = command_line;
   return algorithm;
 }

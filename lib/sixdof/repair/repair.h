@@ -27,9 +27,9 @@ namespace sixdof {
 
 /// How far a repair may go.
 struct RepairOptions {
-  static constexpr double k_default_weld = 1e-6;           ///< Of `weld`.
-  static constexpr std::size_t k_default_max_hole = 32;    ///< Of `max_hole`.
-  static constexpr std::size_t k_largest_max_hole = 512;   ///< Largest value of `max_hole`.
+  static constexpr double k_default_weld = 1e-6;          ///< Of `weld`.
+  static constexpr std::size_t k_default_max_hole = 32;   ///< Of `max_hole`.
+  static constexpr std::size_t k_largest_max_hole = 512;  ///< Largest value of `max_hole`.
   /// Above a stray facet of a cube's edge (6 %), below what someone may have modelled as a sheet.
   static constexpr double k_default_max_fin = 0.1;
 

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <map>
 
-
 #include <sixdof/report/tables.h>
 #include <sixdof/results/frontier.h>
 #include <sixdof/results/paper.h>

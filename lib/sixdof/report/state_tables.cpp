@@ -57,11 +57,11 @@ DataTable objects_table(const Results& results) {
 }
 
 DataTable failures_table(const Results& results, const std::vector<RowGroup>& groups) {
-  DataTable table{.name = "failures",
-                  .title = "Rows with failures or wrong answers",
-                  .columns = {"run", "query", "question", "pair", "algorithm", "bucket", "fault", "command",
-                              "worst_pose"},
-                  .rows = {}};
+  DataTable table{
+      .name = "failures",
+      .title = "Rows with failures or wrong answers",
+      .columns = {"run", "query", "question", "pair", "algorithm", "bucket", "fault", "command", "worst_pose"},
+      .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
     if (row.fields.algorithm == "null") continue;  // answers nothing, by design

@@ -252,8 +252,8 @@ std::string stability_sentence(const Results& results) {
                      bad.empty() ? "" : "; families with a wrong or missing answer: ", fmt::join(bad, ", "));
 }
 
-/// What a row is about, and what interprets its algorithm: "meshes", "convex hulls", "meshes (python)". The page has the
-/// same words (page/figure_text.js).
+/// What a row is about, and what interprets its algorithm: "meshes", "convex hulls", "meshes (python)". The page has
+/// the same words (page/figure_text.js).
 std::string body_words(const RowFields& fields) {
   const std::string words = fields.body.empty() ? "meshes" : "convex hulls", interpreter = interpreter_of(fields);
   return interpreter.empty() ? words : fmt::format("{} ({})", words, interpreter);
@@ -273,15 +273,14 @@ DataTable winners_table(const Results& results, const std::vector<Race>& races) 
                                 : !has_next             ? "no other is right"
                                 : race.right.is_clear() ? "clear"
                                                         : "tie";
-    table.rows.push_back({run_name(results, race.all->file), body_words(first.fields()), race.all->query,
-                          race.all->order, race.all->bodies, place_of(first.fields()),
-                          best == nullptr ? std::string() : best->algorithm(),
-                          best == nullptr ? Cell() : Cell(best->mean_time()->value / 1e3),
-                          has_next ? race.right.entries[1]->algorithm() : std::string(),
-                          has_next ? Cell(race.right.factor()) : Cell(), verdict,
-                          race.is_beaten() ? first.algorithm() : std::string(),
-                          race.is_beaten() && best != nullptr ? Cell(race.factor_of_fastest()) : Cell(),
-                          best == nullptr ? std::string() : best->row().outliers.command_of("max_least_ns")});
+    table.rows.push_back(
+        {run_name(results, race.all->file), body_words(first.fields()), race.all->query, race.all->order,
+         race.all->bodies, place_of(first.fields()), best == nullptr ? std::string() : best->algorithm(),
+         best == nullptr ? Cell() : Cell(best->mean_time()->value / 1e3),
+         has_next ? race.right.entries[1]->algorithm() : std::string(), has_next ? Cell(race.right.factor()) : Cell(),
+         verdict, race.is_beaten() ? first.algorithm() : std::string(),
+         race.is_beaten() && best != nullptr ? Cell(race.factor_of_fastest()) : Cell(),
+         best == nullptr ? std::string() : best->row().outliers.command_of("max_least_ns")});
   }
   return table;
 }

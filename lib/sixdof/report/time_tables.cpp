@@ -21,11 +21,14 @@ struct Statistic {
   const char* outlier;  ///< The value whose outlier stands for it.
 };
 constexpr const char* k_slowest = "max_least_ns";
-constexpr std::array k_statistics{
-    Statistic{"10th percentile", "p10_ns", k_slowest},    Statistic{"25th percentile", "p25_ns", k_slowest},
-    Statistic{"median", "p50_ns", k_slowest},             Statistic{"75th percentile", "p75_ns", k_slowest},
-    Statistic{"90th percentile", "p90_ns", k_slowest},    Statistic{"99th percentile", "p99_ns", k_slowest},
-    Statistic{"99.9th percentile", "p999_ns", k_slowest}, Statistic{"longest", "max_ns", "max_ns"}};
+constexpr std::array k_statistics{Statistic{"10th percentile", "p10_ns", k_slowest},
+                                  Statistic{"25th percentile", "p25_ns", k_slowest},
+                                  Statistic{"median", "p50_ns", k_slowest},
+                                  Statistic{"75th percentile", "p75_ns", k_slowest},
+                                  Statistic{"90th percentile", "p90_ns", k_slowest},
+                                  Statistic{"99th percentile", "p99_ns", k_slowest},
+                                  Statistic{"99.9th percentile", "p999_ns", k_slowest},
+                                  Statistic{"longest", "max_ns", "max_ns"}};
 
 struct TimeLine {
   std::string run, query, kind, pair, statistic, algorithm;

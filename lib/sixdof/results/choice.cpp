@@ -80,9 +80,7 @@ double idle_share(std::span<const Row> rows) {
 
 /// Whether one count of rare events has clearly more of them than another: 95 % confidence, by the normal approximation
 /// of the difference of the square roots of two Poisson variables, whose variances are 1/4.
-bool clearly_more(double count, double other) {
-  return std::sqrt(count) - std::sqrt(other) > 1.645 * std::sqrt(0.5);
-}
+bool clearly_more(double count, double other) { return std::sqrt(count) - std::sqrt(other) > 1.645 * std::sqrt(0.5); }
 
 /// Judges a row by the deadline; gives no reason if it keeps it.
 void judge_lateness(Candidate& candidate, double idle_share) {

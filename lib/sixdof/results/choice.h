@@ -15,7 +15,8 @@
 /// - A row counts only if every query was answered (fault.h).
 /// - An algorithm that does not approximate (RowFields::approximates) promises right answers: one wrong answer makes it
 ///   unsafe. So does one wrong yes/no of any algorithm, and forces that are no better than a constant one.
-/// - A deadline is kept if at most k_most_late of the queries were late as they came, in one pass. More are held against
+/// - A deadline is kept if at most k_most_late of the queries were late as they came, in one pass. More are held
+/// against
 ///   an algorithm only if they are clearly more than those of the latest loop that asked nothing (counter idle_late);
 ///   otherwise nothing is said of it, and nothing that has larger errors is taken in its place.
 /// - Of those that keep it, answers without an error (above k_rounding) win, then the smallest error. Approximations

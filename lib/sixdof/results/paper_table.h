@@ -24,9 +24,9 @@ struct ScenarioMeasures {
 /// What `sixdof equivalent` found in a scenario at a given mean time.
 struct EqualTimeAnswer {
   std::string scenario, algorithm;
-  double tau_ns = 0.0;         ///< The given time.
-  std::string resolution;      ///< "voxel_size=0.016 point_spacing=0.004".
-  std::string remark;          ///< "all faster"; empty where there is none.
+  double tau_ns = 0.0;     ///< The given time.
+  std::string resolution;  ///< "voxel_size=0.016 point_spacing=0.004".
+  std::string remark;      ///< "all faster"; empty where there is none.
   ScenarioMeasures found = {};
   std::optional<ScenarioMeasures> at_defaults = {};  ///< With the default resolution.
 };

@@ -27,8 +27,8 @@ struct SceneNumbers {
 
 /// One family.
 struct SceneFamily {
-  std::string_view name;      ///< a-z and '-'.
-  std::string_view stresses;  ///< One sentence.
+  std::string_view name;                       ///< a-z and '-'.
+  std::string_view stresses;                   ///< One sentence.
   Scene (*make)(const SceneNumbers& numbers);  ///< For make_scene(), which checks the numbers.
 };
 

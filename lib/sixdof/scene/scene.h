@@ -63,8 +63,8 @@ struct Scene {
   double margin = 0.0;  ///< Of the query for near pairs (length).
   std::vector<std::shared_ptr<const Mesh>> meshes;  ///< None is null.
   std::vector<Body> bodies;                         ///< In their order of insertion.
-  std::vector<BodyPair> ignored;  ///< Sorted, each once.
-  std::vector<Frame> frames;      ///< The first one moves nothing: it is the start.
+  std::vector<BodyPair> ignored;                    ///< Sorted, each once.
+  std::vector<Frame> frames;                        ///< The first one moves nothing: it is the start.
 
   /// @throws BadArgument naming the first element that is wrong: an identifier or pair that comes twice, an index out
   /// of range, a fixed body that moves, a pose that is no pose, a margin that is negative or not finite

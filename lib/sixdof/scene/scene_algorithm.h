@@ -87,11 +87,11 @@ class SceneQuery {
 
 /// What is known of an algorithm before it is prepared.
 struct SceneTraits {
-  std::string name;     ///< Unique; a-z, 0-9 and '-'.
-  std::string version;  ///< Of the library behind it.
-  std::string summary;  ///< One line.
+  std::string name;               ///< Unique; a-z, 0-9 and '-'.
+  std::string version;            ///< Of the library behind it.
+  std::string summary;            ///< One line.
   std::vector<Question> answers;  ///< The questions that it answers.
-  bool own = false;  ///< Of this project: its answers must have the bits of the truth.
+  bool own = false;               ///< Of this project: its answers must have the bits of the truth.
   /// It does not find that a body lies inside another whose surface it does not meet.
   bool surfaces_only = false;
   /// Whether it is compared where all are: not the quadratic reference.
