@@ -21,7 +21,8 @@ constexpr const char* k_details =
     R"(Prints a table for each pair, query and kind of bucket, with a line for each bucket and algorithm. cpu is the
 mean processor time of a query in a loop over all configurations; the other times are wall clock times of single
 queries. * marks the least cpu of a bucket among rows without faults. ! marks a row with faults, which are counted
-below its table: failed configurations, wrong answers, overlaps without a force. If rows are repeated, each value is
+below its table: failed configurations, wrong answers, overlaps without a force; ~ one of distances that an algorithm
+approximates. If rows are repeated, each value is
 the median; from three repetitions on, cpu is the geometric mean. Several files stand side by side, with the ratio of
 cpu to that of the first.
 

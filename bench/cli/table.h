@@ -35,6 +35,11 @@ struct RankedRow {
   std::optional<double> ratio;               ///< Mean processor time over that of the same row in the first file.
 
   bool has_fault() const { return group != nullptr && !group->faults.empty(); }
+  /// "!": has faults; "~": approximate; "*": fastest; else empty.
+  const char* mark() const {
+    if (has_fault()) return std::ranges::all_of(group->faults, &results::Fault::is_approximation) ? "~" : "!";
+    return fastest ? "*" : "";
+  }
   /// Whether no time was measured.
   bool is_error() const { return group != nullptr && group->values.empty(); }
 };

@@ -53,8 +53,7 @@ std::vector<std::string> fault_texts(const OverviewLine& line) {
     for (const results::RowGroup* group : rows->second) {
       for (const Fault& fault : group->faults) {
         // How far distances of approximations are off says more than how many.
-        if (line.approximates && std::string_view(query) == "distance" && fault.counter == "mismatch") continue;
-        add_fault(sums, fault);
+        if (!fault.is_approximation()) add_fault(sums, fault);
       }
     }
     if (!sums.empty()) texts.push_back(fmt::format("{}: {}", words, results::to_string(sums)));

@@ -76,8 +76,6 @@ std::string cell_of(const RankedRow& ranked, const ValueColumn& column) {
   return value ? column.format(*value) : "-";
 }
 
-std::string mark_of(const RankedRow& ranked) { return ranked.has_fault() ? "!" : ranked.fastest ? "*" : ""; }
-
 /// "[1] " where there are several files.
 std::string prefix_of(std::size_t file, std::size_t files) {
   return files > 1 ? fmt::format("[{}] ", file + 1) : std::string();
@@ -145,7 +143,10 @@ std::vector<std::string> fault_notes(const ResultTable& table, std::size_t files
     for (const auto& [label, list] : by_label) {
       std::vector<std::string> texts;
       for (const FaultNote& note : list) texts.push_back(note.text());
-      notes.push_back(fmt::format("! {}{}: {}", prefix_of(file, files), label, fmt::join(texts, "; ")));
+      const bool approximate =
+          std::ranges::all_of(list, [](const FaultNote& note) { return note.what == results::k_approximate; });
+      notes.push_back(
+          fmt::format("{} {}{}: {}", approximate ? '~' : '!', prefix_of(file, files), label, fmt::join(texts, "; ")));
     }
   }
   return notes;
@@ -158,7 +159,7 @@ Sheet sheet_of_one(const ResultTable& table) {
   for (const ValueColumn& column : values) sheet.columns.push_back({column.group, column.title});
   for (const TableLine& line : table.lines) {
     const RankedRow& ranked = line.files.front();
-    sheet.lines.push_back({bucket_text(line.bucket), mark_of(ranked), line.label()});
+    sheet.lines.push_back({bucket_text(line.bucket), std::string(ranked.mark()), line.label()});
     for (const ValueColumn& column : values) sheet.lines.back().push_back(cell_of(ranked, column));
   }
   return sheet;
@@ -180,7 +181,7 @@ Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
     auto& cells = sheet.lines.emplace_back(std::vector{bucket_text(line.bucket), line.label()});
     for (std::size_t file = 0; file < files; ++file) {
       const RankedRow& ranked = line.files[file];
-      cells.push_back(mark_of(ranked));
+      cells.push_back(std::string(ranked.mark()));
       for (const ValueColumn& column : values) {
         cells.push_back(cell_of(ranked, column));
         if (column.value == k_mean.value && file > 0) {
@@ -228,7 +229,9 @@ std::vector<std::string> lines_below(const TableInput& input) {
       "volume: mean error of the overlap volume; (path): configurations in the grid's own order",
       "(motion): times of successive poses in steps of 0.01 % of A's diagonal, starting at configurations",
       "(cold): data is removed from the caches before each query; wall clock only, not ranked",
-      "*: least cpu of its bucket among rows without faults; !: has faults, which stand below its table"};
+      "*: least cpu of its bucket among rows without faults; !: has faults, which stand below its table; ~: "
+      "approximate, "
+      "not ranked"};
   for (std::size_t i = 0; i < input.files(); ++i) {
     for (const auto& [algorithm, text] : settings_of(input, i)) {
       lines.push_back(

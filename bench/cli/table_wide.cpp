@@ -67,9 +67,9 @@ std::vector<WideLine> lines_of(const std::vector<const ResultTable*>& tables) {
 
 std::string time_cell(const RankedRow& ranked) {
   if (ranked.is_error()) return "error";
-  const char* const mark = ranked.has_fault() ? "!" : ranked.fastest ? "*" : "";
   const auto mean = ranked.group->value(results::k_processor_mean), p99 = ranked.group->value("p99_ns");
-  return fmt::format("{}{} / {}", mark, mean ? as_microseconds(*mean) : "-", p99 ? as_microseconds(*p99) : "-");
+  return fmt::format("{}{} / {}", ranked.mark(), mean ? as_microseconds(*mean) : "-",
+                     p99 ? as_microseconds(*p99) : "-");
 }
 
 std::string cell(std::optional<double> value, std::string (*format)(double)) { return value ? format(*value) : "-"; }

@@ -105,7 +105,8 @@ void add_points(const Results& results, const RowGroup& group, std::map<Plot, st
              : is_response ? 1
                            : 2,
              measured, bodies_of(fields), run_name(results, group.row().file), cost, measure.title}]
-          .push_back({&group, {*x, *y, !group.faults.empty()}, group.row().outliers.command_of(measure.value)});
+          .push_back(
+              {&group, {*x, *y, !mistakes(group.faults).empty()}, group.row().outliers.command_of(measure.value)});
     }
   }
 }
@@ -175,7 +176,7 @@ DataTable frontier_table(const Results& results, const std::vector<RowGroup>& gr
       table.rows.push_back({plot.run, plot.pair, plot.measured, std::string(title), plot.measure, row.fields.algorithm,
                             row.fields.settings, cost.value / unit, cost.low / unit, cost.high / unit, error.value,
                             bound(error.low), bound(error.high), std::string(leads[i] ? "yes" : "no"),
-                            to_string(points[i].group->faults), reproduction(row, results.files[row.file]),
+                            to_string(mistakes(points[i].group->faults)), reproduction(row, results.files[row.file]),
                             points[i].worst_pose});
     }
   }

@@ -66,8 +66,8 @@ DataTable metrics_table(const Results& results, const std::vector<RowGroup>& gro
     const Row& row = groups[i].row();
     if (row.fields.algorithm == "null" || all[i].empty()) continue;
     table.rows.push_back({run_name(results, row.file), row.fields.query, where_of(groups[i]), groups[i].algorithm(),
-                          row.fields.settings, to_string(groups[i].faults), reproduction(row, results.files[row.file]),
-                          row.outliers.command_of("max_least_ns")});
+                          row.fields.settings, to_string(mistakes(groups[i].faults)),
+                          reproduction(row, results.files[row.file]), row.outliers.command_of("max_least_ns")});
     std::vector<Cell>& cells = table.rows.back();
     for (const std::string& name : names) {
       cells.emplace_back();

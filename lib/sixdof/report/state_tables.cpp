@@ -65,7 +65,7 @@ DataTable failures_table(const Results& results, const std::vector<RowGroup>& gr
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
     if (row.fields.algorithm == "null") continue;  // answers nothing, by design
-    for (const Fault& fault : group.faults) {
+    for (const Fault& fault : mistakes(group.faults)) {
       table.rows.push_back({run_name(results, row.file), row.fields.query, row.fields.question, bodies_of(row.fields),
                             group.algorithm(), place_of(row.fields), to_string(fault),
                             reproduction(row, results.files[row.file]), row.outliers.command_of(fault.counter)});

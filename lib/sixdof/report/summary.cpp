@@ -54,7 +54,9 @@ std::map<std::string, Records> records_of(const std::vector<RowGroup>& groups) {
     record.has_fault = record.has_fault || !group.faults.empty();
     record.approximates = record.approximates || fields.approximates;
     record.is_about_meshes = fields.body.empty();
-    record.wrong += group.count("mismatch");
+    for (const Fault& fault : mistakes(group.faults)) {
+      if (fault.counter == "mismatch") record.wrong += static_cast<double>(fault.count);
+    }
     record.judged += group.count("judged");
     record.largest_error = std::max(record.largest_error, group.count("error_max"));
     if (const auto angle = group.value("gamma_F_deg")) {
@@ -222,7 +224,7 @@ std::string fault_sentence(const std::vector<RowGroup>& groups) {
   std::map<std::string, std::size_t> by_algorithm;
   std::size_t faulty = 0;
   for (const RowGroup& group : groups) {
-    if (group.fields().algorithm == "null" || group.faults.empty()) continue;
+    if (group.fields().algorithm == "null" || mistakes(group.faults).empty()) continue;
     ++faulty;
     ++by_algorithm[group.fields().algorithm];
   }

@@ -51,7 +51,7 @@ std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
                 .low = {},
                 .high = {},
                 .repetitions = static_cast<double>(group.repetitions.size()),
-                .faults = to_string(group.faults),
+                .faults = to_string(mistakes(group.faults)),
                 .command = reproduction(row, results.files[row.file]),
                 .worst_pose = row.outliers.command_of(k_slowest)};
   std::vector<TimeLine> lines;

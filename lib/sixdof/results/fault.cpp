@@ -1,6 +1,7 @@
 #include <sixdof/results/fault.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,12 @@ std::string to_string(std::span<const Fault> faults) {
   return text;
 }
 
+std::vector<Fault> mistakes(std::span<const Fault> faults) {
+  std::vector<Fault> found;
+  std::ranges::remove_copy_if(faults, std::back_inserter(found), &Fault::is_approximation);
+  return found;
+}
+
 std::vector<Fault> own_faults(const Row& row) {
   // A scene's pairs are counted in its words.
   if (!row.error.empty()) return {{row.fields.query == "scene" ? row.error : "not run: " + row.error, "", 0, 0}};
@@ -26,7 +33,9 @@ std::vector<Fault> own_faults(const Row& row) {
                             {"crashed", "crashed", count("crashed"), asked},
                             {"timed out", "timed_out", count("timed_out"), asked},
                             {"out of memory", "out_of_memory", count("out_of_memory"), asked}};
-  if (!is_study) faults.push_back({"wrong", "mismatch", count("mismatch"), count("judged")});
+  const bool approximate = row.fields.approximates && row.fields.query == "distance";
+  if (!is_study)
+    faults.push_back({approximate ? k_approximate : "wrong", "mismatch", count("mismatch"), count("judged")});
   if (has_force) {
     const std::uint64_t answered = asked - std::min(asked, count("failed"));
     faults.push_back({"without a force though the bodies overlap", "misses", count("misses"), answered});

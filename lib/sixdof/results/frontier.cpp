@@ -44,7 +44,7 @@ std::vector<bool> uncertain(std::span<const Tradeoff> points) {
 std::optional<Tradeoff> tradeoff_of(const Row& point, const std::string& cost, const std::string& error) {
   const auto x = point.estimate(cost), y = point.estimate(error);
   if (!point.error.empty() || !x || !y) return std::nullopt;
-  return Tradeoff{*x, *y, !own_faults(point).empty()};
+  return Tradeoff{*x, *y, !mistakes(own_faults(point)).empty()};
 }
 
 std::vector<OnFrontier> frontiers(std::span<const Row> points, const std::string& cost, const std::string& error) {

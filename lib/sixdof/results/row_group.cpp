@@ -47,9 +47,11 @@ void judge(std::vector<RowGroup>& groups) {
     }
     const auto found = without_right_answer.find(subject_of(group.row()));
     if (!group.faults.empty() || !group.fields().bucket || found == without_right_answer.end()) continue;
-    const auto& [kind, percent] = found->second;
-    const std::string text = found->second.percent_text();
-    group.faults.push_back({fmt::format("no right answer at {} {} %", to_string(kind), text), "", 0, 0});
+    const bool approximate = group.fields().approximates && group.fields().query == "distance";
+    group.faults.push_back({approximate ? k_approximate
+                                        : fmt::format("no right answer at {} {} %", to_string(found->second.kind),
+                                                      found->second.percent_text()),
+                            "", 0, 0});
   }
 }
 
