@@ -6,13 +6,13 @@
 var sixdofReport = globalThis.sixdofReport || {};
 globalThis.sixdofReport = sixdofReport;
 
-// Okabe and Ito's colours, told apart by colour-blind readers; the second set is for a dark background.
+// Okabe and Ito's colours, told apart by colour-blind readers, and four more; the second set is for a dark background.
 sixdofReport.palettes = {
-  light: ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#b8860b", "#56b4e9", "#444444", "#7b3294"],
-  dark: ["#4ea3e0", "#ff8c42", "#2fd3a3", "#e28ad0", "#f0c419", "#8fd3ff", "#d0d0d0", "#b794f6"],
+  light: ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#b8860b", "#56b4e9", "#444444", "#7b3294", "#7f3f1d", "#b2182b", "#6b8e23", "#0f6b75"],
+  dark: ["#4ea3e0", "#ff8c42", "#2fd3a3", "#e28ad0", "#f0c419", "#8fd3ff", "#d0d0d0", "#b794f6", "#c98a5e", "#ff6b6b", "#b5d36a", "#5cc5cf"],
 };
 sixdofReport.shapes = ["circle", "square", "triangle-up", "diamond", "cross", "triangle-down", "triangle-right", "triangle-left"];
-// These have the same colour and shape in every report. The first eight differ in both; no two of all have both in common.
+// These have the same colour and shape in every report. The first twelve differ in colour, the first eight in both; no two of all have both in common.
 sixdofReport.known = ["exact", "vps", "ist", "fcl-contacts", "bullet-gimpact", "ode", "vps-field", "ist-descent",
                       "fcl-rss", "fcl-obbrss", "fcl-kios", "fcl-obb", "fcl-aabb", "embree", "gts", "simbody", "ccd-hull",
                       "mujoco-hull"];

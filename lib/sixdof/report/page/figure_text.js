@@ -171,9 +171,10 @@
     }
     if (times) {
       const drawn = new Set(rows.map((row) => row.run).filter((run) => run !== undefined));
-      for (const run of data.runs.filter((each) => each.is_busy && (drawn.size === 0 || drawn.has(each.name)))) {
-        parts.push(`The machine did other work when ${data.runs.length > 1 ? run.name : "the run"} began (load average ${report.numberText(run.load)} on ` +
-          `${countText(run.processors, "processor")}): times are longer and less equal than on an idle one.`);
+      const busy = data.runs.filter((each) => each.is_busy && (drawn.size === 0 || drawn.has(each.name)));
+      if (busy.length > 0) {
+        const names = busy.map((run) => `${data.runs.length > 1 ? run.name : "the run"}, load average ${report.numberText(run.load)} on ${countText(run.processors, "processor")}`);
+        parts.push(`The machine did other work when this began, so times are longer and less equal than on an idle one: ${names.join("; ")}.`);
       }
     }
     return parts.join(" ");
