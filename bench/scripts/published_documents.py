@@ -278,5 +278,5 @@ def check(program=PROGRAM):
     for file, text in drawings(program) if shutil.which("node") else []:  # Figures are drawn by Node.js.
         if not file.exists() or file.read_text(encoding="utf-8") != text:
             stale += 1
-            print(f"{file.relative_to(ROOT)}: another figure than `sixdof report` draws now", file=sys.stderr)
+            print(f"{file}: another figure than `sixdof report` draws now", file=sys.stderr)
     return 1 if stale else 0

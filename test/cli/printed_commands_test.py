@@ -241,13 +241,13 @@ class Printed(unittest.TestCase):
             self.assertAlmostEqual(self.truth(command)["distance"], float(truth), delta=1e-8)
 
     def test_conform(self):
-        out = self.succeed("turbo-bvh-sixdof conform --checks Collide,MotionOfDistance --json findings.json", DEFECTS).stdout
+        out = self.succeed("turbo-bvh-sixdof conform --checks Collide,MotionOfRespond --json findings.json", DEFECTS).stdout
         self.assertIn("\n  failed" + " " * 9 + "Collide: yes instead of no: ", out)  # balls, which the program adds
         commands = re.findall(r"^ {17}(turbo-bvh-sixdof query .*)$", out, re.MULTILINE)
         self.assertEqual(len(commands), 3)  # one, and two where answers are compared
         self.assertIs(self.answers(commands[0])["colliding"], True)
         self.assertIs(self.truth(commands[0])["colliding"], False)
-        self.assertNotAlmostEqual(self.answers(commands[1])["distance"], self.answers(commands[2])["distance"], delta=1e-9)
+        self.assertNotEqual(self.answers(commands[1])["penalty"], self.answers(commands[2])["penalty"])
         [balls] = json.loads((self.folder / "findings.json").read_text())
         self.assertEqual(balls["checks"][0]["failures"][0]["commands"], commands[:1])
         out = self.succeed(f"turbo-bvh-sixdof conform {EXTERNAL} --algorithm never --checks Collide", DEFECTS).stdout

@@ -336,6 +336,9 @@ sixdofReport.prepareSpec = function (figure, chosen, choices, context) {
   if (meta.axes) {
     for (const channel of ["x", "y"]) rows = withFloor(spec, rows, { field: channel, shown: "shown_" + channel, channel }, context.linear);
   }
+  // A layer without a value would leave its axis without an extent.
+  const layers = spec.layer?.filter(({ needs }) => !needs || rows.some((row) => typeof row[needs] === "number"));
+  if (layers) spec.layer = layers.map(({ needs, ...layer }) => layer);
   paintAlgorithms(spec, meta.algorithm || "algorithm", algorithms, context);
   if (context.linear) useLinearAxes(spec, meta.logAxes || []);
   visit(spec, (node) => {
