@@ -14,7 +14,7 @@ sixdofReport.palettes = {
 sixdofReport.shapes = ["circle", "square", "triangle-up", "diamond", "cross", "triangle-down", "triangle-right", "triangle-left"];
 // These have the same colour and shape in every report. The first twelve differ in colour, the first eight in both; no two of all have both in common.
 sixdofReport.known = ["exact", "vps", "ist", "fcl-contacts", "bullet-gimpact", "ode", "vps-field", "ist-descent",
-                      "fcl-rss", "fcl-obbrss", "fcl-kios", "fcl-obb", "fcl-aabb", "embree", "gts", "simbody", "ccd-hull",
+                      "fcl-rss", "fcl-obbrss", "fcl-kios", "gts", "fcl-obb", "fcl-aabb", "embree", "simbody", "ccd-hull",
                       "mujoco-hull"];
 
 /** Number of an algorithm's colour and shape, among the algorithms of a report. */
