@@ -71,9 +71,9 @@ def main():
     share = {name: sum(map(is_it, pixels)) / len(pixels) for name, is_it in {
         "white": lambda p: min(p) > 250,
         "grey": lambda p: max(p) - min(p) < 30 and 60 < p[0] < 220,
-        "blue": lambda p: p[2] > p[0] + 60,
+        "sand": lambda p: 35 < p[0] - p[2] < 90,
         "red": lambda p: p[0] > p[2] + 100}.items()}
-    assert share["white"] > 0.2 and share["grey"] > 0.05 and share["blue"] > 0.05 and share["red"] > 0.001, share
+    assert share["white"] > 0.2 and share["grey"] > 0.05 and share["sand"] > 0.05 and share["red"] > 0.001, share
 
 
 if __name__ == "__main__":
