@@ -297,8 +297,8 @@ Row timed_row(const std::string& algorithm, double late, double idle_late, doubl
   row.fields.query = "precision";
   row.fields.algorithm = algorithm;
   row.fields.approximates = error > 0.0;
-  row.values = {{"timed", 2100.0},        {"judged_apart", 64.0}, {"late", late},
-                {"idle_late", idle_late}, {"error_max", error},   {std::string(k_wall_mean), 1e4}};
+  row.values = {{"timed", 2100.0},    {"judged_apart", 64.0},          {"late", late}, {"idle_late", idle_late},
+                {"error_max", error}, {std::string(k_wall_mean), 1e4}, {"p50_ns", 1e4}};
   return row;
 }
 
@@ -324,6 +324,11 @@ TEST(Choice, TakesNothingInPlaceOfWhatNoiseMadeLate) {
             "the machine is too noisy for the deadline (right: 13 of 2100 queries late, the loop that asks nothing up "
             "to 8)");
   EXPECT_EQ(noisy.candidates.back().standing, Standing::late);
+  rows[2].values["p50_ns"] = 3e4;  // longer waits meet more noise
+  const Choice longer = choose(rows, "distance", "error_max");
+  ASSERT_NE(longer.taken(), nullptr);
+  EXPECT_EQ(longer.taken()->place, 1u) << "13 are clearly more than 3";
+  rows[2].values["p50_ns"] = 1e4;
   rows[0].fields.approximates = true;
   rows[0].values["error_max"] = 0.02;
   const Choice chosen = choose(rows, "distance", "error_max");

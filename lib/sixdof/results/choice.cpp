@@ -68,14 +68,18 @@ std::string why_unsafe(const Row& row, const std::string& query) {
   return {};
 }
 
-/// The largest share of late waits among the loops that asked nothing beside each row. Noise changes from second to
-/// second, so a row may have met what another row's loop did.
-double idle_share(std::span<const Row> rows) {
+/// How many waits were late, of as many as the row has queries, in the worst of the loops that asked nothing. Noise
+/// changes from second to second, so a row may have met what another row's loop did; but longer waits meet more of it,
+/// so only those of at most twice the row's median time count.
+double idle_late(const Row& row, std::span<const Row> rows) {
+  constexpr double k_longer = 2.0;
   double most = 0.0;
-  for (const Row& row : rows) {
-    if (row.count("timed") > 0.0) most = std::max(most, row.count("idle_late") / row.count("timed"));
+  for (const Row& other : rows) {
+    const double timed = other.count("timed");
+    if (timed == 0.0 || other.count("p50_ns") > k_longer * row.count("p50_ns")) continue;
+    most = std::max(most, other.count("idle_late") / timed);
   }
-  return most;
+  return most * row.count("timed");
 }
 
 /// Whether one count of rare events has clearly more of them than another: 95 % confidence, by the normal approximation
@@ -83,9 +87,8 @@ double idle_share(std::span<const Row> rows) {
 bool clearly_more(double count, double other) { return std::sqrt(count) - std::sqrt(other) > 1.645 * std::sqrt(0.5); }
 
 /// Judges a row by the deadline; gives no reason if it keeps it.
-void judge_lateness(Candidate& candidate, double idle_share) {
+void judge_lateness(Candidate& candidate, double idle) {
   if (candidate.late <= k_most_late * candidate.timed) return;
-  const double idle = idle_share * candidate.timed;
   const bool clear = idle == 0.0 || clearly_more(candidate.late, idle);
   candidate.standing = clear ? Standing::late : Standing::undecided;
   candidate.reason = fmt::format("{:.0f} of {:.0f} queries late", candidate.late, candidate.timed);
@@ -93,7 +96,7 @@ void judge_lateness(Candidate& candidate, double idle_share) {
 }
 
 Candidate candidate_of(const Row& row, std::size_t place, const std::string& query, const std::string& error,
-                       double idle_share) {
+                       std::span<const Row> rows) {
   Candidate candidate{.place = place};
   if (!row.error.empty()) {
     constexpr std::string_view k_prefix = "left out: ";
@@ -121,7 +124,7 @@ Candidate candidate_of(const Row& row, std::size_t place, const std::string& que
     const std::string interpreter = interpreter_of(row.fields);
     candidate.interpreted = !interpreter.empty();
     if (candidate.interpreted) candidate.reason = fmt::format("runs in {}: not ranked with compiled code", interpreter);
-    judge_lateness(candidate, idle_share);
+    judge_lateness(candidate, idle_late(row, rows));
   }
   return candidate;
 }
@@ -194,9 +197,8 @@ const Candidate* Choice::taken() const {
 
 Choice choose(std::span<const Row> rows, const std::string& query, const std::string& error) {
   Choice choice{.candidates = {}, .missing = missing_poses(rows, query)};
-  const double idle = idle_share(rows);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    choice.candidates.push_back(candidate_of(rows[i], i, query, error, idle));
+    choice.candidates.push_back(candidate_of(rows[i], i, query, error, rows));
   }
   if (choice.missing.empty()) choice.missing = too_noisy(choice.candidates, rows);
   if (choice.missing.empty()) judge_the_rest(choice.candidates);

@@ -17,8 +17,8 @@
 ///   unsafe. So does one wrong yes/no of any algorithm, and forces that are no better than a constant one.
 /// - A deadline is kept if at most k_most_late of the queries were late as they came, in one pass. More are held
 /// against
-///   an algorithm only if they are clearly more than those of the latest loop that asked nothing (counter idle_late);
-///   otherwise nothing is said of it, and nothing that has larger errors is taken in its place.
+///   an algorithm only if they are clearly more than those of a loop that asked nothing (counter idle_late). Otherwise
+///   nothing is said of it, and nothing that has larger errors is taken in its place.
 /// - Of those that keep it, answers without an error (above k_rounding) win, then the smallest error. Approximations
 ///   come after those that promise right answers, also where none of their answers was wrong. Of equal ones the fastest
 ///   wins; those whose times do not differ clearly are tied with it.
