@@ -88,6 +88,8 @@ class Run(unittest.TestCase):
                                (["--sampel=3"], "--sampel=3: no such option"), (["--out", "x.json"], "results/"),
                                (["--benchmark_out_format=csv"], "results/"), (["-x"], "-x: no such option"),
                                (["--resume"], "no result in results/ is unfinished"),
+                               (["--a", "absent.stl", "--b", "cone-1k"], "absent.stl: no such file"),
+                               (["--a=cone-1k", "--b=/absent/part.ply"], "/absent/part.ply: no such file"),
                                (["--resume", "absent.json"], "absent.json: no such result")]:
             done = self.run_it(*words)
             self.assertEqual(done.returncode, 2, words)
