@@ -7,11 +7,13 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include <sixdof/base/atomic_file.h>
@@ -60,6 +62,18 @@ std::pair<std::string_view, std::string_view> split(std::string_view line) {
   return {line.substr(0, line.size() - k_tail), tail.substr(k_checksum_begin.size(), k_checksum_digits)};
 }
 
+/// Helpers of a process that was killed hold its lock until they have ended, too.
+bool is_locked(int descriptor) {
+  constexpr int k_tries = 60;
+  constexpr auto k_pause = std::chrono::milliseconds(50);
+  for (int i = 0; i < k_tries; ++i) {
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return true;
+    if (errno != EWOULDBLOCK) return false;
+    std::this_thread::sleep_for(k_pause);
+  }
+  return false;
+}
+
 }  // namespace
 
 ResultJournal::ResultJournal(std::filesystem::path file) : file_(std::move(file)) {
@@ -77,7 +91,7 @@ ResultJournal::ResultJournal(std::filesystem::path file) : file_(std::move(file)
     if (::fstat(descriptor_, &state) != 0) throw_not_writable(file_, errno);
     if (!S_ISREG(state.st_mode)) throw BadFile(file_.string(), "is not a regular file");
     if (state.st_nlink > 1) throw BadFile(file_.string(), "has other names (hard links), so it is not written");
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) throw BadFile(file_.string(), "is in use by another process");
+    if (!is_locked(descriptor_)) throw BadFile(file_.string(), "is in use by another process");
     read();
   } catch (...) {
     ::close(descriptor_);
