@@ -137,7 +137,6 @@ class Library(unittest.TestCase):
 
     def test_the_force_leads_out(self):
         X = pose((1.1, 1.0, 0.7), 2, YAW)
-        best = {}  # by order; contacts of pairs of triangles lead out less well in the default profile of some libraries
         for program, answers, hello, in_order in self.each_setting(sphere(3)):
             if "respond" not in answers:
                 continue
@@ -146,15 +145,16 @@ class Library(unittest.TestCase):
             reply = program.ask("respond", pair)
             away = [x / math.hypot(*pair[9:]) for x in pair[9:]]
             along = sum(f * x for f, x in zip(reply["force"], away))
-            share = along / math.hypot(*reply["force"])
-            self.assertGreater(share, 0.4, f"{self.now}: {reply}")
-            best[in_order] = max(best.get(in_order, 0.0), share)
+            # A known failure of a library's profile stands in its recipe, and in FINDINGS.md.
+            known = [least for profile, least in self.rival.get("force_along", {}).items() if f"profile {profile}," in self.now]
+            self.assertGreater(along, min([0.8, *known]) * math.hypot(*reply["force"]), f"{self.now}: {reply}")
+            for least in known:
+                self.assertLess(along, 0.8 * math.hypot(*reply["force"]), f"{self.now}: no longer a known failure")
             self.assertGreater(reply["penalty"], 0.0)
             for got, expected in zip(reply["reference"], point(pair, (0.0, 0.0, 0.0))):
                 self.assertAlmostEqual(got, expected, delta=SINGLE)
             apart = program.ask("respond", pose((4.0, 0.1, 0.2), 2, YAW))
             self.assertEqual((apart["force"], apart["penalty"]), ([0, 0, 0], 0), self.now)
-        self.assertTrue(all(share > 0.8 for share in best.values()), best)
 
 
 if __name__ == "__main__":

@@ -226,6 +226,10 @@ TEST_F(Recommend, TakesNoneOfAHundredPlantedFaults) {
   }
   const results::Choice found = within(1e-3);
   EXPECT_EQ(found.taken(), nullptr);
+  const bool noisy = std::ranges::any_of(
+      found.candidates, [](const results::Candidate& each) { return each.standing == results::Standing::undecided; });
+  EXPECT_EQ(found.missing.find("the machine is too noisy for the deadline") == 0, noisy) << found.missing;
+  EXPECT_EQ(found.missing.empty(), !noisy);
   ASSERT_EQ(found.candidates.size(), planted.size());
   for (const results::Candidate& each : found.candidates) expect_reason(planted[each.place]->plant(), each);
 }
