@@ -24,9 +24,10 @@ struct MeshIdentity {
   Eigen::Vector3d box_min = Eigen::Vector3d::Zero();  ///< Lower corner of Mesh::box(), in the mesh's frame (length).
   Eigen::Vector3d box_max = Eigen::Vector3d::Zero();  ///< Upper corner.
   double volume = 0.0;                                ///< Mesh::volume() (length^3).
-  /// Where a mesh that is no model of the catalogue was when the set was made: as the user wrote it, and absolute. Both
-  /// are empty for a model. They are no part of content hashes: the same mesh may lie anywhere (set_meshes.h).
-  std::string path, absolute_path;
+  /// Where a mesh that is no model of the catalogue was when the set was made, as the user wrote it; empty for a model.
+  /// No part of content hashes: the same mesh may lie anywhere (set_meshes.h).
+  std::string path;
+  std::string absolute_path;  ///< The same, absolute.
 
   /// That of a mesh, without paths.
   static MeshIdentity of(const Mesh& mesh);

@@ -13,7 +13,8 @@ namespace sixdof {
 /// A configuration set as the catalogue describes it. Its file has not been read.
 struct CatalogueEntry {
   std::string pair;                ///< Name of the pair in benchmarks: a-z 0-9 '-' '_'.
-  std::string a, b;                ///< Keys of the meshes (SetCatalogue::mesh()).
+  std::string a;                   ///< Key of mesh A (SetCatalogue::mesh()).
+  std::string b;                   ///< Key of mesh B.
   std::filesystem::path file;      ///< Absolute, or relative to the working directory.
   std::vector<BucketKey> buckets;  ///< Those that the set has.
 };

@@ -34,7 +34,7 @@ struct Declaration {
 
   double distance_error = 1e-12;  ///< Largest |distance - exact one|, in diagonals of A's box.
   double witness_error = 1e-12;   ///< Largest distance of a witness from its surface, likewise.
-  double volume_error = 1e-9;     ///< Largest |Response::volume - exact one| by the exact one.
+  double volume_error = 1e-9;     ///< Largest error of a response's volume, |volume - exact one| by the exact one.
   /// Largest mean angle between forces and minus the gradients of the intersection volume, in degrees.
   double force_degrees = 1e-4;
 

@@ -17,9 +17,12 @@ inline constexpr std::size_t k_fewest_for_p999 = 2000;
 
 /// Distribution of the times of single queries, in ns.
 struct Latency {
-  double mean = 0.0;  ///< Arithmetic mean.
-  /// Quantiles; p50 is the median.
-  double p10 = 0.0, p25 = 0.0, p50 = 0.0, p75 = 0.0, p90 = 0.0;
+  double mean = 0.0;           ///< Arithmetic mean.
+  double p10 = 0.0;            ///< 10th percentile.
+  double p25 = 0.0;            ///< 25th percentile.
+  double p50 = 0.0;            ///< Median.
+  double p75 = 0.0;            ///< 75th percentile.
+  double p90 = 0.0;            ///< 90th percentile.
   std::optional<double> p99;   ///< Empty for fewer than k_fewest_for_p99 times.
   std::optional<double> p999;  ///< Empty for fewer than k_fewest_for_p999 times.
   double max = 0.0;            ///< Longest time.
