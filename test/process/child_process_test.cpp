@@ -83,6 +83,13 @@ TEST(ChildProcess, SaysHowItEnded) {
   EXPECT_EQ(failure_of("read x; printf half").status, Status::crashed) << "a line without an end";
 }
 
+TEST(ChildProcess, WhatAProgramWroteBeforeItEndedIsReceived) {
+  ChildProcess process(shell("exec 0<&-; echo early"), {}, 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it has ended: the request cannot be sent
+  EXPECT_STREQ(failure_of(process).what(), "early");
+  EXPECT_STREQ(failure_of(process).what(), "ended with exit code 0");
+}
+
 TEST(ChildProcess, EndsTheSilentAndTheEndless) {
   EXPECT_EQ(failure_of("sleep 600", 0.2).status, Status::timed_out);
   EXPECT_EQ(failure_of("while :; do :; done", 0.2).status, Status::timed_out);
