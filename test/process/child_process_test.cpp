@@ -84,8 +84,9 @@ TEST(ChildProcess, SaysHowItEnded) {
 }
 
 TEST(ChildProcess, WhatAProgramWroteBeforeItEndedIsReceived) {
-  ChildProcess process(shell("exec 0<&-; echo early"), {}, 0);
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it has ended: the request cannot be sent
+  ChildProcess process(shell("echo early"), {}, 0);
+  // Mostly it has ended then, and the request cannot be sent. The answer is the same where it has not.
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_STREQ(failure_of(process).what(), "early");
   EXPECT_STREQ(failure_of(process).what(), "ended with exit code 0");
 }
