@@ -68,7 +68,9 @@ TEST_F(HostileFile, X3dGroupsThatUseThemselves) {
   std::string doubled = k_shape;
   for (int i = 0; i < 26; ++i) {
     const std::string name = "G" + std::to_string(i);
-    doubled = "<Group DEF=\"" + name + "\">" + doubled + "</Group><Group USE=\"" + name + "\"/>";
+    std::string outer = "<Group DEF=\"";
+    outer.append(name).append("\">").append(doubled).append("</Group><Group USE=\"").append(name).append("\"/>");
+    doubled = outer;
   }
   EXPECT_THAT(refusal("a.x3d", x3d(doubled)), HasSubstr("assimp, which reads this format, "));
   ends("b.x3d", x3d("<Group DEF=\"G\"><Group USE=\"G\"/>" + k_shape + "</Group>"));

@@ -18,8 +18,9 @@ REQUIRED, OPTIONAL, OTHER_OPTIONAL = "libfcl-dev", "clang-format-14", "libode-de
 STUBS = {
     "dpkg-query": """for name; do :; done
 if grep -qx -- "$name" installed; then printf installed; fi""",
-    "apt-cache": """for name; do :; done
-grep -qx -- "$name" lists""",
+    "apt-cache": """for name; do
+  if grep -qx -- "$name" lists; then echo "Package: $name"; fi
+done""",
     "apt-get": """echo "$*" >> trace
 simulate=false names=
 for word; do

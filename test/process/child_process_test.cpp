@@ -107,7 +107,8 @@ TEST(ChildProcess, EndsTheSilentAndTheEndless) {
 }
 
 TEST(ChildProcess, NoteOfMemoryDecidesWhyItEnded) {
-  const std::string note = "echo '" + std::string(ChildProcess::k_memory_note) + "'; ";
+  std::string note = "echo '";
+  note.append(ChildProcess::k_memory_note).append("'; ");
   const ChildFailure killed = failure_of(note + "kill -ABRT $$");
   EXPECT_EQ(killed.status, Status::out_of_memory);
   EXPECT_STREQ(killed.what(), "out of memory: ended by signal 6 (Aborted)");
