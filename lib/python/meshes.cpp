@@ -91,6 +91,11 @@ void bind_meshes(py::module_& module) {
                              })
       .def_property_readonly("triangles", triangles)
       .def_property_readonly("faces", triangles)
+      .def("__reduce__",
+           [](const py::object& self) {
+             return py::make_tuple(py::module_::import("sixdof._core").attr("build_mesh"),
+                                   py::make_tuple(self.attr("vertices"), self.attr("triangles"), self.attr("name")));
+           })
       .def("__repr__",
            [](const Mesh& m) { return fmt::format("<Mesh {}: {} triangles>", m.name(), m.triangles().size()); })
       .def(

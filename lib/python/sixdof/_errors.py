@@ -22,4 +22,5 @@ class BenchFailed(Error):
 
 
 class FailedQueries(UserWarning):
-    """Some poses have no answer. Their values are masked, and `words` of the answers says why."""
+    """Some poses have no answer: their values are masked, and `words` of the answers says why. Or rows could not be run:
+    their `error` says why."""

@@ -46,9 +46,8 @@ class Results:
 
     files: list[str]  #: The result files, which `sixdof table`, `report` and `compare` read.
 
-    def __init__(self, files: list[str], keep_alive: Any = None):
+    def __init__(self, files: list[str]):
         self.files = files
-        self._keep_alive = keep_alive  # the folder of files that nobody named
 
     @property
     def rows(self) -> list[dict[str, Any]]:
