@@ -64,33 +64,41 @@ py::array_t<T> view(const T* data, std::size_t rows, const py::object& owner) {
 }  // namespace
 
 void bind_meshes(py::module_& module) {
-  py::class_<Mesh, std::shared_ptr<Mesh>> mesh(module, "Mesh");
+  py::class_<Mesh, std::shared_ptr<Mesh>> mesh(
+      module, "Mesh", "A triangle mesh in its own frame and length unit; it never changes. Made by load() and mesh().");
   const auto triangles = [](const py::object& self) {
     const auto& m = self.cast<const Mesh&>();
     return view(m.triangles().data()->data(), m.triangles().size(), self);
   };
-  mesh.def_property_readonly("name", &Mesh::name)
-      .def_property_readonly("hash", &Mesh::hash)
-      .def_property_readonly("area", &Mesh::area)
-      .def_property_readonly("volume", &Mesh::volume)
-      .def_property_readonly("diagonal", &Mesh::diagonal)
-      .def_property_readonly("solid", &Mesh::solid)
-      .def_property_readonly("why_not_solid", &Mesh::why_not_solid)
-      .def_property_readonly("closed", [](const Mesh& m) { return m.topology().closed; })
-      .def_property_readonly("center", [](const Mesh& m) { return array_of(m.center()); })
-      .def_property_readonly("centroid", [](const Mesh& m) { return array_of(m.centroid()); })
-      .def_property_readonly("box",
-                             [](const Mesh& m) {
-                               const std::vector<Eigen::Vector3d> corners{m.box().min(), m.box().max()};
-                               return rows_of(corners);
-                             })
-      .def_property_readonly("vertices",
-                             [](const py::object& self) {
-                               const auto& m = self.cast<const Mesh&>();
-                               return view(m.vertices().data()->data(), m.vertices().size(), self);
-                             })
-      .def_property_readonly("triangles", triangles)
-      .def_property_readonly("faces", triangles)
+  const auto vertices = [](const py::object& self) {
+    const auto& m = self.cast<const Mesh&>();
+    return view(m.vertices().data()->data(), m.vertices().size(), self);
+  };
+  const auto box = [](const Mesh& m) {
+    const std::vector<Eigen::Vector3d> corners{m.box().min(), m.box().max()};
+    return rows_of(corners);
+  };
+  mesh.def_property_readonly("name", &Mesh::name, "Of a file or a model.")
+      .def_property_readonly("hash", &Mesh::hash, "Content hash of both arrays: 32 hexadecimal digits.")
+      .def_property_readonly("area", &Mesh::area, "Of the surface (length^2).")
+      .def_property_readonly("volume", &Mesh::volume, "Signed (length^3); that of a body only where `solid` is true.")
+      .def_property_readonly("diagonal", &Mesh::diagonal, "Length of the box's diagonal.")
+      .def_property_readonly("solid", &Mesh::solid,
+                             "Whether it is closed, consistently oriented and faces outwards: responses need that.")
+      .def_property_readonly("why_not_solid", &Mesh::why_not_solid, "Empty if it is.")
+      .def_property_readonly(
+          "closed", [](const Mesh& m) { return m.topology().closed; }, "Whether there is no border.")
+      .def_property_readonly(
+          "center", [](const Mesh& m) { return array_of(m.center()); }, "Of the box, shape (3,).")
+      .def_property_readonly(
+          "centroid", [](const Mesh& m) { return array_of(m.centroid()); },
+          "Centre of mass of the enclosed body, shape (3,).")
+      .def_property_readonly("box", box, "Lower and upper corner of the axis-aligned bounding box, shape (2, 3).")
+      .def_property_readonly("vertices", vertices, "Shape (n, 3), float64; read only, not copied.")
+      .def_property_readonly("triangles", triangles,
+                             "Shape (m, 3), uint32: indices into `vertices`, counter-clockwise seen from outside; read "
+                             "only, not copied.")
+      .def_property_readonly("faces", triangles, "The same as `triangles`.")
       .def("__reduce__",
            [](const py::object& self) {
              return py::make_tuple(py::module_::import("sixdof._core").attr("build_mesh"),
@@ -100,11 +108,12 @@ void bind_meshes(py::module_& module) {
            [](const Mesh& m) { return fmt::format("<Mesh {}: {} triangles>", m.name(), m.triangles().size()); })
       .def(
           "save",
-          [](const Mesh& m, const std::string& file) {
+          [](const Mesh& m, const py::object& file) {
+            const auto path = py::module_::import("os").attr("fspath")(file).cast<std::string>();
             const py::gil_scoped_release release;
-            save_mesh(m, file);
+            save_mesh(m, path);
           },
-          py::arg("file"));
+          py::arg("file"), "Writes PLY, OBJ, OFF or STL, whole or not at all. Raises BadFile.");
   module.def("load", load, py::arg("name_or_file"));
   module.def("build_mesh", build, py::arg("vertices"), py::arg("triangles"), py::arg("name"));
 }

@@ -5,6 +5,7 @@ usage: meshes_test.py
 """
 
 import pathlib
+import pickle
 import tempfile
 import unittest
 
@@ -53,9 +54,14 @@ class Meshes(unittest.TestCase):
         mesh = sixdof.load("bumpy-sphere-500")
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "part.ply"
-            mesh.save(str(file))
+            mesh.save(file)
             for name in (file, str(file)):
                 self.assertEqual(sixdof.load(name).hash, mesh.hash)
+
+    def test_meshes_go_to_other_processes(self):
+        mesh = sixdof.load("bumpy-sphere-500")
+        again = pickle.loads(pickle.dumps(mesh))
+        self.assertEqual((again.hash, again.name), (mesh.hash, mesh.name))
 
     def assert_raises(self, kind, words, call, *arguments, **more):
         with self.assertRaises(kind) as raised:

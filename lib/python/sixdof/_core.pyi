@@ -1,5 +1,7 @@
-"""Types of the compiled module. The package's own functions, which check arguments, are documented beside it."""
+"""Types of the compiled module. `help(sixdof.Mesh)` has the documentation of meshes; other parts are used through the
+functions beside this file."""
 
+import os
 from typing import Any
 
 import numpy
@@ -9,52 +11,35 @@ version: str
 statuses: tuple[str, ...]
 
 class Mesh:
-    """A triangle mesh in its own frame and length unit; it never changes."""
-
     @property
-    def name(self) -> str:
-        """A file's or a model's name."""
+    def name(self) -> str: ...
     @property
-    def hash(self) -> str:
-        """Content hash of both arrays: 32 hexadecimal digits."""
+    def hash(self) -> str: ...
     @property
-    def vertices(self) -> NDArray[numpy.float64]:
-        """Shape (n, 3), read only, not copied."""
+    def vertices(self) -> NDArray[numpy.float64]: ...
     @property
-    def triangles(self) -> NDArray[numpy.uint32]:
-        """Shape (m, 3), indices into `vertices`, counter-clockwise seen from outside; read only, not copied."""
+    def triangles(self) -> NDArray[numpy.uint32]: ...
     @property
-    def faces(self) -> NDArray[numpy.uint32]:
-        """The same as `triangles`."""
+    def faces(self) -> NDArray[numpy.uint32]: ...
     @property
-    def box(self) -> NDArray[numpy.float64]:
-        """Lower and upper corner of the axis-aligned bounding box, shape (2, 3)."""
+    def box(self) -> NDArray[numpy.float64]: ...
     @property
-    def center(self) -> NDArray[numpy.float64]:
-        """Of the box, shape (3,)."""
+    def center(self) -> NDArray[numpy.float64]: ...
     @property
-    def centroid(self) -> NDArray[numpy.float64]:
-        """Centre of mass of the enclosed body, shape (3,)."""
+    def centroid(self) -> NDArray[numpy.float64]: ...
     @property
-    def diagonal(self) -> float:
-        """Length of the box's diagonal."""
+    def diagonal(self) -> float: ...
     @property
-    def area(self) -> float:
-        """Of the surface (length^2)."""
+    def area(self) -> float: ...
     @property
-    def volume(self) -> float:
-        """Signed (length^3); that of a body only where `solid` is true."""
+    def volume(self) -> float: ...
     @property
-    def closed(self) -> bool:
-        """Whether there is no border."""
+    def closed(self) -> bool: ...
     @property
-    def solid(self) -> bool:
-        """Whether it is closed, consistently oriented and faces outwards: responses need that."""
+    def solid(self) -> bool: ...
     @property
-    def why_not_solid(self) -> str:
-        """Empty if it is."""
-    def save(self, file: str) -> None:
-        """Writes PLY, OBJ, OFF or STL, whole or not at all. Raises BadFile."""
+    def why_not_solid(self) -> str: ...
+    def save(self, file: str | os.PathLike[str]) -> None: ...
 
 class PreparedPair:
     settings: str
