@@ -101,7 +101,7 @@ void bind_meshes(py::module_& module) {
       .def_property_readonly("faces", triangles, "The same as `triangles`.")
       .def("__reduce__",
            [](const py::object& self) {
-             return py::make_tuple(py::module_::import("sixdof._core").attr("build_mesh"),
+             return py::make_tuple(py::module_::import("sixdof._meshes").attr("named_mesh"),
                                    py::make_tuple(self.attr("vertices"), self.attr("triangles"), self.attr("name")));
            })
       .def("__repr__",

@@ -52,6 +52,11 @@ def mesh(vertices: Any, triangles: Any = None, *, name: str = "") -> Mesh:
     return _core.build_mesh(points.astype(numpy.float64), faces.astype(numpy.int64), name)
 
 
+def named_mesh(vertices: Any, triangles: Any, name: str) -> Mesh:
+    """mesh() as pickle calls it."""
+    return mesh(vertices, triangles, name=name)
+
+
 def _array(values: Any, argument: str, kinds: str) -> numpy.ndarray:
     """The values as an array of shape (n, 3) whose type is of these kinds."""
     try:
