@@ -43,6 +43,7 @@ PYBIND11_MODULE(_core, module) {
   namespace python = sixdof::python;
   module.doc() = "What sixdof's Python files are made of: the C++ library.";
   module.attr("version") = SIXDOF_VERSION;
+  module.attr("takes_numpy_2") = PYBIND11_VERSION_HEX >= 0x020C0000;  // 2.12 knows its layout of types
   pybind11::register_exception_translator(python::translate);
   module.def("set_data_folder", python::set_data_folder, pybind11::arg("folder"));
   module.def("data_folder", [] { return sixdof::data_folder().string(); });

@@ -39,9 +39,9 @@ class Patience {
 
 }  // namespace
 
-PreparedPair::PreparedPair(const Algorithm& algorithm, Settings settings, std::shared_ptr<const Mesh> a,
+PreparedPair::PreparedPair(std::shared_ptr<const Algorithm> algorithm, Settings settings, std::shared_ptr<const Mesh> a,
                            std::shared_ptr<const Mesh> b)
-    : algorithm_(algorithm), settings_(std::move(settings)), a_(std::move(a)), b_(std::move(b)) {
+    : algorithm_(std::move(algorithm)), settings_(std::move(settings)), a_(std::move(a)), b_(std::move(b)) {
   give_back(take());
 }
 
@@ -65,7 +65,7 @@ std::unique_ptr<Query> PreparedPair::take() {
     }
     ++made_;
   }
-  return algorithm_.prepare(*a_, *b_, settings_);
+  return algorithm_->prepare(*a_, *b_, settings_);
 }
 
 void PreparedPair::give_back(std::unique_ptr<Query> query) {

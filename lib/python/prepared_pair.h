@@ -26,13 +26,12 @@ struct Endings {
 class PreparedPair {
  public:
   /// Prepares one query. @throws what Algorithm::prepare() throws
-  PreparedPair(const Algorithm& algorithm, Settings settings, std::shared_ptr<const Mesh> a,
+  PreparedPair(std::shared_ptr<const Algorithm> algorithm, Settings settings, std::shared_ptr<const Mesh> a,
                std::shared_ptr<const Mesh> b);
 
-  const Algorithm& algorithm() const { return algorithm_; }  ///< The algorithm.
-  const Settings& settings() const { return settings_; }     ///< A value for each of its parameters.
-  std::size_t prepared() const;                              ///< How many queries there are, one per thread so far.
-  Footprint footprint() const;                               ///< Of one query.
+  const Settings& settings() const { return settings_; }  ///< A value for each of its parameters.
+  std::size_t prepared() const;                           ///< How many queries there are, one per thread so far.
+  Footprint footprint() const;                            ///< Of one query.
 
   /// Asks all poses. Calls from several threads wait for each other.
   /// @param ask (Query&, const Pose&) -> Outcome<Answer>; an exception or a value that is not finite becomes a failure
@@ -49,7 +48,7 @@ class PreparedPair {
   std::unique_ptr<Query> take();
   void give_back(std::unique_ptr<Query> query);
 
-  const Algorithm& algorithm_;
+  const std::shared_ptr<const Algorithm> algorithm_;
   const Settings settings_;
   const std::shared_ptr<const Mesh> a_, b_;
   std::mutex one_call_;

@@ -10,6 +10,8 @@
 #include <pybind11/stl.h>
 
 #include <sixdof/base/error.h>
+#include <sixdof/base/shell_text.h>
+#include <sixdof/process/remote_algorithm.h>
 #include "bench/common/all_algorithms.h"
 #include "lib/python/arrays.h"
 #include "lib/python/bindings.h"
@@ -64,11 +66,18 @@ py::list list_algorithms() {
   return list;
 }
 
+/// @param server a program of this project in whose process the algorithm runs; empty: it runs in this one
 std::shared_ptr<PreparedPair> prepare(const std::string& name, const std::shared_ptr<Mesh>& a,
-                                      const std::shared_ptr<Mesh>& b, const Parameters& parameters) {
-  const Algorithm& algorithm = all_algorithms().find(name);
-  const Settings settings = settings_of(algorithm, parameters);
+                                      const std::shared_ptr<Mesh>& b, const Parameters& parameters,
+                                      const std::string& server, double query_timeout) {
+  const Algorithm& listed = all_algorithms().find(name);
+  const Settings settings = settings_of(listed, parameters);
   const py::gil_scoped_release release;
+  std::shared_ptr<const Algorithm> algorithm(&listed, [](const Algorithm*) {});  // the registry's
+  if (!server.empty() && !is_isolated(listed)) {
+    const std::string command = fmt::format("{} --serve-algorithm {}", shell_quoted(server), name);
+    algorithm = RemoteAlgorithm::described(listed.traits(), command, {.query_s = query_timeout});
+  }
   return std::make_shared<PreparedPair>(algorithm, settings, a, b);
 }
 
@@ -218,7 +227,8 @@ void bind_queries(py::module_& module) {
       .def("distance", distance, py::arg("poses"), py::arg("threads"))
       .def("respond", respond, py::arg("poses"), py::arg("threads"));
   module.def("algorithms", list_algorithms);
-  module.def("prepare", prepare, py::arg("name"), py::arg("a"), py::arg("b"), py::arg("parameters"));
+  module.def("prepare", prepare, py::arg("name"), py::arg("a"), py::arg("b"), py::arg("parameters"), py::arg("server"),
+             py::arg("query_timeout"));
   py::list words;
   for (int status = 0; status <= static_cast<int>(Status::out_of_memory); ++status) {
     words.append(std::string(to_string(static_cast<Status>(status))));

@@ -190,6 +190,19 @@ class Algorithms(unittest.TestCase):
         with self.assertRaisesRegex(sixdof.BadArgument, "algorithm exakt: no such algorithm"):
             sixdof.prepare("exakt", "cone-300")
 
+    def test_a_process_of_its_own(self):
+        poses = random_poses(50, 1.0)
+        poses[4, 0, 3] = numpy.nan
+        here, there = (sixdof.prepare("exact", A, B, isolate=isolate) for isolate in (False, True))
+        for kind in ("distance", "respond"):
+            with self.assertWarns(sixdof.FailedQueries):
+                one, two = (getattr(pair, kind)(poses) for pair in (here, there))
+            self.assertEqual(list(one.status), list(two.status))
+            self.assertEqual(numpy.ma.filled(fields(one), 0).tobytes(), numpy.ma.filled(fields(two), 0).tobytes())
+        slow = sixdof.prepare("brute-force", "torus-10k", isolate=True, query_timeout=0.01)
+        with self.assertWarnsRegex(sixdof.FailedQueries, "timed_out"):
+            self.assertEqual(slow.distance(random_poses(1, 9.0)).status[0], "timed_out")
+
     def test_a_copy_is_prepared_once(self):
         mesh = sixdof.load("torus-1k")
         copies = [sixdof.prepare("exact", mesh, other).footprint()["bytes"] for other in (mesh, sixdof.load("torus-1k"))]

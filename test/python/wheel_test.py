@@ -12,6 +12,7 @@ import tempfile
 import unittest
 
 SOURCES = pathlib.Path(sys.argv.pop(1))
+REQUIREMENTS = pathlib.Path(__file__).resolve().parent / "requirements.txt"
 
 # From the wheel to a table with an algorithm of one's own.
 PROGRAM = """
@@ -46,7 +47,10 @@ class Wheel(unittest.TestCase):
         self.assertNotIn("none-any", wheel.name)
 
         self.run_it(sys.executable, "-m", "venv", folder / "fresh")
-        self.run_it(folder / "fresh" / "bin" / "pip", "install", wheel)
+        pip = folder / "fresh" / "bin" / "pip"
+        self.run_it(pip, "install", "--require-hashes", "--only-binary", ":all:", "-r", REQUIREMENTS)
+        self.run_it(pip, "install", "--no-deps", wheel)
+        self.run_it(pip, "check")
         # Installed packages know no folder: they are used from another one, without the environment.
         site = next((folder / "fresh" / "lib").glob("python3*/site-packages"))
         moved = folder / "moved here"

@@ -10,12 +10,18 @@ Conventions: A is fixed, B moves. A pose maps points of B's mesh frame to A's me
 in A's frame, lengths in the meshes' unit.
 """
 
+import numpy as _numpy
+
+from . import _core
 from ._errors import BadArgument, BadFile, BadMesh, BenchFailed, Error, FailedQueries
 from ._programs import use_data as _use_data
 
+if not _core.takes_numpy_2 and int(_numpy.__version__.partition(".")[0]) >= 2:
+    raise ImportError(f"this build of sixdof takes NumPy 1 only, not {_numpy.__version__}: it was made with pybind11 before "
+                      "2.12; `pip install .` makes one that takes both")
 _use_data()
+__version__ = _core.version
 
-from ._core import version as __version__  # noqa: E402
 from ._algorithm import Algorithm, NoAnswer, parameter  # noqa: E402
 from ._answers import Collisions, Distances, Responses  # noqa: E402
 from ._bench import bench  # noqa: E402

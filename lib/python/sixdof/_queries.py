@@ -10,6 +10,7 @@ from ._answers import Answers, Collisions, Distances, Responses
 from ._errors import BadArgument, BadMesh
 from ._meshes import Mesh, as_mesh
 from ._poses import as_poses
+from ._programs import program
 
 KINDS = {"collide": Collisions, "distance": Distances, "respond": Responses}
 
@@ -84,12 +85,15 @@ class Pair:
         return f"<Pair: {self.name} ({self.settings or 'no settings'}), a {self.a!r}, b {self.b!r}>"
 
 
-def prepare(algorithm: Any, a: Any, b: Any = None, **parameters: Any) -> Pair:
+def prepare(algorithm: Any, a: Any, b: Any = None, *, isolate: bool = False, query_timeout: float = 10.0,
+            **parameters: Any) -> Pair:
     """Prepares an algorithm for two meshes.
 
     algorithm: a name (algorithms() lists them) or a class derived from sixdof.Algorithm. a, b: a Mesh, a file, a
-    model's name, or an object with `vertices` and `faces`; b moves and is by default a copy of a. parameters: of the
-    algorithm, such as spheres=500 or profile="tuned"; a bool is "on" or "off".
+    model's name, or an object with `vertices` and `faces`; b moves and is by default a copy of a. isolate: run it in a
+    process of its own, so that a crash, or a query of more than `query_timeout` seconds, costs that pose and not this
+    process; each query then takes some 20 us more. parameters: of the algorithm, such as spheres=500 or profile="tuned";
+    a bool is "on" or "off".
 
     Raises BadMesh if a mesh cannot be used (the message names it), BadArgument for an unknown name or parameter.
     """
@@ -97,12 +101,15 @@ def prepare(algorithm: Any, a: Any, b: Any = None, **parameters: Any) -> Pair:
     mesh_b = mesh_a if b is None or b is a else as_mesh(b, "b")
     texts = {name: text_of(value) for name, value in parameters.items()}
     if isinstance(algorithm, type):
+        if isolate:
+            raise BadArgument("isolate: a class is isolated by sixdof.bench() only")
         from ._algorithm import prepare_class
         return Pair(*prepare_class(algorithm, mesh_a, mesh_b, texts))
     if not isinstance(algorithm, str):
         raise BadArgument(f"algorithm: {type(algorithm).__name__} is neither a name nor a class")
     try:
-        prepared = _core.prepare(algorithm, mesh_a, mesh_b, texts)
+        prepared = _core.prepare(algorithm, mesh_a, mesh_b, texts, program("sixdof-bench") if isolate else "",
+                                 query_timeout)
     except BadMesh as e:
         raise BadMesh(f"{algorithm} cannot use a or b: {e}") from None
     return Pair(algorithm, mesh_a, mesh_b, prepared)
