@@ -104,3 +104,18 @@ elseif(NOT TARGET GTest::gtest)
     message(STATUS "No GoogleTest: without sixdof::conformance (Debian: libgtest-dev)")
   endif()
 endif()
+
+# The Python package needs the interpreter that it is for: Debian's, unless Python_EXECUTABLE names another (as the build
+# of a wheel does). Not with sanitizers, which the interpreter lacks.
+if(SIXDOF_BUILD_PYTHON AND SIXDOF_BUILD_BENCH AND NOT SIXDOF_SANITIZE)
+  if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)
+    set(Python_EXECUTABLE /usr/bin/python3)
+  endif()
+  find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module)
+  if(Python_FOUND)
+    find_package(pybind11 2.10 QUIET)
+  endif()
+  if(NOT pybind11_FOUND)
+    message(STATUS "No pybind11 or no headers of Python: without the Python package (Debian: pybind11-dev, python3-dev)")
+  endif()
+endif()

@@ -182,13 +182,21 @@ def first_include(root, file):
     return None
 
 
+OPTIONAL = "lib/python/"  # needs headers of Python, without which nothing of it is built
+
+
+def is_built(header, build):
+    """Whether the build has what the header needs."""
+    return not header.startswith(OPTIONAL) or any(source.startswith(OPTIONAL) for source in build.sources)
+
+
 def check_headers(root, files, build):
     """Headers of rooms and programs, each compiled alone: by the build, or else here."""
     compiled = {first_include(root, file) for file in files if file in build.sources}
     headers = [f for f in files if f.endswith(".h") and not f.endswith("-inl.h") and not f.startswith(EVERYWHERE)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = pool.map(lambda header: compile_alone(root, header, build.command),
-                         [header for header in headers if header not in compiled])
+        wanted = [header for header in headers if header not in compiled and is_built(header, build)]
+        found = pool.map(lambda header: compile_alone(root, header, build.command), wanted)
         return [problem for problem in found if problem]
 
 

@@ -9,13 +9,15 @@ A query is a class. Its constructor prepares a pair of meshes; its methods answe
         def respond(self, pose): ...             # dict of penalty, force, torque, reference and, optional, volume
         def empty(self, pose): ...               # optional: all of a query but the library's search
         def footprint(self): ...                 # optional: (bytes, {"name": count})
+        def pose_of(numbers): ...                # optional, static: the pose that methods take, of the NumPy array
 
 It needs the methods that it answers only. The pose is a NumPy array of the twelve numbers, a list where NumPy is
 missing. Points and forces are in A's frame. What a method returns may be of NumPy's types. raise Failed(words) where
 the library gives up; any other exception counts as failed, too.
 
-A method is timed from the twelve numbers of the pose to its return. The count `empty_call_ns` of prepare is the median
-time of a call of empty(), or of a method that does nothing: what Python adds to each query.
+A method is timed from the twelve numbers of the pose, or what pose_of() makes of them, to its return. The count
+`empty_call_ns` of prepare is the median time of a call of empty(), or of a method that does nothing: what Python adds to
+each query.
 """
 
 import array
@@ -103,6 +105,7 @@ def serve(query_class, *, name, version, summary, answers, law="none", body="mes
 class _Server:
     def __init__(self, query_class, hello):
         self.query_class, self.hello = query_class, hello
+        self.pose_of = getattr(query_class, "pose_of", lambda numbers: numbers)
         self.query, self.progress = None, None
 
     def reply(self, line):
@@ -132,9 +135,12 @@ class _Server:
         size, counts = self.query.footprint() if hasattr(self.query, "footprint") else (0, {})
         return reply | {"bytes": size, "counts": counts | {"empty_call_ns": self.empty_call_ns()}}
 
+    def pose(self, numbers):
+        return self.pose_of(_pose(numbers))
+
     def empty_call_ns(self):
         method = getattr(self.query, "empty", lambda pose: None)
-        pose = _pose([1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0])
+        pose = self.pose([1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0])
         times = []
         for _ in range(EMPTY_CALLS):
             start = time.perf_counter_ns()
@@ -152,11 +158,11 @@ class _Server:
         return getattr(self.query, kind)
 
     def ask(self, request):
-        took, reply = _timed(self.method(request["query"]), request["query"], _pose(request["pose"]))
+        took, reply = timed(self.method(request["query"]), request["query"], self.pose(request["pose"]))
         return reply | {"ns": took}
 
     def time(self, request):
-        kind, poses = request["query"], [_pose(pose) for pose in request["poses"]]
+        kind, poses = request["query"], [self.pose(pose) for pose in request["poses"]]
         method = self.method(kind)
         return (self.time_each if request["each"] else self.time_passes)(request, method, kind, poses)
 
@@ -169,7 +175,7 @@ class _Server:
                 begun += 1
                 self.progress.set(begun)
                 buffer.count(b"\0")  # reads all of it
-                took, reply = _timed(method, kind, pose)
+                took, reply = timed(method, kind, pose)
                 times.append(took)
                 if "status" in reply:
                     failed.setdefault(place, [place, reply["status"], reply["words"]])
@@ -215,7 +221,7 @@ def _words(error):
     return (str(error) or type(error).__name__)[:400]
 
 
-def _timed(method, kind, pose):
+def timed(method, kind, pose):
     """Wall time of a query in ns, and its reply."""
     if method is None:
         return 0, {"status": "unsupported", "words": f"does not answer {kind}"}
