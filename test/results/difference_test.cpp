@@ -85,7 +85,9 @@ TEST(Differences, AreBeyondTheToleranceThatIsGiven) {
 
 TEST(Differences, AreWorseByTheDirectionOfTheirMetric) {
   const auto verdict = [](const char* counter, std::optional<double> before, std::optional<double> after) {
-    const auto range = [](std::optional<double> value) { return value ? std::optional(Range{*value, *value}) : std::nullopt; };
+    const auto range = [](std::optional<double> value) {
+      return value ? std::optional(Range{*value, *value}) : std::nullopt;
+    };
     return is_worse({"row", counter, MetricKind::answer, range(before), range(after)});
   };
   EXPECT_EQ(verdict("mismatch", 0.0, 1.0), true);
