@@ -1,6 +1,6 @@
 """`sixdof gate`: programs and files whose answers, work, instructions and times are known get the verdict that they deserve.
 
-usage: gate_test.py SIXDOF SIXDOF_BENCH MANIFEST
+usage: gate_test.py SIXDOF SIXDOF_BENCH MANIFEST PLANTED_BENCH
 """
 
 import json
@@ -294,7 +294,22 @@ class SixdofBench(Folder):
                         "--stages", "answers,work", "--", "--manifest", MANIFEST)
         self.assertRegex(out, r"green +answers: [1-9]\d* rows judged\ngreen +work: ")
 
+    def test_of_planted_faults_is_red(self):
+        rows = ["--filter", "^distance/algorithm:planted/", "--sample", "8", "--stages", "answers,work", "--", "--a", "cone-1k", "--b", "torus-1k"]
+        self.gate(PLANTED, PLANTED, *rows)
+        for plant, kind in (("wrong:1", "wrong: mismatch 0 -> 1"), ("wrong:20", "wrong: mismatch 0 -> 1"), ("lost:3", "lost: failed 0 -> ")):
+            self.assertIn(kind, self.gate(PLANTED, f"env SIXDOF_PLANT={plant} {PLANTED}", *rows, expected=3))
+
+    def test_figures_are_of_planted_faults(self):
+        script = pathlib.Path(__file__).resolve().parents[2] / "bench" / "scripts" / "gate-figures"
+        done = subprocess.run([script, "--program", PLANTED, "--sixdof", SIXDOF, "--unchanged", "0", "--wrong", "2", "--lost", "1",
+                               "--instructions", "0", "--time", "0", "--out", self.folder / "figures.json"], cwd=self.folder,
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        found = json.loads((self.folder / "figures.json").read_text())["figures"]
+        self.assertEqual([(one["kind"], one["red"]) for one in found], [("wrong", 2), ("lost", 1)])
+
 
 if __name__ == "__main__":
-    SIXDOF, BENCH, MANIFEST = sys.argv[1:]
+    SIXDOF, BENCH, MANIFEST, PLANTED = sys.argv[1:]
     unittest.main(argv=sys.argv[:1])
