@@ -77,7 +77,7 @@ def count(command, counter, environment):
 def per_query(program, row, flags, counter, environment):
     """Instructions of one query of a row. @param program words of a command line @raises NotCounted"""
     def total(loops):
-        return count([*program, *flags, f"--benchmark_filter=^{re.escape(row)}$", "--sample", SAMPLE, "--seed", 1, "--budget", 0,
+        return count([*program, *flags, f"--benchmark_filter=^{row}$", "--sample", SAMPLE, "--seed", 1, "--budget", 0,
                       "--benchmark_min_time=0.000001", f"--benchmark_repetitions={loops}"], counter, environment)
 
     difference = total(1 + LOOPS) - total(1)
