@@ -31,26 +31,28 @@ answers.
 
 Exit codes: 0 green, 3 red, 1 the comparison could not be made, 2 wrong command line, 130 interrupted.)";
 
-/// The words of the command line for the script: options as they were given, then what has no name.
+/// The words of the command line for the script: options as they were given, names, and after "--" the programs'
+/// options.
 std::vector<std::string> words_for_script(const CLI::App& command) {
-  std::vector<std::string> words, unnamed;
+  std::vector<std::string> words, names, flags;
   for (const CLI::Option* const option : command.get_options()) {
     if (option->get_positional()) {
-      if (option->get_name() != "flags")
-        unnamed.insert(unnamed.end(), option->results().begin(), option->results().end());
-      continue;
+      // With --record the parser takes the first of the programs' options for the candidate.
+      for (const std::string& word : option->results()) {
+        const bool is_name = option->get_name() != "flags" && !word.starts_with('-');
+        (is_name ? names : flags).push_back(word);
+      }
+    } else if (option->count() > 0) {
+      const std::string name = "--" + option->get_lnames().front();
+      const bool is_flag = option->get_items_expected_max() == 0;
+      if (is_flag) words.push_back(name);
+      for (const std::string& value : is_flag ? std::vector<std::string>() : option->results()) {
+        words.push_back(fmt::format("{}={}", name, value));
+      }
     }
-    if (option->count() == 0) continue;
-    const std::string name = "--" + option->get_lnames().front();
-    if (option->get_items_expected_max() == 0) {
-      words.push_back(name);
-      continue;
-    }
-    for (const std::string& value : option->results()) words.push_back(fmt::format("{}={}", name, value));
   }
-  words.insert(words.end(), unnamed.begin(), unnamed.end());
+  words.insert(words.end(), names.begin(), names.end());
   words.emplace_back("--");
-  const std::vector<std::string>& flags = command.get_option("flags")->results();
   words.insert(words.end(), flags.begin(), flags.end());
   return words;
 }
