@@ -154,6 +154,11 @@ class Installed(Project):
         """Exit code and words of ci/gate, in a clone, of a change against the first commit."""
         (clone / "fast_boxes.cpp").write_text(source)
         environment = {**os.environ, "SIXDOF": str(ARGUMENTS.installed), "SIXDOF_WORK": str(ARGUMENTS.work / "gate-work")}
+        given = dict(word.removeprefix("-D").split("=", 1) for word in ARGUMENTS.cmake)
+        for variable, option in (("CXX", "CMAKE_CXX_COMPILER"), ("CXXFLAGS", "CMAKE_CXX_FLAGS"),
+                                 ("CMAKE_CXX_COMPILER_LAUNCHER", "CMAKE_CXX_COMPILER_LAUNCHER")):
+            if given.get(option):
+                environment[variable] = given[option]
         for name in ("SIXDOF_DATA", "SIXDOF_MODELS"):
             environment.pop(name, None)
         done = subprocess.run(["ci/gate", "--base", "first", *options], cwd=clone, env=environment, capture_output=True, text=True,
@@ -162,6 +167,8 @@ class Installed(Project):
 
     def test_gate_of_a_new_algorithm(self):
         """The script that continuous integration runs, in a fresh clone: what it calls red and what not."""
+        if any("-fsanitize" in word for word in ARGUMENTS.cmake):
+            self.skipTest("times and instructions of sanitized programs mean nothing")
         origin, clone = ARGUMENTS.work / "gate-origin", ARGUMENTS.work / "gate-clone"
         for folder in (origin, clone, ARGUMENTS.work / "gate-work"):
             shutil.rmtree(folder, ignore_errors=True)
