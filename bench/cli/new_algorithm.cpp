@@ -162,10 +162,11 @@ void write_ci(const std::string& name, const std::string& ci, const Path& projec
 void write_project(const Arguments& arguments) {
   const std::string& name = arguments.name;
   check_form(name);
-  if (const Path there = arguments.output; !arguments.ci.empty() && std::filesystem::exists(there / "CMakeLists.txt")) {
+  const Path there = arguments.output;
+  if (!arguments.ci.empty() && !there.empty() && std::filesystem::exists(there / "CMakeLists.txt")) {
     write_ci(name, arguments.ci, there);
-    fmt::print("{}: gained ci/gate and a job that calls it. Both build {}-bench and {}-sixdof\n", there.string(), name,
-               name);
+    fmt::print("{0}: gained ci/gate and a job that calls it. Both build {1}-bench and {1}-sixdof, in .sixdof/\n",
+               there.string(), name);
     return;
   }
   check_is_new(name);

@@ -100,11 +100,13 @@ def filter_of(rows):
     return f"^({'|'.join(rows)})$"
 
 
-def default_filter(sides):
-    """The rows of a stored baseline, or the default suite of the programs."""
+def default_filter(sides, flags):
+    """The rows of a stored baseline, those that options of the programs choose, or their default suite."""
     for side in sides:
         if side.document is not None:
             return filter_of(row["name"] for row in side.document["benchmarks"])
+    if flags:  # which may choose a pair
+        return "."
     programs = dict(zip(("contender", "base"), (side.words for side in reversed(sides))))
     return compare.filter_of_default_suite(programs | {"base": programs.get("base", programs["contender"])})
 
