@@ -59,6 +59,10 @@ if(SIXDOF_BUILD_BENCH)
   install(TARGETS sixdof_program sixdof-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
   install(PROGRAMS ${PROJECT_SOURCE_DIR}/bench/compare DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME sixdof-compare
     COMPONENT programs)
+  install(PROGRAMS ${PROJECT_SOURCE_DIR}/bench/gate ${PROJECT_SOURCE_DIR}/bench/compare  # of sixdof gate
+    DESTINATION ${data_folder}/bench COMPONENT programs)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/scripts DESTINATION ${data_folder}/bench COMPONENT programs
+    FILES_MATCHING PATTERN "gate_*.py")
   install(FILES ${PROJECT_SOURCE_DIR}/bench/all_algorithms_suite.json ${PROJECT_SOURCE_DIR}/bench/default_suite.json
     ${PROJECT_SOURCE_DIR}/bench/own_pair_suite.json ${PROJECT_SOURCE_DIR}/bench/scenes_suite.json
     DESTINATION ${data_folder}/bench COMPONENT programs)

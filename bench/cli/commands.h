@@ -76,8 +76,11 @@ void add_history_command(CLI::App& app);
 /// `sixdof compare BEFORE.json AFTER.json [--json | --markdown] [--fail-on-answers]`: versions, answers and counts of
 /// work that differ (results/difference.h); with --fail-on-answers k_exit_defects if an answer does.
 void add_compare_command(CLI::App& app);
-/// `sixdof new-algorithm NAME [-o FOLDER]`: a project of its own with an algorithm that is to be replaced, made of
-/// the files in bench/new_algorithm/. The folder appears whole or not at all; nothing is overwritten.
+/// `sixdof gate BASELINE CANDIDATE [--record FILE]`: judges a change by answers, work, instructions and time with the
+/// script bench/gate, which replaces this program; k_exit_defects if it is red.
+void add_gate_command(CLI::App& app);
+/// `sixdof new-algorithm NAME [--ci github|gitlab] [-o FOLDER]`: a project of its own with an algorithm that is to be
+/// replaced, made of the files in bench/new_algorithm/. The folder appears whole or not at all; nothing is overwritten.
 void add_new_algorithm_command(CLI::App& app);
 /// `sixdof conform [--algorithm LIST] [--external NAME=COMMAND]`: the checks of the conformance kit for any algorithm,
 /// a line for each; k_exit_defects if one failed (lib/sixdof/conformance/README.md).

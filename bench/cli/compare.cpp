@@ -28,15 +28,17 @@ using Json = nlohmann::ordered_json;
 constexpr const char* k_details =
     R"(Prints versions and settings that differ, rows that only one file has, answers that differ (errors, failures,
 angles), and counts of work that differ. It does not compare times; `sixdof report BEFORE AFTER` does. Two numbers are
-equal if they differ by at most 1e-12, or by 1e-9 of the larger one. For repetitions the ranges are compared. If a row
+equal if they differ by at most 1e-12, or by 1e-9 (--tolerance) of the larger one. For repetitions the ranges are compared. If a row
 asked another number of configurations, only that number is printed.
 
 Keys of --json: versions[] {key, before, after}; only_before[], only_after[]; answers[] and work[] {row, counter,
-before, after}, each side [least, largest], the message of an error, or null; common_rows.)";
+before, after, worse}, each side [least, largest], the message of an error, or null; worse null where a counter has no
+better direction; common_rows.)";
 
 struct Arguments {
   std::string before, after;
   bool json = false, markdown = false, fail_on_answers = false;
+  double tolerance = results::k_relative_rounding;
 };
 
 void print_text(const Differences& found, const Arguments& arguments) {
@@ -121,11 +123,13 @@ Json as_json(const Differences& found) {
     document["versions"].push_back({{"key", key}, {"before", before}, {"after", after}});
   }
   for (const Difference& each : found.values) {
+    const std::optional<bool> worse = results::is_worse(each);
     document[each.kind == MetricKind::work ? "work" : "answers"].push_back(
         {{"row", each.row},
          {"counter", each.counter},
          {"before", side(each.before, each.error_before)},
-         {"after", side(each.after, each.error_after)}});
+         {"after", side(each.after, each.error_after)},
+         {"worse", worse ? Json(*worse) : Json(nullptr)}});
   }
   return document;
 }
@@ -134,7 +138,7 @@ void run(const Arguments& arguments) {
   results::Results results;
   results::read_results(arguments.before, results);
   results::read_results(arguments.after, results);
-  const Differences found = differences(results, row_groups(results), 0, 1);
+  const Differences found = differences(results, row_groups(results), 0, 1, arguments.tolerance);
   if (arguments.json) {
     fmt::print("{}\n", json_text(as_json(found)));
   } else if (arguments.markdown) {
@@ -160,6 +164,10 @@ void add_compare_command(CLI::App& app) {
   command->add_flag("--markdown", arguments->markdown, "A summary of at most 20 lines, as Markdown")->excludes(json);
   command->add_flag("--fail-on-answers", arguments->fail_on_answers,
                     "Exit code 3 if an answer changed or a row is in one file only");
+  command->add_option("--tolerance", arguments->tolerance, "Share of a number by which it may differ")
+      ->type_name("SHARE")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->callback([arguments] { run(*arguments); });
   add_examples(*command, "sixdof compare results.json results.json --fail-on-answers",
                "sixdof compare results.json results.json --json", k_details);

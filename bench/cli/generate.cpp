@@ -45,6 +45,7 @@ struct Arguments {
   double plan_seconds = 5.0;
   std::uint64_t seed = 1;
   bool plan = false, json = false, resume = false, progress = false;
+  bool no_absolute_paths = false;
 };
 
 double parse_item(std::string_view list, std::string_view text) {
@@ -144,6 +145,7 @@ void generate(const Arguments& arguments) {
   }
   set.a = identify(a, arguments.a);
   set.b = identify(b, arguments.b.empty() ? arguments.a : arguments.b);
+  if (arguments.no_absolute_paths) set.a.absolute_path = set.b.absolute_path = {};
   warn_of_sizes("sixdof", set.a, set.b);
   const auto job = GenerationJob::of(program_version(), generator->oracle_name(), generator->oracle_version(), a, set,
                                      distances, volumes);
@@ -219,6 +221,8 @@ void add_run_options(CLI::App& command, Arguments& arguments) {
       ->type_name("I")
       ->default_str("all")
       ->check(CLI::Range(1, k_most_shards));
+  command.add_flag("--no-absolute-paths", arguments.no_absolute_paths,
+                   "Of mesh files store only the path as typed: the set has the same bytes in every folder");
   command.add_flag("--resume", arguments.resume, "Keep the valid shards of the folder, make the others");
   command.add_flag("--progress", arguments.progress, "Show progress where stderr is not a terminal, too");
   command.add_flag("--plan", arguments.plan,

@@ -121,7 +121,7 @@ Json as_json(const MeshIdentity& mesh) {
                {"volume", mesh.volume}};
   if (!mesh.path.empty()) {
     json["path"] = mesh.path;
-    json["absolute_path"] = mesh.absolute_path;
+    if (!mesh.absolute_path.empty()) json["absolute_path"] = mesh.absolute_path;
   }
   return json;
 }
@@ -174,8 +174,8 @@ void print_text(const ConfigurationSet& set) {
     fmt::print("{:<18} {}: {} triangles, box diagonal {:.6g}, volume {:.6g}, content hash {}\n", label, mesh->name,
                mesh->triangles, mesh->diagonal(), mesh->volume, mesh->hash);
     if (!mesh->path.empty()) {
-      fmt::print("{:<18} {} ({})\n", "", visible_text(mesh->path, k_any_length),
-                 visible_text(mesh->absolute_path, k_any_length));
+      const std::string absolute = mesh->absolute_path.empty() ? "" : fmt::format(" ({})", mesh->absolute_path);
+      fmt::print("{:<18} {}\n", "", visible_text(mesh->path + absolute, k_any_length));
     }
   }
   print_grid(d.volume_grid ? "grid of distances" : "grid", d.grid);

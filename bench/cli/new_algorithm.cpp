@@ -17,6 +17,7 @@
 #include <sixdof/base/shell_text.h>
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
+#include "bench/common/build_info.h"
 
 namespace sixdof::cli {
 namespace {
@@ -26,16 +27,21 @@ using Path = std::filesystem::path;
 struct Arguments {
   std::string name;
   std::string output;
+  std::string ci;  ///< "github", "gitlab" or empty.
 };
 
 /// @throws BadArgument unless an algorithm, a file, a class and a CMake target can have names made of this one
-void check_name(const std::string& name) {
+void check_form(const std::string& name) {
   const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto is_allowed = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-'; };
   if (name.empty() || !is_letter(name.front()) || name.back() == '-' || !std::ranges::all_of(name, is_allowed)) {
     throw BadArgument(
         fmt::format("{}: a name begins with a letter, has only a-z, 0-9 and '-', and does not end in '-'", name));
   }
+}
+
+/// @throws BadArgument for an algorithm that there is
+void check_is_new(const std::string& name) {
   Registry registry;
   register_all_algorithms(registry);
   for (const auto& algorithm : registry.all()) {
@@ -100,8 +106,11 @@ class NewFolder {
       : target_(target.has_filename() ? target : target.parent_path()), unfinished_(free(target_)) {}
 
   void write(const std::string& file, const std::string& text) const {
+    std::filesystem::create_directories((unfinished_.path() / file).parent_path());
     write_file_atomically(unfinished_.path() / file, text);
   }
+
+  const Path& path() const { return unfinished_.path(); }
 
   void commit() { unfinished_.commit(free(target_)); }
 
@@ -118,9 +127,49 @@ class NewFolder {
   PrivateFolder unfinished_;
 };
 
+/// The revision of sixdof that a job of continuous integration builds: this program's.
+std::string own_revision() {
+  for (const auto& [key, value] : build_info()) {
+    if (key == "commit" && !value.empty() && value != "unknown") return value;
+  }
+  return fmt::format("v{}", SIXDOF_VERSION);
+}
+
+/// The script that judges a change, and the job that calls it, as (template, place in the project).
+Words ci_files(const std::string& ci) {
+  return {{"gate.in", "ci/gate"},
+          {ci + ".yml.in", ci == "github" ? ".github/workflows/sixdof-gate.yml" : ".gitlab-ci.yml"}};
+}
+
+/// Writes them into a folder, nothing if one of them is there. @throws BadArgument, BadFile
+void write_ci(const std::string& name, const std::string& ci, const Path& project) {
+  const Words words{{"NAME", name}, {"REVISION", own_revision()}};
+  std::error_code ignored;
+  for (const auto& [from, to] : ci_files(ci)) {
+    if (std::filesystem::exists(std::filesystem::symlink_status(project / to, ignored))) {
+      throw BadArgument(fmt::format("{}: exists already, and is not overwritten", (project / to).string()));
+    }
+  }
+  for (const auto& [from, to] : ci_files(ci)) {
+    std::filesystem::create_directories((project / to).parent_path());
+    write_file_atomically(project / to, fill_in(data_folder() / "bench" / "new_algorithm" / "ci" / from, words));
+  }
+  using enum std::filesystem::perms;
+  std::filesystem::permissions(project / "ci" / "gate", owner_exec | group_exec | others_exec,
+                               std::filesystem::perm_options::add);
+}
+
 void write_project(const Arguments& arguments) {
   const std::string& name = arguments.name;
-  check_name(name);
+  check_form(name);
+  const Path there = arguments.output;
+  if (!arguments.ci.empty() && !there.empty() && std::filesystem::exists(there / "CMakeLists.txt")) {
+    write_ci(name, arguments.ci, there);
+    fmt::print("{0}: gained ci/gate and a job that calls it. Both build {1}-bench and {1}-sixdof, in .sixdof/\n",
+               there.string(), name);
+    return;
+  }
+  check_is_new(name);
   const Path templates = data_folder() / "bench" / "new_algorithm";
   const std::string stem = file_stem(name);
   const Root root = find_root();
@@ -131,6 +180,10 @@ void write_project(const Arguments& arguments) {
   folder.write("README.md", fill_in(templates / "README.md.in", words));
   folder.write(stem + ".cpp", fill_in(templates / "algorithm.cpp.in", words));
   folder.write(stem + "_conformance.cpp", fill_in(templates / "conformance.cpp.in", words));
+  if (!arguments.ci.empty()) {
+    write_ci(name, arguments.ci, folder.path());
+    folder.write(".gitignore", "/.sixdof/\n/build/\n");
+  }
   folder.commit();
   fmt::print(
       "{0}: a project with the algorithm {1}. It uses {2}\n"
@@ -156,6 +209,13 @@ void add_new_algorithm_command(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "The folder to make, which must not exist")
       ->type_name("FOLDER")
       ->default_str("NAME");
+  command
+      ->add_option(
+          "--ci", arguments->ci,
+          "Also ci/gate, which judges a change (sixdof gate), and a job that calls it; into a FOLDER that has a "
+          "CMakeLists.txt only these")
+      ->type_name("SERVICE")
+      ->check(CLI::IsMember({"github", "gitlab"}));
   command->callback([arguments] { write_project(*arguments); });
   add_examples(*command, "sixdof new-algorithm fast-boxes", "sixdof new-algorithm fast-boxes -o my-project");
 }

@@ -69,5 +69,14 @@ TEST_F(Compare, FailsOnAnswersOnRequest) {
             "### 0 answers changed in 30 common rows; 0 rows only before, 0 only after; 0 versions differ\n");
 }
 
+TEST_F(Compare, TakesATolerance) {
+  const std::string before = write("before.json", 0.0), after = write("after.json", 0.5);
+  // The largest error grows by 7 times itself, by 0.875 of the larger.
+  EXPECT_EQ(compare(before + " " + after + " --fail-on-answers --tolerance 0.9").exit_code, 0);
+  EXPECT_EQ(compare(before + " " + after + " --fail-on-answers --tolerance 0.8").exit_code, k_exit_defects);
+  const Json found = Json::parse(compare(before + " " + after + " --json").out);
+  for (const Json& each : found.at("answers")) EXPECT_EQ(each.at("worse"), true) << each;
+}
+
 }  // namespace
 }  // namespace sixdof

@@ -59,6 +59,35 @@ TEST_F(NewAlgorithm, WritesAProjectUnderItsName) {
   for (const std::string& text : {build, source, readme, conformance}) EXPECT_THAT(text, Not(HasSubstr("@")));
 }
 
+TEST_F(NewAlgorithm, WritesTheJobOfAService) {
+  for (const auto& [ci, job] :
+       {std::pair("github", ".github/workflows/sixdof-gate.yml"), {"gitlab", ".gitlab-ci.yml"}}) {
+    const std::string project = path(ci);
+    ASSERT_EQ(run("fast-boxes --ci " + std::string(ci) + " -o " + project).exit_code, 0);
+    const std::string script = text_of(std::filesystem::path(project) / "ci/gate"),
+                      text = text_of(std::filesystem::path(project) / job);
+    EXPECT_THAT(script,
+                AllOf(HasSubstr("fast-boxes-sixdof\" gate "), Not(HasSubstr("@NAME@")), Not(HasSubstr("@REVISION@"))));
+    EXPECT_THAT(text, AllOf(HasSubstr("ci/gate --base"), HasSubstr("@sha256:"), Not(HasSubstr("@REVISION@"))));
+    EXPECT_EQ(std::filesystem::status(project + "/ci/gate").permissions() & std::filesystem::perms::owner_exec,
+              std::filesystem::perms::owner_exec);
+    EXPECT_TRUE(std::filesystem::exists(project + "/fast_boxes.cpp"));
+  }
+  EXPECT_EQ(run("fast-boxes --ci travis -o " + path("other")).exit_code, k_exit_usage);
+}
+
+TEST_F(NewAlgorithm, AddsAJobToAProjectThatIsThere) {
+  std::filesystem::create_directory(path("there"));
+  std::ofstream(path("there/CMakeLists.txt")) << "mine";
+  ASSERT_EQ(run("exact --ci gitlab -o " + path("there")).exit_code, 0) << "its algorithm may have any name";
+  EXPECT_EQ(text_of(path("there/CMakeLists.txt")), "mine");
+  EXPECT_THAT(text_of(path("there/ci/gate")), HasSubstr("exact-bench"));
+  const auto again = run("exact --ci github -o " + path("there"));
+  EXPECT_EQ(again.exit_code, k_exit_error);
+  EXPECT_THAT(again.err, HasSubstr("ci/gate: exists already, and is not overwritten"));
+  EXPECT_FALSE(std::filesystem::exists(path("there/.github")));
+}
+
 TEST_F(NewAlgorithm, OverwritesNothing) {
   std::filesystem::create_directory(path("there"));
   std::ofstream(path("file")) << "mine";

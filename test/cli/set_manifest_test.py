@@ -13,6 +13,7 @@ import tempfile
 JOBS = {
     "both": "--a bumpy-sphere-200 --b torus-knot-600 --grid 90 --volume-grid 90/60 --distances 5,0:2 --volumes 2",
     "distances": "--a torus-knot-600 --grid so3:5:4 --distances 7 --method advance --oracle exact",
+    "portable": "--a mesh.ply --grid 90 --distances 3 --no-absolute-paths",
     "volumes": "--a bumpy-sphere-200 --grid 90 --volumes 0.5,1:3,2.5",
 }
 
@@ -28,8 +29,10 @@ def main():
             return subprocess.run([sys.executable, "-B", script, "--program", sixdof, *options, str(folder)],
                                   capture_output=True, text=True)
 
+        for place in (folder, again):
+            subprocess.run([sixdof, "models", "make", "torus-200", "-o", str(place / "mesh.ply")], check=True, capture_output=True)
         for stem, job in JOBS.items():
-            subprocess.run([sixdof, "generate", *job.split(), "-o", str(folder / f"{stem}.h5")], check=True,
+            subprocess.run([sixdof, "generate", *job.split(), "-o", str(folder / f"{stem}.h5")], check=True, cwd=folder,
                            capture_output=True)
         assert manifest().returncode == 0
         sets = json.loads((folder / "manifest.json").read_text())["sets"]

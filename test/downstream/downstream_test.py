@@ -145,6 +145,59 @@ class Installed(Project):
         self.check_printed_commands(folder / "build")
         self.check_lists(folder / "build" / "fast-boxes-sixdof", "fast-boxes", r"^0\.1\.0 ")
 
+    def heavier(self, source, turns, by="asm volatile(\"\" : : \"r\"(i))"):
+        """The template's algorithm with so many turns of an empty loop in every query."""
+        return source.replace("    return gap(X_AB) <= 0.0;", f"    for (long i = 0; i < {turns}; ++i) {by};\n    return gap(X_AB) <= 0.0;").replace(
+            "    return sixdof::Separation{", f"    for (long i = 0; i < {turns}; ++i) {by};\n    return sixdof::Separation{{")
+
+    def judge_commit(self, clone, source, *options):
+        """Exit code and words of ci/gate, in a clone, of a change against the first commit."""
+        (clone / "fast_boxes.cpp").write_text(source)
+        environment = {**os.environ, "SIXDOF": str(ARGUMENTS.installed), "SIXDOF_WORK": str(ARGUMENTS.work / "gate-work")}
+        given = dict(word.removeprefix("-D").split("=", 1) for word in ARGUMENTS.cmake)
+        for variable, option in (("CXX", "CMAKE_CXX_COMPILER"), ("CXXFLAGS", "CMAKE_CXX_FLAGS"),
+                                 ("CMAKE_CXX_COMPILER_LAUNCHER", "CMAKE_CXX_COMPILER_LAUNCHER")):
+            if given.get(option):
+                environment[variable] = given[option]
+        for name in ("SIXDOF_DATA", "SIXDOF_MODELS"):
+            environment.pop(name, None)
+        done = subprocess.run(["ci/gate", "--base", "first", *options], cwd=clone, env=environment, capture_output=True, text=True,
+                              check=False)
+        return done.returncode, done.stdout + done.stderr[-3000:]
+
+    def test_gate_of_a_new_algorithm(self):
+        """The script that continuous integration runs, in a fresh clone: what it calls red and what not."""
+        if any("-fsanitize" in word for word in ARGUMENTS.cmake):
+            self.skipTest("times and instructions of sanitized programs mean nothing")
+        origin, clone = ARGUMENTS.work / "gate-origin", ARGUMENTS.work / "gate-clone"
+        for folder in (origin, clone, ARGUMENTS.work / "gate-work"):
+            shutil.rmtree(folder, ignore_errors=True)
+        run(ARGUMENTS.installed / "bin" / "sixdof", "new-algorithm", "fast-boxes", "--ci", "github", "-o", origin)
+        base = self.heavier((origin / "fast_boxes.cpp").read_text(), 4000)
+        (origin / "fast_boxes.cpp").write_text(base)
+        git = ["git", "-c", "user.name=test", "-c", "user.email=test@example.org"]
+        for words in (["init", "--quiet"], ["add", "."], ["commit", "--quiet", "-m", "first"], ["tag", "first"]):
+            run(*git, *words, cwd=origin)
+        run("git", "clone", "--quiet", origin, clone)
+        template = base.replace("i < 4000;", "i < TURNS;")
+        exact_ones = ["--stages", "answers,work"]
+        wrong = base.replace("return gap(X_AB) <= 0.0;", "return gap(X_AB) <= 0.0 && X_AB.t.x() < 0.9;")
+        lost = base.replace("    return sixdof::Separation{", "    if (X_AB.t.x() > 0.9) return fail(sixdof::Status::failed, \"lost\");\n"
+                            "    return sixdof::Separation{")
+        cases = [("unchanged", base, ["--fail-above", "25"], 0, "gate: green"), ("wrong", wrong, exact_ones, 3, "RED      answers: collide/"),
+                 ("lost", lost, exact_ones, 3, "lost: failed 0 -> "),
+                 ("time", template.replace("TURNS", "5400"), ["--stages", "answers,time"], 3, "RED      time: ")]
+        if shutil.which("valgrind"):
+            cases.append(("instructions", template.replace("TURNS", "4130"), ["--stages", "instructions"], 3, "RED      instructions: "))
+        for name, source, options, expected, words in cases:
+            with self.subTest(name):
+                self.assertNotEqual(source == base, name != "unchanged", "the fault is planted")
+                code, said = self.judge_commit(clone, source, *options)
+                self.assertEqual(code, expected, said)
+                self.assertIn(words, said)
+        for file in ("gate.md", "gate.xml", "gate.json"):
+            self.assertTrue((ARGUMENTS.work / "gate-work" / "out" / file).is_file())
+
     def test_program_of_the_readme(self):
         """What README.md says of the library: its C++ program with its two lines of CMake."""
         readme = (ARGUMENTS.source / "README.md").read_text()

@@ -1,5 +1,6 @@
 #include <sixdof/results/difference.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,32 @@ TEST(Differences, AreRowsOfOneSideAndErrors) {
   EXPECT_THAT(texts(found), ElementsAre("error: none -> it broke"));
   EXPECT_THAT(found.only_before, ElementsAre(row("y").at("name")));
   EXPECT_THAT(found.only_after, ElementsAre(row("z").at("name")));
+}
+
+TEST(Differences, AreBeyondTheToleranceThatIsGiven) {
+  Results results;
+  parse_results(test::file_of({row("x", {{"error_max", 1.0}, {"error_rms", 1.0}})}), "before.json", results);
+  parse_results(test::file_of({row("x", {{"error_max", 1.009}, {"error_rms", 1.02}})}), "after.json", results);
+  EXPECT_THAT(texts(differences(results, row_groups(results), 0, 1, 0.01)), ElementsAre("error_rms: 1 -> 1.02"));
+  EXPECT_EQ(differences(results, row_groups(results), 0, 1).changed_answers(), 2u);
+}
+
+TEST(Differences, AreWorseByTheDirectionOfTheirMetric) {
+  const auto verdict = [](const char* counter, std::optional<double> before, std::optional<double> after) {
+    const auto range = [](std::optional<double> value) {
+      return value ? std::optional(Range{*value, *value}) : std::nullopt;
+    };
+    return is_worse({"row", counter, MetricKind::answer, range(before), range(after)});
+  };
+  EXPECT_EQ(verdict("mismatch", 0.0, 1.0), true);
+  EXPECT_EQ(verdict("mismatch", 2.0, 1.0), false);
+  EXPECT_EQ(verdict("crashed", std::nullopt, 1.0), true) << "absent for none";
+  EXPECT_EQ(verdict("fill_a", 0.9, 0.8), true) << "higher is better";
+  EXPECT_EQ(verdict("nu_F", 1.1, 0.8), true) << "nearer to 1 is better";
+  EXPECT_EQ(verdict("gain_F", 1.0, 2.0), std::nullopt) << "describes";
+  EXPECT_EQ(verdict("of_no_metric", 1.0, 2.0), std::nullopt);
+  EXPECT_EQ(is_worse({"row", "error", MetricKind::answer, {}, {}, "", "it broke"}), true);
+  EXPECT_EQ(is_worse({"row", "error", MetricKind::answer, {}, {}, "it broke", ""}), false);
 }
 
 TEST(Differences, AreVersionsAndSettings) {

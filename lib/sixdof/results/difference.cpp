@@ -39,7 +39,8 @@ std::optional<Range> range_of(const Ranges& ranges, const std::string& name) {
   return found == ranges.end() ? std::nullopt : std::optional(found->second);
 }
 
-void compare(const std::string& row, const RowGroup& before, const RowGroup& after, std::vector<Difference>& found) {
+void compare(const std::string& row, const RowGroup& before, const RowGroup& after, double relative,
+             std::vector<Difference>& found) {
   const std::string error_before = error_of(before), error_after = error_of(after);
   if (!error_before.empty() || !error_after.empty()) {
     if (error_before != error_after) {
@@ -50,7 +51,7 @@ void compare(const std::string& row, const RowGroup& before, const RowGroup& aft
   const Ranges left = ranges_of(before), right = ranges_of(after);
   const auto compare_value = [&](const std::string& name) {
     const auto a = range_of(left, name), b = range_of(right, name);
-    const bool is_other = a && b ? differ(*a, *b) : a.has_value() != b.has_value();
+    const bool is_other = a && b ? differ(*a, *b, relative) : a.has_value() != b.has_value();
     if (is_other) found.push_back({row, name, kind_of(name), a, b});
     return is_other;
   };
@@ -95,11 +96,11 @@ std::string text_of(const std::optional<Range>& range, const std::string& error,
 
 }  // namespace
 
-bool differ(const Range& before, const Range& after) {
+bool differ(const Range& before, const Range& after, double relative) {
   const double gap = std::max(after.least - before.largest, before.least - after.largest);
   const double size =
       std::max({std::abs(before.least), std::abs(before.largest), std::abs(after.least), std::abs(after.largest)});
-  return gap > k_rounding + k_relative_rounding * size || !std::isfinite(size);
+  return gap > k_rounding + relative * size || !std::isfinite(size);
 }
 
 std::string to_string(const Difference& difference) {
@@ -112,12 +113,22 @@ std::string to_string(const Difference& difference) {
   return before + " -> " + after;
 }
 
+std::optional<bool> is_worse(const Difference& difference) {
+  if (difference.counter == "error") return !difference.error_after.empty();
+  const Metric* const metric = find_metric(difference.counter);
+  if (metric == nullptr) return std::nullopt;
+  const double before = difference.before ? difference.before->largest : 0.0;
+  const double after = difference.after ? difference.after->largest : 0.0;
+  if (is_better(metric->better, before, after)) return true;
+  return is_better(metric->better, after, before) ? std::optional(false) : std::nullopt;
+}
+
 std::size_t Differences::changed_answers() const {
   return static_cast<std::size_t>(std::ranges::count(values, MetricKind::answer, &Difference::kind));
 }
 
-Differences differences(const Results& results, std::span<const RowGroup> groups, std::size_t before,
-                        std::size_t after) {
+Differences differences(const Results& results, std::span<const RowGroup> groups, std::size_t before, std::size_t after,
+                        double relative) {
   Differences found{.versions = changed_versions(results.files[before], results.files[after]),
                     .only_before = {},
                     .only_after = {},
@@ -133,7 +144,7 @@ Differences differences(const Results& results, std::span<const RowGroup> groups
     } else if (sides[1] == nullptr) {
       found.only_before.push_back(name);
     } else {
-      compare(name, *sides[0], *sides[1], found.values);
+      compare(name, *sides[0], *sides[1], relative, found.values);
       ++found.common_rows;
     }
   }

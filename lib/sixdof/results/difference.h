@@ -22,8 +22,8 @@ struct Range {
   double least = 0.0, largest = 0.0;
 };
 
-/// Whether two ranges are further apart than rounding.
-bool differ(const Range& before, const Range& after);
+/// Whether two ranges are further apart than rounding and `relative`, a share of the larger.
+bool differ(const Range& before, const Range& after, double relative = k_relative_rounding);
 
 /// One value of a row that both files have.
 struct Difference {
@@ -35,6 +35,10 @@ struct Difference {
 
 /// "0.2 -> 0.3", "0.2 to 0.3 -> none", or words of errors; with as many digits as tell the sides apart.
 std::string to_string(const Difference& difference);
+
+/// Whether the later side is worse, by the direction of its metric or by an error that the earlier side does not have.
+/// A value that a side lacks counts as 0. Empty for a metric without a direction, and for a counter without a metric.
+std::optional<bool> is_worse(const Difference& difference);
 
 /// Of the context: what a result depends on besides the machine's load.
 struct Changed {
@@ -53,7 +57,8 @@ struct Differences {
 };
 
 /// @param groups those of `results`; @param before, after files
-Differences differences(const Results& results, std::span<const RowGroup> groups, std::size_t before,
-                        std::size_t after);
+/// @param relative numbers that differ by no more than this share of the larger are the same
+Differences differences(const Results& results, std::span<const RowGroup> groups, std::size_t before, std::size_t after,
+                        double relative = k_relative_rounding);
 
 }  // namespace sixdof::results
