@@ -127,6 +127,11 @@ class Setup(unittest.TestCase):
                 pinned = re.split(r"\n(?=\S)", text.strip())
                 self.assertTrue(all("==" in each and "--hash=sha256:" in each for each in pinned), name)
 
+    def test_the_page_has_an_adapter_of_thirty_lines(self):
+        adapter = (RIVALS / "vtk/adapter.py").read_text()
+        self.assertIn(f"```python\n{adapter}```", (RIVALS / "ADAPTERS.md").read_text())
+        self.assertLessEqual(len(adapter.splitlines()), 30)
+
 
 if __name__ == "__main__":
     unittest.main()
