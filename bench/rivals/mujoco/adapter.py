@@ -21,8 +21,11 @@ def compile_pair(a, b, settings):
     kind = mujoco.mjtGeom.mjGEOM_SDF if SDF else mujoco.mjtGeom.mjGEOM_MESH
     body = spec.worldbody.add_body()
     body.add_freejoint()
+    # Only geometry is asked for: a small body must not be refused for its mass or volume.
+    body.explicitinertial, body.mass, body.inertia = True, 1.0, [1.0, 1.0, 1.0]
     for name, mesh, parent in (("a", a, spec.worldbody), ("b", b, body)):
-        spec.add_mesh(name=name, uservert=mesh.vertices.ravel().tolist(), userface=mesh.triangles.ravel().tolist())
+        spec.add_mesh(name=name, uservert=mesh.vertices.ravel().tolist(), userface=mesh.triangles.ravel().tolist(),
+                      inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
         parent.add_geom(name=name, type=kind, meshname=name)
     if SDF:
         spec.option.sdf_initpoints = int(settings["initpoints"])
