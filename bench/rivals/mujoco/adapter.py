@@ -16,7 +16,16 @@ import sixdof_rival
 SDF = sys.argv[1:] == ["sdf"]
 
 
+def is_closed(mesh):
+    """Every edge belongs to two triangles: else there is no inside."""
+    edges = numpy.sort(mesh.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    return bool((numpy.unique(edges, axis=0, return_counts=True)[1] == 2).all())
+
+
 def compile_pair(a, b, settings):
+    for mesh in (a, b) if SDF else ():
+        if not is_closed(mesh):
+            raise sixdof_rival.BadMesh(f"{mesh.name}: not closed, so it has no signed distance")
     spec = mujoco.MjSpec()
     kind = mujoco.mjtGeom.mjGEOM_SDF if SDF else mujoco.mjtGeom.mjGEOM_MESH
     body = spec.worldbody.add_body()
