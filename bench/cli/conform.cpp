@@ -15,6 +15,7 @@
 #include <sixdof/conformance/checks.h>
 #include <sixdof/conformance/declared.h>
 #include "bench/cli/commands.h"
+#include "bench/cli/rival_claims.h"
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
 #include "bench/common/json_text.h"
@@ -39,8 +40,9 @@ constexpr const char* k_details =
     "Claims: collide=surfaces|bodies (yes/no where one body is inside the other), open_meshes=yes|no, and the largest "
     "errors distance_error, witness_error, volume_error, force_degrees, order_error, motion_error, scale_error, "
     "repeat_error: a number, or none. Without them an algorithm is held to the claims of an exact one that sees "
-    "surfaces; those of sixdof's own algorithms and adapters are known. lib/sixdof/conformance/README.md has the "
-    "checks and units, lib/sixdof/query/README.md the rules.\n\n"
+    "surfaces; those of sixdof's own algorithms and adapters are known, those of rivals stand in their recipes. An "
+    "algorithm about convex hulls is asked about hulls. lib/sixdof/conformance/README.md has the checks and units, "
+    "lib/sixdof/query/README.md the rules.\n\n"
     "An algorithm in this process that crashes ends the command; with --isolate that is a failed check.";
 
 struct Options {
@@ -50,12 +52,10 @@ struct Options {
 };
 
 /// Those that are named; else those that were added to this program's own; else those of default runs.
-/// @throws BadArgument for an algorithm that does not exist, or whose right answers are not known
+/// @throws BadArgument for an algorithm that does not exist
 std::vector<const Algorithm*> chosen_algorithms(const Registry& registry, const std::vector<std::string>& added,
                                                 const Options& options) {
-  const auto suits = [](const Traits& traits) { return traits.body == Body::mesh; };
-  std::vector<std::string> names =
-      options.algorithms.empty() ? added : with_rivals(options.algorithms, registry, suits);
+  std::vector<std::string> names = options.algorithms.empty() ? added : with_rivals(options.algorithms, registry);
   if (names.empty()) {
     for (const auto& algorithm : registry.all()) {
       // `null` answers with constants.
@@ -66,10 +66,6 @@ std::vector<const Algorithm*> chosen_algorithms(const Registry& registry, const 
   std::vector<const Algorithm*> chosen;
   for (const std::string& name : names) {
     const Algorithm& algorithm = registry.find(name);
-    if (algorithm.traits().body != Body::mesh) {
-      throw BadArgument(fmt::format("{} answers for the {} of the meshes; the true answers for these are not known",
-                                    name, to_string(algorithm.traits().body)));
-    }
     if (std::ranges::find(chosen, &algorithm) == chosen.end()) chosen.push_back(&algorithm);
   }
   return chosen;
@@ -105,7 +101,8 @@ std::vector<Assignment> parse_assignments(const char* option, const std::vector<
 Declaration declaration_for(const Algorithm& algorithm, const std::vector<Assignment>& parameters,
                             const std::vector<Assignment>& claims, const std::vector<Assignment>& known_failures) {
   const std::string& name = algorithm.traits().name;
-  Declaration declaration = conformance::declaration_of(name);
+  Declaration declaration =
+      algorithm.traits().is_rival() ? declaration_of_rival(rivals_folder(), name) : conformance::declaration_of(name);
   for (const Assignment& each : parameters) {
     if (each.algorithm == name) declaration.settings.push_back(fmt::format("{}={}", each.name, each.value));
   }

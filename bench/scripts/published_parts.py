@@ -22,10 +22,14 @@ KEPT = ["name", "run_name", "run_type", "sixdof", "error_occurred", "error_messa
         "jump_T", "loop_work", "lag", "steps"]
 DIGITS = 4  # Significant digits of the numbers that are kept.
 FCL = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts"]
+# Rivals whose queries take milliseconds or less, and those that take up to seconds on large meshes.
+FAST_RIVALS = ["coal", "drake", "jolt", "mujoco", "python-fcl", "vtk"]
+SLOW_RIVALS = ["manifold", "mujoco-sdf", "parry", "three-mesh-bvh"]
 APPROXIMATE = ["ist", "ist-descent", "vps", "vps-field"]
 # GTS is left out: it ends with an assertion at many poses of the paths.
 ALONG_PATHS = ["exact", "fcl-contacts", "bullet-gimpact", "ode", "simbody", *APPROXIMATE]
 SETS = ["elephant", "bunny", "armadillo", "ship", "torus-knot-1m"]
+FOUR_PAIRS = ["elephant", "bunny", "ship", "torus-knot-1m"]
 SCENES = ["cube", "pairs", "pile", "robot", "dust", "still", "all-move", "giant", "clusters", "shuffled"]
 LARGE_SCENES = ["cube", "shuffled", "dust"]
 GENERATED = "elephant|bunny|torus-knot-(10k|100k|1m)"
@@ -72,6 +76,21 @@ def object_steps(script, minutes, *words, algorithms=("exact", *FCL, "bullet-gim
                  [f"bench/scripts/{script}", *folder, "--jobs", "2", "--grid", "so3:4:2", "--sample", "8", *words, "--algorithms",
                   algorithms, "--budget", f"{minutes}min"], minutes),
             Step(f"{script}/tables.txt", [f"bench/scripts/{script}", *folder, "--report"], 0.1, prints=True)]
+
+
+def rival_steps():
+    """Two poses of a bucket are enough where a query takes seconds: 5 to 10 of them are asked of each pose."""
+    slow = (f"^(collide|distance|respond)/algorithm:({'|'.join(['exact', *SLOW_RIVALS])})/"
+            f"pair:({'|'.join(FOUR_PAIRS)})/(distance|volume):05$")
+    tuned = "^(collide|distance)/algorithm:(exact|coal)/|^respond/algorithm:(exact|parry)/pair:elephant/volume:05$"
+    fast = "|".join(["exact", "fcl-obbrss", "fcl-rss", *FAST_RIVALS])
+    return [rows("rivals.json", 9, "--suite", "all-algorithms", f"--benchmark_filter=algorithm:({fast})/", "--sample", "200",
+                 "--budget", "480"),
+            rows("slow.json", 6, f"--benchmark_filter={slow}", "--sample", "2", "--benchmark_min_time=0.001"),
+            rows("tuned.json", 5, "--suite", "all-algorithms", f"--benchmark_filter={tuned}", "-p", "rivals:profile=tuned",
+                 "--sample", "200", "--budget", "240"),
+            *object_steps("collection", 14, "--partners", "self", "--most-triangles", "30000", "--distances", "1,5",
+                          "--volumes", "5", "--sample", "4", algorithms=("exact", "fcl-obbrss", "fcl-rss", "rivals"))]
 
 
 def scene_steps():
@@ -136,12 +155,7 @@ def parts():
         Part("collection", "every algorithm on the objects of the collection",
              object_steps("collection", 25, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10")),
         Part("rivals", "what bench/rivals/setup has made ready, on four pairs and the collection",
-             [rows("rivals.json", 30, "--suite", "all-algorithms", "--benchmark_filter=algorithm:(exact|fcl-rss|rivals)/",
-                   "--sample", "200", "--budget", "1800"),
-              rows("tuned.json", 15, "--suite", "all-algorithms", "--benchmark_filter=algorithm:(exact|rivals)/", "-p",
-                   "rivals:profile=tuned", "--sample", "200", "--budget", "900"),
-              *object_steps("collection", 30, "--partners", "self", "--distances", "0,1,5,20", "--volumes", "1,10",
-                            algorithms=("exact", "rivals"))], setup=("bench/rivals/setup",)),
+             rival_steps(), setup=("bench/rivals/setup",)),
     ]
 
 

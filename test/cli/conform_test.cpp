@@ -1,5 +1,6 @@
 // sixdof conform, as a user types it. test/conformance/ has an adapter with just one error for each check.
 
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -71,6 +72,52 @@ TEST_F(Conform, HoldsAnExternalProgramToItsClaims) {
   EXPECT_EQ(broken.err, "sixdof: these checks failed: CollideOfContained of mine\n");
   EXPECT_THAT(broken.out, HasSubstr("  failed         CollideOfContained: yes instead of no: one body is inside the "
                                     "other, and yes/no is claimed for surfaces (and "));
+}
+
+/// `exact` as a rival that is set up. @param hello more of its greeting, @param conformance of its recipe
+std::string rival(const std::filesystem::path& folder, const std::string& hello, const std::string& conformance) {
+  std::filesystem::create_directories(folder / "ready");
+  std::ofstream(folder / "ready/mine.json")
+      << R"({"name": "mine", "command": ")" SIXDOF_PROGRAM R"( --serve-algorithm exact", "runtime": "native",)"
+      << R"( "licence": "none", "hello": {"protocol": 1, "name": "mine", "version": "1", "summary": "s",)"
+      << R"( "answers": ["collide", "distance", "respond"], "law": "volume")" << hello << R"(}, "conformance": )"
+      << conformance << "}";
+  return "env SIXDOF_RIVALS=" + folder.string() + " " SIXDOF_PROGRAM " conform --algorithms rivals ";
+}
+
+TEST_F(Conform, TakesClaimsOfARivalFromItsRecipe) {
+  const auto asked = [&](const std::string& conformance) {
+    return test::run_program("cd " + folder().string() + " && " + rival(folder() / "rivals", "", conformance) +
+                             "--checks CollideOfContained,Distance");
+  };
+  const auto kept = asked(R"({"claims": {"collide": "bodies"}})");
+  EXPECT_EQ(kept.exit_code, 0) << kept.out << kept.err;
+  const auto known = asked(R"({"known_failures": [{"check": "CollideOfContained", "reason": "it sees bodies"}]})");
+  EXPECT_EQ(known.exit_code, 0) << known.err;
+  EXPECT_THAT(known.out, HasSubstr("  known failure  CollideOfContained: it sees bodies\n"));
+  EXPECT_EQ(asked("{}").exit_code, k_exit_defects);
+  const auto other = asked(R"({"claims": {"colide": "bodies"}})");
+  EXPECT_EQ(other.exit_code, k_exit_error);
+  EXPECT_THAT(other.err, HasSubstr("ready/mine.json: claim colide: no such claim"));
+}
+
+TEST_F(Conform, AsksAlgorithmsAboutHullsAboutHulls) {
+  const std::string command =
+      "cd " + folder().string() + " && " +
+      rival(folder() / "rivals", R"(, "body": "convex_hull")", R"({"claims": {"collide": "bodies"}})");
+  const auto right = test::run_program(command);
+  EXPECT_EQ(right.exit_code, 0) << right.out << right.err;
+  EXPECT_THAT(right.out, HasSubstr("  not answered   OpenSurfaces: a hull is closed, whatever its mesh\n"));
+  std::ofstream(path("never.py")) << R"(import json, sys
+for line in sys.stdin:
+    do = json.loads(line)["do"]
+    print(json.dumps({"protocol": 1, "name": "never", "version": "1", "answers": ["collide"], "body": "convex_hull"}
+                     if do == "hello" else {"prepared": True} if do == "prepare" else {"collide": False, "ns": 1}),
+          flush=True)
+)";
+  const auto wrong = run("--external 'never=python3 never.py' --checks Collide");
+  EXPECT_EQ(wrong.exit_code, k_exit_defects);
+  EXPECT_THAT(wrong.out, HasSubstr("  failed         Collide: no instead of yes: "));
 }
 
 TEST_F(Conform, AKnownFailureMustFail) {

@@ -24,6 +24,32 @@ using test::number_in;
 using test::text_in;
 using ::testing::HasSubstr;
 
+TEST(LibrariesTable, HasTimesRatiosAndFaultsByClass) {
+  const auto timed = [](const char* algorithm, const char* pair, double ns, Json counters) {
+    return test::row("distance", algorithm, pair, "distance", 5.0, ns, std::move(counters));
+  };
+  Json interpreted = timed("fcl-rss", "a", 8000.0, {{"configurations", 10}, {"mismatch", 2}, {"judged", 10}});
+  interpreted["sixdof"]["runtime"] = "python";
+  const Results results = test::results_of({timed("exact", "a", 1000.0, {{"configurations", 10}, {"p99_ns", 4000.0}}),
+                                            timed("exact", "b", 4000.0, {{"configurations", 10}, {"p99_ns", 9000.0}}),
+                                            timed("ode", "a", 9000.0, {{"configurations", 10}}),
+                                            timed("ode", "b", 9000.0, {{"configurations", 10}}), interpreted});
+  const DataTable table = libraries_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 3u);
+  const auto exact = lines_with(table, {{"algorithm", "exact"}}).at(0);
+  EXPECT_NEAR(number_in(table, exact, "mean_us"), 2.0, k_rounding);
+  EXPECT_NEAR(number_in(table, exact, "p99_us"), 6.0, k_rounding);
+  EXPECT_EQ(number_in(table, exact, "pairs"), 2.0);
+  const auto ode = lines_with(table, {{"algorithm", "ode"}}).at(0);
+  EXPECT_NEAR(number_in(table, ode, "over_exact"), 4.5, k_rounding) << "9 and 9/4";
+  EXPECT_EQ(text_in(table, ode, "class"), "native");
+  EXPECT_EQ(number_in(table, ode, "wrong"), 0.0);
+  const auto wrong = lines_with(table, {{"algorithm", "fcl-rss"}}).at(0);
+  EXPECT_EQ(text_in(table, wrong, "class"), "python");
+  EXPECT_EQ(number_in(table, wrong, "wrong"), 2.0);
+  EXPECT_NEAR(number_in(table, wrong, "over_exact"), 8.0, k_rounding);
+}
+
 TEST(TimesTable, LineForEveryStatistic) {
   const Results results = test::results_of({test::row("distance", "exact", "bunny", "distance", 5.0, 2000.0,
                                                       {{"p999_ns", 7000.0}, {"p10_ns", 1500.0}, {"p90_ns", 2500.0}})});

@@ -116,6 +116,8 @@ class Loop(unittest.TestCase):
         self.assertEqual(self.program.ask("respond", pose(0.5))["status"], "unsupported")
         self.assertEqual(self.program.ask("distance", pose("nan"))["status"], "non_finite")
         self.assertEqual(self.program.ask("distance", pose("-inf"))["status"], "non_finite")
+        self.assertEqual(self.program.ask("collide", pose("nan"))["status"], "non_finite", "no answer is made up")
+        self.assertEqual([each[:2] for each in self.time([pose("inf")], query="collide")["failed"]], [[0, "non_finite"]])
         self.assertIn("distance", self.program.ask("distance", pose(0.5)))
 
     def test_what_a_library_prints_is_no_reply(self):

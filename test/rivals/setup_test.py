@@ -55,6 +55,18 @@ class Setup(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn("no-such-library", done.stderr)
 
+    def test_older_releases(self):
+        setup = load_setup(RIVALS)
+        older = setup.recipe("coal==3.0.1")
+        self.assertEqual((older["version"], older["licence"]), ("3.0.1", RECIPES["coal"]["licence"]))
+        pinned = (RIVALS / "coal" / older["requirements"]).read_text()
+        self.assertIn("\ncoal==3.0.1 ", pinned)
+        self.assertNotEqual(setup.fingerprint("coal==3.0.1"), setup.fingerprint("coal"))
+        done = self.run_setup("coal==9")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("coal==9; there are", done.stderr)
+        self.assertIn("coal==3.0.1", done.stderr)
+
     def test_missing_programs(self):
         for name, program in (("parry", "cargo"), ("jolt", "node")):
             done = self.run_setup(name)
@@ -126,6 +138,11 @@ class Setup(unittest.TestCase):
                 text = (RIVALS / name / "requirements.txt").read_text()
                 pinned = re.split(r"\n(?=\S)", text.strip())
                 self.assertTrue(all("==" in each and "--hash=sha256:" in each for each in pinned), name)
+
+    def test_the_page_has_an_adapter_of_thirty_lines(self):
+        adapter = (RIVALS / "vtk/adapter.py").read_text()
+        self.assertIn(f"```python\n{adapter}```", (RIVALS / "ADAPTERS.md").read_text())
+        self.assertLessEqual(len(adapter.splitlines()), 30)
 
 
 if __name__ == "__main__":

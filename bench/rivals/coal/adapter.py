@@ -33,6 +33,8 @@ class Query:
         self.tuned = settings["profile"] == "tuned"
         self.at_a = coal.Transform3s.Identity()
         self.collide_request, self.distance_request = coal.CollisionRequest(), coal.DistanceRequest()
+        for request in (self.collide_request, self.distance_request):
+            request.gjk_tolerance = float(settings["gjk_tolerance"])
         if self.tuned:
             self.compute_collision = coal.ComputeCollision(self.a, self.b)
             self.compute_distance = coal.ComputeDistance(self.a, self.b)
@@ -79,4 +81,6 @@ sixdof_rival.serve(
     Query, name="coal", version=coal.__version__, answers=["collide", "distance"],
     summary="Coal from Python, trees of OBB and RSS; surfaces only", limits=["collide_of_surfaces"],
     parameters=[sixdof_rival.choice("profile", "requests as constructed, or as Coal's developers advise", "default",
-                                    ["default", "tuned"])])
+                                    ["default", "tuned"]),
+                {"name": "gjk_tolerance", "meaning": "gap at which two triangles touch; Coal's default", "unit": "length",
+                 "default": "1e-06", "low": 1e-15, "high": 1}])

@@ -183,6 +183,7 @@ function processorTime() {
 /** Wall time of a query in ns, and its reply. */
 function timed(query, kind, pose) {
   if (kind === null) return [0, { status: "unsupported", words: "not a question for this algorithm" }];
+  if (!pose.every(Number.isFinite)) return [0, { status: "non_finite", words: "the pose is not finite" }];
   const start = now();
   let answer, failure = null;
   try {

@@ -16,13 +16,25 @@ import sixdof_rival
 SDF = sys.argv[1:] == ["sdf"]
 
 
+def is_closed(mesh):
+    """Every edge belongs to two triangles: else there is no inside."""
+    edges = numpy.sort(mesh.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    return bool((numpy.unique(edges, axis=0, return_counts=True)[1] == 2).all())
+
+
 def compile_pair(a, b, settings):
+    for mesh in (a, b) if SDF else ():
+        if not is_closed(mesh):
+            raise sixdof_rival.BadMesh(f"{mesh.name}: not closed, so it has no signed distance")
     spec = mujoco.MjSpec()
     kind = mujoco.mjtGeom.mjGEOM_SDF if SDF else mujoco.mjtGeom.mjGEOM_MESH
     body = spec.worldbody.add_body()
     body.add_freejoint()
+    # Only geometry is asked for: a small body must not be refused for its mass or volume.
+    body.explicitinertial, body.mass, body.inertia = True, 1.0, [1.0, 1.0, 1.0]
     for name, mesh, parent in (("a", a, spec.worldbody), ("b", b, body)):
-        spec.add_mesh(name=name, uservert=mesh.vertices.ravel().tolist(), userface=mesh.triangles.ravel().tolist())
+        spec.add_mesh(name=name, uservert=mesh.vertices.ravel().tolist(), userface=mesh.triangles.ravel().tolist(),
+                      inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
         parent.add_geom(name=name, type=kind, meshname=name)
     if SDF:
         spec.option.sdf_initpoints = int(settings["initpoints"])

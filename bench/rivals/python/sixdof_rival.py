@@ -225,6 +225,8 @@ def timed(method, kind, pose):
     """Wall time of a query in ns, and its reply."""
     if method is None:
         return 0, {"status": "unsupported", "words": f"does not answer {kind}"}
+    if not all(map(math.isfinite, pose)):  # many libraries answer nevertheless
+        return 0, {"status": "non_finite", "words": "the pose is not finite"}
     start = time.perf_counter_ns()
     try:
         answer = method(pose)

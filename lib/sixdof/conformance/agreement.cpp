@@ -17,7 +17,7 @@ namespace {
 /// check(one of the cases, the answers, where) for all cases of all pairs, each pair prepared once.
 template <class CheckCase>
 void for_each_case(const Subject& subject, Kind kind, Findings& findings, const CheckCase& check) {
-  for (const Pair& pair : pairs()) {
+  for (const Pair& pair : pairs(subject.traits().body)) {
     const auto query = subject.prepare(pair.a, pair.b);
     for (const Case& each : pair.cases) {
       const At at{subject, pair.a, pair.b, each.pose};
@@ -67,7 +67,7 @@ void check_distance(const Subject& subject, Findings& findings) {
 void check_witnesses(const Subject& subject, Findings& findings) {
   if (subject.declared.witness_error == k_no_claim) return findings.has_no_claim("witness_error");
   bool judged = false;
-  for (const Pair& pair : pairs()) {
+  for (const Pair& pair : pairs(subject.traits().body)) {
     const Tree tree_a(pair.a), tree_b(pair.b);
     const auto query = subject.prepare(pair.a, pair.b);
     const double allowed = subject.declared.witness_error * pair.a.diagonal();
@@ -148,6 +148,7 @@ void expect_refusal(const Subject& subject, const Mesh& a, const Mesh& b, Findin
 /// A surface with a border is refused by BadMesh, or yes/no and distance are those of the surface. A response must not
 /// be made up: it needs a closed surface, or contacts of triangles.
 void check_open_surfaces(const Subject& subject, Findings& findings) {
+  if (subject.traits().body == Body::convex_hull) return findings.has_no_answers("a hull is closed, whatever its mesh");
   const Pair pair = open_pair();
   if (!subject.declared.open_meshes) {
     expect_refusal(subject, pair.a, pair.b, findings);

@@ -26,7 +26,7 @@ void expect_same_wrench(const Response& first, const Response& second, double le
 /// @param compare compare(first answers, second answers, case, changed pair, place of the first, place of the second)
 template <Kind kind, class Change, class Compare>
 void compare_all(const Subject& subject, Findings& findings, const Change& change, const Compare& compare) {
-  for (const Pair& pair : pairs()) {
+  for (const Pair& pair : pairs(subject.traits().body)) {
     const auto changed = change(pair);
     const auto query = subject.prepare(pair.a, pair.b), other = subject.prepare(changed.a, changed.b);
     for (const Case& each : pair.cases) {

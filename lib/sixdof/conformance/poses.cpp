@@ -1,6 +1,7 @@
 #include <sixdof/conformance/poses.h>
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <random>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include <sixdof/models/model_catalogue.h>
 #include <sixdof/models/recipe.h>
+#include <sixdof/oracle/convex_hull.h>
 #include <sixdof/oracle/distance.h>
 #include <sixdof/oracle/overlap.h>
 
@@ -113,23 +115,30 @@ Mesh small(const std::string& model, double factor) {
   return scaled(load_model(model), factor).renamed("small " + model);
 }
 
-std::vector<Pair> make_pairs() {
+/// @param made of each body, what a pair has of it
+std::vector<Pair> make_pairs(const std::function<Mesh(Mesh)>& made) {
+  const auto model = [&](const std::string& name) { return made(load_model(name)); };
   // Few triangles: brute force asks all of them, too.
   std::vector<Pair> list;
-  list.push_back(with_cases(load_model("torus-300"), load_model("cone-100"), 11));
-  list.push_back(with_cases(load_model("bumpy-sphere-80"), load_model("circular-box-960"), 12));
-  list.push_back(with_cases(turned_plate(), small("sphere-80", 0.15), 13));
-  list.push_back(with_cases(load_model("circular-box-960"), load_model("torus-100"), 14));
-  list.push_back(with_cases(load_model("torus-knot-600"), load_model("torus-100"), 15));
-  list.push_back(with_one_inside(load_model("sphere-1k"), small("torus-100", 0.22), 16));
-  list.push_back(with_one_inside(small("torus-100", 0.22), load_model("sphere-1k"), 17));
+  list.push_back(with_cases(model("torus-300"), model("cone-100"), 11));
+  list.push_back(with_cases(model("bumpy-sphere-80"), model("circular-box-960"), 12));
+  list.push_back(with_cases(made(turned_plate()), made(small("sphere-80", 0.15)), 13));
+  list.push_back(with_cases(model("circular-box-960"), model("torus-100"), 14));
+  list.push_back(with_cases(model("torus-knot-600"), model("torus-100"), 15));
+  list.push_back(with_one_inside(model("sphere-1k"), made(small("torus-100", 0.22)), 16));
+  list.push_back(with_one_inside(made(small("torus-100", 0.22)), model("sphere-1k"), 17));
   return list;
 }
 
 }  // namespace
 
-const std::vector<Pair>& pairs() {
-  static const std::vector<Pair> list = make_pairs();
+const std::vector<Pair>& pairs(Body body) {
+  if (body == Body::convex_hull) {
+    static const std::vector<Pair> hulls =
+        make_pairs([](const Mesh& mesh) { return convex_hull(mesh).renamed(mesh.name() + " hull"); });
+    return hulls;
+  }
+  static const std::vector<Pair> list = make_pairs([](Mesh mesh) { return mesh; });
   return list;
 }
 

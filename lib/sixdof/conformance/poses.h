@@ -34,7 +34,8 @@ struct Pair {
 /// Pairs of solids of several kinds, each with as many poses apart as overlapping: curved ones, one with sharp edges
 /// and a tip, one of thin beams, a thin plate of large triangles that is turned in its frame, surfaces of high genus;
 /// then a small body inside a large one, and the large one as B. The same in every process.
-const std::vector<Pair>& pairs();
+/// @param body convex_hull: pairs of the hulls of these bodies, each of which is its own hull
+const std::vector<Pair>& pairs(Body body = Body::mesh);
 
 /// A solid, and a surface with a border, with poses apart and overlapping (of the surfaces; volume and force are 0).
 Pair open_pair();

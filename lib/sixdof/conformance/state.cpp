@@ -32,7 +32,7 @@ void expect_all_repeated(const Subject& subject, const Pair& pair, const std::ve
 
 /// No answer to a pose that is not finite, with words; the next pose is answered as before.
 void check_poses_not_finite(const Subject& subject, Findings& findings) {
-  const Pair& pair = pairs().front();
+  const Pair& pair = pairs(subject.traits().body).front();
   const auto query = subject.prepare(pair.a, pair.b);
   const Case& good = pair.cases.front();
   const Answers before = subject.ask(*query, good.pose.X_AB);
@@ -58,7 +58,7 @@ void check_poses_not_finite(const Subject& subject, Findings& findings) {
 }
 
 void check_unsupported(const Subject& subject, Findings& findings) {
-  const Pair& pair = pairs().front();
+  const Pair& pair = pairs(subject.traits().body).front();
   const auto query = subject.prepare(pair.a, pair.b);
   for (const Case& each : pair.cases) {
     for (const Kind kind : k_kinds) {
@@ -74,7 +74,7 @@ void check_unsupported(const Subject& subject, Findings& findings) {
 }
 
 void check_repeated_queries(const Subject& subject, Findings& findings) {
-  for (const Pair& pair : pairs()) {
+  for (const Pair& pair : pairs(subject.traits().body)) {
     const auto query = subject.prepare(pair.a, pair.b);
     const std::vector<Answers> first = ask_all(subject, *query, pair.cases);
     // Other poses come before each than the first time.
@@ -86,7 +86,7 @@ void check_repeated_queries(const Subject& subject, Findings& findings) {
 }
 
 void check_fresh_queries(const Subject& subject, Findings& findings) {
-  for (const Pair& pair : pairs()) {
+  for (const Pair& pair : pairs(subject.traits().body)) {
     const auto query = subject.prepare(pair.a, pair.b);
     const std::vector<Answers> first = ask_all(subject, *query, pair.cases);
     for (const std::size_t i : {pair.cases.size() - 1, pair.cases.size() / 2}) {
@@ -100,7 +100,7 @@ void check_fresh_queries(const Subject& subject, Findings& findings) {
 /// Each thread prepares and asks a query of its own, several of one pair at the same time.
 void check_threads(const Subject& subject, Findings& findings) {
   constexpr std::size_t k_threads_of_a_pair = 2;
-  for (const Pair* pair : {&pairs()[0], &pairs()[3]}) {
+  for (const Pair* pair : {&pairs(subject.traits().body)[0], &pairs(subject.traits().body)[3]}) {
     const auto query = subject.prepare(pair->a, pair->b);
     const std::vector<Answers> alone = ask_all(subject, *query, pair->cases);
     std::vector<std::vector<Answers>> found(2 * k_threads_of_a_pair);
@@ -129,7 +129,7 @@ void check_threads(const Subject& subject, Findings& findings) {
 
 /// One mesh object as A and B, and two equal ones.
 void check_same_mesh(const Subject& subject, Findings& findings) {
-  const Pair& pair = pairs().front();
+  const Pair& pair = pairs(subject.traits().body).front();
   const Mesh copy = pair.a;
   const auto shared = subject.prepare(pair.a, pair.a), two = subject.prepare(pair.a, copy);
   const double diagonal = pair.a.diagonal();
@@ -142,7 +142,7 @@ void check_same_mesh(const Subject& subject, Findings& findings) {
 
 /// Settings need not outlive prepare(). They are moved away, so that whoever kept a reference finds no parameter.
 void check_moved_settings(const Subject& subject, Findings& findings) {
-  const Pair& pair = pairs().front();
+  const Pair& pair = pairs(subject.traits().body).front();
   const auto query = subject.prepare(pair.a, pair.b);
   Settings settings = subject.settings;
   const auto other = subject.algorithm.prepare(pair.a, pair.b, settings);

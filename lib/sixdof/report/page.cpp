@@ -220,6 +220,7 @@ Report make_report(const Results& results, const std::vector<Series>& series) {
   Report report{.summary = summarise(results, groups),
                 .comparisons = comparisons(results, groups),
                 .tables = {times_table(results, groups),
+                           libraries_table(results, groups),
                            response_errors_table(results, groups),
                            scenario_measures_table(results, groups),
                            metrics_table(results, groups),

@@ -29,6 +29,12 @@ DataTable response_errors_table(const Results& results, const std::vector<RowGro
 /// "scenario_measures": measures of responses along the scenarios, in their windows.
 DataTable scenario_measures_table(const Results& results, const std::vector<RowGroup>& groups);
 
+/// "libraries": a line for each algorithm and kind of query, over its rows on buckets at random poses with warm caches:
+/// geometric means of the mean and of the 99th percentile, and of the ratio to `exact` over the places that both have;
+/// sums of wrong and missing answers; the mean angle of forces to the exact ones, the largest error of a distance in
+/// diagonals of A. `class` is class_of(), or "native": lines of different classes are not compared.
+DataTable libraries_table(const Results& results, const std::vector<RowGroup>& groups);
+
 /// "frontier": costs (time, memory, time to prepare) against every error of the points of `sixdof precision`, and of
 /// distances and responses on buckets. `frontier` is "yes" by results/frontier.h, among the points of the same run,
 /// pair, cost, error and bucket or study.

@@ -175,6 +175,9 @@ fn ask_guarded<Q: Query>(query: &mut Q, kind: Kind, pose: &Pose) -> Result<Answe
 
 /// Wall time of a query in ns, and its reply.
 fn timed<Q: Query>(query: &mut Q, kind: Kind, pose: &Pose) -> (f64, Result<Value, Failed>) {
+    if !pose.iter().all(|x| x.is_finite()) {
+        return (0.0, Err(Failed { status: "non_finite", words: "the pose is not finite".to_string() }));
+    }
     let start = Instant::now();
     let answer = black_box(ask_guarded(query, kind, pose));
     (nanoseconds(start), answer.and_then(reply_of))
