@@ -141,7 +141,8 @@ void add_gate_command(CLI::App& app) {
   add_row_options(*command, *arguments);
   add_judgement_options(*command, *arguments);
   add_output_options(*command, *arguments);
-  command->callback([command] { run_script(words_for_script(*command)); });
+  // The options write to `arguments`, which lives as long as this function.
+  command->callback([command, arguments] { run_script(words_for_script(*command)); });
   add_examples(*command, "sixdof gate results.json results.json --markdown gate.md --junit gate.xml",
                "sixdof gate sixdof-bench sixdof-bench --filter '^distance/algorithm:exact/' --stages answers,work "
                "--sample 8 -- --a cone-1k --b torus-1k",

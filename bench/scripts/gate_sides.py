@@ -15,8 +15,9 @@ compare = importlib.util.module_from_spec(importlib.util.spec_from_loader("compa
 loader.exec_module(compare)
 Failure, write_whole = compare.Failure, compare.write_whole
 
-# Of a row in a stored baseline: the answers and counts stay.
+# In a stored baseline: of a row the answers and counts stay, of the context what they depend on.
 NOT_STORED = ("outliers", "checksum", "real_time", "cpu_time")
+NOT_STORED_OF_RUN = ("checksum", "load_avg", "caches", "host_name", "mhz_per_cpu", "executable")
 
 
 class Side:
@@ -122,5 +123,5 @@ def stored(document):
 
     rows = [{key: value for key, value in row.items() if is_stored(key)} | {"real_time": 0.0, "cpu_time": 0.0}
             for row in document["benchmarks"]]
-    context = {key: value for key, value in document["context"].items() if key not in ("checksum", "load_avg", "caches")}
+    context = {key: value for key, value in document["context"].items() if key not in NOT_STORED_OF_RUN}
     return {"context": context, "benchmarks": rows}
