@@ -15,10 +15,12 @@ conformance::Declaration declaration_of_rival(const std::filesystem::path& folde
   conformance::Declaration declaration;
   try {
     const auto json = nlohmann::json::parse(in).value("conformance", nlohmann::json::object());
-    for (const auto& [claim, value] : json.value("claims", nlohmann::json::object()).items()) {
+    const auto claims = json.value("claims", nlohmann::json::object());
+    for (const auto& [claim, value] : claims.items()) {
       conformance::set_claim(declaration, claim, value.get<std::string>());
     }
-    for (const auto& each : json.value("known_failures", nlohmann::json::array())) {
+    const auto known = json.value("known_failures", nlohmann::json::array());
+    for (const auto& each : known) {
       declaration.known_failures.push_back({each.at("check").get<std::string>(), each.at("reason").get<std::string>(),
                                             each.value("issue", std::string())});
     }

@@ -90,5 +90,5 @@ class Query:
 
 
 sixdof_rival.serve(Query, name="drake", version=importlib.metadata.version("drake"), body="convex_hull", law="volume",
-                   answers=["collide", "distance", "respond"], limits=["own_direction"],
+                   answers=["collide", "distance", "respond"], limits=["own_direction", "distance_of_bodies"],
                    summary="Drake from Python: convex hulls, hydroelastic force of a compliant A on a rigid B")

@@ -105,6 +105,7 @@ async function main() {
     summary: "Jolt in WebAssembly: convex hulls of at most 256 points, single precision",
     answers: ["collide", "distance"],
     body: "convex_hull",
+    limits: ["distance_of_bodies"],
     parameters: [{ name: "convex_radius", meaning: "radius that rounds a hull's edges", unit: "length", default: "0",
                    low: 0, high: 1 }],
   });

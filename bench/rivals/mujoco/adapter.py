@@ -95,4 +95,5 @@ if SDF:
                        parameters=[points])
 else:
     sixdof_rival.serve(Query, name="mujoco", version=mujoco.__version__, answers=["collide", "distance"],
-                       body="convex_hull", summary="MuJoCo from Python: convex hulls of both meshes")
+                       body="convex_hull", limits=["distance_of_bodies"],
+                       summary="MuJoCo from Python: convex hulls of both meshes")

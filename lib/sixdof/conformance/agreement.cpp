@@ -58,8 +58,9 @@ void check_contained_collide(const Subject& subject, Findings& findings) {
 void check_distance(const Subject& subject, Findings& findings) {
   for_each_case(subject, Kind::distance, findings, [&](const Case& each, const Answers& answers, const At& at) {
     const double distance = answers.distance.value.distance;
-    findings.expect_near("the distance", distance, each.distance, subject.declared.distance_error * at.a.diagonal(),
-                         at);
+    const bool touching = each.place == Place::contained && subject.traits().limits.distance_of_bodies;
+    findings.expect_near("the distance", distance, touching ? 0.0 : each.distance,
+                         subject.declared.distance_error * at.a.diagonal(), at);
     if (distance < 0.0) findings.fail(fmt::format("the distance is negative: {}", distance), at);
   });
 }
