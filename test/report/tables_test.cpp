@@ -200,7 +200,7 @@ TEST(SignalsTable, TorqueOverForceIsDrawnWhereThereIsAForce) {
   Series series = turned_series(5, 9);
   for (auto& torque : series.torque) torque = {0.0, 3.0, 0.0};
   series.force[2] = {0.0, 0.0, 0.0};
-  const std::string name = "torque over force (|T| / |F| L)";
+  const std::string name = "torque over force";
   EXPECT_TRUE(lines_with(signals_table({series}), {{"signal", name}}).empty()) << "an earlier file has no length";
   series.reference_length = 30.0;
   const DataTable table = signals_table({series});
@@ -212,7 +212,7 @@ TEST(SignalsTable, TorqueOverForceIsDrawnWhereThereIsAForce) {
   // Where the ideal is a torque, a force is what should not occur.
   std::swap(series.ideal_force, series.ideal_torque);
   const DataTable other = signals_table({series});
-  const auto forces = lines_with(other, {{"signal", "force over torque (|F| L / |T|)"}, {"curve", "measured"}});
+  const auto forces = lines_with(other, {{"signal", "force over torque"}, {"curve", "measured"}});
   ASSERT_EQ(forces.size(), 5u);
   EXPECT_NEAR(number_in(other, forces[0], "value"), 10.0, k_degree_rounding);
   EXPECT_EQ(number_in(other, forces[2], "value"), 0.0);

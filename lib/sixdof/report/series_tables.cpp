@@ -76,8 +76,8 @@ Signal query_time(const Series& series) {
   return signal;
 }
 
-/// What should not occur over what should: torque over force, and force over torque in a scenario whose ideal force is
-/// zero; a pure number by the reference length. Undefined at steps where the ideal has, or the algorithm gives, nothing
+/// What should not occur over what should: |T| / (|F| L), and |F| L / |T| in a scenario whose ideal force is zero, with
+/// the reference length L; a pure number. Undefined at steps where the ideal has, or the algorithm gives, nothing
 /// to divide by.
 Signal unwanted_over_wanted(const Series& series) {
   const bool by_force = largest(series.ideal_force) > 0.0;
@@ -93,7 +93,7 @@ Signal unwanted_over_wanted(const Series& series) {
     }
     return values;
   };
-  Signal signal{.name = by_force ? "torque over force (|T| / |F| L)" : "force over torque (|F| L / |T|)",
+  Signal signal{.name = by_force ? "torque over force" : "force over torque",
                 .measured = ratios(series.force, series.torque),
                 .ideal = ratios(series.ideal_force, series.ideal_torque)};
   for (std::size_t k = 0; k < signal.ideal.size(); ++k) {
