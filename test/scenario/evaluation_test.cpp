@@ -132,6 +132,9 @@ TEST(Evaluation, PenaltyIsComparedWithItsIdeal) {
   EXPECT_NEAR(n.at("sigma_gain_q"), 0.0, k_rounding);
   EXPECT_NEAR(n.at("nu_direction_T"), 1.0, k_rounding);
   EXPECT_EQ(n.count("nu_direction_F"), 0u) << "no force in III";
+  IdealQuery printed(*rotation, IdealLaw::paper_depth, [](Response& r, double, std::size_t) { r.penalty *= -2.0; });
+  const auto p = by_name(evaluate(*rotation, record(*rotation, printed, 64), IdealLaw::paper_depth));
+  EXPECT_NEAR(p.at("gain_q"), 2.0, k_rounding) << "the printed formula is negative";
 }
 
 TEST(Evaluation, RefusesALawWithoutIdeal) {

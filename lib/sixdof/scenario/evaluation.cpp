@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <ctime>
 #include <map>
@@ -88,7 +89,8 @@ struct Evaluator {
       selection.force.measured.push_back(recording.forces[k]);
       selection.torque.ideal.push_back(ideals.torques[k]);
       selection.torque.measured.push_back(recording.torques[k]);
-      selection.ideal_penalties.push_back(ideals.penalties[k]);
+      // The depth that the paper prints for III is negative: its size counts, as that of its torque does.
+      selection.ideal_penalties.push_back(std::abs(ideals.penalties[k]));
       selection.penalties.push_back(recording.penalties[k]);
     }
     return selection;
