@@ -19,7 +19,7 @@ KEPT = ["name", "run_name", "run_type", "sixdof", "error_occurred", "error_messa
         "gamma_max_F_deg", "gamma_T_deg", "magnitude_error_F", "magnitude_error_T", "volume_error_mean", "bytes",
         "prepare_ns", "ns_per_configuration", "triangles", "on_frontier", "label", "empty_call_ns", "tau_ns", "measured_ns",
         "eta_measured", "eta_predicted", "sigma_F", "sigma_T", "nu_F", "nu_T", "noise_F", "noise_T", "leakage", "jump_F",
-        "jump_T", "loop_work", "lag", "steps"]
+        "jump_T", "loop_work", "lag", "steps", "nu_direction_F", "nu_direction_T", "sigma_q"]
 DIGITS = 4  # Significant digits of the numbers that are kept.
 FCL = ["fcl-obbrss", "fcl-rss", "fcl-kios", "fcl-obb", "fcl-contacts"]
 # Rivals whose queries take milliseconds or less, and those that take up to seconds on large meshes.

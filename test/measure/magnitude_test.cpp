@@ -57,7 +57,7 @@ TEST(Magnitude, ZeroSeriesHaveNoCurve) {
   EXPECT_FALSE(fit_gain(zero, k_measured));
   EXPECT_FALSE(fit_gain(k_ideal, zero));
   EXPECT_NEAR(*sigma(k_ideal, zero), std::sqrt((1.0 + 0.36) / 3.0), k_rounding);
-  EXPECT_FALSE(sigma({}, {}));
+  EXPECT_FALSE(sigma(Vectors{}, Vectors{}));
 }
 
 TEST(MagnitudeError, IsTheSineOfTheAngleBetweenTheSeries) {
@@ -90,6 +90,34 @@ TEST(Magnitude, RefusesUnequalLengths) {
   EXPECT_THROW(sigma(k_ideal, Vectors(k_measured).first(2)), BadArgument);
   EXPECT_THROW(sigma_paper(k_ideal, Vectors(k_measured).first(2)), BadArgument);
   EXPECT_THROW(fit_gain(k_ideal, Vectors(k_measured).first(2)), BadArgument);
+}
+
+TEST(Penalty, SigmaAndGainAreThoseOfAParabolaAgainstALine) {
+  // Ideal x, measured x^2 at the middles of N parts of 0..1: the RMS of x - x^2 tends to sqrt(1/30), the gain to
+  // (1/4) / (1/3), with the error of the midpoint rule, whose peaks are at 1 - 1/(2N).
+  constexpr std::size_t k_count = 4000;
+  std::vector<double> ideal, measured;
+  for (std::size_t k = 0; k < k_count; ++k) {
+    const double x = (static_cast<double>(k) + 0.5) / k_count;
+    ideal.push_back(x);
+    measured.push_back(7.0 * x * x);
+  }
+  constexpr double k_quadrature = 1.0 / k_count;
+  EXPECT_NEAR(*sigma(ideal, measured), std::sqrt(1.0 / 30.0), k_quadrature);
+  const auto fit = fit_gain(ideal, measured);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->gain, 7.0 * 0.75, 7.0 * k_quadrature);
+  // RMS of x^2 - 3x/4 is sqrt(1/5 - 3/8 + 3/16) = sqrt(1/80), over the gain 3/4.
+  EXPECT_NEAR(fit->sigma, std::sqrt(1.0 / 80.0) / 0.75, k_quadrature);
+}
+
+TEST(Penalty, AWrongSignIsAnErrorAndHasNoGain) {
+  const std::vector<double> ideal{1.0, 2.0, 0.5}, opposite{-1.0, -2.0, -0.5};
+  EXPECT_NEAR(*sigma(ideal, opposite), std::sqrt((1.0 + 4.0 + 0.25) / 3.0), k_rounding);
+  EXPECT_FALSE(fit_gain(ideal, opposite));
+  EXPECT_EQ(peak(opposite), 2.0);
+  EXPECT_FALSE(sigma(std::vector<double>(3, 0.0), ideal));
+  EXPECT_THROW(sigma(ideal, std::vector<double>(2, 1.0)), BadArgument);
 }
 
 }  // namespace

@@ -56,6 +56,58 @@ TEST(Nu, IsTheRatioOfEnergiesOfNormalisedMagnitudes) {
   EXPECT_FALSE(nu(std::vector<Eigen::Vector3d>(3, Eigen::Vector3d::Zero()), measured));
 }
 
+TEST(Nu, OfPenaltiesIsTheRatioOfTheirMeanSquares) {
+  const std::vector<double> ideal{2.0, 1.0, -2.0}, measured{0.5, 2.0, 1.0};
+  EXPECT_NEAR(*nu(ideal, measured), (0.0625 + 1.0 + 0.25) / 2.25, k_rounding);
+  EXPECT_FALSE(nu(std::vector<double>(3, 0.0), measured));
+}
+
+/// A direction that swings by `amplitude` radians to both sides of a direction that turns `turns` times, with another
+/// length at each step.
+std::vector<Eigen::Vector3d> swinging(std::size_t count, double turns, double swings, double amplitude) {
+  std::vector<Eigen::Vector3d> vectors;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double part = static_cast<double>(k) / static_cast<double>(count);
+    const double angle = k_full_angle * turns * part + amplitude * std::sin(k_full_angle * swings * part + 0.3);
+    const double size = 2.0 + std::cos(k_full_angle * 31.0 * part);
+    vectors.emplace_back(size * std::cos(angle), size * std::sin(angle), 0.0);
+  }
+  return vectors;
+}
+
+/// exp(i a sin x) = sum J_n(a) exp(i n x): the steady part has the energy J_0^2, each harmonic 2 J_n^2. The window
+/// moves energy by one bin only.
+TEST(NuDirection, KeepsTheHarmonicsBelowTheCutoff) {
+  constexpr double k_swing = 0.7;
+  const double j0 = std::cyl_bessel_j(0.0, k_swing), j1 = std::cyl_bessel_j(1.0, k_swing);
+  const double j2 = std::cyl_bessel_j(2.0, k_swing);
+  for (const double turns : {0.0, 3.0}) {  // a steady ideal and one that rotates
+    const auto ideal = swinging(1000, turns, 0.0, 0.0);
+    const auto measured = swinging(1000, turns, 120.0, k_swing);
+    const auto below = [&](double hz) { return *nu_direction(ideal, measured, 1000.0, hz); };
+    EXPECT_NEAR(below(50.0), j0 * j0, k_rounding) << turns;
+    EXPECT_NEAR(below(130.0), j0 * j0 + 2.0 * j1 * j1, k_rounding) << turns;
+    EXPECT_NEAR(below(250.0), j0 * j0 + 2.0 * (j1 * j1 + j2 * j2), k_rounding) << turns;
+    EXPECT_NEAR(*nu_direction(ideal, swinging(1000, turns, 2.0, k_swing), 1000.0, 50.0), 1.0, 1e-9)
+        << "a slow error is not noise";
+    EXPECT_NEAR(*nu_direction(ideal, ideal, 1000.0, 50.0), 1.0, k_rounding);
+  }
+}
+
+TEST(NuDirection, IsOneOverAllFrequenciesUnlessForcesAreMissed) {
+  const auto ideal = swinging(399, 1.0, 0.0, 0.0);
+  auto measured = swinging(399, 0.0, 90.0, 1.1);
+  constexpr double k_all = 499.0;  // an odd number of steps has no frequency above 498.8 Hz
+  EXPECT_NEAR(*nu_direction(ideal, measured, 1000.0, k_all), 1.0, k_rounding);
+  // Hann's energy over every third step is a third of the whole.
+  for (std::size_t k = 0; k < measured.size(); k += 3) measured[k].setZero();
+  EXPECT_NEAR(*nu_direction(ideal, measured, 1000.0, k_all), 2.0 / 3.0, k_rounding);
+  const std::vector<Eigen::Vector3d> zero(399, Eigen::Vector3d::Zero());
+  EXPECT_FALSE(nu_direction(zero, measured, 1000.0, 50.0));
+  EXPECT_EQ(*nu_direction(ideal, zero, 1000.0, 50.0), 0.0);
+  EXPECT_THROW(nu_direction(ideal, measured, 1000.0, 500.0), BadArgument);
+}
+
 std::vector<Eigen::Vector3d> along_x(const std::vector<double>& x) {
   std::vector<Eigen::Vector3d> vectors;
   for (const double value : x) vectors.emplace_back(value, 0.0, 0.0);

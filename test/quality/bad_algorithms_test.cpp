@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <sixdof/measure/metrics.h>
 #include <sixdof/scenario/evaluation.h>
@@ -94,6 +95,32 @@ TEST(BadAlgorithm, GainErrorOnPartOfThePathIsCaughtBySigma) {
   for (const char* scenario : {"Ia", "II", "IV"}) expect_caught(scenario, "sigma_F", k_rounding, louder);
 }
 
+TEST(BadAlgorithm, ATremblingDirectionIsCaughtByItsSpectrum) {
+  for (const char* scenario : {"Ia", "II", "IV"}) {
+    const Spoil tremble = [](Response& r, double, std::size_t number) {
+      const double angle = number % 2 == 0 ? 0.1 : -0.1;  // every other step: the highest frequency
+      r.force = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * r.force;
+    };
+    EXPECT_NEAR(measures_of(scenario, {}).at("nu_direction_F"), 1.0, k_rounding) << scenario;
+    // cos 0.1 of the direction stays, the rest of its energy is at half of the rate.
+    EXPECT_NEAR(measures_of(scenario, tremble).at("nu_direction_F"), std::pow(std::cos(0.1), 2), k_rounding)
+        << scenario;
+    EXPECT_NEAR(measures_of(scenario, tremble).at("nu_F"), 1.0, k_rounding) << "magnitudes do not show it";
+  }
+}
+
+TEST(BadAlgorithm, AWrongPenaltyIsCaughtThoughTheForceIsRight) {
+  const Spoil half = [](Response& r, double progress, std::size_t) {
+    if (progress > 0.5) r.penalty *= 0.5;
+  };
+  for (const char* scenario : {"Ia", "Ib", "II", "III", "IV"}) {
+    expect_caught(scenario, "sigma_q", k_rounding, half);
+    expect_caught(scenario, "sigma_gain_q", k_rounding, half);
+    const char* const force = scenario == std::string_view("III") ? "sigma_T" : "sigma_F";
+    EXPECT_NEAR(measures_of(scenario, half).at(force), 0.0, k_rounding) << scenario;
+  }
+}
+
 TEST(BadAlgorithm, ALagOfThreeStepsIsCaughtByTheLag) {
   constexpr double k_late = 3.0;
   constexpr double k_half_step = 0.5;  // the largest error of the parabola between steps
@@ -111,7 +138,7 @@ Bound bound_of(std::string_view measure, double bound, Kind kind) {
   return {"II", "exact", IdealLaw::volume, measure, bound, "", kind};
 }
 
-TEST(Table, OneSidedBoundsFailWhereAValueIsWorse) {
+TEST(Table, BoundsFailWhereAValueIsWorse) {
   using enum Kind;
   const Bound rounding = bound_of("gamma_F_deg", 1e-9, required), never = bound_of("misses", 0.0, required);
   EXPECT_TRUE(holds(rounding, 0.0) && holds(rounding, -1e-9) && holds(never, 0.0));
@@ -119,7 +146,7 @@ TEST(Table, OneSidedBoundsFailWhereAValueIsWorse) {
   EXPECT_FALSE(holds(rounding, std::nan("")) || holds(bound_of("lag", 1.0, characterised), std::nan("")));
 
   const Bound angle = bound_of("gamma_F_deg", 10.0, characterised);
-  EXPECT_TRUE(holds(angle, 0.0) && holds(angle, 10.0) && holds(angle, 20.0));
+  EXPECT_TRUE(holds(angle, 2.6) && holds(angle, 10.0) && holds(angle, 20.0));
   EXPECT_FALSE(holds(angle, 20.1));
   EXPECT_EQ(largest_defect(bound_of("gamma_F_deg", 100.0, characterised)), 140.0) << "half-way to 180";
   EXPECT_EQ(largest_defect(bound_of("sigma_F", 0.6, characterised)), 0.8) << "half-way to 1";
@@ -127,6 +154,14 @@ TEST(Table, OneSidedBoundsFailWhereAValueIsWorse) {
   const Bound energy = bound_of("nu_F", 0.5, characterised);  // 1.5 or 1 / 1.5
   EXPECT_TRUE(holds(energy, 1.0) && holds(energy, 1.9) && holds(energy, 0.51));
   EXPECT_FALSE(holds(energy, 2.1) || holds(energy, 0.49) || holds(energy, 0.0));
+}
+
+TEST(Table, MuchBetterFailsUntilTheTableSaysSo) {
+  using enum Kind;
+  EXPECT_FALSE(holds(bound_of("gamma_F_deg", 10.0, characterised), 2.4));
+  EXPECT_FALSE(holds(bound_of("sigma_q", 0.1, characterised), 0.0));
+  EXPECT_TRUE(holds(bound_of("sigma_F", 0.176, required), 0.0)) << "a limit";
+  EXPECT_TRUE(holds(bound_of("noise_F", 0.1, characterised), 0.0) && holds(bound_of("nu_T", 0.1, characterised), 1.0));
 }
 
 TEST(Table, AGainHoldsWithinAFactor) {

@@ -6,6 +6,7 @@
 
 #include "backend_bounds.h"
 #include "bench/common/all_algorithms.h"
+#include "signal_bounds.h"
 
 namespace sixdof {
 namespace {
@@ -328,7 +329,8 @@ std::span<const Bound> bounds() {
     Registry registry;
     register_all_algorithms(registry);
     const auto is_built = [&](const BoundLine& line) {
-      return std::ranges::any_of(registry.all(), [&](const auto& a) { return a->traits().name == line.algorithm; });
+      const std::string name = subject(line.algorithm).algorithm;
+      return std::ranges::any_of(registry.all(), [&](const auto& a) { return a->traits().name == name; });
     };
     std::vector<Bound> list;
     const auto add = [&](const BoundLine& line) {
@@ -337,8 +339,10 @@ std::span<const Bound> bounds() {
       }
     };
     std::ranges::for_each(own_lines(), add);
-    for (const BoundLine& line : backend_bounds()) {
-      if (is_built(line)) add(line);
+    for (const std::vector<BoundLine>* const lines : {&backend_bounds(), &signal_bounds()}) {
+      for (const BoundLine& line : *lines) {
+        if (is_built(line)) add(line);
+      }
     }
     add_bounds_of_counts(list);
     return list;
@@ -357,10 +361,15 @@ double largest_defect(const Bound& bound) {
   return std::min(k_margin * bound.bound, 0.5 * (bound.bound + worst_value(bound.measure)));
 }
 
+double smallest_defect(const Bound& bound) {
+  const bool is_error = bound.measure.starts_with("sigma") || bound.measure.starts_with("gamma");
+  return bound.kind == characterised && is_error ? bound.bound / k_better_margin : 0.0;
+}
+
 bool holds(const Bound& bound, double value) {
   if (bound.kind == weakness) return true;
   if (bound.kind == scale) return value >= bound.bound / k_scale_margin && value <= bound.bound * k_scale_margin;
-  return defect(bound, value) <= largest_defect(bound);
+  return defect(bound, value) <= largest_defect(bound) && defect(bound, value) >= smallest_defect(bound);
 }
 
 }  // namespace sixdof

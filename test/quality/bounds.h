@@ -10,10 +10,12 @@
 
 namespace sixdof {
 
-/// What a bound claims. No kind fails where an algorithm becomes better.
+/// What a bound claims.
 enum class Kind {
   characterised,  ///< What the code reaches today, in two digits; no theory gives the number, `reason` only says what
-                  ///< limits it. Fails where the value is k_margin times as bad (largest_defect()).
+                  ///< limits it. Fails where the value is k_margin times as bad (largest_defect()). A sigma or gamma
+                  ///< fails where it is much better, too (smallest_defect()): then the table no longer says what the
+                  ///< code reaches, and a worse one could pass.
   required,       ///< A limit with a reason: rounding, zero, a value of the paper. Fails above it.
   scale,     ///< A gain, of which no value is better; a change of a method's stiffness is news to its users all the
              ///< same. Fails outside a factor of k_scale_margin on both sides.
@@ -23,6 +25,9 @@ enum class Kind {
 std::string_view to_string(Kind kind);
 
 inline constexpr double k_margin = 2.0;
+/// How much better than its bound a characterised sigma or gamma may be. Compilers and processors change the last
+/// digits only; a better method changes the table as well.
+inline constexpr double k_better_margin = 4.0;
 inline constexpr double k_scale_margin = 1.5;
 
 /// An algorithm with its default settings, or with some parameters changed.
@@ -63,6 +68,9 @@ double worst_value(std::string_view measure);
 /// From where on a value fails, as Bound::bound is measured: k_margin times a characterised one, but no farther than
 /// half-way to the worst value.
 double largest_defect(const Bound& bound);
+
+/// Below which a value fails: a k_better_margin-th of a characterised sigma or gamma, otherwise 0.
+double smallest_defect(const Bound& bound);
 
 bool holds(const Bound& bound, double value);
 

@@ -60,6 +60,24 @@ void spike(Recording& recording, const Scenario&, double factor) {
   });
 }
 
+/// The penalty of one step in the middle of the path.
+void spike_penalty(Recording& recording, const Scenario&, double factor) {
+  recording.penalties[recording.size() / 2] *= factor;
+}
+
+void scale_penalty(Recording& recording, const Scenario&, double factor) {
+  for (double& penalty : recording.penalties) penalty *= factor;
+}
+
+/// Directions at random, magnitudes as they were.
+void scatter(Recording& recording, const Scenario&, double) {
+  std::mt19937_64 random(20261127);
+  std::normal_distribution<double> normal;
+  change_all(recording, [&](Eigen::Vector3d& v, std::size_t) {
+    v = v.norm() * Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
+  });
+}
+
 /// Of a closed path.
 void delay(Recording& recording, const Scenario&, double steps) {
   for (auto* const series : {&recording.forces, &recording.torques}) {
@@ -111,6 +129,9 @@ const std::vector<Fault>& faults() {
       {"failing_sometimes", "failed", fail_sometimes},
       {"noisy", "noise_*", shake, 0.1, 0.01, 1.5},
       {"spiking", "sigma_*", spike, 100.0},
+      {"penalty_spiking", "sigma_q", spike_penalty, 100.0},
+      {"penalty_twice_as_large", "gain_q", scale_penalty, 2.0},
+      {"scattered", "nu_direction_*", scatter},
       {"late", "lag", delay, 3.0},
       {"leaking", "leakage", leak, 1.0, 0.4, 20.0},
       {"rubbing", "loop_work", rub, 0.5},

@@ -48,8 +48,15 @@ TEST_F(SeriesFile, IsReadAsItWasRecorded) {
     EXPECT_EQ(series.force[k][1], recording.forces[k].y());
     EXPECT_EQ(series.torque[k][2], recording.torques[k].z());
   }
-  ASSERT_EQ(series.spectra.size(), 4u);
-  EXPECT_EQ(series.spectra[0].second.size(), series.times.size() * series.frequencies.size());
+  EXPECT_EQ(series.penalty, recording.penalties);
+  EXPECT_EQ(series.time_ns, recording.times_ns);
+  EXPECT_EQ(series.ideal_penalty, std::vector<double>(128, 10.0)) << "R + r - rho";
+  EXPECT_EQ(series.reference_length, 30.0);
+  ASSERT_EQ(series.spectra.size(), 10u) << "two magnitudes, their errors, six components";
+  EXPECT_EQ(series.spectra[9].first, "torque_z_signal");
+  for (const auto& [name, intensity] : series.spectra) {
+    EXPECT_EQ(intensity.size(), series.times.size() * series.frequencies.size()) << name;
+  }
 }
 
 TEST_F(SeriesFile, OthersAreRefused) {

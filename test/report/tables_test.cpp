@@ -221,11 +221,55 @@ TEST(SignalsTable, OutlierOfOneStepIsDrawn) {
   EXPECT_EQ(number_in(table, magnitudes.at(0), "value"), 1.0) << "over its own largest";
 }
 
+/// A torque of 3 beside the unit force, L = 30; without a force at step 2.
+TEST(SignalsTable, TorqueOverForceIsDrawnWhereThereIsAForce) {
+  Series series = turned_series(5, 9);
+  for (auto& torque : series.torque) torque = {0.0, 3.0, 0.0};
+  series.force[2] = {0.0, 0.0, 0.0};
+  const std::string name = "torque over force";
+  EXPECT_TRUE(lines_with(signals_table({series}), {{"signal", name}}).empty()) << "an earlier file has no length";
+  series.reference_length = 30.0;
+  const DataTable table = signals_table({series});
+  const auto measured = lines_with(table, {{"signal", name}, {"curve", "measured"}});
+  ASSERT_EQ(measured.size(), 5u);
+  EXPECT_NEAR(number_in(table, measured[0], "value"), 0.1, k_degree_rounding);
+  EXPECT_TRUE(std::isnan(number_in(table, measured[2], "value")));
+  EXPECT_EQ(number_in(table, lines_with(table, {{"signal", name}, {"curve", "ideal"}})[0], "value"), 0.0);
+  // Where the ideal is a torque, a force is what should not occur.
+  std::swap(series.ideal_force, series.ideal_torque);
+  const DataTable other = signals_table({series});
+  const auto forces = lines_with(other, {{"signal", "force over torque"}, {"curve", "measured"}});
+  ASSERT_EQ(forces.size(), 5u);
+  EXPECT_NEAR(number_in(other, forces[0], "value"), 10.0, k_degree_rounding);
+  EXPECT_EQ(number_in(other, forces[2], "value"), 0.0);
+}
+
+TEST(SignalsTable, PenaltyIsOverItsLargestAndATimeIsNot) {
+  Series series = turned_series(4, 9);
+  series.penalty = {1.0, 4.0, 2.0, 0.0};
+  series.ideal_penalty = {5.0, 10.0, 10.0, 0.0};
+  series.time_ns = {2500.0, 1000.0, 1000.0, 1000.0};
+  const DataTable table = signals_table({series});
+  const auto values = [&](const char* signal, const char* curve) {
+    std::vector<double> found;
+    for (const auto& line : lines_with(table, {{"signal", signal}, {"curve", curve}})) {
+      found.push_back(number_in(table, line, "value"));
+    }
+    return found;
+  };
+  EXPECT_EQ(values("penalty", "measured"), (std::vector{0.25, 1.0, 0.5, 0.0}));
+  EXPECT_EQ(values("penalty", "ideal"), (std::vector{0.5, 1.0, 1.0, 0.0}));
+  EXPECT_EQ(values("time of the query (microseconds)", "measured"), (std::vector{2.5, 1.0, 1.0, 1.0}));
+  EXPECT_TRUE(values("time of the query (microseconds)", "ideal").empty());
+}
+
 TEST(SpectraTable, LevelsAreBelowTheSignalsLoudest) {
   Series series = turned_series(4, 9);
   series.times = {0.032, 0.040};
   series.frequencies = {0.0, 15.6};
-  series.spectra = {{"force_signal", {10.0, 1.0, 0.0, 5.0}}, {"force_residual", {0.1, 0.0, 0.0, 0.0}}};
+  series.spectra = {{"force_signal", {10.0, 1.0, 0.0, 5.0}},
+                    {"force_residual", {0.1, 0.0, 0.0, 0.0}},
+                    {"force_x_signal", {0.01, 0.0, 0.0, 0.0}}};
   const DataTable table = spectra_table({series});
   const auto measured = lines_with(table, {{"signal", "force, measured"}});
   ASSERT_EQ(measured.size(), 2u) << "pieces overlap by half";
@@ -234,6 +278,9 @@ TEST(SpectraTable, LevelsAreBelowTheSignalsLoudest) {
   const auto error = lines_with(table, {{"signal", "force, error (measured minus ideal)"}});
   EXPECT_EQ(number_in(table, error[0], "level_db"), -20.0) << "on the scale of the signal";
   EXPECT_EQ(number_in(table, error[1], "level_db"), -100.0) << "nothing at all is at the floor";
+  const auto component = lines_with(table, {{"signal", "force, component x"}});
+  ASSERT_EQ(component.size(), 2u);
+  EXPECT_EQ(number_in(table, component[0], "level_db"), -30.0) << "on the scale of the magnitude";
 }
 
 TEST(FailuresTable, NamesFaultAndCommand) {

@@ -104,6 +104,39 @@ TEST(Evaluation, LeakageIsScaledByTheReferenceLength) {
   EXPECT_NEAR(pushed.at("leakage"), 0.25 * 20.0, k_rounding);
 }
 
+/// In IV the measured penalty is the square of the ideal, in III it is three times the ideal.
+TEST(Evaluation, PenaltyIsComparedWithItsIdeal) {
+  const auto orbit = make_scenario("IV");
+  IdealQuery squared(*orbit, IdealLaw::volume, [](Response& r, double, std::size_t) { r.penalty *= r.penalty; });
+  const Recording recording = record(*orbit, squared, 64);
+  double largest = 0.0, squares = 0.0, fourth = 0.0, difference = 0.0;
+  std::vector<double> ideal;
+  for (const double progress : recording.progress) ideal.push_back(orbit->ideal(IdealLaw::volume, progress)->penalty);
+  for (const double v : ideal) largest = std::max(largest, v);
+  for (const double v : ideal) {
+    const double x = v / largest;
+    squares += x * x;
+    fourth += x * x * x * x;
+    difference += (x - x * x) * (x - x * x);
+  }
+  const auto m = by_name(evaluate(*orbit, recording, IdealLaw::volume));
+  EXPECT_NEAR(m.at("sigma_q"), std::sqrt(difference / 64.0), k_rounding);
+  EXPECT_NEAR(m.at("nu_q"), fourth / squares, k_rounding);
+  EXPECT_GT(m.at("sigma_q"), 1e-3) << "V changes along the path";
+
+  const auto rotation = make_scenario("III");
+  IdealQuery tripled(*rotation, IdealLaw::depth, [](Response& r, double, std::size_t) { r.penalty *= 3.0; });
+  const auto n = by_name(evaluate(*rotation, record(*rotation, tripled, 64), IdealLaw::depth));
+  EXPECT_NEAR(n.at("gain_q"), 3.0, k_rounding);
+  EXPECT_NEAR(n.at("sigma_q"), 0.0, k_rounding);
+  EXPECT_NEAR(n.at("sigma_gain_q"), 0.0, k_rounding);
+  EXPECT_NEAR(n.at("nu_direction_T"), 1.0, k_rounding);
+  EXPECT_EQ(n.count("nu_direction_F"), 0u) << "no force in III";
+  IdealQuery printed(*rotation, IdealLaw::paper_depth, [](Response& r, double, std::size_t) { r.penalty *= -2.0; });
+  const auto p = by_name(evaluate(*rotation, record(*rotation, printed, 64), IdealLaw::paper_depth));
+  EXPECT_NEAR(p.at("gain_q"), 2.0, k_rounding) << "the printed formula is negative";
+}
+
 TEST(Evaluation, RefusesALawWithoutIdeal) {
   const auto scenario = make_scenario("Ib");
   IdealQuery query(*scenario, IdealLaw::volume);
@@ -150,6 +183,15 @@ TEST(SeriesFile, HoldsTheRecording) {
       EXPECT_EQ(file.matrix_size(std::string("/spectrum/") + name),
                 std::pair(std::size_t{11}, k_spectrum_window / 2 + 1));
     }
+    std::vector<double> turning;
+    for (const Eigen::Vector3d& v : recording.torques) turning.push_back(v.z());
+    EXPECT_EQ(file.read_matrix("/spectrum/torque_z_signal"),
+              short_time_spectrum(turning, 1000.0, k_spectrum_window, 8).intensity);
+    for (const char* name : {"force_x_signal", "force_y_signal", "force_z_signal", "torque_x_signal"}) {
+      EXPECT_EQ(file.read_matrix(std::string("/spectrum/") + name),
+                std::vector<double>(11 * (k_spectrum_window / 2 + 1), 0.0));
+    }
+    EXPECT_EQ(file.read_attribute<double>("/", "reference_length"), 20.0);
     const std::vector<double> times = file.read_matrix("/spectrum/times");
     ASSERT_EQ(times.size(), 11u);
     EXPECT_NEAR(times[3], (3 * 8 + 32) * 1e-3, k_rounding);

@@ -31,9 +31,21 @@ double peak(Vectors vectors) {
   return largest;
 }
 
+double peak(std::span<const double> values) {
+  double largest = 0.0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
 void check_same_length(Vectors ideal, Vectors measured) { check_lengths(ideal.size(), measured.size()); }
 
-std::optional<double> sigma(Vectors ideal, Vectors measured) {
+void check_same_length(std::span<const double> ideal, std::span<const double> measured) {
+  check_lengths(ideal.size(), measured.size());
+}
+
+std::optional<double> sigma(Vectors ideal, Vectors measured) { return sigma(magnitudes(ideal), magnitudes(measured)); }
+
+std::optional<double> sigma(std::span<const double> ideal, std::span<const double> measured) {
   check_same_length(ideal, measured);
   const double ideal_peak = peak(ideal);
   const double measured_peak = peak(measured);
@@ -41,7 +53,7 @@ std::optional<double> sigma(Vectors ideal, Vectors measured) {
   const double measured_scale = measured_peak > 0.0 ? 1.0 / measured_peak : 0.0;
   double sum = 0.0;
   for (std::size_t k = 0; k < ideal.size(); ++k) {
-    sum += square(ideal[k].norm() / ideal_peak - measured[k].norm() * measured_scale);
+    sum += square(ideal[k] / ideal_peak - measured[k] * measured_scale);
   }
   return std::sqrt(sum / static_cast<double>(ideal.size()));
 }
@@ -53,24 +65,28 @@ std::optional<double> sigma_paper(Vectors ideal, Vectors measured) {
 }
 
 std::optional<GainFit> fit_gain(Vectors ideal, Vectors measured) {
+  return fit_gain(magnitudes(ideal), magnitudes(measured));
+}
+
+std::optional<GainFit> fit_gain(std::span<const double> ideal, std::span<const double> measured) {
   check_same_length(ideal, measured);
   double products = 0.0;
   double squares = 0.0;
   for (std::size_t k = 0; k < ideal.size(); ++k) {
-    products += ideal[k].norm() * measured[k].norm();
-    squares += ideal[k].squaredNorm();
+    products += ideal[k] * measured[k];
+    squares += square(ideal[k]);
   }
-  if (squares == 0.0 || products == 0.0) return std::nullopt;
+  if (squares == 0.0 || !(products > 0.0)) return std::nullopt;
   GainFit fit;
   fit.gain = products / squares;
   double residual = 0.0;
-  for (std::size_t k = 0; k < ideal.size(); ++k) residual += square(measured[k].norm() - fit.gain * ideal[k].norm());
+  for (std::size_t k = 0; k < ideal.size(); ++k) residual += square(measured[k] - fit.gain * ideal[k]);
   fit.sigma = std::sqrt(residual / static_cast<double>(ideal.size())) / (fit.gain * peak(ideal));
   return fit;
 }
 
 std::optional<MagnitudeError> magnitude_error(std::span<const double> ideal, std::span<const double> measured) {
-  check_lengths(ideal.size(), measured.size());
+  check_same_length(ideal, measured);
   double products = 0.0, ideal_squares = 0.0, measured_squares = 0.0;
   for (std::size_t k = 0; k < ideal.size(); ++k) {
     products += ideal[k] * measured[k];

@@ -16,9 +16,12 @@ std::vector<double> magnitudes(Vectors vectors);
 
 /// Largest magnitude; 0 for an empty series.
 double peak(Vectors vectors);
+/// Largest absolute value; 0 for an empty series.
+double peak(std::span<const double> values);
 
 /// @throws BadArgument unless both series have the same length. Every measure of two series calls this first.
 void check_same_length(Vectors ideal, Vectors measured);
+void check_same_length(std::span<const double> ideal, std::span<const double> measured);
 
 /// RMS difference of the magnitudes: sqrt(1/N sum (|i_k|/max|i| - |m_k|/max|m|)^2), a pure number. Each series is
 /// normalised by its own largest magnitude, so a gain error does not show, and a single spike changes the scale of the
@@ -27,6 +30,10 @@ void check_same_length(Vectors ideal, Vectors measured);
 ///
 /// Empty where the ideal is zero throughout. A measured series that is zero throughout is compared as zero.
 std::optional<double> sigma(Vectors ideal, Vectors measured);
+
+/// The same of scalars, such as penalties: sqrt(1/N sum (i_k/max|i| - m_k/max|m|)^2). Signs are kept: a negative
+/// penalty is an error. @throws BadArgument unless both have the same length
+std::optional<double> sigma(std::span<const double> ideal, std::span<const double> measured);
 
 /// Formula (1) as printed: (1/N) sqrt(sum ...) = sigma / sqrt(N). Shrinks as the same path gets more steps.
 std::optional<double> sigma_paper(Vectors ideal, Vectors measured);
@@ -40,6 +47,10 @@ struct GainFit {
 /// Least-squares gain g = sum |m||i| / sum |i|^2 and its residual. A gain error shows in it, and one spike hardly moves
 /// it. Empty where the ideal or the measured series is zero throughout.
 std::optional<GainFit> fit_gain(Vectors ideal, Vectors measured);
+
+/// The same of scalars. Empty where their products sum to zero or less: no gain fits a penalty of the wrong sign.
+/// @throws BadArgument unless both have the same length
+std::optional<GainFit> fit_gain(std::span<const double> ideal, std::span<const double> measured);
 
 /// Answer of magnitude_error().
 struct MagnitudeError {

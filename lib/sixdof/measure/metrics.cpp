@@ -12,6 +12,7 @@ constexpr std::string_view k_paper_sigma = "Weller et al. 2010 (1), read as RMS"
 constexpr std::string_view k_paper_sigma_printed = "Weller et al. 2010 (1), as printed";
 constexpr std::string_view k_paper_gamma = "Weller et al. 2010 (2)";
 constexpr std::string_view k_paper_nu = "Weller et al. 2010 (3)";
+constexpr std::string_view k_paper_nu_direction = "Weller et al. 2010 (3), up to the cut-off";
 constexpr std::string_view k_paper_eta = "Weller et al. 2010 (4)";
 constexpr std::string_view k_equivalent = "bench/study/equivalent.h";
 constexpr std::string_view k_google = "Google Benchmark";
@@ -63,8 +64,14 @@ constexpr std::array k_metrics{
     Metric{"compared", "queries", neither, "true and measured force are both nonzero: those in gamma", k_direction},
     Metric{"nu_F", "1", nearer_one, "energy of the normalised force magnitude over the ideal's", k_paper_nu},
     Metric{"nu_T", "1", nearer_one, "energy of the normalised torque magnitude over the ideal's", k_paper_nu},
+    Metric{"nu_direction_F", "1", nearer_one, "energy of the force's direction below the cut-off, over the ideal's", k_paper_nu_direction},
+    Metric{"nu_direction_T", "1", nearer_one, "energy of the torque's direction below the cut-off, over the ideal's", k_paper_nu_direction},
     Metric{"noise_F", "1", lower, "energy of the residual force above the cut-off, over the ideal's", k_spectrum},
     Metric{"noise_T", "1", lower, "energy of the residual torque above the cut-off, over the ideal's", k_spectrum},
+    Metric{"sigma_q", "1", lower, "RMS difference of penalties, each normalised by its maximum", k_paper_sigma},
+    Metric{"gain_q", "measured/ideal", neither, "least-squares factor from ideal to measured penalties", k_magnitude},
+    Metric{"sigma_gain_q", "1", lower, "RMS difference of penalties after the gain, over gain * max|ideal|", k_magnitude},
+    Metric{"nu_q", "1", nearer_one, "energy of the normalised penalty over the ideal's", k_paper_nu},
     Metric{"leakage", "1", lower, "unwanted part over wanted part, scaled by the reference length", k_path},
     Metric{"lag", "steps", lower, "shift of the measured wrench against the ideal, positive if late", k_path},
     Metric{"jump_F", "1", lower, "largest jump of the force that refinement leaves, over its peak", k_path},

@@ -9,6 +9,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include <sixdof/base/error.h>
+#include <sixdof/measure/direction.h>
 
 namespace sixdof {
 namespace {
@@ -42,6 +43,16 @@ class FourierTransform {
   Eigen::FFT<double> transform_;
 };
 
+void check_cutoff(double rate_hz, double cutoff_hz) {
+  if (cutoff_hz >= 0.0 && cutoff_hz < 0.5 * rate_hz) return;
+  throw BadArgument(fmt::format("cut-off {} Hz is not between 0 and half of the rate {} Hz", cutoff_hz, rate_hz));
+}
+
+/// Hz, of an entry of the energy spectrum of `length` steps.
+double frequency_of(std::size_t entry, std::size_t length, double rate_hz) {
+  return static_cast<double>(entry) * rate_hz / static_cast<double>(length);
+}
+
 }  // namespace
 
 std::vector<double> hann(std::size_t length) {
@@ -61,12 +72,14 @@ std::vector<double> energy_spectrum(std::span<const double> signal) {
   return energy;
 }
 
-std::optional<double> nu(Vectors ideal, Vectors measured) {
+std::optional<double> nu(Vectors ideal, Vectors measured) { return nu(magnitudes(ideal), magnitudes(measured)); }
+
+std::optional<double> nu(std::span<const double> ideal, std::span<const double> measured) {
   check_same_length(ideal, measured);
-  const auto energy = [](Vectors vectors) {
-    const double scale = peak(vectors);
+  const auto energy = [](std::span<const double> values) {
+    const double scale = peak(values);
     if (scale == 0.0) return 0.0;
-    std::vector<double> normalised = magnitudes(vectors);
+    std::vector<double> normalised(values.begin(), values.end());
     for (double& value : normalised) value /= scale;
     double sum = 0.0;
     for (const double e : energy_spectrum(normalised)) sum += e;
@@ -77,11 +90,36 @@ std::optional<double> nu(Vectors ideal, Vectors measured) {
   return energy(measured) / ideal_energy;
 }
 
+std::optional<double> nu_direction(Vectors ideal, Vectors measured, double rate_hz, double cutoff_hz) {
+  check_same_length(ideal, measured);
+  check_cutoff(rate_hz, cutoff_hz);
+  if (peak(ideal) == 0.0) return std::nullopt;
+  const std::vector<double> window = hann(ideal.size());
+  FourierTransform transform(ideal.size());
+  const auto energy_below = [&](Vectors vectors) {
+    const double zero = k_zero_fraction * peak(vectors);
+    std::vector<double> energy(vectors.size() / 2 + 1, 0.0);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      for (std::size_t k = 0; k < vectors.size(); ++k) {
+        const double norm = vectors[k].norm();
+        transform.input()[k] = norm > zero ? window[k] * vectors[k][axis] / norm : 0.0;
+      }
+      transform.add_energy(energy);
+    }
+    double below = 0.0;
+    for (std::size_t j = 0; j < energy.size(); ++j) {
+      if (frequency_of(j, vectors.size(), rate_hz) <= cutoff_hz) below += energy[j];
+    }
+    return below;
+  };
+  const double ideal_energy = energy_below(ideal);
+  if (ideal_energy == 0.0) return std::nullopt;
+  return energy_below(measured) / ideal_energy;
+}
+
 std::optional<double> residual_noise(Vectors ideal, Vectors measured, double rate_hz, double cutoff_hz) {
   check_same_length(ideal, measured);
-  if (!(cutoff_hz >= 0.0 && cutoff_hz < 0.5 * rate_hz)) {
-    throw BadArgument(fmt::format("cut-off {} Hz is not between 0 and half of the rate {} Hz", cutoff_hz, rate_hz));
-  }
+  check_cutoff(rate_hz, cutoff_hz);
   double products = 0.0;
   double squares = 0.0;
   for (std::size_t k = 0; k < ideal.size(); ++k) {
@@ -107,8 +145,7 @@ std::optional<double> residual_noise(Vectors ideal, Vectors measured, double rat
   if (reference_energy == 0.0) return std::nullopt;
   double above = 0.0;
   for (std::size_t j = 0; j < residual_energy.size(); ++j) {
-    const double frequency = static_cast<double>(j) * rate_hz / static_cast<double>(ideal.size());
-    if (frequency > cutoff_hz) above += residual_energy[j];
+    if (frequency_of(j, ideal.size(), rate_hz) > cutoff_hz) above += residual_energy[j];
   }
   return above / reference_energy;
 }

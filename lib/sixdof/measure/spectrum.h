@@ -22,6 +22,19 @@ std::vector<double> energy_spectrum(std::span<const double> signal);
 /// it; residual_noise() measures noise. Empty where the ideal is zero throughout.
 std::optional<double> nu(Vectors ideal, Vectors measured);
 
+/// The same of scalars, such as penalties, each over its largest absolute value.
+std::optional<double> nu(std::span<const double> ideal, std::span<const double> measured);
+
+/// Formula (3) of directions: energy of the unit vectors m/|m| up to the cut-off frequency over that of i/|i|; a pure
+/// number, 1 if the measured direction is as smooth as the ideal one, smaller by the part that is noise. The integral
+/// has to end at the cut-off: over all frequencies the energy of any unit vectors is their number (Parseval), and the
+/// ratio is 1 whatever they are. A direction that is wrong but smooth has 1, too; gamma measures it. A vector up to
+/// k_zero_fraction of its series' longest is zero and has no energy, so a miss lowers the ratio. A Hann window is on
+/// both. Empty where the ideal is zero throughout.
+/// @param rate_hz steps per second
+/// @throws BadArgument if the cut-off is negative or not below half of the rate, or lengths differ
+std::optional<double> nu_direction(Vectors ideal, Vectors measured, double rate_hz, double cutoff_hz);
+
 /// Noise: energy of the residual (measured minus gain times ideal, as vectors, with the least-squares gain) above the
 /// cut-off, over the energy of gain times ideal; a pure number. A Hann window on both suppresses the high frequencies
 /// of an open path's ends. If the gain is not positive (the response points the wrong way), the whole measured series

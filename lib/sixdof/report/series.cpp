@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -24,7 +25,11 @@ Series::Vectors vectors_of(const hdf5::File& file, const std::string& name) {
 void read_spectra(const hdf5::File& file, const std::string& path, Series& series) {
   series.times = file.read_matrix("/spectrum/times");
   series.frequencies = file.read_matrix("/spectrum/frequencies");
-  for (const char* const name : {"force_signal", "force_residual", "torque_signal", "torque_residual"}) {
+  for (const char* const name :
+       {"force_signal", "force_residual", "torque_signal", "torque_residual", "force_x_signal", "force_y_signal",
+        "force_z_signal", "torque_x_signal", "torque_y_signal", "torque_z_signal"}) {
+    const bool is_component = name[std::string_view(name).find('_') + 2] == '_';
+    if (is_component && !file.exists(std::string("/spectrum/") + name)) continue;  // a file of an earlier version
     std::vector<double> intensity = file.read_matrix(std::string("/spectrum/") + name);
     if (intensity.size() != series.times.size() * series.frequencies.size()) {
       throw BadFile(path, std::string("/spectrum/") + name, "not a row per time and a column per frequency");
@@ -54,6 +59,12 @@ Series read_series(const std::filesystem::path& path) {
                 .torque = vectors_of(file, "/torque"),
                 .ideal_force = vectors_of(file, "/ideal_force"),
                 .ideal_torque = vectors_of(file, "/ideal_torque"),
+                .penalty = file.read_matrix("/penalty"),
+                .ideal_penalty = file.read_matrix("/ideal_penalty"),
+                .time_ns = file.read_matrix("/time_ns"),
+                .reference_length = file.has_attribute("/", "reference_length")
+                                        ? file.read_attribute<double>("/", "reference_length")
+                                        : 0.0,
                 .poses = {},
                 .status = {},
                 .times = {},
@@ -70,6 +81,9 @@ Series read_series(const std::filesystem::path& path) {
     if (vectors->size() != series.force.size() || series.status.size() != series.force.size()) {
       throw BadFile(path.string(), "arrays of different length");
     }
+  }
+  for (const std::vector<double>* const values : {&series.penalty, &series.ideal_penalty, &series.time_ns}) {
+    if (values->size() != series.force.size()) throw BadFile(path.string(), "arrays of different length");
   }
   if (file.exists("/spectrum")) read_spectra(file, path.string(), series);
   return series;

@@ -54,12 +54,63 @@ Signal angle(const std::string& name, const Series::Vectors& measured, const Ser
   return signal;
 }
 
+double largest(const std::vector<double>& values) {
+  double result = 0.0;
+  for (const double value : values) result = std::max(result, std::abs(value));
+  return result;
+}
+
+/// Each over the largest value of its own series.
+Signal penalty(const Series& series) {
+  Signal signal{.name = "penalty", .measured = series.penalty, .ideal = series.ideal_penalty};
+  for (std::vector<double>* const values : {&signal.measured, &signal.ideal}) {
+    const double scale = largest(*values);
+    if (scale > 0.0) std::ranges::for_each(*values, [scale](double& value) { value /= scale; });
+  }
+  return signal;
+}
+
+Signal query_time(const Series& series) {
+  Signal signal{.name = "time of the query (microseconds)", .measured = {}, .ideal = {}};
+  for (const double ns : series.time_ns) signal.measured.push_back(1e-3 * ns);
+  return signal;
+}
+
+/// What should not occur over what should: |T| / (|F| L), and |F| L / |T| in a scenario whose ideal force is zero, with
+/// the reference length L; a pure number. Undefined at steps where the ideal has, or the algorithm gives, nothing
+/// to divide by.
+Signal unwanted_over_wanted(const Series& series) {
+  const bool by_force = largest(series.ideal_force) > 0.0;
+  const double scale = by_force ? 1.0 / series.reference_length : series.reference_length;
+  const auto ratios = [&](const Series::Vectors& force, const Series::Vectors& torque) {
+    const Series::Vectors& wanted = by_force ? force : torque;
+    const Series::Vectors& unwanted = by_force ? torque : force;
+    const double zero = k_zero_fraction * largest(wanted);
+    std::vector<double> values;
+    for (std::size_t k = 0; k < force.size(); ++k) {
+      const double divisor = length(wanted[k]);
+      values.push_back(divisor > zero ? scale * length(unwanted[k]) / divisor : std::nan(""));
+    }
+    return values;
+  };
+  Signal signal{.name = by_force ? "torque over force" : "force over torque",
+                .measured = ratios(series.force, series.torque),
+                .ideal = ratios(series.ideal_force, series.ideal_torque)};
+  for (std::size_t k = 0; k < signal.ideal.size(); ++k) {
+    if (std::isnan(signal.ideal[k])) signal.measured[k] = std::nan("");
+  }
+  return signal;
+}
+
 std::vector<Signal> signals_of(const Series& series) {
   const auto of = [](std::size_t axis) { return [axis](const Vector& v) { return v[axis]; }; };
   std::vector<Signal> signals{component("force, magnitude", series.force, series.ideal_force, length),
                               component("torque, magnitude", series.torque, series.ideal_torque, length),
                               angle("force, angle to the ideal (degrees)", series.force, series.ideal_force),
-                              angle("torque, angle to the ideal (degrees)", series.torque, series.ideal_torque)};
+                              angle("torque, angle to the ideal (degrees)", series.torque, series.ideal_torque),
+                              penalty(series),
+                              query_time(series)};
+  if (series.reference_length > 0.0) signals.push_back(unwanted_over_wanted(series));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name(1, "xyz"[axis]);
     signals.push_back(component("force, component " + name, series.force, series.ideal_force, of(axis)));
@@ -85,6 +136,14 @@ std::vector<std::size_t> drawn_steps(const Signal& signal) {
     drawn.push_back(best);
   }
   return drawn;
+}
+
+/// "force_signal" is "force, measured", "force_x_signal" is "force, component x".
+std::string words_of(const std::string& name) {
+  const std::size_t end = name.find('_');
+  const std::string kind = name.substr(0, end), what = name.substr(end + 1);
+  if (what == "residual") return kind + ", error (measured minus ideal)";
+  return what == "signal" ? kind + ", measured" : kind + ", component " + what.substr(0, 1);
 }
 
 }  // namespace
@@ -117,14 +176,13 @@ DataTable spectra_table(const std::vector<Series>& all) {
                   .rows = {}};
   for (const Series& series : all) {
     for (const auto& [name, intensity] : series.spectra) {
-      // Residuals stand on the scale of their signal, so that a small one looks small.
+      // Residuals and components stand on the scale of the magnitude, so that a small one looks small.
       const std::string kind = name.substr(0, name.find('_'));
       double loudest = 0.0;
       for (const auto& [other, values] : series.spectra) {
         if (other == kind + "_signal" && !values.empty()) loudest = *std::ranges::max_element(values);
       }
-      const std::string words =
-          name.ends_with("residual") ? kind + ", error (measured minus ideal)" : kind + ", measured";
+      const std::string words = words_of(name);
       const std::size_t columns = series.frequencies.size();
       for (std::size_t t = 0; t < series.times.size(); t += k_pieces_apart) {
         for (std::size_t f = 0; f < columns; ++f) {

@@ -43,11 +43,13 @@ DataTable frontier_table(const Results& results, const std::vector<RowGroup>& gr
 /// "equal_time": what `sixdof equivalent` found, beside the values that the paper prints (scenario/README.md).
 DataTable equal_time_table(const Results& results, const std::vector<RowGroup>& groups);
 
-/// "signals": measured and ideal force and torque along a path: magnitudes, components and angles between them. At most
-/// k_most_steps lines of each signal; of neighbouring steps the one that is farthest from the ideal stays.
+/// "signals": measured and ideal force, torque and penalty along a path: magnitudes, components, angles between them,
+/// torque over force, and the time of each query. At most k_most_steps lines of each signal; of neighbouring steps the
+/// one that is farthest from the ideal stays, of times the longest.
 DataTable signals_table(const std::vector<Series>& series);
 
-/// "spectra": time-frequency diagrams in dB below the signal's loudest piece.
+/// "spectra": time-frequency diagrams of magnitudes, their errors and single components, in dB below the loudest piece
+/// of the force's (torque's) magnitude.
 DataTable spectra_table(const std::vector<Series>& series);
 
 /// "perception": scores of force and torque (measure/perception.h), with the gain fitted to the whole path.

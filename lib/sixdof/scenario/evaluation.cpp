@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <ctime>
 #include <map>
@@ -42,6 +43,7 @@ struct Compared {
 /// Over some of the steps.
 struct Selection {
   Compared force, torque;
+  std::vector<double> ideal_penalties, penalties;
   std::size_t failed = 0;
   std::map<Status, std::size_t> counted;  ///< Those of k_counted_statuses among them.
 };
@@ -87,6 +89,9 @@ struct Evaluator {
       selection.force.measured.push_back(recording.forces[k]);
       selection.torque.ideal.push_back(ideals.torques[k]);
       selection.torque.measured.push_back(recording.torques[k]);
+      // The depth that the paper prints for III is negative: its size counts, as that of its torque does.
+      selection.ideal_penalties.push_back(std::abs(ideals.penalties[k]));
+      selection.penalties.push_back(recording.penalties[k]);
     }
     return selection;
   }
@@ -102,6 +107,7 @@ struct Evaluator {
     const bool has_torque = peak(answered.torque.ideal) > 0.0;
     if (has_force) add_compared(answered.force, every.force, "_F", suffix);
     if (has_torque) add_compared(answered.torque, every.torque, "_T", suffix);
+    if (peak(answered.ideal_penalties) > 0.0) add_penalties(answered, every, suffix);
 
     Compared Selection::*const wanted = has_force || !has_torque ? &Selection::force : &Selection::torque;
     const DirectionError direction = direction_error((answered.*wanted).ideal, (answered.*wanted).measured);
@@ -134,7 +140,17 @@ struct Evaluator {
       add(name("gamma_max", "_deg"), direction.largest_degrees);
     }
     add(name("nu"), nu(every.ideal, every.measured));
+    add(name("nu_direction"), nu_direction(every.ideal, every.measured, k_haptic_rate_hz, k_noise_cutoff_hz));
     add(name("noise"), residual_noise(every.ideal, every.measured, k_haptic_rate_hz, k_noise_cutoff_hz));
+  }
+
+  void add_penalties(const Selection& answered, const Selection& every, const std::string& suffix) {
+    add("sigma_q" + suffix, sigma(answered.ideal_penalties, answered.penalties));
+    if (const auto fit = fit_gain(answered.ideal_penalties, answered.penalties)) {
+      add("gain_q" + suffix, fit->gain);
+      add("sigma_gain_q" + suffix, fit->sigma);
+    }
+    add("nu_q" + suffix, nu(every.ideal_penalties, every.penalties));
   }
 };
 
@@ -151,7 +167,7 @@ void write_vectors(hdf5::File& file, const std::string& name, Vectors vectors) {
   file.write_matrix(name, vectors.front().data(), vectors.size(), 3, k_chunk_rows);
 }
 
-/// Signal and residual of the forces or of the torques.
+/// Of the forces or of the torques: signal and residual of the magnitudes, signals of the components.
 void write_spectra(hdf5::File& file, const std::string& kind, Vectors ideal, Vectors measured) {
   const std::vector<double> signal = magnitudes(measured);
   std::vector<double> residual = signal;
@@ -164,6 +180,11 @@ void write_spectra(hdf5::File& file, const std::string& kind, Vectors ideal, Vec
     return diagram;
   };
   write("signal", signal);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<double> component;
+    for (const Eigen::Vector3d& v : measured) component.push_back(v[axis]);
+    write(fmt::format("{}_signal", "xyz"[axis]), component);
+  }
   const Spectrogram axes = write("residual", residual);
   if (kind != "force") return;  // both kinds have the same axes
   write_rows(file, "/spectrum/times", axes.times, 1);
@@ -276,6 +297,7 @@ void write_series(const std::filesystem::path& path, const Scenario& scenario, c
   file.write_attribute("/", "shape", source.shape);
   if (!source.command.empty()) file.write_attribute("/", "command", source.command);
   file.write_attribute("/", "rate_hz", k_haptic_rate_hz);
+  file.write_attribute("/", "reference_length", scenario.description().reference_length);
   for (const auto& [name, value] : measures) file.write_attribute("/", name.c_str(), value);
   write_rows(file, "/progress", recording.progress, 1);
   write_rows(file, "/pose", poses, 7);
