@@ -19,9 +19,7 @@ namespace sixdof {
 struct Motion {
   /// Largest angle (radians) for which poses are computed to k_pose_error.
   static constexpr double k_most_angle = 1e6;
-  /// Each coordinate of a point p moved by pose_at(t) is off by at most this times (|X_0 * reference| + |translation| +
-  /// |R_0 reference| + |R_0 p|), and by the rounding of t: 1e-16 times (|translation| + |rotation| |R_0 (p -
-  /// reference)|), times the largest of 1 and |rotation|. Some thirty roundings.
+  /// See pose_error(): some thirty roundings.
   static constexpr double k_pose_error = 4e-15;
 
   Pose start;                                             ///< X_AB at t = 0.
@@ -46,6 +44,13 @@ struct Motion {
 
   /// Whether B does not rotate.
   bool is_translation() const { return rotation.isZero(0.0); }
+
+  /// By how much a point of B that pose_at(t) moves may be off, with t rounded to a double from 0 to 1.
+  /// @param reach largest distance of such a point from B's mesh origin
+  double pose_error(double reach) const {
+    const double arm = reach + reference.norm();
+    return k_pose_error * (start.t.norm() + 2.0 * arm + translation.norm() + rotation.norm() * arm);
+  }
 
   /// Why no pose can be computed: a NaN, an infinity, or an angle above k_most_angle. Null if nothing is wrong.
   const char* why_invalid() const;
