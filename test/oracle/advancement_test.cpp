@@ -29,7 +29,7 @@ TEST(Advancement, BoxMeetsBox) {
   ASSERT_EQ(bracket.kind, Kind::hit);
   EXPECT_LE(bracket.t_free, 1.3 / 3.0 + k_rounding);
   EXPECT_GE(bracket.t_touch, 1.3 / 3.0 - k_rounding);
-  EXPECT_LE(bracket.t_touch - bracket.t_free, k_bracket_width);
+  EXPECT_LE(bracket.t_touch - bracket.t_free, k_bracket_width + k_rounding);
 }
 
 /// A rod with square ends swings about a point on its axis down to a floor.
@@ -59,14 +59,19 @@ TEST(Advancement, SpeedBoundIsReachedAndNeverExceeded) {
     const double bound = speed_bound(motion, b.box());
     double fastest = 0.0;
     constexpr double k_step = 1e-5;
+    constexpr double k_difference = 1e-8;  // rounding of two poses, some 1e-14, over the step
     for (double t = 0.0; t < 1.0; t += 0.01) {
       for (const Vector3d& p : b.vertices()) {
         fastest = std::max(fastest, (motion.pose_at(t + k_step) * p - motion.pose_at(t) * p).norm() / k_step);
       }
     }
-    EXPECT_LE(fastest, bound * (1.0 + 1e-9)) << "the difference of two poses has a rounding of 1e-11";
-    if (motion.is_translation()) EXPECT_GE(fastest, bound * (1.0 - 1e-9));
-    if (motion.translation.isZero()) EXPECT_GE(fastest, bound * (1.0 - 1e-4)) << "a corner of the box is a vertex here";
+    EXPECT_LE(fastest, bound * (1.0 + 1e-9) + k_difference);
+    if (motion.is_translation()) {
+      EXPECT_GE(fastest, bound * (1.0 - 1e-9) - k_difference);
+    }
+    if (motion.translation.isZero()) {
+      EXPECT_GE(fastest, bound * (1.0 - 1e-4)) << "a corner of the box is a vertex here";
+    }
   }
 }
 
@@ -82,8 +87,8 @@ TEST(Advancement, ExtremeMotions) {
   EXPECT_EQ(bodies.bracket(Motion::of(b, away, {-1e6 * size, 0.0, 0.0})).kind, Kind::hit);
   EXPECT_EQ(bodies.bracket(Motion::of(b, {.t = {1e6, 0.2, 0.1}}, {-2e6, 0.0, 0.0})).kind, Kind::hit) << "from afar";
   EXPECT_EQ(bodies.bracket(Motion::of(b, away, {-1e-9 * size, 0.0, 0.0})).kind, Kind::none);
-  EXPECT_EQ(bodies.bracket(Motion::of(b, away, {}, {0.0, 0.0, 30.0})).kind, Kind::none) << "spins, apart";
-  Motion swing = Motion::of(b, away, {}, {0.0, 0.0, 2.9 * std::numbers::pi});
+  EXPECT_EQ(bodies.bracket(Motion::of(b, away, Vector3d::Zero(), {0.0, 0.0, 30.0})).kind, Kind::none) << "spins, apart";
+  Motion swing = Motion::of(b, away, Vector3d::Zero(), {0.0, 0.0, 2.9 * std::numbers::pi});
   swing.reference = {0.0, 3.0, 0.0};
   EXPECT_EQ(bodies.bracket(swing).kind, Kind::none);
   EXPECT_EQ(bodies.bracket(Motion::of(b, away, {-6.0, 0.0, 0.0}, {0.0, 0.0, 300.0})).kind, Kind::hit);
@@ -120,10 +125,18 @@ TEST(Advancement, DenseSamplingFindsNoEarlierContact) {
     const ImpactBracket bracket = bodies.bracket(motion);
     const auto sample = motions::first_touching_sample(a, b, motion, k_samples);
     if (bracket.kind == Kind::grazing) ++grazing;
-    if (bracket.kind == Kind::none) EXPECT_FALSE(sample) << i;
-    if (bracket.kind == Kind::at_start) EXPECT_TRUE(motions::touches(a, b, motion.start)) << i;
-    if (sample) EXPECT_GT(*sample, bracket.kind == Kind::at_start ? -1.0 : bracket.t_free) << i;
-    if (bracket.kind == Kind::hit) EXPECT_TRUE(motions::touches(a, b, motion.pose_at(bracket.t_touch))) << i;
+    if (bracket.kind == Kind::none) {
+      EXPECT_FALSE(sample) << i;
+    }
+    if (bracket.kind == Kind::at_start) {
+      EXPECT_TRUE(motions::touches(a, b, motion.start)) << i;
+    }
+    if (sample) {
+      EXPECT_GT(*sample, bracket.kind == Kind::at_start ? -1.0 : bracket.t_free) << i;
+    }
+    if (bracket.kind == Kind::hit) {
+      EXPECT_TRUE(motions::touches(a, b, motion.pose_at(bracket.t_touch))) << i;
+    }
     hits += bracket.kind == Kind::hit ? 1 : 0;
     misses += bracket.kind == Kind::none ? 1 : 0;
   }

@@ -15,6 +15,9 @@ constexpr double k_bound_rounding = 1.0 + 1e-13;
 /// Brackets are at least so many roundings of poses wide: below, yes/no may change its answer several times.
 constexpr double k_rounding_width = 8.0;
 
+/// Of a bracket's width, so that the difference of its rounded ends is not larger.
+constexpr double k_inside = 1.0 - 1e-6;
+
 Eigen::Vector3d corner_of(const Eigen::AlignedBox3d& box, int i) {
   return box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
 }
@@ -51,7 +54,8 @@ ImpactBracket advance(DistanceQuery& query, const Eigen::AlignedBox3d& box_b, co
                       const AdvancementOptions& options) {
   if (const char* const why = motion.why_invalid(); why != nullptr) throw BadArgument(why);
   using Kind = ImpactBracket::Kind;
-  const double speed = options.speed_factor * speed_bound(motion, box_b), width = bracket_width(motion, box_b);
+  const double speed = options.speed_factor * speed_bound(motion, box_b);
+  const double width = k_inside * bracket_width(motion, box_b);
   const double pose_error = motion.pose_error(reach_of(motion, box_b));
   ImpactBracket bracket{.t_free = options.from};
   const auto touches = [&](double t) {

@@ -24,6 +24,8 @@ constexpr double k_gap_rounding = 1e-14;
 
 /// A pair of volumes waits again as long as its bound is more than this part of the first one; then it is split.
 constexpr double k_worth_waiting = 0.5;
+/// And if that is more than this part of the motion: where a gap is as small as rounding, it does not grow.
+constexpr double k_least_wait = 1e-6;
 
 bool is_leaf(std::uint32_t volume) { return (volume & NodePair::k_leaf) != 0; }
 bool is_triangle(std::uint32_t volume) { return !is_leaf(volume) && (volume & NodePair::k_triangle) != 0; }
@@ -166,8 +168,8 @@ class CastSearch::Moment {
       if (most_speed <= 0.0) return k_never;
       return std::max(gap / (factor * most_speed), time_of(gap, factor * speed + slack, factor * acceleration));
     }
-    // In contact up to rounding: apart for as long as all of it recedes.
-    return speed < -slack ? time_of(0.0, speed + slack, factor * acceleration) : 0.0;
+    // Apart by less than rounding: it stays so as long as all of it recedes.
+    return gap > -search_.margin_ && speed < -slack ? time_of(0.0, speed + slack, factor * acceleration) : 0.0;
   }
 
   const CastSearch& search_;
@@ -200,12 +202,12 @@ void CastSearch::wait(const Moment& moment, std::uint32_t a, std::uint32_t b) {
 
 /// Bounds a pair again that has waited. @return whether it waits on, or was dropped
 bool CastSearch::waits_again(const Moment& moment, const Waiting& pair) {
-  if (pair.first_wait == 0.0) return false;
+  if (pair.first_wait <= k_least_wait) return false;
   ++counts_.pairs;
   const double left = 1.0 - moment.t;
   const double apart = moment.time_apart(volume_of(a_, pair.a), volume_of(b_, pair.b), left);
   if (apart > left) return true;
-  if (apart <= k_worth_waiting * pair.first_wait) return false;
+  if (apart <= std::max(k_worth_waiting * pair.first_wait, k_least_wait)) return false;
   push({moment.t + apart, pair.a, pair.b, pair.first_wait});
   return true;
 }

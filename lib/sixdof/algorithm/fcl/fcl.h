@@ -38,12 +38,17 @@ std::unique_ptr<Algorithm> make_fcl_aabb_algorithm();
 /// normals of either sign, or none; depths are not continuous, as pairs appear and disappear.
 std::unique_ptr<Algorithm> make_fcl_contacts_algorithm();
 
+/// `fcl-cast`: FCL's continuous collision. Answers cast only, without points and normals.
+/// The motion is TranslationMotion or InterpMotion. A rotation by more than pi, which they cannot have, is asked in
+/// parts. `solver=naive` is the default of FCL's request, with its ten steps: contacts between them are missed.
+std::unique_ptr<Algorithm> make_fcl_cast_algorithm();
+
 /// Which FCL this is: Debian's package and its version (FCL's own version elsewhere), FCL's option for SIMD and the
 /// alignment of Eigen's types, e.g. "libfcl-dev 0.7.0-3+b1, FCL_HAVE_SSE 0, EIGEN_MAX_ALIGN_BYTES 16". The package is
 /// that of the headers when sixdof was configured.
 std::string fcl_build();
 
-/// Adds all six.
+/// Adds all seven.
 void register_fcl_algorithms(Registry& registry);
 
 }  // namespace sixdof
