@@ -5,6 +5,7 @@
 #include <sixdof/configuration/grid.h>
 #include <sixdof/generation/distance_generator.h>
 #include <sixdof/generation/motions.h>
+#include <sixdof/generation/stored_impacts.h>
 #include <sixdof/oracle/cast_search.h>
 #include <sixdof/oracle/impact_verdict.h>
 
@@ -101,6 +102,28 @@ TEST(ImpactTruth, BehindAHitFromOutsideItAdvances) {
   const TrueImpact impact = truth.find(motion);
   EXPECT_FALSE(impact.by_ray_cast);
   EXPECT_EQ(impact.bracket.kind, Kind::hit);
+}
+
+TEST(StoredImpacts, AreThoseOfTheTruth) {
+  const Mesh a = bodies::bumpy_torus(16, 8), b = bodies::bumpy_sphere(2);
+  shapes::Generator generator(9);
+  std::vector<Motion> motions;
+  for (int i = 0; i < 12; ++i) motions.push_back(motions::random_motion(a, b, generator, i % 3));
+  const auto made = stored_impacts(a, b, motions), read = stored_impacts(a, b, motions);
+  ImpactTruth truth(a, b);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const ImpactBracket bracket = truth.find(motions[i]).bracket;
+    for (const ImpactBracket& stored : {made[i], read[i]}) {
+      EXPECT_EQ(stored.kind, bracket.kind);
+      EXPECT_EQ(stored.t_free, bracket.t_free);
+      EXPECT_EQ(stored.closest.distance, bracket.closest.distance);
+      EXPECT_EQ(stored.closest.witness_b, bracket.closest.witness_b);
+    }
+  }
+  // Every bit of a motion is part of the key.
+  const std::string key = impact_key(a, b, motions);
+  motions[7].reference.y() = std::nextafter(motions[7].reference.y(), 9.0);
+  EXPECT_NE(impact_key(a, b, motions), key);
 }
 
 TEST(Motions, AreTheSameForTheSameSeed) {
