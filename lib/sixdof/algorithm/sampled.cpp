@@ -56,8 +56,9 @@ std::unique_ptr<Algorithm> make_sampled_algorithm() {
        .summary =
            "first contact by exact yes/no at equal steps of the motion and bisection; contacts between are missed",
        .answers = {.cast = true},
-       .parameters = {
-           Parameter::count(k_steps, "steps of a motion", "16", 1.0, k_most_steps).swept({"4", "16", "64", "256"})}});
+       .parameters =
+           {Parameter::count(k_steps, "steps of a motion", "16", 1.0, k_most_steps).swept({"4", "16", "64", "256"})},
+       .by_default = false});
 }
 
 }  // namespace sixdof

@@ -119,7 +119,8 @@ std::unique_ptr<Algorithm> make_fcl_cast_algorithm() {
       .parameters = {Parameter::choice(k_solver, "FCL's solver: yes/no at equal steps, or conservative advancement",
                                        "naive", {"naive", "advancement"}),
                      Parameter::count(k_iterations, "steps of naive; advancement does not look at it", "10", 2.0, 1e6)
-                         .swept({"10", "100", "1000"})}});
+                         .swept({"10", "100", "1000"})},
+      .by_default = false});
 }
 
 }  // namespace sixdof
