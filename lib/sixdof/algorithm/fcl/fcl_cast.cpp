@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include <fcl/math/motion/interp_motion.h>
 #include <fcl/math/motion/translation_motion.h>
 #include <fcl/narrowphase/continuous_collision.h>
+#include <fcl/narrowphase/detail/conservative_advancement_func_matrix.h>
 
 #include <sixdof/algorithm/fcl/fcl.h>
 #include <sixdof/algorithm/fcl/fcl_mesh.h>
@@ -30,14 +33,25 @@ constexpr double k_most_angle = 3.0;
 using NaiveVolume = fcl::OBBRSSd;
 using AdvancementVolume = fcl::RSSd;
 
+enum class Solver {
+  naive,
+  advancement,
+  oriented
+};
+
+Solver solver_of(const Settings& settings) {
+  const std::string& name = settings.choice(k_solver);
+  return name == "naive" ? Solver::naive : name == "advancement" ? Solver::advancement : Solver::oriented;
+}
+
 template <class BV>
 class FclCastQuery final : public LibraryQuery {
  public:
   FclCastQuery(const Mesh& a, const Mesh& b, const Settings& settings)
-      : models_(ShapePair<Model>::of(a, b, build_fcl_model<BV>)) {
+      : models_(ShapePair<Model>::of(a, b, build_fcl_model<BV>)), solver_(solver_of(settings)) {
     request_.num_max_iterations = static_cast<std::size_t>(settings.number(k_iterations));
     request_.toc_err = 1.0 / settings.number(k_iterations);
-    request_.ccd_solver_type = std::is_same_v<BV, NaiveVolume> ? fcl::CCDC_NAIVE : fcl::CCDC_CONSERVATIVE_ADVANCEMENT;
+    request_.ccd_solver_type = solver_ == Solver::naive ? fcl::CCDC_NAIVE : fcl::CCDC_CONSERVATIVE_ADVANCEMENT;
   }
 
   Outcome<Impact> cast(const Motion& motion) override {
@@ -71,25 +85,40 @@ class FclCastQuery final : public LibraryQuery {
   /// The motions are made anew for each query: FCL keeps the time that it reached in them.
   Impact cast_between(const Motion& motion, double from, double to) {
     const Pose start = motion.pose_at(from), end = motion.pose_at(to);
-    const fcl::TranslationMotion<double> still(fcl::Transform3d::Identity(), fcl::Transform3d::Identity());
-    fcl::ContinuousCollisionResultd result;
-    fcl::ContinuousCollisionRequestd request = request_;
+    std::optional<double> time;
     if (motion.is_translation()) {
-      const fcl::TranslationMotion<double> moving(to_fcl(start), to_fcl(end));
-      request.ccd_motion_type = fcl::CCDM_TRANS;
-      fcl::continuousCollide<double>(models_.a.get(), &still, models_.b.get(), &moving, request, result);
+      time = collide(fcl::TranslationMotion<double>(to_fcl(start), to_fcl(end)), fcl::CCDM_TRANS);
     } else {
       // Of its constructors only this one sets all that it uses: those without a reference point leave that unset, and
       // the one of two transforms and a point leaves the velocities unset.
-      const fcl::InterpMotion<double> moving(start.R, start.t, end.R, end.t, motion.reference);
-      request.ccd_motion_type = fcl::CCDM_LINEAR;
-      fcl::continuousCollide<double>(models_.a.get(), &still, models_.b.get(), &moving, request, result);
+      time = collide(fcl::InterpMotion<double>(start.R, start.t, end.R, end.t, motion.reference), fcl::CCDM_LINEAR);
     }
-    if (!result.is_collide) return {};
-    return {.hit = true, .t = std::min(1.0, from + (to - from) * result.time_of_contact)};
+    if (!time) return {};
+    return {.hit = true, .t = std::min(1.0, from + (to - from) * *time)};
+  }
+
+  /// The time of contact with B on a motion; none if there is none.
+  std::optional<double> collide(const fcl::MotionBase<double>& moving, fcl::CCDMotionType type) {
+    const fcl::TranslationMotion<double> still(fcl::Transform3d::Identity(), fcl::Transform3d::Identity());
+    if constexpr (std::is_same_v<BV, AdvancementVolume>) {
+      if (solver_ == Solver::oriented) {
+        double time = 0.0;
+        fcl::CollisionResultd ignored;
+        const bool hit = fcl::detail::conservativeAdvancementMeshOriented<
+            BV, fcl::detail::MeshConservativeAdvancementTraversalNodeRSS<double>>(
+            *models_.a, &still, *models_.b, &moving, fcl::CollisionRequestd(), ignored, time);
+        return hit ? std::optional(time) : std::nullopt;
+      }
+    }
+    fcl::ContinuousCollisionRequestd request = request_;
+    request.ccd_motion_type = type;
+    fcl::ContinuousCollisionResultd result;
+    fcl::continuousCollide<double>(models_.a.get(), &still, models_.b.get(), &moving, request, result);
+    return result.is_collide ? std::optional(result.time_of_contact) : std::nullopt;
   }
 
   const ShapePair<Model> models_;
+  const Solver solver_;
   fcl::ContinuousCollisionRequestd request_;
 };
 
@@ -99,7 +128,7 @@ class FclCast final : public Algorithm {
   explicit FclCast(Traits traits) : traits_(std::move(traits)) {}
   const Traits& traits() const override { return traits_; }
   std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings& settings) const override {
-    if (settings.choice(k_solver) == "naive") return std::make_unique<FclCastQuery<NaiveVolume>>(a, b, settings);
+    if (solver_of(settings) == Solver::naive) return std::make_unique<FclCastQuery<NaiveVolume>>(a, b, settings);
     return std::make_unique<FclCastQuery<AdvancementVolume>>(a, b, settings);
   }
 
@@ -116,8 +145,11 @@ std::unique_ptr<Algorithm> make_fcl_cast_algorithm() {
       .summary = "FCL's continuous collision: yes/no at equal steps, or conservative advancement",
       .answers = {.cast = true},
       .limits = {.surfaces_only = {.cast = true}},
-      .parameters = {Parameter::choice(k_solver, "FCL's solver: yes/no at equal steps, or conservative advancement",
-                                       "naive", {"naive", "advancement"}),
+      .parameters = {Parameter::choice(
+                         k_solver,
+                         "FCL's solver: yes/no at equal steps; conservative advancement as its public function "
+                         "runs it; the same as its own function for trees of swept spheres does",
+                         "naive", {"naive", "advancement", "oriented"}),
                      Parameter::count(k_iterations, "steps of naive; advancement does not look at it", "10", 2.0, 1e6)
                          .swept({"10", "100", "1000"})},
       .by_default = false});
