@@ -36,7 +36,7 @@ struct CastSearchCounts {
 class CastSearch {
  public:
   /// Pairs taken from the queue after which a search gives up: some seconds.
-  static constexpr std::uint64_t k_most_pairs = 20'000'000;
+  static constexpr std::uint64_t k_most_pairs = 5'000'000;
   /// A contact is found when exact yes/no says that the triangles touch within this part of the motion.
   static constexpr double k_resolution = 1e-10;
 
