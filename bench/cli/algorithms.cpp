@@ -24,6 +24,7 @@ std::vector<std::string> names_of(const QuerySet& answers) {
   if (answers.collide) names.emplace_back("collide");
   if (answers.distance) names.emplace_back("distance");
   if (answers.respond) names.emplace_back("respond");
+  if (answers.cast) names.emplace_back("cast");
   return names;
 }
 

@@ -29,12 +29,13 @@ constexpr const char* k_details =
     "is true; algorithms that look at surfaces only say no). distance: between the two surfaces, also for nested "
     "bodies; 0 where the surfaces meet. Lengths are in the meshes' own unit, the volume in its cube. The force of "
     "exact is the negative gradient of the overlap volume (unit squared); for other algorithms see "
-    "`sixdof algorithms`. Times are those of single calls with cold caches, in ns. Open meshes have no inside: yes/no "
+    "`sixdof algorithms`. t: of the first contact, from 0 to 1 of the motion; normal: from A to B there. Times are "
+    "those of single calls with cold caches, in ns. Open meshes have no inside: yes/no "
     "and distance are those of their surfaces, and there is no response.";
 
 struct Arguments {
   std::string a, b, about;
-  std::vector<std::string> pose, only;
+  std::vector<std::string> pose, motion, only;
   AlgorithmOptions algorithm{.name = "exact", .parameters = {}};
   bool json = false;
 };
@@ -82,6 +83,22 @@ Pose parse_pose(const std::vector<std::string>& words) {
   return Pose::from_quaternion(n[3], n[4], n[5], n[6], {n[0], n[1], n[2]});
 }
 
+/// Numbers of --motion: translation, rotation vector, reference point.
+constexpr std::size_t k_motion_numbers = 9;
+
+/// @param words three, six or nine numbers, in one argument or in several
+Motion parse_motion(const std::vector<std::string>& words, const Pose& start, const Mesh& b) {
+  const std::string text = fmt::format("{}", fmt::join(words, " "));
+  const std::vector<double> n = parse_numbers(text, "--motion");
+  if (n.size() != 3 && n.size() != 6 && n.size() != k_motion_numbers) {
+    throw BadArgument(fmt::format("--motion \"{}\": {} numbers instead of 3, 6 or 9", text, n.size()));
+  }
+  Motion motion = Motion::of(b, start, {n[0], n[1], n[2]});
+  if (n.size() >= 6) motion.rotation = {n[3], n[4], n[5]};
+  if (n.size() == k_motion_numbers) motion.reference = {n[6], n[7], n[8]};
+  return motion;
+}
+
 using Clock = std::chrono::steady_clock;
 
 std::int64_t nanoseconds_since(Clock::time_point begin) {
@@ -95,6 +112,7 @@ struct Answers {
   Outcome<bool> collide;
   Outcome<Separation> distance;
   Outcome<Response> respond;
+  Outcome<Impact> cast;
   Json times_ns;  ///< By kind of call, null for queries that the algorithm does not answer.
   std::int64_t query_ns = 0;
   Status status = Status::ok;  ///< Of the first query that was asked and gave no answer,
@@ -113,10 +131,20 @@ std::string why_not_solid(const Mesh& a, const Mesh& b) {
   return {};
 }
 
-/// The questions of --only, or all, as far as the algorithm answers them. @throws BadArgument for one that it does not
-QuerySet chosen_questions(const Traits& traits, const std::vector<std::string>& only) {
-  if (only.empty()) return traits.answers;
-  QuerySet chosen;
+/// The questions of --only, or all, as far as the algorithm answers them; cast alone of a motion.
+/// @throws BadArgument for one that it does not
+QuerySet chosen_questions(const Traits& traits, const std::vector<std::string>& only, bool moves) {
+  if (moves && !traits.answers.cast) {
+    throw BadArgument(fmt::format("{} gives no answer to a motion; sixdof algorithms says who does", traits.name));
+  }
+  if (moves) return {.cast = true};
+  QuerySet chosen = traits.answers;
+  chosen.cast = false;
+  if (!chosen.collide && !chosen.distance && !chosen.respond) {
+    throw BadArgument(fmt::format("{} answers for motions only: give it a --motion", traits.name));
+  }
+  if (only.empty()) return chosen;
+  chosen = {};
   for (const std::string& word : only) {
     const auto choose = [&](bool QuerySet::*question) {
       if (!(traits.answers.*question)) {
@@ -129,13 +157,13 @@ QuerySet chosen_questions(const Traits& traits, const std::vector<std::string>& 
   return chosen;
 }
 
-template <class T>
-void ask_one(Query& query, const char* kind, bool asked, Outcome<T> (Query::*question)(const Pose&), const Pose& X_AB,
-             Outcome<T>& outcome, Answers& answers) {
+template <class T, class Input>
+void ask_one(Query& query, const char* kind, bool asked, Outcome<T> (Query::*question)(const Input&),
+             const Input& input, Outcome<T>& outcome, Answers& answers) {
   answers.times_ns[kind] = nullptr;
   if (!asked) return;
   const auto begin = Clock::now();
-  outcome = (query.*question)(X_AB);
+  outcome = (query.*question)(input);
   const std::int64_t round_trip = nanoseconds_since(begin);
   const RemoteQuery* const remote = as_remote(query);
   const std::int64_t took = remote == nullptr ? round_trip : std::llround(remote->last_ns());
@@ -148,8 +176,9 @@ void ask_one(Query& query, const char* kind, bool asked, Outcome<T> (Query::*que
   });
 }
 
-Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Settings& settings, const Pose& X_AB,
+Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Settings& settings, const Motion& motion,
             const QuerySet& kinds) {
+  const Pose& X_AB = motion.start;
   Answers answers;
   const auto begin = Clock::now();
   const std::unique_ptr<Query> query = algorithm.prepare(a, b, settings);
@@ -160,6 +189,7 @@ Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Sett
   }
   ask_one(*query, "collide", kinds.collide, &Query::collide, X_AB, answers.collide, answers);
   ask_one(*query, "distance", kinds.distance, &Query::distance, X_AB, answers.distance, answers);
+  ask_one(*query, "cast", kinds.cast, &Query::cast, motion, answers.cast, answers);
   const Status before = answers.status;
   ask_one(*query, "respond", kinds.respond, &Query::respond, X_AB, answers.respond, answers);
   // A surface with a border has yes/no and distance, but no inside that a force could push out of.
@@ -176,7 +206,9 @@ Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Sett
 Json describe(const Traits& traits, const Settings& settings, const Answers& answers) {
   const bool separated = answers.distance.ok(), responded = answers.respond.ok();
   const Separation& gap = answers.distance.value;
-  const bool witnesses = separated && gap.has_witnesses;
+  const Impact& impact = answers.cast.value;
+  const bool hit = answers.cast.ok() && impact.hit;
+  const bool witnesses = hit ? impact.has_witnesses : separated && gap.has_witnesses;
   const Response& response = answers.respond.value;
   const auto or_null = [](bool given, const Json& value) { return given ? value : Json(nullptr); };
   return {{"algorithm", traits.name},
@@ -188,8 +220,12 @@ Json describe(const Traits& traits, const Settings& settings, const Answers& ans
           {"colliding", or_null(answers.collide.ok(), answers.collide.value)},
           {"distance", or_null(separated, gap.distance)},
           {"nested", or_null(answers.nested(), true)},
-          {"witness_a", or_null(witnesses, coordinates(gap.witness_a))},
-          {"witness_b", or_null(witnesses, coordinates(gap.witness_b))},
+          {"hit", or_null(answers.cast.ok(), impact.hit)},
+          {"t", or_null(hit, impact.t)},
+          {"contact_at_start", or_null(hit, impact.at_start())},
+          {"witness_a", or_null(witnesses, coordinates(hit ? impact.witness_a : gap.witness_a))},
+          {"witness_b", or_null(witnesses, coordinates(hit ? impact.witness_b : gap.witness_b))},
+          {"normal", or_null(hit && !impact.normal.isZero(0.0), coordinates(impact.normal))},
           {"penalty", or_null(responded, response.penalty)},
           {"volume", or_null(responded, response.volume)},
           {"force", or_null(responded, coordinates(response.force))},
@@ -209,7 +245,7 @@ void print_text(const Json& answers) {
 
 void run_query(const Arguments& arguments) {
   const auto [registry, algorithm, settings] = select_algorithm(arguments.algorithm);
-  const QuerySet kinds = chosen_questions(algorithm->traits(), arguments.only);
+  const QuerySet kinds = chosen_questions(algorithm->traits(), arguments.only, !arguments.motion.empty());
   const Pose X_AB = parse_pose(arguments.pose);
   std::vector<double> about;
   if (!arguments.about.empty()) about = parse_numbers(arguments.about, 3, "--about");
@@ -219,7 +255,8 @@ void run_query(const Arguments& arguments) {
   say_notes("sixdof", a, arguments.a);
   if (arguments.b != arguments.a) say_notes("sixdof", b, arguments.b);
   warn_of_sizes("sixdof", MeshIdentity::of(a), MeshIdentity::of(b));
-  Answers answers = ask(*algorithm, a, b, settings, X_AB, kinds);
+  const Motion motion = arguments.motion.empty() ? Motion{.start = X_AB} : parse_motion(arguments.motion, X_AB, b);
+  Answers answers = ask(*algorithm, a, b, settings, motion, kinds);
   if (!about.empty() && answers.respond.ok()) {
     answers.respond.value = answers.respond.value.about({about[0], about[1], about[2]});
   }
@@ -247,11 +284,21 @@ void add_query_command(CLI::App& app) {
       ->required()
       ->type_name("POSE")
       ->expected(1, static_cast<int>(k_matrix_numbers));
+  auto* const motion =
+      command
+          ->add_option(
+              "--motion", arguments->motion,
+              "When do the bodies first touch while B moves from there? \"x y z\", its translation, then if it "
+              "rotates a rotation vector (radians, in A's axes), then the point of B that moves straight, in "
+              "B's frame, if not the centre of B's box")
+          ->type_name("MOTION")
+          ->expected(1, static_cast<int>(k_motion_numbers));
   command->add_option("--only", arguments->only, "Questions to ask: distance; collide,distance")
       ->type_name("QUESTION")
       ->delimiter(',')
       ->check(CLI::IsMember({"collide", "distance", "respond"}))
       ->allow_extra_args(false)
+      ->excludes(motion)
       ->default_str("all that the algorithm answers");
   add_algorithm_options(*command, arguments->algorithm, "The algorithm to ask (sixdof algorithms lists them)")
       ->capture_default_str();
@@ -262,7 +309,7 @@ void add_query_command(CLI::App& app) {
   add_process_options(*command, arguments->algorithm.process);
   command->callback([arguments] { run_query(*arguments); });
   add_examples(*command, "sixdof query --a cone-1k --b torus-1k --pose '0.9 0 0.1 1 0 0 0'",
-               "sixdof query --a cone-1k --b torus-1k --pose '0.9 0 0.1 1 0 0 0' --algorithm ist -p spheres=500 --json",
+               "sixdof query --a cone-1k --b torus-1k --pose '1.9 0 0.1 1 0 0 0' --motion '-2 0 0 0 0 1.5' --json",
                k_details);
 }
 

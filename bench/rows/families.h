@@ -18,6 +18,11 @@ std::vector<PlannedRow> prepare_rows(const Resources& resources);
 /// exact ones.
 std::vector<PlannedRow> query_rows(const Resources& resources);
 
+/// `cast/algorithm:A/pair:P/motion:tumble/step:10`: when B first touches A on motions from the poses of contact of a
+/// set (lib/sixdof/generation/motions.h) that move B by 10 % of A's diagonal, judged by stored_impacts(). They are not
+/// in the default suite.
+std::vector<PlannedRow> cast_rows(const Resources& resources);
+
 /// `scenario/II/algorithm:A`: mean time of a response along a scenario's path and every measure of its quality, against
 /// the law that the algorithm declares and, with the suffix "_by_LAW", against every other.
 std::vector<PlannedRow> scenario_rows(const Resources& resources);

@@ -196,6 +196,19 @@ StressCell run_cell(const Family& family, const Algorithm& algorithm, StressSett
   return cell;
 }
 
+namespace {
+
+/// " --motion '...'", all digits.
+std::string motion_option(const Motion& motion) {
+  std::string numbers;
+  for (const Eigen::Vector3d& v : {motion.translation, motion.rotation, motion.reference}) {
+    for (const double x : v) numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", x);
+  }
+  return fmt::format(" --motion '{}'", numbers);
+}
+
+}  // namespace
+
 std::string reproduction(const Case& member, std::size_t index, const Algorithm& algorithm, const Settings& settings,
                          const std::filesystem::path& folder) {
   const Shot& shot = member.shots.at(index);
@@ -211,9 +224,9 @@ std::string reproduction(const Case& member, std::size_t index, const Algorithm&
     for (const double number : shot.X_AB.t) append(number);
     for (const double number : {q.w(), q.x(), q.y(), q.z()}) append(number);
   }
-  return fmt::format("{} --pose '{}'",
+  return fmt::format("{} --pose '{}'{}",
                      bench::query_command(mesh_file(*shot.a, folder), mesh_file(*shot.b, folder), algorithm, settings),
-                     pose);
+                     pose, member.cast && algorithm.traits().answers.cast ? motion_option(*member.cast) : "");
 }
 
 }  // namespace sixdof::study

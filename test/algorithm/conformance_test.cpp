@@ -12,6 +12,7 @@ namespace {
 
 SIXDOF_CONFORMANCE(make_exact_algorithm);
 SIXDOF_CONFORMANCE(make_brute_force_algorithm);
+SIXDOF_CONFORMANCE(make_sampled_algorithm);
 SIXDOF_CONFORMANCE(make_ist_algorithm);
 SIXDOF_CONFORMANCE(make_ist_descent_algorithm);
 SIXDOF_CONFORMANCE(make_vps_algorithm);

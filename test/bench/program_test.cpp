@@ -29,7 +29,7 @@ using ::testing::Not;
 TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
   const json document = result(
       "--seed 5 --sample 32 -p ist:spheres=300 -p ist-descent:spheres=300 "
-      "'--benchmark_filter=-^(scenario|generate)/'");
+      "'--benchmark_filter=-^(scenario|generate|cast)/'");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;
   std::size_t judged = 0;
@@ -92,6 +92,24 @@ TEST_F(BenchProgram, JudgesResponsesByTheirVolumeAndForce) {
   EXPECT_LT(spheres.at("gamma_F_deg"), 45);
   EXPECT_GT(spheres.at("gamma_max_F_deg"), spheres.at("gamma_F_deg"));
   EXPECT_GT(spheres.at("gamma_max_T_deg"), spheres.at("gamma_T_deg"));
+}
+
+TEST_F(BenchProgram, JudgesFirstContacts) {
+  const std::string where = "/pair:torus-1k-cone-1k/motion:tumble/step:10";
+  const json document = result("--sample 32 --benchmark_filter='^cast/algorithm:(exact|null|sampled)" + where + "$'");
+  const json exact = row(document, "cast/algorithm:exact" + where);
+  for (const char* count :
+       {"failed", "mismatch", "early", "late_hits", "missed_hits", "phantom_hits", "false_starts"}) {
+    EXPECT_EQ(exact.at(count), 0) << count;
+  }
+  EXPECT_GT(exact.at("hits"), 10);
+  EXPECT_LE(exact.at("grazing"), 1);
+  EXPECT_GE(exact.at("max_ns"), exact.at("p50_ns"));
+  EXPECT_EQ(exact.at("sixdof").at("order"), "tumble/10");
+  const json null = row(document, "cast/algorithm:null" + where);
+  EXPECT_EQ(null.at("missed_hits"), null.at("hits"));
+  EXPECT_EQ(null.at("mismatch"), null.at("hits"));
+  EXPECT_EQ(row(document, "cast/algorithm:sampled" + where).at("failed"), 0);
 }
 
 TEST_F(BenchProgram, ReportsTheWorkOfQueries) {

@@ -113,6 +113,29 @@ TEST(Query, InnerSphereTreesHaveTheirForceLawsAndNumbersOfSpheres) {
               HasSubstr("spheres_b=40"));
 }
 
+TEST(Query, AMotionIsAskedForItsFirstContact) {
+  // A gap of 3 - 2 between boxes that are 2 long; B moves by 4 in the time from 0 to 1.
+  const auto json = answers("--a box-100 --b box-300 --pose '3 0.1 0.2 1 0 0 0' --motion '-4 0 0'");
+  EXPECT_EQ(json.at("hit"), true);
+  EXPECT_NEAR(json.at("t"), 0.25, 1e-9);
+  EXPECT_EQ(json.at("contact_at_start"), false);
+  EXPECT_NEAR(vector(json.at("normal")).x(), 1.0, 1e-6);
+  EXPECT_NEAR(vector(json.at("witness_a")).x(), 1.0, 1e-8);
+  for (const char* key : {"colliding", "distance", "force"}) EXPECT_TRUE(json.at(key).is_null()) << key;
+  // Turned by 90 degrees about z, B reaches less far.
+  const auto turned = answers("--a box-100 --b box-300 --pose '3 0.1 0.2 1 0 0 0' --motion '-1.1 0 0 0 0 1.5707963'");
+  EXPECT_EQ(turned.at("hit"), true);
+  EXPECT_EQ(answers("--a box-100 --b box-300 --pose '3 0.1 0.2 1 0 0 0' --motion '4 0 0'").at("hit"), false);
+  EXPECT_EQ(answers(std::string(k_boxes) + " --motion '4 0 0'").at("contact_at_start"), true);
+}
+
+TEST(Query, RefusesWhatIsNoMotion) {
+  EXPECT_THAT(query(std::string(k_boxes) + " --motion '1 2'").err, HasSubstr("2 numbers instead of 3, 6 or 9"));
+  EXPECT_THAT(query(std::string(k_boxes) + " --motion '1 2 3' --algorithm ode").err,
+              HasSubstr("gives no answer to a motion"));
+  EXPECT_THAT(query(std::string(k_boxes) + " --algorithm sampled").err, HasSubstr("give it a --motion"));
+}
+
 TEST(Query, AsksOnlyWhatIsWanted) {
   const auto json = answers(std::string(k_boxes) + " --only distance");
   EXPECT_EQ(json.at("distance"), 0.0);

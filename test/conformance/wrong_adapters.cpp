@@ -37,6 +37,7 @@ struct Fault {
   std::function<void(const Asked&, Outcome<bool>&)> collide;
   std::function<void(const Asked&, Outcome<Separation>&)> distance;
   std::function<void(const Asked&, Outcome<Response>&)> respond;
+  std::function<void(const Motion&, Outcome<Impact>&)> cast;
 };
 
 class WrongQuery final : public Query {
@@ -51,6 +52,13 @@ class WrongQuery final : public Query {
   Outcome<bool> collide(const Pose& X_AB) override { return answer(&Query::collide, fault_.collide, X_AB); }
   Outcome<Separation> distance(const Pose& X_AB) override { return answer(&Query::distance, fault_.distance, X_AB); }
   Outcome<Response> respond(const Pose& X_AB) override { return answer(&Query::respond, fault_.respond, X_AB); }
+
+  Outcome<Impact> cast(const Motion& motion) override {
+    if (!fault_.cast) return Status::unsupported;
+    Outcome<Impact> outcome = exact_->cast(motion);
+    fault_.cast(motion, outcome);
+    return outcome.ok() ? outcome : Outcome<Impact>(fail(outcome.status, exact_->diagnosis()));
+  }
 
  private:
   template <class T, class Change>
@@ -98,6 +106,10 @@ conformance::Source wrong(const char* name, Fault fault, QuerySet answers = k_al
   });
 }
 
+conformance::Source wrong_cast(const char* name, std::function<void(const Motion&, Outcome<Impact>&)> change) {
+  return wrong(name, {.cast = std::move(change)}, {.cast = true});
+}
+
 conformance::Source wrong_collide(const char* name, std::function<bool(const Asked&)> where) {
   return wrong(name, {.collide = [=](const Asked& asked, Outcome<bool>& outcome) {
                  if (where(asked)) outcome.value = !outcome.value;
@@ -143,6 +155,11 @@ SIXDOF_CONFORMANCE(wrong_respond("wrong-motion-of-respond", [](const Asked& q) {
 SIXDOF_CONFORMANCE(wrong_collide("wrong-scale-of-collide", [](const Asked& q) { return q.has("(scaled)"); }), bodies());
 SIXDOF_CONFORMANCE(wrong_distance("wrong-scale-of-distance", [](const Asked& q) { return q.has("(scaled)") ? k_too_much : 0.0; }), bodies());
 SIXDOF_CONFORMANCE(wrong_respond("wrong-scale-of-respond", [](const Asked& q) { return q.has("(scaled)"); }), bodies());
+SIXDOF_CONFORMANCE(wrong_cast("right-cast", [](const Motion&, Outcome<Impact>&) {}), bodies());
+SIXDOF_CONFORMANCE(wrong_cast("wrong-cast", [](const Motion&, Outcome<Impact>& outcome) { if (outcome.value.t > 0.0) outcome.value.t *= 0.999; }), bodies());
+SIXDOF_CONFORMANCE(wrong_cast("wrong-cast-at-start", [](const Motion&, Outcome<Impact>& outcome) { if (outcome.value.at_start()) outcome.value.t = 0.5; }), bodies());
+SIXDOF_CONFORMANCE(wrong_cast("wrong-cast-without-motion", [](const Motion& motion, Outcome<Impact>& outcome) { if (motion.length(1.0) == 0.0) outcome.value = {.hit = true, .t = 1.0}; }), bodies());
+SIXDOF_CONFORMANCE(wrong_cast("wrong-motions-not-finite", [](const Motion&, Outcome<Impact>& outcome) { if (!outcome.ok()) outcome = Impact{}; }), bodies());
 SIXDOF_CONFORMANCE(wrong("wrong-poses-not-finite", {.collide = [](const Asked& q, Outcome<bool>& outcome) { if (!q.is_finite()) outcome = false; }}), bodies());
 SIXDOF_CONFORMANCE(wrong("wrong-unsupported", {}, {.collide = true, .distance = true}), bodies());
 SIXDOF_CONFORMANCE(wrong_distance("wrong-repeated-queries", [](const Asked& q) { return q.calls * 1e-15; }), bodies());

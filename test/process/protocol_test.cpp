@@ -81,6 +81,30 @@ TEST(Protocol, AnswersKeepAllBits) {
   }
 }
 
+TEST(Protocol, CastsKeepAllBits) {
+  for (const double x : k_hard_numbers) {
+    const double y = k_hard_numbers[0], z = k_hard_numbers[1];
+    const Motion motion{hard_pose(2), {x, y, z}, {y, z, x}, {z, x, y}};
+    const Request request = request_of(to_line(Ask{"cast", motion.start, motion}));
+    const Motion& read = *std::get<Ask>(request).motion;
+    EXPECT_TRUE(same_bits(read.start, motion.start));
+    EXPECT_TRUE(same_bits(read.translation.x(), x) && same_bits(read.rotation.z(), x) &&
+                same_bits(read.reference.y(), x));
+
+    const Impact impact{true, 0.1, true, {x, y, z}, {y, x, z}, {z, y, x}};
+    const Impact answer = asked_of<Impact>(to_line(Asked<Impact>{impact, "", 3.5, {}})).outcome.value;
+    EXPECT_TRUE(answer.hit && same_bits(answer.t, 0.1) && answer.has_witnesses);
+    EXPECT_TRUE(same_bits(answer.witness_a.x(), x) && same_bits(answer.witness_b.y(), x) &&
+                same_bits(answer.normal.z(), x));
+  }
+  EXPECT_FALSE(asked_of<Impact>(R"({"hit": false})").outcome.value.hit);
+  EXPECT_FALSE(asked_of<Impact>(R"({"hit": true, "t": 0})").outcome.value.has_witnesses);
+  EXPECT_EQ(answer_of<Impact>(R"({"hit": true, "t": 1.5})").outcome.status, Status::failed) << "behind the end";
+  EXPECT_EQ(answer_of<Impact>(R"({"hit": true, "t": "nan"})").outcome.status, Status::non_finite);
+  EXPECT_THROW(request_of(R"({"do": "ask", "query": "cast", "pose": [1,0,0,0,1,0,0,0,1,0,0,0]})"), Malformed)
+      << "without a motion";
+}
+
 TEST(Protocol, WhatIsAbsentStaysAbsent) {
   const auto gap = asked_of<Separation>(R"({"distance": 2})").outcome.value;
   EXPECT_FALSE(gap.has_witnesses);

@@ -13,6 +13,7 @@ class NullQuery final : public Query {
   Outcome<bool> collide(const Pose&) override { return false; }
   Outcome<Separation> distance(const Pose&) override { return Separation{}; }
   Outcome<Response> respond(const Pose&) override { return Response{}; }
+  Outcome<Impact> cast(const Motion&) override { return Impact{}; }
 };
 
 }  // namespace
@@ -22,9 +23,10 @@ void register_core_algorithms(Registry& registry) {
       make_algorithm<NullQuery>({.name = "null",
                                  .version = SIXDOF_VERSION,
                                  .summary = "answers with constants: its time is the overhead of the benchmarks",
-                                 .answers = {.collide = true, .distance = true, .respond = true}}));
+                                 .answers = {.collide = true, .distance = true, .respond = true, .cast = true}}));
   registry.add(make_brute_force_algorithm());
   registry.add(make_exact_algorithm());
+  registry.add(make_sampled_algorithm());
   registry.add(make_ist_algorithm());
   registry.add(make_ist_descent_algorithm());
   registry.add(make_vps_algorithm());

@@ -18,7 +18,12 @@ std::unique_ptr<Algorithm> make_exact_algorithm();
 /// no code with the other algorithms, so it checks them where meshes are small. Surfaces only.
 std::unique_ptr<Algorithm> make_brute_force_algorithm();
 
-/// Adds the algorithms that need no third-party collision library: these two, `null`, which answers with constants,
+/// `sampled`: casts by yes/no at equal steps of the motion, and bisection between the first yes and the no before it.
+/// What most programs do. It misses contacts that begin and end between two steps, and its answer is late where the
+/// first contact was missed. Yes/no and trees are those of `exact`.
+std::unique_ptr<Algorithm> make_sampled_algorithm();
+
+/// Adds the algorithms that need no third-party collision library: these three, `null`, which answers with constants,
 /// `ist`, `ist-descent`, `vps` and `vps-field`.
 void register_core_algorithms(Registry& registry);
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include <sixdof/oracle/cast_search.h>
 #include <sixdof/oracle/distance.h>
 #include <sixdof/oracle/overlap.h>
 
@@ -17,7 +18,10 @@ constexpr double k_most_threads = 64.0;
 class ExactQuery final : public Query {
  public:
   ExactQuery(const Mesh& a, const Mesh& b, const Settings& settings)
-      : oracle_(a, b), distance_query_(oracle_), warm_start_(settings.choice("warm_start") == "on") {
+      : oracle_(a, b),
+        distance_query_(oracle_),
+        cast_search_(oracle_.tree_a(), oracle_.tree_b()),
+        warm_start_(settings.choice("warm_start") == "on") {
     for (const Mesh* mesh : {&a, &b}) {
       if (!mesh->solid()) {
         why_no_response_ = mesh->name() + ": " + mesh->why_not_solid() + k_repair_hint;
@@ -55,6 +59,15 @@ class ExactQuery final : public Query {
                     .reference = overlap.reference};
   }
 
+  Outcome<Impact> cast(const Motion& motion) override {
+    if (const char* const why = motion.why_invalid(); why != nullptr) return fail(Status::non_finite, why);
+    if (const Status status = check(motion.start); status != Status::ok) return status;
+    if (distance_query_.collide(motion.start, warm_start_)) return contact_at_start(motion.start);
+    const Outcome<Impact> impact = cast_search_.find(motion);
+    if (!impact.ok()) return fail(impact.status, "the bodies are too close for too long to decide when they touch");
+    return impact;
+  }
+
   Footprint footprint() const override {
     const auto nodes = [](const Tree& tree) { return static_cast<double>(tree.nodes().size()); };
     std::size_t bytes = oracle_.bytes();
@@ -72,8 +85,20 @@ class ExactQuery final : public Query {
     return Status::ok;
   }
 
+  /// With a common point where the surfaces have one, which bodies of which one is inside the other do not.
+  Impact contact_at_start(const Pose& X_AB) {
+    const Separation closest = distance_query_.distance(X_AB, warm_start_);
+    Impact impact{.hit = true};
+    if (closest.distance > 0.0) return impact;
+    impact.has_witnesses = true;
+    impact.witness_a = closest.witness_a;
+    impact.witness_b = closest.witness_b;
+    return impact;
+  }
+
   DistanceOracle oracle_;
   DistanceQuery distance_query_;
+  CastSearch cast_search_;
   bool warm_start_;
   std::optional<Solid> solid_a_;
   std::optional<Solid> solid_b_;  ///< None if both meshes are the same object.
@@ -87,8 +112,9 @@ std::unique_ptr<Algorithm> make_exact_algorithm() {
   return make_algorithm<ExactQuery>(
       {.name = "exact",
        .version = SIXDOF_VERSION,
-       .summary = "exact distance, yes/no and overlap volume with its gradient: the reference for the others",
-       .answers = {.collide = true, .distance = true, .respond = true},
+       .summary =
+           "exact distance, yes/no, first contact, and overlap volume with its gradient: the reference for the others",
+       .answers = {.collide = true, .distance = true, .respond = true, .cast = true},
        .law = ResponseLaw::volume,
        .parameters = {
            Parameter::choice("warm_start",

@@ -17,7 +17,7 @@ void check_declaration(const Subject& subject, Findings& findings) {
   const Traits& traits = subject.traits();
   if (traits.version.empty()) findings.fail("Traits::version is empty");
   if (traits.summary.empty()) findings.fail("Traits::summary is empty");
-  if (!traits.answers.collide && !traits.answers.distance && !traits.answers.respond) {
+  if (!traits.answers.collide && !traits.answers.distance && !traits.answers.respond && !traits.answers.cast) {
     findings.fail("Traits::answers has no kind of query");
   }
   if (traits.answers.respond != (traits.law != ResponseLaw::none)) {
@@ -42,6 +42,8 @@ std::string why_not_asked(Needs needs) {
       return "it does not answer distances";
     case Needs::respond:
       return "it does not answer responses";
+    case Needs::cast:
+      return "it does not answer casts";
     case Needs::a_missing_kind:
       return "it answers every kind of query";
   }
@@ -72,7 +74,7 @@ const KnownFailure* known_failure(const Check& check, const Subject& subject) {
 const std::vector<Check>& all_checks() {
   static const std::vector<Check> list = [] {
     std::vector<Check> checks{{"Declaration", Needs::nothing, check_declaration}};
-    for (const auto& some : {agreement_checks(), invariance_checks(), state_checks()}) {
+    for (const auto& some : {agreement_checks(), cast_checks(), invariance_checks(), state_checks()}) {
       checks.insert(checks.end(), some.begin(), some.end());
     }
     return checks;
@@ -99,6 +101,8 @@ bool applies(const Check& check, const QuerySet& answers) {
       return answers.distance;
     case Needs::respond:
       return answers.respond;
+    case Needs::cast:
+      return answers.cast;
     case Needs::a_missing_kind:
       return !(answers.collide && answers.distance && answers.respond);
   }

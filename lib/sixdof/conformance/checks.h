@@ -19,6 +19,7 @@ enum class Needs {
   collide,
   distance,
   respond,
+  cast,
   a_missing_kind  ///< Those that leave a kind of query unanswered.
 };
 
@@ -30,6 +31,7 @@ struct Check {
 
 std::span<const Check> agreement_checks();   ///< With the oracles.
 std::span<const Check> invariance_checks();  ///< What must not change the answers.
+std::span<const Check> cast_checks();        ///< First contacts.
 std::span<const Check> state_checks();       ///< Statuses, repetition, threads, lifetimes.
 
 /// All of them, in the order in which they are run.

@@ -38,6 +38,9 @@ struct Declaration {
   /// Largest mean angle between forces and minus the gradients of the intersection volume, in degrees.
   double force_degrees = 1e-4;
 
+  /// Largest difference of a time of impact from the true one, early or late, as a part of the motion.
+  double cast_error = 1e-9;
+
   // Largest difference of two wrenches that should be the same: of the forces by the force, of the torques by the
   // force times A's diagonal.
   double order_error = 1e-9;   ///< Asked for (A, B), and for (B, A) with the inverse pose.

@@ -31,6 +31,7 @@ constexpr std::string_view k_query_row = "bench/rows/query.cpp";
 constexpr std::string_view k_answers = "bench/study/answer_errors.h";
 constexpr std::string_view k_precision = "bench/study/precision.h";
 
+constexpr std::string_view k_impact = "lib/sixdof/oracle/impact_verdict.h";
 constexpr std::string_view k_scene = "lib/sixdof/scene/score.h";
 constexpr std::string_view k_scene_work = "lib/sixdof/scene/scene_algorithm.h (SceneWork)";
 
@@ -101,6 +102,17 @@ constexpr std::array k_metrics{
     Metric{"false_negatives", "queries", lower, "bodies overlap, the answer is none", k_answers},
     Metric{"touching", "queries", neither, "bodies touch: both answers are right", k_answers},
     Metric{"touching_yes", "queries", neither, "touching bodies that are said to collide", k_answers},
+    // Casts.
+    Metric{"early", "queries", lower, "hits before the contact by more than the tolerance: conservative", k_impact},
+    Metric{"early_max", "1", lower, "by how much of the motion the earliest of them is", k_impact},
+    Metric{"late_hits", "queries", lower, "hits after the contact by more than the tolerance: unsafe", k_impact},
+    Metric{"late_max", "1", lower, "by how much of the motion the latest of them is", k_impact},
+    Metric{"missed_hits", "queries", lower, "no hit although there is one: tunnelling", k_impact},
+    Metric{"phantom_hits", "queries", lower, "a hit although there is none", k_impact},
+    Metric{"false_starts", "queries", lower, "contact at the start of bodies that are apart there", k_impact},
+    Metric{"grazing", "queries", neither, "motions whose truth is not decided; not judged", k_impact},
+    Metric{"hits", "queries", neither, "motions whose truth is a hit or a contact at the start", k_impact},
+    Metric{"normal_max_deg", "degree", lower, "largest angle between normal and true normal of right hits", k_impact},
     // Scenes of many bodies.
     Metric{"missed_pairs", "pairs", lower, "true pairs of all frames that are not reported", k_scene},
     Metric{"wrong_pairs", "pairs", lower, "pairs of all frames that are reported and not true", k_scene},

@@ -16,8 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array k_kinds{"collide", "distance", "respond"};
-constexpr std::array k_kind_members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond};
+constexpr std::array k_kinds{"collide", "distance", "respond", "cast"};
+constexpr std::array k_kind_members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond, &QuerySet::cast};
 constexpr std::array k_laws{"none", "depth", "volume"};
 constexpr std::array k_bodies{"mesh", "convex_hull"};
 constexpr std::array k_limits{"collide_of_surfaces", "respond_of_surfaces", "distance_of_bodies", "own_direction",
@@ -90,6 +90,11 @@ Pose pose_of(const Json& json) {
   for (int i = 0; i < 9; ++i) X_AB.R(i / 3, i % 3) = number_of(json.at(static_cast<std::size_t>(i)));
   for (int i = 0; i < 3; ++i) X_AB.t[i] = number_of(json.at(static_cast<std::size_t>(9 + i)));
   return X_AB;
+}
+
+/// The pose is the start.
+Motion motion_of(const Json& json, const Pose& start) {
+  return {start, vector_of(json.at("translation")), vector_of(json.at("rotation")), vector_of(json.at("reference"))};
 }
 
 Json numbers(const std::vector<double>& values) {
@@ -219,6 +224,14 @@ void put(Json& json, const Response& answer) {
       {{"force", vector(answer.force)}, {"torque", vector(answer.torque)}, {"reference", vector(answer.reference)}});
 }
 
+void put(Json& json, const Impact& answer) {
+  json["hit"] = answer.hit;
+  if (!answer.hit) return;
+  json["t"] = number(answer.t);
+  if (answer.has_witnesses) json.update({{"a", vector(answer.witness_a)}, {"b", vector(answer.witness_b)}});
+  if (!answer.normal.isZero(0.0)) json["normal"] = vector(answer.normal);
+}
+
 void take(const Json& json, bool& answer) { answer = json.at("collide").get<bool>(); }
 void take(const Json& json, Separation& answer) {
   answer.distance = number_of(json.at("distance"));
@@ -238,6 +251,18 @@ void take(const Json& json, Response& answer) {
   answer.reference = vector_of(json.at("reference"));
 }
 
+void take(const Json& json, Impact& answer) {
+  answer.hit = json.at("hit").get<bool>();
+  if (!answer.hit) return;
+  answer.t = number_of(json.at("t"));
+  answer.has_witnesses = json.contains("a");
+  if (answer.has_witnesses) {
+    answer.witness_a = vector_of(json.at("a"));
+    answer.witness_b = vector_of(json.at("b"));
+  }
+  if (json.contains("normal")) answer.normal = vector_of(json.at("normal"));
+}
+
 std::optional<double> optional_time(const Json& json, const char* key) {
   return json.contains(key) ? std::optional(time_of(json.at(key))) : std::nullopt;
 }
@@ -253,7 +278,15 @@ struct RequestWriter {
             {"settings", settings},
             {"progress", prepare.progress}};
   }
-  Json operator()(const Ask& ask) const { return {{"do", "ask"}, {"query", ask.query}, {"pose", pose(ask.X_AB)}}; }
+  Json operator()(const Ask& ask) const {
+    Json json = {{"do", "ask"}, {"query", ask.query}, {"pose", pose(ask.X_AB)}};
+    if (ask.motion) {
+      json.update({{"translation", vector(ask.motion->translation)},
+                   {"rotation", vector(ask.motion->rotation)},
+                   {"reference", vector(ask.motion->reference)}});
+    }
+    return json;
+  }
   Json operator()(const Time& time) const {
     Json poses = Json::array();
     for (const Pose& X_AB : time.poses) poses.push_back(pose(X_AB));
@@ -282,7 +315,11 @@ Request request_of(const std::string& line) {
       for (const auto& [name, value] : json.at("settings").items()) prepare.settings.emplace_back(name, value);
       return prepare;
     }
-    if (what == "ask") return Ask{json.at("query"), pose_of(json.at("pose"))};
+    if (what == "ask") {
+      Ask ask{json.at("query"), pose_of(json.at("pose"))};
+      if (ask.query == k_query<Impact>) ask.motion = motion_of(json, ask.X_AB);
+      return ask;
+    }
     if (what != "time") throw Malformed(fmt::format("\"{}\" is not known", what));
     Time time{json.at("query"),
               {},
@@ -411,6 +448,9 @@ Asked<Answer> answer_of(const std::string& line) {
   if (asked.outcome.ok() && !is_finite(asked.outcome.value)) {
     asked.outcome = Status::non_finite;
     asked.words = "the answer is not finite";
+  } else if (const char* const why = asked.outcome.ok() ? why_no_answer(asked.outcome.value) : nullptr) {
+    asked.outcome = Status::failed;
+    asked.words = why;
   }
   return asked;
 }
@@ -418,12 +458,15 @@ Asked<Answer> answer_of(const std::string& line) {
 template std::string to_line(const Asked<bool>&);
 template std::string to_line(const Asked<Separation>&);
 template std::string to_line(const Asked<Response>&);
+template std::string to_line(const Asked<Impact>&);
 template Asked<bool> asked_of(const std::string&);
 template Asked<Separation> asked_of(const std::string&);
 template Asked<Response> asked_of(const std::string&);
+template Asked<Impact> asked_of(const std::string&);
 template Asked<bool> answer_of(const std::string&);
 template Asked<Separation> answer_of(const std::string&);
 template Asked<Response> answer_of(const std::string&);
+template Asked<Impact> answer_of(const std::string&);
 
 std::string to_line(const Timed& timed) {
   Json failed = Json::array();

@@ -35,6 +35,8 @@ template <>
 inline constexpr std::string_view k_query<Separation> = "distance";
 template <>
 inline constexpr std::string_view k_query<Response> = "respond";
+template <>
+inline constexpr std::string_view k_query<Impact> = "cast";
 
 // Requests.
 
@@ -54,10 +56,11 @@ struct Prepare {
 
 struct Ask {
   std::string query;
-  Pose X_AB;
+  Pose X_AB;                          ///< Of a cast the start of the motion.
+  std::optional<Motion> motion = {};  ///< Of a cast.
 };
 
-/// Asks the poses in order, `passes` times.
+/// Asks the poses in order, `passes` times. Not for casts.
 struct Time {
   std::string query;
   std::vector<Pose> poses;

@@ -206,9 +206,9 @@ Status RemoteQuery::died(const ChildFailure& failure) {
 }
 
 template <class Answer>
-Asked<Answer> RemoteQuery::exchange_ask(const Pose& X_AB) {
+Asked<Answer> RemoteQuery::exchange_ask(const Ask& request) {
   const auto sent = Clock::now();
-  const std::string line = exchange(Ask{std::string(k_query<Answer>), X_AB}, expires_after(program_.limits.query_s));
+  const std::string line = exchange(request, expires_after(program_.limits.query_s));
   const double round_trip_ns = nanoseconds_since(sent);
   try {
     Asked<Answer> asked = answer_of<Answer>(line);
@@ -223,7 +223,11 @@ Asked<Answer> RemoteQuery::exchange_ask(const Pose& X_AB) {
 
 template <class Answer>
 Outcome<Answer> RemoteQuery::ask(const Pose& X_AB) {
-  const std::string key = key_of<Answer>(X_AB);
+  return ask<Answer>(Ask{std::string(k_query<Answer>), X_AB}, key_of<Answer>(X_AB));
+}
+
+template <class Answer>
+Outcome<Answer> RemoteQuery::ask(const Ask& request, const std::string& key) {
   if (const auto known = deaths_.find(key); known != deaths_.end())
     return fail(known->second.status, known->second.words);
   if (gave_up()) return not_asked();
@@ -235,7 +239,7 @@ Outcome<Answer> RemoteQuery::ask(const Pose& X_AB) {
     return died({Status::failed, fmt::format("while it prepared the pair again: {}", e.what())});
   }
   try {
-    Asked<Answer> asked = exchange_ask<Answer>(X_AB);
+    Asked<Answer> asked = exchange_ask<Answer>(request);
     deaths_in_a_row_ = time_outs_in_a_row_ = 0;
     work_ = std::move(asked.work);
     if (!asked.outcome.ok()) return fail(asked.outcome.status, std::move(asked.words));
@@ -258,6 +262,14 @@ Outcome<Separation> RemoteQuery::distance(const Pose& X_AB) {
 Outcome<Response> RemoteQuery::respond(const Pose& X_AB) {
   if (!greeting_.traits.answers.respond) return Status::unsupported;
   return ask<Response>(X_AB);
+}
+Outcome<Impact> RemoteQuery::cast(const Motion& motion) {
+  if (!greeting_.traits.answers.cast) return Status::unsupported;
+  std::string key = key_of<Impact>(motion.start);
+  for (const Eigen::Vector3d& v : {motion.translation, motion.rotation, motion.reference}) {
+    key.append(reinterpret_cast<const char*>(v.data()), sizeof(double) * 3);
+  }
+  return ask<Impact>(Ask{std::string(k_query<Impact>), motion.start, motion}, key);
 }
 
 template <class Answer>

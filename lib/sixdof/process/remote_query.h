@@ -48,6 +48,7 @@ class RemoteQuery final : public Query {
   Outcome<bool> collide(const Pose& X_AB) override;
   Outcome<Separation> distance(const Pose& X_AB) override;
   Outcome<Response> respond(const Pose& X_AB) override;
+  Outcome<Impact> cast(const Motion& motion) override;
 
   Footprint footprint() const override { return prepared_.footprint; }
   std::vector<Work> work() const override { return work_; }
@@ -99,7 +100,9 @@ class RemoteQuery final : public Query {
   template <class Answer>
   Outcome<Answer> ask(const Pose& X_AB);
   template <class Answer>
-  protocol::Asked<Answer> exchange_ask(const Pose& X_AB);
+  Outcome<Answer> ask(const protocol::Ask& request, const std::string& key);
+  template <class Answer>
+  protocol::Asked<Answer> exchange_ask(const protocol::Ask& request);
   template <class Answer>
   protocol::Timed time(std::span<const Pose> poses, const protocol::Time& how);
   template <class Answer>

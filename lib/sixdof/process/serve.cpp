@@ -109,14 +109,14 @@ class Eviction {
 };
 
 /// A prepared query, asked for one kind of answer. An exception becomes a Status; `words` has why.
-template <class Answer>
+template <class Answer, class Input = Pose>
 struct Asker {
   Query& query;
-  Outcome<Answer> (Query::*question)(const Pose&);
+  Outcome<Answer> (Query::*question)(const Input&);
   std::string words = {};
 
-  Outcome<Answer> operator()(const Pose& X_AB) {
-    return ask_guarded([&] { return (query.*question)(X_AB); }, [this](std::string why) { words = std::move(why); });
+  Outcome<Answer> operator()(const Input& input) {
+    return ask_guarded([&] { return (query.*question)(input); }, [this](std::string why) { words = std::move(why); });
   }
   /// Turns an answer that is not finite into a Status.
   void examine(Outcome<Answer>& answer) {
@@ -167,13 +167,20 @@ class Server {
   }
 
   std::string handle(const Ask& request) {
-    return with_asker(request.query, [&](auto asker) {
-      auto [outcome, took_ns] = with_clock([&] { return asker(request.X_AB); });
-      asker.examine(outcome);
-      Asked<std::decay_t<decltype(outcome.value)>> asked{outcome, asker.words, took_ns, {}};
-      if (outcome.ok()) asked.work = query_->work();
-      return to_line(asked);
-    });
+    if (request.query == k_query<Impact>) {
+      if (!query_) throw BadArgument("nothing is prepared");
+      return ask_once(Asker<Impact, Motion>{*query_, &Query::cast}, *request.motion);
+    }
+    return with_asker(request.query, [&](auto asker) { return ask_once(std::move(asker), request.X_AB); });
+  }
+
+  template <class Answer, class Input>
+  std::string ask_once(Asker<Answer, Input> asker, const Input& input) {
+    auto [outcome, took_ns] = with_clock([&] { return asker(input); });
+    asker.examine(outcome);
+    Asked<Answer> asked{outcome, asker.words, took_ns, {}};
+    if (outcome.ok()) asked.work = query_->work();
+    return to_line(asked);
   }
 
   std::string handle(const Time& request) {

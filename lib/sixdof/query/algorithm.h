@@ -14,6 +14,7 @@
 
 #include <sixdof/base/visible_text.h>
 #include <sixdof/geometry/mesh.h>
+#include <sixdof/geometry/motion.h>
 #include <sixdof/geometry/pose.h>
 #include <sixdof/query/settings.h>
 
@@ -105,11 +106,27 @@ struct Response {
   }
 };
 
+/// Answer of a cast: when the bodies first have a point in common.
+struct Impact {
+  bool hit = false;  ///< Whether they do at any t from 0 to 1. If not, the rest is not set.
+  /// The first such t; 0 where they are in contact at the start, and there only.
+  double t = 0.0;
+  bool has_witnesses = false;                           ///< Whether the points of contact are set.
+  Eigen::Vector3d witness_a = Eigen::Vector3d::Zero();  ///< On A, in A's frame.
+  Eigen::Vector3d witness_b = Eigen::Vector3d::Zero();  ///< On B at t, in A's frame.
+  /// Of the contact, from A to B: a unit vector in A's frame. Zero where the algorithm gives none.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+
+  /// Whether the bodies were in contact before they moved.
+  bool at_start() const { return hit && t == 0.0; }
+};
+
 /// Which kinds of query an algorithm answers.
 struct QuerySet {
   bool collide = false;   ///< Query::collide()
   bool distance = false;  ///< Query::distance()
   bool respond = false;   ///< Query::respond()
+  bool cast = false;      ///< Query::cast()
 };
 
 /// Which bodies an algorithm's answers are about.
@@ -195,7 +212,7 @@ struct Traits {
 /// with words. Callers count all the same what is thrown, and an answer with a NaN or an infinity (other than
 /// Response::volume = k_absent), as one failed configuration (ask.h).
 ///
-/// **Time.** Only the three queries are timed. Memory that they need is best kept between calls.
+/// **Time.** Only the four queries are timed. Memory that they need is best kept between calls.
 class Query {
  public:
   virtual ~Query() = default;  ///< Frees the prepared structures.
@@ -208,6 +225,10 @@ class Query {
 
   /// Penalty wrench on B; zero where the bodies are apart.
   virtual Outcome<Response> respond(const Pose& /*X_AB*/) { return Status::unsupported; }
+
+  /// When the two bodies (for some algorithms, the two surfaces) first have a point in common while B moves. A search
+  /// that ends without knowing is Status::failed, never "no hit".
+  virtual Outcome<Impact> cast(const Motion& /*motion*/) { return Status::unsupported; }
 
   /// Of the prepared structures of both meshes; what A and B share counts once.
   virtual Footprint footprint() const { return {}; }

@@ -24,6 +24,19 @@ inline bool is_finite(const Response& answer) {
   return std::isfinite(answer.penalty) && !std::isinf(answer.volume) && answer.force.allFinite() &&
          answer.torque.allFinite() && answer.reference.allFinite();
 }
+/// Of the time; points and normal are not looked at.
+inline bool is_finite(const Impact& answer) { return !answer.hit || std::isfinite(answer.t); }
+
+/// Why a finite answer is none, in words; null if it is one.
+template <class T>
+const char* why_no_answer(const T&) {
+  return nullptr;
+}
+/// The time is from 0 to 1.
+inline const char* why_no_answer(const Impact& answer) {
+  if (!answer.hit || (answer.t >= 0.0 && answer.t <= 1.0)) return nullptr;
+  return "the time of impact is not from 0 to 1";
+}
 
 /// The Outcome of ask(). An exception becomes Status::failed, or Status::out_of_memory where it is std::bad_alloc, and
 /// calls failed(visible words); without one it costs nothing.
@@ -42,13 +55,16 @@ auto ask_guarded(Ask&& ask, const Failed& failed) -> decltype(ask()) {
   return Status::failed;
 }
 
-/// Turns an answer of `query` that holds a NaN or an infinity into Status::non_finite. Calls failed(words) for an
-/// answer that is not ok.
+/// Turns an answer of `query` that holds a NaN or an infinity into Status::non_finite, and one that is none
+/// (why_no_answer()) into Status::failed. Calls failed(words) for an answer that is not ok.
 template <class T, class Failed>
 void examine(const Query& query, Outcome<T>& answer, const Failed& failed) {
   if (answer.ok() && !is_finite(answer.value)) {
     answer = Status::non_finite;
     failed("the answer is not finite");
+  } else if (const char* const why = answer.ok() ? why_no_answer(answer.value) : nullptr; why != nullptr) {
+    answer = Status::failed;
+    failed(why);
   } else if (!answer.ok()) {
     failed(answer.status == Status::unsupported ? "the algorithm gives no such answer" : query.diagnosis());
   }

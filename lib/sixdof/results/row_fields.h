@@ -18,7 +18,8 @@ struct RowFields {
   std::string settings = {};  ///< Of the algorithm: "name=value,name=value".
   std::string pair = {};      ///< Empty where the row belongs to none.
   std::optional<BucketKey> bucket = {};
-  std::string order = {};     ///< Of a query's poses: "random", "path" (the grid's own order) or "motion".
+  std::string order = {};     ///< Of a query's poses: "random", "path" (the grid's own order) or "motion";
+                              ///< of a cast row how B moves and by what percent of A's diagonal: "tumble/10".
   std::string body = {};      ///< "convex_hull" where answers are not about the meshes; empty where they are.
   std::string runtime = {};   ///< Of a rival: "native", "python", "node" or "wasm" (Traits::runtime); empty elsewhere.
   std::string cache = {};     ///< Of a query: "warm", or "cold" where data leaves the caches before each.

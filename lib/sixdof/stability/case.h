@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <sixdof/geometry/mesh.h>
+#include <sixdof/geometry/motion.h>
 #include <sixdof/geometry/pose.h>
 
 /// What a stability test asks: a case is one or more queries whose true answers, or relations between answers, are
@@ -65,6 +66,7 @@ enum class Relation {
   loop,    ///< A closed path: the work of a conservative force is zero.
   repeat,  ///< Asked again, by other objects, in other orders and on two threads.
   sweep,   ///< From the first shot along Case::motion until the bodies touch.
+  cast,    ///< When B first touches A on Case::cast.
   time,    ///< Times of the queries are compared with their median.
   bad,     ///< Shot::raw, poses that are none: a refusal, or an answer that is finite.
 };
@@ -79,6 +81,7 @@ struct Case {
   bool convex = false;                               ///< Both bodies are: a separating direction attains the distance.
   Eigen::Vector3d motion = Eigen::Vector3d::Zero();  ///< Of B in A's frame, per unit of time (Relation::sweep).
   double contact_time = k_unknown;                   ///< When the bodies first touch; infinity: never.
+  std::optional<Motion> cast = {};                   ///< From the first shot, from t = 0 to 1 (Relation::cast).
 
   double size() const { return shots.front().a->diagonal(); }  ///< Lengths are judged relative to it.
 };

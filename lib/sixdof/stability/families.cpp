@@ -61,6 +61,8 @@ const std::array k_families{
            field::repeats},
     Family{21, "time", "The slowest query against the median, near contact.", "triangles 200 .. 5000",
            make::worst_time},
+    Family{22, "moving", "When a moving body first touches: fast, slow, spinning, grazing, at the start, never.",
+           "length of the motion over the size 1e-9 .. 1e6", make::moving_bodies},
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 
+#include <sixdof/stability/judge_cast.h>
 #include <sixdof/stability/judge_relations.h>
 #include <sixdof/stability/judge_shot.h>
 
@@ -38,6 +39,8 @@ void judge_relation(const Case& member, const std::vector<Answers>& answers, con
       return judge_repeat(member, answers, traits, prepare, findings);
     case Relation::sweep:
       return judge_sweep(member, traits, prepare, limits, findings);
+    case Relation::cast:
+      return judge_cast(member, traits, prepare, limits, findings);
     case Relation::bad:
       return judge_bad(member, answers, findings);
   }

@@ -39,6 +39,9 @@ Case closed_loop(Draw& draw);
 Case repeated(Draw& draw);
 Case worst_time(Draw& draw);
 
+// family_cast.cpp: motions, and when they end.
+Case moving_bodies(Draw& draw);
+
 /// Two convex bodies at a generic pose: apart, or overlapping by a face or along axes.
 Shot base(Draw& draw);
 

@@ -11,6 +11,7 @@ SIXDOF_CONFORMANCE(make_fcl_kios_algorithm);
 SIXDOF_CONFORMANCE(make_fcl_obb_algorithm);
 SIXDOF_CONFORMANCE(make_fcl_aabb_algorithm);
 SIXDOF_CONFORMANCE(make_fcl_contacts_algorithm);
+SIXDOF_CONFORMANCE(make_fcl_cast_algorithm);
 
 }  // namespace
 }  // namespace sixdof

@@ -253,6 +253,7 @@ void register_fcl_algorithms(Registry& registry) {
   registry.add(make_fcl_obb_algorithm());
   registry.add(make_fcl_aabb_algorithm());
   registry.add(make_fcl_contacts_algorithm());
+  registry.add(make_fcl_cast_algorithm());
 }
 
 }  // namespace sixdof

@@ -38,12 +38,28 @@ std::unique_ptr<Algorithm> make_fcl_aabb_algorithm();
 /// normals of either sign, or none; depths are not continuous, as pairs appear and disappear.
 std::unique_ptr<Algorithm> make_fcl_contacts_algorithm();
 
+/// `fcl-cast`: FCL's continuous collision. Answers cast only, without points and normals. The motion is
+/// TranslationMotion or InterpMotion. A rotation by more than pi, which they cannot have, is asked in parts.
+///
+/// `solver=naive` is the default of FCL's request, with its ten steps: contacts between them are missed.
+///
+/// `solver=advancement` misses contacts into which B moves straight. continuousCollide() takes the traversal of volumes
+/// without frames also for trees that have one: BVHConservativeAdvancement() calls the general overload
+/// (conservative_advancement_func_matrix-inl.h). That traversal bounds the motion of both bodies along the same normal,
+/// where the second one needs the opposite (leafTesting() in mesh_conservative_advancement_traversal_node-inl.h): a
+/// body that approaches seems to part. It also takes vertices that are moved to the world's frame for those of the
+/// mesh.
+///
+/// `solver=oriented` calls conservativeAdvancementMeshOriented(), FCL's own function for these trees, which has the
+/// signs right.
+std::unique_ptr<Algorithm> make_fcl_cast_algorithm();
+
 /// Which FCL this is: Debian's package and its version (FCL's own version elsewhere), FCL's option for SIMD and the
 /// alignment of Eigen's types, e.g. "libfcl-dev 0.7.0-3+b1, FCL_HAVE_SSE 0, EIGEN_MAX_ALIGN_BYTES 16". The package is
 /// that of the headers when sixdof was configured.
 std::string fcl_build();
 
-/// Adds all six.
+/// Adds all seven.
 void register_fcl_algorithms(Registry& registry);
 
 }  // namespace sixdof
