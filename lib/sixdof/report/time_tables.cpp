@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/query/variant.h>
 #include <sixdof/report/tables.h>
 
 namespace sixdof::report {
@@ -34,11 +35,55 @@ struct TimeLine {
   std::string run, query, kind, pair, statistic, algorithm;
   std::string apart;  ///< class_of() the row.
   double percent = 0.0, us = 0.0;
+  std::string label;  ///< The algorithm with its resolution in parentheses.
   std::optional<double> low, high, repetitions;
   std::string faults, command, worst_pose;
 };
 
-std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
+/// Resolutions by file, pair and algorithm.
+using Resolutions = std::map<std::tuple<std::size_t, std::string, std::string>, std::string>;
+
+/// A count as the paper prints it: "15,669".
+std::string count_text(double count) {
+  std::string text = fmt::format("{:.0f}", count);
+  for (std::ptrdiff_t at = std::ssize(text) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
+  return text;
+}
+
+/// What the row that prepares an algorithm says of its resolution, as the paper's Figure 6 has it: voxels along the
+/// axes and points, or spheres of A and, where they are others, of B. Empty of other algorithms.
+std::string resolution_of(const RowGroup& prepared) {
+  const auto [x, y, z] = std::array{prepared.value("voxels_x"), prepared.value("voxels_y"), prepared.value("voxels_z")};
+  const auto points = prepared.value("points"), a = prepared.value("spheres_a"), b = prepared.value("spheres_b");
+  if (x && y && z && points) return fmt::format("{:.0f}x{:.0f}x{:.0f}, {}", *x, *y, *z, count_text(*points));
+  if (!a) return {};
+  return !b || *a == *b ? count_text(*a) : fmt::format("{} and {}", count_text(*a), count_text(*b));
+}
+
+Resolutions resolutions_of(const std::vector<RowGroup>& groups) {
+  Resolutions found;
+  std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> uses;
+  const auto label = [](const RowFields& fields, const std::string& resolution) {
+    return base_name(fields.algorithm) + " " + resolution;
+  };
+  for (const RowGroup& group : groups) {
+    const RowFields& fields = group.fields();
+    if (fields.query != "prepare" || !group.row().error.empty()) continue;
+    const std::string resolution = resolution_of(group);
+    found[{group.row().file, fields.pair, fields.algorithm}] = resolution;
+    ++uses[{group.row().file, fields.pair, label(fields, resolution)}];
+  }
+  for (const RowGroup& group : groups) {
+    // Variants that differ in something else keep their settings.
+    const RowFields& fields = group.fields();
+    const auto mine = found.find({group.row().file, fields.pair, fields.algorithm});
+    if (mine == found.end() || fields.query != "prepare") continue;
+    if (uses[{group.row().file, fields.pair, label(fields, mine->second)}] > 1) mine->second.clear();
+  }
+  return found;
+}
+
+std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group, const Resolutions& resolutions) {
   const Row& row = group.row();
   TimeLine line{.run = run_name(results, row.file),
                 .query = row.fields.query,
@@ -54,6 +99,12 @@ std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
                 .faults = to_string(mistakes(group.faults)),
                 .command = reproduction(row, results.files[row.file]),
                 .worst_pose = row.outliers.command_of(k_slowest)};
+  line.label = line.algorithm;
+  const auto resolution = resolutions.find({row.file, row.fields.pair, row.fields.algorithm});
+  if (resolution != resolutions.end() && !resolution->second.empty()) {
+    line.label = fmt::format("{} ({}){}", base_name(row.fields.algorithm), resolution->second,
+                             line.algorithm.substr(row.fields.algorithm.size()));
+  }
   std::vector<TimeLine> lines;
   if (const auto time = group.mean_time()) {
     line.us = time->value / 1e3;
@@ -109,6 +160,7 @@ std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
                        .apart = apart,
                        .percent = percent,
                        .us = std::exp(mean),
+                       .label = algorithm,
                        .low = std::exp(mean - spread),
                        .high = std::exp(mean + spread),
                        .repetitions = {},
@@ -120,27 +172,35 @@ std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
   return means;
 }
 
+/// Where a bucket stands on one axis from bodies far apart to deep overlaps: -30 to 0 for distances of 30 to 0 %, 0 to
+/// 30 for volumes of 0 to 10 %, which are drawn three times as wide.
+double place_of_bucket(const TimeLine& line) {
+  constexpr double k_volume_scale = 3.0;
+  return line.kind == to_string(BucketKind::distance) ? -line.percent : k_volume_scale * line.percent;
+}
+
 Cell optional_cell(std::optional<double> value) { return value ? Cell(*value) : Cell(); }
 
 }  // namespace
 
 DataTable times_table(const Results& results, const std::vector<RowGroup>& groups) {
+  const Resolutions resolutions = resolutions_of(groups);
   std::vector<TimeLine> lines;
   for (const RowGroup& group : groups) {
     if (!group.fields().bucket || group.fields().pair.empty()) continue;
-    for (TimeLine& line : lines_of(results, group)) lines.push_back(std::move(line));
+    for (TimeLine& line : lines_of(results, group, resolutions)) lines.push_back(std::move(line));
   }
   std::vector<TimeLine> means = means_over_pairs(lines);
   lines.insert(lines.begin(), means.begin(), means.end());
   DataTable table{.name = "times",
                   .title = "Times of queries on buckets",
                   .columns = {"run", "query", "bucket", "pair", "statistic", "algorithm", "percent", "time_us",
-                              "low_us", "high_us", "repetitions", "faults", "command", "worst_pose"},
+                              "low_us", "high_us", "repetitions", "faults", "command", "worst_pose", "label", "place"},
                   .rows = {}};
   for (const TimeLine& line : lines) {
     table.rows.push_back({line.run, line.query, line.kind, line.pair, line.statistic, line.algorithm, line.percent,
                           line.us, optional_cell(line.low), optional_cell(line.high), optional_cell(line.repetitions),
-                          line.faults, line.command, line.worst_pose});
+                          line.faults, line.command, line.worst_pose, line.label, place_of_bucket(line)});
   }
   return table;
 }
