@@ -9,6 +9,7 @@
 
 #include <sixdof/query/variant.h>
 #include <sixdof/report/tables.h>
+#include <sixdof/results/resolution.h>
 
 namespace sixdof::report {
 namespace {
@@ -43,23 +44,6 @@ struct TimeLine {
 /// Resolutions by file, pair and algorithm.
 using Resolutions = std::map<std::tuple<std::size_t, std::string, std::string>, std::string>;
 
-/// A count as the paper prints it: "15,669".
-std::string count_text(double count) {
-  std::string text = fmt::format("{:.0f}", count);
-  for (std::ptrdiff_t at = std::ssize(text) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
-  return text;
-}
-
-/// What the row that prepares an algorithm says of its resolution, as the paper's Figure 6 has it: voxels along the
-/// axes and points, or spheres of A and, where they are others, of B. Empty of other algorithms.
-std::string resolution_of(const RowGroup& prepared) {
-  const auto [x, y, z] = std::array{prepared.value("voxels_x"), prepared.value("voxels_y"), prepared.value("voxels_z")};
-  const auto points = prepared.value("points"), a = prepared.value("spheres_a"), b = prepared.value("spheres_b");
-  if (x && y && z && points) return fmt::format("{:.0f}x{:.0f}x{:.0f}, {}", *x, *y, *z, count_text(*points));
-  if (!a) return {};
-  return !b || *a == *b ? count_text(*a) : fmt::format("{} and {}", count_text(*a), count_text(*b));
-}
-
 Resolutions resolutions_of(const std::vector<RowGroup>& groups) {
   Resolutions found;
   std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> uses;
@@ -69,7 +53,7 @@ Resolutions resolutions_of(const std::vector<RowGroup>& groups) {
   for (const RowGroup& group : groups) {
     const RowFields& fields = group.fields();
     if (fields.query != "prepare" || !group.row().error.empty()) continue;
-    const std::string resolution = resolution_of(group);
+    const std::string resolution = resolution_text(group);
     found[{group.row().file, fields.pair, fields.algorithm}] = resolution;
     ++uses[{group.row().file, fields.pair, label(fields, resolution)}];
   }
