@@ -267,8 +267,8 @@ void complete_options(const CommandLine& line, bool has_filter, Options& options
   const bool no_manifest = line.no_manifest || own_pair;
   const bool own_sets = no_manifest || !line.manifest->empty() || !options.sets.empty();
   const char* const usual = own_pair ? "own-pair" : own_sets || has_filter ? "all" : "default";
-  options.suite_word = line.suite;
-  options.suite = file_of_suite(line.suite.empty() ? usual : line.suite);
+  options.suite_word = line.suite.empty() ? usual : line.suite;
+  options.suite = file_of_suite(options.suite_word);
   if (no_manifest) options.manifest.clear();
   options.resume = !line.resume->empty();
   options.out_format = line.out_format == "csv" ? ResultFormat::csv : ResultFormat::json;

@@ -74,7 +74,7 @@ std::string Options::reproduction_words() const {
   words += process_words(process);
   if (own_pair()) words += " --suite all";
   // Its variants exist under this list alone.
-  const bool has_variants = !suite_word.empty() && !suite.empty() && !suite_variants(suite).empty();
+  const bool has_variants = !own_pair() && !suite.empty() && !suite_variants(suite).empty();
   if (has_variants) add("--suite", suite_word);
   return words.starts_with(' ') ? words.substr(1) : words;
 }

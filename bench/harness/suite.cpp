@@ -4,6 +4,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -52,6 +53,18 @@ struct Entry {
     return is_one_of(list, name) || is_one_of(list, base);
   }
 };
+
+/// Names of the variants that the list itself makes.
+std::set<std::string> variants_of(const std::vector<Entry>& entries) {
+  std::set<std::string> names;
+  for (const Entry& entry : entries) {
+    if (entry.settings.empty()) continue;
+    for (const std::string& algorithm : entry.allowed.at("algorithm")) {
+      names.insert(variant_name(algorithm, entry.settings));
+    }
+  }
+  return names;
+}
 
 /// A setting's value, as the command line has it. @throws BadFile
 std::string text_of(const std::filesystem::path& file, const nlohmann::ordered_json& value) {
@@ -123,13 +136,16 @@ Suite read_suite(const std::filesystem::path& file, const std::vector<std::strin
     if (is_one_of(allowed, k_rivals)) allowed.insert(allowed.end(), rivals.begin(), rivals.end());
     allowed.insert(allowed.end(), external_algorithms.begin(), external_algorithms.end());
   }
-  return [entries = std::move(entries), named_only](std::string_view row) -> std::optional<std::size_t> {
+  std::set<std::string> variants = variants_of(entries);
+  return [entries = std::move(entries), variants = std::move(variants),
+          named_only](std::string_view row) -> std::optional<std::size_t> {
     const auto parts = row_name_parts(row);
     const auto entry = std::ranges::find_if(entries, [&](const Entry& one) {
       return std::ranges::all_of(parts, [&](const auto& part) {
         const auto found = one.allowed.find(part.first);
         if (found == one.allowed.end()) return part.first == k_scenario;
         const bool is_algorithm = part.first == "algorithm";
+        if (is_algorithm && one.settings.empty() && variants.contains(part.second)) return false;
         if (found->second.empty()) return !is_algorithm || !is_one_of(named_only, part.second);
         return is_algorithm ? one.takes_algorithm(part.second, found->second) : is_one_of(found->second, part.second);
       });

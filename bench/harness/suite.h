@@ -20,9 +20,9 @@ using Suite = std::function<std::optional<std::size_t>(std::string_view)>;
 /// under "algorithm", and so on; "vps" stands for its variants, too (sixdof/query/variant.h); the word "all" instead of
 /// a list allows everything, of algorithms those of default runs (Traits::in_default_runs()). Parts without a colon
 /// behind the first ("II" of "scenario/II/algorithm:exact") are free, unless an entry has "scenario": ["II"].
-/// "settings": {"voxel_size": "0.01"} in an entry: its rows are of these variants of its algorithms. "sample": 32 in an
-/// entry: its rows ask at most 32 configurations (RowFields::sample_limit). The first entry that a row belongs to
-/// counts.
+/// "settings": {"voxel_size": "0.01"} in an entry: its rows are of these variants of its algorithms, which are in no
+/// other entry. "sample": 32 in an entry: its rows ask at most 32 configurations (RowFields::sample_limit). The first
+/// entry that a row belongs to counts.
 /// @param external_algorithms belong wherever an entry lists algorithms
 /// @param named_only algorithms that "all" leaves out
 /// @param rivals for which "rivals" stands in a list of algorithms (common/rivals.h)

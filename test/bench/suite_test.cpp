@@ -55,6 +55,13 @@ TEST_F(SuiteFile, SettingsOfAnEntryAreAVariantAndItsScenarioIsTaken) {
   EXPECT_FALSE(suite("scenario/II/algorithm:vps@b=0.5"));
   EXPECT_FALSE(suite("scenario/II/algorithm:vps@a=1e-3,b=0.5")) << "in the order of the file";
   EXPECT_FALSE(suite("scenario/III/algorithm:vps@b=0.5,a=1e-3"));
+  const Suite others = read(R"({"query": ["scenario"], "algorithm": "all"}, {"query": ["collide"], "algorithm": ["vps"],
+                                "settings": {"b": 1}})");
+  EXPECT_FALSE(others("scenario/II/algorithm:vps@b=1")) << "variants of a list are in their entries alone";
+  EXPECT_TRUE(others("scenario/II/algorithm:vps@b=2")) << "those of the command line are the algorithm's";
+  EXPECT_TRUE(others("collide/algorithm:vps@b=1"));
+  read(
+      R"({"query": ["scenario"], "scenario": ["II"], "algorithm": ["vps", "it"], "settings": {"b": 0.5, "a": "1e-3"}})");
   const std::vector<VariantRequest> variants = suite_variants(path);
   ASSERT_EQ(variants.size(), 2u);
   EXPECT_EQ(variants[1].algorithm, "it");
