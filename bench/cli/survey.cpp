@@ -155,8 +155,11 @@ class Survey {
     ProgressLine line("buckets", arguments_.progress);
     for (const Part& part : parts_) {
       line.show(shard.cells.size(), parts_.size());
+      // Open meshes have no inside, and no response.
+      if (part.question == bench::QueryKind::respond && !(a.solid() && b.solid())) continue;
       shard.cells.push_back(study::survey_bucket(set_, part.key, part.question, a, b, *query, options));
     }
+    if (shard.cells.empty()) throw BadArgument("only responses are asked, and a mesh is no solid");
     return shard;
   }
 
