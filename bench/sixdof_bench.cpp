@@ -25,6 +25,7 @@
 #include "bench/harness/own_sets.h"
 #include "bench/harness/run_rows.h"
 #include "bench/harness/suite.h"
+#include "bench/harness/variants.h"
 #include "bench/rows/families.h"
 
 namespace sixdof::bench {
@@ -86,7 +87,9 @@ void run(const Options& options) {
   const std::vector<std::string> external = register_all_algorithms(registry, options.process, options.program);
   name_rivals_in_filter(registry);
   const std::string filter = benchmark::GetBenchmarkFilter();
-  auto settings = parse_parameters(options.parameters, registry);
+  const std::vector<VariantRequest> of_suite =
+      options.suite.empty() ? std::vector<VariantRequest>() : suite_variants(options.suite);
+  auto settings = parse_parameters(register_variants(options.parameters, of_suite, registry), registry);
   SetCatalogue catalogue;
   if (!options.manifest.empty()) catalogue = SetCatalogue::read(options.manifest);
   PairCache cache(options.sample, options.seed,

@@ -64,7 +64,8 @@ if(SIXDOF_BUILD_BENCH)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/scripts DESTINATION ${data_folder}/bench COMPONENT programs
     FILES_MATCHING PATTERN "gate_*.py")
   install(FILES ${PROJECT_SOURCE_DIR}/bench/all_algorithms_suite.json ${PROJECT_SOURCE_DIR}/bench/default_suite.json
-    ${PROJECT_SOURCE_DIR}/bench/own_pair_suite.json ${PROJECT_SOURCE_DIR}/bench/scenes_suite.json
+    ${PROJECT_SOURCE_DIR}/bench/own_pair_suite.json ${PROJECT_SOURCE_DIR}/bench/paper_suite.json
+    ${PROJECT_SOURCE_DIR}/bench/scenes_suite.json
     DESTINATION ${data_folder}/bench COMPONENT programs)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/new_algorithm ${PROJECT_SOURCE_DIR}/bench/external
     DESTINATION ${data_folder}/bench COMPONENT programs)

@@ -118,7 +118,7 @@ const std::vector<Group>& groups() {
       {"Meshes", {add_models_command, add_info_command, add_repair_command, add_show_command}},
       {"Ask (two bodies at one pose)", {add_query_command, add_algorithms_command}},
       {"Sets (thousands of poses of a pair, which sixdof-bench asks)",
-       {add_generate_command, add_merge_command, add_verify_command, add_agree_command}},
+       {add_generate_command, add_merge_command, add_verify_command, add_agree_command, add_survey_command}},
       {"Results (of sixdof-bench)",
        {add_table_command, add_report_command, add_history_command, add_compare_command, add_gate_command}},
       {"Studies (many measurements, one answer)",

@@ -56,6 +56,9 @@ std::optional<int> run_stress_cell_if_asked(int argc, const char* const* argv);
 void add_generate_command(CLI::App& app);
 /// `sixdof merge DIR -o FILE`: one configuration set of the shards in a folder.
 void add_merge_command(CLI::App& app);
+/// `sixdof survey SET --algorithm NAME [--shards N --shard I] -o FILE`: every configuration of a set, asked once
+/// (study/survey.h). With `--merge FOLDER` the result of all shards.
+void add_survey_command(CLI::App& app);
 /// `sixdof verify FILE [--sample N] [--seed S] [--oracle NAME]`: measures a sample of every bucket of a configuration
 /// set again and prints a table; fails if anything is wrong.
 void add_verify_command(CLI::App& app);

@@ -45,7 +45,8 @@ struct Arguments {
   std::vector<std::string> files;
   std::vector<std::string> against;
   std::string of = "exact";
-  bool markdown = false, json = false, wide = false, overview = false, over_objects = false, growth = false;
+  bool markdown = false, json = false, wide = false, overview = false, over_objects = false, growth = false,
+       paper = false;
 };
 
 void print(const std::vector<ResultTable>& tables, const TableInput& input, const Arguments& arguments) {
@@ -72,15 +73,20 @@ void run(const Arguments& arguments) {
     fmt::print("{}", arguments.markdown ? as_markdown(sheet) : as_text(sheet));
     return;
   }
-  if ((arguments.wide || arguments.overview || arguments.over_objects || arguments.growth) &&
+  if ((arguments.wide || arguments.overview || arguments.over_objects || arguments.growth || arguments.paper) &&
       arguments.files.size() > 1) {
-    throw BadArgument("--wide, --overview, --over-objects and --growth show one file");
+    throw BadArgument("--wide, --overview, --over-objects, --growth and --paper show one file");
   }
   const TableInput input(arguments.files);
   if (arguments.over_objects || arguments.growth) {
     const auto as_json = arguments.growth ? growth_json : over_objects_json;
     const auto as_text = arguments.growth ? growth_text : over_objects_text;
     fmt::print("{}", arguments.json ? json_text(as_json(input.groups)) + "\n" : as_text(input.groups));
+    return;
+  }
+  if (arguments.paper) {
+    const Sheet sheet = paper_sheet_of(input);
+    fmt::print("{}", arguments.markdown ? as_markdown(sheet) : as_text(sheet));
     return;
   }
   const std::vector<ResultTable> tables = tables_of(input);
@@ -112,6 +118,11 @@ void add_table_command(CLI::App& app) {
       command->add_flag("--growth", arguments->growth, "Growth with the number of triangles (bench/scripts/growth)")
           ->excludes(wide)
           ->excludes(over_objects);
+  command->add_flag("--paper", arguments->paper, "Scenarios beside the paper's values (sixdof-bench --suite paper)")
+      ->excludes(json)
+      ->excludes(wide)
+      ->excludes(over_objects)
+      ->excludes(growth);
   auto* const against =
       command->add_option("--against", arguments->against, "Only ratios to the fastest of these, e.g. 'fcl-*,ode'")
           ->type_name("ALGORITHM,...")

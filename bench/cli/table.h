@@ -101,6 +101,10 @@ std::vector<Sheet> wide_sheets_of(const std::vector<ResultTable>& tables);
 std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables);
 std::vector<std::string> lines_below_overview();
 
+/// A line per scenario row: its resolution, time and measures beside those that the paper prints
+/// (results/paper_scenarios.h).
+Sheet paper_sheet_of(const TableInput& input);
+
 /// A line per query, bodies and bucket (or target, or scene): the algorithm's time, that of the fastest of the others,
 /// their ratio and how far it spreads over the files, e.g. of several seeds (results/rivals.h). Rows with a fault stand
 /// below and count for nothing.

@@ -31,7 +31,7 @@ struct Shown {
 bool is_shown(const std::string& query, const BucketKey& bucket) {
   static const std::vector<Shown> list{{"distance", {0, 1, 5, 10, 20, 30}, {5}},
                                        {"collide", {0, 1, 5, 10, 20, 30}, {1, 5, 10}},
-                                       {"respond", {}, {1, 2, 5, 10}}};
+                                       {"respond", {0, 1, 5, 10, 20, 30}, {1, 2, 5, 10}}};
   const auto found = std::ranges::find(list, query, &Shown::query);
   if (found == list.end()) return false;
   const auto& percents = bucket.kind == BucketKind::distance ? found->distances : found->volumes;

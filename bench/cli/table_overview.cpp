@@ -79,6 +79,8 @@ std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
   for (const ResultTable& table : tables) {
     auto pair = std::ranges::find(pairs, table.pair, [](const auto& each) { return each.first; });
     if (pair == pairs.end()) pair = pairs.insert(pairs.end(), {table.pair, {}});
+    // Of responses the means are of bodies that overlap.
+    if (table.query == "respond" && table.kind == BucketKind::distance) continue;
     for (const TableLine& line : table.lines) {
       const results::RowGroup* const group = line.files.front().group;
       if (group == nullptr || line.label() != line.algorithm || line.algorithm == "null") continue;

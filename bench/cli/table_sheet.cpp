@@ -36,15 +36,19 @@ constexpr ValueColumn k_p99{k_wall, "p99", "p99_ns", as_microseconds};
 constexpr ValueColumn k_late{"", ">1 ms, %", "over_1ms", as_percent};
 constexpr ValueColumn k_angle{k_force, "angle", "gamma_F_deg", as_degrees};
 constexpr ValueColumn k_magnitude{k_force, "magn., %", "magnitude_error_F", as_percent};
+constexpr const char* k_phantom = "force though apart";
+constexpr ValueColumn k_phantoms{k_phantom, "n", "phantoms", as_count};
+constexpr ValueColumn k_phantom_max{k_phantom, "max, %", "phantom_force_max", as_percent};
 constexpr ValueColumn k_distance_rms{k_distance, "rms", "error_rms", as_small};
 
 /// How wrong the answers to a query are.
-std::vector<ValueColumn> error_columns(const std::string& query, std::size_t files) {
+std::vector<ValueColumn> error_columns(const std::string& query, BucketKind kind, std::size_t files) {
   if (query == "distance") {
     return files > 1 ? std::vector{k_distance_rms}
                      : std::vector{k_distance_rms, ValueColumn{k_distance, "max", "error_max", as_small}};
   }
   if (query != "respond") return {};
+  if (kind == BucketKind::distance) return {k_phantoms, k_phantom_max};
   if (files > 1) return {k_angle, k_magnitude};
   return {k_angle,
           {k_force, "max", "gamma_max_F_deg", as_degrees},
@@ -63,9 +67,9 @@ std::vector<ValueColumn> time_columns(std::size_t files) {
       k_late};
 }
 
-std::vector<ValueColumn> value_columns(const std::string& query, std::size_t files) {
+std::vector<ValueColumn> value_columns(const std::string& query, BucketKind kind, std::size_t files) {
   std::vector<ValueColumn> columns = time_columns(files);
-  std::ranges::copy(error_columns(query, files), std::back_inserter(columns));
+  std::ranges::copy(error_columns(query, kind, files), std::back_inserter(columns));
   return columns;
 }
 
@@ -153,7 +157,7 @@ std::vector<std::string> fault_notes(const ResultTable& table, std::size_t files
 }
 
 Sheet sheet_of_one(const ResultTable& table) {
-  const std::vector<ValueColumn> values = value_columns(table.query, 1);
+  const std::vector<ValueColumn> values = value_columns(table.query, table.kind, 1);
   Sheet sheet;
   sheet.columns = {{"", to_string(table.kind), true}, {"", "", true}, {"", "algorithm", true}};
   for (const ValueColumn& column : values) sheet.columns.push_back({column.group, column.title});
@@ -166,7 +170,7 @@ Sheet sheet_of_one(const ResultTable& table) {
 }
 
 Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
-  const std::vector<ValueColumn> values = value_columns(table.query, files);
+  const std::vector<ValueColumn> values = value_columns(table.query, table.kind, files);
   Sheet sheet;
   sheet.columns = {{"", to_string(table.kind), true}, {"", "algorithm", true}};
   for (std::size_t file = 0; file < files; ++file) {
@@ -226,6 +230,7 @@ std::vector<std::string> lines_below(const TableInput& input) {
       ">1 ms: share of these queries over the haptic deadline",
       "angle: mean angle to the exact response, in degrees; max: the largest",
       "magn.: RMS of |F| - gain |exact F| over the RMS of |F|, with one gain per row; of torques likewise",
+      "force though apart: answers with a force, and the largest in percent of the mean force at the least overlap",
       "volume: mean error of the overlap volume; (path): configurations in the grid's own order",
       "(motion): times of successive poses in steps of 0.01 % of A's diagonal, starting at configurations",
       "(cold): data is removed from the caches before each query; wall clock only, not ranked",

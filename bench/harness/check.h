@@ -21,25 +21,29 @@ struct Check : JudgedAnswers {
   MeanWork work;               ///< Over the answers.
   /// Configurations of the first wrong answer, the first miss and the largest error; empty without.
   std::optional<Pose> first_wrong = {}, first_missed = {}, largest_error = {};
+  std::optional<Pose> largest_phantom = {};  ///< Of the largest force of bodies that are apart.
 };
 
 /// Asks the first `count` configurations once, however long it takes: rows that are compared ask the same ones.
+/// @param resolution KnownAnswer::resolution
 /// @param hulls the truth of answers about convex hulls; null for answers about the meshes, as the set's truth is
 template <class Ask>
-Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query,
-                    HullTruth* hulls = nullptr) {
-  const KnownAnswer of_set = KnownAnswer::of(bucket);
+Check check_answers(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query, HullTruth* hulls = nullptr,
+                    double resolution = 0.0) {
+  KnownAnswer of_set = KnownAnswer::of(bucket);
+  of_set.resolution = resolution;
   Check check;
   for (const Pose& pose : std::span(bucket.poses).first(count)) {
     const auto answer = query.ask(pose);
     check.answered.push_back(answer.ok());
     if (!answer.ok()) continue;
     const Judgement judgement = judge(hulls == nullptr ? of_set : hulls->at(bucket, pose), answer.value);
-    const double largest = check.errors.largest();
+    const double largest = check.errors.largest(), phantom = check.phantom_forces.largest();
     check.add(judgement);
     if (judgement.wrong && !check.first_wrong) check.first_wrong = pose;
     if (judgement.missed && !check.first_missed) check.first_missed = pose;
     if (check.errors.largest() > largest) check.largest_error = pose;
+    if (check.phantom_forces.largest() > phantom) check.largest_phantom = pose;
     check.work.add(query.query().work());
   }
   return check;

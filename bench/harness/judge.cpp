@@ -21,7 +21,14 @@ Judgement judge(const KnownAnswer& known, const Separation& answer) {
 }
 
 Judgement judge(const KnownAnswer& known, const Response& answer) {
-  if (known.key.kind != BucketKind::volume || known.key.percent == 0) return {};
+  if (known.key.kind == BucketKind::distance) {
+    Judgement judgement{.judged = known.key.percent > 0};
+    if (answer.force.isZero(0.0) && answer.torque.isZero(0.0)) return judgement;
+    judgement.phantom_force = std::min(answer.force.stableNorm(), k_largest_error);
+    judgement.wrong = judgement.judged && known.target - known.tolerance > known.resolution;
+    return judgement;
+  }
+  if (known.key.percent == 0) return {};
   Judgement judgement{.missed = answer.force.isZero(0.0)};
   if (!std::isfinite(answer.volume)) return judgement;
   judgement.judged = true;

@@ -18,6 +18,9 @@ struct KnownAnswer {
   double target = 0.0;     ///< Distance (length) or overlap volume (length^3).
   double tolerance = 0.0;  ///< Of `target`, same unit.
   double diagonal = 0.0;   ///< Of A's box (length).
+  /// How far the bodies that the algorithm answers for may lie from the true ones (length): Footprint's "resolution" of
+  /// one that approximates.
+  double resolution = 0.0;
 
   static KnownAnswer of(const BucketSample& bucket) {
     return {bucket.key, bucket.target, bucket.tolerance, bucket.diagonal};
@@ -37,6 +40,8 @@ struct Judgement {
   bool judged = false;  ///< There is a known answer to compare with.
   bool wrong = false;   ///< The other yes/no, or a distance beyond the tolerance.
   bool missed = false;  ///< A response without a force although the bodies overlap.
+  /// A response with a force or a torque although the bodies are apart, and how large the force is.
+  std::optional<double> phantom_force = {};
   /// Answer minus known answer: distances in A's diagonals, volumes in the known volume.
   std::optional<double> error = {};
 };
@@ -47,8 +52,10 @@ Judgement judge(const KnownAnswer& known, bool answer);
 /// Configurations of an overlap bucket have distance 0.
 Judgement judge(const KnownAnswer& known, const Separation& answer);
 
-/// Responses are judged in overlap buckets, where each has a force; touching bodies (0 %) have none. The volume, where
-/// there is one, is compared with the bucket's. It is never wrong, since many algorithms approximate it.
+/// Responses are judged in overlap buckets, where each has a force. The volume, where there is one, is compared with
+/// the bucket's. It is never wrong, since many algorithms approximate it. Bodies that are apart have no force: one is
+/// wrong where their distance is greater than the algorithm's resolution. Touching bodies (0 %) may have a force or
+/// none.
 Judgement judge(const KnownAnswer& known, const Response& answer);
 
 /// Absolute values of errors.
@@ -74,14 +81,17 @@ class Errors {
 
 /// How many answers were judged, and how they were.
 struct JudgedAnswers {
-  std::size_t judged = 0, wrong = 0, missed = 0;
-  Errors errors;
+  std::size_t judged = 0, wrong = 0, missed = 0, phantoms = 0;
+  Errors errors, phantom_forces;
 
   void add(const Judgement& judgement) {
     judged += judgement.judged;
     wrong += judgement.wrong;
     missed += judgement.missed;
     if (judgement.error) errors.add(*judgement.error);
+    if (!judgement.phantom_force) return;
+    ++phantoms;
+    phantom_forces.add(*judgement.phantom_force);
   }
 };
 

@@ -18,6 +18,7 @@
 #include <sixdof/base/data_folder.h>
 #include <sixdof/base/error.h>
 #include <sixdof/base/shell_text.h>
+#include <sixdof/query/variant.h>
 #include "bench/common/completion.h"
 #include "bench/common/help_format.h"
 #include "bench/common/rivals.h"
@@ -136,7 +137,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
 
 std::string completion_of(const CLI::App& app) {
   ValueTable values = common_values();
-  values["SUITE"] = {.words = {"default", "own-pair", "all-algorithms", "scenes", "all"}, .files = true};
+  values["SUITE"] = {.words = {"default", "own-pair", "all-algorithms", "paper", "scenes", "all"}, .files = true};
   std::vector<std::string> flags;
   for (const char* name : k_benchmark_flags) flags.push_back(std::string("--") + name);
   return bash_completion(app, "sixdof-bench", values, flags);
@@ -149,6 +150,7 @@ std::filesystem::path file_of_suite(const std::string& suite) {
   if (suite == "default") return folder / "default_suite.json";
   if (suite == "own-pair") return folder / "own_pair_suite.json";
   if (suite == "all-algorithms") return folder / "all_algorithms_suite.json";
+  if (suite == "paper") return folder / "paper_suite.json";
   if (suite == "scenes") return folder / "scenes_suite.json";
   return suite;
 }
@@ -184,14 +186,16 @@ void add_set_options(CLI::App& app, Options& options, CommandLine& line) {
 }
 
 void add_row_options(CLI::App& app, Options& options, CommandLine& line) {
-  app.add_option("--suite", line.suite,
-                 "Rows to run: default, own-pair, all-algorithms, scenes (bench/*_suite.json), all, or a file of the "
-                 "same form")
+  app.add_option(
+         "--suite", line.suite,
+         "Rows to run: default, own-pair, all-algorithms, paper, scenes (bench/*_suite.json), all, or a file of the "
+         "same form")
       ->type_name("SUITE")
       ->default_str("own-pair with --a and no --set; all with --benchmark_filter or your own sets; else default");
-  app.add_option("-p,--parameter", options.parameters,
-                 "Parameter of an algorithm (sixdof algorithms lists them); may be repeated")
-      ->type_name("ALGORITHM:NAME=VALUE")
+  app.add_option(
+         "-p,--parameter", options.parameters,
+         "Parameter of an algorithm (sixdof algorithms lists them); several values: rows of each. May be repeated")
+      ->type_name("ALGORITHM:NAME=VALUE[,VALUE...]")
       ->allow_extra_args(false);
   app.add_option("--sample", options.sample, "Poses (configurations) per bucket, drawn at random; 0: all")
       ->type_name("N")
@@ -263,7 +267,8 @@ void complete_options(const CommandLine& line, bool has_filter, Options& options
   const bool no_manifest = line.no_manifest || own_pair;
   const bool own_sets = no_manifest || !line.manifest->empty() || !options.sets.empty();
   const char* const usual = own_pair ? "own-pair" : own_sets || has_filter ? "all" : "default";
-  options.suite = file_of_suite(line.suite.empty() ? usual : line.suite);
+  options.suite_word = line.suite.empty() ? usual : line.suite;
+  options.suite = file_of_suite(options.suite_word);
   if (no_manifest) options.manifest.clear();
   options.resume = !line.resume->empty();
   options.out_format = line.out_format == "csv" ? ResultFormat::csv : ResultFormat::json;
@@ -293,6 +298,15 @@ int pass_on(std::vector<std::string> flags, Options& options, const std::vector<
 bool has_parameter(const Traits& traits, const std::string& assignment) {
   return std::ranges::any_of(traits.parameters,
                              [&](const Parameter& each) { return assignment.starts_with(each.name + "="); });
+}
+
+/// Names of the algorithm's variants, and its own where it is there too; empty for one without variants.
+std::vector<std::string> variants_of(const std::string& name, const Registry& registry) {
+  std::vector<std::string> names;
+  for (const auto& algorithm : registry.all()) {
+    if (base_name(algorithm->traits().name) == name) names.push_back(algorithm->traits().name);
+  }
+  return names;
 }
 
 }  // namespace
@@ -333,7 +347,8 @@ std::map<std::string, Settings> parse_parameters(const std::vector<std::string>&
     }
     const std::string name = text.substr(0, colon), assignment = text.substr(colon + 1);
     const auto suits = [&](const Traits& traits) { return has_parameter(traits, assignment); };
-    for (const std::string& each : with_rivals({name}, registry, suits)) {
+    const std::vector<std::string> variants = variants_of(name, registry);
+    for (const std::string& each : variants.empty() ? with_rivals({name}, registry, suits) : variants) {
       settings.at(registry.find(each).traits().name).set_all({assignment});
     }
   }

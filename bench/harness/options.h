@@ -25,6 +25,7 @@ struct Options {
   std::vector<std::filesystem::path> sets;    ///< Further sets of the user's.
   std::string a, b;                           ///< Meshes, models' names or files: of the one set, or of a coarse set.
   std::vector<std::filesystem::path> meshes;  ///< Mesh files that these sets name.
+  std::string suite_word;                     ///< As --suite takes it.
   std::filesystem::path suite;                ///< List of rows (harness/suite.h); empty for all rows.
   std::vector<std::string> parameters;        ///< "ALGORITHM:NAME=VALUE".
   std::size_t sample = 1024;                  ///< Configurations per bucket; 0 for all.

@@ -23,8 +23,9 @@ std::vector<std::string> assignments(const Settings& settings) {
 
 }  // namespace
 
-std::string query_command(const std::string& a, const std::string& b, const Algorithm& algorithm,
+std::string query_command(const std::string& a, const std::string& b, const Algorithm& asked,
                           const Settings& settings) {
+  const Algorithm& algorithm = base_algorithm(asked);
   std::string command = fmt::format("sixdof query --a {} --b {} --algorithm {}", shell_quoted(a), shell_quoted(b),
                                     algorithm.traits().name);
   const std::vector<std::string> chosen = assignments(settings), defaults = assignments(algorithm.settings());
@@ -35,7 +36,7 @@ std::string query_command(const std::string& a, const std::string& b, const Algo
 }
 
 std::string process_option(const Algorithm& algorithm) {
-  const auto* const remote = dynamic_cast<const RemoteAlgorithm*>(&algorithm);
+  const auto* const remote = dynamic_cast<const RemoteAlgorithm*>(&base_algorithm(algorithm));
   if (remote == nullptr) return {};
   std::string words;
   if (remote->local() != nullptr) {

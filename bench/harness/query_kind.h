@@ -37,6 +37,11 @@ inline bool suits(BucketKey key, QueryKind kind) {
   return true;
 }
 
+/// Whether rows ask them: also responses of bodies that are apart, for their time and for forces that are none.
+inline bool has_row(BucketKey key, QueryKind kind) {
+  return suits(key, kind) || (kind == QueryKind::respond && key.kind == BucketKind::distance);
+}
+
 /// Calls use(GuardedQuery) with queries of this kind. @param failures counts configurations without an answer
 template <class Use>
 void with_query_kind(Query& query, QueryKind kind, Failures& failures, Use use) {

@@ -14,6 +14,7 @@
 #include <sixdof/base/visible_text.h>
 #include <sixdof/process/remote_algorithm.h>
 #include "bench/common/build_info.h"
+#include "bench/harness/suite.h"
 #include "bench/harness/timing.h"
 
 namespace sixdof::bench {
@@ -72,6 +73,9 @@ std::string Options::reproduction_words() const {
   for (const std::string& parameter : parameters) add("-p", parameter);
   words += process_words(process);
   if (own_pair()) words += " --suite all";
+  // Its variants exist under this list alone.
+  const bool has_variants = !own_pair() && !suite.empty() && !suite_variants(suite).empty();
+  if (has_variants) add("--suite", suite_word);
   return words.starts_with(' ') ? words.substr(1) : words;
 }
 

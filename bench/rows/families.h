@@ -15,7 +15,8 @@ std::vector<PlannedRow> prepare_rows(const Resources& resources);
 /// `collide/algorithm:A/pair:P/distance:05`, `distance/...`, `respond/algorithm:A/pair:P/volume:03`: queries on the
 /// buckets of the configuration sets, in random order, and in the grid's own order as `.../order:path`; in random order
 /// on cold caches as `.../cache:cold`. Responses are compared with the bucket's volume and with the directions of the
-/// exact ones.
+/// exact ones; `respond/.../distance:05` counts and measures forces of bodies that are apart, where there should be
+/// none.
 std::vector<PlannedRow> query_rows(const Resources& resources);
 
 /// `cast/algorithm:A/pair:P/motion:tumble/step:10`: when B first touches A on motions from the poses of contact of a

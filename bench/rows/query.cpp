@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,10 @@ constexpr std::size_t k_trial = 8;
 constexpr double k_trial_time = 0.1;
 /// Most configurations on cold caches: emptying them takes far longer than most queries.
 constexpr std::size_t k_most_cold = 64;
+/// Overlapping configurations whose mean force is what forces of bodies that are apart are compared with.
+constexpr std::size_t k_scale_poses = 32;
+/// Count of a footprint of an algorithm that approximates.
+constexpr const char* k_resolution = "resolution";
 /// Count of a footprint, and counter of a row; bench/rivals/python/sixdof_rival.py measures it.
 constexpr const char* k_empty_call = "empty_call_ns";
 
@@ -84,7 +89,9 @@ struct QueryRow {
   std::optional<std::array<VectorError, 2>> errors = {};
   results::Outliers worst = {};
   std::vector<Response> hull_responses = {};  ///< Of `exact`, where the row is about convex hulls.
-  std::optional<double> empty_call_ns = {};   ///< That a call from Python takes without the library's work.
+  /// Mean force of this algorithm at the pair's least overlap, 1 % in most sets; empty where it is not needed.
+  std::optional<double> force_scale = {};
+  std::optional<double> empty_call_ns = {};  ///< That a call from Python takes without the library's work.
 
   results::RowFields fields() const {
     return {.query = std::string(to_string(question)),
@@ -113,12 +120,14 @@ struct QueryRow {
     const std::size_t most = evict ? k_most_cold : bucket.poses.size();
     const std::size_t count = std::min({share.configurations, most, bucket.poses.size()});
     std::span<const Response> exact;
-    if (question == QueryKind::respond) exact = exact_responses(bucket, count);
+    if (has_exact()) exact = exact_responses(bucket, count);
     with_query(failures, [&](auto query) {
       if (!check) {
-        if constexpr (requires { query.ask(poses[0]).value.force; }) compare_with_exact(bucket, exact, query);
-        check = check_answers(bucket, count, query, hulls());
-        empty_call_ns = empty_call_of(query.query());
+        if constexpr (requires { query.ask(poses[0]).value.force; }) {
+          if (has_exact()) compare_with_exact(bucket, exact, query);
+        }
+        check = check_answers(bucket, count, query, hulls(), resolution_of(query.query()));
+        empty_call_ns = count_of(query.query(), k_empty_call);
         poses = poses_to_time(bucket, count);
         if (!evict) {
           const SingleTimes times = time_each(poses, query);
@@ -138,7 +147,8 @@ struct QueryRow {
         time_mean(state, poses, query);
       }
     });
-    report(state, bucket);
+    if (check->phantoms > 0 && !force_scale) force_scale = force_at_least_overlap();
+    report(state, sample());
   }
 
   /// PlannedRow::outliers.
@@ -155,13 +165,14 @@ struct QueryRow {
     found.add("mismatch", check->first_wrong);
     found.add("misses", check->first_missed);
     found.add(question == QueryKind::distance ? "error_max" : "volume_error_max", check->largest_error);
+    found.add("phantom_force_max", check->largest_phantom);
     return found;
   }
 
   /// PlannedRow::trial.
   double trial(double seconds) {
     const BucketSample& bucket = sample();
-    double each = question == QueryKind::respond && is_about_meshes() ? time_exact() : 0.0;
+    double each = has_exact() && is_about_meshes() ? time_exact() : 0.0;
     Failures ignored;
     with_query(ignored, [&](auto query) {
       const auto start = std::chrono::steady_clock::now();
@@ -176,7 +187,7 @@ struct QueryRow {
         if (seconds_since(start) > k_trial_time * seconds) break;
       }
       // A response is asked once more, to be compared with the exact one.
-      const double passes = (evict ? k_cold_passes : k_passes) + (question == QueryKind::respond ? 1.0 : 0.0);
+      const double passes = (evict ? k_cold_passes : k_passes) + (has_exact() ? 1.0 : 0.0);
       if (answers > 0) each += passes * 1e-9 * answers_ns / static_cast<double>(answers);
     });
     if (evict) each += time_eviction();
@@ -185,12 +196,43 @@ struct QueryRow {
   }
 
  private:
-  static std::optional<double> empty_call_of(const Query& query) {
+  static std::optional<double> count_of(const Query& query, std::string_view wanted) {
     const Footprint footprint = query.footprint();
     for (const auto& [name, count] : footprint.counts) {
-      if (name == k_empty_call) return count;
+      if (name == wanted) return count;
     }
     return std::nullopt;
+  }
+
+  /// KnownAnswer::resolution; 0 of an algorithm that takes the bodies as they are.
+  double resolution_of(const Query& query) const {
+    return algorithm.traits().approximates ? count_of(query, k_resolution).value_or(0.0) : 0.0;
+  }
+
+  /// Whether answers are compared with exact responses: bodies that are apart have none.
+  bool has_exact() const { return question == QueryKind::respond && key.kind == BucketKind::volume; }
+
+  /// Of the first configurations with a force at the pair's least overlap; empty where the set has no overlaps.
+  std::optional<double> force_at_least_overlap() const {
+    std::optional<BucketKey> shallowest;
+    for (const BucketKey each : pair.buckets) {
+      const bool overlaps = each.kind == BucketKind::volume && each.percent > 0;
+      if (overlaps && (!shallowest || each.percent < shallowest->percent)) shallowest = each;
+    }
+    if (!shallowest) return std::nullopt;
+    const std::vector<Pose>& there = resources.cache.bucket(pair, *shallowest).poses;
+    Query& query = resources.cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
+    Errors forces;
+    Failures ignored;
+    with_query_kind(query, QueryKind::respond, ignored, [&](auto guarded) {
+      for (const Pose& pose : std::span(there).first(std::min(k_scale_poses, there.size()))) {
+        const auto answer = guarded.ask(pose);
+        if constexpr (requires { answer.value.force; }) {
+          if (answer.ok()) forces.add(answer.value.force.stableNorm());
+        }
+      }
+    });
+    return forces.mean() > 0.0 ? std::optional(forces.mean()) : std::nullopt;
   }
 
   bool is_about_meshes() const { return algorithm.traits().body == Body::mesh; }
@@ -211,7 +253,8 @@ struct QueryRow {
   const BucketSample& sample() const {
     const BucketSample& bucket = resources.cache.bucket(pair, key);
     if (bucket.poses.empty()) throw BadArgument(key.name() + ": no configuration of this bucket can be reached");
-    if (key.kind == BucketKind::volume) require_solids(resources.cache.mesh(pair.a), resources.cache.mesh(pair.b));
+    if (key.kind == BucketKind::volume || question == QueryKind::respond)
+      require_solids(resources.cache.mesh(pair.a), resources.cache.mesh(pair.b));
     return bucket;
   }
 
@@ -292,6 +335,14 @@ struct QueryRow {
     if (errors->at(1).magnitude) add("magnitude_error_T", torques.largest_difference(errors->at(1).magnitude->gain));
   }
 
+  void report_phantoms(benchmark::State& state) const {
+    state.counters["phantoms"] = static_cast<double>(check->phantoms);
+    if (check->phantoms > 0 && !force_scale) return;
+    const double scale = force_scale.value_or(1.0);
+    state.counters["phantom_force_mean"] = check->phantom_forces.mean() / scale;
+    state.counters["phantom_force_max"] = check->phantom_forces.largest() / scale;
+  }
+
   void report(benchmark::State& state, const BucketSample& bucket) const {
     const auto count = [&](const std::string& counter, auto value) {
       state.counters[counter] = static_cast<double>(value);
@@ -319,7 +370,8 @@ struct QueryRow {
       count("error_rms", check->errors.rms());
       count("error_max", check->errors.largest());
     }
-    if (question == QueryKind::respond) {
+    if (question == QueryKind::respond && !has_exact()) report_phantoms(state);
+    if (has_exact()) {
       count("misses", check->missed);
       if (check->judged > 0) {
         count("volume_error_mean", check->errors.mean());
@@ -376,7 +428,7 @@ std::vector<PlannedRow> query_rows(const Resources& resources) {
       };
       for (const BucketKey key : pair.buckets) {
         for (const QueryKind question : k_query_kinds) {
-          if (answers(algorithm->traits().answers, question) && suits(key, question)) add(key, question);
+          if (answers(algorithm->traits().answers, question) && has_row(key, question)) add(key, question);
         }
       }
     }

@@ -43,6 +43,7 @@ struct ScenarioRow {
     }
     state.counters["failed"].value += static_cast<double>(failures.count());
     count_statuses(state.counters, failures);
+    for (const auto& [counted, count] : query->footprint().counts) state.counters[counted] = count;
     state.counters["steps"] = static_cast<double>(recording.size());
     std::string label = fmt::format("law={} {}", to_string(law), resources.settings_of(algorithm).to_string());
     const std::string& failure = recording.first_failure.empty() ? failures.first() : recording.first_failure;

@@ -37,13 +37,48 @@ Resolution coarsest(const std::array<ResolutionAxis, 2>& axes) {
   return {value(axes[0]), value(axes[1])};
 }
 
+/// That of the grid with as many coarser as finer values of each axis.
+Resolution middle(const std::array<ResolutionAxis, 2>& axes) {
+  const auto value = [](const ResolutionAxis& axis) {
+    std::vector<double> values = axis.grid;
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+  };
+  return {value(axes[0]), value(axes[1])};
+}
+
 Resolution default_resolution(const SearchTask& task) {
   return {task.settings.number(task.axes[0].parameter), task.settings.number(task.axes[1].parameter)};
 }
 
-/// What measurements of one kind have taken.
-struct Spent {
-  double work = 0.0, seconds = 0.0;
+/// What measurements of one kind have taken: seconds = fixed + slope work, since making the scenario, walking its path
+/// and evaluating it take the same time at every resolution.
+class Spent {
+ public:
+  void add(double work, double seconds) { points_.emplace_back(work, seconds); }
+  void add(const Spent& other) { points_.insert(points_.end(), other.points_.begin(), other.points_.end()); }
+  bool empty() const { return points_.empty(); }
+
+  /// By least squares, without a part below zero; proportional to the work where all had the same. Not empty.
+  double expected(double work) const {
+    const double count = static_cast<double>(points_.size());
+    double works = 0.0, seconds = 0.0, squares = 0.0, products = 0.0;
+    for (const auto& [w, s] : points_) {
+      works += w;
+      seconds += s;
+      squares += w * w;
+      products += w * s;
+    }
+    const double variance = squares - works * works / count;
+    constexpr double k_spread = 1e-9;  // of equal works, by rounding
+    const double slope = variance > k_spread * squares ? (products - works * seconds / count) / variance : -1.0;
+    const double fixed = (seconds - slope * works) / count;
+    if (variance <= k_spread * squares || fixed < 0.0) return seconds / works * work;
+    return slope < 0.0 ? seconds / count : fixed + slope * work;
+  }
+
+ private:
+  std::vector<std::pair<double, double>> points_;  ///< Work, seconds.
 };
 
 class Run {
@@ -61,7 +96,7 @@ class Run {
 
   EquivalentRun run(const std::function<void(const EquivalentRun&)>& finished) {
     progress_.begin(plan(), 1.0);
-    measure_coarsest();
+    measure_first();
     if (const std::optional<double> all = remaining_s()) progress_.estimate(*all, *all);
     counts_ = true;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
@@ -77,9 +112,7 @@ class Run {
   }
 
   void note(const SearchTask& task, const Resolution& at, double seconds) {
-    Spent& spent = spent_[{task.scenario, task.algorithm}];
-    spent.work += measurement_work(task.axes, at);
-    spent.seconds += seconds;
+    spent_[{task.scenario, task.algorithm}].add(measurement_work(task.axes, at), seconds);
   }
 
   /// By the task's own measurements, else by those of its algorithm in other scenarios; empty without any.
@@ -88,12 +121,11 @@ class Run {
     for (const auto& [names, spent] : spent_) {
       if (names.second != task.algorithm) continue;
       if (names.first == task.scenario) own = spent;
-      of_algorithm.work += spent.work;
-      of_algorithm.seconds += spent.seconds;
+      of_algorithm.add(spent);
     }
-    const Spent& known = own.work > 0.0 ? own : of_algorithm;
-    if (known.work <= 0.0) return std::nullopt;
-    return known.seconds / known.work * measurement_work(task.axes, at);
+    const Spent& known = own.empty() ? of_algorithm : own;
+    if (known.empty()) return std::nullopt;
+    return known.expected(measurement_work(task.axes, at));
   }
 
   /// Resolutions of the task that are measured in any case.
@@ -157,11 +189,12 @@ class Run {
                        targets == 1 ? "" : "es", settings, known, k_predictions * targets);
   }
 
-  /// Tells how long the others will take.
-  void measure_coarsest() {
+  /// Tells how long the others will take: one alone would not tell what is fixed from what grows with the resolution.
+  void measure_first() {
     for (const SearchTask& task : tasks_) {
       try {
         measure(task, coarsest(task.axes));
+        measure(task, middle(task.axes));
       } catch (const OutOfBudget&) {
         return;  // search() names the searches
       }

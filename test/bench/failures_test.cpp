@@ -72,6 +72,23 @@ TEST_F(Faulty, PosesAreOneInTwenty) {
   EXPECT_LT(faulty, test::SmallSuite::k_configurations / 10);
 }
 
+TEST_F(Faulty, ForcesOfBodiesThatAreApartAreCountedAndMeasured) {
+  const json document =
+      run("'--benchmark_filter=^respond/algorithm:(exact|returns-1e308)/pair:torus-1k/(distance:05|volume:03)$'");
+  const json right = row(document, "respond", "exact", "distance:05");
+  EXPECT_EQ(right.at("phantoms"), 0);
+  EXPECT_EQ(right.at("mismatch"), 0);
+  EXPECT_EQ(right.at("phantom_force_max"), 0);
+  EXPECT_EQ(right.at("judged"), right.at("configurations"));
+  EXPECT_FALSE(right.contains("misses") || right.contains("gamma_F_deg")) << right;
+  EXPECT_GT(right.at("cpu_time"), 0);
+  const json wrong = row(document, "respond", "returns-1e308", "distance:05");
+  EXPECT_EQ(wrong.at("phantoms"), count_faulty({BucketKind::distance, 5}));
+  EXPECT_EQ(wrong.at("mismatch"), wrong.at("phantoms"));
+  EXPECT_GT(wrong.at("phantom_force_max"), 0.0);
+  EXPECT_TRUE(wrong.at("outliers").at("poses").contains("phantom_force_max")) << wrong.at("outliers");
+}
+
 TEST_F(Faulty, QueriesWithoutAnAnswerAreCountedAndNotTimed) {
   const auto apart = count_faulty({BucketKind::distance, 5});
   const auto overlapping = count_faulty({BucketKind::volume, 3});

@@ -64,8 +64,29 @@ TEST(Judge, ResponsesInOverlapBuckets) {
   EXPECT_FALSE(judgement.missed || judgement.wrong);
   EXPECT_DOUBLE_EQ(*judgement.error, -0.4);
   EXPECT_FALSE(judge(known(BucketKind::volume, 0, 0.0), answer).judged);
-  EXPECT_FALSE(judge(k_apart, answer).judged);
   EXPECT_FALSE(judge(k_apart, Response{}).missed);
+}
+
+TEST(Judge, ForcesOfBodiesThatAreApart) {
+  Response answer;
+  EXPECT_TRUE(judge(k_apart, answer).judged);
+  EXPECT_FALSE(judge(k_apart, answer).wrong || judge(k_apart, answer).phantom_force);
+  answer.force = {0.0, -3e-9, 4e-9};
+  EXPECT_TRUE(judge(k_apart, answer).wrong) << "the bodies as they are";
+  EXPECT_DOUBLE_EQ(*judge(k_apart, answer).phantom_force, 5e-9);
+  KnownAnswer approximated = k_apart;
+  approximated.resolution = k_apart.target;
+  EXPECT_FALSE(judge(approximated, answer).wrong) << "within the resolution";
+  EXPECT_TRUE(judge(approximated, answer).phantom_force);
+  approximated.resolution = k_apart.target - 2.0 * k_tolerance;
+  EXPECT_TRUE(judge(approximated, answer).wrong);
+  EXPECT_FALSE(judge(k_touching, answer).judged || judge(k_touching, answer).wrong) << "both answers are right";
+  EXPECT_TRUE(judge(k_touching, answer).phantom_force);
+  answer.force.setZero();
+  answer.torque = {0.0, 1e-300, 0.0};
+  EXPECT_TRUE(judge(k_apart, answer).wrong) << "a torque alone";
+  answer.force = {1e308, 1e308, 0.0};
+  EXPECT_EQ(judge(k_apart, answer).phantom_force, k_largest_error);
 }
 
 TEST(Errors, HaveFiniteMeans) {

@@ -132,6 +132,26 @@ TEST_F(BenchProgram, ReportsTheWorkOfQueries) {
   EXPECT_LT(spheres.at("sphere_pairs_tested"), 300 * 300);
 }
 
+TEST_F(BenchProgram, SeveralResolutionsOfOneAlgorithmAreRowsOfEach) {
+  const json document = result(
+      "--sample 32 -p ist:spheres=100,400 -p ist:seed=3 "
+      "'--benchmark_filter=^(prepare|respond)/algorithm:ist@.*/pair:torus-1k(/(distance:05|volume:03))?$'");
+  ASSERT_EQ(document.at("benchmarks").size(), 6u);
+  for (const char* const spheres : {"100", "400"}) {
+    const std::string of = std::string("/algorithm:ist@spheres=") + spheres + "/pair:torus-1k";
+    EXPECT_EQ(row(document, "prepare" + of).at("spheres_a").dump(), std::string(spheres) + ".0");
+    const json apart = row(document, "respond" + of + "/distance:05");
+    EXPECT_EQ(apart.at("sixdof").at("settings").at("spheres").dump(), spheres);
+    EXPECT_EQ(apart.at("sixdof").at("settings").at("seed"), 3);
+    EXPECT_EQ(apart.at("phantoms"), 0) << "spheres inside the bodies do not meet when these are apart";
+    EXPECT_EQ(apart.at("judged"), 32);
+    EXPECT_THAT(apart.at("outliers").at("command").get<std::string>(),
+                HasSubstr(std::string("--algorithm ist -p spheres=") + spheres));
+  }
+  EXPECT_LT(row(document, "respond/algorithm:ist@spheres=400/pair:torus-1k/volume:03").at("volume_error_mean"),
+            row(document, "respond/algorithm:ist@spheres=100/pair:torus-1k/volume:03").at("volume_error_mean"));
+}
+
 TEST_F(BenchProgram, CountsTheMismatchesOfNull) {
   const json document = result("--benchmark_filter=algorithm:null/pair:torus-1k/");
   const json distance = row(document, "distance/algorithm:null/pair:torus-1k/distance:05");

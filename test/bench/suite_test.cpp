@@ -38,6 +38,42 @@ TEST_F(SuiteFile, TakesRowsWhoseEveryPartIsListed) {
   EXPECT_FALSE(suite("scenarios/II/algorithm:ist"));
 }
 
+TEST_F(SuiteFile, NamesOfAlgorithmsStandForTheirVariants) {
+  const Suite suite = read(
+      R"({"query": ["collide"], "algorithm": ["vps"]}, {"query": ["distance"], "algorithm": "all"})", {}, {"slow@x=1"});
+  EXPECT_TRUE(suite("collide/algorithm:vps@point_spacing=0.004"));
+  EXPECT_FALSE(suite("collide/algorithm:vps-field@point_spacing=0.004"));
+  EXPECT_TRUE(suite("distance/algorithm:vps@point_spacing=0.004"));
+  EXPECT_FALSE(suite("distance/algorithm:slow@x=1"));
+}
+
+TEST_F(SuiteFile, SettingsOfAnEntryAreAVariantAndItsScenarioIsTaken) {
+  const Suite suite = read(R"({"query": ["scenario"], "scenario": ["II"], "algorithm": ["vps", "it"],
+                               "settings": {"b": 0.5, "a": "1e-3"}})");
+  EXPECT_TRUE(suite("scenario/II/algorithm:vps@b=0.5,a=1e-3"));
+  EXPECT_FALSE(suite("scenario/II/algorithm:vps"));
+  EXPECT_FALSE(suite("scenario/II/algorithm:vps@b=0.5"));
+  EXPECT_FALSE(suite("scenario/II/algorithm:vps@a=1e-3,b=0.5")) << "in the order of the file";
+  EXPECT_FALSE(suite("scenario/III/algorithm:vps@b=0.5,a=1e-3"));
+  const Suite others = read(R"({"query": ["scenario"], "algorithm": "all"}, {"query": ["collide"], "algorithm": ["vps"],
+                                "settings": {"b": 1}})");
+  EXPECT_FALSE(others("scenario/II/algorithm:vps@b=1")) << "variants of a list are in their entries alone";
+  EXPECT_TRUE(others("scenario/II/algorithm:vps@b=2")) << "those of the command line are the algorithm's";
+  EXPECT_TRUE(others("collide/algorithm:vps@b=1"));
+  read(
+      R"({"query": ["scenario"], "scenario": ["II"], "algorithm": ["vps", "it"], "settings": {"b": 0.5, "a": "1e-3"}})");
+  const std::vector<VariantRequest> variants = suite_variants(path);
+  ASSERT_EQ(variants.size(), 2u);
+  EXPECT_EQ(variants[1].algorithm, "it");
+  EXPECT_EQ(variants[1].assignments, (std::vector<std::string>{"b=0.5", "a=1e-3"}));
+  for (const char* const wrong : {R"({"query": ["scenario"], "algorithm": "all", "settings": {"b": 1}})",
+                                  R"({"query": ["scenario"], "settings": {"b": 1}})",
+                                  R"({"query": ["scenario"], "algorithm": ["vps"], "settings": {}})",
+                                  R"({"query": ["scenario"], "algorithm": ["vps"], "settings": {"b": [1]}})"}) {
+    EXPECT_THROW(read(wrong), BadFile) << wrong;
+  }
+}
+
 TEST_F(SuiteFile, TakesExternalAlgorithmsWhereAlgorithmsAreListed) {
   const Suite suite = read(R"({"query": ["collide"], "algorithm": ["exact"]})", {"mine"});
   EXPECT_TRUE(suite("collide/algorithm:mine"));

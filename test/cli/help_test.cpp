@@ -23,10 +23,10 @@ constexpr std::size_t k_most_columns = 120;
 
 const std::vector<std::string>& commands() {
   static const std::vector<std::string> list{
-      "",           "models",     "models list", "models make", "info",          "repair",  "show",      "query",
-      "algorithms", "generate",   "merge",       "verify",      "agree",         "table",   "report",    "history",
-      "compare",    "gate",       "precision",   "recommend",   "equivalent",    "quality", "stress",    "hulls",
-      "scene",      "scene make", "scene info",  "scene play",  "new-algorithm", "conform", "completion"};
+      "",           "models",   "models list", "models make", "info",       "repair",        "show",    "query",
+      "algorithms", "generate", "merge",       "verify",      "agree",      "survey",        "table",   "report",
+      "history",    "compare",  "gate",        "precision",   "recommend",  "equivalent",    "quality", "stress",
+      "hulls",      "scene",    "scene make",  "scene info",  "scene play", "new-algorithm", "conform", "completion"};
   return list;
 }
 

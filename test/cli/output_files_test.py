@@ -53,6 +53,7 @@ class OutputFiles(unittest.TestCase):
         if not inputs.exists():
             (inputs / "runs").mkdir(parents=True)
             for command in ([SIXDOF, "generate", *GRID, "--shards", "3", "-o", inputs / "shards"],
+                            [SIXDOF, "generate", *GRID, "-o", inputs / "asked.h5"],
                             [SIXDOF_BENCH, *BENCH, "--out", inputs / "results.json"]):
                 subprocess.run(command, cwd=folder, check=True, capture_output=True, env=cls.environment())
             shutil.copy(inputs / "results.json", inputs / "runs" / "first.json")

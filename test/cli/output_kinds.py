@@ -43,6 +43,7 @@ KINDS = [
          ["show", "--algorithm", "vps", "--model", "cone-1k", "-p", "voxel_size=0.1", "-o", "OUT"]),
     Kind("set", "x.h5", ["generate", *GRID, "-o", "OUT"]),
     Kind("merged set", "x.h5", ["merge", "shards", "-o", "OUT"]),
+    Kind("shard of a survey", "x.json", ["survey", "asked.h5", "--algorithm", "exact", "-o", "OUT"], times=True),
     Kind("series of a scenario", "x.h5",
          ["quality", "--scenario", "Ia", "--algorithm", "exact", "--steps", "60", "-o", "OUT"], times=True),
     Kind("rows of precision", "x.json", ["precision", "--question", "distance", *STUDY, "-o", "OUT"], times=True),

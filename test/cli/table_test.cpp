@@ -229,6 +229,17 @@ TEST_F(TableCommand, OrdersBucketsByTheirNumbers) {
   }
 }
 
+TEST_F(TableCommand, CountsForcesOfBodiesThatAreApart) {
+  const std::string out = printed(
+      write("r.json",
+            {row("respond", "x", "distance", 5, 1500, {{"phantoms", 3}, {"mismatch", 3}, {"phantom_force_max", 0.5}}),
+             row("respond", "y", "distance", 5, 1500, {{"phantoms", 0}, {"phantom_force_max", 0.0}})}));
+  EXPECT_THAT(out, HasSubstr("p: respond, distances in percent of A's box diagonal\n"));
+  EXPECT_THAT(out, HasSubstr("force though apart\n"));
+  EXPECT_THAT(out, ::testing::ContainsRegex(" x .* 3 +50\\.0\n"));
+  EXPECT_THAT(out, HasSubstr("! x: 3 of 64 with a force though the bodies are apart (05 %)"));
+}
+
 TEST_F(TableCommand, ShowsHowWrongResponsesAreAndTheSettings) {
   const Json errors = {{"gamma_F_deg", 1.234}, {"gamma_max_F_deg", 20.25},     {"magnitude_error_F", 0.125},
                        {"gamma_T_deg", 3.5},   {"magnitude_error_T", 0.03601}, {"volume_error_mean", 2e-5}};

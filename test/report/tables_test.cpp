@@ -82,6 +82,35 @@ TEST(TimesTable, MeanOverObjectsIsGeometricAndOverTheSameObjects) {
   EXPECT_NEAR(number_in(table, means[0], "low_us"), 2.0 / spread, k_rounding);
 }
 
+TEST(TimesTable, ResolutionsStandInParenthesesAsInThePaper) {
+  const auto prepare = [](const char* algorithm, const Json& counts) {
+    Json row = test::row("prepare", algorithm, "a", "distance", 5.0, 1e6, counts);
+    row["sixdof"].erase("bucket");
+    return row;
+  };
+  const Results results = test::results_of(
+      {prepare("vps@s=1", {{"voxels_x", 728}, {"voxels_y", 24}, {"voxels_z", 303}, {"points", 15669}}),
+       prepare("ist", {{"spheres_a", 10000}, {"spheres_b", 10000}}), prepare("exact", {{"bytes", 5}}),
+       prepare("ist@d=1", {{"spheres_a", 500}, {"spheres_b", 1234567}}), prepare("x@d=1", {{"spheres_a", 7}}),
+       prepare("x@d=2", {{"spheres_a", 7}}), test::row("respond", "vps@s=1", "a", "distance", 5.0, 1000.0),
+       test::row("respond", "ist", "a", "volume", 10.0, 1000.0),
+       test::row("respond", "exact", "a", "distance", 0.0, 1.0),
+       test::row("respond", "ist@d=1", "a", "volume", 1.0, 9.0), test::row("respond", "x@d=1", "a", "volume", 1.0, 9.0),
+       test::row("respond", "x@d=2", "a", "volume", 1.0, 9.0)});
+  const DataTable table = times_table(results, row_groups(results));
+  const auto of = [&](const char* algorithm) {
+    return lines_with(table, {{"algorithm", algorithm}, {"statistic", "mean"}, {"pair", "a"}}).at(0);
+  };
+  EXPECT_EQ(text_in(table, of("vps@s=1"), "label"), "vps (728x24x303, 15,669)");
+  EXPECT_EQ(text_in(table, of("ist"), "label"), "ist (10,000)");
+  EXPECT_EQ(text_in(table, of("ist@d=1"), "label"), "ist (500 and 1,234,567)");
+  EXPECT_EQ(text_in(table, of("exact"), "label"), "exact");
+  EXPECT_EQ(text_in(table, of("x@d=2"), "label"), "x@d=2") << "another setting makes the difference";
+  EXPECT_EQ(number_in(table, of("vps@s=1"), "place"), -5.0);
+  EXPECT_EQ(number_in(table, of("ist"), "place"), 30.0);
+  EXPECT_EQ(number_in(table, of("exact"), "place"), 0.0);
+}
+
 TEST(TimesTable, RepetitionsAreOneLineWithTheirInterval) {
   const Results results = test::results_of({test::row("distance", "exact", "a", "distance", 5.0, 1000.0),
                                             test::row("distance", "exact", "a", "distance", 5.0, 1000.0),

@@ -48,6 +48,18 @@ TEST(Faults, AConstantAnswerIsNoneAnywhere) {
       << "of the same pair, and about the same bodies";
 }
 
+TEST(Faults, ForcesOfBodiesThatAreApart) {
+  const Json phantoms = {{"mismatch", 64}};
+  Json spheres = row("respond", "ist", "p", "distance", 1.0, 1.0, phantoms);
+  spheres["sixdof"]["approximates"] = true;
+  EXPECT_THAT(faults_of(test::results_of({spheres, row("respond", "ist", "p", "volume", 1.0, 1.0),
+                                          row("respond", "x", "p", "distance", 1.0, 1.0, phantoms),
+                                          row("respond", "x", "p", "volume", 1.0, 1.0)})),
+              ElementsAre("64 of 64 approximate", "", "64 of 64 with a force though the bodies are apart",
+                          "no right answer at distance 01 %"))
+      << "approximated bodies that are too large may overlap rightly; a force everywhere is no answer";
+}
+
 TEST(Faults, OfOneRepetitionAreTheRows) {
   Json broken = row("distance", "x", "p", "distance", 5.0, 4.0);
   broken.update({{"error_occurred", true}, {"error_message", "out of luck"}});

@@ -151,9 +151,33 @@ TEST_F(EquivalentRuns, TellHowMuchThereIsAndEveryMeasurement) {
   EXPECT_THAT(lines_[1], MatchesRegex("equivalent: about .* in all"));
   const auto parts =
       std::ranges::count_if(lines_, [](const std::string& line) { return line.find("% done, ") != std::string::npos; });
-  EXPECT_EQ(static_cast<std::size_t>(parts), fake.calls - 2) << "the coarsest two come before the estimate";
+  EXPECT_EQ(static_cast<std::size_t>(parts), fake.calls - 4)
+      << "the coarsest and the middle ones come before the estimate";
   EXPECT_THAT(lines_, Contains(MatchesRegex("equivalent: II vps x=0.003 y=0.01: [0-9]+ % done, [0-9:]+ left")));
   EXPECT_EQ(lines_.back(), "equivalent: nothing was left out");
+}
+
+TEST_F(EquivalentRuns, EstimatesTellTheFixedPartOfTheTimeFromTheOneThatGrows) {
+  Fake fake;
+  const SearchTask task = fake.task("Ia", "vps");
+  constexpr double k_fixed_s = 3.0, k_slope_s = 0.05;
+  const auto seconds = [&](const Resolution& at) { return k_fixed_s + k_slope_s * measurement_work(task.axes, at); };
+  MeasurementStore store(context());
+  for (const Resolution& at : {Resolution{0.03, 0.03}, {0.01, 0.01}}) {
+    store.add({"Ia", "vps", at}, {.measured = fake.measure(at), .seconds = seconds(at)});
+  }
+  const EquivalentRun none = run({task}, store, k_moment_s);
+  ASSERT_THAT(none.not_searched, SizeIs(2));
+  ASSERT_TRUE(none.not_searched[0].needs_s);
+  double grid = seconds({0.02, 0.02}), left = grid;  // the defaults
+  for (const double x : {0.03, 0.01, 0.003}) {
+    for (const double y : {0.03, 0.01, 0.003}) {
+      grid += seconds({x, y});
+      if (x != y || x == 0.003) left += seconds({x, y});
+    }
+  }
+  constexpr double k_predictions = 4.0;  // two for each of two targets
+  EXPECT_NEAR(*none.not_searched[0].needs_s, left + k_predictions * grid / static_cast<double>(k_settings), 1e-6);
 }
 
 TEST(MeasurementWork, IsOneAtTheCoarsestValues) {

@@ -5,6 +5,7 @@
 
 #include <sixdof/process/remote_query.h>
 #include <sixdof/query/algorithm.h>
+#include <sixdof/query/variant.h>
 
 namespace sixdof {
 
@@ -51,12 +52,12 @@ class RemoteAlgorithm final : public Algorithm {
 
 /// Whether the queries of an algorithm run in processes of their own.
 inline bool is_isolated(const Algorithm& algorithm) {
-  return dynamic_cast<const RemoteAlgorithm*>(&algorithm) != nullptr;
+  return dynamic_cast<const RemoteAlgorithm*>(&base_algorithm(algorithm)) != nullptr;
 }
 
 /// The same algorithm in this process, where it can be: for work that asks too often to wait for another process.
 inline const Algorithm& in_this_process(const Algorithm& algorithm) {
-  const auto* const remote = dynamic_cast<const RemoteAlgorithm*>(&algorithm);
+  const auto* const remote = dynamic_cast<const RemoteAlgorithm*>(&base_algorithm(algorithm));
   return remote != nullptr && remote->local() != nullptr ? *remote->local() : algorithm;
 }
 

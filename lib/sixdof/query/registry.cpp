@@ -10,6 +10,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/visible_text.h>
+#include <sixdof/query/variant.h>
 
 namespace sixdof {
 namespace {
@@ -37,12 +38,22 @@ void check_words(const std::string& algorithm, const Parameter& parameter) {
   }
 }
 
+/// Names are typed, and stand in names of rows. That of a variant ends with its settings.
+bool is_name(const Algorithm& algorithm) {
+  const std::string& name = algorithm.traits().name;
+  const bool is_variant = dynamic_cast<const VariantAlgorithm*>(&algorithm) != nullptr;
+  const std::string own = is_variant ? base_name(name) : name;
+  constexpr const char* k_in_values = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_+.=,";
+  return !own.empty() && own.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos &&
+         (own == name || name.find_first_not_of(k_in_values, own.size() + 1) == std::string::npos);
+}
+
 }  // namespace
 
 void Registry::add(std::unique_ptr<Algorithm> algorithm) {
   if (algorithm == nullptr) throw BadArgument("an algorithm to be registered is null");
   const std::string& name = algorithm->traits().name;
-  if (name.empty() || name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos) {
+  if (!is_name(*algorithm)) {
     throw BadArgument(fmt::format("algorithm name '{}': only a-z, 0-9 and '-'", visible_text(name)));
   }
   std::size_t values = 0;

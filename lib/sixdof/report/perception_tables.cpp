@@ -82,6 +82,7 @@ DataTable update_rates_table(const Results& results, const std::vector<RowGroup>
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
     if (row.fields.query != "respond" || !row.fields.bucket || row.fields.algorithm == "null") continue;
+    if (row.fields.bucket->kind != BucketKind::volume) continue;
     const auto p99 = group.value("p99_ns"), longest = group.value("max_ns");
     const double tail_ns = p99.value_or(longest.value_or(0.0));
     if (!(tail_ns > 0.0)) continue;

@@ -7,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/query/variant.h>
 #include <sixdof/report/tables.h>
+#include <sixdof/results/resolution.h>
 
 namespace sixdof::report {
 namespace {
@@ -34,11 +36,38 @@ struct TimeLine {
   std::string run, query, kind, pair, statistic, algorithm;
   std::string apart;  ///< class_of() the row.
   double percent = 0.0, us = 0.0;
+  std::string label;  ///< The algorithm with its resolution in parentheses.
   std::optional<double> low, high, repetitions;
   std::string faults, command, worst_pose;
 };
 
-std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
+/// Resolutions by file, pair and algorithm.
+using Resolutions = std::map<std::tuple<std::size_t, std::string, std::string>, std::string>;
+
+Resolutions resolutions_of(const std::vector<RowGroup>& groups) {
+  Resolutions found;
+  std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> uses;
+  const auto label = [](const RowFields& fields, const std::string& resolution) {
+    return base_name(fields.algorithm) + " " + resolution;
+  };
+  for (const RowGroup& group : groups) {
+    const RowFields& fields = group.fields();
+    if (fields.query != "prepare" || !group.row().error.empty()) continue;
+    const std::string resolution = resolution_text(group);
+    found[{group.row().file, fields.pair, fields.algorithm}] = resolution;
+    ++uses[{group.row().file, fields.pair, label(fields, resolution)}];
+  }
+  for (const RowGroup& group : groups) {
+    // Variants that differ in something else keep their settings.
+    const RowFields& fields = group.fields();
+    const auto mine = found.find({group.row().file, fields.pair, fields.algorithm});
+    if (mine == found.end() || fields.query != "prepare") continue;
+    if (uses[{group.row().file, fields.pair, label(fields, mine->second)}] > 1) mine->second.clear();
+  }
+  return found;
+}
+
+std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group, const Resolutions& resolutions) {
   const Row& row = group.row();
   TimeLine line{.run = run_name(results, row.file),
                 .query = row.fields.query,
@@ -54,6 +83,12 @@ std::vector<TimeLine> lines_of(const Results& results, const RowGroup& group) {
                 .faults = to_string(mistakes(group.faults)),
                 .command = reproduction(row, results.files[row.file]),
                 .worst_pose = row.outliers.command_of(k_slowest)};
+  line.label = line.algorithm;
+  const auto resolution = resolutions.find({row.file, row.fields.pair, row.fields.algorithm});
+  if (resolution != resolutions.end() && !resolution->second.empty()) {
+    line.label = fmt::format("{} ({}){}", base_name(row.fields.algorithm), resolution->second,
+                             line.algorithm.substr(row.fields.algorithm.size()));
+  }
   std::vector<TimeLine> lines;
   if (const auto time = group.mean_time()) {
     line.us = time->value / 1e3;
@@ -109,6 +144,7 @@ std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
                        .apart = apart,
                        .percent = percent,
                        .us = std::exp(mean),
+                       .label = algorithm,
                        .low = std::exp(mean - spread),
                        .high = std::exp(mean + spread),
                        .repetitions = {},
@@ -120,27 +156,35 @@ std::vector<TimeLine> means_over_pairs(const std::vector<TimeLine>& lines) {
   return means;
 }
 
+/// Where a bucket stands on one axis from bodies far apart to deep overlaps: -30 to 0 for distances of 30 to 0 %, 0 to
+/// 30 for volumes of 0 to 10 %, which are drawn three times as wide.
+double place_of_bucket(const TimeLine& line) {
+  constexpr double k_volume_scale = 3.0;
+  return line.kind == to_string(BucketKind::distance) ? -line.percent : k_volume_scale * line.percent;
+}
+
 Cell optional_cell(std::optional<double> value) { return value ? Cell(*value) : Cell(); }
 
 }  // namespace
 
 DataTable times_table(const Results& results, const std::vector<RowGroup>& groups) {
+  const Resolutions resolutions = resolutions_of(groups);
   std::vector<TimeLine> lines;
   for (const RowGroup& group : groups) {
     if (!group.fields().bucket || group.fields().pair.empty()) continue;
-    for (TimeLine& line : lines_of(results, group)) lines.push_back(std::move(line));
+    for (TimeLine& line : lines_of(results, group, resolutions)) lines.push_back(std::move(line));
   }
   std::vector<TimeLine> means = means_over_pairs(lines);
   lines.insert(lines.begin(), means.begin(), means.end());
   DataTable table{.name = "times",
                   .title = "Times of queries on buckets",
                   .columns = {"run", "query", "bucket", "pair", "statistic", "algorithm", "percent", "time_us",
-                              "low_us", "high_us", "repetitions", "faults", "command", "worst_pose"},
+                              "low_us", "high_us", "repetitions", "faults", "command", "worst_pose", "label", "place"},
                   .rows = {}};
   for (const TimeLine& line : lines) {
     table.rows.push_back({line.run, line.query, line.kind, line.pair, line.statistic, line.algorithm, line.percent,
                           line.us, optional_cell(line.low), optional_cell(line.high), optional_cell(line.repetitions),
-                          line.faults, line.command, line.worst_pose});
+                          line.faults, line.command, line.worst_pose, line.label, place_of_bucket(line)});
   }
   return table;
 }

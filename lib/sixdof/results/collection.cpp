@@ -74,10 +74,16 @@ CollectionRatio ratio_of(const ByObject& by_object) {
           .least = least};
 }
 
+/// The response ratio is of bodies that overlap.
+bool is_apart_response(const AskedBucket& asked) {
+  return asked.first == "respond" && asked.second.kind == BucketKind::distance;
+}
+
 std::vector<CollectionRatio> ratios_of(const Times& times) {
   std::map<std::tuple<std::string, std::string, std::string>, std::map<std::string, std::vector<double>>> all;
   for (const auto& [key, by_object] : times) {
     const auto& [partner, asked, algorithm] = key;
+    if (is_apart_response(asked)) continue;
     const auto reference = times.find({partner, asked, k_collection_reference});
     if (reference == times.end()) continue;
     for (const auto& [object, ns] : by_object) {

@@ -33,9 +33,13 @@ std::vector<Fault> own_faults(const Row& row) {
                             {"crashed", "crashed", count("crashed"), asked},
                             {"timed out", "timed_out", count("timed_out"), asked},
                             {"out of memory", "out_of_memory", count("out_of_memory"), asked}};
-  const bool approximate = row.fields.approximates && row.fields.query == "distance";
+  const bool is_apart = has_force && row.fields.bucket && row.fields.bucket->kind == BucketKind::distance;
+  const bool approximate = row.fields.approximates && (row.fields.query == "distance" || is_apart);
   if (!is_study)
-    faults.push_back({approximate ? k_approximate : "wrong", "mismatch", count("mismatch"), count("judged")});
+    faults.push_back({approximate ? k_approximate
+                      : is_apart  ? "with a force though the bodies are apart"
+                                  : "wrong",
+                      "mismatch", count("mismatch"), count("judged")});
   if (has_force) {
     const std::uint64_t answered = asked - std::min(asked, count("failed"));
     faults.push_back({"without a force though the bodies overlap", "misses", count("misses"), answered});

@@ -12,8 +12,8 @@
 ///   without a force;
 /// - all answers of its algorithm to the same query about the same bodies are at fault in another bucket of the file: a
 ///   constant "no" is right wherever bodies are apart;
-/// - its algorithm approximates, and distances differ from the exact ones: that is no mistake, and called
-/// "approximate";
+/// - its algorithm approximates, and distances differ from the exact ones, or bodies that are farther apart than its
+/// resolution get a force: that is no mistake, and called "approximate";
 /// - its algorithm is `null`, which measures the harness.
 /// Of a study, where wrong answers are the error that is measured, they are no fault.
 

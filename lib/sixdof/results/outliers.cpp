@@ -15,17 +15,17 @@ namespace sixdof::results {
 namespace {
 
 /// Values of a row whose outlier has another counter.
-constexpr std::pair<const char*, const char*> k_counter_of[] = {{"gamma_F_deg", "gamma_max_F_deg"},
-                                                                {"gamma_F_p95_deg", "gamma_max_F_deg"},
-                                                                {"gamma_T_deg", "gamma_max_T_deg"},
-                                                                {"error_rms", "error_max"},
-                                                                {"volume_error_mean", "volume_error_max"}};
+constexpr std::pair<const char*, const char*> k_counter_of[] = {
+    {"gamma_F_deg", "gamma_max_F_deg"},        {"gamma_F_p95_deg", "gamma_max_F_deg"},
+    {"gamma_T_deg", "gamma_max_T_deg"},        {"error_rms", "error_max"},
+    {"volume_error_mean", "volume_error_max"}, {"phantom_force_mean", "phantom_force_max"}};
 
 constexpr std::pair<const char*, const char*> k_words[] = {
     {"max_ns", "longest query"},
     {"max_least_ns", "longest query, the least of three times"},
     {"error_max", "largest error"},
     {"volume_error_max", "largest error of the volume"},
+    {"phantom_force_max", "largest force though the bodies are apart"},
     {"gamma_max_F_deg", "largest angle of the force"},
     {"gamma_max_T_deg", "largest angle of the torque"},
     {"magnitude_error_F", "largest error of the force's magnitude"},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
 
@@ -22,6 +23,20 @@ inline constexpr PaperValue k_paper_values[]{
     {"III", "vps", "nu_T", 0.62},         {"III", "ist", "nu_T", 1.12},     {"", "vps", k_eta_difference, 0.012},
     {"", "ist", k_eta_difference, 0.021},
 };
+
+/// Voxels of the fixed body along its axes and points of the moving one (section 4.2.2), of k_paper_resolution_of. The
+/// text says "Scenario I": both Ia and Ib.
+struct PaperResolution {
+  std::string_view scenario;
+  std::array<int, 3> voxels;
+  int points;
+};
+inline constexpr std::string_view k_paper_resolution_of = "vps";
+inline constexpr PaperResolution k_paper_resolutions[]{{"Ia", {728, 24, 303}, 15669},
+                                                       {"Ib", {728, 24, 303}, 15669},
+                                                       {"II", {491, 816, 491}, 12640},
+                                                       {"III", {1204, 604, 603}, 12474},
+                                                       {"IV", {243, 123, 123}, 13295}};
 
 /// Mean query time of the paper's table, on a Core2 Quad Q9450 (2008).
 inline constexpr double k_paper_mean_ns = 0.9e6;

@@ -37,7 +37,11 @@ void judge(std::vector<RowGroup>& groups) {
   std::map<Subject, BucketKey> without_right_answer;  // and where
   for (RowGroup& group : groups) {
     group.faults = faults_of_repetitions(group);
-    if (group.fields().bucket && std::ranges::any_of(group.faults, &Fault::is_total)) {
+    const auto tells = [&](const Fault& fault) {
+      // Forces of approximated bodies that are apart say nothing of those that overlap.
+      return fault.is_total() && !(fault.is_approximation() && group.fields().query == "respond");
+    };
+    if (group.fields().bucket && std::ranges::any_of(group.faults, tells)) {
       without_right_answer.try_emplace(subject_of(group.row()), *group.fields().bucket);
     }
   }

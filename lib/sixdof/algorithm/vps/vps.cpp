@@ -118,6 +118,8 @@ class PointQuery final : public Query {
     // Parts smaller than a voxel, and parts between points, are not seen.
     resolution_ =
         std::numbers::sqrt3 * map_.grid.size + settings.number("point_spacing") * (points_on_b_ ? b : a).diagonal();
+    const Eigen::Vector3d box = (points_on_b_ ? a : b).box().sizes();
+    box_voxels_ = (box.array() / map_.grid.size + 0.5).floor() + 1.0;
     all_leaves_.resize(culling_ ? 0 : tree_.leaves());
     std::iota(all_leaves_.begin(), all_leaves_.end(), 0u);
   }
@@ -164,6 +166,9 @@ class PointQuery final : public Query {
     Footprint footprint{
         .bytes = map_.bytes() + tree_.bytes() + field_.bytes() + all_leaves_.capacity() * sizeof(all_leaves_[0]),
         .counts = {{"voxels", map_.grid.voxel_count()},
+                   {"voxels_x", box_voxels_.x()},
+                   {"voxels_y", box_voxels_.y()},
+                   {"voxels_z", box_voxels_.z()},
                    {"surface_voxels", static_cast<double>(map_.surface_voxels)},
                    {"inside_voxels", static_cast<double>(map_.inside_voxels)},
                    {"bricks", static_cast<double>(map_.stored_bricks())},
@@ -210,6 +215,8 @@ class PointQuery final : public Query {
   const bool points_on_b_, by_area_, culling_;
   const double stiffness_;
   const Eigen::Vector3d b_center_;
+  /// Voxels that the body's box spans along each axis; it begins in the middle of one.
+  Eigen::Array3d box_voxels_ = Eigen::Array3d::Zero();
   double resolution_ = 0.0;  ///< How far the sampled surfaces may lie from the true ones (length).
   const VoxelMap map_;
   const PointTree tree_;

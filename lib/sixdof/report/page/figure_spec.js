@@ -19,9 +19,10 @@ sixdofReport.known = ["exact", "vps", "ist", "fcl-contacts", "bullet-gimpact", "
 
 /** Number of an algorithm's colour and shape, among the algorithms of a report. */
 sixdofReport.styleOf = function (name, algorithms) {
-  const base = sixdofReport.baseAlgorithm(name), known = sixdofReport.known;
-  if (known.includes(base)) return known.indexOf(base);
-  return known.length + Math.max(0, algorithms.filter((each) => !known.includes(each)).indexOf(base));
+  const family = sixdofReport.familyOf(name), known = sixdofReport.known;
+  if (known.includes(family)) return known.indexOf(family);
+  const others = [...new Set(algorithms.map(sixdofReport.familyOf))].filter((each) => !known.includes(each));
+  return known.length + Math.max(0, others.indexOf(family));
 };
 sixdofReport.colourOf = function (style, theme) {
   const palette = sixdofReport.palettes[theme];
@@ -51,6 +52,22 @@ sixdofReport.rowsOf = function (table) {
 /** "vps (cold)" has the colour of "vps", and a dashed line. */
 sixdofReport.baseAlgorithm = function (name) {
   return String(name).replace(/ \((?:path order|motion|cold)\)$/, "");
+};
+
+/** "vps@point_spacing=0.004", "vps (728x24x303, 15,669)" and "vps (cold)" have the colour of "vps". */
+sixdofReport.familyOf = function (name) {
+  return String(name).replace(/ \(.*$/, "").replace(/@.*$/, "");
+};
+
+/** Of the names of a legend, which one it is of its family, from 0: resolutions of one algorithm differ in dashes and
+ * marks. */
+sixdofReport.resolutionsOf = function (names) {
+  const base = (name) => sixdofReport.baseAlgorithm(name), families = new Map();
+  for (const name of [...new Set(names.map(base))].sort((a, b) => a.localeCompare(b, "en", { numeric: true }))) {
+    const family = sixdofReport.familyOf(name);
+    families.set(family, [...(families.get(family) ?? []), name]);
+  }
+  return names.map((name) => families.get(sixdofReport.familyOf(name)).indexOf(base(name)));
 };
 
 /** The rows of a figure before any choice, with the columns that it scales; a row for each of the columns that it folds. */
@@ -241,8 +258,9 @@ function visit(node, f) {
 function paintAlgorithms(spec, field, algorithms, context) {
   const styles = algorithms.map((name) => sixdofReport.styleOf(name, context.algorithms));
   const colours = styles.map((style) => sixdofReport.colourOf(style, context.theme));
-  const shapes = styles.map(sixdofReport.shapeOf);
-  const dashes = algorithms.map((name) => (sixdofReport.baseAlgorithm(name) === name ? [1, 0] : [6, 4]));
+  const places = sixdofReport.resolutionsOf(algorithms), patterns = [[1, 0], [8, 3], [2, 3], [8, 3, 2, 3]];
+  const shapes = styles.map((style, i) => sixdofReport.shapeOf(style + 3 * places[i]));
+  const dashes = algorithms.map((name, i) => (sixdofReport.baseAlgorithm(name) === name ? patterns[places[i] % patterns.length] : [6, 4]));
   visit(spec, (node) => {
     for (const [channel, range] of [["color", colours], ["fill", colours], ["shape", shapes], ["strokeDash", dashes]]) {
       const encoding = node[channel];
