@@ -40,12 +40,12 @@ Declaration of_voxels(double force_degrees, double scale_error) {
 
 /// Refinement differs where roundings do, so answers agree within their tolerance only.
 Declaration of_depth(double force_degrees) {
-  return {.settings = {"tolerance=0.01"},
+  return {.settings = {"tolerance=0.03"},
           .open_meshes = false,
           .force_degrees = force_degrees,
           .order_error = k_no_claim,
-          .motion_error = 0.02,
-          .scale_error = 0.02};
+          .motion_error = 0.06,
+          .scale_error = 0.06};
 }
 
 /// FCL's traversals of distances.
