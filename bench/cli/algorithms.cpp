@@ -14,11 +14,6 @@
 namespace sixdof::cli {
 namespace {
 
-const char* to_string(ResponseLaw law) {
-  constexpr const char* k_laws[] = {"none", "depth", "volume"};
-  return k_laws[static_cast<std::size_t>(law)];
-}
-
 std::vector<std::string> names_of(const QuerySet& answers) {
   std::vector<std::string> names;
   if (answers.collide) names.emplace_back("collide");
@@ -75,10 +70,10 @@ std::string remark_of(const Traits& traits) {
 }
 
 void print_text(const Registry& registry) {
-  fmt::print("{:<16} {:<13} {:<28} {:<7} {}\n", "algorithm", "version", "answers", "law", "summary");
+  fmt::print("{:<16} {:<13} {:<28} {:<8} {}\n", "algorithm", "version", "answers", "law", "summary");
   for (const auto& algorithm : registry.all()) {
     const Traits& traits = algorithm->traits();
-    fmt::print("{:<16} {:<13} {:<28} {:<7} {}\n", traits.name, traits.version,
+    fmt::print("{:<16} {:<13} {:<28} {:<8} {}\n", traits.name, traits.version,
                fmt::format("{}", fmt::join(names_of(traits.answers), ",")), to_string(traits.law),
                traits.summary + remark_of(traits));
     for (const Parameter& parameter : traits.parameters) {

@@ -36,6 +36,14 @@ struct OverviewLine {
   }
 };
 
+constexpr const char* k_own_value = "gamma_own_F_deg";
+
+std::string law_cell(const OverviewLine& line) {
+  const auto rows = line.by_query.find("respond");
+  const std::string law = rows == line.by_query.end() ? std::string() : rows->second.front()->fields().law;
+  return law.empty() ? "-" : law;
+}
+
 std::string mean_cell(const std::vector<double>& values, std::string (*format)(double)) {
   if (values.empty()) return "-";
   double sum = 0.0;
@@ -96,12 +104,23 @@ std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
     sheet.title = pair + ": mean processor time of a query over all distances and overlaps";
     sheet.columns = {{"", "algorithm", true}};
     for (const auto& [query, words] : k_queries) sheet.columns.push_back({"", fmt::format("{}, us", words)});
-    sheet.columns.push_back({"", "force angle, degrees"});
+    // Older results are not compared with the laws of their algorithms.
+    const bool own =
+        std::ranges::any_of(lines, [](const auto& line) { return !line.values("respond", k_own_value).empty(); });
+    if (own) {
+      sheet.columns.push_back({"", "law", true});
+      sheet.columns.push_back({"", "force angle to its law, degrees"});
+    }
+    sheet.columns.push_back({"", own ? "to -dV/dx" : "force angle, degrees"});
     sheet.columns.push_back({"", "answers", true});
     for (const OverviewLine& line : lines) {
       auto& cells = sheet.lines.emplace_back(std::vector{line.algorithm});
       for (const auto& [query, words] : k_queries) {
         cells.push_back(mean_cell(line.values(query, results::k_processor_mean), as_microseconds));
+      }
+      if (own) {
+        cells.push_back(law_cell(line));
+        cells.push_back(mean_cell(line.values("respond", k_own_value), as_degrees));
       }
       cells.push_back(mean_cell(line.values("respond", "gamma_F_deg"), as_degrees));
       cells.push_back(answers_cell(line));
@@ -112,6 +131,8 @@ std::vector<Sheet> overview_sheets_of(const std::vector<ResultTable>& tables) {
 
 std::vector<std::string> lines_below_overview() {
   return {"force angle: mean angle to the exact force -dV/dx; contact forces of libraries follow laws of their own",
+          "law: what the response tends to: volume: -dV/dx; depth, way_out: integrals of the depth over B's surface "
+          "inside A; contacts: of pairs of triangles, judged by depth",
           "answers: right: no yes/no and no distance differs from the truth; approximate: spheres, voxels or points "
           "take the "
           "place of the bodies, and errors follow; wrong: an algorithm that promises right answers gave wrong ones"};

@@ -21,11 +21,12 @@ struct ValueColumn {
   const char* group;
   const char* title;
   const char* value;
-  std::string (*format)(double);
+  std::string (*format)(double);  ///< Null: a text of the row, its law.
 };
 
 constexpr const char* k_processor = "cpu, us";
 constexpr const char* k_wall = "wall clock, us";
+constexpr const char* k_own_force = "force to its own law";
 constexpr const char* k_force = "force to the exact one";
 constexpr const char* k_torque = "torque";
 constexpr const char* k_distance = "error, diagonals of A";
@@ -34,12 +35,25 @@ constexpr ValueColumn k_count{"", "n", "configurations", as_count};
 constexpr ValueColumn k_mean{k_processor, "mean", results::k_processor_mean, as_microseconds};
 constexpr ValueColumn k_p99{k_wall, "p99", "p99_ns", as_microseconds};
 constexpr ValueColumn k_late{"", ">1 ms, %", "over_1ms", as_percent};
+constexpr const char* k_own_value = "gamma_own_F_deg";
+constexpr ValueColumn k_law{k_own_force, "law", "law", nullptr};
+constexpr ValueColumn k_own_angle{k_own_force, "angle", k_own_value, as_degrees};
+constexpr ValueColumn k_own_magnitude{k_own_force, "magn., %", "magnitude_error_own_F", as_percent};
 constexpr ValueColumn k_angle{k_force, "angle", "gamma_F_deg", as_degrees};
 constexpr ValueColumn k_magnitude{k_force, "magn., %", "magnitude_error_F", as_percent};
 constexpr const char* k_phantom = "force though apart";
 constexpr ValueColumn k_phantoms{k_phantom, "n", "phantoms", as_count};
 constexpr ValueColumn k_phantom_max{k_phantom, "max, %", "phantom_force_max", as_percent};
 constexpr ValueColumn k_distance_rms{k_distance, "rms", "error_rms", as_small};
+
+/// Whether a row of the table is compared with its algorithm's own law. Older results are not.
+bool has_own(const ResultTable& table) {
+  return std::ranges::any_of(table.lines, [](const TableLine& line) {
+    return std::ranges::any_of(line.files, [](const RankedRow& ranked) {
+      return ranked.group != nullptr && ranked.group->value(k_own_value).has_value();
+    });
+  });
+}
 
 /// How wrong the answers to a query are.
 std::vector<ValueColumn> error_columns(const std::string& query, BucketKind kind, std::size_t files) {
@@ -67,15 +81,23 @@ std::vector<ValueColumn> time_columns(std::size_t files) {
       k_late};
 }
 
-std::vector<ValueColumn> value_columns(const std::string& query, BucketKind kind, std::size_t files) {
+std::vector<ValueColumn> value_columns(const ResultTable& table, std::size_t files) {
   std::vector<ValueColumn> columns = time_columns(files);
-  std::ranges::copy(error_columns(query, kind, files), std::back_inserter(columns));
+  if (has_own(table)) {
+    columns.push_back(files > 1 ? k_own_angle : k_law);
+    if (files == 1) columns.insert(columns.end(), {k_own_angle, k_own_magnitude});
+  }
+  std::ranges::copy(error_columns(table.query, table.kind, files), std::back_inserter(columns));
   return columns;
 }
 
 std::string cell_of(const RankedRow& ranked, const ValueColumn& column) {
   if (ranked.group == nullptr) return "-";
   if (ranked.is_error()) return column.value == k_mean.value ? "error" : "-";
+  if (column.format == nullptr) {
+    const std::string& law = ranked.group->fields().law;
+    return law.empty() ? "-" : law;
+  }
   const std::optional<double> value = ranked.group->value(column.value);
   return value ? column.format(*value) : "-";
 }
@@ -88,6 +110,7 @@ std::string prefix_of(std::size_t file, std::size_t files) {
 /// Where there are several files, the file stands above a column, and its clock or unit in the title.
 std::string brief_title(const ValueColumn& column) {
   if (column.group == std::string(k_processor)) return k_processor;
+  if (column.value == k_own_angle.value) return "own angle";
   return column.group == std::string(k_wall) ? fmt::format("{}, us", column.title) : column.title;
 }
 
@@ -157,10 +180,11 @@ std::vector<std::string> fault_notes(const ResultTable& table, std::size_t files
 }
 
 Sheet sheet_of_one(const ResultTable& table) {
-  const std::vector<ValueColumn> values = value_columns(table.query, table.kind, 1);
+  const std::vector<ValueColumn> values = value_columns(table, 1);
   Sheet sheet;
   sheet.columns = {{"", to_string(table.kind), true}, {"", "", true}, {"", "algorithm", true}};
-  for (const ValueColumn& column : values) sheet.columns.push_back({column.group, column.title});
+  for (const ValueColumn& column : values)
+    sheet.columns.push_back({column.group, column.title, column.format == nullptr});
   for (const TableLine& line : table.lines) {
     const RankedRow& ranked = line.files.front();
     sheet.lines.push_back({bucket_text(line.bucket), std::string(ranked.mark()), line.label()});
@@ -170,7 +194,7 @@ Sheet sheet_of_one(const ResultTable& table) {
 }
 
 Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
-  const std::vector<ValueColumn> values = value_columns(table.query, table.kind, files);
+  const std::vector<ValueColumn> values = value_columns(table, files);
   Sheet sheet;
   sheet.columns = {{"", to_string(table.kind), true}, {"", "algorithm", true}};
   for (std::size_t file = 0; file < files; ++file) {
@@ -228,7 +252,10 @@ std::vector<std::string> lines_below(const TableInput& input) {
       fmt::format("p50, p99, max: wall clock of single queries, in one pass; p99 from {} configurations on, else -",
                   k_fewest_for_p99),
       ">1 ms: share of these queries over the haptic deadline",
-      "angle: mean angle to the exact response, in degrees; max: the largest",
+      "own law: what the algorithm's response tends to, judged at 32 configurations at most; depth and way_out: "
+      "integrals "
+      "over B's surface inside A; contacts: of pairs of triangles, judged by depth; volume: the exact response",
+      "angle: mean angle to the exact response, -dV/dx, or to the own law, in degrees; max: the largest",
       "magn.: RMS of |F| - gain |exact F| over the RMS of |F|, with one gain per row; of torques likewise",
       "force though apart: answers with a force, and the largest in percent of the mean force at the least overlap",
       "volume: mean error of the overlap volume; (path): configurations in the grid's own order",

@@ -74,21 +74,37 @@ std::string time_cell(const RankedRow& ranked) {
 
 std::string cell(std::optional<double> value, std::string (*format)(double)) { return value ? format(*value) : "-"; }
 
+constexpr const char* k_own_value = "gamma_own_F_deg";
+
 /// How wrong the answers are, over all buckets.
 struct ErrorColumn {
   const char* title;
   std::string (*text)(const WideLine&);
 };
 
-std::vector<ErrorColumn> error_columns(const std::string& query) {
+std::string law_cell(const WideLine& line) {
+  const std::string& law = line.rows.begin()->second->group->fields().law;
+  return law.empty() ? "-" : law;
+}
+
+/// @param own whether rows are compared with the laws of their algorithms
+std::vector<ErrorColumn> error_columns(const std::string& query, bool own) {
   if (query == "distance") {
     return {{"error max, diagonals", [](const WideLine& line) { return cell(line.largest("error_max"), as_small); }}};
   }
   if (query != "respond") return {};
-  return {{"angle", [](const WideLine& line) { return cell(line.mean("gamma_F_deg"), as_degrees); }},
-          {"angle max", [](const WideLine& line) { return cell(line.largest("gamma_max_F_deg"), as_degrees); }},
-          {"magn., %", [](const WideLine& line) { return cell(line.mean("magnitude_error_F"), as_percent); }},
-          {"torque angle", [](const WideLine& line) { return cell(line.mean("gamma_T_deg"), as_degrees); }}};
+  std::vector<ErrorColumn> columns;
+  if (own) {
+    columns = {{"law", law_cell},
+               {"own angle", [](const WideLine& line) { return cell(line.mean(k_own_value), as_degrees); }}};
+  }
+  const std::vector<ErrorColumn> to_exact{
+      {"angle", [](const WideLine& line) { return cell(line.mean("gamma_F_deg"), as_degrees); }},
+      {"angle max", [](const WideLine& line) { return cell(line.largest("gamma_max_F_deg"), as_degrees); }},
+      {"magn., %", [](const WideLine& line) { return cell(line.mean("magnitude_error_F"), as_percent); }},
+      {"torque angle", [](const WideLine& line) { return cell(line.mean("gamma_T_deg"), as_degrees); }}};
+  columns.insert(columns.end(), to_exact.begin(), to_exact.end());
+  return columns;
 }
 
 /// "3 of 640 failed, 2 of 637 wrong": sums over the buckets, those with equal words together.
@@ -125,15 +141,20 @@ std::vector<Sheet> wide_sheets_of(const std::vector<ResultTable>& tables) {
       of_query.push_back(&table);
       for (const TableLine& line : table.lines) buckets.insert(line.bucket);
     }
-    const std::vector<ErrorColumn> errors = error_columns(query);
+    const std::vector<WideLine> lines = lines_of(of_query);
+    const bool own =
+        std::ranges::any_of(lines, [](const WideLine& line) { return line.mean(k_own_value).has_value(); });
+    const std::vector<ErrorColumn> errors = error_columns(query, own);
     Sheet& sheet = sheets.emplace_back();
     sheet.title = apart.empty() ? query : fmt::format("{}, {}", query, apart);
     sheet.title += ": cpu mean / wall clock p99, us";
     sheet.columns = {{"", "pair", true}, {"", "algorithm", true}, {"", "n"}};
     for (const BucketKey bucket : buckets) sheet.columns.push_back({to_string(bucket.kind), bucket_text(bucket)});
-    for (const ErrorColumn& column : errors) sheet.columns.push_back({"", column.title});
+    for (const ErrorColumn& column : errors) {
+      sheet.columns.push_back({"", column.title, column.text == law_cell});
+    }
     sheet.columns.push_back({"", "faults", true});
-    for (const WideLine& line : lines_of(of_query)) {
+    for (const WideLine& line : lines) {
       auto& cells = sheet.lines.emplace_back(std::vector{line.pair, line.label, configurations_cell(line)});
       for (const BucketKey bucket : buckets) {
         const auto found = line.rows.find(bucket);

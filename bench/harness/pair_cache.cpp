@@ -84,6 +84,13 @@ HullTruth& PairCache::hull_truth(const CatalogueEntry& entry) {
   return *truth;
 }
 
+DepthTruths& PairCache::depth_truths(const CatalogueEntry& entry) {
+  require_solids(mesh(entry.a), mesh(entry.b));
+  std::unique_ptr<DepthTruths>& truths = depth_truths_[entry.pair];
+  if (!truths) truths = std::make_unique<DepthTruths>(mesh(entry.a), mesh(entry.b));
+  return *truths;
+}
+
 std::unique_ptr<Query> PairCache::prepare(const Algorithm& algorithm, const Settings& settings, const Mesh& a,
                                           const Mesh& b) {
   ++counts_.structures_prepared;

@@ -17,6 +17,7 @@
 #include <sixdof/configuration/set_catalogue.h>
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/query/algorithm.h>
+#include "bench/harness/depth_truth.h"
 #include "bench/harness/hull_truth.h"
 
 namespace sixdof::bench {
@@ -64,6 +65,9 @@ class PairCache {
 
   /// Of the pair's convex hulls, which are made once. Valid while the cache lives. @throws BadMesh as HullTruth does
   HullTruth& hull_truth(const CatalogueEntry& set);
+
+  /// Of the pair's meshes, by the laws of depth. Valid while the cache lives. @throws NeedsSolid
+  DepthTruths& depth_truths(const CatalogueEntry& set);
 
   /// Enough for a mean.
   static constexpr std::size_t k_most_exact = 256;
@@ -114,8 +118,9 @@ class PairCache {
   std::map<PairBucket, BucketSample> buckets_;
   std::size_t poses_ = 0;  ///< In buckets_.
   std::map<PairBucket, std::vector<Response>> exact_responses_;
-  std::map<std::string, std::unique_ptr<HullTruth>> hull_truths_;  ///< By name of the pair.
-  std::list<Prepared> prepared_;                                   ///< Most recently used first.
+  std::map<std::string, std::unique_ptr<HullTruth>> hull_truths_;     ///< By name of the pair.
+  std::map<std::string, std::unique_ptr<DepthTruths>> depth_truths_;  ///< By name of the pair.
+  std::list<Prepared> prepared_;                                      ///< Most recently used first.
 };
 
 }  // namespace sixdof::bench

@@ -43,6 +43,9 @@ constexpr std::size_t k_most_cold = 64;
 constexpr std::size_t k_scale_poses = 32;
 /// Count of a footprint of an algorithm that approximates.
 constexpr const char* k_resolution = "resolution";
+/// As `contacts` declares, contacts are judged by depth.
+constexpr ResponseLaw judged_law(ResponseLaw own) { return own == ResponseLaw::contacts ? ResponseLaw::depth : own; }
+
 /// Count of a footprint, and counter of a row; bench/rivals/python/sixdof_rival.py measures it.
 constexpr const char* k_empty_call = "empty_call_ns";
 
@@ -87,6 +90,9 @@ struct QueryRow {
   std::optional<Latency> least = {};  ///< Of several passes; none on cold caches.
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
   std::optional<std::array<VectorError, 2>> errors = {};
+  /// The same to what the algorithm's own law says; none without a law.
+  std::optional<std::array<VectorError, 2>> own_errors = {};
+  std::size_t own_unjudged = 0;  ///< Answers whose own truth is not known well enough.
   results::Outliers worst = {};
   std::vector<Response> hull_responses = {};  ///< Of `exact`, where the row is about convex hulls.
   /// Mean force of this algorithm at the pair's least overlap, 1 % in most sets; empty where it is not needed.
@@ -103,6 +109,7 @@ struct QueryRow {
             .body = is_about_meshes() ? "" : std::string(to_string(algorithm.traits().body)),
             .runtime = algorithm.traits().runtime,
             .cache = evict ? "cold" : "warm",
+            .law = law_word(),
             .isolated = is_isolated(algorithm),
             .approximates = algorithm.traits().approximates};
   }
@@ -124,7 +131,10 @@ struct QueryRow {
     with_query(failures, [&](auto query) {
       if (!check) {
         if constexpr (requires { query.ask(poses[0]).value.force; }) {
-          if (has_exact()) compare_with_exact(bucket, exact, query);
+          if (has_exact()) {
+            compare_with_exact(bucket, exact, query);
+            compare_with_own(bucket, exact.size(), query);
+          }
         }
         check = check_answers(bucket, count, query, hulls(), resolution_of(query.query()));
         empty_call_ns = count_of(query.query(), k_empty_call);
@@ -237,6 +247,12 @@ struct QueryRow {
 
   bool is_about_meshes() const { return algorithm.traits().body == Body::mesh; }
 
+  /// RowFields::law.
+  std::string law_word() const {
+    const ResponseLaw law = algorithm.traits().law;
+    return question == QueryKind::respond && law != ResponseLaw::none ? std::string(to_string(law)) : std::string();
+  }
+
   /// The truth of answers that are not about the meshes, as the set's truth is; null of others.
   HullTruth* hulls() const { return is_about_meshes() ? nullptr : &resources.cache.hull_truth(pair); }
 
@@ -343,6 +359,28 @@ struct QueryRow {
     state.counters["phantom_force_max"] = check->phantom_forces.largest() / scale;
   }
 
+  /// After compare_with_exact(): the truth of an algorithm of the volume is the same.
+  /// @param count configurations that were compared there
+  template <class Ask>
+  void compare_with_own(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query) {
+    const ResponseLaw law = judged_law(algorithm.traits().law);
+    if (law == ResponseLaw::volume) own_errors = errors;
+    if (!is_of_depth(law) || !is_about_meshes() || key.kind != BucketKind::volume) return;
+    const std::span<const Pose> poses_to_compare = std::span(bucket.poses).first(count);
+    const std::span<const DepthTruth> truths = resources.cache.depth_truths(pair).at(poses_to_compare, law);
+    VectorSeries forces, torques;
+    for (std::size_t i = 0; i < truths.size(); ++i) {
+      const Outcome<Response> answer = query.ask(bucket.poses[i]);
+      if (!answer.ok()) continue;
+      const Response& truth = truths[i].response;
+      const auto [response, scale] = scaled_about(answer.value, truth.reference);
+      if (truths[i].force_judged) forces.add(truth.force, response.force, scale);
+      if (truths[i].torque_judged) torques.add(truth.torque, response.torque, scale);
+      own_unjudged += truths[i].force_judged ? 0 : 1;
+    }
+    own_errors = {forces.error(), torques.error()};
+  }
+
   void report(benchmark::State& state, const BucketSample& bucket) const {
     const auto count = [&](const std::string& counter, auto value) {
       state.counters[counter] = static_cast<double>(value);
@@ -387,6 +425,7 @@ struct QueryRow {
         count(fmt::format("gamma_max_{}_deg", suffix), error->direction.largest_degrees);
       }
       count("compared", errors->at(0).direction.compared);
+      report_own(state);
     }
     std::string label = resources.settings_of(algorithm).to_string();
     if (!is_about_meshes()) {
@@ -401,6 +440,21 @@ struct QueryRow {
     }
     if (timed_outside) label += fmt::format("{}times include communication", label.empty() ? "" : "; ");
     state.SetLabel(label);
+  }
+
+  void report_own(benchmark::State& state) const {
+    if (!own_errors) return;
+    const auto count = [&](const std::string& counter, auto value) {
+      state.counters[counter] = static_cast<double>(value);
+    };
+    for (const auto& [error, suffix] : {std::pair(&own_errors->at(0), "F"), {&own_errors->at(1), "T"}}) {
+      if (error->magnitude) count(fmt::format("magnitude_error_own_{}", suffix), error->magnitude->relative);
+      if (!error->direction.gamma_degrees) continue;
+      count(fmt::format("gamma_own_{}_deg", suffix), *error->direction.gamma_degrees);
+      count(fmt::format("gamma_own_max_{}_deg", suffix), error->direction.largest_degrees);
+    }
+    count("compared_own", own_errors->at(0).direction.compared);
+    if (own_unjudged > 0) count("unjudged_own", own_unjudged);
   }
 };
 

@@ -11,6 +11,8 @@ namespace sixdof {
 namespace {
 
 SIXDOF_CONFORMANCE(make_exact_algorithm);
+SIXDOF_CONFORMANCE(make_exact_depth_algorithm);
+SIXDOF_CONFORMANCE(make_exact_way_out_algorithm);
 SIXDOF_CONFORMANCE(make_brute_force_algorithm);
 SIXDOF_CONFORMANCE(make_sampled_algorithm);
 SIXDOF_CONFORMANCE(make_ist_algorithm);

@@ -203,6 +203,39 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
   return found;
 }
 
+TEST_F(Faulty, ForcesAreJudgedByTheirOwnLaw) {
+  const test::SuiteCopy folder(SIXDOF_SMALL_SUITE);
+  const std::string file = (folder.directory() / "laws.json").string();
+  const json document =
+      run("--sample 40 '--benchmark_filter=^respond/algorithm:(exact|exact-depth|turned-depth|vps)/pair:torus-1k/"
+          "volume:03$'");
+  std::ofstream(file) << document;
+  const auto of = [&](const char* algorithm) { return row(document, "respond", algorithm, "volume:03"); };
+  EXPECT_EQ(of("exact").at("gamma_own_F_deg"), of("exact").at("gamma_F_deg"));
+  EXPECT_EQ(of("exact").at("sixdof").at("law"), "volume");
+  const json right = of("exact-depth"), turned = of("turned-depth");
+  EXPECT_EQ(right.at("sixdof").at("law"), "depth");
+  EXPECT_LT(right.at("gamma_own_F_deg"), 0.5) << "the truth is known to 1 %: 0.6 degrees";
+  EXPECT_LT(right.at("gamma_own_T_deg"), 0.6);
+  EXPECT_LT(right.at("magnitude_error_own_F"), 0.01);
+  EXPECT_GT(right.at("gamma_F_deg"), right.at("gamma_own_F_deg")) << "another law";
+  EXPECT_EQ(right.at("compared_own"), 32);
+  EXPECT_FALSE(right.contains("unjudged_own"));
+  EXPECT_GT(turned.at("gamma_own_F_deg"), 30.0);
+  EXPECT_GT(turned.at("gamma_own_max_F_deg"), turned.at("gamma_own_F_deg"));
+  EXPECT_LT(turned.at("magnitude_error_own_F"), 0.01) << "only its direction is wrong";
+  EXPECT_LT(of("vps").at("gamma_own_F_deg"), of("vps").at("gamma_F_deg")) << "part of the angle is the law";
+
+  for (const char* const options : {"", " --wide", " --overview"}) {
+    const auto table = test::run_program(std::string(SIXDOF_PROGRAM) + " table " + file + options);
+    ASSERT_EQ(table.exit_code, 0) << table.err;
+    EXPECT_THAT(table.out, HasSubstr("law")) << options;
+    const auto lines = lines_with(table.out, "turned-depth ");
+    ASSERT_FALSE(lines.empty()) << table.out;
+    EXPECT_THAT(lines.front(), HasSubstr(" depth ")) << options;
+  }
+}
+
 TEST_F(Faulty, TheTableNeverCallsAConstantAnswerTheFastest) {
   const test::SuiteCopy folder(SIXDOF_SMALL_SUITE);
   const std::string file = (folder.directory() / "constant.json").string();

@@ -29,6 +29,7 @@ struct Fault {
   std::string name;
   bool at_every_pose = false;  ///< Without the delay of a faulty pose.
   Body body = Body::mesh;
+  std::unique_ptr<Algorithm> (*base)() = make_exact_algorithm;  ///< Whose answers are right by its law.
   std::function<bool(bool)> collide = [](bool answer) { return answer; };
   std::function<double(double)> distance = [](double answer) { return answer; };
   std::function<Eigen::Vector3d(const Eigen::Vector3d&)> force = [](const Eigen::Vector3d& answer) { return answer; };
@@ -73,13 +74,13 @@ class FaultyAlgorithm final : public Algorithm {
                .version = "1",
                .summary = "goes wrong at one pose in 20",
                .answers = {.collide = true, .distance = true, .respond = true},
-               .law = ResponseLaw::volume,
+               .law = fault_.base()->traits().law,
                .body = fault_.body};
   }
   const Traits& traits() const override { return traits_; }
   std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings&) const override {
     if (fault_.name == "null-pointer") return nullptr;
-    const auto exact = make_exact_algorithm();
+    const auto exact = fault_.base();
     return std::make_unique<FaultyQuery>(exact->prepare(a, b, exact->settings()), fault_);
   }
 
@@ -119,6 +120,10 @@ const Registrar k_faults[] = {
     add({.name = "zero-force",
          .at_every_pose = true,
          .force = [](const Eigen::Vector3d&) -> Eigen::Vector3d { return Eigen::Vector3d::Zero(); }}),
+    add({.name = "turned-depth",
+         .at_every_pose = true,
+         .base = make_exact_depth_algorithm,
+         .force = [](const Eigen::Vector3d& f) { return Eigen::Vector3d(-f.y(), f.x(), f.z()); }}),
     add({.name = "always-apart", .at_every_pose = true, .collide = [](bool) { return false; }}),
     add({.name = "hulls-apart",
          .at_every_pose = true,

@@ -90,7 +90,7 @@ class Query:
 if SDF:
     points = {"name": "initpoints", "meaning": "points from which contacts are searched", "unit": "1", "default": "40",
               "low": 1, "high": 100000, "integer": True, "sweep": ["10", "40", "160", "640"]}
-    sixdof_rival.serve(Query, name="mujoco-sdf", version=mujoco.__version__, answers=["collide", "respond"], law="depth",
+    sixdof_rival.serve(Query, name="mujoco-sdf", version=mujoco.__version__, answers=["collide", "respond"], law="contacts",
                        summary="MuJoCo from Python: signed distance fields of both meshes", limits=["own_direction"],
                        parameters=[points])
 else:

@@ -6,8 +6,8 @@
 
 #include <sixdof/query/algorithm.h>
 
-/// The one rule by which contacts of a collision library become a response of the depth law. Every algorithm that gets
-/// contacts from a library uses it, so that their responses differ by the contacts only.
+/// The one rule by which contacts of a collision library become a response (ResponseLaw::contacts). Every algorithm
+/// that gets contacts from a library uses it, so that their responses differ by the contacts only.
 ///
 /// A contact pushes B by depth * normal at its point, its normal a unit vector that leads B out of A. The wrench is the
 /// mean over the contacts, its penalty the largest depth. The mean, because the number of contacts depends on the

@@ -27,6 +27,8 @@ void register_core_algorithms(Registry& registry) {
   registry.add(make_brute_force_algorithm());
   registry.add(make_exact_algorithm());
   registry.add(make_sampled_algorithm());
+  registry.add(make_exact_depth_algorithm());
+  registry.add(make_exact_way_out_algorithm());
   registry.add(make_ist_algorithm());
   registry.add(make_ist_descent_algorithm());
   registry.add(make_vps_algorithm());

@@ -14,6 +14,12 @@ namespace sixdof {
 /// box), so it derives from a potential. It needs solids: respond() fails with the reason for other meshes.
 std::unique_ptr<Algorithm> make_exact_algorithm();
 
+/// `exact-depth`: the law of depth by quadrature (oracle/depth_integral.h), which `vps` tends to; the penalty is the
+/// largest depth. `exact-way-out`: the same along the shortest way out of A, which `vps-field` tends to. The force is
+/// within the parameter `tolerance`; a query that does not get there within `most_pieces` fails. They need solids.
+std::unique_ptr<Algorithm> make_exact_depth_algorithm();
+std::unique_ptr<Algorithm> make_exact_way_out_algorithm();
+
 /// `brute-force`: the smallest distance over all pairs of triangles; collide where it is 0. It has no tree and shares
 /// no code with the other algorithms, so it checks them where meshes are small. Surfaces only.
 std::unique_ptr<Algorithm> make_brute_force_algorithm();
@@ -23,7 +29,7 @@ std::unique_ptr<Algorithm> make_brute_force_algorithm();
 /// first contact was missed. Yes/no and trees are those of `exact`.
 std::unique_ptr<Algorithm> make_sampled_algorithm();
 
-/// Adds the algorithms that need no third-party collision library: these three, `null`, which answers with constants,
+/// Adds the algorithms that need no third-party collision library: these five, `null`, which answers with constants,
 /// `ist`, `ist-descent`, `vps` and `vps-field`.
 void register_core_algorithms(Registry& registry);
 

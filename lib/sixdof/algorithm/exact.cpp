@@ -3,15 +3,13 @@
 #include <cmath>
 #include <optional>
 
+#include <sixdof/algorithm/rotation_check.h>
 #include <sixdof/oracle/cast_search.h>
 #include <sixdof/oracle/distance.h>
 #include <sixdof/oracle/overlap.h>
 
 namespace sixdof {
 namespace {
-
-/// Largest deviation of R^T R from the identity that counts as rounding of a rotation.
-constexpr double k_rotation_tolerance = 1e-9;
 
 constexpr double k_most_threads = 64.0;
 
@@ -79,9 +77,7 @@ class ExactQuery final : public Query {
  private:
   Status check(const Pose& X_AB) {
     if (!is_finite(X_AB)) return fail(Status::non_finite, "the pose is not finite");
-    if (!(X_AB.R.transpose() * X_AB.R).isIdentity(k_rotation_tolerance) || X_AB.R.determinant() < 0.0) {
-      return fail(Status::failed, "the pose's matrix is not a rotation");
-    }
+    if (!is_rotation(X_AB.R)) return fail(Status::failed, "the pose's matrix is not a rotation");
     return Status::ok;
   }
 

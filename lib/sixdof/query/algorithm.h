@@ -91,7 +91,7 @@ struct Separation {
 struct Response {
   /// A volume that is not there: NaN.
   static constexpr double k_absent = std::numeric_limits<double>::quiet_NaN();
-  double penalty = 0.0;      ///< By Traits::law: a penetration depth (length) or an intersection volume (length^3).
+  double penalty = 0.0;      ///< By is_of_depth(): a penetration depth (length) or an intersection volume (length^3).
   double volume = k_absent;  ///< Intersection volume (length^3); k_absent where the algorithm gives none.
   Eigen::Vector3d force = Eigen::Vector3d::Zero();      ///< On B, in A's frame.
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();     ///< On B about `reference`, in A's frame.
@@ -153,12 +153,28 @@ struct MethodLimits {
   bool points_of_b_only = false;
 };
 
-/// What the magnitude of a response is proportional to. It selects the ideal model that scenarios compare with.
+/// What a response tends to with increasing resolution: its own law. It selects the ideal model that scenarios compare
+/// with, and the truth of the counters `..._own_...` of rows.
 enum class ResponseLaw {
-  none,   ///< Of neither, or not known.
-  depth,  ///< Of the penetration depth.
-  volume  ///< Of the volume of the intersection.
+  none,     ///< None of these, or not known.
+  depth,    ///< Integral of depth times B's inward normal over B's surface inside A (oracle/depth_integral.h).
+  volume,   ///< Minus the gradient of the volume of the intersection, or a volume along its direction.
+  way_out,  ///< As depth, along the shortest way out of A instead of along B's normal.
+  /// Sum or mean over pairs of triangles, or springs on them, of a depth times a normal. It depends on the triangles
+  /// and has no limit of its own; it is judged by `depth`.
+  contacts
 };
+
+/// The name as it stands in results: "way_out".
+constexpr std::string_view to_string(ResponseLaw law) {
+  constexpr std::string_view k_names[] = {"none", "depth", "volume", "way_out", "contacts"};
+  return k_names[static_cast<std::size_t>(law)];
+}
+
+/// Whether magnitudes grow with a depth, not with a volume.
+constexpr bool is_of_depth(ResponseLaw law) {
+  return law == ResponseLaw::depth || law == ResponseLaw::way_out || law == ResponseLaw::contacts;
+}
 
 /// Size of a prepared structure and the counts that explain it ("nodes", "voxels", "spheres", ...).
 struct Footprint {

@@ -18,6 +18,9 @@ struct Measure {
 };
 
 constexpr std::array k_response_errors{
+    Measure{"gamma_own_F_deg", "force direction to the own law, mean (degrees)"},
+    Measure{"magnitude_error_own_F", "force magnitude to the own law (fraction)"},
+    Measure{"gamma_own_T_deg", "torque direction to the own law, mean (degrees)"},
     Measure{"gamma_F_deg", "force direction, mean (degrees)"},
     Measure{"gamma_max_F_deg", "force direction, largest (degrees)"},
     Measure{"gamma_T_deg", "torque direction, mean (degrees)"},
@@ -48,6 +51,7 @@ constexpr std::array k_scenario_measures{
 };
 
 constexpr std::array k_frontier_errors{
+    Measure{"gamma_own_F_deg", "force direction to the own law, mean (degrees)"},
     Measure{"gamma_F_deg", "force direction, mean (degrees)"},
     Measure{"gamma_F_p95_deg", "force direction, 95 % (degrees)"},
     Measure{"magnitude_error_F", "force magnitude (fraction)"},
@@ -120,10 +124,11 @@ constexpr std::ptrdiff_t k_parts_of_answer = 3;
 }  // namespace
 
 DataTable response_errors_table(const Results& results, const std::vector<RowGroup>& groups) {
-  DataTable table{.name = "response_errors",
-                  .title = "Errors of responses against the exact ones, by overlap volume",
-                  .columns = {"run", "pair", "measure", "algorithm", "percent", "error", "command", "worst_pose"},
-                  .rows = {}};
+  DataTable table{
+      .name = "response_errors",
+      .title = "Errors of responses against the exact ones and against each algorithm's own law, by overlap volume",
+      .columns = {"run", "pair", "measure", "algorithm", "law", "percent", "error", "command", "worst_pose"},
+      .rows = {}};
   for (const RowGroup& group : groups) {
     const Row& row = group.row();
     if (row.fields.query != "respond" || !row.fields.bucket || row.fields.algorithm == "null") continue;
@@ -131,7 +136,7 @@ DataTable response_errors_table(const Results& results, const std::vector<RowGro
       const auto value = group.value(measure.value);
       if (!value) continue;
       table.rows.push_back({run_name(results, row.file), bodies_of(row.fields), std::string(measure.title),
-                            group.algorithm(), row.fields.bucket->percent, *value,
+                            group.algorithm(), row.fields.law, row.fields.bucket->percent, *value,
                             reproduction(row, results.files[row.file]), row.outliers.command_of(measure.value)});
     }
   }

@@ -20,6 +20,7 @@ constexpr std::pair<const char*, std::string RowFields::*> k_texts[] = {
     {"scenario", &RowFields::scenario}, {"target", &RowFields::target}, {"question", &RowFields::question},
     {"body", &RowFields::body},         {"object", &RowFields::object}, {"partner", &RowFields::partner},
     {"kind", &RowFields::kind},         {"shape", &RowFields::shape},   {"runtime", &RowFields::runtime},
+    {"law", &RowFields::law},
 };
 
 constexpr std::pair<const char*, std::optional<std::uint64_t> RowFields::*> k_counts[] = {

@@ -25,6 +25,8 @@ struct RowFields {
   std::string cache = {};     ///< Of a query: "warm", or "cold" where data leaves the caches before each.
   std::string scenario = {};  ///< "II"; of a scene row its family.
   std::string target = {};    ///< Of a generate row: "distance" or "volume".
+  /// Of a row of responses, the law that `..._own_...` counters judge by (ResponseLaw): "depth"; empty for none.
+  std::string law = {};
   bool isolated = false;      ///< The algorithm runs, and is timed, in a process of its own.
   bool approximates = false;  ///< The algorithm replaces the bodies by others, such as spheres (Traits::approximates).
   std::string question = {};  ///< Of a study's row: the kind of query that it asks.

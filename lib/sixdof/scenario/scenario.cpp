@@ -54,8 +54,8 @@ IdealLaw parse_ideal_law(std::string_view word, ResponseLaw own) {
     if (own == ResponseLaw::none) {
       throw BadArgument(fmt::format("the algorithm declares no law, so \"{}\" has no meaning; name a law", word));
     }
-    if (word == "own") return own == ResponseLaw::depth ? IdealLaw::depth : IdealLaw::volume;
-    return own == ResponseLaw::depth ? IdealLaw::paper_depth : IdealLaw::paper_volume;
+    if (word == "own") return is_of_depth(own) ? IdealLaw::depth : IdealLaw::volume;
+    return is_of_depth(own) ? IdealLaw::paper_depth : IdealLaw::paper_volume;
   }
   for (const IdealLaw law : all_ideal_laws()) {
     if (to_string(law) == word) return law;

@@ -104,7 +104,7 @@ fn main() {
         "version": "0.31.1",
         "summary": "parry3d-f64, two TriMesh; surfaces only",
         "answers": ["collide", "distance", "respond"],
-        "law": "depth",
+        "law": "contacts",
         "limits": ["collide_of_surfaces", "respond_of_surfaces", "own_direction"],
         "parameters": [
             choice("profile", "anew each query; or contacts kept, internal edges fixed", "default", &["default", "tuned"]),

@@ -82,7 +82,7 @@ std::unique_ptr<Algorithm> make_bullet_gimpact_algorithm() {
        .version = fmt::format("{}.{} double", BT_BULLET_VERSION / 100, BT_BULLET_VERSION % 100),
        .summary = "Bullet's GImpact: contacts of triangle pairs as a penalty wrench",
        .answers = {.collide = true, .respond = true},
-       .law = ResponseLaw::depth,
+       .law = ResponseLaw::contacts,
        .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(),
                       Parameter::number(k_margin, "triangles are thickened by this length; Bullet's own default is 0.1",

@@ -180,7 +180,7 @@ std::unique_ptr<Algorithm> make_coal_contacts_algorithm() {
        .version = version(),
        .summary = "Coal's contacts of triangle pairs as a penalty wrench",
        .answers = {.respond = true},
-       .law = ResponseLaw::depth,
+       .law = ResponseLaw::contacts,
        .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("1000000", 1e9)}});
 }

@@ -235,7 +235,7 @@ std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() {
        .version = FCL_VERSION,
        .summary = "FCL's contacts of triangle pairs as a penalty wrench",
        .answers = {.respond = true},
-       .law = ResponseLaw::depth,
+       .law = ResponseLaw::contacts,
        .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("1000000", 1e9)}});
 }

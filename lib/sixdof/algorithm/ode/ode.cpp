@@ -88,7 +88,7 @@ std::unique_ptr<Algorithm> make_ode_algorithm() {
        .version = SIXDOF_ODE_VERSION " double",
        .summary = "ODE with OPCODE: contacts of triangle pairs as a penalty wrench",
        .answers = {.collide = true, .respond = true},
-       .law = ResponseLaw::depth,
+       .law = ResponseLaw::contacts,
        .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("65535", k_largest_count)}});
 }

@@ -85,7 +85,7 @@ std::unique_ptr<Algorithm> make_simbody_algorithm() {
        .version = SIXDOF_SIMBODY_VERSION " double",
        .summary = "Simbody's elastic foundation: a spring on each triangle of both meshes",
        .answers = {.collide = true, .respond = true},
-       .law = ResponseLaw::depth,
+       .law = ResponseLaw::contacts,
        .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .by_default = false});
 }

@@ -262,13 +262,13 @@ std::vector<Parameter> common_parameters(const Parameter& voxel_size, const Para
   };
 }
 
-Traits traits(std::string name, std::string summary, std::vector<Parameter> parameters) {
+Traits traits(std::string name, std::string summary, ResponseLaw law, std::vector<Parameter> parameters) {
   return {
       .name = std::move(name),
       .version = SIXDOF_VERSION,
       .summary = std::move(summary),
       .answers = {.collide = true, .respond = true},
-      .law = ResponseLaw::depth,
+      .law = law,
       .approximates = true,
       // A is sampled at B's points only: none is in an A that lies inside B.
       .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true, .points_of_b_only = true},
@@ -287,12 +287,14 @@ std::unique_ptr<Algorithm> make_vps_algorithm() {
                         "penetration of a point: the layer of its voxel, with or without its position in the voxel",
                         "layers+local", {"layers", "layers+local"}));
   return make_algorithm<PointQuery<false>>(
-      traits("vps", "voxmap-pointshell: integer layers of A at points of B (McNeely 1999, Sagardia 2008)", parameters));
+      traits("vps", "voxmap-pointshell: integer layers of A at points of B (McNeely 1999, Sagardia 2008)",
+             ResponseLaw::depth, parameters));
 }
 
 std::unique_ptr<Algorithm> make_vps_field_algorithm() {
   return make_algorithm<PointQuery<true>>(traits(
       "vps-field", "points of B in a smooth signed distance to A: conservative, continuous voxmap-pointshell",
+      ResponseLaw::way_out,
       common_parameters(voxel_size("0.008").swept({"0.032", "0.016", "0.008", "0.004"}),
                         point_spacing("0.004").swept({"0.016", "0.008", "0.004", "0.002"}), DistanceField::k_border)));
 }
