@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <boost/container/static_vector.hpp>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/geometry/closest_point.cpp"
 #include <hwy/foreach_target.h>
@@ -35,7 +37,7 @@ void box_distances(const Tree::Node& node, const std::array<float, 3>& p, float*
 constexpr double k_float_slack = 4e-7;
 
 struct Candidate {
-  double squared;
+  float squared;
   Tree::Child child;
 };
 
@@ -50,11 +52,12 @@ bool find_closest_point(const Tree& tree, const Eigen::Vector3d& p, double withi
   std::uint32_t best_position = 0;
 
   constexpr std::size_t k_deepest_tree = 64;
-  std::array<Candidate, k_deepest_tree * Tree::k_width> stack;
-  std::size_t size = 0;
-  stack[size++] = {0.0, Tree::Child::node(0)};
-  while (size > 0) {
-    const Candidate next = stack[--size];
+  // Unlike an array, it does not initialise the elements that a search never reaches: most of its cost otherwise.
+  boost::container::static_vector<Candidate, k_deepest_tree * Tree::k_width> stack;
+  stack.push_back({0.0f, Tree::Child::node(0)});
+  while (!stack.empty()) {
+    const Candidate next = stack.back();
+    stack.pop_back();
     const double cutoff = std::sqrt(best_squared) + slack;
     if (next.squared > cutoff * cutoff) continue;
     if (next.child.is_leaf()) {
@@ -74,10 +77,11 @@ bool find_closest_point(const Tree& tree, const Eigen::Vector3d& p, double withi
     alignas(64) float squared[Tree::k_width];
     box_distances(node, q, squared);
     // Insertion sort, farthest first, so that the nearest is on top of the stack.
-    const std::size_t begin = size;
+    const std::size_t begin = stack.size();
     for (std::size_t i = 0; i < node.child_count; ++i) {
       if (squared[i] > cutoff * cutoff) continue;
-      std::size_t at = size++;
+      std::size_t at = stack.size();
+      stack.push_back({squared[i], node.child[i]});
       for (; at > begin && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {squared[i], node.child[i]};
     }
