@@ -37,7 +37,7 @@ void box_distances(const Tree::Node& node, const std::array<float, 3>& p, float*
 constexpr double k_float_slack = 4e-7;
 
 struct Candidate {
-  double squared;
+  float squared;
   Tree::Child child;
 };
 
@@ -52,8 +52,9 @@ bool find_closest_point(const Tree& tree, const Eigen::Vector3d& p, double withi
   std::uint32_t best_position = 0;
 
   constexpr std::size_t k_deepest_tree = 64;
-  boost::container::static_vector<Candidate, k_deepest_tree * Tree::k_width> stack;  // clears nothing
-  stack.push_back({0.0, Tree::Child::node(0)});
+  // Unlike an array, it does not initialise the elements that a search never reaches: most of its cost otherwise.
+  boost::container::static_vector<Candidate, k_deepest_tree * Tree::k_width> stack;
+  stack.push_back({0.0f, Tree::Child::node(0)});
   while (!stack.empty()) {
     const Candidate next = stack.back();
     stack.pop_back();
@@ -80,7 +81,7 @@ bool find_closest_point(const Tree& tree, const Eigen::Vector3d& p, double withi
     for (std::size_t i = 0; i < node.child_count; ++i) {
       if (squared[i] > cutoff * cutoff) continue;
       std::size_t at = stack.size();
-      stack.push_back({});
+      stack.push_back({squared[i], node.child[i]});
       for (; at > begin && stack[at - 1].squared < squared[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {squared[i], node.child[i]};
     }
