@@ -6,9 +6,10 @@ endif()
 
 find_program(SIXDOF_CCACHE ccache)
 if(PROJECT_IS_TOP_LEVEL AND SIXDOF_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # Without this, it keeps nothing that was compiled with a precompiled header.
-  set(CMAKE_CXX_COMPILER_LAUNCHER
-    ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${SIXDOF_CCACHE})
+  # Without the first, it keeps nothing that was compiled with a precompiled header; without the second, nothing for
+  # another clone of this project.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+    CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} ${SIXDOF_CCACHE})
 endif()
 
 # Strict warnings, sanitizers and floating-point rules for our own code. Contraction (fused multiply-add) is off because
