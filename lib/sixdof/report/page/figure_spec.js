@@ -376,8 +376,6 @@ sixdofReport.prepareSpec = function (figure, chosen, choices, context) {
   if (meta.cells && typeof context.width === "number") shortenWords(spec, rows, meta.cells, width);
   if (context.title) spec.title = context.title;
   spec.config = configOf(context.theme, context.font);
-  // A legend of names with resolutions must not be wider than the plot: the title would be placed for that width.
-  const legendWidth = meta.algorithm ? 0.75 * width : width;
-  spec.config.legend.columns = sixdofReport.legendColumns(meta.noChips ? ["no change shown"] : algorithms, legendWidth, meta.noChips ? 4 : algorithms.length);
+  spec.config.legend.columns = sixdofReport.legendColumns(meta.noChips ? ["no change shown"] : algorithms, width, meta.noChips ? 4 : algorithms.length);
   return spec;
 };
