@@ -22,12 +22,9 @@ std::string suffix_of(std::string_view law) {
 
 /// Over the whole path where the window is shorter; nu is of the signal, whatever the law.
 std::optional<double> value_of(const RowGroup& group, const std::string& measure, const std::string& suffix) {
-  for (const std::string& name : {measure + suffix, measure + "_all", measure}) {
-    if (name == measure && !suffix.empty() && !measure.starts_with("nu_")) break;
-    if (name == measure + suffix && suffix.empty()) continue;
-    if (const auto value = group.value(name)) return value;
-  }
-  return std::nullopt;
+  if (!suffix.empty() && !measure.starts_with("nu_")) return group.value(measure + suffix);
+  const auto whole = group.value(measure + "_all");
+  return whole ? whole : group.value(measure);
 }
 
 std::string printed_resolution(std::string_view scenario, std::string_view algorithm) {
