@@ -91,7 +91,7 @@ TEST_F(OfASet, ExactIsNeverWrong) {
   }
   EXPECT_GT(hits, 200u);
   EXPECT_GT(misses, 50u);
-  EXPECT_LE(grazing, (hits + misses) / 200);
+  EXPECT_LE(grazing, (hits + misses) / 100);
 }
 
 TEST(ImpactTruth, BehindAHitFromOutsideItAdvances) {

@@ -72,7 +72,7 @@ TEST(CastSearch, AgreesWithAdvancement) {
   Generator generator(11);
   const Mesh meshes[] = {shapes::bumpy_sphere(2, 0.3), shapes::rod(9, 0.1), shapes::soup(generator, 60, 0.8, 0.3),
                          shapes::box({0.9, 0.01, 0.6})};
-  int hits = 0, misses = 0, starts = 0, grazing = 0;
+  int hits = 0, misses = 0, grazing = 0;
   for (int i = 0; i < 600; ++i) {
     const Mesh &a = meshes[i % 4], &b = meshes[(i / 4) % 4];
     Bodies bodies(a, b);
@@ -94,11 +94,9 @@ TEST(CastSearch, AgreesWithAdvancement) {
     }
     hits += truth.kind == Kind::hit ? 1 : 0;
     misses += truth.kind == Kind::none ? 1 : 0;
-    starts += truth.kind == Kind::at_start ? 1 : 0;
   }
   EXPECT_GT(hits, 200);
   EXPECT_GT(misses, 30);
-  EXPECT_GT(starts, 5);
   EXPECT_LT(grazing, 3);
 }
 

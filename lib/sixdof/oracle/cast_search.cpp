@@ -27,6 +27,9 @@ constexpr double k_worth_waiting = 0.5;
 /// And if that is more than this part of the motion: where a gap is as small as rounding, it does not grow.
 constexpr double k_least_wait = 1e-6;
 
+/// Triangles that touch within this part of the motion are bounded along their edges' cross products, too.
+constexpr double k_close = 1e-4;
+
 bool is_leaf(std::uint32_t volume) { return (volume & NodePair::k_leaf) != 0; }
 bool is_triangle(std::uint32_t volume) { return !is_leaf(volume) && (volume & NodePair::k_triangle) != 0; }
 
@@ -243,6 +246,18 @@ void CastSearch::split(const Moment& moment, std::uint32_t a, std::uint32_t b) {
   }
 }
 
+/// The same along the cross products of both triangles' edges. Close to contact of two edges their closest points
+/// differ by little more than rounding, so the line through them separates no longer; the cross product does.
+double CastSearch::time_along_edges(const Moment& moment, const Tree::Corners& a, const Tree::Corners& b) {
+  double apart = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      apart = std::max(apart, moment.time_apart((a[(i + 1) % 3] - a[i]).cross(b[(j + 1) % 3] - b[j]), a, b));
+    }
+  }
+  return apart;
+}
+
 /// Measures a pair of triangles. @return whether it touches; if not, it waits or is dropped
 bool CastSearch::is_contact(const Moment& moment, std::uint32_t a, std::uint32_t b, Impact& impact) {
   ++counts_.triangles;
@@ -256,6 +271,7 @@ bool CastSearch::is_contact(const Moment& moment, std::uint32_t a, std::uint32_t
     for (const Vector3d& n : {Vector3d(closest.on_b - closest.on_a), area_vector(p), area_vector(at)}) {
       apart = std::max(apart, moment.time_apart(n, p, at));
     }
+    if (apart < k_close) apart = std::max(apart, time_along_edges(moment, p, at));
     if (apart > left) return false;
     const double resolution = std::max(k_resolution, least_time_);
     if (apart >= resolution) return push({moment.t + apart, a, b}), false;

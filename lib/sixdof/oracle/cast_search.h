@@ -69,6 +69,7 @@ class CastSearch {
   bool waits_again(const Moment& moment, const Waiting& pair);
   void split(const Moment& moment, std::uint32_t a, std::uint32_t b);
   void wait(const Moment& moment, std::uint32_t a, std::uint32_t b);
+  static double time_along_edges(const Moment& moment, const Tree::Corners& a, const Tree::Corners& b);
   bool is_contact(const Moment& moment, std::uint32_t a, std::uint32_t b, Impact& impact);
   Impact impact_of(std::uint32_t a, std::uint32_t b, double t) const;
 

@@ -87,18 +87,19 @@ class FclCastQuery final : public LibraryQuery {
     const Pose start = motion.pose_at(from), end = motion.pose_at(to);
     std::optional<double> time;
     if (motion.is_translation()) {
-      time = collide(fcl::TranslationMotion<double>(to_fcl(start), to_fcl(end)), fcl::CCDM_TRANS);
+      time = time_of_contact(fcl::TranslationMotion<double>(to_fcl(start), to_fcl(end)), fcl::CCDM_TRANS);
     } else {
       // Of its constructors only this one sets all that it uses: those without a reference point leave that unset, and
       // the one of two transforms and a point leaves the velocities unset.
-      time = collide(fcl::InterpMotion<double>(start.R, start.t, end.R, end.t, motion.reference), fcl::CCDM_LINEAR);
+      time = time_of_contact(fcl::InterpMotion<double>(start.R, start.t, end.R, end.t, motion.reference),
+                             fcl::CCDM_LINEAR);
     }
     if (!time) return {};
     return {.hit = true, .t = std::min(1.0, from + (to - from) * *time)};
   }
 
   /// The time of contact with B on a motion; none if there is none.
-  std::optional<double> collide(const fcl::MotionBase<double>& moving, fcl::CCDMotionType type) {
+  std::optional<double> time_of_contact(const fcl::MotionBase<double>& moving, fcl::CCDMotionType type) {
     const fcl::TranslationMotion<double> still(fcl::Transform3d::Identity(), fcl::Transform3d::Identity());
     if constexpr (std::is_same_v<BV, AdvancementVolume>) {
       if (solver_ == Solver::oriented) {
