@@ -35,8 +35,6 @@
 namespace sixdof::cli {
 namespace {
 
-constexpr const char* k_wrench_law = "wrench";
-
 struct Options {
   std::vector<std::string> scenarios = scenario_names();
   std::vector<std::string> algorithms{"vps", "ist"};
@@ -162,8 +160,7 @@ std::vector<study::SearchOptions> targets(const Options& options) {
 study::SearchTask task_of(const Options& options, const std::string& name, const Candidate& candidate) {
   const std::shared_ptr<const Scenario> scenario = make_scenario(name);
   const Traits& traits = candidate.algorithm->traits();
-  const std::string_view word = options.law == k_wrench_law ? study::wrench_law(name, traits.name) : options.law;
-  const IdealLaw law = parse_ideal_law(word, traits.law);
+  const IdealLaw law = parse_ideal_law(options.law, traits);
   study::check_axes(candidate.axes);
   const auto measure = [scenario, candidate, law, weights = parse_weights(options.weights),
                         steps = options.steps](const study::Resolution& at) {
@@ -312,7 +309,6 @@ void take_paper_defaults(const CLI::App& command, Options& options) {
   if (!given("--tau")) {
     options.taus = {study::time_text(results::k_paper_mean_ns), study::time_text(results::k_paper_mean_ns / k_faster)};
   }
-  if (!given("--law")) options.law = k_wrench_law;
 }
 
 }  // namespace
@@ -351,9 +347,7 @@ void add_equivalent_command(CLI::App& app) {
   command->add_option("--weights", options->weights, "Weights of sigma and gamma in the error eta (below)")
       ->type_name("WEIGHT")
       ->capture_default_str();
-  command
-      ->add_option("--law", options->law,
-                   "Ideal to compare with (sixdof quality --help), or wrench: that of the algorithm's own wrench")
+  command->add_option("--law", options->law, "Ideal to compare with (sixdof quality --help)")
       ->type_name("LAW")
       ->capture_default_str();
   command->add_option("--grid", options->grids, "Values to try of a parameter that is searched; may be repeated")

@@ -88,7 +88,7 @@ void run(const Options& options) {
   const auto [registry, algorithm, settings] = select_algorithm(options.algorithm);
   const Traits& traits = algorithm->traits();
   if (!traits.answers.respond) throw BadArgument(fmt::format("{} gives no response", traits.name));
-  const IdealLaw law = parse_ideal_law(options.law, traits.law);
+  const IdealLaw law = parse_ideal_law(options.law, traits);
 
   const auto query = algorithm->prepare(scenario->a(), scenario->b(), settings);
   const Recording recording = record(*scenario, *query, options.steps);
@@ -120,9 +120,10 @@ void add_quality_command(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("--steps", options->steps, "Steps along the path")->type_name("N")->capture_default_str();
   command
-      ->add_option("--law", options->law,
-                   "Ideal to compare with: own is the law that the algorithm declares, paper that law's formula as "
-                   "printed in the paper")
+      ->add_option(
+          "--law", options->law,
+          "Ideal to compare with: own is the law that the algorithm's wrench tends to with increasing resolution, "
+          "or that it declares; paper is the formula printed in the paper")
       ->type_name("LAW")
       ->check(words_of(law_words()))
       ->capture_default_str();

@@ -52,8 +52,7 @@ struct ScenarioRow {
   }
 
   void prepare(double seconds) {
-    const ResponseLaw own = algorithm.traits().law;
-    law = parse_ideal_law("own", own == ResponseLaw::none ? ResponseLaw::volume : own);
+    law = algorithm.traits().law == ResponseLaw::none ? IdealLaw::volume : own_law(algorithm.traits());
     scenario = make_scenario(name);
     auto prepared = resources.cache.prepare(algorithm, resources.settings_of(algorithm), scenario->a(), scenario->b());
     // The time of a few steps tells how many the row can afford; a multiple of four keeps closed paths symmetric.
@@ -76,11 +75,10 @@ struct ScenarioRow {
     query = std::move(prepared);
   }
 
-  /// Magnitude and direction by every law but the declared one: in III and IV the ideal wrench of an algorithm is not
-  /// that of its penalty's law.
+  /// Magnitude and direction by every law but the own one: results of algorithms are compared by one law as well.
   void add_other_laws() {
-    for (const IdealLaw other :
-         {IdealLaw::depth, IdealLaw::volume, IdealLaw::gradient, IdealLaw::traction, IdealLaw::wall_traction}) {
+    for (const IdealLaw other : {IdealLaw::depth, IdealLaw::volume, IdealLaw::gradient, IdealLaw::traction,
+                                 IdealLaw::wall_traction, IdealLaw::normals, IdealLaw::descent}) {
       if (other == law) continue;
       std::string suffix = fmt::format("_by_{}", to_string(other));
       std::replace(suffix.begin(), suffix.end(), '-', '_');

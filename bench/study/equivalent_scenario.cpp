@@ -24,9 +24,9 @@ double find(const Measures& measures, const std::string& name) {
 
 /// The law whose ideals are the formulas as printed; empty where the paper prints none.
 std::optional<IdealLaw> printed_law(const ScenarioStudy& study) {
-  const ResponseLaw own = study.algorithm.traits().law;
-  if (own == ResponseLaw::none) return std::nullopt;
-  const IdealLaw law = parse_ideal_law("paper", own);
+  const Traits& traits = study.algorithm.traits();
+  if (traits.law == ResponseLaw::none) return std::nullopt;
+  const IdealLaw law = parse_ideal_law("paper", traits);
   return study.scenario.ideal(law, 0.0) ? std::optional(law) : std::nullopt;
 }
 
@@ -90,15 +90,6 @@ ResolutionAxis axis_of(const Traits& traits, const Parameter& parameter, const G
 }  // namespace
 
 std::string_view rated_wrench(std::string_view scenario) { return scenario == "III" ? "T" : "F"; }
-
-std::string_view wrench_law(std::string_view scenario, std::string_view algorithm) {
-  using Law = std::pair<std::string_view, std::string_view>;  // of an algorithm
-  constexpr std::array<Law, 4> k_laws{Law{"vps", "traction"}, Law{"vps-field", "wall-traction"}, Law{"ist", "volume"},
-                                      Law{"ist-descent", "volume"}};
-  if (scenario != "III" && scenario != "IV") return "own";
-  const auto* const found = std::ranges::find(k_laws, algorithm, &Law::first);
-  return found == k_laws.end() ? "own" : found->second;
-}
 
 std::array<ResolutionAxis, 2> resolution_axes(const Traits& traits, const Grids& grids, double reach) {
   std::vector<const Parameter*> swept;

@@ -36,10 +36,6 @@ struct ScenarioStudy {
 /// "F" (force) or "T" (torque): whose sigma and gamma make eta. The ideal force of III is zero.
 std::string_view rated_wrench(std::string_view scenario);
 
-/// The word of `--law` for the ideal of the algorithm's own wrench (lib/sixdof/scenario/README.md): in III and IV,
-/// where laws differ, not that of its penalty; "own" in the other scenarios and where none is known.
-std::string_view wrench_law(std::string_view scenario, std::string_view algorithm);
-
 /// Values of the grid by the name of a swept parameter, in place of three of its sweep.
 using Grids = std::map<std::string, std::vector<double>>;
 

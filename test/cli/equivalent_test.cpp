@@ -78,7 +78,7 @@ TEST_F(Equivalent, PrintsPredictedBesideMeasured) {
   const auto result = equivalent(k_small + std::string("--tau 4us -o ") + path("rows.json"));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const char* const words :
-       {"scenario II, algorithm vps-field, law depth, tau = 4us", "gamma_F (radians)", "point_spacing", "first",
+       {"scenario II, algorithm vps-field, law wall-traction, tau = 4us", "gamma_F (radians)", "point_spacing", "first",
         "answer     voxel_size=", "mean |eta predicted - measured|"}) {
     EXPECT_THAT(result.out, HasSubstr(words));
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -65,14 +66,31 @@ TEST(Scenario, StepsCoverThePath) {
 }
 
 TEST(Scenario, LawsHaveWords) {
-  for (const IdealLaw law : all_ideal_laws()) EXPECT_EQ(parse_ideal_law(to_string(law), ResponseLaw::none), law);
-  EXPECT_EQ(parse_ideal_law("own", ResponseLaw::depth), IdealLaw::depth);
-  EXPECT_EQ(parse_ideal_law("own", ResponseLaw::volume), IdealLaw::volume);
-  EXPECT_EQ(parse_ideal_law("paper", ResponseLaw::depth), IdealLaw::paper_depth);
-  EXPECT_EQ(parse_ideal_law("paper", ResponseLaw::volume), IdealLaw::paper_volume);
-  EXPECT_THROW(parse_ideal_law("paper", ResponseLaw::none), BadArgument);
-  EXPECT_THROW(parse_ideal_law("own", ResponseLaw::none), BadArgument);
-  EXPECT_THROW(parse_ideal_law("areas", ResponseLaw::depth), BadArgument);
+  const Traits by_depth{.name = "theirs", .law = ResponseLaw::depth};
+  const Traits by_volume{.name = "theirs", .law = ResponseLaw::volume};
+  const Traits unknown{.name = "theirs"};
+  for (const IdealLaw law : all_ideal_laws()) EXPECT_EQ(parse_ideal_law(to_string(law), unknown), law);
+  EXPECT_EQ(parse_ideal_law("own", by_depth), IdealLaw::depth);
+  EXPECT_EQ(parse_ideal_law("own", by_volume), IdealLaw::volume);
+  EXPECT_EQ(parse_ideal_law("paper", by_depth), IdealLaw::paper_depth);
+  EXPECT_EQ(parse_ideal_law("paper", by_volume), IdealLaw::paper_volume);
+  EXPECT_THROW(parse_ideal_law("paper", unknown), BadArgument);
+  EXPECT_THROW(parse_ideal_law("own", unknown), BadArgument);
+  EXPECT_THROW(parse_ideal_law("areas", by_depth), BadArgument);
+}
+
+/// Where the limit of an algorithm's wrench is known, it is judged by that, and by no law of magnitude.
+TEST(Scenario, KnowsTheLimitsOfThisProjectsAlgorithms) {
+  for (const auto& [name, declared, own] : {std::tuple{"exact", ResponseLaw::volume, IdealLaw::gradient},
+                                            {"vps", ResponseLaw::depth, IdealLaw::traction},
+                                            {"vps-field", ResponseLaw::depth, IdealLaw::wall_traction},
+                                            {"ist", ResponseLaw::volume, IdealLaw::normals},
+                                            {"ist-descent", ResponseLaw::volume, IdealLaw::descent}}) {
+    const Traits traits{.name = name, .law = declared};
+    EXPECT_EQ(own_law(traits), own) << name;
+    EXPECT_EQ(parse_ideal_law("paper", traits),
+              declared == ResponseLaw::depth ? IdealLaw::paper_depth : IdealLaw::paper_volume);
+  }
 }
 
 TEST(Scenario, RefusesUnknownNames) {

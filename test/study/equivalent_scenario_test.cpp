@@ -138,14 +138,6 @@ TEST_F(EquivalentInAScenario, HasEveryReadingOfTheMeasuresThatThePaperPrints) {
   EXPECT_EQ(values.at("misses"), 0.0);
 }
 
-TEST(WrenchLaw, IsThatOfTheWrenchWhereLawsDiffer) {
-  EXPECT_EQ(wrench_law("III", "vps"), "traction");
-  EXPECT_EQ(wrench_law("IV", "vps-field"), "wall-traction");
-  EXPECT_EQ(wrench_law("III", "ist"), "volume");
-  EXPECT_EQ(wrench_law("II", "vps"), "own");
-  EXPECT_EQ(wrench_law("III", "fake"), "own");
-}
-
 TEST_F(EquivalentInAScenario, FindsTheBestShareOfTheWork) {
   const auto measure = [&](const Resolution& at) { return measure_scenario(study(200), axes_, at); };
   const double tau = measure({2000, 4000}).time_ns;

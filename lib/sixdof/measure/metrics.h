@@ -35,7 +35,7 @@ std::span<const Metric> metrics();
 
 /// The metric of a counter, or nullptr if the table has none. Suffixes are part of a counter's name but not of the
 /// table: "_low" and "_high" (bounds of its 95 % interval), "_all" (over the whole path of a scenario instead of its
-/// window) and "_by_LAW" (against the ideal of that law instead of the law the algorithm declares), e.g.
+/// window) and "_by_LAW" (against the ideal of that law instead of the algorithm's own), e.g.
 /// "sigma_T_all_by_wall_traction".
 const Metric* find_metric(std::string_view counter);
 

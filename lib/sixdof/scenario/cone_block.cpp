@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <sixdof/scenario/kinds.h>
+#include <sixdof/scenario/normals.h>
 #include <sixdof/scenario/plane.h>
 
 namespace sixdof {
@@ -77,6 +78,10 @@ class ConeBlock final : public Scenario {
       case IdealLaw::traction:
       case IdealLaw::wall_traction:
         return wrench(depth(x), traction(x, law == IdealLaw::wall_traction));
+      case IdealLaw::normals:
+        return normals(x);
+      case IdealLaw::descent:
+        return descent_of(x);
       // "p ~ delta" and "V ~ delta^3": constant while the bodies overlap.
       case IdealLaw::paper_depth:
         return upwards(depth(x) > 0.0 ? shape_.depth : 0.0);
@@ -166,6 +171,49 @@ class ConeBlock final : public Scenario {
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       sum += integrate_wrench([&](double s) { return ring_traction(s, x, along_wall); }, cuts[i], cuts[i + 1]);
     }
+    return sum;
+  }
+
+  /// About a point near the intersection: its moments about the reference point would lose its size to rounding.
+  IdealWrench descent_of(double x) const {
+    const double from = std::max(-tip_, -x), to = std::min(tip_, shape_.block_length - x);
+    const Eigen::Vector2d near(0.5 * (from + to), shape_.depth);  // across the cone's axis, and above the apex
+    const auto over_height = [&](const auto& f) {
+      const std::vector<double> cuts = smooth_pieces(x);
+      double sum = 0.0;
+      for (std::size_t i = 0; i + 1 < cuts.size(); ++i) sum += integrate_chords(f, cuts[i], cuts[i + 1]);
+      return sum;
+    };
+    const auto area = [&](double s) { return section(s, x).area; };
+    /// Integral of the squared distance from the vertical through `near`.
+    const auto polar = [&](double s) {
+      const double r = slope_ * s;
+      const auto across = [&](double at) {
+        const double half = std::sqrt(std::max(0.0, (r - at) * (r + at)));
+        return 2.0 * half * ((at - near.x()) * (at - near.x()) + half * half / 3.0);
+      };
+      return integrate_chords(across, std::max(-r, -x), std::min(r, shape_.block_length - x));
+    };
+    const OverlapMoments moments{
+        over_height(area),
+        {over_height([&](double s) { return section(s, x).moment_x - near.x() * area(s); }),
+         over_height([&](double s) { return (s - near.y()) * area(s); }), 0.0},
+        over_height([&](double s) { return polar(s) + (s - near.y()) * (s - near.y()) * area(s); })};
+    const Eigen::Vector3d arm(near.x(), near.y() - 0.5 * shape_.height, 0.0);
+    return descent(wrench(volume(x), gradient(x)), moments, arm);
+  }
+
+  /// The part of n_A is half the traction: both are integrals of the gradient of the depth below A's surface.
+  IdealWrench normals(double x) const {
+    const NormalsWrench of_b = cone_normals({.slope = slope_,
+                                             .height = shape_.height,
+                                             .bottom = bottom_,
+                                             .top = shape_.depth,
+                                             .before = x,
+                                             .beyond = shape_.block_length - x});
+    IdealWrench sum = wrench(volume(x), 0.5 * traction(x, false));
+    sum.force += of_b.force;
+    sum.torque += of_b.torque;
     return sum;
   }
 

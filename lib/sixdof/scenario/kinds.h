@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <sixdof/query/settings.h>
+#include <sixdof/scenario/normals.h>
 #include <sixdof/scenario/plane.h>
 #include <sixdof/scenario/scenario.h>
 #include <sixdof/scenario/solids.h>
@@ -45,6 +46,11 @@ PlaneWrench square_pin_traction(double side, double length, double angle, const 
 
 /// The same for a round pin of radius r in a round hole of radius r.
 PlaneWrench round_pin_traction(double r, double length, const Eigen::Vector2d& shift, bool along_wall);
+
+/// IdealLaw::descent: the gradient's wrench with the volume as its size.
+/// @param moments about the point `about`, which is relative to the reference point of the torques
+IdealWrench descent(const IdealWrench& gradient, const OverlapMoments& moments,
+                    const Eigen::Vector3d& about = Eigen::Vector3d::Zero());
 
 /// @throws BadArgument with this message unless `holds`
 void require(bool holds, const std::string& message);

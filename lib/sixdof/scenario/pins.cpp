@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <sixdof/scenario/kinds.h>
+#include <sixdof/scenario/normals.h>
 #include <sixdof/scenario/plane.h>
 
 namespace sixdof {
@@ -111,6 +112,12 @@ class RotatingPin final : public Scenario {
       case IdealLaw::wall_traction:
         return twist(
             p, square_pin_traction(c, length, -phi, Eigen::Vector2d::Zero(), law == IdealLaw::wall_traction).torque);
+      case IdealLaw::normals: {
+        const NormalsWrench w = square_pin_normals(c, length, -phi, Eigen::Vector2d::Zero());
+        return IdealWrench{v, w.force, w.torque};
+      }
+      case IdealLaw::descent:
+        return descent(twist(v, slope, lift), square_pin_moments(c, length, -phi, Eigen::Vector2d::Zero()));
       // "p ~ sin(phi/2) - 1": negative throughout, so the torque is its absolute value.
       case IdealLaw::paper_depth:
         return twist(std::sin(0.5 * phi) - 1.0, 1.0 - std::sin(0.5 * phi));
@@ -162,6 +169,10 @@ class OrbitingPins final : public Scenario {
       case IdealLaw::traction:
       case IdealLaw::wall_traction:
         return traction(u, law == IdealLaw::wall_traction);
+      case IdealLaw::normals:
+        return normals(u);
+      case IdealLaw::descent:
+        return descent(gradient(u, 1.0), moments(u));
       case IdealLaw::paper_volume: {
         // As printed, without the pins' length; the integral's limits are c/2 and r, so it is empty if c = 2 r.
         const double c = shape_.square_side;
@@ -226,6 +237,23 @@ class OrbitingPins final : public Scenario {
     const PlaneWrench round = round_pin_traction(shape_.round_radius, length_, d, along_wall);
     // About its own centre the round pin has no torque: it is its own mirror image in the line of the shift.
     return both(orbit_, square.force(), round.force(), square.torque);
+  }
+
+  IdealWrench normals(const Eigen::Vector2d& u) const {
+    const Eigen::Vector2d d = orbit_ * u;
+    const NormalsWrench square = square_pin_normals(shape_.square_side, length_, 0.0, d);
+    const NormalsWrench round = round_pin_normals(shape_.round_radius, length_, d);
+    const Eigen::Vector3d arm(0.25 * shape_.width, 0.0, 0.0);
+    return {square_volume(u) + round_volume(), square.force + round.force,
+            square.torque - arm.cross(square.force) + round.torque + arm.cross(round.force)};
+  }
+
+  OverlapMoments moments(const Eigen::Vector2d& u) const {
+    const Eigen::Vector2d d = orbit_ * u;
+    const Eigen::Vector3d arm(0.25 * shape_.width, 0.0, 0.0);
+    const OverlapMoments square = square_pin_moments(shape_.square_side, length_, 0.0, d).moved(-arm);
+    const OverlapMoments round = round_pin_moments(shape_.round_radius, length_, d).moved(arm);
+    return {square.volume + round.volume, square.first + round.first, square.second + round.second};
   }
 
   PinsShape shape_;

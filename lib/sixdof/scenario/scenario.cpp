@@ -13,8 +13,19 @@ namespace sixdof {
 namespace {
 
 /// In the order of IdealLaw.
-constexpr std::array<std::string_view, 8> k_law_words{"depth",    "volume",        "gradient",    "energy",
-                                                      "traction", "wall-traction", "paper-depth", "paper-volume"};
+constexpr std::array<std::string_view, 10> k_law_words{"depth",       "volume",        "gradient", "energy",
+                                                       "traction",    "wall-traction", "normals",  "descent",
+                                                       "paper-depth", "paper-volume"};
+
+struct Limit {
+  std::string_view algorithm;
+  IdealLaw law;
+};
+
+/// By test/quality/limit_test.cpp and the convergence tests of the algorithms.
+constexpr std::array k_limits{Limit{"exact", IdealLaw::gradient}, Limit{"vps", IdealLaw::traction},
+                              Limit{"vps-field", IdealLaw::wall_traction}, Limit{"ist", IdealLaw::normals},
+                              Limit{"ist-descent", IdealLaw::descent}};
 
 struct Kind {
   const char* name;
@@ -49,13 +60,22 @@ std::vector<IdealLaw> all_ideal_laws() {
   return laws;
 }
 
-IdealLaw parse_ideal_law(std::string_view word, ResponseLaw own) {
-  if (word == "paper" || word == "own") {
-    if (own == ResponseLaw::none) {
-      throw BadArgument(fmt::format("the algorithm declares no law, so \"{}\" has no meaning; name a law", word));
+IdealLaw own_law(const Traits& traits) {
+  const auto* const known = std::ranges::find(k_limits, traits.name, &Limit::algorithm);
+  if (known != k_limits.end()) return known->law;
+  if (traits.law == ResponseLaw::none) {
+    throw BadArgument(fmt::format("{} declares no law, so \"own\" has no meaning; name a law", traits.name));
+  }
+  return is_of_depth(traits.law) ? IdealLaw::depth : IdealLaw::volume;
+}
+
+IdealLaw parse_ideal_law(std::string_view word, const Traits& traits) {
+  if (word == "own") return own_law(traits);
+  if (word == "paper") {
+    if (traits.law == ResponseLaw::none) {
+      throw BadArgument(fmt::format("{} declares no law, so \"paper\" has no meaning; name a law", traits.name));
     }
-    if (word == "own") return is_of_depth(own) ? IdealLaw::depth : IdealLaw::volume;
-    return is_of_depth(own) ? IdealLaw::paper_depth : IdealLaw::paper_volume;
+    return is_of_depth(traits.law) ? IdealLaw::paper_depth : IdealLaw::paper_volume;
   }
   for (const IdealLaw law : all_ideal_laws()) {
     if (to_string(law) == word) return law;
@@ -104,6 +124,12 @@ Settings settings_with_round_parts(std::vector<Parameter> parameters) {
 
 RoundParts round_parts_of(const Settings& settings) {
   return settings.choice("round") == "inscribed" ? RoundParts::inscribed : RoundParts::equal_area;
+}
+
+IdealWrench descent(const IdealWrench& gradient, const OverlapMoments& moments, const Eigen::Vector3d& about) {
+  const double norm = moments.gradient_norm(gradient.force, gradient.torque - about.cross(gradient.force));
+  const double factor = norm > 0.0 ? moments.volume / norm : 0.0;
+  return {gradient.penalty, factor * gradient.force, factor * gradient.torque};
 }
 
 void require(bool holds, const std::string& message) {

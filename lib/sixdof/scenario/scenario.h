@@ -27,16 +27,26 @@ enum class IdealLaw {
   energy,    ///< Wrench = -V grad V: the energy is V^2 / 2 (elastic contact).
   traction,  ///< Integral, over B's surface inside A, of depth below A's surface along B's inward normals (as VPS).
   wall_traction,  ///< The same along the outward normals of A's nearest face.
+  normals,        ///< Integral over the intersection of (n_A - n_B) / 2, n the outward normal where the surface of A
+                  ///< or B is nearest (as inner spheres with normal cones).
+  descent,        ///< Magnitude = V, in the direction of -grad V among all motions of B; rotations are measured in the
+                  ///< intersection's radius of gyration (as `ist-descent`).
   paper_depth,    ///< The paper's formula for p, as printed.
   paper_volume,   ///< The paper's formula for V, as printed.
 };
 
-/// "depth", "volume", "gradient", "energy", "traction", "wall-traction", "paper-depth", "paper-volume".
+/// "depth", "volume", "gradient", "energy", "traction", "wall-traction", "normals", "descent",
+/// "paper-depth", "paper-volume".
 std::string_view to_string(IdealLaw law);
 
-/// The words above; "own" is the law that the algorithm declares, "paper" that law's formula as printed.
+/// The law that the algorithm's wrench tends to with increasing resolution (README.md, "Which law is whose"): for those
+/// of this project whose limit is known that law, for all others the law of magnitude that they declare.
+/// @throws BadArgument if there is none
+IdealLaw own_law(const Traits& traits);
+
+/// The words above; "own" is own_law(), "paper" the formula, as printed, of the magnitude that the algorithm declares.
 /// @throws BadArgument for another word, or for "paper" or "own" if the algorithm declares no law
-IdealLaw parse_ideal_law(std::string_view word, ResponseLaw own);
+IdealLaw parse_ideal_law(std::string_view word, const Traits& traits);
 
 /// All laws in the order of the enumeration.
 std::vector<IdealLaw> all_ideal_laws();

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <sixdof/scenario/kinds.h>
+#include <sixdof/scenario/normals.h>
 #include <sixdof/scenario/plane.h>
 
 namespace sixdof {
@@ -52,12 +53,15 @@ class SphereCylinder final : public Scenario {
     const auto over_height = [&](const auto& f) { return 2.0 * integrate_chords(f, 0.0, half); };
     const double volume = over_height([&](double z) { return lens_area(circle(z), cylinder(), orbit()); });
     const double gradient = over_height([&](double z) { return lens_chord(circle(z), cylinder(), orbit()); });
+    const double along_normals = over_height([&](double z) { return traction(z, false); });
     by_law_ = {{{depth(), depth()},
                 {volume, volume},
                 {volume, gradient},
                 {volume, volume * gradient},
-                {depth(), over_height([&](double z) { return traction(z, false); })},
+                {depth(), along_normals},
                 {depth(), over_height([&](double z) { return traction(z, true); })},
+                {volume, 0.5 * along_normals + sphere_normals(shape.sphere_radius, cylinder(), orbit())},
+                {volume, volume},
                 {orbit(), orbit()},  // "p = rho"
                 {1.0, 1.0}}};        // "V = const"
   }
@@ -99,7 +103,7 @@ class SphereCylinder final : public Scenario {
 
   Shape shape_;
   /// Penalty, and magnitude of the force away from the axis, in the order of IdealLaw.
-  std::array<std::pair<double, double>, 8> by_law_;
+  std::array<std::pair<double, double>, 10> by_law_;
 };
 
 }  // namespace
