@@ -35,11 +35,6 @@ py::dict dict_of(const Parameter& parameter) {
   return dict;
 }
 
-std::string law_word(ResponseLaw law) {
-  if (law == ResponseLaw::depth) return "depth";
-  return law == ResponseLaw::volume ? "volume" : "none";
-}
-
 py::dict dict_of(const Traits& traits) {
   py::dict dict;
   dict["name"] = traits.name;
@@ -50,7 +45,7 @@ py::dict dict_of(const Traits& traits) {
   if (traits.answers.distance) answers.append("distance");
   if (traits.answers.respond) answers.append("respond");
   dict["answers"] = py::tuple(answers);
-  dict["law"] = law_word(traits.law);
+  dict["law"] = std::string(to_string(traits.law));
   dict["approximates"] = traits.approximates;
   dict["body"] = std::string(to_string(traits.body));
   dict["runtime"] = traits.runtime;

@@ -40,7 +40,7 @@ py::dict record_signals(const std::string& scenario_name, const Parameters& shap
   const Traits& traits = algorithm.traits();
   if (!traits.answers.respond) throw BadArgument(fmt::format("algorithm: {} gives no response", traits.name));
   const Settings settings = settings_of(algorithm, parameters);
-  const IdealLaw law = parse_ideal_law(law_word, traits.law);
+  const IdealLaw law = parse_ideal_law(law_word, traits);
   Recording recording;
   Measures measures;
   std::unique_ptr<Ideals> ideals;

@@ -38,7 +38,7 @@ Error error_in_three(const std::string& name, const std::vector<std::string>& pa
   };
   const Traits& traits = algorithm.traits();
   const auto own = measures(own_law(traits));
-  const auto declared = measures(traits.law == ResponseLaw::depth ? IdealLaw::depth : IdealLaw::volume);
+  const auto declared = measures(is_of_depth(traits.law) ? IdealLaw::depth : IdealLaw::volume);
   return {own.at("sigma_T"), own.at("gain_T"), declared.at("sigma_T")};
 }
 

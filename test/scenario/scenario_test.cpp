@@ -83,13 +83,12 @@ TEST(Scenario, LawsHaveWords) {
 TEST(Scenario, KnowsTheLimitsOfThisProjectsAlgorithms) {
   for (const auto& [name, declared, own] : {std::tuple{"exact", ResponseLaw::volume, IdealLaw::gradient},
                                             {"vps", ResponseLaw::depth, IdealLaw::traction},
-                                            {"vps-field", ResponseLaw::depth, IdealLaw::wall_traction},
+                                            {"vps-field", ResponseLaw::way_out, IdealLaw::wall_traction},
                                             {"ist", ResponseLaw::volume, IdealLaw::normals},
                                             {"ist-descent", ResponseLaw::volume, IdealLaw::descent}}) {
     const Traits traits{.name = name, .law = declared};
     EXPECT_EQ(own_law(traits), own) << name;
-    EXPECT_EQ(parse_ideal_law("paper", traits),
-              declared == ResponseLaw::depth ? IdealLaw::paper_depth : IdealLaw::paper_volume);
+    EXPECT_EQ(parse_ideal_law("paper", traits), is_of_depth(declared) ? IdealLaw::paper_depth : IdealLaw::paper_volume);
   }
 }
 
