@@ -23,7 +23,7 @@ constexpr double k_digits = 0.05;  // the expected distances have two digits
 using ::testing::HasSubstr;
 
 test::ProgramResult query(const std::string& arguments) {
-  return test::run_program(std::string(SIXDOF_PROGRAM) + " query " + arguments);
+  return test::run_program(std::string(SIXDOF_PROGRAM).append(" query ").append(arguments));
 }
 
 nlohmann::json answers(const std::string& arguments) {
