@@ -26,7 +26,11 @@ Json scenario_row(const std::string& scenario, const std::string& algorithm, con
                {"real_time", 4000.0},
                {"time_unit", "ns"}};
   json.update(values);
-  json["sixdof"] = {{"query", "scenario"}, {"algorithm", algorithm}, {"scenario", scenario}, {"law", law}};
+  json["sixdof"] = {{"query", "scenario"},
+                    {"algorithm", algorithm},
+                    {"settings", Json::object()},
+                    {"scenario", scenario},
+                    {"law", law}};
   return json;
 }
 
