@@ -63,7 +63,7 @@ void expect_fields_of_the_name(const json& entry) {
 TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
   const json document = result(
       "--sample 32 -p ist:spheres=300 -p ist-descent:spheres=300 "
-      "-p exact-depth:tolerance=0.02 -p exact-way-out:tolerance=0.2 --benchmark_filter='"
+      "-p exact-depth:tolerance=0.02 --benchmark_filter='"
       "^(prepare|collide|distance|respond)/.*/pair:torus-1k-cone-1k(/(distance:05|volume:03))?$|"
       "^collide/algorithm:exact/pair:torus-1k-cone-1k/distance:05/cache:cold$|"
       "^scenario/(II|III)/algorithm:exact$|^scene/cube/n:100/question:near/algorithm:exact$|"

@@ -29,7 +29,7 @@ using ::testing::Not;
 TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
   const json document = result(
       "--seed 5 --sample 32 -p ist:spheres=300 -p ist-descent:spheres=300 "
-      "-p exact-depth:tolerance=0.02 -p exact-way-out:tolerance=0.2 "  // usual ones take minutes
+      "-p exact-depth:tolerance=0.02 "  // the usual one takes a minute
       "'--benchmark_filter=-^(scenario|generate|cast)/'");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;

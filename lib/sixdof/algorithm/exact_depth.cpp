@@ -61,6 +61,7 @@ std::unique_ptr<Algorithm> make(const char* name, const char* summary, ResponseL
                                        1e8),
                       Parameter::count("threads", "that a response may use; changes no bit of it", "1", 1.0,
                                        k_most_threads)},
+       .timed = k_direction == DepthDirection::normal_of_b,  // the other takes seconds where directions jump much
        .by_default = false});
 }
 
