@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* k_kind = "depth-truth";
 /// To be raised where DepthOracle or what is stored changes.
-constexpr int k_version = 1;
+constexpr int k_version = 2;
 /// What is asked of the quadrature: half of what is judged.
 constexpr DepthTolerance k_tolerance{.relative = 0.5 * DepthTruth::k_judged_error, .most_pieces = 200'000};
 /// Force, torque, reference, depth.

@@ -294,7 +294,9 @@ class Quadrature {
     double deepest = 0.0;
     for (const DepthNode& node : nodes_) deepest = std::min(deepest, node.s);
     result_.depth = -deepest;
-    const double force = std::max(sums.force.norm(), DepthTolerance::k_cancelled * sums.depth);
+    const double diagonal = oracle_.b().diagonal();
+    const double force = std::max({sums.force.norm(), DepthTolerance::k_cancelled * sums.depth,
+                                   DepthTolerance::k_least * diagonal * diagonal * diagonal});
     const double force_allowed = tolerance_.relative * force;
     const double torque_allowed = tolerance_.relative * std::max(sums.torque.norm(), lever_ * force);
     per_force_ = force_allowed > 0.0 ? 1.0 / force_allowed : 1.0;
