@@ -29,7 +29,7 @@ using ::testing::Not;
 TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
   const json document = result(
       "--seed 5 --sample 32 -p ist:spheres=300 -p ist-descent:spheres=300 "
-      "-p exact-depth:tolerance=0.02 "  // the usual one takes a minute
+      "-p exact-depth:tolerance=0.1 "  // the usual one takes a minute, and more pieces than it may where bodies touch
       "'--benchmark_filter=-^(scenario|generate|cast)/'");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;
@@ -189,7 +189,7 @@ TEST_F(BenchProgram, ListsWithoutTouchingASet) {
   std::set<std::string> names;
   for (std::string name; std::getline(lines, name);) {
     EXPECT_TRUE(names.insert(name).second) << name << " twice";
-    EXPECT_TRUE(std::regex_match(name, std::regex("[A-Za-z0-9_/:-]+"))) << name;
+    EXPECT_TRUE(std::regex_match(name, std::regex("[A-Za-z0-9_/:.-]+"))) << name;
   }
   EXPECT_TRUE(names.contains("distance/algorithm:fcl-rss/pair:torus-1k-cone-1k/distance:05/order:path"));
   EXPECT_FALSE(names.contains("collide/algorithm:fcl-rss/pair:torus-1k/distance:05"));
@@ -308,7 +308,8 @@ TEST_F(BenchProgram, RunsTheDefaultSuiteUnlessRowsOrSetsAreChosen) {
   std::set<std::string> of_all = scenario_rows("");
   // Slow algorithms are measured where they are named.
   std::erase_if(of_all, [](const std::string& name) {
-    return name.ends_with(":gts") || name.ends_with(":simbody") || name.ends_with(":cgal");
+    return name.ends_with(":gts") || name.ends_with(":simbody") || name.ends_with(":cgal") ||
+           name.ends_with(":exact-depth");
   });
   EXPECT_EQ(scenario_rows("--suite default"), of_all);
   EXPECT_GT(count_rows("--manifest " + suite->manifest().string()), 0) << "sets of the user: all rows";

@@ -213,7 +213,9 @@ void expect_reason(Plant plant, const results::Candidate& candidate) {
               apart ? testing::Matcher<const std::string&>(HasSubstr("apart ")) : Not(HasSubstr("(apart ")));
   EXPECT_THAT(candidate.reason,
               deep ? testing::Matcher<const std::string&>(HasSubstr("overlapping ")) : Not(HasSubstr("overlapping ")));
-  if (plant == Plant::near) EXPECT_THAT(candidate.reason, HasSubstr("(near contact "));
+  if (plant == Plant::near) {
+    EXPECT_THAT(candidate.reason, HasSubstr("(near contact "));
+  }
 }
 
 TEST_F(Recommend, TakesNoneOfAHundredPlantedFaults) {

@@ -43,7 +43,7 @@ struct DepthTolerance {
   static constexpr double k_lever = 0.1;
   static constexpr double k_cancelled = 0.01;
   /// Where bodies touch without depth, |force| is taken for no less than this times the cube of B's diagonal.
-  static constexpr double k_least = 1e-9;
+  static constexpr double k_least = 1e-8;
   std::size_t most_pieces = 400'000;  ///< Bound of memory (some 300 bytes a piece) and time.
 };
 
