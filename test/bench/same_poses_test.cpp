@@ -67,8 +67,8 @@ struct SamePoses : test::BenchProgram {
 constexpr const char* k_random = "^[a-z]+/algorithm:records.*/(distance|volume):[0-9]+$";
 constexpr const char* k_path = "^[a-z]+/algorithm:records.*/order:path$";
 constexpr const char* k_motion = "^[a-z]+/algorithm:records.*/order:motion$";
-/// Two pairs with 3 buckets to collide, 2 with distances and one with responses.
-constexpr std::size_t k_groups = 2 * (3 + 2 + 1);
+/// Two pairs with 3 buckets to collide and to respond, and 2 with distances.
+constexpr std::size_t k_groups = 2 * (3 + 3 + 2);
 /// As the poses tell them apart: two pairs, three questions.
 constexpr std::size_t k_query_kinds = 2 * 3;
 
