@@ -99,7 +99,7 @@ std::vector<PlannedRow> scenario_rows(const Resources& resources) {
   std::vector<PlannedRow> rows;
   for (const std::string& scenario : scenario_names()) {
     for (const auto& algorithm : resources.registry.all()) {
-      if (!algorithm->traits().answers.respond) continue;
+      if (!algorithm->traits().timed || !algorithm->traits().answers.respond) continue;
       const auto row = std::make_shared<ScenarioRow>(ScenarioRow{resources, *algorithm, scenario});
       rows.push_back({.name = fmt::format("scenario/{}/algorithm:{}", scenario, algorithm->traits().name),
                       .run = [row](benchmark::State& state, const Share& share) { row->run(state, share.seconds); },
