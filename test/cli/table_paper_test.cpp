@@ -54,7 +54,8 @@ TEST_F(TablePaper, HasScenariosBesideThePrintedValues) {
                                                  {"sigma_F", 0.5},
                                                  {"sigma_F_all", 0.0149}}),
                                    scenario_row("III", "ist", "normals", {{"spheres_a", 10000}, {"sigma_T", 0.17}})});
-  EXPECT_THAT(out, HasSubstr("| Ia | vps | 728x25x304, 15,667 (728x24x303, 15,669) | traction | 3.50 | 0.0149 (0.043)"));
+  EXPECT_THAT(out,
+              HasSubstr("| Ia | vps | 728x25x304, 15,667 (728x24x303, 15,669) | traction | 3.50 | 0.0149 (0.043)"));
   EXPECT_THAT(out, HasSubstr("| III | ist | 10,000 | normals | 3.50 |"));
   EXPECT_THAT(out, HasSubstr("(0.112)")) << "sigma_T that the paper prints";
 }
