@@ -40,16 +40,17 @@ TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
     EXPECT_FALSE(entry.contains("error_occurred")) << entry;
     if (name.starts_with("prepare/")) continue;
     // Where surfaces touch along a line, an integral may need more pieces than it may have: it says so, and fails.
-    if (name.find("algorithm:exact-depth/") != std::string::npos && name.find("distance:00") != std::string::npos)
-      continue;
-    EXPECT_EQ(entry.at("failed"), 0) << name;
+    const bool may_fail =
+        name.find("algorithm:exact-depth/") != std::string::npos && name.find("distance:00") != std::string::npos;
+    const auto failed = entry.at("failed").get<std::size_t>();
+    EXPECT_LE(failed, may_fail ? 8u : 0u) << name;
     EXPECT_GE(entry.at("max_ns"), entry.at("p50_ns")) << name;
     EXPECT_GE(entry.at("max_ns"), entry.at("max_least_ns")) << name;
     for (const char* percentile : {"p99_ns", "p999_ns", "p99_least_ns"}) {
       EXPECT_FALSE(entry.contains(percentile)) << name << ": of 32 configurations";
     }
     EXPECT_GT(entry.at("p50_ns"), 0) << name;
-    EXPECT_EQ(entry.at("iterations").get<std::size_t>() % entry.at("configurations").get<std::size_t>(), 0u)
+    EXPECT_EQ(entry.at("iterations").get<std::size_t>() % (entry.at("configurations").get<std::size_t>() - failed), 0u)
         << name << ": only whole rounds";
     EXPECT_EQ(entry.at("configurations"), 32) << name;
     EXPECT_GT(entry.at("reachable"), test::SmallSuite::k_configurations / 2) << name;
