@@ -20,7 +20,7 @@ AskedBucket asked_bucket(const RowFields& fields) {
     bucket.percent = std::stod(fmt::format("{:.6g}", bucket.percent / *fields.volume_unit));
   }
   // All casts are on the bucket of contact: what tells them apart is how B moves.
-  return {fields.query == "cast" ? fmt::format("cast {}", fields.order) : fields.query, bucket};
+  return {fields.query == k_cast ? fmt::format("cast {}", fields.order) : fields.query, bucket};
 }
 
 void to_json(nlohmann::json& json, const Missing& missing) {
