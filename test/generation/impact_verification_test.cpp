@@ -1,6 +1,7 @@
 #include <sixdof/generation/impact_verification.h>
 
 #include <gmock/gmock.h>
+#include <Eigen/Geometry>
 
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/error.h>
@@ -16,19 +17,22 @@ namespace {
 using Kind = ImpactBracket::Kind;
 using ::testing::HasSubstr;
 
+Pose pose_of(double w, double x, double y, double z, const Eigen::Vector3d& t) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(w, x, y, z).normalized();
+  return Pose::from_quaternion(q.w(), q.x(), q.y(), q.z(), t);
+}
+
 /// Motions of two small bodies, all kinds of truths among them.
 class Verified : public ::testing::Test {
  protected:
   Verified() {
     const double d = a_.diagonal();
     for (int i = 0; i < 12; ++i) {
-      const Pose start =
-          Pose::from_quaternion(0.9 - 0.05 * i, 0.1 + 0.07 * i, 0.3, -0.2, {1.4 * d, 0.09 * d * (i % 4), -0.11 * d});
+      const Pose start = pose_of(0.9 - 0.05 * i, 0.1 + 0.07 * i, 0.3, -0.2, {1.4 * d, 0.09 * d * (i % 4), -0.11 * d});
       const Eigen::Vector3d towards(i % 3 == 2 ? 0.1 * d : -1.3 * d, 0.05 * d, 0.07 * d);
       motions_.push_back(Motion::of(b_, start, towards, {0.3 * i, 1.0 - 0.1 * i, 0.2}));
     }
-    motions_.push_back(
-        Motion::of(b_, Pose::from_quaternion(0.9, 0.1, 0.3, -0.2, {0.3 * d, 0.0, 0.1 * d}), {0.2 * d, 0.1 * d, 0.0}));
+    motions_.push_back(Motion::of(b_, pose_of(0.9, 0.1, 0.3, -0.2, {0.3 * d, 0.0, 0.1 * d}), {0.2 * d, 0.1 * d, 0.0}));
     truths_ = stored_impacts(a_, b_, motions_);
   }
   ImpactsVerdict verdict() const { return verify_impacts(a_, b_, motions_, truths_, *oracle_); }
