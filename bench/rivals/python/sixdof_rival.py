@@ -150,7 +150,9 @@ class _Server:
         return self.pose_of(_pose(numbers))
 
     def motion(self, request):
-        vectors = ([float(x) for x in request[key]] for key in ("translation", "rotation", "reference"))
+        vectors = [[float(x) for x in request[key]] for key in ("translation", "rotation", "reference")]
+        if any(len(vector) != 3 for vector in vectors):
+            raise ValueError("a motion does not have three vectors of three numbers")
         return self.motion_of(Motion(_pose(request["pose"]), *vectors))
 
     def empty_call_ns(self):
@@ -174,8 +176,8 @@ class _Server:
 
     def ask(self, request):
         kind = request["query"]
-        place = self.motion(request) if kind == "cast" else self.pose(request["pose"])
-        took, reply = timed(self.method(kind), kind, place)
+        method = self.method(kind)
+        took, reply = timed(method, kind, self.motion(request) if kind == "cast" else self.pose(request["pose"]))
         return reply | {"ns": took}
 
     def time(self, request):
