@@ -10,6 +10,7 @@
 #include <sixdof/base/error.h>
 #include <sixdof/generation/motions.h>
 #include <sixdof/generation/stored_impacts.h>
+#include "bench/common/hulls.h"
 #include "bench/harness/cast_check.h"
 #include "bench/harness/timing.h"
 #include "bench/rows/families.h"
@@ -32,6 +33,17 @@ struct CastRow {
   std::optional<CastCounts> counts = {};
   Latency latency = {}, least = {};
   std::vector<Motion> answered = {};
+  std::shared_ptr<const Mesh> hull_a = {}, hull_b = {};  ///< Of an algorithm about hulls, when first needed.
+
+  bool is_about_hulls() const { return algorithm.traits().body == Body::convex_hull; }
+
+  /// What answers are about.
+  const Mesh& body(const std::string& key, std::shared_ptr<const Mesh>& hull) {
+    const Mesh& mesh = resources.cache.mesh(key);
+    if (!is_about_hulls()) return mesh;
+    if (!hull) hull = std::make_shared<const Mesh>(hull_of(mesh));
+    return *hull;
+  }
 
   std::string motion() const { return fmt::format("{}/{}", to_string(kind), percent); }
   std::string name() const {
@@ -45,16 +57,15 @@ struct CastRow {
             .pair = pair.pair,
             .bucket = k_contact,
             .order = motion(),
+            .body = is_about_hulls() ? std::string(to_string(Body::convex_hull)) : std::string(),
             .runtime = algorithm.traits().runtime,
             .cache = "warm",
             .isolated = is_isolated(algorithm)};
   }
 
   void run(benchmark::State& state, const Share& share) {
-    const Mesh& a = resources.cache.mesh(pair.a);
-    const Mesh& b = resources.cache.mesh(pair.b);
     const std::vector<Motion> motions = motions_to_ask(share.configurations);
-    const auto truths = stored_impacts(a, b, motions);
+    const auto truths = stored_impacts(body(pair.a, hull_a), body(pair.b, hull_b), motions);
     Query& query = resources.cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
     if (!counts) check(motions, truths, query);
     if (answered.empty()) throw Error(fmt::format("no motion has an answer: {}", counts->first_failure));
@@ -97,7 +108,7 @@ struct CastRow {
   /// Judges one answer to every motion and times single queries.
   void check(const std::vector<Motion>& motions, const std::vector<ImpactBracket>& truths, Query& query) {
     CastCounts found;
-    CastJudge judge(resources.cache.mesh(pair.a), resources.cache.mesh(pair.b));
+    CastJudge judge(body(pair.a, hull_a), body(pair.b, hull_b));
     for (std::size_t i = 0; i < motions.size(); ++i) {
       std::string words;
       const Outcome<Impact> answer = ask_cast(query, motions[i], words);
@@ -147,7 +158,7 @@ std::vector<PlannedRow> cast_rows(const Resources& resources) {
     if (!has_contacts(pair)) continue;
     for (const auto& algorithm : resources.registry.all()) {
       const Traits& traits = algorithm->traits();
-      if (!traits.timed || !traits.answers.cast || traits.body != Body::mesh) continue;
+      if (!traits.timed || !traits.answers.cast) continue;
       for (const MotionKind kind : k_motion_kinds) {
         for (const double percent : k_motion_steps) {
           const auto row = std::make_shared<CastRow>(CastRow{resources, *algorithm, pair, kind, percent});
