@@ -37,12 +37,12 @@ constexpr unsigned k_most_threads = 64;
 
 constexpr const char* k_details =
     R"(Asks every algorithm the same poses of the pair: apart, near contact (0.01 to 0.3 % of the smaller box's
-diagonal, apart and pushed in) and overlapping; and motions from contact. Answers are compared with those of exact. Then every query is timed
-alone, once, as it comes: the deadline is kept if at most 0.1 % of the queries are late. Beside them stands how many
-waits of a loop that asks nothing were late on this machine; nothing is subtracted.
+diagonal, apart and pushed in) and overlapping; and motions from contact. Answers are compared with those of exact.
+Then every query is timed alone, once, as it comes: the deadline is kept if at most 0.1 % of the queries are late. Beside
+them stands how many waits of a loop that asks nothing were late on this machine; nothing is subtracted.
 
-An algorithm that gives one wrong yes/no is unsafe and is not taken. Right answers come before approximations. Of
-equally right algorithms the fastest is taken. Where too few poses could be judged, there is no verdict. "0 of 2,100
+An algorithm that gives one wrong yes/no or contact is unsafe and is not taken. Right answers come before
+approximations. Of equally right algorithms the fastest is taken. Where too few poses could be judged, there is no verdict. "0 of 2,100
 wrong" means that with 95 % confidence at most 3 of 2,100 are (rule of three).
 
 Exit code 3 if nothing can be taken.

@@ -53,8 +53,8 @@ again. Differences for bodies that just touch (grazing), and nested pairs, are n
 answer a question are left out, with a message. The truth is every pair in every frame, by the distance oracle; it is
 kept in the cache.
 
-Columns of --list: question, algorithm, frame; for a pair body, other and their distance (in the meshes' unit; t of impacts); for a
-wrench body, force fx, fy, fz and torque tx, ty, tz about the centre of the body's box, in the world's frame. --list
+Columns of --list: question, algorithm, frame; for a pair body, other and their distance (in the meshes' unit; of
+impacts t); for a wrench body, force fx, fy, fz and torque tx, ty, tz about the centre of the body's box, in the world's frame. --list
 --json: an array with an object for each question, algorithm and frame.)";
 
 struct NamedPlay {
