@@ -22,7 +22,11 @@ struct ImpactVerification {
 
 /// Answer of verify_impacts(). Problems are counted by motion.
 struct ImpactsVerdict {
-  std::size_t motions = 0, hits = 0, misses = 0, at_start = 0, grazing = 0;
+  std::size_t motions = 0;            ///< That were checked, and below how many of each kind of truth.
+  std::size_t hits = 0;               ///< ImpactBracket::Kind::hit
+  std::size_t misses = 0;             ///< Kind::none
+  std::size_t at_start = 0;           ///< Kind::at_start
+  std::size_t grazing = 0;            ///< Kind::grazing; checked up to t_free.
   double widest = 0.0;                ///< Largest t_touch - t_free of the hits, a part of the motion.
   std::size_t wide = 0;               ///< Brackets wider than bracket_width().
   std::size_t changed = 0;            ///< Truths that have other bits when they are computed again.
@@ -30,6 +34,7 @@ struct ImpactsVerdict {
   std::size_t apart = 0;              ///< They do not touch at t_touch, or at the start.
   std::vector<std::string> problems;  ///< In words, the first of each kind.
 
+  /// Whether no truth has a problem.
   bool ok() const { return problems.empty(); }
 };
 
