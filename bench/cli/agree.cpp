@@ -13,6 +13,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/own_command.h>
+#include "bench/cli/agree.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/shared.h"
 #include "bench/cli/study_options.h"
@@ -33,15 +34,6 @@ using study::AskedAlgorithm;
 using study::Difference;
 using study::PairAgreement;
 
-struct Arguments {
-  std::vector<std::string> pairs, sets, algorithms, parameters;
-  std::size_t sample = 100;
-  std::uint64_t seed = 1;
-  std::size_t show = 1;
-  bool json = false;
-  ProcessOptions process;
-};
-
 constexpr const char* k_keys =
     "An answer differs if it contradicts the set: yes at a distance, no at an overlap, or a distance whose error\n"
     "is larger than the set's tolerance plus 1e-9 of A's diagonal. For touching bodies (0 %) both yes and no are\n"
@@ -51,10 +43,15 @@ constexpr const char* k_keys =
     "{bucket, configurations, split, algorithms[] {algorithm, yes, judged_collide, wrong_collide, judged_distance,\n"
     "wrong_distance, failed, largest_distance_error}}, differences[] {algorithm, bucket, cell, question, answer, "
     "truth,\n"
-    "pose, command}}. split: configurations where some algorithms say yes and others no.";
+    "pose, command}}. split: configurations where some algorithms say yes and others no.\n"
+    "With --question cast B moves from the poses of contact (0 %), by 0.01 to 100 % of A's diagonal. A contact that "
+    "is\n"
+    "missed, late, or none (phantom; at start) is a fault, beyond 1e-9 of A's diagonal; an early one is counted.\n"
+    "pairs[] {pair, refusals[], answers[] {algorithm, motion, percent, hits, missed_hits, late_hits, late_max, early,\n"
+    "early_max, ...}, differences[] {algorithm, motion, percent, place, verdict, answer, truth, command}}.";
 
 /// Those of --algorithms, or all of default runs that answer yes/no or distance, but `null`.
-std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const Arguments& arguments) {
+std::vector<AskedAlgorithm> chosen_algorithms(const Registry& registry, const AgreeArguments& arguments) {
   const auto settings = bench::parse_parameters(arguments.parameters, registry);
   std::vector<AskedAlgorithm> chosen;
   const auto add = [&](const Algorithm& algorithm) {
@@ -187,7 +184,8 @@ class AgreeProgress {
   std::size_t total_ = 0, before_ = 0;  ///< Steps; before this pair.
 };
 
-void agree(const Arguments& arguments) {
+void agree(const AgreeArguments& arguments) {
+  if (arguments.question == "cast") return agree_casts(arguments);
   Registry registry;
   register_all_algorithms(registry, arguments.process);
   const std::vector<AskedAlgorithm> algorithms = chosen_algorithms(registry, arguments);
@@ -234,9 +232,9 @@ void agree(const Arguments& arguments) {
 }  // namespace
 
 void add_agree_command(CLI::App& app) {
-  auto* const command = app.add_subcommand(
-      "agree", "Compare yes/no and distances of several algorithms with the truth of configuration sets");
-  const auto arguments = std::make_shared<Arguments>();
+  auto* const command =
+      app.add_subcommand("agree", "Compare answers of several algorithms with the truth of configuration sets");
+  const auto arguments = std::make_shared<AgreeArguments>();
   auto* const pairs =
       command->add_option("--pair", arguments->pairs, "Pairs of the sets that come with sixdof: elephant,bunny");
   pairs->delimiter(',')->type_name("PAIR")->default_str("all");
@@ -244,6 +242,12 @@ void add_agree_command(CLI::App& app) {
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->excludes(pairs);
+  command
+      ->add_option("--question", arguments->question,
+                   "pose: yes/no and distance; cast: when do the bodies first touch while B moves?")
+      ->check(CLI::IsMember({"pose", "cast"}))
+      ->type_name("QUESTION")
+      ->capture_default_str();
   command
       ->add_option("--algorithms", arguments->algorithms,
                    "Algorithms to compare: exact,ode,...; rivals: all that are set up")

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <sixdof/configuration/set_catalogue.h>
@@ -24,12 +23,12 @@ struct RecommendOptions {
   bool in_motion() const { return order == "motion"; }
 };
 
-/// "yes-no", "distance", "respond".
-std::string_view words_of(bench::QueryKind question);
+/// "yes-no" for "collide"; the others as they are: "distance", "respond", "cast".
+std::string words_of(const std::string& query);
 
 /// The answer to one question.
 struct Verdict {
-  bench::QueryKind question;
+  std::string query;  ///< "collide", "distance", "respond", "cast".
   std::string metric;
   std::string poses = {};                                  ///< What was judged, in words.
   std::vector<results::Row> rows = {};                     ///< Of all settings,

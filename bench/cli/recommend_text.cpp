@@ -14,7 +14,6 @@
 namespace sixdof::cli {
 namespace {
 
-using bench::QueryKind;
 using results::Candidate;
 using results::Standing;
 
@@ -24,16 +23,30 @@ std::string name_of(const Verdict& verdict, const Candidate& candidate) {
                      fmt::join(assignments, " "));
 }
 
+/// The same of first contacts.
+std::string cast_answers_text(const Verdict& verdict, const Candidate& candidate) {
+  const results::Row& row = verdict.rows[candidate.place];
+  const double judged = row.count("judged");
+  std::string text = fmt::format("0 of {:.0f} contacts missed, late or wrong (at most {:.2g} %, with 95 % confidence)",
+                                 judged, 100.0 * results::most_wrong(judged));
+  if (row.count("early") > 0.0) {
+    text += fmt::format(", {:.0f} early by up to {:.2g} % of the motion", row.count("early"),
+                        100.0 * row.count("early_max"));
+  }
+  return text;
+}
+
 /// How right its answers are.
 std::string answers_text(const Verdict& verdict, const Candidate& candidate) {
   const results::Row& row = verdict.rows[candidate.place];
   const auto value = [&](const char* name) { return row.value(name).value_or(0.0); };
   const double judged = value("judged_apart") + value("judged_near") + value("judged_overlapping");
   std::string text = row.fields.approximates ? "approximate, " : "";
-  if (verdict.question == QueryKind::collide || (verdict.question == QueryKind::distance && candidate.exact)) {
+  if (verdict.query == results::k_cast) return text + cast_answers_text(verdict, candidate);
+  if (verdict.query == "collide" || (verdict.query == "distance" && candidate.exact)) {
     text += fmt::format("0 of {:.0f} answers wrong (at most {:.2g} %, with 95 % confidence)", judged,
                         100.0 * results::most_wrong(judged));
-  } else if (verdict.question == QueryKind::distance) {
+  } else if (verdict.query == "distance") {
     text += fmt::format("distances off by at most {:.2g} % of the diagonal of A's box", 100.0 * value("error_max"));
   } else if (row.value("gamma_F_deg").value_or(1.0) <= results::k_rounding) {
     text += fmt::format("the exact force at all {:.0f} poses", judged);
@@ -77,7 +90,7 @@ std::string noise_text(const std::vector<Verdict>& verdicts) {
 
 void print_verdict(const Verdict& verdict) {
   const Candidate* const taken = verdict.choice.taken();
-  const std::string label = fmt::format("{:<11}", words_of(verdict.question));
+  const std::string label = fmt::format("{:<11}", words_of(verdict.query));
   if (!verdict.choice.missing.empty()) {
     fmt::print("{} cannot say: {}\n", label, verdict.choice.missing);
   } else if (taken == nullptr) {
@@ -147,9 +160,11 @@ std::string command_again(const Verdict& verdict, const RecommendOptions& option
   for (const std::string& assignment : verdict.assignments[taken.place]) {
     text += fmt::format(" -p {}:{}", algorithm, assignment);
   }
-  const std::string rows = fmt::format("{}/algorithm:{}/pair:{}/", to_string(verdict.question), algorithm, pair.pair);
-  const std::string filter = fmt::format("--benchmark_filter=^{}[^/]*{}$", results::name_expression(rows),
-                                         options.in_motion() ? "/order:motion" : "");
+  const std::string rows = fmt::format("{}/algorithm:{}/pair:{}/", verdict.query, algorithm, pair.pair);
+  const char* const places = verdict.query == results::k_cast ? "motion:[a-z]+/step:(1|10)"
+                             : options.in_motion()            ? "[^/]*/order:motion"
+                                                              : "[^/]*";
+  const std::string filter = fmt::format("--benchmark_filter=^{}{}$", results::name_expression(rows), places);
   return text + fmt::format(" --suite all {}", shell_quoted(filter));
 }
 
@@ -173,9 +188,7 @@ nlohmann::ordered_json as_json(const Verdict& verdict, const Candidate& candidat
 
 }  // namespace
 
-std::string_view words_of(QueryKind question) {
-  return question == QueryKind::collide ? "yes-no" : to_string(question);
-}
+std::string words_of(const std::string& query) { return query == "collide" ? "yes-no" : query; }
 
 void print_text(const RecommendOptions& options, double deadline_s, const CatalogueEntry& pair,
                 const std::vector<Verdict>& verdicts) {
@@ -185,7 +198,7 @@ void print_text(const RecommendOptions& options, double deadline_s, const Catalo
   fmt::print("{}", noise_text(verdicts));
   for (const Verdict& verdict : verdicts) {
     if (verdict.choice.candidates.empty()) continue;
-    fmt::print("\n{}, {}\n", words_of(verdict.question), verdict.poses);
+    fmt::print("\n{}, {}\n", words_of(verdict.query), verdict.poses);
     print_candidates(verdict);
     if (verdict.choice.taken() != nullptr) fmt::print("  again      {}\n", command_again(verdict, options, pair));
   }
@@ -197,7 +210,7 @@ void print_json(const RecommendOptions& options, double deadline_s, const Catalo
   json["questions"] = nlohmann::ordered_json::array();
   for (const Verdict& verdict : verdicts) {
     nlohmann::ordered_json entry = {
-        {"question", words_of(verdict.question)}, {"metric", verdict.metric}, {"judged", verdict.poses}};
+        {"question", words_of(verdict.query)}, {"metric", verdict.metric}, {"judged", verdict.poses}};
     entry["missing"] =
         verdict.choice.missing.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(verdict.choice.missing);
     entry["candidates"] = nlohmann::ordered_json::array();

@@ -42,7 +42,8 @@ void print_object(const Place& place, const SceneAnswer& answer, bool is_first) 
   nlohmann::ordered_json json{{"question", place.question}, {"algorithm", place.algorithm}, {"frame", place.frame}};
   json["pairs"] = nlohmann::ordered_json::array();
   for (const NearPair& near : answer.pairs) {
-    json["pairs"].push_back({{"bodies", {near.pair.a, near.pair.b}}, {"distance", near.distance}});
+    const char* const value = place.question == to_string(scene::Question::impacts) ? "t" : "distance";
+    json["pairs"].push_back({{"bodies", {near.pair.a, near.pair.b}}, {value, near.distance}});
   }
   for (const BodyWrench& wrench : answer.wrenches) {
     json["wrenches"].push_back(

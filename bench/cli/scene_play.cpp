@@ -41,6 +41,7 @@ constexpr const char* k_details =
   near                    all pairs whose surfaces are no further apart than the scene's margin
   closest                 the closest pair
   wrenches                forces and torques by the overlap volume on bodies that touch others
+  impacts                 pairs that are apart at the frame before and touch until this one, with the time t, 0 to 1
 
 A body inside another one touches it, as in sixdof query. Libraries look at surfaces only; pairs that they miss for
 this reason are counted as nested. Distances are those of surfaces. Open meshes have no inside.
@@ -52,8 +53,8 @@ again. Differences for bodies that just touch (grazing), and nested pairs, are n
 answer a question are left out, with a message. The truth is every pair in every frame, by the distance oracle; it is
 kept in the cache.
 
-Columns of --list: question, algorithm, frame; for a pair body, other and their distance (in the meshes' unit); for a
-wrench body, force fx, fy, fz and torque tx, ty, tz about the centre of the body's box, in the world's frame. --list
+Columns of --list: question, algorithm, frame; for a pair body, other and their distance (in the meshes' unit; of
+impacts t); for a wrench body, force fx, fy, fz and torque tx, ty, tz about the centre of the body's box, in the world's frame. --list
 --json: an array with an object for each question, algorithm and frame.)";
 
 struct NamedPlay {

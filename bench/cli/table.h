@@ -49,9 +49,14 @@ struct TableLine {
   BucketKey bucket;
   std::string algorithm, order;
   std::string cache;             ///< "warm" or "cold".
+  bool is_cast = false;          ///< Then `order` says how B moves: "tumble/10".
   std::vector<RankedRow> files;  ///< One for each file.
 
+  /// How B moves, of casts: "tumble 10 %"; else the bucket, "05 %".
+  std::string place() const;
+  /// The algorithm, with the order of poses and the state of the caches where they are not the usual ones.
   std::string label() const {
+    if (is_cast) return algorithm;
     const std::string with_order = order == "random" || order.empty() ? algorithm : algorithm + " (" + order + ")";
     return cache == "warm" ? with_order : with_order + " (" + cache + ")";
   }
@@ -64,6 +69,9 @@ struct ResultTable {
   BucketKind kind;
   std::string apart;  ///< results::class_of() its rows.
   std::vector<TableLine> lines;
+
+  bool is_of_casts() const { return query == results::k_cast; }
+  std::string place_title() const { return is_of_casts() ? "motion" : to_string(kind); }
 };
 
 /// The tables of all rows on buckets. @param input outlives the result

@@ -7,9 +7,15 @@
 #include <sixdof/base/error.h>
 #include <sixdof/results/contest.h>
 #include "bench/cli/table.h"
+#include "bench/cli/table_numbers.h"
 
 namespace sixdof::cli {
 namespace {
+
+/// First places of the words in a list.
+std::size_t place_in(const std::vector<std::string>& list, const std::string& word) {
+  return static_cast<std::size_t>(std::ranges::find(list, word) - list.begin());
+}
 
 template <class List, class Matches, class Make>
 auto& find_or_add(List& list, Matches matches, Make make) {
@@ -18,15 +24,17 @@ auto& find_or_add(List& list, Matches matches, Make make) {
 }
 
 /// By bucket; within a bucket, orders of configurations and states of the caches apart, algorithms as they first occur.
+/// Casts by motion, as they first occur.
 void sort_lines(ResultTable& table) {
-  std::vector<std::string> algorithms;
+  std::vector<std::string> algorithms, motions;
   for (const TableLine& line : table.lines) {
     if (std::ranges::find(algorithms, line.algorithm) == algorithms.end()) algorithms.push_back(line.algorithm);
+    if (line.is_cast && std::ranges::find(motions, line.order) == motions.end()) motions.push_back(line.order);
   }
   const auto place = [&](const TableLine& line) {
     const bool random = line.order == "random" || line.order.empty();
-    return std::tuple(line.bucket, !random, line.cache != "warm",
-                      std::ranges::find(algorithms, line.algorithm) - algorithms.begin());
+    return std::tuple(line.bucket, !random, place_in(motions, line.order), line.cache != "warm",
+                      place_in(algorithms, line.algorithm));
   };
   std::ranges::sort(table.lines, {}, place);
 }
@@ -42,6 +50,11 @@ void compare_with_first(TableLine& line) {
 }
 
 }  // namespace
+
+std::string TableLine::place() const {
+  if (is_cast) return results::place_of({.query = results::k_cast, .algorithm = algorithm, .order = order});
+  return bucket_text(bucket);
+}
 
 TableInput::TableInput(const std::vector<std::string>& files, bool rows_only) {
   for (const std::string& file : files) {
@@ -93,7 +106,11 @@ std::vector<ResultTable> tables_of(const TableInput& input) {
                  l.cache == fields.cache;
         },
         [&] {
-          return TableLine{*fields.bucket, fields.algorithm, fields.order, fields.cache,
+          return TableLine{*fields.bucket,
+                           fields.algorithm,
+                           fields.order,
+                           fields.cache,
+                           fields.query == results::k_cast,
                            std::vector<RankedRow>(input.files())};
         });
     line.files[group.row().file] = {.group = &group, .fastest = winners.contains(&group), .ratio = {}};

@@ -44,6 +44,11 @@ constexpr ValueColumn k_magnitude{k_force, "magn., %", "magnitude_error_F", as_p
 constexpr const char* k_phantom = "force though apart";
 constexpr ValueColumn k_phantoms{k_phantom, "n", "phantoms", as_count};
 constexpr ValueColumn k_phantom_max{k_phantom, "max, %", "phantom_force_max", as_percent};
+constexpr const char* k_hit = "first contacts";
+constexpr const char* k_part = "most, % of the motion";
+constexpr ValueColumn k_missed{k_hit, "missed", "missed_hits", as_count};
+constexpr ValueColumn k_late_hits{k_hit, "late", "late_hits", as_count};
+constexpr ValueColumn k_early_hits{k_hit, "early", "early", as_count};
 constexpr ValueColumn k_distance_rms{k_distance, "rms", "error_rms", as_small};
 
 /// Whether a row of the table is compared with its algorithm's own law. Older results are not.
@@ -60,6 +65,18 @@ std::vector<ValueColumn> error_columns(const std::string& query, BucketKind kind
   if (query == "distance") {
     return files > 1 ? std::vector{k_distance_rms}
                      : std::vector{k_distance_rms, ValueColumn{k_distance, "max", "error_max", as_small}};
+  }
+  if (query == results::k_cast) {
+    if (files > 1) return {k_missed, k_late_hits, k_early_hits};
+    return {{k_hit, "n", "hits", as_count},
+            k_missed,
+            k_late_hits,
+            k_early_hits,
+            {k_hit, "phantom", "phantom_hits", as_count},
+            {k_hit, "at start", "false_starts", as_count},
+            {k_part, "late", "late_max", as_percent},
+            {k_part, "early", "early_max", as_percent},
+            {"", "failed", "failed", as_count}};
   }
   if (query != "respond") return {};
   if (kind == BucketKind::distance) return {k_phantoms, k_phantom_max};
@@ -117,15 +134,15 @@ std::string brief_title(const ValueColumn& column) {
 /// The faults of one algorithm in one file that read the same but for their counts.
 struct FaultNote {
   std::string what;
-  std::vector<std::pair<BucketKey, Fault>> places;
+  std::vector<std::pair<std::string, Fault>> places;  ///< Texts of their buckets or motions.
 
   std::string text() const {
     // Equal words stand once with all their buckets.
     std::vector<std::pair<std::string, std::vector<std::string>>> groups;
-    for (const auto& [bucket, fault] : places) {
+    for (const auto& [place, fault] : places) {
       const std::string words = to_string(fault);
       if (groups.empty() || groups.back().first != words) groups.push_back({words, {}});
-      groups.back().second.push_back(bucket_text(bucket));
+      groups.back().second.push_back(place);
     }
     if (groups.size() > k_most_buckets) return sum();
     std::vector<std::string> texts;
@@ -142,12 +159,12 @@ struct FaultNote {
  private:
   std::string sum() const {
     Fault all{.what = what};
-    for (const auto& [bucket, fault] : places) {
+    for (const auto& [place, fault] : places) {
       all.count += fault.count;
       all.of += fault.of;
     }
-    return fmt::format("{} (sum over {} buckets from {} to {})", to_string(all), places.size(),
-                       bucket_text(places.front().first), bucket_text(places.back().first));
+    return fmt::format("{} (sum over {} buckets from {} to {})", to_string(all), places.size(), places.front().first,
+                       places.back().first);
   }
 };
 
@@ -164,7 +181,7 @@ std::vector<std::string> fault_notes(const ResultTable& table, std::size_t files
         auto& list = of_label->second;
         auto note = std::ranges::find(list, fault.what, &FaultNote::what);
         if (note == list.end()) note = list.insert(list.end(), {fault.what, {}});
-        note->places.emplace_back(line.bucket, fault);
+        note->places.emplace_back(line.place(), fault);
       }
     }
     for (const auto& [label, list] : by_label) {
@@ -182,12 +199,12 @@ std::vector<std::string> fault_notes(const ResultTable& table, std::size_t files
 Sheet sheet_of_one(const ResultTable& table) {
   const std::vector<ValueColumn> values = value_columns(table, 1);
   Sheet sheet;
-  sheet.columns = {{"", to_string(table.kind), true}, {"", "", true}, {"", "algorithm", true}};
+  sheet.columns = {{"", table.place_title(), true}, {"", "", true}, {"", "algorithm", true}};
   for (const ValueColumn& column : values)
     sheet.columns.push_back({column.group, column.title, column.format == nullptr});
   for (const TableLine& line : table.lines) {
     const RankedRow& ranked = line.files.front();
-    sheet.lines.push_back({bucket_text(line.bucket), std::string(ranked.mark()), line.label()});
+    sheet.lines.push_back({line.place(), std::string(ranked.mark()), line.label()});
     for (const ValueColumn& column : values) sheet.lines.back().push_back(cell_of(ranked, column));
   }
   return sheet;
@@ -196,7 +213,7 @@ Sheet sheet_of_one(const ResultTable& table) {
 Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
   const std::vector<ValueColumn> values = value_columns(table, files);
   Sheet sheet;
-  sheet.columns = {{"", to_string(table.kind), true}, {"", "algorithm", true}};
+  sheet.columns = {{"", table.place_title(), true}, {"", "algorithm", true}};
   for (std::size_t file = 0; file < files; ++file) {
     const std::string group = fmt::format("[{}]", file + 1);
     sheet.columns.push_back({group, "", true});
@@ -206,7 +223,7 @@ Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
     }
   }
   for (const TableLine& line : table.lines) {
-    auto& cells = sheet.lines.emplace_back(std::vector{bucket_text(line.bucket), line.label()});
+    auto& cells = sheet.lines.emplace_back(std::vector{line.place(), line.label()});
     for (std::size_t file = 0; file < files; ++file) {
       const RankedRow& ranked = line.files[file];
       cells.push_back(std::string(ranked.mark()));
@@ -225,8 +242,9 @@ Sheet sheet_of_several(const ResultTable& table, std::size_t files) {
 
 Sheet sheet_of(const ResultTable& table, const TableInput& input) {
   Sheet sheet = input.files() == 1 ? sheet_of_one(table) : sheet_of_several(table, input.files());
-  const char* const percent = table.kind == BucketKind::distance ? "distances in percent of A's box diagonal"
-                                                                 : "overlaps in percent of A's volume";
+  const char* const percent = table.is_of_casts()                  ? "motions in percent of A's box diagonal"
+                              : table.kind == BucketKind::distance ? "distances in percent of A's box diagonal"
+                                                                   : "overlaps in percent of A's volume";
   sheet.title = fmt::format("{}: {}, {}", table.pair, table.query, percent);
   sheet.notes = fault_notes(table, input.files());
   return sheet;
@@ -258,6 +276,8 @@ std::vector<std::string> lines_below(const TableInput& input) {
       "angle: mean angle to the exact response, -dV/dx, or to the own law, in degrees; max: the largest",
       "magn.: RMS of |F| - gain |exact F| over the RMS of |F|, with one gain per row; of torques likewise",
       "force though apart: answers with a force, and the largest in percent of the mean force at the least overlap",
+      "first contacts: n: motions with one; missed: no hit; phantom: a hit though there is none; at start: contact at "
+      "the start of bodies that are apart there; early, late: by more than 1e-9 of A's diagonal, and by how much",
       "volume: mean error of the overlap volume; (path): configurations in the grid's own order",
       "(motion): times of successive poses in steps of 0.01 % of A's diagonal, starting at configurations",
       "(cold): data is removed from the caches before each query; wall clock only, not ranked",

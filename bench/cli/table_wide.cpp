@@ -41,6 +41,11 @@ struct WideLine {
   }
 };
 
+/// Casts have one bucket, and a line for each motion.
+std::string label_of(const TableLine& line) {
+  return line.is_cast ? fmt::format("{} ({})", line.label(), line.place()) : line.label();
+}
+
 /// Lines of a query in the order of the tables: by pair, then algorithm.
 std::vector<WideLine> lines_of(const std::vector<const ResultTable*>& tables) {
   std::vector<WideLine> lines;
@@ -49,10 +54,10 @@ std::vector<WideLine> lines_of(const std::vector<const ResultTable*>& tables) {
       const RankedRow& ranked = line.files.front();
       if (ranked.group == nullptr) continue;
       const auto is_same = [&](const WideLine& other) {
-        return other.pair == table->pair && other.label == line.label();
+        return other.pair == table->pair && other.label == label_of(line);
       };
       auto found = std::ranges::find_if(lines, is_same);
-      if (found == lines.end()) found = lines.insert(lines.end(), {table->pair, line.label(), {}});
+      if (found == lines.end()) found = lines.insert(lines.end(), {table->pair, label_of(line), {}});
       found->rows[line.bucket] = &ranked;
     }
   }
@@ -91,6 +96,11 @@ std::string law_cell(const WideLine& line) {
 std::vector<ErrorColumn> error_columns(const std::string& query, bool own) {
   if (query == "distance") {
     return {{"error max, diagonals", [](const WideLine& line) { return cell(line.largest("error_max"), as_small); }}};
+  }
+  if (query == results::k_cast) {
+    return {{"missed", [](const WideLine& line) { return cell(line.largest("missed_hits"), as_count); }},
+            {"late", [](const WideLine& line) { return cell(line.largest("late_hits"), as_count); }},
+            {"early", [](const WideLine& line) { return cell(line.largest("early"), as_count); }}};
   }
   if (query != "respond") return {};
   std::vector<ErrorColumn> columns;

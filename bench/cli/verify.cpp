@@ -1,4 +1,4 @@
-#include "bench/cli/commands.h"
+#include "bench/cli/verify.h"
 
 #include <charconv>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include <sixdof/configuration/set_meshes.h>
 #include <sixdof/configuration/verification.h>
 #include <sixdof/generation/repetition.h>
+#include "bench/cli/commands.h"
 #include "bench/cli/generate.h"
 #include "bench/cli/shared.h"
 #include "bench/common/interrupt.h"
@@ -24,22 +25,14 @@
 namespace sixdof::cli {
 namespace {
 
-struct Arguments {
-  std::string file, a, b;
-  std::string oracle = "fcl-obbrss";
-  std::size_t sample = 50;
-  std::uint64_t seed = 1;
-  std::string again;  // A count or "all"; empty: not given.
-  bool json = false;
-};
-
 constexpr const char* k_keys =
     "Keys of --json: file, a, b, grid, oracle {name, version}, seed, ok, problems[], buckets[] {bucket, sampled,\n"
     "reachable, largest_residual, tolerance (both in diagonals of A's box or in A's volumes), wrong_value,\n"
     "earlier_hit, false_nan, measured_by}. With --again: file, generator_version, program_version, seed, ok, values,\n"
     "changed, differences[], buckets[] {bucket, values, changed, and of the largest change rotation, direction, "
     "stored,\n"
-    "made}.";
+    "made}. With --motions: file, oracle, seed, ok, motions[] {motion, percent, motions, hits, misses, at_start,\n"
+    "grazing, widest, wide, changed, earlier, apart, problems[]}.";
 
 void print_table(const Verdict& verdict) {
   fmt::print("{:<13} {:>8} {:>10} {:>13} {:>10} {:>8} {:>8} {:>8}  {}\n", "bucket", "sampled", "reachable", "residual",
@@ -65,7 +58,8 @@ nlohmann::ordered_json as_json(const BucketVerdict& bucket) {
           {"measured_by", bucket.oracle}};
 }
 
-void print_json(const Arguments& arguments, const ConfigurationSet& set, const Traits& oracle, const Verdict& verdict) {
+void print_json(const VerifyArguments& arguments, const ConfigurationSet& set, const Traits& oracle,
+                const Verdict& verdict) {
   auto buckets = nlohmann::ordered_json::array();
   for (const BucketVerdict& bucket : verdict.buckets) buckets.push_back(as_json(bucket));
   fmt::print("{}\n", json_text({{"file", arguments.file},
@@ -79,7 +73,8 @@ void print_json(const Arguments& arguments, const ConfigurationSet& set, const T
                                 {"buckets", std::move(buckets)}}));
 }
 
-void print_text(const Arguments& arguments, const ConfigurationSet& set, const Traits& oracle, const Verdict& verdict) {
+void print_text(const VerifyArguments& arguments, const ConfigurationSet& set, const Traits& oracle,
+                const Verdict& verdict) {
   fmt::print("{}: {} with {}, grid {}, distances by {} {}, seed {}\n", arguments.file, set.description().a.name,
              set.description().b.name, set.grid(BucketKind::distance).spec, oracle.name, oracle.version,
              arguments.seed);
@@ -92,7 +87,7 @@ nlohmann::ordered_json translation_as_json(double s) {
   return std::isnan(s) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s);
 }
 
-void print_repetition(const Arguments& arguments, const ConfigurationSet& set, const Repetition& repetition) {
+void print_repetition(const VerifyArguments& arguments, const ConfigurationSet& set, const Repetition& repetition) {
   const std::string& version = set.description().generator_version;
   if (!arguments.json) {
     for (const BucketRepetition& bucket : repetition.buckets) {
@@ -137,7 +132,7 @@ std::size_t parse_again(const std::string& text) {
   throw BadArgument(fmt::format("--again {}: is neither a positive number of rotations nor all", text));
 }
 
-void verify_again(const Arguments& arguments, const ConfigurationSet& set, const Mesh& a, const Mesh& b) {
+void verify_again(const VerifyArguments& arguments, const ConfigurationSet& set, const Mesh& a, const Mesh& b) {
   Registry registry;
   register_all_algorithms(registry);
   Repetition repetition;
@@ -154,7 +149,7 @@ void verify_again(const Arguments& arguments, const ConfigurationSet& set, const
   }
 }
 
-void verify(const Arguments& arguments) {
+void verify(const VerifyArguments& arguments) {
   const ConfigurationSet set(arguments.file);
   const SelectedAlgorithm selected = select_algorithm({.name = arguments.oracle, .parameters = {}});
   const Traits& oracle = selected.algorithm->traits();
@@ -165,6 +160,7 @@ void verify(const Arguments& arguments) {
   const Mesh b = copy ? a : find_mesh(b_identity, set.path(), arguments.b);
   warn_of_sizes("sixdof", a_identity, b_identity);
   if (!arguments.again.empty()) return verify_again(arguments, set, a, b);
+  if (arguments.motions > 0) return verify_motions(arguments, set, a, b, *selected.algorithm);
   Verdict verdict;
   {
     ProgressLine line("verified");
@@ -181,7 +177,7 @@ void verify(const Arguments& arguments) {
 void add_verify_command(CLI::App& app) {
   auto* const command = app.add_subcommand(
       "verify", "Check a configuration set: measure a sample of its poses again, or make poses again");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<VerifyArguments>();
   command->add_option("file", arguments->file, "The configuration set")->required()->type_name("FILE");
   command->add_option("--a", arguments->a, "Mesh A, if it is not where the set says: a model's name or a file")
       ->type_name("MESH");
@@ -202,6 +198,14 @@ void add_verify_command(CLI::App& app) {
       ->type_name("N|all")
       ->excludes(sample)
       ->excludes(measuring);
+  command
+      ->add_option("--motions", arguments->motions,
+                   "Instead, check the first contacts of N motions of each kind and length from poses of contact "
+                   "(0 %), which rows of casts are judged by: again, and by distances of the oracle")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->excludes(sample)
+      ->excludes("--again");
   command->add_flag("--json", arguments->json, "As JSON; the exit code is the same");
   add_examples(*command, "sixdof generate --a torus-knot-10k --grid 90 --distances 0,10 -o set.h5",
                "sixdof verify set.h5 --again 2", k_keys);

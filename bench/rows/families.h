@@ -20,8 +20,9 @@ std::vector<PlannedRow> prepare_rows(const Resources& resources);
 std::vector<PlannedRow> query_rows(const Resources& resources);
 
 /// `cast/algorithm:A/pair:P/motion:tumble/step:10`: when B first touches A on motions from the poses of contact of a
-/// set (lib/sixdof/generation/motions.h) that move B by 10 % of A's diagonal, judged by stored_impacts(). They are not
-/// in the default suite.
+/// set (lib/sixdof/generation/motions.h) that move B by 10 % of A's diagonal, judged by stored_impacts(); those of
+/// algorithms about convex hulls by that of the hulls, on the same motions. The
+/// default suite has steps of 10 % of two pairs.
 std::vector<PlannedRow> cast_rows(const Resources& resources);
 
 /// `scenario/II/algorithm:A`: mean time of a response along a scenario's path and every measure of its quality, against

@@ -45,10 +45,10 @@ def parser_of(script, about, examples):
     return parser
 
 
-def choice_of(options, distances, volumes):
+def choice_of(options, distances, volumes, queries=tuple(runs.QUERIES)):
     """@raises Failure for an algorithm that does not exist"""
     return runs.Choice(runs.chosen_algorithms(options.program, options.algorithms), distances, volumes, options.grid,
-                       options.sample, options.min_time, options.seed)
+                       options.sample, options.min_time, options.seed, queries)
 
 
 def measure(options, choice, units):

@@ -33,6 +33,7 @@ from whole_file import write_whole  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 QUERIES = ["distance", "collide", "respond"]
+CAST_STEP = 10  # Percent of A's diagonal by which B moves in casts (sixdof-bench, cast rows).
 # The least time that a step of a unit gets: a process needs some seconds to load two large meshes on a busy machine.
 LEAST_LIMIT_S = 10.0
 # A unit may take this many times its equal part of the budget: most units take far less than the largest ones.
@@ -283,7 +284,7 @@ class Runner:
             out = pathlib.Path(name) / "rows.json"
             step = self.call([self.bench, "--no-manifest", "--set", made, "--mesh", a, *(["--mesh", b] if a != b else []),
                               f"--benchmark_filter=^({queries})/algorithm:{algorithm}/pair:[^/]+"
-                              "(/(distance|volume):[0-9.]+)?$",
+                              f"(/(distance|volume):[0-9.]+|/motion:[a-z]+/step:{CAST_STEP})?$",
                               "--sample", self.choice.sample, "--seed", self.choice.seed, "--isolate=third-party",
                               f"--benchmark_min_time={self.choice.min_time}", f"--out={out}"], limit_s)
             record = {"status": "ok", "seconds": step.seconds, "cpu_s": step.cpu_s, "peak_bytes": step.peak_bytes}

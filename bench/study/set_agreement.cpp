@@ -118,7 +118,8 @@ AnswerCounts ask_algorithm(const Bucket& bucket, const AskedAlgorithm& asked, Qu
 
 bool is_about_hulls(const AskedAlgorithm& asked) { return asked.algorithm->traits().body == Body::convex_hull; }
 
-/// The algorithms that can be prepared for the pair; the words of the others go to `refusals`.
+}  // namespace
+
 std::vector<AskedAlgorithm> usable(bench::PairCache& cache, const CatalogueEntry& pair,
                                    const std::vector<AskedAlgorithm>& algorithms, std::vector<std::string>& refusals) {
   std::vector<AskedAlgorithm> kept;
@@ -137,8 +138,6 @@ std::vector<AskedAlgorithm> usable(bench::PairCache& cache, const CatalogueEntry
   }
   return kept;
 }
-
-}  // namespace
 
 std::vector<AnswerCounts> PairAgreement::totals() const {
   std::vector<AnswerCounts> totals;

@@ -68,6 +68,10 @@ struct PairAgreement {
   std::size_t configurations() const;
 };
 
+/// The algorithms that can be prepared for the pair; the words of the others go to `refusals`.
+std::vector<AskedAlgorithm> usable(bench::PairCache& cache, const CatalogueEntry& pair,
+                                   const std::vector<AskedAlgorithm>& algorithms, std::vector<std::string>& refusals);
+
 /// Asks yes/no and distance of every algorithm, as far as it answers them, at the configurations that `cache` draws of
 /// each bucket. Poses are asked as they are typed: they differ from the set's by some roundings.
 /// @param meshes of the pair, for the commands

@@ -39,6 +39,22 @@ std::vector<Pose> poses_of(const Doubles& matrices) {
   return poses;
 }
 
+std::vector<Motion> motions_of(const Doubles& matrices, const Doubles& translations, const Doubles& rotations,
+                               const Doubles& references) {
+  for (const Doubles* const vectors : {&translations, &rotations, &references}) {
+    if (vectors->ndim() != 2 || vectors->shape(0) != matrices.shape(0) || vectors->shape(1) != 3) {
+      throw BadArgument("translations, rotations, references: the shape is not (n, 3)");
+    }
+  }
+  std::vector<Motion> motions;
+  for (const Pose& start : poses_of(matrices)) {
+    const auto i = static_cast<py::ssize_t>(motions.size());
+    const auto vector = [i](const Doubles& vectors) { return Eigen::Vector3d(vectors.data(i, 0)); };
+    motions.push_back({start, vector(translations), vector(rotations), vector(references)});
+  }
+  return motions;
+}
+
 Doubles matrices_of(std::span<const Pose> poses) {
   Doubles matrices({static_cast<py::ssize_t>(poses.size()), py::ssize_t{4}, py::ssize_t{4}});
   double* place = matrices.mutable_data();

@@ -7,6 +7,7 @@
 #include <pybind11/numpy.h>
 #include <Eigen/Core>
 
+#include <sixdof/geometry/motion.h>
 #include <sixdof/geometry/pose.h>
 
 /// Between NumPy's arrays and the library's types.
@@ -25,6 +26,12 @@ inline constexpr double k_rotation_tolerance = 1e-5;
 /// finite is passed on, for the algorithm to say so.
 /// @throws BadArgument "poses[i]: ..." for another last row, and for a matrix that is no rotation
 std::vector<Pose> poses_of(const Doubles& matrices);
+
+/// The motions of starts, an array of shape (n, 4, 4) as poses_of() takes it, and three arrays of shape (n, 3): of
+/// translations and rotation vectors in A's frame, and of reference points in B's. What is not finite is passed on.
+/// @throws BadArgument as poses_of() does, and for other shapes
+std::vector<Motion> motions_of(const Doubles& matrices, const Doubles& translations, const Doubles& rotations,
+                               const Doubles& references);
 
 /// An array of shape (n, 4, 4).
 Doubles matrices_of(std::span<const Pose> poses);

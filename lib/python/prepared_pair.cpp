@@ -74,19 +74,19 @@ void PreparedPair::give_back(std::unique_ptr<Query> query) {
 }
 
 template <class Answer>
-Endings PreparedPair::ask_all(std::span<const Pose> poses, unsigned threads,
-                              const std::function<Outcome<Answer>(Query&, const Pose&)>& ask,
+Endings PreparedPair::ask_all(std::size_t count, unsigned threads,
+                              const std::function<Outcome<Answer>(Query&, std::size_t)>& ask,
                               const std::function<void(std::size_t, const Answer&)>& store,
                               const std::function<bool()>& stop) {
   const std::scoped_lock lock(one_call_);
   Endings endings;
-  endings.status.assign(poses.size(), static_cast<std::uint8_t>(Status::failed));
+  endings.status.assign(count, static_cast<std::uint8_t>(Status::failed));
   std::mutex words_mutex;
   Patience patience(stop);
   const auto ask_one = [&](Query& query, std::size_t place) {
     bool has_thrown = false;
     std::string words;
-    Outcome<Answer> answer = ask_guarded([&] { return ask(query, poses[place]); },
+    Outcome<Answer> answer = ask_guarded([&] { return ask(query, place); },
                                          [&](const std::string& why) {
                                            has_thrown = true;
                                            words = why;
@@ -105,29 +105,33 @@ Endings PreparedPair::ask_all(std::span<const Pose> poses, unsigned threads,
     for (std::size_t place = begin; place < end && !patience.is_over(); ++place) ask_one(*query, place);
     give_back(std::move(query));
   };
-  if (threads == 1 || poses.size() <= k_chunk) {
-    ask_range(0, poses.size());
+  if (threads == 1 || count <= k_chunk) {
+    ask_range(0, count);
     return endings;
   }
-  const std::size_t chunks = (poses.size() + k_chunk - 1) / k_chunk;
+  const std::size_t chunks = (count + k_chunk - 1) / k_chunk;
   parallel::with_threads(threads, [&] {
-    parallel::for_each(
-        chunks, [&](std::size_t chunk) { ask_range(chunk * k_chunk, std::min(poses.size(), (chunk + 1) * k_chunk)); });
+    parallel::for_each(chunks,
+                       [&](std::size_t chunk) { ask_range(chunk * k_chunk, std::min(count, (chunk + 1) * k_chunk)); });
   });
   return endings;
 }
 
-template Endings PreparedPair::ask_all<bool>(std::span<const Pose>, unsigned,
-                                             const std::function<Outcome<bool>(Query&, const Pose&)>&,
+template Endings PreparedPair::ask_all<bool>(std::size_t, unsigned,
+                                             const std::function<Outcome<bool>(Query&, std::size_t)>&,
                                              const std::function<void(std::size_t, const bool&)>&,
                                              const std::function<bool()>&);
-template Endings PreparedPair::ask_all<Separation>(std::span<const Pose>, unsigned,
-                                                   const std::function<Outcome<Separation>(Query&, const Pose&)>&,
+template Endings PreparedPair::ask_all<Separation>(std::size_t, unsigned,
+                                                   const std::function<Outcome<Separation>(Query&, std::size_t)>&,
                                                    const std::function<void(std::size_t, const Separation&)>&,
                                                    const std::function<bool()>&);
-template Endings PreparedPair::ask_all<Response>(std::span<const Pose>, unsigned,
-                                                 const std::function<Outcome<Response>(Query&, const Pose&)>&,
+template Endings PreparedPair::ask_all<Response>(std::size_t, unsigned,
+                                                 const std::function<Outcome<Response>(Query&, std::size_t)>&,
                                                  const std::function<void(std::size_t, const Response&)>&,
                                                  const std::function<bool()>&);
+template Endings PreparedPair::ask_all<Impact>(std::size_t, unsigned,
+                                               const std::function<Outcome<Impact>(Query&, std::size_t)>&,
+                                               const std::function<void(std::size_t, const Impact&)>&,
+                                               const std::function<bool()>&);
 
 }  // namespace sixdof::python

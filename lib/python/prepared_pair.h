@@ -7,7 +7,6 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,15 +32,14 @@ class PreparedPair {
   std::size_t prepared() const;                           ///< How many queries there are, one per thread so far.
   Footprint footprint() const;                            ///< Of one query.
 
-  /// Asks all poses. Calls from several threads wait for each other.
-  /// @param ask (Query&, const Pose&) -> Outcome<Answer>; an exception or a value that is not finite becomes a failure
+  /// Asks `count` poses or motions. Calls from several threads wait for each other.
+  /// @param ask (Query&, place) -> Outcome<Answer>; an exception or a value that is not finite becomes a failure
   /// @param store (place, const Answer&), for poses with an answer, from several threads
   /// @param threads 1: the calling thread asks in order; else poses are asked in no order by so many threads at most,
   /// each with a query of its own, prepared when first needed; 0: by as many as there are processors
   /// @param stop called now and then by the calling thread; true ends the work
   template <class Answer>
-  Endings ask_all(std::span<const Pose> poses, unsigned threads,
-                  const std::function<Outcome<Answer>(Query&, const Pose&)>& ask,
+  Endings ask_all(std::size_t count, unsigned threads, const std::function<Outcome<Answer>(Query&, std::size_t)>& ask,
                   const std::function<void(std::size_t, const Answer&)>& store, const std::function<bool()>& stop);
 
  private:

@@ -44,6 +44,7 @@ py::dict dict_of(const Traits& traits) {
   if (traits.answers.collide) answers.append("collide");
   if (traits.answers.distance) answers.append("distance");
   if (traits.answers.respond) answers.append("respond");
+  if (traits.answers.cast) answers.append("cast");
   dict["answers"] = py::tuple(answers);
   dict["law"] = std::string(to_string(traits.law));
   dict["approximates"] = traits.approximates;
@@ -82,15 +83,17 @@ bool has_signal() {
   return PyErr_CheckSignals() != 0;
 }
 
-/// Asks all poses without the GIL. @throws the exception that a handler of a signal raised
-template <class Answer, class Ask, class Store>
-Endings ask_all(PreparedPair& pair, const std::vector<Pose>& poses, unsigned threads, const Ask& ask,
+/// Asks all poses or motions without the GIL. @throws the exception that a handler of a signal raised
+template <class Answer, class Input, class Ask, class Store>
+Endings ask_all(PreparedPair& pair, const std::vector<Input>& inputs, unsigned threads, const Ask& ask,
                 const Store& store) {
   Endings endings;
   bool is_stopped = false;
   {
     const py::gil_scoped_release release;
-    endings = pair.ask_all<Answer>(poses, threads, ask, store, [&] { return is_stopped = has_signal(); });
+    endings = pair.ask_all<Answer>(
+        inputs.size(), threads, [&](Query& query, std::size_t place) { return ask(query, inputs[place]); }, store,
+        [&] { return is_stopped = has_signal(); });
   }
   if (is_stopped) throw py::error_already_set();
   return endings;
@@ -182,6 +185,40 @@ py::dict respond(PreparedPair& pair, const Doubles& matrices, unsigned threads) 
   return dict;
 }
 
+py::dict cast(PreparedPair& pair, const Doubles& matrices, const Doubles& translations, const Doubles& rotations,
+              const Doubles& references, unsigned threads) {
+  const std::vector<Motion> motions = motions_of(matrices, translations, rotations, references);
+  const auto n = static_cast<py::ssize_t>(motions.size());
+  py::array_t<bool> hits(n);
+  Doubles times = nan_array({n}), points_a = nan_array({n, 3}), points_b = nan_array({n, 3}),
+          normals = nan_array({n, 3});
+  bool* const hit = hits.mutable_data();
+  std::fill_n(hit, motions.size(), false);
+  double* const t = times.mutable_data();
+  double* const a = points_a.mutable_data();
+  double* const b = points_b.mutable_data();
+  double* const normal = normals.mutable_data();
+  const Endings endings = ask_all<Impact>(
+      pair, motions, threads, [](Query& query, const Motion& motion) { return query.cast(motion); },
+      [=](std::size_t place, const Impact& answer) {
+        hit[place] = answer.hit;
+        if (!answer.hit) return;
+        t[place] = answer.t;
+        if (!answer.normal.isZero(0.0)) write_row(normal, place, answer.normal);
+        if (!answer.has_witnesses) return;
+        write_row(a, place, answer.witness_a);
+        write_row(b, place, answer.witness_b);
+      });
+  py::dict dict;
+  dict["hit"] = hits;
+  dict["t"] = times;
+  dict["points_a"] = points_a;
+  dict["points_b"] = points_b;
+  dict["normal"] = normals;
+  add(dict, endings);
+  return dict;
+}
+
 py::dict footprint(const PreparedPair& pair) {
   const Footprint footprint = pair.footprint();
   py::dict dict;
@@ -220,7 +257,9 @@ void bind_queries(py::module_& module) {
       .def("footprint", footprint)
       .def("collide", collide, py::arg("poses"), py::arg("threads"))
       .def("distance", distance, py::arg("poses"), py::arg("threads"))
-      .def("respond", respond, py::arg("poses"), py::arg("threads"));
+      .def("respond", respond, py::arg("poses"), py::arg("threads"))
+      .def("cast", cast, py::arg("poses"), py::arg("translations"), py::arg("rotations"), py::arg("references"),
+           py::arg("threads"));
   module.def("algorithms", list_algorithms);
   module.def("prepare", prepare, py::arg("name"), py::arg("a"), py::arg("b"), py::arg("parameters"), py::arg("server"),
              py::arg("query_timeout"));

@@ -75,7 +75,9 @@ class Run(unittest.TestCase):
         found = {(cell["partner"], cell["query"], cell["bucket"]["kind"], cell["bucket"]["percent"], cell["objects"])
                  for cell in summary["cells"]}
         self.assertLessEqual({("self", "distance", "distance", 0, 3), ("self", "distance", "distance", 5, 3),
-                              ("tenth", "respond", "volume", 5, 3)}, found)
+                              ("tenth", "respond", "volume", 5, 3),
+                              *(("self", f"cast {kind}/10", "distance", 0, 3)
+                                for kind in ("translation", "rotation", "tumble"))}, found)
         self.assertEqual({(percent, objects) for _, _, kind, percent, objects in found if kind == "volume"}, {(5, 3)})
         self.assertIn("**distance, self**", done.stdout)
         self.assertIn("9 pairs of 3 objects.", done.stdout)

@@ -126,7 +126,7 @@ TEST_F(OwnMeshes, OneLineMeasuresAllAlgorithmsAtDistancesAndVolumes) {
     EXPECT_EQ(row.at("mismatch"), 0) << name;
     EXPECT_GE(row.at("configurations"), 32) << name;
   }
-  EXPECT_EQ(queries, (std::set<std::string>{"collide", "distance", "prepare", "respond"}));
+  EXPECT_EQ(queries, (std::set<std::string>{"cast", "collide", "distance", "prepare", "respond"}));
   EXPECT_THAT(algorithms, ::testing::IsSupersetOf({"exact", "fcl-obbrss", "fcl-rss", "fcl-contacts", "ist", "vps"}));
   EXPECT_EQ(distances,
             (std::set<std::string>{"distance:00", "distance:01", "distance:05", "distance:10", "distance:20"}));

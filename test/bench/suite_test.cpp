@@ -38,6 +38,17 @@ TEST_F(SuiteFile, TakesRowsWhoseEveryPartIsListed) {
   EXPECT_FALSE(suite("scenarios/II/algorithm:ist"));
 }
 
+TEST_F(SuiteFile, TakesCastsByTheirMotionAndStep) {
+  const Suite suite = read(R"({"query": ["cast"], "algorithm": ["exact"], "pair": "all", "motion": "all",
+                              "step": ["10"], "sample": 64})");
+  EXPECT_EQ(suite("cast/algorithm:exact/pair:ship/motion:tumble/step:10"), 64u);
+  EXPECT_FALSE(suite("cast/algorithm:exact/pair:ship/motion:tumble/step:1"));
+  EXPECT_FALSE(suite("collide/algorithm:exact/pair:ship/distance:05"));
+  EXPECT_FALSE(read(R"({"query": ["cast"], "algorithm": "all", "pair": "all"})")(
+      "cast/algorithm:exact/pair:ship/motion:tumble/step:10"))
+      << "every part of a name has to be listed";
+}
+
 TEST_F(SuiteFile, NamesOfAlgorithmsStandForTheirVariants) {
   const Suite suite = read(
       R"({"query": ["collide"], "algorithm": ["vps"]}, {"query": ["distance"], "algorithm": "all"})", {}, {"slow@x=1"});

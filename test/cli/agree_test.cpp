@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -18,6 +20,7 @@ namespace sixdof {
 namespace {
 
 constexpr double k_printed_digits = 1e-8;  // of the printed distance
+constexpr double k_bracket = 1e-7;         // the longest bracket of a motion of 0.01 % of the diagonal
 
 using ::testing::AllOf;
 using ::testing::EndsWith;
@@ -153,7 +156,47 @@ TEST_F(Agree, JudgesAnswersAboutConvexHulls) {
 #endif
 }
 
+TEST_F(Agree, JudgesFirstContacts) {
+  const auto result = agree("--question cast --algorithms exact,null --sample 8 --json");
+  EXPECT_EQ(result.exit_code, k_exit_defects) << result.err;
+  const auto pair = nlohmann::json::parse(result.out).at("pairs").at(0);
+  std::map<std::string, double> hits, missed, wrong;
+  for (const auto& row : pair.at("answers")) {
+    const std::string name = row.at("algorithm");
+    hits[name] += row.at("hits").get<double>();
+    missed[name] += row.at("missed_hits").get<double>();
+    wrong[name] += row.at("mismatch").get<double>();
+    EXPECT_EQ(row.at("configurations"), 8);
+    EXPECT_EQ(row.at("failed"), 0);
+  }
+  EXPECT_EQ(pair.at("answers").size(), 24u) << "three kinds, four steps";
+  EXPECT_EQ(wrong["exact"], 0.0);
+  EXPECT_GT(hits["null"], 8.0);
+  EXPECT_EQ(missed["null"], hits["null"]) << "it says that nothing ever touches";
+  ASSERT_EQ(static_cast<double>(pair.at("differences").size()), missed["null"]);
+  EXPECT_THAT(result.err, HasSubstr(fmt::format("{:.0f} first contacts are wrong or missing", missed["null"])));
+  for (const std::size_t i : {std::size_t{0}, pair.at("differences").size() - 1}) {
+    const auto& difference = pair.at("differences").at(i);
+    EXPECT_EQ(difference.at("verdict"), "missed");
+    EXPECT_EQ(difference.at("answer"), "no contact");
+    std::string command = difference.at("command");
+    ASSERT_EQ(command.find("sixdof query --a torus-300 --b cone-100 --algorithm null --pose '"), 0u) << command;
+    command = command.substr(std::string("sixdof ").size());
+    EXPECT_EQ(nlohmann::json::parse(program(command + " --json").out).at("hit"), false);
+    const std::size_t name = command.rfind("null");
+    const auto truth = nlohmann::json::parse(program(command.replace(name, 4, "exact") + " --json").out);
+    const double t = std::stod(difference.at("truth").get<std::string>().substr(2));
+    EXPECT_NEAR(truth.at("t").get<double>(), t, k_bracket) << command;
+  }
+  const auto text = agree("--question cast --algorithms exact,sampled --sample 8");
+  EXPECT_THAT(text.out, HasSubstr("96 motions of 12 kinds and steps"));
+  EXPECT_THAT(text.out, Not(HasSubstr("  exact translation")));
+}
+
 TEST_F(Agree, RefusesWhatItCannotAsk) {
+  const auto no_casts = agree("--question cast --algorithms brute-force");
+  EXPECT_EQ(no_casts.exit_code, k_exit_error);
+  EXPECT_THAT(no_casts.err, HasSubstr("brute-force answers no first contacts of meshes"));
   const auto none = agree("--algorithms no-such");
   EXPECT_EQ(none.exit_code, k_exit_error);
   EXPECT_THAT(none.err, HasSubstr("no-such: no such algorithm"));

@@ -18,6 +18,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <sixdof/base/parallel.h>
 #include <sixdof/configuration/shard_file.h>
@@ -169,6 +170,12 @@ TEST_F(Generate, TakesPercentagesBelowOne) {
   }
   const auto verified = run({"verify", set, "--sample", "20"});
   EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.err;
+  const auto motions = run({"verify", set, "--motions", "3", "--json"});
+  ASSERT_EQ(motions.exit_code, 0) << motions.out << motions.err;
+  const auto lines = nlohmann::json::parse(motions.out).at("motions");
+  EXPECT_EQ(lines.size(), 12u) << "three kinds, four lengths";
+  for (const auto& line : lines) EXPECT_EQ(line.at("motions"), 3) << line;
+  EXPECT_THAT(run({"verify", set, "--motions", "2"}).out, HasSubstr("tumble 100 %"));
   for (const char* const bad : {"0.5:2", "1:2.5", "0.0001", "1e-1", ".5", "-1", "100.5", "1."}) {
     const auto refused = run(job_with({"--distances", bad, "-o", folder_ / "bad.h5"}));
     EXPECT_EQ(refused.exit_code, k_exit_error) << bad;

@@ -137,10 +137,14 @@ TEST_F(BoltAndFlange, HaveRightVerdictsInBothOrders) {
   for (const auto& [pair, overlaps] : overlaps_of) {
     SCOPED_TRACE(pair);
     auto found = verdicts(pair + k_with_coarse + " -o rows.json");
-    ASSERT_EQ(found.size(), 3u);
+    ASSERT_EQ(found.size(), 4u);
     expect_exact(found["yes-no"], "mismatch");
     expect_exact(found["distance"], "error_max");
     expect_exact(found["respond"], "gamma_F_deg");
+    expect_exact(found["cast"], "early_max");
+    const json casts = row("rows.json", "cast/algorithm:exact");
+    EXPECT_GT(casts.at("hits").get<double>(), k_fewest) << casts;
+    EXPECT_EQ(casts.at("mismatch"), 0.0) << casts;
     expect_wrong_ones_are_unsafe(found["yes-no"]);
     for (const char* const spheres : {"ist", "ist-descent"}) {
       expect_unsafe_near_contact(candidate(found["yes-no"], spheres));
@@ -166,7 +170,11 @@ TEST_F(BoltAndFlange, HaveAVerdictInPlainWords) {
   for (const char* const line :
        {"\nyes-no      take exact: 0 of [0-9]+ answers wrong \\(at most [0-9.]+ %, with 95 % confidence\\); ",
         "\ndistance    take exact: 0 of [0-9]+ answers wrong \\(at most [0-9.]+ %, with 95 % confidence\\); ",
-        "\nrespond     take exact: the exact force at all [0-9]+ poses; ", " on average, 0 of [0-9]+ queries late",
+        "\nrespond     take exact: the exact force at all [0-9]+ poses; ",
+        "\ncast        take exact: 0 of [0-9]+ contacts missed, late or wrong \\(at most [0-9.]+ %, with 95 % "
+        "confidence\\); ",
+        "\ncast, [0-9]+ judged motions: [0-9]+ with a first contact, [0-9]+ without; ",
+        " on average, 0 of [0-9]+ queries late",
         "\nyes-no, [0-9]+ judged poses: [0-9]+ apart \\(1 to 20 % of the diagonal of A's box\\), [0-9]+ near contact "
         "\\(0\\.01 to 0\\.3 % of the smaller box's diagonal\\), [0-9]+ overlapping ",
         "\n  taken      exact: ", "\n  unsafe     ist spheres=200: [0-9]+ of [0-9]+ answers wrong \\(.*near contact ",
@@ -184,9 +192,10 @@ TEST_F(BoltAndFlange, HaveYesNoAndDistanceWhereTheBoltIsOpen) {
   for (const char* const pair : {"--a flange.stl --b open-bolt.stl", "--a open-bolt.stl --b flange.stl"}) {
     SCOPED_TRACE(pair);
     auto found = verdicts(pair + k_with_spheres);
-    ASSERT_EQ(found.size(), 3u);
+    ASSERT_EQ(found.size(), 4u);
     expect_exact(found["yes-no"], "mismatch");
     expect_exact(found["distance"], "error_max");
+    expect_exact(found["cast"], "early_max");
     EXPECT_THAT(found["yes-no"].at("judged").get<std::string>(), HasSubstr(k_pushed_in));
     const json spheres = candidate(found["yes-no"], "ist");
     EXPECT_EQ(spheres.at("standing"), "left out");
@@ -200,7 +209,7 @@ TEST_F(BoltAndFlange, HaveYesNoAndDistanceWhereTheBoltIsOpen) {
 TEST_F(BoltAndFlange, ArePushedTogetherWhereTheSetHasThemFarApart) {
   make_set("--a flange.stl --b bolt.stl --grid so3:16:8 --distances 20,40 -o far.h5");
   auto found = verdicts("--set far.h5 -o rows.json" + k_with_spheres);
-  ASSERT_EQ(found.size(), 3u);
+  ASSERT_EQ(found.size(), 4u);
   expect_exact(found["yes-no"], "mismatch");
   expect_exact(found["distance"], "error_max");
   expect_unsafe_near_contact(candidate(found["yes-no"], "ist"));
@@ -209,12 +218,27 @@ TEST_F(BoltAndFlange, ArePushedTogetherWhereTheSetHasThemFarApart) {
   expect_cannot_say(found["respond"]);
   EXPECT_EQ(found["respond"].at("missing"),
             "there are no poses of known overlap volume, which forces need (sixdof generate --volumes makes some)");
+  expect_cannot_say(found["cast"]);
+  EXPECT_EQ(found["cast"].at("missing"),
+            "flange-bolt: its set has no poses of contact (distance 0 %), where motions begin");
+}
+
+TEST_F(BoltAndFlange, ContactsThatAreMissedAreUnsafe) {
+  const auto done = verdicts(
+      "--a flange.stl --b bolt.stl --question cast --algorithms exact,sampled --params "
+      "sampled:steps=2" +
+      k_ample);
+  const json& casts = done.at("cast");
+  expect_exact(casts, "early_max");
+  const json sampled = candidate(casts, "sampled");
+  EXPECT_EQ(sampled.at("standing"), "unsafe") << sampled;
+  EXPECT_THAT(sampled.at("reason").get<std::string>(), MatchesRegex("[0-9]+ of [0-9]+ contacts wrong \\(.*\\)"));
 }
 
 TEST_F(BoltAndFlange, HaveNoVerdictOnAFewPoses) {
   make_set("--a flange.stl --b bolt.stl --grid so3:2:2 --distances 20 -o few.h5");
   auto found = verdicts("--set few.h5" + k_with_spheres, k_exit_defects);
-  ASSERT_EQ(found.size(), 3u);
+  ASSERT_EQ(found.size(), 4u);
   for (const auto& [question, verdict] : found) expect_cannot_say(verdict);
   EXPECT_THAT(found["yes-no"].at("missing").get<std::string>(),
               MatchesRegex("there are 4 of the 30 poses apart that it needs, and [0-9]+ of the 30 poses near contact "
@@ -226,7 +250,7 @@ TEST_F(BoltAndFlange, HaveNoVerdictOnAFewPoses) {
 TEST_F(BoltAndFlange, HaveNoVerdictOnYesNoWithoutPosesApart) {
   make_set("--a bolt.stl --b flange.stl --grid so3:16:8 --volumes 5 -o deep.h5");
   auto found = verdicts("--set deep.h5" + k_with_spheres);
-  ASSERT_EQ(found.size(), 3u);
+  ASSERT_EQ(found.size(), 4u);
   expect_cannot_say(found["yes-no"]);
   EXPECT_EQ(found["yes-no"].at("missing"),
             "there are 0 of the 30 poses apart that it needs, and 0 of the 30 poses near contact that it needs");

@@ -216,6 +216,46 @@ TEST_F(TableCommand, OverviewHasALinePerAlgorithmAndWhatIsWrongWithIt) {
       out, HasSubstr("| spheres | - | 3.00 | - | - | approximate; largest distance error 0.3 % of A's diagonal |\n"));
 }
 
+/// A row of casts whose every motion has a contact.
+Json cast_row(const std::string& algorithm, const std::string& motion, double cpu_ns, int missed, int late) {
+  Json json = row("cast", algorithm, "distance", 0, cpu_ns,
+                  {{"hits", 64},
+                   {"missed_hits", missed},
+                   {"late_hits", late},
+                   {"late_max", late > 0 ? 0.125 : 0.0},
+                   {"early", 0},
+                   {"early_max", 0.0},
+                   {"phantom_hits", 0},
+                   {"false_starts", 0},
+                   {"mismatch", missed + late}});
+  json["name"] = fmt::format("cast/algorithm:{}/pair:p/motion:{}", algorithm, motion);
+  json["sixdof"]["order"] = motion;
+  return json;
+}
+
+TEST_F(TableCommand, CastsHaveALinePerMotionAndWhatIsMissed) {
+  const std::string file =
+      write("r.json", {cast_row("x", "translation/10", 1500, 0, 0), cast_row("x", "tumble/0.01", 4000, 0, 0),
+                       cast_row("y", "translation/10", 2000, 3, 2), cast_row("y", "tumble/0.01", 1000, 0, 0),
+                       row("distance", "x", "distance", 5, 2000)});
+  const std::string out = printed(file);
+  EXPECT_THAT(out, HasSubstr("p: cast, motions in percent of A's box diagonal\n"));
+  EXPECT_THAT(out, HasSubstr("! y: 5 of 64 wrong (translation 10 %)\n"));
+  const std::string markdown = printed("--markdown " + file);
+  EXPECT_THAT(markdown,
+              HasSubstr("| translation 10 % | \\* | x | 64 | 1.50 | 10.0 | 20.0 | 30.0 | 0 | 64 | 0 | 0 | 0 |"));
+  EXPECT_THAT(markdown,
+              HasSubstr("| translation 10 % | ! | y | 64 | 2.00 | 10.0 | 20.0 | 30.0 | 0 | 64 | 3 | 2 | 0 | 0 "
+                        "| 0 | 12.5 | 0 | 0 |\n"));
+  EXPECT_LT(markdown.find("| ! | y | 64 | 2.00"), markdown.find("| tumble 0.01 % | \\* | y"))
+      << "motions stay together";
+  const std::string overview = printed("--overview --markdown " + file);
+  EXPECT_THAT(overview, HasSubstr("first contact, us"));
+  EXPECT_THAT(overview, HasSubstr("| x | - | 2.00 | - | 2.75 | - | right |\n"));
+  EXPECT_THAT(overview, HasSubstr("| wrong; first contact: 5 of 64 wrong (3 missed, 2 late) |\n"));
+  EXPECT_THAT(printed("--wide " + file), HasSubstr("x (tumble 0.01 %)"));
+}
+
 TEST_F(TableCommand, OrdersBucketsByTheirNumbers) {
   const std::string out =
       printed(write("r.json", {row("collide", "x", "distance", 10, 4), row("collide", "x", "distance", 0.5, 2),

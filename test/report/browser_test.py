@@ -16,7 +16,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from browser import Browser, find_chromium  # noqa: E402
-from sample_results import HOSTILE, STRESS, collection, rows, scene_rows  # noqa: E402
+from sample_results import HOSTILE, STRESS, cast_rows, collection, rows, scene_rows  # noqa: E402
 
 SIXDOF = sys.argv.pop(1)
 SHOTS = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else None
@@ -33,7 +33,7 @@ class Page(unittest.TestCase):
         context = {"date": "2026-01-02T03:04:05+00:00", "commit": HOSTILE, "seed": "1", "sample": "64", "mesh:torus-1k": "0123",
                    "algorithm:exact": "1", "settings:exact": "warm_start=off"}
         (folder / "run.json").write_text(json.dumps({"context": context, "benchmarks": rows()}))
-        (folder / "scenes.json").write_text(json.dumps({"context": {}, "benchmarks": scene_rows()}))
+        (folder / "scenes.json").write_text(json.dumps({"context": {}, "benchmarks": [*scene_rows(), *cast_rows()]}))
         (folder / "objects.json").write_text(json.dumps({"context": {}, "benchmarks": [], **collection()}))
         (folder / "later.json").write_text(json.dumps({"context": context, "benchmarks": rows(1.3)}))
         environment = os.environ | {"SIXDOF_CACHE": str(folder / "cache")}

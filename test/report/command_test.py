@@ -17,7 +17,7 @@ import xml.etree.ElementTree
 import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from sample_results import HOSTILE, STRESS, collection, row, rows, scene_rows  # noqa: E402
+from sample_results import HOSTILE, STRESS, cast_rows, collection, row, rows, scene_rows  # noqa: E402
 
 SIXDOF = sys.argv.pop(1)
 
@@ -160,7 +160,7 @@ class Report(unittest.TestCase):
                 self.assertIn(f"--width {width}: not a width", refused)
 
     def test_csv_has_outliers_scenes_and_the_collection(self):
-        (self.folder / "more.json").write_text(json.dumps({"context": {}, "benchmarks": scene_rows(), **collection()}))
+        (self.folder / "more.json").write_text(json.dumps({"context": {}, "benchmarks": [*scene_rows(), *cast_rows()], **collection()}))
         self.assertEqual(self.run_it("report", "run.json", "more.json", "--csv", "tables").returncode, 0)
 
         def lines(name):
@@ -170,6 +170,11 @@ class Report(unittest.TestCase):
                   ("ist", "elephant", "distance", "5", "longest")]
         self.assertEqual(line["worst_pose"], "sixdof query --a torus-1k --b torus-1k --algorithm 'ist' --pose \"5.123456789012345 0 0 1 0 0 0\"")
         self.assertEqual({line["scene"] for line in lines("many_bodies")}, {"pile", HOSTILE})
+        [line] = [line for line in lines("casts") if (line["algorithm"], line["pair"], line["motion"], line["step"]) ==
+                  ("fcl-cast", "elephant", "tumble", "0.01 %")]
+        self.assertEqual((line["missed_hits"], line["missed_percent"], line["faults"]), ("6", "12.5", "6 of 64 wrong"))
+        self.assertIn("^cast/algorithm:fcl-cast/pair:elephant/motion:tumble/step:0.01$", line["command"])
+        self.assertNotIn("cast", {line["query"] for line in lines("times")})
         self.assertEqual(float(lines("collection")[0]["p90_us"]), 90.0)
         self.assertIn("bed", {line["point"] for line in lines("collection_ratios")})
         self.assertEqual(float(lines("growth_exponents")[0]["low"]), 0.35)

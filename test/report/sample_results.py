@@ -48,6 +48,22 @@ def rows(factor=1.0):
     return made
 
 
+def cast_rows():
+    """Rows of casts, of three steps so that lines have points."""
+    made = []
+    for i, algorithm in enumerate(["exact", "fcl-cast", HOSTILE]):
+        for pair in ("elephant", HOSTILE):
+            for motion in ("translation", "tumble"):
+                for step in (0.01, 1, 10):
+                    one = row("cast", algorithm, pair, "distance", 0, 1000.0 * (i + 1) * (2 + step), hits=48, missed_hits=6 * i,
+                              mismatch=6 * i, late_hits=0, late_max=0.0, early=i, early_max=0.01 * i, phantom_hits=0, false_starts=0, grazing=0)
+                    one["name"] = f"cast/algorithm:{algorithm}/pair:{pair}/motion:{motion}/step:{step}"
+                    one["sixdof"]["order"] = f"{motion}/{step}"
+                    del one["outliers"]
+                    made.append(one)
+    return made
+
+
 def scene_rows():
     """Rows of `sixdof-bench --suite scenes`."""
     made = []

@@ -63,6 +63,25 @@ TEST(Summary, RowsOfOtherOrdersAndOfColdCachesAreNotRanked) {
   EXPECT_EQ(test::number_in(summary.winners, summary.winners.rows[0], "times_faster"), 3.0);
 }
 
+TEST(Summary, CastsAreRankedByTheirMotion) {
+  const auto cast = [](const char* algorithm, const char* motion, double ns, int wrong) {
+    Json json = row("cast", algorithm, "p", "distance", 0.0, ns, {{"mismatch", wrong}});
+    json["name"] = std::string(algorithm) + motion;
+    json["sixdof"]["order"] = motion;
+    return json;
+  };
+  const Results results =
+      test::results_of({cast("exact", "translation/10", 100.0, 0), cast("fcl-cast", "translation/10", 400.0, 0),
+                        cast("exact", "tumble/10", 300.0, 0), cast("fcl-cast", "tumble/10", 700.0, 0),
+                        cast("sampled", "tumble/10", 3.0, 9)});
+  const Summary summary = summarise(results, row_groups(results));
+  ASSERT_EQ(summary.winners.rows.size(), 2u);
+  EXPECT_EQ(text_in(summary.winners, summary.winners.rows[1], "bucket"), "tumble 10 %");
+  EXPECT_THAT(summary.sentences,
+              Contains(HasSubstr("First contact: the fastest without a wrong answer is exact, in 2 of 2 places")));
+  EXPECT_THAT(summary.sentences, Contains(HasSubstr("wrong answers, sampled 9 of 64 (first contact)")));
+}
+
 TEST(Summary, AlgorithmWithAWrongAnswerAnywhereIsNotTheFastest) {
   Json hasty = row("collide", "hasty", "p", "distance", 5.0, 1.0);
   const Results results = test::results_of(

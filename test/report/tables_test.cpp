@@ -154,6 +154,26 @@ TEST(MetricsTable, HasEveryNumberAndThatOfPreparing) {
   EXPECT_EQ(number_in(table, line, "prepare_ns"), 6e6) << "by wall clock";
 }
 
+TEST(CastsTable, HasTheMotionAndWhatIsMissed) {
+  Json row = test::row("cast", "sampled", "bunny", "distance", 0.0, 3000.0,
+                       {{"hits", 40}, {"missed_hits", 10}, {"mismatch", 10}, {"late_max", 0.25}});
+  row["name"] = "cast/algorithm:sampled/pair:bunny/motion:tumble/step:0.01";
+  row["sixdof"]["order"] = "tumble/0.01";
+  const Results results = test::results_of({row, test::row("distance", "exact", "bunny", "distance", 5.0, 10.0)});
+  const std::vector<RowGroup> groups = row_groups(results);
+  const DataTable table = casts_table(results, groups);
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(text_in(table, table.rows[0], "motion"), "tumble");
+  EXPECT_EQ(number_in(table, table.rows[0], "percent"), 0.01);
+  EXPECT_EQ(number_in(table, table.rows[0], "time_us"), 3.0);
+  EXPECT_EQ(number_in(table, table.rows[0], "missed_percent"), 25.0);
+  EXPECT_EQ(number_in(table, table.rows[0], "late_most"), 0.25);
+  EXPECT_EQ(text_in(table, table.rows[0], "faults"), "10 of 64 wrong");
+  EXPECT_EQ(text_in(failures_table(results, groups), failures_table(results, groups).rows.at(0), "bucket"),
+            "tumble 0.01 %");
+  EXPECT_TRUE(lines_with(times_table(results, groups), {{"query", "cast"}}).empty());
+}
+
 TEST(ManyBodiesTable, HasTheSceneAndItsCounts) {
   Json row = test::row("scene", "exact", "", "distance", 1.0, 1.0,
                        {{"processor_ns", 5000.0}, {"bodies", 1000}, {"missed_pairs", 0}, {"pairs_looked_at", 12}});

@@ -143,6 +143,26 @@ TEST(Collection, KindsAreComparedAtEqualNumbersOfTriangles) {
   EXPECT_THAT(summary_of(rows).at("hardness"), IsEmpty());  // seven objects are too few
 }
 
+TEST(Collection, CastsOfDifferentMotionsAreKeptApart) {
+  const auto cast = [](const char* algorithm, const char* motion, double us) {
+    Json json = labelled(test::row("cast", algorithm, "a.self", "distance", 0.0, 1e3 * us), {"a"});
+    json["name"] = std::string("cast/algorithm:") + algorithm + "/" + motion;
+    json["sixdof"]["order"] = motion;
+    return json;
+  };
+  const auto summary = summary_of({cast("exact", "translation/10", 2), cast("exact", "tumble/10", 5),
+                                   cast("slow", "translation/10", 6), cast("slow", "tumble/10", 10)});
+  ASSERT_EQ(summary.at("cells").size(), 4u);
+  EXPECT_EQ(summary.at("cells")[0].at("query"), "cast translation/10");
+  EXPECT_DOUBLE_EQ(summary.at("cells")[0].at("mean_us"), 2.0);
+  EXPECT_EQ(summary.at("cells")[2].at("query"), "cast tumble/10");
+  std::vector<double> ratios;
+  for (const auto& each : summary.at("against_exact")) {
+    if (each.at("algorithm") == "slow") ratios.push_back(each.at("ratio"));
+  }
+  EXPECT_THAT(ratios, ElementsAre(3.0, 2.0));
+}
+
 TEST(Collection, WhatDidNotEndIsListed) {
   const auto summary = summary_of({error_row({"a"}, "set", "sixdof generate", "no volumes: not made in time"),
                                    error_row({"a"}, "pair", "ist", "not done in 10 s")});

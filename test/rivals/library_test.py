@@ -135,6 +135,30 @@ class Library(unittest.TestCase):
             for program, answers, _, in_order in self.each_setting(sphere(3)):
                 self.check(program, answers, X if in_order else inverse(X), gap)
 
+    def cast(self, program, X, translation, rotation=(0.0, 0.0, 0.0)):
+        """About B's origin, which is the centre of its box."""
+        return program.say({"do": "ask", "query": "cast", "pose": X, "translation": list(translation),
+                            "rotation": list(rotation), "reference": [0.0, 0.0, 0.0]})
+
+    def test_first_contact_of_boxes_that_stay_parallel(self):
+        gap = 0.37
+        X = pose((0.1, -0.2, HIGH[2] - LOW[2] + gap), 2, YAW)
+        for program, answers, _, in_order in self.each_setting(box()):
+            if "cast" not in answers or not in_order:
+                continue
+            for rotation in ((0.0, 0.0, 0.0), (0.0, 0.0, 1.3), (0.0, 0.0, -4.0)):
+                reply = self.cast(program, X, (0.02, 0.05, -1.0), rotation)
+                self.assertAlmostEqual(reply["t"], gap, delta=SINGLE, msg=f"{self.now}: {reply}")
+                if "a" in reply:
+                    self.assertAlmostEqual(reply["a"][2], HIGH[2], delta=SINGLE, msg=f"{self.now}: {reply}")
+                    self.assertAlmostEqual(reply["b"][2], HIGH[2], delta=SINGLE, msg=f"{self.now}: {reply}")
+                if "normal" in reply:
+                    self.assertAlmostEqual(reply["normal"][2], 1.0, delta=SINGLE, msg=f"{self.now}: {reply}")
+                for away in ((0.02, 0.05, 1.0), (0.02, 0.05, -0.9 * gap)):
+                    self.assertIs(self.cast(program, X, away, rotation)["hit"], False, self.now)
+            touching = self.cast(program, pose((0.9, 0.3, 0.4), 2, YAW), (1.0, 0.0, 0.0))
+            self.assertEqual((touching["hit"], touching["t"]), (True, 0), self.now)
+
     def test_the_force_leads_out(self):
         X = pose((1.1, 1.0, 0.7), 2, YAW)
         for program, answers, hello, in_order in self.each_setting(sphere(3)):

@@ -83,7 +83,7 @@ class Loop(unittest.TestCase):
         hello = self.program.hello()
         self.assertEqual({key: hello[key] for key in ("protocol", "name", "version", "summary", "answers")},
                          {"protocol": 1, "name": "probe", "version": "1.0", "summary": "a probe",
-                          "answers": ["collide", "distance"]})
+                          "answers": ["collide", "distance", "cast"]})
         self.assertEqual(hello["parameters"][0]["choices"], ["none", "bad_mesh", "bad_argument"])
         self.assertIn("time", hello["can"])
         self.assertIn("error", self.program.say({"do": "hello", "protocol": 2}))
@@ -118,6 +118,27 @@ class Loop(unittest.TestCase):
         self.assertEqual(self.program.ask("distance", pose("-inf"))["status"], "non_finite")
         self.assertEqual(self.program.ask("collide", pose("nan"))["status"], "non_finite", "no answer is made up")
         self.assertEqual([each[:2] for each in self.time([pose("inf")], query="collide")["failed"]], [[0, "non_finite"]])
+        self.assertIn("distance", self.program.ask("distance", pose(0.5)))
+
+    def cast(self, translation, rotation, command=0.0):
+        return self.program.say({"do": "ask", "query": "cast", "pose": pose(0.5, command), "translation": translation,
+                                 "rotation": rotation, "reference": [0.1, 0.2, 0.3]})
+
+    def test_casts(self):
+        self.assertEqual(self.cast([0.25, 1, 2], [0, 0, 0])["kind"], "bad_argument", "nothing is prepared")
+        self.prepare()
+        reply = self.cast([1.0 / 3.0, 1, 2], [0.5, 0.25, -1])
+        self.assertGreaterEqual(reply.pop("ns"), 0)
+        self.assertEqual(reply, {"hit": True, "t": 1.0 / 3.0, "a": [0.1, 0.2, 0.3], "b": [0.5, 0.25, -1], "normal": [0, 0, 1]})
+        none = self.cast([0.25, 1, 2], [0, 0, 1])
+        self.assertIs(none["hit"], False)
+        self.assertNotIn("t", none)
+        self.assertEqual(self.cast([0.25, 1, 2], [0, 0, 0], 1)["status"], "failed")
+        self.assertEqual(self.cast([0.25, 1, 2], [0, 0, 0], 2)["status"], "non_finite")
+        for wrong in (["nan", 1, 2], [0.25, "inf", 2]):
+            self.assertEqual(self.cast(wrong, [0, 0, 0])["status"], "non_finite")
+            self.assertEqual(self.cast([0.25, 1, 2], wrong)["status"], "non_finite")
+        self.assertIn("error", self.cast([0.25, 1], [0, 0, 0]))
         self.assertIn("distance", self.program.ask("distance", pose(0.5)))
 
     def test_what_a_library_prints_is_no_reply(self):

@@ -26,12 +26,19 @@ class Query {
     return { distance: pose[9] + this.sum, a: [pose[9], 0, 0], b: [0, 0, this.copies] };
   }
 
+  cast(motion) {
+    const command = motion.pose[10];
+    if (command === 1) throw new Failed("gave up");
+    if (motion.rotation[2] > 0) return null;
+    return { t: command === 2 ? NaN : motion.translation[0], a: motion.reference, b: motion.rotation, normal: [0, 0, 1] };
+  }
+
   footprint() {
     return { bytes: 12, counts: { things: 3 } };
   }
 }
 
 serve(Query, {
-  name: "probe", version: "1.0", summary: "a probe", answers: ["collide", "distance"],
+  name: "probe", version: "1.0", summary: "a probe", answers: ["collide", "distance", "cast"],
   parameters: [choice("mode", "what fails", "none", ["none", "bad_mesh", "bad_argument"])],
 });

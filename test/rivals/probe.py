@@ -31,9 +31,18 @@ class Query:
             raise IndexError("a library throws")
         return pose[9] + self.sum, [pose[9], 0.0, 0.0], [0.0, 0.0, self.copies]
 
+    def cast(self, motion):
+        command = motion.pose[10]
+        if command == 1.0:
+            raise sixdof_rival.Failed("gave up")
+        if motion.rotation[2] > 0.0:
+            return None
+        return {"t": math.nan if command == 2.0 else motion.translation[0], "a": motion.reference,
+                "b": motion.rotation, "normal": [0.0, 0.0, 1.0]}
+
     def footprint(self):
         return 12, {"things": 3}
 
 
-sixdof_rival.serve(Query, name="probe", version="1.0", summary="a probe", answers=["collide", "distance"],
+sixdof_rival.serve(Query, name="probe", version="1.0", summary="a probe", answers=["collide", "distance", "cast"],
                    parameters=[sixdof_rival.choice("mode", "what fails", "none", ["none", "bad_mesh", "bad_argument"])])

@@ -9,8 +9,10 @@
 #include <gmock/gmock.h>
 
 #include <sixdof/algorithm/core_algorithms.h>
+#include <sixdof/base/error.h>
 #include <sixdof/models/model_catalogue.h>
 
+#include "bench/study/cast_study.h"
 #include "bench/study/precision.h"
 #include "bench/study/verdict_sample.h"
 
@@ -234,6 +236,64 @@ TEST_F(Recommend, TakesNoneOfAHundredPlantedFaults) {
   EXPECT_EQ(found.missing.empty(), !noisy);
   ASSERT_EQ(found.candidates.size(), planted.size());
   for (const results::Candidate& each : found.candidates) expect_reason(planted[each.place]->plant(), each);
+}
+
+/// `exact`, but contacts in the middle of a motion are off by `shift` of the motion.
+class ShiftedCasts final : public Algorithm {
+ public:
+  ShiftedCasts(std::string name, double shift) : shift_(shift) { traits_.name = std::move(name); }
+  const Traits& traits() const override { return traits_; }
+  std::unique_ptr<Query> prepare(const Mesh& a, const Mesh& b, const Settings&) const override {
+    class ShiftedQuery final : public Query {
+     public:
+      ShiftedQuery(std::unique_ptr<Query> exact, double shift) : exact_(std::move(exact)), shift_(shift) {}
+      Outcome<Impact> cast(const Motion& motion) override {
+        Outcome<Impact> answer = exact_->cast(motion);
+        // Where there is room for the shift.
+        if (answer.ok() && answer.value.hit && answer.value.t > 0.3 && answer.value.t < 0.7) answer.value.t += shift_;
+        return answer;
+      }
+
+     private:
+      const std::unique_ptr<Query> exact_;
+      const double shift_;
+    };
+    return std::make_unique<ShiftedQuery>(exact_->prepare(a, b, exact_->settings()), shift_);
+  }
+
+ private:
+  const double shift_;
+  const std::unique_ptr<Algorithm> exact_ = make_exact_algorithm();
+  Traits traits_{.answers = {.cast = true}};
+};
+
+TEST_F(Recommend, LateContactsAreUnsafeAndEarlyOnesLessRight) {
+  const CastSample sample = draw_cast_sample(cache_, pair_, 90, 1);
+  EXPECT_GT(sample.hits(), 30u);
+  EXPECT_LT(sample.hits(), sample.motions.size());
+  ShiftedCasts right("right", 0.0), late("late", 0.01), early("early", -0.01);
+  const CastPlan plan{.algorithms = {&right, &late, &early}, .values = {}, .deadline_ns = 1e10};
+  std::size_t steps = 0;
+  const std::vector<CastPoint> points = measure_casts(
+      plan, cache_, pair_, sample, [](const std::string&, std::size_t, std::size_t) {},
+      [&](const std::vector<CastPoint>& done) { EXPECT_EQ(done.size(), ++steps); });
+  std::vector<results::Row> rows;
+  for (const CastPoint& point : points) rows.push_back(point.row);
+  const results::Choice found = results::choose(rows, results::k_cast, "early_max");
+  ASSERT_TRUE(found.missing.empty()) << found.missing;
+  std::map<std::string, const results::Candidate*> by_name;
+  for (const results::Candidate& each : found.candidates) by_name[rows[each.place].fields.algorithm] = &each;
+  EXPECT_EQ(found.taken(), by_name.at("right"));
+  EXPECT_EQ(by_name.at("late")->standing, results::Standing::unsafe);
+  EXPECT_THAT(by_name.at("late")->reason, ::testing::HasSubstr("late)"));
+  EXPECT_EQ(by_name.at("early")->standing, results::Standing::less_right);
+  EXPECT_NEAR(rows[2].value("early_max").value(), 0.01, 1e-6);  // the resolution of `exact` and the bracket
+}
+
+TEST_F(Recommend, NoContactsNoVerdict) {
+  CatalogueEntry without = pair_;
+  std::erase(without.buckets, bench::k_contact);
+  EXPECT_THROW(draw_cast_sample(cache_, without, 90, 1), BadArgument);
 }
 
 TEST_F(Recommend, SaysNothingWithoutJudgedOverlaps) {

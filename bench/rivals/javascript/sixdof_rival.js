@@ -7,18 +7,20 @@
  *       collide(pose) {}                // true or false
  *       distance(pose) {}               // {distance}, or {distance, a, b} with the closest points
  *       respond(pose) {}                // {penalty, force, torque, reference} and, optional, volume
+ *       cast(motion) {}                 // null, or {t} and, optional, a, b, normal
  *       footprint() {}                  // optional: {bytes, counts}
  *     }
  *
  * It needs the methods that it answers only. `vertices` is a Float64Array, `triangles` a Uint32Array, three numbers a row;
- * B is A itself where it is a copy. The pose is an array of the twelve numbers; points and forces are in A's frame. throw
+ * B is A itself where it is a copy. The pose is an array of the twelve numbers; a motion is
+ * {pose, translation, rotation, reference}, three numbers each but for the start; points and forces are in A's frame. throw
  * new Failed(words) where the library gives up; any other exception counts as failed, too. A method is timed from the
  * twelve numbers of the pose to its return.
  */
 
 const fs = require("node:fs");
 
-const KINDS = ["collide", "distance", "respond"];
+const KINDS = ["collide", "distance", "respond", "cast"];
 const MOST_WORDS = 400;
 
 class BadMesh extends Error {}
@@ -120,7 +122,9 @@ class Server {
   }
 
   ask(request) {
-    const [ns, reply] = timed(this.query, this.kind(request), readPose(request.pose));
+    const kind = this.kind(request);
+    const place = request.query === "cast" ? readMotion(request) : readPose(request.pose);
+    const [ns, reply] = timed(this.query, kind, place);
     return { ...reply, ns };
   }
 
@@ -180,10 +184,13 @@ function processorTime() {
   return 1e3 * (user + system);
 }
 
-/** Wall time of a query in ns, and its reply. */
+/** Wall time of a query in ns, and its reply. `pose` is a motion for a cast. */
 function timed(query, kind, pose) {
   if (kind === null) return [0, { status: "unsupported", words: "not a question for this algorithm" }];
-  if (!pose.every(Number.isFinite)) return [0, { status: "non_finite", words: "the pose is not finite" }];
+  const numbers = kind === "cast" ? Object.values(pose).flat() : pose;
+  if (!numbers.every(Number.isFinite)) {
+    return [0, { status: "non_finite", words: `the ${kind === "cast" ? "motion" : "pose"} is not finite` }];
+  }
   const start = now();
   let answer, failure = null;
   try {
@@ -197,8 +204,9 @@ function timed(query, kind, pose) {
 
 function replyOf(kind, answer) {
   if (kind === "collide") return { collide: Boolean(answer) };
+  if (kind === "cast" && answer === null) return { hit: false };
   // JSON has no numbers that are not finite.
-  if (Object.values(answer).flat().every(Number.isFinite)) return answer;
+  if (Object.values(answer).flat().every(Number.isFinite)) return kind === "cast" ? { hit: true, ...answer } : answer;
   return { status: "non_finite", words: "the answer is not finite" };
 }
 
@@ -221,8 +229,21 @@ function readMesh(place) {
 
 function readPose(numbers) {
   if (numbers.length !== 12) throw new Error("a pose does not have twelve numbers");
+  return readNumbers(numbers);
+}
+
+function readNumbers(numbers) {
   const special = { nan: NaN, inf: Infinity, "-inf": -Infinity };
   return numbers.map((x) => (typeof x === "string" ? special[x] : x));
+}
+
+function readMotion(request) {
+  const { translation, rotation, reference } = request;
+  for (const vector of [translation, rotation, reference]) {
+    if (vector?.length !== 3) throw new Error("a motion does not have three vectors of three numbers");
+  }
+  const [moved, turned, point] = [translation, rotation, reference].map(readNumbers);
+  return { pose: readPose(request.pose), translation: moved, rotation: turned, reference: point };
 }
 
 /** Longest edge of the box around a mesh. */

@@ -7,12 +7,14 @@ A query is a class. Its constructor prepares a pair of meshes; its methods answe
         def collide(self, pose): ...             # bool
         def distance(self, pose): ...            # float, or (float, closest point of A, closest point of B)
         def respond(self, pose): ...             # dict of penalty, force, torque, reference and, optional, volume
+        def cast(self, motion): ...              # None for no contact, t, or a dict of t and, optional, a, b, normal
         def empty(self, pose): ...               # optional: all of a query but the library's search
         def footprint(self): ...                 # optional: (bytes, {"name": count})
         def pose_of(numbers): ...                # optional, static: the pose that methods take, of the NumPy array
+        def motion_of(motion): ...               # optional, static: the motion that cast() takes, of a Motion
 
 It needs the methods that it answers only. The pose is a NumPy array of the twelve numbers, a list where NumPy is
-missing. Points and forces are in A's frame. What a method returns may be of NumPy's types. raise Failed(words) where
+missing; a Motion has such a pose, its start, and lists of three numbers. Points and forces are in A's frame. What a method returns may be of NumPy's types. raise Failed(words) where
 the library gives up; any other exception counts as failed, too.
 
 A method is timed from the twelve numbers of the pose, or what pose_of() makes of them, to its return. The count
@@ -34,7 +36,7 @@ try:
 except ImportError:
     numpy = None
 
-KINDS = ("collide", "distance", "respond")
+KINDS = ("collide", "distance", "respond", "cast")
 EMPTY_CALLS = 1001
 NOT_FINITE = object()  # In place of a pose that holds a NaN or an infinity: many libraries would answer.
 
@@ -80,6 +82,14 @@ class Mesh:
         return [(min(flat[i::3]) + max(flat[i::3])) / 2 for i in range(3)]
 
 
+class Motion:
+    """Of B from t = 0 to 1: the point `reference` of B's mesh frame moves by t `translation`, and B rotates about it by t
+    times the vector `rotation` (radians); both in A's axes."""
+
+    def __init__(self, pose, translation, rotation, reference):
+        self.pose, self.translation, self.rotation, self.reference = pose, translation, rotation, reference
+
+
 def moved(pose, point):
     """The point of B in A's frame, as a list."""
     return [float(pose[3 * i] * point[0] + pose[3 * i + 1] * point[1] + pose[3 * i + 2] * point[2] + pose[9 + i])
@@ -107,6 +117,7 @@ class _Server:
     def __init__(self, query_class, hello):
         self.query_class, self.hello = query_class, hello
         self.pose_of = getattr(query_class, "pose_of", lambda numbers: numbers)
+        self.motion_of = getattr(query_class, "motion_of", lambda motion: motion)
         self.query, self.progress = None, None
 
     def reply(self, line):
@@ -140,6 +151,15 @@ class _Server:
         pose = _pose(numbers)
         return self.pose_of(pose) if all(map(math.isfinite, pose)) else NOT_FINITE
 
+    def motion(self, request):
+        vectors = [[float(x) for x in request[key]] for key in ("translation", "rotation", "reference")]
+        if any(len(vector) != 3 for vector in vectors):
+            raise ValueError("a motion does not have three vectors of three numbers")
+        pose = _pose(request["pose"])
+        if not all(map(math.isfinite, sum(vectors, list(pose)))):
+            return NOT_FINITE
+        return self.motion_of(Motion(pose, *vectors))
+
     def empty_call_ns(self):
         method = getattr(self.query, "empty", lambda pose: None)
         pose = self.pose([1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0])
@@ -160,7 +180,9 @@ class _Server:
         return getattr(self.query, kind)
 
     def ask(self, request):
-        took, reply = timed(self.method(request["query"]), request["query"], self.pose(request["pose"]))
+        kind = request["query"]
+        method = self.method(kind)
+        took, reply = timed(method, kind, self.motion(request) if kind == "cast" else self.pose(request["pose"]))
         return reply | {"ns": took}
 
     def time(self, request):
@@ -224,11 +246,11 @@ def _words(error):
 
 
 def timed(method, kind, pose):
-    """Wall time of a query in ns, and its reply."""
+    """Wall time of a query in ns, and its reply. @param pose, or a motion"""
     if method is None:
         return 0, {"status": "unsupported", "words": f"does not answer {kind}"}
     if pose is NOT_FINITE:
-        return 0, {"status": "non_finite", "words": "the pose is not finite"}
+        return 0, {"status": "non_finite", "words": f"the {'motion' if kind == 'cast' else 'pose'} is not finite"}
     start = time.perf_counter_ns()
     try:
         answer = method(pose)
@@ -246,6 +268,12 @@ def _reply(kind, answer):
     if kind == "distance":
         gap, a, b = answer if isinstance(answer, tuple) else (answer, None, None)
         reply = {"distance": float(gap)} | ({} if a is None else {"a": _vector(a), "b": _vector(b)})
+    elif kind == "cast":
+        if answer is None:
+            return {"hit": False}
+        values = answer if isinstance(answer, dict) else {"t": answer}
+        reply = {"hit": True, "t": float(values["t"])}
+        reply |= {key: _vector(values[key]) for key in ("a", "b", "normal") if values.get(key) is not None}
     else:
         reply = {key: _vector(answer[key]) for key in ("force", "torque", "reference")}
         reply |= {key: float(answer[key]) for key in ("penalty", "volume") if key in answer}

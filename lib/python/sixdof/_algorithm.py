@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import _core, sixdof_rival
 from ._errors import BadArgument, BadMesh
 from ._meshes import Mesh, mesh
+from ._motions import Motion
 
 KINDS = sixdof_rival.KINDS
 
@@ -70,6 +71,12 @@ class Algorithm:
     def respond(self, pose: NDArray[numpy.float64]) -> Mapping[str, Any]:
         """A dict of penalty, force and torque on b in a's frame, and optionally volume, and reference: the point that
         the torque is about, by default the centre of b's bounding box."""
+        raise NotImplementedError
+
+
+    def cast(self, motion: Motion) -> Any:
+        """When both bodies first have a point in common: None for never, t from 0 to 1, or a dict of t and optionally
+        a and b (the points of contact) and normal (from a to b), in a's frame. motion.pose_at(t) is the pose at t."""
         raise NotImplementedError
 
 
@@ -138,11 +145,11 @@ def _value(entry: Mapping[str, Any], text: str) -> Any:
     return value
 
 
-def asked(algorithm: Algorithm, kind: str) -> Callable[[NDArray[numpy.float64]], Any]:
+def asked(algorithm: Algorithm, kind: str) -> Callable[[Any], Any]:
     """The method with words of where an exception was raised, and with complete responses."""
     method = getattr(algorithm, kind)
 
-    def ask(pose: NDArray[numpy.float64]) -> Any:
+    def ask(pose: Any) -> Any:
         try:
             answer = method(pose)
         except (NoAnswer, MemoryError):
@@ -190,8 +197,15 @@ class PythonPair:
         arrays |= {name: _missing(len(poses)) for name in ("penalty", "volume")}
         return self._ask("respond", poses, arrays, {name: name for name in arrays})
 
-    def _ask(self, kind: str, poses: NDArray[numpy.float64], arrays: dict[str, Any],
-             keys: Mapping[str, str]) -> dict[str, Any]:
+    def cast(self, poses: NDArray[numpy.float64], translations: NDArray[numpy.float64],
+             rotations: NDArray[numpy.float64], references: NDArray[numpy.float64], threads: int) -> dict[str, Any]:
+        motions = [Motion(*each) for each in zip(poses, translations, rotations, references)]
+        arrays: dict[str, Any] = {"hit": numpy.zeros(len(motions), dtype=bool), "t": _missing(len(motions))}
+        arrays |= {name: _missing(len(motions), 3) for name in ("points_a", "points_b", "normal")}
+        return self._ask("cast", motions, arrays,
+                         {"hit": "hit", "t": "t", "points_a": "a", "points_b": "b", "normal": "normal"})
+
+    def _ask(self, kind: str, poses: Any, arrays: dict[str, Any], keys: Mapping[str, str]) -> dict[str, Any]:
         method = asked(self._algorithm, kind) if kind in self._answered else None
         status, words = numpy.zeros(len(poses), dtype=numpy.uint8), {}
         for place, pose in enumerate(poses):
@@ -228,6 +242,12 @@ def served(algorithm: type[Algorithm]) -> type:
             pose[:3, :3] = numpy.reshape(numbers[:9], (3, 3))
             pose[:3, 3] = numbers[9:]
             return pose
+
+        @staticmethod
+        def motion_of(motion: Any) -> Motion:
+            """The same of a motion."""
+            vectors = (numpy.array(vector) for vector in (motion.translation, motion.rotation, motion.reference))
+            return Motion(Query.pose_of(motion.pose), *vectors)
 
         def __init__(self, a: Any, b: Any, settings: Mapping[str, str]):
             mesh_a = mesh(a.vertices, a.triangles, name=a.name)

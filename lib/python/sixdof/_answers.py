@@ -96,6 +96,26 @@ class Distances(Answers):
         return numpy.asanyarray(self.distance, dtype=dtype)
 
 
+class Impacts(Answers):
+    """Answers to `cast`: first contacts. t, points and normals are masked where there is no contact."""
+
+    hit: NDArray[numpy.bool_]  #: Whether the bodies have a point in common at any t from 0 to 1, of shape `shape`.
+    t: NDArray[numpy.float64]  #: The first such time; 0 for bodies in contact at the start, and for these only.
+    points_a: NDArray[numpy.float64]  #: Of contact on A, in A's frame, of shape `shape` + (3,); masked if not given.
+    points_b: NDArray[numpy.float64]  #: On B at t, in A's frame, likewise.
+    normal: NDArray[numpy.float64]  #: Unit vector from A to B, in A's frame, likewise.
+
+    def __init__(self, raw: Mapping[str, Any], shape: tuple[int, ...]):
+        super().__init__(raw, shape)
+        self.hit = self._field(raw["hit"])
+        self.t = self._field(raw["t"], raw["hit"])
+        for name in ("points_a", "points_b", "normal"):
+            setattr(self, name, self._field(raw[name], numpy.isfinite(raw[name]).all(axis=1)))
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
+        return numpy.asanyarray(self.t, dtype=dtype)
+
+
 class Responses(Answers):
     """Answers to `respond`: the wrench that pushes B out of A, zero where the bodies are apart. All in A's frame."""
 

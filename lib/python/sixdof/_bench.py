@@ -22,6 +22,7 @@ from ._results import Results, read_rows
 from ._serve import write
 
 QUERIES = ("prepare", "collide", "distance", "respond")
+CAST = "cast"  # Measured where it is asked for: it has rows for each kind and length of motion.
 
 
 def bench(algorithms: Any, pairs: Sequence[Any], *, queries: Iterable[str] = QUERIES,
@@ -33,7 +34,7 @@ def bench(algorithms: Any, pairs: Sequence[Any], *, queries: Iterable[str] = QUE
 
     algorithms: a class derived from sixdof.Algorithm, a name, or a list of these. pairs: names of pairs of the
     catalogue (sixdof.catalogue()), or tuples (a, b) of what prepare() takes as meshes; of such a pair a coarse set is
-    made first. queries: of prepare, collide, distance, respond. buckets: such as "distance/05"; all if None. against:
+    made first. queries: of prepare, collide, distance, respond, cast. buckets: such as "distance/05"; all if None. against:
     names of algorithms that are measured as well. sample: poses of a bucket at most; 0: all. budget: seconds for all
     rows. seed: of the poses that are drawn. parameters: values by algorithm and parameter, {"ist": {"spheres": 500}}.
     manifest: another catalogue of sets. out: a folder for the result files, the classes and the meshes that they name;
@@ -49,8 +50,8 @@ def bench(algorithms: Any, pairs: Sequence[Any], *, queries: Iterable[str] = QUE
     given = list(algorithms) if isinstance(algorithms, (list, tuple)) else [algorithms]
     with_names = [each if isinstance(each, str) else check(each) for each in given]
     known = set(_word_list(queries, "queries"))
-    if not known <= set(QUERIES):
-        raise BadArgument(f"queries: {', '.join(sorted(known - set(QUERIES)))}: none of {', '.join(QUERIES)}")
+    if not known <= {*QUERIES, CAST}:
+        raise BadArgument(f"queries: {', '.join(sorted(known - {*QUERIES, CAST}))}: none of {', '.join((*QUERIES, CAST))}")
     if isinstance(pairs, str) or not pairs:
         raise BadArgument("pairs: a list of names of pairs or of tuples (a, b) is needed")
     folder = pathlib.Path(tempfile.mkdtemp(prefix="sixdof-") if out is None else out).resolve()
@@ -131,7 +132,8 @@ def _mesh_word(value: Any, argument: str, folder: pathlib.Path) -> str:
 
 
 def _filter(queries: set[str], algorithms: list[str], pairs: list[str], buckets: Iterable[str] | None) -> str:
-    """An expression that matches the names of the wanted rows: QUERY/algorithm:NAME/pair:NAME[/BUCKET]."""
+    """An expression that matches the names of the wanted rows: QUERY/algorithm:NAME/pair:NAME[/BUCKET]. Casts begin at
+    one bucket, contact, whatever buckets are wanted."""
     def any_of(names: Iterable[str]) -> str:
         return "(" + "|".join(names) + ")"
 
@@ -141,6 +143,8 @@ def _filter(queries: set[str], algorithms: list[str], pairs: list[str], buckets:
     asked = [query for query in QUERIES[1:] if query in queries]
     if asked:
         parts.append(f"{any_of(asked)}/algorithm:{any_of(algorithms)}/pair:{pair}/{places}")
+    if CAST in queries:
+        parts.append(f"{CAST}/algorithm:{any_of(algorithms)}/pair:{pair}/motion:[a-z]+/step:[0-9.]+")
     return f"^{any_of(parts)}$"
 
 

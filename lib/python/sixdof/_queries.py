@@ -6,9 +6,10 @@ import dataclasses
 from typing import Any
 
 from . import _core
-from ._answers import Answers, Collisions, Distances, Responses
+from ._answers import Answers, Collisions, Distances, Impacts, Responses
 from ._errors import BadArgument, BadMesh
 from ._meshes import Mesh, as_mesh
+from ._motions import as_motions
 from ._poses import as_poses
 from ._programs import program
 
@@ -22,7 +23,7 @@ class AlgorithmInfo:
     name: str  #: As prepare() takes it.
     version: str  #: Of the library behind it.
     summary: str  #: One line.
-    answers: tuple[str, ...]  #: Of "collide", "distance", "respond".
+    answers: tuple[str, ...]  #: Of "collide", "distance", "respond", "cast".
     law: str  #: What the magnitude of a response is: "none", "depth" (length) or "volume" (length^3).
     approximates: bool  #: Whether it answers for an approximation of the bodies, such as spheres.
     body: str  #: What answers are about: "mesh" or "convex_hull".
@@ -73,9 +74,19 @@ class Pair:
         """Force and torque that push B out of A; of some algorithms the overlap volume."""
         return self._ask("respond", poses, threads)  # type: ignore[return-value]
 
+    def cast(self, poses: Any, translation: Any, rotation: Any = None, *, reference: Any = None,
+             threads: int = 1) -> Impacts:
+        """When b first touches a while it moves from `poses`, t from 0 to 1: a point of b, the centre of its box, moves
+        by `translation` (length), and b rotates about it by `rotation`, axis times angle (radians); both of shape
+        (..., 3), in a's frame. reference: another point, in b's frame. All arguments are broadcast together."""
+        _check_threads(threads)
+        arrays, shape = as_motions(poses, translation, rotation, reference, self.b.center)
+        answers = Impacts(self._prepared.cast(*arrays, threads), shape)
+        answers.warn(self.name)
+        return answers
+
     def _ask(self, kind: str, poses: Any, threads: int) -> Answers:
-        if not isinstance(threads, int) or threads < 0:
-            raise BadArgument(f"threads: {threads!r} is no number of threads (0: all processors)")
+        _check_threads(threads)
         matrices, shape = as_poses(poses)
         answers = KINDS[kind](getattr(self._prepared, kind)(matrices, threads), shape)
         answers.warn(self.name)
@@ -83,6 +94,11 @@ class Pair:
 
     def __repr__(self) -> str:
         return f"<Pair: {self.name} ({self.settings or 'no settings'}), a {self.a!r}, b {self.b!r}>"
+
+
+def _check_threads(threads: Any) -> None:
+    if not isinstance(threads, int) or threads < 0:
+        raise BadArgument(f"threads: {threads!r} is no number of threads (0: all processors)")
 
 
 def prepare(algorithm: Any, a: Any, b: Any = None, *, isolate: bool = False, query_timeout: float = 10.0,

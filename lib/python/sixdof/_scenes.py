@@ -20,7 +20,7 @@ class FrameAnswer:
     """The answer to a question in one frame. Bodies are named by their identifiers."""
 
     pairs: NDArray[numpy.uint32]  #: Shape (k, 2), lower identifier first, sorted.
-    distance: NDArray[numpy.float64]  #: Of each pair (length), shape (k,); "touching" and "wrenches": 0.
+    distance: NDArray[numpy.float64]  #: Of each pair (length), shape (k,); "touching" and "wrenches": 0; "impacts": t.
     body: NDArray[numpy.uint32]  #: "wrenches" only: which bodies, shape (m,).
     force: NDArray[numpy.float64]  #: On each of them, in the world's frame (area), shape (m, 3).
     torque: NDArray[numpy.float64]  #: About the centre of its box (area times length), shape (m, 3).
@@ -50,7 +50,8 @@ class Scene:
         return all_poses
 
     def play(self, question: str = "touching", algorithm: str = "exact") -> tuple[list[FrameAnswer], dict[str, Any]]:
-        """Replays the scene to an algorithm (scene_algorithms()). question: "touching", "near", "closest", "wrenches".
+        """Replays the scene to an algorithm (scene_algorithms()). question: "touching", "near", "closest", "wrenches" or
+        "impacts", the pairs that first touch between the frame before and this one, at t from 0 to 1.
 
         Returns the answer of every frame, and a dict: true_pairs, missed, wrong, grazing, nested, largest_error
         (length) against the truth, prepare_s, mean_us and max_us of a frame.

@@ -224,6 +224,7 @@ Report make_report(const Results& results, const std::vector<Series>& series) {
                            response_errors_table(results, groups),
                            scenario_measures_table(results, groups),
                            metrics_table(results, groups),
+                           casts_table(results, groups),
                            many_bodies_table(results, groups),
                            collection_table(results),
                            collection_ratios_table(results),

@@ -18,9 +18,10 @@ using namespace results;
 /// Name of the pair whose times are means over all pairs of a run.
 inline constexpr const char* k_all_objects = "all objects (mean)";
 
-/// "times": times of queries on buckets, in us. `repetitions` is empty for k_all_objects. `low_us` and `high_us` bound
-/// the interval of a mean; of k_all_objects they are the geometric mean over the pairs divided and multiplied by its
-/// geometric standard deviation, over pairs that all algorithms of the bucket have.
+/// "times": times of queries on buckets, in us, but for casts, which all start at the bucket of contact. `repetitions`
+/// is empty for k_all_objects. `low_us` and `high_us` bound the interval of a mean; of k_all_objects they are the
+/// geometric mean over the pairs divided and multiplied by its geometric standard deviation, over pairs that all
+/// algorithms of the bucket have.
 DataTable times_table(const Results& results, const std::vector<RowGroup>& groups);
 
 /// "response_errors": errors of responses by overlap volume, each measure of a row in a line.
@@ -68,6 +69,10 @@ inline constexpr std::size_t k_most_steps = 200;
 /// "metrics": a line for each row with every number that it has, for figures of any two. Memory and time of preparing
 /// stand beside queries too, where the file has the row that prepares. `where` names what rows are compared on.
 DataTable metrics_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "casts": first contacts of moving bodies, a line for each row: time, and how many answers are missed, late
+/// (`late_most` and `early_most` are parts of the motion), early, phantom or missing (measure/metrics.cpp).
+DataTable casts_table(const Results& results, const std::vector<RowGroup>& groups);
 
 /// "many_bodies": scenes of many bodies: time of a frame, pairs missed and wrong, pairs looked at.
 DataTable many_bodies_table(const Results& results, const std::vector<RowGroup>& groups);

@@ -171,7 +171,7 @@ DataTable times_table(const Results& results, const std::vector<RowGroup>& group
   const Resolutions resolutions = resolutions_of(groups);
   std::vector<TimeLine> lines;
   for (const RowGroup& group : groups) {
-    if (!group.fields().bucket || group.fields().pair.empty()) continue;
+    if (!group.fields().bucket || group.fields().pair.empty() || group.fields().query == k_cast) continue;
     for (TimeLine& line : lines_of(results, group, resolutions)) lines.push_back(std::move(line));
   }
   std::vector<TimeLine> means = means_over_pairs(lines);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,23 +21,27 @@ struct Place {
 constexpr Place k_apart{"apart", "judged_apart", "wrong_apart"};
 constexpr Place k_near{"near contact", "judged_near", "wrong_near"};
 constexpr Place k_overlapping{"overlapping", "judged_overlapping", "wrong_overlapping"};
+constexpr Place k_contacts{"with a first contact", "hits", "missed_hits"};
 constexpr std::array k_places{k_apart, k_near, k_overlapping};
 
 /// What a verdict on a query needs.
 std::vector<Place> needed(const std::string& query) {
   if (query == "collide") return {k_apart, k_near, k_overlapping};
+  if (query == k_cast) return {k_contacts};
   return {query == "distance" ? k_apart : k_overlapping};
 }
 
 /// Why the rows cannot say anything; empty if they can. All rows are of the same poses, so the most judged counts.
 std::string missing_poses(std::span<const Row> rows, const std::string& query) {
   if (std::ranges::none_of(rows, [](const Row& row) { return row.error.empty(); })) return {};  // nothing was judged
+  const char* const what = query == k_cast ? "motions" : "poses";
   std::vector<std::string> lacking;
   for (const Place& place : needed(query)) {
     double most = 0.0;
     for (const Row& row : rows) most = std::max(most, row.count(place.judged));
     if (most < k_fewest_judged) {
-      lacking.push_back(fmt::format("{:.0f} of the {:.0f} poses {} that it needs", most, k_fewest_judged, place.words));
+      lacking.push_back(
+          fmt::format("{:.0f} of the {:.0f} {} {} that it needs", most, k_fewest_judged, what, place.words));
     }
   }
   return lacking.empty() ? std::string() : fmt::format("there are {}", fmt::join(lacking, ", and "));
@@ -57,8 +62,24 @@ std::string wrong_answers(const Row& row) {
   return fmt::format("{:.0f} of {:.0f} answers wrong ({})", wrong, judged, fmt::join(where, ", "));
 }
 
+/// "12 of 2,100 contacts wrong (10 missed, 2 late)"; empty for none.
+std::string wrong_casts(const Row& row) {
+  constexpr std::pair<const char*, const char*> k_kinds[]{{"missed_hits", "missed"},
+                                                          {"late_hits", "late"},
+                                                          {"phantom_hits", "phantom"},
+                                                          {"false_starts", "contact at the start"}};
+  if (row.count("mismatch") == 0.0) return {};
+  std::vector<std::string> texts;
+  for (const auto& [counter, words] : k_kinds) {
+    if (row.count(counter) > 0.0) texts.push_back(fmt::format("{:.0f} {}", row.count(counter), words));
+  }
+  return fmt::format("{:.0f} of {:.0f} contacts wrong ({})", row.count("mismatch"), row.count("judged"),
+                     fmt::join(texts, ", "));
+}
+
 /// Why the row's answers may not be used at all; empty if they may.
 std::string why_unsafe(const Row& row, const std::string& query) {
+  if (query == k_cast) return wrong_casts(row);
   const bool approximates = row.fields.approximates;
   if (query == "collide" || (query == "distance" && !approximates)) return wrong_answers(row);
   const auto angle = row.value("gamma_F_deg");
@@ -119,7 +140,8 @@ Candidate candidate_of(const Row& row, std::size_t place, const std::string& que
     candidate.reason = why;
   } else {
     candidate.standing = Standing::not_ranked;
-    const bool no_error = query != "respond" || candidate.error.value <= k_rounding;
+    const bool has_error = query == "respond" || query == k_cast;
+    const bool no_error = !has_error || candidate.error.value <= k_rounding;
     candidate.exact = !row.fields.approximates && no_error;
     const std::string interpreter = interpreter_of(row.fields);
     candidate.interpreted = !interpreter.empty();

@@ -13,6 +13,7 @@
 ///
 /// Rules, by rows of `sixdof precision`:
 /// - A row counts only if every query was answered (fault.h).
+/// - One first contact that is missed, late, phantom or wrongly at the start is unsafe; an early one is an error.
 /// - An algorithm that does not approximate (RowFields::approximates) promises right answers: one wrong answer makes it
 ///   unsafe. So does one wrong yes/no of any algorithm, and forces that are no better than a constant one.
 /// - A deadline is kept if at most k_most_late of the queries were late as they came, in one pass. More are held
@@ -68,7 +69,7 @@ struct Choice {
   const Candidate* taken() const;
 };
 
-/// @param query "collide", "distance" or "respond"; @param error the metric that is to be small
+/// @param query "collide", "distance", "respond" or "cast"; @param error the metric that is to be small
 Choice choose(std::span<const Row> rows, const std::string& query, const std::string& error);
 
 /// An upper bound, with 95 % confidence, on the share of wrong answers where 0 of `count` were wrong (rule of three).

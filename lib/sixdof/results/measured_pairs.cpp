@@ -19,7 +19,8 @@ AskedBucket asked_bucket(const RowFields& fields) {
   if (bucket.kind == BucketKind::volume && fields.volume_unit) {
     bucket.percent = std::stod(fmt::format("{:.6g}", bucket.percent / *fields.volume_unit));
   }
-  return {fields.query, bucket};
+  // All casts are on the bucket of contact: what tells them apart is how B moves.
+  return {fields.query == k_cast ? fmt::format("cast {}", fields.order) : fields.query, bucket};
 }
 
 void to_json(nlohmann::json& json, const Missing& missing) {

@@ -25,7 +25,8 @@ using AskedBucket = std::pair<std::string, BucketKey>;
 /// Where objects and numbers of triangles are compared.
 const std::vector<AskedBucket>& compared_buckets();
 
-/// The row's query and bucket, a volume in percent of its volume_unit. @param fields with a bucket
+/// The row's query and bucket, a volume in percent of its volume_unit. The query of a cast is "cast tumble/10".
+/// @param fields with a bucket
 AskedBucket asked_bucket(const RowFields& fields);
 
 /// Something that is missing from the measurement of a pair, and why.

@@ -1,5 +1,6 @@
 #include <sixdof/results/row.h>
 
+#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -66,7 +67,21 @@ std::string bodies_of(const RowFields& fields) {
   return fmt::format("{} ({})", fields.pair, apart);
 }
 
+CastMotion cast_motion_of(const RowFields& fields) {
+  const auto slash = fields.order.find('/');
+  if (fields.query != k_cast || slash == std::string::npos) return {};
+  const char* const begin = fields.order.data() + slash + 1;
+  const char* const end = fields.order.data() + fields.order.size();
+  double percent = 0.0;
+  const auto [stop, error] = std::from_chars(begin, end, percent);
+  if (error != std::errc() || stop != end) return {};
+  return {fields.order.substr(0, slash), percent};
+}
+
 std::string place_of(const RowFields& fields) {
+  if (const CastMotion motion = cast_motion_of(fields); !motion.kind.empty()) {
+    return fmt::format("{} {:g} %", motion.kind, motion.percent);
+  }
   return fields.bucket ? fmt::format("{} {:g} %", to_string(fields.bucket->kind), fields.bucket->percent)
                        : fields.scenario;
 }

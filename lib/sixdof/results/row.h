@@ -47,7 +47,19 @@ std::string class_of(const RowFields& fields);
 /// What rows are compared on: "bunny", or "bunny (CLASS)" of a row that has a class.
 std::string bodies_of(const RowFields& fields);
 
-/// "distance 5 %"; the scenario of a row without a bucket.
+/// RowFields::query of rows that ask for first contacts.
+inline constexpr const char* k_cast = "cast";
+
+/// How B moves in a row of casts.
+struct CastMotion {
+  std::string kind;      ///< "translation", "rotation", "tumble".
+  double percent = 0.0;  ///< By what part of A's diagonal.
+};
+
+/// Of RowFields::order, "tumble/10"; no kind where it has not this form.
+CastMotion cast_motion_of(const RowFields& fields);
+
+/// "distance 5 %"; of a cast its motion, "tumble 10 %"; the scenario of a row without a bucket.
 std::string place_of(const RowFields& fields);
 
 /// The row of an entry of "benchmarks". Numbers that the table of metrics does not know are left out; rows from before

@@ -33,8 +33,14 @@ using Subject = std::tuple<std::size_t, std::string, std::string, std::string>;
 
 Subject subject_of(const Row& row) { return {row.file, bodies_of(row.fields), row.fields.query, row.fields.algorithm}; }
 
+/// With the bucket's digits.
+std::string words_of_place(const RowFields& fields) {
+  if (fields.query == k_cast) return place_of(fields);
+  return fmt::format("{} {} %", to_string(fields.bucket->kind), fields.bucket->percent_text());
+}
+
 void judge(std::vector<RowGroup>& groups) {
-  std::map<Subject, BucketKey> without_right_answer;  // and where
+  std::map<Subject, std::string> without_right_answer;  // and where
   for (RowGroup& group : groups) {
     group.faults = faults_of_repetitions(group);
     const auto tells = [&](const Fault& fault) {
@@ -42,7 +48,7 @@ void judge(std::vector<RowGroup>& groups) {
       return fault.is_total() && !(fault.is_approximation() && group.fields().query == "respond");
     };
     if (group.fields().bucket && std::ranges::any_of(group.faults, tells)) {
-      without_right_answer.try_emplace(subject_of(group.row()), *group.fields().bucket);
+      without_right_answer.try_emplace(subject_of(group.row()), words_of_place(group.fields()));
     }
   }
   for (RowGroup& group : groups) {
@@ -52,10 +58,8 @@ void judge(std::vector<RowGroup>& groups) {
     const auto found = without_right_answer.find(subject_of(group.row()));
     if (!group.faults.empty() || !group.fields().bucket || found == without_right_answer.end()) continue;
     const bool approximate = group.fields().approximates && group.fields().query == "distance";
-    group.faults.push_back({approximate ? k_approximate
-                                        : fmt::format("no right answer at {} {} %", to_string(found->second.kind),
-                                                      found->second.percent_text()),
-                            "", 0, 0});
+    group.faults.push_back(
+        {approximate ? k_approximate : fmt::format("no right answer at {}", found->second), "", 0, 0});
   }
 }
 

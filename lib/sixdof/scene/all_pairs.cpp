@@ -1,11 +1,13 @@
 #include <sixdof/scene/all_pairs.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <optional>
 
 #include <sixdof/base/parallel.h>
 #include <sixdof/scene/bodies.h>
+#include <sixdof/scene/sweeps.h>
 
 namespace sixdof::scene {
 namespace {
@@ -59,10 +61,16 @@ class AllPairs final : public SceneQuery {
  public:
   AllPairs(const Scene& scene, Question question) : question_(question), margin_(scene.margin), bodies_(scene) {
     if (question == Question::wrenches) wrenches_.emplace(scene, bodies_);
+    if (question == Question::impacts) sweeps_.emplace(scene, bodies_);
   }
 
   void update(std::span<const Moved> moved) override {
-    for (const Moved& each : moved) bodies_.move(bodies_.rank(each.body), each.X_WB);
+    if (sweeps_) sweeps_->clear();
+    for (const Moved& each : moved) {
+      const std::uint32_t rank = bodies_.rank(each.body);
+      if (sweeps_) sweeps_->add(bodies_, rank, each.X_WB);
+      bodies_.move(rank, each.X_WB);
+    }
     known_ = false;
   }
 
@@ -129,6 +137,9 @@ class AllPairs final : public SceneQuery {
       case Question::near:
         pairs = measure(margin_);
         break;
+      case Question::impacts:
+        pairs = find_impacts();
+        break;
       case Question::closest:
         pairs = measure(closest_centers());
         // The first of the smallest: pairs are sorted.
@@ -143,6 +154,40 @@ class AllPairs final : public SceneQuery {
     }
     for (NearPair& near : pairs) near.pair = {bodies_.id(near.pair.a), bodies_.id(near.pair.b)};
     answer_.pairs = std::move(pairs);
+  }
+
+  /// Every pair of which a body moves, but for those that cannot have come together.
+  std::vector<NearPair> find_impacts() {
+    struct Part {
+      std::vector<NearPair> pairs;
+      std::uint64_t candidates = 0, triangles = 0;
+    };
+    Part all = parallel::reduce<Part>(
+        bodies_.size(), 1,
+        [&](std::size_t begin, std::size_t end) {
+          Part part;
+          NearQuery query;
+          for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+            for (std::uint32_t j = i + 1; j < bodies_.size(); ++j) {
+              if (!(sweeps_->moves(i) || sweeps_->moves(j)) || !bodies_.matters(i, j)) continue;
+              if (bodies_.box(i).gap(bodies_.box(j)) > sweeps_->reach(i, j)) continue;
+              ++part.candidates;
+              if (const auto t = sweeps_->first_contact(bodies_, query, i, j)) part.pairs.push_back({{i, j}, *t});
+            }
+          }
+          part.triangles = query.counts().triangles;
+          return part;
+        },
+        [](Part sum, const Part& part) {
+          sum.pairs.insert(sum.pairs.end(), part.pairs.begin(), part.pairs.end());
+          sum.candidates += part.candidates;
+          sum.triangles += part.triangles;
+          return sum;
+        });
+    work_.candidates += all.candidates;
+    work_.narrow += all.candidates;
+    work_.triangles += all.triangles;
+    return std::move(all.pairs);
   }
 
   /// An upper bound on the distance of the closest pair: that of the closest vertices, one of each body.
@@ -171,6 +216,7 @@ class AllPairs final : public SceneQuery {
   double margin_;
   detail::Bodies bodies_;
   std::optional<detail::Wrenches> wrenches_;
+  std::optional<detail::Sweeps> sweeps_;
   SceneAnswer answer_;
   SceneWork work_;
   bool known_ = false;
@@ -179,13 +225,12 @@ class AllPairs final : public SceneQuery {
 }  // namespace
 
 std::unique_ptr<SceneAlgorithm> make_all_pairs() {
-  return make_scene_algorithm<AllPairs>(
-      {.name = "all-pairs",
-       .version = SIXDOF_VERSION,
-       .summary = "every pair in every frame by the distance oracle: the truth",
-       .answers = {Question::touching, Question::near, Question::closest, Question::wrenches},
-       .own = true,
-       .by_default = false});
+  return make_scene_algorithm<AllPairs>({.name = "all-pairs",
+                                         .version = SIXDOF_VERSION,
+                                         .summary = "every pair in every frame by the distance oracle: the truth",
+                                         .answers = {std::begin(k_questions), std::end(k_questions)},
+                                         .own = true,
+                                         .by_default = false});
 }
 
 }  // namespace sixdof::scene

@@ -1,12 +1,14 @@
 #include <sixdof/scene/exact_scene.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
 #include <sixdof/base/parallel.h>
 #include <sixdof/scene/bodies.h>
 #include <sixdof/scene/kept_pairs.h>
+#include <sixdof/scene/sweeps.h>
 
 namespace sixdof::scene {
 namespace {
@@ -36,13 +38,19 @@ class ExactScene final : public SceneQuery {
         motions_(bodies_.size()),
         kept_(bodies_) {
     if (question == Question::wrenches) wrenches_.emplace(scene, bodies_);
+    if (question == Question::impacts) sweeps_.emplace(scene, bodies_);
   }
 
   void update(std::span<const Moved> moved) override {
     ++frame_;
+    if (sweeps_) {
+      sweeps_->clear();
+      known_ = false;
+    }
     if (moved.empty()) return;
     for (const Moved& each : moved) {
       const std::uint32_t rank = bodies_.rank(each.body);
+      if (sweeps_) sweeps_->add(bodies_, rank, each.X_WB);
       motions_.add(rank, bodies_.move(rank, each.X_WB), frame_);
       moved_.push_back(rank);
     }
@@ -53,6 +61,8 @@ class ExactScene final : public SceneQuery {
     if (std::exchange(known_, true)) return answer_;
     if (question_ == Question::closest) {
       find_closest();
+    } else if (question_ == Question::impacts) {
+      find_impacts();
     } else {
       find_within();
     }
@@ -151,6 +161,34 @@ class ExactScene final : public SceneQuery {
     near_.clear();
     for (const std::size_t k : active_) {
       if (kept_.memory()[k].within) near_.push_back({{pairs[k].a, pairs[k].b}, kept_.memory()[k].distance});
+    }
+    publish();
+  }
+
+  /// The pairs that come together in this frame: of those whose boxes are as close as the longest motions, the ones of
+  /// which a body moves and whose bounds on the distance do not exceed their own.
+  void find_impacts() {
+    near_.clear();
+    if (const double reach = sweeps_->largest_reach(); reach > 0.0) {
+      kept_.update(bodies_, motions_, moved_, reach, k_headroom);
+      const std::span<KeptPair> pairs = kept_.pairs();
+      asked_.clear();
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        KeptPair& pair = pairs[k];
+        if (!sweeps_->moves(pair.a) && !sweeps_->moves(pair.b)) continue;
+        const double most = sweeps_->reach(pair.a, pair.b);
+        if (motions_.distance_left(pair) > most || is_certainly_apart(pair, most)) continue;
+        asked_.push_back(k);
+      }
+      times_.assign(pairs.size(), -1.0);
+      for_each(asked_, [&](std::size_t k) {
+        const auto t = sweeps_->first_contact(bodies_, queries_.local(), pairs[k].a, pairs[k].b);
+        if (t) times_[k] = *t;
+      });
+      count(pairs.size(), asked_.size());
+      for (const std::size_t k : asked_) {
+        if (times_[k] >= 0.0) near_.push_back({{pairs[k].a, pairs[k].b}, times_[k]});
+      }
     }
     publish();
   }
@@ -273,6 +311,8 @@ class ExactScene final : public SceneQuery {
   detail::Motions motions_;
   detail::KeptPairs kept_;
   std::optional<detail::Wrenches> wrenches_;
+  std::optional<detail::Sweeps> sweeps_;
+  std::vector<double> times_;  // of the first contact of a pair; negative for none
   mutable parallel::PerThread<NearQuery> queries_;
   std::uint32_t frame_ = 1;
   std::vector<std::uint32_t> moved_;
@@ -292,7 +332,7 @@ std::unique_ptr<SceneAlgorithm> make_exact_scene() {
       {.name = "exact",
        .version = SIXDOF_VERSION,
        .summary = "kept boxes, pairs put off by bounds on their motion, the distance oracle up to a limit",
-       .answers = {Question::touching, Question::near, Question::closest, Question::wrenches},
+       .answers = {std::begin(k_questions), std::end(k_questions)},
        .own = true});
 }
 

@@ -12,7 +12,7 @@
 namespace sixdof::scene {
 
 std::string_view to_string(Question question) {
-  constexpr std::string_view k_words[] = {"touching", "near", "closest", "wrenches"};
+  constexpr std::string_view k_words[] = {"touching", "near", "closest", "wrenches", "impacts"};
   return k_words[static_cast<std::size_t>(question)];
 }
 
@@ -20,7 +20,7 @@ Question parse_question(std::string_view word) {
   for (const Question question : k_questions) {
     if (to_string(question) == word) return question;
   }
-  throw BadArgument(fmt::format("no question {}; there are touching, near, closest, wrenches", word));
+  throw BadArgument(fmt::format("no question {}; there are touching, near, closest, wrenches, impacts", word));
 }
 
 std::string SceneAnswer::hash() const {

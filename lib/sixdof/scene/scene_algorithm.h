@@ -23,24 +23,29 @@ enum class Question {
   touching,  ///< All pairs of bodies that have a point in common: their surfaces meet, or one lies inside the other.
   near,      ///< All pairs whose surfaces are no further apart than the margin, with their distances.
   closest,   ///< The closest pair of the scene; of equally close ones the first.
-  wrenches   ///< The sum of the wrenches of the volume law on each body that touches another.
+  wrenches,  ///< The sum of the wrenches of the volume law on each body that touches another.
+  /// All pairs that are apart at the frame before and touch until this one, with the time t (0 to 1) of their first
+  /// contact. Between frames the centre of a body's box moves straight, and the body turns about it the shorter way.
+  impacts
 };
 /// Whether a body inside another counts. Distances are of surfaces, as those of all libraries.
 constexpr bool is_of_bodies(Question question) {
   return question == Question::touching || question == Question::wrenches;
 }
 /// All questions.
-inline constexpr Question k_questions[] = {Question::touching, Question::near, Question::closest, Question::wrenches};
+inline constexpr Question k_questions[] = {Question::touching, Question::near, Question::closest, Question::wrenches,
+                                           Question::impacts};
 
-/// "touching", "near", "closest" or "wrenches".
+/// "touching", "near", "closest", "wrenches" or "impacts".
 std::string_view to_string(Question question);
 /// The question of a word. @throws BadArgument listing the words
 Question parse_question(std::string_view word);
 
 /// Of two bodies by their identifiers, a < b.
 struct NearPair {
-  BodyPair pair;          ///< Which two.
-  double distance = 0.0;  ///< Of the surfaces (length); 0 where they meet. touching, wrenches: 0.
+  BodyPair pair;  ///< Which two.
+  /// Of the surfaces (length); 0 where they meet. touching, wrenches: 0. impacts: t of the contact.
+  double distance = 0.0;
   /// By pair, then by distance.
   auto operator<=>(const NearPair&) const = default;
 };

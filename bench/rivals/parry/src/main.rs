@@ -1,4 +1,10 @@
-//! parry3d-f64: yes/no, distance and contacts of two TriMesh, surfaces only, in double precision.
+//! parry3d-f64: yes/no, distance, contacts and first contacts of two TriMesh, surfaces only, in double precision.
+//!
+//! cast: `cast_shapes()` for a motion that does not rotate, `cast_shapes_nonlinear()` for one that does; `nonlinear`: the
+//! latter for all. NonlinearRigidMotion is the motion that is asked. Default options: contact at the start is a hit. A hit
+//! whose status is OutOfIterations or Failed counts, since parry says that it is conservative
+//! (https://docs.rs/parry3d-f64/0.31.1/parry3d_f64/query/enum.ShapeCastStatus.html). Points and normals of contact at the
+//! start are not given: those of nonlinear casts are the bodies' origins.
 //!
 //! profile=default: the free functions of `query`, and contact manifolds computed anew. profile=tuned: the manifolds and
 //! the workspace of the query before are given back, since "this persistence can significantly improve collision detection
@@ -11,8 +17,10 @@ use std::sync::Arc;
 use parry3d_f64::math::{Mat3, Pose as Isometry, Rotation, Vector};
 use parry3d_f64::query::details::ContactManifoldsWorkspace;
 use parry3d_f64::query::{self, ClosestPoints, ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
+use parry3d_f64::query::{NonlinearRigidMotion, ShapeCastOptions, ShapeCastStatus};
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
-use sixdof_rival::{json, moved, serve, ContactWrench, Failed, Mesh, Point, Pose, Query, Refusal, Response, Separation, Value};
+use sixdof_rival::{json, moved, serve, ContactWrench, Failed, Impact, Mesh, Motion, Point, Pose, Query, Refusal};
+use sixdof_rival::{Response, Separation, Value};
 
 struct Parry {
     a: Arc<TriMesh>,
@@ -20,6 +28,7 @@ struct Parry {
     centre_b: Point,
     tuned: bool,
     points: bool,
+    nonlinear: bool,
     manifolds: Vec<ContactManifold<(), ()>>,
     workspace: Option<ContactManifoldsWorkspace>,
 }
@@ -43,8 +52,9 @@ impl Query for Parry {
         let tree_a = trimesh(a, flags)?;
         let tree_b = if same { tree_a.clone() } else { trimesh(b, flags)? };
         let points = settings["points"] == "on";
+        let nonlinear = settings["cast"] == "nonlinear";
         let centre_b = b.box_centre();
-        Ok(Parry { a: tree_a, b: tree_b, centre_b, tuned, points, manifolds: vec![], workspace: None })
+        Ok(Parry { a: tree_a, b: tree_b, centre_b, tuned, points, nonlinear, manifolds: vec![], workspace: None })
     }
 
     fn collide(&mut self, pose: &Pose) -> Result<bool, Failed> {
@@ -87,6 +97,28 @@ impl Query for Parry {
         Ok(wrench.response())
     }
 
+    fn cast(&mut self, motion: &Motion) -> Result<Option<Impact>, Failed> {
+        let start = isometry(&motion.start);
+        let (reference, velocity) = (Vector::from(motion.reference), Vector::from(motion.translation));
+        let rotation = Vector::from(motion.rotation);
+        let moving = NonlinearRigidMotion::new(start, reference, velocity, rotation);
+        let found = if rotation == Vector::ZERO && !self.nonlinear {
+            let options = ShapeCastOptions::with_max_time_of_impact(1.0);
+            query::cast_shapes(&Isometry::IDENTITY, Vector::ZERO, &*self.a, &start, velocity, &*self.b, options)
+        } else {
+            let still = NonlinearRigidMotion::identity();
+            query::cast_shapes_nonlinear(&still, &*self.a, &moving, &*self.b, 0.0, 1.0, true)
+        };
+        Ok(found.map_err(Failed::because)?.map(|hit| {
+            if hit.status == ShapeCastStatus::PenetratingOrWithinTargetDist {
+                return Impact { t: hit.time_of_impact, points: None, normal: None };
+            }
+            let on_b = moving.position_at_time(hit.time_of_impact) * hit.witness2;
+            let points = Some((hit.witness1.into(), on_b.into()));
+            Impact { t: hit.time_of_impact, points, normal: Some(hit.normal1.into()) }
+        }))
+    }
+
     fn footprint(&self) -> (usize, Value) {
         let shared = Arc::ptr_eq(&self.a, &self.b);
         let triangles = self.a.num_triangles() + if shared { 0 } else { self.b.num_triangles() };
@@ -103,12 +135,13 @@ fn main() {
         "name": "parry",
         "version": "0.31.1",
         "summary": "parry3d-f64, two TriMesh; surfaces only",
-        "answers": ["collide", "distance", "respond"],
+        "answers": ["collide", "distance", "respond", "cast"],
         "law": "contacts",
         "limits": ["collide_of_surfaces", "respond_of_surfaces", "own_direction"],
         "parameters": [
             choice("profile", "anew each query; or contacts kept, internal edges fixed", "default", &["default", "tuned"]),
             choice("points", "distance with closest points", "off", &["off", "on"]),
+            choice("cast", "linear cast where nothing rotates; or nonlinear always", "linear", &["linear", "nonlinear"]),
         ],
     }));
 }

@@ -39,6 +39,15 @@ pub fn moved(pose: &Pose, p: Point) -> Point {
     [0, 1, 2].map(|i| pose[3 * i] * p[0] + pose[3 * i + 1] * p[1] + pose[3 * i + 2] * p[2] + pose[9 + i])
 }
 
+/// A motion of B from t = 0 to 1: the point `reference` of B moves by t `translation`, and B rotates about it by t times
+/// the vector `rotation` (radians); both in A's axes.
+pub struct Motion {
+    pub start: Pose,
+    pub translation: Point,
+    pub rotation: Point,
+    pub reference: Point,
+}
+
 /// No answer: `status` is one of query/README.md.
 pub struct Failed {
     pub status: &'static str,
@@ -66,6 +75,13 @@ pub enum Refusal {
 pub struct Separation {
     pub distance: f64,
     pub closest: Option<(Point, Point)>,
+}
+
+/// The first contact of a motion, at `t` from 0 to 1: a point on A, one on B, and the normal from A to B, in A's frame.
+pub struct Impact {
+    pub t: f64,
+    pub points: Option<(Point, Point)>,
+    pub normal: Option<Point>,
 }
 
 /// What pushes B out of A, in A's frame; the torque is about `reference`.
@@ -123,6 +139,10 @@ pub trait Query: Sized {
         Err(Failed::unsupported())
     }
     fn respond(&mut self, _pose: &Pose) -> Result<Response, Failed> {
+        Err(Failed::unsupported())
+    }
+    /// The first contact, none if there is none.
+    fn cast(&mut self, _motion: &Motion) -> Result<Option<Impact>, Failed> {
         Err(Failed::unsupported())
     }
     /// Bytes, and an object of counts.

@@ -7,7 +7,7 @@ use std::time::Instant;
 use serde_json::{json, Map, Value};
 
 use crate::system::{processor_ns, take_standard_output, Progress};
-use crate::{Failed, Mesh, Point, Pose, Query, Refusal, Response, Separation};
+use crate::{Failed, Impact, Mesh, Motion, Point, Pose, Query, Refusal, Response, Separation};
 
 const MOST_WORDS: usize = 400;
 
@@ -78,8 +78,13 @@ impl<Q: Query> Server<Q> {
     }
 
     fn ask(&mut self, request: &Value) -> Reply {
-        let (kind, pose) = (kind_of(request)?, pose_of(&request["pose"])?);
-        let (took, answer) = timed(self.prepared()?, kind, &pose);
+        let pose = pose_of(&request["pose"])?;
+        let (took, answer) = if request["query"] == "cast" {
+            let query = self.prepared()?;
+            timed_cast(query, &motion_of(request, pose)?)
+        } else {
+            timed(self.prepared()?, kind_of(request)?, &pose)
+        };
         let mut reply = answer.unwrap_or_else(|e| json!({"status": e.status, "words": cut(e.words)}));
         reply["ns"] = json!(took);
         Ok(reply)
@@ -183,6 +188,35 @@ fn timed<Q: Query>(query: &mut Q, kind: Kind, pose: &Pose) -> (f64, Result<Value
     (nanoseconds(start), answer.and_then(reply_of))
 }
 
+/// The same of a cast.
+fn timed_cast<Q: Query>(query: &mut Q, motion: &Motion) -> (f64, Result<Value, Failed>) {
+    let vectors = [&motion.translation, &motion.rotation, &motion.reference];
+    if !motion.start.iter().chain(vectors.into_iter().flatten()).all(|x| x.is_finite()) {
+        return (0.0, Err(Failed { status: "non_finite", words: "the motion is not finite".to_string() }));
+    }
+    let start = Instant::now();
+    let ask = AssertUnwindSafe(|| query.cast(motion));
+    let answer = black_box(catch_unwind(ask).unwrap_or_else(|panic| Err(Failed::because(text(panic)))));
+    (nanoseconds(start), answer.and_then(impact_reply))
+}
+
+fn impact_reply(impact: Option<Impact>) -> Result<Value, Failed> {
+    let Some(impact) = impact else { return Ok(json!({"hit": false})) };
+    if !impact.t.is_finite() {
+        return Err(Failed { status: "non_finite", words: "the answer is not finite".to_string() });
+    }
+    let mut reply = json!({"hit": true, "t": impact.t});
+    let is_finite = |p: &Point| p.iter().all(|x| x.is_finite());
+    if let Some((a, b)) = impact.points.filter(|(a, b)| is_finite(a) && is_finite(b)) {
+        reply["a"] = json!(a);
+        reply["b"] = json!(b);
+    }
+    if let Some(normal) = impact.normal.filter(is_finite) {
+        reply["normal"] = json!(normal);
+    }
+    Ok(reply)
+}
+
 /// JSON has no numbers that are not finite: such an answer is a status.
 fn reply_of(answer: Answer) -> Result<Value, Failed> {
     let finite = |points: &[&Point], numbers: &[f64]| {
@@ -237,10 +271,28 @@ fn pose_of(json: &Value) -> Result<Pose, Refusal> {
     let numbers = json.as_array().filter(|list| list.len() == 12).ok_or_else(|| other("a pose does not have twelve numbers"))?;
     let mut pose = [0.0; 12];
     for (value, json) in pose.iter_mut().zip(numbers) {
-        let text = json.as_str().and_then(|word| word.parse().ok()); // "nan", "inf", "-inf"
-        *value = json.as_f64().or(text).ok_or_else(|| other(format!("{json} is no number")))?;
+        *value = number_of(json)?;
     }
     Ok(pose)
+}
+
+fn motion_of(request: &Value, start: Pose) -> Result<Motion, Refusal> {
+    let vector = |key: &str| -> Result<Point, Refusal> {
+        let numbers = request[key].as_array().filter(|list| list.len() == 3);
+        let numbers = numbers.ok_or_else(|| other(format!("{key} does not have three numbers")))?;
+        let mut point = [0.0; 3];
+        for (value, json) in point.iter_mut().zip(numbers) {
+            *value = number_of(json)?;
+        }
+        Ok(point)
+    };
+    let (translation, rotation) = (vector("translation")?, vector("rotation")?);
+    Ok(Motion { start, translation, rotation, reference: vector("reference")? })
+}
+
+fn number_of(json: &Value) -> Result<f64, Refusal> {
+    let text = json.as_str().and_then(|word| word.parse().ok()); // "nan", "inf", "-inf"
+    json.as_f64().or(text).ok_or_else(|| other(format!("{json} is no number")))
 }
 
 fn nanoseconds(start: Instant) -> f64 {

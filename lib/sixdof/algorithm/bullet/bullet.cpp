@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <sixdof/algorithm/bullet/bullet_cast.h>
 #include <sixdof/algorithm/bullet/bullet_mesh.h>
 
 namespace sixdof {
@@ -89,6 +90,9 @@ std::unique_ptr<Algorithm> make_bullet_gimpact_algorithm() {
                                         "length", "0", 0.0, 1e9)}});
 }
 
-void register_bullet_algorithms(Registry& registry) { registry.add(make_bullet_gimpact_algorithm()); }
+void register_bullet_algorithms(Registry& registry) {
+  registry.add(make_bullet_gimpact_algorithm());
+  registry.add(make_bullet_hull_algorithm());
+}
 
 }  // namespace sixdof

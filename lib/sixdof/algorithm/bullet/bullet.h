@@ -39,7 +39,7 @@ namespace sixdof {
 /// contact.
 std::unique_ptr<Algorithm> make_bullet_gimpact_algorithm();
 
-/// Adds it.
+/// Adds it, and `bullet-hull` (bullet_cast.h).
 void register_bullet_algorithms(Registry& registry);
 
 }  // namespace sixdof

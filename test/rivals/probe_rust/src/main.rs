@@ -1,6 +1,6 @@
 //! The same as probe.py.
 
-use sixdof_rival::{json, serve, Failed, Mesh, Pose, Query, Refusal, Separation, Value};
+use sixdof_rival::{json, serve, Failed, Impact, Mesh, Motion, Pose, Query, Refusal, Separation, Value};
 
 struct Probe {
     sum: f64,
@@ -35,6 +35,18 @@ impl Query for Probe {
         Ok(Separation { distance: pose[9] + self.sum, closest })
     }
 
+    fn cast(&mut self, motion: &Motion) -> Result<Option<Impact>, Failed> {
+        let command = motion.start[10];
+        if command == 1.0 {
+            return Err(Failed::because("gave up"));
+        }
+        if motion.rotation[2] > 0.0 {
+            return Ok(None);
+        }
+        let t = if command == 2.0 { f64::NAN } else { motion.translation[0] };
+        Ok(Some(Impact { t, points: Some((motion.reference, motion.rotation)), normal: Some([0.0, 0.0, 1.0]) }))
+    }
+
     fn footprint(&self) -> (usize, Value) {
         (12, json!({"things": 3}))
     }
@@ -45,7 +57,7 @@ fn main() {
         "name": "probe",
         "version": "1.0",
         "summary": "a probe",
-        "answers": ["collide", "distance"],
+        "answers": ["collide", "distance", "cast"],
         "parameters": [{"name": "mode", "meaning": "what fails", "unit": "1", "default": "none",
                         "choices": ["none", "bad_mesh", "bad_argument"]}],
     }));
