@@ -37,8 +37,9 @@ class CommonPointSearch {
 
   /// How an ascent ends.
   struct Effort {
-    double gain = 0.2;  ///< At a point in both bodies whose depth can grow by no more than this part of it, by the model.
-    int most = 12;      ///< After so many points.
+    double gain =
+        0.2;        ///< At a point in both bodies whose depth can grow by no more than this part of it, by the model.
+    int most = 12;  ///< After so many points.
   };
 
   /// Climbs from a known point towards a local maximum of depth(): each signed distance is 1-Lipschitz, with the

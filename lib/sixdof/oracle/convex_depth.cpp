@@ -21,7 +21,7 @@ constexpr double k_arc_slack = 1e-9;
 /// An edge between two faces that are not coplanar.
 struct Edge {
   Vector3d start;
-  Vector3d along;  ///< A unit vector.
+  Vector3d along;        ///< A unit vector.
   Vector3d left, right;  ///< Outward unit normals of the faces.
 };
 

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 /// normals B approaches once more.
 constexpr std::size_t k_descents = 6, k_normals = 8;
 /// Bodies that are free after a translation shorter than this, over the clearance of hulls, only touch.
-constexpr double k_touch = 1e4;
+constexpr double k_touch = 1e5;
 
 /// A short free translation: from many directions, then along the normals of the contacts found.
 Vector3d search_free(FreeTranslations& translations, const Pose& X_AB) {
@@ -68,9 +68,8 @@ PenetrationDepth PenetrationOracle::evaluate(const Pose& X_AB, const Penetration
   } else {
     found = detail::PenetrationCover(*this, X_AB, first, options).run();
   }
-  // What the pose adds up to is the translation that was tested.
-  found.translation = (X_AB.t + found.translation) - X_AB.t;
-  found.hi = found.translation.norm() + clearance;
+  // The pose that was tested is a rounded sum.
+  found.hi = ((X_AB.t + found.translation) - X_AB.t).norm() + clearance;
   found.lo = std::max(0.0, found.lo - clearance);
   found.casts += translations.casts();
   return found;

@@ -28,8 +28,8 @@ struct PlacedPoint {
 struct TranslationCell {
   static constexpr std::size_t k_most_seeds = 3;
 
-  std::array<Eigen::Vector3d, 3> u;  ///< Unit vectors.
-  double r0 = 0.0, r1 = 0.0;         ///< Lengths.
+  std::array<Eigen::Vector3d, 3> u;             ///< Unit vectors.
+  double r0 = 0.0, r1 = 0.0;                    ///< Lengths.
   std::array<PlacedPoint, k_most_seeds> seeds;  ///< Where a search of common points starts.
   std::size_t seed_count = 0;
 

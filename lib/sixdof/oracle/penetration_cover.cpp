@@ -134,7 +134,8 @@ PenetrationDepth PenetrationCover::run() {
     if (batch.empty()) break;
     const double limit = translation_.norm();
     std::vector<CellProof> proofs(batch.size());
-    parallel::for_each(batch.size(), [&](std::size_t i) { proofs[i] = provers_.local().prove(batch[i], pool_, limit); });
+    parallel::for_each(batch.size(),
+                       [&](std::size_t i) { proofs[i] = provers_.local().prove(batch[i], pool_, limit); });
     result_.cells += batch.size();
     for (const CellProof& proof : proofs) {
       result_.measurements += proof.measurements;
@@ -145,8 +146,8 @@ PenetrationDepth PenetrationCover::run() {
   result_.lo = covered();
   result_.closed = result_.lo >= target();
   for (const auto& [key, cell] : open_) result_.open_cells += key.first < target();
-  result_.open_cells += static_cast<std::uint64_t>(
-      std::ranges::count_if(given_up_, [&](double r0) { return r0 < target(); }));
+  result_.open_cells +=
+      static_cast<std::uint64_t>(std::ranges::count_if(given_up_, [&](double r0) { return r0 < target(); }));
   result_.measurements += own_.measurements();
   result_.casts = own_.translations().casts();
   result_.translation = translation_;

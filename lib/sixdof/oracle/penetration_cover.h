@@ -58,7 +58,7 @@ class PenetrationCover {
   std::vector<PlacedPoint> pool_;
   Eigen::Vector3d translation_;
   std::map<std::pair<double, std::uint64_t>, TranslationCell> open_;  ///< By r0, then in the order of their making.
-  std::vector<double> given_up_;  ///< r0 of cells that are too narrow to be halved.
+  std::vector<double> given_up_;                                      ///< r0 of cells that are too narrow to be halved.
   std::uint64_t number_ = 0;
   PenetrationDepth result_;
 };
