@@ -14,6 +14,7 @@ class NullQuery final : public Query {
   Outcome<Separation> distance(const Pose&) override { return Separation{}; }
   Outcome<Response> respond(const Pose&) override { return Response{}; }
   Outcome<Impact> cast(const Motion&) override { return Impact{}; }
+  Outcome<Contacts> contacts(const Pose&, std::size_t) override { return Contacts{}; }
 };
 
 }  // namespace

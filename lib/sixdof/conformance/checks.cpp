@@ -17,7 +17,7 @@ void check_declaration(const Subject& subject, Findings& findings) {
   const Traits& traits = subject.traits();
   if (traits.version.empty()) findings.fail("Traits::version is empty");
   if (traits.summary.empty()) findings.fail("Traits::summary is empty");
-  if (!traits.answers.collide && !traits.answers.distance && !traits.answers.respond && !traits.answers.cast) {
+  if (!traits.answers.any()) {
     findings.fail("Traits::answers has no kind of query");
   }
   if (traits.answers.respond != (traits.law != ResponseLaw::none)) {
