@@ -20,7 +20,7 @@ constexpr std::array k_kinds{"collide", "distance", "respond", "cast", "contacts
 constexpr std::array k_kind_members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond, &QuerySet::cast,
                                     &QuerySet::contacts};
 constexpr std::array k_laws{"none", "depth", "volume", "way_out", "contacts"};
-constexpr std::array k_depths{"none", "triangles", "point", "bodies"};
+constexpr std::array k_depths{"none", "triangles", "point", "local", "bodies"};
 constexpr std::array k_bodies{"mesh", "convex_hull"};
 constexpr std::array k_limits{"collide_of_surfaces", "respond_of_surfaces", "distance_of_bodies", "own_direction",
                               "points_of_b_only"};

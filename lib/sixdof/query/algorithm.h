@@ -198,12 +198,13 @@ enum class ContactDepth {
   none,       ///< Not known, or the algorithm gives none.
   triangles,  ///< Of two triangles: how far a point of one lies below the plane of the other, or both are to be moved.
   point,      ///< Of the point: its distance from the surface of one of the bodies.
+  local,      ///< Of the bodies there: the thickness of their intersection along the normal through the point.
   bodies      ///< Of the bodies: how far B has to move along the normal to leave A.
 };
 
 /// The name as it stands in results: "triangles".
 constexpr std::string_view to_string(ContactDepth depth) {
-  constexpr std::string_view k_names[] = {"none", "triangles", "point", "bodies"};
+  constexpr std::string_view k_names[] = {"none", "triangles", "point", "local", "bodies"};
   return k_names[static_cast<std::size_t>(depth)];
 }
 
@@ -226,7 +227,7 @@ struct Traits {
   std::string version;  ///< Of the library behind it; this project's own version for its own algorithms.
   std::string summary;  ///< One line, for lists.
   QuerySet answers;     ///< Benchmarks ask these kinds of query only; the others return Status::unsupported.
-  ResponseLaw law = ResponseLaw::none;  ///< Of respond().
+  ResponseLaw law = ResponseLaw::none;      ///< Of respond().
   ContactDepth depth = ContactDepth::none;  ///< Of contacts().
   /// Whether it answers for an approximation of the bodies: Footprint::counts has how far that may lie from the true
   /// surfaces, as "resolution" (length).

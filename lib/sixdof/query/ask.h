@@ -52,9 +52,8 @@ inline const char* why_no_answer(const Impact& answer) {
 
 /// Normals are unit vectors.
 inline const char* why_no_answer(const Contacts& answer) {
-  const bool all_unit = std::ranges::all_of(answer.list, [](const Contact& each) {
-    return std::abs(each.normal.norm() - 1.0) <= k_unit_normal_tolerance;
-  });
+  const bool all_unit = std::ranges::all_of(
+      answer.list, [](const Contact& each) { return std::abs(each.normal.norm() - 1.0) <= k_unit_normal_tolerance; });
   return all_unit ? nullptr : "a contact's normal is no unit vector";
 }
 
