@@ -122,8 +122,9 @@ double ContactTruth::thickness(const Vector3d& point, const Vector3d& normal, do
 JudgedContact ContactTruth::judge(const Contact& contact, double resolution) {
   const Vector3d in_b = X_BA_ * contact.point, normal = unit(contact.normal);
   JudgedContact judged;
-  judged.outside_a = std::max(0.0, depth_in_a_.at(contact.point, 0).s);
-  judged.outside_b = std::max(0.0, depth_in_b_.at(in_b, 0).s);
+  const double to_surface_a = depth_in_a_.at(contact.point, 0).s, to_surface_b = depth_in_b_.at(in_b, 0).s;
+  judged.outside_a = std::max(0.0, to_surface_a);
+  judged.outside_b = std::max(0.0, to_surface_b);
   normals_a_.clear();
   normals_b_.clear();
   const double slack = k_equally_near * diagonal_ + resolution;
@@ -131,10 +132,12 @@ JudgedContact ContactTruth::judge(const Contact& contact, double resolution) {
   normals_near(tree_b_, in_b, slack, normals_b_);
   const double to_a = angle_to_cone(normal, normals_a_), to_b = angle_to_cone(-(X_BA_.R * normal), normals_b_);
   const std::size_t of_a = dimension(normals_a_), of_b = dimension(normals_b_);
-  judged.normal_angle = of_a < of_b   ? to_a
-                        : of_b < of_a ? to_b
-                        : of_a == 1   ? std::min(to_a, to_b)
-                                      : std::max(to_a, to_b);
+  const double touching = k_contact_slack * diagonal_ + resolution;
+  const bool touch = std::abs(to_surface_a) <= touching && std::abs(to_surface_b) <= touching;
+  judged.normal_angle = of_a < of_b           ? to_a
+                        : of_b < of_a         ? to_b
+                        : of_a == 1 || !touch ? std::min(to_a, to_b)
+                                              : std::max(to_a, to_b);
   judged.thickness = thickness(contact.point, normal, resolution);
   return judged;
 }

@@ -35,7 +35,7 @@ struct JudgedContact {
   /// the point of A's surface nearest to the contact (normal_cone.h), and -N_B, likewise of B's inward normals. Of the
   /// two the one of fewer normals counts, as a corner on a face takes the normal of the face: a normal of a face comes
   /// before those of an edge, these before those of a corner. Of two faces the nearer normal counts. Of two edges or
-  /// two corners the farther one: there the normal has to lie in both cones.
+  /// two corners that touch, the farther one: there the normal has to lie in both cones; else the nearer.
   double normal_angle = 0.0;
   double thickness = 0.0;  ///< Of the intersection along the normal (thickness.h): what the depth should be (length).
 
