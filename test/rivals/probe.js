@@ -26,12 +26,17 @@ class Query {
     return { distance: pose[9] + this.sum, a: [pose[9], 0, 0], b: [0, 0, this.copies] };
   }
 
+  contacts(pose, most) {
+    const depth = pose[10] === 2 ? NaN : pose[9], places = [...Array(most).keys()];
+    return { points: places.map((i) => [pose[9], i, 0]), normals: places.map(() => [0, 0.6, 0.8]), depths: places.map(() => depth) };
+  }
+
   footprint() {
     return { bytes: 12, counts: { things: 3 } };
   }
 }
 
 serve(Query, {
-  name: "probe", version: "1.0", summary: "a probe", answers: ["collide", "distance"],
+  name: "probe", version: "1.0", summary: "a probe", answers: ["collide", "distance", "contacts"], depth: "point",
   parameters: [choice("mode", "what fails", "none", ["none", "bad_mesh", "bad_argument"])],
 });

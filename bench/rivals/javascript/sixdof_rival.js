@@ -7,6 +7,7 @@
  *       collide(pose) {}                // true or false
  *       distance(pose) {}               // {distance}, or {distance, a, b} with the closest points
  *       respond(pose) {}                // {penalty, force, torque, reference} and, optional, volume
+ *       contacts(pose, most) {}         // {points, normals, depths}, at most `most` of each; normals from A to B
  *       footprint() {}                  // optional: {bytes, counts}
  *     }
  *
@@ -18,7 +19,7 @@
 
 const fs = require("node:fs");
 
-const KINDS = ["collide", "distance", "respond"];
+const KINDS = ["collide", "distance", "respond"]; // that are asked by poses alone; contacts have a number besides
 const MOST_WORDS = 400;
 
 class BadMesh extends Error {}
@@ -120,7 +121,15 @@ class Server {
   }
 
   ask(request) {
+    if (request.query === "contacts") return this.askContacts(readPose(request.pose), request.most);
     const [ns, reply] = timed(this.query, this.kind(request), readPose(request.pose));
+    return { ...reply, ns };
+  }
+
+  askContacts(pose, most) {
+    if (this.query === null) throw new BadArgument("nothing is prepared");
+    const kind = this.hello.answers.includes("contacts") ? "contacts" : null;
+    const [ns, reply] = timed({ contacts: (at) => this.query.contacts(at, most) }, kind, pose);
     return { ...reply, ns };
   }
 
@@ -198,7 +207,7 @@ function timed(query, kind, pose) {
 function replyOf(kind, answer) {
   if (kind === "collide") return { collide: Boolean(answer) };
   // JSON has no numbers that are not finite.
-  if (Object.values(answer).flat().every(Number.isFinite)) return answer;
+  if (Object.values(answer).flat(2).every(Number.isFinite)) return answer;
   return { status: "non_finite", words: "the answer is not finite" };
 }
 

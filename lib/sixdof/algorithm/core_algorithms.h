@@ -29,7 +29,13 @@ std::unique_ptr<Algorithm> make_brute_force_algorithm();
 /// first contact was missed. Yes/no and trees are those of `exact`.
 std::unique_ptr<Algorithm> make_sampled_algorithm();
 
-/// Adds the algorithms that need no third-party collision library: these five, `null`, which answers with constants,
+/// `exact-contacts`: contacts by the exact geometry that judges them (oracle/contact_truth.h): vertices of each body
+/// inside the other, with the shortest way out as the normal, and the middles of the segments in which triangles cross,
+/// with one of the normals of the triangles. A depth is the thickness of the intersection there. It shows what the
+/// scores of contacts are for contacts that are right, and is not made to be fast. It needs solids.
+std::unique_ptr<Algorithm> make_exact_contacts_algorithm();
+
+/// Adds the algorithms that need no third-party collision library: these six, `null`, which answers with constants,
 /// `ist`, `ist-descent`, `vps` and `vps-field`.
 void register_core_algorithms(Registry& registry);
 

@@ -48,6 +48,16 @@ Declaration of_depth(double force_degrees) {
           .scale_error = 0.06};
 }
 
+/// Roundings; where two normals of a segment are equally good, the order decides.
+Declaration of_exact_contacts() {
+  return {.collide = Meaning::bodies,
+          .open_meshes = false,
+          .contact_error = 1e-9,
+          .contact_degrees = 0.01,
+          .depth_error = 1e-6,
+          .contact_change_degrees = 0.1};
+}
+
 /// FCL's traversals of distances.
 Declaration of_fcl_distance() {
   // Triangles with edges of some 1e-4 length units.
@@ -76,6 +86,7 @@ Declaration of_bullet() {
   return {.known_failures = {
               {"Collide", k_behind, k_issue},
               {"Respond", k_behind, k_issue},
+              {"Contacts", k_behind, k_issue},
               {"MotionOfCollide", k_behind, k_issue},
               {"MotionOfRespond", k_behind, k_issue},
               {"ScaleOfRespond", "CONTACT_DIFF_EPSILON and others are lengths of 1e-5, whatever the unit", ""}}};
@@ -108,6 +119,7 @@ const std::vector<Declared>& table() {
       {"fcl-cast", of_fcl_cast()},
       // Contacts on these motions last longer than a step.
       {"sampled", {.settings = {"steps=1024"}, .collide = Meaning::bodies}},
+      {"exact-contacts", of_exact_contacts()},
       {"exact-depth", of_depth(15.0)},
       {"exact-way-out", of_depth(80.0)},
       {"ist", of_spheres(30.0, 0.85)},

@@ -68,6 +68,14 @@ pub struct Separation {
     pub closest: Option<(Point, Point)>,
 }
 
+/// A place where the bodies touch or overlap, in A's frame.
+pub struct Contact {
+    pub point: Point,
+    /// Unit length, from A to B.
+    pub normal: Point,
+    pub depth: f64,
+}
+
 /// What pushes B out of A, in A's frame; the torque is about `reference`.
 pub struct Response {
     pub penalty: f64,
@@ -123,6 +131,10 @@ pub trait Query: Sized {
         Err(Failed::unsupported())
     }
     fn respond(&mut self, _pose: &Pose) -> Result<Response, Failed> {
+        Err(Failed::unsupported())
+    }
+    /// At most `most` contacts.
+    fn contacts(&mut self, _pose: &Pose, _most: usize) -> Result<Vec<Contact>, Failed> {
         Err(Failed::unsupported())
     }
     /// Bytes, and an object of counts.
