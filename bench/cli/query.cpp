@@ -17,6 +17,7 @@
 #include <sixdof/oracle/solid.h>
 #include <sixdof/process/remote_algorithm.h>
 #include <sixdof/query/ask.h>
+#include "bench/cli/query_depth.h"
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
 #include "bench/common/pair_warnings.h"
@@ -31,11 +32,15 @@ constexpr const char* k_details =
     "exact is the negative gradient of the overlap volume (unit squared); for other algorithms see "
     "`sixdof algorithms`. t: of the first contact, from 0 to 1 of the motion; normal: from A to B there. Times are "
     "those of single calls with cold caches, in ns. Open meshes have no inside: yes/no "
-    "and distance are those of their surfaces, and there is no response.";
+    "and distance are those of their surfaces, and there is no response. --depth: of two solids; exact answers, "
+    "whatever the algorithm. All translations of B shorter than depth_lo leave a common interior point, and that of "
+    "length depth_hi leaves none; closed says whether both are within the tolerance.";
 
 struct Arguments {
   std::string a, b, about;
   std::vector<std::string> pose, motion, only;
+  std::string along;
+  DepthRequest depth;
   AlgorithmOptions algorithm{.name = "exact", .parameters = {}};
   bool json = false;
 };
@@ -255,6 +260,12 @@ void run_query(const Arguments& arguments) {
   say_notes("sixdof", a, arguments.a);
   if (arguments.b != arguments.a) say_notes("sixdof", b, arguments.b);
   warn_of_sizes("sixdof", MeshIdentity::of(a), MeshIdentity::of(b));
+  if (arguments.depth.asked) {
+    DepthRequest request = arguments.depth;
+    if (!arguments.along.empty()) request.along = parse_numbers(arguments.along, 3, "--along");
+    const Json depth = describe_depth(a, b, X_AB, request);
+    return arguments.json ? fmt::print("{}\n", json_text(depth)) : print_text(depth);
+  }
   const Motion motion = arguments.motion.empty() ? Motion{.start = X_AB} : parse_motion(arguments.motion, X_AB, b);
   Answers answers = ask(*algorithm, a, b, settings, motion, kinds);
   if (!about.empty() && answers.respond.ok()) {
@@ -300,6 +311,22 @@ void add_query_command(CLI::App& app) {
       ->allow_extra_args(false)
       ->excludes(motion)
       ->default_str("all that the algorithm answers");
+  auto* const depth = command
+                          ->add_flag("--depth", arguments->depth.asked,
+                                     "How far B has to be translated to leave A: an interval that holds the depth")
+                          ->excludes(motion)
+                          ->excludes("--only");
+  command->add_option("--tolerance", arguments->depth.tolerance, "Of --depth: width of the interval by its upper end")
+      ->type_name("PART")
+      ->needs(depth)
+      ->capture_default_str();
+  command->add_option("--budget", arguments->depth.budget, "Of --depth: points measured before it is left open")
+      ->type_name("COUNT")
+      ->needs(depth)
+      ->capture_default_str();
+  command->add_option("--along", arguments->along, "Of --depth: the depth along this direction \"x y z\" of A's frame")
+      ->type_name("DIRECTION")
+      ->needs(depth);
   add_algorithm_options(*command, arguments->algorithm, "The algorithm to ask (sixdof algorithms lists them)")
       ->capture_default_str();
   command->add_option("--about", arguments->about, "Reference point \"x y z\" of the torque, in A's frame")

@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -29,7 +30,7 @@ using ::testing::Not;
 TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
   const json document = result(
       "--seed 5 --sample 32 -p ist:spheres=300 -p ist-descent:spheres=300 "
-      "'--benchmark_filter=-^(scenario|generate|cast)/'");
+      "'--benchmark_filter=-^(scenario|generate|cast|depth)/'");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;
   std::size_t judged = 0;
@@ -110,6 +111,22 @@ TEST_F(BenchProgram, JudgesFirstContacts) {
   EXPECT_EQ(null.at("missed_hits"), null.at("hits"));
   EXPECT_EQ(null.at("mismatch"), null.at("hits"));
   EXPECT_EQ(row(document, "cast/algorithm:sampled" + where).at("failed"), 0);
+}
+
+TEST_F(BenchProgram, JudgesDepths) {
+  const std::string where = "/pair:torus-1k-cone-1k/volume:03";
+  const json document =
+      result("--sample 8 --benchmark_filter='^depth/algorithm:(exact-depth|fcl-contacts)" + where + "$'");
+  for (const char* algorithm : {"exact-depth", "fcl-contacts"}) {
+    const json found = row(document, fmt::format("depth/algorithm:{}{}", algorithm, where));
+    EXPECT_EQ(found.at("failed"), 0);
+    EXPECT_EQ(found.at("judged").get<double>() + found.at("open_depths").get<double>(), found.at("configurations"));
+    EXPECT_GE(found.at("judged"), 1);
+    EXPECT_LE(found.at("too_shallow").get<double>() + found.at("too_deep").get<double>(), found.at("judged"));
+    EXPECT_GT(found.at("depth_ratio"), 0.0);
+    EXPECT_LE(found.at("depth_of_ray"), 1.0 + 1e-6);
+    EXPECT_FALSE(found.contains("mismatch"));  // neither says that it is the depth of the bodies
+  }
 }
 
 TEST_F(BenchProgram, ReportsTheWorkOfQueries) {

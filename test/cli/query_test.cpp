@@ -57,6 +57,31 @@ TEST(Query, ExactAnswersForTwoBoxesAreThoseOfTheirIntersection) {
   EXPECT_GE(json.at("time_ns"), 0);
 }
 
+TEST(Query, DepthOfTwoBoxesIsTheLeastEdgeOfTheirIntersection) {
+  const auto json = answers(std::string(k_boxes) + " --depth --along '0 0 2'");
+  constexpr double k_of_casts = 1e-9;
+  EXPECT_TRUE(json.at("closed"));
+  EXPECT_NEAR(json.at("depth_hi"), 0.3, k_of_casts);
+  EXPECT_LE(json.at("depth_lo"), 0.3 + k_of_casts);
+  EXPECT_GE(json.at("depth_lo"), 0.3 * 0.999 - k_of_casts);
+  EXPECT_NEAR(json.at("depth_along"), 0.8, k_of_casts);
+  EXPECT_LE((vector(json.at("direction")) - Eigen::Vector3d::UnitX()).norm(), 1e-6);
+  EXPECT_EQ(json.at("open_cells"), 0);
+  const auto open = answers(std::string(k_boxes) + " --depth --budget 1");
+  EXPECT_FALSE(open.at("closed"));
+  EXPECT_GT(open.at("open_cells"), 0);
+  EXPECT_EQ(answers("--a box-100 --b box-300 --pose '3 0 0 1 0 0 0' --depth").at("depth_hi"), 0.0);
+}
+
+TEST(Query, DepthRefusesWhatItCannotTake) {
+  for (const char* wrong : {"--depth --tolerance 0", "--depth --budget 0", "--depth --along '0 0 0'",
+                            "--depth --along '0 0'", "--depth --only distance", "--budget 5"}) {
+    const auto result = query(std::string(k_boxes) + " " + wrong);
+    EXPECT_NE(result.exit_code, 0) << wrong;
+    EXPECT_EQ(result.out, "") << wrong;
+  }
+}
+
 TEST(Query, TorqueMovesWithTheReferencePoint) {
   const auto standard = answers(k_boxes), moved = answers(std::string(k_boxes) + " --about '0.5, 2, -1'");
   const Eigen::Vector3d shift = vector(standard.at("reference_point")) - vector(moved.at("reference_point"));

@@ -35,6 +35,8 @@ constexpr std::string_view k_contact = "lib/sixdof/measure/contact_score.h";
 constexpr std::string_view k_contact_truth = "lib/sixdof/oracle/contact_truth.h";
 constexpr std::string_view k_hausdorff = "Dubuisson and Jain 1994, mean of both ways";
 constexpr std::string_view k_impact = "lib/sixdof/oracle/impact_verdict.h";
+constexpr std::string_view k_depth = "lib/sixdof/oracle/penetration_verdict.h";
+constexpr std::string_view k_depth_row = "bench/rows/depth.cpp";
 constexpr std::string_view k_scene = "lib/sixdof/scene/score.h";
 constexpr std::string_view k_scene_work = "lib/sixdof/scene/scene_algorithm.h (SceneWork)";
 
@@ -127,6 +129,16 @@ constexpr std::array k_metrics{
     Metric{"grazing", "queries", neither, "motions whose truth is not decided; not judged", k_impact},
     Metric{"hits", "queries", neither, "motions whose truth is a hit or a contact at the start", k_impact},
     Metric{"normal_max_deg", "degree", lower, "largest angle between normal and true normal of right hits", k_impact},
+    // Depths.
+    Metric{"too_shallow", "queries", lower, "depths below the penetration depth: unsafe, B still overlaps A after it", k_depth},
+    Metric{"too_deep", "queries", lower, "depths above the penetration depth", k_depth},
+    Metric{"missed_depths", "queries", lower, "no depth although the bodies overlap; counted as too shallow as well", k_depth},
+    Metric{"too_shallow_max", "1", lower, "largest part of the depth that is missing", k_depth},
+    Metric{"too_deep_max", "1", lower, "largest excess over the depth, by the depth", k_depth},
+    Metric{"depth_ratio", "measured/true", nearer_one, "mean of depth over penetration depth", k_depth_row},
+    Metric{"open_depths", "queries", neither, "configurations whose interval is open: not judged", k_depth},
+    Metric{"depth_width_max", "1", neither, "largest (hi - lo) / hi of the intervals that judge", k_depth_row},
+    Metric{"depth_of_ray", "1", neither, "mean of the penetration depth over the way out along the configuration's ray", k_depth_row},
     // Contacts of bodies that overlap.
     Metric{"contacts_mean", "contacts", neither, "mean number of contacts of a query", k_contact},
     Metric{"contacts_max", "contacts", neither, "largest number of contacts of a query", k_contact},
