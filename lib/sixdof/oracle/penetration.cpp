@@ -52,6 +52,8 @@ PenetrationOracle::PenetrationOracle(const Mesh& a, const Mesh& b) : a_(&a), b_(
   for (const Mesh* mesh : {&a, &b}) {
     if (!mesh->solid()) throw BadMesh(mesh->name() + ": " + mesh->why_not_solid());
   }
+  balls_a_ = detail::find_inner_balls(a, distance_.tree_a());
+  balls_b_ = &a == &b ? balls_a_ : detail::find_inner_balls(b, distance_.tree_b());
 }
 
 PenetrationDepth PenetrationOracle::evaluate(const Pose& X_AB, const PenetrationOptions& options) const {

@@ -8,6 +8,7 @@
 #include <sixdof/geometry/mesh.h>
 #include <sixdof/geometry/pose.h>
 #include <sixdof/oracle/distance.h>
+#include <sixdof/oracle/inner_balls.h>
 
 /// Translational penetration depth of two solids, with a certificate.
 ///
@@ -70,6 +71,8 @@ class PenetrationOracle {
   const Mesh& a() const { return *a_; }
   const Mesh& b() const { return *b_; }
   const DistanceOracle& distance_oracle() const { return distance_; }
+  const detail::InnerBalls& balls_a() const { return balls_a_; }  ///< In A's frame.
+  const detail::InnerBalls& balls_b() const { return balls_b_; }  ///< In B's frame.
 
   /// Clearance of hulls, over the sum of the trees' radii and the distance of both from the origin.
   static constexpr double k_clearance = 1e-13;
@@ -78,6 +81,7 @@ class PenetrationOracle {
   const Mesh* a_;
   const Mesh* b_;
   DistanceOracle distance_;
+  detail::InnerBalls balls_a_, balls_b_;
 };
 
 }  // namespace sixdof

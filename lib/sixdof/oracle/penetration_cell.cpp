@@ -23,6 +23,8 @@ constexpr CommonPointSearch::Effort k_thorough{.gain = 0.02, .most = 30};
 constexpr double k_least_depth = 4.0;
 /// A point of the pool is tried if it is deeper than those of the seeds by this factor.
 constexpr double k_deeper = 1.2;
+/// First step from a guess by balls, by the smaller radius.
+constexpr double k_ball_step = 0.2;
 /// Pairs of triangles, and corners of each mesh, from which the pool is searched; points that are kept.
 constexpr std::size_t k_pool_pairs = 48, k_pool_corners = 16, k_pool_size = 16;
 /// A point nearer to a deeper one than this part of that one's depth is the same maximum.
@@ -94,6 +96,7 @@ CellProver::CellProver(const PenetrationOracle& oracle, const Pose& X_AB)
     : oracle_(oracle),
       X_AB_(X_AB),
       clearance_(clearance_of(oracle.distance_oracle(), X_AB)),
+      balls_b_(oracle.balls_b().moved(X_AB)),
       points_(oracle.a(), oracle.distance_oracle().tree_a(), oracle.b(), oracle.distance_oracle().tree_b()),
       free_(oracle.distance_oracle()) {}
 
@@ -123,6 +126,17 @@ bool CellProver::covers(const PlacedPoint& seed, const Corners& corners, std::op
   }
   return is_hull_clear(oracle_.distance_oracle().tree_a(), std::span(of_a.data(), corners.count), clearance_) &&
          is_hull_clear(oracle_.distance_oracle().tree_b(), std::span(of_b.data(), corners.count), clearance_);
+}
+
+/// The deepest point in the balls of both bodies that overlap most, and from there up; none if a body has no balls.
+std::optional<PlacedPoint> CellProver::from_balls(const Vector3d& translation) {
+  const InnerBalls& balls_a = oracle_.balls_a();
+  if (balls_a.size() == 0 || balls_b_.size() == 0) return std::nullopt;
+  const BallPair pair = deepest_pair(balls_a, balls_b_, translation);
+  const Pose X = FreeTranslations::moved(X_AB_, translation);
+  const CommonPoint start = points_.at(pair.p, X, balls_a.triangle[pair.a], balls_b_.triangle[pair.b]);
+  const double tau = std::abs(start.depth()) + k_ball_step * std::min(balls_a.radius[pair.a], balls_b_.radius[pair.b]);
+  return PlacedPoint{translation, points_.ascend(start, X, tau, k_middle)};
 }
 
 std::optional<PlacedPoint> CellProver::best_of(std::span<const PlacedPoint> pool, const Vector3d& translation) {
@@ -172,6 +186,7 @@ CellProof CellProver::prove(const TranslationCell& cell, std::span<const PlacedP
     for (std::size_t i = 0; i < cell.seed_count; ++i) {
       if (tries(move(cell.seeds[i], corners.middle, k_middle))) return true;
     }
+    if (const auto found = from_balls(corners.middle); found && tries(*found)) return true;
     const std::optional<PlacedPoint> other = best_of(pool, corners.middle);
     return other && tries(*other);
   };

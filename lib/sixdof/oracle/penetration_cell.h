@@ -12,6 +12,7 @@
 #include <sixdof/geometry/pose.h>
 #include <sixdof/oracle/common_point.h>
 #include <sixdof/oracle/free_translation.h>
+#include <sixdof/oracle/inner_balls.h>
 #include <sixdof/oracle/penetration.h>
 
 /// Cells of translations, and the proof that all of a cell collide. Internal: use penetration.h.
@@ -82,12 +83,14 @@ class CellProver {
   PlacedPoint move(const PlacedPoint& from, const Eigen::Vector3d& translation,
                    const CommonPointSearch::Effort& effort);
   bool covers(const PlacedPoint& seed, const Corners& corners, std::optional<Eigen::Vector3d>& lost);
+  std::optional<PlacedPoint> from_balls(const Eigen::Vector3d& translation);
   std::optional<PlacedPoint> best_of(std::span<const PlacedPoint> pool, const Eigen::Vector3d& translation);
   void examine(const Eigen::Vector3d& lost, double limit, CellProof& proof);
 
   const PenetrationOracle& oracle_;
   const Pose X_AB_;
   double clearance_;
+  InnerBalls balls_b_;  ///< In A's frame at the pose.
   CommonPointSearch points_;
   FreeTranslations free_;
 };
