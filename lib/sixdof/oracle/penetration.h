@@ -33,8 +33,8 @@ namespace sixdof {
 /// When an evaluation ends.
 struct PenetrationOptions {
   double tolerance = 1e-3;  ///< (hi - lo) / hi at which it is closed.
-  /// Points whose distances to both surfaces are measured, at most: some 3 microseconds each. What is open then stays
-  /// open. A limit of work, not of time: the interval is the same on every machine.
+  /// Points whose distances to both surfaces are measured, and cells, at most. What is open then stays open. A limit of
+  /// work, not of time: the interval is the same on every machine.
   std::uint64_t budget = 400'000;
 };
 

@@ -16,6 +16,9 @@ using SphereTriangle = std::array<Vector3d, 3>;
 
 /// Sides of spherical triangles (radians) that are not halved any more.
 constexpr double k_narrowest = 1e-9;
+/// Free translations are numerous where many directions are equally short. One that is shorter by less than this part
+/// of the tolerance is taken as it is, until the end.
+constexpr double k_worth_a_descent = 0.1;
 /// The last part of a cone takes in a rest smaller than this part of it.
 constexpr double k_small_rest = 0.2;
 
@@ -94,9 +97,17 @@ std::vector<TranslationCell> PenetrationCover::take_batch() {
 }
 
 void PenetrationCover::shorten_translation(const Vector3d& free) {
-  if (free.norm() >= translation_.norm()) return;
-  const Vector3d shorter = own_.translations().descend(X_AB_, free);
-  translation_ = shorter.norm() < free.norm() ? shorter : free;
+  const double length = translation_.norm();
+  if (free.norm() >= length) return;
+  translation_ = free;
+  is_descended_ = false;
+  if (free.norm() < (1.0 - k_worth_a_descent * tolerance_) * length) descend();
+}
+
+void PenetrationCover::descend() {
+  const Vector3d shorter = own_.translations().descend(X_AB_, translation_);
+  if (shorter.norm() < translation_.norm()) translation_ = shorter;
+  is_descended_ = true;
 }
 
 /// Replaces a cell by those that follow from its attempt.
@@ -129,7 +140,7 @@ double PenetrationCover::covered() const {
 }
 
 PenetrationDepth PenetrationCover::run() {
-  while (own_.measurements() + result_.measurements < budget_) {
+  while (own_.measurements() + result_.measurements + result_.cells < budget_) {
     const std::vector<TranslationCell> batch = take_batch();
     if (batch.empty()) break;
     const double limit = translation_.norm();
@@ -143,6 +154,7 @@ PenetrationDepth PenetrationCover::run() {
     }
     for (std::size_t i = 0; i < batch.size(); ++i) follow(batch[i], proofs[i]);
   }
+  if (!is_descended_) descend();
   result_.lo = covered();
   result_.closed = result_.lo >= target();
   for (const auto& [key, cell] : open_) result_.open_cells += key.first < target();

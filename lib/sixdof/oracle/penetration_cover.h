@@ -48,6 +48,7 @@ class PenetrationCover {
   std::vector<TranslationCell> take_batch();
   void follow(const TranslationCell& cell, const CellProof& proof);
   void shorten_translation(const Eigen::Vector3d& free);
+  void descend();
   double covered() const;
 
   const Pose X_AB_;
@@ -57,6 +58,7 @@ class PenetrationCover {
   CellProver own_;
   std::vector<PlacedPoint> pool_;
   Eigen::Vector3d translation_;
+  bool is_descended_ = true;                                          ///< Contacts allow no shorter one.
   std::map<std::pair<double, std::uint64_t>, TranslationCell> open_;  ///< By r0, then in the order of their making.
   std::vector<double> given_up_;                                      ///< r0 of cells that are too narrow to be halved.
   std::uint64_t number_ = 0;
