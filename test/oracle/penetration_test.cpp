@@ -82,6 +82,17 @@ TEST(Penetration, OfTwoHookedLs) {
   expect_depth(l, l, X_AB, 0.1, Vector3d::UnitX());
 }
 
+TEST(Penetration, OfLinkedRingsIsASlideAlongTheLink) {
+  // Tubes of radius 0.2 about circles of radius 0.5 in the planes z = 0 and y = 0, linked. The nearest way out from
+  // outside pulls the rings apart; inside of the link B has some room, and is 0.1 too close to one side of it.
+  const Mesh ring = bodies::bumpy_torus(40, 20, 0.0);
+  const Pose X_AB{Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitX()).toRotationMatrix(), {0.8, 0.01, 0.02}};
+  const PenetrationDepth found = PenetrationOracle(ring, ring).evaluate(X_AB, {.tolerance = 1e-2, .budget = 400'000});
+  EXPECT_TRUE(found.closed);
+  EXPECT_LT(found.hi, 0.35);
+  EXPECT_GT(found.lo, 0.05);
+}
+
 TEST(Penetration, OfSpheresAgreesWithTheDepthOfConvexBodies) {
   std::mt19937_64 random(52);
   const Mesh a = bodies::bumpy_sphere(3, 0.0, 0.5), b = bodies::bumpy_sphere(2, 0.0, 0.3);
@@ -128,11 +139,12 @@ TEST(Penetration, OfRoughBodiesIsTheSameInBothOrdersAndAfterAMotion) {
   std::mt19937_64 random(55);
   const Mesh a = bodies::bumpy_torus(40, 20), b = bodies::bumpy_sphere(3, 0.15, 0.3);
   const PenetrationOracle oracle(a, b), exchanged(b, a);
+  const PenetrationOptions coarse{.tolerance = 1e-2, .budget = 100'000};
   int deep = 0;
   for (int i = 0; i < 4; ++i) {
     Pose X_AB = bodies::random_pose(random, 0.2);
     X_AB.t.x() += 0.5;
-    const PenetrationDepth found = oracle.evaluate(X_AB), other = exchanged.evaluate(X_AB.inverse());
+    const PenetrationDepth found = oracle.evaluate(X_AB, coarse), other = exchanged.evaluate(X_AB.inverse(), coarse);
     // Both contain the depth.
     EXPECT_LE(std::max(found.lo, other.lo), std::min(found.hi, other.hi));
     EXPECT_GT(found.lo, 0.0);
