@@ -116,7 +116,8 @@ TEST_F(BenchProgram, JudgesFirstContacts) {
 TEST_F(BenchProgram, JudgesDepths) {
   const std::string where = "/pair:torus-1k-cone-1k/volume:03";
   const json document =
-      result("--sample 8 --benchmark_filter='^depth/algorithm:(exact-depth|fcl-contacts)" + where + "$'");
+      result("--sample 8 --benchmark_filter='^depth/algorithm:(exact-depth|exact-penetration|fcl-contacts|null)" +
+             where + "$'");
   for (const char* algorithm : {"exact-depth", "fcl-contacts"}) {
     const json found = row(document, fmt::format("depth/algorithm:{}{}", algorithm, where));
     EXPECT_EQ(found.at("failed"), 0);
@@ -127,6 +128,14 @@ TEST_F(BenchProgram, JudgesDepths) {
     EXPECT_LE(found.at("depth_of_ray"), 1.0 + 1e-6);
     EXPECT_FALSE(found.contains("mismatch"));  // neither says that it is the depth of the bodies
   }
+  const json right = row(document, "depth/algorithm:exact-penetration" + where);
+  EXPECT_EQ(right.at("mismatch"), 0);
+  EXPECT_EQ(right.at("too_shallow"), 0);
+  EXPECT_EQ(right.at("too_deep"), 0);
+  const json null = row(document, "depth/algorithm:null" + where);
+  EXPECT_EQ(null.at("missed_depths"), null.at("judged"));
+  EXPECT_EQ(null.at("too_shallow"), null.at("judged"));
+  EXPECT_EQ(null.at("too_shallow_max"), 1.0);
 }
 
 TEST_F(BenchProgram, ReportsTheWorkOfQueries) {

@@ -216,6 +216,7 @@ TEST(Penetration, RefusesWhatItCannotTake) {
   EXPECT_THROW(PenetrationOracle(a, open), BadMesh);
   const PenetrationOracle oracle(a, a);
   EXPECT_THROW(oracle.evaluate(shift(std::numeric_limits<double>::quiet_NaN(), 0, 0)), BadArgument);
+  EXPECT_THROW(oracle.evaluate({2.0 * Matrix3d::Identity(), Vector3d::Zero()}), BadArgument);
   EXPECT_THROW(oracle.evaluate(shift(0, 0, 0), {.tolerance = 0.0}), BadArgument);
   EXPECT_THROW(oracle.evaluate(shift(0, 0, 0), {.budget = 0}), BadArgument);
 }

@@ -31,6 +31,7 @@ void register_core_algorithms(Registry& registry) {
   registry.add(make_exact_contacts_algorithm());
   registry.add(make_exact_depth_algorithm());
   registry.add(make_exact_way_out_algorithm());
+  registry.add(make_exact_penetration_algorithm());
   registry.add(make_ist_algorithm());
   registry.add(make_ist_descent_algorithm());
   registry.add(make_vps_algorithm());

@@ -35,7 +35,12 @@ std::unique_ptr<Algorithm> make_sampled_algorithm();
 /// scores of contacts are for contacts that are right, and is not made to be fast. It needs solids.
 std::unique_ptr<Algorithm> make_exact_contacts_algorithm();
 
-/// Adds the algorithms that need no third-party collision library: these six, `null`, which answers with constants,
+/// `exact-penetration`: one contact, whose depth and normal are the shortest free translation of B that was found
+/// (oracle/penetration.h), if its length is proven to `tolerance`; else the query fails. It times the truth of the rows
+/// `depth/...`. It needs solids.
+std::unique_ptr<Algorithm> make_exact_penetration_algorithm();
+
+/// Adds the algorithms that need no third-party collision library: these seven, `null`, which answers with constants,
 /// `ist`, `ist-descent`, `vps` and `vps-field`.
 void register_core_algorithms(Registry& registry);
 

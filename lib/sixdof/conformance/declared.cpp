@@ -122,6 +122,8 @@ const std::vector<Declared>& table() {
       {"exact-contacts", of_exact_contacts()},
       {"exact-depth", of_depth(15.0)},
       {"exact-way-out", of_depth(80.0)},
+      // One contact where the bodies touch after the translation, which need not be in both.
+      {"exact-penetration", {.collide = Meaning::bodies, .open_meshes = false}},
       {"ist", of_spheres(30.0, 0.85)},
       {"ist-descent", of_spheres(12.0, 0.3)},
       {"vps", of_voxels(15.0, 0.01)},

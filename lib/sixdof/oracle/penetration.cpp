@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <Eigen/Dense>
+
 #include <sixdof/base/error.h>
 #include <sixdof/oracle/penetration_cover.h>
 
@@ -17,6 +19,8 @@ using Eigen::Vector3d;
 /// Of the free translations that are found, those from which shorter ones are searched, and those along whose contacts'
 /// normals B approaches once more.
 constexpr std::size_t k_descents = 6, k_normals = 8;
+/// Of R^T R: what a matrix of numbers with seven digits may have. Intervals get wider by it.
+constexpr double k_rotation_error = 1e-5;
 /// Bodies that are free after a translation shorter than this, over the clearance of hulls, only touch.
 constexpr double k_touch = 1e5;
 
@@ -44,6 +48,9 @@ Vector3d search_free(FreeTranslations& translations, const Pose& X_AB) {
 
 void check(const Pose& X_AB) {
   if (!X_AB.R.allFinite() || !X_AB.t.allFinite()) throw BadArgument("the pose is not finite");
+  if (!X_AB.R.isUnitary(k_rotation_error) || X_AB.R.determinant() < 0.0) {
+    throw BadArgument("the pose's matrix is not a rotation");
+  }
 }
 
 }  // namespace

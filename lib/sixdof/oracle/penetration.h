@@ -58,7 +58,7 @@ class PenetrationOracle {
   PenetrationOracle(const Mesh& a, const Mesh& b);
 
   /// Uses the threads that parallel::with_threads() allows. The same bits for every number of threads.
-  /// @throws BadArgument if the pose is not finite, the tolerance is not in (0, 1) or the budget is 0
+  /// @throws BadArgument if the pose is not finite or no rotation, the tolerance is not in (0, 1) or the budget is 0
   PenetrationDepth evaluate(const Pose& X_AB, const PenetrationOptions& options = {}) const;
 
   /// The directional depth: how far B has to be translated along a direction until it is free there and everywhere
@@ -74,7 +74,8 @@ class PenetrationOracle {
   const detail::InnerBalls& balls_a() const { return balls_a_; }  ///< In A's frame.
   const detail::InnerBalls& balls_b() const { return balls_b_; }  ///< In B's frame.
 
-  /// Clearance of hulls, over the sum of the trees' radii and the distance of both from the origin.
+  /// Clearance of hulls, over the sum of the trees' radii and the distances of both from the origin. Of a matrix that
+  /// is not quite a rotation, its error is added.
   static constexpr double k_clearance = 1e-13;
 
  private:

@@ -44,7 +44,9 @@ std::vector<std::size_t> spread(std::size_t n, std::size_t count) {
 
 double clearance_of(const DistanceOracle& oracle, const Pose& X_AB) {
   const Tree &a = oracle.tree_a(), &b = oracle.tree_b();
-  return PenetrationOracle::k_clearance *
+  // Points are brought back to B's frame by the transposed matrix.
+  const double defect = (X_AB.R.transpose() * X_AB.R - Eigen::Matrix3d::Identity()).norm();
+  return (PenetrationOracle::k_clearance + defect) *
          (2.0 * (a.radius() + b.radius()) + a.center().norm() + b.center().norm() + X_AB.t.norm());
 }
 
@@ -165,7 +167,7 @@ void CellProver::examine(const Vector3d& lost, double limit, CellProof& proof) {
   const Pose X = FreeTranslations::moved(X_AB_, lost);
   const CommonPoint start = points_.at(*p, X, 0, 0);
   const double step = 1e-3 * std::max(limit, clearance_);
-  proof.seeds.insert(proof.seeds.begin(), {lost, points_.ascend(start, X, step, k_middle)});
+  proof.seeds.push_back({lost, points_.ascend(start, X, step, k_middle)});
 }
 
 CellProof CellProver::prove(const TranslationCell& cell, std::span<const PlacedPoint> pool, double limit) {
