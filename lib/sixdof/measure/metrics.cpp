@@ -134,7 +134,7 @@ constexpr std::array k_metrics{
     Metric{"without_contact", "queries", lower, "no contact although the bodies overlap", k_contact},
     Metric{"judged_contacts", "contacts", neither, "contacts that are judged, at most 128 of a query", k_contact},
     Metric{"off_bodies", "contacts", lower, "judged contacts outside of both bodies by more than 1e-6 of A's diagonal", k_contact_truth},
-    Metric{"reversed_normals", "contacts", lower, "normals more than 120 degrees from every true one", k_contact_truth},
+    Metric{"reversed_normals", "contacts", lower, "normals more than 100 degrees from every true one", k_contact_truth},
     Metric{"contact_off_mean", "diagonal", lower, "mean distance of a contact from being in both bodies", k_contact_truth},
     Metric{"contact_off_max", "diagonal", lower, "largest distance of a contact from being in both bodies", k_contact_truth},
     Metric{"contact_normal_deg", "degree", lower, "mean angle of a normal to the nearest true normal cone", k_contact_truth},
