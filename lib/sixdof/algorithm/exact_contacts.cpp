@@ -18,7 +18,7 @@ class ExactContactsQuery final : public Query {
     for (const InnerVertex& each : truth_.inner_vertices()) {
       all.push_back({each.point, each.normal, truth_.thickness(each.point, each.normal)});
     }
-    for (std::size_t i = 0; i < truth_.curve().size(); ++i) all.push_back(on_curve(i));
+    for (std::size_t i = 0; i < truth_.curve().size(); ++i) add_on_curve(i, all);
     // Evenly from all of them, so that the whole region is covered.
     Contacts contacts;
     const std::size_t count = std::min(most, all.size());
@@ -27,14 +27,15 @@ class ExactContactsQuery final : public Query {
   }
 
  private:
-  /// In the middle of a segment: of the normals of both triangles that along which less is to be moved.
-  Contact on_curve(std::size_t i) {
+  /// In the middle of a segment, along the normal of either triangle: both lead out of the other one there.
+  void add_on_curve(std::size_t i, std::vector<Contact>& all) {
     const Segment& segment = truth_.curve()[i];
     const TrianglePair& pair = truth_.curve_triangles()[i];
     const Eigen::Vector3d middle = 0.5 * (segment.start + segment.end);
-    const Eigen::Vector3d n_a = truth_.normal_of_a(pair), n_b = -truth_.normal_of_b(pair);
-    const double of_a = truth_.thickness(middle, n_a), of_b = truth_.thickness(middle, n_b);
-    return of_a <= of_b ? Contact{middle, n_a, of_a} : Contact{middle, n_b, of_b};
+    for (const Eigen::Vector3d& normal : {truth_.normal_of_a(pair), Eigen::Vector3d(-truth_.normal_of_b(pair))}) {
+      // A triangle without area has none.
+      if (!normal.isZero(0.0)) all.push_back({middle, normal, truth_.thickness(middle, normal)});
+    }
   }
 
   ContactTruth truth_;

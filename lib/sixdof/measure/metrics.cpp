@@ -131,6 +131,7 @@ constexpr std::array k_metrics{
     Metric{"contacts_mean", "contacts", neither, "mean number of contacts of a query", k_contact},
     Metric{"contacts_max", "contacts", neither, "largest number of contacts of a query", k_contact},
     Metric{"full_answers", "queries", neither, "as many contacts as were asked for: there may be more", "bench/rows/contacts.cpp"},
+    Metric{"non_finite", "queries", lower, "of the failed: a contact holds a NaN or an infinity", k_status},
     Metric{"without_contact", "queries", lower, "no contact although the bodies overlap", k_contact},
     Metric{"judged_contacts", "contacts", neither, "contacts that are judged, at most 128 of a query", k_contact},
     Metric{"off_bodies", "contacts", lower, "judged contacts outside of both bodies by more than 1e-6 of A's diagonal", k_contact_truth},

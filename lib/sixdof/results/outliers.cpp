@@ -32,6 +32,8 @@ constexpr std::pair<const char*, const char*> k_words[] = {
     {"magnitude_error_T", "largest error of the torque's magnitude"},
     {"failed", "first without an answer"},
     {"mismatch", "first wrong answer"},
+    {"contact_off_max", "contact farthest from both bodies"},
+    {"contact_normal_max_deg", "normal farthest from every true one"},
     {"misses", "first without a force"}};
 
 }  // namespace
