@@ -27,15 +27,18 @@ class ExactContactsQuery final : public Query {
   }
 
  private:
-  /// In the middle of a segment, along the normal of either triangle: both lead out of the other one there.
+  /// In the middle of a segment: of the normals of both triangles the one along which less is to be moved; both where
+  /// that is the same, as in shallow contacts, where nothing is to be moved.
   void add_on_curve(std::size_t i, std::vector<Contact>& all) {
     const Segment& segment = truth_.curve()[i];
     const TrianglePair& pair = truth_.curve_triangles()[i];
     const Eigen::Vector3d middle = 0.5 * (segment.start + segment.end);
-    for (const Eigen::Vector3d& normal : {truth_.normal_of_a(pair), Eigen::Vector3d(-truth_.normal_of_b(pair))}) {
-      // A triangle without area has none.
-      if (!normal.isZero(0.0)) all.push_back({middle, normal, truth_.thickness(middle, normal)});
-    }
+    const Eigen::Vector3d n_a = truth_.normal_of_a(pair), n_b = -truth_.normal_of_b(pair);
+    if (n_a.isZero(0.0) || n_b.isZero(0.0)) return;  // of a triangle without area
+    const double of_a = truth_.thickness(middle, n_a), of_b = truth_.thickness(middle, n_b);
+    const double same = k_contact_slack * truth_.diagonal();
+    if (of_a <= of_b + same) all.push_back({middle, n_a, of_a});
+    if (of_b <= of_a + same) all.push_back({middle, n_b, of_b});
   }
 
   ContactTruth truth_;
