@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -55,6 +56,39 @@ Mesh moved(const Mesh& mesh, const Pose& X) {
   std::vector<Eigen::Vector3d> vertices;
   for (const Eigen::Vector3d& p : mesh.vertices()) vertices.push_back(X * p);
   return Mesh::build(std::move(vertices), mesh.triangles(), mesh.name());
+}
+
+/// The counter whose configuration is drawn with its contacts.
+constexpr const char* k_pictured = "contact_normal_max_deg";
+
+/// Contacts and segments that a picture has at most.
+constexpr std::size_t k_most_drawn_contacts = 64, k_most_segments = 256;
+
+/// Evenly from all of them.
+results::ContactPicture picture(const Contacts& contacts, const ContactTruth& truth) {
+  const double unit = std::pow(10.0, 6.0 - std::floor(std::log10(truth.diagonal())));
+  const auto both = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, double unit_q) {
+    std::array<double, 6> numbers{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      numbers[k] = std::round(unit * p[axis]) / unit;
+      numbers[k + 3] = std::round(unit_q * q[axis]) / unit_q;
+    }
+    return numbers;
+  };
+  results::ContactPicture drawn;
+  const std::size_t count = std::min(contacts.list.size(), k_most_drawn_contacts);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Contact& each = contacts.list[i * contacts.list.size() / count];
+    constexpr double k_normal_unit = 1e4;
+    drawn.contacts.push_back(both(each.point, each.normal, k_normal_unit));
+  }
+  const std::size_t segments = std::min(truth.curve().size(), k_most_segments);
+  for (std::size_t i = 0; i < segments; ++i) {
+    const Segment& each = truth.curve()[i * truth.curve().size() / segments];
+    drawn.curve.push_back(both(each.start, each.end, unit));
+  }
+  return drawn;
 }
 
 /// What the first call of a row found.
@@ -208,7 +242,10 @@ struct ContactRow {
       found->scores.add(score);
       if (score.is_faulty() && found->scores.faulty() == 1) found->worst.add("mismatch", found->answered[i]);
       if (score.off_max > largest_off) found->worst.add("contact_off_max", found->answered[i]);
-      if (score.normal_max > largest_angle) found->worst.add("contact_normal_max_deg", found->answered[i]);
+      if (score.normal_max > largest_angle) {
+        found->worst.add(k_pictured, found->answered[i]);
+        found->worst.contacts[k_pictured] = picture(answers[i], truth);
+      }
       largest_off = std::max(largest_off, score.off_max);
       largest_angle = std::max(largest_angle, score.normal_max);
     }

@@ -108,6 +108,8 @@ Json as_json(const Scene& scene) {
           {"reference", scene.reference},
           {"rate_hz", scene.rate_hz},
           {"stride", scene.stride},
+          {"contacts", scene.contacts},
+          {"curve", scene.curve},
           {"moments", std::move(moments)}};
 }
 

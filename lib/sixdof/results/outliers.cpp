@@ -39,7 +39,8 @@ constexpr std::pair<const char*, const char*> k_words[] = {
 }  // namespace
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ComparedResponse, force, torque, exact_force, exact_torque, reference)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Outliers, a, b, command, poses, responses)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ContactPicture, contacts, curve)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Outliers, a, b, command, poses, responses, contacts)
 
 void Outliers::add(const std::string& counter, const std::optional<Pose>& X_AB) {
   if (X_AB) poses[counter] = TypedPose::of(*X_AB).text();
@@ -64,6 +65,7 @@ nlohmann::ordered_json to_json_object(const Outliers& outliers) {
   if (outliers.command.empty()) object.erase("command");
   if (outliers.poses.empty()) object.erase("poses");
   if (outliers.responses.empty()) object.erase("responses");
+  if (outliers.contacts.empty()) object.erase("contacts");
   return object;
 }
 
