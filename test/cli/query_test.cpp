@@ -161,6 +161,27 @@ TEST(Query, RefusesWhatIsNoMotion) {
   EXPECT_THAT(query(std::string(k_boxes) + " --algorithm sampled").err, HasSubstr("give it a --motion"));
 }
 
+TEST(Query, ContactsAreJudgedByExactGeometry) {
+  // B stands 0.1 deep on A, turned about the vertical.
+  const std::string pose = "--a box-12 --b box-12 --pose '0.1 -0.2 1.1  0.9393727128473789 0 0 0.3428978074554513' ";
+  const auto json = answers(pose + "--algorithm exact-contacts --contacts 1000");
+  EXPECT_EQ(json.at("depth_of"), "local");
+  ASSERT_GT(json.at("contacts").size(), 4u);
+  for (const auto& each : json.at("contacts")) {
+    EXPECT_NEAR(each.at("off"), 0.0, 1e-9);
+    EXPECT_LT(each.at("normal_degrees"), 0.01);
+    EXPECT_NEAR(each.at("depth"), each.at("thickness"), 1e-9);
+  }
+  EXPECT_TRUE(json.at("colliding").is_null());
+  EXPECT_GE(json.at("times_ns").at("contacts"), 0);
+  const auto some = answers(pose + "--algorithm fcl-contacts --contacts 3");
+  EXPECT_EQ(some.at("contacts").size(), 3u);
+  EXPECT_EQ(some.at("depth_of"), "triangles");
+  EXPECT_THAT(query(pose + "--algorithm ode --contacts 2").out, HasSubstr("contact          {\"point\":"));
+  EXPECT_THAT(query(pose + "--contacts 3").err, HasSubstr("exact gives no contacts"));
+  EXPECT_THAT(query(pose + "--algorithm exact-contacts").err, HasSubstr("ask for them by --contacts"));
+}
+
 TEST(Query, AsksOnlyWhatIsWanted) {
   const auto json = answers(std::string(k_boxes) + " --only distance");
   EXPECT_EQ(json.at("distance"), 0.0);

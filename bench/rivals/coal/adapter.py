@@ -74,6 +74,8 @@ class Query:
 
     def contacts(self, pose, most):
         """Coal stops its search once it has so many; its depth is a signed distance, negative inside."""
+        if most == 0:
+            return [], [], []  # Coal throws
         request, result = coal.CollisionRequest(), coal.CollisionResult()
         request.num_max_contacts, request.enable_contact = most, True
         request.gjk_tolerance = self.collide_request.gjk_tolerance

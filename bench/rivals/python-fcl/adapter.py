@@ -43,6 +43,8 @@ class Query:
 
     def contacts(self, pose, most):
         """FCL stops its search once it has so many."""
+        if most == 0:
+            return [], [], []  # FCL warns on standard output
         self.empty(pose)
         result = fcl.CollisionResult()
         fcl.collide(self.a, self.b, fcl.CollisionRequest(num_max_contacts=most, enable_contact=True), result)

@@ -18,7 +18,7 @@ class ExactContactsQuery final : public Query {
     for (const InnerVertex& each : truth_.inner_vertices()) {
       all.push_back({each.point, each.normal, truth_.thickness(each.point, each.normal)});
     }
-    for (std::size_t i = 0; i < truth_.curve().size(); ++i) all.push_back(on_curve(i));
+    for (std::size_t i = 0; i < truth_.curve().size(); ++i) add_on_curve(i, all);
     // Evenly from all of them, so that the whole region is covered.
     Contacts contacts;
     const std::size_t count = std::min(most, all.size());
@@ -27,14 +27,18 @@ class ExactContactsQuery final : public Query {
   }
 
  private:
-  /// In the middle of a segment: of the normals of both triangles that along which less is to be moved.
-  Contact on_curve(std::size_t i) {
+  /// In the middle of a segment: of the normals of both triangles the one along which less is to be moved; both where
+  /// that is the same, as in shallow contacts, where nothing is to be moved.
+  void add_on_curve(std::size_t i, std::vector<Contact>& all) {
     const Segment& segment = truth_.curve()[i];
     const TrianglePair& pair = truth_.curve_triangles()[i];
     const Eigen::Vector3d middle = 0.5 * (segment.start + segment.end);
     const Eigen::Vector3d n_a = truth_.normal_of_a(pair), n_b = -truth_.normal_of_b(pair);
+    if (n_a.isZero(0.0) || n_b.isZero(0.0)) return;  // of a triangle without area
     const double of_a = truth_.thickness(middle, n_a), of_b = truth_.thickness(middle, n_b);
-    return of_a <= of_b ? Contact{middle, n_a, of_a} : Contact{middle, n_b, of_b};
+    const double same = k_contact_slack * truth_.diagonal();
+    if (of_a <= of_b + same) all.push_back({middle, n_a, of_a});
+    if (of_b <= of_a + same) all.push_back({middle, n_b, of_b});
   }
 
   ContactTruth truth_;

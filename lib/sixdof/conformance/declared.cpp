@@ -48,14 +48,14 @@ Declaration of_depth(double force_degrees) {
           .scale_error = 0.06};
 }
 
-/// Roundings; where two normals of a segment are equally good, the order decides.
+/// Roundings only.
 Declaration of_exact_contacts() {
   return {.collide = Meaning::bodies,
           .open_meshes = false,
           .contact_error = 1e-9,
           .contact_degrees = 0.01,
           .depth_error = 1e-6,
-          .contact_change_degrees = 0.1};
+          .contact_change_degrees = 0.01};
 }
 
 /// FCL's traversals of distances.
