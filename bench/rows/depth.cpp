@@ -13,6 +13,7 @@
 #include <sixdof/oracle/penetration_verdict.h>
 #include <sixdof/query/ask.h>
 #include "bench/harness/penetration_truth.h"
+#include "bench/harness/query_command.h"
 #include "bench/harness/timing.h"
 #include "bench/rows/families.h"
 
@@ -57,7 +58,9 @@ struct DepthRow {
   std::optional<DepthTally> tally = {};
   Latency latency = {};
   std::vector<Pose> answered = {};
+  results::Outliers worst = {};
 
+  bool claims_bodies() const { return algorithm.traits().depth == ContactDepth::bodies; }
   bool is_about_meshes() const { return algorithm.traits().body == Body::mesh; }
   std::string name() const {
     std::string bucket = key.name();
@@ -132,8 +135,16 @@ struct DepthRow {
     return std::span(bucket.poses).first(std::min(most, bucket.poses.size()));
   }
 
-  /// Judges one answer to every configuration and times single queries.
+  /// Judges one answer to every configuration, then times single queries.
   void check(std::span<const Pose> poses, const Mesh& a, const Mesh& b, Query& query) {
+    const auto word_of = [&](const std::string& mesh) {
+      const CatalogueMesh* const each = resources.catalogue.mesh(mesh);
+      return each == nullptr || each->identity.path.empty() ? mesh : each->identity.path;
+    };
+    worst.a = word_of(pair.a);
+    worst.b = word_of(pair.b);
+    worst.command = query_command(worst.a, worst.b, algorithm, resources.settings_of(algorithm));
+    if (algorithm.traits().answers.contacts) worst.command += fmt::format(" --contacts {}", k_most_contacts);
     PenetrationTruths truths = is_about_meshes() ? PenetrationTruths(a, b) : PenetrationTruths::of_hulls(a, b);
     const std::span<const PenetrationDepth> known = truths.at(poses);
     DepthTally found;
@@ -142,7 +153,7 @@ struct DepthRow {
       if (truth.hi > 0.0) found.width_max = std::max(found.width_max, (truth.hi - truth.lo) / truth.hi);
       const Outcome<double> answer = ask(query, poses[i]);
       if (!answer.ok()) {
-        ++found.failed;
+        if (found.failed++ == 0) worst.add("failed", poses[i]);
         for (std::size_t k = 0; k < k_counted_statuses.size(); ++k) {
           if (answer.status == k_counted_statuses[k]) ++found.failures[k];
         }
@@ -151,7 +162,12 @@ struct DepthRow {
       }
       answered.push_back(poses[i]);
       const JudgedDepth judged = judge_depth(truth, answer.value, k_depth_slack * a.diagonal());
+      const bool is_first = found.judged() == found.count(DepthVerdict::right);
       ++found.of[static_cast<std::size_t>(judged.verdict)];
+      const bool is_wrong = claims_bodies() && found.judged() > found.count(DepthVerdict::right);
+      if (is_first && is_wrong) worst.add("mismatch", poses[i]);
+      if (judged.shallow > found.shallow_max) worst.add("too_shallow_max", poses[i]);
+      if (judged.deep > found.deep_max) worst.add("too_deep_max", poses[i]);
       found.shallow_max = std::max(found.shallow_max, judged.shallow);
       found.deep_max = std::max(found.deep_max, judged.deep);
       if (judged.verdict != DepthVerdict::not_judged && truth.hi > 0.0) found.ratio_sum += answer.value / truth.hi;
@@ -200,7 +216,7 @@ struct DepthRow {
     }
     count("judged", t.judged());
     // Who says how far B has to move is wrong otherwise; depths of triangles and of points are only compared.
-    if (algorithm.traits().depth == ContactDepth::bodies) {
+    if (claims_bodies()) {
       count("mismatch", t.judged() - t.count(DepthVerdict::right));
     }
     count("open_depths", t.count(DepthVerdict::not_judged));
@@ -237,6 +253,7 @@ std::vector<PlannedRow> depth_rows(const Resources& resources) {
                         .run = [row](benchmark::State& state, const Share& share) { row->run(state, share); },
                         .fields = row->fields(),
                         .trial = [row](double seconds) { return row->trial(seconds); },
+                        .outliers = [row] { return row->worst; },
                         .manual_time = is_isolated(*algorithm)});
       }
     }

@@ -2,6 +2,7 @@
 
 #include <sixdof/oracle/penetration.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,6 +12,7 @@
 
 #include <sixdof/base/error.h>
 #include <sixdof/base/parallel.h>
+#include <sixdof/generation/distance_generator.h>
 #include <sixdof/oracle/convex_depth.h>
 #include <sixdof/oracle/free_translation.h>
 
@@ -219,6 +221,28 @@ TEST(Penetration, RefusesWhatItCannotTake) {
   EXPECT_THROW(oracle.evaluate({2.0 * Matrix3d::Identity(), Vector3d::Zero()}), BadArgument);
   EXPECT_THROW(oracle.evaluate(shift(0, 0, 0), {.tolerance = 0.0}), BadArgument);
   EXPECT_THROW(oracle.evaluate(shift(0, 0, 0), {.budget = 0}), BadArgument);
+}
+
+TEST(DirectionalDepth, IsTheWayBackToTheFirstContactOfARay) {
+  const Mesh a = bodies::bumpy_torus(40, 20), b = bodies::bumpy_sphere(3, 0.15, 0.3);
+  const PenetrationOracle oracle(a, b);
+  const auto solver = make_ray_cast()->prepare(a, b);
+  std::mt19937_64 random(57);
+  for (int i = 0; i < 12; ++i) {
+    const Pose turned = bodies::random_pose(random, 1.0);
+    const Vector3d u = bodies::random_pose(random, 1.0).t.normalized();
+    solver->set_rotation(turned.quaternion());
+    const std::array<double, 1> target{1e-10};
+    std::array<double, 1> contact{}, residual{};
+    solver->solve(u, target, contact, residual);
+    if (!(contact[0] > 0.1)) continue;  // the ray passes by, or B is nearly in the hole
+    const double depth = 0.01 * (1 + i % 5);
+    const Pose X_AB{turned.R, a.center() + (contact[0] - depth) * u - turned.R * b.center()};
+    const std::optional<double> found = oracle.directional_depth(X_AB, u);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(*found, depth, 1e-8) << i;  // the target, over the slope at which the ray meets it
+    EXPECT_LE(oracle.evaluate(X_AB, {.tolerance = 0.3, .budget = 20'000}).lo, depth + k_of_hi);
+  }
 }
 
 TEST(DirectionalDepth, IsThatOfBoxes) {

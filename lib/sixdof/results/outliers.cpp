@@ -34,6 +34,8 @@ constexpr std::pair<const char*, const char*> k_words[] = {
     {"mismatch", "first wrong answer"},
     {"contact_off_max", "contact farthest from both bodies"},
     {"contact_normal_max_deg", "normal farthest from every true one"},
+    {"too_shallow_max", "depth that is too shallow by the largest part"},
+    {"too_deep_max", "depth that is too deep by the largest part"},
     {"misses", "first without a force"}};
 
 }  // namespace
