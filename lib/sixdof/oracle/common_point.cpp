@@ -137,7 +137,7 @@ CommonPoint CommonPointSearch::ascend(const CommonPoint& start, const Pose& X_AB
     const Vector3d step = bundle.best_step(tau);
     const double depth = current.depth();
     const double promised = bundle.value_at(step) - depth;
-    if (depth > 0.0 && promised <= effort.gain * depth) break;
+    if (depth > 0.0 && (promised <= effort.gain * depth || depth >= effort.enough)) break;
     if (!(promised > 0.0) || step.norm() <= shortest) break;
     const CommonPoint next = at(current.p + step, X_AB, current);
     const double gain = next.depth() - depth;

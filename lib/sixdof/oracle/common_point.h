@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include <Eigen/Core>
 
@@ -38,8 +39,9 @@ class CommonPointSearch {
   /// How an ascent ends.
   struct Effort {
     double gain =
-        0.2;        ///< At a point in both bodies whose depth can grow by no more than this part of it, by the model.
-    int most = 12;  ///< After so many points.
+        0.2;  ///< At a point in both bodies whose depth can grow by no more than this part of it, by the model.
+    double enough = std::numeric_limits<double>::infinity();  ///< At this depth (length).
+    int most = 12;                                            ///< After so many points.
   };
 
   /// Climbs from a known point towards a local maximum of depth(): each signed distance is 1-Lipschitz, with the

@@ -18,10 +18,12 @@ using Eigen::Vector3d;
 /// Of a point in the middle of a cell, and of the points at its corners: these only have to lie inside both bodies.
 constexpr CommonPointSearch::Effort k_middle{.gain = 0.2, .most = 14};
 constexpr CommonPointSearch::Effort k_corner{.gain = 0.5, .most = 10};
+/// A point at a corner as deep as this part of the middle's is deep enough.
+constexpr double k_enough = 0.5;
 constexpr CommonPointSearch::Effort k_thorough{.gain = 0.02, .most = 30};
 /// Least depth of a common point, in clearances.
 constexpr double k_least_depth = 4.0;
-/// A point of the pool is tried if it is deeper than those of the seeds by this factor.
+/// Other balls are tried if they are deeper than the point of the seed by this factor.
 constexpr double k_deeper = 1.2;
 /// First step from a guess by balls, by the smaller radius.
 constexpr double k_ball_step = 0.2;
@@ -117,8 +119,10 @@ PlacedPoint CellProver::move(const PlacedPoint& from, const Vector3d& translatio
 /// @param lost an outer corner at which none was found
 bool CellProver::covers(const PlacedPoint& seed, const Corners& corners, std::optional<Vector3d>& lost) {
   std::array<Vector3d, 6> of_a, of_b;
+  CommonPointSearch::Effort effort = k_corner;
+  effort.enough = k_enough * seed.point.depth();
   for (std::size_t k = 0; k < corners.count; ++k) {
-    const CommonPoint point = move(seed, corners.at[k], k_corner).point;
+    const CommonPoint point = move(seed, corners.at[k], effort).point;
     if (point.depth() <= k_least_depth * clearance_) {
       if (k < Corners::k_outer && !lost) lost = corners.at[k];
       return false;
@@ -130,11 +134,13 @@ bool CellProver::covers(const PlacedPoint& seed, const Corners& corners, std::op
          is_hull_clear(oracle_.distance_oracle().tree_b(), std::span(of_b.data(), corners.count), clearance_);
 }
 
-/// The deepest point in the balls of both bodies that overlap most, and from there up; none if a body has no balls.
-std::optional<PlacedPoint> CellProver::from_balls(const Vector3d& translation) {
+/// The deepest point in the balls of both bodies that overlap most, and from there up; none if a body has no balls, or
+/// if they prove no depth above `least` (length; negative: for whatever they guess).
+std::optional<PlacedPoint> CellProver::from_balls(const Vector3d& translation, double least) {
   const InnerBalls& balls_a = oracle_.balls_a();
   if (balls_a.size() == 0 || balls_b_.size() == 0) return std::nullopt;
   const BallPair pair = deepest_pair(balls_a, balls_b_, translation);
+  if (least >= 0.0 && 0.5 * pair.overlap <= least) return std::nullopt;
   const Pose X = FreeTranslations::moved(X_AB_, translation);
   const CommonPoint start = points_.at(pair.p, X, balls_a.triangle[pair.a], balls_b_.triangle[pair.b]);
   const double tau = std::abs(start.depth()) + k_ball_step * std::min(balls_a.radius[pair.a], balls_b_.radius[pair.b]);
@@ -158,8 +164,9 @@ std::optional<PlacedPoint> CellProver::best_of(std::span<const PlacedPoint> pool
 
 /// What is at a corner without a common point: a free translation, or other common points.
 void CellProver::examine(const Vector3d& lost, double limit, CellProof& proof) {
+  if (lost.norm() >= limit) return;  // it may be free, and the cell is not proven by it in either case
   if (free_.is_free(X_AB_, lost)) {
-    if (lost.norm() < limit) proof.free = lost;
+    proof.free = lost;
     return;
   }
   const std::optional<Vector3d> p = free_.crossing(X_AB_, lost);
@@ -175,20 +182,22 @@ CellProof CellProver::prove(const TranslationCell& cell, std::span<const PlacedP
   const std::uint64_t before = points_.measurements();
   const Corners corners(cell);
   std::optional<Vector3d> lost;
-  double deepest = k_least_depth * clearance_;
   const auto tries = [&](const PlacedPoint& middle) {
-    if (middle.point.depth() <= deepest) return false;
-    deepest = k_deeper * middle.point.depth();
+    if (middle.point.depth() <= k_least_depth * clearance_) return false;
     proof.seeds.insert(proof.seeds.begin(), middle);
     if (!covers(middle, corners, lost)) return false;
     proof.next = CellProof::Next::proven;
     return true;
   };
+  // A common point that does not prove the cell is usually the one that proves its parts: so others are searched only
+  // where there is none, or where balls are known to overlap deeper.
   const auto finds_seed = [&] {
-    for (std::size_t i = 0; i < cell.seed_count; ++i) {
+    for (std::size_t i = 0; i < cell.seed_count && proof.seeds.empty(); ++i) {
       if (tries(move(cell.seeds[i], corners.middle, k_middle))) return true;
     }
-    if (const auto found = from_balls(corners.middle); found && tries(*found)) return true;
+    const double found = proof.seeds.empty() ? -1.0 : proof.seeds.front().point.depth();
+    if (const auto balls = from_balls(corners.middle, k_deeper * found); balls && tries(*balls)) return true;
+    if (!proof.seeds.empty()) return false;
     const std::optional<PlacedPoint> other = best_of(pool, corners.middle);
     return other && tries(*other);
   };

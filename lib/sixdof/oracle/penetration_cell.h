@@ -83,7 +83,7 @@ class CellProver {
   PlacedPoint move(const PlacedPoint& from, const Eigen::Vector3d& translation,
                    const CommonPointSearch::Effort& effort);
   bool covers(const PlacedPoint& seed, const Corners& corners, std::optional<Eigen::Vector3d>& lost);
-  std::optional<PlacedPoint> from_balls(const Eigen::Vector3d& translation);
+  std::optional<PlacedPoint> from_balls(const Eigen::Vector3d& translation, double least);
   std::optional<PlacedPoint> best_of(std::span<const PlacedPoint> pool, const Eigen::Vector3d& translation);
   void examine(const Eigen::Vector3d& lost, double limit, CellProof& proof);
 
