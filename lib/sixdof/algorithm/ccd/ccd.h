@@ -17,8 +17,8 @@ namespace sixdof {
 /// stops after `max_iterations`, 100 as in libccd's first example, and then says no. Nothing is kept from query to
 /// query. Hulls are solids: one inside the other is a contact.
 ///
-/// **Contacts.** One, by ccdGJKPenetration() (EPA), or by ccdMPRPenetration() with `method=mpr`. Its depth is meant to be
-/// the translational penetration depth of the hulls (ContactDepth::bodies); rows `depth/...` judge it. MPR finds the
+/// **Contacts.** One, by ccdGJKPenetration() (EPA), or by ccdMPRPenetration() with `method=mpr`. Its depth is meant to
+/// be the translational penetration depth of the hulls (ContactDepth::bodies); rows `depth/...` judge it. MPR finds the
 /// depth along the way from centre to centre only. A touch without depth is no contact.
 ///
 /// **Precision.** Double precision; the answer to hulls whose distance or depth is about 1e-6 of their size is by
