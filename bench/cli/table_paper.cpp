@@ -4,7 +4,6 @@
 #include <sixdof/results/paper_scenarios.h>
 #include "bench/cli/table.h"
 #include "bench/cli/table_numbers.h"
-#include "bench/study/equivalent_scenario.h"
 
 namespace sixdof::cli {
 namespace {
@@ -28,11 +27,11 @@ Sheet paper_sheet_of(const TableInput& input) {
                    {"", "law", true},
                    {"", "cpu, us"}};
   for (const std::string& measure : results::paper_measures()) sheet.columns.push_back({"whole path", measure});
-  for (const results::PaperScenarioLine& line : results::paper_scenario_lines(input.groups, study::wrench_law)) {
+  for (const results::PaperScenarioLine& line : results::paper_scenario_lines(input.groups)) {
     const std::string printed = line.printed_resolution.empty() ? "" : fmt::format(" ({})", line.printed_resolution);
     auto& cells =
         sheet.lines.emplace_back(std::vector{line.scenario, base_name(line.algorithm), line.resolution + printed,
-                                             line.law.empty() ? "own" : line.law, as_microseconds(line.mean_ns)});
+                                             line.law.empty() ? "-" : line.law, as_microseconds(line.mean_ns)});
     for (const results::PaperMeasure& measure : line.measures) cells.push_back(measure_cell(measure));
   }
   return sheet;

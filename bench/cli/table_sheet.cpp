@@ -253,8 +253,8 @@ std::vector<std::string> lines_below(const TableInput& input) {
                   k_fewest_for_p99),
       ">1 ms: share of these queries over the haptic deadline",
       "own law: what the algorithm's response tends to, judged at 32 configurations at most; depth and way_out: "
-      "integrals "
-      "over B's surface inside A; contacts: of pairs of triangles, judged by depth; volume: the exact response",
+      "integrals over B's surface inside A; contacts: of pairs of triangles, judged by depth; volume: the exact "
+      "response",
       "angle: mean angle to the exact response, -dV/dx, or to the own law, in degrees; max: the largest",
       "magn.: RMS of |F| - gain |exact F| over the RMS of |F|, with one gain per row; of torques likewise",
       "force though apart: answers with a force, and the largest in percent of the mean force at the least overlap",

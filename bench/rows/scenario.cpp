@@ -20,12 +20,15 @@ constexpr double k_passes = 3.0;
 /// Fewest steps that a short time budget leaves: the coarsest path on which the measures still mean something.
 constexpr std::size_t k_fewest_steps = 100;
 
+/// The ideal that an algorithm is judged by.
+IdealLaw law_of(const Traits& traits) { return traits.law == ResponseLaw::none ? IdealLaw::volume : own_law(traits); }
+
 /// One row, and what its first call measured.
 struct ScenarioRow {
   const Resources& resources;
   const Algorithm& algorithm;
   std::string name;  ///< Of the scenario.
-  IdealLaw law = IdealLaw::volume;
+  IdealLaw law = law_of(algorithm.traits());
   std::unique_ptr<Scenario> scenario = {};
   std::unique_ptr<Query> query = {};
   Recording recording = {};
@@ -52,7 +55,6 @@ struct ScenarioRow {
   }
 
   void prepare(double seconds) {
-    law = algorithm.traits().law == ResponseLaw::none ? IdealLaw::volume : own_law(algorithm.traits());
     scenario = make_scenario(name);
     auto prepared = resources.cache.prepare(algorithm, resources.settings_of(algorithm), scenario->a(), scenario->b());
     // The time of a few steps tells how many the row can afford; a multiple of four keeps closed paths symmetric.
@@ -106,6 +108,7 @@ std::vector<PlannedRow> scenario_rows(const Resources& resources) {
                                  .settings = resources.settings_of(*algorithm).to_string(),
                                  .runtime = algorithm->traits().runtime,
                                  .scenario = scenario,
+                                 .law = std::string(to_string(row->law)),
                                  .isolated = is_isolated(*algorithm)},
                       .manual_time = is_isolated(*algorithm)});
     }

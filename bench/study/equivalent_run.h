@@ -44,8 +44,9 @@ struct EquivalentRun {
 double measurement_work(const std::array<ResolutionAxis, 2>& axes, const Resolution& at);
 
 /// Measures the coarsest and the middle resolution of every task first, estimates from these how long all will take, as
-/// a fixed part and one that grows with the work, and then searches task by task. A resolution is measured once, or taken from the store. A search that needs a measurement which is
-/// estimated to take longer than what is left of the budget is left out; the next ones are tried all the same.
+/// a fixed part and one that grows with the work, and then searches task by task. A resolution is measured once, or
+/// taken from the store. A search that needs a measurement which is estimated to take longer than what is left of the
+/// budget is left out; the next ones are tried all the same.
 /// @param store gets every measurement when it is made
 /// @param progress has the budget, and gets a part for each measurement after the estimate
 /// @param finished is called after every task, with the run so far

@@ -48,21 +48,24 @@ TEST_P(Responses, PushBOutOfA) {
     Settings settings = algorithm->settings();
     const std::string& name = algorithm->traits().name;
     if (name.starts_with("ist")) settings.set("spheres", "500");
+    if (name == "exact-way-out") settings.set("tolerance", "0.03");  // a usual one takes minutes on some pairs
     if (name.starts_with("vps")) settings.set_all({"voxel_size=0.01", "point_spacing=0.01"});
     const auto query = algorithm->prepare(a, b, settings);
     const Outcome<Response> outcome = query->respond(X);
     ASSERT_TRUE(outcome.ok()) << name << ": " << query->diagnosis();
     EXPECT_GT(outcome.value.penalty, 0.0) << name;
     EXPECT_GT(outcome.value.force.norm(), 0.0) << name;
-    // The laws differ in direction. That of vps-field pushes each point out of A the shortest way, which is sideways
-    // where B encloses a thin part of A; the others never pull B in.
-    if (name != "vps-field") {
+    // The laws differ in direction. That of vps-field and exact-way-out pushes each point out of A the shortest way,
+    // which is sideways where B encloses a thin part of A; the others never pull B in.
+    if (algorithm->traits().law != ResponseLaw::way_out) {
       EXPECT_LT(angle_degrees(outcome.value.force, out), 90.0) << name;
     }
-    EXPECT_TRUE(query->collide(X).value) << name;
+    if (algorithm->traits().answers.collide) {
+      EXPECT_TRUE(query->collide(X).value) << name;
+    }
     ++answered;
   }
-  EXPECT_EQ(answered, 5);
+  EXPECT_EQ(answered, 7);
 }
 
 INSTANTIATE_TEST_SUITE_P(Recipes, Responses,

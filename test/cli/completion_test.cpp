@@ -66,7 +66,7 @@ TEST_F(Completion, OfOptions) {
 }
 
 TEST_F(Completion, OfValues) {
-  EXPECT_THAT(complete({"sixdof", "query", "--algorithm", "exa"}), ElementsAre("exact"));
+  EXPECT_THAT(complete({"sixdof", "query", "--algorithm", "exa"}), ElementsAre("exact", "exact-depth", "exact-way-out"));
   EXPECT_THAT(complete({"sixdof", "query", "--algorithm", "=", "brute"}), ElementsAre("brute-force"));
   EXPECT_THAT(complete({"sixdof", "query", "--algorithm", "="}), IsSupersetOf({"exact", "ist", "vps"}));
   EXPECT_THAT(complete({"sixdof", "query", "--a", "torus-k"}),

@@ -83,9 +83,9 @@ TEST_F(Equivalent, PrintsPredictedBesideMeasured) {
     EXPECT_THAT(result.out, HasSubstr(words));
   }
   std::ifstream file(path("rows.json"));
-  const auto json = nlohmann::json::parse(file);
-  EXPECT_FALSE(json.at("context").contains("interrupted"));
-  const auto& rows = json.at("benchmarks");
+  const json written = json::parse(file);
+  EXPECT_FALSE(written.at("context").contains("interrupted"));
+  const auto& rows = written.at("benchmarks");
   std::size_t grid = 0;
   for (const auto& row : rows) {
     const std::string name = row.at("name");
@@ -103,12 +103,12 @@ TEST_F(Equivalent, PrintsPredictedBesideMeasured) {
 TEST_F(Equivalent, FindsTheLeastTimeAndPrintsJson) {
   const auto result = equivalent(k_small + std::string("--reverse 0.05 --json --weights sigma=0.5,gamma=2"));
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto json = nlohmann::json::parse(result.out);
-  const auto& answer = json.at("benchmarks").at(0);
+  const json printed = json::parse(result.out);
+  const auto& answer = printed.at("benchmarks").at(0);
   EXPECT_EQ(answer.at("name"), "equivalent/scenario:II/algorithm:vps-field/eta:0.05");
   const double sigma = answer.at("sigma_F"), gamma = answer.at("gamma_F_deg");
   EXPECT_NEAR(answer.at("eta_measured"), 0.5 * sigma + 2.0 * gamma * 3.14159265358979 / 180.0, k_rounding);
-  EXPECT_TRUE(json.at("context").contains("algorithm:vps-field"));
+  EXPECT_TRUE(printed.at("context").contains("algorithm:vps-field"));
 }
 
 TEST_F(Equivalent, SaysThatTauCannotBeMet) {

@@ -67,7 +67,7 @@ TEST_F(Models, ListsTheCollectionAndWhatWasLeftOut) {
   const std::string text = run("models list --collection").out;
   EXPECT_THAT(text, HasSubstr(std::to_string(closed) + " closed objects: "));
   for (const auto& object : json.at("objects")) {
-    EXPECT_THAT(text, HasSubstr("\n" + object.at("name").get<std::string>() + " "));
+    EXPECT_THAT(text, HasSubstr(std::string("\n").append(object.at("name").get<std::string>()).append(" ")));
     EXPECT_TRUE(object.at("source") != "recipe" || object.at("here").get<bool>());
   }
   EXPECT_THAT(text, HasSubstr("Left out: " + std::to_string(json.at("left_out").size()) + " meshes"));

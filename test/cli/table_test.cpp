@@ -195,7 +195,7 @@ TEST_F(TableCommand, WideHasALinePerPairAndAlgorithmAndAColumnPerBucket) {
   EXPECT_THAT(printed("--wide " + file), HasSubstr(k_wide));
   EXPECT_THAT(printed("--wide --markdown " + file), HasSubstr("| q | x | 64 | - | \\*0.50 / 20.0 | - | 0 |  |\n"));
   EXPECT_EQ(table("--wide " + file + " " + file).exit_code, 1);
-  EXPECT_THAT(table("--wide " + file + " " + file).err, HasSubstr("--growth show one file"));
+  EXPECT_THAT(table("--wide " + file + " " + file).err, HasSubstr("--paper show one file"));
 }
 
 TEST_F(TableCommand, OverviewHasALinePerAlgorithmAndWhatIsWrongWithIt) {

@@ -155,7 +155,7 @@ TEST(Conformance, ACommandLineOfAMessageAsksTheSame) {
     const std::size_t begin = message.rfind(word), stop = message.find(end, begin);
     ASSERT_NE(stop, std::string::npos) << message;
     const std::string line = message.substr(begin + word.size(), stop - begin - word.size());
-    const auto run = test::run_program(std::string(SIXDOF_PROGRAM) + " query " + line + " --json");
+    const auto run = test::run_program(std::string(SIXDOF_PROGRAM).append(" query ").append(line).append(" --json"));
     ASSERT_EQ(run.exit_code, 0) << line << "\n" << run.err;
     // The adapters are wrong where the surfaces meet: the first such pose is named first.
     EXPECT_TRUE(nlohmann::json::parse(run.out).at("colliding").is_boolean());

@@ -196,8 +196,8 @@ TEST(Table, LeavesNoAlgorithmAndNoScenarioOut) {
       }
       std::vector<std::string> wanted{"sigma_" + which, "misses", "failed"};
       if (kinds["misses"] == Kind::required) {
-        wanted.insert(wanted.end(),
-                      {"gamma_" + which + "_deg", "noise_" + which, "jump_" + which, "gain_" + which, "nu_" + which});
+        wanted.insert(wanted.end(), {"gamma_" + which + "_deg", "noise_" + which, "jump_" + which, "gain_" + which,
+                                     "nu_" + which, "nu_direction_" + which, "sigma_q", "gain_q"});
       }
       for (const std::string& measure : wanted) {
         EXPECT_TRUE(kinds.contains(measure)) << scenario << ' ' << algorithm << ' ' << measure;

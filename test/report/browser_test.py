@@ -296,6 +296,7 @@ class Page(unittest.TestCase):
         self.open()
         self.go_to("speed")
         self.browser.run("sixdofReport.cards.time_distance.choices.pair = 'elephant', sixdofReport.cards.time_distance.draw()")
+        self.browser.run("document.querySelector('#figure-time_distance').scrollIntoView()")
         place = self.browser.run("""(() => { const points = document.querySelectorAll('#figure-time_distance .plot svg .mark-symbol path');
             const box = points[points.length - 1].getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; })()""")
         for kind in ("mousePressed", "mouseReleased"):

@@ -195,7 +195,8 @@ class PythonPair:
         method = asked(self._algorithm, kind) if kind in self._answered else None
         status, words = numpy.zeros(len(poses), dtype=numpy.uint8), {}
         for place, pose in enumerate(poses):
-            reply = sixdof_rival.timed(method, kind, pose)[1]
+            finite = pose if numpy.isfinite(pose).all() else sixdof_rival.NOT_FINITE
+            reply = sixdof_rival.timed(method, kind, finite)[1]
             if "status" in reply:
                 status[place] = _core.statuses.index(reply["status"])
                 words[place] = reply["words"]

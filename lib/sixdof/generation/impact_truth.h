@@ -11,8 +11,8 @@ namespace sixdof {
 /// A bracket, and how it was found.
 struct TrueImpact {
   ImpactBracket bracket;
-  bool by_ray_cast = false;   ///< The advancement began where a ray cast ended.
-  double residual = 0.0;      ///< Of the ray cast: |distance - target| at its hit (length).
+  bool by_ray_cast = false;       ///< The advancement began where a ray cast ended.
+  double residual = 0.0;          ///< Of the ray cast: |distance - target| at its hit (length).
   double clearance_at_end = 0.0;  ///< Distance of the surfaces at the end of the motion (length).
 };
 

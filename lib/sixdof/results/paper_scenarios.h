@@ -1,9 +1,7 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <sixdof/results/paper.h>
@@ -21,7 +19,7 @@ struct PaperMeasure {
 /// A row of a scenario beside the paper's: `sixdof-bench --suite paper`.
 struct PaperScenarioLine {
   std::string scenario, algorithm;
-  std::string law;                 ///< Of the ideal that the measures compare with; empty for the algorithm's own.
+  std::string law;                 ///< Of the ideal that the measures compare with; empty in older results.
   std::string resolution;          ///< resolution_text().
   std::string printed_resolution;  ///< The same of the paper; empty where it prints none.
   double mean_ns = 0.0;
@@ -32,10 +30,6 @@ struct PaperScenarioLine {
 const std::vector<std::string>& paper_measures();
 
 /// The scenario rows that could be run, in their order.
-/// @param law_of the law whose ideal an algorithm's wrench tends to in a scenario, "own" for that of its penalty; sigma
-/// and gamma are taken against it where the row has them
-std::vector<PaperScenarioLine> paper_scenario_lines(
-    const std::vector<RowGroup>& groups,
-    const std::function<std::string_view(std::string_view scenario, std::string_view algorithm)>& law_of);
+std::vector<PaperScenarioLine> paper_scenario_lines(const std::vector<RowGroup>& groups);
 
 }  // namespace sixdof::results

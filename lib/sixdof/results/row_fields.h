@@ -26,6 +26,7 @@ struct RowFields {
   std::string scenario = {};  ///< "II"; of a scene row its family.
   std::string target = {};    ///< Of a generate row: "distance" or "volume".
   /// Of a row of responses, the law that `..._own_...` counters judge by (ResponseLaw): "depth"; empty for none.
+  /// Of a scenario row, that of the ideal (IdealLaw): "traction".
   std::string law = {};
   bool isolated = false;      ///< The algorithm runs, and is timed, in a process of its own.
   bool approximates = false;  ///< The algorithm replaces the bodies by others, such as spheres (Traits::approximates).

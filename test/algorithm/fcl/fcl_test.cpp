@@ -113,7 +113,8 @@ TEST(Fcl, RegistersAllWithTheLibrarysVersion) {
   register_fcl_algorithms(registry);
   EXPECT_THAT(registry.find("fcl-obbrss").traits().version, ::testing::StartsWith("0."));
   EXPECT_FALSE(registry.find("fcl-rss").traits().answers.collide);
-  EXPECT_EQ(registry.all().size(), 6u);
+  EXPECT_TRUE(registry.find("fcl-cast").traits().answers.cast);
+  EXPECT_EQ(registry.all().size(), 7u);
 }
 
 }  // namespace

@@ -36,8 +36,9 @@ class OwnLawErrors {
     const DepthOracle oracle(a, b);
     std::vector<Response> truth;
     for (const Pose& X : overlapping.poses) {
-      const DepthIntegral found =
-          oracle.evaluate(X, field ? DepthDirection::way_out : DepthDirection::normal_of_b, {.relative = 5e-3});
+      // Two percent turn a force by 1.1 degrees at most; less takes minutes where directions jump.
+      const DepthIntegral found = field ? oracle.evaluate(X, DepthDirection::way_out, {.relative = 2e-2})
+                                        : oracle.evaluate(X, DepthDirection::normal_of_b, {.relative = 5e-3});
       EXPECT_TRUE(found.converged);
       truth.push_back({.force = found.force, .torque = found.torque, .reference = found.reference});
     }
