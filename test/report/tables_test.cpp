@@ -189,6 +189,20 @@ TEST(ContactsTable, HasTheScoresOfARow) {
   EXPECT_EQ(number_in(table, table.rows[1], "step_normal_deg"), 0.5);
 }
 
+TEST(DepthsTable, HasTheVerdictsOfARow) {
+  const Json row = test::row("depth", "ode", "bunny", "volume", 5.0, 7000.0,
+                             {{"depth_ratio", 0.25}, {"too_shallow", 30}, {"judged", 31}, {"open_depths", 1}});
+  const Results results = test::results_of({row});
+  const DataTable table = depths_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(number_in(table, table.rows[0], "depth_ratio"), 0.25);
+  EXPECT_EQ(number_in(table, table.rows[0], "too_shallow"), 30.0);
+  EXPECT_EQ(number_in(table, table.rows[0], "open_depths"), 1.0);
+  EXPECT_EQ(number_in(table, table.rows[0], "percent"), 5.0);
+  EXPECT_EQ(text_in(table, table.rows[0], "bodies"), "meshes");
+  EXPECT_EQ(text_in(table, table.rows[0], "faults"), "");
+}
+
 TEST(FrontierTable, MarksPointsThatNoOtherBeats) {
   const auto point = [](const char* algorithm, double ns, double degrees, int misses) {
     Json json =

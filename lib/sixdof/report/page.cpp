@@ -228,6 +228,7 @@ Report make_report(const Results& results, const std::vector<Series>& series) {
                            metrics_table(results, groups),
                            many_bodies_table(results, groups),
                            contacts_table(results, groups),
+                           depths_table(results, groups),
                            collection_table(results),
                            collection_ratios_table(results),
                            growth_table(results),

@@ -76,6 +76,10 @@ DataTable many_bodies_table(const Results& results, const std::vector<RowGroup>&
 /// their counters (measure/metrics.h).
 DataTable contacts_table(const Results& results, const std::vector<RowGroup>& groups);
 
+/// "depths": a line for each row `depth/...`: its time, and how its depths compare with the intervals of the penetration
+/// depth, under the names of their counters.
+DataTable depths_table(const Results& results, const std::vector<RowGroup>& groups);
+
 /// "collection": times over the objects of a collection, by partner, query and bucket.
 DataTable collection_table(const Results& results);
 

@@ -39,6 +39,7 @@ std::vector<Fault> own_faults(const Row& row) {
     faults.push_back({approximate                      ? k_approximate
                       : is_apart                       ? "with a force though the bodies are apart"
                       : row.fields.query == "contacts" ? "without a contact, or with one off both bodies or reversed"
+                      : row.fields.query == "depth"    ? "with a depth outside of the proven interval"
                                                        : "wrong",
                       "mismatch", count("mismatch"), count("judged")});
   if (has_force) {
