@@ -45,11 +45,11 @@ void expect_agreement(const Mesh& a, const Mesh& b, int poses, unsigned seed) {
 }
 
 TEST(PenetrationAgainstMinkowskiSums, OfTwoLs) {
-  expect_agreement(penetrating::l_shape(), penetrating::l_shape(), 6, 61);
+  expect_agreement(penetrating::l_shape(), penetrating::l_shape(), 4, 61);
 }
 
 TEST(PenetrationAgainstMinkowskiSums, OfALAndAPlateWithAHole) {
-  expect_agreement(penetrating::plate_with_hole(), penetrating::l_shape(), 3, 62);
+  expect_agreement(penetrating::plate_with_hole(), penetrating::l_shape(), 2, 62);
 }
 
 }  // namespace
