@@ -86,15 +86,16 @@ TEST(Penetration, OfTwoHookedLs) {
   expect_depth(l, l, X_AB, 0.1, Vector3d::UnitX());
 }
 
-TEST(Penetration, OfLinkedRingsIsASlideAlongTheLink) {
-  // Tubes of radius 0.2 about circles of radius 0.5 in the planes z = 0 and y = 0, linked. The nearest way out from
-  // outside pulls the rings apart; inside of the link B has some room, and is 0.1 too close to one side of it.
+TEST(Penetration, OfLinkedRingsIsASlideWithinTheLink) {
+  // Tubes of radius 0.2 about circles of radius 0.5 in the planes z = 0 and y = 0. B's tube passes through A's hole, of
+  // radius 0.3, at x = 0.3, and is free up to x = 0.1. From outside the nearest way is to pull the rings apart, by 0.6.
   const Mesh ring = bodies::bumpy_torus(40, 20, 0.0);
   const Pose X_AB{Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitX()).toRotationMatrix(), {0.8, 0.01, 0.02}};
   const PenetrationDepth found = PenetrationOracle(ring, ring).evaluate(X_AB, {.tolerance = 1e-2, .budget = 400'000});
   EXPECT_TRUE(found.closed);
-  EXPECT_LT(found.hi, 0.35);
-  EXPECT_GT(found.lo, 0.05);
+  EXPECT_NEAR(found.hi, 0.2, 0.01);
+  EXPECT_GT(found.lo, 0.19);
+  EXPECT_LT(found.translation.x(), -0.19);
 }
 
 TEST(Penetration, OfSpheresAgreesWithTheDepthOfConvexBodies) {
