@@ -20,6 +20,7 @@ std::vector<std::string> names_of(const QuerySet& answers) {
   if (answers.distance) names.emplace_back("distance");
   if (answers.respond) names.emplace_back("respond");
   if (answers.cast) names.emplace_back("cast");
+  if (answers.contacts) names.emplace_back("contacts");
   return names;
 }
 

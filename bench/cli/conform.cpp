@@ -39,9 +39,10 @@ constexpr const char* k_details =
     "or a known failure passes.\n\n"
     "Claims: collide=surfaces|bodies (yes/no where one body is inside the other), open_meshes=yes|no, and the largest "
     "errors distance_error, witness_error, volume_error, force_degrees, order_error, motion_error, scale_error, "
-    "repeat_error, cast_error: a number, or none. Without them an algorithm is held to the claims of an exact one that "
-    "sees surfaces; those of sixdof's own algorithms and adapters are known, those of rivals stand in their recipes. "
-    "An algorithm about convex hulls is asked about hulls. lib/sixdof/conformance/README.md has the checks and units, "
+    "repeat_error, cast_error, contact_error, contact_degrees, depth_error, contact_change_degrees: a number, or none. "
+    "Without them an algorithm is held to the claims of an exact one that sees "
+    "surfaces; those of sixdof's own algorithms and adapters are known, those of rivals stand in their recipes. An "
+    "algorithm about convex hulls is asked about hulls. lib/sixdof/conformance/README.md has the checks and units, "
     "lib/sixdof/query/README.md the rules.\n\n"
     "An algorithm in this process that crashes ends the command; with --isolate that is a failed check.";
 

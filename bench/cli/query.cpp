@@ -17,6 +17,8 @@
 #include <sixdof/oracle/solid.h>
 #include <sixdof/process/remote_algorithm.h>
 #include <sixdof/query/ask.h>
+#include "bench/cli/query_contacts.h"
+#include "bench/cli/query_depth.h"
 #include "bench/cli/shared.h"
 #include "bench/common/json_text.h"
 #include "bench/common/pair_warnings.h"
@@ -29,14 +31,22 @@ constexpr const char* k_details =
     "is true; algorithms that look at surfaces only say no). distance: between the two surfaces, also for nested "
     "bodies; 0 where the surfaces meet. Lengths are in the meshes' own unit, the volume in its cube. The force of "
     "exact is the negative gradient of the overlap volume (unit squared); for other algorithms see "
-    "`sixdof algorithms`. t: of the first contact, from 0 to 1 of the motion; normal: from A to B there. Times are "
+    "`sixdof algorithms`. t: of the first contact, from 0 to 1 of the motion; normal: from A to B there. "
+    "Contacts: normals from A to B; behind each stands what exact geometry says of solids: off, its distance from "
+    "being "
+    "in both; normal_degrees, to the nearest true normal; thickness of the intersection along the normal. Times are "
     "those of single calls with cold caches, in ns. Open meshes have no inside: yes/no "
-    "and distance are those of their surfaces, and there is no response.";
+    "and distance are those of their surfaces, and there is no response. --depth: of two solids; exact answers, "
+    "whatever the algorithm. All translations of B shorter than depth_lo leave a common interior point, and that of "
+    "length depth_hi leaves none; closed says whether both are within the tolerance.";
 
 struct Arguments {
   std::string a, b, about;
   std::vector<std::string> pose, motion, only;
+  std::string along;
+  DepthRequest depth;
   AlgorithmOptions algorithm{.name = "exact", .parameters = {}};
+  std::size_t contacts = 0;  ///< How many at most; 0 if others are asked.
   bool json = false;
 };
 
@@ -113,6 +123,7 @@ struct Answers {
   Outcome<Separation> distance;
   Outcome<Response> respond;
   Outcome<Impact> cast;
+  Outcome<Contacts> contacts;
   Json times_ns;  ///< By kind of call, null for queries that the algorithm does not answer.
   std::int64_t query_ns = 0;
   Status status = Status::ok;  ///< Of the first query that was asked and gave no answer,
@@ -131,17 +142,24 @@ std::string why_not_solid(const Mesh& a, const Mesh& b) {
   return {};
 }
 
-/// The questions of --only, or all, as far as the algorithm answers them; cast alone of a motion.
+/// The questions of --only, or all, as far as the algorithm answers them; cast alone of a motion, contacts alone where
+/// some are asked for.
 /// @throws BadArgument for one that it does not
-QuerySet chosen_questions(const Traits& traits, const std::vector<std::string>& only, bool moves) {
+QuerySet chosen_questions(const Traits& traits, const std::vector<std::string>& only, bool moves, bool contacts) {
+  if (contacts && !traits.answers.contacts) {
+    throw BadArgument(fmt::format("{} gives no contacts; sixdof algorithms says who does", traits.name));
+  }
+  if (contacts) return {.contacts = true};
   if (moves && !traits.answers.cast) {
     throw BadArgument(fmt::format("{} gives no answer to a motion; sixdof algorithms says who does", traits.name));
   }
   if (moves) return {.cast = true};
   QuerySet chosen = traits.answers;
-  chosen.cast = false;
-  if (!chosen.collide && !chosen.distance && !chosen.respond) {
-    throw BadArgument(fmt::format("{} answers for motions only: give it a --motion", traits.name));
+  chosen.cast = chosen.contacts = false;
+  if (!chosen.any()) {
+    throw BadArgument(traits.answers.contacts
+                          ? fmt::format("{} answers with contacts only: ask for them by --contacts", traits.name)
+                          : fmt::format("{} answers for motions only: give it a --motion", traits.name));
   }
   if (only.empty()) return chosen;
   chosen = {};
@@ -157,13 +175,14 @@ QuerySet chosen_questions(const Traits& traits, const std::vector<std::string>& 
   return chosen;
 }
 
-template <class T, class Input>
-void ask_one(Query& query, const char* kind, bool asked, Outcome<T> (Query::*question)(const Input&),
-             const Input& input, Outcome<T>& outcome, Answers& answers) {
+/// @param question returns the outcome
+template <class T, class Question>
+void ask_one(Query& query, const char* kind, bool asked, const Question& question, Outcome<T>& outcome,
+             Answers& answers) {
   answers.times_ns[kind] = nullptr;
   if (!asked) return;
   const auto begin = Clock::now();
-  outcome = (query.*question)(input);
+  outcome = question();
   const std::int64_t round_trip = nanoseconds_since(begin);
   const RemoteQuery* const remote = as_remote(query);
   const std::int64_t took = remote == nullptr ? round_trip : std::llround(remote->last_ns());
@@ -176,8 +195,9 @@ void ask_one(Query& query, const char* kind, bool asked, Outcome<T> (Query::*que
   });
 }
 
+/// @param most contacts
 Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Settings& settings, const Motion& motion,
-            const QuerySet& kinds) {
+            const QuerySet& kinds, std::size_t most) {
   const Pose& X_AB = motion.start;
   Answers answers;
   const auto begin = Clock::now();
@@ -187,11 +207,21 @@ Answers ask(const Algorithm& algorithm, const Mesh& a, const Mesh& b, const Sett
   if (remote != nullptr && remote->prepared().wall_ns) {
     answers.times_ns["prepare"] = std::llround(*remote->prepared().wall_ns);
   }
-  ask_one(*query, "collide", kinds.collide, &Query::collide, X_AB, answers.collide, answers);
-  ask_one(*query, "distance", kinds.distance, &Query::distance, X_AB, answers.distance, answers);
-  ask_one(*query, "cast", kinds.cast, &Query::cast, motion, answers.cast, answers);
+  const auto ask = [&](const char* kind, bool asked, const auto& question, auto& outcome) {
+    ask_one(*query, kind, asked, question, outcome, answers);
+  };
+  ask(
+      "collide", kinds.collide, [&] { return query->collide(X_AB); }, answers.collide);
+  ask(
+      "distance", kinds.distance, [&] { return query->distance(X_AB); }, answers.distance);
+  ask(
+      "cast", kinds.cast, [&] { return query->cast(motion); }, answers.cast);
+  if (kinds.contacts)
+    ask(
+        "contacts", true, [&] { return query->contacts(X_AB, most); }, answers.contacts);
   const Status before = answers.status;
-  ask_one(*query, "respond", kinds.respond, &Query::respond, X_AB, answers.respond, answers);
+  ask(
+      "respond", kinds.respond, [&] { return query->respond(X_AB); }, answers.respond);
   // A surface with a border has yes/no and distance, but no inside that a force could push out of.
   const bool other_answers = answers.collide.ok() || answers.distance.ok();
   if (const std::string why = why_not_solid(a, b);
@@ -239,13 +269,18 @@ Json describe(const Traits& traits, const Settings& settings, const Answers& ans
 void print_text(const Json& answers) {
   for (const auto& [key, value] : answers.items()) {
     if (value.is_null()) continue;
+    if (key == "contacts") {
+      for (const Json& each : value) fmt::print("{:<16} {}\n", "contact", json_text(each, -1));
+      continue;
+    }
     fmt::print("{:<16} {}\n", key, value.is_string() ? value.get<std::string>() : json_text(value, -1));
   }
 }
 
 void run_query(const Arguments& arguments) {
   const auto [registry, algorithm, settings] = select_algorithm(arguments.algorithm);
-  const QuerySet kinds = chosen_questions(algorithm->traits(), arguments.only, !arguments.motion.empty());
+  const QuerySet kinds =
+      chosen_questions(algorithm->traits(), arguments.only, !arguments.motion.empty(), arguments.contacts > 0);
   const Pose X_AB = parse_pose(arguments.pose);
   std::vector<double> about;
   if (!arguments.about.empty()) about = parse_numbers(arguments.about, 3, "--about");
@@ -255,12 +290,22 @@ void run_query(const Arguments& arguments) {
   say_notes("sixdof", a, arguments.a);
   if (arguments.b != arguments.a) say_notes("sixdof", b, arguments.b);
   warn_of_sizes("sixdof", MeshIdentity::of(a), MeshIdentity::of(b));
+  if (arguments.depth.asked) {
+    DepthRequest request = arguments.depth;
+    if (!arguments.along.empty()) request.along = parse_numbers(arguments.along, 3, "--along");
+    const Json depth = describe_depth(a, b, X_AB, request);
+    return arguments.json ? fmt::print("{}\n", json_text(depth)) : print_text(depth);
+  }
   const Motion motion = arguments.motion.empty() ? Motion{.start = X_AB} : parse_motion(arguments.motion, X_AB, b);
-  Answers answers = ask(*algorithm, a, b, settings, motion, kinds);
+  Answers answers = ask(*algorithm, a, b, settings, motion, kinds, arguments.contacts);
   if (!about.empty() && answers.respond.ok()) {
     answers.respond.value = answers.respond.value.about({about[0], about[1], about[2]});
   }
-  const Json json = describe(algorithm->traits(), settings, answers);
+  Json json = describe(algorithm->traits(), settings, answers);
+  if (answers.contacts.ok()) {
+    json["depth_of"] = to_string(algorithm->traits().depth);
+    json["contacts"] = describe_contacts(answers.contacts.value, a, b, X_AB);
+  }
   arguments.json ? fmt::print("{}\n", json_text(json)) : print_text(json);
   if (answers.status != Status::ok) {
     throw Error(fmt::format("{}: {}: {}", arguments.algorithm.name, to_string(answers.status), answers.diagnosis));
@@ -300,6 +345,28 @@ void add_query_command(CLI::App& app) {
       ->allow_extra_args(false)
       ->excludes(motion)
       ->default_str("all that the algorithm answers");
+  command->add_option("--contacts", arguments->contacts, "Ask for this many contacts at most, and for nothing else")
+      ->type_name("NUMBER")
+      ->check(CLI::Range(1, 1'000'000))
+      ->excludes(motion)
+      ->excludes("--only");
+  auto* const depth = command
+                          ->add_flag("--depth", arguments->depth.asked,
+                                     "How far B has to be translated to leave A: an interval that holds the depth")
+                          ->excludes(motion)
+                          ->excludes("--only")
+                          ->excludes("--contacts");
+  command->add_option("--tolerance", arguments->depth.tolerance, "Of --depth: width of the interval by its upper end")
+      ->type_name("PART")
+      ->needs(depth)
+      ->capture_default_str();
+  command->add_option("--budget", arguments->depth.budget, "Of --depth: points measured before it is left open")
+      ->type_name("COUNT")
+      ->needs(depth)
+      ->capture_default_str();
+  command->add_option("--along", arguments->along, "Of --depth: the depth along this direction \"x y z\" of A's frame")
+      ->type_name("DIRECTION")
+      ->needs(depth);
   add_algorithm_options(*command, arguments->algorithm, "The algorithm to ask (sixdof algorithms lists them)")
       ->capture_default_str();
   command->add_option("--about", arguments->about, "Reference point \"x y z\" of the torque, in A's frame")

@@ -25,6 +25,18 @@ std::vector<PlannedRow> query_rows(const Resources& resources);
 /// default suite has steps of 10 % of two pairs.
 std::vector<PlannedRow> cast_rows(const Resources& resources);
 
+/// `contacts/algorithm:A/pair:P/volume:03`: contacts of bodies that overlap, on the buckets of the sets in random
+/// order, and along motions from a few of the configurations as `.../order:motion`. Exact geometry judges them
+/// (lib/sixdof/measure/contact_score.h); in random order they are also compared with those of exchanged bodies and of
+/// moved ones, along motions with those of the pose before. They are not in the default suite.
+std::vector<PlannedRow> contact_rows(const Resources& resources);
+
+/// `depth/algorithm:A/pair:P/volume:05`: how deep B is in A, by the largest depth of the algorithm's contacts or by the
+/// penalty of a law of depth, judged against the interval of the translational penetration depth
+/// (lib/sixdof/oracle/penetration.h) of the meshes, or of their hulls for an algorithm of hulls.
+/// PenetrationTruths::k_most configurations at most. They are not in the default suite.
+std::vector<PlannedRow> depth_rows(const Resources& resources);
+
 /// `scenario/II/algorithm:A`: mean time of a response along a scenario's path and every measure of its quality, against
 /// the law that the algorithm declares and, with the suffix "_by_LAW", against every other.
 std::vector<PlannedRow> scenario_rows(const Resources& resources);

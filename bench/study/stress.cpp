@@ -207,6 +207,12 @@ std::string motion_option(const Motion& motion) {
   return fmt::format(" --motion '{}'", numbers);
 }
 
+/// What a case asks besides the queries of a pose, as far as it is answered.
+std::string asked_besides(const Case& member, const QuerySet& answers) {
+  if (member.cast && answers.cast) return motion_option(*member.cast);
+  return member.relation == stability::Relation::contacts && answers.contacts ? " --contacts 64" : "";
+}
+
 }  // namespace
 
 std::string reproduction(const Case& member, std::size_t index, const Algorithm& algorithm, const Settings& settings,
@@ -226,7 +232,7 @@ std::string reproduction(const Case& member, std::size_t index, const Algorithm&
   }
   return fmt::format("{} --pose '{}'{}",
                      bench::query_command(mesh_file(*shot.a, folder), mesh_file(*shot.b, folder), algorithm, settings),
-                     pose, member.cast && algorithm.traits().answers.cast ? motion_option(*member.cast) : "");
+                     pose, asked_besides(member, algorithm.traits().answers));
 }
 
 }  // namespace sixdof::study

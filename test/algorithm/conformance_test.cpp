@@ -15,6 +15,8 @@ SIXDOF_CONFORMANCE(make_exact_depth_algorithm);
 SIXDOF_CONFORMANCE(make_exact_way_out_algorithm);
 SIXDOF_CONFORMANCE(make_brute_force_algorithm);
 SIXDOF_CONFORMANCE(make_sampled_algorithm);
+SIXDOF_CONFORMANCE(make_exact_contacts_algorithm);
+SIXDOF_CONFORMANCE(make_exact_penetration_algorithm);
 SIXDOF_CONFORMANCE(make_ist_algorithm);
 SIXDOF_CONFORMANCE(make_ist_descent_algorithm);
 SIXDOF_CONFORMANCE(make_vps_algorithm);

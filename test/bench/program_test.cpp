@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -30,7 +31,7 @@ TEST_F(BenchProgram, RunsEveryRowOnceAndFindsFclRight) {
   const json document = result(
       "--seed 5 --sample 32 -p ist:spheres=300 -p ist-descent:spheres=300 "
       "-p exact-depth:tolerance=0.1 "  // the usual one takes a minute, and more pieces than it may where bodies touch
-      "'--benchmark_filter=-^(scenario|generate|cast)/'");
+      "'--benchmark_filter=-^(scenario|generate|cast|contacts|depth)/'");
   const auto& rows = document.at("benchmarks");
   std::set<std::string> families;
   std::size_t judged = 0;
@@ -115,6 +116,31 @@ TEST_F(BenchProgram, JudgesFirstContacts) {
   EXPECT_EQ(null.at("missed_hits"), null.at("hits"));
   EXPECT_EQ(null.at("mismatch"), null.at("hits"));
   EXPECT_EQ(row(document, "cast/algorithm:sampled" + where).at("failed"), 0);
+}
+
+TEST_F(BenchProgram, JudgesDepths) {
+  const std::string where = "/pair:torus-1k-cone-1k/volume:03";
+  const json document =
+      result("--sample 8 --benchmark_filter='^depth/algorithm:(exact-depth|exact-penetration|fcl-contacts|null)" +
+             where + "$'");
+  for (const char* algorithm : {"exact-depth", "fcl-contacts"}) {
+    const json found = row(document, fmt::format("depth/algorithm:{}{}", algorithm, where));
+    EXPECT_EQ(found.at("failed"), 0);
+    EXPECT_EQ(found.at("judged").get<double>() + found.at("open_depths").get<double>(), found.at("configurations"));
+    EXPECT_GE(found.at("judged"), 1);
+    EXPECT_LE(found.at("too_shallow").get<double>() + found.at("too_deep").get<double>(), found.at("judged"));
+    EXPECT_GT(found.at("depth_ratio"), 0.0);
+    EXPECT_LE(found.at("depth_of_ray"), 1.0 + 1e-6);
+    EXPECT_FALSE(found.contains("mismatch"));  // neither says that it is the depth of the bodies
+  }
+  const json right = row(document, "depth/algorithm:exact-penetration" + where);
+  EXPECT_EQ(right.at("mismatch"), 0);
+  EXPECT_EQ(right.at("too_shallow"), 0);
+  EXPECT_EQ(right.at("too_deep"), 0);
+  const json null = row(document, "depth/algorithm:null" + where);
+  EXPECT_EQ(null.at("missed_depths"), null.at("judged"));
+  EXPECT_EQ(null.at("too_shallow"), null.at("judged"));
+  EXPECT_EQ(null.at("too_shallow_max"), 1.0);
 }
 
 TEST_F(BenchProgram, ReportsTheWorkOfQueries) {

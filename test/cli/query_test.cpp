@@ -57,6 +57,31 @@ TEST(Query, ExactAnswersForTwoBoxesAreThoseOfTheirIntersection) {
   EXPECT_GE(json.at("time_ns"), 0);
 }
 
+TEST(Query, DepthOfTwoBoxesIsTheLeastEdgeOfTheirIntersection) {
+  const auto json = answers(std::string(k_boxes) + " --depth --along '0 0 2'");
+  constexpr double k_of_casts = 1e-9;
+  EXPECT_TRUE(json.at("closed"));
+  EXPECT_NEAR(json.at("depth_hi"), 0.3, k_of_casts);
+  EXPECT_LE(json.at("depth_lo"), 0.3 + k_of_casts);
+  EXPECT_GE(json.at("depth_lo"), 0.3 * 0.999 - k_of_casts);
+  EXPECT_NEAR(json.at("depth_along"), 0.8, 10.0 * k_of_casts);
+  EXPECT_LE((vector(json.at("direction")) - Eigen::Vector3d::UnitX()).norm(), 1e-6);
+  EXPECT_EQ(json.at("open_cells"), 0);
+  const auto open = answers(std::string(k_boxes) + " --depth --budget 1");
+  EXPECT_FALSE(open.at("closed"));
+  EXPECT_GT(open.at("open_cells"), 0);
+  EXPECT_EQ(answers("--a box-100 --b box-300 --pose '3 0 0 1 0 0 0' --depth").at("depth_hi"), 0.0);
+}
+
+TEST(Query, DepthRefusesWhatItCannotTake) {
+  for (const char* wrong : {"--depth --tolerance 0", "--depth --budget 0", "--depth --along '0 0 0'",
+                            "--depth --along '0 0'", "--depth --only distance", "--budget 5"}) {
+    const auto result = query(std::string(k_boxes) + " " + wrong);
+    EXPECT_NE(result.exit_code, 0) << wrong;
+    EXPECT_EQ(result.out, "") << wrong;
+  }
+}
+
 TEST(Query, TorqueMovesWithTheReferencePoint) {
   const auto standard = answers(k_boxes), moved = answers(std::string(k_boxes) + " --about '0.5, 2, -1'");
   const Eigen::Vector3d shift = vector(standard.at("reference_point")) - vector(moved.at("reference_point"));
@@ -135,6 +160,27 @@ TEST(Query, RefusesWhatIsNoMotion) {
   EXPECT_THAT(query(std::string(k_boxes) + " --motion '1 2 3' --algorithm ode").err,
               HasSubstr("gives no answer to a motion"));
   EXPECT_THAT(query(std::string(k_boxes) + " --algorithm sampled").err, HasSubstr("give it a --motion"));
+}
+
+TEST(Query, ContactsAreJudgedByExactGeometry) {
+  // B stands 0.1 deep on A, turned about the vertical.
+  const std::string pose = "--a box-12 --b box-12 --pose '0.1 -0.2 1.1  0.9393727128473789 0 0 0.3428978074554513' ";
+  const auto json = answers(pose + "--algorithm exact-contacts --contacts 1000");
+  EXPECT_EQ(json.at("depth_of"), "local");
+  ASSERT_GT(json.at("contacts").size(), 4u);
+  for (const auto& each : json.at("contacts")) {
+    EXPECT_NEAR(each.at("off"), 0.0, 1e-9);
+    EXPECT_LT(each.at("normal_degrees"), 0.01);
+    EXPECT_NEAR(each.at("depth"), each.at("thickness"), 1e-9);
+  }
+  EXPECT_TRUE(json.at("colliding").is_null());
+  EXPECT_GE(json.at("times_ns").at("contacts"), 0);
+  const auto some = answers(pose + "--algorithm fcl-contacts --contacts 3");
+  EXPECT_EQ(some.at("contacts").size(), 3u);
+  EXPECT_EQ(some.at("depth_of"), "triangles");
+  EXPECT_THAT(query(pose + "--algorithm ode --contacts 2").out, HasSubstr("contact          {\"point\":"));
+  EXPECT_THAT(query(pose + "--contacts 3").err, HasSubstr("exact gives no contacts"));
+  EXPECT_THAT(query(pose + "--algorithm exact-contacts").err, HasSubstr("ask for them by --contacts"));
 }
 
 TEST(Query, AsksOnlyWhatIsWanted) {

@@ -7,8 +7,11 @@
 #include <thread>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/conformance/conformance.h>
+#include <sixdof/conformance/declared.h>
 
 namespace sixdof {
 namespace {
@@ -38,6 +41,7 @@ struct Fault {
   std::function<void(const Asked&, Outcome<Separation>&)> distance;
   std::function<void(const Asked&, Outcome<Response>&)> respond;
   std::function<void(const Motion&, Outcome<Impact>&)> cast;
+  std::function<void(const Asked&, Outcome<Contacts>&)> contacts;
 };
 
 class WrongQuery final : public Query {
@@ -45,6 +49,7 @@ class WrongQuery final : public Query {
   WrongQuery(const Mesh& a, const Mesh& b, const Settings& settings, const Fault& fault)
       : a_(a), b_(b), settings_(settings), fault_(fault), algorithm_(make_exact_algorithm()) {
     exact_ = algorithm_->prepare(a, b, algorithm_->settings());
+    if (fault_.contacts) contacts_ = exact_contacts_->prepare(a, b, exact_contacts_->settings());
     static std::atomic<int> prepared = 0;
     number_ = ++prepared;
   }
@@ -58,6 +63,13 @@ class WrongQuery final : public Query {
     Outcome<Impact> outcome = exact_->cast(motion);
     fault_.cast(motion, outcome);
     return outcome.ok() ? outcome : Outcome<Impact>(fail(outcome.status, exact_->diagnosis()));
+  }
+
+  Outcome<Contacts> contacts(const Pose& X_AB, std::size_t most) override {
+    if (!contacts_) return Status::unsupported;
+    Outcome<Contacts> outcome = contacts_->contacts(X_AB, most);
+    fault_.contacts({a_, b_, X_AB, *exact_, settings_, calls_, number_, {}}, outcome);
+    return outcome.ok() ? outcome : Outcome<Contacts>(fail(outcome.status, contacts_->diagnosis()));
   }
 
  private:
@@ -76,6 +88,8 @@ class WrongQuery final : public Query {
   const Fault& fault_;
   std::unique_ptr<Algorithm> algorithm_;
   std::unique_ptr<Query> exact_;
+  const std::unique_ptr<Algorithm> exact_contacts_ = make_exact_contacts_algorithm();
+  std::unique_ptr<Query> contacts_;
   int calls_ = 0, number_ = 0;
 };
 
@@ -111,6 +125,25 @@ conformance::Source wrong_cast(const char* name, std::function<void(const Motion
   return wrong(name, {.cast = std::move(change)}, {.cast = true});
 }
 
+conformance::Source wrong_contacts(const char* name, std::function<void(const Asked&, Outcome<Contacts>&)> change) {
+  return wrong(name, {.contacts = std::move(change)}, {.contacts = true});
+}
+
+/// Changes each contact.
+conformance::Source wrong_contact(const char* name, std::function<void(const Asked&, Contact&)> change) {
+  return wrong_contacts(name, [=](const Asked& asked, Outcome<Contacts>& outcome) {
+    for (Contact& each : outcome.value.list) change(asked, each);
+  });
+}
+
+/// Turns normals by a degree where the fault is.
+conformance::Source wrong_normals(const char* name, std::function<bool(const Asked&)> where) {
+  return wrong_contact(name, [=](const Asked& asked, Contact& contact) {
+    const Eigen::AngleAxisd turn(0.017, Eigen::Vector3d(0.48, 0.6, -0.64));
+    if (where(asked)) contact.normal = turn * contact.normal;
+  });
+}
+
 conformance::Source wrong_collide(const char* name, std::function<bool(const Asked&)> where) {
   return wrong(name, {.collide = [=](const Asked& asked, Outcome<bool>& outcome) {
                  if (where(asked)) outcome.value = !outcome.value;
@@ -137,6 +170,9 @@ constexpr double k_too_much = 1e-11;
 
 conformance::Declaration bodies() { return {.collide = Meaning::bodies}; }
 
+/// Of contacts that are right.
+conformance::Declaration right_contacts() { return conformance::declaration_of("exact-contacts"); }
+
 // clang-format off
 SIXDOF_CONFORMANCE(wrong("right", {}), bodies());
 SIXDOF_CONFORMANCE(wrong("wrong-declaration", {}, k_all, ""), bodies());
@@ -161,6 +197,15 @@ SIXDOF_CONFORMANCE(wrong_cast("wrong-cast", [](const Motion&, Outcome<Impact>& o
 SIXDOF_CONFORMANCE(wrong_cast("wrong-cast-at-start", [](const Motion&, Outcome<Impact>& outcome) { if (outcome.value.at_start()) outcome.value.t = 0.5; }), bodies());
 SIXDOF_CONFORMANCE(wrong_cast("wrong-cast-without-motion", [](const Motion& motion, Outcome<Impact>& outcome) { if (motion.length(1.0) == 0.0) outcome.value = {.hit = true, .t = 1.0}; }), bodies());
 SIXDOF_CONFORMANCE(wrong_cast("wrong-motions-not-finite", [](const Motion&, Outcome<Impact>& outcome) { if (!outcome.ok()) outcome = Impact{}; }), bodies());
+SIXDOF_CONFORMANCE(wrong_contacts("right-contacts", [](const Asked&, Outcome<Contacts>&) {}), right_contacts());
+SIXDOF_CONFORMANCE(wrong_contacts("wrong-contacts", [](const Asked&, Outcome<Contacts>& outcome) { outcome.value.list.clear(); }), right_contacts());
+SIXDOF_CONFORMANCE(wrong_contacts("wrong-contacts-at-most", [](const Asked&, Outcome<Contacts>& outcome) { const auto copy = outcome.value.list; outcome.value.list.insert(outcome.value.list.end(), copy.begin(), copy.end()); }), right_contacts());
+SIXDOF_CONFORMANCE(wrong_contact("wrong-contact-points", [](const Asked& q, Contact& contact) { contact.point = q.X_AB.inverse() * contact.point; }), right_contacts());
+SIXDOF_CONFORMANCE(wrong_contact("wrong-contact-normals", [](const Asked&, Contact& contact) { contact.normal *= -1.0; }), right_contacts());
+SIXDOF_CONFORMANCE(wrong_contact("wrong-contact-depths", [](const Asked&, Contact& contact) { contact.depth *= 0.5; }), right_contacts());
+SIXDOF_CONFORMANCE(wrong_normals("wrong-order-of-contacts", &Asked::swapped), right_contacts());
+SIXDOF_CONFORMANCE(wrong_normals("wrong-motion-of-contacts", [](const Asked& q) { return q.has("(moved)"); }), right_contacts());
+SIXDOF_CONFORMANCE(wrong_contacts("wrong-contacts-not-finite", [](const Asked&, Outcome<Contacts>& outcome) { if (!outcome.ok()) outcome = Contacts{}; }), right_contacts());
 SIXDOF_CONFORMANCE(wrong("wrong-poses-not-finite", {.collide = [](const Asked& q, Outcome<bool>& outcome) { if (!q.is_finite()) outcome = false; }}), bodies());
 SIXDOF_CONFORMANCE(wrong("wrong-unsupported", {}, {.collide = true, .distance = true}), bodies());
 SIXDOF_CONFORMANCE(wrong_distance("wrong-repeated-queries", [](const Asked& q) { return q.calls * 1e-15; }), bodies());

@@ -105,6 +105,42 @@ TEST(Protocol, CastsKeepAllBits) {
       << "without a motion";
 }
 
+TEST(Protocol, ContactsKeepAllBits) {
+  for (const double x : k_hard_numbers) {
+    const double y = k_hard_numbers[0], z = k_hard_numbers[1];
+    const Request request = request_of(to_line(Ask{"contacts", hard_pose(2), {}, 77}));
+    EXPECT_EQ(std::get<Ask>(request).most, 77u);
+    EXPECT_TRUE(same_bits(std::get<Ask>(request).X_AB, hard_pose(2)));
+
+    const Contacts contacts{{{{x, y, z}, {y, x, z}, x}, {{z, y, x}, {z, x, y}, z}}};
+    const auto asked = asked_of<Contacts>(to_line(Asked<Contacts>{contacts, "", 3.5, {}}));
+    const std::vector<Contact>& read = asked.outcome.value.list;
+    ASSERT_EQ(read.size(), 2u);
+    EXPECT_TRUE(same_bits(read[0].point.x(), x) && same_bits(read[0].normal.y(), x) && same_bits(read[0].depth, x));
+    EXPECT_TRUE(same_bits(read[1].point.z(), x) && same_bits(read[1].normal.y(), x) && same_bits(read[1].depth, z));
+  }
+  EXPECT_TRUE(asked_of<Contacts>(R"({"points": [], "normals": [], "depths": []})").outcome.value.list.empty());
+  EXPECT_EQ(answer_of<Contacts>(R"({"points": [[0,0,0]], "normals": [[0,0,2]], "depths": [1]})").outcome.status,
+            Status::failed)
+      << "no unit vector";
+  EXPECT_EQ(answer_of<Contacts>(R"({"points": [[0,0,0]], "normals": [[0,0,1]], "depths": ["nan"]})").outcome.status,
+            Status::non_finite);
+  for (const char* line : {R"({"points": [[0,0,0]], "normals": [], "depths": [1]})", R"({"points": 3})",
+                           R"({"points": [[0,0]], "normals": [[0,0,1]], "depths": [1]})"}) {
+    EXPECT_THROW(asked_of<Contacts>(line), Malformed) << line;
+  }
+  EXPECT_THROW(request_of(R"({"do": "ask", "query": "contacts", "pose": [1,0,0,0,1,0,0,0,1,0,0,0]})"), Malformed)
+      << "without a number";
+}
+
+TEST(Protocol, TheMeaningOfDepthsIsSaid) {
+  Greeting greeting;
+  greeting.traits = {.name = "mine", .version = "1", .answers = {.contacts = true}, .depth = ContactDepth::point};
+  const Traits read = greeting_of(to_line(greeting)).traits;
+  EXPECT_TRUE(read.answers.contacts);
+  EXPECT_EQ(read.depth, ContactDepth::point);
+}
+
 TEST(Protocol, WhatIsAbsentStaysAbsent) {
   const auto gap = asked_of<Separation>(R"({"distance": 2})").outcome.value;
   EXPECT_FALSE(gap.has_witnesses);

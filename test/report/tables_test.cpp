@@ -190,6 +190,39 @@ TEST(ManyBodiesTable, HasTheSceneAndItsCounts) {
   EXPECT_THAT(text_in(table, table.rows[0], "command"), HasSubstr("^scene/pile/n:1000/question:near/algorithm:exact$"));
 }
 
+TEST(ContactsTable, HasTheScoresOfARow) {
+  Json row = test::row("contacts", "ode", "bunny", "volume", 5.0, 7000.0,
+                       {{"contact_normal_deg", 12.5}, {"off_bodies", 3}, {"judged", 64}, {"mismatch", 2}});
+  Json motion = test::row("contacts", "ode", "bunny", "volume", 5.0, 7000.0, {{"step_normal_deg", 0.5}});
+  motion["sixdof"]["order"] = "motion";
+  motion["name"] = std::string(motion["name"]) + "/order:motion";
+  const Results results = test::results_of({row, motion});
+  const DataTable table = contacts_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(number_in(table, table.rows[0], "contact_normal_deg"), 12.5);
+  EXPECT_EQ(number_in(table, table.rows[0], "off_bodies"), 3.0);
+  EXPECT_EQ(number_in(table, table.rows[0], "percent"), 5.0);
+  EXPECT_EQ(number_in(table, table.rows[0], "time_us"), 7.0);
+  EXPECT_EQ(text_in(table, table.rows[0], "faults"),
+            "2 of 64 without a contact, or with one off both bodies or reversed");
+  EXPECT_EQ(text_in(table, table.rows[1], "order"), "motion");
+  EXPECT_EQ(number_in(table, table.rows[1], "step_normal_deg"), 0.5);
+}
+
+TEST(DepthsTable, HasTheVerdictsOfARow) {
+  const Json row = test::row("depth", "ode", "bunny", "volume", 5.0, 7000.0,
+                             {{"depth_ratio", 0.25}, {"too_shallow", 30}, {"judged", 31}, {"open_depths", 1}});
+  const Results results = test::results_of({row});
+  const DataTable table = depths_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(number_in(table, table.rows[0], "depth_ratio"), 0.25);
+  EXPECT_EQ(number_in(table, table.rows[0], "too_shallow"), 30.0);
+  EXPECT_EQ(number_in(table, table.rows[0], "open_depths"), 1.0);
+  EXPECT_EQ(number_in(table, table.rows[0], "percent"), 5.0);
+  EXPECT_EQ(text_in(table, table.rows[0], "bodies"), "meshes");
+  EXPECT_EQ(text_in(table, table.rows[0], "faults"), "");
+}
+
 TEST(FrontierTable, MarksPointsThatNoOtherBeats) {
   const auto point = [](const char* algorithm, double ns, double degrees, int misses) {
     Json json =

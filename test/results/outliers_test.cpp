@@ -55,6 +55,18 @@ TEST(Outliers, HaveResponses) {
   EXPECT_EQ(to_json_object(outliers), to_json_object(parse_outliers(to_json_object(outliers))));
 }
 
+TEST(Outliers, HaveContacts) {
+  Json object = test::outliers("contact_normal_max_deg");
+  object["contacts"]["contact_normal_max_deg"] = {{"contacts", {{1, 2, 3, 0, 0, 1}}},
+                                                  {"curve", {{0, 0, 0, 1, 0, 0}, {1, 0, 0, 1, 1, 0}}}};
+  const Outliers outliers = parse_outliers(object);
+  const ContactPicture& picture = outliers.contacts.at("contact_normal_max_deg");
+  EXPECT_EQ(picture.contacts.at(0), (std::array{1.0, 2.0, 3.0, 0.0, 0.0, 1.0}));
+  EXPECT_EQ(picture.curve.size(), 2u);
+  EXPECT_EQ(to_json_object(outliers), to_json_object(parse_outliers(to_json_object(outliers))));
+  EXPECT_FALSE(to_json_object(parse_outliers(test::outliers("max_ns"))).contains("contacts"));
+}
+
 TEST(Outliers, ThatAreWrongAreRefused) {
   EXPECT_THAT(refusal(Json::array()), HasSubstr("outliers: "));
   for (const char* const pose : {"", "1 2 3", "0 0 0 1 0 0 nan", "0 0 0 1 0 0 0 5", "a b c d e f g"}) {

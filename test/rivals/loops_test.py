@@ -83,7 +83,8 @@ class Loop(unittest.TestCase):
         hello = self.program.hello()
         self.assertEqual({key: hello[key] for key in ("protocol", "name", "version", "summary", "answers")},
                          {"protocol": 1, "name": "probe", "version": "1.0", "summary": "a probe",
-                          "answers": ["collide", "distance", "cast"]})
+                          "answers": ["collide", "distance", "cast", "contacts"]})
+        self.assertEqual(hello["depth"], "point")
         self.assertEqual(hello["parameters"][0]["choices"], ["none", "bad_mesh", "bad_argument"])
         self.assertIn("time", hello["can"])
         self.assertIn("error", self.program.say({"do": "hello", "protocol": 2}))
@@ -101,6 +102,22 @@ class Loop(unittest.TestCase):
         self.assertGreaterEqual(reply["ns"], 0)
         self.assertIs(self.program.ask("collide", pose(-1.0))["collide"], True)
         self.assertIs(self.program.ask("collide", pose(1.0))["collide"], False)
+
+    def ask_contacts(self, x, most, command=0.0):
+        return self.program.say({"do": "ask", "query": "contacts", "pose": pose(x, command), "most": most})
+
+    def test_contacts(self):
+        self.assertEqual(self.ask_contacts(0.1, 2)["kind"], "bad_argument", "nothing is prepared")
+        self.prepare()
+        x = 0.1 + 0.2
+        reply = self.ask_contacts(x, 2)
+        self.assertEqual((reply["points"], reply["normals"], reply["depths"]),
+                         ([[x, 0, 0], [x, 1, 0]], [[0, 0.6, 0.8]] * 2, [x, x]))
+        self.assertGreaterEqual(reply["ns"], 0)
+        self.assertEqual(self.ask_contacts(x, 0)["points"], [])
+        self.assertEqual(self.ask_contacts(x, 1, 2)["status"], "non_finite")
+        self.assertEqual(self.ask_contacts("inf", 1)["status"], "non_finite")
+        self.assertEqual(self.time([pose(0.1)], query="contacts")["kind"], "bad_argument", "they are never asked by time")
 
     def test_copies_are_recognised(self):
         self.prepare(b=self.a)

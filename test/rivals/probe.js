@@ -33,12 +33,17 @@ class Query {
     return { t: command === 2 ? NaN : motion.translation[0], a: motion.reference, b: motion.rotation, normal: [0, 0, 1] };
   }
 
+  contacts(pose, most) {
+    const depth = pose[10] === 2 ? NaN : pose[9], places = [...Array(most).keys()];
+    return { points: places.map((i) => [pose[9], i, 0]), normals: places.map(() => [0, 0.6, 0.8]), depths: places.map(() => depth) };
+  }
+
   footprint() {
     return { bytes: 12, counts: { things: 3 } };
   }
 }
 
 serve(Query, {
-  name: "probe", version: "1.0", summary: "a probe", answers: ["collide", "distance", "cast"],
+  name: "probe", version: "1.0", summary: "a probe", answers: ["collide", "distance", "cast", "contacts"], depth: "point",
   parameters: [choice("mode", "what fails", "none", ["none", "bad_mesh", "bad_argument"])],
 });

@@ -40,9 +40,13 @@ class Query:
         return {"t": math.nan if command == 2.0 else motion.translation[0], "a": motion.reference,
                 "b": motion.rotation, "normal": [0.0, 0.0, 1.0]}
 
+    def contacts(self, pose, most):
+        depth = math.nan if pose[10] == 2.0 else pose[9]
+        return [[pose[9], float(i), 0.0] for i in range(most)], [[0.0, 0.6, 0.8]] * most, [depth] * most
+
     def footprint(self):
         return 12, {"things": 3}
 
 
-sixdof_rival.serve(Query, name="probe", version="1.0", summary="a probe", answers=["collide", "distance", "cast"],
+sixdof_rival.serve(Query, name="probe", version="1.0", summary="a probe", answers=["collide", "distance", "cast", "contacts"], depth="point",
                    parameters=[sixdof_rival.choice("mode", "what fails", "none", ["none", "bad_mesh", "bad_argument"])])

@@ -72,13 +72,24 @@ class Query:
         a, b = result.getNearestPoint1(), result.getNearestPoint2()
         return (gap, a, b) if math.isfinite(a[0] + b[0]) else gap
 
+    def contacts(self, pose, most):
+        """Coal stops its search once it has so many; its depth is a signed distance, negative inside."""
+        if most == 0:
+            return [], [], []  # Coal throws
+        request, result = coal.CollisionRequest(), coal.CollisionResult()
+        request.num_max_contacts, request.enable_contact = most, True
+        request.gjk_tolerance = self.collide_request.gjk_tolerance
+        coal.collide(self.a, self.at_a, self.b, coal.Transform3s(pose[:9].reshape(3, 3), pose[9:]), request, result)
+        found = [result.getContact(i) for i in range(min(most, result.numContacts()))]
+        return [c.pos for c in found], [c.normal for c in found], [-c.penetration_depth for c in found]
+
     def footprint(self):
         trees = [self.a] if self.b is self.a else [self.a, self.b]
         return 0, {"nodes": sum(tree.getNumBVs() for tree in trees), "triangles": sum(tree.num_tris for tree in trees)}
 
 
 sixdof_rival.serve(
-    Query, name="coal", version=coal.__version__, answers=["collide", "distance"],
+    Query, name="coal", version=coal.__version__, answers=["collide", "distance", "contacts"], depth="triangles",
     summary="Coal from Python, trees of OBB and RSS; surfaces only", limits=["collide_of_surfaces"],
     parameters=[sixdof_rival.choice("profile", "requests as constructed, or as Coal's developers advise", "default",
                                     ["default", "tuned"]),

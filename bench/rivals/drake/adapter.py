@@ -70,6 +70,14 @@ class Query:
         on_b = pose[:9].reshape(3, 3) @ pair.p_BCb + pose[9:]
         return pair.distance, pair.p_ACa, on_b
 
+    def contacts(self, pose, most):
+        """One of the deepest penetration; in the middle between the bodies."""
+        self.empty(pose)
+        pairs = self.ask().ComputePointPairPenetration()[:most]
+        towards_b = [1.0 if pair.id_B == self.b else -1.0 for pair in pairs]  # nhat_BA_W leads from id_B to id_A
+        return ([0.5 * (pair.p_WCa + pair.p_WCb) for pair in pairs],
+                [-sign * pair.nhat_BA_W for sign, pair in zip(towards_b, pairs)], [pair.depth for pair in pairs])
+
     def respond(self, pose):
         self.empty(pose)
         reference = numpy.array(sixdof_rival.moved(pose, self.centre_b))
@@ -90,5 +98,6 @@ class Query:
 
 
 sixdof_rival.serve(Query, name="drake", version=importlib.metadata.version("drake"), body="convex_hull", law="volume",
-                   answers=["collide", "distance", "respond"], limits=["own_direction", "distance_of_bodies"],
+                   answers=["collide", "distance", "respond", "contacts"], depth="bodies",
+                   limits=["own_direction", "distance_of_bodies"],
                    summary="Drake from Python: convex hulls, hydroelastic force of a compliant A on a rigid B")

@@ -8,6 +8,7 @@
  *       distance(pose) {}               // {distance}, or {distance, a, b} with the closest points
  *       respond(pose) {}                // {penalty, force, torque, reference} and, optional, volume
  *       cast(motion) {}                 // null, or {t} and, optional, a, b, normal
+ *       contacts(pose, most) {}         // {points, normals, depths}, at most `most` of each; normals from A to B
  *       footprint() {}                  // optional: {bytes, counts}
  *     }
  *
@@ -20,7 +21,7 @@
 
 const fs = require("node:fs");
 
-const KINDS = ["collide", "distance", "respond", "cast"];
+const KINDS = ["collide", "distance", "respond", "cast"]; // that are asked by a place alone; contacts have a number besides
 const MOST_WORDS = 400;
 
 class BadMesh extends Error {}
@@ -122,9 +123,17 @@ class Server {
   }
 
   ask(request) {
+    if (request.query === "contacts") return this.askContacts(readPose(request.pose), request.most);
     const kind = this.kind(request);
     const place = request.query === "cast" ? readMotion(request) : readPose(request.pose);
     const [ns, reply] = timed(this.query, kind, place);
+    return { ...reply, ns };
+  }
+
+  askContacts(pose, most) {
+    if (this.query === null) throw new BadArgument("nothing is prepared");
+    const kind = this.hello.answers.includes("contacts") ? "contacts" : null;
+    const [ns, reply] = timed({ contacts: (at) => this.query.contacts(at, most) }, kind, pose);
     return { ...reply, ns };
   }
 
@@ -206,7 +215,7 @@ function replyOf(kind, answer) {
   if (kind === "collide") return { collide: Boolean(answer) };
   if (kind === "cast" && answer === null) return { hit: false };
   // JSON has no numbers that are not finite.
-  if (Object.values(answer).flat().every(Number.isFinite)) return kind === "cast" ? { hit: true, ...answer } : answer;
+  if (Object.values(answer).flat(2).every(Number.isFinite)) return kind === "cast" ? { hit: true, ...answer } : answer;
   return { status: "non_finite", words: "the answer is not finite" };
 }
 

@@ -78,10 +78,21 @@ class Query:
         if len(contacts.dist) == 0:
             return {"penalty": 0.0, "force": numpy.zeros(3), "torque": numpy.zeros(3), "reference": reference}
         depth = numpy.maximum(0.0, -contacts.dist)
-        towards_b = numpy.where(contacts.geom[:, :1] == 0, 1.0, -1.0)  # the normal leads from the first geom to the second
-        force = (depth[:, None] * towards_b) * contacts.frame.reshape(-1, 9)[:, :3]
+        force = depth[:, None] * self.normals()
         torque = numpy.cross(contacts.pos - reference, force)
         return {"penalty": depth.max(), "force": force.mean(axis=0), "torque": torque.mean(axis=0), "reference": reference}
+
+    def normals(self):
+        contacts = self.data.contact
+        towards_b = numpy.where(contacts.geom[:, :1] == 0, 1.0, -1.0)  # the normal leads from the first geom to the second
+        return towards_b * contacts.frame.reshape(-1, 9)[:, :3]
+
+    def contacts(self, pose, most):
+        """MuJoCo cannot be told a number: the first that it finds."""
+        if not self.collide(pose):
+            return [], [], []
+        contacts = self.data.contact
+        return contacts.pos[:most], self.normals()[:most], -contacts.dist[:most]
 
     def footprint(self):
         return mujoco.mj_sizeModel(self.model), {"vertices": self.model.nmeshvert}
@@ -90,10 +101,10 @@ class Query:
 if SDF:
     points = {"name": "initpoints", "meaning": "points from which contacts are searched", "unit": "1", "default": "40",
               "low": 1, "high": 100000, "integer": True, "sweep": ["10", "40", "160", "640"]}
-    sixdof_rival.serve(Query, name="mujoco-sdf", version=mujoco.__version__, answers=["collide", "respond"], law="contacts",
-                       summary="MuJoCo from Python: signed distance fields of both meshes", limits=["own_direction"],
-                       parameters=[points])
+    sixdof_rival.serve(Query, name="mujoco-sdf", version=mujoco.__version__, law="contacts",
+                       answers=["collide", "respond", "contacts"], depth="point", limits=["own_direction"],
+                       summary="MuJoCo from Python: signed distance fields of both meshes", parameters=[points])
 else:
-    sixdof_rival.serve(Query, name="mujoco", version=mujoco.__version__, answers=["collide", "distance"],
-                       body="convex_hull", limits=["distance_of_bodies"],
+    sixdof_rival.serve(Query, name="mujoco", version=mujoco.__version__, answers=["collide", "distance", "contacts"],
+                       depth="bodies", body="convex_hull", limits=["distance_of_bodies"],
                        summary="MuJoCo from Python: convex hulls of both meshes")

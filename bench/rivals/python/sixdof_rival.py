@@ -8,6 +8,7 @@ A query is a class. Its constructor prepares a pair of meshes; its methods answe
         def distance(self, pose): ...            # float, or (float, closest point of A, closest point of B)
         def respond(self, pose): ...             # dict of penalty, force, torque, reference and, optional, volume
         def cast(self, motion): ...              # None for no contact, t, or a dict of t and, optional, a, b, normal
+        def contacts(self, pose, most): ...      # (points, normals from A to B, depths), at most `most` of each
         def empty(self, pose): ...               # optional: all of a query but the library's search
         def footprint(self): ...                 # optional: (bytes, {"name": count})
         def pose_of(numbers): ...                # optional, static: the pose that methods take, of the NumPy array
@@ -23,6 +24,7 @@ each query.
 """
 
 import array
+import itertools
 import json
 import math
 import mmap
@@ -36,7 +38,7 @@ try:
 except ImportError:
     numpy = None
 
-KINDS = ("collide", "distance", "respond", "cast")
+KINDS = ("collide", "distance", "respond", "cast")  # that are asked by a place alone; contacts have a number besides
 EMPTY_CALLS = 1001
 NOT_FINITE = object()  # In place of a pose that holds a NaN or an infinity: many libraries would answer.
 
@@ -101,10 +103,10 @@ def choice(name, meaning, default, choices):
     return {"name": name, "meaning": meaning, "unit": "1", "default": default, "choices": choices}
 
 
-def serve(query_class, *, name, version, summary, answers, law="none", body="mesh", limits=(), parameters=()):
+def serve(query_class, *, name, version, summary, answers, law="none", depth="none", body="mesh", limits=(), parameters=()):
     """Answers requests until the input ends. What the library prints to standard output goes to standard error."""
     hello = {"protocol": 1, "name": name, "version": version, "summary": summary, "answers": list(answers), "law": law,
-             "body": body, "limits": list(limits), "parameters": list(parameters), "can": ["time", "progress"]}
+             "depth": depth, "body": body, "limits": list(limits), "parameters": list(parameters), "can": ["time", "progress"]}
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     server = _Server(query_class, hello)
@@ -181,8 +183,17 @@ class _Server:
 
     def ask(self, request):
         kind = request["query"]
+        if kind == "contacts":
+            return self.ask_contacts(self.pose(request["pose"]), int(request["most"]))
         method = self.method(kind)
         took, reply = timed(method, kind, self.motion(request) if kind == "cast" else self.pose(request["pose"]))
+        return reply | {"ns": took}
+
+    def ask_contacts(self, pose, most):
+        if self.query is None:
+            raise BadArgument("nothing is prepared")
+        find = getattr(self.query, "contacts") if "contacts" in self.hello["answers"] else None
+        took, reply = timed(find and (lambda pose: find(pose, most)), "contacts", pose)
         return reply | {"ns": took}
 
     def time(self, request):
@@ -265,6 +276,11 @@ def timed(method, kind, pose):
 def _reply(kind, answer):
     if kind == "collide":
         return {"collide": bool(answer)}
+    if kind == "contacts":
+        points, normals, depths = answer
+        reply = {"points": [_vector(p) for p in points], "normals": [_vector(n) for n in normals], "depths": _vector(depths)}
+        numbers = itertools.chain(*reply["points"], *reply["normals"], reply["depths"])
+        return reply if all(map(math.isfinite, numbers)) else {"status": "non_finite", "words": "the answer is not finite"}
     if kind == "distance":
         gap, a, b = answer if isinstance(answer, tuple) else (answer, None, None)
         reply = {"distance": float(gap)} | ({} if a is None else {"a": _vector(a), "b": _vector(b)})

@@ -29,7 +29,19 @@ std::unique_ptr<Algorithm> make_brute_force_algorithm();
 /// first contact was missed. Yes/no and trees are those of `exact`.
 std::unique_ptr<Algorithm> make_sampled_algorithm();
 
-/// Adds the algorithms that need no third-party collision library: these five, `null`, which answers with constants,
+/// `exact-contacts`: contacts by the exact geometry that judges them (oracle/contact_truth.h): vertices of each body
+/// inside the other, with the shortest way out as the normal, and the middles of the segments in which triangles cross,
+/// with the normal of that triangle along which less is to be moved. A depth is the thickness of the intersection
+/// there. It shows what the scores of contacts are for contacts that are right, and is not made to be fast. It needs
+/// solids.
+std::unique_ptr<Algorithm> make_exact_contacts_algorithm();
+
+/// `exact-penetration`: one contact, whose depth and normal are the shortest free translation of B that was found
+/// (oracle/penetration.h), if its length is proven to `tolerance`; else the query fails. It times the truth of the rows
+/// `depth/...`. It needs solids.
+std::unique_ptr<Algorithm> make_exact_penetration_algorithm();
+
+/// Adds the algorithms that need no third-party collision library: these seven, `null`, which answers with constants,
 /// `ist`, `ist-descent`, `vps` and `vps-field`.
 void register_core_algorithms(Registry& registry);
 

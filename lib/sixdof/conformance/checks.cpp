@@ -17,7 +17,7 @@ void check_declaration(const Subject& subject, Findings& findings) {
   const Traits& traits = subject.traits();
   if (traits.version.empty()) findings.fail("Traits::version is empty");
   if (traits.summary.empty()) findings.fail("Traits::summary is empty");
-  if (!traits.answers.collide && !traits.answers.distance && !traits.answers.respond && !traits.answers.cast) {
+  if (!traits.answers.any()) {
     findings.fail("Traits::answers has no kind of query");
   }
   if (traits.answers.respond != (traits.law != ResponseLaw::none)) {
@@ -44,6 +44,8 @@ std::string why_not_asked(Needs needs) {
       return "it does not answer responses";
     case Needs::cast:
       return "it does not answer casts";
+    case Needs::contacts:
+      return "it does not answer contacts";
     case Needs::a_missing_kind:
       return "it answers every kind of query";
   }
@@ -74,7 +76,8 @@ const KnownFailure* known_failure(const Check& check, const Subject& subject) {
 const std::vector<Check>& all_checks() {
   static const std::vector<Check> list = [] {
     std::vector<Check> checks{{"Declaration", Needs::nothing, check_declaration}};
-    for (const auto& some : {agreement_checks(), cast_checks(), invariance_checks(), state_checks()}) {
+    for (const auto& some :
+         {agreement_checks(), cast_checks(), contact_checks(), invariance_checks(), state_checks()}) {
       checks.insert(checks.end(), some.begin(), some.end());
     }
     return checks;
@@ -103,6 +106,8 @@ bool applies(const Check& check, const QuerySet& answers) {
       return answers.respond;
     case Needs::cast:
       return answers.cast;
+    case Needs::contacts:
+      return answers.contacts;
     case Needs::a_missing_kind:
       return !(answers.collide && answers.distance && answers.respond);
   }

@@ -20,6 +20,7 @@ enum class Needs {
   distance,
   respond,
   cast,
+  contacts,
   a_missing_kind  ///< Those that leave a kind of query unanswered.
 };
 
@@ -32,6 +33,7 @@ struct Check {
 std::span<const Check> agreement_checks();   ///< With the oracles.
 std::span<const Check> invariance_checks();  ///< What must not change the answers.
 std::span<const Check> cast_checks();        ///< First contacts.
+std::span<const Check> contact_checks();     ///< Contacts, by exact geometry.
 std::span<const Check> state_checks();       ///< Statuses, repetition, threads, lifetimes.
 
 /// All of them, in the order in which they are run.

@@ -13,11 +13,19 @@ namespace sixdof::conformance {
 namespace {
 
 constexpr std::pair<const char*, double Declaration::*> k_errors[] = {
-    {"distance_error", &Declaration::distance_error}, {"witness_error", &Declaration::witness_error},
-    {"volume_error", &Declaration::volume_error},     {"force_degrees", &Declaration::force_degrees},
-    {"order_error", &Declaration::order_error},       {"motion_error", &Declaration::motion_error},
-    {"scale_error", &Declaration::scale_error},       {"repeat_error", &Declaration::repeat_error},
-    {"cast_error", &Declaration::cast_error}};
+    {"distance_error", &Declaration::distance_error},
+    {"witness_error", &Declaration::witness_error},
+    {"volume_error", &Declaration::volume_error},
+    {"force_degrees", &Declaration::force_degrees},
+    {"order_error", &Declaration::order_error},
+    {"motion_error", &Declaration::motion_error},
+    {"scale_error", &Declaration::scale_error},
+    {"repeat_error", &Declaration::repeat_error},
+    {"cast_error", &Declaration::cast_error},
+    {"contact_error", &Declaration::contact_error},
+    {"contact_degrees", &Declaration::contact_degrees},
+    {"depth_error", &Declaration::depth_error},
+    {"contact_change_degrees", &Declaration::contact_change_degrees}};
 
 /// Which of two words a value is. @throws BadArgument
 bool is_first(const std::string& name, const std::string& value, const char* first, const char* second) {

@@ -41,6 +41,14 @@ struct Declaration {
   /// Largest difference of a time of impact from the true one, early or late, as a part of the motion.
   double cast_error = 1e-9;
 
+  // Of contacts nothing is claimed by default: those of pairs of triangles differ from those of bodies.
+  double contact_error = k_no_claim;    ///< Largest distance of a point from being in both bodies, in A's diagonals.
+  double contact_degrees = k_no_claim;  ///< Largest mean angle of the normals of a pose to true ones, none reversed.
+  /// Largest error of the sum of depths, by the sum of thicknesses (JudgedContact::thickness).
+  double depth_error = k_no_claim;
+  /// Largest angle between the mean normals of (A, B) and of (B, A), and before and after a rigid motion of both.
+  double contact_change_degrees = k_no_claim;
+
   // Largest difference of two wrenches that should be the same: of the forces by the force, of the torques by the
   // force times A's diagonal.
   double order_error = 1e-9;   ///< Asked for (A, B), and for (B, A) with the inverse pose.

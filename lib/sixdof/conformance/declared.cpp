@@ -48,6 +48,16 @@ Declaration of_depth(double force_degrees) {
           .scale_error = 0.06};
 }
 
+/// Roundings only.
+Declaration of_exact_contacts() {
+  return {.collide = Meaning::bodies,
+          .open_meshes = false,
+          .contact_error = 1e-9,
+          .contact_degrees = 0.01,
+          .depth_error = 1e-6,
+          .contact_change_degrees = 0.01};
+}
+
 /// FCL's traversals of distances.
 Declaration of_fcl_distance() {
   // Triangles with edges of some 1e-4 length units.
@@ -76,6 +86,7 @@ Declaration of_bullet() {
   return {.known_failures = {
               {"Collide", k_behind, k_issue},
               {"Respond", k_behind, k_issue},
+              {"Contacts", k_behind, k_issue},
               {"MotionOfCollide", k_behind, k_issue},
               {"MotionOfRespond", k_behind, k_issue},
               {"ScaleOfRespond", "CONTACT_DIFF_EPSILON and others are lengths of 1e-5, whatever the unit", ""}}};
@@ -108,8 +119,11 @@ const std::vector<Declared>& table() {
       {"fcl-cast", of_fcl_cast()},
       // Contacts on these motions last longer than a step.
       {"sampled", {.settings = {"steps=1024"}, .collide = Meaning::bodies}},
+      {"exact-contacts", of_exact_contacts()},
       {"exact-depth", of_depth(15.0)},
       {"exact-way-out", of_depth(80.0)},
+      // One contact where the bodies touch after the translation, which need not be in both.
+      {"exact-penetration", {.collide = Meaning::bodies, .open_meshes = false}},
       {"ist", of_spheres(30.0, 0.85)},
       {"ist-descent", of_spheres(12.0, 0.3)},
       {"vps", of_voxels(15.0, 0.01)},

@@ -31,7 +31,12 @@ constexpr std::string_view k_query_row = "bench/rows/query.cpp";
 constexpr std::string_view k_answers = "bench/study/answer_errors.h";
 constexpr std::string_view k_precision = "bench/study/precision.h";
 
+constexpr std::string_view k_contact = "lib/sixdof/measure/contact_score.h";
+constexpr std::string_view k_contact_truth = "lib/sixdof/oracle/contact_truth.h";
+constexpr std::string_view k_hausdorff = "Dubuisson and Jain 1994, mean of both ways";
 constexpr std::string_view k_impact = "lib/sixdof/oracle/impact_verdict.h";
+constexpr std::string_view k_depth = "lib/sixdof/oracle/penetration_verdict.h";
+constexpr std::string_view k_depth_row = "bench/rows/depth.cpp";
 constexpr std::string_view k_scene = "lib/sixdof/scene/score.h";
 constexpr std::string_view k_scene_work = "lib/sixdof/scene/scene_algorithm.h (SceneWork)";
 
@@ -124,6 +129,52 @@ constexpr std::array k_metrics{
     Metric{"grazing", "queries", neither, "motions whose truth is not decided; not judged", k_impact},
     Metric{"hits", "queries", neither, "motions whose truth is a hit or a contact at the start", k_impact},
     Metric{"normal_max_deg", "degree", lower, "largest angle between normal and true normal of right hits", k_impact},
+    // Depths.
+    Metric{"too_shallow", "queries", lower, "depths below the penetration depth: unsafe, B still overlaps A after it", k_depth},
+    Metric{"too_deep", "queries", lower, "depths above the penetration depth", k_depth},
+    Metric{"missed_depths", "queries", lower, "no depth although the bodies overlap; counted as too shallow as well", k_depth},
+    Metric{"too_shallow_max", "1", lower, "largest part of the depth that is missing", k_depth},
+    Metric{"too_deep_max", "1", lower, "largest excess over the depth, by the depth", k_depth},
+    Metric{"depth_ratio", "measured/true", nearer_one, "mean of depth over penetration depth", k_depth_row},
+    Metric{"open_depths", "queries", neither, "configurations whose interval is open: not judged", k_depth},
+    Metric{"depth_width_max", "1", neither, "largest (hi - lo) / hi of the intervals that judge", k_depth_row},
+    Metric{"depth_of_ray", "1", neither, "mean of the penetration depth over the way out along the configuration's ray", k_depth_row},
+    // Contacts of bodies that overlap.
+    Metric{"contacts_mean", "contacts", neither, "mean number of contacts of a query", k_contact},
+    Metric{"contacts_max", "contacts", neither, "largest number of contacts of a query", k_contact},
+    Metric{"full_answers", "queries", neither, "as many contacts as were asked for: there may be more", "bench/rows/contacts.cpp"},
+    Metric{"non_finite", "queries", lower, "of the failed: a contact holds a NaN or an infinity", k_status},
+    Metric{"without_contact", "queries", lower, "no contact although the bodies overlap", k_contact},
+    Metric{"judged_contacts", "contacts", neither, "contacts that are judged, at most 128 of a query", k_contact},
+    Metric{"off_bodies", "contacts", lower, "judged contacts outside of both bodies by more than 1e-6 of A's diagonal", k_contact_truth},
+    Metric{"reversed_normals", "contacts", lower, "normals more than 100 degrees from every true one", k_contact_truth},
+    Metric{"contact_off_mean", "diagonal", lower, "mean distance of a contact from being in both bodies", k_contact_truth},
+    Metric{"contact_off_max", "diagonal", lower, "largest distance of a contact from being in both bodies", k_contact_truth},
+    Metric{"contact_normal_deg", "degree", lower, "mean angle of a normal to the nearest true normal cone", k_contact_truth},
+    Metric{"contact_normal_max_deg", "degree", lower, "largest angle of a normal to the nearest true normal cone", k_contact_truth},
+    Metric{"contact_force_deg", "degree", lower, "mean angle of the mean normal of a query to the exact force", k_contact},
+    Metric{"contact_force_max_deg", "degree", lower, "largest angle of the mean normal of a query to the exact force", k_contact},
+    Metric{"contact_depth_ratio", "1", nearer_one, "sum of depths over the sum of thicknesses of the intersection along the normals", k_contact_truth},
+    Metric{"uncovered_mean", "diagonal", lower, "distance of the true point farthest from all contacts, mean over queries", k_contact},
+    Metric{"uncovered_max", "diagonal", lower, "distance of the true point farthest from all contacts, largest", k_contact},
+    Metric{"astray_mean", "diagonal", lower, "distance of the contact farthest from all true points, mean over queries", k_contact},
+    Metric{"astray_max", "diagonal", lower, "distance of the contact farthest from all true points, largest", k_contact},
+    Metric{"exchange_normal_deg", "degree", lower, "mean angle of normals of (A, B) to those of (B, A), reversed", k_contact},
+    Metric{"exchange_flips", "contacts", lower, "such angles above 90 degrees: normals that flip", k_contact},
+    Metric{"exchange_points", "diagonal", lower, "mean distance of contacts of (A, B) and of (B, A)", k_hausdorff},
+    Metric{"exchange_number", "queries", lower, "(A, B) and (B, A) have other numbers of contacts", k_contact},
+    Metric{"moved_normal_deg", "degree", lower, "mean angle of normals before and after a rigid motion of both bodies", k_contact},
+    Metric{"moved_flips", "contacts", lower, "such angles above 90 degrees", k_contact},
+    Metric{"moved_points", "diagonal", lower, "mean distance of contacts before and after a rigid motion of both bodies", k_hausdorff},
+    Metric{"moved_number", "queries", lower, "another number of contacts after a rigid motion of both bodies", k_contact},
+    Metric{"step_normal_deg", "degree", lower, "angle by which the mean normal turns in a step of a motion, mean", k_contact},
+    Metric{"step_normal_max_deg", "degree", lower, "angle by which the mean normal turns in a step of a motion, largest", k_contact},
+    Metric{"step_force_deg", "degree", neither, "angle by which the exact force turns in a step, mean", k_contact},
+    Metric{"step_force_max_deg", "degree", neither, "angle by which the exact force turns in a step, largest", k_contact},
+    Metric{"step_points_mean", "diagonal", lower, "how far the set of contacts moves in a step, mean", k_hausdorff},
+    Metric{"step_points_max", "diagonal", lower, "how far the set of contacts moves in a step, largest", k_hausdorff},
+    Metric{"step_center_mean", "diagonal", neither, "how far the exact centre of the intersection moves in a step, mean", k_contact},
+    Metric{"step_center_max", "diagonal", neither, "how far the exact centre of the intersection moves in a step, largest", k_contact},
     // Scenes of many bodies.
     Metric{"missed_pairs", "pairs", lower, "true pairs of all frames that are not reported", k_scene},
     Metric{"wrong_pairs", "pairs", lower, "pairs of all frames that are reported and not true", k_scene},

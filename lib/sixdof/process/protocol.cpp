@@ -16,9 +16,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array k_kinds{"collide", "distance", "respond", "cast"};
-constexpr std::array k_kind_members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond, &QuerySet::cast};
+constexpr std::array k_kinds{"collide", "distance", "respond", "cast", "contacts"};
+constexpr std::array k_kind_members{&QuerySet::collide, &QuerySet::distance, &QuerySet::respond, &QuerySet::cast,
+                                    &QuerySet::contacts};
 constexpr std::array k_laws{"none", "depth", "volume", "way_out", "contacts"};
+constexpr std::array k_depths{"none", "triangles", "point", "local", "bodies"};
 constexpr std::array k_bodies{"mesh", "convex_hull"};
 constexpr std::array k_limits{"collide_of_surfaces", "respond_of_surfaces", "distance_of_bodies", "own_direction",
                               "points_of_b_only"};
@@ -232,6 +234,16 @@ void put(Json& json, const Impact& answer) {
   if (!answer.normal.isZero(0.0)) json["normal"] = vector(answer.normal);
 }
 
+/// Lists of points, normals and depths: a library may give thousands.
+void put(Json& json, const Contacts& answer) {
+  for (const char* key : {"points", "normals", "depths"}) json[key] = Json::array();
+  for (const Contact& each : answer.list) {
+    json["points"].push_back(vector(each.point));
+    json["normals"].push_back(vector(each.normal));
+    json["depths"].push_back(number(each.depth));
+  }
+}
+
 void take(const Json& json, bool& answer) { answer = json.at("collide").get<bool>(); }
 void take(const Json& json, Separation& answer) {
   answer.distance = number_of(json.at("distance"));
@@ -263,6 +275,16 @@ void take(const Json& json, Impact& answer) {
   if (json.contains("normal")) answer.normal = vector_of(json.at("normal"));
 }
 
+void take(const Json& json, Contacts& answer) {
+  const Json &points = json.at("points"), &normals = json.at("normals"), &depths = json.at("depths");
+  if (!points.is_array() || normals.size() != points.size() || depths.size() != points.size()) {
+    throw Malformed("not as many points, normals and depths of contacts");
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    answer.list.push_back({vector_of(points[i]), vector_of(normals.at(i)), number_of(depths.at(i))});
+  }
+}
+
 std::optional<double> optional_time(const Json& json, const char* key) {
   return json.contains(key) ? std::optional(time_of(json.at(key))) : std::nullopt;
 }
@@ -285,6 +307,7 @@ struct RequestWriter {
                    {"rotation", vector(ask.motion->rotation)},
                    {"reference", vector(ask.motion->reference)}});
     }
+    if (ask.query == k_query<Contacts>) json["most"] = ask.most;
     return json;
   }
   Json operator()(const Time& time) const {
@@ -318,6 +341,7 @@ Request request_of(const std::string& line) {
     if (what == "ask") {
       Ask ask{json.at("query"), pose_of(json.at("pose"))};
       if (ask.query == k_query<Impact>) ask.motion = motion_of(json, ask.X_AB);
+      if (ask.query == k_query<Contacts>) ask.most = count_of<std::size_t>(json.at("most"));
       return ask;
     }
     if (what != "time") throw Malformed(fmt::format("\"{}\" is not known", what));
@@ -350,6 +374,7 @@ std::string to_line(const Greeting& greeting) {
                {"summary", traits.summary},
                {"answers", answers},
                {"law", k_laws.at(static_cast<std::size_t>(traits.law))},
+               {"depth", k_depths.at(static_cast<std::size_t>(traits.depth))},
                {"body", k_bodies.at(static_cast<std::size_t>(traits.body))},
                {"limits", limits},
                {"parameters", parameters},
@@ -366,6 +391,7 @@ Greeting greeting_of(const std::string& line) {
     traits.summary = words_at(json, "summary");
     for (const std::string kind : json.at("answers")) traits.answers.*k_kind_members.at(place_of(k_kinds, kind)) = true;
     traits.law = static_cast<ResponseLaw>(place_of(k_laws, json.value("law", "none")));
+    traits.depth = static_cast<ContactDepth>(place_of(k_depths, json.value("depth", "none")));
     traits.body = static_cast<Body>(place_of(k_bodies, json.value("body", "mesh")));
     for (const std::string limit : json.value("limits", Json::array())) {
       *members_of(traits.limits).at(place_of(k_limits, limit)) = true;
@@ -432,7 +458,7 @@ Asked<Answer> asked_of(const std::string& line) {
     } else {
       Answer answer{};
       take(json, answer);
-      asked.outcome = answer;
+      asked.outcome = std::move(answer);
     }
     asked.ns = optional_time(json, "ns");
     for (const Json& each : json.value("work", Json::array())) {
@@ -459,14 +485,17 @@ template std::string to_line(const Asked<bool>&);
 template std::string to_line(const Asked<Separation>&);
 template std::string to_line(const Asked<Response>&);
 template std::string to_line(const Asked<Impact>&);
+template std::string to_line(const Asked<Contacts>&);
 template Asked<bool> asked_of(const std::string&);
 template Asked<Separation> asked_of(const std::string&);
 template Asked<Response> asked_of(const std::string&);
 template Asked<Impact> asked_of(const std::string&);
+template Asked<Contacts> asked_of(const std::string&);
 template Asked<bool> answer_of(const std::string&);
 template Asked<Separation> answer_of(const std::string&);
 template Asked<Response> answer_of(const std::string&);
 template Asked<Impact> answer_of(const std::string&);
+template Asked<Contacts> answer_of(const std::string&);
 
 std::string to_line(const Timed& timed) {
   Json failed = Json::array();

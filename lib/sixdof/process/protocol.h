@@ -37,6 +37,8 @@ template <>
 inline constexpr std::string_view k_query<Response> = "respond";
 template <>
 inline constexpr std::string_view k_query<Impact> = "cast";
+template <>
+inline constexpr std::string_view k_query<Contacts> = "contacts";
 
 // Requests.
 
@@ -58,9 +60,10 @@ struct Ask {
   std::string query;
   Pose X_AB;                          ///< Of a cast the start of the motion.
   std::optional<Motion> motion = {};  ///< Of a cast.
+  std::size_t most = 0;               ///< Of contacts: how many at most.
 };
 
-/// Asks the poses in order, `passes` times. Not for casts.
+/// Asks the poses in order, `passes` times. Not for casts and contacts.
 struct Time {
   std::string query;
   std::vector<Pose> poses;

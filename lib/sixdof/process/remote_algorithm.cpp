@@ -30,9 +30,7 @@ std::unique_ptr<RemoteAlgorithm> RemoteAlgorithm::external(const std::string& na
 
 std::unique_ptr<RemoteAlgorithm> RemoteAlgorithm::described(Traits traits, const std::string& command_line,
                                                             const ProcessLimits& limits) {
-  const QuerySet& answers = traits.answers;
-  if (!answers.collide && !answers.distance && !answers.respond && !answers.cast)
-    throw BadArgument("answers no kind of query");
+  if (!traits.answers.any()) throw BadArgument("answers no kind of query");
   static_cast<void>(Settings(traits.parameters));
   std::unique_ptr<RemoteAlgorithm> algorithm(new RemoteAlgorithm(std::move(traits), program_of(command_line, limits)));
   algorithm->command_line_ = command_line;

@@ -272,6 +272,11 @@ Outcome<Impact> RemoteQuery::cast(const Motion& motion) {
   return ask<Impact>(Ask{std::string(k_query<Impact>), motion.start, motion}, key);
 }
 
+Outcome<Contacts> RemoteQuery::contacts(const Pose& X_AB, std::size_t most) {
+  if (!greeting_.traits.answers.contacts) return Status::unsupported;
+  return ask<Contacts>(Ask{std::string(k_query<Contacts>), X_AB, {}, most}, key_of<Contacts>(X_AB));
+}
+
 template <class Answer>
 Timed RemoteQuery::time(std::span<const Pose> poses, const Time& how) {
   if (!greeting_.times) return time_by_asking<Answer>(poses, how);

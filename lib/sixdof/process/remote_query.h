@@ -49,6 +49,7 @@ class RemoteQuery final : public Query {
   Outcome<Separation> distance(const Pose& X_AB) override;
   Outcome<Response> respond(const Pose& X_AB) override;
   Outcome<Impact> cast(const Motion& motion) override;
+  Outcome<Contacts> contacts(const Pose& X_AB, std::size_t most) override;
 
   Footprint footprint() const override { return prepared_.footprint; }
   std::vector<Work> work() const override { return work_; }

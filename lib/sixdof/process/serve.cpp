@@ -127,6 +127,23 @@ struct Asker {
   }
 };
 
+/// The same for contacts, of which a number is asked for.
+struct ContactsAsker {
+  Query& query;
+  std::size_t most;
+  std::string words = {};
+
+  Outcome<Contacts> operator()(const Pose& X_AB) {
+    return ask_guarded([&] { return query.contacts(X_AB, most); }, [this](std::string why) { words = std::move(why); });
+  }
+  void examine(Outcome<Contacts>& answer) {
+    if (answer.ok()) words.clear();
+    sixdof::examine(query, answer, [this](std::string why) {
+      if (words.empty()) words = std::move(why);
+    });
+  }
+};
+
 class Server {
  public:
   explicit Server(const Algorithm& algorithm) : algorithm_(algorithm) {}
@@ -171,15 +188,19 @@ class Server {
       if (!query_) throw BadArgument("nothing is prepared");
       return ask_once(Asker<Impact, Motion>{*query_, &Query::cast}, *request.motion);
     }
+    if (request.query == k_query<Contacts>) {
+      if (!query_) throw BadArgument("nothing is prepared");
+      return ask_once(ContactsAsker{*query_, request.most}, request.X_AB);
+    }
     return with_asker(request.query, [&](auto asker) { return ask_once(std::move(asker), request.X_AB); });
   }
 
-  template <class Answer, class Input>
-  std::string ask_once(Asker<Answer, Input> asker, const Input& input) {
+  template <class AnyAsker, class Input>
+  std::string ask_once(AnyAsker asker, const Input& input) {
     auto [outcome, took_ns] = with_clock([&] { return asker(input); });
     asker.examine(outcome);
-    Asked<Answer> asked{outcome, asker.words, took_ns, {}};
-    if (outcome.ok()) asked.work = query_->work();
+    Asked<decltype(outcome.value)> asked{std::move(outcome), asker.words, took_ns, {}};
+    if (asked.outcome.ok()) asked.work = query_->work();
     return to_line(asked);
   }
 

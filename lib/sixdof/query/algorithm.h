@@ -68,7 +68,7 @@ struct Outcome {
   /// No answer, for a reason other than Status::ok.
   Outcome(Status why) : status(why) {}  // NOLINT(google-explicit-constructor): reads as a value
   /// An answer, with Status::ok.
-  Outcome(T answer) : status(Status::ok), value(answer) {}  // NOLINT(google-explicit-constructor)
+  Outcome(T answer) : status(Status::ok), value(std::move(answer)) {}  // NOLINT(google-explicit-constructor)
 
   /// Whether there is an answer.
   bool ok() const { return status == Status::ok; }
@@ -121,12 +121,28 @@ struct Impact {
   bool at_start() const { return hit && t == 0.0; }
 };
 
+/// A place where two bodies touch or overlap, as a library reports it to whoever pushes the bodies apart.
+struct Contact {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< On A, on B or between, in A's frame.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< A unit vector from A to B: along it B leaves A. In A's frame.
+  double depth = 0.0;                                ///< Along the normal (length), in the sense of Traits::depth.
+};
+
+/// Answer of a contact query.
+struct Contacts {
+  std::vector<Contact> list;  ///< In any order, no more than were asked for; empty where the bodies are apart.
+};
+
 /// Which kinds of query an algorithm answers.
 struct QuerySet {
   bool collide = false;   ///< Query::collide()
   bool distance = false;  ///< Query::distance()
   bool respond = false;   ///< Query::respond()
   bool cast = false;      ///< Query::cast()
+  bool contacts = false;  ///< Query::contacts()
+
+  /// Whether it answers any.
+  bool any() const { return collide || distance || respond || cast || contacts; }
 };
 
 /// Which bodies an algorithm's answers are about.
@@ -176,6 +192,22 @@ constexpr bool is_of_depth(ResponseLaw law) {
   return law == ResponseLaw::depth || law == ResponseLaw::way_out || law == ResponseLaw::contacts;
 }
 
+/// What the depth of a contact is the depth of. Rows compare it with the thickness of the intersection of both bodies
+/// along the normal through the point (oracle/contact_truth.h), which is what whoever pushes by it has to know.
+enum class ContactDepth {
+  none,       ///< Not known, or the algorithm gives none.
+  triangles,  ///< Of two triangles: how far a point of one lies below the plane of the other, or both are to be moved.
+  point,      ///< Of the point: its distance from the surface of one of the bodies.
+  local,      ///< Of the bodies there: the thickness of their intersection along the normal through the point.
+  bodies      ///< Of the bodies: how far B has to move along the normal to leave A.
+};
+
+/// The name as it stands in results: "triangles".
+constexpr std::string_view to_string(ContactDepth depth) {
+  constexpr std::string_view k_names[] = {"none", "triangles", "point", "local", "bodies"};
+  return k_names[static_cast<std::size_t>(depth)];
+}
+
 /// Size of a prepared structure and the counts that explain it ("nodes", "voxels", "spheres", ...).
 struct Footprint {
   std::size_t bytes = 0;                               ///< Of memory; 0 where the algorithm does not tell.
@@ -195,7 +227,8 @@ struct Traits {
   std::string version;  ///< Of the library behind it; this project's own version for its own algorithms.
   std::string summary;  ///< One line, for lists.
   QuerySet answers;     ///< Benchmarks ask these kinds of query only; the others return Status::unsupported.
-  ResponseLaw law = ResponseLaw::none;  ///< Of respond().
+  ResponseLaw law = ResponseLaw::none;      ///< Of respond().
+  ContactDepth depth = ContactDepth::none;  ///< Of contacts().
   /// Whether it answers for an approximation of the bodies: Footprint::counts has how far that may lie from the true
   /// surfaces, as "resolution" (length).
   bool approximates = false;
@@ -228,7 +261,7 @@ struct Traits {
 /// with words. Callers count all the same what is thrown, and an answer with a NaN or an infinity (other than
 /// Response::volume = k_absent), as one failed configuration (ask.h).
 ///
-/// **Time.** Only the four queries are timed. Memory that they need is best kept between calls.
+/// **Time.** Only the queries are timed. Memory that they need is best kept between calls.
 class Query {
  public:
   virtual ~Query() = default;  ///< Frees the prepared structures.
@@ -245,6 +278,10 @@ class Query {
   /// When the two bodies (for some algorithms, the two surfaces) first have a point in common while B moves. A search
   /// that ends without knowing is Status::failed, never "no hit".
   virtual Outcome<Impact> cast(const Motion& /*motion*/) { return Status::unsupported; }
+
+  /// Where the two bodies (for some algorithms, the two surfaces) touch or overlap, at most `most` contacts. A library
+  /// that finds more leaves out what it leaves out by itself; one that cannot be told a number, all but the first.
+  virtual Outcome<Contacts> contacts(const Pose& /*X_AB*/, std::size_t /*most*/) { return Status::unsupported; }
 
   /// Of the prepared structures of both meshes; what A and B share counts once.
   virtual Footprint footprint() const { return {}; }

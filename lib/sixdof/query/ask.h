@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <exception>
 #include <new>
 #include <string>
@@ -27,6 +29,16 @@ inline bool is_finite(const Response& answer) {
 /// Of the time; points and normal are not looked at.
 inline bool is_finite(const Impact& answer) { return !answer.hit || std::isfinite(answer.t); }
 
+/// Of points, normals and depths.
+inline bool is_finite(const Contacts& answer) {
+  return std::ranges::all_of(answer.list, [](const Contact& each) {
+    return each.point.allFinite() && each.normal.allFinite() && std::isfinite(each.depth);
+  });
+}
+
+/// Largest difference of a normal's length from 1: libraries in single precision normalise by estimates.
+inline constexpr double k_unit_normal_tolerance = 1e-3;
+
 /// Why a finite answer is none, in words; null if it is one.
 template <class T>
 const char* why_no_answer(const T&) {
@@ -36,6 +48,13 @@ const char* why_no_answer(const T&) {
 inline const char* why_no_answer(const Impact& answer) {
   if (!answer.hit || (answer.t >= 0.0 && answer.t <= 1.0)) return nullptr;
   return "the time of impact is not from 0 to 1";
+}
+
+/// Normals are unit vectors.
+inline const char* why_no_answer(const Contacts& answer) {
+  const bool all_unit = std::ranges::all_of(
+      answer.list, [](const Contact& each) { return std::abs(each.normal.norm() - 1.0) <= k_unit_normal_tolerance; });
+  return all_unit ? nullptr : "a contact's normal is no unit vector";
 }
 
 /// The Outcome of ask(). An exception becomes Status::failed, or Status::out_of_memory where it is std::bad_alloc, and
@@ -68,6 +87,23 @@ void examine(const Query& query, Outcome<T>& answer, const Failed& failed) {
   } else if (!answer.ok()) {
     failed(answer.status == Status::unsupported ? "the algorithm gives no such answer" : query.diagnosis());
   }
+}
+
+/// Asks for contacts as ask_guarded() and examine() do. More of them than `most` are no answer.
+template <class Failed>
+Outcome<Contacts> ask_contacts(Query& query, const Pose& X_AB, std::size_t most, const Failed& failed) {
+  bool has_words = false;
+  const auto keep = [&](const std::string& words) {
+    if (!has_words) failed(words);
+    has_words = true;
+  };
+  Outcome<Contacts> answer = ask_guarded([&] { return query.contacts(X_AB, most); }, keep);
+  examine(query, answer, keep);
+  if (answer.ok() && answer.value.list.size() > most) {
+    answer = Status::failed;
+    failed(fmt::format("more contacts than the {} that were asked for", most));
+  }
+  return answer;
 }
 
 /// @throws BadArgument if the algorithm answers no distance queries

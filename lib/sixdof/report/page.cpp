@@ -108,6 +108,8 @@ Json as_json(const Scene& scene) {
           {"reference", scene.reference},
           {"rate_hz", scene.rate_hz},
           {"stride", scene.stride},
+          {"contacts", scene.contacts},
+          {"curve", scene.curve},
           {"moments", std::move(moments)}};
 }
 
@@ -226,6 +228,8 @@ Report make_report(const Results& results, const std::vector<Series>& series) {
                            metrics_table(results, groups),
                            casts_table(results, groups),
                            many_bodies_table(results, groups),
+                           contacts_table(results, groups),
+                           depths_table(results, groups),
                            collection_table(results),
                            collection_ratios_table(results),
                            growth_table(results),

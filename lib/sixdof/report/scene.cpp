@@ -219,7 +219,8 @@ Scene pose_scene(const Row& row, const std::string& counter, const ComparedRespo
   return scene;
 }
 
-/// One for each command: several counters of a row may have one configuration. That with a response is kept.
+/// One for each command: several counters of a row may have one configuration. That with a response or contacts is
+/// kept.
 void add_outliers(const Results& results, Scenes& scenes) {
   NamedMeshes meshes(results, scenes);
   std::map<std::string, std::size_t> index;
@@ -227,12 +228,17 @@ void add_outliers(const Results& results, Scenes& scenes) {
     for (const auto& [counter, pose] : row.outliers.poses) {
       const std::string command = row.outliers.command_of(counter);
       const auto found = row.outliers.responses.find(counter);
+      const bool is_pictured = row.outliers.contacts.contains(counter);
       const ComparedResponse* const response = found == row.outliers.responses.end() ? nullptr : &found->second;
       const auto a = meshes.find(row.outliers.a, row.file), b = meshes.find(row.outliers.b, row.file);
       if (command.empty() || !a || !b) continue;
       const auto [place, is_new] = index.try_emplace(command, scenes.scenes.size());
-      if (!is_new && response == nullptr) continue;
+      if (!is_new && response == nullptr && !is_pictured) continue;
       Scene scene = pose_scene(row, counter, response);
+      if (const auto picture = row.outliers.contacts.find(counter); picture != row.outliers.contacts.end()) {
+        scene.contacts = picture->second.contacts;
+        scene.curve = picture->second.curve;
+      }
       scene.a = *a;
       scene.b = *b;
       if (is_new) {

@@ -46,7 +46,8 @@ struct Scene {
   std::array<double, 3> reference{};  ///< Where arrows begin, in B's frame.
   double rate_hz = 0.0;               ///< Of a path.
   std::size_t stride = 1;             ///< Steps of the path from one moment to the next.
-  std::vector<Moment> moments;        ///< At least one, except for an object.
+  std::vector<std::array<double, 6>> contacts{}, curve{};  ///< results::ContactPicture, of a pose of contacts.
+  std::vector<Moment> moments;                             ///< At least one, except for an object.
 };
 
 struct Scenes {

@@ -77,6 +77,14 @@ DataTable casts_table(const Results& results, const std::vector<RowGroup>& group
 /// "many_bodies": scenes of many bodies: time of a frame, pairs missed and wrong, pairs looked at.
 DataTable many_bodies_table(const Results& results, const std::vector<RowGroup>& groups);
 
+/// "contacts": a line for each row `contacts/...`: its time, and its scores against exact geometry under the names of
+/// their counters (measure/metrics.h).
+DataTable contacts_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "depths": a line for each row `depth/...`: its time, and how its depths compare with the intervals of the penetration
+/// depth, under the names of their counters.
+DataTable depths_table(const Results& results, const std::vector<RowGroup>& groups);
+
 /// "collection": times over the objects of a collection, by partner, query and bucket.
 DataTable collection_table(const Results& results);
 

@@ -36,9 +36,11 @@ std::vector<Fault> own_faults(const Row& row) {
   const bool is_apart = has_force && row.fields.bucket && row.fields.bucket->kind == BucketKind::distance;
   const bool approximate = row.fields.approximates && (row.fields.query == "distance" || is_apart);
   if (!is_study)
-    faults.push_back({approximate ? k_approximate
-                      : is_apart  ? "with a force though the bodies are apart"
-                                  : "wrong",
+    faults.push_back({approximate                      ? k_approximate
+                      : is_apart                       ? "with a force though the bodies are apart"
+                      : row.fields.query == "contacts" ? "without a contact, or with one off both bodies or reversed"
+                      : row.fields.query == "depth"    ? "with a depth outside of the proven interval"
+                                                       : "wrong",
                       "mismatch", count("mismatch"), count("judged")});
   if (has_force) {
     const std::uint64_t answered = asked - std::min(asked, count("failed"));

@@ -32,12 +32,17 @@ constexpr std::pair<const char*, const char*> k_words[] = {
     {"magnitude_error_T", "largest error of the torque's magnitude"},
     {"failed", "first without an answer"},
     {"mismatch", "first wrong answer"},
+    {"contact_off_max", "contact farthest from both bodies"},
+    {"contact_normal_max_deg", "normal farthest from every true one"},
+    {"too_shallow_max", "depth that is too shallow by the largest part"},
+    {"too_deep_max", "depth that is too deep by the largest part"},
     {"misses", "first without a force"}};
 
 }  // namespace
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ComparedResponse, force, torque, exact_force, exact_torque, reference)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Outliers, a, b, command, poses, responses)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ContactPicture, contacts, curve)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Outliers, a, b, command, poses, responses, contacts)
 
 void Outliers::add(const std::string& counter, const std::optional<Pose>& X_AB) {
   if (X_AB) poses[counter] = TypedPose::of(*X_AB).text();
@@ -62,6 +67,7 @@ nlohmann::ordered_json to_json_object(const Outliers& outliers) {
   if (outliers.command.empty()) object.erase("command");
   if (outliers.poses.empty()) object.erase("poses");
   if (outliers.responses.empty()) object.erase("responses");
+  if (outliers.contacts.empty()) object.erase("contacts");
   return object;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -18,12 +19,19 @@ struct ComparedResponse {
   std::array<double, 3> force{}, torque{}, exact_force{}, exact_torque{}, reference{};
 };
 
+/// Of contacts at one configuration, for a picture: rounded to a millionth of A's diagonal, in A's frame.
+struct ContactPicture {
+  std::vector<std::array<double, 6>> contacts{};  ///< Points and normals.
+  std::vector<std::array<double, 6>> curve{};     ///< Starts and ends of segments in which the surfaces cross.
+};
+
 /// Those of a row, by counter: where its largest value is, or the first configuration that it counts.
 struct Outliers {
   std::string a = {}, b = {};                     ///< Meshes as a command line names them: names of models, or files.
   std::string command = {};                       ///< `sixdof query` with everything but --pose; may be empty.
   std::map<std::string, std::string> poses = {};  ///< As --pose takes them; rotations within a few roundings.
   std::map<std::string, ComparedResponse> responses = {};  ///< Of some of the poses.
+  std::map<std::string, ContactPicture> contacts = {};     ///< Likewise.
 
   void add(const std::string& counter, const std::optional<Pose>& X_AB);
 
@@ -38,7 +46,8 @@ struct Outliers {
 inline constexpr const char* k_outliers_key = "outliers";
 
 /// {"a", "b", "command", "poses": {COUNTER: "tx ty tz qw qx qy qz"}, "responses": {COUNTER: {"force": [x, y, z],
-/// ...}}}, without members that have no content.
+/// ...}}, "contacts": {COUNTER: {"contacts": [[...], ...], "curve": [[...], ...]}}}, without members that have no
+/// content.
 nlohmann::ordered_json to_json_object(const Outliers& outliers);
 
 /// The inverse. @throws Error with what is wrong, e.g. "outliers.poses.max_ns is no pose"

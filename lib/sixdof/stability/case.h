@@ -60,15 +60,16 @@ struct Shot {
 
 /// What ties the answers to the shots of one case together.
 enum class Relation {
-  none,    ///< Each is judged alone.
-  same,    ///< Equal up to Shot::scale and Shot::turn: also where no truth is known.
-  path,    ///< Consecutive poses: the distance changes by no more than the body moves.
-  loop,    ///< A closed path: the work of a conservative force is zero.
-  repeat,  ///< Asked again, by other objects, in other orders and on two threads.
-  sweep,   ///< From the first shot along Case::motion until the bodies touch.
-  cast,    ///< When B first touches A on Case::cast.
-  time,    ///< Times of the queries are compared with their median.
-  bad,     ///< Shot::raw, poses that are none: a refusal, or an answer that is finite.
+  none,      ///< Each is judged alone.
+  same,      ///< Equal up to Shot::scale and Shot::turn: also where no truth is known.
+  path,      ///< Consecutive poses: the distance changes by no more than the body moves.
+  loop,      ///< A closed path: the work of a conservative force is zero.
+  repeat,    ///< Asked again, by other objects, in other orders and on two threads.
+  sweep,     ///< From the first shot along Case::motion until the bodies touch.
+  cast,      ///< When B first touches A on Case::cast.
+  contacts,  ///< Contacts of bodies that overlap along GroundTruth::push.
+  time,      ///< Times of the queries are compared with their median.
+  bad,       ///< Shot::raw, poses that are none: a refusal, or an answer that is finite.
 };
 
 /// A member of a family.

@@ -62,6 +62,8 @@ const std::array k_families{
            make::worst_time},
     Family{22, "moving", "When a moving body first touches: fast, slow, spinning, grazing, at the start, never.",
            "length of the motion over the size 1e-9 .. 1e6", make::moving_bodies},
+    Family{23, "contacts", "Contacts of faces, edges and corners, flush, deep and thin; exchanged and in other frames.",
+           "depth over the size 1e-6 .. 0.05", make::contacts},
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <exception>
 
 #include <sixdof/stability/judge_cast.h>
+#include <sixdof/stability/judge_contacts.h>
 #include <sixdof/stability/judge_relations.h>
 #include <sixdof/stability/judge_shot.h>
 
@@ -41,6 +42,8 @@ void judge_relation(const Case& member, const std::vector<Answers>& answers, con
       return judge_sweep(member, traits, prepare, limits, findings);
     case Relation::cast:
       return judge_cast(member, traits, prepare, limits, findings);
+    case Relation::contacts:
+      return judge_contacts(member, traits, prepare, limits, findings);
     case Relation::bad:
       return judge_bad(member, answers, findings);
   }

@@ -42,6 +42,9 @@ Case worst_time(Draw& draw);
 // family_cast.cpp: motions, and when they end.
 Case moving_bodies(Draw& draw);
 
+// family_contacts.cpp: bodies that overlap along a known direction.
+Case contacts(Draw& draw);
+
 /// Two convex bodies at a generic pose: apart, or overlapping by a face or along axes.
 Shot base(Draw& draw);
 

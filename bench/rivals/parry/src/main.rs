@@ -19,7 +19,7 @@ use parry3d_f64::query::details::ContactManifoldsWorkspace;
 use parry3d_f64::query::{self, ClosestPoints, ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry3d_f64::query::{NonlinearRigidMotion, ShapeCastOptions, ShapeCastStatus};
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
-use sixdof_rival::{json, moved, serve, ContactWrench, Failed, Impact, Mesh, Motion, Point, Pose, Query, Refusal};
+use sixdof_rival::{json, moved, serve, Contact, ContactWrench, Failed, Impact, Mesh, Motion, Point, Pose, Query, Refusal};
 use sixdof_rival::{Response, Separation, Value};
 
 struct Parry {
@@ -42,6 +42,18 @@ fn trimesh(mesh: &Mesh, flags: TriMeshFlags) -> Result<Arc<TriMesh>, Refusal> {
 fn isometry(p: &Pose) -> Isometry {
     let rotation = Mat3::from_cols_array(&[p[0], p[3], p[6], p[1], p[4], p[7], p[2], p[5], p[8]]);
     Isometry::from_parts(Vector::new(p[9], p[10], p[11]), Rotation::from_mat3(&rotation))
+}
+
+impl Parry {
+    fn find_manifolds(&mut self, pose: &Pose) -> Result<(), Failed> {
+        if !self.tuned {
+            self.manifolds.clear();
+            self.workspace = None;
+        }
+        DefaultQueryDispatcher
+            .contact_manifolds(&isometry(pose), &*self.a, &*self.b, 0.0, &mut self.manifolds, &mut self.workspace)
+            .map_err(Failed::because)
+    }
 }
 
 impl Query for Parry {
@@ -81,13 +93,7 @@ impl Query for Parry {
     }
 
     fn respond(&mut self, pose: &Pose) -> Result<Response, Failed> {
-        if !self.tuned {
-            self.manifolds.clear();
-            self.workspace = None;
-        }
-        DefaultQueryDispatcher
-            .contact_manifolds(&isometry(pose), &*self.a, &*self.b, 0.0, &mut self.manifolds, &mut self.workspace)
-            .map_err(Failed::because)?;
+        self.find_manifolds(pose)?;
         let mut wrench = ContactWrench::new(moved(pose, self.centre_b));
         for manifold in &self.manifolds {
             for contact in manifold.contacts().iter().filter(|each| each.dist < 0.0) {
@@ -119,6 +125,16 @@ impl Query for Parry {
         }))
     }
 
+    /// The first that it finds. Points on A; parry's margin is 0, so a distance above 0 is no contact.
+    fn contacts(&mut self, pose: &Pose, most: usize) -> Result<Vec<Contact>, Failed> {
+        self.find_manifolds(pose)?;
+        let each = self.manifolds.iter().flat_map(|manifold| {
+            manifold.contacts().iter().map(|contact| (contact, manifold.local_n1))
+        });
+        let inside = each.filter(|(contact, _)| contact.dist < 0.0).take(most);
+        Ok(inside.map(|(c, n)| Contact { point: c.local_p1.into(), normal: n.into(), depth: -c.dist }).collect())
+    }
+
     fn footprint(&self) -> (usize, Value) {
         let shared = Arc::ptr_eq(&self.a, &self.b);
         let triangles = self.a.num_triangles() + if shared { 0 } else { self.b.num_triangles() };
@@ -135,8 +151,9 @@ fn main() {
         "name": "parry",
         "version": "0.31.1",
         "summary": "parry3d-f64, two TriMesh; surfaces only",
-        "answers": ["collide", "distance", "respond", "cast"],
+        "answers": ["collide", "distance", "respond", "cast", "contacts"],
         "law": "contacts",
+        "depth": "triangles",
         "limits": ["collide_of_surfaces", "respond_of_surfaces", "own_direction"],
         "parameters": [
             choice("profile", "anew each query; or contacts kept, internal edges fixed", "default", &["default", "tuned"]),

@@ -84,6 +84,14 @@ pub struct Impact {
     pub normal: Option<Point>,
 }
 
+/// A place where the bodies touch or overlap, in A's frame.
+pub struct Contact {
+    pub point: Point,
+    /// Unit length, from A to B.
+    pub normal: Point,
+    pub depth: f64,
+}
+
 /// What pushes B out of A, in A's frame; the torque is about `reference`.
 pub struct Response {
     pub penalty: f64,
@@ -143,6 +151,10 @@ pub trait Query: Sized {
     }
     /// The first contact, none if there is none.
     fn cast(&mut self, _motion: &Motion) -> Result<Option<Impact>, Failed> {
+        Err(Failed::unsupported())
+    }
+    /// At most `most` contacts.
+    fn contacts(&mut self, _pose: &Pose, _most: usize) -> Result<Vec<Contact>, Failed> {
         Err(Failed::unsupported())
     }
     /// Bytes, and an object of counts.

@@ -7,12 +7,12 @@ use std::time::Instant;
 use serde_json::{json, Map, Value};
 
 use crate::system::{processor_ns, take_standard_output, Progress};
-use crate::{Failed, Impact, Mesh, Motion, Point, Pose, Query, Refusal, Response, Separation};
+use crate::{Contact, Failed, Impact, Mesh, Motion, Point, Pose, Query, Refusal, Response, Separation};
 
 const MOST_WORDS: usize = 400;
 
 /// Answers requests until the input ends. `description` has the keys of the reply to hello: `name`, `version`,
-/// `summary`, `answers`, and optional `law`, `body`, `limits`, `parameters`. A panic of the library is a failed query.
+/// `summary`, `answers`, and optional `law`, `depth`, `body`, `limits`, `parameters`. A panic of the library is a failed query.
 pub fn serve<Q: Query>(description: Value) {
     let mut hello = description;
     hello["protocol"] = json!(1);
@@ -79,11 +79,13 @@ impl<Q: Query> Server<Q> {
 
     fn ask(&mut self, request: &Value) -> Reply {
         let pose = pose_of(&request["pose"])?;
-        let (took, answer) = if request["query"] == "cast" {
-            let query = self.prepared()?;
-            timed_cast(query, &motion_of(request, pose)?)
-        } else {
-            timed(self.prepared()?, kind_of(request)?, &pose)
+        let (took, answer) = match request["query"].as_str() {
+            Some("cast") => timed_cast(self.prepared()?, &motion_of(request, pose)?),
+            Some("contacts") => {
+                let most = request["most"].as_u64().ok_or_else(|| other("no \"most\""))? as usize;
+                timed(self.prepared()?, Kind::Contacts(most), &pose)
+            }
+            _ => timed(self.prepared()?, kind_of(request)?, &pose),
         };
         let mut reply = answer.unwrap_or_else(|e| json!({"status": e.status, "words": cut(e.words)}));
         reply["ns"] = json!(took);
@@ -152,14 +154,17 @@ enum Kind {
     Collide,
     Distance,
     Respond,
+    Contacts(usize),
 }
 
 enum Answer {
     Collide(bool),
     Distance(Separation),
     Respond(Response),
+    Contacts(Vec<Contact>),
 }
 
+/// Of those that are asked by poses alone.
 fn kind_of(request: &Value) -> Result<Kind, Refusal> {
     match request["query"].as_str() {
         Some("collide") => Ok(Kind::Collide),
@@ -174,6 +179,7 @@ fn ask_guarded<Q: Query>(query: &mut Q, kind: Kind, pose: &Pose) -> Result<Answe
         Kind::Collide => query.collide(pose).map(Answer::Collide),
         Kind::Distance => query.distance(pose).map(Answer::Distance),
         Kind::Respond => query.respond(pose).map(Answer::Respond),
+        Kind::Contacts(most) => query.contacts(pose, most).map(Answer::Contacts),
     });
     catch_unwind(ask).unwrap_or_else(|panic| Err(Failed::because(text(panic))))
 }
@@ -241,6 +247,16 @@ fn reply_of(answer: Answer) -> Result<Value, Failed> {
                 reply["volume"] = json!(volume);
             }
             Ok(reply)
+        }
+        Answer::Contacts(list) => {
+            for each in &list {
+                finite(&[&each.point, &each.normal], &[each.depth])?;
+            }
+            Ok(json!({
+                "points": list.iter().map(|each| each.point).collect::<Vec<_>>(),
+                "normals": list.iter().map(|each| each.normal).collect::<Vec<_>>(),
+                "depths": list.iter().map(|each| each.depth).collect::<Vec<_>>(),
+            }))
         }
     }
 }

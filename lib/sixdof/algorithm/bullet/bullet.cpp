@@ -15,18 +15,20 @@ constexpr const char* k_margin = "margin";
 Eigen::Vector3d from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Receives every contact that GImpact finds.
+template <class Add>
 class ContactReceiver final : public btManifoldResult {
  public:
-  ContactReceiver(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, ContactWrench& wrench)
-      : btManifoldResult(a, b), wrench_(wrench) {}
+  /// @param add add(point, normal from A to B, depth)
+  ContactReceiver(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b, const Add& add)
+      : btManifoldResult(a, b), add_(add) {}
 
   /// The normal is on B, towards A.
   void addContactPoint(const btVector3& normal, const btVector3& point, btScalar distance) override {
-    wrench_.add(from_bullet(point), -from_bullet(normal), -distance);
+    add_(from_bullet(point), Eigen::Vector3d(-from_bullet(normal)), -distance);
   }
 
  private:
-  ContactWrench& wrench_;
+  const Add& add_;
 };
 
 class GImpactQuery final : public LibraryQuery {
@@ -49,6 +51,16 @@ class GImpactQuery final : public LibraryQuery {
     return response_of(wrench_);
   }
 
+  /// GImpact cannot be told a number: the first that it finds.
+  Outcome<Contacts> contacts(const Pose& X_AB, std::size_t most) override {
+    Contacts found;
+    const Status status = find_contacts(X_AB, [&](const auto& point, const auto& normal, double depth) {
+      if (found.list.size() < most) found.list.push_back({point, normal, depth});
+    });
+    if (status != Status::ok) return status;
+    return found;
+  }
+
   Footprint footprint() const override {
     double nodes = 0.0, triangles = 0.0;
     meshes_.for_each([&](const GImpactMesh& each) {
@@ -60,11 +72,18 @@ class GImpactQuery final : public LibraryQuery {
   }
 
  private:
+  /// All of them become wrench_.
   Status find_contacts(const Pose& X_AB) {
+    wrench_.reset(X_AB * center_b_);
+    return find_contacts(
+        X_AB, [&](const auto& point, const auto& normal, double depth) { wrench_.add(point, normal, depth); });
+  }
+
+  template <class Add>
+  Status find_contacts(const Pose& X_AB, const Add& add) {
     if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
     body_b_.setWorldTransform(to_bullet(X_AB));
-    wrench_.reset(X_AB * center_b_);
-    pairs_.collide(body_a_, body_b_, [&](auto* a, auto* b) { return ContactReceiver(a, b, wrench_); });
+    pairs_.collide(body_a_, body_b_, [&](auto* a, auto* b) { return ContactReceiver<Add>(a, b, add); });
     return Status::ok;
   }
 
@@ -82,8 +101,9 @@ std::unique_ptr<Algorithm> make_bullet_gimpact_algorithm() {
       {.name = "bullet-gimpact",
        .version = fmt::format("{}.{} double", BT_BULLET_VERSION / 100, BT_BULLET_VERSION % 100),
        .summary = "Bullet's GImpact: contacts of triangle pairs as a penalty wrench",
-       .answers = {.collide = true, .respond = true},
+       .answers = {.collide = true, .respond = true, .contacts = true},
        .law = ResponseLaw::contacts,
+       .depth = ContactDepth::triangles,
        .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(),
                       Parameter::number(k_margin, "triangles are thickened by this length; Bullet's own default is 0.1",

@@ -6,8 +6,8 @@
 
 namespace sixdof {
 
-/// `bullet-gimpact`: Bullet's GImpact, the shape that Bullet offers for moving triangle meshes. Answers collide and
-/// respond.
+/// `bullet-gimpact`: Bullet's GImpact, the shape that Bullet offers for moving triangle meshes. Answers collide,
+/// respond and contacts.
 ///
 /// **Precision.** Bullet is compiled for double precision (Debian's package `bullet-float64`). Boxes in GImpact's tree
 /// are quantized to 16 bits and widened; triangles are not.

@@ -24,6 +24,8 @@ const Hull& hull_of(const void* object) { return *static_cast<const Hull*>(objec
 
 void write(const Eigen::Vector3d& v, ccd_vec3_t* out) { ccdVec3Set(out, v.x(), v.y(), v.z()); }
 
+Eigen::Vector3d to_eigen(const ccd_vec3_t& v) { return {v.v[0], v.v[1], v.v[2]}; }
+
 /// The vertex that is farthest along the direction.
 void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
   const Hull& body = hull_of(object);
@@ -62,6 +64,19 @@ class CcdQuery final : public Query {
     return (is_mpr_ ? ccdMPRIntersect(&a_, &b_, &ccd_) : ccdGJKIntersect(&a_, &b_, &ccd_)) != 0;
   }
 
+  /// By EPA, or by MPR: one contact.
+  Outcome<Contacts> contacts(const Pose& X_AB, std::size_t most) override {
+    if (!is_finite(X_AB)) return fail(Status::failed, "the pose is not finite");
+    b_.X_A = X_AB;
+    ccd_real_t depth = 0.0;
+    ccd_vec3_t direction, place;
+    const int status = is_mpr_ ? ccdMPRPenetration(&a_, &b_, &ccd_, &depth, &direction, &place)
+                               : ccdGJKPenetration(&a_, &b_, &ccd_, &depth, &direction, &place);
+    if (status < -1) return fail(Status::failed, "EPA ran out of memory");
+    if (status != 0 || most == 0) return Contacts{};
+    return Contacts{{{.point = to_eigen(place), .normal = to_eigen(direction), .depth = depth}}};
+  }
+
   Footprint footprint() const override {
     const auto vertices = a_.hull.vertices().size() + b_.hull.vertices().size();
     return {vertices * sizeof(Eigen::Vector3d), {{"vertices", static_cast<double>(vertices)}}};
@@ -80,8 +95,9 @@ std::unique_ptr<Algorithm> make_ccd_hull_algorithm() {
   return make_algorithm<CcdQuery>(
       {.name = "ccd-hull",
        .version = SIXDOF_CCD_VERSION " double",
-       .summary = "libccd on the convex hulls of both meshes",
-       .answers = {.collide = true},
+       .summary = "libccd on the convex hulls of both meshes; contacts by EPA, or by MPR",
+       .answers = {.collide = true, .contacts = true},
+       .depth = ContactDepth::bodies,
        .parameters = {Parameter::choice(k_method, "GJK, or Minkowski portal refinement", "gjk", {"gjk", "mpr"}),
                       Parameter::count(k_max_iterations, "after which the answer is no", "100", 1, 1e9)},
        .body = Body::convex_hull});

@@ -151,6 +151,24 @@ class ContactsQuery final : public CoalQuery {
     });
   }
 
+  /// Coal stops its search once it has so many.
+  Outcome<Contacts> contacts(const Pose& X_AB, std::size_t most) override {
+    if (most == 0) return Contacts{};
+    return at(X_AB, [&]() -> Outcome<Contacts> {
+      coal::CollisionRequest request = request_;
+      request.num_max_contacts = most;
+      coal::CollisionResult result;
+      coal::collide(models_.a.get(), X_AA_, models_.b.get(), X_AB_, request, result);
+      Contacts found;
+      for (std::size_t i = 0; i < result.numContacts(); ++i) {
+        const coal::Contact& contact = result.getContact(i);
+        found.list.push_back({contact.pos.template cast<double>(), contact.normal.template cast<double>(),
+                              -static_cast<double>(contact.penetration_depth)});
+      }
+      return found;
+    });
+  }
+
  private:
   const Eigen::Vector3d center_b_;
   ContactWrench wrench_;
@@ -179,8 +197,9 @@ std::unique_ptr<Algorithm> make_coal_contacts_algorithm() {
       {.name = "coal-contacts",
        .version = version(),
        .summary = "Coal's contacts of triangle pairs as a penalty wrench",
-       .answers = {.respond = true},
+       .answers = {.respond = true, .contacts = true},
        .law = ResponseLaw::contacts,
+       .depth = ContactDepth::triangles,
        .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("1000000", 1e9)}});
 }

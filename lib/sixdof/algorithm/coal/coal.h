@@ -7,7 +7,8 @@
 namespace sixdof {
 
 /// `coal-obbrss`: Coal (formerly hpp-fcl), trees of oriented boxes with rectangle-swept spheres. Answers collide and
-/// distance. `coal-contacts`: its contacts as a wrench (algorithm/contact_wrench.h). Answers respond.
+/// distance. `coal-contacts`: its contacts as they are, and as a wrench (algorithm/contact_wrench.h). Answers respond
+/// and contacts.
 ///
 /// Coal is no Debian package: both are built where CMake finds it (find_package(coal)). This project's own tests
 /// compile them against headers that forward Coal's names to FCL (test/algorithm/coal/stand_in), so they check this

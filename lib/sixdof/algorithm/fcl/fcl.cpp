@@ -176,6 +176,22 @@ class ContactsQuery final : public FclQuery<fcl::OBBRSSd> {
     });
   }
 
+  /// FCL stops its search once it has so many.
+  Outcome<Contacts> contacts(const Pose& X_AB, std::size_t most) override {
+    if (most == 0) return Contacts{};
+    return guarded(X_AB, [&]() -> Outcome<Contacts> {
+      X_AB_ = to_fcl(X_AB);
+      fcl::CollisionResultd result;
+      fcl::collide<double>(models_.a.get(), X_AA_, models_.b.get(), X_AB_, fcl::CollisionRequestd(most, true), result);
+      Contacts found;
+      for (std::size_t i = 0; i < result.numContacts(); ++i) {
+        const fcl::Contactd& contact = result.getContact(i);
+        found.list.push_back({contact.pos, contact.normal, contact.penetration_depth});
+      }
+      return found;
+    });
+  }
+
  private:
   const Eigen::Vector3d center_b_;
   ContactWrench wrench_;
@@ -234,8 +250,9 @@ std::unique_ptr<Algorithm> make_fcl_contacts_algorithm() {
       {.name = "fcl-contacts",
        .version = FCL_VERSION,
        .summary = "FCL's contacts of triangle pairs as a penalty wrench",
-       .answers = {.respond = true},
+       .answers = {.respond = true, .contacts = true},
        .law = ResponseLaw::contacts,
+       .depth = ContactDepth::triangles,
        .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("1000000", 1e9)}});
 }

@@ -29,7 +29,7 @@ std::unique_ptr<Algorithm> make_fcl_obb_algorithm();
 /// depends on the pose. Surfaces only.
 std::unique_ptr<Algorithm> make_fcl_aabb_algorithm();
 
-/// `fcl-contacts`: FCL's contacts turned into a wrench of the depth law. Answers respond only.
+/// `fcl-contacts`: FCL's contacts as they are, and turned into a wrench of the depth law. Answers respond and contacts.
 ///
 /// For every pair of intersecting triangles FCL reports a point, a unit normal from A to B and the penetration depth of
 /// these two triangles, not of the bodies. They become a wrench by the rule of algorithm/contact_wrench.h.

@@ -1,5 +1,7 @@
 #include <sixdof/algorithm/ode/ode.h>
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include <sixdof/algorithm/ode/ode_lock.h>
@@ -55,6 +57,22 @@ class OdeQuery final : public LibraryQuery {
     return response_of(wrench_);
   }
 
+  /// ODE keeps the first that it finds.
+  Outcome<Contacts> contacts(const Pose& X_AB, std::size_t most) override {
+    const std::size_t asked = std::min(most, contacts_.size());
+    if (asked == 0) return Contacts{};
+    const Outcome<std::size_t> count = find_contacts(X_AB, static_cast<int>(asked));
+    if (!count.ok()) return count.status;
+    Contacts found;
+    for (const dContactGeom& contact : std::span(contacts_).first(std::min(count.value, asked))) {
+      // ODE's normal leads the first body, A, out of the second.
+      found.list.push_back({{contact.pos[0], contact.pos[1], contact.pos[2]},
+                            {-contact.normal[0], -contact.normal[1], -contact.normal[2]},
+                            contact.depth});
+    }
+    return found;
+  }
+
   /// ODE does not tell the size of its trees.
   Footprint footprint() const override {
     double triangles = 0.0;
@@ -87,8 +105,9 @@ std::unique_ptr<Algorithm> make_ode_algorithm() {
       {.name = "ode",
        .version = SIXDOF_ODE_VERSION " double",
        .summary = "ODE with OPCODE: contacts of triangle pairs as a penalty wrench",
-       .answers = {.collide = true, .respond = true},
+       .answers = {.collide = true, .respond = true, .contacts = true},
        .law = ResponseLaw::contacts,
+       .depth = ContactDepth::triangles,
        .limits = {.surfaces_only = {.collide = true, .respond = true}, .own_direction = true},
        .parameters = {ContactWrench::combine_parameter(), max_contacts_parameter("65535", k_largest_count)}});
 }

@@ -6,7 +6,8 @@
 
 namespace sixdof {
 
-/// `ode`: the Open Dynamics Engine's collision of two triangle meshes, with OPCODE. Answers collide and respond.
+/// `ode`: the Open Dynamics Engine's collision of two triangle meshes, with OPCODE. Answers collide, respond and
+/// contacts.
 ///
 /// **Precision.** ODE is compiled for double precision. OPCODE's trees of axis-aligned boxes are in single precision;
 /// pairs of triangles are computed in double precision.
@@ -14,7 +15,7 @@ namespace sixdof {
 /// **Prepare** builds OPCODE's tree of each mesh; it refers to the mesh's own arrays. **A query** moves B's geometry
 /// and calls dCollide() for the pair, without a space. collide asks for one contact and says that the contacts do not
 /// matter (CONTACTS_UNIMPORTANT), as ODE's manual has it; OPCODE collects all pairs of triangles nonetheless. respond
-/// asks for all. Nothing is kept from query to query:
+/// asks for all, contacts for as many as it is asked for. Nothing is kept from query to query:
 /// OPCODE's temporal coherence is off, as by default.
 ///
 /// **Contacts** become a wrench by the rule of algorithm/contact_wrench.h. ODE counts contacts in 16 bits, so a query

@@ -5,7 +5,7 @@
 
 (function (report) {
   const element = report.element;
-  const colours = { a: 0xa8b0b8, b: 0xd8c39a, ideal: 0x8a8a8a };
+  const colours = { a: 0xa8b0b8, b: 0xd8c39a, ideal: 0x8a8a8a, curve: 0xb03030 };
   const numbersOfMoment = { pose: [0, 7], force: [7, 10], idealForce: [10, 13], torque: [13, 16], idealTorque: [16, 19] };
   const parts = (moment) => Object.fromEntries(Object.entries(numbersOfMoment).map(([name, [from, to]]) => [name, moment.slice(from, to)]));
 
@@ -152,7 +152,8 @@
       const hasArrows = Object.values(this.peaks).some((peak) => peak > 0);
       return [entry(colours.a, "", "A, fixed"), kind === "object" ? null : entry(colours.b, "", "B, moving"),
               algorithm ? entry(report.colourOf(style, report.theme), report.shapeOf(style), hasArrows ? `${algorithm}: force, and torque with two heads` : algorithm) : null,
-              hasArrows ? entry(colours.ideal, "", "ideal or exact ones") : null].filter(Boolean);
+              hasArrows ? entry(colours.ideal, "", "ideal or exact ones") : null,
+              this.scene.curve?.length ? entry(colours.curve, "", "curve in which the surfaces cross; arrows: contacts with their normals") : null].filter(Boolean);
     }
 
     /** Once the element is in the page: it has a size then. */
@@ -219,6 +220,7 @@
         }
       }
       this.orbit = new Orbit(box, standsOnY(scene));
+      this.drawContacts();
       this.follow(box);
       this.peaks = ["force", "idealForce", "torque", "idealTorque"].map((name) =>
         [name, Math.max(0, ...scene.moments.map((each) => Math.hypot(...parts(each)[name])))]);
@@ -266,6 +268,21 @@
         this.arrows.add(arrowOf(from, vector.normalize(), length, this.orbit.radius, name, report.colourOf(this.style(), report.theme)));
       }
       this.space.add(this.arrows);
+    }
+
+    /** Contacts as arrows along their normals, from A to B, and the curve in which the surfaces cross. */
+    drawContacts() {
+      const { contacts = [], curve = [] } = this.scene, radius = 0.35 * this.orbit.radius;
+      for (const [x, y, z, ...normal] of contacts) {
+        this.space.add(arrowOf(new THREE.Vector3(x, y, z), new THREE.Vector3(...normal).normalize(), 0.4 * radius, radius, "contact",
+          report.colourOf(this.style(), report.theme)));
+      }
+      if (curve.length === 0) return;
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.Float32BufferAttribute(curve.flat(), 3));
+      const line = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: colours.curve, depthTest: false, transparent: true }));
+      line.renderOrder = 1;
+      this.space.add(line);
     }
 
     update() {

@@ -1,6 +1,6 @@
 //! The same as probe.py.
 
-use sixdof_rival::{json, serve, Failed, Impact, Mesh, Motion, Pose, Query, Refusal, Separation, Value};
+use sixdof_rival::{json, serve, Contact, Failed, Impact, Mesh, Motion, Pose, Query, Refusal, Separation, Value};
 
 struct Probe {
     sum: f64,
@@ -47,6 +47,12 @@ impl Query for Probe {
         Ok(Some(Impact { t, points: Some((motion.reference, motion.rotation)), normal: Some([0.0, 0.0, 1.0]) }))
     }
 
+    fn contacts(&mut self, pose: &Pose, most: usize) -> Result<Vec<Contact>, Failed> {
+        let depth = if pose[10] == 2.0 { f64::NAN } else { pose[9] };
+        let contact = |i: usize| Contact { point: [pose[9], i as f64, 0.0], normal: [0.0, 0.6, 0.8], depth };
+        Ok((0..most).map(contact).collect())
+    }
+
     fn footprint(&self) -> (usize, Value) {
         (12, json!({"things": 3}))
     }
@@ -57,7 +63,8 @@ fn main() {
         "name": "probe",
         "version": "1.0",
         "summary": "a probe",
-        "answers": ["collide", "distance", "cast"],
+        "answers": ["collide", "distance", "cast", "contacts"],
+        "depth": "point",
         "parameters": [{"name": "mode", "meaning": "what fails", "unit": "1", "default": "none",
                         "choices": ["none", "bad_mesh", "bad_argument"]}],
     }));

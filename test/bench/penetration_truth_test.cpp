@@ -1,0 +1,83 @@
+#include "bench/harness/penetration_truth.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <sixdof/base/error.h>
+#include <sixdof/models/recipe.h>
+#include <sixdof/oracle/convex_depth.h>
+#include <sixdof/oracle/convex_hull.h>
+
+#include "../oracle/bodies.h"
+
+namespace sixdof::bench {
+namespace {
+
+/// Two bodies that overlap at `count` poses, and a cache of their own.
+struct OwnPenetration : ::testing::Test {
+  const Mesh a = make_torus_knot({}, 600), b = make_bumpy_sphere({}, 400);
+  const std::filesystem::path cache = std::filesystem::path(::testing::TempDir()) / "penetration_truth_cache";
+  OwnPenetration() {
+    std::filesystem::remove_all(cache);
+    ::setenv("SIXDOF_CACHE", cache.c_str(), 1);
+  }
+  ~OwnPenetration() override {
+    ::unsetenv("SIXDOF_CACHE");
+    std::filesystem::remove_all(cache);
+  }
+  static std::vector<Pose> poses(std::size_t count) {
+    std::mt19937_64 random(3);
+    std::vector<Pose> list;
+    while (list.size() < count) {
+      list.push_back(bodies::random_pose(random, 0.1));
+      list.back().t += Eigen::Vector3d(1.1, 0.7, 0.1);
+    }
+    return list;
+  }
+};
+
+TEST_F(OwnPenetration, IsTheIntervalOfTheOracleAndIsKept) {
+  const std::vector<Pose> at = poses(2);
+  PenetrationTruths truths(a, b);
+  const std::span<const PenetrationDepth> found = truths.at(at);
+  ASSERT_EQ(found.size(), at.size());
+  EXPECT_FALSE(std::filesystem::is_empty(cache));
+  PenetrationTruths again(a, b);
+  const std::span<const PenetrationDepth> kept = again.at(at);
+  const PenetrationOracle oracle(a, b);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    EXPECT_GT(found[i].hi, 0.0);
+    EXPECT_LE(found[i].lo, found[i].hi);
+    EXPECT_EQ(kept[i].lo, found[i].lo);
+    EXPECT_EQ(kept[i].hi, found[i].hi);
+    EXPECT_EQ(kept[i].closed, found[i].closed);
+    const PenetrationDepth other = oracle.evaluate(at[i], {.tolerance = 0.1});
+    EXPECT_LE(std::max(other.lo, found[i].lo), std::min(other.hi, found[i].hi));
+  }
+}
+
+TEST_F(OwnPenetration, OfHullsIsTheDepthOfConvexBodies) {
+  const std::vector<Pose> at = poses(3);
+  PenetrationTruths truths = PenetrationTruths::of_hulls(a, b);
+  const std::span<const PenetrationDepth> found = truths.at(at);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const double depth = convex_depth(convex_hull(a), convex_hull(b), at[i]).depth;
+    EXPECT_TRUE(found[i].closed);
+    EXPECT_NEAR(found[i].lo, depth, 1e-12);
+    EXPECT_NEAR(found[i].hi, depth, 1e-12);
+    // The hulls contain the bodies.
+    EXPECT_GE(found[i].hi, PenetrationTruths(a, b).at(at)[i].lo);
+  }
+}
+
+TEST_F(OwnPenetration, TakesAFewPosesOnly) {
+  PenetrationTruths truths = PenetrationTruths::of_hulls(a, b);
+  EXPECT_EQ(truths.at(poses(PenetrationTruths::k_most + 5)).size(), PenetrationTruths::k_most);
+}
+
+}  // namespace
+}  // namespace sixdof::bench
