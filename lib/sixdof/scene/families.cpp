@@ -41,6 +41,19 @@ constexpr std::array k_families{
     SceneFamily{"shuffled", "The cube in another order of insertion: the same answers.", detail::make_shuffled},
 };
 
+constexpr std::array k_deforming{
+    SceneFamily{"wave", "Waves over a closed shell: all of it deforms, neighbours stay neighbours.", detail::make_wave},
+    SceneFamily{"twist", "A bar that is twisted and bent: its ends travel, its middle stays.", detail::make_twist},
+    SceneFamily{"cloth", "A sheet, open, that falls over a ball: it comes to rest a hair above it, and sinks in.",
+                detail::make_cloth},
+    SceneFamily{"bump", "A bump that grows on a ball: a small part deforms much, the rest not at all.",
+                detail::make_bump},
+    SceneFamily{"crumple",
+                "A shell that is folded eight times along random directions: what is close on the surface "
+                "gets far apart, and it may meet itself, which is not asked.",
+                detail::make_crumple},
+};
+
 /// Throws unless low <= value <= high or the value is the family's own.
 void check(const char* what, double value, double low, double high) {
   if (std::isnan(value) || (value >= low && value <= high)) return;
@@ -57,15 +70,19 @@ std::string recipe_of(std::string_view family, const SceneNumbers& n) {
   add("moving", n.moving);
   add("step", n.step);
   add("margin", n.margin);
+  add("amplitude", n.amplitude);
+  if (n.triangles > 0) text += fmt::format(" triangles={}", n.triangles);
   return text;
 }
 
 }  // namespace
 
 std::span<const SceneFamily> scene_families() { return k_families; }
+std::span<const SceneFamily> deforming_families() { return k_deforming; }
 
 Scene make_scene(std::string_view name, const SceneNumbers& numbers) {
   constexpr std::size_t k_most_bodies = 1'000'000, k_most_frames = 100'000;
+  constexpr std::size_t k_fewest_triangles = 100, k_most_triangles = 5'000'000;
   if (numbers.bodies < 2 || numbers.bodies > k_most_bodies) {
     throw BadArgument(fmt::format("{} bodies: it must be in 2 .. {}", numbers.bodies, k_most_bodies));
   }
@@ -77,16 +94,23 @@ Scene make_scene(std::string_view name, const SceneNumbers& numbers) {
   check("share that moves", numbers.moving, 0.0, 1.0);
   check("step", numbers.step, 0.0, 1e3);
   check("margin", numbers.margin, 0.0, 1e3);
-  for (const SceneFamily& family : k_families) {
-    if (family.name != name) continue;
-    Scene scene = family.make(numbers);
-    scene.name = name;
-    scene.recipe = recipe_of(name, numbers);
-    scene.check();
-    return scene;
+  check("amplitude", numbers.amplitude, 1e-6, 1.0);
+  if (numbers.triangles != 0 && (numbers.triangles < k_fewest_triangles || numbers.triangles > k_most_triangles)) {
+    throw BadArgument(
+        fmt::format("{} triangles: it must be in {} .. {}", numbers.triangles, k_fewest_triangles, k_most_triangles));
   }
   std::string names;
-  for (const SceneFamily& family : k_families) names += fmt::format("{}{}", names.empty() ? "" : ", ", family.name);
+  for (const std::span<const SceneFamily> families : {scene_families(), deforming_families()}) {
+    for (const SceneFamily& family : families) {
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", family.name);
+      if (family.name != name) continue;
+      Scene scene = family.make(numbers);
+      scene.name = name;
+      scene.recipe = recipe_of(name, numbers);
+      scene.check();
+      return scene;
+    }
+  }
   throw BadArgument(fmt::format("no family of scenes {}; there are {}", name, names));
 }
 
