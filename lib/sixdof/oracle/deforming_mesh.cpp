@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 /// Building a triangle's share of a tree takes as long as expanding so many pairs of nodes: about 500 ns of the prepare
 /// rows of bench/published/growth against 50 to 70 ns. Another value moves the moment of a rebuild, no answer.
 constexpr double k_build = 8.0;
-/// A part whose box area has grown by less is left as it is.
+/// A part whose ratio of areas has grown by less is left as it is.
 constexpr double k_worth = 1.05;
 /// Parts below a node are built instead of it if they save most of what it would, and are at most half of it.
 constexpr double k_most = 0.8, k_half = 0.5;
@@ -23,33 +23,10 @@ constexpr std::uint32_t k_smallest_part = 256;
 /// Rounding of a displacement relative to the coordinates.
 constexpr double k_rounding = 1e-15;
 
-float half_area(const float (&size)[3]) { return size[0] * size[1] + size[1] * size[2] + size[2] * size[0]; }
-
-double area_of_child(const Tree::Node& node, std::size_t i) {
-  return static_cast<double>(half_area(
-      {node.upper[0][i] - node.lower[0][i], node.upper[1][i] - node.lower[1][i], node.upper[2][i] - node.lower[2][i]}));
-}
-
-double area_of(const Tree::Volume& box) {
-  return static_cast<double>(
-      half_area({box.upper[0] - box.lower[0], box.upper[1] - box.lower[1], box.upper[2] - box.lower[2]}));
-}
-
-/// Sum of the areas of the boxes of all nodes and leaves below each node.
-std::vector<double> areas_below(const Tree& tree) {
-  std::vector<double> areas(tree.nodes().size(), 0.0);
-  for (std::size_t index = areas.size(); index-- > 0;) {  // children before parents
-    const Tree::Node& node = tree.nodes()[index];
-    for (std::size_t i = 0; i < node.child_count; ++i) {
-      areas[index] += area_of_child(node, i);
-      if (!node.child[i].is_leaf()) areas[index] += areas[node.child[i].node()];
-    }
-  }
-  return areas;
-}
-
-float growth_base(const Tree& tree, const std::vector<double>& areas, std::size_t node) {
-  return static_cast<float>(areas[node] / area_of(tree.nodes()[node].volume));
+double half_area_of_child(const Tree::Node& node, std::size_t i) {
+  const float x = node.upper[0][i] - node.lower[0][i], y = node.upper[1][i] - node.lower[1][i],
+              z = node.upper[2][i] - node.lower[2][i];
+  return static_cast<double>(x * y + y * z + z * x);
 }
 
 /// As Mesh::volume().
@@ -63,6 +40,27 @@ double volume_of(std::span<const Vector3d> vertices, std::span<const Triangle> t
 }
 
 }  // namespace
+
+std::vector<DeformingMesh::Areas> DeformingMesh::areas_of(const Tree& tree) {
+  std::vector<Areas> areas(tree.nodes().size());
+  for (std::size_t index = areas.size(); index-- > 0;) {  // children before parents
+    const Tree::Node& node = tree.nodes()[index];
+    Areas& sum = areas[index];
+    for (std::size_t i = 0; i < node.child_count; ++i) {
+      const Tree::Child child = node.child[i];
+      sum.boxes += half_area_of_child(node, i);
+      if (!child.is_leaf()) {
+        sum.boxes += areas[child.node()].boxes;
+        sum.surface += areas[child.node()].surface;
+        continue;
+      }
+      for (const Tree::Corners& c : tree.corners().subspan(child.first(), child.count())) {
+        sum.surface += 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
+      }
+    }
+  }
+  return areas;
+}
 
 DeformingMesh::DeformingMesh(const Mesh& mesh)
     : triangles_(mesh.triangles()),
@@ -97,9 +95,9 @@ void DeformingMesh::refresh() {
 }
 
 void DeformingMesh::note_built() {
-  const std::vector<double> areas = areas_below(body_->tree);
+  const std::vector<Areas> areas = areas_of(body_->tree);
   built_.resize(areas.size());
-  for (std::size_t i = 0; i < areas.size(); ++i) built_[i] = growth_base(body_->tree, areas, i);
+  for (std::size_t i = 0; i < areas.size(); ++i) built_[i] = static_cast<float>(areas[i].ratio());
   fresh_ = true;
   work_ = 0.0;
   wasted_ = 0.0;
@@ -138,10 +136,10 @@ void DeformingMesh::make_fresh() {
   rebuild(here);
 }
 
-DeformingMesh::Parts DeformingMesh::find_parts(std::uint32_t index, const std::vector<double>& areas) const {
+DeformingMesh::Parts DeformingMesh::find_parts(std::uint32_t index, const std::vector<Areas>& areas) const {
   const Tree::Node& node = body_->tree.nodes()[index];
-  const double before = static_cast<double>(built_[index]) * area_of(node.volume);
-  const double saved = std::max(0.0, areas[index] - before);
+  const double before = static_cast<double>(built_[index]) * areas[index].surface;
+  const double saved = std::max(0.0, areas[index].boxes - before);
   Parts below;
   if (node.triangle_count >= k_smallest_part) {
     for (std::size_t i = 0; i < node.child_count; ++i) {
@@ -153,16 +151,16 @@ DeformingMesh::Parts DeformingMesh::find_parts(std::uint32_t index, const std::v
     }
   }
   const bool is_better_below = below.saved >= k_most * saved && below.price <= k_half * node.triangle_count;
-  if (is_better_below || areas[index] < k_worth * before) return below;
+  if (is_better_below || areas[index].boxes < k_worth * before) return below;
   return {{index}, saved, static_cast<double>(node.triangle_count)};
 }
 
 void DeformingMesh::apply_rule() {
   const double work = std::exchange(work_, 0.0);
-  const std::vector<double> areas = areas_below(body_->tree);
+  const std::vector<Areas> areas = areas_of(body_->tree);
   const Parts parts = find_parts(0, areas);
   if (parts.nodes.empty()) return;
-  wasted_ += work * parts.saved / areas[0];
+  wasted_ += work * parts.saved / areas[0].boxes;
   if (wasted_ < k_build * parts.price) return;
   wasted_ = 0.0;
   built_triangles_ += static_cast<std::uint64_t>(parts.price);
@@ -173,10 +171,10 @@ void DeformingMesh::apply_rule() {
     return note_built();
   }
   const std::vector<std::uint32_t> origin = body_->tree.rebuild(surface(), parts.nodes);
-  const std::vector<double> now = areas_below(body_->tree);
+  const std::vector<Areas> now = areas_of(body_->tree);
   std::vector<float> built(now.size());
   for (std::size_t i = 0; i < now.size(); ++i) {
-    built[i] = origin[i] == Tree::k_new ? growth_base(body_->tree, now, i) : built_[origin[i]];
+    built[i] = origin[i] == Tree::k_new ? static_cast<float>(now[i].ratio()) : built_[origin[i]];
   }
   built_ = std::move(built);
   body_->patches = detail::CoplanarPatches(body_->tree, true);

@@ -27,12 +27,12 @@ namespace sixdof {
 /// neighbours have moved apart. update() refits, and builds anew the parts that are worth it by the following rule.
 ///
 /// **The rule.** A query's cost grows with the area of the boxes in the tree. Each node knows the sum of these areas in
-/// its subtree, over the area of its own box, when it was built; by how much that has grown since says which share of
-/// all box area, and so of the work of queries, an update of this part would save. note_work() is told the work that
-/// queries do. The share of it that was wasted is summed up, frame after frame, and as soon as it exceeds what building
-/// these parts would cost, they are built: so no more is lost than twice what the best choice of moments costs, up to
-/// how well areas predict work (the rule of the ski rental: Karlin, Manasse, Rudolph and Sleator 1988, "Competitive
-/// snoopy caching").
+/// its subtree, over the area of the surface in it, when it was built. By how much this ratio has grown since says
+/// which share of all box area, and so of the work of queries, building this part anew may save. note_work() is told
+/// the work that queries do. The share of it that was wasted is summed up, frame after frame, and as soon as it exceeds
+/// what building these parts would cost, they are built: as in the ski rental (Karlin, Manasse, Rudolph and Sleator
+/// 1988, "Competitive snoopy caching"), where no more is lost than twice the cost of the best moment, up to how well
+/// areas predict work.
 class DeformingMesh {
  public:
   /// @throws BadMesh as Tree does
@@ -70,11 +70,18 @@ class DeformingMesh {
     double saved = 0.0;  ///< Box area that would be saved, at most.
     double price = 0.0;  ///< Triangles.
   };
+  /// In a subtree.
+  struct Areas {
+    double boxes = 0.0;    ///< Of all nodes and leaves below its root, half of each.
+    double surface = 0.0;  ///< Of its triangles.
+    double ratio() const { return surface > 0.0 ? boxes / surface : 0.0; }
+  };
+  static std::vector<Areas> areas_of(const Tree& tree);
   tree_builder::Surface surface() const { return {vertices_, triangles_}; }
   double take(std::span<const Eigen::Vector3d> vertices);
   void refresh();
   void note_built();
-  Parts find_parts(std::uint32_t node, const std::vector<double>& areas) const;
+  Parts find_parts(std::uint32_t node, const std::vector<Areas>& areas) const;
   void apply_rule();
 
   std::vector<Triangle> triangles_;
@@ -84,7 +91,7 @@ class DeformingMesh {
   PreparedMesh prepared_;
   bool solid_ = false;
   bool fresh_ = true;         // as it was built whole at these vertices
-  std::vector<float> built_;  // of each node: box area of its subtree over its own when it was built
+  std::vector<float> built_;  // of each node: Areas::ratio() when it was built
   double work_ = 0.0;         // of queries since the last update: nodes
   double wasted_ = 0.0;       // of it and before: nodes that parts built anew would have saved
   std::uint64_t built_triangles_ = 0;
