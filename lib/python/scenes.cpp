@@ -50,26 +50,27 @@ py::list list_scene_algorithms() {
 /// @param numbers by the names of SceneNumbers
 std::shared_ptr<Scene> make(const std::string& family, const std::map<std::string, double>& numbers) {
   scene::SceneNumbers wanted;
-  const std::map<std::string, double*> fields{{"density", &wanted.density},
-                                              {"size_ratio", &wanted.size_ratio},
-                                              {"moving", &wanted.moving},
-                                              {"step", &wanted.step},
-                                              {"margin", &wanted.margin}};
+  const std::map<std::string, double*> fields{{"density", &wanted.density}, {"size_ratio", &wanted.size_ratio},
+                                              {"moving", &wanted.moving},   {"step", &wanted.step},
+                                              {"margin", &wanted.margin},   {"amplitude", &wanted.amplitude}};
   for (const auto& [name, value] : numbers) {
-    const bool is_count = name == "bodies" || name == "frames" || name == "seed";
+    const bool is_count = name == "bodies" || name == "frames" || name == "triangles" || name == "seed";
     if (is_count && !(value >= 0.0 && value < 1e15))
       throw BadArgument(fmt::format("{}: {} is out of range", name, value));
     if (name == "bodies") {
       wanted.bodies = static_cast<std::size_t>(value);
     } else if (name == "frames") {
       wanted.frames = static_cast<std::size_t>(value);
+    } else if (name == "triangles") {
+      wanted.triangles = static_cast<std::size_t>(value);
     } else if (name == "seed") {
       wanted.seed = static_cast<std::uint64_t>(value);
     } else if (const auto field = fields.find(name); field != fields.end()) {
       *field->second = value;
     } else {
       throw BadArgument(fmt::format(
-          "{}: no parameter of scenes; they are bodies, frames, density, size_ratio, moving, step, margin, seed",
+          "{}: no parameter of scenes; they are bodies, frames, density, size_ratio, moving, step, margin, amplitude, "
+          "triangles, seed",
           name));
     }
   }
@@ -226,8 +227,10 @@ void bind_scenes(py::module_& module) {
   module.def("scene_algorithms", list_scene_algorithms);
   module.def("scene_families", [] {
     py::dict dict;
-    for (const scene::SceneFamily& family : scene::scene_families()) {
-      dict[py::str(std::string(family.name))] = std::string(family.stresses);
+    for (const auto families : {scene::scene_families(), scene::deforming_families()}) {
+      for (const scene::SceneFamily& family : families) {
+        dict[py::str(std::string(family.name))] = std::string(family.stresses);
+      }
     }
     return dict;
   });

@@ -72,7 +72,8 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
 
 
 def make_scene(family: str, **numbers: float) -> Scene:
-    """A scene of a family (scene_families()). numbers: bodies, frames, seed, density, size_ratio, moving, step, margin."""
+    """A scene of a family (scene_families()). numbers: bodies, frames, seed, density, size_ratio, moving, step,
+    margin; where a mesh deforms amplitude (of its diagonal) and triangles instead of bodies."""
     return Scene(_core.make_scene(family, {name: float(value) for name, value in numbers.items()}))
 
 

@@ -16,20 +16,11 @@ constexpr std::array k_families{
                 "Boxes, spheres and cylinders in a cube, turned by up to 10 degrees a frame, as in FCL's own "
                 "broad-phase tests: the broad phase alone.",
                 detail::make_cube},
-    SceneFamily{"pairs",
-                "Detailed objects, in pairs, at the stored poses of a configuration set: a known number of "
-                "pairs at known distances, so the narrow phase.",
-                detail::make_pairs},
-    SceneFamily{"pile",
-                "Bodies heaped on a floor by a seeded rule that knows spheres only, no dynamics: most neighbours "
-                "touch and hardly move.",
-                detail::make_pile},
-    SceneFamily{"robot", "An arm of 21 bodies in a fixed world, with a margin: few moving bodies, many ignored pairs.",
-                detail::make_robot},
-    SceneFamily{"dust", "Small bodies that drift through one large fixed mesh: one box that covers all others.",
-                detail::make_dust},
-    SceneFamily{"still", "The cube, and nothing moves after the first frame: the cost of asking again.",
-                detail::make_still},
+    SceneFamily{"pairs", "Detailed objects in pairs at known distances: the narrow phase.", detail::make_pairs},
+    SceneFamily{"pile", "Bodies heaped on a floor, no dynamics: most touch and hardly move.", detail::make_pile},
+    SceneFamily{"robot", "An arm of 21 bodies in a fixed world: few move, many pairs are ignored.", detail::make_robot},
+    SceneFamily{"dust", "Small bodies that drift through a large fixed mesh, whose box covers all.", detail::make_dust},
+    SceneFamily{"still", "The cube, and nothing moves after the start: the cost of asking again.", detail::make_still},
     SceneFamily{"all-move", "The cube, every body moving by up to twice its size: nothing can be kept.",
                 detail::make_all_move},
     SceneFamily{"giant",
@@ -44,14 +35,9 @@ constexpr std::array k_families{
 constexpr std::array k_deforming{
     SceneFamily{"wave", "Waves over a closed shell: all of it deforms, neighbours stay neighbours.", detail::make_wave},
     SceneFamily{"twist", "A bar that is twisted and bent: its ends travel, its middle stays.", detail::make_twist},
-    SceneFamily{"cloth", "A sheet, open, that falls over a ball: it comes to rest a hair above it, and sinks in.",
-                detail::make_cloth},
-    SceneFamily{"bump", "A bump that grows on a ball: a small part deforms much, the rest not at all.",
-                detail::make_bump},
-    SceneFamily{"crumple",
-                "A shell that is folded eight times along random directions: what is close on the surface "
-                "gets far apart, and it may meet itself, which is not asked.",
-                detail::make_crumple},
+    SceneFamily{"cloth", "A sheet that falls over a ball and comes to rest a hair above it.", detail::make_cloth},
+    SceneFamily{"bump", "A bump that grows on a ball: a small part deforms, the rest does not.", detail::make_bump},
+    SceneFamily{"crumple", "A shell that is folded eight times: neighbours get far apart.", detail::make_crumple},
 };
 
 /// Throws unless low <= value <= high or the value is the family's own.
@@ -60,8 +46,9 @@ void check(const char* what, double value, double low, double high) {
   throw BadArgument(fmt::format("{} {}: it must be in {} .. {}", what, value, low, high));
 }
 
-std::string recipe_of(std::string_view family, const SceneNumbers& n) {
-  std::string text = fmt::format("family={} bodies={} frames={} seed={}", family, n.bodies, n.frames, n.seed);
+std::string recipe_of(std::string_view family, const SceneNumbers& n, bool deforms) {
+  const std::string bodies = deforms ? "" : fmt::format(" bodies={}", n.bodies);
+  std::string text = fmt::format("family={}{} frames={} seed={}", family, bodies, n.frames, n.seed);
   const auto add = [&text](const char* name, double value) {
     if (!std::isnan(value)) text += fmt::format(" {}={}", name, value);
   };
@@ -106,7 +93,7 @@ Scene make_scene(std::string_view name, const SceneNumbers& numbers) {
       if (family.name != name) continue;
       Scene scene = family.make(numbers);
       scene.name = name;
-      scene.recipe = recipe_of(name, numbers);
+      scene.recipe = recipe_of(name, numbers, families.data() == k_deforming.data());
       scene.check();
       return scene;
     }
