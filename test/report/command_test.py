@@ -170,6 +170,8 @@ class Report(unittest.TestCase):
                   ("ist", "elephant", "distance", "5", "longest")]
         self.assertEqual(line["worst_pose"], "sixdof query --a torus-1k --b torus-1k --algorithm 'ist' --pose \"5.123456789012345 0 0 1 0 0 0\"")
         self.assertEqual({line["scene"] for line in lines("many_bodies")}, {"pile", HOSTILE})
+        self.assertEqual({line["part"] for line in lines("deforming")}, {"update and query", "update", "query"})
+        self.assertEqual({line["rebuild_wins_from"] for line in lines("refit_payoff")}, {"never"})
         self.assertEqual(float(lines("collection")[0]["p90_us"]), 90.0)
         self.assertIn("bed", {line["point"] for line in lines("collection_ratios")})
         self.assertEqual(float(lines("growth_exponents")[0]["low"]), 0.35)

@@ -225,6 +225,8 @@ Report make_report(const Results& results, const std::vector<Series>& series) {
                            scenario_measures_table(results, groups),
                            metrics_table(results, groups),
                            many_bodies_table(results, groups),
+                           deforming_table(results, groups),
+                           refit_payoff_table(results, groups),
                            collection_table(results),
                            collection_ratios_table(results),
                            growth_table(results),
