@@ -114,6 +114,19 @@ py::tuple frame(const Scene& scene, std::size_t index) {
   return py::make_tuple(array_of<std::uint32_t>(moved), matrices_of(poses));
 }
 
+/// The meshes that deform in a frame, by index, with their vertices.
+py::dict shapes(const Scene& scene, std::size_t index) {
+  if (index >= scene.frames.size()) throw BadArgument(fmt::format("frame: {} of {}", index, scene.frames.size()));
+  py::dict dict;
+  for (const scene::Deformed& deformed : scene::shapes_of(scene, index)) {
+    py::array_t<double> vertices({static_cast<py::ssize_t>(deformed.vertices.size()), py::ssize_t{3}});
+    double* place = vertices.mutable_data();
+    for (const Eigen::Vector3d& p : deformed.vertices) place = std::copy_n(p.data(), 3, place);
+    dict[py::int_(deformed.mesh)] = vertices;
+  }
+  return dict;
+}
+
 py::dict dict_of(const scene::SceneAnswer& answer) {
   py::array_t<std::uint32_t> pairs({static_cast<py::ssize_t>(answer.pairs.size()), py::ssize_t{2}});
   std::uint32_t* place = pairs.mutable_data();
@@ -215,6 +228,7 @@ void bind_scenes(py::module_& module) {
       .def("meshes", meshes)
       .def("bodies", bodies)
       .def("frame", frame, py::arg("index"))
+      .def("shapes", shapes, py::arg("index"))
       .def("play", play, py::arg("algorithm"), py::arg("question"))
       .def(
           "save", [](const Scene& scene, const std::string& file) { scene::save_scene(scene, file); }, py::arg("file"));

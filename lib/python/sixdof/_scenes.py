@@ -49,6 +49,17 @@ class Scene:
             all_poses[frame:, moved] = poses
         return all_poses
 
+    def vertices(self, mesh: int) -> NDArray[numpy.float64]:
+        """Vertices of meshes[mesh] in every frame, shape (frames, k, 3), in the mesh's frame: they move if it deforms."""
+        if not 0 <= mesh < len(self.meshes):
+            raise BadArgument(f"mesh: {mesh} of {len(self.meshes)} meshes")
+        all_vertices = numpy.repeat(numpy.asarray(self.meshes[mesh].vertices)[None], self.frames, axis=0)
+        for frame in range(1, self.frames):
+            shapes = self._core.shapes(frame)
+            if mesh in shapes:
+                all_vertices[frame:] = shapes[mesh]
+        return all_vertices
+
     def play(self, question: str = "touching", algorithm: str = "exact") -> tuple[list[FrameAnswer], dict[str, Any]]:
         """Replays the scene to an algorithm (scene_algorithms()). question: "touching", "near", "closest", "wrenches".
 
