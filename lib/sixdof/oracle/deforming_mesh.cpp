@@ -16,8 +16,9 @@ using Eigen::Vector3d;
 constexpr double k_build = 8.0;
 /// A part whose ratio of areas has grown by less is left as it is.
 constexpr double k_worth = 1.05;
-/// Parts below a node are built instead of it if they save most of what it would, and are at most half of it.
-constexpr double k_most = 0.8, k_half = 0.5;
+/// Parts below a node are built instead of it if they save at least this share of what it would, and are at most this
+/// share of it.
+constexpr double k_half = 0.5;
 /// Smaller parts are not taken apart.
 constexpr std::uint32_t k_smallest_part = 256;
 /// Rounding of a displacement relative to the coordinates.
@@ -150,7 +151,7 @@ DeformingMesh::Parts DeformingMesh::find_parts(std::uint32_t index, const std::v
       below.price += of_child.price;
     }
   }
-  const bool is_better_below = below.saved >= k_most * saved && below.price <= k_half * node.triangle_count;
+  const bool is_better_below = below.saved >= k_half * saved && below.price <= k_half * node.triangle_count;
   if (is_better_below || areas[index].boxes < k_worth * before) return below;
   return {{index}, saved, static_cast<double>(node.triangle_count)};
 }
