@@ -117,9 +117,7 @@ double DeformingMesh::rebuild(std::span<const Vector3d> vertices) {
 double DeformingMesh::refit(std::span<const Vector3d> vertices) {
   body_->tree.refit({vertices, triangles_});  // may throw
   const double moved = take(vertices);
-  body_->patches = detail::CoplanarPatches(body_->tree, true);
-  body_->seeds = detail::SeedCorners(body_->tree);
-  body_->smallest_leaf = detail::smallest_leaf_of(body_->tree);
+  body_->update();
   refresh();
   fresh_ = false;
   return moved;
@@ -157,6 +155,8 @@ DeformingMesh::Parts DeformingMesh::find_parts(std::uint32_t index, const std::v
 }
 
 void DeformingMesh::apply_rule() {
+  constexpr double k_least_part = Tree::k_width * Tree::k_leaf_triangles;
+  if (work_ < k_build * k_least_part) return;  // not worth a look at all nodes
   const double work = std::exchange(work_, 0.0);
   const std::vector<Areas> areas = areas_of(body_->tree);
   const Parts parts = find_parts(0, areas);
@@ -178,9 +178,7 @@ void DeformingMesh::apply_rule() {
     built[i] = origin[i] == Tree::k_new ? static_cast<float>(now[i].ratio()) : built_[origin[i]];
   }
   built_ = std::move(built);
-  body_->patches = detail::CoplanarPatches(body_->tree, true);
-  body_->seeds = detail::SeedCorners(body_->tree);
-  body_->smallest_leaf = detail::smallest_leaf_of(body_->tree);
+  body_->update();
 }
 
 std::size_t DeformingMesh::bytes() const {

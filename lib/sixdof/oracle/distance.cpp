@@ -66,6 +66,12 @@ detail::DistanceBody::DistanceBody(const Mesh& mesh)
 detail::DistanceBody::DistanceBody(Tree made)
     : tree(std::move(made)), patches(tree, true), seeds(tree), smallest_leaf(smallest_leaf_of(tree)) {}
 
+void detail::DistanceBody::update() {
+  patches = CoplanarPatches(tree, true);
+  seeds = SeedCorners(tree);
+  smallest_leaf = smallest_leaf_of(tree);
+}
+
 std::size_t detail::DistanceBody::bytes() const {
   return tree.bytes() + patches.bytes() + piece_vertices.capacity() * sizeof(Vector3d);
 }

@@ -70,6 +70,8 @@ struct DistanceBody {
   explicit DistanceBody(const Mesh& mesh);
   /// Of a mesh that deforms (deforming_mesh.h). Its patches always count; it has no piece_vertices yet.
   explicit DistanceBody(Tree made);
+  /// What is found from the tree, after that of a mesh that deforms has changed.
+  void update();
   std::size_t bytes() const;
 
   Tree tree;
