@@ -12,11 +12,17 @@
 namespace sixdof::scene {
 namespace {
 
+/// @throws Error for the device's last error
+void check(RTCDevice device) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error != RTC_ERROR_NONE) throw Error(fmt::format("Embree error {}", static_cast<int>(error)));
+}
+
 class EmbreeDeform final : public LibraryDeform {
  public:
   EmbreeDeform(const Scene& scene, Question /*question*/, RTCBuildQuality quality)
       : LibraryDeform(scene), device_(rtcNewDevice("threads=1")), changed_(scene.bodies.size(), true) {
-    check_embree(nullptr);
+    check(nullptr);
     const RTCSceneFlags flags = quality == RTC_BUILD_QUALITY_REFIT ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE;
     for (const auto& mesh : scene.meshes) require_embree_range(*mesh);
     one_thread_.execute([&] {
@@ -60,7 +66,7 @@ class EmbreeDeform final : public LibraryDeform {
         if (why_not != nullptr) throw BadMesh(why_not);
       }
     });
-    check_embree(device_.get());
+    check(device_.get());
   }
 
   bool touch(std::uint32_t i, std::uint32_t j) override {
@@ -69,7 +75,7 @@ class EmbreeDeform final : public LibraryDeform {
     a_ = bodies_[i].get();
     b_ = bodies_[j].get();
     one_thread_.execute([&] { rtcCollide(a_->scene(), b_->scene(), &receive, this); });
-    check_embree(device_.get());
+    check(device_.get());
     return found_;
   }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
 #include <fcl/math/bv/OBBRSS.h>
@@ -14,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <sixdof/algorithm/fcl/fcl_mesh.h>
+#include <sixdof/base/error.h>
 #include <sixdof/scene/library_scene.h>
 
 namespace sixdof::scene {
@@ -55,7 +55,7 @@ class FclDeform final : public LibraryScene {
           code = model.endReplaceModel(how_ != FclUpdate::rebuild, how_ != FclUpdate::refit_top_down);
         }
       }
-      if (code != fcl::BVH_OK) throw std::runtime_error(fmt::format("FCL cannot update a tree (code {})", code));
+      if (code != fcl::BVH_OK) throw Error(fmt::format("FCL cannot update a tree (code {})", code));
       model.computeLocalAABB();
     }
   }
