@@ -66,15 +66,23 @@ class Stage {
   const Mesh& mesh() const { return *scene_.meshes.front(); }
 
   /// A rigid body of its own shape.
-  void add(Mesh mesh, const Eigen::Matrix3d& R, const Vector3d& center) {
+  void add(Mesh mesh, const Eigen::Matrix3d& R, const Vector3d& center, bool fixed = false) {
     scene_.meshes.push_back(std::make_shared<const Mesh>(std::move(mesh)));
-    mover_.add(static_cast<std::uint32_t>(scene_.meshes.size() - 1), R, center);
+    mover_.add(static_cast<std::uint32_t>(scene_.meshes.size() - 1), R, center, fixed);
+  }
+
+  /// A bumpy ball on the ray along u from the origin, whose lowest point along u is `at` above the origin.
+  void add_ball(double radius, const Vector3d& u, double at, Random& random) {
+    Mesh ball = make_bumpy_sphere({.radius = radius}, k_partner_triangles);
+    const Eigen::Matrix3d R = random.rotation();
+    double below = 0.0;
+    for (const Vector3d& p : ball.vertices()) below = std::max(below, -u.dot(R * p));
+    add(std::move(ball), R, (at + below) * u);
   }
 
   /// Bumpy balls in random directions; a ray from the centre meets the surface of the mesh at rest, and the gap there
   /// is from -1/2 of the amplitude to all of it.
   void add_balls(std::size_t count, double radius, Random& random) {
-    constexpr double k_bumps = 0.12;
     const double reach = reach_of(numbers_, mesh());
     for (std::size_t i = 0; i < count; ++i) {
       const Vector3d u = random.direction();
@@ -84,8 +92,7 @@ class Stage {
         if ((p - p.dot(u) * u).norm() < radius) surface = std::max(surface, p.dot(u));
       }
       const double gap = reach * (1.5 * static_cast<double>(i) / static_cast<double>(count) - 0.5);
-      add(make_bumpy_sphere({.radius = radius, .amplitude = k_bumps, .waves = 1.5}, k_partner_triangles),
-          random.rotation(), (surface + gap + (1.0 + k_bumps) * radius) * u);
+      add_ball(radius, u, surface + gap, random);
     }
   }
 
@@ -101,7 +108,7 @@ class Stage {
       scene_.deformations.resize(f);
       scene_.deformations.push_back({{0, std::move(moved)}});
       for (std::uint32_t body = 1; body < scene_.bodies.size(); ++body) {
-        if (random.unit() >= own(numbers_.moving, 1.0)) continue;
+        if (scene_.bodies[body].fixed || random.unit() >= own(numbers_.moving, 1.0)) continue;
         const Pose& pose = mover_.poses[body];
         const Eigen::Matrix3d R = random.small_rotation(k_degree) * pose.R;
         const Vector3d t = pose.t + random.in_cube(step);
@@ -173,8 +180,7 @@ Scene make_bump(const SceneNumbers& numbers) {
   const Vector3d top = random.direction();
   constexpr double k_radius = 0.4;
   // The bump meets a ball above it when it has grown half of its height.
-  stage.add(make_bumpy_sphere({.radius = k_radius}, k_partner_triangles), random.rotation(),
-            (1.0 + 0.5 * reach + 1.12 * k_radius) * top);
+  stage.add_ball(k_radius, top, 1.0 + 0.5 * reach, random);
   stage.add_balls(k_partners - 1, k_radius, random);
   return stage.play(
       [=](const Vector3d& p, double time) -> Vector3d {
@@ -232,7 +238,7 @@ Scene make_cloth(const SceneNumbers& numbers) {
   // The cloth at rest lies on the ball's top but for k_start of its size; it falls by the amplitude where nothing is
   // below, and stays outside a ball of this size until the end, when it sinks in by a little.
   stage.add(make_sphere({.radius = k_ball}, k_partner_triangles), random.rotation(),
-            {0.0, 0.0, -k_ball - k_start * size});
+            {0.0, 0.0, -k_ball - k_start * size}, true);
   stage.add_balls(k_partners - 1, 0.2, random);
   const double ripples = 0.05 * reach, start = random.unit();
   return stage.play(
