@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <sixdof/models/recipe.h>
+#include <sixdof/oracle/distance.h>
 #include <sixdof/scene/family_parts.h>
 
 // One mesh that deforms, and rigid bodies beside it which it comes close to, touches and leaves. Maps of space that
@@ -71,28 +72,29 @@ class Stage {
     mover_.add(static_cast<std::uint32_t>(scene_.meshes.size() - 1), R, center, fixed);
   }
 
-  /// A bumpy ball on the ray along u from the origin, whose lowest point along u is `at` above the origin.
-  void add_ball(double radius, const Vector3d& u, double at, Random& random) {
+  /// A bumpy ball that came from far along u towards the origin until it touched the mesh at rest, and was then moved
+  /// back by a gap (length; negative: it overlaps).
+  void add_ball(double radius, const Vector3d& u, double gap, Random& random) {
+    constexpr int k_most_steps = 200;
     Mesh ball = make_bumpy_sphere({.radius = radius}, k_partner_triangles);
     const Eigen::Matrix3d R = random.rotation();
-    double below = 0.0;
-    for (const Vector3d& p : ball.vertices()) below = std::max(below, -u.dot(R * p));
-    add(std::move(ball), R, (at + below) * u);
+    const DistanceOracle oracle(mesh(), ball);
+    DistanceQuery query(oracle);
+    double along = size_ + 2.0 * radius;
+    for (int step = 0; step < k_most_steps; ++step) {
+      const double left = query.distance({R, along * u}).distance;
+      if (left < 1e-6 * size_) break;
+      along -= left;
+    }
+    add(std::move(ball), R, (along + gap) * u);
   }
 
-  /// Bumpy balls in random directions; a ray from the centre meets the surface of the mesh at rest, and the gap there
-  /// is from -1/2 of the amplitude to all of it.
+  /// Balls in random directions, at gaps from -1/2 of the amplitude to all of it.
   void add_balls(std::size_t count, double radius, Random& random) {
     const double reach = reach_of(numbers_, mesh());
     for (std::size_t i = 0; i < count; ++i) {
       const Vector3d u = random.direction();
-      double surface = 0.0;
-      for (const Vector3d& p : mesh().vertices()) {
-        // Of the vertices near the ray the outermost.
-        if ((p - p.dot(u) * u).norm() < radius) surface = std::max(surface, p.dot(u));
-      }
-      const double gap = reach * (1.5 * static_cast<double>(i) / static_cast<double>(count) - 0.5);
-      add_ball(radius, u, surface + gap, random);
+      add_ball(radius, u, reach * (1.5 * static_cast<double>(i) / static_cast<double>(count) - 0.5), random);
     }
   }
 
@@ -180,7 +182,7 @@ Scene make_bump(const SceneNumbers& numbers) {
   const Vector3d top = random.direction();
   constexpr double k_radius = 0.4;
   // The bump meets a ball above it when it has grown half of its height.
-  stage.add_ball(k_radius, top, 1.0 + 0.5 * reach, random);
+  stage.add_ball(k_radius, top, 0.5 * reach, random);
   stage.add_balls(k_partners - 1, k_radius, random);
   return stage.play(
       [=](const Vector3d& p, double time) -> Vector3d {
