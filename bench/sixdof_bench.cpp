@@ -35,8 +35,9 @@ namespace {
 /// query. Without a suite that lists them they are taken where the filter has these words.
 constexpr const char* k_cold = "cold";
 constexpr const char* k_motion = "motion";
-/// So are rows of scenes, where it begins with this one.
+/// So are rows of scenes, where it has one of these.
 constexpr const char* k_scene = "scene/";
+constexpr const char* k_deform = "deform/";
 
 /// Where `name` stands in `text` without being a part of a longer name; npos if it does not.
 std::size_t find_name(const std::string& text, const std::string& name) {
@@ -106,7 +107,8 @@ void run(const Options& options) {
 
   std::vector<PlannedRow> rows;
   for (const auto family :
-       {prepare_rows, query_rows, cast_rows, contact_rows, depth_rows, scenario_rows, scene_rows, generate_rows}) {
+       {prepare_rows, query_rows, cast_rows, contact_rows, depth_rows, scenario_rows, scene_rows, deform_rows,
+        generate_rows}) {
     std::ranges::move(family(resources), std::back_inserter(rows));
   }
   if (!options.suite.empty()) {
@@ -133,7 +135,8 @@ void run(const Options& options) {
     std::erase_if(rows, [&](const PlannedRow& row) {
       return left_out.contains(row.fields.algorithm) || (row.fields.cache == k_cold && !is_named(k_cold)) ||
              (row.fields.order == k_motion && !is_named(k_motion)) ||
-             (row.name.starts_with(k_scene) && !is_named(k_scene));
+             (row.name.starts_with(k_scene) && !is_named(k_scene)) ||
+             (row.name.starts_with(k_deform) && !is_named(k_deform));
     });
   }
   run_rows(rows, options, resources);

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ void print_summary(const Scene& scene, const std::string& file) {
   fmt::print("meshes      {}; triangles of all bodies {}\n", scene.meshes.size(), scene.triangles());
   fmt::print("pairs       {} tested, {} ignored\n", scene::PairFilter(scene).pairs(), scene.ignored.size());
   fmt::print("frames      {}, poses that change {}\n", scene.frames.size(), scene.motions());
+  if (scene.deforms()) fmt::print("deformed    {} meshes in all frames\n", scene.shapes());
   fmt::print("margin      {:.6g}\n", scene.margin);
   fmt::print("hash        {}\n", scene.hash());
 }
@@ -45,6 +47,7 @@ void print_json(const Scene& scene) {
   json["ignored_pairs"] = scene.ignored.size();
   json["frames"] = scene.frames.size();
   json["motions"] = scene.motions();
+  json["shapes"] = scene.shapes();
   json["margin"] = scene.margin;
   json["hash"] = scene.hash();
   fmt::print("{}\n", json_text(json));
@@ -88,13 +91,18 @@ this one, as "2 5") may be left out. Columns may have any order; commas, semicol
 void add_make(CLI::App& group) {
   auto* const command = group.add_subcommand("make", "Make a scene of a family, or of meshes and a table of poses");
   const auto options = std::make_shared<MakeOptions>();
-  std::string families = "Families:\n";
+  std::string families;
   std::vector<std::string> names;
-  for (const scene::SceneFamily& family : scene::scene_families()) {
-    families += help_entry(std::string(family.name), std::string(family.stresses));
-    names.emplace_back(family.name);
-  }
-  const std::string of_family = "Of a family", of_table = "Of a table of poses";
+  const auto add_families = [&](const char* title, std::span<const scene::SceneFamily> list) {
+    families += title;
+    for (const scene::SceneFamily& family : list) {
+      families += help_entry(std::string(family.name), std::string(family.stresses));
+      names.emplace_back(family.name);
+    }
+  };
+  add_families("Families:\n", scene::scene_families());
+  add_families("\nFamilies in which a mesh deforms, beside four rigid bodies:\n", scene::deforming_families());
+  const std::string of_family = "Of a family, which has its own X", of_table = "Of a table of poses";
   command->add_option("family", options->family, "Kind of scene (below)")->type_name("FAMILY")->check(words_of(names));
   command->add_option("-o,--output", options->output, "The scene to write (HDF5)")->required()->type_name("FILE");
   auto* const margin = command
@@ -102,7 +110,7 @@ void add_make(CLI::App& group) {
                                         "Largest distance at which a pair is near: in mean sizes of the bodies for a "
                                         "family, a length for a table")
                            ->type_name("X");
-  command->add_option("-n,--count", options->numbers.bodies, "Number of bodies")
+  command->add_option("-n,--count", options->numbers.bodies, "Number of bodies, where no mesh deforms")
       ->type_name("N")
       ->capture_default_str()
       ->group(of_family);
@@ -111,12 +119,14 @@ void add_make(CLI::App& group) {
       ->capture_default_str()
       ->group(of_family);
   const auto add = [&](const char* name, auto& value, const char* meaning) {
-    command->add_option(name, value, meaning)->type_name("X")->default_str("the family's own")->group(of_family);
+    command->add_option(name, value, meaning)->type_name("X")->group(of_family);
   };
   add("--density", options->numbers.density, "Volume of the bodies' boxes, as a fraction of the volume of the space");
   add("--size-ratio", options->numbers.size_ratio, "Size of the largest body of a shape over that of the smallest");
   add("--moving", options->numbers.moving, "Fraction of the bodies that move in a frame, 0 to 1");
   add("--step", options->numbers.step, "Largest translation in a frame, in sizes of the body");
+  add("--amplitude", options->numbers.amplitude, "Largest displacement of a vertex, in diagonals of the mesh");
+  add("--triangles", options->numbers.triangles, "Triangles of the mesh that deforms, about");
   command->add_option("--seed", options->numbers.seed, "Seed of positions and motion")
       ->type_name("N")
       ->capture_default_str()
@@ -130,7 +140,7 @@ void add_make(CLI::App& group) {
       ->group(of_table);
   command->callback([options, margin] { make(*options, margin->count() > 0); });
   add_examples(*command, "sixdof scene make cube -n 100 --frames 10 -o cube.h5",
-               "sixdof scene make pile -n 50 --frames 5 --seed 2 -o pile.h5", families + "\n" + k_table);
+               "sixdof scene make twist --amplitude 0.1 --frames 20 -o twist.h5", families + "\n" + k_table);
 }
 
 void add_info(CLI::App& group) {

@@ -75,9 +75,10 @@ void list_answers(const Part& part, const std::vector<Asked>& asked, bool json) 
       }
       has_answers = true;
       Place place{std::string(to_string(question)), algorithm->traits().name, part.first};
-      for (const scene::Frame& frame : part.scene.frames) {
+      for (std::size_t f = 0; f < part.scene.frames.size(); ++f) {
         InterruptGuard::check();
-        query->update(scene::moves_of(frame));
+        query->deform(scene::shapes_of(part.scene, f));
+        query->update(scene::moves_of(part.scene.frames[f]));
         json ? print_object(place, query->answer(), std::exchange(is_first, false))
              : print_rows(place, query->answer());
         ++place.frame;

@@ -46,6 +46,9 @@ constexpr const char* k_details =
 A body inside another one touches it, as in sixdof query. Libraries look at surfaces only; pairs that they miss for
 this reason are counted as nested. Distances are those of surfaces. Open meshes have no inside.
 
+Where a mesh deforms, cpu is also printed by its parts: the update of the meshes and bodies, and the query after it; built
+is what exact built anew, in percent of the triangles that deformed.
+
 Times are means per frame: cpu is the processor time of all threads, wall the elapsed time. The first frame, in which
 all pairs are new, has a column of its own and is not in the means unless the scene has no other. * marks the least
 cpu among the algorithms without faults. ! marks missed or wrong pairs, with a command that shows the first of them
@@ -73,20 +76,23 @@ struct Played {
 };
 
 /// Those that were named, or all but references, as far as they answer the question; who does not is left out.
-Asked choose(const scene::SceneAlgorithms& all, const std::vector<std::string>& names, Question question) {
+Asked choose(const scene::SceneAlgorithms& all, const std::vector<std::string>& names, const Scene& scene,
+             Question question) {
   Asked asked{.question = question, .algorithms = {}, .left_out = {}};
   for (const std::string& name : names) {
     const SceneAlgorithm& algorithm = scene::find_algorithm(all, name);
-    if (algorithm.traits().answers_to(question)) {
-      asked.algorithms.push_back(&algorithm);
-    } else {
+    if (!algorithm.traits().answers_to(question)) {
       asked.left_out.push_back({name, "does not answer this question"});
+    } else if (scene.deforms() && !algorithm.traits().deforms) {
+      asked.left_out.push_back({name, "does not take scenes in which a mesh deforms"});
+    } else {
+      asked.algorithms.push_back(&algorithm);
     }
   }
   if (!names.empty()) return asked;
   for (const auto& algorithm : all) {
     const scene::SceneTraits& traits = algorithm->traits();
-    if (traits.by_default && traits.answers_to(question)) asked.algorithms.push_back(algorithm.get());
+    if (traits.is_default_for(scene) && traits.answers_to(question)) asked.algorithms.push_back(algorithm.get());
   }
   return asked;
 }
@@ -145,6 +151,15 @@ std::string reproduction(const Part& part, const PlayOptions& options, Question 
   return fmt::format("{} --frames {}:{}", command, part.first, part.first + wrong.frame);
 }
 
+/// Of all deformations of all frames.
+double number_of_deformed_triangles(const Scene& scene) {
+  std::size_t sum = 0;
+  for (const auto& frame : scene.deformations) {
+    for (const scene::Deformation& each : frame) sum += scene.meshes[each.mesh]->triangles().size();
+  }
+  return static_cast<double>(sum);
+}
+
 void print_table(const Scene& scene, const Played& played) {
   fmt::print("{}, {}: {} bodies, {} {}, {} true pairs in all frames, truth {}\n",
              scene.name.empty() ? "scene" : scene.name, to_string(played.question), scene.bodies.size(),
@@ -169,6 +184,16 @@ void print_table(const Scene& scene, const Played& played) {
                percent(candidates, static_cast<double>(each.play.pairs_in_all)),
                percent(static_cast<double>(each.play.work.put_off), candidates), s.same_bits ? "yes" : "-");
   }
+  if (scene.deforms()) {
+    fmt::print("{:<22} {:>9} {:>9} {:>9} {:>9}\n", "", "cpu", "update", "query", "built, %");
+    for (const NamedPlay& each : played.plays) {
+      const double triangles = number_of_deformed_triangles(scene);
+      fmt::print("  {:<20} {:>9} {:>9} {:>9} {:>9}\n", each.algorithm.traits().name,
+                 time(each.play.timing.processor_us), time(each.play.timing.update_us),
+                 time(each.play.timing.answer_us),
+                 each.algorithm.traits().own ? percent(static_cast<double>(each.play.work.built), triangles) : "");
+    }
+  }
   for (const NamedPlay& each : played.plays) {
     const auto& s = each.play.score;
     if (!s.first) continue;
@@ -192,6 +217,8 @@ nlohmann::ordered_json json_of(const NamedPlay& named, bool is_fastest) {
   json["p99_us"] = play.timing.p99_us;
   json["max_us"] = play.timing.max_us;
   json["first_us"] = play.timing.first_us;
+  json["update_us"] = play.timing.update_us;
+  json["answer_us"] = play.timing.answer_us;
   json["prepare_s"] = play.timing.prepare_s;
   json["missed"] = play.score.missed;
   json["wrong"] = play.score.wrong;
@@ -205,6 +232,7 @@ nlohmann::ordered_json json_of(const NamedPlay& named, bool is_fastest) {
   json["put_off"] = play.work.put_off;
   json["narrow"] = play.work.narrow;
   json["triangles"] = play.work.triangles;
+  json["built"] = play.work.built;
   json["pairs_in_all"] = play.pairs_in_all;
   json["bytes"] = play.bytes;
   if (const auto& first = play.score.first) {
@@ -300,7 +328,9 @@ void play(const PlayOptions& options) {
   std::vector<std::string> names = options.algorithms;
   if (names.empty() && options.list) names = {"exact"};
   std::vector<Asked> asked;
-  for (const std::string& word : options.questions) asked.push_back(choose(all, names, scene::parse_question(word)));
+  for (const std::string& word : options.questions) {
+    asked.push_back(choose(all, names, part.scene, scene::parse_question(word)));
+  }
   parallel::with_threads(options.threads,
                          [&] { options.list ? list_answers(part, asked, options.json) : judge(part, options, asked); });
 }

@@ -137,7 +137,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
 
 std::string completion_of(const CLI::App& app) {
   ValueTable values = common_values();
-  values["SUITE"] = {.words = {"default", "own-pair", "all-algorithms", "paper", "scenes", "all"}, .files = true};
+  values["SUITE"] = {.words = {"default", "own-pair", "all-algorithms", "paper", "scenes", "deform", "all"},
+                     .files = true};
   std::vector<std::string> flags;
   for (const char* name : k_benchmark_flags) flags.push_back(std::string("--") + name);
   return bash_completion(app, "sixdof-bench", values, flags);
@@ -152,6 +153,7 @@ std::filesystem::path file_of_suite(const std::string& suite) {
   if (suite == "all-algorithms") return folder / "all_algorithms_suite.json";
   if (suite == "paper") return folder / "paper_suite.json";
   if (suite == "scenes") return folder / "scenes_suite.json";
+  if (suite == "deform") return folder / "deform_suite.json";
   return suite;
 }
 
@@ -186,10 +188,10 @@ void add_set_options(CLI::App& app, Options& options, CommandLine& line) {
 }
 
 void add_row_options(CLI::App& app, Options& options, CommandLine& line) {
-  app.add_option(
-         "--suite", line.suite,
-         "Rows to run: default, own-pair, all-algorithms, paper, scenes (bench/*_suite.json), all, or a file of the "
-         "same form")
+  app.add_option("--suite", line.suite,
+                 "Rows to run: default, own-pair, all-algorithms, paper, scenes, deform (bench/*_suite.json), all, or "
+                 "a file of the "
+                 "same form")
       ->type_name("SUITE")
       ->default_str("own-pair with --a and no --set; all with --benchmark_filter or your own sets; else default");
   app.add_option(

@@ -46,6 +46,12 @@ std::vector<PlannedRow> scenario_rows(const Resources& resources);
 /// in the default suite; bench/scenes_suite.json lists those of 1,000 bodies.
 std::vector<PlannedRow> scene_rows(const Resources& resources);
 
+/// `deform/FAMILY/amplitude:3/question:touching/algorithm:A`: a scene in which a mesh deforms, by up to 3 % of its
+/// diagonal, replayed to every algorithm that takes such scenes: those of `exact` and of the libraries differ in how
+/// they update (`exact-refit`, `fcl-rebuild`, ...). Update and query are timed apart and together, and judged as scenes
+/// are. They are not in the default suite; bench/deform_suite.json lists them.
+std::vector<PlannedRow> deform_rows(const Resources& resources);
+
 /// What a configuration of the paper's grid and buckets costs to make, on the same seeded rays for all, as the counter
 /// ns_per_configuration (processor time):
 /// - `generate/distance/algorithm:raycast/pair:P`: make_ray_cast();

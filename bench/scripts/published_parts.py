@@ -148,6 +148,8 @@ def parts():
              [rows("generate.json", 4, f"--benchmark_filter=^generate/distance/.*:({GENERATED})$")]),
         Part("equivalent", "the paper's table: errors at equal time", equal_time),
         Part("scenes", "scenes of 1,000 and 100,000 bodies", scene_steps()),
+        Part("deform", "meshes that deform: refitting their trees against building them anew",
+             [rows("deform.json", 25, "--suite", "deform")]),
         Part("growth", "growth with the number of triangles", object_steps("growth", 10)),
         Part("pairs", "every algorithm on four pairs",
              [rows("pairs.json", 40, "--isolate=third-party", "--suite", "all-algorithms",

@@ -50,26 +50,27 @@ py::list list_scene_algorithms() {
 /// @param numbers by the names of SceneNumbers
 std::shared_ptr<Scene> make(const std::string& family, const std::map<std::string, double>& numbers) {
   scene::SceneNumbers wanted;
-  const std::map<std::string, double*> fields{{"density", &wanted.density},
-                                              {"size_ratio", &wanted.size_ratio},
-                                              {"moving", &wanted.moving},
-                                              {"step", &wanted.step},
-                                              {"margin", &wanted.margin}};
+  const std::map<std::string, double*> fields{{"density", &wanted.density}, {"size_ratio", &wanted.size_ratio},
+                                              {"moving", &wanted.moving},   {"step", &wanted.step},
+                                              {"margin", &wanted.margin},   {"amplitude", &wanted.amplitude}};
   for (const auto& [name, value] : numbers) {
-    const bool is_count = name == "bodies" || name == "frames" || name == "seed";
+    const bool is_count = name == "bodies" || name == "frames" || name == "triangles" || name == "seed";
     if (is_count && !(value >= 0.0 && value < 1e15))
       throw BadArgument(fmt::format("{}: {} is out of range", name, value));
     if (name == "bodies") {
       wanted.bodies = static_cast<std::size_t>(value);
     } else if (name == "frames") {
       wanted.frames = static_cast<std::size_t>(value);
+    } else if (name == "triangles") {
+      wanted.triangles = static_cast<std::size_t>(value);
     } else if (name == "seed") {
       wanted.seed = static_cast<std::uint64_t>(value);
     } else if (const auto field = fields.find(name); field != fields.end()) {
       *field->second = value;
     } else {
       throw BadArgument(fmt::format(
-          "{}: no parameter of scenes; they are bodies, frames, density, size_ratio, moving, step, margin, seed",
+          "{}: no parameter of scenes; they are bodies, frames, density, size_ratio, moving, step, margin, amplitude, "
+          "triangles, seed",
           name));
     }
   }
@@ -111,6 +112,19 @@ py::tuple frame(const Scene& scene, std::size_t index) {
     poses.push_back(motion.X_WB);
   }
   return py::make_tuple(array_of<std::uint32_t>(moved), matrices_of(poses));
+}
+
+/// The meshes that deform in a frame, by index, with their vertices.
+py::dict shapes(const Scene& scene, std::size_t index) {
+  if (index >= scene.frames.size()) throw BadArgument(fmt::format("frame: {} of {}", index, scene.frames.size()));
+  py::dict dict;
+  for (const scene::Deformed& deformed : scene::shapes_of(scene, index)) {
+    py::array_t<double> vertices({static_cast<py::ssize_t>(deformed.vertices.size()), py::ssize_t{3}});
+    double* place = vertices.mutable_data();
+    for (const Eigen::Vector3d& p : deformed.vertices) place = std::copy_n(p.data(), 3, place);
+    dict[py::int_(deformed.mesh)] = vertices;
+  }
+  return dict;
 }
 
 py::dict dict_of(const scene::SceneAnswer& answer) {
@@ -214,6 +228,7 @@ void bind_scenes(py::module_& module) {
       .def("meshes", meshes)
       .def("bodies", bodies)
       .def("frame", frame, py::arg("index"))
+      .def("shapes", shapes, py::arg("index"))
       .def("play", play, py::arg("algorithm"), py::arg("question"))
       .def(
           "save", [](const Scene& scene, const std::string& file) { scene::save_scene(scene, file); }, py::arg("file"));
@@ -226,8 +241,10 @@ void bind_scenes(py::module_& module) {
   module.def("scene_algorithms", list_scene_algorithms);
   module.def("scene_families", [] {
     py::dict dict;
-    for (const scene::SceneFamily& family : scene::scene_families()) {
-      dict[py::str(std::string(family.name))] = std::string(family.stresses);
+    for (const auto families : {scene::scene_families(), scene::deforming_families()}) {
+      for (const scene::SceneFamily& family : families) {
+        dict[py::str(std::string(family.name))] = std::string(family.stresses);
+      }
     }
     return dict;
   });

@@ -45,7 +45,7 @@ void expect_fields_of_the_name(const json& entry) {
     EXPECT_THAT(name, HasSubstr(fields.value(key, std::string())));
   }
   const std::string query = fields.at("query");
-  EXPECT_EQ(fields.contains("scenario"), query == "scenario" || query == "scene") << name;
+  EXPECT_EQ(fields.contains("scenario"), query == "scenario" || query == "scene" || query == "deform") << name;
   EXPECT_EQ(fields.contains("target"), query == "generate") << name;
   EXPECT_EQ(fields.contains("pair"), name.find("/pair:") != std::string::npos) << name;
   const bool has_bucket = name.find("/distance:") != std::string::npos || name.find("/volume:") != std::string::npos;
@@ -67,6 +67,7 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
       "^(prepare|collide|distance|respond)/.*/pair:torus-1k-cone-1k(/(distance:05|volume:03))?$|"
       "^collide/algorithm:exact/pair:torus-1k-cone-1k/distance:05/cache:cold$|"
       "^scenario/(II|III)/algorithm:exact$|^scene/cube/n:100/question:near/algorithm:exact$|"
+      "^deform/bump/amplitude:1/question:touching/algorithm:exact$|"
       "^generate/.*/pair:torus-1k-cone-1k$' --budget 10");
   std::set<std::string> families, counters;
   for (const json& entry : document.at("benchmarks")) {
@@ -80,11 +81,11 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
       EXPECT_NE(find_metric(key), nullptr) << key << " of " << name << " is not in lib/sixdof/measure/metrics.cpp";
     }
   }
-  EXPECT_EQ(families,
-            (std::set<std::string>{"prepare", "collide", "distance", "respond", "scenario", "scene", "generate"}));
-  for (const char* counter :
-       {"max_least_ns", "error_rms", "gamma_F_deg", "magnitude_error_F", "gain_T", "points_tested", "ns_per_points",
-        "bytes", "sigma_F_by_depth", "steps", "ns_per_configuration", "missed_pairs", "pairs_put_off"}) {
+  EXPECT_EQ(families, (std::set<std::string>{"prepare", "collide", "distance", "respond", "scenario", "scene", "deform",
+                                             "generate"}));
+  for (const char* counter : {"max_least_ns", "error_rms", "gamma_F_deg", "magnitude_error_F", "gain_T",
+                              "points_tested", "ns_per_points", "bytes", "sigma_F_by_depth", "steps",
+                              "ns_per_configuration", "missed_pairs", "pairs_put_off", "update_ns", "amplitude"}) {
     EXPECT_TRUE(counters.contains(counter)) << counter;
   }
 }

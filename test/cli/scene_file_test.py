@@ -28,6 +28,10 @@ def main():
             assert "40 bodies" in out and "4 frames" in out, out
             before, after = info(sixdof, first), info(sixdof, copy)
             assert before == after and len(before["hash"]) == 32, (before, after)
+        run(sixdof, "scene", "make", "wave", "--triangles", "300", "--frames", "4", "-o", first)
+        run(sys.executable, "-B", script, first, copy)
+        before, after = info(sixdof, first), info(sixdof, copy)
+        assert before == after and before["shapes"] == 3, (before, after)
         run(sys.executable, "-B", script, "--example", made)
         played = json.loads(run(sixdof, "scene", "play", made, "--algorithms", "exact", "--question", "touching,near",
                                 "--json"))

@@ -42,6 +42,28 @@ TEST_F(SceneCommand, MakesAndDescribesAScene) {
   EXPECT_THAT(run("info s.h5").out, HasSubstr("hash        " + info.at("hash").get<std::string>()));
 }
 
+TEST_F(SceneCommand, MakesAndPlaysASceneInWhichAMeshDeforms) {
+  for (const char* family : {"wave", "twist", "cloth", "bump", "crumple"}) {
+    const auto made = run(std::string("make ") + family + " --amplitude 0.1 --triangles 500 --frames 5 -o s.h5");
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_THAT(made.out, HasSubstr("deformed    4 meshes in all frames\n"));
+    EXPECT_EQ(json_of("info s.h5").at("recipe"),
+              std::string("family=") + family + " frames=5 seed=1 amplitude=0.1 triangles=500");
+    const json played = json_of("play s.h5 --algorithms exact,exact-refit,exact-rebuild,all-pairs --question near");
+    for (const json& each : played[0].at("algorithms")) {
+      EXPECT_EQ(each.at("same_bits"), true);
+      EXPECT_NEAR(each.at("update_us").get<double>() + each.at("answer_us").get<double>(),
+                  each.at("processor_us").get<double>(), 1e-3 * each.at("processor_us").get<double>());
+    }
+  }
+  const auto table = run("play s.h5");
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  EXPECT_THAT(table.out, HasSubstr("exact-refit"));
+  EXPECT_THAT(table.out, HasSubstr("built, %"));
+  const auto rigid = run("play s.h5 --algorithms exact,bullet-dbvt");
+  EXPECT_THAT(rigid.out, HasSubstr("bullet-dbvt: left out: does not take scenes in which a mesh deforms"));
+}
+
 TEST_F(SceneCommand, PlaysAScene) {
   ASSERT_EQ(run("make pile -n 60 --frames 4 -o s.h5").exit_code, 0);
   const json played = json_of("play s.h5 --algorithms exact,all-pairs --question touching,near,closest,wrenches");

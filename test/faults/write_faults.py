@@ -45,6 +45,7 @@ KINDS = [
     *output.KINDS,
     Kind("set of many buckets", "x.h5", ["generate", *MANY, "-o", "OUT"]),
     Kind("scene", "x.h5", ["scene", "make", "robot", "-n", "6", "--frames", "2", "-o", "OUT"]),
+    Kind("scene of a mesh that deforms", "x.h5", ["scene", "make", "bump", "--triangles", "200", "--frames", "2", "-o", "OUT"]),
     Kind("results, CSV", "x.csv", [*output.BENCH, "--benchmark_out_format=csv", "--out", "OUT"], times=True,
                 program=SIXDOF_BENCH, replaces=False),
     Kind("results that are continued", "kept.json", [*output.BENCH, "--resume", "OUT"], times=True,

@@ -8,6 +8,8 @@
 
 #include <sixdof/base/error.h>
 
+#include "shapes.h"
+
 namespace sixdof {
 namespace {
 
@@ -140,6 +142,31 @@ TEST(Mesh, HashDependsOnContentNotOnTheName) {
   EXPECT_EQ(a.hash(), b.hash());
   EXPECT_EQ(a.hash().size(), 32u);
   EXPECT_NE(a.hash(), Mesh::build(changed, tetrahedron_triangles()).hash());
+}
+
+TEST(Mesh, WithOtherVerticesIsTheMeshBuiltOfThem) {
+  const Mesh mesh = shapes::bumpy_sphere(2, 0.2, 0.7, {0.3, -0.2, 0.9});
+  std::vector<Eigen::Vector3d> vertices = mesh.vertices();
+  for (Eigen::Vector3d& p : vertices) p = Eigen::Vector3d(p.x() + 0.3 * std::sin(3.0 * p.y()), -0.0, 1.0) + 0.7 * p;
+  const Mesh moved = mesh.with_vertices(vertices), built = Mesh::build(vertices, mesh.triangles(), mesh.name());
+  EXPECT_EQ(moved.hash(), built.hash());
+  EXPECT_EQ(moved.name(), mesh.name());
+  EXPECT_EQ(moved.volume(), built.volume());
+  EXPECT_EQ(moved.area(), built.area());
+  EXPECT_EQ(moved.diagonal(), built.diagonal());
+  EXPECT_EQ(moved.topology().edges, built.topology().edges);
+  EXPECT_TRUE(moved.solid());
+}
+
+TEST(Mesh, RefusesVerticesThatChangeItsTriangles) {
+  const Mesh mesh = shapes::bumpy_sphere(0, 0.0);
+  std::vector<Eigen::Vector3d> vertices = mesh.vertices();
+  vertices[5] = vertices[2];
+  EXPECT_THROW(mesh.with_vertices(vertices), BadMesh);
+  vertices[5].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(mesh.with_vertices(vertices), BadMesh);
+  vertices.pop_back();
+  EXPECT_THROW(mesh.with_vertices(vertices), BadMesh);
 }
 
 }  // namespace

@@ -79,6 +79,20 @@ class Scenes(unittest.TestCase):
                     self.assertEqual(len(answers), 3)
                     self.assertEqual(score["missed"], 0)
 
+    def test_meshes_that_deform(self):
+        scene = sixdof.make_scene("bump", frames=4, amplitude=0.1, triangles=400)
+        vertices = scene.vertices(0)
+        self.assertEqual(vertices.shape, (4, len(scene.meshes[0].vertices), 3))
+        moved = numpy.linalg.norm(vertices - vertices[0], axis=2).max(axis=1)
+        self.assertEqual(moved[0], 0.0)
+        self.assertTrue((numpy.diff(moved) > 0.0).all())
+        self.assertTrue((scene.vertices(1) == scene.vertices(1)[0]).all())
+        _, score = scene.play("near", "exact-refit")
+        self.assertEqual((score["missed"], score["wrong"]), (0, 0))
+        self.assertIn("crumple", sixdof.scene_families())
+        with self.assertRaisesRegex(sixdof.BadArgument, "mesh: 9 of"):
+            scene.vertices(9)
+
     def test_words_of_errors(self):
         still = random_poses(2, 1.0)[None]
         for words, call in (

@@ -113,7 +113,7 @@ class Page(unittest.TestCase):
             self.assertFalse(is_filled and command, page)
             if command:
                 named[page] = command.split()[0]
-        self.assertEqual(named, {"signals": "sixdof", "scenes": "bench/run", "collection": "bench/scripts/collection", "stability": "sixdof", "compare": "sixdof",
+        self.assertEqual(named, {"signals": "sixdof", "scenes": "bench/run", "deforming": "bench/run", "collection": "bench/scripts/collection", "stability": "sixdof", "compare": "sixdof",
                                  "history": "sixdof"})
         self.go_to("summary")
         self.assertIn("sixdof stress", self.browser.run("document.querySelector('main .verdict .command code').textContent"))
@@ -340,8 +340,8 @@ class Page(unittest.TestCase):
         self.assertLessEqual(self.browser.run("document.querySelector('nav').getBoundingClientRect().height"), 90)
         self.open(width=1400, page=self.plain)
         empty = self.browser.run("[...document.querySelectorAll('nav details a')].map(a => a.hash.slice(1))")
-        self.assertEqual(sorted(empty), ["collection", "compare", "history", "scenes", "signals", "stability"])
-        self.assertIn("without data: 6", self.browser.run("document.querySelector('nav summary').textContent"))
+        self.assertEqual(sorted(empty), ["collection", "compare", "deforming", "history", "scenes", "signals", "stability"])
+        self.assertIn("without data: 7", self.browser.run("document.querySelector('nav summary').textContent"))
         self.assertEqual(self.browser.run("document.querySelectorAll('nav > a').length + document.querySelectorAll('nav details a').length"), len(self.pages()))
 
     def test_figures_have_no_scrollbars_on_a_desk(self):

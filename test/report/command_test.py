@@ -175,6 +175,8 @@ class Report(unittest.TestCase):
         self.assertEqual((line["missed_hits"], line["missed_percent"], line["faults"]), ("6", "12.5", "6 of 64 wrong"))
         self.assertIn("^cast/algorithm:fcl-cast/pair:elephant/motion:tumble/step:0.01$", line["command"])
         self.assertNotIn("cast", {line["query"] for line in lines("times")})
+        self.assertEqual({line["part"] for line in lines("deforming")}, {"update and query", "update", "query"})
+        self.assertEqual({line["rebuild_wins_from"] for line in lines("refit_payoff")}, {"never"})
         self.assertEqual(float(lines("collection")[0]["p90_us"]), 90.0)
         self.assertIn("bed", {line["point"] for line in lines("collection_ratios")})
         self.assertEqual(float(lines("growth_exponents")[0]["low"]), 0.35)

@@ -65,7 +65,7 @@ def cast_rows():
 
 
 def scene_rows():
-    """Rows of `sixdof-bench --suite scenes`."""
+    """Rows of `sixdof-bench --suite scenes` and `--suite deform`."""
     made = []
     for i, algorithm in enumerate(["exact", "fcl-ssap", HOSTILE]):
         for scene in ("pile", HOSTILE):
@@ -73,6 +73,21 @@ def scene_rows():
                 one = row("scene", algorithm, "", "distance", 0, 1e3, processor_ns=bodies * 100.0 * (i + 1), bodies=bodies, missed_pairs=0,
                           pairs_looked_at=bodies * (i + 2), true_pairs=bodies)
                 one["name"] = f"scene/{scene}/n:{bodies}/question:near/algorithm:{algorithm}"
+                del one["sixdof"]["bucket"], one["outliers"]
+                one["sixdof"] |= {"scenario": scene, "question": "near"}
+                made.append(one)
+    return made + deform_rows()
+
+
+def deform_rows():
+    made = []
+    for i, algorithm in enumerate(["exact", "fcl-refit", "fcl-rebuild"]):
+        for scene in ("wave", "twist"):
+            for amplitude in (1, 10):
+                update, answer = 1e5 * (i + 1), 1e4 * amplitude
+                one = row("deform", algorithm, "", "distance", 0, 1e3, processor_ns=update + answer, update_ns=update, answer_ns=answer,
+                          amplitude=amplitude, bodies=5, missed_pairs=0, deformed_triangles=20000)
+                one["name"] = f"deform/{scene}/amplitude:{amplitude}/question:near/algorithm:{algorithm}"
                 del one["sixdof"]["bucket"], one["outliers"]
                 one["sixdof"] |= {"scenario": scene, "question": "near"}
                 made.append(one)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -221,6 +222,43 @@ TEST(DepthsTable, HasTheVerdictsOfARow) {
   EXPECT_EQ(number_in(table, table.rows[0], "percent"), 5.0);
   EXPECT_EQ(text_in(table, table.rows[0], "bodies"), "meshes");
   EXPECT_EQ(text_in(table, table.rows[0], "faults"), "");
+}
+
+/// A row of a family of scenes in which a mesh deforms.
+Json deform_row(const char* algorithm, double amplitude, double update_ns, double answer_ns) {
+  Json row = test::row("deform", algorithm, "", "distance", 1.0, 1.0,
+                       {{"processor_ns", update_ns + answer_ns},
+                        {"update_ns", update_ns},
+                        {"answer_ns", answer_ns},
+                        {"amplitude", amplitude},
+                        {"missed_pairs", 0}});
+  row["name"] = fmt::format("deform/twist/amplitude:{:g}/question:near/algorithm:{}", amplitude, algorithm);
+  row["sixdof"].erase("bucket");
+  row["sixdof"]["scenario"] = "twist";
+  row["sixdof"]["question"] = "near";
+  return row;
+}
+
+TEST(DeformingTable, HasUpdateAndQueryApartAndTogether) {
+  const Results results = test::results_of({deform_row("fcl-refit", 3.0, 2000.0, 500.0)});
+  const DataTable table = deforming_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_EQ(text_in(table, table.rows[0], "part"), "update and query");
+  EXPECT_EQ(number_in(table, table.rows[0], "time_us"), 2.5);
+  EXPECT_EQ(number_in(table, table.rows[1], "time_us"), 2.0);
+  EXPECT_EQ(number_in(table, table.rows[2], "time_us"), 0.5);
+  EXPECT_EQ(number_in(table, table.rows[2], "amplitude"), 3.0);
+  EXPECT_EQ(text_in(table, table.rows[2], "scene"), "twist");
+}
+
+TEST(RefitPayoffTable, NamesTheAmplitudeWhereRebuildWins) {
+  const Results results =
+      test::results_of({deform_row("fcl-refit", 1.0, 1000.0, 100.0), deform_row("fcl-rebuild", 1.0, 5000.0, 100.0),
+                        deform_row("fcl-refit", 10.0, 1000.0, 9000.0), deform_row("fcl-rebuild", 10.0, 5000.0, 100.0)});
+  const DataTable table = refit_payoff_table(results, row_groups(results));
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(text_in(table, table.rows[0], "algorithm"), "fcl-refit");
+  EXPECT_EQ(text_in(table, table.rows[0], "rebuild_wins_from"), "10 %");
 }
 
 TEST(FrontierTable, MarksPointsThatNoOtherBeats) {

@@ -1,9 +1,13 @@
 #include <sixdof/scene/exact_scene.h>
 
+#include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <sixdof/base/parallel.h>
 #include <sixdof/scene/all_pairs.h>
+#include <sixdof/scene/score.h>
 #include <sixdof/scene/truth.h>
 #include "small_scenes.h"
 
@@ -138,6 +142,150 @@ TEST(ExactScene, WrenchesOfASceneSumToZero) {
   EXPECT_GT(scale, 0.1);
   EXPECT_LT(force.norm(), 1e-12 * scale);
   EXPECT_LT(torque.norm(), 1e-10 * scale);
+}
+
+Scene deforming(std::string_view family, double amplitude) {
+  return make_scene(family, {.frames = 14, .amplitude = amplitude, .triangles = 1200, .seed = 7});
+}
+
+class EveryDeformingFamily : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryDeformingFamily, HasTheBitsOfAllPairsByEveryUpdate) {
+  for (const double amplitude : {0.003, 0.1, 0.3}) {
+    SCOPED_TRACE(amplitude);
+    const Scene scene = deforming(GetParam(), amplitude);
+    for (const Question question : {Question::touching, Question::near, Question::closest}) {
+      SCOPED_TRACE(to_string(question));
+      const SceneAnswers truth = replay(scene, *make_all_pairs(), question);
+      if (amplitude == 0.1 || question != Question::touching) {
+        EXPECT_GT(truth.pairs(), 0u);
+      }
+      for (const MeshUpdate update : {MeshUpdate::rule, MeshUpdate::refit, MeshUpdate::rebuild}) {
+        const SceneAnswers exact = replay(scene, *make_exact_scene(update), question);
+        for (std::size_t f = 0; f < truth.frames.size(); ++f) {
+          ASSERT_EQ(exact.frames[f].pairs, truth.frames[f].pairs) << "frame " << f;
+        }
+        EXPECT_EQ(exact.hash, truth.hash);
+      }
+    }
+  }
+}
+
+TEST_P(EveryDeformingFamily, HasTheSameBitsOnAnyThreads) {
+  const Scene scene = deforming(GetParam(), 0.1);
+  std::string hash;
+  for (const unsigned threads : {1u, 3u}) {
+    parallel::with_threads(threads, [&] {
+      const std::string here = replay(shuffled(scene, threads), *make_exact_scene(), Question::near).hash;
+      if (hash.empty()) hash = here;
+      EXPECT_EQ(here, hash) << threads;
+    });
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, EveryDeformingFamily, ::testing::Values("wave", "twist", "cloth", "bump", "crumple"),
+                         [](const auto& family) { return family.param; });
+
+TEST(ExactScene, WrenchesOfBodiesThatDeformHaveTheBitsOfAllPairs) {
+  const Scene scene = deforming("bump", 0.1);
+  const SceneAnswers truth = replay(scene, *make_all_pairs(), Question::wrenches);
+  EXPECT_GT(truth.pairs(), 0u);
+  EXPECT_EQ(replay(scene, *make_exact_scene(), Question::wrenches).hash, truth.hash);
+}
+
+TEST(ExactScene, FollowsBodiesThatShareAMeshAndAreFarApart) {
+  // Two spheres of one mesh breathe, one of them flies away: beyond 50 diameters distances depend on the tree.
+  Scene scene = row_of_spheres(3, 0.5, 40.0, 8, 0.4);
+  scene.deformations.resize(8);
+  for (std::size_t f = 1; f < 8; ++f) {
+    std::vector<Eigen::Vector3d> vertices = scene.meshes[0]->vertices();
+    for (Eigen::Vector3d& p : vertices) p *= 1.0 + 0.05 * static_cast<double>(f) * std::sin(3.0 * p.x());
+    scene.deformations[f].push_back({0, std::make_shared<const std::vector<Eigen::Vector3d>>(vertices)});
+  }
+  scene.check();
+  for (const double margin : {0.4, 400.0}) {
+    scene.margin = margin;
+    for (const Question question : {Question::touching, Question::near, Question::closest}) {
+      EXPECT_EQ(replay(scene, *make_exact_scene(), question).hash, replay(scene, *make_all_pairs(), question).hash);
+    }
+  }
+}
+
+TEST(ExactScene, SeesThatABodyBecomesInsideOut) {
+  // A small sphere rests inside a large one that is turned inside out: then it is inside no body.
+  Scene scene;
+  scene.meshes.push_back(std::make_shared<const Mesh>(make_sphere({.radius = 1.0}, 320)));
+  scene.meshes.push_back(std::make_shared<const Mesh>(make_sphere({.radius = 0.1}, 80)));
+  scene.bodies = {{1, 0, false, {}}, {2, 1, false, {}}};
+  scene.frames.resize(3);
+  scene.deformations.resize(3);
+  std::vector<Eigen::Vector3d> vertices = scene.meshes[0]->vertices();
+  for (Eigen::Vector3d& p : vertices) p.x() = -p.x();
+  scene.deformations[1].push_back({0, std::make_shared<const std::vector<Eigen::Vector3d>>(vertices)});
+  scene.check();
+  const SceneAnswers exact = replay(scene, *make_exact_scene(), Question::touching);
+  EXPECT_EQ(exact.frames[0].pairs.size(), 1u);
+  EXPECT_EQ(exact.frames[1].pairs.size(), 0u);
+  EXPECT_EQ(exact.hash, replay(scene, *make_all_pairs(), Question::touching).hash);
+}
+
+/// A planted error: updates forget one vertex, which stays where it was at the start.
+class StaleVertex final : public SceneQuery {
+ public:
+  StaleVertex(const Scene& scene, Question question, std::uint32_t vertex)
+      : rest_(scene.meshes[0]->vertices()[vertex]),
+        vertex_(vertex),
+        query_(make_exact_scene()->prepare(scene, question)) {}
+  void deform(std::span<const Deformed> deformed) override {
+    if (deformed.empty()) return;
+    vertices_.assign(deformed[0].vertices.begin(), deformed[0].vertices.end());
+    vertices_[vertex_] = rest_;
+    const Deformed stale{0, vertices_};
+    query_->deform(std::span(&stale, 1));
+  }
+  void update(std::span<const Moved> moved) override { query_->update(moved); }
+  const SceneAnswer& answer() override { return query_->answer(); }
+
+ private:
+  const Eigen::Vector3d rest_;
+  const std::uint32_t vertex_;
+  std::vector<Eigen::Vector3d> vertices_;
+  std::unique_ptr<SceneQuery> query_;
+};
+
+TEST(ExactScene, AnUpdateThatForgetsAVertexIsCaught) {
+  const Scene scene = make_scene("bump", {.frames = 14, .margin = 0.3, .amplitude = 0.1, .triangles = 1200, .seed = 7});
+  // The vertex that travels farthest is the top of the bump, which meets the ball above.
+  const auto& rest = scene.meshes[0]->vertices();
+  const auto& last = *scene.deformations.back()[0].vertices;
+  std::uint32_t top = 0;
+  for (std::uint32_t i = 0; i < rest.size(); ++i) {
+    if ((last[i] - rest[i]).norm() > (last[top] - rest[top]).norm()) top = i;
+  }
+  const auto stale = make_scene_algorithm<StaleVertex>({.name = "stale",
+                                                        .version = "1",
+                                                        .summary = "forgets a vertex",
+                                                        .answers = {Question::near},
+                                                        .own = true,
+                                                        .deforms = true},
+                                                       top);
+  const SceneAnswers truth = replay(scene, *make_all_pairs(), Question::near);
+  const Play play = scene::play(scene, *stale, Question::near, truth);
+  EXPECT_FALSE(play.score.same_bits);
+  EXPECT_GT(play.score.largest_error, 1e-3);
+  const Play right = scene::play(scene, *make_exact_scene(), Question::near, truth);
+  EXPECT_TRUE(right.score.same_bits);
+  EXPECT_GT(right.timing.update_us, 0.0);
+  EXPECT_NEAR(right.timing.update_us + right.timing.answer_us, right.timing.processor_us,
+              1e-9 * right.timing.processor_us);
+}
+
+TEST(ExactScene, WhoTakesNoMeshThatDeformsSaysSo) {
+  const Scene scene = deforming("wave", 0.1);
+  const auto rigid = make_scene_algorithm<StaleVertex>(
+      {.name = "rigid", .version = "1", .summary = "none", .answers = {Question::near}}, 0u);
+  EXPECT_EQ(message_of<BadArgument>([&] { rigid->prepare(scene, Question::near); }),
+            "rigid does not take scenes in which a mesh deforms");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include <sixdof/geometry/load.h>
 #include <sixdof/geometry/save.h>
 #include <sixdof/models/model_catalogue.h>
 #include "../cli/scratch_folder.h"
@@ -49,6 +50,27 @@ TEST_F(SceneCsv, ReadsBodiesAndTheirMotion) {
   EXPECT_EQ(scene.margin, 0.25);
 }
 
+TEST_F(SceneCsv, AnotherFileOfTheSameTrianglesDeformsTheMesh) {
+  const Mesh ball = load_mesh(path("ball.ply"));
+  for (const int k : {1, 2}) {
+    std::vector<Eigen::Vector3d> vertices = ball.vertices();
+    for (Eigen::Vector3d& p : vertices) p.x() *= 1.0 + 0.25 * k;
+    save_mesh(ball.with_vertices(vertices), path(k == 1 ? "ball1.ply" : "ball2.ply"));
+  }
+  const std::string start = std::string(k_header) + k_start + "0,9,ball.ply,5,0,0,1,0,0,0\n";
+  const Scene scene =
+      read(start + "1,7,ball1.ply,0,0,0,1,0,0,0\n1,9,ball1.ply,5,0,0,1,0,0,0\n" +
+           "2,7,,0,1,0,1,0,0,0\n4,7,ball2.ply,0,0,0,1,0,0,0\n5,9,ball.ply,5,0,0,1,0,0,0\n" + "6,3,,1,1,1,1,0,0,0\n");
+  EXPECT_EQ(scene.meshes.size(), 2u);
+  ASSERT_EQ(scene.deformations.size(), 7u);
+  EXPECT_EQ(scene.shapes(), 3u);
+  EXPECT_EQ((*scene.deformations[1].at(0).vertices)[3].x(), 1.25 * ball.vertices()[3].x());
+  EXPECT_EQ((*scene.deformations[4].at(0).vertices)[3].x(), 1.5 * ball.vertices()[3].x());
+  EXPECT_EQ(*scene.deformations[5].at(0).vertices, ball.vertices());
+  EXPECT_EQ(refuses(start + "1,7,ball1.ply,0,0,0,1,0,0,0\n1,9,ball2.ply,5,0,0,1,0,0,0\n"),
+            "line 6, column mesh: ball.ply is ball1.ply in this frame already");
+}
+
 TEST_F(SceneCsv, NamesTheLineThatIsWrong) {
   const std::string good = std::string(k_header) + k_start;
   EXPECT_EQ(refuses("frame,body,mesh,x\n"),
@@ -60,7 +82,10 @@ TEST_F(SceneCsv, NamesTheLineThatIsWrong) {
   EXPECT_EQ(refuses(good + "1,7,,0,0,inf,1,0,0,0\n"), "line 4, column tz: is not finite");
   EXPECT_EQ(refuses(good + "1,-7,,0,0,0,1,0,0,0\n"), "line 4, column body: '-7' is not a count");
   EXPECT_EQ(refuses(good + "1,8,,0,0,0,1,0,0,0\n"), "line 4: body 8 is not in frame 0");
-  EXPECT_EQ(refuses(good + "1,7,box.off,0,0,0,1,0,0,0\n"), "line 4: body 7 has another mesh in frame 0");
+  EXPECT_EQ(
+      refuses(good + "1,7,box.off,0,0,0,1,0,0,0\n"),
+      "line 4, column mesh: box.off does not have the triangles of ball.ply, which the body has in frame 0; a mesh "
+      "deforms if its vertices move");
   EXPECT_EQ(refuses(good + "1,7,,0,0,0,1,0,0,0\n1,7,,0,0,0,1,0,0,0\n"), "line 5: body 7 comes twice in frame 1");
   EXPECT_EQ(refuses(good + "2,7,,0,0,0,1,0,0,0\n1,7,,0,0,0,1,0,0,0\n"), "line 5: frame 1 after frame 2");
   EXPECT_EQ(refuses(good + "0,7,ball.ply,0,0,0,1,0,0,0\n"), "line 4: body 7 comes twice in frame 0");

@@ -39,6 +39,33 @@ TEST_F(SceneFile, KeepsASceneInWhichNothingMoves) {
   EXPECT_EQ(load_scene(path("s.h5")).frames.size(), 4u);
 }
 
+TEST_F(SceneFile, KeepsTheVerticesOfBodiesThatDeform) {
+  const Scene scene = make_scene("twist", {.frames = 4, .amplitude = 0.1, .triangles = 300, .seed = 2});
+  save_scene(scene, path("s.h5"));
+  const Scene read = load_scene(path("s.h5"));
+  EXPECT_EQ(read.hash(), scene.hash());
+  ASSERT_EQ(read.deformations.size(), 4u);
+  EXPECT_TRUE(read.deformations[0].empty());
+  EXPECT_EQ(*read.deformations[3][0].vertices, *scene.deformations[3][0].vertices);
+  save_scene(read, path("t.h5"));
+  EXPECT_EQ(bytes_of(path("t.h5")), bytes_of(path("s.h5")));
+}
+
+TEST_F(SceneFile, RefusesDamagedVertices) {
+  const Scene scene = make_scene("wave", {.frames = 3, .triangles = 200});
+  save_scene(scene, path("s.h5"));
+  const std::string whole = bytes_of(path("s.h5"));
+  for (std::size_t at = whole.size() / 2; at < whole.size(); at += 4001) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 16);
+    std::ofstream(path("bad.h5"), std::ios::binary) << bytes;
+    try {
+      EXPECT_EQ(load_scene(path("bad.h5")).hash(), scene.hash());  // padding
+    } catch (const BadFile&) {
+    }
+  }
+}
+
 TEST_F(SceneFile, RefusesDamage) {
   const Scene scene = make_scene("cube", {.bodies = 30, .frames = 3});
   save_scene(scene, path("s.h5"));

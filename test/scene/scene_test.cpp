@@ -133,5 +133,65 @@ TEST(Excerpt, KeepsPairsThatAreIgnoredAndRefusesWhatIsNotThere) {
   EXPECT_THROW(excerpt(scene, std::vector{a, 4000000000u}, 0, 1), BadArgument);
 }
 
+/// Two spheres of one mesh, which deforms in frames 1 and 3 of 4.
+Scene breathing_spheres() {
+  Scene scene = row_of_spheres(2, 0.5, 0.1, 4, 0.0);
+  scene.deformations.resize(4);
+  for (const std::size_t f : {1u, 3u}) {
+    std::vector<Eigen::Vector3d> vertices = scene.meshes[0]->vertices();
+    for (Eigen::Vector3d& p : vertices) p *= 1.0 + 0.1 * static_cast<double>(f);
+    scene.deformations[f].push_back({0, std::make_shared<const std::vector<Eigen::Vector3d>>(vertices)});
+  }
+  return scene;
+}
+
+TEST(Scene, OfBodiesThatDeformHasAHashOfItsVertices) {
+  const Scene scene = breathing_spheres();
+  scene.check();
+  EXPECT_TRUE(scene.deforms(0));
+  EXPECT_EQ(scene.shapes(), 2u);
+  EXPECT_EQ(shapes_of(scene, 3).front().vertices.size(), scene.meshes[0]->vertices().size());
+  EXPECT_TRUE(shapes_of(scene, 2).empty());
+  Scene other = scene;
+  std::vector<Eigen::Vector3d> vertices = *other.deformations[3][0].vertices;
+  vertices[7].x() = std::nextafter(vertices[7].x(), 9.0);
+  other.deformations[3][0].vertices = std::make_shared<const std::vector<Eigen::Vector3d>>(vertices);
+  EXPECT_NE(other.hash(), scene.hash());
+}
+
+TEST(Scene, RefusesDeformationsThatAreNone) {
+  const auto refusal = [](const auto& change) {
+    Scene scene = breathing_spheres();
+    change(scene);
+    return message_of<BadArgument>([&] { scene.check(); });
+  };
+  EXPECT_EQ(refusal([](Scene& s) { s.deformations.pop_back(); }), "deformations of 3 frames in a scene of 4");
+  EXPECT_EQ(refusal([](Scene& s) { s.deformations[0] = s.deformations[1]; }), "the first frame must deform nothing");
+  EXPECT_EQ(refusal([](Scene& s) { s.deformations[1][0].mesh = 3; }), "frame 1, mesh 3: the scene has 1 meshes");
+  EXPECT_EQ(refusal([](Scene& s) { s.deformations[3].push_back(s.deformations[3][0]); }),
+            "frame 3, mesh 0: not in the order of meshes, or twice");
+  EXPECT_EQ(refusal([](Scene& s) {
+              std::vector<Eigen::Vector3d> vertices = *s.deformations[1][0].vertices;
+              vertices[9] = vertices[4];
+              s.deformations[1][0].vertices = std::make_shared<const std::vector<Eigen::Vector3d>>(vertices);
+            }),
+            "frame 1, mesh 0: vertices 4 and 9 are equal");
+  EXPECT_EQ(refusal([](Scene& s) {
+              s.deformations[1][0].vertices = std::make_shared<const std::vector<Eigen::Vector3d>>(5);
+            }),
+            "frame 1, mesh 0: 5 vertices for a mesh of 162");
+  EXPECT_EQ(refusal([](Scene& s) { s.bodies[0].fixed = true; }), "body 11 is fixed, but its mesh 0 deforms");
+}
+
+TEST(Scene, ExcerptBeginsWithTheShapeOfItsFirstFrame) {
+  const Scene scene = breathing_spheres();
+  const Scene part = excerpt(scene, {}, 2, 3);
+  EXPECT_EQ(part.meshes[0]->vertices(), *scene.deformations[1][0].vertices);
+  ASSERT_EQ(part.deformations.size(), 2u);
+  EXPECT_EQ(*part.deformations[1][0].vertices, *scene.deformations[3][0].vertices);
+  EXPECT_FALSE(excerpt(scene, {}, 2, 2).deforms());
+  part.check();
+}
+
 }  // namespace
 }  // namespace sixdof::scene

@@ -49,6 +49,17 @@ class Scene:
             all_poses[frame:, moved] = poses
         return all_poses
 
+    def vertices(self, mesh: int) -> NDArray[numpy.float64]:
+        """Vertices of meshes[mesh] in every frame, shape (frames, k, 3), in the mesh's frame: they move if it deforms."""
+        if not 0 <= mesh < len(self.meshes):
+            raise BadArgument(f"mesh: {mesh} of {len(self.meshes)} meshes")
+        all_vertices = numpy.repeat(numpy.asarray(self.meshes[mesh].vertices)[None], self.frames, axis=0)
+        for frame in range(1, self.frames):
+            shapes = self._core.shapes(frame)
+            if mesh in shapes:
+                all_vertices[frame:] = shapes[mesh]
+        return all_vertices
+
     def play(self, question: str = "touching", algorithm: str = "exact") -> tuple[list[FrameAnswer], dict[str, Any]]:
         """Replays the scene to an algorithm (scene_algorithms()). question: "touching", "near", "closest", "wrenches" or
         "impacts", the pairs that first touch between the frame before and this one, at t from 0 to 1.
@@ -73,7 +84,8 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
 
 
 def make_scene(family: str, **numbers: float) -> Scene:
-    """A scene of a family (scene_families()). numbers: bodies, frames, seed, density, size_ratio, moving, step, margin."""
+    """A scene of a family (scene_families()). numbers: bodies, frames, seed, density, size_ratio, moving, step,
+    margin; where a mesh deforms amplitude (of its diagonal) and triangles instead of bodies."""
     return Scene(_core.make_scene(family, {name: float(value) for name, value in numbers.items()}))
 
 

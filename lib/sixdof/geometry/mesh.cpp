@@ -20,6 +20,15 @@ namespace {
 
 constexpr std::uint32_t k_unset = std::numeric_limits<std::uint32_t>::max();
 
+void check_finite(const std::vector<Eigen::Vector3d>& vertices) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (!vertices[i].allFinite()) {
+      throw BadMesh(fmt::format("vertex {}: coordinates ({}, {}, {}) are not finite", i, vertices[i].x(),
+                                vertices[i].y(), vertices[i].z()));
+    }
+  }
+}
+
 void check_input(const std::vector<Eigen::Vector3d>& vertices, const std::vector<Triangle>& triangles) {
   if (triangles.empty()) throw BadMesh("no triangles");
   // Numbers of corners (3 per triangle) must fit 32 bits as well.
@@ -27,12 +36,7 @@ void check_input(const std::vector<Eigen::Vector3d>& vertices, const std::vector
     throw BadMesh(fmt::format("{} vertices and {} triangles are more than 32-bit indices can tell apart",
                               vertices.size(), triangles.size()));
   }
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (!vertices[i].allFinite()) {
-      throw BadMesh(fmt::format("vertex {}: coordinates ({}, {}, {}) are not finite", i, vertices[i].x(),
-                                vertices[i].y(), vertices[i].z()));
-    }
-  }
+  check_finite(vertices);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (const std::uint32_t v : triangles[i]) {
       if (v >= vertices.size()) {
@@ -154,12 +158,35 @@ Mesh Mesh::build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> tr
   weld(vertices, triangles, mesh.repairs_);
   mesh.vertices_ = std::move(vertices);
   mesh.triangles_ = std::move(triangles);
-  for (const Eigen::Vector3d& p : mesh.vertices_) mesh.box_.extend(p);
-  if (!std::isfinite(mesh.diagonal())) throw BadMesh("the bounding box is too large for double precision");
   mesh.topology_ = analyse_topology(mesh.vertices_.size(), mesh.triangles_);
-  mesh.integrate();
-  mesh.hash_ = content_hash(mesh.vertices_, mesh.triangles_);
+  mesh.measure();
   return mesh;
+}
+
+Mesh Mesh::with_vertices(std::vector<Eigen::Vector3d> vertices) const {
+  if (vertices.size() != vertices_.size()) {
+    throw BadMesh(fmt::format("{} vertices for a mesh of {}", vertices.size(), vertices_.size()));
+  }
+  check_finite(vertices);
+  for (Eigen::Vector3d& p : vertices) p += Eigen::Vector3d::Zero();  // -0 becomes +0
+  const std::vector<std::uint32_t> first_equal = first_equal_of(vertices);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (first_equal[i] != i) throw BadMesh(fmt::format("vertices {} and {} are equal", first_equal[i], i));
+  }
+  Mesh mesh;
+  mesh.name_ = name_;
+  mesh.vertices_ = std::move(vertices);
+  mesh.triangles_ = triangles_;
+  mesh.topology_ = topology_;
+  mesh.measure();
+  return mesh;
+}
+
+void Mesh::measure() {
+  for (const Eigen::Vector3d& p : vertices_) box_.extend(p);
+  if (!std::isfinite(diagonal())) throw BadMesh("the bounding box is too large for double precision");
+  integrate();
+  hash_ = content_hash(vertices_, triangles_);
 }
 
 void Mesh::integrate() {

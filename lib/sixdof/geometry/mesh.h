@@ -59,6 +59,13 @@ class Mesh {
   static Mesh build(std::vector<Eigen::Vector3d> vertices, std::vector<Triangle> triangles, std::string name = {},
                     MeshRepairs repairs = {});
 
+  /// The same triangles on other vertices, as a body has after it was deformed. Topology and name are this mesh's;
+  /// box, area, volume and hash are computed anew.
+  /// @param vertices one for each of vertices(), in their order
+  /// @throws BadMesh if there is another number of them, a coordinate is not finite, two of them are equal (build()
+  /// would weld them), or the box is too large; the message names the element
+  Mesh with_vertices(std::vector<Eigen::Vector3d> vertices) const;
+
   /// Shown in messages and tables: a file name or a model's name.
   const std::string& name() const { return name_; }
   /// The same mesh under another name: `std::move(mesh).renamed("b")`.
@@ -98,6 +105,8 @@ class Mesh {
 
  private:
   Mesh() = default;
+  /// Box, area, volume, centroid and hash of vertices_ and triangles_.
+  void measure();
   /// Area, signed volume and centroid, by the tetrahedra of all triangles with the centre (divergence theorem).
   void integrate();
 

@@ -14,9 +14,11 @@ namespace sixdof {
 
 namespace tree_builder {
 struct Subtree;
-}
+struct Surface;
+}  // namespace tree_builder
 
-/// Bounding-volume tree over the triangles of one mesh: immutable, shared by all queries and threads.
+/// Bounding-volume tree over the triangles of one mesh: shared by all queries and threads. Immutable but for refit()
+/// and rebuild(), for meshes that deform.
 ///
 /// A node holds the volumes of up to eight children as arrays over the children, for SIMD. A child's volume is the
 /// intersection of an axis-aligned box with a slab along the mean normal of its triangles. On a smooth surface the
@@ -105,6 +107,23 @@ class Tree {
   /// k_largest_diagonal.
   explicit Tree(const Mesh& mesh);
 
+  /// Of the triangles of a mesh that deforms. @throws BadMesh likewise
+  explicit Tree(const tree_builder::Surface& surface);
+
+  /// Takes new places of the vertices: the triangles stay partitioned as they are, and all volumes contain them anew.
+  /// Cost: linear, several times less than building. Slabs of nodes with more than k_exact_slab triangles are those of
+  /// the boxes two levels below. While no query uses the tree.
+  /// @param surface the same triangles as before
+  /// @throws BadMesh as the constructor does; then nothing has changed
+  void refit(const tree_builder::Surface& surface);
+  static constexpr std::uint32_t k_exact_slab = 256;
+
+  static constexpr std::uint32_t k_new = ~std::uint32_t{0};  ///< No node of before.
+  /// Builds some subtrees anew, at the places of the vertices that refit() took. While no query uses the tree.
+  /// @param parts their nodes, ascending, none below another, without the root
+  /// @return of each node the one that it was before, or k_new
+  std::vector<std::uint32_t> rebuild(const tree_builder::Surface& surface, std::span<const std::uint32_t> parts);
+
   /// Depth first, parents before children; the root is node 0.
   std::span<const Node> nodes() const { return nodes_; }
 
@@ -126,10 +145,19 @@ class Tree {
   std::size_t bytes() const;
 
  private:
+  /// Sets centre and radius, and the corners of all triangles in tree order.
+  void place(const tree_builder::Surface& surface);
+  void place_corners(const tree_builder::Surface& surface);
   /// Appends the nodes of a subtree. @return the index of its root
   std::uint32_t store_nodes(const tree_builder::Subtree& subtree);
   void fit_slabs(Node& node) const;
+  /// A child's slab. @param sum along its normal @param first, end its triangles
+  void fit_slab(Node& node, std::size_t child, const Eigen::Vector3d& sum, std::uint32_t first,
+                std::uint32_t end) const;
+  /// Likewise, looser, from the boxes of the child's grandchildren. @pre it is a node, whose boxes are set
+  void bound_slab(Node& node, std::size_t child, const Eigen::Vector3d& sum) const;
   void store_volumes();
+  class Assembly;
 
   std::vector<Node> nodes_;
   std::vector<Leaf> leaves_;

@@ -87,23 +87,24 @@ float cost(float half_area, std::size_t count) {
 
 class Builder {
  public:
-  Builder(const Mesh& mesh, const Eigen::Vector3d& center) : primitives_(mesh.triangles().size()) {
+  Builder(const Surface& surface, const Eigen::Vector3d& center, std::span<const std::uint32_t> triangles)
+      : primitives_(triangles.size()) {
     parallel::for_each(primitives_.size(), [&](std::size_t i) {
       Eigen::AlignedBox3d box;
-      for (const std::uint32_t v : mesh.triangles()[i]) box.extend(mesh.vertices()[v]);
+      for (const std::uint32_t v : surface.triangles[triangles[i]]) box.extend(surface.vertices[v]);
       for (std::size_t k = 0; k < 3; ++k) {
         const auto axis = static_cast<Eigen::Index>(k);
         primitives_[i].box.lower[k] = round_down(box.min()[axis] - center[axis]);
         primitives_[i].box.upper[k] = round_up(box.max()[axis] - center[axis]);
       }
-      primitives_[i].triangle = static_cast<std::uint32_t>(i);
+      primitives_[i].triangle = triangles[i];
     });
   }
 
-  std::unique_ptr<Subtree> run(std::vector<std::uint32_t>& mesh_triangle) {
+  std::unique_ptr<Subtree> run(std::span<std::uint32_t> mesh_triangle) {
     const std::size_t n = primitives_.size();
     auto root = build(Range{0, n, bounds(0, n)});
-    for (const Primitive& p : primitives_) mesh_triangle.push_back(p.triangle);
+    for (std::size_t i = 0; i < n; ++i) mesh_triangle[i] = primitives_[i].triangle;
     return root;
   }
 
@@ -286,9 +287,25 @@ class Builder {
 
 }  // namespace
 
-std::unique_ptr<Subtree> build(const Mesh& mesh, const Eigen::Vector3d& center,
-                               std::vector<std::uint32_t>& mesh_triangle) {
-  return Builder(mesh, center).run(mesh_triangle);
+namespace {
+
+void shift(Subtree& subtree, std::size_t first) {
+  for (Range& range : subtree.children) {
+    range.first += first;
+    range.last += first;
+  }
+  for (const auto& node : subtree.nodes) {
+    if (node) shift(*node, first);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Subtree> build(const Surface& surface, const Eigen::Vector3d& center,
+                               std::span<std::uint32_t> mesh_triangle, std::size_t first) {
+  auto root = Builder(surface, center, mesh_triangle).run(mesh_triangle);
+  if (first > 0) shift(*root, first);
+  return root;
 }
 
 }  // namespace sixdof::tree_builder

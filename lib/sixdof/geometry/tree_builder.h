@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <sixdof/geometry/tree.h>
@@ -62,9 +63,17 @@ inline float round_up(double x) {
   return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
 }
 
+/// Corners of the triangles of a mesh.
+struct Surface {
+  std::span<const Eigen::Vector3d> vertices;
+  std::span<const Triangle> triangles;
+};
+
 /// The same for every number of threads.
-/// @param[out] mesh_triangle the mesh's triangle of each triangle in tree order
-std::unique_ptr<Subtree> build(const Mesh& mesh, const Eigen::Vector3d& center,
-                               std::vector<std::uint32_t>& mesh_triangle);
+/// @param[in,out] mesh_triangle the triangles that are partitioned, as indices into surface.triangles, in ascending
+/// order; afterwards in tree order
+/// @param first is added to all Range::first and Range::last
+std::unique_ptr<Subtree> build(const Surface& surface, const Eigen::Vector3d& center,
+                               std::span<std::uint32_t> mesh_triangle, std::size_t first = 0);
 
 }  // namespace sixdof::tree_builder

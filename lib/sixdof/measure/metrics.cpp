@@ -192,6 +192,12 @@ constexpr std::array k_metrics{
     Metric{"frames", "frames", neither, "frames of the scene, the first included", k_scene},
     Metric{"first_frame_ns", "ns", lower, "wall time of the first frame, in which every pair is new", k_scene},
     Metric{"p99_frame_ns", "ns", lower, "99 % of the further frames take no longer", k_scene},
+    // Meshes that deform.
+    Metric{"amplitude", "%", neither, "largest displacement of a vertex, of the mesh's diagonal", "lib/sixdof/scene/families.h"},
+    Metric{"update_ns", "ns", lower, "mean processor time of a frame's update of meshes and bodies", k_scene},
+    Metric{"answer_ns", "ns", lower, "mean processor time of a frame's query after the update", k_scene},
+    Metric{"deformed_triangles", "triangles", neither, "of the meshes that deform, per frame", k_scene},
+    Metric{"built_triangles", "triangles", lower, "of trees, or parts of them, built anew, per frame", k_scene_work},
     // Times.
     Metric{"real_time", "time_unit", lower, "mean wall-clock time of one iteration", k_google},
     Metric{"cpu_time", "time_unit", lower, "mean processor time of one iteration", k_google},

@@ -76,12 +76,12 @@ Interval project(const CoplanarPatches::Plane& plane, const Tree::Volume& box, c
 
 }  // namespace
 
-CoplanarPatches::CoplanarPatches(const Tree& tree) {
-  find_planes(tree);
+CoplanarPatches::CoplanarPatches(const Tree& tree, bool always) {
+  find_planes(tree, always);
   if (!empty()) find_smallest_indices(tree);
 }
 
-void CoplanarPatches::find_planes(const Tree& tree) {
+void CoplanarPatches::find_planes(const Tree& tree, bool always) {
   // Parents come before their children, which inherit the plane.
   std::uint32_t largest = 0;
   const auto find = [&](std::uint32_t first, std::uint32_t count, float thickness) {
@@ -107,7 +107,7 @@ void CoplanarPatches::find_planes(const Tree& tree) {
       plane = find(first, count, node.slab_upper[i] - node.slab_lower[i]);
     }
   }
-  if (largest < k_least_triangles) {
+  if (largest < k_least_triangles && !always) {
     planes_ = std::vector<Plane>();  // frees the memory
     node_plane_ = std::vector<std::uint32_t>();
     leaf_plane_ = std::vector<std::uint32_t>();

@@ -26,9 +26,12 @@ class CoplanarPatches {
     double upper;
   };
 
-  explicit CoplanarPatches(const Tree& tree);
+  /// @param always counts as having patches even if the largest has fewer than four triangles. Of a mesh that deforms:
+  /// which patches are found depends on the partition of its triangles, which differs between a tree that was refitted
+  /// and one that was built, and ties must not.
+  explicit CoplanarPatches(const Tree& tree, bool always = false);
 
-  bool empty() const { return planes_.empty(); }
+  bool empty() const { return node_plane_.empty(); }
 
   /// Plane of the patch that contains all of a node or leaf (CloseVolume::volume); null if there is none.
   const Plane* of(std::uint32_t volume) const {
@@ -48,7 +51,7 @@ class CoplanarPatches {
   const Plane* plane(const std::vector<std::uint32_t>& index, std::uint32_t i) const {
     return index.empty() || index[i] == k_none ? nullptr : &planes_[index[i]];
   }
-  void find_planes(const Tree& tree);
+  void find_planes(const Tree& tree, bool always);
   void find_smallest_indices(const Tree& tree);
 
   std::vector<Plane> planes_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -14,21 +15,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The first vertex of each piece of the surface. Pieces are connected through vertices: where surfaces do not
-/// intersect, all of a piece lies on one side of the other surface.
+/// Empty unless the mesh is solid.
 std::vector<Vector3d> find_piece_vertices(const Mesh& mesh) {
-  if (!mesh.solid()) return {};
-  UnionFind pieces(mesh.vertices().size());
-  for (const Triangle& t : mesh.triangles()) {
-    pieces.join(t[0], t[1]);
-    pieces.join(t[0], t[2]);
-  }
   std::vector<Vector3d> vertices;
-  std::vector<bool> seen(mesh.vertices().size(), false);
-  for (std::uint32_t v = 0; v < mesh.vertices().size(); ++v) {
-    const std::uint32_t piece = pieces.find(v);
-    if (!seen[piece]) vertices.push_back(mesh.vertices()[v]);
-    seen[piece] = true;
+  if (!mesh.solid()) return vertices;
+  for (const std::uint32_t v : detail::first_vertices_of_pieces(mesh.triangles(), mesh.vertices().size())) {
+    vertices.push_back(mesh.vertices()[v]);
   }
   return vertices;
 }
@@ -47,6 +39,22 @@ bool boxes_apart(const detail::DistanceBody& a, const detail::DistanceBody& b, c
 
 }  // namespace
 
+std::vector<std::uint32_t> detail::first_vertices_of_pieces(std::span<const Triangle> triangles, std::size_t vertices) {
+  UnionFind pieces(vertices);
+  for (const Triangle& t : triangles) {
+    pieces.join(t[0], t[1]);
+    pieces.join(t[0], t[2]);
+  }
+  std::vector<std::uint32_t> first;
+  std::vector<bool> seen(vertices, false);
+  for (std::uint32_t v = 0; v < vertices; ++v) {
+    const std::uint32_t piece = pieces.find(v);
+    if (!seen[piece]) first.push_back(v);
+    seen[piece] = true;
+  }
+  return first;
+}
+
 detail::DistanceBody::DistanceBody(const Mesh& mesh)
     : tree(mesh),
       box(mesh.box()),
@@ -54,6 +62,15 @@ detail::DistanceBody::DistanceBody(const Mesh& mesh)
       seeds(tree),
       smallest_leaf(smallest_leaf_of(tree)),
       piece_vertices(find_piece_vertices(mesh)) {}
+
+detail::DistanceBody::DistanceBody(Tree made)
+    : tree(std::move(made)), patches(tree, true), seeds(tree), smallest_leaf(smallest_leaf_of(tree)) {}
+
+void detail::DistanceBody::update() {
+  patches = CoplanarPatches(tree, true);
+  seeds = SeedCorners(tree);
+  smallest_leaf = smallest_leaf_of(tree);
+}
 
 std::size_t detail::DistanceBody::bytes() const {
   return tree.bytes() + patches.bytes() + piece_vertices.capacity() * sizeof(Vector3d);

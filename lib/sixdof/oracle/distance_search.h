@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -60,9 +61,17 @@ struct RankedPair {
 
 float smallest_leaf_of(const Tree& tree);
 
+/// The first vertex of each piece of a surface, in ascending order. Pieces are connected through vertices: where
+/// surfaces do not intersect, all of a piece lies on one side of the other surface.
+std::vector<std::uint32_t> first_vertices_of_pieces(std::span<const Triangle> triangles, std::size_t vertices);
+
 /// One mesh prepared for distance queries.
 struct DistanceBody {
   explicit DistanceBody(const Mesh& mesh);
+  /// Of a mesh that deforms (deforming_mesh.h). Its patches always count; it has no piece_vertices yet.
+  explicit DistanceBody(Tree made);
+  /// What is found from the tree, after that of a mesh that deforms has changed.
+  void update();
   std::size_t bytes() const;
 
   Tree tree;

@@ -53,4 +53,8 @@ bool NearQuery::surfaces_meet(const PreparedMesh& a, const PreparedMesh& b, cons
   });
 }
 
+bool NearQuery::are_far(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB) {
+  return detail::are_far(*a.body_, *b.body_, X_AB);
+}
+
 }  // namespace sixdof

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <sixdof/geometry/mesh.h>
@@ -18,7 +19,7 @@
 /// limit.
 namespace sixdof {
 
-/// A mesh prepared for queries with any other: immutable, shared by all threads.
+/// A mesh prepared for queries with any other: shared by all threads. Immutable unless it is that of a DeformingMesh.
 class PreparedMesh {
  public:
   /// The mesh need not outlive it. @throws BadMesh as Tree does
@@ -30,6 +31,8 @@ class PreparedMesh {
 
  private:
   friend class NearQuery;
+  friend class DeformingMesh;
+  explicit PreparedMesh(std::shared_ptr<const detail::DistanceBody> body) : body_(std::move(body)) {}
   std::shared_ptr<const detail::DistanceBody> body_;
 };
 
@@ -59,6 +62,10 @@ class NearQuery {
   bool is_nested(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB) {
     return detail::is_nested(*a.body_, *b.body_, X_AB, triangles_);
   }
+
+  /// Whether the bodies are farther apart than 50 times their size: then distance() finds one of the closest pairs that
+  /// differ by roundings, and which one depends on the trees (oracle/far_pair.h).
+  static bool are_far(const PreparedMesh& a, const PreparedMesh& b, const Pose& X_AB);
 
   /// Of all queries so far.
   const detail::TraversalCounts& counts() const { return counts_; }

@@ -19,6 +19,9 @@ std::string where_of(const RowGroup& group) {
   if (row.fields.query == "scene") {
     return fmt::format("{}, {:.0f} bodies, {}", row.fields.scenario, group.count("bodies"), row.fields.question);
   }
+  if (row.fields.query == "deform") {
+    return fmt::format("{}, {:g} %, {}", row.fields.scenario, group.count("amplitude"), row.fields.question);
+  }
   std::string place = bodies_of(row.fields);
   const auto add = [&](const std::string& text) { place += (place.empty() ? "" : ", ") + text; };
   if (!row.fields.scenario.empty()) add("scenario " + row.fields.scenario);

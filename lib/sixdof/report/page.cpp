@@ -230,6 +230,8 @@ Report make_report(const Results& results, const std::vector<Series>& series) {
                            many_bodies_table(results, groups),
                            contacts_table(results, groups),
                            depths_table(results, groups),
+                           deforming_table(results, groups),
+                           refit_payoff_table(results, groups),
                            collection_table(results),
                            collection_ratios_table(results),
                            growth_table(results),

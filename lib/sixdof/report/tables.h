@@ -85,6 +85,14 @@ DataTable contacts_table(const Results& results, const std::vector<RowGroup>& gr
 /// depth, under the names of their counters.
 DataTable depths_table(const Results& results, const std::vector<RowGroup>& groups);
 
+/// "deforming": scenes in which a mesh deforms: processor time of a frame by amplitude (percent); `part` is "update and
+/// query", "update" or "query".
+DataTable deforming_table(const Results& results, const std::vector<RowGroup>& groups);
+
+/// "refit_payoff": the amplitude from which on building the tree anew is faster (results/refit_payoff.h), or "never",
+/// for each way to keep the tree; and its time over that of building anew at the least and the largest amplitude.
+DataTable refit_payoff_table(const Results& results, const std::vector<RowGroup>& groups);
+
 /// "collection": times over the objects of a collection, by partner, query and bucket.
 DataTable collection_table(const Results& results);
 

@@ -25,7 +25,7 @@ std::vector<Fault> mistakes(std::span<const Fault> faults) {
 
 std::vector<Fault> own_faults(const Row& row) {
   // A scene's pairs are counted in its words.
-  if (!row.error.empty()) return {{row.fields.query == "scene" ? row.error : "not run: " + row.error, "", 0, 0}};
+  if (!row.error.empty()) return {{is_scene(row.fields) ? row.error : "not run: " + row.error, "", 0, 0}};
   const auto count = [&](const char* counter) { return static_cast<std::uint64_t>(row.count(counter)); };
   const bool is_study = row.fields.query == "precision", has_force = is_study || row.fields.query == "respond";
   const std::uint64_t asked = row.fields.configurations.value_or(count("configurations"));

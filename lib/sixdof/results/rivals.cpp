@@ -16,6 +16,7 @@ std::string place_to_compare(const RowGroup& group) {
   std::string place = fields.target.empty() ? place_of(fields) : fields.target;
   if (!fields.question.empty()) place += (place.empty() ? "" : ", ") + fields.question;
   if (const auto bodies = group.value("bodies")) place += fmt::format(", {:.0f} bodies", *bodies);
+  if (const auto amplitude = group.value("amplitude")) place += fmt::format(", {:g} %", *amplitude);
   return place;
 }
 
@@ -29,7 +30,7 @@ std::vector<double> Rivalry::ratios() const {
 
 std::optional<double> rival_time(const RowGroup& group) {
   if (group.fields().query == "generate") return group.value("ns_per_configuration");
-  if (group.fields().query == "scene") return group.value("processor_ns");
+  if (is_scene(group.fields())) return group.value("processor_ns");
   const auto time = group.mean_time();
   return time ? std::optional(time->value) : std::nullopt;
 }

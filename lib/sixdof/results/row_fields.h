@@ -23,7 +23,7 @@ struct RowFields {
   std::string body = {};      ///< "convex_hull" where answers are not about the meshes; empty where they are.
   std::string runtime = {};   ///< Of a rival: "native", "python", "node" or "wasm" (Traits::runtime); empty elsewhere.
   std::string cache = {};     ///< Of a query: "warm", or "cold" where data leaves the caches before each.
-  std::string scenario = {};  ///< "II"; of a scene row its family.
+  std::string scenario = {};  ///< "II"; of a scene or deform row its family.
   std::string target = {};    ///< Of a generate row: "distance" or "volume".
   /// Of a row of responses, the law that `..._own_...` counters judge by (ResponseLaw): "depth"; empty for none.
   /// Of a scenario row, that of the ideal (IdealLaw): "traction".
@@ -41,6 +41,9 @@ struct RowFields {
   std::optional<std::uint64_t> triangles = {};       ///< Of the object or shape.
   std::optional<double> volume_unit = {};  ///< What volumes are in percent of, in volumes of A; empty: of A's volume.
 };
+
+/// Whether the row is of a scene that was replayed: of rigid bodies, or in which a mesh deforms.
+inline bool is_scene(const RowFields& fields) { return fields.query == "scene" || fields.query == "deform"; }
 
 inline constexpr const char* k_row_fields_key = "sixdof";
 

@@ -59,9 +59,18 @@ class BoxArrays {
 
 class AllPairs final : public SceneQuery {
  public:
-  AllPairs(const Scene& scene, Question question) : question_(question), margin_(scene.margin), bodies_(scene) {
+  AllPairs(const Scene& scene, Question question)
+      : scene_(scene), question_(question), margin_(scene.margin), bodies_(scene) {
     if (question == Question::wrenches) wrenches_.emplace(scene, bodies_);
     if (question == Question::impacts) sweeps_.emplace(scene, bodies_);
+  }
+
+  void deform(std::span<const Deformed> deformed) override {
+    for (const Deformed& each : deformed) {
+      bodies_.deform(each, MeshUpdate::rebuild);
+      if (wrenches_) wrenches_->deform(scene_, bodies_, each);
+      work_.built += scene_.meshes[each.mesh]->triangles().size();
+    }
   }
 
   void update(std::span<const Moved> moved) override {
@@ -212,6 +221,7 @@ class AllPairs final : public SceneQuery {
     return std::sqrt(squared) * (1.0 + 1e-9);
   }
 
+  const Scene& scene_;
   Question question_;
   double margin_;
   detail::Bodies bodies_;
@@ -230,7 +240,8 @@ std::unique_ptr<SceneAlgorithm> make_all_pairs() {
                                          .summary = "every pair in every frame by the distance oracle: the truth",
                                          .answers = {std::begin(k_questions), std::end(k_questions)},
                                          .own = true,
-                                         .by_default = false});
+                                         .by_default = false,
+                                         .deforms = true});
 }
 
 }  // namespace sixdof::scene

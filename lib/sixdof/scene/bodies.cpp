@@ -26,10 +26,7 @@ Bodies::Bodies(const Scene& scene) : filter_(scene) {
   std::iota(index_.begin(), index_.end(), 0u);
   std::ranges::sort(index_, {}, [&](std::uint32_t i) { return scene.bodies[i].id; });
   rank_.resize(n);
-  meshes_.resize(scene.meshes.size());
-  parallel::for_each(scene.meshes.size(),
-                     [&](std::size_t i) { meshes_[i] = std::make_unique<const PreparedMesh>(*scene.meshes[i]); });
-  for (const auto& mesh : meshes_) radii_.push_back(mesh->tree().radius());
+  prepare(scene);
   poses_.resize(n);
   centers_.resize(n);
   boxes_.resize(n);
@@ -38,9 +35,47 @@ Bodies::Bodies(const Scene& scene) : filter_(scene) {
     rank_[index_[r]] = r;
     ids_.push_back(body.id);
     mesh_.push_back(body.mesh);
+    ranks_of_mesh_[body.mesh].push_back(r);
     fixed_.push_back(body.fixed);
     place(r, body.pose.pose());
   }
+}
+
+void Bodies::prepare(const Scene& scene) {
+  const std::size_t n = scene.meshes.size();
+  rigid_.resize(n);
+  deforming_.resize(n);
+  ranks_of_mesh_.resize(n);
+  std::vector<bool> deforms(n, false);
+  for (const std::vector<Deformation>& frame : scene.deformations) {
+    for (const Deformation& deformation : frame) deforms[deformation.mesh] = true;
+  }
+  parallel::for_each(n, [&](std::size_t i) {
+    if (deforms[i]) {
+      deforming_[i] = std::make_unique<DeformingMesh>(*scene.meshes[i]);
+    } else {
+      rigid_[i] = std::make_unique<const PreparedMesh>(*scene.meshes[i]);
+    }
+  });
+  for (std::uint32_t i = 0; i < n; ++i) {
+    prepared_.push_back(deforms[i] ? &deforming_[i]->prepared() : rigid_[i].get());
+    radii_.push_back(prepared_.back()->tree().radius());
+    if (deforms[i]) deforming_meshes_.push_back(i);
+  }
+}
+
+Bodies::Change Bodies::deform(const Deformed& deformed, MeshUpdate how) {
+  DeformingMesh& mesh = *deforming_[deformed.mesh];
+  const bool was_solid = mesh.solid();
+  const double motion = how == MeshUpdate::rule    ? mesh.update(deformed.vertices)
+                        : how == MeshUpdate::refit ? mesh.refit(deformed.vertices)
+                                                   : mesh.rebuild(deformed.vertices);
+  radii_[deformed.mesh] = mesh.prepared().tree().radius();
+  for (const std::uint32_t rank : ranks_of_mesh_[deformed.mesh]) {
+    const Pose X_WB = poses_[rank];
+    place(rank, X_WB);
+  }
+  return {motion * (1.0 + k_rounding), mesh.solid() != was_solid};
 }
 
 void Bodies::place(std::uint32_t rank, const Pose& X_WB) {
@@ -82,16 +117,28 @@ double Bodies::lower_bound(std::uint32_t a, std::uint32_t b) const {
 
 std::size_t Bodies::bytes() const {
   std::size_t sum = size() * (sizeof(Pose) + sizeof(Box) + sizeof(Vector3d) + 4 * sizeof(std::uint32_t));
-  for (const auto& mesh : meshes_) sum += mesh->bytes();
+  for (const auto& mesh : rigid_) sum += mesh ? mesh->bytes() : 0;
+  for (const auto& mesh : deforming_) sum += mesh ? mesh->bytes() : 0;
   return sum;
 }
 
 Wrenches::Wrenches(const Scene& scene, const Bodies& bodies) {
   solids_.resize(scene.meshes.size());
+  shapes_.resize(scene.meshes.size());
   for (std::uint32_t r = 0; r < bodies.size(); ++r) {
     auto& solid = solids_[bodies.mesh_index(r)];
     if (!solid) solid = std::make_unique<const Solid>(*scene.meshes[bodies.mesh_index(r)], bodies.mesh(r).tree());
   }
+}
+
+void Wrenches::deform(const Scene& scene, const Bodies& bodies, const Deformed& deformed) {
+  if (!solids_[deformed.mesh]) return;  // of no body
+  std::vector<Vector3d> vertices(deformed.vertices.begin(), deformed.vertices.end());
+  solids_[deformed.mesh].reset();
+  shapes_[deformed.mesh] =
+      std::make_unique<const Mesh>(scene.meshes[deformed.mesh]->with_vertices(std::move(vertices)));
+  const Tree& tree = bodies.mesh(bodies.ranks_of(deformed.mesh).front()).tree();
+  solids_[deformed.mesh] = std::make_unique<const Solid>(*shapes_[deformed.mesh], tree);
 }
 
 std::vector<BodyWrench> Wrenches::sum(const Bodies& bodies, std::span<const BodyPair> pairs) const {

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <sixdof/oracle/deforming_mesh.h>
 #include <sixdof/oracle/near_query.h>
 #include <sixdof/oracle/overlap.h>
 #include <sixdof/oracle/solid.h>
@@ -44,13 +45,28 @@ class Bodies {
   std::uint32_t rank(std::uint32_t index) const { return rank_[index]; }  ///< Of an index into Scene::bodies.
   std::uint32_t rank_of_id(std::uint32_t id) const;
   std::uint32_t mesh_index(std::uint32_t rank) const { return mesh_[rank]; }
-  const PreparedMesh& mesh(std::uint32_t rank) const { return *meshes_[mesh_[rank]]; }
+  const PreparedMesh& mesh(std::uint32_t rank) const { return *prepared_[mesh_[rank]]; }
   bool fixed(std::uint32_t rank) const { return fixed_[rank]; }
   bool matters(std::uint32_t i, std::uint32_t j) const { return filter_.matters(index_[i], index_[j]); }
   std::uint64_t pairs() const { return filter_.pairs(); }
 
   /// Moves a body. @returns an upper bound on how far any of its points moves (length)
   double move(std::uint32_t rank, const Pose& X_WB);
+
+  /// What a deformation did to all bodies of a mesh.
+  struct Change {
+    double motion;       ///< Upper bound on how far any of their points moved (length).
+    bool solid_changed;  ///< The mesh became a solid, or is none any more.
+  };
+  /// Deforms a mesh; before move() in a frame. @pre the scene says that it deforms
+  Change deform(const Deformed& deformed, MeshUpdate how);
+  /// The bodies of a mesh, by rank, ascending.
+  std::span<const std::uint32_t> ranks_of(std::uint32_t mesh) const { return ranks_of_mesh_[mesh]; }
+  /// Meshes that deform. Sorted.
+  std::span<const std::uint32_t> deforming() const { return deforming_meshes_; }
+  /// Of one of these.
+  DeformingMesh& deforming(std::uint32_t mesh) { return *deforming_[mesh]; }
+  const DeformingMesh& deforming(std::uint32_t mesh) const { return *deforming_[mesh]; }
 
   const Pose& pose(std::uint32_t rank) const { return poses_[rank]; }
   /// Contains the body at its pose, rounding included.
@@ -71,12 +87,17 @@ class Bodies {
   std::size_t bytes() const;
 
  private:
+  void prepare(const Scene& scene);
   void place(std::uint32_t rank, const Pose& X_WB);
 
   PairFilter filter_;
   std::vector<std::uint32_t> ids_, rank_, index_, mesh_;
   std::vector<bool> fixed_;
-  std::vector<std::unique_ptr<const PreparedMesh>> meshes_;
+  std::vector<std::unique_ptr<const PreparedMesh>> rigid_;  // of a mesh; null if it deforms
+  std::vector<std::unique_ptr<DeformingMesh>> deforming_;   // of a mesh; null if it does not
+  std::vector<const PreparedMesh*> prepared_;               // of a mesh: one of both
+  std::vector<std::uint32_t> deforming_meshes_;
+  std::vector<std::vector<std::uint32_t>> ranks_of_mesh_;
   std::vector<double> radii_;  // of a mesh
   std::vector<Pose> poses_;
   std::vector<Eigen::Vector3d> centers_;
@@ -89,6 +110,9 @@ class Wrenches {
   /// @throws BadMesh if a mesh is no solid
   Wrenches(const Scene& scene, const Bodies& bodies);
 
+  /// A mesh has deformed. @throws BadMesh if it is no solid
+  void deform(const Scene& scene, const Bodies& bodies, const Deformed& deformed);
+
   /// Sums the wrenches of pairs that touch, in the order given: the same bits for every number of threads.
   /// @param pairs by rank, sorted
   std::vector<BodyWrench> sum(const Bodies& bodies, std::span<const BodyPair> pairs) const;
@@ -96,6 +120,7 @@ class Wrenches {
   std::size_t bytes() const;
 
  private:
+  std::vector<std::unique_ptr<const Mesh>> shapes_;  // of a mesh that has deformed
   std::vector<std::unique_ptr<const Solid>> solids_;
 };
 

@@ -31,14 +31,31 @@ constexpr std::size_t k_too_many = 8;
 
 class ExactScene final : public SceneQuery {
  public:
-  ExactScene(const Scene& scene, Question question)
-      : question_(question),
+  ExactScene(const Scene& scene, Question question, MeshUpdate mesh_update)
+      : scene_(scene),
+        question_(question),
+        mesh_update_(question == Question::wrenches ? MeshUpdate::rebuild : mesh_update),
         margin_(question == Question::near ? scene.margin : 0.0),
         bodies_(scene),
         motions_(bodies_.size()),
         kept_(bodies_) {
     if (question == Question::wrenches) wrenches_.emplace(scene, bodies_);
     if (question == Question::impacts) sweeps_.emplace(scene, bodies_);
+  }
+
+  void deform(std::span<const Deformed> deformed) override {
+    if (deformed.empty()) return;
+    note_work();
+    for (const Deformed& each : deformed) {
+      const auto [motion, solid_changed] = bodies_.deform(each, mesh_update_);
+      if (wrenches_) wrenches_->deform(scene_, bodies_, each);
+      for (const std::uint32_t rank : bodies_.ranks_of(each.mesh)) {
+        motions_.add(rank, motion, frame_ + 1);
+        moved_.push_back(rank);
+        if (solid_changed) forget(rank);
+      }
+    }
+    known_ = false;
   }
 
   void update(std::span<const Moved> moved) override {
@@ -59,6 +76,12 @@ class ExactScene final : public SceneQuery {
 
   const SceneAnswer& answer() override {
     if (std::exchange(known_, true)) return answer_;
+    make_far_meshes_fresh();
+    if (scene_.deforms()) {  // a body may have deformed and moved
+      std::ranges::sort(moved_);
+      const auto twice = std::ranges::unique(moved_);
+      moved_.erase(twice.begin(), twice.end());
+    }
     if (question_ == Question::closest) {
       find_closest();
     } else if (question_ == Question::impacts) {
@@ -73,12 +96,51 @@ class ExactScene final : public SceneQuery {
   SceneWork work() const override {
     SceneWork work = work_;
     for (NearQuery& query : queries_) work.triangles += query.counts().triangles;
+    for (const std::uint32_t mesh : bodies_.deforming()) work.built += bodies_.deforming(mesh).built_triangles();
     return work;
   }
 
   std::size_t bytes() const override { return bodies_.bytes() + kept_.bytes() + (wrenches_ ? wrenches_->bytes() : 0); }
 
  private:
+  /// Tells the meshes that deform what the queries of the frame before cost. It is not known which of them caused it.
+  void note_work() {
+    std::uint64_t nodes = 0;
+    for (NearQuery& query : queries_) nodes += query.counts().nodes;
+    const auto share = static_cast<double>(nodes - std::exchange(noted_nodes_, nodes)) /
+                       static_cast<double>(bodies_.deforming().size());
+    for (const std::uint32_t mesh : bodies_.deforming()) bodies_.deforming(mesh).note_work(share);
+  }
+
+  /// All that is known of a body's pairs no longer holds.
+  void forget(std::uint32_t rank) {
+    for (std::size_t k = 0; k < kept_.pairs().size(); ++k) {
+      KeptPair& pair = kept_.pairs()[k];
+      if (pair.a != rank && pair.b != rank) continue;
+      pair.meets_at = KeptPair().meets_at;
+      kept_.memory()[k] = PairMemory();
+    }
+  }
+
+  /// Distances of bodies that are far apart have the bits of a tree that was built whole.
+  void make_far_meshes_fresh() {
+    if (question_ != Question::near && question_ != Question::closest) return;
+    for (const std::uint32_t mesh : bodies_.deforming()) {
+      for (const std::uint32_t rank : bodies_.ranks_of(mesh)) {
+        if (is_far_from_another(rank)) bodies_.deforming(mesh).make_fresh();
+      }
+    }
+  }
+
+  bool is_far_from_another(std::uint32_t rank) const {
+    for (std::uint32_t other = 0; other < bodies_.size(); ++other) {
+      const auto [a, b] = std::minmax(rank, other);
+      if (other == rank || !bodies_.matters(a, b)) continue;
+      if (NearQuery::are_far(bodies_.mesh(a), bodies_.mesh(b), bodies_.relative(a, b))) return true;
+    }
+    return false;
+  }
+
   /// How much further than needed a pair is searched (length).
   double horizon(const KeptPair& pair) const {
     const double ahead = k_frames_ahead * (motions_.last(pair.a) + motions_.last(pair.b));
@@ -305,7 +367,9 @@ class ExactScene final : public SceneQuery {
     answer_.wrenches = wrenches_->sum(bodies_, ranks);
   }
 
+  const Scene& scene_;
   Question question_;
+  MeshUpdate mesh_update_;
   double margin_;
   detail::Bodies bodies_;
   detail::Motions motions_;
@@ -314,6 +378,7 @@ class ExactScene final : public SceneQuery {
   std::optional<detail::Sweeps> sweeps_;
   std::vector<double> times_;  // of the first contact of a pair; negative for none
   mutable parallel::PerThread<NearQuery> queries_;
+  std::uint64_t noted_nodes_ = 0;
   std::uint32_t frame_ = 1;
   std::vector<std::uint32_t> moved_;
   std::vector<std::size_t> active_, asked_;            // places in kept_.pairs()
@@ -327,13 +392,22 @@ class ExactScene final : public SceneQuery {
 
 }  // namespace
 
-std::unique_ptr<SceneAlgorithm> make_exact_scene() {
-  return make_scene_algorithm<ExactScene>(
-      {.name = "exact",
-       .version = SIXDOF_VERSION,
-       .summary = "kept boxes, pairs put off by bounds on their motion, the distance oracle up to a limit",
-       .answers = {std::begin(k_questions), std::end(k_questions)},
-       .own = true});
+std::unique_ptr<SceneAlgorithm> make_exact_scene(MeshUpdate update) {
+  SceneTraits traits{
+      .name = "exact",
+      .version = SIXDOF_VERSION,
+      .summary = "kept boxes, pairs put off by bounds on their motion, the distance oracle up to a limit",
+      .answers = {std::begin(k_questions), std::end(k_questions)},
+      .own = true,
+      .deforms = true};
+  if (update != MeshUpdate::rule) {
+    const bool refits = update == MeshUpdate::refit;
+    traits.name += refits ? "-refit" : "-rebuild";
+    traits.summary = refits ? "exact, whose trees are refitted when meshes deform, and never built anew"
+                            : "exact, whose trees are built anew when meshes deform";
+    traits.rigid = false;
+  }
+  return make_scene_algorithm<ExactScene>(std::move(traits), update);
 }
 
 }  // namespace sixdof::scene

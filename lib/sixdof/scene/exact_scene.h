@@ -14,8 +14,13 @@ namespace sixdof::scene {
 /// - A pair of bodies that stand still keeps its answer; a frame in which nothing moves keeps all answers.
 /// - A search ends at the limit that matters, the margin, or for the closest pair the smallest distance so far. Where
 ///   bodies move slowly the limit is a few frames' motion larger, so that the pair can be put off.
+/// - A mesh that deforms keeps its tree (oracle/deforming_mesh.h); its largest displacement counts as motion of its
+///   bodies. For the question `wrenches` the tree is always built anew, and else where bodies are so far apart that the
+///   last bits of a distance depend on it.
 /// - Pairs are searched by all threads; each has its place in the answer, so that bits do not depend on the number of
 ///   threads, nor on the order in which bodies are inserted.
-std::unique_ptr<SceneAlgorithm> make_exact_scene();
+///
+/// `exact-refit` and `exact-rebuild` differ in how they update meshes that deform, and are compared where some do.
+std::unique_ptr<SceneAlgorithm> make_exact_scene(MeshUpdate update = MeshUpdate::rule);
 
 }  // namespace sixdof::scene

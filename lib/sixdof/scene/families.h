@@ -21,6 +21,9 @@ struct SceneNumbers {
   double moving = k_own;      ///< Share of the bodies that moves in a frame, 0 to 1.
   double step = k_own;        ///< Largest translation in a frame, in sizes of a body; coherence is its inverse.
   double margin = k_own;      ///< In mean sizes of a body.
+  /// Of the families in which a mesh deforms: largest displacement of a vertex, in diagonals of the mesh's box.
+  double amplitude = k_own;
+  std::size_t triangles = 0;  ///< Of the mesh that deforms, about so many; 0: the family's own.
   std::uint64_t seed = 1;     ///< Of everything that is drawn.
   static constexpr double k_own = std::numeric_limits<double>::quiet_NaN();  ///< The family's own value.
 };
@@ -32,8 +35,11 @@ struct SceneFamily {
   Scene (*make)(const SceneNumbers& numbers);  ///< For make_scene(), which checks the numbers.
 };
 
-/// All families.
+/// All families of rigid bodies.
 std::span<const SceneFamily> scene_families();
+
+/// Families in which the mesh of the first body deforms, beside a few rigid ones; their number of bodies is their own.
+std::span<const SceneFamily> deforming_families();
 
 /// A scene of a family; name and recipe say which.
 /// @throws BadArgument if there is no family of this name or a number is out of range; BadFile if a set is missing

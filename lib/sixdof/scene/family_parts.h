@@ -109,5 +109,10 @@ Scene make_dust(const SceneNumbers& numbers);
 Scene make_pile(const SceneNumbers& numbers);
 Scene make_robot(const SceneNumbers& numbers);
 Scene make_pairs(const SceneNumbers& numbers);
+Scene make_wave(const SceneNumbers& numbers);
+Scene make_twist(const SceneNumbers& numbers);
+Scene make_cloth(const SceneNumbers& numbers);
+Scene make_bump(const SceneNumbers& numbers);
+Scene make_crumple(const SceneNumbers& numbers);
 
 }  // namespace sixdof::scene::detail

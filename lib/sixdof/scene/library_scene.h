@@ -12,6 +12,12 @@ class LibraryScene : public SceneQuery {
  public:
   explicit LibraryScene(const Scene& scene) : scene_(scene), filter_(scene) {}
 
+  void deform(std::span<const Deformed> deformed) final {
+    if (deformed.empty()) return;
+    known_ = false;
+    reshape(deformed);
+  }
+
   void update(std::span<const Moved> moved) final {
     if (moved.empty()) return;
     known_ = false;
@@ -33,6 +39,8 @@ class LibraryScene : public SceneQuery {
 
  protected:
   virtual void move(std::span<const Moved> moved) = 0;
+  /// Of scenes in which a mesh deforms, if SceneTraits::deforms says so.
+  virtual void reshape(std::span<const Deformed> deformed) { SceneQuery::deform(deformed); }
   /// Calls take() for the pairs of the answer.
   virtual void find() = 0;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
 #include <unordered_map>
@@ -68,6 +69,38 @@ void check_frames(const Scene& scene) {
   }
 }
 
+void check_deformations(const Scene& scene) {
+  if (scene.deformations.empty()) return;
+  if (scene.deformations.size() != scene.frames.size()) {
+    throw BadArgument(
+        fmt::format("deformations of {} frames in a scene of {}", scene.deformations.size(), scene.frames.size()));
+  }
+  if (!scene.deformations.front().empty()) throw BadArgument("the first frame must deform nothing");
+  if (scene.shapes() == 0) throw BadArgument("deformations are given, but no mesh deforms");
+  for (std::size_t f = 1; f < scene.deformations.size(); ++f) {
+    std::size_t next = 0;  // meshes below are done
+    for (const Deformation& deformation : scene.deformations[f]) {
+      const std::string place = fmt::format("frame {}, mesh {}", f, deformation.mesh);
+      if (deformation.mesh >= scene.meshes.size()) {
+        throw BadArgument(fmt::format("{}: the scene has {} meshes", place, scene.meshes.size()));
+      }
+      if (deformation.mesh < next) throw BadArgument(place + ": not in the order of meshes, or twice");
+      next = deformation.mesh + std::size_t{1};
+      if (!deformation.vertices) throw BadArgument(place + ": the vertices are missing");
+      try {
+        static_cast<void>(scene.meshes[deformation.mesh]->with_vertices(*deformation.vertices));
+      } catch (const BadMesh& e) {
+        throw BadArgument(fmt::format("{}: {}", place, e.what()));
+      }
+    }
+  }
+  for (const Body& body : scene.bodies) {
+    if (body.fixed && scene.deforms(body.mesh)) {
+      throw BadArgument(fmt::format("body {} is fixed, but its mesh {} deforms", body.id, body.mesh));
+    }
+  }
+}
+
 }  // namespace
 
 RecordedPose RecordedPose::of(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
@@ -87,6 +120,13 @@ void Scene::check() const {
   }
   check_bodies(*this);
   check_frames(*this);
+  check_deformations(*this);
+}
+
+bool Scene::deforms(std::uint32_t mesh) const {
+  return std::ranges::any_of(deformations, [&](const std::vector<Deformation>& frame) {
+    return std::ranges::find(frame, mesh, &Deformation::mesh) != frame.end();
+  });
 }
 
 std::string Scene::hash() const {
@@ -116,6 +156,13 @@ std::string Scene::hash() const {
       add(motion.pose.numbers);
     }
   }
+  for (const std::vector<Deformation>& frame : deformations) {
+    add_count(frame.size());
+    for (const Deformation& deformation : frame) {
+      add(deformation.mesh);
+      hash.add(std::as_bytes(std::span(*deformation.vertices)));
+    }
+  }
   return hash.hex();
 }
 
@@ -128,6 +175,12 @@ std::size_t Scene::triangles() const {
 std::size_t Scene::motions() const {
   std::size_t sum = 0;
   for (const Frame& frame : frames) sum += frame.size();
+  return sum;
+}
+
+std::size_t Scene::shapes() const {
+  std::size_t sum = 0;
+  for (const std::vector<Deformation>& frame : deformations) sum += frame.size();
   return sum;
 }
 
@@ -186,8 +239,14 @@ Scene excerpt(const Scene& scene, std::span<const std::uint32_t> ids, std::size_
   }
   const auto is_kept = [&](std::uint32_t id) { return ids.empty() || std::ranges::find(ids, id) != ids.end(); };
   Scene result = scene;
+  std::map<std::uint32_t, const std::vector<Eigen::Vector3d>*> shapes;  // vertices of a mesh in frame `first`
   for (std::size_t f = 1; f <= first; ++f) {
     for (const Motion& motion : scene.frames[f]) result.bodies[motion.body].pose = motion.pose;
+    if (!scene.deforms()) continue;
+    for (const Deformation& deformation : scene.deformations[f]) shapes[deformation.mesh] = deformation.vertices.get();
+  }
+  for (const auto& [mesh, vertices] : shapes) {
+    result.meshes[mesh] = std::make_shared<const Mesh>(scene.meshes[mesh]->with_vertices(*vertices));
   }
   std::unordered_map<std::uint32_t, std::uint32_t> place;  // of what is kept, by its index before
   for (std::uint32_t i = 0; i < scene.bodies.size(); ++i) {
@@ -202,6 +261,10 @@ Scene excerpt(const Scene& scene, std::span<const std::uint32_t> ids, std::size_
       if (const auto at = place.find(motion.body); at != place.end()) frame.push_back({at->second, motion.pose});
     }
   }
+  if (!scene.deforms()) return result;
+  result.deformations.assign(1, {});
+  for (std::size_t f = first + 1; f <= last; ++f) result.deformations.push_back(scene.deformations[f]);
+  if (result.shapes() == 0) result.deformations.clear();
   return result;
 }
 
@@ -217,6 +280,15 @@ std::vector<Moved> moves_of(const Frame& frame) {
   moved.reserve(frame.size());
   for (const Motion& motion : frame) moved.push_back({motion.body, motion.pose.pose()});
   return moved;
+}
+
+std::vector<Deformed> shapes_of(const Scene& scene, std::size_t frame) {
+  std::vector<Deformed> shapes;
+  if (!scene.deforms()) return shapes;
+  for (const Deformation& deformation : scene.deformations[frame]) {
+    shapes.push_back({deformation.mesh, *deformation.vertices});
+  }
+  return shapes;
 }
 
 }  // namespace sixdof::scene

@@ -55,6 +55,13 @@ struct Motion {
 /// The bodies that move from the frame before to this one; the others stay. By index, each once.
 using Frame = std::vector<Motion>;
 
+/// How a mesh is deformed in a frame: all of its vertices, and with them all bodies of this mesh.
+struct Deformation {
+  std::uint32_t mesh = 0;  ///< Index into Scene::meshes.
+  /// One for each vertex of that mesh, in its order, in the mesh's frame (length). Not null.
+  std::shared_ptr<const std::vector<Eigen::Vector3d>> vertices;
+};
+
 /// Bodies in their order of insertion, recorded motion, pairs. A pair matters unless both bodies are fixed or it is
 /// ignored.
 struct Scene {
@@ -65,16 +72,25 @@ struct Scene {
   std::vector<Body> bodies;                         ///< In their order of insertion.
   std::vector<BodyPair> ignored;                    ///< Sorted, each once.
   std::vector<Frame> frames;                        ///< The first one moves nothing: it is the start.
+  /// Of each frame, by index of the mesh; empty if no mesh deforms. The first frame has the meshes as they are.
+  std::vector<std::vector<Deformation>> deformations;
 
   /// @throws BadArgument naming the first element that is wrong: an identifier or pair that comes twice, an index out
-  /// of range, a fixed body that moves, a pose that is no pose, a margin that is negative or not finite
+  /// of range, a fixed body that moves or deforms, a pose that is no pose, vertices that Mesh::with_vertices() refuses,
+  /// a margin that is negative or not finite
   void check() const;
+
+  /// Whether a mesh deforms in some frame.
+  bool deforms() const { return !deformations.empty(); }
+  /// Whether this one does. @param mesh index into `meshes`
+  bool deforms(std::uint32_t mesh) const;
 
   /// Content hash of everything but name and recipe; the meshes enter by their own hashes. 32 hexadecimal digits.
   std::string hash() const;
 
   std::size_t triangles() const;  ///< Of all bodies: a shared mesh counts once for each body.
   std::size_t motions() const;    ///< Of all frames.
+  std::size_t shapes() const;     ///< Deformations of all frames.
 };
 
 /// Whether a pair matters, in constant time or logarithmic in the number of ignored pairs.
@@ -97,8 +113,9 @@ class PairFilter {
 /// The same scene with its bodies inserted in a seeded random order.
 Scene shuffled(const Scene& scene, std::uint64_t seed);
 
-/// Part of a scene: some bodies, in their order, over some frames. The first frame kept is the start; its poses are the
-/// recorded ones, so that answers keep their bits.
+/// Part of a scene: some bodies, in their order, over some frames. The first frame kept is the start; its poses and
+/// vertices are the recorded ones, so that answers keep their bits (of meshes that deform no more: up to tie_width() of
+/// oracle/distance.h).
 /// @param ids of the bodies to keep; empty for all
 /// @param first, last frames, both included
 /// @throws BadArgument naming an identifier that no body has, or frames that are not first <= last < Scene::frames
@@ -113,5 +130,13 @@ struct Moved {
 std::vector<Moved> start_of(const Scene& scene);
 /// The motions of one frame, in their order.
 std::vector<Moved> moves_of(const Frame& frame);
+
+/// A mesh in a frame in which it is deformed, as algorithms take it.
+struct Deformed {
+  std::uint32_t mesh = 0;                          ///< Index into Scene::meshes.
+  std::span<const Eigen::Vector3d> vertices = {};  ///< One for each of the mesh's, in its frame (length).
+};
+/// The deformations of one frame, in their order; they refer to the scene's vertices.
+std::vector<Deformed> shapes_of(const Scene& scene, std::size_t frame);
 
 }  // namespace sixdof::scene

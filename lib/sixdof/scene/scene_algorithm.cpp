@@ -42,9 +42,20 @@ std::string SceneAnswer::hash() const {
 
 bool SceneTraits::answers_to(Question question) const { return std::ranges::find(answers, question) != answers.end(); }
 
-void check_answers(const SceneTraits& traits, Question question) {
-  if (traits.answers_to(question)) return;
-  throw BadArgument(fmt::format("{} does not answer the question {}", traits.name, to_string(question)));
+void SceneQuery::deform(std::span<const Deformed> deformed) {
+  if (!deformed.empty()) throw BadArgument("the algorithm does not take meshes that deform");
+}
+
+void check_answers(const SceneTraits& traits, const Scene& scene, Question question) {
+  if (!traits.answers_to(question)) {
+    throw BadArgument(fmt::format("{} does not answer the question {}", traits.name, to_string(question)));
+  }
+  if (scene.deforms() && !traits.deforms) {
+    throw BadArgument(fmt::format("{} does not take scenes in which a mesh deforms", traits.name));
+  }
+  if (scene.deforms() && question == Question::impacts) {
+    throw BadArgument("first contacts are of rigid bodies: a mesh of the scene deforms");
+  }
 }
 
 const SceneAlgorithm& find_algorithm(const SceneAlgorithms& algorithms, std::string_view name) {
@@ -58,6 +69,8 @@ const SceneAlgorithm& find_algorithm(const SceneAlgorithms& algorithms, std::str
 
 void add_own_algorithms(SceneAlgorithms& algorithms) {
   algorithms.push_back(make_exact_scene());
+  algorithms.push_back(make_exact_scene(MeshUpdate::refit));
+  algorithms.push_back(make_exact_scene(MeshUpdate::rebuild));
   algorithms.push_back(make_all_pairs());
 }
 

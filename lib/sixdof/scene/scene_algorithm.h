@@ -72,12 +72,25 @@ struct SceneWork {
   std::uint64_t put_off = 0;     ///< Of these: not asked of the narrow phase, as motion so far cannot matter.
   std::uint64_t narrow = 0;      ///< Of these: asked of the narrow phase.
   std::uint64_t triangles = 0;   ///< Pairs of triangles tested exactly; 0 if the algorithm does not count them.
+  std::uint64_t built = 0;       ///< Triangles of trees, or parts of trees, that were built anew as meshes deformed.
+};
+
+/// How an algorithm of this project updates the tree of a mesh that deforms (oracle/deforming_mesh.h).
+enum class MeshUpdate {
+  rule,    ///< Refits it, and builds the parts anew that pay.
+  refit,   ///< Refits it.
+  rebuild  ///< Builds it anew.
 };
 
 /// An algorithm prepared for one scene and one question. One thread at a time uses it.
 class SceneQuery {
  public:
   virtual ~SceneQuery() = default;  ///< Frees the prepared structures.
+
+  /// The meshes that have deformed in the next frame, each once, by index; called before update() of that frame, in the
+  /// first frame as well. The vertices outlive the query. @throws BadArgument if some have, and the algorithm is not
+  /// one that SceneTraits::deforms names
+  virtual void deform(std::span<const Deformed> deformed);
 
   /// The next frame: the bodies that have moved, each once, with their poses. The first frame is known already.
   virtual void update(std::span<const Moved> moved) = 0;
@@ -101,13 +114,22 @@ struct SceneTraits {
   bool surfaces_only = false;
   /// Whether it is compared where all are: not the quadratic reference.
   bool by_default = true;
+  /// Whether it takes scenes in which a mesh deforms.
+  bool deforms = false;
+  /// Whether it is compared in scenes of rigid bodies, too: not those that differ from others in updates of meshes
+  /// alone.
+  bool rigid = true;
+
+  /// Whether it is compared in a scene unless algorithms are named.
+  bool is_default_for(const Scene& scene) const { return by_default && (scene.deforms() ? deforms : rigid); }
 
   /// Whether `answers` has it.
   bool answers_to(Question question) const;
 };
 
-/// Refuses other questions. @throws BadArgument if the question is none of those that are answered
-void check_answers(const SceneTraits& traits, Question question);
+/// Refuses other questions and scenes. @throws BadArgument if the question is none of those that are answered, or a
+/// mesh of the scene deforms and SceneTraits::deforms is false
+void check_answers(const SceneTraits& traits, const Scene& scene, Question question);
 
 /// What is under test: prepared once per scene and question. Immutable.
 class SceneAlgorithm {
@@ -134,7 +156,7 @@ std::unique_ptr<SceneAlgorithm> make_scene_algorithm(SceneTraits traits, Extra..
     Made(SceneTraits given, Extra... more) : traits_(std::move(given)), extra_(std::move(more)...) {}
     const SceneTraits& traits() const override { return traits_; }
     std::unique_ptr<SceneQuery> prepare(const Scene& scene, Question question) const override {
-      check_answers(traits_, question);
+      check_answers(traits_, scene, question);
       return std::apply([&](const auto&... more) { return std::make_unique<QueryType>(scene, question, more...); },
                         extra_);
     }
@@ -146,7 +168,8 @@ std::unique_ptr<SceneAlgorithm> make_scene_algorithm(SceneTraits traits, Extra..
   return std::make_unique<Made>(std::move(traits), std::move(extra)...);
 }
 
-/// Adds `exact` and `all-pairs`.
+/// Adds `exact`, `exact-refit` and `exact-rebuild`, which differ in how they update meshes that deform, and
+/// `all-pairs`.
 void add_own_algorithms(SceneAlgorithms& algorithms);
 
 }  // namespace sixdof::scene

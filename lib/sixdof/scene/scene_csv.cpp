@@ -82,11 +82,19 @@ class Table {
     if (scene_.frames.empty()) throw BadFile(file_.string(), "has no rows");
     if (scene_.bodies.size() < 2) throw BadFile(file_.string(), "has one body; a scene needs two");
     add_ignored_pairs();
-    scene_.check();
+    if (scene_.deforms()) scene_.deformations.resize(scene_.frames.size());
+    check();
     return std::move(scene_);
   }
 
  private:
+  void check() const {
+    try {
+      scene_.check();
+    } catch (const BadArgument& e) {
+      throw BadFile(file_.string(), e.what());
+    }
+  }
   [[noreturn]] void refuse(const std::string& cause) const {
     throw BadFile(file_.string(), fmt::format("line {}", line_), cause);
   }
@@ -206,12 +214,37 @@ class Table {
     if (found == index_.end()) refuse(fmt::format("body {} is not in frame 0", id));
     const Body& moved = scene_.bodies[found->second];
     if (moved.fixed) refuse(fmt::format("body {} is fixed and moves", id));
-    if (!name.empty() && mesh_of(name) != moved.mesh) refuse(fmt::format("body {} has another mesh in frame 0", id));
+    if (!name.empty()) deform(moved.mesh, std::string(name));
     if (const auto last = last_.find(id); last != last_.end() && last->second + 1 == scene_.frames.size()) {
       refuse(fmt::format("body {} comes twice in frame {}", id, last->second));
     }
     last_[id] = scene_.frames.size() - 1;
     scene_.frames.back().push_back({static_cast<std::uint32_t>(found->second), pose});
+  }
+
+  /// From this frame on a mesh has the vertices of a file or model of the same triangles.
+  void deform(std::uint32_t deformed, const std::string& name) {
+    Shape& shape = shapes_[deformed];
+    const std::size_t at = scene_.frames.size() - 1;
+    const std::string& before = shape.name.empty() ? name_of(deformed) : shape.name;
+    if (name == before) return;
+    if (shape.frame == at) refuse(mesh, fmt::format("{} is {} in this frame already", name_of(deformed), before));
+    const Mesh& rest = *scene_.meshes[deformed];
+    const Mesh other = load(name);
+    if (other.triangles() != rest.triangles()) {
+      refuse(mesh, fmt::format("{} does not have the triangles of {}, which the body has in frame 0; a mesh deforms if "
+                               "its vertices move",
+                               name, name_of(deformed)));
+    }
+    scene_.deformations.resize(at + 1);
+    auto& frame = scene_.deformations[at];
+    const auto place = std::ranges::lower_bound(frame, deformed, {}, &Deformation::mesh);
+    frame.insert(place, {deformed, std::make_shared<const std::vector<Eigen::Vector3d>>(other.vertices())});
+    shape = {name, at};
+  }
+
+  const std::string& name_of(std::uint32_t index) const {
+    return std::ranges::find(meshes_, index, [](const auto& entry) { return entry.second; })->first;
   }
 
   std::uint32_t mesh_of(std::string_view name) {
@@ -240,6 +273,11 @@ class Table {
   std::map<std::uint32_t, std::size_t> index_;      // of a body by its identifier
   std::map<std::uint32_t, std::size_t> last_;       // frame in which a body moved last
   std::map<std::string, std::uint32_t, std::less<>> meshes_;
+  struct Shape {
+    std::string name;       // empty: as in frame 0
+    std::size_t frame = 0;  // since when
+  };
+  std::map<std::uint32_t, Shape> shapes_;                       // of a mesh
   std::vector<std::pair<std::size_t, std::uint32_t>> ignored_;  // line, and identifier that it names
   Scene scene_;
 };

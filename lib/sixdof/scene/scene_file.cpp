@@ -15,7 +15,8 @@ namespace {
 
 constexpr const char* k_format = "sixdof-scene";
 constexpr std::uint64_t k_version = 1;
-constexpr std::size_t k_numbers = 7;  // of a pose
+constexpr std::uint64_t k_version_with_vertices = 2;  // of a scene in which a mesh deforms
+constexpr std::size_t k_numbers = 7;                  // of a pose
 
 std::string mesh_group(std::size_t index) { return fmt::format("/meshes/{}", index); }
 
@@ -72,6 +73,23 @@ void write_frames(hdf5::File& file, const Scene& scene) {
   write_poses(file, "/frames/pose", poses);
 }
 
+void write_deformations(hdf5::File& file, const Scene& scene) {
+  if (!scene.deforms()) return;
+  std::vector<std::uint64_t> start{0};
+  std::vector<std::uint32_t> meshes;
+  std::vector<double> numbers;
+  for (const std::vector<Deformation>& frame : scene.deformations) {
+    for (const Deformation& deformation : frame) {
+      meshes.push_back(deformation.mesh);
+      for (const Eigen::Vector3d& p : *deformation.vertices) numbers.insert(numbers.end(), p.data(), p.data() + 3);
+    }
+    start.push_back(meshes.size());
+  }
+  file.write_values<std::uint64_t>("/frames/deformed_start", start);
+  file.write_values<std::uint32_t>("/frames/deformed_mesh", meshes);
+  file.write_matrix("/frames/vertices", numbers.data(), numbers.size() / 3, 3, 0);
+}
+
 /// Reads what write_...() wrote.
 class Reader {
  public:
@@ -80,9 +98,11 @@ class Reader {
       refuse("root", "is not a sixdof scene");
     }
     const auto version = file_.read_attribute<std::uint64_t>("/", "format_version");
-    if (version != k_version) {
-      refuse("root", fmt::format("has format version {}, but this build reads version {}", version, k_version));
+    if (version != k_version && version != k_version_with_vertices) {
+      refuse("root", fmt::format("has format version {}, but this build reads versions {} and {}", version, k_version,
+                                 k_version_with_vertices));
     }
+    has_vertices_ = version == k_version_with_vertices;
   }
 
   Scene read() {
@@ -97,6 +117,7 @@ class Reader {
     }
     read_bodies(scene);
     read_frames(scene);
+    if (has_vertices_) read_deformations(scene);
     try {
       scene.check();
     } catch (const BadArgument& e) {
@@ -197,8 +218,40 @@ class Reader {
     }
   }
 
+  void read_deformations(Scene& scene) const {
+    const auto start = file_.read_values<std::uint64_t>("/frames/deformed_start");
+    if (start.size() != scene.frames.size() + 1 || start.front() != 0 || !std::ranges::is_sorted(start)) {
+      refuse("/frames/deformed_start", "does not rise from 0, or is not one longer than there are frames");
+    }
+    const auto meshes = values<std::uint32_t>("/frames/deformed_mesh", start.back());
+    const auto [rows, columns] = file_.matrix_size("/frames/vertices");
+    if (columns != 3) refuse("/frames/vertices", fmt::format("is {} x {}, not n x 3", rows, columns));
+    std::size_t needed = 0;
+    for (std::size_t k = 0; k < meshes.size(); ++k) {
+      if (meshes[k] >= scene.meshes.size()) {
+        refuse("/frames/deformed_mesh", fmt::format("number {} is {} of {}", k, meshes[k], scene.meshes.size()));
+      }
+      needed += scene.meshes[meshes[k]]->vertices().size();
+    }
+    if (rows != needed) {
+      refuse("/frames/vertices",
+             fmt::format("has {} rows; the meshes of /frames/deformed_mesh have {} vertices", rows, needed));
+    }
+    const std::vector<double> numbers = file_.read_matrix("/frames/vertices");
+    std::size_t next = 0;
+    for (std::size_t f = 0; f + 1 < start.size(); ++f) {
+      std::vector<Deformation>& frame = scene.deformations.emplace_back();
+      for (std::size_t k = start[f]; k < start[f + 1]; ++k) {
+        std::vector<Eigen::Vector3d> vertices(scene.meshes[meshes[k]]->vertices().size());
+        for (Eigen::Vector3d& p : vertices) p = Eigen::Vector3d(&numbers[3 * next++]);
+        frame.push_back({meshes[k], std::make_shared<const std::vector<Eigen::Vector3d>>(std::move(vertices))});
+      }
+    }
+  }
+
   std::string path_;
   hdf5::File file_;
+  bool has_vertices_ = false;
 };
 
 }  // namespace
@@ -210,7 +263,7 @@ void save_scene(const Scene& scene, const std::filesystem::path& path) {
   {
     hdf5::File file = hdf5::File::create(atomic);
     file.write_attribute("/", "format", std::string(k_format));
-    file.write_attribute("/", "format_version", k_version);
+    file.write_attribute("/", "format_version", scene.deforms() ? k_version_with_vertices : k_version);
     file.write_attribute("/", "name", scene.name);
     file.write_attribute("/", "recipe", scene.recipe);
     file.write_attribute("/", "margin", scene.margin);
@@ -218,6 +271,7 @@ void save_scene(const Scene& scene, const std::filesystem::path& path) {
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) write_mesh(file, mesh_group(i), *scene.meshes[i]);
     write_bodies(file, scene);
     write_frames(file, scene);
+    write_deformations(file, scene);
     file.write_attribute("/", "content_hash", scene.hash());
     file.close();
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -20,17 +21,18 @@ class Judge {
  public:
   Judge(const Scene& scene, Question question) : scene_(scene), question_(question), bodies_(scene) {}
 
-  void update(const Frame& frame) {
-    for (const Moved& each : moves_of(frame)) bodies_.move(bodies_.rank(each.body), each.X_WB);
+  void update(std::size_t frame) {
+    for (const Deformed& each : shapes_of(scene_, frame)) shapes_[each.mesh] = each.vertices;
+    for (const Moved& each : moves_of(scene_.frames[frame])) bodies_.move(bodies_.rank(each.body), each.X_WB);
   }
 
   double distance(const BodyPair& pair) { return distance(pair, Vector3d::Zero()); }
 
   bool grazes(const BodyPair& pair) {
+    const double here = distance(pair);
     const double size = 2.0 * (bodies_.radius(bodies_.rank_of_id(pair.a)) + bodies_.radius(bodies_.rank_of_id(pair.b)));
     const double shift = Score::k_grazing * size;
     const double limit = question_ == Question::near ? scene_.margin : 0.0;
-    const double here = distance(pair);
     if (here > 0.0) return std::abs(here - limit) <= shift;
     if (limit > 0.0) return limit <= shift;
     for (int k = 0; k < 6; ++k) {
@@ -42,6 +44,9 @@ class Judge {
 
  private:
   double distance(const BodyPair& pair, const Vector3d& shift) {
+    // Most frames need no judge, so meshes are deformed for those that do.
+    for (const auto& [mesh, vertices] : shapes_) bodies_.deform({mesh, vertices}, MeshUpdate::rebuild);
+    shapes_.clear();
     const std::uint32_t a = bodies_.rank_of_id(pair.a), b = bodies_.rank_of_id(pair.b);
     Pose X_WB = bodies_.pose(b);
     X_WB.t += shift;
@@ -54,6 +59,7 @@ class Judge {
   const Scene& scene_;
   Question question_;
   detail::Bodies bodies_;
+  std::map<std::uint32_t, std::span<const Vector3d>> shapes_;  // of meshes that have deformed since bodies_ knows them
   NearQuery query_;
 };
 
@@ -68,7 +74,7 @@ class Scorer {
     }
     for (std::size_t f = 0; f < scene.frames.size(); ++f) {
       frame_ = f;
-      judge_.update(scene.frames[f]);
+      judge_.update(f);
       score_.true_pairs += truth.frames[f].pairs.size();
       question_ == Question::closest ? compare_closest(truth.frames[f], answers.frames[f])
                                      : compare(truth.frames[f].pairs, answers.frames[f].pairs);
@@ -147,17 +153,24 @@ void check(const SceneAnswer& answer, const std::string& name) {
   }
 }
 
-/// @param frames wall times (us) @param first, processor processor times of the first frame and of all others (s)
-Timing summary(std::vector<double> frames, double first, double processor) {
+/// Processor time (s).
+struct Processor {
+  double update = 0.0, answer = 0.0;
+};
+
+/// @param frames wall times (us) @param first, others of the first frame and of all others
+Timing summary(std::vector<double> frames, const Processor& first, Processor others) {
   Timing timing;
   timing.first_us = frames.front();
   if (frames.size() == 1) {
-    processor = first;
+    others = first;
   } else {
     frames.erase(frames.begin());
   }
   for (const double us : frames) timing.mean_us += us / static_cast<double>(frames.size());
-  timing.processor_us = 1e6 * processor / static_cast<double>(frames.size());
+  timing.update_us = 1e6 * others.update / static_cast<double>(frames.size());
+  timing.answer_us = 1e6 * others.answer / static_cast<double>(frames.size());
+  timing.processor_us = timing.update_us + timing.answer_us;
   std::ranges::sort(frames);
   timing.p99_us = frames[(frames.size() * 99 + 99) / 100 - 1];
   timing.max_us = frames.back();
@@ -184,20 +197,25 @@ Play play(const Scene& scene, const SceneAlgorithm& algorithm, Question question
   const auto query = algorithm.prepare(scene, question);
   const double prepared = wall_seconds();
   std::vector<double> times;
-  double first = 0.0, processor = 0.0;
+  Processor first, others;
   for (std::size_t f = 0; f < scene.frames.size(); ++f) {
     if (cancelled && cancelled()) throw Interrupted("interrupted");
     const std::vector<Moved> moved = moves_of(scene.frames[f]);
-    const double used = processor_ns();
+    const std::vector<Deformed> deformed = shapes_of(scene, f);
+    Processor& used = f == 0 ? first : others;
+    const double begin = processor_ns();
     const double start = wall_seconds();
+    query->deform(deformed);
     query->update(moved);
+    const double updated = processor_ns();
     const SceneAnswer& answer = query->answer();
     times.push_back(1e6 * (wall_seconds() - start));
-    (f == 0 ? first : processor) += 1e-9 * (processor_ns() - used);
+    used.update += 1e-9 * (updated - begin);
+    used.answer += 1e-9 * (processor_ns() - updated);
     check(answer, algorithm.traits().name);
     result.answers.frames.push_back(answer);
   }
-  result.timing = summary(std::move(times), first, processor);
+  result.timing = summary(std::move(times), first, others);
   result.timing.prepare_s = prepared - before;
   result.work = query->work();
   result.bytes = query->bytes();

@@ -53,11 +53,13 @@ Score score(const Scene& scene, Question question, const SceneAnswers& truth, co
 struct Timing {
   double prepare_s = 0.0;  ///< Wall time of preparing.
   double first_us = 0.0;   ///< Wall time of the first frame, in which all pairs are new.
-  // Of the further frames, or of the first if there is no other: update() and answer().
+  // Of the further frames, or of the first if there is no other: deform(), update() and answer().
   double mean_us = 0.0;       ///< Mean wall time.
   double p99_us = 0.0;        ///< 99th percentile of the wall times, by the nearest-rank rule.
   double max_us = 0.0;        ///< Longest wall time.
-  double processor_us = 0.0;  ///< Mean processor time of all threads.
+  double processor_us = 0.0;  ///< Mean processor time of all threads, of deform(), update() and answer() together.
+  double update_us = 0.0;     ///< Of it: deform() and update().
+  double answer_us = 0.0;     ///< Of it: answer().
 };
 
 /// A replay, judged.

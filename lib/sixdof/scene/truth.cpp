@@ -79,9 +79,10 @@ SceneAnswers replay(const Scene& scene, const SceneAlgorithm& algorithm, Questio
                     const std::function<bool()>& cancelled) {
   const auto query = algorithm.prepare(scene, question);
   SceneAnswers truth;
-  for (const Frame& frame : scene.frames) {
+  for (std::size_t f = 0; f < scene.frames.size(); ++f) {
     if (cancelled && cancelled()) throw Interrupted("interrupted");
-    query->update(moves_of(frame));
+    query->deform(shapes_of(scene, f));
+    query->update(moves_of(scene.frames[f]));
     truth.frames.push_back(query->answer());
   }
   set_hash(truth);

@@ -24,8 +24,9 @@ inline btTransform to_bullet(const Pose& X) {
 class GImpactMesh {
  public:
   /// @param margin by which triangles are thickened (length)
+  /// @param vertices read instead of the mesh's, as many; they outlive it and may move: see refit()
   /// @throws BadMesh if the mesh has more elements than Bullet can count
-  GImpactMesh(const Mesh& mesh, double margin) : mesh_(mesh) {
+  GImpactMesh(const Mesh& mesh, double margin, const Eigen::Vector3d* vertices = nullptr) : mesh_(mesh) {
     static_assert(sizeof(Triangle) == 3 * sizeof(int));
     require_countable(mesh, "Bullet", 3);
     btIndexedMesh part;
@@ -33,13 +34,19 @@ class GImpactMesh {
     part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(mesh.triangles().data());
     part.m_triangleIndexStride = sizeof(Triangle);
     part.m_numVertices = static_cast<int>(mesh.vertices().size());
-    part.m_vertexBase = reinterpret_cast<const unsigned char*>(mesh.vertices().data());
+    part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices ? vertices : mesh.vertices().data());
     part.m_vertexStride = sizeof(Eigen::Vector3d);
     part.m_vertexType = PHY_DOUBLE;
     arrays_.addIndexedMesh(part, PHY_INTEGER);
     shape_ = std::make_unique<btGImpactMeshShape>(&arrays_);
     shape_->setMargin(margin);
     // Builds the tree.
+    shape_->updateBound();
+  }
+
+  /// Fits the boxes of the tree to the vertices where they are now.
+  void refit() {
+    shape_->postUpdate();
     shape_->updateBound();
   }
 

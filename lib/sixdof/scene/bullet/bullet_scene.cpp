@@ -6,20 +6,11 @@
 #include <fmt/format.h>
 
 #include <sixdof/algorithm/bullet/bullet_mesh.h>
+#include <sixdof/scene/bullet/any_contact.h>
 #include <sixdof/scene/library_scene.h>
 
 namespace sixdof::scene {
 namespace {
-
-/// Whether there is any contact.
-class AnyContact final : public btManifoldResult {
- public:
-  using btManifoldResult::btManifoldResult;
-  void addContactPoint(const btVector3& /*normal*/, const btVector3& /*point*/, btScalar /*distance*/) override {
-    found = true;
-  }
-  bool found = false;
-};
 
 /// The box around all bodies at all recorded poses.
 Eigen::AlignedBox3d bounds_of(const Scene& scene) {
