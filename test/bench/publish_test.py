@@ -20,6 +20,10 @@ sys.dont_write_bytecode = True
 import published_documents as documents  # noqa: E402
 import published_parts as parts  # noqa: E402
 
+LOADER = importlib.machinery.SourceFileLoader("publish", str(ROOT / "bench/publish"))
+publish = importlib.util.module_from_spec(importlib.util.spec_from_loader("publish", LOADER))
+LOADER.exec_module(publish)
+
 ROW = {"name": "distance/algorithm:exact/pair:p/distance:05", "run_type": "iteration", "real_time": 1.25, "cpu_time": 1.25,
        "time_unit": "us", "configurations": 8, "mismatch": 0, "error_rms": 1e-17,
        "sixdof": {"query": "distance", "algorithm": "exact", "settings": {}, "pair": "p", "order": "random",
@@ -118,6 +122,31 @@ class Marks(unittest.TestCase):
         with self.assertRaisesRegex(documents.Stale, "2 commits: abc, def"):
             documents.check(SIXDOF)
 
+    def test_a_part_that_is_compared_with_itself_only_may_have_its_own_commit(self):
+        documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "rivals": {"commit": "def"}}))
+        documents.one_commit()
+        documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "two": {"commit": "ghi"}, "rivals": {"commit": "def"}}))
+        with self.assertRaisesRegex(documents.Stale, "2 commits: abc, ghi"):
+            documents.one_commit()
+
+
+class Run(unittest.TestCase):
+    def step(self, folder, rows_may_fail, code):
+        (folder / "program").write_text(f"#!/bin/sh\ntouch {folder}/rows.json\nexit {code}\n")
+        (folder / "program").chmod(0o755)
+        return parts.Step("rows.json", [str(folder / "program")], 0.1, rows_may_fail=rows_may_fail)
+
+    def test_a_row_without_an_answer_ends_only_what_does_not_expect_it(self):
+        for may_fail, code, passes in ((True, 0, True), (True, 1, True), (True, 2, False), (False, 1, False)):
+            with tempfile.TemporaryDirectory() as name, self.subTest(may_fail=may_fail, code=code):
+                folder = pathlib.Path(name)
+                step = self.step(folder, may_fail, code)
+                if passes:
+                    publish.run(step, folder, folder)
+                else:
+                    with self.assertRaisesRegex(publish.Failure, f"rows.json: exit code {code}"):
+                        publish.run(step, folder, folder)
+
 
 class Repository(unittest.TestCase):
     def test_figures_in_documents_are_the_published_ones(self):
@@ -165,9 +194,6 @@ class Short(unittest.TestCase):
 
 class Steps(unittest.TestCase):
     def test_what_broke_off_is_continued(self):
-        loader = importlib.machinery.SourceFileLoader("publish", str(ROOT / "bench/publish"))
-        publish = importlib.util.module_from_spec(importlib.util.spec_from_loader("publish", loader))
-        loader.exec_module(publish)
         steps = [step for part in parts.parts() for step in part.steps if step.resumes]
         self.assertIn("equivalent.json", [step.file for step in steps])
         for step in steps:
