@@ -212,7 +212,7 @@ void add_row_options(CLI::App& app, Options& options, CommandLine& line) {
   app.add_option("--iterations", options.iterations,
                  "Queries that a row times, in whole samples; 0: --benchmark_min_time decides")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Seed of samples and orders")->type_name("N")->capture_default_str();
   app.add_flag("--fail-on-wrong", options.fail_on_wrong,

@@ -66,8 +66,9 @@ class Registration {
           benchmark::RegisterBenchmark(row->name.c_str(), [row, &call](benchmark::State& state) { call(*row, state); });
       registered->Unit(row->unit);
       registered->MeasureProcessCPUTime();  // a query may use several threads
-      if (row->one_round || iterations > 0)
-        registered->Iterations(row->one_round ? 1 : static_cast<std::int64_t>(iterations));
+      if (const auto fixed = row->one_round ? 1 : static_cast<std::int64_t>(iterations); fixed > 0) {
+        registered->Iterations(fixed);
+      }
       if (row->one_round || row->manual_time) registered->UseManualTime();
     }
   }

@@ -13,7 +13,7 @@ import subprocess
 import tempfile
 
 SAMPLE = 16        # configurations of a row
-LOOPS = 16         # more rounds of the timed loop, at least and at most; as many as ENOUGH instructions take
+LOOPS = 16         # more rounds of the timed loop, at least; more where they take fewer than ENOUGH instructions
 MOST_LOOPS = 65536
 ENOUGH = 100_000_000  # Two starts of a program differ by some 50,000.
 REPEATABLE = 0.2   # percent: how far two counts of one program differ at most

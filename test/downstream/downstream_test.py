@@ -188,7 +188,7 @@ class Installed(Project):
                  ("lost", lost, exact_ones, 3, "lost: failed 0 -> "),
                  ("time", template.replace("TURNS", "5400"), ["--stages", "answers,time"], 3, "RED      time: ")]
         if shutil.which("valgrind"):
-            cases.append(("instructions", template.replace("TURNS", "4150"), ["--stages", "instructions"], 3, "RED      instructions: "))
+            cases.append(("instructions", template.replace("TURNS", "4130"), ["--stages", "instructions"], 3, "RED      instructions: "))
         for name, source, options, expected, words in cases:
             with self.subTest(name):
                 self.assertNotEqual(source == base, name != "unchanged", "the fault is planted")
