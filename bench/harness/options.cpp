@@ -211,6 +211,11 @@ void add_row_options(CLI::App& app, Options& options, CommandLine& line) {
           ->type_name("SECONDS")
           ->check(CLI::NonNegativeNumber)
           ->capture_default_str();
+  app.add_option("--iterations", options.iterations,
+                 "Queries that a row times, in whole samples; 0: --benchmark_min_time decides")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1'000'000'000))
+      ->capture_default_str();
   app.add_option("--seed", options.seed, "Seed of samples and orders")->type_name("N")->capture_default_str();
   app.add_flag("--fail-on-wrong", options.fail_on_wrong,
                "Exit code 3 if an answer is missing, or is wrong though the algorithm does not approximate");
@@ -284,6 +289,10 @@ int pass_on(std::vector<std::string> flags, Options& options, const std::vector<
     flags.emplace_back(options.own_pair() ? k_own_pair_min_time : k_default_min_time);
   }
   options.benchmark_flags = flags_of_measurement(flags);
+  if (options.iterations > 0) {
+    options.benchmark_flags.append(
+        fmt::format("{}--iterations={}", options.benchmark_flags.empty() ? "" : " ", options.iterations));
+  }
   const auto is_color = [](const std::string& flag) {
     return flag.starts_with("--benchmark_color=") && flag != "--benchmark_color=auto";
   };

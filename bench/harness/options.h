@@ -30,9 +30,10 @@ struct Options {
   std::vector<std::string> parameters;        ///< "ALGORITHM:NAME=VALUE".
   std::size_t sample = 1024;                  ///< Configurations per bucket; 0 for all.
   double budget_s = 0.0;                      ///< Wall time for all rows together; 0 for no limit.
-  std::uint64_t seed = 1;                     ///< Of samples and orders.
-  bool stats = false;                         ///< Print how much was opened, read, loaded and prepared.
-  std::filesystem::path out;                  ///< Result file; empty for none.
+  std::size_t iterations = 0;  ///< Queries that a row times, in whole samples; 0 for --benchmark_min_time.
+  std::uint64_t seed = 1;      ///< Of samples and orders.
+  bool stats = false;          ///< Print how much was opened, read, loaded and prepared.
+  std::filesystem::path out;   ///< Result file; empty for none.
   ResultFormat out_format = ResultFormat::json;
   bool resume = false;                 ///< Take over the rows that are in the result file.
   std::optional<ResultFormat> format;  ///< Of standard output; none for the console's table.

@@ -58,14 +58,17 @@ std::vector<const PlannedRow*> choose_rows(const std::vector<PlannedRow>& rows) 
 /// names, which RowReporter removes.
 class Registration {
  public:
-  Registration(const std::vector<const PlannedRow*>& rows,
+  /// @param iterations of every row, queries; 0 for as many as Google Benchmark finds fit
+  Registration(const std::vector<const PlannedRow*>& rows, std::size_t iterations,
                const std::function<void(const PlannedRow&, benchmark::State&)>& call) {
     for (const PlannedRow* const row : rows) {
       auto* const registered =
           benchmark::RegisterBenchmark(row->name.c_str(), [row, &call](benchmark::State& state) { call(*row, state); });
       registered->Unit(row->unit);
       registered->MeasureProcessCPUTime();  // a query may use several threads
-      if (row->one_round) registered->Iterations(1);
+      if (const auto fixed = row->one_round ? 1 : static_cast<std::int64_t>(iterations); fixed > 0) {
+        registered->Iterations(fixed);
+      }
       if (row->one_round || row->manual_time) registered->UseManualTime();
     }
   }
@@ -144,7 +147,7 @@ int measure(const std::vector<const PlannedRow*>& rows, const Options& options, 
     }
   });
   try {
-    const Registration registered(rows, call);
+    const Registration registered(rows, options.iterations, call);
     if (!rows.empty()) benchmark::RunSpecifiedBenchmarks(&display, &result, k_all_registered);
   } catch (const Interrupted&) {
   }

@@ -92,7 +92,7 @@ struct QueryRow {
   std::optional<std::array<VectorError, 2>> errors = {};
   /// The same to what the algorithm's own law says; none without a law.
   std::optional<std::array<VectorError, 2>> own_errors = {};
-  std::size_t own_unjudged = 0;  ///< Answers whose own truth is not known well enough.
+  std::array<std::size_t, 2> own_unjudged = {};  ///< Answers whose own truth is not known well enough: force, torque.
   results::Outliers worst = {};
   std::vector<Response> hull_responses = {};  ///< Of `exact`, where the row is about convex hulls.
   /// Mean force of this algorithm at the pair's least overlap, 1 % in most sets; empty where it is not needed.
@@ -376,7 +376,8 @@ struct QueryRow {
       const auto [response, scale] = scaled_about(answer.value, truth.reference);
       if (truths[i].force_judged) forces.add(truth.force, response.force, scale);
       if (truths[i].torque_judged) torques.add(truth.torque, response.torque, scale);
-      own_unjudged += truths[i].force_judged ? 0 : 1;
+      own_unjudged[0] += truths[i].force_judged ? 0 : 1;
+      own_unjudged[1] += truths[i].torque_judged ? 0 : 1;
     }
     own_errors = {forces.error(), torques.error()};
   }
@@ -454,7 +455,8 @@ struct QueryRow {
       count(fmt::format("gamma_own_max_{}_deg", suffix), error->direction.largest_degrees);
     }
     count("compared_own", own_errors->at(0).direction.compared);
-    if (own_unjudged > 0) count("unjudged_own", own_unjudged);
+    if (own_unjudged[0] > 0) count("unjudged_own", own_unjudged[0]);
+    if (own_unjudged[1] > 0) count("unjudged_own_T", own_unjudged[1]);
   }
 };
 

@@ -1,9 +1,10 @@
 """Instructions of a query, for bench/gate: counted by perf where the machine lets it, or else by valgrind.
 
-A row is run twice that differ only in how often its timed loop runs (--benchmark_repetitions): the difference of both
-counts is that of the loop. Start, loading, preparation, checks of answers and truth cancel.
+A row is run twice that differ only in how many queries it times (--iterations): the difference of both counts is that
+of the loop. Start, loading, preparation, checks of answers and truth cancel.
 """
 
+import math
 import os
 import pathlib
 import re
@@ -12,7 +13,9 @@ import subprocess
 import tempfile
 
 SAMPLE = 16        # configurations of a row
-LOOPS = 16         # more runs of the timed loop
+LOOPS = 16         # more rounds of the timed loop, at least; more where they take fewer than ENOUGH instructions
+MOST_LOOPS = 65536
+ENOUGH = 100_000_000  # Two starts of a program differ by some 50,000.
 REPEATABLE = 0.2   # percent: how far two counts of one program differ at most
 LONGEST_S = 240.0  # of one run; a row that takes longer is not counted
 QUERIES = ("collide", "distance", "respond")
@@ -78,12 +81,16 @@ def per_query(program, row, flags, counter, environment):
     """Instructions of one query of a row. @param program words of a command line @raises NotCounted"""
     def total(loops):
         return count([*program, *flags, f"--benchmark_filter=^{row}$", "--sample", SAMPLE, "--seed", 1, "--budget", 0,
-                      "--benchmark_min_time=0.000001", f"--benchmark_repetitions={loops}"], counter, environment)
+                      f"--iterations={loops * SAMPLE}"], counter, environment)
 
-    difference = total(1 + LOOPS) - total(1)
+    start, loops = total(1), LOOPS
+    difference = total(1 + loops) - start
+    if difference < ENOUGH:
+        loops = min(MOST_LOOPS, math.ceil(loops * ENOUGH / max(difference, 1)))
+        difference = total(1 + loops) - start
     if difference <= 0:
         raise NotCounted("the loop takes fewer instructions than two starts differ")
-    return difference / (LOOPS * SAMPLE)
+    return difference / (loops * SAMPLE)
 
 
 def rows_to_count(document):

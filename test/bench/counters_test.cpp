@@ -90,5 +90,21 @@ TEST_F(BenchProgram, EveryCounterIsInTheTableOfMetrics) {
   }
 }
 
+TEST_F(BenchProgram, TimesAsManyQueriesAsAskedInWholeSamples) {
+  const char* const filter = "--sample 32 '--benchmark_filter=^collide/algorithm:exact/pair:torus-1k/volume:03$' ";
+  for (const auto& [asked, timed] : {std::pair(1, 32), {32, 32}, {33, 64}, {512, 512}}) {
+    const json document = result(filter + fmt::format("--iterations {}", asked));
+    ASSERT_EQ(document.at("benchmarks").size(), 1u);
+    EXPECT_EQ(document.at("benchmarks").at(0).at("iterations"), timed) << asked;
+    EXPECT_THAT(document.at("context").at("benchmark_flags").get<std::string>(),
+                HasSubstr(fmt::format("--iterations={}", asked)));
+  }
+  for (const char* const bad : {"-1", "1e30", "some"}) {
+    const auto run = bench(filter + fmt::format("--iterations {}", bad));
+    EXPECT_NE(run.exit_code, 0) << bad;
+    EXPECT_THAT(run.err, HasSubstr("--iterations"));
+  }
+}
+
 }  // namespace
 }  // namespace sixdof

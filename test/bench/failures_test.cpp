@@ -235,6 +235,18 @@ TEST_F(Faulty, ForcesAreJudgedByTheirOwnLaw) {
   }
 }
 
+TEST_F(Faulty, TorquesAreJudgedByTheirOwnLawOrCounted) {
+  const json document =
+      run("'--benchmark_filter=^respond/algorithm:exact-depth/pair:(torus-1k|torus-1k-cone-1k)/volume:03$'", 0, 40);
+  ASSERT_EQ(document.at("benchmarks").size(), 2u);
+  const json &same = document.at("benchmarks").at(0), &cone = document.at("benchmarks").at(1);
+  EXPECT_EQ(same.at("unjudged_own_T"), 32)
+      << "a torus with itself: torques too small beside the force to be known to 1 %";
+  EXPECT_FALSE(same.contains("gamma_own_T_deg"));
+  EXPECT_LT(cone.at("unjudged_own_T"), 16);
+  EXPECT_LT(cone.at("gamma_own_T_deg"), 0.6) << "the truth is known to 1 %";
+}
+
 TEST_F(Faulty, TheTableNeverCallsAConstantAnswerTheFastest) {
   const test::SuiteCopy folder(SIXDOF_SMALL_SUITE);
   const std::string file = (folder.directory() / "constant.json").string();

@@ -34,10 +34,10 @@ if settings.get("error"):
     rows[0] |= {"error_occurred": True, "error_message": settings["error"]}
 rows = [row for row in rows if re.search(flags["benchmark_filter"], row["name"])]
 if "COUNT_FILE" in os.environ:
-    loops = int(flags["benchmark_repetitions"])
+    loops = int(flags["iterations"])
     start = 5_000_000 + random.randrange(2000)
     with open(os.environ["COUNT_FILE"], "w") as log:
-        log.write(f"==7== I   refs:      {start + 16 * loops * settings.get('instructions', 10_000):,}\\n")
+        log.write(f"==7== I   refs:      {start + loops * settings.get('instructions', 10_000):,}\\n")
 calls = settings.get("slow_calls")  # of a machine that is busy in the first runs
 if calls:
     counted = sys.argv[0] + ".calls"

@@ -20,6 +20,10 @@ sys.dont_write_bytecode = True
 import published_documents as documents  # noqa: E402
 import published_parts as parts  # noqa: E402
 
+LOADER = importlib.machinery.SourceFileLoader("publish", str(ROOT / "bench/publish"))
+publish = importlib.util.module_from_spec(importlib.util.spec_from_loader("publish", LOADER))
+LOADER.exec_module(publish)
+
 ROW = {"name": "distance/algorithm:exact/pair:p/distance:05", "run_type": "iteration", "real_time": 1.25, "cpu_time": 1.25,
        "time_unit": "us", "configurations": 8, "mismatch": 0, "error_rms": 1e-17,
        "sixdof": {"query": "distance", "algorithm": "exact", "settings": {}, "pair": "p", "order": "random",
@@ -118,6 +122,33 @@ class Marks(unittest.TestCase):
         with self.assertRaisesRegex(documents.Stale, "2 commits: abc, def"):
             documents.check(SIXDOF)
 
+    def test_a_part_that_is_compared_with_itself_only_may_have_its_own_commit(self):
+        documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "rivals": {"commit": "def"}}))
+        documents.one_commit()
+        documents.FACTS.write_text(json.dumps({"one": {"commit": "abc"}, "two": {"commit": "ghi"}, "rivals": {"commit": "def"}}))
+        with self.assertRaisesRegex(documents.Stale, "2 commits: abc, ghi"):
+            documents.one_commit()
+
+
+class Run(unittest.TestCase):
+    def test_only_a_library_in_its_own_process_may_leave_a_row_without_an_answer(self):
+        row = {"name": "row", "sixdof": {}}
+        failed = row | {"error_occurred": True, "sixdof": {"isolated": True}}
+        own = row | {"error_occurred": True}
+        for rows, code, passes in (([row], 0, True), ([row, failed], 1, True), ([row, failed, own], 1, False),
+                                   ([row], 1, False), ([row, failed], 2, False)):
+            with tempfile.TemporaryDirectory() as name, self.subTest(rows=rows, code=code):
+                folder = pathlib.Path(name)
+                program = folder / "program"
+                program.write_text(f"#!/bin/sh\necho '{json.dumps({'benchmarks': rows})}' > {folder}/rows.json\nexit {code}\n")
+                program.chmod(0o755)
+                step = parts.Step("rows.json", [str(program)], 0.1)
+                if passes:
+                    publish.run(step, folder, folder)
+                else:
+                    with self.assertRaisesRegex(publish.Failure, f"rows.json: exit code {code}"):
+                        publish.run(step, folder, folder)
+
 
 class Repository(unittest.TestCase):
     def test_figures_in_documents_are_the_published_ones(self):
@@ -165,9 +196,6 @@ class Short(unittest.TestCase):
 
 class Steps(unittest.TestCase):
     def test_what_broke_off_is_continued(self):
-        loader = importlib.machinery.SourceFileLoader("publish", str(ROOT / "bench/publish"))
-        publish = importlib.util.module_from_spec(importlib.util.spec_from_loader("publish", loader))
-        loader.exec_module(publish)
         steps = [step for part in parts.parts() for step in part.steps if step.resumes]
         self.assertIn("equivalent.json", [step.file for step in steps])
         for step in steps:

@@ -68,6 +68,7 @@ constexpr std::array k_metrics{
     Metric{"magnitude_error_own_T", "1", lower, "magnitude_error_T against the torques of the own law", k_query_row},
     Metric{"compared_own", "queries", neither, "both forces are nonzero: those in gamma_own_F_deg, at most 32", k_query_row},
     Metric{"unjudged_own", "queries", neither, "the force of the own law is not known to 1 %; absent for none", k_query_row},
+    Metric{"unjudged_own_T", "queries", neither, "the torque of the own law is not known to 1 %; absent for none", k_query_row},
     Metric{"gamma_F_p95_deg", "degree", lower, "95 % of the angles between true and measured force are no larger", k_answers},
     Metric{"gamma_T_p95_deg", "degree", lower, "95 % of the angles between true and measured torque are no larger", k_answers},
     Metric{"gamma_F_finest_deg", "degree", lower, "mean angle to the forces of the finest point of the same algorithm", k_precision},
