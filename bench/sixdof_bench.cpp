@@ -106,9 +106,8 @@ void run(const Options& options) {
                             .seed = options.seed};
 
   std::vector<PlannedRow> rows;
-  for (const auto family :
-       {prepare_rows, query_rows, cast_rows, contact_rows, depth_rows, scenario_rows, scene_rows, deform_rows,
-        generate_rows}) {
+  for (const auto family : {prepare_rows, query_rows, cast_rows, contact_rows, depth_rows, scenario_rows, scene_rows,
+                            deform_rows, generate_rows}) {
     std::ranges::move(family(resources), std::back_inserter(rows));
   }
   if (!options.suite.empty()) {

@@ -23,8 +23,8 @@ namespace sixdof {
 /// single precision. A resolution comes on top.
 inline constexpr double k_contact_slack = 1e-6;
 
-/// A normal farther from every true one (degrees) leads the wrong way. Beyond 90: a normal across both surfaces, such as
-/// that of two edges, is no better known than by the size of triangles.
+/// A normal farther from every true one (degrees) leads the wrong way. Beyond 90: a normal across both surfaces, such
+/// as that of two edges, is no better known than by the size of triangles.
 inline constexpr double k_reversed_degrees = 100.0;
 
 /// One contact, judged.

@@ -81,8 +81,8 @@ DataTable many_bodies_table(const Results& results, const std::vector<RowGroup>&
 /// their counters (measure/metrics.h).
 DataTable contacts_table(const Results& results, const std::vector<RowGroup>& groups);
 
-/// "depths": a line for each row `depth/...`: its time, and how its depths compare with the intervals of the penetration
-/// depth, under the names of their counters.
+/// "depths": a line for each row `depth/...`: its time, and how its depths compare with the intervals of the
+/// penetration depth, under the names of their counters.
 DataTable depths_table(const Results& results, const std::vector<RowGroup>& groups);
 
 /// "deforming": scenes in which a mesh deforms: processor time of a frame by amplitude (percent); `part` is "update and
