@@ -20,6 +20,8 @@ constexpr double k_on_surface = 1e-13;
 /// Part of the gain that the model promises that a point has to have to be the next.
 constexpr double k_serious = 0.3;
 constexpr double k_as_promised = 0.7;
+/// Steps get longer by this factor where they promise little, up to a multiple of the depth.
+constexpr double k_longer = 4.0, k_longest_step = 1e3;
 constexpr int k_most_exchanges = 40;
 /// Steps shorter than this part of the coordinates end an ascent.
 constexpr double k_shortest_step = 1e-13;
@@ -134,10 +136,18 @@ CommonPoint CommonPointSearch::ascend(const CommonPoint& start, const Pose& X_AB
   add(current);
   const double shortest = k_shortest_step * (current.p.norm() + X_AB.t.norm());
   for (int i = 0; i < effort.most && tau > shortest; ++i) {
-    const Vector3d step = bundle.best_step(tau);
     const double depth = current.depth();
-    const double promised = bundle.value_at(step) - depth;
-    if (depth > 0.0 && (promised <= effort.gain * depth || depth >= effort.enough)) break;
+    if (depth > 0.0 && depth >= effort.enough) break;
+    Vector3d step = bundle.best_step(tau);
+    double promised = bundle.value_at(step) - depth;
+    // A short step promises little where the bodies' surfaces meet at a small angle. So a small promise is the end only
+    // if longer steps have none either.
+    while (depth > 0.0 && promised <= effort.gain * depth && tau < k_longest_step * depth) {
+      tau *= k_longer;
+      step = bundle.best_step(tau);
+      promised = bundle.value_at(step) - depth;
+    }
+    if (depth > 0.0 && promised <= effort.gain * depth) break;
     if (!(promised > 0.0) || step.norm() <= shortest) break;
     const CommonPoint next = at(current.p + step, X_AB, current);
     const double gain = next.depth() - depth;

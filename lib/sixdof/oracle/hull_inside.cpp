@@ -78,6 +78,19 @@ bool crosses_separate(const Tree::Corners& triangle, std::span<const Vector3d> p
   return false;
 }
 
+/// Along the normals of the hull's faces, which are among those of all triples of points.
+bool faces_separate(const Tree::Corners& triangle, std::span<const Vector3d> points, double clearance) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = i + 1; j < points.size(); ++j) {
+      for (std::size_t k = j + 1; k < points.size(); ++k) {
+        const Vector3d normal = (points[j] - points[i]).cross(points[k] - points[i]);
+        if (separates(normal, triangle, points, clearance)) return true;
+      }
+    }
+  }
+  return false;
+}
+
 /// The hull of the points against volumes of the tree.
 struct HullBounds {
   std::array<Vector3d, k_most_hull_points> local;  ///< Relative to the tree's centre.
@@ -114,7 +127,7 @@ struct HullBounds {
 bool is_hull_clear(const Tree::Corners& triangle, std::span<const Vector3d> points, double clearance) {
   const Vector3d normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   return separates(normal, triangle, points, clearance) || finds_axis(triangle, points, clearance) ||
-         crosses_separate(triangle, points, clearance);
+         crosses_separate(triangle, points, clearance) || faces_separate(triangle, points, clearance);
 }
 
 bool is_hull_clear(const Tree& tree, std::span<const Vector3d> points, double clearance) {

@@ -16,8 +16,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// Of a point in the middle of a cell, and of the points at its corners: these only have to lie inside both bodies.
-constexpr CommonPointSearch::Effort k_middle{.gain = 0.2, .most = 14};
-constexpr CommonPointSearch::Effort k_corner{.gain = 0.5, .most = 10};
+constexpr CommonPointSearch::Effort k_middle{.gain = 0.2, .most = 30};
+constexpr CommonPointSearch::Effort k_corner{.gain = 0.5, .most = 20};
 /// A point at a corner as deep as this part of the middle's is deep enough.
 constexpr double k_enough = 0.5;
 constexpr CommonPointSearch::Effort k_thorough{.gain = 0.02, .most = 30};
@@ -25,6 +25,8 @@ constexpr CommonPointSearch::Effort k_thorough{.gain = 0.02, .most = 30};
 constexpr double k_least_depth = 4.0;
 /// Other balls are tried if they are deeper than the point of the seed by this factor.
 constexpr double k_deeper = 1.2;
+/// Common points less deep than this part of a cell's size are where an overlap vanishes: others are searched.
+constexpr double k_vanishing = 0.3;
 /// First step from a guess by balls, by the smaller radius.
 constexpr double k_ball_step = 0.2;
 /// Pairs of triangles, and corners of each mesh, from which the pool is searched; points that are kept.
@@ -197,9 +199,12 @@ CellProof CellProver::prove(const TranslationCell& cell, std::span<const PlacedP
     }
     const double found = proof.seeds.empty() ? -1.0 : proof.seeds.front().point.depth();
     if (const auto balls = from_balls(corners.middle, k_deeper * found); balls && tries(*balls)) return true;
-    if (!proof.seeds.empty()) return false;
+    // Bodies that overlap in several places: one that is nearly left behind proves nothing around it.
+    const double size = std::max(cell.r1 - cell.r0, cell.r1 * cell.longest_side().first);
+    const double deepest = proof.seeds.empty() ? 0.0 : proof.seeds.front().point.depth();
+    if (deepest > k_vanishing * size) return false;
     const std::optional<PlacedPoint> other = best_of(pool, corners.middle);
-    return other && tries(*other);
+    return other && other->point.depth() > k_deeper * deepest && tries(*other);
   };
   if (!finds_seed()) {
     // Where no common point was found in the middle of the cell either, it may be free itself.
