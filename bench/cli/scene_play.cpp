@@ -368,7 +368,7 @@ void add_scene_play(CLI::App& group) {
   command->add_flag("--json", options->json, "As JSON");
   command->callback([options] { play(*options); });
   add_examples(*command, "sixdof scene play cube.h5 --algorithms exact,all-pairs --question touching,near",
-               "sixdof scene play pile.h5 --question near --frames 2 --list", k_details);
+               "sixdof scene play cube.h5 --question near --frames 2 --list", k_details);
 }
 
 }  // namespace sixdof::cli

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,16 +25,29 @@ class WatchedQuery final : public Query {
  public:
   WatchedQuery(std::unique_ptr<Query> inner, const StressWatch& watch) : inner_(std::move(inner)), watch_(watch) {}
 
-  Outcome<bool> collide(const Pose& X_AB) override { return ask(&Query::collide, X_AB); }
-  Outcome<Separation> distance(const Pose& X_AB) override { return ask(&Query::distance, X_AB); }
-  Outcome<Response> respond(const Pose& X_AB) override { return ask(&Query::respond, X_AB); }
+  Outcome<bool> collide(const Pose& X_AB) override {
+    return ask(X_AB, [&] { return inner_->collide(X_AB); });
+  }
+  Outcome<Separation> distance(const Pose& X_AB) override {
+    return ask(X_AB, [&] { return inner_->distance(X_AB); });
+  }
+  Outcome<Response> respond(const Pose& X_AB) override {
+    return ask(X_AB, [&] { return inner_->respond(X_AB); });
+  }
+  Outcome<Impact> cast(const Motion& motion) override {
+    return ask(motion.start, [&] { return inner_->cast(motion); });
+  }
+  Outcome<Contacts> contacts(const Pose& X_AB, std::size_t most) override {
+    return ask(X_AB, [&] { return inner_->contacts(X_AB, most); });
+  }
   Footprint footprint() const override { return inner_->footprint(); }
 
  private:
-  template <class T>
-  Outcome<T> ask(Outcome<T> (Query::*question)(const Pose&), const Pose& X_AB) {
+  /// @param question gives an Outcome; it is asked at X_AB, or begins there
+  template <class Question>
+  std::invoke_result_t<Question> ask(const Pose& X_AB, const Question& question) {
     watch_.asks(X_AB);
-    Outcome<T> answer = ((*inner_).*question)(X_AB);
+    std::invoke_result_t<Question> answer = question();
     if (!answer.ok()) fail(answer.status, inner_->diagnosis());
     return answer;
   }

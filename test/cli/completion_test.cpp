@@ -58,7 +58,7 @@ TEST_F(Completion, OfCommands) {
 }
 
 TEST_F(Completion, OfOptions) {
-  EXPECT_THAT(complete({"sixdof", "query", "--a"}), ElementsAre("--a", "--algorithm", "--about"));
+  EXPECT_THAT(complete({"sixdof", "query", "--a"}), ElementsAre("--a", "--along", "--algorithm", "--about"));
   EXPECT_THAT(complete({"sixdof", "-"}), IsSupersetOf({"--help", "--version"}));
   const Words options = complete({"sixdof", "scene", "play", "s.h5", "--"});
   EXPECT_THAT(options, IsSupersetOf({"--algorithms", "--question", "--frames", "--list", "--json"}));
@@ -67,7 +67,7 @@ TEST_F(Completion, OfOptions) {
 
 TEST_F(Completion, OfValues) {
   EXPECT_THAT(complete({"sixdof", "query", "--algorithm", "exa"}),
-              ElementsAre("exact", "exact-depth", "exact-way-out"));
+              ElementsAre("exact", "exact-contacts", "exact-depth", "exact-way-out", "exact-penetration"));
   EXPECT_THAT(complete({"sixdof", "query", "--algorithm", "=", "brute"}), ElementsAre("brute-force"));
   EXPECT_THAT(complete({"sixdof", "query", "--algorithm", "="}), IsSupersetOf({"exact", "ist", "vps"}));
   EXPECT_THAT(complete({"sixdof", "query", "--a", "torus-k"}),

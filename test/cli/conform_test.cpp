@@ -48,7 +48,8 @@ TEST_F(Conform, RunsEveryCheckOfTheKit) {
     const json& found = list[0].at("checks")[i];
     const std::string name = checks[i].name;
     EXPECT_EQ(found.at("check"), name);
-    EXPECT_EQ(found.at("verdict"), name == "Unsupported" ? "not answered" : "passed") << found;
+    const bool is_of_contacts = name.find("Contact") != std::string::npos;  // which `exact` does not answer
+    EXPECT_EQ(found.at("verdict"), name == "Unsupported" || is_of_contacts ? "not answered" : "passed") << found;
     EXPECT_TRUE(found.at("failures").empty());
   }
 }

@@ -326,7 +326,8 @@ class Printed(unittest.TestCase):
                 if re.search(r"\.(json|h5)$", word):  # of the user's, or of the command before
                     (self.folder / word).parent.mkdir(exist_ok=True)
                     (self.folder / word).touch()
-            command = [str(PROGRAM) if program == "sixdof" else str(ROOT / program), *words, "--no-such-option"]
+            found = {"sixdof": PROGRAM, "sixdof-bench": BENCH}.get(program, ROOT / program)
+            command = [str(found), *words, "--no-such-option"]
             done = subprocess.run(command, cwd=self.folder, env=self.environment, capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 2, f"{line}\n{done.stderr}")
             self.assertIn("--no-such-option", done.stderr, line)

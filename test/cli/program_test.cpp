@@ -93,7 +93,7 @@ TEST(Algorithms, ListsAnswersAndParameters) {
   const auto list = nlohmann::json::parse(result.out);
   ASSERT_GE(list.size(), 1u);
   EXPECT_EQ(list[0].at("name"), "null");
-  EXPECT_EQ(list[0].at("answers"), (std::vector<std::string>{"collide", "distance", "respond", "cast"}));
+  EXPECT_EQ(list[0].at("answers"), (std::vector<std::string>{"collide", "distance", "respond", "cast", "contacts"}));
   const auto timed = [&](const std::string& name) {
     for (const auto& algorithm : list) {
       if (algorithm.at("name") == name) return algorithm.at("timed").get<bool>();

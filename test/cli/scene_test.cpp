@@ -273,7 +273,8 @@ TEST_F(SceneCommand, RefusesInOneLine) {
   refuses("make cube --density -1 -o t.h5", "density -1");
   refuses("make cube", "--output is required");
   refuses("info none.h5", "none.h5: no such file");
-  refuses("play s.h5 --algorithms none", "no algorithm for scenes none; there are exact, all-pairs");
+  refuses("play s.h5 --algorithms none",
+          "no algorithm for scenes none; there are exact, exact-refit, exact-rebuild, all-pairs");
   refuses("play s.h5 --question where", "no question where; there are touching, near, closest, wrenches");
   refuses("play s.h5 --frames 2", "frames 2 to 2: the scene has 0 to 1");
   refuses("play s.h5 --frames 1:", "--frames 1:: give a frame, or FIRST:LAST");

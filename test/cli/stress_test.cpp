@@ -17,6 +17,7 @@ namespace sixdof {
 namespace {
 
 using nlohmann::json;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 class Stress : public test::ScratchFolder {
@@ -56,6 +57,14 @@ TEST_F(Stress, EveryReproductionIsACommandThatAsksTheSameCase) {
     const auto done = run(line.substr(std::string("sixdof ").size()) + " --json");
     ASSERT_EQ(done.exit_code, 0) << done.err << line;
     EXPECT_EQ(json::parse(done.out).at("status"), "ok");
+  }
+}
+
+TEST_F(Stress, AsksForFirstContactsAndForContacts) {
+  for (const json& cell : cells("--algorithms exact,exact-contacts --families moving,contacts")) {
+    const bool is_of_casts = cell.at("algorithm") == "exact";
+    if ((cell.at("family") == "moving") != is_of_casts) continue;
+    EXPECT_THAT(cell.at("verdict").get<std::string>(), AnyOf("exact", "within declared resolution")) << cell;
   }
 }
 

@@ -118,18 +118,19 @@ TEST_F(Studies, RecommendAnswersEveryQuestion) {
           "vps:voxel_size=0.04 --json");
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const json questions = json::parse(done.out).at("questions");
-  ASSERT_EQ(questions.size(), 3u);
+  ASSERT_EQ(questions.size(), 4u);
   std::map<std::string, std::size_t> candidates;
   for (const json& question : questions) candidates[question.at("question")] = question.at("candidates").size();
-  EXPECT_EQ(candidates, (std::map<std::string, std::size_t>{{"yes-no", 2}, {"distance", 1}, {"respond", 2}}))
-      << "vps has no distances";
+  EXPECT_EQ(candidates,
+            (std::map<std::string, std::size_t>{{"yes-no", 2}, {"distance", 1}, {"respond", 2}, {"cast", 1}}))
+      << "vps has no distances, and no casts";
 }
 
 TEST_F(Studies, RecommendNamesAnAlgorithmAndTheCommandThatMeasuresItAgain) {
   const auto done = run("recommend --a cone-1k --b torus-1k --deadline 1s --budget 90s --algorithms exact --json");
   ASSERT_EQ(done.exit_code, 0) << done.err;
   const json questions = json::parse(done.out).at("questions");
-  ASSERT_EQ(questions.size(), 3u);
+  ASSERT_EQ(questions.size(), 4u);
   for (const json& question : questions) {
     EXPECT_TRUE(question.at("missing").is_null()) << question;
     EXPECT_EQ(question.at("candidates").at(0).at("standing"), "taken");

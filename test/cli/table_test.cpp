@@ -251,7 +251,7 @@ TEST_F(TableCommand, CastsHaveALinePerMotionAndWhatIsMissed) {
       << "motions stay together";
   const std::string overview = printed("--overview --markdown " + file);
   EXPECT_THAT(overview, HasSubstr("first contact, us"));
-  EXPECT_THAT(overview, HasSubstr("| x | - | 2.00 | - | 2.75 | - | right |\n"));
+  EXPECT_THAT(overview, HasSubstr("| x | 2.00 | 2.75 | right |\n"));
   EXPECT_THAT(overview, HasSubstr("| wrong; first contact: 5 of 64 wrong (3 missed, 2 late) |\n"));
   EXPECT_THAT(printed("--wide " + file), HasSubstr("x (tumble 0.01 %)"));
 }

@@ -75,7 +75,7 @@ class WrongQuery final : public Query {
  private:
   template <class T, class Change>
   Outcome<T> answer(Outcome<T> (Query::*question)(const Pose&), const Change& change, const Pose& X_AB) {
-    if (fault_.cast) return Status::unsupported;  // the adapters of casts answer nothing else
+    if (fault_.cast || fault_.contacts) return Status::unsupported;  // adapters of these answer nothing else
     Outcome<T> outcome = ((*exact_).*question)(X_AB);
     ++calls_;
     static const std::thread::id first = std::this_thread::get_id();

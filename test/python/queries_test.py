@@ -177,7 +177,8 @@ class Algorithms(unittest.TestCase):
             with self.subTest(name=name):
                 pair = sixdof.prepare(name, "cone-100", "torus-100")
                 for kind in info.answers:
-                    self.assertEqual(getattr(pair, kind)(poses).ok.shape, (3,))
+                    more = {"cast": [numpy.full(3, 0.2)]}.get(kind, [])  # a translation
+                    self.assertEqual(getattr(pair, kind)(poses, *more).ok.shape, (3,))
                 self.assertGreaterEqual(pair.footprint()["bytes"], 0)
 
     def test_parameters(self):

@@ -16,7 +16,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from browser import Browser, find_chromium  # noqa: E402
-from sample_results import HOSTILE, STRESS, cast_rows, collection, rows, scene_rows  # noqa: E402
+from sample_results import HOSTILE, STRESS, cast_rows, collection, contact_rows, rows, scene_rows  # noqa: E402
 
 SIXDOF = sys.argv.pop(1)
 SHOTS = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else None
@@ -33,7 +33,7 @@ class Page(unittest.TestCase):
         context = {"date": "2026-01-02T03:04:05+00:00", "commit": HOSTILE, "seed": "1", "sample": "64", "mesh:torus-1k": "0123",
                    "algorithm:exact": "1", "settings:exact": "warm_start=off"}
         (folder / "run.json").write_text(json.dumps({"context": context, "benchmarks": rows()}))
-        (folder / "scenes.json").write_text(json.dumps({"context": {}, "benchmarks": [*scene_rows(), *cast_rows()]}))
+        (folder / "scenes.json").write_text(json.dumps({"context": {}, "benchmarks": [*scene_rows(), *cast_rows(), *contact_rows()]}))
         (folder / "objects.json").write_text(json.dumps({"context": {}, "benchmarks": [], **collection()}))
         (folder / "later.json").write_text(json.dumps({"context": context, "benchmarks": rows(1.3)}))
         environment = os.environ | {"SIXDOF_CACHE": str(folder / "cache")}
@@ -114,7 +114,7 @@ class Page(unittest.TestCase):
             if command:
                 named[page] = command.split()[0]
         self.assertEqual(named, {"signals": "sixdof", "scenes": "bench/run", "deforming": "bench/run", "collection": "bench/scripts/collection", "stability": "sixdof", "compare": "sixdof",
-                                 "history": "sixdof"})
+                                 "history": "sixdof", "casts": "bench/run", "contacts": "sixdof-bench", "depths": "sixdof-bench"})
         self.go_to("summary")
         self.assertIn("sixdof stress", self.browser.run("document.querySelector('main .verdict .command code').textContent"))
 
@@ -340,8 +340,8 @@ class Page(unittest.TestCase):
         self.assertLessEqual(self.browser.run("document.querySelector('nav').getBoundingClientRect().height"), 90)
         self.open(width=1400, page=self.plain)
         empty = self.browser.run("[...document.querySelectorAll('nav details a')].map(a => a.hash.slice(1))")
-        self.assertEqual(sorted(empty), ["collection", "compare", "deforming", "history", "scenes", "signals", "stability"])
-        self.assertIn("without data: 7", self.browser.run("document.querySelector('nav summary').textContent"))
+        self.assertEqual(sorted(empty), ["casts", "collection", "compare", "contacts", "deforming", "depths", "history", "scenes", "signals", "stability"])
+        self.assertIn("without data: 10", self.browser.run("document.querySelector('nav summary').textContent"))
         self.assertEqual(self.browser.run("document.querySelectorAll('nav > a').length + document.querySelectorAll('nav details a').length"), len(self.pages()))
 
     def test_figures_have_no_scrollbars_on_a_desk(self):

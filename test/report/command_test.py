@@ -17,7 +17,7 @@ import xml.etree.ElementTree
 import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from sample_results import HOSTILE, STRESS, cast_rows, collection, row, rows, scene_rows  # noqa: E402
+from sample_results import HOSTILE, STRESS, cast_rows, collection, contact_rows, row, rows, scene_rows  # noqa: E402
 
 SIXDOF = sys.argv.pop(1)
 
@@ -160,7 +160,7 @@ class Report(unittest.TestCase):
                 self.assertIn(f"--width {width}: not a width", refused)
 
     def test_csv_has_outliers_scenes_and_the_collection(self):
-        (self.folder / "more.json").write_text(json.dumps({"context": {}, "benchmarks": [*scene_rows(), *cast_rows()], **collection()}))
+        (self.folder / "more.json").write_text(json.dumps({"context": {}, "benchmarks": [*scene_rows(), *cast_rows(), *contact_rows()], **collection()}))
         self.assertEqual(self.run_it("report", "run.json", "more.json", "--csv", "tables").returncode, 0)
 
         def lines(name):
@@ -174,7 +174,11 @@ class Report(unittest.TestCase):
                   ("fcl-cast", "elephant", "tumble", "0.01 %")]
         self.assertEqual((line["missed_hits"], line["missed_percent"], line["faults"]), ("6", "12.5", "6 of 64 wrong"))
         self.assertIn("^cast/algorithm:fcl-cast/pair:elephant/motion:tumble/step:0.01$", line["command"])
-        self.assertNotIn("cast", {line["query"] for line in lines("times")})
+        [line] = [line for line in lines("contacts") if (line["algorithm"], line["pair"], line["percent"]) == ("fcl-contacts", "elephant", "5")]
+        self.assertEqual((line["reversed_normals"], line["contact_depth_ratio"]), ("3", "0.8"))
+        [line] = [line for line in lines("depths") if (line["algorithm"], line["pair"], line["percent"]) == ("fcl-contacts", "elephant", "5")]
+        self.assertEqual((line["too_shallow"], line["open_depths"]), ("10", "2"))
+        self.assertFalse({"cast", "contacts", "depth"} & {line["query"] for line in lines("times")})
         self.assertEqual({line["part"] for line in lines("deforming")}, {"update and query", "update", "query"})
         self.assertEqual({line["rebuild_wins_from"] for line in lines("refit_payoff")}, {"never"})
         self.assertEqual(float(lines("collection")[0]["p90_us"]), 90.0)

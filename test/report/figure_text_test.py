@@ -17,7 +17,7 @@ import unittest
 
 HERE = pathlib.Path(__file__).parent
 sys.path.insert(0, str(HERE))
-from sample_results import STRESS, cast_rows, collection, row, rows, scene_rows  # noqa: E402
+from sample_results import STRESS, cast_rows, collection, contact_rows, row, rows, scene_rows  # noqa: E402
 
 SIXDOF = sys.argv.pop(1)
 SKIPPED = 77
@@ -59,7 +59,7 @@ class FigureTexts(unittest.TestCase):
         bounded = row("respond", "fcl-contacts", "elephant", "volume", 0, 8000.0, gamma_F_deg=4.0, gamma_F_deg_low=3.0, gamma_F_deg_high=6.0)
         self.write("run.json", [*rows(), failed, *noisy, *hasty, bounded], {"load_avg": [6.5, 5.0, 4.0], "num_cpus": 2})
         self.write("later.json", rows(1.3), {"load_avg": [0.1, 5.0, 4.0], "num_cpus": 2})
-        self.write("scenes.json", [*scene_rows(), *cast_rows()])
+        self.write("scenes.json", [*scene_rows(), *cast_rows(), *contact_rows()])
         self.write("objects.json", [], **collection())
         (self.folder / "stress.json").write_text(json.dumps(STRESS))
         self.run_it("quality", "--scenario", "II", "--algorithm", "vps", "-p", "voxel_size=0.05", "-p", "point_spacing=0.05", "--steps", "128", "-o", "II.h5")

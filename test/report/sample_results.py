@@ -64,6 +64,19 @@ def cast_rows():
     return made
 
 
+def contact_rows():
+    """Rows of contacts and of depths, of several overlaps so that lines have points."""
+    made = []
+    for i, algorithm in enumerate(["exact-contacts", "fcl-contacts", HOSTILE]):
+        for pair in ("elephant", HOSTILE):
+            for percent in (1, 5, 10):
+                made.append(row("contacts", algorithm, pair, "volume", percent, 2000.0 * (i + 1), contacts_mean=20.0 * percent, contact_normal_deg=2.0 * i,
+                                reversed_normals=3 * i, contact_force_deg=1.0 + i, contact_depth_ratio=1.0 - 0.2 * i, uncovered_mean=0.01 * i, astray_mean=0.002 * i))
+                made.append(row("depth", algorithm, pair, "volume", percent, 3000.0 * (i + 1), depth_ratio=1.0 - 0.3 * i, too_shallow=10 * i, too_deep=0,
+                                too_shallow_max=0.4 * i, too_deep_max=0.0, open_depths=2, depth_width_max=0.01 * percent, depth_of_ray=0.8))
+    return made
+
+
 def scene_rows():
     """Rows of `sixdof-bench --suite scenes` and `--suite deform`."""
     made = []

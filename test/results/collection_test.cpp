@@ -16,6 +16,7 @@ namespace sixdof::results {
 namespace {
 
 using test::Json;
+using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -160,7 +161,7 @@ TEST(Collection, CastsOfDifferentMotionsAreKeptApart) {
   for (const auto& each : summary.at("against_exact")) {
     if (each.at("algorithm") == "slow") ratios.push_back(each.at("ratio"));
   }
-  EXPECT_THAT(ratios, ElementsAre(3.0, 2.0));
+  EXPECT_THAT(ratios, ElementsAre(DoubleEq(3.0), DoubleEq(2.0)));
 }
 
 TEST(Collection, WhatDidNotEndIsListed) {

@@ -272,7 +272,7 @@ TEST(ExactScene, AnUpdateThatForgetsAVertexIsCaught) {
   const SceneAnswers truth = replay(scene, *make_all_pairs(), Question::near);
   const Play play = scene::play(scene, *stale, Question::near, truth);
   EXPECT_FALSE(play.score.same_bits);
-  EXPECT_GT(play.score.largest_error, 1e-3);
+  EXPECT_GT(play.score.largest_error, 1e-5);  // far above rounding; its neighbours stay near
   const Play right = scene::play(scene, *make_exact_scene(), Question::near, truth);
   EXPECT_TRUE(right.score.same_bits);
   EXPECT_GT(right.timing.update_us, 0.0);

@@ -51,6 +51,12 @@ INSTANTIATE_TEST_SUITE_P(Families, Rivals,
                            return name;
                          });
 
+/// FCL's volumes for distances, rectangles swept by spheres, do not contain those that they are joined from: its refits
+/// from below give wrong distances (bench/rivals/FINDINGS.md).
+bool joins_wrong_volumes(const std::string& name, Question question) {
+  return question != Question::touching && (name == "fcl-refit" || name == "fcl-update");
+}
+
 class DeformingRivals : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(DeformingRivals, FollowMeshesThatDeform) {
@@ -63,12 +69,13 @@ TEST_P(DeformingRivals, FollowMeshesThatDeform) {
       if (!traits.answers_to(question) || !traits.deforms) continue;
       SCOPED_TRACE(traits.name + ", " + std::string(to_string(question)));
       const Play found = play(scene, *algorithm, question, truth);
+      ++played;
+      EXPECT_GT(found.timing.update_us, 0.0);
+      if (joins_wrong_volumes(traits.name, question)) continue;
       EXPECT_EQ(found.score.missed, 0u) << "frame " << (found.score.first ? found.score.first->frame : 0);
       // GImpact reports some pairs that are apart by up to a hundredth of their size.
       EXPECT_LE(found.score.wrong, traits.name.starts_with("bullet-") ? 2 + found.score.true_pairs / 20 : 0u);
       EXPECT_LE(found.score.largest_error, 1e-9 * (1.0 + scene.margin));
-      EXPECT_GT(found.timing.update_us, 0.0);
-      ++played;
     }
     EXPECT_GE(played, 4u);
   }

@@ -209,7 +209,8 @@ class PythonPair:
         method = asked(self._algorithm, kind) if kind in self._answered else None
         status, words = numpy.zeros(len(poses), dtype=numpy.uint8), {}
         for place, pose in enumerate(poses):
-            finite = pose if numpy.isfinite(pose).all() else sixdof_rival.NOT_FINITE
+            parts = vars(pose).values() if isinstance(pose, Motion) else (pose,)
+            finite = pose if all(numpy.isfinite(part).all() for part in parts) else sixdof_rival.NOT_FINITE
             reply = sixdof_rival.timed(method, kind, finite)[1]
             if "status" in reply:
                 status[place] = _core.statuses.index(reply["status"])

@@ -7,6 +7,9 @@
 namespace sixdof {
 namespace {
 
+/// Cosines up to this are of a right angle: the line along either normal runs in the other surface.
+constexpr double k_right_angle = 1e-6;
+
 class ExactContactsQuery final : public Query {
  public:
   ExactContactsQuery(const Mesh& a, const Mesh& b, const Settings& /*settings*/) : truth_(a, b) {}
@@ -28,7 +31,7 @@ class ExactContactsQuery final : public Query {
 
  private:
   /// In the middle of a segment: of the normals of both triangles the one along which less is to be moved; both where
-  /// that is the same, as in shallow contacts, where nothing is to be moved.
+  /// that is the same. Normals at an acute angle leave the intersection at once, as in shallow contacts.
   void add_on_curve(std::size_t i, std::vector<Contact>& all) {
     const Segment& segment = truth_.curve()[i];
     const TrianglePair& pair = truth_.curve_triangles()[i];
@@ -36,9 +39,15 @@ class ExactContactsQuery final : public Query {
     const Eigen::Vector3d n_a = truth_.normal_of_a(pair), n_b = -truth_.normal_of_b(pair);
     if (n_a.isZero(0.0) || n_b.isZero(0.0)) return;  // of a triangle without area
     const double of_a = truth_.thickness(middle, n_a), of_b = truth_.thickness(middle, n_b);
-    const double same = k_contact_slack * truth_.diagonal();
-    if (of_a <= of_b + same) all.push_back({middle, n_a, of_a});
-    if (of_b <= of_a + same) all.push_back({middle, n_b, of_b});
+    const bool both_leave = n_a.dot(n_b) > k_right_angle;
+    const double same = both_leave ? std::max(of_a, of_b) : k_contact_slack * truth_.diagonal();
+    if (of_a <= of_b + same) add({middle, n_a, of_a}, all);
+    if (of_b <= of_a + same) add({middle, n_b, of_b}, all);
+  }
+
+  /// Sides that lie in one plane cross by rounding, at edges where neither normal leads out.
+  void add(const Contact& contact, std::vector<Contact>& all) {
+    if (!truth_.judge(contact).is_reversed()) all.push_back(contact);
   }
 
   ContactTruth truth_;

@@ -21,7 +21,7 @@ constexpr double k_on_surface = 1e-13;
 constexpr double k_serious = 0.3;
 constexpr double k_as_promised = 0.7;
 /// Steps get longer by this factor where they promise little, up to a multiple of the depth.
-constexpr double k_longer = 4.0, k_longest_step = 1e3;
+constexpr double k_longer = 4.0, k_longest_step = 1e8;
 constexpr int k_most_exchanges = 40;
 /// Steps shorter than this part of the coordinates end an ascent.
 constexpr double k_shortest_step = 1e-13;

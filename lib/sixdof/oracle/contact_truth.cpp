@@ -36,9 +36,16 @@ std::size_t dimension(std::span<const Vector3d> normals) { return std::min<std::
 
 }  // namespace
 
+ContactTruth::Ball::Ball(const Mesh& mesh) : center(Vector3d::Zero()), radius(0.0) {
+  for (const Vector3d& vertex : mesh.vertices()) center += vertex / static_cast<double>(mesh.vertices().size());
+  for (const Vector3d& vertex : mesh.vertices()) radius = std::max(radius, (vertex - center).norm());
+}
+
 ContactTruth::ContactTruth(const Mesh& a, const Mesh& b)
     : a_(&a),
       b_(&b),
+      ball_a_(a),
+      ball_b_(b),
       tree_a_(a),
       tree_b_(b),
       solid_a_(a, tree_a_),
@@ -77,17 +84,24 @@ Vector3d ContactTruth::normal_of_b(const TrianglePair& pair) const {
 /// @param of_b whether `mesh` is B
 void ContactTruth::add_inner(const Mesh& mesh, bool of_b, std::vector<InnerVertex>& found) {
   const Pose& to_other = of_b ? X_AB_ : X_BA_;
-  const Eigen::AlignedBox3d& box = of_b ? a_->box() : b_->box();
-  std::vector<Vector3d> near;
+  const Ball& ball = of_b ? ball_a_ : ball_b_;
+  std::vector<Vector3d> near, own;  // in the other's frame; in the vertex's
   for (const Vector3d& vertex : mesh.vertices()) {
-    if (const Vector3d p = to_other * vertex; box.contains(p)) near.push_back(p);
+    const Vector3d p = to_other * vertex;
+    if ((p - ball.center).norm() > ball.radius) continue;
+    near.push_back(p);
+    own.push_back(vertex);
   }
   const std::size_t step = (near.size() + k_most_vertices - 1) / k_most_vertices;
   for (std::size_t i = 0; i < near.size(); i += step) {
     const detail::DepthNode node = (of_b ? depth_in_a_ : depth_in_b_).at(near[i], 0);
     // Closer to the surface the way out has no direction.
     if (node.s >= -k_equally_near * diagonal_) continue;
-    const Vector3d out = unit(node.to_surface);
+    // A vertex within a flat face is a point of this face.
+    normals_a_.clear();
+    normals_near(of_b ? tree_b_ : tree_a_, own[i], k_equally_near * diagonal_, normals_a_);
+    const bool is_flat = dimension(normals_a_) == 1;
+    const Vector3d out = is_flat ? Vector3d(-(to_other.R * normals_a_[0])) : unit(node.to_surface);
     found.push_back({.point = of_b ? near[i] : Vector3d(X_AB_ * near[i]),
                      .of_b = of_b,
                      .depth = -node.s,

@@ -48,7 +48,8 @@ struct InnerVertex {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   bool of_b = false;                                 ///< B's, in A; else A's, in B.
   double depth = 0.0;                                ///< Distance from the other's surface (length).
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Unit, from A to B: the shortest way out for it.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Unit, from A to B: the shortest way out for it, or
+                                                     ///< the normal of its own face if it lies within one.
 };
 
 /// Two solids, asked at one pose after the other. One object per thread.
@@ -91,8 +92,16 @@ class ContactTruth {
  private:
   void add_inner(const Mesh& mesh, bool of_b, std::vector<InnerVertex>& found);
 
+  /// About the mean of a mesh's vertices, through the farthest: turns with the mesh, as a box would not.
+  struct Ball {
+    Eigen::Vector3d center;
+    double radius;
+    explicit Ball(const Mesh& mesh);
+  };
+
   const Mesh* a_;
   const Mesh* b_;
+  const Ball ball_a_, ball_b_;
   const Tree tree_a_, tree_b_;
   const Solid solid_a_, solid_b_;
   const double diagonal_;

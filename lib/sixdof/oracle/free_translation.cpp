@@ -21,6 +21,8 @@ constexpr int k_most_slides = 40;
 /// Distances from the planes at which a slide moves, over the length of the translation, one slide after the other.
 /// Motions along a face that touches it take long; so they keep this margin.
 constexpr std::array<double, 3> k_margins{1e-4, 1e-7, 1e-10};
+/// A slide starts so many margins farther out: at a contact, motions end at once and normals are those of rounding.
+constexpr double k_retreat = 2.0;
 /// By how much of a motion its end is drawn back where exact yes/no finds a contact: at first, and how often.
 constexpr double k_back = 1e-10;
 constexpr int k_most_backs = 8;
@@ -127,7 +129,11 @@ Vector3d FreeTranslations::slide(const Pose& X_AB, const Vector3d& d, double mar
 
 Vector3d FreeTranslations::descend(const Pose& X_AB, const Vector3d& d) {
   Vector3d current = d;
-  for (const double margin : k_margins) current = slide(X_AB, current, margin * current.norm());
+  for (const double margin : k_margins) {
+    const Vector3d back = (1.0 + k_retreat * margin) * current;
+    const Vector3d next = slide(X_AB, is_free(X_AB, back) ? back : current, margin * current.norm());
+    if (next.norm() < current.norm()) current = next;
+  }
   const Vector3d last = move(X_AB, current, Vector3d::Zero()).d;
   return last.norm() < current.norm() ? last : current;
 }

@@ -44,9 +44,9 @@ double impact_tolerance(const Motion& motion, const Eigen::AlignedBox3d& box_b, 
 /// A judged answer.
 struct JudgedImpact {
   ImpactVerdict verdict = ImpactVerdict::failed;
-  double early = 0.0;         ///< Of an early answer: by how much of the motion.
-  double late = 0.0;          ///< Of a late one.
-  double normal_angle = 0.0;  ///< To the true normal (degrees); negative where either is not known.
+  double early = 0.0;          ///< Of an early answer: by how much of the motion.
+  double late = 0.0;           ///< Of a late one.
+  double normal_angle = -1.0;  ///< To the true normal (degrees); negative where either is not known.
 };
 
 /// @param truth of the motion

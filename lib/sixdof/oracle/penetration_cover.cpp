@@ -19,6 +19,7 @@ constexpr double k_narrowest = 1e-9;
 /// Free translations are numerous where many directions are equally short. One that is shorter by less than this part
 /// of the tolerance is taken as it is, until the end.
 constexpr double k_worth_a_descent = 0.1;
+constexpr std::size_t k_largest_pool = 1000;
 /// The last part of a cone takes in a rest smaller than this part of it.
 constexpr double k_small_rest = 0.2;
 
@@ -113,6 +114,8 @@ void PenetrationCover::descend() {
 /// Replaces a cell by those that follow from its attempt.
 void PenetrationCover::follow(const TranslationCell& cell, const CellProof& proof) {
   TranslationCell next = cell;
+  if (!proof.seeds.empty()) next.drop_seeds(proof.used);
+  next.searched = proof.searched;
   for (auto seed = proof.seeds.rbegin(); seed != proof.seeds.rend(); ++seed) next.add_seed(*seed);
   switch (proof.next) {
     case CellProof::Next::proven: {
@@ -151,6 +154,7 @@ PenetrationDepth PenetrationCover::run() {
     for (const CellProof& proof : proofs) {
       result_.measurements += proof.measurements;
       if (proof.free) shorten_translation(*proof.free);
+      if (proof.found && pool_.size() < k_largest_pool) pool_.push_back(*proof.found);
     }
     for (std::size_t i = 0; i < batch.size(); ++i) follow(batch[i], proofs[i]);
   }

@@ -97,7 +97,9 @@ double Thickness::along(const Pose& X_AB, const Vector3d& p, const Vector3d& n, 
 }
 
 double Thickness::at(const Pose& X_AB, const Vector3d& p, const Vector3d& n, double reach, double beside) {
-  const Vector3d u = n.unitOrthogonal(), v = n.cross(u);
+  // The same lines for a normal and its opposite.
+  const bool is_upwards = n.z() > 0.0 || (n.z() == 0.0 && (n.y() > 0.0 || (n.y() == 0.0 && n.x() > 0.0)));
+  const Vector3d axis = is_upwards ? n : Vector3d(-n), u = axis.unitOrthogonal(), v = axis.cross(u);
   double thickest = 0.0;
   // No symmetry of a body has this angle.
   constexpr double k_cos = 0.8276, k_sin = 0.5613;

@@ -44,6 +44,10 @@ constexpr std::array k_questions{
     Question{"respond", "Force and torque", "with forces within 1 degree of the exact ones"},
     Question{k_cast, "First contact", "without a wrong answer"}};
 
+bool is_a_question(const std::string& query) {
+  return std::ranges::any_of(k_questions, [&](const Question& each) { return query == each.query; });
+}
+
 /// By query; those of k_questions are there in any case.
 std::map<std::string, Records> records_of(const std::vector<RowGroup>& groups) {
   std::map<std::string, Records> by_query;
@@ -95,7 +99,8 @@ struct Race {
 std::vector<Race> races_of(const std::vector<Contest>& contests, const std::map<std::string, Records>& by_query) {
   std::vector<Race> races;
   for (const Contest& contest : contests) {
-    if (contest.entries.size() < 2) continue;
+    // Contacts and depths have scores, but no answer that all have to give.
+    if (contest.entries.size() < 2 || !is_a_question(contest.query)) continue;
     Race race{&contest, contest};
     const Records& records = by_query.at(contest.query);
     std::erase_if(race.right.entries, [&](const RowGroup* entry) {

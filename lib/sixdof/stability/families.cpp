@@ -49,8 +49,7 @@ const std::array k_families{
            "step over thickness 0.1 .. 1e4", make::tunnelling, field::fast},
     Family{15, "grazing", "A corner a rounding over a face, or under it.", "gap 0, +-1e-16 .. 1e-2", make::grazing,
            field::body_grazing},
-    Family{16, "holes", "Missing and flipped triangles far from the contact.", "damaged triangles 0 .. 100 %",
-           make::holes, field::damaged},
+    Family{16, "holes", "Missing and flipped triangles.", "damaged triangles 0 .. 100 %", make::holes, field::damaged},
     Family{17, "bad-pose", "Invalid poses: NaN, infinity, no rotation; and extreme ones.", "norm 0 .. 1e3",
            make::bad_poses, field::inputs},
     Family{18, "lipschitz", "A distance changes by no more than the body moves.", "step 1e-12 .. 1e-3",
@@ -62,8 +61,7 @@ const std::array k_families{
            make::worst_time},
     Family{22, "moving", "When a moving body first touches: fast, slow, spinning, grazing, at the start, never.",
            "length of the motion over the size 1e-9 .. 1e6", make::moving_bodies},
-    Family{23, "contacts", "Contacts of faces, edges and corners, flush, deep and thin; exchanged and in other frames.",
-           "depth over the size 1e-6 .. 0.05", make::contacts},
+    Family{23, "contacts", "Contacts of faces, edges, corners.", "relative depth 1e-6 .. 0.05", make::contacts},
 };
 
 }  // namespace
