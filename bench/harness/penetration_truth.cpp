@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* k_kind = "penetration-truth";
 /// To be raised where PenetrationOracle, convex_depth() or what is stored changes.
-constexpr int k_version = 1;
+constexpr int k_version = 2;
 constexpr PenetrationOptions k_options{.tolerance = 1e-3, .budget = 1'000'000};
 /// lo, hi.
 constexpr std::size_t k_numbers = 2;

@@ -32,6 +32,21 @@ TEST(CommonPoint, ClimbsToTheMiddleOfTheOverlapOfBoxes) {
   }
 }
 
+TEST(CommonPoint, ClimbsOutOfThePointOfAThinWedge) {
+  // B's lower face leans by `angle` over A's upper one: the overlap is a wedge that opens along x, from its point at 0.
+  for (const double angle : {1e-1, 1e-2, 1e-3}) {
+    const Mesh a = box({-0.5, -0.4, -0.6}, {0.5, 0.4, 0.0}), b = box({-0.5, -0.3, 0.0}, {0.5, 0.3, 0.6});
+    const Pose X_AB{Eigen::AngleAxisd(angle, Vector3d::UnitY()).toRotationMatrix(), Vector3d::Zero()};
+    const Tree tree_a(a), tree_b(b);
+    CommonPointSearch search(a, tree_a, b, tree_b);
+    const double x = 1e-6;
+    const CommonPoint start = search.at({x, 0.03, -0.45 * angle * x}, X_AB, 0, 0);
+    ASSERT_GT(start.depth(), 0.0);
+    const CommonPoint top = search.ascend(start, X_AB, start.depth(), {.gain = 0.2, .most = 40});
+    EXPECT_GT(top.depth(), 0.05 * angle) << angle << ": the widest place has half of the angle";
+  }
+}
+
 TEST(CommonPoint, MeasuresBothSignedDistances) {
   std::mt19937_64 random(32);
   const Mesh a = bodies::bumpy_sphere(3), b = bodies::bumpy_torus(30, 15);

@@ -39,6 +39,9 @@ TEST(TranslationCell, KeepsTheNewestSeeds) {
   ASSERT_EQ(cell.seed_count, TranslationCell::k_most_seeds);
   for (std::size_t i = 0; i < cell.seed_count; ++i)
     EXPECT_EQ(cell.seeds[i].translation.x(), 5.0 - static_cast<double>(i));
+  cell.drop_seeds(2);
+  ASSERT_EQ(cell.seed_count, TranslationCell::k_most_seeds - 2);
+  EXPECT_EQ(cell.seeds[0].translation.x(), 3.0);
 }
 
 class OfBoxes : public ::testing::Test {

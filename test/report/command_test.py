@@ -178,7 +178,7 @@ class Report(unittest.TestCase):
         self.assertEqual((line["reversed_normals"], line["contact_depth_ratio"]), ("3", "0.8"))
         [line] = [line for line in lines("depths") if (line["algorithm"], line["pair"], line["percent"]) == ("fcl-contacts", "elephant", "5")]
         self.assertEqual((line["too_shallow"], line["open_depths"]), ("10", "2"))
-        self.assertFalse({"cast", "contacts", "depth"} & {line["query"] for line in lines("times")})
+        self.assertNotIn("cast", {line["query"] for line in lines("times")})
         self.assertEqual({line["part"] for line in lines("deforming")}, {"update and query", "update", "query"})
         self.assertEqual({line["rebuild_wins_from"] for line in lines("refit_payoff")}, {"never"})
         self.assertEqual(float(lines("collection")[0]["p90_us"]), 90.0)

@@ -20,7 +20,8 @@ constexpr double k_on_surface = 1e-13;
 /// Part of the gain that the model promises that a point has to have to be the next.
 constexpr double k_serious = 0.3;
 constexpr double k_as_promised = 0.7;
-/// Steps get longer by this factor where they promise little, up to a multiple of the depth.
+/// tau grows by this factor where a step promises little, up to a multiple of the depth. Between surfaces at an angle w
+/// a step is w tau / 2 long and promises w^2 tau / 4: so the multiple finds the way out of a wedge of 1e-4.
 constexpr double k_longer = 4.0, k_longest_step = 1e8;
 constexpr int k_most_exchanges = 40;
 /// Steps shorter than this part of the coordinates end an ascent.
