@@ -1,6 +1,7 @@
 #include <sixdof/algorithm/core_algorithms.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <sixdof/oracle/contact_truth.h>
 
@@ -39,15 +40,18 @@ class ExactContactsQuery final : public Query {
     const Eigen::Vector3d n_a = truth_.normal_of_a(pair), n_b = -truth_.normal_of_b(pair);
     if (n_a.isZero(0.0) || n_b.isZero(0.0)) return;  // of a triangle without area
     const double of_a = truth_.thickness(middle, n_a), of_b = truth_.thickness(middle, n_b);
-    const bool both_leave = n_a.dot(n_b) > k_right_angle;
+    const double cosine = n_a.dot(n_b);
+    const bool both_leave = cosine > k_right_angle;
+    const bool is_flush = std::abs(cosine) <= k_right_angle || cosine < k_right_angle - 1.0;
     const double same = both_leave ? std::max(of_a, of_b) : k_contact_slack * truth_.diagonal();
-    if (of_a <= of_b + same) add({middle, n_a, of_a}, all);
-    if (of_b <= of_a + same) add({middle, n_b, of_b}, all);
+    if (of_a <= of_b + same) add({middle, n_a, of_a}, is_flush, all);
+    if (of_b <= of_a + same) add({middle, n_b, of_b}, is_flush, all);
   }
 
   /// Sides that lie in one plane cross by rounding, at edges where neither normal leads out.
-  void add(const Contact& contact, std::vector<Contact>& all) {
-    if (!truth_.judge(contact).is_reversed()) all.push_back(contact);
+  /// @param is_flush whether the triangles may belong to such sides
+  void add(const Contact& contact, bool is_flush, std::vector<Contact>& all) {
+    if (!is_flush || !truth_.judge(contact).is_reversed()) all.push_back(contact);
   }
 
   ContactTruth truth_;

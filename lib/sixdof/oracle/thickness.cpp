@@ -22,9 +22,9 @@ bool meets_box(const Tree::Node& node, std::size_t i, const Vector3d& p, const V
       if (low > 0.0 || high < 0.0) return false;
       continue;
     }
-    const auto [x, y] = std::minmax(low / n[k], high / n[k]);
-    first = std::max(first, x);
-    last = std::min(last, y);
+    const double x = low / n[k], y = high / n[k];
+    first = std::max(first, std::min(x, y));
+    last = std::min(last, std::max(x, y));
   }
   return first <= last;
 }
