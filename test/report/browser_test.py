@@ -89,6 +89,7 @@ class Page(unittest.TestCase):
                 for figure in cards:
                     marks = self.browser.run(f"document.querySelectorAll('#figure-{figure} .plot svg .mark-group path, #figure-{figure} .plot svg .mark-text text').length")
                     self.assertGreater(marks, 0, f"{page}: {figure}")
+                self.assertNotIn("[object", self.browser.run("[...document.querySelectorAll('h3')].map(title => title.textContent).join()"), page)
                 self.shot(f"{page}-{'dark' if dark else 'light'}")
         self.assertEqual(self.browser.errors, [])
 

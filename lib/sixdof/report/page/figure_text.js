@@ -12,7 +12,8 @@
 
   const mostNames = 6, mostFailures = 3;
 
-  report.numberText = (value) => value.toLocaleString("en", { maximumSignificantDigits: 3 });
+  report.numberText = (value) => (value !== 0 && Math.abs(value) < 1e-6 ? value.toExponential(2)
+    : value.toLocaleString("en", { maximumSignificantDigits: 3 }));
 
   const valueText = (value, hasFloor) => (hasFloor && Math.abs(value) <= report.rounding ? "≈ 0" : report.numberText(value));
 
