@@ -78,7 +78,11 @@ void replace_dataset(hid_t file, const std::string& name, Input& input) {
 
 void edit(hid_t file, Input& input) {
   std::vector<std::string> objects, attributes;
+#if H5_VERSION_GE(1, 12, 0)
+  H5Ovisit3(file, H5_INDEX_NAME, H5_ITER_INC, add_name, &objects, H5O_INFO_BASIC);
+#else
   H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, add_name, &objects);
+#endif
   const std::string name = pick(objects, input);
   const Handle object(H5Oopen(file, name.c_str(), H5P_DEFAULT), H5Oclose);
   if (object.id() >= 0) {
