@@ -202,6 +202,11 @@ void print_table(const Scene& scene, const Played& played) {
                each.algorithm.traits().name, s.missed, s.wrong, wrong.frame, wrong.pair.a, wrong.pair.b, wrong.truth,
                wrong.missed ? "not reported" : "reported", each.reproduction);
   }
+  for (const NamedPlay& each : played.plays) {
+    if (each.play.work.undecided == 0) continue;
+    fmt::print("- {}: {} undecided: bodies pass each other more closely than a thousandth of their motion\n",
+               each.algorithm.traits().name, each.play.work.undecided);
+  }
   for (const auto& [algorithm, reason] : played.left_out) fmt::print("- {}: left out: {}\n", algorithm, reason);
 }
 
@@ -233,6 +238,7 @@ nlohmann::ordered_json json_of(const NamedPlay& named, bool is_fastest) {
   json["narrow"] = play.work.narrow;
   json["triangles"] = play.work.triangles;
   json["built"] = play.work.built;
+  json["undecided"] = play.work.undecided;
   json["pairs_in_all"] = play.pairs_in_all;
   json["bytes"] = play.bytes;
   if (const auto& first = play.score.first) {

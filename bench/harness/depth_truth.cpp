@@ -6,68 +6,44 @@
 
 #include <fmt/format.h>
 
-#include <sixdof/base/cache.h>
-#include <sixdof/base/error.h>
-#include <sixdof/base/hash.h>
+#include "bench/harness/stored_truths.h"
 
 namespace sixdof::bench {
 namespace {
 
 constexpr const char* k_kind = "depth-truth";
 /// To be raised where DepthOracle or what is stored changes.
-constexpr int k_version = 2;
+constexpr int k_version = 3;
 /// What is asked of the quadrature: half of what is judged.
 constexpr DepthTolerance k_tolerance{.relative = 0.5 * DepthTruth::k_judged_error, .most_pieces = 200'000};
 /// Force, torque, reference, depth.
 constexpr std::size_t k_numbers = 10;
 
-std::string hash_of(std::span<const Pose> poses) {
-  ContentHash hash;
-  for (const Pose& pose : poses) {
-    hash.add_values(std::span<const double>(pose.R.data(), 9));
-    hash.add_values(std::span<const double>(pose.t.data(), 3));
-  }
-  return hash.hex();
-}
-
 std::optional<std::vector<DepthTruth>> load(const std::string& key, std::size_t count) {
-  std::optional<CacheEntry> entry = load_cached(k_kind, key);
-  if (!entry) return std::nullopt;
-  try {
-    const auto numbers = entry->take<double>("wrenches");
-    const auto judged = entry->take<std::uint32_t>("judged");
-    if (numbers.size() != k_numbers * count || judged.size() != count) return std::nullopt;
-    std::vector<DepthTruth> truths(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto vector = [&](std::size_t k) { return Eigen::Vector3d(&numbers[k_numbers * i + 3 * k]); };
-      truths[i] = {.response = {.penalty = numbers[k_numbers * i + 9],
-                                .force = vector(0),
-                                .torque = vector(1),
-                                .reference = vector(2)},
-                   .force_judged = (judged[i] & 1u) != 0,
-                   .torque_judged = (judged[i] & 2u) != 0};
-    }
-    return truths;
-  } catch (const Error&) {  // an entry of another form
-    return std::nullopt;
+  const std::optional<StoredTruths> stored = load_truths(k_kind, key, count, k_numbers);
+  if (!stored) return std::nullopt;
+  std::vector<DepthTruth> truths(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* const numbers = &stored->numbers[k_numbers * i];
+    const auto vector = [&](std::size_t k) { return Eigen::Vector3d(numbers + 3 * k); };
+    truths[i] = {.response = {.penalty = numbers[9], .force = vector(0), .torque = vector(1), .reference = vector(2)},
+                 .force_judged = (stored->flags[i] & 1u) != 0,
+                 .torque_judged = (stored->flags[i] & 2u) != 0};
   }
+  return truths;
 }
 
 void store(const std::string& key, std::span<const DepthTruth> truths) {
-  std::vector<double> numbers;
-  std::vector<std::uint32_t> judged;
+  StoredTruths stored;
   for (const DepthTruth& truth : truths) {
     const Response& response = truth.response;
     for (const Eigen::Vector3d* v : {&response.force, &response.torque, &response.reference}) {
-      numbers.insert(numbers.end(), v->data(), v->data() + 3);
+      stored.numbers.insert(stored.numbers.end(), v->data(), v->data() + 3);
     }
-    numbers.push_back(response.penalty);
-    judged.push_back((truth.force_judged ? 1u : 0u) | (truth.torque_judged ? 2u : 0u));
+    stored.numbers.push_back(response.penalty);
+    stored.flags.push_back((truth.force_judged ? 1u : 0u) | (truth.torque_judged ? 2u : 0u));
   }
-  CacheEntry entry;
-  entry.put("wrenches", std::move(numbers));
-  entry.put("judged", std::move(judged));
-  store_cached(k_kind, key, entry);
+  store_truths(k_kind, key, std::move(stored));
 }
 
 }  // namespace

@@ -190,8 +190,7 @@ void add_set_options(CLI::App& app, Options& options, CommandLine& line) {
 void add_row_options(CLI::App& app, Options& options, CommandLine& line) {
   app.add_option("--suite", line.suite,
                  "Rows to run: default, own-pair, all-algorithms, paper, scenes, deform (bench/*_suite.json), all, or "
-                 "a file of the "
-                 "same form")
+                 "a file of the same form")
       ->type_name("SUITE")
       ->default_str("own-pair with --a and no --set; all with --benchmark_filter or your own sets; else default");
   app.add_option(

@@ -6,64 +6,42 @@
 
 #include <fmt/format.h>
 
-#include <sixdof/base/cache.h>
-#include <sixdof/base/error.h>
-#include <sixdof/base/hash.h>
 #include <sixdof/oracle/convex_depth.h>
 #include "bench/common/hulls.h"
+#include "bench/harness/stored_truths.h"
 
 namespace sixdof::bench {
 namespace {
 
 constexpr const char* k_kind = "penetration-truth";
 /// To be raised where PenetrationOracle, convex_depth() or what is stored changes.
-constexpr int k_version = 2;
+constexpr int k_version = 3;
 constexpr PenetrationOptions k_options{.tolerance = 1e-3, .budget = 1'000'000};
 /// lo, hi.
 constexpr std::size_t k_numbers = 2;
 /// Rounding of convex_depth(), over the depth and both sizes.
 constexpr double k_rounding = 1e-13;
 
-std::string hash_of(std::span<const Pose> poses) {
-  ContentHash hash;
-  for (const Pose& pose : poses) {
-    hash.add_values(std::span<const double>(pose.R.data(), 9));
-    hash.add_values(std::span<const double>(pose.t.data(), 3));
-  }
-  return hash.hex();
-}
-
 std::optional<std::vector<PenetrationDepth>> load(const std::string& key, std::size_t count) {
-  std::optional<CacheEntry> entry = load_cached(k_kind, key);
-  if (!entry) return std::nullopt;
-  try {
-    const auto numbers = entry->take<double>("intervals");
-    const auto closed = entry->take<std::uint32_t>("closed");
-    if (numbers.size() != k_numbers * count || closed.size() != count) return std::nullopt;
-    std::vector<PenetrationDepth> truths(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      truths[i].lo = numbers[k_numbers * i];
-      truths[i].hi = numbers[k_numbers * i + 1];
-      truths[i].closed = closed[i] != 0;
-      if (!(truths[i].lo >= 0.0 && truths[i].lo <= truths[i].hi)) return std::nullopt;
-    }
-    return truths;
-  } catch (const Error&) {  // an entry of another form
-    return std::nullopt;
+  const std::optional<StoredTruths> stored = load_truths(k_kind, key, count, k_numbers);
+  if (!stored) return std::nullopt;
+  std::vector<PenetrationDepth> truths(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    truths[i].lo = stored->numbers[k_numbers * i];
+    truths[i].hi = stored->numbers[k_numbers * i + 1];
+    truths[i].closed = stored->flags[i] != 0;
+    if (!(truths[i].lo >= 0.0 && truths[i].lo <= truths[i].hi)) return std::nullopt;
   }
+  return truths;
 }
 
 void store(const std::string& key, std::span<const PenetrationDepth> truths) {
-  std::vector<double> numbers;
-  std::vector<std::uint32_t> closed;
+  StoredTruths stored;
   for (const PenetrationDepth& truth : truths) {
-    numbers.insert(numbers.end(), {truth.lo, truth.hi});
-    closed.push_back(truth.closed ? 1 : 0);
+    stored.numbers.insert(stored.numbers.end(), {truth.lo, truth.hi});
+    stored.flags.push_back(truth.closed ? 1 : 0);
   }
-  CacheEntry entry;
-  entry.put("intervals", std::move(numbers));
-  entry.put("closed", std::move(closed));
-  store_cached(k_kind, key, entry);
+  store_truths(k_kind, key, std::move(stored));
 }
 
 }  // namespace

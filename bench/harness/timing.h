@@ -159,4 +159,52 @@ Latency time_cold(benchmark::State& state, std::span<const Pose> poses, GuardedQ
   return latency(times_ns);
 }
 
+/// The timed loop of a row that asks(i) for casts, contacts or depths at each of `count` places: whole rounds. Of a
+/// process of its own the time is the one that it says (PlannedRow::manual_time).
+template <class Ask>
+void time_rounds(benchmark::State& state, std::size_t count, Query& query, const Ask& ask) {
+  RemoteQuery* const remote = as_remote(query);
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(count))) {
+    double inside_ns = 0.0;
+    ask_all(count, [&](std::size_t i) {
+      auto answer = ask(i);
+      if (remote != nullptr) inside_ns += remote->last_ns();
+      return answer;
+    });
+    if (remote != nullptr) state.SetIterationTime(1e-9 * inside_ns);
+  }
+}
+
+/// Times of single queries of such a row, in k_latency_passes passes.
+template <class Ask>
+PassTimes time_singles(std::size_t count, Query& query, const Ask& ask) {
+  RemoteQuery* const remote = as_remote(query);
+  PassTimes inside{std::vector<double>(count), std::vector<double>(count)};
+  std::size_t asked = 0;
+  PassTimes outside = time_passes(
+      count, k_latency_passes, [](std::size_t) {}, ask,
+      [&](std::size_t i, const auto&) {
+        if (remote == nullptr) return;
+        const double ns = remote->last_ns();
+        const bool is_first = asked++ < count;
+        if (is_first) inside.once_ns[i] = ns;
+        inside.least_ns[i] = is_first ? ns : std::min(inside.least_ns[i], ns);
+      });
+  return remote == nullptr ? outside : inside;
+}
+
+/// Seconds that ask(place) takes on average over the first places, until a tenth of `seconds` is over; 0 for no place.
+template <class List, class Ask>
+double seconds_of_one(const List& places, double seconds, const Ask& ask) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  std::size_t asked = 0;
+  for (const auto& place : places) {
+    static_cast<void>(ask(place));
+    ++asked;
+    if (passed() > 0.1 * seconds) break;
+  }
+  return asked == 0 ? 0.0 : passed() / static_cast<double>(asked);
+}
+
 }  // namespace sixdof::bench

@@ -69,31 +69,14 @@ struct CastRow {
     Query& query = resources.cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
     if (!counts) check(motions, truths, query);
     if (answered.empty()) throw Error(fmt::format("no motion has an answer: {}", counts->first_failure));
-    const auto round = static_cast<benchmark::IterationCount>(answered.size());
-    RemoteQuery* const remote = as_remote(query);
-    while (state.KeepRunningBatch(round)) {
-      double inside_ns = 0.0;
-      ask_all(answered.size(), [&](std::size_t i) {
-        auto answer = ask(query, answered[i]);
-        if (remote != nullptr) inside_ns += remote->last_ns();
-        return answer;
-      });
-      if (remote != nullptr) state.SetIterationTime(1e-9 * inside_ns);
-    }
+    time_rounds(state, answered.size(), query, [&](std::size_t i) { return ask(query, answered[i]); });
     report(state);
   }
 
   double trial(double seconds) {
     Query& query = resources.cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
-    const auto start = std::chrono::steady_clock::now();
-    const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    std::size_t asked = 0;
-    for (const Motion& motion : motions_to_ask(k_trial)) {
-      static_cast<void>(ask(query, motion));
-      ++asked;
-      if (passed() > 0.1 * seconds) break;
-    }
-    return asked == 0 ? 0.0 : (2.0 + k_passes) * passed() / static_cast<double>(asked);
+    return (2.0 + k_passes) *
+           seconds_of_one(motions_to_ask(k_trial), seconds, [&](const Motion& motion) { return ask(query, motion); });
   }
 
  private:
@@ -120,20 +103,10 @@ struct CastRow {
   }
 
   void time_each(Query& query) {
-    RemoteQuery* const remote = as_remote(query);
-    std::vector<double> inside_once(answered.size()), inside_least(answered.size());
-    int pass = 0;
-    PassTimes times = time_passes(
-        answered.size(), k_passes, [](std::size_t) {}, [&](std::size_t i) { return ask(query, answered[i]); },
-        [&](std::size_t i, Outcome<Impact>&) {
-          if (remote == nullptr) return;
-          const double ns = remote->last_ns();
-          if (pass == 0) inside_once[i] = ns;
-          inside_least[i] = pass == 0 ? ns : std::min(inside_least[i], ns);
-          if (i + 1 == answered.size()) ++pass;
-        });
-    latency = sixdof::latency(remote == nullptr ? times.once_ns : inside_once);
-    least = sixdof::latency(remote == nullptr ? times.least_ns : inside_least);
+    const PassTimes times =
+        time_singles(answered.size(), query, [&](std::size_t i) { return ask(query, answered[i]); });
+    latency = sixdof::latency(times.once_ns);
+    least = sixdof::latency(times.least_ns);
   }
 
   void report(benchmark::State& state) const {

@@ -34,9 +34,6 @@ constexpr std::size_t k_most_changed = 16;
 /// Of the poses of a motion every so-many-th is judged; all of them are compared with the one before.
 constexpr std::size_t k_judged_steps = 16;
 
-/// Passes that time single queries; each pose counts with its least time, except in the mean.
-constexpr int k_passes = k_latency_passes;
-
 /// Configurations of a trial, and seconds to judge one.
 constexpr std::size_t k_trial = 4;
 constexpr double k_judging_seconds = 0.02;
@@ -135,33 +132,18 @@ struct ContactRow {
     if (!found) find(poses(share.configurations));
     if (found->answered.empty()) throw Error(fmt::format("no configuration has an answer: {}", found->first_failure));
     Query& query = prepared();
-    const auto round = static_cast<benchmark::IterationCount>(found->answered.size());
-    RemoteQuery* const remote = as_remote(query);
-    while (state.KeepRunningBatch(round)) {
-      double inside_ns = 0.0;
-      ask_all(found->answered.size(), [&](std::size_t i) {
-        auto answer = ask_timed(query, found->answered[i]);
-        if (remote != nullptr) inside_ns += remote->last_ns();
-        return answer;
-      });
-      if (remote != nullptr) state.SetIterationTime(1e-9 * inside_ns);
-    }
+    time_rounds(state, found->answered.size(), query,
+                [&](std::size_t i) { return ask_timed(query, found->answered[i]); });
     report(state);
   }
 
   double trial(double seconds) {
     Query& query = prepared();
-    const auto start = std::chrono::steady_clock::now();
-    const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    std::size_t asked = 0;
-    for (const Pose& pose : poses(k_trial)) {
-      static_cast<void>(ask_timed(query, pose));
-      ++asked;
-      if (asked == k_trial || passed() > 0.1 * seconds) break;
-    }
-    if (asked == 0) return 0.0;
+    const std::vector<Pose> first = poses(k_trial);
+    const double one = seconds_of_one(std::span(first).first(std::min(first.size(), k_trial)), seconds,
+                                      [&](const Pose& pose) { return ask_timed(query, pose); });
     // In the check, the timed round, the passes, and twice after a change.
-    return (4.0 + k_passes) * passed() / static_cast<double>(asked) + k_judging_seconds;
+    return one > 0.0 ? (4.0 + k_latency_passes) * one + k_judging_seconds : 0.0;
   }
 
   /// PlannedRow::outliers.
@@ -264,8 +246,11 @@ struct ContactRow {
       for (std::size_t i = 0; i < count; ++i) {
         const Pose& X_AB = found->answered[i];
         const Outcome<Contacts> back = contacts_of(*exchanged_query, X_AB.inverse());
-        if (!back.ok()) continue;
-        found->scores.add_exchange(compare_contacts(answers[i], exchanged(back.value, X_AB), a.diagonal()));
+        if (back.ok()) {
+          found->scores.add_exchange(compare_contacts(answers[i], exchanged(back.value, X_AB), a.diagonal()));
+        } else {
+          found->scores.add_exchange(std::nullopt);
+        }
       }
     }
     const Pose X = scene_motion(a.diagonal());
@@ -273,8 +258,11 @@ struct ContactRow {
     const auto moved_query = resources.cache.prepare(algorithm, settings(), moved_a, moved_b);
     for (std::size_t i = 0; i < count; ++i) {
       const Outcome<Contacts> there = contacts_of(*moved_query, X * found->answered[i] * X.inverse());
-      if (!there.ok()) continue;
-      found->scores.add_motion(compare_contacts(answers[i], sixdof::moved(there.value, X.inverse()), a.diagonal()));
+      if (there.ok()) {
+        found->scores.add_motion(compare_contacts(answers[i], sixdof::moved(there.value, X.inverse()), a.diagonal()));
+      } else {
+        found->scores.add_motion(std::nullopt);
+      }
     }
   }
 
@@ -300,21 +288,11 @@ struct ContactRow {
   }
 
   void time_each(Query& query) {
-    RemoteQuery* const remote = as_remote(query);
     const std::vector<Pose>& answered = found->answered;
-    std::vector<double> inside_once(answered.size()), inside_least(answered.size());
-    int pass = 0;
-    PassTimes times = time_passes(
-        answered.size(), k_passes, [](std::size_t) {}, [&](std::size_t i) { return ask_timed(query, answered[i]); },
-        [&](std::size_t i, Outcome<Contacts>&) {
-          if (remote == nullptr) return;
-          const double ns = remote->last_ns();
-          if (pass == 0) inside_once[i] = ns;
-          inside_least[i] = pass == 0 ? ns : std::min(inside_least[i], ns);
-          if (i + 1 == answered.size()) ++pass;
-        });
-    found->latency = sixdof::latency(remote == nullptr ? times.once_ns : inside_once);
-    found->least = sixdof::latency(remote == nullptr ? times.least_ns : inside_least);
+    const PassTimes times =
+        time_singles(answered.size(), query, [&](std::size_t i) { return ask_timed(query, answered[i]); });
+    found->latency = sixdof::latency(times.once_ns);
+    found->least = sixdof::latency(times.least_ns);
   }
 
   void report(benchmark::State& state) const {

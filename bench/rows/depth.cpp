@@ -87,31 +87,14 @@ struct DepthRow {
     Query& query = resources.cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
     if (!tally) check(poses, a, b, query);
     if (answered.empty()) throw Error(fmt::format("no configuration has an answer: {}", tally->first_failure));
-    const auto round = static_cast<benchmark::IterationCount>(answered.size());
-    RemoteQuery* const remote = as_remote(query);
-    while (state.KeepRunningBatch(round)) {
-      double inside_ns = 0.0;
-      ask_all(answered.size(), [&](std::size_t i) {
-        auto answer = ask(query, answered[i]);
-        if (remote != nullptr) inside_ns += remote->last_ns();
-        return answer;
-      });
-      if (remote != nullptr) state.SetIterationTime(1e-9 * inside_ns);
-    }
+    time_rounds(state, answered.size(), query, [&](std::size_t i) { return ask(query, answered[i]); });
     report(state, poses.size());
   }
 
   double trial(double seconds) {
     Query& query = resources.cache.query(algorithm, resources.settings_of(algorithm), pair.a, pair.b);
-    const auto start = std::chrono::steady_clock::now();
-    const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    std::size_t asked = 0;
-    for (const Pose& pose : poses_to_ask(k_trial)) {
-      static_cast<void>(ask(query, pose));
-      ++asked;
-      if (passed() > 0.1 * seconds) break;
-    }
-    return asked == 0 ? 0.0 : (2.0 + k_latency_passes) * passed() / static_cast<double>(asked);
+    return (2.0 + k_latency_passes) *
+           seconds_of_one(poses_to_ask(k_trial), seconds, [&](const Pose& pose) { return ask(query, pose); });
   }
 
  private:
@@ -174,21 +157,9 @@ struct DepthRow {
     }
     if (is_about_meshes()) compare_with_rays(poses, a, b, known, found);
     tally = std::move(found);
-    time_each(query);
-  }
-
-  /// Of a process of its own, the times that it says.
-  void time_each(Query& query) {
-    RemoteQuery* const remote = as_remote(query);
-    std::vector<double> inside_once(answered.size());
-    int pass = 0;
-    const PassTimes times = time_passes(
-        answered.size(), k_latency_passes, [](std::size_t) {}, [&](std::size_t i) { return ask(query, answered[i]); },
-        [&](std::size_t i, Outcome<double>&) {
-          if (remote != nullptr && pass == 0) inside_once[i] = remote->last_ns();
-          if (i + 1 == answered.size()) ++pass;
-        });
-    latency = sixdof::latency(remote == nullptr ? times.once_ns : inside_once);
+    const PassTimes times =
+        time_singles(answered.size(), query, [&](std::size_t i) { return ask(query, answered[i]); });
+    latency = sixdof::latency(times.once_ns);
   }
 
   /// How much shorter the shortest way out is than that along the ray on which the configuration lies.

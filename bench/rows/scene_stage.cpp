@@ -33,6 +33,7 @@ void report(const scene::Play& play, benchmark::State& state) {
   counters["pairs_put_off"] = number(play.work.put_off) / frames;
   counters["triangle_pairs"] = number(play.work.triangles) / frames;
   counters["bytes"] = number(play.bytes);
+  if (play.work.undecided > 0) counters["undecided_pairs"] = number(play.work.undecided);
   if (play.work.built > 0) counters["built_triangles"] = number(play.work.built) / frames;
   if (play.score.failed() || (play.score.first && !play.score.same_bits)) {
     const scene::WrongPair& wrong = *play.score.first;

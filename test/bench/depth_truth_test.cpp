@@ -1,8 +1,6 @@
 #include "bench/harness/depth_truth.h"
 
-#include <cstdlib>
 #include <filesystem>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -10,34 +8,14 @@
 #include <sixdof/algorithm/core_algorithms.h>
 #include <sixdof/base/error.h>
 #include <sixdof/measure/direction.h>
-#include <sixdof/models/recipe.h>
 
-#include "../oracle/bodies.h"
+#include "own_truths.h"
 
 namespace sixdof::bench {
 namespace {
 
-/// Two bodies that overlap at `count` poses, and a cache of their own.
-struct OwnTruth : ::testing::Test {
-  const Mesh a = make_torus_knot({}, 600), b = make_bumpy_sphere({}, 400);
-  const std::filesystem::path cache = std::filesystem::path(::testing::TempDir()) / "depth_truth_cache";
-  OwnTruth() {
-    std::filesystem::remove_all(cache);
-    ::setenv("SIXDOF_CACHE", cache.c_str(), 1);
-  }
-  ~OwnTruth() override {
-    ::unsetenv("SIXDOF_CACHE");
-    std::filesystem::remove_all(cache);
-  }
-  static std::vector<Pose> poses(std::size_t count) {
-    std::mt19937_64 random(3);
-    std::vector<Pose> list;
-    while (list.size() < count) {
-      list.push_back(bodies::random_pose(random, 0.1));
-      list.back().t += Eigen::Vector3d(1.1, 0.7, 0.1);
-    }
-    return list;
-  }
+struct OwnTruth : OwnTruths {
+  OwnTruth() : OwnTruths("depth_truth_cache") {}
   std::size_t files() const {
     if (!std::filesystem::exists(cache)) return 0;
     return static_cast<std::size_t>(

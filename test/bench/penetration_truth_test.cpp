@@ -1,43 +1,21 @@
 #include "bench/harness/penetration_truth.h"
 
-#include <cstdlib>
 #include <filesystem>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <sixdof/base/error.h>
-#include <sixdof/models/recipe.h>
 #include <sixdof/oracle/convex_depth.h>
 #include <sixdof/oracle/convex_hull.h>
 
-#include "../oracle/bodies.h"
+#include "own_truths.h"
 
 namespace sixdof::bench {
 namespace {
 
-/// Two bodies that overlap at `count` poses, and a cache of their own.
-struct OwnPenetration : ::testing::Test {
-  const Mesh a = make_torus_knot({}, 600), b = make_bumpy_sphere({}, 400);
-  const std::filesystem::path cache = std::filesystem::path(::testing::TempDir()) / "penetration_truth_cache";
-  OwnPenetration() {
-    std::filesystem::remove_all(cache);
-    ::setenv("SIXDOF_CACHE", cache.c_str(), 1);
-  }
-  ~OwnPenetration() override {
-    ::unsetenv("SIXDOF_CACHE");
-    std::filesystem::remove_all(cache);
-  }
-  static std::vector<Pose> poses(std::size_t count) {
-    std::mt19937_64 random(3);
-    std::vector<Pose> list;
-    while (list.size() < count) {
-      list.push_back(bodies::random_pose(random, 0.1));
-      list.back().t += Eigen::Vector3d(1.1, 0.7, 0.1);
-    }
-    return list;
-  }
+struct OwnPenetration : OwnTruths {
+  OwnPenetration() : OwnTruths("penetration_truth_cache") {}
 };
 
 TEST_F(OwnPenetration, IsTheIntervalOfTheOracleAndIsKept) {

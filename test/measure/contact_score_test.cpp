@@ -142,6 +142,7 @@ TEST_F(ContactScoreTest, EveryCounterIsAMetric) {
   const ContactChange change = compare_contacts(right_, right_, a_.diagonal());
   scores.add_exchange(change);
   scores.add_motion(change);
+  scores.add_motion(std::nullopt);
   scores.add_step(change, 0.3, 0.001);
   std::map<std::string, double> values;
   scores.for_each([&](std::string_view counter, double value) {
@@ -153,6 +154,8 @@ TEST_F(ContactScoreTest, EveryCounterIsAMetric) {
   EXPECT_NEAR(values.at("contact_depth_ratio"), 0.75, 1e-6);
   EXPECT_EQ(values.at("contacts_mean"), static_cast<double>(right_.list.size()));
   EXPECT_EQ(values.at("exchange_flips"), 0.0);
+  EXPECT_EQ(values.at("exchange_failed"), 0.0);
+  EXPECT_EQ(values.at("moved_failed"), 1.0);
   EXPECT_EQ(values.at("step_force_deg"), 0.3);
   EXPECT_EQ(scores.faulty(), 0u);
 }

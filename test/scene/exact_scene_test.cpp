@@ -254,7 +254,7 @@ class StaleVertex final : public SceneQuery {
 };
 
 TEST(ExactScene, AnUpdateThatForgetsAVertexIsCaught) {
-  const Scene scene = make_scene("bump", {.frames = 14, .margin = 0.3, .amplitude = 0.1, .triangles = 1200, .seed = 7});
+  const Scene scene = make_scene("bump", {.frames = 14, .margin = 0.3, .amplitude = 0.3, .triangles = 320, .seed = 7});
   // The vertex that travels farthest is the top of the bump, which meets the ball above.
   const auto& rest = scene.meshes[0]->vertices();
   const auto& last = *scene.deformations.back()[0].vertices;
@@ -272,7 +272,7 @@ TEST(ExactScene, AnUpdateThatForgetsAVertexIsCaught) {
   const SceneAnswers truth = replay(scene, *make_all_pairs(), Question::near);
   const Play play = scene::play(scene, *stale, Question::near, truth);
   EXPECT_FALSE(play.score.same_bits);
-  EXPECT_GT(play.score.largest_error, 1e-5);  // far above rounding; its neighbours stay near
+  EXPECT_GT(play.score.largest_error, 1e-3);
   const Play right = scene::play(scene, *make_exact_scene(), Question::near, truth);
   EXPECT_TRUE(right.score.same_bits);
   EXPECT_GT(right.timing.update_us, 0.0);

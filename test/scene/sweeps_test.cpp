@@ -55,6 +55,25 @@ TEST(Sweeps, BodiesThatTouchAlreadyOrMoveApartMeetNoMore) {
   EXPECT_EQ(impacts.frames[3].pairs.size(), 0u);
 }
 
+TEST(Sweeps, CountsWhatItDoesNotDecide) {
+  // A box slides along the top of another, at a gap of a millionth of its way: each step is one gap long.
+  Scene scene;
+  scene.meshes.push_back(std::make_shared<const Mesh>(make_box({.size = {1.0, 1.0, 1.0}}, 12)));
+  const auto at = [](double x, double z) { return RecordedPose::of(Eigen::Matrix3d::Identity(), {x, 0.1, z}); };
+  scene.bodies = {{1, 0, true, {}}, {2, 0, false, at(-0.4, 1.0 + 5e-7)}};
+  scene.frames.resize(2);
+  scene.frames[1].push_back({1, at(0.1, 1.0 + 5e-7)});
+  scene.check();
+  for (const auto& algorithm : {make_exact_scene(), make_all_pairs()}) {
+    const auto query = algorithm->prepare(scene, Question::impacts);
+    for (const Frame& frame : scene.frames) {
+      query->update(moves_of(frame));
+      EXPECT_TRUE(query->answer().pairs.empty());
+    }
+    EXPECT_EQ(query->work().undecided, 1u) << algorithm->traits().name;
+  }
+}
+
 /// Pairs of the cube's bodies, which all move and turn, against poses between the frames.
 TEST(Sweeps, AgreesWithPosesBetweenFrames) {
   const Scene scene = make_scene("all-move", {.bodies = 40, .frames = 3, .seed = 5});
@@ -86,7 +105,9 @@ TEST(Sweeps, AgreesWithPosesBetweenFrames) {
     for (std::uint32_t a = 0; a < bodies.size(); ++a) {
       for (std::uint32_t b = a + 1; b < bodies.size(); ++b) {
         if (distance(a, b, 0.0) == 0.0 || is_nested_at_first(motions, a, b)) continue;
-        const auto t = sweeps.first_contact(bodies, query, a, b);
+        const auto found = sweeps.first_contact(bodies, query, a, b);
+        EXPECT_FALSE(found.undecided);
+        const std::optional<double> t = found.t;
         double least = 1.0;
         for (int i = 0; i < 20; ++i) least = std::min(least, distance(a, b, t.value_or(1.0) * i / 20.0));
         EXPECT_GT(least, 0.0) << "before the contact";

@@ -30,10 +30,10 @@ std::unique_ptr<Algorithm> make_brute_force_algorithm();
 std::unique_ptr<Algorithm> make_sampled_algorithm();
 
 /// `exact-contacts`: contacts by the exact geometry that judges them (oracle/contact_truth.h): vertices of each body
-/// inside the other, with the shortest way out as the normal, and the middles of the segments in which triangles cross,
-/// with the normal of that triangle along which less is to be moved. A depth is the thickness of the intersection
-/// there. It shows what the scores of contacts are for contacts that are right, and is not made to be fast. It needs
-/// solids.
+/// inside the other, with the shortest way out as the normal (the face's, of a vertex within a flat face), and the
+/// middles of the segments in which triangles cross, with the normal of that triangle along which less is to be moved.
+/// A depth is the thickness of the intersection there. It shows what the scores of contacts are for contacts that are
+/// right, and is not made to be fast. It needs solids.
 std::unique_ptr<Algorithm> make_exact_contacts_algorithm();
 
 /// `exact-penetration`: one contact, whose depth and normal are the shortest free translation of B that was found

@@ -106,13 +106,17 @@ void ContactScores::Values::add(double value) {
   ++count;
 }
 
-void ContactScores::Changes::add(const ContactChange& change) {
-  other_numbers += change.is_other_number ? 1 : 0;
-  if (!change.is_comparable) return;
-  points.add(change.points);
-  normals.add(change.normal_angle);
-  mean_normals.add(change.mean_normal_angle);
-  flips += change.flips;
+void ContactScores::Changes::add(const std::optional<ContactChange>& change) {
+  if (!change) {
+    ++failed;
+    return;
+  }
+  other_numbers += change->is_other_number ? 1 : 0;
+  if (!change->is_comparable) return;
+  points.add(change->points);
+  normals.add(change->normal_angle);
+  mean_normals.add(change->mean_normal_angle);
+  flips += change->flips;
 }
 
 void ContactScores::add(const ContactScore& score) {
@@ -163,15 +167,17 @@ void ContactScores::for_each(const std::function<void(std::string_view, double)>
   both("contact_force_deg", "contact_force_max_deg", force_angles_);
   both("uncovered_mean", "uncovered_max", uncovered_);
   both("astray_mean", "astray_max", astray_);
-  const auto changes = [&](const std::array<std::string_view, 4>& names, const Changes& of) {
-    if (of.points.count + of.other_numbers == 0) return;
+  const auto changes = [&](const std::array<std::string_view, 5>& names, const Changes& of) {
+    if (of.points.count + of.other_numbers + of.failed == 0) return;
     use(names[0], of.normals.mean());
     use(names[1], static_cast<double>(of.flips));
     use(names[2], of.points.mean());
     use(names[3], static_cast<double>(of.other_numbers));
+    use(names[4], static_cast<double>(of.failed));
   };
-  changes({"exchange_normal_deg", "exchange_flips", "exchange_points", "exchange_number"}, exchange_);
-  changes({"moved_normal_deg", "moved_flips", "moved_points", "moved_number"}, motion_);
+  changes({"exchange_normal_deg", "exchange_flips", "exchange_points", "exchange_number", "exchange_failed"},
+          exchange_);
+  changes({"moved_normal_deg", "moved_flips", "moved_points", "moved_number", "moved_failed"}, motion_);
   both("step_normal_deg", "step_normal_max_deg", steps_.mean_normals);
   both("step_points_mean", "step_points_max", steps_.points);
   both("step_force_deg", "step_force_max_deg", step_forces_);

@@ -61,10 +61,10 @@ ContactChange compare_contacts(const Contacts& x, const Contacts& y, double diag
 class ContactScores {
  public:
   void add(const ContactScore& score);
-  /// Of (A, B) and of (B, A), both in A's frame.
-  void add_exchange(const ContactChange& change) { exchange_.add(change); }
-  /// Before and after a rigid motion of both bodies, both in A's frame.
-  void add_motion(const ContactChange& change) { motion_.add(change); }
+  /// Of (A, B) and of (B, A), both in A's frame; none if (B, A) has no answer.
+  void add_exchange(const std::optional<ContactChange>& change) { exchange_.add(change); }
+  /// Before and after a rigid motion of both bodies, both in A's frame; none if there is no answer after it.
+  void add_motion(const std::optional<ContactChange>& change) { motion_.add(change); }
   /// Of two successive poses of a path.
   /// @param force_angle between the exact forces of both; @param center how far the exact centre of the intersection
   /// moves
@@ -86,8 +86,8 @@ class ContactScores {
   };
   struct Changes {
     Values points, normals, mean_normals;
-    std::size_t flips = 0, other_numbers = 0;
-    void add(const ContactChange& change);
+    std::size_t flips = 0, other_numbers = 0, failed = 0;
+    void add(const std::optional<ContactChange>& change);
   };
 
   std::size_t scored_ = 0, faulty_ = 0, without_ = 0, judged_ = 0, off_bodies_ = 0, reversed_ = 0;

@@ -92,35 +92,21 @@ class AllPairs final : public SceneQuery {
   std::size_t bytes() const override { return bodies_.bytes() + (wrenches_ ? wrenches_->bytes() : 0); }
 
  private:
-  /// The pairs that are no further apart than `reach`, with their distances, sorted by rank; and those that are nested,
-  /// if the question is of bodies.
-  std::vector<NearPair> measure(double reach) {
-    const BoxArrays boxes(bodies_);
-    struct Part {
-      std::vector<NearPair> pairs;
-      std::uint64_t candidates = 0, triangles = 0;
-    };
-    const auto narrow = static_cast<float>(reach * (1.0 + 1e-6));
-    constexpr std::size_t k_grain = 16;
+  /// Of some bodies with those after them.
+  struct Part {
+    std::vector<NearPair> pairs;
+    std::uint64_t candidates = 0, triangles = 0, undecided = 0;
+  };
+
+  /// Calls visit(part, query, i) for every rank, by several threads; pairs are sorted by rank.
+  template <class Visit>
+  std::vector<NearPair> find_pairs(std::size_t grain, const Visit& visit) {
     Part all = parallel::reduce<Part>(
-        bodies_.size(), k_grain,
+        bodies_.size(), grain,
         [&](std::size_t begin, std::size_t end) {
           Part part;
           NearQuery query;
-          for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
-            boxes.for_each_close(i, narrow, [&](std::uint32_t j) {
-              if (!bodies_.matters(i, j)) return;
-              ++part.candidates;
-              NearHint none;
-              const Pose X_AB = bodies_.relative(i, j);
-              const auto distance = query.distance(bodies_.mesh(i), bodies_.mesh(j), X_AB, NearQuery::k_no_limit, none);
-              if (distance && *distance <= reach) {
-                part.pairs.push_back({{i, j}, *distance});
-              } else if (is_of_bodies(question_) && query.is_nested(bodies_.mesh(i), bodies_.mesh(j), X_AB)) {
-                part.pairs.push_back({{i, j}, 0.0});
-              }
-            });
-          }
+          for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) visit(part, query, i);
           part.triangles = query.counts().triangles;
           return part;
         },
@@ -128,12 +114,36 @@ class AllPairs final : public SceneQuery {
           sum.pairs.insert(sum.pairs.end(), part.pairs.begin(), part.pairs.end());
           sum.candidates += part.candidates;
           sum.triangles += part.triangles;
+          sum.undecided += part.undecided;
           return sum;
         });
     work_.candidates += all.candidates;
     work_.narrow += all.candidates;
     work_.triangles += all.triangles;
+    work_.undecided += all.undecided;
     return std::move(all.pairs);
+  }
+
+  /// The pairs that are no further apart than `reach`, with their distances, sorted by rank; and those that are nested,
+  /// if the question is of bodies.
+  std::vector<NearPair> measure(double reach) {
+    const BoxArrays boxes(bodies_);
+    const auto narrow = static_cast<float>(reach * (1.0 + 1e-6));
+    constexpr std::size_t k_grain = 16;
+    return find_pairs(k_grain, [&](Part& part, NearQuery& query, std::uint32_t i) {
+      boxes.for_each_close(i, narrow, [&](std::uint32_t j) {
+        if (!bodies_.matters(i, j)) return;
+        ++part.candidates;
+        NearHint none;
+        const Pose X_AB = bodies_.relative(i, j);
+        const auto distance = query.distance(bodies_.mesh(i), bodies_.mesh(j), X_AB, NearQuery::k_no_limit, none);
+        if (distance && *distance <= reach) {
+          part.pairs.push_back({{i, j}, *distance});
+        } else if (is_of_bodies(question_) && query.is_nested(bodies_.mesh(i), bodies_.mesh(j), X_AB)) {
+          part.pairs.push_back({{i, j}, 0.0});
+        }
+      });
+    });
   }
 
   void find() {
@@ -167,36 +177,16 @@ class AllPairs final : public SceneQuery {
 
   /// Every pair of which a body moves, but for those that cannot have come together.
   std::vector<NearPair> find_impacts() {
-    struct Part {
-      std::vector<NearPair> pairs;
-      std::uint64_t candidates = 0, triangles = 0;
-    };
-    Part all = parallel::reduce<Part>(
-        bodies_.size(), 1,
-        [&](std::size_t begin, std::size_t end) {
-          Part part;
-          NearQuery query;
-          for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
-            for (std::uint32_t j = i + 1; j < bodies_.size(); ++j) {
-              if (!(sweeps_->moves(i) || sweeps_->moves(j)) || !bodies_.matters(i, j)) continue;
-              if (bodies_.box(i).gap(bodies_.box(j)) > sweeps_->reach(i, j)) continue;
-              ++part.candidates;
-              if (const auto t = sweeps_->first_contact(bodies_, query, i, j)) part.pairs.push_back({{i, j}, *t});
-            }
-          }
-          part.triangles = query.counts().triangles;
-          return part;
-        },
-        [](Part sum, const Part& part) {
-          sum.pairs.insert(sum.pairs.end(), part.pairs.begin(), part.pairs.end());
-          sum.candidates += part.candidates;
-          sum.triangles += part.triangles;
-          return sum;
-        });
-    work_.candidates += all.candidates;
-    work_.narrow += all.candidates;
-    work_.triangles += all.triangles;
-    return std::move(all.pairs);
+    return find_pairs(1, [&](Part& part, NearQuery& query, std::uint32_t i) {
+      for (std::uint32_t j = i + 1; j < bodies_.size(); ++j) {
+        if (!(sweeps_->moves(i) || sweeps_->moves(j)) || !bodies_.matters(i, j)) continue;
+        if (bodies_.box(i).gap(bodies_.box(j)) > sweeps_->reach(i, j)) continue;
+        ++part.candidates;
+        const auto found = sweeps_->first_contact(bodies_, query, i, j);
+        part.undecided += found.undecided ? 1 : 0;
+        if (found.t) part.pairs.push_back({{i, j}, *found.t});
+      }
+    });
   }
 
   /// An upper bound on the distance of the closest pair: that of the closest vertices, one of each body.

@@ -242,13 +242,14 @@ class ExactScene final : public SceneQuery {
         if (motions_.distance_left(pair) > most || is_certainly_apart(pair, most)) continue;
         asked_.push_back(k);
       }
-      times_.assign(pairs.size(), -1.0);
+      times_.assign(pairs.size(), k_no_contact);
       for_each(asked_, [&](std::size_t k) {
-        const auto t = sweeps_->first_contact(bodies_, queries_.local(), pairs[k].a, pairs[k].b);
-        if (t) times_[k] = *t;
+        const auto found = sweeps_->first_contact(bodies_, queries_.local(), pairs[k].a, pairs[k].b);
+        times_[k] = found.undecided ? k_undecided : found.t.value_or(k_no_contact);
       });
       count(pairs.size(), asked_.size());
       for (const std::size_t k : asked_) {
+        work_.undecided += times_[k] == k_undecided ? 1 : 0;
         if (times_[k] >= 0.0) near_.push_back({{pairs[k].a, pairs[k].b}, times_[k]});
       }
     }
@@ -376,7 +377,8 @@ class ExactScene final : public SceneQuery {
   detail::KeptPairs kept_;
   std::optional<detail::Wrenches> wrenches_;
   std::optional<detail::Sweeps> sweeps_;
-  std::vector<double> times_;  // of the first contact of a pair; negative for none
+  static constexpr double k_no_contact = -1.0, k_undecided = -2.0;
+  std::vector<double> times_;  // of the first contact of a pair, or one of these
   mutable parallel::PerThread<NearQuery> queries_;
   std::uint64_t noted_nodes_ = 0;
   std::uint32_t frame_ = 1;

@@ -73,6 +73,7 @@ struct SceneWork {
   std::uint64_t narrow = 0;      ///< Of these: asked of the narrow phase.
   std::uint64_t triangles = 0;   ///< Pairs of triangles tested exactly; 0 if the algorithm does not count them.
   std::uint64_t built = 0;       ///< Triangles of trees, or parts of trees, that were built anew as meshes deformed.
+  std::uint64_t undecided = 0;   ///< Pairs of impacts that pass each other too closely to decide; not reported.
 };
 
 /// How an algorithm of this project updates the tree of a mesh that deforms (oracle/deforming_mesh.h).

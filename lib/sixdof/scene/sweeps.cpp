@@ -62,8 +62,7 @@ Pose Sweeps::pose_at(const Bodies& bodies, std::uint32_t rank, double t) const {
   return moves(rank) ? motions_[rank].pose_at(t) : bodies.pose(rank);
 }
 
-std::optional<double> Sweeps::first_contact(const Bodies& bodies, NearQuery& query, std::uint32_t a,
-                                            std::uint32_t b) const {
+Sweeps::Contact Sweeps::first_contact(const Bodies& bodies, NearQuery& query, std::uint32_t a, std::uint32_t b) const {
   const double speed = paths_[a] + paths_[b];
   if (!(speed > 0.0)) return {};
   const PreparedMesh &mesh_a = bodies.mesh(a), &mesh_b = bodies.mesh(b);
@@ -77,12 +76,12 @@ std::optional<double> Sweeps::first_contact(const Bodies& bodies, NearQuery& que
     NearHint hint = none;  // the same triangles whatever was asked before
     const auto distance = query.distance(mesh_a, mesh_b, X_AB, left, hint);
     if (!distance) return {};
-    if (*distance <= touch) return step == 0 ? std::nullopt : std::optional(t);
+    if (*distance <= touch) return {.t = step == 0 ? std::nullopt : std::optional(t)};
     if (step == 0 && query.is_nested(mesh_a, mesh_b, X_AB)) return {};
     t += *distance / speed;
     if (t > 1.0) return {};
   }
-  return {};
+  return {.undecided = true};
 }
 
 }  // namespace sixdof::scene::detail

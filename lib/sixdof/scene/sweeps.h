@@ -18,8 +18,8 @@ class Sweeps {
  public:
   /// Surfaces as close as this part of the sum of both radii touch.
   static constexpr double k_touching = 1e-9;
-  /// Distances after which a pair is not decided, and not reported: bodies that pass each other more closely than their
-  /// motion divided by this for the whole frame.
+  /// Distances after which a pair is left undecided: bodies that pass each other more closely than their motion divided
+  /// by this for the whole frame.
   static constexpr std::uint32_t k_most_steps = 1000;
 
   explicit Sweeps(const Scene& scene, const Bodies& bodies);
@@ -41,10 +41,15 @@ class Sweeps {
   /// The largest reach() of any two (length); 0 if nothing moves.
   double largest_reach() const;
 
+  /// How two bodies come together in a frame.
+  struct Contact {
+    std::optional<double> t;  ///< Of the first contact; none if there is none, or it is undecided.
+    bool undecided = false;   ///< After k_most_steps.
+  };
   /// The first t at which two bodies touch that are apart at the frame before; none if they were not apart then, one
   /// inside the other included, or do not touch. By conservative advancement (Mirtich 1996): where the distance is d,
   /// they stay apart until they have travelled d together. The same bits in every algorithm.
-  std::optional<double> first_contact(const Bodies& bodies, NearQuery& query, std::uint32_t a, std::uint32_t b) const;
+  Contact first_contact(const Bodies& bodies, NearQuery& query, std::uint32_t a, std::uint32_t b) const;
 
  private:
   double touching(std::uint32_t a, std::uint32_t b) const { return k_touching * (radii_[a] + radii_[b]); }

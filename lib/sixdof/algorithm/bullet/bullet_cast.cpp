@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <BulletCollision/NarrowPhaseCollision/btContinuousConvexCollision.h>
+#include <BulletCollision/NarrowPhaseCollision/btGjkConvexCast.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 #include <BulletCollision/NarrowPhaseCollision/btSubSimplexConvexCast.h>
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
@@ -75,8 +76,10 @@ class HullCastQuery final : public LibraryQuery {
     btVoronoiSimplexSolver simplex;
     btGjkEpaPenetrationDepthSolver penetration;
     btContinuousConvexCollision continuous(shape_a_.get(), shape_b_.get(), &simplex, &penetration);
+    btGjkConvexCast gjk(shape_a_.get(), shape_b_.get(), &simplex);
     btSubsimplexConvexCast subsimplex(shape_a_.get(), shape_b_.get(), &simplex);
     btConvexCast* caster = &continuous;
+    if (motion.is_translation() && caster_ == "gjk") caster = &gjk;
     if (motion.is_translation() && caster_ == "subsimplex") caster = &subsimplex;
     btConvexCast::CastResult result;
     result.m_fraction = 1.0;
@@ -106,8 +109,10 @@ std::unique_ptr<Algorithm> make_bullet_hull_algorithm() {
        .summary = "Bullet's convex casts of the convex hulls of both meshes: first contacts",
        .answers = {.cast = true},
        .parameters = {Parameter::choice(
-                          k_caster, "continuous: Bullet's for all motions; subsimplex: for those that do not rotate",
-                          "continuous", {"continuous", "subsimplex"}),
+                          k_caster,
+                          "continuous: Bullet's for all motions; gjk (with a margin above 0), subsimplex: for "
+                          "those that do not rotate",
+                          "continuous", {"continuous", "gjk", "subsimplex"}),
                       Parameter::number(k_margin, "hulls are thickened by this length; Bullet's own default is 0.04",
                                         "length", "0", 0.0, 1e9)},
        .body = Body::convex_hull});
