@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <sixdof/configuration/bucket_sample.h>
@@ -14,6 +15,20 @@
 /// Compares answers with the truth, before anything is timed.
 
 namespace sixdof::bench {
+
+/// A count of a prepared structure's footprint; none if it has no such count.
+inline std::optional<double> footprint_count(const Query& query, std::string_view wanted) {
+  const Footprint footprint = query.footprint();
+  for (const auto& [name, count] : footprint.counts) {
+    if (name == wanted) return count;
+  }
+  return std::nullopt;
+}
+
+/// KnownAnswer::resolution; 0 of an algorithm that takes the bodies as they are.
+inline double resolution_of(const Algorithm& algorithm, const Query& query) {
+  return algorithm.traits().approximates ? footprint_count(query, "resolution").value_or(0.0) : 0.0;
+}
 
 /// The answers to the first configurations of a sample, each asked once.
 struct Check : JudgedAnswers {

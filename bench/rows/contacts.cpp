@@ -16,6 +16,7 @@
 #include <sixdof/measure/direction.h>
 #include <sixdof/query/ask.h>
 #include <sixdof/query/contacts.h>
+#include "bench/harness/check.h"
 #include "bench/harness/motion.h"
 #include "bench/harness/query_command.h"
 #include "bench/harness/timing.h"
@@ -40,8 +41,6 @@ constexpr double k_judging_seconds = 0.02;
 
 /// Behind a command line that asks at one configuration.
 constexpr const char* k_asks_contacts = " --contacts 64";
-
-constexpr const char* k_resolution = "resolution";
 
 /// A rigid motion of a body of some size, with a rotation about no axis of symmetry.
 Pose scene_motion(double diagonal) {
@@ -206,17 +205,9 @@ struct ContactRow {
     }
   }
 
-  double resolution_of(const Query& query) const {
-    if (!algorithm.traits().approximates) return 0.0;
-    for (const auto& [name, count] : query.footprint().counts) {
-      if (name == k_resolution) return count;
-    }
-    return 0.0;
-  }
-
   void judge(const std::vector<Contacts>& answers, const Query& query) {
     ContactTruth truth(mesh(pair.a), mesh(pair.b));
-    const double resolution = resolution_of(query);
+    const double resolution = resolution_of(algorithm, query);
     double largest_off = -1.0, largest_angle = -1.0;
     for (std::size_t i = 0; i < std::min(answers.size(), k_most_judged); ++i) {
       truth.move_to(found->answered[i]);
@@ -270,7 +261,7 @@ struct ContactRow {
   void judge_motion(const std::vector<Contacts>& answers, const Query& query) {
     const Mesh &a = mesh(pair.a), &b = mesh(pair.b);
     ContactTruth truth(a, b);
-    const double resolution = resolution_of(query), longest_step = 4.0 * Motion::k_step * a.diagonal();
+    const double resolution = resolution_of(algorithm, query), longest_step = 4.0 * Motion::k_step * a.diagonal();
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), center = force;
     for (std::size_t i = 0; i < answers.size(); ++i) {
       truth.move_to(found->answered[i]);

@@ -18,6 +18,7 @@
 #include "bench/harness/failure_counters.h"
 #include "bench/harness/hull_truth.h"
 #include "bench/harness/motion.h"
+#include "bench/harness/own_law.h"
 #include "bench/harness/query_command.h"
 #include "bench/harness/query_kind.h"
 #include "bench/harness/response_error.h"
@@ -41,8 +42,6 @@ constexpr double k_trial_time = 0.1;
 constexpr std::size_t k_most_cold = 64;
 /// Overlapping configurations whose mean force is what forces of bodies that are apart are compared with.
 constexpr std::size_t k_scale_poses = 32;
-/// Count of a footprint of an algorithm that approximates.
-constexpr const char* k_resolution = "resolution";
 /// As `contacts` declares, contacts are judged by depth.
 constexpr ResponseLaw judged_law(ResponseLaw own) { return own == ResponseLaw::contacts ? ResponseLaw::depth : own; }
 
@@ -90,9 +89,7 @@ struct QueryRow {
   std::optional<Latency> least = {};  ///< Of several passes; none on cold caches.
   /// Of the force and of the torque about the centre of B's box, to the exact responses.
   std::optional<std::array<VectorError, 2>> errors = {};
-  /// The same to what the algorithm's own law says; none without a law.
-  std::optional<std::array<VectorError, 2>> own_errors = {};
-  std::array<std::size_t, 2> own_unjudged = {};  ///< Answers whose own truth is not known well enough: force, torque.
+  OwnLawErrors own = {};
   results::Outliers worst = {};
   std::vector<Response> hull_responses = {};  ///< Of `exact`, where the row is about convex hulls.
   /// Mean force of this algorithm at the pair's least overlap, 1 % in most sets; empty where it is not needed.
@@ -136,8 +133,8 @@ struct QueryRow {
             compare_with_own(bucket, exact.size(), query);
           }
         }
-        check = check_answers(bucket, count, query, hulls(), resolution_of(query.query()));
-        empty_call_ns = count_of(query.query(), k_empty_call);
+        check = check_answers(bucket, count, query, hulls(), resolution_of(algorithm, query.query()));
+        empty_call_ns = footprint_count(query.query(), k_empty_call);
         poses = poses_to_time(bucket, count);
         if (!evict) {
           const SingleTimes times = time_each(poses, query);
@@ -206,19 +203,6 @@ struct QueryRow {
   }
 
  private:
-  static std::optional<double> count_of(const Query& query, std::string_view wanted) {
-    const Footprint footprint = query.footprint();
-    for (const auto& [name, count] : footprint.counts) {
-      if (name == wanted) return count;
-    }
-    return std::nullopt;
-  }
-
-  /// KnownAnswer::resolution; 0 of an algorithm that takes the bodies as they are.
-  double resolution_of(const Query& query) const {
-    return algorithm.traits().approximates ? count_of(query, k_resolution).value_or(0.0) : 0.0;
-  }
-
   /// Whether answers are compared with exact responses: bodies that are apart have none.
   bool has_exact() const { return question == QueryKind::respond && key.kind == BucketKind::volume; }
 
@@ -364,22 +348,11 @@ struct QueryRow {
   template <class Ask>
   void compare_with_own(const BucketSample& bucket, std::size_t count, GuardedQuery<Ask>& query) {
     const ResponseLaw law = judged_law(algorithm.traits().law);
-    if (law == ResponseLaw::volume) own_errors = errors;
+    if (law == ResponseLaw::volume) own = {.errors = errors};
     if (!is_of_depth(law) || !is_about_meshes() || key.kind != BucketKind::volume) return;
-    const std::span<const Pose> poses_to_compare = std::span(bucket.poses).first(count);
-    const std::span<const DepthTruth> truths = resources.cache.depth_truths(pair).at(poses_to_compare, law);
-    VectorSeries forces, torques;
-    for (std::size_t i = 0; i < truths.size(); ++i) {
-      const Outcome<Response> answer = query.ask(bucket.poses[i]);
-      if (!answer.ok()) continue;
-      const Response& truth = truths[i].response;
-      const auto [response, scale] = scaled_about(answer.value, truth.reference);
-      if (truths[i].force_judged) forces.add(truth.force, response.force, scale);
-      if (truths[i].torque_judged) torques.add(truth.torque, response.torque, scale);
-      own_unjudged[0] += truths[i].force_judged ? 0 : 1;
-      own_unjudged[1] += truths[i].torque_judged ? 0 : 1;
-    }
-    own_errors = {forces.error(), torques.error()};
+    const std::span<const Pose> compared = std::span(bucket.poses).first(count);
+    own = compare_with_law(resources.cache.depth_truths(pair).at(compared, law),
+                           [&](std::size_t i) { return query.ask(compared[i]); });
   }
 
   void report(benchmark::State& state, const BucketSample& bucket) const {
@@ -426,7 +399,7 @@ struct QueryRow {
         count(fmt::format("gamma_max_{}_deg", suffix), error->direction.largest_degrees);
       }
       count("compared", errors->at(0).direction.compared);
-      report_own(state);
+      own.report(state.counters);
     }
     std::string label = resources.settings_of(algorithm).to_string();
     if (!is_about_meshes()) {
@@ -441,22 +414,6 @@ struct QueryRow {
     }
     if (timed_outside) label += fmt::format("{}times include communication", label.empty() ? "" : "; ");
     state.SetLabel(label);
-  }
-
-  void report_own(benchmark::State& state) const {
-    if (!own_errors) return;
-    const auto count = [&](const std::string& counter, auto value) {
-      state.counters[counter] = static_cast<double>(value);
-    };
-    for (const auto& [error, suffix] : {std::pair(&own_errors->at(0), "F"), {&own_errors->at(1), "T"}}) {
-      if (error->magnitude) count(fmt::format("magnitude_error_own_{}", suffix), error->magnitude->relative);
-      if (!error->direction.gamma_degrees) continue;
-      count(fmt::format("gamma_own_{}_deg", suffix), *error->direction.gamma_degrees);
-      count(fmt::format("gamma_own_max_{}_deg", suffix), error->direction.largest_degrees);
-    }
-    count("compared_own", own_errors->at(0).direction.compared);
-    if (own_unjudged[0] > 0) count("unjudged_own", own_unjudged[0]);
-    if (own_unjudged[1] > 0) count("unjudged_own_T", own_unjudged[1]);
   }
 };
 
