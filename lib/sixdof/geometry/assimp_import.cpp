@@ -157,6 +157,8 @@ Matrix4d root_transform(const Source& source, const aiScene& scene, FileFrame fr
                                 : axis == 1 ? 'y'
                                             : 'z',
                                 stored));
+    // The format has no transform there. Assimp 5.4 puts unit and axes into it; later versions have the option below.
+    return Matrix4d::Identity();
   }
   if (root == Matrix4d::Identity()) return root;
   // Assimp turns and scales some formats by the root.
