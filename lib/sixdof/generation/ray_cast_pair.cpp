@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_pair.cpp"
 #include <hwy/foreach_target.h>

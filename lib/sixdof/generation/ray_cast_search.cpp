@@ -7,6 +7,8 @@
 #include <sixdof/generation/ray_cast_pair.h>
 #include <sixdof/proximity/sorted_stack.h>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_search.cpp"
 #include <hwy/foreach_target.h>

@@ -9,6 +9,8 @@
 #include <sixdof/generation/ray_cast_search.h>
 #include <sixdof/proximity/close_search.h>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/generation/ray_cast_ties.cpp"
 #include <hwy/foreach_target.h>

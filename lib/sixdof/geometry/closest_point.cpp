@@ -6,6 +6,8 @@
 
 #include <boost/container/static_vector.hpp>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/geometry/closest_point.cpp"
 #include <hwy/foreach_target.h>

@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/candidates.cpp"
 #include <hwy/foreach_target.h>

@@ -8,6 +8,8 @@
 
 #include <Eigen/Geometry>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/crossing_sums.cpp"
 #include <hwy/cache_control.h>

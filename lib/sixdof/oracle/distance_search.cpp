@@ -10,6 +10,8 @@
 #include <sixdof/oracle/triangle_distances.h>
 #include <sixdof/proximity/sorted_stack.h>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/distance_search.cpp"
 #include <hwy/foreach_target.h>

@@ -3,6 +3,8 @@
 #include <limits>
 #include <vector>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/distance_seeds.cpp"
 #include <hwy/foreach_target.h>

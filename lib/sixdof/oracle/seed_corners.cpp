@@ -1,5 +1,7 @@
 #include <sixdof/oracle/seed_corners.h>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/seed_corners.cpp"
 #include <hwy/foreach_target.h>

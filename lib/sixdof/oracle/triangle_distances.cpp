@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/oracle/triangle_distances.cpp"
 #include <hwy/foreach_target.h>

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-// SIMD vectors are members of structures here, which targets of unknown vector length (SVE, RVV) do not allow.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include <sixdof/base/simd_targets.h>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sixdof/algorithm/vps/contact.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
