@@ -357,13 +357,24 @@ HWY_EXPORT(divide_search);
 HWY_EXPORT(find_swept_leaves);
 HWY_EXPORT(find_swept_triangles);
 HWY_EXPORT(select_triangles);
+
+// Calls from within: a dispatch among one instruction set alone (ARM's NEON) knows unqualified names only.
+constexpr auto continue_search_now = [](auto&&... given) { return HWY_DYNAMIC_DISPATCH(continue_search)(given...); };
+constexpr auto divide_search_now = [](auto&&... given) { return HWY_DYNAMIC_DISPATCH(divide_search)(given...); };
+constexpr auto find_swept_leaves_now = [](auto&&... given) {
+  return HWY_DYNAMIC_DISPATCH(find_swept_leaves)(given...);
+};
+constexpr auto find_swept_triangles_now = [](auto&&... given) {
+  return HWY_DYNAMIC_DISPATCH(find_swept_triangles)(given...);
+};
+constexpr auto select_triangles_now = [](auto&&... given) { return HWY_DYNAMIC_DISPATCH(select_triangles)(given...); };
 }  // namespace candidates
 
 namespace {
 
 std::size_t continue_search(const Tree& a, const Tree& b, const Pose& X_AB, double margin, CandidateScratch& scratch,
                             std::vector<TrianglePair>& pairs, std::size_t most) {
-  return HWY_DYNAMIC_DISPATCH(candidates::continue_search)(a, b, X_AB, margin, scratch, pairs, most);
+  return candidates::continue_search_now(a, b, X_AB, margin, scratch, pairs, most);
 }
 
 }  // namespace
@@ -403,26 +414,26 @@ void find_candidates(const Tree& a, const Tree& b, const Pose& X_AB, CandidateSc
 
 void divide_search(const Tree& a, const Tree& b, const Pose& X_AB, std::size_t enough, CandidateScratch& scratch,
                    std::vector<CandidateScratch::VolumePair>& pairs, std::vector<CandidateScratch::VolumePair>& wider) {
-  HWY_DYNAMIC_DISPATCH(candidates::divide_search)(a, b, X_AB, enough, scratch, pairs, wider);
+  candidates::divide_search_now(a, b, X_AB, enough, scratch, pairs, wider);
 }
 
 void find_swept_leaves(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                        CandidateScratch& scratch, std::vector<SweptPair>& pairs) {
   pairs.clear();
   scratch.start(a, b);
-  HWY_DYNAMIC_DISPATCH(candidates::find_swept_leaves)(a, b, X_AB, displacement, scratch, pairs);
+  candidates::find_swept_leaves_now(a, b, X_AB, displacement, scratch, pairs);
 }
 
 void find_swept_triangles(const Tree& a, const Tree& b, const Pose& X_AB, const Eigen::Vector3d& displacement,
                           std::span<const SweptPair> leaf_pairs, std::vector<SweptPair>& pairs) {
   pairs.clear();
-  HWY_DYNAMIC_DISPATCH(candidates::find_swept_triangles)(a, b, X_AB, displacement, leaf_pairs, pairs);
+  candidates::find_swept_triangles_now(a, b, X_AB, displacement, leaf_pairs, pairs);
 }
 
 void select_triangles(const Tree& a, const Tree& b, const Pose& X_AB, double margin,
                       std::span<const SweptPair> leaf_pairs, FractionRange range, std::vector<TrianglePair>& pairs) {
   pairs.clear();
-  HWY_DYNAMIC_DISPATCH(candidates::select_triangles)(a, b, X_AB, margin, leaf_pairs, range, pairs);
+  candidates::select_triangles_now(a, b, X_AB, margin, leaf_pairs, range, pairs);
 }
 
 void select_pairs(std::span<const SweptPair> swept, FractionRange range, std::vector<TrianglePair>& pairs) {

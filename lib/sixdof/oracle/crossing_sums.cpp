@@ -396,17 +396,21 @@ namespace sixdof {
 namespace crossings {
 HWY_EXPORT(keep_crossings);
 HWY_EXPORT(sum_crossings);
+
+// Calls from within: a dispatch among one instruction set alone (ARM's NEON) knows unqualified names only.
+constexpr auto keep_crossings_now = [](auto&&... given) { return HWY_DYNAMIC_DISPATCH(keep_crossings)(given...); };
+constexpr auto sum_crossings_now = [](auto&&... given) { return HWY_DYNAMIC_DISPATCH(sum_crossings)(given...); };
 }  // namespace crossings
 
 namespace detail {
 
 void keep_crossings(const Solid& a, const Solid& b, const Pose& X_AB, std::vector<TrianglePair>& pairs) {
-  HWY_DYNAMIC_DISPATCH(crossings::keep_crossings)(a, b, X_AB, pairs);
+  crossings::keep_crossings_now(a, b, X_AB, pairs);
 }
 
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,
                            const PairSource& next, const Eigen::Vector3d& along) {
-  return HWY_DYNAMIC_DISPATCH(crossings::sum_crossings)(a, b, X_AB, origin, next, along);
+  return crossings::sum_crossings_now(a, b, X_AB, origin, next, along);
 }
 
 CrossingSums sum_crossings(const Solid& a, const Solid& b, const Pose& X_AB, const Eigen::Vector3d& origin,

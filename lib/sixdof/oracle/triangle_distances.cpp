@@ -194,6 +194,9 @@ HWY_AFTER_NAMESPACE();
 namespace sixdof {
 namespace triangle_distances {
 HWY_EXPORT(measure);
+
+// Calls from within: a dispatch among one instruction set alone (ARM's NEON) knows unqualified names only.
+constexpr auto measure_now = [](auto&&... given) { return HWY_DYNAMIC_DISPATCH(measure)(given...); };
 }  // namespace triangle_distances
 
 void TriangleDistances::add(const TriangleCorners& a, const TriangleCorners& b) {
@@ -213,7 +216,7 @@ void TriangleDistances::measure() {
       for (auto& of_axis : of_corner) std::fill(of_axis + count_, of_axis + k_most, of_axis[0]);
     }
   }
-  measured_ = HWY_DYNAMIC_DISPATCH(triangle_distances::measure)(corner_, count_, distance_, direction_);
+  measured_ = triangle_distances::measure_now(corner_, count_, distance_, direction_);
 }
 
 }  // namespace sixdof
