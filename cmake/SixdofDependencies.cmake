@@ -17,6 +17,11 @@ find_package(Boost 1.74 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64 AND HWY_VERSION VERSION_LESS 1.1)
+  # These versions compile functions for NEON with encryption, which the compiler does not inline into constructors without
+  # it. None of its instructions is used.
+  target_compile_options(PkgConfig::HWY INTERFACE -march=armv8-a+crypto)
+endif()
 
 if(SIXDOF_WITH_FCL)
   find_package(fcl 0.7 REQUIRED)
