@@ -224,6 +224,24 @@ def check_hdf5(root, files):
     return problems
 
 
+SIMD_TARGETS = "#include <sixdof/base/simd_targets.h>"
+FOR_EACH_TARGET = "#include <hwy/foreach_target.h>"
+QUALIFIED_DISPATCH = re.compile(r"HWY_DYNAMIC_DISPATCH\([^)]*::")
+
+
+def check_simd(root, files):
+    """SIMD code compiles for ARM, too: not for instruction sets of unknown vector length, and where NEON is the only one."""
+    problems = []
+    for file in files:
+        lines = (root / file).read_text(errors="replace").splitlines()
+        for number, line in enumerate(lines, 1):
+            if line.startswith(FOR_EACH_TARGET) and SIMD_TARGETS not in lines[:number]:
+                problems.append(f"{file}:{number}: needs {SIMD_TARGETS} before it")
+            if QUALIFIED_DISPATCH.search(line):
+                problems.append(f"{file}:{number}: dispatches by a qualified name, which one instruction set alone does not know")
+    return problems
+
+
 COVERED_ROW = re.compile(r"^\|\s*`(\S+_test\.(?:cpp|py))`\s*\|\s*`([\w/.]+/)`\s*\|(.+)\|\s*$")
 TEMPLATES = "bench/new_algorithm/"  # written into projects of others
 
@@ -278,6 +296,7 @@ def check(root, build=None):
     problems, graph = check_includes(root, rooms, files)
     problems += check_rooms(rooms, files)
     problems += check_hdf5(root, files)
+    problems += check_simd(root, files)
     problems += check_tests(root, files)
     problems += find_circles(graph)
     if build:

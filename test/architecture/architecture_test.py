@@ -83,6 +83,16 @@ class Architecture(unittest.TestCase):
         self.assertEqual(self.check({**rooms, file: "void f(long id) {\n  check(H5Dclose(id));\n}\n"}), [])
         self.expect({"lib/sixdof/lower/a.cpp": "bool f(long id) { return H5Dclose(id) < 0; }\n"}, "a.cpp:1", "calls HDF5")
 
+    def test_simd_that_arm_does_not_compile(self):
+        loop = "#include <hwy/foreach_target.h>\n"
+        self.expect({"lib/sixdof/lower/c.cpp": loop}, "lib/sixdof/lower/c.cpp:1", "simd_targets.h")
+        header = {"lib/sixdof/base/simd_targets.h": "#pragma once\n",
+                  "lib/README.md": README.replace("| `test/`", "| `lib/sixdof/base/` | files |\n| `test/`")}
+        targets = "#include <sixdof/base/simd_targets.h>\n"
+        self.expect({**header, "lib/sixdof/lower/a.cpp": loop + targets}, "lib/sixdof/lower/a.cpp:1", "before it")
+        call = "int f() { return HWY_DYNAMIC_DISPATCH(inner::g)(1); }\n"
+        self.expect({**header, "lib/sixdof/lower/a.cpp": targets + loop + call}, "lib/sixdof/lower/a.cpp:3", "qualified")
+
     def test_a_room_above(self):
         self.expect({"lib/sixdof/lower/c.h": "#pragma once\n#include <sixdof/upper/d.h>\n",
                      "lib/sixdof/upper/d.h": "#pragma once\n"}, "lib/sixdof/lower/c.h:2", "lib/sixdof/upper/", "above")
